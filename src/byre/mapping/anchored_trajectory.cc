@@ -63,7 +63,7 @@ void AnchoredTrajectory::bend(std::size_t first, std::size_t second, const Pose&
   }
 }
 
-// Index of the first pose that no limit may leave out.
+// Index of the first pose that is never thinned out.
 std::size_t AnchoredTrajectory::recent_begin() const {
   const std::size_t recent = options_.max_poses / 2;
   return options_.max_poses == 0 || poses_.size() < recent ? 0 : poses_.size() - recent;
@@ -121,7 +121,7 @@ void AnchoredTrajectory::settle_all(const MapView& map, const TrackOptions& trac
   while (const auto seen = hindsight_.take_oldest()) settle(*seen, map, tracking);
 }
 
-// Mapping has settled by now where the points lie that the frame was tracked on.
+// Precondition: mapping has settled the points on which the frame was tracked.
 void AnchoredTrajectory::settle(const RememberedFrame& seen, const MapView& map, const TrackOptions& tracking) {
   AnchoredPose& anchored = poses_[seen.number - thinned_out_];
   const Pose keyframe_from_world = camera_from_world(map, anchored.keyframe);

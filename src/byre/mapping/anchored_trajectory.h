@@ -12,20 +12,20 @@
 
 namespace byre {
 
-// The pose of a keyframe now, in either map, of a removed one too.
+// Current pose of a keyframe of either map; also of a removed one.
 Pose camera_from_world(const MapView& map, KeyframeId id);
 
-// The rectified camera of one rig, as another calibration has it.
+// Change of a rig's rectified camera by a new calibration.
 struct RigTurn {
   Pose after_from_before;
   int rig = 0;  // index into Map::rigs
   Rig after;
 };
 
-// How the camera of an online keyframe was turned: not at all where it is of another rig.
+// Rotation of an online keyframe's camera; identity for keyframes of other rigs.
 Pose turn_of(const RigTurn& turn, KeyframeId id, const Map& online);
 
-// Where a frame lay relative to a keyframe, so that it moves along when mapping moves that one.
+// Pose of a frame relative to a keyframe, so that it follows when mapping moves the keyframe.
 struct AnchoredPose {
   Timestamp time{};
   KeyframeId keyframe;
@@ -36,10 +36,10 @@ struct AnchoredPose {
 Pose camera_from_world(const MapView& map, const AnchoredPose& pose);
 
 struct TrajectoryOptions {
-  std::size_t max_poses = 0;  // most poses that are kept; 0: all. Newer ones all, older ones evenly thinned out
+  std::size_t max_poses = 0;  // largest number of poses; 0: unlimited. Thins out older poses evenly
 };
 
-// One pose for each frame that had one, in order of time. The last of them may not be believed yet.
+// One pose per frame that had one, by time. The last ones may be unconfirmed.
 class AnchoredTrajectory {
  public:
   explicit AnchoredTrajectory(const HindsightOptions& hindsight, const TrajectoryOptions& options = {})
@@ -49,42 +49,42 @@ class AnchoredTrajectory {
   std::size_t size() const { return poses_.size(); }
   const AnchoredPose& back() const { return poses_.back(); }
   const AnchoredPose& operator[](std::size_t number) const { return poses_[number]; }
-  const AnchoredPose* find(Timestamp time) const;  // null for a frame that had no pose, or whose pose was left out
-  // The camera at a frame that had a pose then; empty for any other.
+  const AnchoredPose* find(Timestamp time) const;  // null if the frame has no pose or it was thinned out
+  // Camera pose at a frame; empty if find() is null.
   std::optional<Pose> camera_at(Timestamp time, const MapView& map) const;
-  // The camera's velocity from the last pose to one at a later time, see MotionModel; zero where no time went by.
+  // The camera's velocity from the last pose to a pose at a later time, see MotionModel; zero if no time elapsed.
   Vector6 velocity_to(Timestamp time, const Pose& camera_from_map, const MapView& map) const;
   bool ends_in_doubt() const { return poses_.size() > believed_end_; }
 
   void add(const AnchoredPose& pose) { poses_.push_back(pose); }
-  // What the last frame saw is kept, to refine its pose once mapping has settled.
+  // Keeps the last frame's sightings, to refine its pose once mapping has settled.
   void keep_sightings(const Rig& rig, const Features& features, const TrackedFrame& tracked);
-  // The last frame has become a keyframe.
+  // The last frame became this keyframe.
   void anchor_last_to(KeyframeId keyframe);
-  std::size_t believed_count() const { return believed_end_; }  // so many of the first are believed
+  std::size_t believed_count() const { return believed_end_; }  // number of confirmed poses, the first ones
   void believe_all() { believed_end_ = poses_.size(); }
   void drop_doubtful();
 
-  // The poses between two were led on from the first by what was told, and the second, seen again, is not where that
-  // led to: each takes its share, by time, of what the way was told wrongly. told: first_from_second, of the camera.
+  // Distributes the error of dead reckoning over the poses between two measured ones, in proportion to time. told:
+  // first_from_second of the camera, by odometry.
   void bend(std::size_t first, std::size_t second, const Pose& told, const MapView& map);
 
-  // Where there are more poses than options say, leaves out some of those before the last half of that number, but none
-  // from index end on. Returns how many: indices of all later poses become less by that.
+  // With more than options.max_poses poses, thins out those before the newest half, but none from index end on. Returns
+  // the number of removed poses, by which the indices of later ones decrease.
   std::size_t thin_out(std::size_t end);
 
-  // What was measured relative to keyframes, in lengths that have changed since.
+  // Rescales poses relative to keyframes whose lengths changed.
   void follow(const LengthChanges& changes);
-  // The cameras of a rig were turned, and those of its keyframes with them.
+  // A new calibration rotated the cameras of a rig, those of its keyframes too.
   void turn(const RigTurn& turn, const Map& online);
-  // The camera is another one from here on; keyframes stay as they are.
+  // The camera of all poses changes; keyframes keep theirs.
   void turn_camera(const Pose& after_from_before);
 
-  // Refines the pose of the oldest frame whose sightings have been kept long enough, and of all that are left.
+  // Refines the oldest pose whose sightings were kept long enough, or all remaining ones.
   void settle_overdue(const MapView& map, const TrackOptions& tracking);
   void settle_all(const MapView& map, const TrackOptions& tracking);
 
-  // The poses in the reports' frame. world_from_body.
+  // The poses world_from_body in the map frame.
   Trajectory in_map_frame(const MapView& map, const Submaps& submaps, const Rig& rig) const;
 
  private:
@@ -94,10 +94,10 @@ class AnchoredTrajectory {
 
   TrajectoryOptions options_;  // constant after construction
   std::vector<AnchoredPose> poses_;
-  std::size_t believed_end_ = 0;                        // poses before are believed
-  Timestamp spacing_ = std::chrono::milliseconds(100);  // least time between poses that were thinned out
-  std::size_t thinned_out_ = 0;                         // poses left out so far
-  Hindsight hindsight_;                                 // numbers are indices into the poses, had none been left out
+  std::size_t believed_end_ = 0;                        // poses before this index are confirmed
+  Timestamp spacing_ = std::chrono::milliseconds(100);  // least time between poses after thinning out
+  std::size_t thinned_out_ = 0;                         // number of poses removed so far
+  Hindsight hindsight_;                                 // by index as if no pose had been removed
 };
 
 }  // namespace byre

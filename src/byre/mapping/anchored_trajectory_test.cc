@@ -13,7 +13,7 @@ using ::testing::SizeIs;
 
 const Pose kAhead = exp_pose((Vector6() << 0.1, 0.0, -0.5, 0.0, 0.1, 0.0).finished());  // camera_from_keyframe
 
-// A map of two keyframes, and a trajectory of one frame beside each.
+// A map of two keyframes, and a trajectory of one frame near each.
 class AnchoredFrames : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(9, 10.0, 2.0, 0.1), {});
@@ -39,7 +39,7 @@ TEST_F(AnchoredFrames, MoveWithTheirKeyframes) {
   EXPECT_THAT(poses[1].world_from_body, PoseNear(body_pose(mission_.rig, kAhead * moved), 1e-12, 1e-12));
 }
 
-// Wheels that told a way straight ahead, where the robot turned to the left all along.
+// Odometry reports straight motion while the robot turns to the left.
 TEST_F(AnchoredFrames, TakeTheirShareOfAWayThatWasToldWrongly) {
   AnchoredTrajectory trajectory{HindsightOptions{}};
   const Pose first = map_.camera_from_world(keyframes_[0]);
@@ -60,7 +60,7 @@ TEST_F(AnchoredFrames, TakeTheirShareOfAWayThatWasToldWrongly) {
   trajectory.bend(0, 10, told, map_);
   for (std::size_t i = 0; i < 10; ++i) {
     const Pose bent = first * inverse(byre::camera_from_world(map_, trajectory[i]));
-    EXPECT_LT((bent.translation - truth[i].translation).norm(), 0.03) << i;  // metres, of a way that was told 0.1 m off
+    EXPECT_LT((bent.translation - truth[i].translation).norm(), 0.03) << i;  // metres; odometry is 0.1 m off
     EXPECT_LT(angle_between(bent.rotation, truth[i].rotation), 1e-6) << i;
   }
 }

@@ -12,7 +12,7 @@ class RefinedCalibrator : public ::testing::Test {
     calibration.left = {CameraModel::pinhole, 640, 480, 400.0, 400.0, 320.0, 240.0, {}};
     return calibration;
   }
-  // As after a look at a map of so many keyframes.
+  // State after a refinement with that many keyframes.
   void refine(int keyframes) {
     calibrator_.note_attempt(keyframes);
     RefinedCalibration refined;
@@ -30,8 +30,7 @@ TEST_F(RefinedCalibrator, IsOpenUntilTheFirstLook) {
   EXPECT_FALSE(calibrator_.is_open());
 }
 
-// In a rendered room, given a focal length that is 20 % too long, seven keyframes and ten were explained by errors of
-// the usual size, thirteen were not.
+// Observed in a rendered room with a focal length 20 % too long: usual changes explain 7 and 10 keyframes, but not 13.
 TEST_F(RefinedCalibrator, IsOpenForManyKeyframesWhereImagesDidNotFitByTheOneGiven) {
   calibrator_.note_images(true);
   refine(7);

@@ -19,40 +19,40 @@ namespace byre {
 
 struct AppliedCorrection {
   MapDelta delta;
-  LengthChanges length_changes;  // what lies relative to a keyframe is to follow them
+  LengthChanges length_changes;  // for poses relative to keyframes
 };
 
-// The part of a map that closing loops bends, copied from it; see recent_map.
+// Copy of the part of a map that loop closing deforms; see recent_map.
 struct MapToBend {
   std::shared_ptr<MapWindow> recent;
-  std::shared_ptr<const MapWindow> outline;  // the recent map's
+  std::shared_ptr<const MapWindow> outline;  // outline of `recent`
   std::vector<LoopEdge> loops;
 };
-// first_new: number of the first keyframe that is not of the map gone on with; motions: see told_motions.
+// first_new: number of the first keyframe after those of a continued map; motions: see told_motions.
 MapToBend copy_to_bend(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
                        const std::vector<KeyframeMotion>& motions);
 
-// Corrections of the whole map, and of its calibration, one at a time, beside tracking and local mapping. A finished
-// correction waits until local mapping has nothing in flight, for what that works on would be out of date.
+// Corrections of the whole map and of its calibration, one at a time, in parallel with tracking and local mapping. A
+// finished correction waits until no local job is in flight, because it would invalidate the job's window.
 class GlobalLane {
  public:
-  // stowed: where features of the maps lie that are corrected.
+  // stowed: file with features of the maps.
   GlobalLane(std::unique_ptr<Executor> executor, const GlobalMappingOptions& options,
              std::shared_ptr<const ScratchFile> stowed)
       : options_(options), stowed_(std::move(stowed)), worker_(std::move(executor)) {}
 
   bool idle() const { return worker_.idle() && !outcome_; }
-  bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // with a correction
+  bool is_waiting() const { return outcome_ && std::holds_alternative<MapDelta>(*outcome_); }  // to apply a correction
 
   void close_loops(MapToBend map);  // precondition: idle()
-  // Looks what a map says of the calibration of a rig of its. Precondition: idle().
+  // Refines the calibration of a rig by the map. Precondition: idle().
   void calibrate(std::shared_ptr<const MapWindow> whole, const CalibrationState& state, int rig,
                  const SelfCalibrationOptions& options);
-  std::optional<Recalibration> take_calibration();  // empty while there is none
+  std::optional<Recalibration> take_calibration();  // empty if none is finished
 
   void collect();                        // once per frame
   void finish();                         // waits for the job in flight
-  void hurry() { *is_hurried_ = true; }  // the job in flight, and those to come, end soon with what they have reached
+  void hurry() { *is_hurried_ = true; }  // the present job and later ones end soon, with their results so far
   AppliedCorrection apply(Map& online);  // precondition: is_waiting()
 
  private:
@@ -61,14 +61,14 @@ class GlobalLane {
 
   void keep(std::optional<Worker<Outcome>::Finished> finished);
 
-  GlobalMappingOptions options_;               // constant after construction, as the next
+  GlobalMappingOptions options_;               // constant after construction, as is the next
   std::shared_ptr<const ScratchFile> stowed_;  // shared with jobs
 
-  // Owned by the calling thread; the outline is shared with the job and changed by nobody.
+  // Owned by the calling thread; the outline is shared with the job and constant.
   Worker<Outcome> worker_;
-  std::shared_ptr<const MapWindow> outline_;  // map that is corrected, as it was
+  std::shared_ptr<const MapWindow> outline_;  // outline of the map before the correction
   std::shared_ptr<std::atomic<bool>> is_hurried_ = std::make_shared<std::atomic<bool>>(false);  // read by the job
-  std::optional<Outcome> outcome_;                                                              // not taken over yet
+  std::optional<Outcome> outcome_;                                                              // not yet applied
 };
 
 }  // namespace byre

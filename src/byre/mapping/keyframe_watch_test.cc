@@ -13,7 +13,7 @@ class KeyframesWatched : public ::testing::Test {
   const Map map_ = true_map(mission_, 8, Origin::online);
   KeyframeWatch watch_;
 
-  // A frame turned by so many radians against the first keyframe.
+  // Evidence of a frame rotated by `turn` radians from the first keyframe.
   KeyframeEvidence evidence(double turn = 0.0) const {
     HybridTrack track;
     track.tracked.reference = map_.keyframe_ids().front();
@@ -71,7 +71,7 @@ HybridTrack tracked_on(int points) {
   return track;
 }
 
-// A view that has turned far enough for a keyframe.
+// Evidence of a view rotated far enough for a keyframe.
 KeyframeEvidence after_a_turn() {
   KeyframeEvidence evidence;
   evidence.frames_since_last = 10;
@@ -102,7 +102,7 @@ TEST(KeyframeOfACutFrame, WaitsForDepthsWhereTheyWereMissing) {
   EXPECT_TRUE(watch.is_short());
 }
 
-// Without one, nothing would join what was mapped before the dark to the old place.
+// The keyframe is the only link between the map from before the loss of tracking and this place.
 TEST(KeyframeOfAFoundFrame, IsMadeWhereTheWayThereWasTold) {
   KeyframeEvidence nothing_new = after_a_turn();
   nothing_new.turn = 0.0;

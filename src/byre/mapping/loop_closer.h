@@ -9,11 +9,10 @@
 
 namespace byre {
 
-// Looks for older parts of the map that the newest keyframes have come back to, and keeps what it found. Called from
-// the session's thread.
+// Searches for loops: older parts of the map that the newest keyframes revisit. Called from the session's thread.
 class LoopCloser {
  public:
-  // Places found again so far, each with what was seen of it then.
+  // Loops found so far, each with its measured relative pose.
   const std::vector<LoopEdge>& loops() const { return loops_; }
 
   // A frame tracked in the newer part of the map.
@@ -22,24 +21,24 @@ class LoopCloser {
     Pose camera_from_world;
     const Rig& rig;
     KeyframeId newest;
-    bool is_new = false;  // the newest keyframe is of this frame
+    bool is_new = false;  // the newest keyframe is this frame
   };
-  // Once for each frame while no correction of the whole map is in flight. A loop that enough frames have confirmed.
+  // Called per frame while no correction of the whole map is in flight. Returns a loop once enough frames confirm it.
   std::optional<LoopHypothesis> look(const Look& now, const Map& online);
-  // Once after each look(): whether the newest keyframe is to be looked for in older parts, see find_loop.
+  // Called once after each look(): whether to search older parts of the map for the newest keyframe, see find_loop.
   bool take_question() { return std::exchange(asks_for_place_, false); }
-  void suspect(const LoopHypothesis& found) { hypothesis_ = found; }  // where that found one
+  void suspect(const LoopHypothesis& found) { hypothesis_ = found; }  // result of that search
   void add(const LoopEdge& loop) { loops_.push_back(loop); }
 
-  // What was measured of a place is out of date.
+  // Drops the hypothesis, whose measured pose is out of date.
   void forget_hypothesis() { hypothesis_.reset(); }
   void follow(const LengthChanges& changes);
   void turn(const RigTurn& turn, const Map& online);
 
  private:
-  std::optional<LoopHypothesis> hypothesis_;  // not confirmed yet
+  std::optional<LoopHypothesis> hypothesis_;  // not yet confirmed
   bool asks_for_place_ = false;
-  int frames_since_loop_ = 0;  // since one was confirmed
+  int frames_since_loop_ = 0;  // since the last confirmed loop
   std::vector<LoopEdge> loops_;
 };
 

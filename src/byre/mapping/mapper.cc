@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-constexpr std::uint32_t kNewKeyframes = 32;  // as many as a window holds: all of what they see stays in memory
+constexpr std::uint32_t kNewKeyframes = 32;  // the size of a window, whose features stay in memory
 
 }  // namespace
 
@@ -59,7 +59,7 @@ Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::o
   return begun;
 }
 
-// In a mission its place in the offline map is not known yet.
+// In a mission the place in the offline map is not yet determined.
 Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                                        const AnchoredTrajectory& trajectory) {
   auto first = initialise_stereo(frame, rig, options_.min_initial_points);
@@ -78,8 +78,7 @@ Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const
   return {{id}};
 }
 
-// The keyframe from which the way to a new submap was told; none in a mission, where the two lie in frames of their
-// own.
+// The keyframe from which odometry leads to a new submap; empty in a mission, whose submaps have separate frames.
 std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& trajectory) const {
   return offline_ || trajectory.empty() ? std::nullopt : std::optional(trajectory.back().keyframe);
 }
@@ -155,10 +154,10 @@ KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, co
   return id;
 }
 
-// Patches at corners that see no point serve to find new points, which is done among the newest keyframes. At the
-// others they serve for as long as the map grows: points are fused, and defined by another view. Without them errors of
-// maps with loops grow by some percent. But few of them at a time, as of all that a keyframe's features are, so that
-// they lie in a file. It is written by jobs, as a disk may be busy.
+// Moves features of old keyframes to the scratch file. Patches of features without a point are dropped: they serve only
+// to triangulate new points among the newest keyframes. The other patches are needed as long as the map grows, to fuse
+// points and to change their reference view; without them errors of maps with loops grow by some percent. Few are
+// needed at a time, hence the file. Jobs write it, because the disk may be busy.
 void Mapper::stow_old_keyframe() {
   if (newest_->number < kNewKeyframes) return;
   const KeyframeId old{newest_->origin, newest_->number - kNewKeyframes};
@@ -177,7 +176,7 @@ void Mapper::stow_later(KeyframeId id) {
   if (keyframe != nullptr) to_stow_.push_back({id, keyframe->frame.features});
 }
 
-// A map that was read has all in memory, and features that moved have keypoints of their own again.
+// A loaded map has all features in memory, and features that moved have new keypoints.
 void Mapper::stow_all_anew() {
   to_stow_.clear();
   for (const KeyframeId id : online_.keyframe_ids()) {
@@ -185,8 +184,7 @@ void Mapper::stow_all_anew() {
   }
 }
 
-// New keyframes are looked for in older parts of the map; where one seems to be found, the frames after it must be
-// found there too.
+// Searches older parts of the map for new keyframes. A match must be confirmed by the frames after it.
 bool Mapper::look_for_loop(const LoopCloser::Look& now) {
   if (!places_ || !is_global_free()) return false;
   const auto loop = loop_closer_.look(now, online_);
@@ -194,10 +192,10 @@ bool Mapper::look_for_loop(const LoopCloser::Look& now) {
   return loop.has_value();
 }
 
-// In a mission it is the offline map that large drift is corrected by.
+// In a mission large drift is corrected by the offline map, not by loops.
 void Mapper::settle_loop(const LoopHypothesis& loop) {
   const std::optional<LoopEdge> edge = edge_of(loop, online_);
-  if (!edge) return;  // found redundant meanwhile
+  if (!edge) return;  // removed as redundant meanwhile
   const bool fusing_will_do = apparent_drift(loop, online_) <= options_.max_drift_to_fuse;
   if (!fusing_will_do && offline_) return;
   loop_closer_.add(*edge);
@@ -208,7 +206,7 @@ void Mapper::settle_loop(const LoopHypothesis& loop) {
   }
 }
 
-// A mission's lengths are held by the offline map, beside which nothing is gained.
+// Empty in a mission: the offline map fixes lengths, and motions would add nothing.
 std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId>& keyframes) const {
   if (offline_) return {};
   return told_motions(online_, keyframes, options_.recording, tell_);
@@ -238,7 +236,7 @@ void Mapper::take_over(const LocalOutcome& outcome) {
   }
 }
 
-// Keyframes lie otherwise by it, which a mission's are told by the offline map, and plain SLAM's by each other.
+// A new readout time changes keyframe poses. In a mission the offline map corrects them, else a global adjustment does.
 bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
   assert(!is_read());
   if (!shutter.has_change() || !local_.idle() || !is_global_free()) return false;
@@ -250,12 +248,12 @@ bool Mapper::take_over_readout(Shutter& shutter, const Rig& rig) {
   return true;
 }
 
-// What is in flight was measured by the calibration before, so that it must be over.
+// Waits for the local job, whose data are by the previous calibration.
 std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
   assert(!is_read());
   if (!calibrator_ || !local_.idle()) return std::nullopt;
   if (auto by = global_.take_calibration()) {
-    constexpr double kToAdjust = 0.5;  // sigmas of the parameters: less changes the map by less than its noise
+    constexpr double kToAdjust = 0.5;  // sigmas of the parameters; smaller changes move the map by less than its noise
     const bool is_large = (by->refined.change - calibrator_->state().change).norm() > kToAdjust;
     const RigTurn turn = recalibrate(*std::move(by), rig);
     stow_all_anew();
@@ -269,7 +267,7 @@ std::optional<RigTurn> Mapper::take_over_calibration(const Rig& rig) {
   return std::nullopt;
 }
 
-// The rectified camera turns, as it is made of the real ones in another way.
+// The rectified camera rotates, because the rectification depends on the calibration.
 RigTurn Mapper::recalibrate(Recalibration by, const Rig& rig) {
   const int index = online_.add_rig(rig);
   online_.recalibrate(index, by.from_present, by.features);
@@ -310,7 +308,7 @@ std::optional<Pose> Mapper::correct_online() {
   return correction.offline_from_online;
 }
 
-// A waiting correction goes first: what a job would work on is about to move.
+// Not before a waiting correction, which moves the job's keyframes.
 void Mapper::start_job() {
   if (pending_.empty() || !local_.idle() || global_.is_waiting() || waiting_correction_) return;
   MapWindow window = cut_window(map(), pending_, options_.mapping.window);
@@ -331,7 +329,7 @@ void Mapper::start_job() {
   });
 }
 
-// What is asked for while the map is read waits until that is over.
+// Requests wait while a job reads the map.
 void Mapper::start_reading() {
   if (is_read()) return;
   std::optional<KeyframeId> id = std::exchange(unread_, std::nullopt);
@@ -348,7 +346,7 @@ void Mapper::start_reading() {
   });
 }
 
-// Preconditions: places_, and the keyframe is there.
+// Preconditions: places_, and the keyframe exists.
 KeyframeReading Mapper::read_for(KeyframeId id, bool looks_for_loop) const {
   KeyframeReading reading{id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features)};
   if (looks_for_loop) reading.loop = find_loop_by_words(online_, *places_, id, reading.words, options_.loops);
@@ -383,7 +381,7 @@ LengthChanges Mapper::finish() {
   if (auto finished = reading_.finish()) keep(std::move(finished->result));
   start_reading();
   if (auto finished = reading_.finish()) keep(std::move(finished->result));
-  LengthChanges lengths;  // changes by the one correction that may be in flight
+  LengthChanges lengths;  // by the one correction that may be in flight
   while (true) {
     if (const auto finished = local_.finish()) take_over(finished->result);
     global_.finish();
@@ -396,7 +394,7 @@ LengthChanges Mapper::finish() {
 
 std::optional<RigTurn> Mapper::calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop) {
   if (!calibrator_ || !calibrator_->is_worth_a_last_look(online_.keyframe_count())) return std::nullopt;
-  // The copy of the map goes before features are made anew, which it would keep as they were.
+  // The copy of the map is freed before the features are converted, because it would keep the old ones.
   const auto refined = self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig),
                                       calibrator_->options(), forgetting_looks(*stowed_, should_stop));
   if (!refined) return std::nullopt;

@@ -8,10 +8,10 @@
 namespace byre {
 
 struct MapperOptions {
-  int recording = 0;                      // index that new keyframes get, see Keyframe::recording
+  int recording = 0;                      // index for new keyframes, see Keyframe::recording
   int min_initial_points = 100;           // stereo points of the first keyframe
-  double max_drift_to_fuse = 3.0;         // pixels: what has drifted less is found again by fusing points around it
-  MonocularStartOptions monocular_start;  // start with a rig that has no baseline
+  double max_drift_to_fuse = 3.0;         // pixels; smaller drift is removed by fusing points around the loop
+  MonocularStartOptions monocular_start;  // for monocular rigs
   MappingOptions mapping;
   LoopOptions loops;
 };

@@ -22,7 +22,7 @@ class MapperOfAMission : public ::testing::Test {
   Pose true_pose(std::size_t frame) const {  // in the map of the first frame
     return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
   }
-  // A frame tracked to its true pose on all that the newest keyframe sees.
+  // A frame tracked at its true pose on all points near the newest keyframe.
   HybridTrack track(const Mapper& mapper, std::size_t frame) const {
     const auto points = local_points(mapper.map(), *mapper.newest_keyframe(), 15);
     HybridTrack result;
@@ -66,7 +66,7 @@ TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
   EXPECT_THAT(find_faults(mapper.online()), IsEmpty());
 }
 
-// A third of the features gets no disparity, hence no point from one frame alone.
+// A third of the features loses its disparity and hence gives no point from a single frame.
 Frame with_patches(const Frame& frame, const Rig& rig) {
   const Features& bare = *frame.features;
   std::vector<Keypoint> keypoints = to_vector(bare.keypoints());
@@ -206,7 +206,7 @@ TEST(MapperOfOneCamera, BeginsOneMap) {
   EXPECT_FALSE(mapper.can_begin(rig));
 }
 
-// Told how it moved, one camera begins where that has led, in the lengths that are told.
+// With odometry, a monocular map begins at the predicted pose and in the lengths of the odometry.
 TEST(MapperOfOneCamera, BeginsWhereItIsToldToBe) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;

@@ -5,7 +5,7 @@
 
 namespace byre {
 
-// Where submaps begin with the same number the last one has the keyframes: those before never got any.
+// Submaps with an equal first_keyframe are empty, except for the last one.
 Submaps::Frame Submaps::frame(KeyframeId online) const {
   const auto next = std::ranges::upper_bound(submaps_, online.number, {}, &Submap::first_keyframe);
   return std::prev(next)->frame;

@@ -8,9 +8,8 @@
 
 namespace byre {
 
-// The submaps of an online map, each tracked without a gap, in the order in which they were begun, and the frames they
-// lie in. Poses can be compared where the frame is the same. One frame is that of the reports: the offline map's where
-// there is one.
+// Submaps of an online map, each tracked without a gap, in order of their begin, with their coordinate frames. Poses
+// are comparable within one frame. The map frame is that of reported poses: the offline map's, if there is one.
 class Submaps {
  public:
   using Frame = int;
@@ -23,20 +22,20 @@ class Submaps {
   Frame frame() const { return submaps_.back().frame; }
   Frame frame(std::size_t submap) const { return submaps_[submap].frame; }
   Frame frame(KeyframeId online) const;
-  // The present submap lies in the reports' frame.
+  // Whether the present submap lies in the map frame.
   bool is_registered() const { return !empty() && frame() == kMapFrame; }
-  // The keyframe lies in the frame of the present submap.
+  // Whether the keyframe lies in the frame of the present submap.
   bool is_in_present_frame(KeyframeId online) const { return frame(online) == frame(); }
 
-  // A new submap, whose keyframes will have this number and higher ones.
+  // Begin a new submap. first_keyframe: number of its first keyframe.
   void begin_in_map_frame(std::uint32_t first_keyframe);
   void begin_in_own_frame(std::uint32_t first_keyframe);
-  // One that goes on where an older keyframe was found.
+  // Begins a submap in the frame of an older keyframe, at which the camera was relocalised.
   void begin_beside(KeyframeId online, std::uint32_t first_keyframe);
 
-  // It became known how a frame lies in the map's: what lies in it was moved there.
+  // The contents of a frame were registered and moved to the map frame.
   void join_map_frame(Frame frame);
-  // The present submap does not lie in the map's frame as was believed; nobody knows how it does.
+  // Gives the present submap a frame of its own: it was registered to the map frame wrongly.
   void leave_map_frame() { submaps_.back().frame = next_frame_++; }
 
  private:

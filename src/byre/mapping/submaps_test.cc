@@ -9,7 +9,7 @@ KeyframeId online(std::uint32_t number) {
   return {Origin::online, number};
 }
 
-// One of keyframes 0 to 3, another of those from 4 on.
+// A submap with keyframes 0 to 3 and one from 4 on.
 Submaps two_in_map_frame() {
   Submaps submaps;
   submaps.begin_in_map_frame(0);
