@@ -5,7 +5,7 @@
 
 namespace byre {
 
-// A list that grows block by block: nothing in it moves then, and no room stands empty but in the last block.
+// List of fixed-size blocks. Growth moves no items, and only the last block has spare capacity.
 template <typename Item>
 class BlockList {
  public:
@@ -20,12 +20,12 @@ class BlockList {
 
   Item& emplace_back() {
     if (size() % kBlock == 0) blocks_.emplace_back();
-    blocks_.back().reserve(kBlock);  // a copy has no room to spare
+    blocks_.back().reserve(kBlock);  // a copied block has no spare capacity
     return blocks_.back().emplace_back();
   }
 
  private:
-  static constexpr std::size_t kBlock = 256;  // items
+  static constexpr std::size_t kBlock = 256;  // number of items
 
   std::vector<std::vector<Item>> blocks_;
 };

@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-constexpr int kMany = 1000;  // several blocks, the last of them not full
+constexpr int kMany = 1000;  // several blocks, the last one not full
 
 BlockList<int> counted() {
   BlockList<int> list;

@@ -9,11 +9,11 @@ namespace byre {
 namespace {
 
 constexpr int kBits = 256;
-constexpr unsigned kSkip = 15;  // bits that are alike, and no other one follows them
+constexpr unsigned kSkip = 15;  // this many equal bits without a differing one
 constexpr std::uint8_t kWhole = 255;
 constexpr std::size_t kMostHalves = 2 * sizeof(Descriptor);
 
-// Half bytes, put together in pairs.
+// Half bytes, packed in pairs.
 struct Halves {
   std::array<std::uint8_t, kMostHalves / 2> bytes{};
   std::size_t count = 0;
@@ -31,7 +31,7 @@ struct Halves {
 
 Halves halves_of(const Descriptor& difference) {
   Halves halves;
-  int next = 0;  // first bit that nothing was said of
+  int next = 0;  // first bit not yet coded
   for (std::size_t word = 0; word < difference.size(); ++word) {
     for (std::uint64_t rest = difference[word]; rest != 0 && !halves.is_full; rest &= rest - 1) {
       const int bit = static_cast<int>(64 * word) + std::countr_zero(rest);
@@ -43,7 +43,7 @@ Halves halves_of(const Descriptor& difference) {
   return halves;
 }
 
-// Looks at half bytes, sixteen at a time, and takes their bytes from the reader once all are known.
+// Decodes half bytes, sixteen at a time, and takes their bytes from the reader at the end.
 class HalfReader {
  public:
   explicit HalfReader(ByteReader& reader) : reader_(reader), bytes_(reader.rest()) {}
@@ -61,7 +61,7 @@ class HalfReader {
   void take() { reader_.take((count_ + 1) / 2); }
 
  private:
-  // Fails where there is nothing further.
+  // Fails at the end of the bytes.
   void look_further() {
     const std::size_t size = std::min(sizeof(ahead_), bytes_.size() - known_ / 2);
     if (size == 0) {
@@ -75,12 +75,12 @@ class HalfReader {
 
   ByteReader& reader_;
   std::span<const std::byte> bytes_;
-  std::uint64_t ahead_ = 0;  // half bytes that are known and not yet given, the next one lowest
+  std::uint64_t ahead_ = 0;  // decoded half bytes not yet returned, the next one lowest
   std::size_t known_ = 0;
   std::size_t count_ = 0;
 };
 
-// Whether the half bytes would be too many; surely where more bits differ than there may be half bytes.
+// Whether the half bytes exceed a descriptor, as they always do if more bits differ than half bytes fit.
 bool is_told_whole(const Descriptor& difference) {
   std::size_t differing = 0;
   for (const std::uint64_t word : difference) differing += static_cast<std::size_t>(std::popcount(word));

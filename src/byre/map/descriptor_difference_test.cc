@@ -62,13 +62,13 @@ TEST(DescriptorDifference, IsRefusedWhereItIsNotWrittenAsItWouldBe) {
     for (const int value : values) result.push_back(static_cast<std::byte>(value));
     return result;
   };
-  EXPECT_THROW(read_back(bytes({1, 0x10}), from), InputError);  // something in the half byte that is not needed
+  EXPECT_THROW(read_back(bytes({1, 0x10}), from), InputError);  // a non-zero unused half byte
   std::vector<std::byte> beyond = bytes({1});
   beyond.resize(20, std::byte{0xff});
   EXPECT_THROW(read_back(beyond, from), InputError);
   std::vector<std::byte> whole = bytes({255});
   whole.resize(33, std::byte{0});
-  EXPECT_THROW(read_back(whole, from), InputError);  // a descriptor that its difference would have told
+  EXPECT_THROW(read_back(whole, from), InputError);  // a descriptor with a shorter code
 }
 
 }  // namespace

@@ -10,13 +10,13 @@
 namespace byre {
 namespace {
 
-constexpr double kAround = 3.0;  // metres about a place, from which the plane there is taken
+constexpr double kAround = 3.0;  // metres, radius of the positions that a local plane is fitted to
 
 double angle_of(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
-// The value that so large a share of all stay below.
+// The quantile of the values at the given share.
 double value_above(std::vector<double> values, double share) {
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + place);
@@ -35,9 +35,9 @@ struct Spread {
 };
 
 bool is_of_wheels(const Spread& spread) {
-  constexpr double kShare = 0.95;      // share of the path that must lie within both
+  constexpr double kShare = 0.95;      // share of the path within both limits
   constexpr double kMostHeight = 0.1;  // metres
-  constexpr double kMostTilt = 0.06;   // radians: who carries a camera tilts it by more
+  constexpr double kMostTilt = 0.06;   // radians; hand-held cameras tilt more
   return value_above(spread.heights, kShare) <= kMostHeight && value_above(spread.tilts, kShare) <= kMostTilt;
 }
 
@@ -52,7 +52,7 @@ std::vector<Eigen::Vector3d> places_of(const std::vector<Pose>& path) {
 
 DrivenGround::DrivenGround(std::vector<Pose> path) : path_(std::move(path)), cells_(places_of(path_), kAround) {}
 
-// The whole path is looked at only where none of it is within the reach of its cells.
+// Searches the whole path only if no position is within the reach of its cells.
 const Pose& DrivenGround::nearest_to(const Eigen::Vector3d& position_in_map) const {
   const auto squared_distance = [&](const Pose& body) { return (body.translation - position_in_map).squaredNorm(); };
   const std::vector<std::uint32_t> near = cells_.near(position_in_map);
@@ -61,7 +61,7 @@ const Pose& DrivenGround::nearest_to(const Eigen::Vector3d& position_in_map) con
   return is_within ? path_[*nearest] : *std::ranges::min_element(path_, {}, squared_distance);
 }
 
-// "Up" along the path is that of the bodies around, which is right on a ramp and on a slope across the way as well.
+// The up direction is the mean of the bodies nearby, which is valid on ramps and cross slopes too.
 DrivingPlane DrivenGround::plane_around(const Eigen::Vector3d& position_in_map) const {
   std::vector<Eigen::Vector3d> around;
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
@@ -91,10 +91,11 @@ DrivenGround::Stand DrivenGround::stand_of(const Pose& map_from_body) const {
   return stand;
 }
 
-// How bodies stand is found by planes that take up from the whole path; then planes take it from how bodies stand.
+// Alternates two estimates: local planes, at first by the up direction of the whole path, and the attitude of bodies on
+// them.
 std::optional<DrivenGround> DrivenGround::under(const Map& map) {
   constexpr std::size_t kLeastPlaces = 20;
-  constexpr double kLeastLength = 1.0;  // metres, spread of the path
+  constexpr double kLeastLength = 1.0;  // metres, standard deviation along the path's longest direction
   const std::optional<DrivingPlane> whole = fit_driving_plane(map);
   if (!whole || whole->path_in_map.size() < kLeastPlaces || whole->length < kLeastLength) return std::nullopt;
   std::vector<Pose> path;

@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// As driven, but each pose shaken.
+// The path of driven() with noise on each pose.
 std::vector<Pose> shaken(double metres, double radians) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A map of a body that drove up one lane and down the other, as tests of the ground under it need one.
+// Map of a body that drove along one lane and back along the other, for tests of the ground under it.
 
 #include "byre/geometry/degrees.h"
 #include "byre/map/map.h"
@@ -13,7 +13,7 @@
 
 namespace byre {
 
-// A body with x ahead, y left and z up, whose camera looks ahead and 20 degrees down.
+// Body axes x forward, y left, z up; the camera looks forward and 20 degrees down.
 inline Rig looking_down() {
   Rig rig{320, 240, 188.0, 158.0, 119.0, 0.11, {}};
   Eigen::Matrix3d level_from_camera;
@@ -23,7 +23,7 @@ inline Rig looking_down() {
   return rig;
 }
 
-// The map's frame is turned in all directions against one with z up.
+// The map frame is rotated about all axes relative to a level frame with z up.
 inline const Pose kMapFromLevel{rotation_exp({0.4, -0.7, 1.1}), Eigen::Vector3d::Zero()};
 
 inline Map map_of(const std::vector<Pose>& level_from_body) {
@@ -39,7 +39,7 @@ inline Map map_of(const std::vector<Pose>& level_from_body) {
   return map;
 }
 
-// How a body stands at x and y that heads along x or back, where the floor rises by that slope from x = 10 m to 16 m.
+// Pose of a body at x, y with heading along x or back. The floor rises with the slope from x = 10 m to 16 m.
 inline Pose on_floor(double x, double y, double heading, double slope = 0.0) {
   const double rise = slope * std::clamp(x - 10.0, 0.0, 6.0);
   const bool is_on_ramp = x > 10.0 && x < 16.0;
@@ -47,7 +47,7 @@ inline Pose on_floor(double x, double y, double heading, double slope = 0.0) {
   return {tilt * rotation_exp({0.0, 0.0, heading}), {x, y, rise}};
 }
 
-// Up one lane and down the other.
+// Along one lane and back along the other.
 inline std::vector<Pose> driven(double slope = 0.0) {
   std::vector<Pose> path;
   for (int i = 0; i < 120; ++i) {

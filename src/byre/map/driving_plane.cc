@@ -13,9 +13,9 @@
 namespace byre {
 namespace {
 
-constexpr double kRigUpSigma = 0.05;          // radians, tilt of a camera that is mounted to look level
-constexpr double kFloorUnevenness = 0.002;    // least unevenness, as a share of the path's length
-constexpr double kIndependentPositions = 50;  // most that count: neighbours on a path share their errors
+constexpr double kRigUpSigma = 0.05;          // radians, tilt of a camera mounted to look horizontally
+constexpr double kFloorUnevenness = 0.002;    // least unevenness, relative to the path's length
+constexpr double kIndependentPositions = 50;  // most that count; neighbouring positions share their errors
 constexpr double kLeastCommonUp = 0.5;        // length of the mean of unit vectors
 
 Eigen::Vector3d mean_of(std::span<const Eigen::Vector3d> points) {
@@ -31,20 +31,20 @@ Eigen::Matrix3d covariance_of(std::span<const Eigen::Vector3d> points, const Eig
 }
 
 double root(double variance) {
-  return std::sqrt(std::max(variance, 0.0));  // rounding makes zero negative
+  return std::sqrt(std::max(variance, 0.0));  // rounding may make zero negative
 }
 
 }  // namespace
 
-// Minimises |up - up_of_rig|^2 / kRigUpSigma^2 + sum over the path ((position - mean) . up)^2 / unevenness^2 for
-// |up| = 1. Its stationary points solve a linear system, but for the multiplier of the constraint, which is the least
-// eigenvalue of the path's term where the path determines the plane, and small against all else where it does not.
+// Minimises |up - up_of_rig|^2 / kRigUpSigma^2 + sum over the path ((position - mean) . up)^2 / unevenness^2 for |up| =
+// 1. Stationary points solve a linear system except for the Lagrange multiplier of the constraint. The multiplier is
+// the least eigenvalue of the path's term if the path determines the plane, else it is negligible.
 DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map) {
   assert(!path_in_map.empty());
   DrivingPlane plane;
   plane.point_in_map = mean_of(path_in_map);
   const Eigen::Matrix3d covariance = covariance_of(path_in_map, plane.point_in_map);
-  const Eigen::Vector3d squared_extents = symmetric_eigenvalues(covariance);  // least first
+  const Eigen::Vector3d squared_extents = symmetric_eigenvalues(covariance);  // ascending
   plane.thickness = root(squared_extents[0]);
   plane.width = root(squared_extents[1]);
   plane.length = root(squared_extents[2]);

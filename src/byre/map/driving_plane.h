@@ -9,27 +9,26 @@
 
 namespace byre {
 
-// The floor under a robot, as far as its path and the way its camera is held tell it. Lengths in the map's unit.
+// Floor under a robot, estimated from its path and the attitude of its camera. Lengths in the map's unit.
 struct DrivingPlane {
-  std::vector<Eigen::Vector3d> path_in_map;                // positions that the plane was fitted to
+  std::vector<Eigen::Vector3d> path_in_map;                // positions to which the plane was fitted
   Eigen::Vector3d point_in_map = Eigen::Vector3d::Zero();  // mean of the path
   Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();    // unit length
-  // Inverse of the covariance of up_in_map, in the map's axes, 1/square radians: how far its tip may be off in a
-  // direction. Nothing is said along up_in_map itself.
+  // Inverse covariance of the up direction, in the map's axes, 1/square radians. Meaningless along up_in_map itself.
   Eigen::Matrix3d up_information = Eigen::Matrix3d::Identity();
-  // Spread of the path (standard deviations) along its longest direction, across that, and out of the plane.
+  // Standard deviations of the path along its longest direction, across it, and out of the plane.
   double length = 0.0;
   double width = 0.0;
   double thickness = 0.0;
 };
 
-// Fits the plane to positions on a path. Where that is a line, the turn about the line is left to up_of_rig_in_map
-// (unit length), which is taken to be right within a few degrees; it also tells which side of the plane is up.
-// Precondition: there is a position.
+// Fits the plane to positions on a path. If the path is a line, the rotation about it comes from up_of_rig_in_map (unit
+// length), which is assumed correct within a few degrees and also selects the upper side of the plane. Precondition: at
+// least one position.
 DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map);
 
-// The same for the path of the body in a map, with "up" as the images of its keyframes have it on average. Empty
-// without keyframes, or when these are held in all directions.
+// Uses the body's path in a map and the mean up direction of its keyframes' images. Empty without keyframes, or if
+// their attitudes differ too much.
 std::optional<DrivingPlane> fit_driving_plane(const Map& map);
 
 // Position of the body at a keyframe.

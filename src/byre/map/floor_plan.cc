@@ -17,12 +17,12 @@ using Vector7 = Eigen::Matrix<double, 7, 1>;
 constexpr int kMostIterations = 20;
 constexpr double kConverged = 1e-10;  // metres and radians
 constexpr int kMostRounds = 5;
-constexpr double kThinnest = 0.1;    // width of a line, of its length
+constexpr double kThinnest = 0.1;    // width of a line, relative to its length
 constexpr double kLargestRms = 3.0;  // sigmas
 constexpr double kFarthestReach = 3.0;
-constexpr double kRoughest = 0.1;  // thickness of a path, of its width
+constexpr double kRoughest = 0.1;  // thickness of a path, relative to its width
 
-// A level frame with its origin in the plane that was driven on.
+// A level frame with its origin in the driving plane.
 Pose level_from_map(const DrivingPlane& plane) {
   const Eigen::Quaterniond rotation = rotation_between(plane.up_in_map, Eigen::Vector3d::UnitZ()).normalized();
   return {rotation, -(rotation * plane.point_in_map)};
@@ -32,7 +32,7 @@ double largest_tilt_sigma(const DrivingPlane& plane) {
   return 1.0 / std::sqrt(symmetric_eigenvalues(plane.up_information)[0]);
 }
 
-// What is seen from above; points high above the floor may be off by its tilt.
+// Correspondences seen from above. The tilt's uncertainty adds to the sigma of points high above the floor.
 std::vector<PlanarPair> seen_from_above(Correspondences correspondences, const DrivingPlane& plane, Scale scale,
                                         const Eigen::Vector2d& offset_in_plan) {
   const Pose level = level_from_map(plane);
@@ -59,7 +59,7 @@ Similarity lifted(const PlanarSimilarity& plan_from_level, const DrivingPlane& p
   return plan_from_map;
 }
 
-// Weighted least squares about an estimate: its normal equations.
+// Normal equations of weighted least squares.
 struct NormalEquations {
   Matrix7 information = Matrix7::Zero();
   Vector7 gradient = Vector7::Zero();
@@ -74,7 +74,7 @@ struct NormalEquations {
   }
 };
 
-// The fit of correspondences that are taken to be right, x and y of the plan counted from an offset.
+// Fit of the inliers; x and y of the plan are relative to an offset.
 class PlanRefinement {
  public:
   PlanRefinement(Correspondences correspondences, const DrivingPlane& plane, Scale scale,
@@ -99,13 +99,13 @@ class PlanRefinement {
     return plan_from_map;
   }
 
-  // The residuals tell by how much sigmas were too small or large, as if two more had been seen that are just as large
-  // as expected: few correspondences that fit well by chance are not to be taken for perfect.
+  // Scales the covariance by the residuals, with a prior of two residuals of the expected size: few correspondences
+  // that fit well by chance must not give a small covariance.
   Matrix7 covariance(const Similarity& plan_from_map, const std::vector<bool>& is_inlier) const {
     constexpr double kExpected = 2.0;
     NormalEquations all = picks(plan_from_map, is_inlier);
     const auto count = static_cast<double>(std::ranges::count(is_inlier, true));
-    const double freedom = 2.0 * count - (unknowns_ - 3);  // height and tilt are the plane's
+    const double freedom = 2.0 * count - (unknowns_ - 3);  // height and tilt come from the plane
     all.information *= (kExpected + freedom) / (kExpected + all.cost);
     add_plane(plan_from_map, all);
     Matrix7 covariance = Matrix7::Zero();
@@ -141,7 +141,7 @@ class PlanRefinement {
     return equations;
   }
 
-  // The body's path is at a known height, and what is up there is up on the plan.
+  // Constrains the height of the body's path and the up direction.
   void add_plane(const Similarity& plan_from_map, NormalEquations& equations) const {
     const Eigen::Matrix3d rotation = plan_from_map.target_from_source.rotation.toRotationMatrix();
     const Eigen::Matrix<double, 1, 7> height_jacobian =
@@ -193,7 +193,7 @@ bool lie_in_line(const std::vector<Eigen::Vector2d>& points) {
   return spread[0] < kThinnest * kThinnest * spread[1];
 }
 
-// Whether the path of the body reaches far beyond the points.
+// Whether the body's path extends far beyond the points.
 bool lie_in_a_corner(const std::vector<Eigen::Vector2d>& points, const DrivingPlane& plane,
                      const Similarity& plan_from_map) {
   const Eigen::Vector2d centre = mean_of_picks(points);
@@ -206,7 +206,7 @@ bool lie_in_a_corner(const std::vector<Eigen::Vector2d>& points, const DrivingPl
   return reach_of_path > kFarthestReach * reach_of_points;
 }
 
-// Whether the residuals that are not outliers are small, and are most of all.
+// Whether the inliers' residuals are small and most correspondences are inliers.
 bool agree(Correspondences correspondences, const PlanFit& fit) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -268,7 +268,7 @@ bool is_far_off(const PlanFit& fit) {
 std::optional<PlanFit> register_on_plan(Correspondences correspondences, const DrivingPlane& plane, Scale scale,
                                         const PlanRegistrationOptions& options) {
   if (correspondences.size() < 2) return std::nullopt;
-  const Eigen::Vector2d offset_in_plan = correspondences.front().point_in_plan;  // it may be millions of metres
+  const Eigen::Vector2d offset_in_plan = correspondences.front().point_in_plan;  // may be millions of metres
   const auto consensus = find_planar_consensus(seen_from_above(correspondences, plane, scale, offset_in_plan), scale);
   if (!consensus) return std::nullopt;
 

@@ -16,11 +16,11 @@ using Pairs = std::span<const PlanarPair>;
 using Subset = std::vector<std::size_t>;  // indices of pairs
 
 constexpr double kRayleighMedian = 1.1774;  // median length of a vector of two standard normal variables
-constexpr double kRayleigh99 = 3.0349;      // 99th percentile of that vector's length
+constexpr double kRayleigh99 = 3.0349;      // 99 % quantile of that length
 constexpr std::size_t kMostSubsets = 20000;
 constexpr int kMostSteps = 20;
 
-// Least squares weighted by 1/sigma^2; Umeyama's solution in the plane. Empty when a frame has all pairs in one place.
+// Least squares weighted by 1/sigma^2; Umeyama's solution in the plane. Empty if all pairs coincide in one frame.
 std::optional<PlanarSimilarity> fit(Pairs pairs, const Subset& subset, Scale scale) {
   Complex source_sum = 0.0, target_sum = 0.0;
   double weights = 0.0;
@@ -54,14 +54,14 @@ std::vector<double> residuals_of(Pairs pairs, const PlanarSimilarity& motion) {
   return residuals;
 }
 
-// How many of n pairs are trusted, two of which determine a motion: of any more, wrong ones might be a majority.
+// Size of the half of `count` pairs, two of which determine a motion. In a larger subset outliers might be a majority.
 std::size_t trusted_half(std::size_t count) {
   return std::min((count + 3) / 2, count);
 }
 
 struct TrimmedFit {
   PlanarSimilarity motion;
-  Subset nearest;  // the half that fits best, ascending
+  Subset nearest;  // indices of the half with the best fit, ascending
   double cost = std::numeric_limits<double>::infinity();
 };
 
@@ -76,7 +76,7 @@ TrimmedFit trim(Pairs pairs, const PlanarSimilarity& motion) {
   return trimmed;
 }
 
-// The best motion of two pairs; of very many pairs, only some twos are tried.
+// The best motion determined by two pairs. With very many pairs only some of the sets are tried.
 std::optional<TrimmedFit> best_of_twos(Pairs pairs, Scale scale) {
   const std::size_t stride = 1 + pairs.size() * pairs.size() / 2 / kMostSubsets;
   std::optional<TrimmedFit> best;
@@ -108,7 +108,8 @@ TrimmedFit concentrate(Pairs pairs, TrimmedFit best, Scale scale) {
 
 double largest_agreeing_residual(std::vector<double> residuals) {
   const auto count = static_cast<double>(residuals.size());
-  // Two pairs are fitted exactly, so that few of them have residuals that are too small (Rousseeuw and Leroy 1987).
+  // Finite-sample correction: the motion fits two pairs exactly, which lowers their residuals (Rousseeuw and Leroy
+  // 1987).
   const double few = count > 2.0 ? 1.0 + 5.0 / (count - 2.0) : 1.0;
   return kRayleigh99 * std::max(1.0, few * median(std::move(residuals)) / kRayleighMedian);
 }

@@ -9,32 +9,32 @@
 
 namespace byre {
 
-// A place seen from above in two frames, x and y as the real and the imaginary part.
+// A position seen from above in two frames, x and y as real and imaginary part.
 struct PlanarPair {
   std::complex<double> in_source;
   std::complex<double> in_target;
-  double sigma = 1.0;  // standard error of each coordinate in the target
+  double sigma = 1.0;  // standard error per axis, in the target
 };
 
-// in_target = turn * in_source + shift: the turn's angle is the rotation, its magnitude the scale.
+// in_target = turn * in_source + shift. The argument of turn is the rotation, its magnitude the scale.
 struct PlanarSimilarity {
   std::complex<double> turn = 1.0;
   std::complex<double> shift = 0.0;
 };
 
-// Pairs that agree on one similarity, or rigid motion, of the plane.
+// Pairs consistent with one planar similarity or rigid motion.
 struct PlanarConsensus {
   PlanarSimilarity target_from_source;  // least squares over the inliers
-  std::vector<bool> is_inlier;          // one for each pair
+  std::vector<bool> is_inlier;          // one per pair
 };
 
-// How far apart pairs may be that agree, in sigmas as given, from all their residuals, so counted: 99 % of what is
-// normally distributed. More than three when more than a few residuals are larger than their sigmas explain.
+// Bound of inlier residuals, in the given sigmas: the 99 % quantile for normally distributed errors. More than three
+// sigmas if more than a few residuals exceed their sigmas.
 double largest_agreeing_residual(std::vector<double> residuals);
 
-// Least trimmed squares: of the motions that two pairs determine, all of them tried, that whose nearest half of the
-// pairs fits best, improved by refitting that half (Rousseeuw and Van Driessen 2006, theorem 1). Empty when no two
-// pairs lie apart in both frames.
+// Least trimmed squares: of the motions determined by all sets of two pairs, the one with the best fit of its nearest
+// half of the pairs, improved by refits to that half (Rousseeuw and Van Driessen 2006, theorem 1). Empty if no two
+// pairs are separate in both frames.
 std::optional<PlanarConsensus> find_planar_consensus(std::span<const PlanarPair> pairs, Scale scale);
 
 }  // namespace byre

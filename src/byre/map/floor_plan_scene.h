@@ -8,10 +8,10 @@
 
 namespace byre {
 
-inline constexpr double kPickNoise = 0.03;  // metres, of picks on a plan by hand
+inline constexpr double kPickNoise = 0.03;  // metres, of manual picks on a plan
 
-// A barn of 40 x 12 m on a plan, a robot that drove up and down its alley, and signs that are found in both. The map's
-// frame is turned in all directions against the plan's, as its first pose was.
+// A barn of 40 x 12 m on a plan, the path of a robot along its alley and back, and signs visible in both. The map frame
+// is rotated about all axes relative to the plan.
 class FloorPlanScene {
  public:
   explicit FloorPlanScene(std::uint64_t seed = 1, double metres_per_unit = 1.0) : random_(seed) {
@@ -28,7 +28,7 @@ class FloorPlanScene {
     return (map_from_plan * point_in_plan) / plan_from_map.scale;
   }
 
-  // Up one side of the alley and down the other, with that much noise; width zero: to and fro on a line.
+  // Along one side of the alley and back along the other, with noise. Width zero: on one line.
   std::vector<Eigen::Vector3d> path_in_map(double width = 2.0, double noise = 0.0) {
     std::vector<Eigen::Vector3d> path;
     for (int i = 0; i < 80; ++i) {
@@ -39,7 +39,7 @@ class FloorPlanScene {
     return path;
   }
 
-  // As a level camera tells it, or one that hangs that much to a side of the alley, or looks down it.
+  // Up direction of a level camera, or of one rolled across or pitched along the alley.
   Eigen::Vector3d up_of_rig_in_map(double roll = 0.0, double pitch = 0.0) const {
     const Eigen::Vector3d up_in_plan = rotation_exp({roll, pitch, 0.0}) * Eigen::Vector3d::UnitZ();
     return plan_from_map.target_from_source.rotation.conjugate() * up_in_plan;
@@ -47,7 +47,7 @@ class FloorPlanScene {
 
   DrivingPlane plane() { return fit_driving_plane(path_in_map(), up_of_rig_in_map()); }
 
-  // Keyframes a second apart of a body on the path whose z is up, with a camera on it that looks along its x.
+  // Keyframes at intervals of one second of a body on the path with z up, whose camera looks along the body's x axis.
   Map driven_map(const std::vector<Eigen::Vector3d>& path_in_map) const {
     Rig rig{320, 240, 188.0, 158.0, 119.0, 0.11, {}};
     Eigen::Matrix3d body_from_camera;
@@ -65,7 +65,7 @@ class FloorPlanScene {
     return map;
   }
 
-  // Signs all over the barn, one to three metres high, picked with normally distributed errors of x and of y.
+  // Signs all over the barn, one to three metres high, with normally distributed errors in x and y.
   std::vector<PlanCorrespondence> correspondences(int count, double noise = 0.0) {
     std::vector<PlanCorrespondence> all;
     for (int i = 0; i < count; ++i) {
@@ -76,7 +76,7 @@ class FloorPlanScene {
     return all;
   }
 
-  // Root mean square of how far the body on its path lies from where it was: metres.
+  // Root-mean-square position error along the body's path, metres.
   double path_error(const Similarity& estimate) {
     double squares = 0.0;
     const std::vector<Eigen::Vector3d> path = path_in_map();
@@ -85,7 +85,7 @@ class FloorPlanScene {
     return std::sqrt(squares / static_cast<double>(path.size()));
   }
 
-  // The largest error of where the barn's floor lies: metres, in its corners.
+  // Largest position error of the corners of the barn's floor, metres.
   double worst_error(const Similarity& estimate) const {
     double worst = 0.0;
     for (const double x : {0.0, 40.0}) {

@@ -42,7 +42,7 @@ TEST(FloorPlan, IsFoundExactlyFromSixExactPicks) {
   EXPECT_THAT(fit->doubts, IsEmpty());
 }
 
-// Largest values of several trials, for reports: in the file that --gtest_output=json:FILE names.
+// Largest values over trials, recorded in the file of --gtest_output=json:FILE.
 class Worst {
  public:
   explicit Worst(const char* name) : name_(name) {}
@@ -54,7 +54,7 @@ class Worst {
   double value_ = 0.0;
 };
 
-// With a path as SLAM has it, and a camera that does not hang quite straight.
+// With the path noise of SLAM and a slightly tilted camera.
 TEST(FloorPlan, IsWithinACentimetreAndATenthOfADegreeFromSixExactPicksAndARealPath) {
   Worst metres("worst_position_error_m");
   Worst degrees("worst_rotation_error_deg");
@@ -171,7 +171,7 @@ TEST(FloorPlan, TakesTheTiltThatAStraightPathLeavesOpenFromPicksOfManyHeights) {
               PoseNear(scene.plan_from_map.target_from_source, 0.1, 1.0 * kDegree));
 }
 
-// The mean of the squared error of a corner in units of its covariance: two coordinates.
+// Mean squared normalised error of a corner; two coordinates.
 TEST(FloorPlan, KnowsHowWellItIsKnown) {
   constexpr int kTrials = 300;
   const Eigen::Vector3d corner(40.0, 6.0, 0.0);

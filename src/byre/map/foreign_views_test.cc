@@ -1,4 +1,4 @@
-// Points of the online map as keyframes of the offline one see them, and the online map without them.
+// Views of online points by offline keyframes, and the online map without them.
 
 #include "byre/map/map_view.h"
 
@@ -87,7 +87,7 @@ TEST_F(ForeignViews, AreNotForAnOfflineMap) {
 
 TEST_F(ForeignViews, GoWithTheirPoint) {
   add(kOld, 2, first);
-  online.remove_observation({keyframe, 0});  // its last: no foreign view keeps it alive
+  online.remove_observation({keyframe, 0});  // its last observation; foreign views do not keep a point
   EXPECT_EQ(online.find_point(first), nullptr);
   EXPECT_EQ(online.point_of_foreign_view({kOld, 2}), std::nullopt);
   EXPECT_TRUE(add(kOld, 2, second));
@@ -97,7 +97,7 @@ TEST_F(ForeignViews, CanBeTakenAway) {
   add(kOld, 2, first);
   add(kOlder, 2, first);
   online.remove_foreign_view({kOld, 2});
-  online.remove_foreign_view({kOld, 3});  // never was one
+  online.remove_foreign_view({kOld, 3});  // no such view
   EXPECT_THAT(online.foreign_views(first), ElementsAre(IsViewBy(kOlder, 2)));
   EXPECT_EQ(online.point_of_foreign_view({kOld, 2}), std::nullopt);
 }
@@ -115,7 +115,7 @@ class StandaloneCopy : public ForeignViews {
   StandaloneCopy() {
     const KeyframeId old_keyframe = offline.add_keyframe(keyframe_with_features());
     seen = add_sighted_point(offline, {old_keyframe, 0});
-    add_sighted_point(offline, {old_keyframe, 1});  // not by the online map
+    add_sighted_point(offline, {old_keyframe, 1});  // not observed by the online map
     MapPoint point = *offline.find_point(seen);
     point.position_in_world = {1.0, 2.0, 3.0};
     point.covariance = 0.25 * Eigen::Matrix3d::Identity();

@@ -5,10 +5,10 @@
 
 namespace byre {
 
-// Where the keyframe puts the body.
+// Body pose at the keyframe.
 Pose world_from_body(const Map& map, const Keyframe& keyframe);
 
-// Where the map's keyframes put the body, in order of time; of those with one time the first.
+// Body poses at the map's keyframes, by time; of keyframes with equal times the first.
 Trajectory keyframe_path(const Map& map);
 
 }  // namespace byre

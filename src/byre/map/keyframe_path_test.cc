@@ -12,7 +12,7 @@ TEST(KeyframePath, IsOfTheBodyInOrderOfTime) {
   Rig rig;
   rig.body_from_camera = body_from_camera;
   map.add_rig(rig);
-  for (const double second : {2.0, 1.0, 2.0}) {  // times in two recordings
+  for (const double second : {2.0, 1.0, 2.0}) {  // times of two recordings
     Keyframe keyframe;
     keyframe.frame.time = from_seconds(second);
     keyframe.camera_from_world = inverse(world_from_camera);

@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-// A map keeps nothing of a depth camera, and one camera may be the left one of a pair.
+// Ignores depth cameras, which maps do not store. A single given camera may be the left one of a recorded pair.
 bool is_of_these_cameras(const Calibration& known, const Calibration& given) {
   return known.left == given.left && known.readout_time == given.readout_time &&
          (!given.right || known.right == given.right);

@@ -7,8 +7,8 @@
 
 namespace byre {
 
-// How wheels and a gyroscope are mounted, as a map knows it, for the body that these cameras sit on; empty where none
-// of its recordings is by them.
+// Mounting of wheels and gyroscope from a map's notes, for the body of the given cameras. Empty if no recording is by
+// these cameras.
 KnownMounting mounting_for(const KnownMounting& of_map, const std::vector<SourceRecording>& recordings,
                            const Calibration& given);
 

@@ -1,4 +1,4 @@
-// Maps of so many keyframes that several threads read them.
+// Maps large enough to be read by several threads.
 
 #include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
@@ -17,7 +17,7 @@ using testing::IsEmpty;
 constexpr int kManyKeyframes = 300;
 constexpr int kFeaturesEach = 9;
 
-// What reading says is wrong; empty where it reads.
+// Error on reading; empty if there is none.
 std::string fault_of(MapBytes bytes) {
   refresh_checksums(bytes);
   try {
@@ -64,13 +64,13 @@ TEST(LargeMapFile, IsRefusedOrKeptAsItIsWhereItIsDamaged) {
   EXPECT_GT(refused, 20);
 }
 
-// Where reading stopped, counted from the beginning of the file.
+// Byte offset of the error in the file.
 std::size_t place_in(const std::string& fault) {
   const std::size_t found = fault.find("at byte ");
   return found == std::string::npos ? 0 : std::stoul(fault.substr(found + 8));
 }
 
-// But for faults that only the whole section shows, which are told at its beginning.
+// Faults that only a whole section shows are excluded; they are reported at its beginning.
 TEST(LargeMapFile, TellsTheFirstOfTwoFaults) {
   const MapBytes sound = write_map(StoredMapScene(kManyKeyframes, kFeaturesEach).stored());
   std::mt19937_64 random(2);

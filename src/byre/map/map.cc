@@ -18,7 +18,7 @@ bool is_equal(const Rig& first, const Rig& second) {
          is_equal(first.body_from_camera, second.body_from_camera);
 }
 
-// The observation by a keyframe, or where it would stand.
+// The observation by a keyframe, or its insertion point.
 auto lower_bound_of(std::vector<Observation>& observations, KeyframeId keyframe) {
   return std::ranges::lower_bound(observations, keyframe, {}, &Observation::keyframe);
 }

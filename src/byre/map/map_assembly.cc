@@ -1,4 +1,4 @@
-// A map from all its parts at once: what the map maintains on each change is computed here in one go.
+// Construction of a map from all its parts, with all derived data computed at once.
 
 #include "byre/map/map.h"
 
@@ -46,7 +46,7 @@ void Map::read_from_source() {
   *this = Map(origin_, std::move(parts));
 }
 
-// Keyframes come in ascending order, so the observations of a point do too.
+// Keyframes are in ascending order, so the observations of a point are too.
 void Map::collect_observations() {
   std::vector<std::size_t> observers(points_.size(), 0);
   for (const KeyframeSlot& keyframe_slot : keyframes_) {
@@ -66,7 +66,7 @@ void Map::collect_observations() {
 
 void Map::count_covisible_keyframes() {
   std::vector<int> shared_points(keyframes_.size(), 0);
-  std::vector<std::uint32_t> seen;  // keyframes whose count is not zero
+  std::vector<std::uint32_t> seen;  // keyframes with a non-zero count
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     for (const Sighting& sighting : keyframes_[i].keyframe->sightings) {
       if (!sighting.point) continue;

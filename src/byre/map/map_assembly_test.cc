@@ -11,7 +11,7 @@ using testing::IsEmpty;
 
 constexpr int kEvery = std::numeric_limits<int>::max();
 
-// The same map, one thing after the other.
+// The same map, built step by step.
 Map grown(const MapParts& parts) {
   Map map(Origin::offline);
   for (const Rig& rig : parts.rigs) map.add_rig(rig);

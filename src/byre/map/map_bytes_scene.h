@@ -13,8 +13,8 @@
 
 namespace byre {
 
-// The bytes of a map file for tests that change them on purpose; written down apart from what byre reads and writes
-// them with, so that a change of the format does not go unnoticed. See docs/map_format.md.
+// Access to the bytes of a map file, for tests that damage them. Independent of byre's reader and writer, so that tests
+// detect changes of the format. See docs/map_format.md.
 
 using MapBytes = std::vector<std::byte>;
 
@@ -23,7 +23,7 @@ inline constexpr std::size_t kSectionCountAt = 12;
 inline constexpr std::size_t kFileSizeAt = 16;
 inline constexpr std::size_t kTableAt = 24;
 inline constexpr std::size_t kTableEntrySize = 40;
-inline constexpr std::size_t kSmallestHeaderSize = kTableAt + 10 * kTableEntrySize + 8;  // in format 1
+inline constexpr std::size_t kSmallestHeaderSize = kTableAt + 10 * kTableEntrySize + 8;  // size in format 1
 
 // Precondition: the value lies within the bytes.
 template <PlainNumber T>
@@ -39,7 +39,7 @@ void put_at(MapBytes& bytes, std::size_t place, T value) {
 
 inline constexpr std::uint32_t kNewestFormat = 7;
 
-// Precondition: the bytes are at least as many as the smallest header's. Bytes of no known format count as format 1.
+// Precondition: at least the smallest header's bytes. Unknown formats count as format 1.
 inline std::size_t section_count(const MapBytes& bytes) {
   const auto format = value_at<std::uint32_t>(bytes, kFormatAt);
   if (format < 1 || format > kNewestFormat) return 10;
@@ -52,15 +52,15 @@ inline std::size_t header_size(const MapBytes& bytes) {
   return header_checksum_at(bytes) + 8;
 }
 
-// A section's entry in the table of the header.
+// Entry of a section in the header's table.
 struct TableEntry {
-  std::size_t at = 0;  // the entry's place
+  std::size_t at = 0;  // byte offset of the entry
   std::string name;
   std::uint64_t offset = 0;
   std::uint64_t size = 0;
 };
 
-// Precondition: the bytes hold a header, which may be damaged.
+// Precondition: the bytes contain a header, which may be damaged.
 inline TableEntry table_entry(const MapBytes& bytes, std::size_t index) {
   const std::size_t at = kTableAt + index * kTableEntrySize;
   std::string name(reinterpret_cast<const char*>(bytes.data() + at), 16);
@@ -79,14 +79,14 @@ inline TableEntry section_of(const MapBytes& bytes, std::string_view name) {
   return entry;
 }
 
-// A section of a sound table, or one without bytes.
+// A section of a valid table, or an empty span.
 inline std::span<std::byte> section_bytes(MapBytes& bytes, std::string_view name) {
   const TableEntry entry = section_of(bytes, name);
   if (entry.name != name || entry.offset > bytes.size() || entry.size > bytes.size() - entry.offset) return {};
   return std::span(bytes).subspan(entry.offset, entry.size);
 }
 
-// Takes parts of sections from their beginnings on. Gives back whether all of them were there.
+// Takes the next part of each section. Returns whether all of them are complete.
 inline bool take_parts(std::vector<std::span<std::byte>>& sections, const std::byte* sizes, MapBytes& parts) {
   parts.clear();
   for (std::span<std::byte>& section : sections) {
@@ -100,7 +100,7 @@ inline bool take_parts(std::vector<std::span<std::byte>>& sections, const std::b
   return true;
 }
 
-// Makes the checksums in the section lookup right again, as far as its sizes are. Precondition: as for sections.
+// Recomputes the checksums in the section lookup as far as its sizes are valid. Precondition: as for section_bytes().
 inline void refresh_part_checksums(MapBytes& bytes) {
   constexpr std::size_t kKeyframeSize = 36, kBlockSize = 16, kPointsOfBlock = 32;
   const auto sections_from = [&](std::initializer_list<std::pair<const char*, std::size_t>> names) {
@@ -135,8 +135,8 @@ inline void refresh_part_checksums(MapBytes& bytes) {
   refresh(sections_from({{"points", 4}, {"observers", 0}}), blocks, kBlockSize, 0);
 }
 
-// Makes all checksums right again, so that a change is found by nothing else. Leaves sections alone that the table
-// places outside the bytes, and bytes without a whole header.
+// Recomputes all checksums, so that they do not reveal a change. Skips sections that the table places outside the
+// bytes, and bytes without a complete header.
 inline void refresh_checksums(MapBytes& bytes) {
   if (bytes.size() < kSmallestHeaderSize || bytes.size() < header_size(bytes)) return;
   refresh_part_checksums(bytes);
@@ -149,15 +149,15 @@ inline void refresh_checksums(MapBytes& bytes) {
   put_at(bytes, end, checksum(std::span(bytes).first(end)));
 }
 
-// Cuts out bytes of a section and puts others in their place; sizes and places of the sections are made to fit.
-// Precondition: a sound table; begin and count lie within the section.
+// Replaces bytes of a section and updates sizes and offsets of the sections. Precondition: a valid table; begin and
+// count lie within the section.
 inline void replace_in_section(MapBytes& bytes, std::size_t index, std::size_t begin, std::size_t count,
                                const MapBytes& replacement) {
   TableEntry changed = table_entry(bytes, index);
   const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(changed.offset + begin);
   const auto rest = bytes.erase(first, first + static_cast<std::ptrdiff_t>(count));
   bytes.insert(rest, replacement.begin(), replacement.end());
-  const std::uint64_t growth = replacement.size() - count;  // may wrap around, and then does so again below
+  const std::uint64_t growth = replacement.size() - count;  // may wrap around, and does so again below
   changed.size += growth;
   write_entry(bytes, changed);
   for (std::size_t i = index + 1; i < section_count(bytes); ++i) {

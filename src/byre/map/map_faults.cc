@@ -31,7 +31,7 @@ bool is_observed(const Map& map, PointId point, const Observation& observation) 
   return std::ranges::binary_search(map.observations(point), observation);
 }
 
-// When every parent is older than its child, the parents form trees.
+// If every parent precedes its child, the parents form trees.
 bool is_parent_sound(const Map& map, KeyframeId id, const Keyframe& keyframe) {
   return !keyframe.parent || (*keyframe.parent < id && map.find_keyframe(*keyframe.parent));
 }
@@ -60,7 +60,7 @@ void check_keyframe(const Map& map, KeyframeId id, Faults& faults) {
   check_sightings(map, id, keyframe, faults);
 }
 
-// Both ends of every observation, of a point of this map or of an offline one.
+// Checks both ends of every observation of a point of this map or of an offline one.
 void check_observations(const Map& map, PointId id, Faults& faults) {
   const std::vector<Observation>& observations = map.observations(id);
   const auto by_keyframe = [](const Observation& a, const Observation& b) { return a.keyframe >= b.keyframe; };

@@ -1,4 +1,4 @@
-// What callers can still get wrong: the values themselves. The links between them the map keeps sound on its own.
+// Faults that callers can cause: invalid values. The map itself keeps links between its parts valid.
 
 #include "byre/map/map.h"
 

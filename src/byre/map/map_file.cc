@@ -18,13 +18,13 @@
 namespace byre {
 namespace {
 
-// As PNG's: a byte that is no text, and line ends that transfers as text would change.
+// Like PNG's: a non-text byte, and line ends that text-mode transfers would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
-constexpr std::uint32_t kFormat = 7;              // the newest that is read, and the one that is written
-constexpr std::uint32_t kFirstFormat = 1;         // the oldest that is read
-constexpr std::uint32_t kFirstRoundedFormat = 5;  // from here on, what keyframes see and points are rounded to quanta
-constexpr std::uint32_t kFirstFormatWithLookup = 6;  // from here on, a keyframe or point can be read without the others
-constexpr std::uint32_t kFirstPackedFormat = 7;      // from here on, patches are packed
+constexpr std::uint32_t kFormat = 7;                 // newest format that is read, and the one written
+constexpr std::uint32_t kFirstFormat = 1;            // oldest format that is read
+constexpr std::uint32_t kFirstRoundedFormat = 5;     // features, sightings and points are rounded to quanta
+constexpr std::uint32_t kFirstFormatWithLookup = 6;  // keyframes and points can be read separately
+constexpr std::uint32_t kFirstPackedFormat = 7;      // patches are compressed
 
 enum Section : std::size_t {
   kSummary,
@@ -37,11 +37,11 @@ enum Section : std::size_t {
   kPoints,
   kObservations,
   kWords,
-  kPlan,                 // from format 2 on; later formats have it empty without a plan
-  kRefinedCalibrations,  // from format 3 on; later formats have it empty where nothing was refined
-  kReadoutTimes,         // from format 4 on
-  kDescriptors,          // from format 5 on
-  kObservers,            // from format 6 on, as the next one
+  kPlan,                 // since format 2; empty without a plan
+  kRefinedCalibrations,  // since format 3; empty without refined calibrations
+  kReadoutTimes,         // since format 4
+  kDescriptors,          // since format 5
+  kObservers,            // since format 6, as the next one
   kLookup,
   kSectionCount
 };
@@ -53,20 +53,20 @@ constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
 
-// Each format up to the one with a lookup has a section more than the one before, that one two.
+// Formats 2 to 5 each add one section, format 6 adds two.
 constexpr std::size_t section_count(std::uint32_t format) {
   return format >= kFirstFormatWithLookup ? kSectionCount : kPlan + format - kFirstFormat;
 }
 static_assert(section_count(kFirstFormatWithLookup - 1) == kObservers);
 
-// With its own checksum.
+// Includes its own checksum.
 constexpr std::size_t header_bytes(std::size_t sections) {
   return kFixedHeaderBytes + sections * kTableEntryBytes + sizeof(std::uint64_t);
 }
 
 using Bytes = std::span<const std::byte>;
 
-// The places where sections end that lie one after the other.
+// End offsets of consecutive sections.
 using SectionEnds = std::vector<std::size_t>;
 
 bool is_refined(const StoredMap& stored) {
@@ -104,7 +104,7 @@ void write_section(std::size_t section, const StoredMap& stored, const Keyframes
   }
 }
 
-// What keyframes see is written to several sections at once.
+// Keyframes' features and sightings are written to several sections at once.
 ByteWriter* view_section(std::size_t section, ViewWriters& views) {
   switch (section) {
     case kFeatures:
@@ -123,7 +123,7 @@ ByteWriter* view_section(std::size_t section, ViewWriters& views) {
 constexpr std::array<Section, kViewSections> kSectionsOfViews = {kFeatures, kPatches, kObservations, kDescriptors,
                                                                  kWords};
 
-// section(number) gives the bytes of a section.
+// section(number) returns the bytes of a section.
 template <typename SectionBytes>
 PartSections part_sections(SectionBytes section) {
   PartSections sections;
@@ -132,7 +132,7 @@ PartSections part_sections(SectionBytes section) {
   return sections;
 }
 
-// Behind what is in the file already.
+// Appends to the file.
 SectionEnds write_sections(const StoredMap& stored, std::vector<std::byte>& file) {
   const Keyframes all = keyframes_of(stored.map);
   ViewWriters views;
@@ -187,7 +187,7 @@ void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
   writer.write(checksum(writer.bytes()));
 }
 
-// A section as the header describes it, whose bytes are not looked at yet.
+// A section as described by the header; its bytes are not yet read.
 struct SectionPlace {
   std::size_t offset = 0;
   std::size_t size = 0;
@@ -195,7 +195,7 @@ struct SectionPlace {
 };
 struct SectionTable {
   std::uint32_t format = kFormat;
-  std::vector<SectionPlace> places;  // all sections of the format
+  std::vector<SectionPlace> places;  // one per section of the format
 };
 
 std::uint32_t read_format(ByteReader& header, const std::string& name) {
@@ -227,7 +227,7 @@ SectionPlace read_place(ByteReader& header, std::string_view expected_name, std:
   return place;
 }
 
-// bytes: the beginning of the file, with all of the header that there is.
+// bytes: the beginning of the file, with the complete header if the file has one.
 SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& name) {
   if (bytes.size() < kSignature.size() ||
       !std::ranges::equal(bytes.first(kSignature.size()), std::as_bytes(std::span(kSignature)))) {
@@ -254,10 +254,10 @@ SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& n
   return table;
 }
 
-// Gives the bytes of a file from a place on, which stay as long as it does.
+// Returns bytes of a file from an offset, valid during its own lifetime.
 using Bring = std::function<Bytes(std::size_t offset, std::size_t size)>;
 
-// Opens sections of a file whose table is known.
+// Opens sections of a file by its table.
 class SectionOpener {
  public:
   SectionOpener(SectionTable table, Bring bring, const std::string& name)
@@ -280,12 +280,12 @@ class SectionOpener {
     return reader;
   }
 
-  // Not checked.
+  // Unchecked.
   Bytes bytes_of(Section section) const { return bring_(place_of(section).offset, place_of(section).size); }
   const SectionPlace& place_of(Section section) const { return table_.places[section]; }
 
  private:
-  // Sections that not every map has, where others follow them.
+  // Optional sections that are followed by others.
   bool is_left_empty(Section section) const {
     return (section == kPlan || section == kRefinedCalibrations) && section + 1 < table_.places.size() &&
            place_of(section).size == 0;
@@ -296,7 +296,7 @@ class SectionOpener {
   const std::string& name_;
 };
 
-// Points, and what keyframes see of them. Precondition: the keyframes are there without it.
+// Reads points and keyframes' features and sightings. Precondition: keyframes are read.
 void read_exact_parts(const SectionOpener& open, MapParts& parts) {
   read_features(open(kFeatures), open(kPatches), parts.rigs, parts.keyframes);
   parts.points = read_points(open(kPoints));
@@ -310,7 +310,7 @@ void read_rounded_parts(const SectionOpener& open, MapParts& parts, PartSizes& s
   parts.points = std::move(points.points);
 }
 
-// All but what keyframes see, points, and what read_rest reads.
+// Reads all except features, sightings, points, and the data of read_rest().
 MapParts read_about(const SectionOpener& open, StoredMap& stored) {
   stored.notes = read_notes(open(kNotes));
   Provenance provenance = read_provenance(open(kProvenance));
@@ -337,7 +337,7 @@ PartSectionSizes part_section_sizes(const SectionOpener& open) {
   return sizes;
 }
 
-// Fails where the section of points, of which no more is read, begins with another number of them.
+// Fails if the count at the beginning of section points differs from the summary. Reads no more of the section.
 void require_points(const Bring& bring, const SectionPlace& section, const MapSummary& summary,
                     const std::string& name) {
   const std::size_t size = std::min(sizeof(std::uint32_t), section.size);
@@ -345,7 +345,7 @@ void require_points(const Bring& bring, const SectionPlace& section, const MapSu
   if (reader.read<std::uint32_t>() != summary.points) reader.fail("has not as many points as the summary tells");
 }
 
-// No more is read of the section. Whoever reads all of it checks it.
+// Reads no more of the section; it is checked when it is read as a whole.
 WordsHead words_head(const Bring& bring, const SectionPlace& section, const std::string& name) {
   const std::size_t size = std::min(sizeof(std::uint64_t) + 1, section.size);
   ByteReader reader(bring(section.offset, size), name + ": section words", section.offset);
@@ -363,7 +363,7 @@ void require_checksums(const ReadAt& read_at, std::size_t size, const std::strin
   }
 }
 
-// Where its sections lie.
+// Offsets of the sections.
 MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std::string& name) {
   MapFileSource::File file;
   file.read_at = std::move(read_at);
@@ -454,7 +454,7 @@ StoredMap load_map(const std::filesystem::path& path) {
 }
 
 StoredMap open_map(const std::filesystem::path& path) {
-  constexpr std::size_t kCheckedAtOnce = 32 << 20;  // bytes, which take 10 ms
+  constexpr std::size_t kCheckedAtOnce = 32 << 20;  // bytes, checked in 10 ms
   const auto file = std::make_shared<const PiecewiseFile>(path);
   const auto read_at = [file](std::size_t offset, std::span<std::byte> bytes) { file->read(offset, bytes); };
   if (file->size() <= kCheckedAtOnce) require_checksums(read_at, file->size(), path.string());

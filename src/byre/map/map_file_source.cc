@@ -110,7 +110,7 @@ Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare
   const KeyframeParts& known = lookup_.keyframes[number];
   std::array<Part, kViewSections> parts;
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {file_.views[i], known.views[i], kViewNames[i]};
-  thread_local std::vector<std::byte> bytes;  // kept, as a keyframe has many thousands of them
+  thread_local std::vector<std::byte> bytes;  // reused: a keyframe has many thousand bytes
   read_parts(parts, known.checksum, bytes);
   std::size_t begin = 0;
   std::vector<ByteReader> readers;

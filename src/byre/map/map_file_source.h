@@ -11,21 +11,21 @@
 
 namespace byre {
 
-// Reads a keyframe or a block of points from a map file when it is first looked at, and keeps it. Each is checked as
-// when all of a map is read, with a checksum of its own.
+// Reads keyframes and blocks of points from a map file on first access and keeps them. Each has its own checksum and is
+// checked as in reading a whole map.
 class MapFileSource : public MapSource {
  public:
   struct File {
     ReadAt read_at;
     std::string name;                                // for messages
-    std::array<std::size_t, kViewSections> views{};  // where sections begin
+    std::array<std::size_t, kViewSections> views{};  // offsets of the sections
     std::size_t words_size = 0;                      // bytes
     std::uint64_t words_checksum = 0;
-    std::size_t points = 0, observers = 0, lookup = 0;  // where sections begin
+    std::size_t points = 0, observers = 0, lookup = 0;  // offsets of the sections
     std::uint32_t point_count = 0;
     std::vector<Rig> rigs;
     WordsHead words;
-    bool has_packed_patches = true;  // from format 7 on
+    bool has_packed_patches = true;  // since format 7
   };
 
   MapFileSource(File file, Lookup lookup);
@@ -39,17 +39,17 @@ class MapFileSource : public MapSource {
  private:
   using Block = std::vector<ObservedPoint>;
   struct Part {
-    std::size_t section;  // where it begins in the file
+    std::size_t section;  // offset of the section in the file
     PartPlace place;
-    std::string_view name;  // the section's
+    std::string_view name;  // name of the section
   };
 
-  // Fills in the bytes of the parts, one behind the other. Fails where they have another checksum.
+  // Reads the concatenated bytes of the parts. Fails if their checksum is not the expected one.
   void read_parts(std::span<const Part> parts, std::uint64_t expected, std::vector<std::byte>& bytes) const;
   std::string place_of(std::string_view section) const;
   Keyframe read_keyframe(std::uint32_t number, const Keyframe& bare) const;
   Block read_block(std::uint32_t number) const;
-  // The result of read(); if that throws InputError, notes the damage and returns the substitute.
+  // The result of read(); if that throws InputError, records the damage and returns the substitute.
   template <typename Read, typename Substitute>
   auto read_or(Read read, Substitute substitute) const;
 

@@ -1,4 +1,4 @@
-// Maps that are read from their file as they are looked at.
+// Maps that are read from their files on access.
 
 #include "byre/input/binary_file.h"
 #include "byre/input_error.h"
@@ -27,7 +27,7 @@ using testing::StartsWith;
 
 constexpr int kHundreds = 300;
 
-// Counts what is read of a file.
+// Counts the bytes read from a file.
 struct WatchedFile {
   explicit WatchedFile(MapBytes of) : bytes(std::move(of)) {}
 
@@ -48,7 +48,7 @@ MapBytes scene_of_size(int keyframes, int features = 9) {
   return write_map(StoredMapScene(keyframes, features).stored_with_plan());
 }
 
-// All that can be looked at; the sum of it says nothing, but must be computed.
+// Accesses all data. The sum is meaningless, but forces the access.
 double look_at_all(const Map& map) {
   double sum = 0.0;
   for (const KeyframeId id : map.keyframe_ids()) {
@@ -71,7 +71,7 @@ double look_at_all(const Map& map) {
   return sum;
 }
 
-// What opening, or looking at all of it, says is wrong; empty where it is nothing.
+// Error on opening or on access to all data; empty if there is none.
 std::string fault_when_looked_at(MapBytes bytes) {
   try {
     WatchedFile file(std::move(bytes));
@@ -212,7 +212,7 @@ TEST(MapFileSource, RefusesEveryShorterFile) {
   }
 }
 
-// Whatever it holds with right checksums, looking at it ends well or in an error that tells where.
+// Arbitrary values with correct checksums cause either no error or one that names the location.
 TEST(MapFileSource, WithstandsValuesThatNoMapHas) {
   const MapBytes sound = scene_of_size(12);
   std::mt19937_64 random(1);
@@ -232,7 +232,7 @@ TEST(MapFileSource, WithstandsValuesThatNoMapHas) {
   EXPECT_GT(refused, 200);
 }
 
-// Bytes of the section observers: how many see the first point, then the keyframe and feature of each.
+// Bytes of section observers: number of observations of the first point, then keyframe and feature of each.
 TEST(MapFileSource, RefusesObserversThatAreNone) {
   const auto fault_with = [](std::size_t place, int value) {
     MapBytes bytes = scene_of_size(5);

@@ -114,12 +114,12 @@ TEST(MapFile, GivesBackEveryPointRounded) {
 }
 
 TEST(MapFile, TakesAFewBytesForWhatIsSeenOfAPoint) {
-  const StoredMapScene scene(12, 400, 1);  // each point is seen by three keyframes
+  const StoredMapScene scene(12, 400, 1);  // each point has three observations
   const MapBytes bytes = write_map(scene.stored());
   const auto observations = static_cast<std::size_t>(12 * 399);
   EXPECT_LE(section_of(bytes, "observations").size, 9 * observations);
   EXPECT_LE(section_of(bytes, "points").size, 78 * observations / 3 + 4);
-  EXPECT_LE(section_of(bytes, "patches").size, 113u * 12 * 200);  // half of them noise
+  EXPECT_LE(section_of(bytes, "patches").size, 113u * 12 * 200);  // half of the patches are noise
 }
 
 TEST(MapFile, IsTheSameAfterASecondSave) {

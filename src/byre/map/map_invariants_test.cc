@@ -1,5 +1,5 @@
-// Every invariant of a stored map, broken once: find_faults names it, and no file with it is read. And every way to
-// break the bytes of a section that no map can be made of.
+// Each invariant of a stored map is violated once: find_faults names it, and a file with it is rejected. Also each way
+// to make a section's bytes invalid.
 
 #include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
@@ -26,7 +26,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct BrokenInvariant {
   const char* name;
-  const char* section;  // section of the file that is refused
+  const char* section;  // section of the file that is rejected
   const char* fault;
   std::function<void(StoredMap&, MapParts&)> break_it;
 };
@@ -193,12 +193,12 @@ TEST(StoredMapFaults, NameWhatAFileCannotEvenHold) {
               AllOf(Contains("the numbers of keyframes have gaps"), Contains("the numbers of points have gaps")));
 }
 
-// A value in the bytes of a section that no map leads to.
+// An invalid value in the bytes of a section, which no map is written as.
 struct BrokenValue {
   const char* name;
   const char* section;
   const char* refusal;
-  std::size_t place;  // byte in the section
+  std::size_t place;  // byte offset in the section
   MapBytes value;
 };
 
@@ -215,7 +215,7 @@ MapBytes bytes_of(T value) {
 
 constexpr std::uint32_t kHuge = 0xfffffff0;
 
-// Places follow docs/map_format.md; the scene's keyframes have 9 features each, of which 8 see a point.
+// Offsets follow docs/map_format.md; the scene's keyframes have 9 features each, 8 of them with a point.
 const std::vector<BrokenValue>& broken_values() {
   static const std::vector<BrokenValue> all = {
       {"Summary", "summary", "does not tell what the other sections hold", 8, bytes_of(std::uint64_t{1})},
@@ -267,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(Values, BrokenSection, testing::ValuesIn(broken_values(
 TEST(BrokenSections, AreRefusedWhenKeypointsAreNotInGridOrder) {
   MapBytes bytes = write_map(StoredMapScene().stored());
   const std::size_t first = section_of(bytes, "features").offset + 4;
-  put_at(bytes, first + 1, std::uint16_t{319 * 64});  // the first keypoint's place: the opposite corner
+  put_at(bytes, first + 1, std::uint16_t{319 * 64});  // moves the first keypoint to the opposite corner
   put_at(bytes, first + 3, std::uint16_t{239 * 64});
   refresh_checksums(bytes);
   EXPECT_THAT(refusal_of(bytes), HasSubstr("keyframe 0 has keypoints that are not sorted by the cells of their grid"));
@@ -329,7 +329,7 @@ TEST(DefectivePlans, AreFoundByAnUnsymmetricCovariance) {
   EXPECT_THAT(find_faults(stored), ElementsAre("the plan has an unsymmetric covariance"));
 }
 
-// Every keyframe sees the one point with its one feature: little in the file, much in a map.
+// Every keyframe observes the same point with its only feature: a small file, but a large map.
 StoredMap crowd(std::uint32_t keyframes) {
   const StoredMapScene scene;
   StoredMap stored = scene.stored();

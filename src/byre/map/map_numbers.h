@@ -8,7 +8,7 @@
 
 namespace byre {
 
-// How values of several numbers lie in a map file.
+// Compound values in a map file.
 
 template <typename Number, int Size>
 void write_vector(const Eigen::Matrix<Number, Size, 1>& vector, ByteWriter& writer) {
@@ -21,7 +21,7 @@ Vector read_vector(ByteReader& reader) {
   return vector;
 }
 
-// The upper triangle, row after row.
+// Upper triangle, row by row.
 template <int Size>
 void write_symmetric(const Eigen::Matrix<double, Size, Size>& matrix, ByteWriter& writer) {
   for (int row = 0; row < Size; ++row) {
@@ -56,7 +56,7 @@ inline constexpr std::size_t kPoseBytes = 7 * sizeof(double);
 template <std::size_t Size>
 inline constexpr std::size_t kSymmetricBytes = Size*(Size + 1) / 2 * sizeof(double);
 
-// One of the count values of an enumeration, or of bool.
+// Value of an enumeration with `count` values, or of bool.
 template <typename Enum>
 Enum read_enum(ByteReader& reader, int count) {
   const auto value = reader.read<std::uint8_t>();
@@ -75,7 +75,7 @@ inline std::uint32_t read_index(ByteReader& reader, std::size_t size, std::strin
   return index;
 }
 
-// Fails for a fault in the thing read last; none is an empty one.
+// Fails if the value read last has a fault; an empty fault means none.
 inline void require_no_fault(const ByteReader& reader, std::string_view fault, std::string_view thing,
                              std::size_t number) {
   if (!fault.empty()) reader.fail(std::string(thing) + " " + std::to_string(number) + " " + std::string(fault));

@@ -9,8 +9,8 @@
 
 namespace byre {
 
-// Remembers, while the sightings of one keyframe after the other are read, who saw each point last. Fails for a point
-// that is seen twice by a keyframe, and at the end for one that is seen by none.
+// Checks observations while sightings are read keyframe by keyframe. Fails for a point with two observations by one
+// keyframe, and at the end for a point without observations.
 class PointObservers {
  public:
   explicit PointObservers(std::size_t point_count) : last_observer_(point_count, kNobody) {}

@@ -10,12 +10,12 @@
 namespace byre {
 namespace {
 
-constexpr double kPixelCodes = 64.0;    // a pixel
-constexpr float kOffsetCodes = 128.0f;  // a pixel
-constexpr int kSigmaCodes = 16;         // an octave
+constexpr double kPixelCodes = 64.0;    // per pixel
+constexpr float kOffsetCodes = 128.0f;  // per pixel
+constexpr int kSigmaCodes = 16;         // per octave
 constexpr int kCodeOfOnePixel = 128;
 constexpr float kDirectionCodes = 32767.0f;
-constexpr float kCentreCodes = 4096.0f;  // an octave pixel
+constexpr float kCentreCodes = 4096.0f;  // per octave pixel
 constexpr float kLargestCentre = kCentreCodes * (Patch::kSize - 1);
 constexpr long kNoCentre = 0xffff;
 
@@ -29,7 +29,7 @@ std::array<float, 256> sigmas_of_codes() {
   return sigmas;
 }
 
-// The number without its lowest bits, rounded to the nearest. What is finite remains so, and what is not does not.
+// Drops the lowest bits, rounding to nearest. Finite values stay finite, others stay non-finite.
 std::uint32_t rounded_float(float value, int dropped_bits) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const std::uint32_t half = 1u << (dropped_bits - 1);
@@ -47,9 +47,9 @@ DirectionCode rounded_direction(const Eigen::Vector3f& direction) {
   return code;
 }
 
-constexpr int kFactorBits = 15;  // the greatest entry of a factor has so many
+constexpr int kFactorBits = 15;  // bits of the largest entry of a factor
 
-// Cholesky's factor. A direction without variance, or with a negative one, has none in the factor.
+// Cholesky factor. Directions without a positive variance have zeros in the factor.
 std::array<double, 6> factor_of(const Eigen::Matrix3d& c) {
   const auto pivot = [](double variance) { return variance > 0.0 ? std::sqrt(variance) : 0.0; };
   const auto over = [](double value, double divisor) {
@@ -66,7 +66,7 @@ std::array<double, 6> factor_of(const Eigen::Matrix3d& c) {
 
 constexpr std::array<bool, 6> kIsPivot = {true, false, true, false, false, true};
 
-// The entries in units of 2^exponent; what varies at all still does.
+// Entries in units of 2^exponent; non-zero pivots stay non-zero.
 std::array<long, 6> rounded_factor(const std::array<double, 6>& factor, int exponent) {
   std::array<long, 6> rounded;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -95,7 +95,7 @@ int step_of_grey(int grey, int darkest, int range) {
   return range == 0 ? 0 : (2 * (grey - darkest) * kSteps + range) / (2 * range);
 }
 
-// The steps that a patch of this range has, as bits: those that a grey value is nearest to.
+// Bit set of the steps possible in a patch of this range: those that are nearest to some grey value.
 std::uint32_t proper_steps(int range) {
   std::uint32_t proper = 0;
   for (int step = 0; step <= kSteps; ++step) {
@@ -104,7 +104,7 @@ std::uint32_t proper_steps(int range) {
   return proper;
 }
 
-constexpr int kLeastFullRange = kSteps;  // from here on a patch has all steps
+constexpr int kLeastFullRange = kSteps;  // ranges from here on use all steps
 
 using Steps = std::array<std::uint8_t, Patch::kSize * Patch::kSize>;
 
@@ -117,7 +117,7 @@ bool are_proper(const Steps& steps, int range) {
 
 }  // namespace
 
-// In double, where nothing is rounded beyond an edge between two quanta.
+// In double, so that rounding does not cross a boundary between two quanta.
 std::uint32_t pixel_code(float coordinate, int size) {
   const double from_edge = static_cast<double>(coordinate) + 0.5;
   if (!(from_edge >= 0.0 && from_edge <= size)) return pixel_codes(size);
@@ -172,7 +172,7 @@ double double_of_48(std::uint64_t code) {
   return std::bit_cast<double>(code << 16);
 }
 
-// What is far from unit length, as far as that goes, is given it. What was read is not, and keeps its code.
+// Normalises a direction whose rounded length is off. A direction that was read is accurate enough and keeps its code.
 DirectionCode direction_code(const Eigen::Vector3f& direction) {
   constexpr float kTolerance = 5e-4f;
   if (!is_unit(direction)) return {};
@@ -185,8 +185,8 @@ Eigen::Vector3f direction_of(const DirectionCode& code) {
   return Eigen::Vector3f(code[0], code[1], code[2]) / kDirectionCodes;
 }
 
-// The entries are whole numbers of 15 bits, whose products and their sums are exact in double, and so are the roots and
-// quotients that lead back to them.
+// Entries are integers of 15 bits. Their products and sums, and the roots and quotients in the inverse, are exact in
+// double.
 CovarianceCode covariance_code(const Eigen::Matrix3d& covariance) {
   if (!covariance.allFinite()) return {{-1}};
   const std::array<double, 6> factor = factor_of(covariance);
@@ -230,7 +230,7 @@ PatchCode patch_code(const Patch& patch) {
   return code;
 }
 
-// Plain loops over bytes, of which the compiler makes vector instructions.
+// Plain loops over bytes, which the compiler vectorises.
 std::optional<Patch> patch_of(const PatchCode& code) {
   const int range = code.brightest - code.darkest;
   if (range < 0) return std::nullopt;

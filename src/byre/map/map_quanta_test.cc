@@ -91,7 +91,7 @@ TEST(MapQuanta, KeepDirectionsAtUnitLength) {
   }
 }
 
-// Elongated along any direction, as points are whose depth is known badly.
+// Elongated along a random direction, like covariances of points with uncertain depth.
 Eigen::Matrix3d elongated(std::mt19937_64& random, double long_sigma, double short_sigma) {
   const Eigen::Vector3d direction =
       Eigen::Vector3f(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1))
@@ -130,8 +130,8 @@ TEST(MapQuanta, KeepCovariancesThatAreNone) {
 
 TEST(MapQuanta, RefuseCodesThatNoCovarianceHas) {
   EXPECT_FALSE(covariance_of({{-20000, 0, 1, 0, 0, 1}, 0}));  // a negative pivot
-  EXPECT_FALSE(covariance_of({{0, 20000, 1, 0, 0, 1}, 0}));   // something below a pivot of zero
-  EXPECT_FALSE(covariance_of({{1, 0, 1, 0, 0, 1}, 0}));       // not the least exponent
+  EXPECT_FALSE(covariance_of({{0, 20000, 1, 0, 0, 1}, 0}));   // a non-zero entry below a zero pivot
+  EXPECT_FALSE(covariance_of({{1, 0, 1, 0, 0, 1}, 0}));       // not the smallest exponent
   EXPECT_FALSE(covariance_of({{32767, -32768, 1, 0, 0, 1}, 0}));
   EXPECT_TRUE(covariance_of({{32767, -32767, 1, 0, 0, 1}, 0}));
 }
@@ -183,10 +183,10 @@ TEST(MapQuanta, RefuseCodesThatNoPatchHas) {
   std::swap(code.darkest, code.brightest);
   EXPECT_FALSE(patch_of(code));
   code = sound;
-  code.steps.fill(0x77);  // neither the darkest value nor the brightest
+  code.steps.fill(0x77);  // uses neither the darkest nor the brightest value
   EXPECT_FALSE(patch_of(code));
   code = patch_code(random_patch(random, 20, 1));
-  code.steps[3] = 0x01;  // between two neighbouring grey values
+  code.steps[3] = 0x01;  // between two adjacent grey values
   EXPECT_FALSE(patch_of(code));
 }
 

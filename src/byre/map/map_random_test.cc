@@ -1,4 +1,4 @@
-// The map against a naive model, which computes what the map maintains.
+// Compares the map with a naive model that recomputes the data that the map maintains.
 
 #include "byre/map/map.h"
 
@@ -81,7 +81,7 @@ struct Model {
   }
 };
 
-// Does the same random things to a map and to its model.
+// Applies the same random operations to a map and to its model.
 class RandomOperations {
  public:
   explicit RandomOperations(std::uint64_t seed) : random_(seed) { map.add_rig({}); }
@@ -101,7 +101,7 @@ class RandomOperations {
 
  private:
   int below(int limit) { return static_cast<int>(random_() % static_cast<std::uint64_t>(limit)); }
-  // Mostly recent ones, that may be gone or not exist yet.
+  // Mostly recent numbers, which may be removed or not yet assigned.
   std::uint32_t recent(std::uint32_t count) {
     const auto back = static_cast<std::uint32_t>(below(12));
     return count > back ? count - back : 0;
@@ -133,7 +133,7 @@ class RandomOperations {
     }
   }
 
-  // A point is never without an observation, so it comes with one.
+  // A point always has an observation, so it is added with one.
   void add_point() {
     const Observation reference = any_observation();
     if (!model.parents.contains(reference.keyframe) || model.sightings.contains(reference)) return;

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-// made: of this keyframe, or nothing.
+// made: converted features of this keyframe, or nullptr.
 void recalibrate(Keyframe& keyframe, const RectifiedChange& change, const RecalibratedFeatures* made) {
   std::shared_ptr<const Features>& features = keyframe.frame.features;
   if (made != nullptr && made->before == features) {

@@ -1,4 +1,4 @@
-// Keypoints and descriptors of all keyframes, and the patches that are kept of them, as formats 1 to 4 have them.
+// Keypoints, descriptors and stored patches of keyframes in formats 1 to 4.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"

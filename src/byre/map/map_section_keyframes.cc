@@ -1,4 +1,4 @@
-// Keyframes without their features: times and poses, and words.
+// Keyframes without their features: times, poses and words.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"

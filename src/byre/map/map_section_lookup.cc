@@ -1,5 +1,4 @@
-// Where the parts of keyframes and points lie in other sections, and what links keyframes to each other, from format 6
-// on.
+// Locations of keyframes and points in other sections, and covisibility of keyframes; since format 6.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"
@@ -23,7 +22,7 @@ std::size_t block_count(std::size_t points) {
   return (points + kPointsOfBlock - 1) / kPointsOfBlock;
 }
 
-// Numbers that ascend: the first one, then how many lie between each and the one before.
+// Ascending numbers: the first one, then the gap between each and its predecessor.
 class AscendingWriter {
  public:
   explicit AscendingWriter(ByteWriter& writer) : writer_(writer) {}
@@ -42,7 +41,7 @@ class AscendingReader {
  public:
   AscendingReader(ByteReader& reader, std::size_t count) : reader_(reader), count_(count) {}
 
-  // Fails for what is not below the count.
+  // Fails for a number that is not below the count.
   std::uint32_t read() {
     const std::uint32_t skipped = reader_.read_varint();
     if (skipped >= count_ - next_) {
@@ -79,7 +78,7 @@ void write_covisible(const Map& map, KeyframeId id, ByteWriter& writer) {
   }
 }
 
-// Takes parts of a section one after the other.
+// Takes consecutive parts of a section.
 class PartTaker {
  public:
   explicit PartTaker(Bytes section) : rest_(section) {}
@@ -131,7 +130,7 @@ void write_point_blocks(const Map& map, const PartSizes& sizes, const PartSectio
   }
 }
 
-// Takes parts of so many bytes, one behind the other.
+// Reads the size of the next of consecutive parts; end: end of the previous part, updated.
 PartPlace read_place(ByteReader& reader, std::size_t& end) {
   const PartPlace place{end, reader.read<std::uint32_t>()};
   end += place.size;

@@ -1,4 +1,4 @@
-// What the keyframes see of the points, as formats 1 to 4 have it.
+// Observations in formats 1 to 4.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_observers.h"
@@ -42,15 +42,15 @@ bool observes(const std::vector<Keyframe>& keyframes, const Observation& observa
   return feature < sightings.size() && sightings[feature].point == PointId{Origin::offline, point};
 }
 
-// The keyframes that see each point, those of one point after those of the other.
+// Keyframes that observe each point, concatenated over points.
 struct Observers {
-  std::vector<std::size_t> begin;  // by point, and the end of the last one's
+  std::vector<std::size_t> begin;  // start index by point, then the end
   std::vector<std::uint32_t> keyframes;
 
   std::span<const std::uint32_t> of(std::uint32_t point) const {
     return std::span(keyframes).subspan(begin[point], begin[point + std::size_t{1}] - begin[point]);
   }
-  // How many pairs of keyframes share points, counted once for each of these points.
+  // Number of pairs of keyframes with a common point, counted once per point.
   std::size_t count_pairs() const {
     std::size_t pairs = 0;
     for (std::size_t point = 0; point + 1 < begin.size(); ++point) {
@@ -96,7 +96,7 @@ std::size_t count_covisible_keyframes(const Keyframe& keyframe, std::uint32_t nu
 
 }  // namespace
 
-// A small file may describe keyframes that all see the same point: the map then keeps the square of their number.
+// A small file may contain keyframes that all observe the same point, whose covisibility takes quadratic memory.
 bool has_too_many_covisible_keyframes(const std::vector<Keyframe>& keyframes, std::size_t point_count,
                                       std::size_t section_bytes) {
   constexpr std::size_t kAlwaysAllowed = std::size_t{1} << 19;

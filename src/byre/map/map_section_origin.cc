@@ -1,4 +1,4 @@
-// What the map was made from: notes, recordings, rigs. And the summary of what it holds.
+// Provenance of the map: notes, recordings, rigs. Also the summary of its contents.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"

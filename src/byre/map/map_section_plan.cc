@@ -1,4 +1,4 @@
-// Where the map lies on a floor plan.
+// Registration on a floor plan.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"

@@ -1,4 +1,4 @@
-// As formats 1 to 4 have them.
+// Points in formats 1 to 4.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"

@@ -1,4 +1,4 @@
-// Points, as formats from 5 on have them.
+// Points since format 5.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_quanta.h"
@@ -24,7 +24,7 @@ void write_point(const MapPoint& point, std::uint32_t reference, ByteWriter& wri
   writer.write(covariance.exponent);
   writer.write_all<std::int16_t>(direction_code(point.mean_viewing_direction));
   writer.write_all<std::uint64_t>(point.descriptor);
-  const bool is_range = point.min_distance <= point.max_distance;  // rounded, it might become one
+  const bool is_range = point.min_distance <= point.max_distance;  // rounding might make an invalid range valid
   writer.write(float16_code(is_range ? point.min_distance : std::numeric_limits<float>::quiet_NaN()));
   writer.write(float16_code(point.max_distance));
   writer.write_varint(reference);

@@ -1,4 +1,4 @@
-// Reads what the keyframes see, as formats from 5 on have it: keypoints, descriptors, patches and sightings, rounded to
+// Reads keyframes' features and sightings since format 5: keypoints, descriptors, patches and measurements, rounded to
 // quanta.
 
 #include "byre/input_error.h"
@@ -72,7 +72,7 @@ Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32
   return sighting;
 }
 
-// Calls check(point, feature) for each.
+// Calls check(point, feature) for each sighting.
 template <typename Check>
 std::vector<Sighting> read_sightings(ByteReader& reader, const ReadKeypoints& of, std::uint32_t keyframe,
                                      std::size_t point_count, Check check) {
@@ -85,7 +85,7 @@ std::vector<Sighting> read_sightings(ByteReader& reader, const ReadKeypoints& of
   return sightings;
 }
 
-// descriptor_of(number) gives that of a point.
+// descriptor_of(number) returns the descriptor of a point.
 template <typename DescriptorOf>
 std::vector<Descriptor> read_descriptors(ByteReader& reader, const std::vector<Sighting>& sightings,
                                          DescriptorOf descriptor_of) {
@@ -135,7 +135,7 @@ RoundedPatches read_rounded_patches(ViewSections& sections, const std::vector<st
   return kept;
 }
 
-// All of a keyframe but its descriptors.
+// Data of a keyframe without its descriptors.
 struct PartOfView {
   ReadKeypoints keypoints;
   RoundedPatches patches;
@@ -154,7 +154,7 @@ std::shared_ptr<const Features> features_of_view(const ByteReader& reader, PartO
   return features;
 }
 
-// What is left of all sections but that of words, which is kept elsewhere.
+// Remaining bytes of all sections except words, which are separate.
 ViewSizes remaining(const ViewSections& sections) {
   ViewSizes sizes{};
   sizes[kFeaturesOfView] = static_cast<std::uint32_t>(sections.features.remaining());
@@ -164,7 +164,7 @@ ViewSizes remaining(const ViewSections& sections) {
   return sizes;
 }
 
-// Reads all that the keyframes see, from sections that each have a part for every keyframe.
+// Reads keyframes' features and sightings from sections with one part per keyframe.
 class ViewReader {
  public:
   ViewReader(ViewSections sections, const std::vector<MapPoint>& points)
@@ -183,7 +183,7 @@ class ViewReader {
     set_taken(before, remaining(sections_), sizes);
   }
 
-  // The same without descriptors.
+  // Without descriptors.
   PartOfView read_part(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
     PartOfView part{read_keypoints(sections_.features, rig, number), {}};
     keyframe.sightings = read_observed(part.keypoints, number);
@@ -219,8 +219,7 @@ void skip_patch(ViewSections& sections) {
   skip_packed_steps(sections.patches);
 }
 
-// Goes through so many features of a keyframe without looking at values: calls visit for each, with the point that it
-// sees or nullptr.
+// Skips features of a keyframe without checking values. Calls visit for each with its point, or nullptr.
 template <typename Visitor>
 void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, ViewSections& sections, Visitor visit) {
   const std::size_t pixel_bytes = bytes_for_pixels(rig.width) + bytes_for_pixels(rig.height);
@@ -239,9 +238,9 @@ void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, Vie
   }
 }
 
-// Reads the same in several threads. One of them reads all descriptors, where nothing tells how long the next one is;
-// the others take keyframes by runs of neighbours, whose beginnings are looked for first. Throws where anything is
-// wrong, but not always what ViewReader would.
+// Multi-threaded ViewReader. One thread reads all descriptors, whose code has variable length; the others read runs of
+// consecutive keyframes, whose starts are located first. Throws InputError for any error, but not always that of
+// ViewReader.
 class ViewsReader {
  public:
   ViewsReader(const ViewSections& sections, const std::vector<MapPoint>& points, const std::vector<Rig>& rigs,
@@ -268,7 +267,7 @@ class ViewsReader {
   }
 
  private:
-  static constexpr std::size_t kShortestRun = 16;  // keyframes
+  static constexpr std::size_t kShortestRun = 16;  // number of keyframes
   static constexpr std::size_t kRunsOfThread = 8;
 
   const Rig& rig_of(std::size_t keyframe) const { return rigs_[static_cast<std::size_t>(keyframes_[keyframe].rig)]; }
@@ -330,8 +329,8 @@ class ViewsReader {
   const std::vector<Rig>& rigs_;
   std::vector<Keyframe>& keyframes_;
   std::vector<ViewSizes>& sizes_;
-  std::size_t length_of_runs_ = kShortestRun;  // keyframes
-  std::vector<ViewSections> runs_;             // where each begins; descriptors at their beginning
+  std::size_t length_of_runs_ = kShortestRun;  // number of keyframes
+  std::vector<ViewSections> runs_;             // start of each run; descriptors at their beginning
   std::vector<PartOfView> parts_;
   std::vector<std::vector<Descriptor>> descriptors_;
 };
@@ -345,10 +344,10 @@ void read_views_in_order(const ViewSections& sections, const std::vector<MapPoin
   reader.require_end();
 }
 
-// Whether it could be done.
+// False if there are too few keyframes or threads, or on an error.
 bool try_to_read_views(const ViewSections& sections, const std::vector<MapPoint>& points, const std::vector<Rig>& rigs,
                        std::vector<Keyframe>& keyframes, PartSizes& sizes) {
-  constexpr std::size_t kWorthThreads = 256;  // keyframes
+  constexpr std::size_t kWorthThreads = 256;  // number of keyframes
   constexpr int kMostThreads = 8;
   const int threads = std::min(processor_count(), kMostThreads);
   if (threads < 2 || keyframes.size() < kWorthThreads) return false;
@@ -360,9 +359,9 @@ bool try_to_read_views(const ViewSections& sections, const std::vector<MapPoint>
   }
 }
 
-// Each is one of the point's observations, which come in the order of keyframes.
+// Each reference is one of the point's observations, which are in the order of keyframes.
 void set_references(const ByteReader& reader, const std::vector<Keyframe>& keyframes, RoundedPoints& points) {
-  std::vector<std::uint32_t> left = points.references;  // observations to come before the reference
+  std::vector<std::uint32_t> left = points.references;  // number of observations before the reference
   std::vector<bool> is_set(points.points.size(), false);
   for (std::uint32_t number = 0; number < keyframes.size(); ++number) {
     const std::vector<Sighting>& sightings = keyframes[number].sightings;
@@ -384,7 +383,7 @@ void set_references(const ByteReader& reader, const std::vector<Keyframe>& keyfr
 void read_views(const ViewSections& sections, RoundedPoints& points, const std::vector<Rig>& rigs,
                 std::vector<Keyframe>& keyframes, PartSizes& sizes) {
   const ByteReader observations = sections.observations;
-  // What is wrong is told by whoever reads one thing after the other, always the first of several.
+  // Sequential reading repeats a failed attempt, so that always the first error is reported.
   sizes.views.assign(keyframes.size(), {});
   if (!try_to_read_views(sections, points.points, rigs, keyframes, sizes)) {
     sizes.views.assign(keyframes.size(), {});

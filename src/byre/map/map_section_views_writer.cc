@@ -1,4 +1,4 @@
-// Writes what the keyframes see, as format 7 has it; map_section_views.cc reads it.
+// Writes keyframes' features and sightings in format 7; map_section_views.cc reads them.
 
 #include "byre/map/descriptor_difference.h"
 #include "byre/map/map_numbers.h"

@@ -12,17 +12,17 @@
 
 namespace byre {
 
-// The sections of a map file, in their order; docs/map_format.md describes each. Readers take the whole section and
-// throw InputError for every value that a sound map cannot hold. What equals nothing that a writer writes is refused
-// too, so that a file that can be read is written again byte by byte.
+// Sections of a map file in their order; docs/map_format.md describes each. Readers consume the whole section and throw
+// InputError for every value that is invalid in a map. They also reject bytes that no writer produces, so that reading
+// and writing reproduces the file.
 
-using Keyframes = std::vector<const Keyframe*>;  // all of a map, by number
+using Keyframes = std::vector<const Keyframe*>;  // all keyframes of a map, by number
 Keyframes keyframes_of(const Map& map);
 
-// The features of a keyframe that may have none.
+// Features of a keyframe; empty features for a keyframe without any.
 const Features& features_of(const Keyframe& keyframe);
 
-// Numbers of things, kept to tell a file whose sections do not belong together.
+// Counts that detect sections of different maps in one file.
 struct MapSummary {
   std::uint64_t keyframes = 0;
   std::uint64_t points = 0;
@@ -53,17 +53,17 @@ std::vector<Rig> read_rigs(ByteReader reader);
 void write_keyframes(const Keyframes& keyframes, ByteWriter& writer);
 std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, std::size_t recording_count);
 
-// As formats 1 to 4 have them: keypoints and descriptors, and patches of some of them in a section of their own.
-// Fills in the features of the keyframes.
+// Formats 1 to 4: keypoints and descriptors, and some of their patches in a separate section. Sets the features of the
+// keyframes.
 void read_features(ByteReader features, ByteReader patches, const std::vector<Rig>& rigs,
                    std::vector<Keyframe>& keyframes);
 std::vector<MapPoint> read_points(ByteReader reader);
-// Fills in the sightings of the keyframes. Every point's reference must be one of them.
+// Sets the sightings of the keyframes. Every point's reference must be one of them.
 void read_observations(ByteReader reader, const std::vector<MapPoint>& points, std::vector<Keyframe>& keyframes);
-// Fills in the words of the keyframes and gives the checksum of their vocabulary.
+// Sets the words of the keyframes and returns the checksum of their vocabulary.
 std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes);
 
-// Sections that have a part for each keyframe, in the order in which they are told of.
+// Sections with one part per keyframe, in the order of the lookup.
 enum ViewSection : std::size_t {
   kFeaturesOfView,
   kPatchesOfView,
@@ -74,36 +74,36 @@ enum ViewSection : std::size_t {
 };
 inline constexpr std::uint32_t kPointsOfBlock = 32;
 
-// How long parts of sections are, bytes: what a reader learns by going through them.
+// Sizes of the parts of sections in bytes, filled in while they are read or written.
 struct PartSizes {
-  std::vector<std::array<std::uint32_t, kViewSections>> views;  // by keyframe
-  std::vector<std::uint32_t> points;                            // by block of kPointsOfBlock points
+  std::vector<std::array<std::uint32_t, kViewSections>> views;  // per keyframe
+  std::vector<std::uint32_t> points;                            // per block of kPointsOfBlock points
 };
 
-// As formats from 5 on have them, rounded to quanta. Points come first of what fills in the sizes, words last.
+// Since format 5, rounded to quanta. Of the calls that fill in sizes, points come first and words last.
 void write_rounded_points(const Map& map, ByteWriter& writer, PartSizes& sizes);
 struct RoundedPoints {
   std::vector<MapPoint> points;           // without references
-  std::vector<std::uint32_t> references;  // which of its observations is the point's reference, counted from 0
+  std::vector<std::uint32_t> references;  // per point: which of its observations is the reference, from 0
 };
 RoundedPoints read_rounded_points(ByteReader reader, PartSizes& sizes);
-// The next point alone, but for its reference, which is given: which of its observations it is.
+// Reads the next point without its reference. Returns which of its observations is the reference.
 std::uint32_t read_rounded_point(ByteReader& reader, std::uint32_t number, MapPoint& point);
 
-// What keyframes see of them; all sections have a part for each keyframe.
+// Keyframes' features and sightings; all sections have one part per keyframe.
 struct ViewWriters {
   ByteWriter features, patches, observations, descriptors;
 };
 struct ViewSections {
   ByteReader features, patches, observations, descriptors;
-  bool has_packed_patches = true;  // from format 7 on
+  bool has_packed_patches = true;  // since format 7
 };
 void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes);
-// Fills in the features and sightings of the keyframes, and the references of the points.
+// Sets the features and sightings of the keyframes, and the references of the points.
 void read_views(const ViewSections& sections, RoundedPoints& points, const std::vector<Rig>& rigs,
                 std::vector<Keyframe>& keyframes, PartSizes& sizes);
-// Fills in the same of one keyframe, whose parts these are to the end. find_point: calls with a number below
-// point_count are answered by the point and its observations; the keyframe must be one of these.
+// Sets features and sightings of one keyframe, from its parts. find_point is called with numbers below point_count and
+// returns the point with its observations, which must contain the keyframe.
 void read_view(ViewSections parts, std::uint32_t number, const Rig& rig, std::size_t point_count,
                const std::function<const ObservedPoint&(std::uint32_t)>& find_point, Keyframe& keyframe);
 
@@ -114,33 +114,33 @@ struct WordsHead {
   std::size_t bytes_each = 1;
 };
 WordsHead read_words_head(ByteReader& reader);
-// The words of one keyframe, whose part follows.
+// Reads the words of one keyframe at the reader's position.
 std::vector<Word> read_narrow_words_of(ByteReader& reader, const WordsHead& head, std::size_t features);
-// Fills in the words of the keyframes and gives the checksum of their vocabulary.
+// Sets the words of the keyframes and returns the checksum of their vocabulary.
 std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes);
 
-// From format 6 on: where parts of other sections lie, and who sees each point and shares points with each keyframe, so
-// that one keyframe or point can be read without the others.
+// Since format 6: locations of parts in other sections, observations of points, and covisibility of keyframes, so that
+// keyframes and points can be read separately.
 struct PartSections {
   std::array<std::span<const std::byte>, kViewSections> views;
   std::span<const std::byte> points;
 };
 void write_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& observers,
                   ByteWriter& lookup);
-// Fails for sections that do not tell what the others hold.
+// Fails if the sections do not match the contents of the others.
 void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteReader observers,
                     ByteReader lookup);
 
-// Where a part lies in its section.
+// Location of a part in its section, bytes.
 struct PartPlace {
   std::size_t begin = 0;
   std::size_t size = 0;
 };
 struct KeyframeParts {
-  std::uint32_t features = 0;  // their number
+  std::uint32_t features = 0;  // number of features
   std::array<PartPlace, kViewSections> views;
   PartPlace covisible;         // in Lookup::covisible
-  std::uint64_t checksum = 0;  // XXH3 of its parts in the order of sections, but not of what is covisible
+  std::uint64_t checksum = 0;  // XXH3 of its parts in the order of sections, without covisibility
 };
 struct PointBlock {
   PartPlace points, observers;
@@ -150,29 +150,29 @@ struct Lookup {
   std::vector<KeyframeParts> keyframes;
   std::vector<PointBlock> blocks;
   std::vector<std::byte> covisible;
-  std::size_t first_byte_of_covisible = 0;  // in its section
+  std::size_t first_byte_of_covisible = 0;  // offset in its section
 };
-// sizes: bytes of the sections whose parts it tells of, all of which must be used up.
+// Sizes of the sections that a lookup divides into parts, bytes; the parts must cover them exactly.
 struct PartSectionSizes {
   std::array<std::size_t, kViewSections> views{};
   std::size_t points = 0, observers = 0;
 };
 Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSectionSizes& sizes);
 ReusedVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count);
-// The observations of one point, the next one. Their features are such as the keyframes have.
+// Reads the observations of the next point, with features within those of their keyframes.
 std::vector<Observation> read_observers(ByteReader& reader, const std::vector<KeyframeParts>& keyframes);
 
-// Whether more pairs of keyframes share points than a section of so many bytes may describe.
+// Whether more pairs of keyframes share points than a section of this size can plausibly describe.
 bool has_too_many_covisible_keyframes(const std::vector<Keyframe>& keyframes, std::size_t point_count,
                                       std::size_t section_bytes);
 
 void write_refined_calibrations(const std::vector<SourceRecording>& recordings, ByteWriter& writer);
-// Fills in those of the recordings.
+// Sets those of the recordings.
 void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& recordings);
 
 // Readout times of rolling shutters, as given and as refined.
 void write_readout_times(const std::vector<SourceRecording>& recordings, ByteWriter& writer);
-// Fills in those of the recordings and of their refined calibrations.
+// Sets those of the recordings and of their refined calibrations.
 void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordings);
 
 void write_plan(const PlanRegistration& registration, ByteWriter& writer);

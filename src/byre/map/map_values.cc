@@ -21,7 +21,7 @@ bool is_image_size(int width, int height) {
   return width >= 1 && height >= 1 && width <= kMaxImageSize && height <= kMaxImageSize;
 }
 
-// Pixels have their centres at whole numbers, so an image begins half a pixel before zero.
+// Pixel centres have integer coordinates, so an image begins at -0.5.
 bool is_in_image(const Eigen::Vector2f& pixel, const Rig& rig) {
   return pixel.x() >= -0.5f && pixel.y() >= -0.5f && pixel.x() <= static_cast<float>(rig.width) - 0.5f &&
          pixel.y() <= static_cast<float>(rig.height) - 0.5f;
@@ -55,7 +55,7 @@ std::string_view fault_in(const Camera& camera) {
 std::string_view fault_in(const Calibration& calibration) {
   if (const auto fault = fault_in(calibration.left); !fault.empty()) return fault;
   if (const auto fault = fault_in(calibration.body_from_left); !fault.empty()) return fault;
-  constexpr double kLongestReadout = 1.0;  // seconds; false for what is no number
+  constexpr double kLongestReadout = 1.0;  // seconds; the comparison is false for NaN
   if (!(std::abs(calibration.readout_time) <= kLongestReadout)) return "has no proper readout time";
   return calibration.right ? fault_in(*calibration.right) : "";
 }

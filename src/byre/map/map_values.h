@@ -8,8 +8,8 @@ namespace byre {
 
 inline constexpr int kMaxImageSize = 16384;  // pixels, width and height
 
-// What is wrong with a value of a map that is to be kept: a few words such as "has no proper pose", empty for a sound
-// one. Reading a map file, and looking for the faults of a map, ask the same.
+// Fault of a value to be stored, a few words such as "has no proper pose"; empty for a valid value. Used on reading a
+// map file and in find_faults().
 std::string_view fault_in(const Pose& pose);
 std::string_view fault_in(const Camera& camera);
 std::string_view fault_in(const Calibration& calibration);

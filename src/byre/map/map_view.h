@@ -17,26 +17,26 @@ class MapView {
   const Map* offline() const { return offline_; }
   const Map& online() const { return *online_; }
 
-  const MapPoint* find_point(PointId id) const;             // nullptr when it is gone
-  const Keyframe* find_keyframe(KeyframeId id) const;       // nullptr when it is gone
-  const Keyframe* find_bare_keyframe(KeyframeId id) const;  // as Map's
+  const MapPoint* find_point(PointId id) const;             // nullptr if it does not exist
+  const Keyframe* find_keyframe(KeyframeId id) const;       // nullptr if it does not exist
+  const Keyframe* find_bare_keyframe(KeyframeId id) const;  // see Map
   const Rig& rig_of(const Keyframe& keyframe, KeyframeId id) const;
 
-  // Calls visit(observation) for every keyframe, of both maps, that sees the point.
+  // Calls visit(observation) for every observation of the point by keyframes of both maps.
   template <typename Visitor>
   void visit_observations(PointId id, Visitor visit) const {
     if (offline_ != nullptr) std::ranges::for_each(offline_->observations(id), visit);
     std::ranges::for_each(online_->observations(id), visit);
   }
 
-  // Calls visit(observation) for every keyframe that sees the point, also through a foreign view.
+  // Also visits foreign views.
   template <typename Visitor>
   void visit_views(PointId id, Visitor visit) const {
     visit_observations(id, visit);
     for (const ForeignView& view : online_->foreign_views(id)) visit(view.observation);
   }
 
-  // Keyframes of the same map that share points with this one, most shared first.
+  // Keyframes of the same map with points in common, most first.
   ReusedVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
  private:
@@ -46,8 +46,8 @@ class MapView {
   const Map* online_;
 };
 
-// The online map as one that stands alone, to be kept: the offline points that its keyframes see become points of its
-// own, defined by the first of their online views, and foreign views are left out.
+// Copy of the online map that does not depend on the offline one. Offline points with online observations become its
+// own points, with their first online observation as reference; foreign views are omitted.
 Map standalone_copy(const MapView& map);
 
 }  // namespace byre

@@ -10,21 +10,21 @@
 
 namespace byre {
 
-// How sections tell what a keyframe sees, from format 5 on: see docs/map_format.md.
+// Layout of keyframes' features and sightings since format 5: see docs/map_format.md.
 
-// What a keypoint's first byte tells; its lowest bits are the octave.
+// First byte of a keypoint; its lowest bits are the octave.
 inline constexpr std::uint8_t kOctaveBits = 7;
 inline constexpr std::uint8_t kHasDisparity = 8;
 inline constexpr std::uint8_t kHasPatch = 16;
 inline constexpr std::uint8_t kSeesPoint = 32;
-inline constexpr std::uint8_t kNoOctave = 64;  // no sound map has a keypoint with this bit
+inline constexpr std::uint8_t kNoOctave = 64;  // invalid in any map
 inline constexpr std::uint8_t kAllBits = kOctaveBits | kHasDisparity | kHasPatch | kSeesPoint;
 
 inline constexpr std::size_t kLeastKeypointBytes = 1 + 2;
 inline constexpr std::size_t kDisparityBytes = 3;
-inline constexpr std::size_t kPatchHeadBytes = 2 + sizeof(PatchCode::centre);  // before its steps
+inline constexpr std::size_t kPatchHeadBytes = 2 + sizeof(PatchCode::centre);  // before the steps
 
-// Bytes that hold all numbers below count.
+// Number of bytes that can store all numbers below count.
 inline std::size_t bytes_for(std::uint64_t count) {
   return count <= 1 ? 1 : (static_cast<std::size_t>(std::bit_width(count - 1)) + 7) / 8;
 }
@@ -35,7 +35,7 @@ inline std::size_t bytes_for_pixels(int size) {
 
 using ViewSizes = std::array<std::uint32_t, kViewSections>;
 
-// Where bytes were left before and are now, of large sections modulo 2^32.
+// Adds the bytes consumed between two states; in large sections modulo 2^32.
 inline void set_taken(const ViewSizes& before, const ViewSizes& after, ViewSizes& taken) {
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] += before[i] - after[i];
 }

@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// Where the things of one map are in another.
+// Maps ids of one map to those of another.
 template <typename Id>
 class Renumbering {
  public:
@@ -28,7 +28,7 @@ class Renumbering {
   std::vector<Id> ids_;
 };
 
-// Features of a keyframe, ascending, whose patch defines a point.
+// Features of a keyframe that are the reference of a point, ascending.
 std::vector<int> features_that_define_points(const Map& map, KeyframeId id, const std::vector<Sighting>& sightings) {
   std::vector<int> features;
   for (int i = 0; i < static_cast<int>(sightings.size()); ++i) {
@@ -39,7 +39,7 @@ std::vector<int> features_that_define_points(const Map& map, KeyframeId id, cons
   return features;
 }
 
-// The features that come in this order, with these patches.
+// The features in the given order, with the patches of kept_patches.
 std::shared_ptr<const Features> for_keeping(const Features& features, const Rig& rig, const std::vector<int>& order,
                                             const std::vector<int>& kept_patches) {
   std::vector<Keypoint> keypoints;
@@ -57,8 +57,8 @@ std::shared_ptr<const Features> for_keeping(const Features& features, const Rig&
                                           std::move(patches), std::move(patch_of_keypoint));
 }
 
-// Features that see a point, in the order that they have in a file: those that were moved may have left that of their
-// grid, and there are fewer of them.
+// Features with a point, in the order of a file. Moved features may have left the order of their grid, which also
+// depends on their number.
 std::vector<int> order_of_features_with_points(const Keyframe& keyframe, const Rig& rig) {
   std::vector<int> with_point;
   std::vector<Keypoint> keypoints;
@@ -72,8 +72,8 @@ std::vector<int> order_of_features_with_points(const Keyframe& keyframe, const R
   return order;
 }
 
-// The keyframe forgets features that see no point. What goes by the numbers of the others follows; gives their new
-// ones, by the old.
+// Drops a keyframe's features without a point, with their sightings and words. Returns the new index of each old
+// feature, or -1.
 std::vector<int> keep_features_with_points(Keyframe& keyframe, const Rig& rig, const std::vector<int>& kept_patches) {
   if (!keyframe.frame.features) return {};
   const std::vector<int> order = order_of_features_with_points(keyframe, rig);
@@ -91,19 +91,19 @@ std::vector<int> keep_features_with_points(Keyframe& keyframe, const Rig& rig, c
   return number_of;
 }
 
-// Rounding makes covariances that are the product of matrices unsymmetric in their last digits.
+// Restores symmetry, which rounding in matrix products loses.
 template <typename Matrix>
 Matrix symmetric(const Matrix& covariance) {
   return covariance.template selfadjointView<Eigen::Upper>();
 }
 
-// take gives each keyframe, ascending, and is_done is called when nothing more of the map is needed.
+// take returns each keyframe, ascending. is_done is called when the map is no longer needed.
 Map made_offline(const Map& online, const std::function<Keyframe(KeyframeId)>& take,
                  const std::function<void()>& is_done) {
   const Renumbering<KeyframeId> keyframes(online.keyframe_ids());
   const Renumbering<PointId> points(online.point_ids());
   MapParts parts{online.rigs(), {}, {}};
-  std::vector<std::vector<int>> feature_numbers;  // new places of the features of each keyframe, by number
+  std::vector<std::vector<int>> feature_numbers;  // new index of each feature of a keyframe, by keyframe number
   for (const KeyframeId id : keyframes.ids()) {
     Keyframe keyframe = take(id);
     const Rig& rig = online.rigs()[static_cast<std::size_t>(keyframe.rig)];

@@ -19,7 +19,7 @@ int patch_count(const Features& features) {
   return count;
 }
 
-// The scene as a session would have made it: online, and with things removed again.
+// The scene as an online map of a session, with some of its parts removed.
 class OfflineCopy : public testing::Test {
  protected:
   OfflineCopy() {
@@ -86,7 +86,7 @@ TEST_F(OfflineCopy, KeepsFeaturesThatSeeAPointAndPatchesThatDefineOne) {
     const Keyframe& keyframe = *copy.find_keyframe(id);
     const Features& features = *keyframe.frame.features;
     const Keyframe& original = *scene_.stored().map.find_keyframe(id);
-    EXPECT_EQ(features.size(), std::max(0, original.frame.features->size() - 1));  // the last sees nothing
+    EXPECT_EQ(features.size(), std::max(0, original.frame.features->size() - 1));  // the last feature has no point
     EXPECT_EQ(keyframe.words.size(), original.words.empty() ? 0 : keyframe.sightings.size());
     patches += patch_count(features);
     for (int i = 0; i < features.size(); ++i) {

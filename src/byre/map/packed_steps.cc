@@ -13,20 +13,19 @@ constexpr std::size_t kWidth = Patch::kSize;
 constexpr std::size_t kPixels = kWidth * kWidth;
 constexpr std::size_t kWholeBytes = sizeof(PatchSteps);
 constexpr std::size_t kPlaneBytes = kPixels / 8;
-constexpr std::uint8_t kMiddle = 8;  // half the steps; those beyond the patch count as this one
-constexpr unsigned kPackings = 3;    // with more planes of low bits no patch would gain
-constexpr unsigned kLargest = 15;    // a number that tells a pixel
+constexpr std::uint8_t kMiddle = 8;  // half the steps; value assumed outside the patch
+constexpr unsigned kPackings = 3;    // numbers of low-bit planes, 0 to 2; more never help
+constexpr unsigned kLargest = 15;    // largest step and largest residual code
 
 using Pixels = std::array<std::uint8_t, kPixels>;
 
-// What the step to the left, the one above and the one above that to the left let expect: a plane through them, unless
-// there is an edge.
+// Prediction of a step from its left, upper and upper left neighbours: a plane through them, or one side of an edge.
 std::uint8_t expected(std::uint8_t left, std::uint8_t above, std::uint8_t above_left) {
   const std::uint8_t low = std::min(left, above), high = std::max(left, above);
   return static_cast<std::uint8_t>(low + high - std::min(std::max(above_left, low), high));
 }
 
-// A difference modulo 16 as 2 d from 0 to 7, and as -2 d - 1 for negative ones; and what it was.
+// Residual modulo 16 as a non-negative code: d as 2 d, negative d as -2 d - 1; and its inverse.
 std::uint8_t folded(std::uint8_t step, std::uint8_t from) {
   const auto difference = static_cast<unsigned>(step - from) & kLargest;
   return static_cast<std::uint8_t>(difference < kMiddle ? 2 * difference : 2 * (kLargest - difference) + 1);
@@ -37,7 +36,7 @@ std::uint8_t unfolded(std::uint8_t number, std::uint8_t from) {
 }
 
 Pixels numbers_of(const PatchSteps& steps) {
-  constexpr std::size_t kFramed = kWidth + 1;  // with what counts as beyond the patch, above it and to the left
+  constexpr std::size_t kFramed = kWidth + 1;  // with a border above and to the left of the patch
   std::array<std::uint8_t, kFramed * kFramed> framed;
   framed.fill(kMiddle);
   Pixels numbers;
@@ -49,11 +48,11 @@ Pixels numbers_of(const PatchSteps& steps) {
   return numbers;
 }
 
-// Diagonals from the lower left to the upper right: pixels on one depend on the two before alone, so plain loops along
-// them become vector instructions.
+// Works along anti-diagonals: their pixels depend on the two previous ones only, so that the compiler vectorises plain
+// loops.
 PatchSteps steps_of(const Pixels& numbers) {
   constexpr std::size_t kDiagonals = 2 * kWidth - 1;
-  using Diagonal = std::array<std::uint8_t, kWidth + 1>;  // by row, after what lies above the patch
+  using Diagonal = std::array<std::uint8_t, kWidth + 1>;  // by row, with a first entry above the patch
   std::array<Diagonal, kDiagonals + 2> diagonals;
   for (Diagonal& diagonal : diagonals) diagonal.fill(kMiddle);
   for (std::size_t i = 0; i < kPixels; ++i) diagonals[2 + i / kWidth + i % kWidth][1 + i / kWidth] = numbers[i];
@@ -64,7 +63,7 @@ PatchSteps steps_of(const Pixels& numbers) {
     for (std::size_t row = 1; row <= kWidth; ++row) {
       steps[row] = unfolded(diagonals[i][row], expected(before[row], before[row - 1], first[row - 1]));
     }
-    const std::size_t column = i - 2;  // where the diagonal meets the first row
+    const std::size_t column = i - 2;  // column at which the diagonal meets the first row
     for (std::size_t row = 1 + (column < kWidth ? 0 : column + 1 - kWidth); row <= std::min(kWidth, 1 + column);
          ++row) {
       diagonals[i][row] = steps[row];
@@ -79,7 +78,7 @@ PatchSteps steps_of(const Pixels& numbers) {
   return steps;
 }
 
-// How the numbers are told in the fewest bytes: by so many planes of low bits, and the rest one by one.
+// The shortest code of the residuals: a number of low-bit planes, and the high bits in unary code.
 struct Packing {
   unsigned planes = 0;
   std::size_t bytes = 0;
@@ -113,7 +112,7 @@ void add_plane(const Plane& plane, unsigned bit, Pixels& numbers) {
   }
 }
 
-// Each number above its low bits as so many zeros and a one. Fails for what is none.
+// Reads the high bits of each residual, as zeros followed by a one. Fails for invalid bytes.
 void add_counted(std::span<const std::byte> bytes, unsigned low_bits, const ByteReader& reader, Pixels& numbers) {
   std::size_t pixel = 0, next = 0, largest = 0;
   for (std::size_t begin = 0; begin < bytes.size(); begin += sizeof(std::uint64_t)) {

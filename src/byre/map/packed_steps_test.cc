@@ -64,14 +64,14 @@ TEST(PackedSteps, GiveBackEveryPatch) {
 TEST(PackedSteps, TakeABitForAPixelThatIsAsExpected) {
   EXPECT_EQ(packed(steps_by([](int, int) { return 8; })).size(), 2u + 256 / 8);
   const auto is_edge = [](int, int column) { return column < 7 ? 8 : 15; };
-  EXPECT_EQ(packed(steps_by(is_edge)).size(), 2u + (256 + 14 + 7) / 8);  // 14 ones where the edge begins
+  EXPECT_EQ(packed(steps_by(is_edge)).size(), 2u + (256 + 14 + 7) / 8);  // an edge adds 14 bits where it begins
 }
 
 TEST(PackedSteps, AreTakenAsTheyAreWhereThatIsShorter) {
   EXPECT_EQ(packed(noise(15, 1)).size(), kWhole + 1);
 }
 
-// A patch of one bit each, told by so many planes of low bits that are zero.
+// A patch of one bit per pixel, with that many zero low-bit planes.
 std::vector<std::byte> flat_by(std::size_t planes) {
   std::vector<std::byte> bytes(2 + 32 * planes, std::byte{0});
   bytes.resize(bytes.size() + 32, std::byte{0xff});
@@ -82,33 +82,33 @@ std::vector<std::byte> flat_by(std::size_t planes) {
 
 TEST(PackedSteps, AreRefusedWhereTheyAreNotWrittenAsTheyWouldBe) {
   EXPECT_NO_THROW(unpacked_from(flat_by(0)));
-  EXPECT_THROW(unpacked_from(flat_by(1)), InputError);  // a plane that gains nothing
+  EXPECT_THROW(unpacked_from(flat_by(1)), InputError);  // a useless plane
   EXPECT_THROW(unpacked_from(flat_by(2)), InputError);
-  EXPECT_THROW(unpacked_from(flat_by(3)), InputError);  // more planes than any patch has
+  EXPECT_THROW(unpacked_from(flat_by(3)), InputError);  // more planes than allowed
   std::vector<std::byte> whole(kWhole + 1, std::byte{0});
   whole[0] = static_cast<std::byte>(kWhole);
-  EXPECT_THROW(unpacked_from(whole), InputError);  // steps that would gain
+  EXPECT_THROW(unpacked_from(whole), InputError);  // steps that compress
   std::vector<std::byte> bytes = flat_by(0);
   bytes.front() = static_cast<std::byte>(bytes.size());
   bytes.push_back(std::byte{0});
-  EXPECT_THROW(unpacked_from(bytes), InputError);  // a byte too many
+  EXPECT_THROW(unpacked_from(bytes), InputError);  // an extra byte
   bytes.back() = std::byte{1};
-  EXPECT_THROW(unpacked_from(bytes), InputError);  // a pixel too many
+  EXPECT_THROW(unpacked_from(bytes), InputError);  // an extra pixel
 }
 
 TEST(PackedSteps, AreRefusedWhereTheyAreNone) {
   std::vector<std::byte> bytes = flat_by(0);
   bytes.pop_back();
-  EXPECT_THROW(unpacked_from(bytes), InputError);  // fewer bytes than it tells
+  EXPECT_THROW(unpacked_from(bytes), InputError);  // fewer bytes than announced
   bytes.front() = static_cast<std::byte>(bytes.size() - 1);
-  EXPECT_THROW(unpacked_from(bytes), InputError);  // fewer pixels than it has
+  EXPECT_THROW(unpacked_from(bytes), InputError);  // too few pixels
   bytes = flat_by(1);
   bytes.resize(33);
   bytes.front() = static_cast<std::byte>(bytes.size() - 1);
-  EXPECT_THROW(unpacked_from(bytes), InputError);  // a plane and nothing else
+  EXPECT_THROW(unpacked_from(bytes), InputError);  // a plane without high bits
   bytes.resize(20);
   bytes.front() = static_cast<std::byte>(bytes.size() - 1);
-  EXPECT_THROW(unpacked_from(bytes), InputError);  // part of a plane
+  EXPECT_THROW(unpacked_from(bytes), InputError);  // an incomplete plane
   EXPECT_THROW(unpacked_from({std::byte{0}}), InputError);
   EXPECT_THROW(unpacked_from(std::vector<std::byte>(201, std::byte{200})), InputError);
   bytes = flat_by(0);

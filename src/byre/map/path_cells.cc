@@ -11,7 +11,7 @@ PathCells::PathCells(const std::vector<Eigen::Vector3d>& places, double reach) :
   std::ranges::sort(entries_);
 }
 
-// Cells as large as the reach: what is near lies in a cell next to a place's own. Cells of one column are a range.
+// Cells have the size of the reach, so that neighbours are in adjacent cells. Cells of a column are contiguous.
 std::vector<std::uint32_t> PathCells::near(const Eigen::Vector3d& place) const {
   std::vector<std::uint32_t> indices;
   const Cell own = cell_of(place);
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> PathCells::near(const Eigen::Vector3d& place) const {
   return indices;
 }
 
-// What lies beyond all that is sensible, or nowhere, counts as at the edge of that.
+// Positions beyond kFarthest or not a number are clamped.
 PathCells::Cell PathCells::cell_of(const Eigen::Vector3d& place) const {
   constexpr double kFarthest = 1e9;  // cells
   Cell cell;

@@ -8,13 +8,13 @@
 
 namespace byre {
 
-// Places sorted by the cells of a grid in space, so that those near another one are found without looking at all.
+// Positions sorted by the cells of a spatial grid, for fast neighbour search.
 class PathCells {
  public:
-  // reach: how far what is looked for lies at most, positive. Places are those of the constructor from then on.
+  // reach: search radius, positive. Positions are fixed at construction.
   PathCells(const std::vector<Eigen::Vector3d>& places, double reach);
 
-  // All that lie within the reach, and some beyond it: indices of places, ascending.
+  // Indices of all positions within the reach, and of some beyond it, ascending.
   std::vector<std::uint32_t> near(const Eigen::Vector3d& place) const;
 
  private:

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kFarthestPixel = 10.0;
 
-// Where a pixel of the left camera lies in the rectified image. Empty outside of what the lens or the rig can show.
+// Rectified pixel of a pixel of the left camera. Empty outside the field of view of the lens or the rig.
 std::optional<Eigen::Vector2d> rectified(const Eigen::Vector2d& pixel, const Calibration& calibration, const Rig& rig) {
   const std::optional<Eigen::Vector3d> bearing = calibration.left.bearing(pixel);
   if (!bearing) return std::nullopt;
@@ -18,7 +18,7 @@ std::optional<Eigen::Vector2d> rectified(const Eigen::Vector2d& pixel, const Cal
   return rig.project(ray).head<2>();
 }
 
-// The nearest sighting of a point. nullptr when there is none within reach.
+// The nearest sighting of a point; nullptr without one within kFarthestPixel.
 const Sighting* nearest_sighting(const Keyframe& keyframe, const Eigen::Vector2d& pixel) {
   const Sighting* nearest = nullptr;
   double nearest_distance = kFarthestPixel;

@@ -10,8 +10,8 @@ namespace {
 const Eigen::Vector3d kPointInCamera(1.0, -0.5, 4.0);
 constexpr double kPointSigma = 0.1;
 
-// A keyframe whose rectified camera is turned against the one with the lens, as rectification does it, and that sees a
-// point known to a decimetre.
+// A keyframe whose rectified camera is rotated relative to the original one, as by rectification, and a point with a
+// sigma of 0.1 m.
 class PlanPlaces : public testing::Test {
  protected:
   PlanPlaces() {

@@ -12,7 +12,7 @@ Matrix6 covariance_on_plan(const PlanRegistration& registration, const Pose& map
   const Pose body_from_map = inverse(scale_lengths(map_from_body, scale));
   Eigen::Matrix<double, 6, 7> of_registration;
   of_registration << adjoint(body_from_map), Vector6::Zero();
-  of_registration.topRightCorner<3, 1>() = -body_from_map.translation;  // a longer map carries the body outwards
+  of_registration.topRightCorner<3, 1>() = -body_from_map.translation;  // the scale moves the body from the origin
   return scale_lengths(covariance, scale) + of_registration * registration.covariance * of_registration.transpose();
 }
 

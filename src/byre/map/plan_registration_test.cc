@@ -39,7 +39,7 @@ TEST(PlanRegistration, HasTheJacobianOfItsSmallMotions) {
   }
 }
 
-// By finite differences: a small motion of everything that a pose on the plan hangs on.
+// Checked by finite differences of all inputs of a pose on the plan.
 TEST(PlanRegistration, AddsWhatItLeavesOpenToTheCovarianceOfAPose) {
   PlanRegistration registration = any_registration();
   const Eigen::Matrix<double, 7, 1> sigmas{0.02, 0.03, 0.01, 0.002, 0.001, 0.004, 0.005};

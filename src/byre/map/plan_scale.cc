@@ -6,7 +6,7 @@
 namespace byre {
 namespace {
 
-constexpr int kFewest = 4;              // correspondences
+constexpr int kFewest = 4;              // number of correspondences
 constexpr double kLargestSigma = 0.01;  // relative
 constexpr double kSignificant = 3.0;    // sigmas
 constexpr double kLargestChange = 0.1;  // relative

@@ -9,29 +9,29 @@
 
 namespace byre {
 
-// Why a scale that was measured on a plan is not to be relied on.
+// Reasons to reject a scale measured on a plan.
 enum class PlanScaleDoubt : std::uint8_t {
-  few_points,    // fewer than four correspondences took part: one that is wrong would not show
-  small_spread,  // the correspondences lie too close together, or are too rough, to tell a percent
-  // The correspondences are farther off than their sigmas explain, or a large part of them is wrong.
+  few_points,    // fewer than four correspondences used: an outlier would not show
+  small_spread,  // the correspondences are too close together, or too inaccurate, for 1 %
+  // The residuals exceed their sigmas, or a large share of the correspondences are outliers.
   disagreement,
-  implausible  // no baseline is as wrong as that
+  implausible  // beyond any error of a baseline
 };
-std::string_view to_string(PlanScaleDoubt doubt);  // what is the matter, and its remedy
+std::string_view to_string(PlanScaleDoubt doubt);  // description with the remedy
 
-// How long a metric map is, measured on a floor plan. The length of a stereo pair's baseline is not seen by its images,
-// and a small turn of one camera changes all depths much like another baseline.
+// Scale of a metric map measured on a floor plan. The images of a stereo pair do not measure their baseline, and a
+// small rotation of one camera changes all depths much like a different baseline.
 struct PlanScale {
-  double plan_from_map = 1.0;  // metres on the plan of a metre in the map
-  double sigma = 0.0;          // standard error of the scale's logarithm by the picks; the plan is taken to be true
+  double plan_from_map = 1.0;  // metres on the plan per metre in the map
+  double sigma = 0.0;          // standard error of the scale's logarithm, from the picks; the plan is assumed exact
   std::optional<PlanScaleDoubt> doubt;
 
-  double excess() const { return 1.0 / plan_from_map - 1.0; }  // by how much the map is too large: 0.01 is a percent
-  // Whether it differs by more than its uncertainty explains, and beyond doubt.
+  double excess() const { return 1.0 / plan_from_map - 1.0; }  // relative excess of the map's size: 0.01 is 1 %
+  // Whether the difference is significant and there is no doubt.
   bool differs_from_one() const;
 };
 
-// From a fit of its own, in which the scale is free. Empty where register_on_plan finds nothing.
+// Uses a separate fit with free scale. Empty if register_on_plan fails.
 std::optional<PlanScale> measure_scale(std::span<const PlanCorrespondence> correspondences, const DrivingPlane& plane,
                                        const PlanRegistrationOptions& options = {});
 

@@ -17,7 +17,7 @@ using testing::Lt;
 using testing::Not;
 using testing::Optional;
 
-constexpr double kTooLarge = 1.016;  // metres in the map of a metre on the plan
+constexpr double kTooLarge = 1.016;  // metres in the map per metre on the plan
 constexpr int kTrials = 100;
 
 std::optional<PlanScaleDoubt> doubt_of(FloorPlanScene& scene, const std::vector<PlanCorrespondence>& correspondences) {
@@ -43,7 +43,7 @@ TEST(PlanScale, IsWithinThreeSigmasFromEightPicksWithThreeCentimetresOfNoise) {
   }
 }
 
-// The mean of the squared error in units of its variance.
+// Mean squared normalised error.
 TEST(PlanScale, KnowsHowWellItIsKnown) {
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 30 * kTrials; ++seed) {

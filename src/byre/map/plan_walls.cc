@@ -38,10 +38,10 @@ constexpr std::array<std::pair<int, int>, 8> kNeighbours = {
 
 PlanWalls::PlanWalls(const FloorPlan& plan, std::span<const std::int8_t> occupancy) {
   assert(occupancy.size() == static_cast<std::size_t>(plan.width) * static_cast<std::size_t>(plan.height));
-  // Pixels of a line lie a diagonal apart at most, so that no cell between two of them stays open.
+  // Adjacent pixels of a line are at most a diagonal apart, so that no cell between them stays free.
   cell_ = std::max(kLeastCell, plan.metres_per_pixel.colwise().norm().maxCoeff() * std::numbers::sqrt2);
   const PlanBox box = box_of_image(plan);
-  corner_in_plan_ = box.low.array() - cell_;  // a ring of open cells lies around the image
+  corner_in_plan_ = box.low.array() - cell_;  // leaves a border of free cells around the image
   const Eigen::Vector2d size = (box.high - box.low) / cell_;
   columns_ = static_cast<int>(std::ceil(size.x())) + 2;
   rows_ = static_cast<int>(std::ceil(size.y())) + 2;
@@ -65,7 +65,7 @@ bool PlanWalls::is_inside(Cell cell) const {
   return cell.column >= 0 && cell.row >= 0 && cell.column < columns_ && cell.row < rows_;
 }
 
-// A step across a corner needs both cells beside it.
+// A diagonal step requires that both adjacent cells are free.
 bool PlanWalls::may_step(Cell from, int right, int down) const {
   const Cell to{from.column + right, from.row + down};
   if (!is_inside(to) || is_wall(to)) return false;
@@ -132,8 +132,8 @@ void PlanWalls::flood(std::vector<Cell> front) {
   }
 }
 
-// Dijkstra's algorithm from all free cells of the one disc at once, over the window of the grid that ways of that
-// length stay in.
+// Dijkstra's algorithm from all free cells of the start disc, within the window of the grid that paths of this length
+// can reach.
 std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDisc& end, double longest) const {
   const double reach = start.radius + longest + 2.0 * cell_;
   const Cell low = cell_at(start.centre.array() - reach), high = cell_at(start.centre.array() + reach);
@@ -143,7 +143,7 @@ std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDi
            static_cast<std::size_t>(cell.column - low.column);
   };
   std::vector<float> length(place(high) + 1, std::numeric_limits<float>::infinity());
-  using Step = std::pair<float, std::pair<int, int>>;  // metres so far, to column and row
+  using Step = std::pair<float, std::pair<int, int>>;  // path length in metres, then column and row
   std::priority_queue<Step, std::vector<Step>, std::greater<>> steps;
   any_in(start, [&](Cell cell) {
     if (!is_wall(cell)) {

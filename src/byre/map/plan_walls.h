@@ -11,29 +11,29 @@
 
 namespace byre {
 
-// A place on a plan that is not known exactly: somewhere within the radius about its centre, metres.
+// An uncertain position on a plan: within the radius around its centre, metres.
 struct PlanDisc {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double radius = 0.0;
 };
 
-// The walls of a floor plan, as a grid of cells with one or none in each, and where a way between them leads. A robot
-// is a point, so every gap is a door; what lies beyond the plan's image is open.
+// Walls of a floor plan as an occupancy grid, with path search. The robot is a point, so that every gap is passable;
+// the area outside the plan's image is free.
 class PlanWalls {
  public:
-  // A cell has a wall if it contains an occupied pixel (100). Cells are at least 0.1 m wide, and wide enough that a
-  // line of pixels is a line of cells. occupancy: of the plan's pixels (DrawnFloorPlan).
+  // A cell is a wall if it contains an occupied pixel (100). Cells are at least 0.1 m wide, and wide enough that a line
+  // of pixels becomes a closed line of cells. occupancy: of the plan's pixels (DrawnFloorPlan).
   PlanWalls(const FloorPlan& plan, std::span<const std::int8_t> occupancy);
 
-  // Opens the walls along ways that were driven, which may lead through a door that is drawn shut. All that free cells
-  // connect with them can be driven to.
+  // Frees the cells along driven paths, which may pass a door drawn closed. All free cells connected with them are
+  // reachable.
   void open_along(std::span<const std::vector<Eigen::Vector2d>> ways_in_plan);
 
-  // Whether some place in the disc is in no wall; and whether one is that can be driven to besides.
+  // Whether the disc contains a free cell; whether it contains a free, reachable cell.
   bool has_free_place(const PlanDisc& disc) const;
   bool has_place_to_drive_to(const PlanDisc& disc) const;
 
-  // The length of the shortest way from one disc to the other; empty if there is none of the given length, metres.
+  // Length of the shortest path between two discs, metres; empty if it exceeds `longest`.
   std::optional<double> way_between(const PlanDisc& start, const PlanDisc& end, double longest) const;
 
  private:
@@ -42,7 +42,7 @@ class PlanWalls {
     int row = 0;
   };
 
-  Cell cell_at(const Eigen::Vector2d& point_in_plan) const;  // the nearest one
+  Cell cell_at(const Eigen::Vector2d& point_in_plan) const;  // the nearest cell
   std::size_t index(Cell cell) const { return static_cast<std::size_t>(cell.row) * columns_ + cell.column; }
   bool is_inside(Cell cell) const;
   bool is_wall(Cell cell) const { return is_wall_[index(cell)] != 0; }
@@ -52,11 +52,11 @@ class PlanWalls {
   void flood(std::vector<Cell> front);
 
   double cell_ = 0.1;                                         // metres
-  Eigen::Vector2d corner_in_plan_ = Eigen::Vector2d::Zero();  // lower left one of the grid
+  Eigen::Vector2d corner_in_plan_ = Eigen::Vector2d::Zero();  // lower left corner of the grid
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<std::uint8_t> is_wall_;     // one for each cell
-  std::vector<std::uint8_t> is_reached_;  // whether it can be driven to, one for each cell
+  std::vector<std::uint8_t> is_wall_;     // per cell
+  std::vector<std::uint8_t> is_reached_;  // per cell: reachable from driven paths
 };
 
 }  // namespace byre

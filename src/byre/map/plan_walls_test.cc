@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kPixel = 0.05;  // metres
 
-// A plan of 10 x 6 m whose lower left corner is the origin.
+// A plan of 10 x 6 m with the origin at its lower left corner.
 class PlanOfRooms {
  public:
   PlanOfRooms() {
@@ -27,7 +27,7 @@ class PlanOfRooms {
       }
     }
   }
-  // Walls 0.2 m thick around two rooms side by side, from 1 to 9 m and 1 to 5 m.
+  // Walls 0.2 m thick around two adjacent rooms, from 1 to 9 m and 1 to 5 m.
   void draw_two_rooms() {
     draw(1.0, 1.0, 9.0, 1.2);
     draw(1.0, 4.8, 9.0, 5.0);

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// A factor within this of one is rounding.
+// Smaller deviations of a factor from one are rounding errors.
 constexpr double kSame = 1e-12;
 
 MapPoint scaled_copy(MapPoint point, double factor) {
@@ -52,7 +52,7 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
     if (!recording.refined) recording.refined = RefinedCalibration{.calibration = recording.calibration};
     recording.refined->calibration = byre::scaled(recording.refined->calibration, factor);
   }
-  scaled.notes.erase(kMetresNote);  // metres are no longer those of wheels
+  scaled.notes.erase(kMetresNote);  // the scale no longer comes from wheels
   note_mounting(byre::scaled(mounting_in(stored.notes), factor), scaled.notes);
   if (scaled.plan) scaled.plan->plan_from_map.scale /= factor;
   return scaled;

@@ -4,21 +4,19 @@
 
 namespace byre {
 
-// A pair whose baseline is so many times as long: its images, and the disparities in them, are the same. The arm to the
-// body stays, as it was measured. One camera alone stays as it is.
+// Calibration with a scaled baseline; images and disparities are the same. The measured camera pose on the body is not
+// scaled. A monocular calibration is unchanged.
 Calibration scaled(const Calibration& calibration, double factor);
 
-// The map and the way of its cameras, see scaled_copy of a Map; it stays where it lies on a floor plan. Recordings keep
-// the calibrations that were given with them, by which the same cameras are known again; their refined ones have the
-// baseline.
+// The map with scaled camera poses, see scaled_copy of a Map. Its registration on a floor plan is adapted. Recordings
+// keep their given calibrations, which identify the cameras; their refined ones get the scaled baseline.
 StoredMap scaled_copy(const StoredMap& stored, double factor);
 
-// All lengths of a map that images tell so many times as long, also from keyframes to those that were removed. Rigs
-// stay as they are. Precondition: a factor that is positive.
+// Scales all lengths of a map, also of removed keyframes. Rigs are unchanged. Precondition: a positive factor.
 void stretch(Map& map, double factor);
 
-// How many times as long as it was given the map has the baseline of a recording's pair: 1 unless its scale has been
-// corrected. Also 1 for one camera alone and for a recording without keyframes. Precondition: it is listed.
+// Ratio of the map's baseline to the given one of a stereo recording: 1 unless its scale was corrected. Also 1 for a
+// monocular recording and one without keyframes. Precondition: the recording exists.
 double baseline_factor(const StoredMap& stored, std::size_t recording);
 
 }  // namespace byre

@@ -13,7 +13,7 @@ using testing::IsEmpty;
 
 constexpr double kFactor = 1.0 / 1.016;
 
-// The scene with what its rigs say and what its recordings were given made to agree.
+// The scene with the baselines of its rigs and of its given calibrations made equal.
 StoredMap consistent_map() {
   StoredMap stored = StoredMapScene().stored_with_plan();
   Eigen::Vector3d& given = stored.recordings[0].calibration.right->right_from_left.translation;

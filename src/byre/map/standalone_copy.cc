@@ -6,7 +6,7 @@
 namespace byre {
 namespace {
 
-// Ascending.
+// Offline points with observations by online keyframes, ascending.
 std::vector<PointId> offline_points_seen(const MapView& map) {
   std::vector<PointId> seen;
   for (const KeyframeId id : map.online().keyframe_ids()) {
@@ -20,7 +20,7 @@ std::vector<PointId> offline_points_seen(const MapView& map) {
   return seen;
 }
 
-// What sees the offline point sees a point of the copy in its place.
+// Replaces an offline point by a copy in `copy`, with its observations.
 void adopt(const MapPoint& offline, PointId offline_id, Map& copy) {
   const std::vector<Observation> observers = copy.observations(offline_id);
   MapPoint adopted = offline;

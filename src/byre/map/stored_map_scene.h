@@ -13,9 +13,9 @@
 
 namespace byre {
 
-// A small map made by hand, with everything a map file can hold: two recordings, rigs with and without a baseline, a
-// keyframe without features, features with and without patches and disparities, keyframes with and without words, and
-// two keyframes without parent. Nothing in it is computed by a map's functions, so that its bytes stay.
+// A small map with all that a map file can contain: two recordings, rigs with and without a baseline, a keyframe
+// without features, features with and without patches and disparities, keyframes with and without words, and two
+// keyframes without parent. Independent of a map's functions, so that its bytes are constant.
 class StoredMapScene {
  public:
   explicit StoredMapScene(int keyframes = 5, int features = 9, std::uint64_t seed = 1)
@@ -32,7 +32,7 @@ class StoredMapScene {
   }
 
   const StoredMap& stored() const { return stored_; }
-  // The same on a floor plan.
+  // With a registration on a floor plan.
   StoredMap stored_with_plan() const {
     StoredMap stored = stored_;
     stored.plan.emplace();
@@ -43,7 +43,7 @@ class StoredMapScene {
     stored.plan->covariance(0, 5) = stored.plan->covariance(5, 0) = 1e-6;
     return stored;
   }
-  // For a map that differs in one thing.
+  // For maps that differ in one detail.
   const MapParts& parts() const { return parts_; }
 
  private:
@@ -85,7 +85,7 @@ class StoredMapScene {
     return keypoint;
   }
 
-  // Noise, or a slope with a little of it.
+  // Noise, or a slope with a little noise.
   Patch patch(bool is_noise) {
     Patch patch;
     for (std::uint64_t i = 0; i < patch.pixels.size(); ++i) {
@@ -128,7 +128,7 @@ class StoredMapScene {
     return keyframe;
   }
 
-  // Point i is feature i of up to three keyframes in a row; the last feature of each keyframe sees nothing.
+  // Point i is feature i of up to three consecutive keyframes; the last feature of each keyframe has no point.
   void add_points() {
     const auto seen_features = static_cast<std::uint32_t>(features_ - 1);
     for (std::uint32_t first = 0; first < parts_.keyframes.size(); first += 3) {
@@ -140,7 +140,7 @@ class StoredMapScene {
     }
   }
 
-  // A sighting of the point that is added next.
+  // Adds a sighting of the point that is added next.
   void add_sighting(std::uint32_t number, std::uint32_t feature) {
     Keyframe& keyframe = parts_.keyframes[number];
     const PointId point{Origin::offline, static_cast<std::uint32_t>(parts_.points.size())};
@@ -167,7 +167,7 @@ class StoredMapScene {
   StoredMap stored_;
 };
 
-// What is wrong with the bytes; empty for a map.
+// Error on reading the bytes; empty for a valid map.
 inline std::string refusal_of(std::span<const std::byte> bytes) {
   try {
     read_map(bytes, "barn.byre");

@@ -112,7 +112,7 @@ class Mapper {
   Beginning begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                   const AnchoredTrajectory& trajectory);
   bool can_begin(const Rig& rig) const { return rig.is_stereo() || initialiser_; }
-  // Allows a new monocular submap, whose scale needs odometry; is_told: whether odometry is available, else forbids it.
+  // Allows a new monocular submap if odometry is available (is_told), which its scale needs; else forbids it.
   void expect_beginning_beside(const Rig& rig, bool is_told);
   // Begins a submap at a relocalised frame.
   void begin_where_found(const HybridTrack& found);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Synthetic bundles with known truth, for the tests of this room.
+// Synthetic bundles with ground truth, for the tests of this room.
 
 #include "byre/optimise/bundle_adjustment.h"
 #include "byre/optimise/optimise_scene.h"
