@@ -38,8 +38,8 @@ std::vector<NamedImage> images_by_time(const ColmapModel& model) {
   return images;
 }
 
-// Cameras of the model that have images, in order of appearance. Keeps only the last extractor: it is large, and a
-// model may have a camera per image.
+// Cameras with images, in order of appearance. Keeps only the last extractor: each is large, and each image may have a
+// camera.
 class Cameras {
  public:
   Cameras(const ColmapModel& model, const std::string& model_name, const ColmapImportOptions& options)
@@ -135,8 +135,7 @@ void convert_points(const ColmapModel& colmap, double scale, ConvertedModel& con
   }
 }
 
-// Reprojection errors of a keyframe's features, pixels; without references, which are at their projections by
-// definition.
+// Reprojection errors of a keyframe's features, pixels; without references, whose error is zero by definition.
 std::vector<double> errors_of(const Map& map, const Keyframe& keyframe, KeyframeId id) {
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   std::vector<double> errors;

@@ -52,7 +52,7 @@ ColmapImport import_colmap(const ColmapModel& model, const std::string& model_na
 // Summary as lines of text.
 std::string to_text(const ColmapImport& imported);
 
-// Times of images by name: the name's number as nanoseconds ("1403715273262142976.png"). Unless all names are distinct
+// Times of images: the numbers in their names as nanoseconds ("1403715273262142976.png"). Unless all are distinct
 // numbers: the alphabetical rank as seconds.
 std::vector<Timestamp> times_of_names(const std::vector<std::string>& names);
 

@@ -9,7 +9,6 @@
 
 namespace byre {
 
-// The driven barn as a stored map.
 inline StoredMap driven_barn(FloorPlanScene& scene) {
   const Camera camera{CameraModel::pinhole, 320, 240, 188.0, 188.0, 158.0, 119.0, {}};
   StoredMap stored;
@@ -19,7 +18,6 @@ inline StoredMap driven_barn(FloorPlanScene& scene) {
   return stored;
 }
 
-// The picks as the text of a file.
 inline std::string picks_csv(const std::vector<PlanCorrespondence>& correspondences) {
   std::string text = "#point_x_m,point_y_m,point_z_m,plan_x_m,plan_y_m,name\n";
   for (const PlanCorrespondence& each : correspondences) {

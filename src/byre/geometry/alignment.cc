@@ -45,8 +45,7 @@ std::optional<Similarity> align(Points points_in_source, Points points_in_target
   }
 
   const auto [left, singular, right] = singular_values(covariance);
-  // Points on one line leave one singular value, and the rotation about the line is free. Quadratic in the line's
-  // width.
+  // Points on one line leave one singular value and a free rotation about the line. Quadratic in the line's width.
   constexpr double kThinnest = 1e-9;
   if (!(singular[1] > kThinnest * singular[0])) return std::nullopt;
 

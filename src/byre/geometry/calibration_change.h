@@ -8,8 +8,8 @@
 namespace byre {
 
 // Parameters of a calibration that may be in error. Per camera: focal length, aspect ratio, principal point, distortion
-// coefficients 1 to 4. Of the right camera also rotation and direction from the left one. Not the length of the
-// baseline, which images cannot measure.
+// coefficients 1 to 4. Also rotation and direction of the right camera, but not the baseline's length, which images
+// cannot measure.
 inline constexpr int kParametersPerCamera = 8;
 inline constexpr int kLeftCamera = 0;                            // index of the left camera's first parameter
 inline constexpr int kRightCamera = kParametersPerCamera;        // index of the right camera's first parameter
@@ -43,9 +43,8 @@ struct RefinedCalibration {
   CalibrationVector sigma_after = CalibrationVector::Zero();   // standard errors as refined, in the parameters' sigmas
   int keyframes = 0;                                           // keyframes used
   int observations = 0;                                        // observations of points by these keyframes
-  // Root-mean-square image motion (u, v, disparity) that the change causes, without the mean of u and of v, which acts
-  // like a rotation; pixels. Without a change: that of the refused change, which is too large for an error of a
-  // calibration.
+  // Root-mean-square image motion (u, v, disparity) by the change, without the mean of u and v, which acts like a
+  // rotation; pixels. Without a change: that of the refused change, too large for an error of a calibration.
   double shift = 0.0;
 
   bool was_refused() const { return shift > 0.0 && change.isZero(0.0); }

@@ -33,8 +33,7 @@ inline CalibrationVector draw_error(std::uint64_t seed, double level = 1.0) {
   return error;
 }
 
-// Measurement (u, v, disparity, row offset) of a point by cameras with calibration `truth` whose images are rectified
-// by calibration `given`.
+// Measurement (u, v, disparity, row offset) of a point by cameras like `truth`, with images rectified by `given`.
 inline Eigen::Vector4d measured(const Calibration& truth, const Calibration& given, const Rectification& rectification,
                                 const Eigen::Vector3d& point_in_left) {
   const Rig& rig = rectification.rig;

@@ -7,7 +7,6 @@ namespace {
 
 constexpr double kStep = 0.25;  // sigmas, of central differences
 
-// One camera and its rectification by the given calibration.
 struct RectifiedCamera {
   const Camera& given;
   const Eigen::Quaterniond& camera_from_rectified;

@@ -10,8 +10,7 @@ namespace byre {
 // by the given one. Linear: valid for changes by a few of the parameters' sigmas.
 class CalibrationSensitivity {
  public:
-  // Rows: u, v, disparity, and right row less left row, which is zero with the true calibration. Pixels per sigma of a
-  // parameter.
+  // Rows: u, v, disparity, and right row less left row, which is zero with the true calibration. Pixels per sigma.
   using Jacobian = Eigen::Matrix<double, 4, kCalibrationParameters>;
 
   // Throws InputError when the calibration cannot be rectified.
@@ -32,8 +31,7 @@ class CalibrationSensitivity {
   bool has_right_ = false;          // false: disparities are depths of a depth camera, independent of the calibration
   PixelGrid<ByCamera> left_;        // derivatives of the left pixel by the left camera's parameters
   PixelGrid<ByRightCamera> right_;  // derivatives of a distant point's right pixel by the right camera's parameters
-  // Derivatives of the right camera's centre by the baseline rotation, in baselines, in the rectified left camera's
-  // frame.
+  // Derivatives of the right camera's centre by the baseline rotation, in baselines, in the rectified left frame.
   Eigen::Matrix<double, 3, 2> centre_by_turn_;
 };
 

@@ -8,9 +8,8 @@
 namespace byre {
 namespace {
 
-// Both lens models distort a plane: the plane z = 1 (radial_tangential), or the plane whose vectors are as long as the
-// angle off the axis (equidistant). A vector v becomes v (1 + k1 s + k2 s^2 + k3 s^3 + k4 s^4) with s = |v|^2, plus the
-// tangential part.
+// Both lens models distort a plane: z = 1 (radial_tangential), or vectors as long as the angle off the axis
+// (equidistant). A vector v becomes v (1 + k1 s + k2 s^2 + k3 s^3 + k4 s^4) with s = |v|^2, plus the tangential part.
 struct Lens {
   std::array<double, 4> radial{};                                       // k1..k4
   std::array<double, 2> tangential{};                                   // p1, p2
@@ -95,7 +94,6 @@ std::optional<Eigen::Vector2d> newton_step(const Lens& lens, const Eigen::Vector
   return std::nullopt;
 }
 
-// The vector whose distortion is the given one.
 std::optional<Eigen::Vector2d> undistort(const Lens& lens, const Eigen::Vector2d& distorted) {
   constexpr int kMaxSteps = 60;
   const double tolerance = 1e-14 * (1.0 + distorted.norm());

@@ -7,8 +7,7 @@
 
 namespace byre {
 
-// Decompositions of small matrices, compiled once here: each of Eigen's templates for them adds seconds to the
-// compilation of a file.
+// Decompositions of small matrices, compiled once: Eigen's templates for each add seconds to a file's compilation.
 
 // Eigenvalues and eigenvectors of a symmetric matrix; only its lower triangle is read.
 template <int Size>
@@ -21,8 +20,7 @@ SymmetricEigen<6> symmetric_eigen(const Matrix6& matrix);
 Eigen::Vector2d symmetric_eigenvalues(const Eigen::Matrix2d& matrix);
 Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& matrix);
 
-// matrix = left * values.asDiagonal() * right.transpose(); left and right are orthogonal, values descending and
-// non-negative.
+// matrix = left * values.asDiagonal() * right.transpose(): left, right orthogonal, values descending, non-negative.
 struct SingularValues {
   Eigen::Matrix3d left;
   Eigen::Vector3d values;

@@ -135,8 +135,7 @@ Eigen::Matrix<double, 10, kTerms> constraints(const PolynomialMatrix& matrix) {
   return rows;
 }
 
-// Matrix of the multiplication by x on the monomials up to degree two, modulo the constraints. Solutions are its
-// eigenvectors.
+// Multiplication by x on the monomials up to degree two, modulo the constraints. Solutions are its eigenvectors.
 Eigen::Matrix<double, 10, 10> multiplication_by_x(const Eigen::Matrix<double, 10, kTerms>& rows) {
   const Eigen::Matrix<double, 10, 10> cubics =
       -rows.leftCols<kSquares>().partialPivLu().solve(rows.rightCols<kSquares>());

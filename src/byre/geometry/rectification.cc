@@ -12,7 +12,6 @@
 namespace byre {
 namespace {
 
-// One camera and its rectifying rotation.
 struct View {
   const Camera* camera;
   Eigen::Quaterniond rectified_from_camera;
@@ -62,8 +61,7 @@ void clip_to_view(const View& view, Field& field) {
   }
 }
 
-// Rotates both images so that their rows are parallel to the baseline and the view is along the mean of the optical
-// axes.
+// Rotates both images so that rows are parallel to the baseline and the view is along the mean optical axis.
 Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
   const Pose left_from_right = inverse(partner.right_from_left);
   const Eigen::Vector3d x_axis = left_from_right.translation.normalized();

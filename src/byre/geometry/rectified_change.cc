@@ -3,7 +3,6 @@
 namespace byre {
 namespace {
 
-// A calibrated camera and its rectification.
 struct RectifiedView {
   const Camera& camera;
   const Eigen::Quaterniond& camera_from_rectified;

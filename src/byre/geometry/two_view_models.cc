@@ -206,8 +206,7 @@ TwoViewModel<typename Kind::Model> best_model(Matches matches, const TwoViewSear
   return best;
 }
 
-// Parameters of a motion: rotation about the second camera, and shift of the translation's direction in its tangent
-// plane.
+// Parameters of a motion: rotation about the second camera, and tangential shift of the translation's direction.
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 

@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <span>
 
-// Models of matches between two views, estimated by RANSAC and scored alike (Mur-Artal et al. 2015, eq. 2), so that
-// their scores can be compared.
+// Models of matches between two views by RANSAC, with comparable scores (Mur-Artal et al. 2015, eq. 2).
 namespace byre {
 
 struct TwoViewSearch {
@@ -30,8 +29,8 @@ TwoViewModel<Eigen::Quaterniond> search_rotation(std::span<const TwoViewMatch> m
 // A planar or distant scene. Scaled as by fit_homography.
 TwoViewModel<Eigen::Matrix3d> search_homography(std::span<const TwoViewMatch> matches, const TwoViewSearch& search);
 
-// General motion in any scene. One of the four motions of the essential matrix, with a translation of unit length;
-// epipolar lines alone do not determine which.
+// General motion. One of the four motions of the essential matrix (epipolar lines do not determine which), with a
+// translation of unit length.
 TwoViewModel<Pose> search_essential(std::span<const TwoViewMatch> matches, const TwoViewSearch& search);
 
 // Sampson error of a match, squared sigmas (Hartley and Zisserman 2004, eq. 11.9).

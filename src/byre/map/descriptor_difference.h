@@ -5,10 +5,9 @@
 
 namespace byre {
 
-// Codes the descriptor of a view by the bits that differ from the descriptor of its point. A byte with the number of
-// these bits, then half bytes, low half first: the number of equal bits before each differing bit. 15 means 15 equal
-// bits, continued in the next half byte. If this takes more than the descriptor, the number is 255 and the descriptor
-// follows.
+// Code of a view's descriptor: the bits that differ from the descriptor of its point. A byte with their number, then
+// half bytes, low half first: the number of equal bits before each differing bit; 15 means 15 equal bits, continued in
+// the next half byte. If the descriptor is shorter, the number is 255 and the descriptor follows.
 void write_difference(const Descriptor& descriptor, const Descriptor& from, ByteWriter& writer);
 Descriptor read_difference(ByteReader& reader, const Descriptor& from);
 

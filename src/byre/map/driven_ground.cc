@@ -91,8 +91,7 @@ DrivenGround::Stand DrivenGround::stand_of(const Pose& map_from_body) const {
   return stand;
 }
 
-// Alternates two estimates: local planes, at first by the up direction of the whole path, and the attitude of bodies on
-// them.
+// Alternates between local planes, at first by the up direction of the whole path, and the attitude of bodies on them.
 std::optional<DrivenGround> DrivenGround::under(const Map& map) {
   constexpr std::size_t kLeastPlaces = 20;
   constexpr double kLeastLength = 1.0;  // metres, standard deviation along the path's longest direction

@@ -8,8 +8,8 @@
 
 namespace byre {
 
-// The ground that a map was driven on: a local plane around each position of its path, so that ramps and several floors
-// are covered. Lengths in the map's unit.
+// The ground that a map was driven on: a local plane at each position of its path, which covers ramps and several
+// floors. Lengths in the map's unit.
 class DrivenGround {
  public:
   // Empty if the map was not driven: heights and tilts along its path vary as with a hand-held or flying camera, the

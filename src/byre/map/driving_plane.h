@@ -22,16 +22,14 @@ struct DrivingPlane {
   double thickness = 0.0;
 };
 
-// Fits the plane to positions on a path. If the path is a line, the rotation about it comes from up_of_rig_in_map (unit
-// length), which is assumed correct within a few degrees and also selects the upper side of the plane. Precondition: at
-// least one position.
+// Fits the plane to positions on a path; there must be one. On a line, the rotation about it comes from
+// up_of_rig_in_map (unit length), which is assumed correct within a few degrees and also selects the upper side of the
+// plane.
 DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map);
 
-// Uses the body's path in a map and the mean up direction of its keyframes' images. Empty without keyframes, or if
-// their attitudes differ too much.
+// Path of the body in a map, with the mean up direction of its images. Empty without keyframes or a common attitude.
 std::optional<DrivingPlane> fit_driving_plane(const Map& map);
 
-// Position of the body at a keyframe.
 Eigen::Vector3d body_at(const Map& map, const Keyframe& keyframe);
 
 }  // namespace byre

@@ -59,7 +59,6 @@ Similarity lifted(const PlanarSimilarity& plan_from_level, const DrivingPlane& p
   return plan_from_map;
 }
 
-// Normal equations of weighted least squares.
 struct NormalEquations {
   Matrix7 information = Matrix7::Zero();
   Vector7 gradient = Vector7::Zero();

@@ -25,7 +25,6 @@ struct PlanRegistrationOptions {
   double body_height_sigma = 0.05;  // metres
 };
 
-// Residual of a correspondence.
 struct PlanResidual {
   Eigen::Vector2d error_in_plan = Eigen::Vector2d::Zero();  // by the map less as picked, metres
   bool is_outlier = false;                                  // excluded from the fit
@@ -49,8 +48,8 @@ struct PlanFit {
   std::vector<PlanDoubt> doubts;
 };
 
-// Error of the map on its plan, metres: root mean square over the inliers. With so many outliers that they may be
-// correct, over all correspondences.
+// Root-mean-square error of the map on its plan over the inliers, metres. Over all correspondences if the outliers are
+// so many that they may be correct.
 double residual_of(const PlanFit& fit);
 
 // Limit of residual_of(), metres, above which a registration is stored only on the user's explicit request.

@@ -108,8 +108,7 @@ TrimmedFit concentrate(Pairs pairs, TrimmedFit best, Scale scale) {
 
 double largest_agreeing_residual(std::vector<double> residuals) {
   const auto count = static_cast<double>(residuals.size());
-  // Finite-sample correction: the motion fits two pairs exactly, which lowers their residuals (Rousseeuw and Leroy
-  // 1987).
+  // Finite-sample correction for the exact fit to two pairs, which lowers the residuals (Rousseeuw and Leroy 1987).
   const double few = count > 2.0 ? 1.0 + 5.0 / (count - 2.0) : 1.0;
   return kRayleigh99 * std::max(1.0, few * median(std::move(residuals)) / kRayleighMedian);
 }

@@ -32,9 +32,9 @@ struct PlanarConsensus {
 // sigmas if more than a few residuals exceed their sigmas.
 double largest_agreeing_residual(std::vector<double> residuals);
 
-// Least trimmed squares: of the motions determined by all sets of two pairs, the one with the best fit of its nearest
-// half of the pairs, improved by refits to that half (Rousseeuw and Van Driessen 2006, theorem 1). Empty if no two
-// pairs are separate in both frames.
+// Least trimmed squares: of the motions determined by two pairs, the one that best fits its nearest half of the pairs,
+// improved by refits to that half (Rousseeuw and Van Driessen 2006, theorem 1). Empty if no two pairs are separate in
+// both frames.
 std::optional<PlanarConsensus> find_planar_consensus(std::span<const PlanarPair> pairs, Scale scale);
 
 }  // namespace byre

@@ -5,7 +5,6 @@
 
 namespace byre {
 
-// Body pose at the keyframe.
 Pose world_from_body(const Map& map, const Keyframe& keyframe);
 
 // Body poses at the map's keyframes, by time; of keyframes with equal times the first.

@@ -7,8 +7,7 @@
 
 namespace byre {
 
-// Mounting of wheels and gyroscope from a map's notes, for the body of the given cameras. Empty if no recording is by
-// these cameras.
+// Mounting of wheels and gyroscope of a map, for the body of the given cameras. Empty if they made no recording of it.
 KnownMounting mounting_for(const KnownMounting& of_map, const std::vector<SourceRecording>& recordings,
                            const Calibration& given);
 

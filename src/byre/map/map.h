@@ -86,8 +86,7 @@ struct RecalibratedFeatures {
   std::shared_ptr<const Features> after;
 };
 
-// Observation of an online point by an offline keyframe. Stored with the online map, because the offline map is
-// constant.
+// Observation of an online point by an offline keyframe; part of the online map, because the offline map is constant.
 struct ForeignView {
   Observation observation;  // offline keyframe and its feature
   Sighting sighting;        // measurement of the online point
@@ -172,24 +171,21 @@ class Map {
   int add_rig(const Rig& rig);  // index of the rig; equal rigs are stored once
   const std::vector<Rig>& rigs() const { return rigs_; }
 
-  // Adds a keyframe with the observations in its sightings. Sightings of removed points and second sightings of a point
-  // are dropped; missing sightings are added empty. A removed parent is replaced by its own parent, an unknown parent
-  // is dropped.
+  // Adds a keyframe with the observations in its sightings. Drops sightings of removed points and second sightings of a
+  // point; adds missing sightings as empty. Replaces a removed parent by its own parent and drops an unknown one.
   KeyframeId add_keyframe(Keyframe keyframe);
   PointId add_point(const MapPoint& point);
 
   // Sets the feature's sighting. Returns false, without a change, if keyframe or point do not exist, the feature
-  // already observes a point, or the keyframe already observes this point. An online keyframe may observe an offline
-  // point.
+  // already observes a point, or the keyframe observes this point. An online keyframe may observe an offline point.
   bool add_observation(const Observation& observation, const Sighting& sighting);
   // Removes a point without remaining observations too. A lost reference is replaced by the lowest observation.
   void remove_observation(const Observation& observation);
 
   // Adds an observation of the sighting's point by an offline keyframe. Foreign views are separate from observations():
   // they are removed with their point, do not keep a point, are never a reference, and do not count as covisibility.
-  // Returns false, without a change, if the point does not exist, the keyframe is not offline, the feature already
-  // observes a point of this map, or the keyframe already observes this point. Precondition: the feature observes no
-  // point of its own map.
+  // Returns false, without a change, if the point does not exist, the keyframe is not offline or observes this point,
+  // or the feature observes a point of this map. Precondition: the feature observes no point of its own map.
   bool add_foreign_view(const ForeignView& view);
   void remove_foreign_view(const Observation& observation);
 
@@ -198,21 +194,19 @@ class Map {
   // not removed, because the poses of others depend on it.
   void remove_keyframe(KeyframeId id);
 
-  // For a map that is consumed keyframe by keyframe: moves the keyframe out, while all points remain. Precondition: it
-  // exists.
+  // Moves an existing keyframe out of a map that is consumed keyframe by keyframe; all points remain.
   Keyframe take_keyframe(KeyframeId id);
 
   void set_words(KeyframeId id, std::vector<Word> words);
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
   // Applies another calibration of the camera to a rig and to its keyframes' features, sightings and poses. Points do
-  // not move. made: converted features of some of these keyframes, ascending; used where the keyframe's features are
-  // still those before.
+  // not move. made: converted features of some keyframes, ascending; used for keyframes that still have the features
+  // before.
   void recalibrate(int rig, const RectifiedChange& change, std::span<const RecalibratedFeatures> made);
   // Replaces a keyframe's features by the same ones at corrected pixels; sightings move along. Points do not move.
   // Precondition: the keyframe's own features, moved.
   void move_features(KeyframeId id, Features moved);
-  // Replaces a keyframe's features by equal ones stored elsewhere. Precondition: the keyframe's own features, or equal
-  // ones.
+  // Replaces a keyframe's features by equal ones or by the same ones stored elsewhere.
   void replace_features(KeyframeId id, std::shared_ptr<const Features> equal);
   // Drops the patches of all other features. Precondition: indices, ascending.
   void keep_patches(KeyframeId id, std::span<const int> features);

@@ -52,7 +52,6 @@ inline std::size_t header_size(const MapBytes& bytes) {
   return header_checksum_at(bytes) + 8;
 }
 
-// Entry of a section in the header's table.
 struct TableEntry {
   std::size_t at = 0;  // byte offset of the entry
   std::string name;
@@ -136,7 +135,7 @@ inline void refresh_part_checksums(MapBytes& bytes) {
 }
 
 // Recomputes all checksums, so that they do not reveal a change. Skips sections that the table places outside the
-// bytes, and bytes without a complete header.
+// bytes. Does nothing without a complete header.
 inline void refresh_checksums(MapBytes& bytes) {
   if (bytes.size() < kSmallestHeaderSize || bytes.size() < header_size(bytes)) return;
   refresh_part_checksums(bytes);
@@ -149,8 +148,7 @@ inline void refresh_checksums(MapBytes& bytes) {
   put_at(bytes, end, checksum(std::span(bytes).first(end)));
 }
 
-// Replaces bytes of a section and updates sizes and offsets of the sections. Precondition: a valid table; begin and
-// count lie within the section.
+// Replaces bytes of a section and updates sizes and offsets. Preconditions: a valid table; bytes within the section.
 inline void replace_in_section(MapBytes& bytes, std::size_t index, std::size_t begin, std::size_t count,
                                const MapBytes& replacement) {
   TableEntry changed = table_entry(bytes, index);

@@ -363,7 +363,6 @@ void require_checksums(const ReadAt& read_at, std::size_t size, const std::strin
   }
 }
 
-// Offsets of the sections.
 MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std::string& name) {
   MapFileSource::File file;
   file.read_at = std::move(read_at);

@@ -16,7 +16,6 @@
 
 namespace byre {
 
-// A recording from which keyframes of a map come.
 struct SourceRecording {
   std::string name;         // given by the user
   Calibration calibration;  // as given, before rectification
@@ -28,12 +27,12 @@ struct SourceRecording {
   const Calibration& present_calibration() const { return refined ? refined->calibration : calibration; }
 };
 
-// The newest refined calibration of recordings with this given calibration; empty if there is none. `given` may consist
-// of the left camera alone.
+// The newest refined calibration of recordings with this given calibration, if any. `given` may be the left camera
+// alone.
 std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
                                                     const Calibration& given);
 
-// Whether a recording has these cameras on this body, as given. `given` may consist of the left camera alone.
+// Whether a recording has these cameras on this body, as given. `given` may be the left camera alone.
 bool is_by_cameras_of(const std::vector<SourceRecording>& recordings, const Calibration& given);
 
 // Body frame of the newest recording by these cameras, from the body frame of `given`: a monocular map may have the
@@ -84,13 +83,12 @@ struct SectionSize {
   std::size_t bytes = 0;
 };
 
-// Format: docs/map_format.md. Equal maps give equal bytes. Values are rounded far below their noise; reading and
-// writing reproduces the same bytes. Throws InputError for a map with a damaged source. Preconditions: ids without
-// gaps, and keyframes with existing rigs.
+// Format: docs/map_format.md. Equal maps give equal bytes, also after reading. Values are rounded far below their
+// noise. Throws InputError for a map with a damaged source. Preconditions: ids without gaps, and keyframes with
+// existing rigs.
 std::vector<std::byte> write_map(const StoredMap& stored);
 
-// Throws InputError naming section and byte for any damage, violated invariant, or newer format. name: name of the file
-// in messages.
+// Throws InputError naming section and byte for damage, a violated invariant or a newer format. name: in messages.
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name);
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name);
 

@@ -11,8 +11,7 @@
 
 namespace byre {
 
-// Reads keyframes and blocks of points from a map file on first access and keeps them. Each has its own checksum and is
-// checked as in reading a whole map.
+// Reads keyframes and blocks of points from a map file on first access, with the checks of read_map, and keeps them.
 class MapFileSource : public MapSource {
  public:
   struct File {

@@ -1,5 +1,4 @@
-// Each invariant of a stored map is violated once: find_faults names it, and a file with it is rejected. Also each way
-// to make a section's bytes invalid.
+// Each invariant of a stored map violated once, and each way to make a section invalid: detected and rejected.
 
 #include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"

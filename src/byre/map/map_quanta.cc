@@ -185,8 +185,7 @@ Eigen::Vector3f direction_of(const DirectionCode& code) {
   return Eigen::Vector3f(code[0], code[1], code[2]) / kDirectionCodes;
 }
 
-// Entries are integers of 15 bits. Their products and sums, and the roots and quotients in the inverse, are exact in
-// double.
+// Entries are integers of 15 bits, so that products, sums, and the roots and quotients of the inverse are exact.
 CovarianceCode covariance_code(const Eigen::Matrix3d& covariance) {
   if (!covariance.allFinite()) return {{-1}};
   const std::array<double, 6> factor = factor_of(covariance);

@@ -11,8 +11,7 @@
 namespace byre {
 
 // Quantisation of a map's values in its file, far below their noise (docs/map_format.md, "Quanta"). Each value has a
-// code of few bytes. A value that was read has the code that it was read from, so that reading and writing reproduces
-// the bytes.
+// code of few bytes. Coding a decoded value gives the same code.
 
 // Pixel coordinate in an image of given width or height, in 64ths of a pixel from the image's edge. Decoded to the
 // middle of its quantum, so that a keypoint stays in its grid cell.
@@ -44,8 +43,7 @@ using DirectionCode = std::array<std::int16_t, 3>;
 DirectionCode direction_code(const Eigen::Vector3f& direction);
 Eigen::Vector3f direction_of(const DirectionCode& code);
 
-// Lower triangular factor of the covariance, row by row, in units of 2^exponent. Rounding of the factor thus keeps the
-// covariance valid.
+// Lower triangular factor of the covariance, row by row, in units of 2^exponent; valid however it is rounded.
 struct CovarianceCode {
   std::array<std::int16_t, 6> factor{};
   std::int8_t exponent = kLeastExponent;

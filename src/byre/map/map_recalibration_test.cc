@@ -22,7 +22,6 @@ std::shared_ptr<const Features> corner_at(float x, float y) {
                                           std::vector<Descriptor>(1), std::vector<Patch>{});
 }
 
-// A map with keyframes of one rig.
 class RecalibratedKeyframes : public ::testing::Test {
  protected:
   RecalibratedKeyframes() : rig_(map_.add_rig(rectification_of(camera(0.0)).rig)) {}

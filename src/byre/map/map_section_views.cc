@@ -1,5 +1,4 @@
-// Reads keyframes' features and sightings since format 5: keypoints, descriptors, patches and measurements, rounded to
-// quanta.
+// Reads keypoints, descriptors, patches and measurements of keyframes since format 5, rounded to quanta.
 
 #include "byre/input_error.h"
 #include "byre/map/descriptor_difference.h"
@@ -238,9 +237,8 @@ void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, Vie
   }
 }
 
-// Multi-threaded ViewReader. One thread reads all descriptors, whose code has variable length; the others read runs of
-// consecutive keyframes, whose starts are located first. Throws InputError for any error, but not always that of
-// ViewReader.
+// Multi-threaded ViewReader: one thread reads all descriptors, whose code has variable length; the others read runs of
+// consecutive keyframes, located first. Throws InputError for any error, but not always that of ViewReader.
 class ViewsReader {
  public:
   ViewsReader(const ViewSections& sections, const std::vector<MapPoint>& points, const std::vector<Rig>& rigs,

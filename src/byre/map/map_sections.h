@@ -12,9 +12,8 @@
 
 namespace byre {
 
-// Sections of a map file in their order; docs/map_format.md describes each. Readers consume the whole section and throw
-// InputError for every value that is invalid in a map. They also reject bytes that no writer produces, so that reading
-// and writing reproduces the file.
+// Sections of a map file in their order (docs/map_format.md). Readers consume the whole section. They throw InputError
+// for invalid values and for bytes that no writer produces, so that reading and writing reproduces the file.
 
 using Keyframes = std::vector<const Keyframe*>;  // all keyframes of a map, by number
 Keyframes keyframes_of(const Map& map);
@@ -53,8 +52,7 @@ std::vector<Rig> read_rigs(ByteReader reader);
 void write_keyframes(const Keyframes& keyframes, ByteWriter& writer);
 std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, std::size_t recording_count);
 
-// Formats 1 to 4: keypoints and descriptors, and some of their patches in a separate section. Sets the features of the
-// keyframes.
+// Formats 1 to 4: sets keypoints, descriptors and some patches, which have their own section, of the keyframes.
 void read_features(ByteReader features, ByteReader patches, const std::vector<Rig>& rigs,
                    std::vector<Keyframe>& keyframes);
 std::vector<MapPoint> read_points(ByteReader reader);
@@ -119,8 +117,8 @@ std::vector<Word> read_narrow_words_of(ByteReader& reader, const WordsHead& head
 // Sets the words of the keyframes and returns the checksum of their vocabulary.
 std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes);
 
-// Since format 6: locations of parts in other sections, observations of points, and covisibility of keyframes, so that
-// keyframes and points can be read separately.
+// Since format 6: locations of parts in other sections, observations of points, and covisibility of keyframes, for
+// separate access to keyframes and points.
 struct PartSections {
   std::array<std::span<const std::byte>, kViewSections> views;
   std::span<const std::byte> points;

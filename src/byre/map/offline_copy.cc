@@ -57,8 +57,7 @@ std::shared_ptr<const Features> for_keeping(const Features& features, const Rig&
                                           std::move(patches), std::move(patch_of_keypoint));
 }
 
-// Features with a point, in the order of a file. Moved features may have left the order of their grid, which also
-// depends on their number.
+// Features with a point, in the order of a file: the grid of their order depends on their positions and their number.
 std::vector<int> order_of_features_with_points(const Keyframe& keyframe, const Rig& rig) {
   std::vector<int> with_point;
   std::vector<Keypoint> keypoints;
@@ -72,8 +71,7 @@ std::vector<int> order_of_features_with_points(const Keyframe& keyframe, const R
   return order;
 }
 
-// Drops a keyframe's features without a point, with their sightings and words. Returns the new index of each old
-// feature, or -1.
+// Drops a keyframe's features without a point, with sightings and words. Returns the new index of each feature, or -1.
 std::vector<int> keep_features_with_points(Keyframe& keyframe, const Rig& rig, const std::vector<int>& kept_patches) {
   if (!keyframe.frame.features) return {};
   const std::vector<int> order = order_of_features_with_points(keyframe, rig);

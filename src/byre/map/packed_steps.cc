@@ -48,8 +48,7 @@ Pixels numbers_of(const PatchSteps& steps) {
   return numbers;
 }
 
-// Works along anti-diagonals: their pixels depend on the two previous ones only, so that the compiler vectorises plain
-// loops.
+// Works along anti-diagonals, whose pixels depend on the two previous ones only, so that the loops are vectorised.
 PatchSteps steps_of(const Pixels& numbers) {
   constexpr std::size_t kDiagonals = 2 * kWidth - 1;
   using Diagonal = std::array<std::uint8_t, kWidth + 1>;  // by row, with a first entry above the patch

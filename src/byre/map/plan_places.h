@@ -17,9 +17,8 @@ struct MapPlace {
 // Empty if the point does not exist.
 std::optional<MapPlace> place_of_point(const StoredMap& stored, PointId id);
 
-// The map point of the keyframe nearest to a pixel of its left camera's original image, with distortion. The distance
-// in pixels adds to sigma. Empty without a point within 10 pixels, or if the map does not contain the recording's
-// camera.
+// The map point observed by the keyframe nearest to a pixel of its left camera's original image. The distance in pixels
+// adds to sigma. Empty without a point within 10 pixels, or if the map does not contain the recording's camera.
 std::optional<MapPlace> place_at_pixel(const StoredMap& stored, const Keyframe& keyframe, const Eigen::Vector2d& pixel);
 
 // pick_sigma: of x and of y on the plan, metres.

@@ -10,8 +10,7 @@ namespace {
 const Eigen::Vector3d kPointInCamera(1.0, -0.5, 4.0);
 constexpr double kPointSigma = 0.1;
 
-// A keyframe whose rectified camera is rotated relative to the original one, as by rectification, and a point with a
-// sigma of 0.1 m.
+// A keyframe with a rectifying rotation of its camera, and a point with a sigma of 0.1 m.
 class PlanPlaces : public testing::Test {
  protected:
   PlanPlaces() {

@@ -8,8 +8,7 @@ namespace byre {
 
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 
-// Registration of a map on a floor plan. Plan frame: x and y as on the plan, metres; z up, height above the driven
-// floor.
+// Registration of a map on a floor plan. Plan frame: x and y as on the plan, z up from the driven floor; metres.
 struct PlanRegistration {
   std::string plan;          // name of the plan
   Similarity plan_from_map;  // scale: metres per unit of the map, 1 for a metric one

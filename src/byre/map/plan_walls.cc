@@ -132,8 +132,7 @@ void PlanWalls::flood(std::vector<Cell> front) {
   }
 }
 
-// Dijkstra's algorithm from all free cells of the start disc, within the window of the grid that paths of this length
-// can reach.
+// Dijkstra's algorithm from all free cells of the start disc, in the part of the grid that `longest` allows.
 std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDisc& end, double longest) const {
   const double reach = start.radius + longest + 2.0 * cell_;
   const Cell low = cell_at(start.centre.array() - reach), high = cell_at(start.centre.array() + reach);

@@ -17,15 +17,15 @@ struct PlanDisc {
   double radius = 0.0;
 };
 
-// Walls of a floor plan as an occupancy grid, with path search. The robot is a point, so that every gap is passable;
-// the area outside the plan's image is free.
+// Walls of a floor plan as an occupancy grid, with path search. The robot is a point, so that every gap is passable.
+// The area outside the plan's image is free.
 class PlanWalls {
  public:
   // A cell is a wall if it contains an occupied pixel (100). Cells are at least 0.1 m wide, and wide enough that a line
   // of pixels becomes a closed line of cells. occupancy: of the plan's pixels (DrawnFloorPlan).
   PlanWalls(const FloorPlan& plan, std::span<const std::int8_t> occupancy);
 
-  // Frees the cells along driven paths, which may pass a door drawn closed. All free cells connected with them are
+  // Frees the cells along driven paths, which may pass a door drawn closed, and marks all connected free cells
   // reachable.
   void open_along(std::span<const std::vector<Eigen::Vector2d>> ways_in_plan);
 

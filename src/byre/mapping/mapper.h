@@ -70,8 +70,8 @@ struct MapperKnowledge {
   std::shared_ptr<const OfflineMap> offline;
 };
 
-// Owner of the online map, and the only one that changes it: by new keyframes at once, by jobs when they are finished.
-// Called from the session's thread.
+// Owner of the online map, which it alone changes: by new keyframes at once, by jobs when they finish. Called from the
+// session's thread.
 class Mapper {
  public:
   Mapper(const Rig& rig, const MapperOptions& options, MapperLanes lanes, MapperKnowledge knowledge);
@@ -102,9 +102,8 @@ class Mapper {
   void continue_map(Map online);
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
-  // Begins a submap with a frame. camera_from_world: pose by odometry; if it is empty, the body's pose at the first
-  // frame defines the map frame. A monocular rig has no scale: after its first map it begins a submap only if odometry
-  // bridges the gap.
+  // Begins a submap with a frame. camera_from_world: pose by odometry; without it, the body's pose at the first frame
+  // defines the map frame. A monocular rig needs odometry for the scale of all but its first submap.
   struct Beginning {
     std::vector<KeyframeId> keyframes;  // empty if no submap was begun
     TwoViewFailure failure = TwoViewFailure::none;
@@ -126,8 +125,8 @@ class Mapper {
   // Called per frame, before all else.
   void collect_reading();
   // Called per frame, last of all: starts a job that reads the map if necessary. The job computes the words of a new
-  // keyframe, searches older parts of the map for it if look_for_loop() left this open, and copies the map for jobs on
-  // all of it.
+  // keyframe, searches older parts of the map for it if look_for_loop() requested this, and makes copies for global
+  // jobs.
   void start_reading();
 
   // Called per frame, in this order, unless is_read(). Results of jobs are applied unless a job in flight prevents it.
@@ -142,8 +141,8 @@ class Mapper {
   void note_hidden(const HiddenCells& hidden) { hidden_ = hidden; }  // see MappingOptions
   void hurry() { global_.hurry(); }  // a correction of the whole map ends soon, with its result so far
 
-  // Called after the last frame: waits for jobs in flight. Then the final steps. All return the changes of length to be
-  // applied to poses relative to keyframes.
+  // Called after the last frame: finish() applies the results of jobs in flight, the others are the final steps.
+  // Returned changes of length apply to poses relative to keyframes.
   LengthChanges finish();
   std::optional<RigTurn> calibrate_at_last(const Rig& rig, const std::function<bool()>& should_stop);
   FinishReport finish_map(const FinishHooks& hooks);

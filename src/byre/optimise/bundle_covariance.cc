@@ -44,8 +44,7 @@ bool in_front(const BundleProblem& solved, const BundleObservation& observation)
   return (camera_from_world * solved.points[observation.point].position_in_world).z() >= kNearestDepth;
 }
 
-// Index of each moving, observed pose in the reduced matrix; negative for the others. The wanted pose is last: the
-// Cholesky factor then contains its marginal.
+// Index of each moving, observed pose in the reduced matrix, else -1. The wanted pose is last, for last_marginal().
 std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>& observations, int wanted) {
   std::vector<int> slots(solved.poses.size(), -1);
   for (const int i : observations) slots[solved.observations[i].pose] = 0;
@@ -136,7 +135,6 @@ Matrix6 scale_information(const HeldDistance& scale, const Pose& camera_from_wor
   return by_pose.transpose() * by_pose;
 }
 
-// Adds the information of the measured motions.
 void add_motions(ReducedMatrix& reduced, const BundleProblem& solved, const std::vector<int>& slots) {
   for (const BundleMotion& motion : solved.motions) {
     const Pose& earlier = solved.poses[motion.earlier].camera_from_world;

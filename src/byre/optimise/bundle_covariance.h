@@ -15,10 +15,9 @@ struct HeldDistance {
   double sigma() const { return 1e-4 * distance; }  // metres
 };
 
-// Covariance of one pose, marginalised over all other moving poses and points, with fixed ones exact: inverse of the
-// robustly weighted normal matrix by Schur complement over points, then poses. Of delta in exp_pose(delta) *
-// camera_from_world. Empty if the observations do not determine the pose. Dense over the moving poses: cubic in their
-// number, intended for windows.
+// Covariance of delta in exp_pose(delta) * camera_from_world of one pose, marginalised over all other moving poses and
+// points: inverse of the robustly weighted normal matrix, by Schur complement over points, then poses. Empty if the
+// observations do not determine the pose. Dense over the moving poses: cubic in their number, intended for windows.
 std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<HeldDistance>& scale,
                                            int pose, double huber_width);
 

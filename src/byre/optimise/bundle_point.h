@@ -10,8 +10,7 @@
 
 namespace byre {
 
-// One observation. Its residual and derivatives are recomputed when needed: storing them takes several times the
-// memory.
+// One observation. Residual and derivatives are recomputed, because storing them takes several times the memory.
 struct BundleTerm {
   int seen = 0;   // index into BundleProblem::observations
   int slot = -1;  // index of the pose in the reduced system; negative for a fixed pose

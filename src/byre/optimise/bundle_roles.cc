@@ -42,8 +42,8 @@ std::optional<int> only_anchor(const BundleProblem& problem, const BundleRoles& 
   return anchor;
 }
 
-// Motions between two observed poses, not both fixed. A pose without observations does not move, so that its motion
-// carries no information.
+// Motions between two observed poses, not both fixed. An unobserved pose does not move, so its motions carry no
+// information.
 std::vector<int> motions_that_count(const BundleProblem& problem, const BundleRoles& roles,
                                     const std::vector<bool>& is_observed) {
   std::vector<int> indices;

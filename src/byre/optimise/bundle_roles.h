@@ -25,7 +25,6 @@ BundleRoles choose_roles(const BundleProblem& problem);
 // The distance to hold if the scale is undetermined, else empty.
 std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles);
 
-// Output of a solver.
 struct BundleSolution {
   std::vector<Pose> camera_from_world;           // one per pose
   std::vector<Eigen::Vector3d> points_in_world;  // one per point

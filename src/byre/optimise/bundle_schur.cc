@@ -20,8 +20,7 @@ namespace {
 
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
 
-// Largest number of points whose equations are kept from elimination to back-substitution. For a million points they
-// would double the memory of the points.
+// Most points whose equations are kept until back-substitution. Those of a million would double the points' memory.
 constexpr std::size_t kMostKept = 100000;
 
 // State of the solver; lives for one call.
@@ -43,8 +42,7 @@ class SchurBundle {
   BundleEstimate take_estimate() { return std::move(estimate_); }  // to be called once, at the end
   double cost() const { return cost_of(estimate_); }
 
-  // Builds the damped normal equations at the estimate and eliminates the points. Returns the largest gradient
-  // component.
+  // Builds the damped normal equations and eliminates the points. Returns the largest gradient component.
   double linearise(double radius);
   // Empty if the equations have no solution.
   std::optional<BundleStep> solve();

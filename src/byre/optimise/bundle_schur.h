@@ -6,10 +6,9 @@
 
 namespace byre {
 
-// Levenberg-Marquardt over poses, points and, if estimated, the calibration. Points are eliminated one by one (Schur
-// complement, Triggs 2000, section 6). Replaces Ceres, whose records per residual take more time and memory than the
-// residual. Damping and convergence criteria are those of Ceres' trust region. Precondition: roles are those of the
-// problem.
+// Levenberg-Marquardt over poses, points and, if estimated, the calibration, with points eliminated one by one (Schur
+// complement, Triggs 2000, section 6). Ceres' records per residual take more time and memory than the residual. Damping
+// and convergence criteria are those of Ceres' trust region. Precondition: roles are those of the problem.
 BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& roles,
                             const std::optional<HeldDistance>& scale, const BundleOptions& options);
 

@@ -83,8 +83,8 @@ class CalibrationSystem {
   static constexpr double kSingular = 1e-10;
   // Information added to each pose, 1 / m^2 and 1 / rad^2, which bounds undetermined directions such as the gauge.
   static constexpr double kFreePose = 1e-2;
-  // Information added to each point, relative to its own: for a point of nearly unknown depth rounding would otherwise
-  // leave an error larger than its information.
+  // Information added to each point, relative to its own: rounding errors of a nearly undetermined depth may exceed its
+  // information.
   static constexpr double kFreePoint = 1e-8;
 
   void add_known(const std::vector<Share>& shares) {

@@ -25,8 +25,7 @@ struct View {
   double cost_behind;  // cost of a point at or behind the camera
 };
 
-// Sums per lane, so that their order does not depend on the vector width. Upper triangles of symmetric matrices: xx,
-// xy, xz, yy, yz, zz.
+// Sums per lane, in an order independent of the vector width. Symmetric matrices as xx, xy, xz, yy, yz, zz.
 struct Sums {
   using Lanes = WeighedPoints::Lanes;
 

@@ -34,8 +34,8 @@ class WeighedPoints {
   void add(const WeighedPoint& point);
   void square_weights();
 
-  // Sum of the points' Huber losses. A point at or behind the camera has a constant cost and no gradient. Bit-identical
-  // on every processor.
+  // Sum of the points' Huber losses, bit-identical on every processor. A point at or behind the camera has a constant
+  // cost.
   PoseExpansion expand(const Rig& rig, const Pose& camera_from_world, double huber_width) const;
 
   static constexpr std::size_t kLanes = 4;

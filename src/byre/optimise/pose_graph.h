@@ -48,8 +48,8 @@ struct PoseGraphOptions {
 struct PoseGraphResult {
   std::vector<Pose> camera_from_world;  // one per node
   std::vector<double> scales;           // one per node
-  // One per edge: squared sigmas before the robust loss; chi-square with six degrees of freedom, with free scales
-  // seven.
+  // One per edge: squared sigmas before the robust loss; chi-square with six, with free scales seven degrees of
+  // freedom.
   std::vector<double> squared_errors;
   double cost = 0.0;  // half the sum of the losses of the edges used
   int iterations = 0;

@@ -140,7 +140,6 @@ int count_inliers(const std::vector<Sighting>& sightings) {
   return static_cast<int>(std::ranges::count(sightings, true, &Sighting::inlier));
 }
 
-// Refills `points` with the inliers.
 void gather_inliers(const std::vector<Sighting>& sightings, WeighedPoints& points) {
   points.clear();
   points.reserve(sightings.size());
@@ -264,8 +263,7 @@ std::optional<PoseRefinement> with_covariance(PoseRefinement refined, const std:
   const Evidence evidence{rig, points, known, huber_width};
   const std::optional<Matrix6> inverse = inverse_of(evidence.expand_at(pose).normal_matrix);
   if (!inverse) return std::nullopt;
-  // Weights are priorities, not accuracies. The covariance of the weighted estimate is inverse(N) M inverse(N), with M
-  // the normal matrix with squared weights.
+  // Weights are priorities, not accuracies: the covariance is inverse(N) M inverse(N), M being N with squared weights.
   points.square_weights();
   Matrix6 squared = refined.variance_factor * points.expand(rig, pose, huber_width).normal_matrix;
   if (known) squared += expand(*known, pose).normal_matrix;

@@ -26,8 +26,8 @@ struct PoseRefinementOptions {
   double huber_width = 1.5;          // sigmas
   double max_variance_factor = 9.0;  // see PoseRefinement::variance_factor
   // Pixels: errors by calibration, rolling shutter and shape that neighbouring points and frames share. Widens gates
-  // and covariance. Does not affect weights, which depend on errors that differ from point to point. A good calibration
-  // leaves 0.1 to 0.5.
+  // and covariance, but does not change weights, which differ from point to point. A good calibration leaves 0.1 to
+  // 0.5.
   double systematic_sigma = 0.25;
 };
 

@@ -11,9 +11,9 @@
 namespace byre {
 
 // Normal equations over poses, six unknowns each, after elimination of the points; symmetric, lower triangle stored.
-// Sparse over pairs of poses with common points if those are few: their number is linear in the map's size, that of all
-// pairs quadratic. Dense for few poses, or if most poses view the same points: CHOLMOD then fills in nearly all pairs
-// and takes twice the memory for its copies.
+// Sparse if few pairs of poses have common points: their number is linear in the map's size, that of all pairs
+// quadratic. Dense for few poses or many pairs: CHOLMOD then fills in nearly all pairs and takes twice the memory for
+// its copies.
 class ReducedSystem {
  public:
   using Block = Eigen::Map<Matrix6, Eigen::Unaligned, Eigen::OuterStride<>>;

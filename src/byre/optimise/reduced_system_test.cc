@@ -21,8 +21,7 @@ std::vector<std::vector<int>> neighbours_of(int poses) {
   return neighbours;
 }
 
-// Fills the system with random blocks and a dominant diagonal, which makes it positive definite. Returns the full
-// matrix.
+// Fills the system with random blocks and a dominant, hence positive definite, diagonal. Returns the full matrix.
 Eigen::MatrixXd fill(ReducedSystem& system, int poses, double diagonal) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-1.0, 1.0);

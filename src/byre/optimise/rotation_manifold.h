@@ -5,8 +5,8 @@
 namespace byre {
 
 // Unit quaternion (x, y, z, w) updated as rotation_exp(delta) * rotation. Costs write their derivatives by delta to the
-// first three of four columns, and PlusJacobian is the identity above a zero row: this avoids the chain rule through
-// the quaternion.
+// first three of four columns, and PlusJacobian is the identity above a zero row, which avoids the quaternion's chain
+// rule.
 class RotationManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 4; }

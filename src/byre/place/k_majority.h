@@ -14,9 +14,9 @@ struct Clusters {
 };
 
 // Clusters descriptors into at most max_clusters groups by k-majority (Grana 2013): k-means in Hamming space with
-// bitwise majority as mean. Seeding by k-means++ (Arthur and Vassilvitskii 2007). Gives fewer clusters for fewer
-// distinct descriptors. rounds: largest number of updates of the centres. Preconditions: descriptors is not empty,
-// max_clusters > 0.
+// bitwise majority as mean, seeded by k-means++ (Arthur and Vassilvitskii 2007). Gives fewer clusters for fewer
+// distinct descriptors. rounds: limit on updates of the centres. Preconditions: descriptors is not empty, max_clusters
+// > 0.
 Clusters k_majority(std::span<const Descriptor> descriptors, int max_clusters, int rounds, std::mt19937_64& random);
 
 // Index of the centre with the smallest Hamming distance, the first in ties. Precondition: centres is not empty.

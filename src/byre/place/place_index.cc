@@ -204,8 +204,8 @@ void PlaceIndex::remove(KeyframeId id) {
   --size_;
 }
 
-// Equation 5 of Nister and Stewenius 2006: only words of both bags contribute. For weights that sum to one, 1 - |a - b|
-// / 2 is the sum of the smaller weights.
+// Equation 5 of Nister and Stewenius 2006 by common words alone: for weights that sum to one, 1 - |a - b| / 2 is the
+// sum of the smaller weights.
 std::vector<float> PlaceIndex::scores_of(const BagOfWords& query) const {
   std::vector<float> scores(entries_.size(), 0.0f);
   for (const auto& [word, weight] : query) {

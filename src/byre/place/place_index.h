@@ -31,9 +31,8 @@ struct PlaceQueryOptions {
   float min_score_share = 0.5f;  // smallest group score of a candidate, as a share of the best one
 };
 
-// Inverted index from words to keyframes (Galvez-Lopez and Tardos 2012). Built from the stored words of keyframes when
-// a map is loaded, in some microseconds per keyframe; never saved. Indexed by keyframe number, so numbers should be
-// dense, as in a map.
+// Inverted index from words to keyframes (Galvez-Lopez and Tardos 2012). Built when a map is loaded, in some
+// microseconds per keyframe; never saved. Indexed by keyframe number, so numbers should be dense, as in a map.
 class PlaceIndex {
  public:
   explicit PlaceIndex(Vocabulary vocabulary);
@@ -44,8 +43,8 @@ class PlaceIndex {
   void add(KeyframeId id, std::span<const Word> words);  // replaces the words of the keyframe
   void remove(KeyframeId id);
 
-  // Keyframes that share words with the query, best first (ties: lower id first), without those for which is_excluded
-  // holds. is_excluded may be empty.
+  // Keyframes with words of the query, best first (ties: lower id first), except those for which is_excluded holds, if
+  // set.
   std::vector<PlaceMatch> query(const BagOfWords& query, int max_results,
                                 const std::function<bool(KeyframeId)>& is_excluded = {}) const;
 

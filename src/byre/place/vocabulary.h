@@ -41,8 +41,7 @@ class Vocabulary {
   static Vocabulary load(const std::filesystem::path& path);
   void save(const std::filesystem::path& path) const;
 
-  // Reads the text format of DBoW2: "k L scoring weighting", then "parent is_leaf d0 .. d31 weight" per line. Throws
-  // InputError naming the line.
+  // Reads the text format of DBoW2, see read_dbow2. Throws InputError naming the line.
   static Vocabulary import_dbow2(const std::filesystem::path& path);
 
   int word_count() const;
@@ -72,8 +71,7 @@ class Vocabulary {
 // 1 - |a - b| / 2 in the L1 norm: 1 for equal bags, 0 for bags without a common word.
 float similarity(const BagOfWords& a, const BagOfWords& b);
 
-// Path of the vocabulary: $BYRE_VOCABULARY if set, else the installed one, else that of the source tree. Throws
-// InputError if there is none.
+// $BYRE_VOCABULARY if set, else the installed vocabulary, else the source tree's. Throws InputError if there is none.
 std::filesystem::path default_vocabulary_path();
 
 }  // namespace byre

@@ -10,8 +10,7 @@
 
 namespace byre {
 
-// Nodes of a vocabulary in breadth-first order from the root: children of a node are contiguous and directly before
-// those of the next node.
+// Nodes of a vocabulary in breadth-first order from the root; children of consecutive nodes are consecutive.
 struct VocabularyTree {
   std::vector<Descriptor> centres;         // one per node; the root's is zero
   std::vector<std::uint32_t> first_child;  // one per node: index of its first child; then the number of nodes
@@ -29,15 +28,14 @@ struct VocabularyView {
   std::uint64_t checksum = 0;  // checksum of the header, which contains the checksums of centres, children and weights
 };
 
-// One per node: the number of leaves to the left of its subtree. Precondition: as in VocabularyTree, with every node
-// before its children.
+// One per node: the number of leaves left of its subtree. Precondition: as in VocabularyTree, nodes before children.
 std::vector<std::uint32_t> first_words(std::span<const std::uint32_t> first_child);
 
 // Format: docs/vocabulary_format.md. Equal trees give equal bytes.
 std::vector<std::byte> write_vocabulary(const VocabularyTree& tree);
 
 // Views into the bytes, which must be aligned to 8. Throws InputError naming section and byte for damage or a newer
-// format. name: name of the file in messages.
+// format. name: in messages.
 VocabularyView read_vocabulary(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace byre

@@ -35,8 +35,7 @@ inline std::vector<Descriptor> random_descriptors(int count, std::uint64_t seed)
   return descriptors;
 }
 
-// Families of descriptors. Members of a family are contiguous and differ in less than 40 bits, those of different
-// families in about 128.
+// Families of consecutive descriptors that differ in less than 40 bits; different families differ in about 128.
 inline std::vector<Descriptor> descriptor_families(int families, int members, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Descriptor> descriptors;

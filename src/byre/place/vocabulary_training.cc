@@ -19,8 +19,7 @@ void require_range(const char* option, int value, int min, int max) {
                    "choose " + std::to_string(min) + " to " + std::to_string(max));
 }
 
-// All descriptors. Clustering reorders them so that those of a node are contiguous; within a node they keep the order
-// of the images.
+// All descriptors, reordered so that those of a node are contiguous, in the order of the images.
 struct Samples {
   std::vector<Descriptor> descriptors;
   std::vector<std::uint32_t> image_of;
@@ -45,8 +44,7 @@ Samples gather(std::span<const std::vector<Descriptor>> descriptors_of_images) {
   return samples;
 }
 
-// Groups the samples of a range by cluster, in stable order. Returns the start of each cluster relative to the range,
-// then the size of the range.
+// Groups the samples of a range by cluster, in stable order. Returns each cluster's start in the range, then its size.
 std::vector<std::size_t> sort_by_cluster(Samples& samples, const NodeRange& range, const Clusters& clusters) {
   std::vector<std::size_t> begin_of(clusters.centres.size() + 1, 0);
   for (const int cluster : clusters.cluster_of) ++begin_of[static_cast<std::size_t>(cluster) + 1];

@@ -14,9 +14,8 @@ struct FinishedJob {
   double seconds = 0.0;  // wall time the job took
 };
 
-// Decides when and on which thread mapping jobs run, independent of their result type (see Worker). At most one job is
-// in flight. All methods are called from one thread. An exception of a job is rethrown by the collect() or finish()
-// that would return its result.
+// Decides when and on which thread jobs run; see Worker for typed results. At most one job is in flight. All methods
+// are called from one thread. collect() or finish() rethrows an exception of the job.
 class Executor {
  public:
   virtual ~Executor() = default;

@@ -11,8 +11,8 @@
 
 namespace byre {
 
-// Queue between two threads whose producer never waits: beyond its capacity the oldest items are dropped. With capacity
-// 1 the newest item wins.
+// Queue whose producer never waits: beyond its capacity it drops the oldest items. With capacity 1 the newest item
+// wins.
 template <typename Item>
 class NewestQueue {
  public:

@@ -34,7 +34,7 @@ struct ReusingAllocator {
 template <typename Value>
 using ReusedVector = std::vector<Value, ReusingAllocator<Value>>;
 
-// Reserves capacity in a list that is refilled each frame, rounded up to a power of two: small new maxima then do not
+// Reserves capacity in a list that is refilled each frame, by powers of two, so that small new maxima do not
 // reallocate.
 template <typename List>
 void make_room(List& list, std::size_t count) {

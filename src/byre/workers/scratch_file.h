@@ -8,9 +8,8 @@
 
 namespace byre {
 
-// Unnamed file for rarely read data, which keeps it out of memory. The data is mapped read-only and loaded page by
-// page. A piece and its disk space last as long as its shared_ptr. The file is created in $TMPDIR, else in /var/tmp (on
-// a disk), else in /tmp.
+// Unnamed file for rarely read data, mapped read-only and loaded page by page. A piece and its disk space last as long
+// as its shared_ptr. Created in $TMPDIR, else in /var/tmp (on a disk), else in /tmp.
 class ScratchFile {
  public:
   ScratchFile();

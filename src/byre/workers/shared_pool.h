@@ -8,9 +8,8 @@
 
 namespace byre {
 
-// Pool of objects that are handed out frame after frame. Objects without other owners are reused with their memory; of
-// objects that stay in use, such as keyframes, the pool drops its reference. Owners may release an object on any
-// thread.
+// Pool of objects handed out frame after frame. Objects without other owners are reused with their memory; objects that
+// stay in use, such as keyframes, leave the pool. Owners may release an object on any thread.
 template <typename Thing>
 class SharedPool {
  public:

@@ -19,8 +19,7 @@ int processor_count();
 // Helper threads for short parallel tasks; they sleep between runs. run() is called from one thread at a time.
 class TaskThreads {
  public:
-  // While a Shift lives, waiting threads spin for some microseconds before they sleep. For runs in close succession:
-  // waking a thread takes tens of microseconds.
+  // While a Shift lives, waiting threads spin for some microseconds, because waking a thread takes tens of them.
   class Shift {
    public:
     explicit Shift(TaskThreads& threads) : threads_(threads) { threads_.is_on_shift_ = true; }
@@ -36,9 +35,8 @@ class TaskThreads {
   TaskThreads(const TaskThreads&) = delete;
   TaskThreads& operator=(const TaskThreads&) = delete;
 
-  // Calls task(0) to task(count - 1) once each, on the calling thread and the helpers, and returns when all are done.
-  // Tasks start in order; the caller never waits for a task that has not started. Rethrows the first exception of a
-  // task.
+  // Calls task(0) to task(count - 1) once each, on the calling thread and the helpers, and waits for all. Tasks start
+  // in order; the caller never waits for a task that has not started. Rethrows the first exception.
   template <typename Task>
   void run(int count, const Task& task) {
     run_all(count, std::cref(task));  // a reference, so that std::function does not allocate
