@@ -8,7 +8,7 @@ namespace byre {
 namespace {
 
 Matrix6 covariance_of_wheels(const Pose& motion) {
-  constexpr double kShare = 0.02;           // deviation as a share of the way, and of the turn
+  constexpr double kShare = 0.02;           // standard deviation, as a share of path length and turn
   constexpr double kTurnPerMetre = 0.0175;  // radians
   constexpr double kLeast = 1e-4;           // metres and radians
   const double way = motion.translation.norm();
@@ -19,7 +19,7 @@ Matrix6 covariance_of_wheels(const Pose& motion) {
   return covariance;
 }
 
-// The symmetric root.
+// Symmetric square root.
 Matrix6 deviation_of(const Matrix6& covariance) {
   const auto [values, vectors] = symmetric_eigen(covariance);
   return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * vectors.transpose();

@@ -1,4 +1,4 @@
-// For tests: a base that drives turning both ways, as its wheels and a camera on it tell.
+// For tests: a base that drives and turns both ways, its wheel odometry, and poses of a camera on it.
 
 #pragma once
 
@@ -13,11 +13,11 @@ namespace byre {
 
 struct Drive {
   Pose base_from_body;           // metres
-  double metres_per_unit = 1.0;  // metres in a unit of the lengths that the camera knows
+  double metres_per_unit = 1.0;  // metres per unit of the map
   double wheel_delay = 0.0;      // seconds
-  double noise = 0.0;            // deviation of what is seen, metres and radians
+  double noise = 0.0;            // standard deviation of the camera's poses, metres and radians
 
-  // The base at a time: half a metre a second, its turning swings within 0.5 rad/s.
+  // Pose of the base at a time. It drives at 0.5 m/s; its turn rate oscillates with an amplitude of 0.5 rad/s.
   static Pose world_from_base(double seconds) {
     constexpr double kStep = 0.01;
     static const std::vector<Pose> poses = [] {
@@ -35,7 +35,7 @@ struct Drive {
 
   StampedPose wheels(double seconds) const { return {from_seconds(seconds + wheel_delay), world_from_base(seconds)}; }
 
-  // How fast the base moves, as its wheels tell it.
+  // Velocity of the base, measured by its wheels.
   BaseVelocity velocity(double seconds) const {
     constexpr double kStep = 1e-3;
     const Pose motion = inverse(world_from_base(seconds - kStep)) * world_from_base(seconds + kStep);
@@ -43,7 +43,7 @@ struct Drive {
             motion.translation.y() / (2.0 * kStep), rotation_log(motion.rotation).z() / (2.0 * kStep)};
   }
 
-  // In the map's lengths, in a frame of the map's own.
+  // Visual pose, in the map's units and frame.
   Pose seen(double seconds, std::mt19937& random) const {
     std::normal_distribution<double> deviation(0.0, noise);
     const auto deviations = [&] { return Eigen::Vector3d(deviation(random), deviation(random), deviation(random)); };
@@ -53,7 +53,7 @@ struct Drive {
   }
 };
 
-// A camera that looks ahead, 0.4 m before the middle of the axle and 0.1 m to its left.
+// A camera that looks ahead, mounted 0.4 m ahead of the middle of the axle and 0.1 m to its left.
 inline Pose camera_on_base() {
   Eigen::Matrix3d axes;
   axes << 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0;

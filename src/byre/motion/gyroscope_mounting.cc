@@ -17,14 +17,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kLeastTurned = 0.5;  // radians, all turns together
+constexpr double kLeastTurned = 0.5;  // radians, sum of all turns
 constexpr double kMaxError = 0.15;    // radians per second, median
-constexpr Timestamp kBiasSpan = 30s;  // back from the last motion seen
+constexpr Timestamp kBiasSpan = 30s;  // before the last tracked motion
 constexpr int kMountingRounds = 4;
 
 struct TurnPair {
   Eigen::Vector3d seen;  // radians, about the body's axes
-  Eigen::Vector3d told;  // radians, about the gyroscope's axes, bias and all
+  Eigen::Vector3d told;  // radians, about the gyroscope's axes, with the bias
   double seconds = 0.0;
   bool is_recent = false;
 };
@@ -42,7 +42,7 @@ std::vector<TurnPair> pairs_of(const std::deque<SeenMotion>& seen) {
 // Least squares over all pairs (Kabsch 1976).
 Eigen::Quaterniond rotation_of(const std::vector<TurnPair>& pairs, const Eigen::Vector3d& bias,
                                const std::optional<GyroscopeMounting>& known) {
-  constexpr double kKnown = 4.0;  // sum of squared turns, about each axis, that what is known counts for
+  constexpr double kKnown = 4.0;  // weight of the prior: sum of squared turns, about each axis
   Eigen::Matrix3d sum = 1e-12 * Eigen::Matrix3d::Identity();
   if (known) sum = kKnown * known->body_from_gyroscope.toRotationMatrix();
   for (const TurnPair& pair : pairs) sum += pair.seen * (pair.told - bias * pair.seconds).transpose();
@@ -61,12 +61,12 @@ Eigen::Vector3d bias_of(const std::vector<TurnPair>& pairs, const Eigen::Quatern
   return bias;
 }
 
-// What the turns leave open. Neighbouring ones err alike.
+// Covariance of the rotation. Errors of neighbouring turns are correlated.
 Eigen::Matrix3d covariance_of(const std::vector<TurnPair>& pairs, double error,
                               const std::optional<GyroscopeMounting>& known) {
   constexpr double kLeastError = 0.005;   // radians per second
-  constexpr double kErringAlike = 4.0;    // factor of the variance
-  constexpr double kLeastSigma = 0.003;   // radians: axes of the sensor that are not square
+  constexpr double kErringAlike = 4.0;    // factor of the variance for correlated errors
+  constexpr double kLeastSigma = 0.003;   // radians, non-orthogonal axes of the sensor
   constexpr double kUsualChange = 0.005;  // radians, from day to day
   Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / GyroscopeMounting::kOpenTurn;
   if (known) {

@@ -24,7 +24,7 @@ std::string text_of(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-// "name number number, name number ..."
+// Format: "name number number, name number ..."
 class NumbersByName {
  public:
   NumbersByName() = default;
@@ -44,7 +44,7 @@ class NumbersByName {
   void add(const std::string& name, double value) { add(name, std::span(&value, 1)); }
   const std::string& text() const { return text_; }
 
-  // Into the values; false unless there are as many.
+  // Copies the numbers to values; false unless the counts match.
   bool get(const std::string& name, std::span<double> values) const {
     const auto found = numbers_.find(name);
     if (found == numbers_.end() || found->second.size() != values.size()) return false;
@@ -145,7 +145,7 @@ KnownMounting mounting_in(const std::map<std::string, std::string>& notes) {
     const NumbersByName numbers(note->second);
     if (get_rotation(numbers, "body_from_gyroscope_wxyz", gyroscope.body_from_gyroscope) &&
         numbers.get("error_rad_per_s", gyroscope.error)) {
-      Eigen::Matrix3d covariance;  // older programs note none
+      Eigen::Matrix3d covariance;  // missing in notes of older versions
       const bool is_noted = numbers.get("covariance", std::span(covariance.data(), 9));
       if (is_noted && covariance.ldlt().isPositive() && covariance.isApprox(covariance.transpose())) {
         gyroscope.covariance = covariance;
@@ -190,7 +190,7 @@ KnownMounting moved(KnownMounting mounting, const Pose& before_from_after) {
 
 bool is_contradicted(const WheelMounting& known, const WheelMounting& found) {
   constexpr double kMostTilt = 0.06;         // radians between the axes
-  constexpr double kMostSquaredSigmas = 18;  // sum over four numbers: one in 800 is beyond
+  constexpr double kMostSquaredSigmas = 18;  // sum over four parameters; probability 1/800 to exceed it
   constexpr double kNeglected = 9.0;         // factor for errors that motions have in common
   const auto up = [](const WheelMounting& mounting) -> Eigen::Vector3d {
     return mounting.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();

@@ -10,35 +10,33 @@
 
 namespace byre {
 
-// How wheels and a gyroscope are mounted, as it is kept from one drive to the next. The gyroscope's bias is not: it is
-// another one each day.
+// Mounting of wheels and gyroscope, kept between drives. The gyroscope's bias is not kept: it changes from day to day.
 struct KnownMounting {
   std::optional<WheelMounting> wheels;
   std::optional<GyroscopeMounting> gyroscope;
-  double time_offset = 0.0;   // seconds that wheels stamp later than the camera
+  double time_offset = 0.0;   // delay of wheel stamps against the camera's, seconds
   std::optional<KnownUp> up;  // in the map
 
   bool is_empty() const { return !wheels && !gyroscope && !up; }
 };
 
-// As notes of a map, by the keys "wheels", "gyroscope" and "gravity": numbers with their names, for people and for
-// mounting_in. What is not known has no note.
+// Writes the mounting to notes of a map, under the keys "wheels", "gyroscope" and "gravity": readable numbers with
+// names, which mounting_in parses. Unknown parts have no note.
 void note_mounting(const KnownMounting& mounting, std::map<std::string, std::string>& notes);
 
-// What is noted; a note that somebody else wrote tells nothing.
+// Reads the notes of note_mounting; ignores notes in another format.
 KnownMounting mounting_in(const std::map<std::string, std::string>& notes);
 
-// The mounting in a map whose lengths are multiplied by a factor.
+// The mounting for a map whose lengths are multiplied by a factor.
 KnownMounting scaled(KnownMounting mounting, double factor);
 
-// The mounting of another point of the body. Its height above the base stays unknown.
+// The mounting of another point of the body. Its unknown height above the base stays zero.
 KnownMounting moved(KnownMounting mounting, const Pose& before_from_after);
 
-// Whether motions tell a mounting that is not the one that was known: they differ by more than both leave open, and
-// than a drive changes.
+// Whether two estimates of a mounting differ by more than their uncertainty and the usual change from drive to drive.
 bool is_contradicted(const WheelMounting& known, const WheelMounting& found);
 
-// Note of a map, with the key kMetresNote, whose metres wheels alone measured: "sigma_by_wheels SHARE".
+// Note of a map whose scale only wheels measured, with the key kMetresNote: "sigma_by_wheels SHARE".
 inline constexpr const char* kMetresNote = "metres";
 std::string metres_note(double sigma);
 

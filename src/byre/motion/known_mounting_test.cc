@@ -91,7 +91,7 @@ TEST(KnownMounting, IsKeptThroughMotionsThatTellLittle) {
 TEST(KnownMounting, BecomesWhatALongDriveTells) {
   Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 1.0, .noise = 0.001};
   const KnownMounting known = known_from_a_drive(drive);
-  drive.metres_per_unit = 1.01;  // tyres that were pumped up
+  drive.metres_per_unit = 1.01;  // higher tyre pressure
   const auto found = find_wheel_mounting(motions_of(drive, 60.0, 160.0), known.wheels);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->metres_per_unit, 1.01, 0.004);

@@ -46,17 +46,17 @@ class MotionCheck {
   // The motion with a normalised rotation; empty if it is not finite, or too large for the time. seconds: its duration.
   std::optional<BodyMotion> check(const BodyMotion& motion, Timestamp time, double seconds);
 
-  // The same turn by the gyroscope and by another measurement.
+  // The same turn measured by the gyroscope and otherwise.
   struct Turn {
     Timestamp time{};                         // end of the turn
     Eigen::Vector3d reference;                // radians, about any axes
     std::optional<Eigen::Vector3d> measured;  // radians, by the gyroscope with its bias
-    bool is_seen = false;                     // reference by images; false: by wheels, which may slip
+    bool is_seen = false;                     // reference from images; false: from wheels, which may slip
   };
   // Compares both; true if this turn shows the gyroscope to be faulty, for the first time.
   bool note(const Turn& turn);
 
-  // Compares wheels with lengths known otherwise. metres_per_unit: lengths by wheels as a multiple of these. True if
+  // Compares the wheels with lengths measured otherwise. metres_per_unit: scale of these lengths from wheels. True if
   // wheels are ignored from now on.
   bool note_wheel_scale(double metres_per_unit, double sigma, Timestamp time);
 

@@ -193,7 +193,7 @@ TEST(MotionCheck, DropsVelocitiesThatNoBaseHas) {
   EXPECT_FALSE(used(0.05, 0.5, 0.1)) << "not later";
 }
 
-// Checks rates of a robot that swings to both sides against turns of half a second by images. factor: of the rates.
+// Checks rates of a robot that swings to both sides against turns of half a second from images. factor: of the rates.
 MotionCheck checked_swing(double factor, const Eigen::Vector3d& bias = Eigen::Vector3d(0.02, -0.01, 0.03),
                           double seconds = 20.0) {
   MotionCheck check;

@@ -51,7 +51,7 @@ void set_turn_covariance(BodyMotion& motion, const GyroscopeMounting& gyroscope,
 }
 
 BodyMotion at_rest(BodyMotion motion, double seconds) {
-  constexpr double kShare = 0.1;   // share of the motion by wheels
+  constexpr double kShare = 0.1;   // share of the motion from wheels
   constexpr double kCreep = 2e-4;  // lengths of the map per second
   constexpr double kTurn = 5e-5;   // radians per second
   motion.covariance.setZero();

@@ -6,7 +6,7 @@
 
 namespace byre {
 
-// Covariance of the body's motion by wheels, in lengths of the map. motion: of the body; base: of the base, metres.
+// Covariance of the body's motion from wheels, in lengths of the map. motion: of the body; base: of the base, metres.
 Matrix6 wheel_covariance(const Pose& motion, const Pose& base, const WheelMounting& mounting);
 
 // Sets the standard deviation of the translation to its length: spinning wheels may measure any path.

@@ -12,16 +12,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kStride = 500ms;  // length of the motions that are compared
+constexpr Timestamp kStride = 500ms;  // length of the compared motions
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerLook = 4;
-constexpr int kLooksUntilTold = 24;      // the first that know the mounting know delay and bias badly
-constexpr int kBorneOut = 4;             // motions, until what was known from a drive before counts as true
+constexpr int kLooksUntilTold = 24;      // the first estimates determine delay and bias badly
+constexpr int kBorneOut = 4;             // motions until the mounting of an earlier drive counts as confirmed
 constexpr double kUnprovenFactor = 9.0;  // factor of the covariance until kBorneOut
-constexpr int kLooksUntilKept = 8;       // looks from which a mounting is worth keeping
-constexpr int kLooksPerOffset = 8;       // delays change least, and are dear to find
+constexpr int kLooksUntilKept = 8;       // estimates of a mounting until it is kept
+constexpr int kLooksPerOffset = 8;  // estimates of a mounting per estimate of the delay: costly, and it changes least
 
-// Whether wheels turned otherwise than the gyroscope says, as where one spins or is lifted.
+// Whether wheels and gyroscope disagree about a turn, such as when a wheel spins or is lifted.
 bool is_slip(const Eigen::Quaterniond& by_wheels, const Eigen::Quaterniond& by_gyroscope, double seconds) {
   constexpr double kRate = 0.1;   // radians per second
   constexpr double kShare = 0.2;  // share of the turn
@@ -136,7 +136,7 @@ std::optional<BodyTilt> MotionPrior::tilt(Timestamp time) const {
   return standing_.tilt(time, standing_by_wheels(time), gyroscope_);
 }
 
-// Compares the gyroscope with turns by images, else with turns by wheels. Drops it if it is faulty.
+// Compares the gyroscope with turns in images, else with turns of wheels. Drops it if it is faulty.
 void MotionPrior::compare_turns(Timestamp time, const std::optional<SeenMotion>& seen) {
   MotionCheck::Turn turn{time, Eigen::Vector3d::Zero(), {}, seen.has_value()};
   const Timestamp begin = seen ? seen->earlier : turns_compared_.value_or(time);
@@ -185,7 +185,7 @@ void MotionPrior::note(Timestamp time, const std::optional<Pose>& odometry_from_
   presume_mounting();
 }
 
-// What was told of frames in which nothing was seen is kept until it is known how wheels are mounted.
+// Keeps the samples of untracked frames until the mounting of wheels is estimated.
 void MotionPrior::forget_old_samples() {
   if (!unseen_.last()) return;
   const Timestamp now = *unseen_.last();
@@ -207,7 +207,7 @@ std::vector<MotionPair> MotionPrior::pairs() const {
   return pairs;
 }
 
-// Takes down what the gyroscope told of the motions seen since the last look.
+// Stores the gyroscope's turns of the motions since the last estimation.
 void MotionPrior::ask_gyroscope() {
   for (auto motion = seen_.rbegin(); motion != seen_.rend() && !motion->gyroscope_turn; ++motion) {
     const auto turn = rates_.between(motion->earlier, motion->later, Eigen::Vector3d::Zero());
@@ -257,9 +257,9 @@ void MotionPrior::stretch(double factor) {
   known_ = scaled(known_, factor);
 }
 
-// Motions that tell the mounting by themselves are asked whether it is the known one.
+// Motions that determine the mounting without the prior are compared with it.
 void MotionPrior::look_for_wheel_mounting() {
-  constexpr int kLooks = 3;  // in a row that contradict it
+  constexpr int kLooks = 3;  // consecutive contradictions
   const std::vector<MotionPair> all = pairs();
   const auto alone = find_wheel_mounting(all);
   if (known_.wheels && alone) {
@@ -272,7 +272,7 @@ void MotionPrior::look_for_wheel_mounting() {
   if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma, seen_.back().later)) drop_wheels();
 }
 
-// By the first seconds, and anew with each motion until it is found.
+// Derived from the first seconds, and updated with each motion until the mounting is estimated.
 void MotionPrior::presume_mounting() {
   constexpr std::size_t kLeastMotions = 2;
   presumed_.reset();
@@ -288,7 +288,7 @@ const WheelMounting* MotionPrior::used_mounting() const {
   return tells_before_sight_ && before_sight_ ? &*before_sight_ : nullptr;
 }
 
-// One that all motions contradict from the start is another mounting. Wheels that slip do not do so for as long.
+// An earlier mounting that most motions contradict from the start is wrong. Slip does not last as long.
 void MotionPrior::check_known(double disagreement, const SeenMotion& motion) {
   constexpr double kTellingWay = 0.1;   // metres
   constexpr double kTellingTurn = 0.1;  // radians
@@ -320,7 +320,7 @@ KnownMounting MotionPrior::to_keep() const {
   return keep;
 }
 
-// Precondition: it is known or presumed how wheels are mounted.
+// Precondition: the mounting of wheels is estimated or presumed.
 UnseenWay::Tell MotionPrior::tell_base() const {
   return [this](Timestamp earlier, Timestamp later) {
     const auto told = told_base(earlier, later, turn_by_gyroscope(earlier, later));
@@ -338,7 +338,7 @@ Trajectory MotionPrior::completed(Trajectory seen) const {
 }
 
 void MotionPrior::watch_for_slip(const SeenMotion& motion) {
-  constexpr int kAgreeing = 2;  // motions after which wheels are believed again
+  constexpr int kAgreeing = 2;  // agreeing motions that end the slip
   if (!mounting_) return;
   const auto base = base_between(motion.earlier, motion.later);
   if (!base) return;
@@ -362,8 +362,8 @@ std::optional<Eigen::Quaterniond> MotionPrior::turn_by_gyroscope(Timestamp earli
   return gyroscope_->body_from_gyroscope * *told * gyroscope_->body_from_gyroscope.conjugate();
 }
 
-// turn: the body's by the gyroscope, which replaces the one that wheels tell. Precondition: it is known or presumed how
-// wheels are mounted.
+// turn: rotation of the body from the gyroscope; replaces that of the wheels. Precondition: the mounting of wheels is
+// estimated or presumed.
 std::optional<MotionPrior::ToldBase> MotionPrior::told_base(Timestamp earlier, Timestamp later,
                                                             const std::optional<Eigen::Quaterniond>& turn) const {
   const auto told = base_between(earlier, later);
@@ -438,7 +438,7 @@ std::optional<BodyMotion> MotionPrior::across_jump(Timestamp earlier, Timestamp 
 
 std::optional<BodyMotion> MotionPrior::by_sight(Timestamp earlier, Timestamp later) const {
   constexpr Timestamp kLongest = 1s;
-  constexpr double kShare = 0.3;         // share of the way
+  constexpr double kShare = 0.3;         // share of the path length
   constexpr double kAcceleration = 1.0;  // lengths of the map per second squared
   if (!velocity_ || seen_.empty() || later - seen_.back().later > kLongest + kStride) return {};
   const double seconds = to_seconds(later - earlier);
@@ -468,11 +468,11 @@ std::optional<BodyMotion> MotionPrior::between(Timestamp earlier, Timestamp late
 }
 
 std::optional<double> MotionPrior::reach(Timestamp earlier, Timestamp later, bool is_metric) const {
-  constexpr double kShare = 1.2;      // share of what is told: wheels may slide
+  constexpr double kShare = 1.2;      // factor of the measured distance: wheels may slide
   constexpr double kLeast = 0.5;      // metres
-  constexpr double kUntold = 1.5;     // metres in the first second: dead encoders are to lose no frame that is tracked
-  constexpr double kUsualArm = 1.0;   // metres, while it is not known
-  constexpr double kHalfTurns = 2.0;  // radii that turns on the spot can lead away
+  constexpr double kUntold = 1.5;     // metres in the first second: failed encoders must not reject a tracked frame
+  constexpr double kUsualArm = 1.0;   // metres, before it is estimated
+  constexpr double kHalfTurns = 2.0;  // radii that turns on the spot can displace the body
   const WheelMounting* const mounting = used_mounting();
   if (mounting == nullptr && !is_metric) return {};
   const auto distance = wheels_.distance(wheel_time(earlier), wheel_time(later));

@@ -19,31 +19,31 @@
 
 namespace byre {
 
-// What wheels and a gyroscope tell of the body's motion. How they are mounted, their scale, bias and delay are found by
-// comparing them with what is seen, and followed while that goes on. Nothing is told before they are known, or can be
-// presumed. Where wheels do not move as is seen they are left out, until they do again. Call it from one thread.
+// Motion of the body from wheels and gyroscope. Estimates their mounting, scale, bias and delay by comparison with
+// visual poses, and keeps updating them. Yields no motion before these are estimated or presumed. Ignores wheels while
+// they disagree with the images, such as during slip. Not thread-safe.
 class MotionPrior {
  public:
   explicit MotionPrior(const MotionLimits& limits = {}) : check_(limits) {}
 
-  // Lengths of the map are metres without wheels. A wheel scale that contradicts them is reported.
+  // Declares the map metric independent of wheels. A contradicting wheel scale is reported.
   void expect_metres() { knows_metres_ = true; }
-  // How they were mounted on a drive before, as a guess: wheels tell from the first frame on. Where motions contradict
-  // it, it is dropped. Call it before anything is told.
+  // Sets a prior from an earlier drive, with which wheels yield motion from the first frame on. Dropped if motions
+  // contradict it. Call it before any other input.
   void begin_with(const KnownMounting& known);
-  // Which axis of the body points up, about: by that the mounting is guessed from the first motions, until they tell
-  // it. Without it nothing is told before. Call it before anything is told.
-  // ahead_in_body: about, the axis that looks to where the body drives.
+  // Sets the approximate up and forward axes of the body. The first motions then yield a presumed mounting, used until
+  // it can be estimated; otherwise there is no motion before the estimate. Call it before any other input.
+  // ahead_in_body: the direction in which the body drives.
   void presume_upright(const Eigen::Vector3d& up_in_body, const Eigen::Vector3d& ahead_in_body) {
     up_in_body_ = up_in_body;
     before_sight_ = presume_looking_ahead(up_in_body, ahead_in_body);
   }
-  // How the gyroscope is turned, as somebody says: accelerations of a body that stands still tell by it which axis
-  // points up, until turns have told how it is turned. Nothing else hangs on it.
+  // Sets the calibrated rotation of the gyroscope. Until it is estimated, it serves only to find the up axis from
+  // accelerations at standstill.
   void presume_gyroscope(const Eigen::Quaterniond& body_from_gyroscope);
-  // A map is made: ways of up to half an hour ago will be asked for, not two minutes, and in the end poses of frames
-  // that were not seen are made anew by what is known then. Before anything is seen wheels tell, too, as though the
-  // body looked to where it drives: how far it went, but hardly which way.
+  // Mode for making a map: keeps samples for up to half an hour instead of two minutes, and recomputes the poses of
+  // untracked frames at the end from the final mounting. Before the first tracked frame, wheels yield motion with the
+  // body presumed to look ahead: the distance is measured, the direction hardly.
   void serve_mapping() {
     samples_kept_ = kMostKept;
     old_poses_ = UnseenWay::OldPoses::made_anew;
@@ -63,52 +63,52 @@ class MotionPrior {
   void warn(const MotionWarning& warning) { check_.warn(warning); }
   bool is_empty() const { return wheels_.empty() && rates_.empty(); }
 
-  // A frame's smooth pose, in the map's lengths, as it was seen; empty where nothing was.
+  // Adds a frame with its smooth visual pose, in lengths of the map; empty if it was not tracked.
   void note(Timestamp time, const std::optional<Pose>& odometry_from_body);
 
-  // The pose in the map of the frame that was noted last, where it is trusted.
+  // Sets the map pose of the last noted frame. Call it only for trusted poses.
   void note_place(const Pose& map_from_body) { standing_.note_place(map_from_body.rotation); }
 
-  // How the body is tilted at the next frame, by accelerations; empty unless wheels say that it stands still until
-  // then.
+  // Tilt of the body at the next frame from accelerations; empty unless wheels measure standstill until then.
   std::optional<BodyTilt> tilt(Timestamp time) const;
 
-  // The body's motion between frames, in the map's lengths. A gyroscope alone tells a turn; the way is then taken to go
-  // on as it was seen, for a second at most. Empty where it is not known.
+  // The body's motion between frames, in lengths of the map. A gyroscope alone measures only the rotation; the
+  // translation then continues the last visual velocity, for 1 s at most. Empty if unknown.
   std::optional<BodyMotion> between(Timestamp earlier, Timestamp later) const;
 
-  // The same of moments that may be long ago, by what is known now: by wheels alone, with the turn by the gyroscope.
+  // Motion between frames that may be long past, with the present estimates: translation from wheels, rotation from the
+  // gyroscope if available.
   std::optional<BodyMotion> way_between(Timestamp earlier, Timestamp later) const;
 
-  // How far the body can be, in the map's lengths, from where it was: no farther than wheels turned. Empty where that
-  // is not known; is_metric: the map's lengths are metres, so that wheels tell it before it is known how they are
-  // mounted.
+  // Upper bound of the body's displacement, in lengths of the map, by the distance that the wheels measured. Empty if
+  // unknown. is_metric: the map's lengths are metres, so that the bound needs no mounting.
   std::optional<double> reach(Timestamp earlier, Timestamp later, bool is_metric) const;
 
-  // After the last frame: the mounting that was known by what was seen as the map has it in the end. Poses of frames
-  // that were not seen tell nothing: they are those that wheels told.
+  // After the last frame: estimates the mounting of wheels anew from the final map poses of the tracked frames. Poses
+  // of untracked frames are ignored, because wheels themselves determined them.
   void look_again(const Trajectory& seen);
 
-  // After that: the lengths of the map, and of what is told from here on, are so many times as long.
+  // After look_again: lengths of the map are multiplied by this factor from here on.
   void stretch(double factor);
 
-  // The final poses of frames that were seen, with those of frames that wheels lead to from them.
+  // The final poses of tracked frames, and those of untracked frames which wheels connect to them.
   Trajectory completed(Trajectory seen) const;
 
   const std::optional<WheelMounting>& wheels() const { return mounting_; }
   const Standing& standing() const { return standing_; }
   const std::optional<GyroscopeMounting>& gyroscope() const { return gyroscope_; }
-  double time_offset() const { return time_offset_.value_or(0.0); }  // seconds that wheels stamp later than the camera
+  // Delay of wheel stamps against the camera's, seconds.
+  double time_offset() const { return time_offset_.value_or(0.0); }
   bool are_wheels_slipping() const { return is_slipping_; }
-  int slips() const { return slips_; }  // times that they began to
-  // Wheels are not mounted as they were before.
+  int slips() const { return slips_; }  // number of periods of slip
+  // The mounting of wheels differs from that of the earlier drive.
   bool is_mounted_otherwise() const { return is_mounted_otherwise_; }
-  // What the next drive may begin with: what was found out, or known before and not contradicted.
+  // Mounting for the next drive: the estimates, or the earlier ones if not contradicted.
   KnownMounting to_keep() const;
 
  private:
   static constexpr Timestamp kUsuallyKept = std::chrono::minutes(2);
-  static constexpr Timestamp kMostKept = std::chrono::minutes(30);  // while the mounting is not known, too
+  static constexpr Timestamp kMostKept = std::chrono::minutes(30);  // limit also while there is no mounting
 
   void compare_turns(Timestamp time, const std::optional<SeenMotion>& seen);
   void drop_wheels();
@@ -120,18 +120,19 @@ class MotionPrior {
   void look_for_mountings();
   void look_for_wheel_mounting();
   void presume_mounting();
-  const WheelMounting* used_mounting() const;  // nullptr where nothing is known or presumed
+  const WheelMounting* used_mounting() const;  // nullptr if nothing is estimated or presumed
   void watch_for_slip(const SeenMotion& motion);
   void check_known(double disagreement, const SeenMotion& motion);
   void drop_known_wheels();
   void ask_gyroscope();
   std::vector<MotionPair> pairs() const;
-  Timestamp wheel_time(Timestamp time) const { return time + from_seconds(time_offset()); }  // time by stamps of wheels
+  // In the clock of the wheels.
+  Timestamp wheel_time(Timestamp time) const { return time + from_seconds(time_offset()); }
   std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
   struct ToldBase {
     Pose motion;                // earlier_from_later, metres
-    bool is_way_known = true;   // wheels agree with the gyroscope, if there is one, and have no jerk
-    bool is_turn_known = true;  // by the gyroscope, or by wheels without a jerk
+    bool is_way_known = true;   // wheels agree with the gyroscope, if any, and show no jerk
+    bool is_turn_known = true;  // measured by the gyroscope, or by wheels without a jerk
   };
   std::optional<ToldBase> told_base(Timestamp earlier, Timestamp later,
                                     const std::optional<Eigen::Quaterniond>& turn) const;
@@ -155,27 +156,27 @@ class MotionPrior {
   UnseenWay unseen_;
   UnseenWay::OldPoses old_poses_ = UnseenWay::OldPoses::kept;
   std::deque<SeenMotion> seen_;       // motions of the last minutes, half a second each
-  std::optional<StampedPose> begin_;  // begin of the motion that is being seen
-  std::optional<StampedPose> last_;   // the last frame, where it was seen
-  std::optional<Vector6> velocity_;   // velocity of the body, per second, when it was seen last
-  int unlooked_ = 0;                  // motions seen since mountings were looked for
-  int looks_ = 0;                     // looks by which the mounting of wheels was known
+  std::optional<StampedPose> begin_;  // first frame of the motion in progress
+  std::optional<StampedPose> last_;   // last frame, if tracked
+  std::optional<Vector6> velocity_;   // last visual velocity of the body, per second
+  int unlooked_ = 0;                  // tracked motions since the last estimation of mountings
+  int looks_ = 0;                     // number of estimations that yielded a mounting of wheels
   std::optional<WheelMounting> mounting_;
   std::optional<Eigen::Vector3d> up_in_body_;
-  std::optional<WheelMounting> presumed_;      // while mounting_ is not known
-  std::optional<WheelMounting> before_sight_;  // until anything is seen
+  std::optional<WheelMounting> presumed_;      // only without mounting_
+  std::optional<WheelMounting> before_sight_;  // until the first tracked frame
   bool tells_before_sight_ = false;
-  std::optional<Eigen::Vector3d> measured_up_;  // by accelerations
+  std::optional<Eigen::Vector3d> measured_up_;  // measured by accelerations
   std::optional<GyroscopeMounting> presumed_gyroscope_;
   std::optional<GyroscopeMounting> gyroscope_;
   std::optional<double> time_offset_;
   bool is_slipping_ = false;
-  int agreeing_ = 0;  // motions that wheels told as they were seen, since they slipped
+  int agreeing_ = 0;  // number of motions since slip in which wheels agree with images
   int slips_ = 0;
-  KnownMounting known_;          // from a drive before, while it is not contradicted
-  int contradicting_ = 0;        // motions that what is known of wheels is not true of
-  int bearing_out_ = 0;          // motions that it is true of
-  int contradicting_looks_ = 0;  // looks in a row by which wheels are mounted otherwise
+  KnownMounting known_;          // from an earlier drive, until contradicted
+  int contradicting_ = 0;        // number of motions that contradict the earlier mounting of wheels
+  int bearing_out_ = 0;          // number of motions that agree with it
+  int contradicting_looks_ = 0;  // consecutive estimates that contradict the earlier mounting
   bool is_mounted_otherwise_ = false;
 };
 

@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-// Wheels whose distance is taken to be 3 % too large, and of which the right one is larger.
+// Wheels with a track width 3 % too large, and a right wheel that is larger.
 TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const DriveSensors wrong{.turn_scale = 0.97, .turn_per_metre = 0.004};
@@ -35,7 +35,7 @@ TEST(MotionPrior, KnowsTheWayLessWhereWheelsSpinInTheDark) {
   EXPECT_LT(error.transpose() * measured.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
-// A wheel in the air seems to turn the robot, which is no delay.
+// A lifted wheel measures a false turn, which must not be taken for a delay.
 TEST(MotionPrior, FindsTheDelayThoughAWheelWasLifted) {
   const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.03, .noise = 0.001};
   const MotionPrior prior = followed(drive, {.slip_from = 40.0, .slip_to = 43.0, .slip_turn = 0.03}, 60.0, 60.0);

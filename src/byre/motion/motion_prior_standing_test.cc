@@ -9,13 +9,12 @@
 namespace byre {
 namespace {
 
-// A drive with a gyroscope and an accelerometer that stops for good at a time, with the sensor turned in a body that is
-// seen until dark.
+// A drive with gyroscope and accelerometer, which stops for good. Frames are tracked until `dark`.
 struct Stop {
   double at = 40.0;        // seconds
   double dark = 30.0;      // seconds
-  double drift = 0.0;      // radians per second that the gyroscope's bias changes by in the dark
-  bool shows_stop = true;  // by wheels; false: they continue a slow drive
+  double drift = 0.0;      // change of the gyroscope's bias in the dark, radians per second
+  bool shows_stop = true;  // shown by wheels; false: they continue a slow drive
 };
 
 MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end) {

@@ -39,8 +39,7 @@ TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
   EXPECT_LT(error.transpose() * measured.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
-// Wheels that tell how fast the base moves, at 50 Hz, but for a gap in the stream while all is seen and another one in
-// the dark.
+// Wheel velocities at 50 Hz, with one gap in the stream while frames are tracked and one in the dark.
 TEST(MotionPrior, BridgesTheDarkByVelocities) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   MotionPrior prior;
@@ -93,7 +92,7 @@ TEST(MotionPrior, ReachesAsFarAsWheelsTurnedBeforeItKnowsThemWhereLengthsAreMetr
   EXPECT_LT(*reach, 3.5);
 }
 
-// As after an adjustment of the whole map, by which one camera's unit is another.
+// An adjustment of the whole map may change the unit of a monocular map.
 TEST(MotionPrior, LooksAgainAtTheMapAsItIsInTheEnd) {
   Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   MotionPrior prior = followed(drive, {}, 60.0, 60.0);
@@ -105,7 +104,7 @@ TEST(MotionPrior, LooksAgainAtTheMapAsItIsInTheEnd) {
   EXPECT_NEAR(prior.wheels()->metres_per_unit, 0.38, 0.001);
 }
 
-// Poses by wheels themselves are no evidence of their mounting.
+// Poses computed from wheels are no evidence of their mounting.
 TEST(MotionPrior, LooksAgainAtWhatWasSeenAlone) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   MotionPrior prior = followed(drive, {}, 40.0, 60.0);
@@ -121,7 +120,7 @@ TEST(MotionPrior, LooksAgainAtWhatWasSeenAlone) {
   EXPECT_NEAR(prior.wheels()->base_from_body.translation.x(), 0.4, 0.02);
 }
 
-// The last frames are led to by wheels that were heard up to then only, and tell what they did later.
+// Wheel samples after the last frames have not arrived yet.
 TEST(MotionPrior, ContinuesTheLastMotionByWheels) {
   const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.15, .noise = 0.0005};
   const MotionPrior late = heard_until_now(drive, 60.0);
@@ -133,7 +132,7 @@ TEST(MotionPrior, ContinuesTheLastMotionByWheels) {
   EXPECT_LT(error.tail<3>().norm(), 0.005);
 }
 
-// One camera that begins its map late: nothing is seen for longer than samples are kept else.
+// One camera begins its map late: frames are untracked for longer than samples are usually kept.
 TEST(MotionPrior, LeadsBackToFramesFromBeforeItKnewHowWheelsAreMounted) {
   constexpr double kDark = 130.0, kEnd = 170.0, kFrame = 0.05;  // seconds
   const Drive drive{camera_on_base(), 3.0, 0.0, 0.0};
@@ -195,7 +194,7 @@ TEST(MotionPrior, BridgesTheDarkFromTheStartWhereTheMountingIsKnown) {
   }
 }
 
-// A gap in sight before the motions tell how wheels are mounted.
+// A tracking gap before the motions determine the mounting of wheels.
 TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   const auto last_motion = [&](double dark, bool is_upright) {
@@ -221,7 +220,7 @@ TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
   EXPECT_LT(error.transpose() * measured->covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
-// A map is to begin, and nothing was seen yet: the length of the way is known, but hardly which way it goes.
+// Before the first tracked frame of a new map the length of the path is measured, its direction hardly.
 TEST(MotionPrior, TellsHowFarItWentBeforeAnythingIsSeenWhereAMapIsMade) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   for (const bool makes_map : {true, false}) {
@@ -271,10 +270,10 @@ TEST(MotionPrior, KnowsTheMountingLessUntilMotionsBearItOut) {
 TEST(MotionPrior, DropsAMountingThatIsAnotherOneByNow) {
   const Drive before{.base_from_body = camera_on_base(), .noise = 0.001};
   const KnownMounting known = followed(before, {}, 60.0, 60.0).to_keep();
-  Drive turned = before;  // so far that hardly a motion is as it was
+  Drive turned = before;  // rotated far: hardly any motion agrees
   turned.base_from_body.rotation = rotation_exp({0.0, 0.0, 1.5}) * before.base_from_body.rotation;
   EXPECT_TRUE(followed(turned, {}, 8.0, 8.0, known).is_mounted_otherwise());
-  Drive moved = before;  // so little that no single motion tells
+  Drive moved = before;  // moved little: no single motion shows it
   moved.base_from_body.translation.x() += 0.15;
   moved.base_from_body.translation.y() -= 0.1;
   const MotionPrior prior = followed(moved, {}, 40.0, 52.0, known);

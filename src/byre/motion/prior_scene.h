@@ -18,15 +18,15 @@ inline Eigen::Vector3d rate_of_body(const Drive& drive, double seconds) {
   return drive.base_from_body.rotation.conjugate() * rotation_log(base.rotation) / kStep;
 }
 
-// Sensors beside the camera, and errors of the wheels.
+// Sensors other than the camera, and errors of the wheels.
 struct DriveSensors {
   bool wheels = true;
   bool gyroscope = false;
-  double slip_from = 1e9;       // seconds, begin of wheel slip
+  double slip_from = 1e9;       // seconds, start of wheel slip
   double slip_to = 1e9;         // seconds
   double slip_turn = 0.0;       // radians added to each wheel sample during slip
-  double turn_scale = 1.0;      // factor of turns by wheels
-  double turn_per_metre = 0.0;  // radians added by wheels
+  double turn_scale = 1.0;      // factor of turns measured by wheels
+  double turn_per_metre = 0.0;  // radians per metre added to turns measured by wheels
 };
 
 // A prior after a drive. dark: time of the last tracked frame; end: of the last sample. known: from an earlier drive.

@@ -21,8 +21,8 @@ void RateTrack::forget_before(Timestamp time) {
   while (!samples_.empty() && samples_.front().time < time) samples_.pop_front();
 }
 
-// Calls add(rate, seconds) for each piece of the time span; between two samples with the mean of both. False if samples
-// do not cover the span.
+// Calls add(rate, seconds) for each piece of the time span, with the mean rate between two samples. False if samples do
+// not cover the span.
 template <typename Add>
 bool RateTrack::integrate(Timestamp earlier, Timestamp later, const Add& add) const {
   auto next = std::upper_bound(samples_.begin(), samples_.end(), earlier,

@@ -7,20 +7,19 @@
 
 namespace byre {
 
-// What a gyroscope tells.
+// Angular rates of a gyroscope, which it integrates.
 class RateTrack {
  public:
-  // Samples that are not later than the one before are left out.
+  // Samples that are not later than the previous one are dropped.
   void add(const AngularRate& sample);
 
   void forget_before(Timestamp time);
 
   bool empty() const { return samples_.empty(); }
-  // The gyroscope's turn, earlier_from_later, by its rates less a bias; empty where a twentieth of a second is not
-  // covered.
+  // The gyroscope's rotation, earlier_from_later, by its rates minus a bias. Empty if a gap exceeds 50 ms.
   std::optional<Eigen::Quaterniond> between(Timestamp earlier, Timestamp later, const Eigen::Vector3d& bias) const;
 
-  // Integral of the rates by axis, radians; may exceed half a turn. Empty where between() is empty.
+  // Integral of the rates per axis, radians; may exceed half a turn. Empty if between() is empty.
   std::optional<Eigen::Vector3d> integral(Timestamp earlier, Timestamp later) const;
 
  private:

@@ -10,7 +10,7 @@ namespace byre {
 // Longest interval between tracked frames without a gap between them.
 inline constexpr Timestamp kMaxFrameGap = std::chrono::milliseconds(300);
 
-// The body's motion between two tracked frames by images, earlier_from_later, in lengths of the map.
+// The body's motion between two tracked frames from images, earlier_from_later, in lengths of the map.
 struct SeenMotion {
   Timestamp earlier{};
   Timestamp later{};
@@ -18,7 +18,7 @@ struct SeenMotion {
   std::optional<Eigen::Vector3d> gyroscope_turn{};  // radians about the gyroscope's axes, with its bias
 };
 
-// Difference between the same motion by wheels and by images, as a multiple of the tolerance.
+// Difference between the same motion from wheels and from images, as a multiple of the tolerance.
 double disagreement(const Pose& measured, const SeenMotion& seen, double metres_per_unit);
 
 }  // namespace byre

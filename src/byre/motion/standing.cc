@@ -11,9 +11,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Timestamp kMaxStopGap = 1500ms;    // between frames of one stop: vibration may hide it for a moment
+constexpr Timestamp kMaxStopGap = 1500ms;    // between frames of one stop: vibration may interrupt it
 constexpr Timestamp kMaxPoseGap = 500ms;     // between poses around a stop
-constexpr Timestamp kBetweenPlaces = 500ms;  // noted of one stop
+constexpr Timestamp kBetweenPlaces = 500ms;  // between recorded poses of one stop
 constexpr std::size_t kMostPlaces = 2000;
 constexpr double kLeastSigma = 0.005;  // radians: the bias is the same at all stops
 
@@ -75,7 +75,7 @@ void Standing::look_again(const Trajectory& seen) {
 }
 
 std::optional<KnownUp> Standing::up_in_map(const std::optional<GyroscopeMounting>& mounting) const {
-  constexpr double kKnown = 20.0;  // stops of half a second that what is known counts for
+  constexpr double kKnown = 20.0;  // weight of the earlier map, in stops of half a second
   if (!mounting || places_.empty()) return known_;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   if (known_) sum = kKnown * known_->up_in_map;

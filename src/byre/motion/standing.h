@@ -11,65 +11,64 @@
 
 namespace byre {
 
-// Which way is up in a map, as accelerations told where the body stood still at poses that were well known.
+// Up direction in a map, measured by accelerations at stops with well-known poses.
 struct KnownUp {
   Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();  // a unit vector
   double sigma = 0.0;                                    // radians
 };
 
-// How a body that stands still is tilted, and no more than that: its heading stays open.
+// Tilt of the body at standstill: constrains roll and pitch, not the heading.
 struct BodyTilt {
   Eigen::Vector3d up_in_body = Eigen::Vector3d::UnitZ();  // a unit vector
   Eigen::Vector3d up_in_map = Eigen::Vector3d::UnitZ();   // a unit vector
   double sigma = 0.0;                                     // radians
-  int stop = 0;  // number of the stop: all that is told of one is one measurement
+  int stop = 0;  // number of the stop; all tilts of one stop are one measurement
 };
 
-// Where the body stands still, and which way is up by that. What an accelerometer tells is steady at rest and while a
-// body brakes evenly; so the body stands where wheels do not turn, or nothing that is seen moves, and nothing says
-// otherwise.
+// Detects standstill, and measures the up direction there. Acceleration is steady at rest and also during even braking;
+// standstill therefore requires that wheels or images show it, and that neither contradicts.
 class Standing {
  public:
-  // Up in a map that is gone on with.
+  // Sets the up direction of an earlier map that is extended.
   void begin_with(const std::optional<KnownUp>& known) { known_ = known; }
 
   void add(const AngularRate& rate) { track_.add(rate); }
   void add(const Acceleration& acceleration) { track_.add(acceleration); }
 
-  // Pose of a frame by images, in lengths of the map; empty if it was not tracked.
+  // Visual pose of a frame, in lengths of the map; empty if it was not tracked.
   void note_sight(Timestamp time, const std::optional<Pose>& seen);
   // Whether the poses of the window before the last frame are equal up to noise. Empty if not all frames were tracked.
   std::optional<bool> does_sight_stand(double metres_per_unit) const;
 
-  // What others say of the last window before a time. Empty: they say nothing.
+  // Evidence of standstill over the last window before a time. Empty: no measurement.
   struct Witnesses {
     std::optional<bool> do_wheels_stand;
     std::optional<bool> does_sight_stand;
   };
-  // What is told of a body that stands until a time; empty where it is not known to.
-  // bias: of the gyroscope, where it is known.
+  // Means of gyroscope and accelerometer at standstill; empty if standstill is not detected.
+  // bias: of the gyroscope, if available.
   std::optional<SteadyTrack::Steady> at(Timestamp time, const Witnesses& witnesses,
                                         const std::optional<Eigen::Vector3d>& bias) const;
 
-  // A frame at which the body stood, or did not.
+  // Adds a frame; steady is empty if the body moved.
   void note(Timestamp time, const std::optional<SteadyTrack::Steady>& steady);
-  // The pose in the map of the last frame, where it is well known.
+  // Sets the map pose of the last frame. Call it only for well-known poses.
   void note_place(const Eigen::Quaterniond& map_from_body);
-  // The poses of the map in the end.
+  // Replaces the poses of all stops by the final ones.
   void look_again(const Trajectory& seen);
 
   const std::optional<SteadyTrack::Steady>& now() const { return now_; }
   int stops() const { return stops_; }
-  double seconds() const { return seconds_; }  // time that it stood
+  double seconds() const { return seconds_; }  // total time at standstill
 
-  // Up in the map by all stops; empty where there was none, and while it is not known how the sensor is turned.
+  // Up in the map by all stops. Without a stop or a gyroscope mounting: that of the earlier map, if any.
   std::optional<KnownUp> up_in_map(const std::optional<GyroscopeMounting>& mounting) const;
-  // Empty where the body does not stand, or too little is known to tell a tilt.
+  // Empty if the body does not stand still, or the tilt is too uncertain.
   std::optional<BodyTilt> tilt(Timestamp time, const std::optional<SteadyTrack::Steady>& steady,
                                const std::optional<GyroscopeMounting>& mounting) const;
 
  private:
-  int stop_at(Timestamp time) const;  // number of the stop that a body belongs to which stands then
+  int stop_at(Timestamp time) const;  // number of the stop that a standstill at this time belongs to
 
   struct Place {
     Timestamp time{};
@@ -87,8 +86,8 @@ class Standing {
   double seconds_ = 0.0;
 };
 
-// Up in the body by the sensor's axes, and how well it is known, radians: worst where turns left open how the sensor is
-// turned.
+// Up axis of the body measured by the sensor, and its largest standard deviation, radians. The deviation includes the
+// uncertainty of the mounting about axes without turns.
 struct UpInBody {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   double sigma = 0.0;

@@ -14,13 +14,13 @@ const Eigen::Vector3d kStillRate(0.02, -0.01, 0.03);         // radians per seco
 const Eigen::Vector3d kAccelerationBias(0.04, -0.05, 0.03);  // m/s^2
 const Standing::Witnesses kWheelsStand{true, {}};
 
-// A sensor at 200 Hz from and until these seconds, in the world's axes.
+// Motion of a sensor at 200 Hz between two times in seconds, in the world's axes.
 struct SensorMotion {
   double from = 0.0;
   double until = 2.0;
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, beside gravity
-  double sway = 0.0;                                       // m/s^2 of a swing at 1 Hz
-  double vibration = 0.0;                                  // m/s^2 of a motor at 37 Hz
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, in addition to gravity
+  double sway = 0.0;                                       // m/s^2, oscillation at 1 Hz
+  double vibration = 0.0;                                  // m/s^2, motor vibration at 37 Hz
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // radians per second, of the sensor
 };
 
@@ -83,7 +83,7 @@ TEST(SteadyTrack, TellsNothingUntilAStopIsAsOldAsItsWindow) {
   EXPECT_TRUE(track.until(from_seconds(1.9)));
 }
 
-// Even braking is as steady as a stop: 0.3 m/s^2 look like 1.7 degrees.
+// Even braking is as steady as a stop: 0.3 m/s^2 equals a tilt of 1.7 degrees.
 TEST(Standing, IsNotTakenFromSlowBraking) {
   const SensorMotion braking{.acceleration = {-0.3, 0.0, 0.0}};
   const auto steady = told_until_end(braking);
@@ -119,7 +119,7 @@ TEST(Standing, CountsStops) {
   EXPECT_NEAR(standing.seconds(), 4.8 + 2 * 0.8, 0.21);
 }
 
-// A mounting found by turns about one axis alone: of the body, upright.
+// A mounting found by turns about the up axis of the body only.
 GyroscopeMounting known_about_one_axis(double turn) {
   GyroscopeMounting mounting;
   mounting.body_from_gyroscope = rotation_exp({0.0, 0.0, turn}) * kWorldFromSensor;
@@ -132,7 +132,7 @@ SteadyTrack::Steady up_at(const Eigen::Quaterniond& world_from_sensor) {
 }
 
 TEST(UpInBody, IsKnownOfALevelBodyThoughTurnsWereAboutOneAxisAlone) {
-  for (const double turn : {0.0, 2.0}) {  // turns leave it open
+  for (const double turn : {0.0, 2.0}) {  // rotation that the turns leave unconstrained
     const GyroscopeMounting mounting = known_about_one_axis(turn);
     const UpInBody level = up_in_body(up_at(kWorldFromSensor), mounting);
     EXPECT_LT((level.up - Eigen::Vector3d::UnitZ()).norm(), 1e-6);
@@ -151,7 +151,7 @@ TEST(Standing, TellsTheTiltByStopsAtKnownPlaces) {
   const Eigen::Quaterniond map_from_world = rotation_exp({0.7, 0.2, -0.5});
   Standing standing;
   EXPECT_FALSE(standing.tilt(from_seconds(99.0), up_at(kWorldFromSensor), mounting)) << "up in the map is not known";
-  for (int stop = 0; stop < 8; ++stop) {  // at other headings, a little tilted, by a sensor with a bias
+  for (int stop = 0; stop < 8; ++stop) {  // different headings, slightly tilted, sensor with a bias
     const Eigen::Quaterniond world_from_sensor =
         rotation_exp({0.0, 0.0, 0.8 * stop}) * rotation_exp({0.02, 0.01 * stop, 0.0}) * kWorldFromSensor;
     SteadyTrack::Steady steady = up_at(world_from_sensor);

@@ -24,14 +24,14 @@ void keep(const Sample& sample, std::deque<Sample>& samples) {
 struct Mean {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double deviation = 0.0;  // root mean square from the mean, all axes together
-  double change = 0.0;     // length between the means of the window's thirds, the most
+  double change = 0.0;     // largest distance between the means of the window's thirds
 };
 
-// Over the window that ends at a time; empty where it is not covered.
+// Over the window that ends at a time; empty if samples do not cover it.
 template <typename Sample, typename Value>
 std::optional<Mean> mean_until(const std::deque<Sample>& samples, Timestamp time, const Value& value) {
   constexpr std::size_t kLeastSamples = 30;
-  constexpr Timestamp kLate = 100ms;  // the last sample before the time
+  constexpr Timestamp kLate = 100ms;  // largest age of the last sample
   const auto is_before = [](const Sample& sample, Timestamp when) { return sample.time < when; };
   const auto begin = std::lower_bound(samples.begin(), samples.end(), time - SteadyTrack::kWindow, is_before);
   const auto end = std::lower_bound(begin, samples.end(), time + Timestamp(1), is_before);
@@ -69,11 +69,11 @@ void SteadyTrack::add(const Acceleration& acceleration) {
 std::optional<SteadyTrack::Steady> SteadyTrack::until(Timestamp time) const {
   constexpr double kMostVibration = 1.0;     // m/s^2
   constexpr double kMostChange = 0.1;        // m/s^2
-  constexpr double kMostUnlike = 0.5;        // m/s^2, from gravity: scale and bias
-  constexpr double kBias = 0.05;             // m/s^2, of a consumer's part
+  constexpr double kMostUnlike = 0.5;        // m/s^2, difference from gravity by scale and bias
+  constexpr double kBias = 0.05;             // m/s^2, of a consumer sensor
   constexpr double kMostRateNoise = 0.1;     // radians per second
   constexpr double kMostRateChange = 0.015;  // radians per second
-  constexpr double kMostRate = 0.15;         // radians per second, bias and all
+  constexpr double kMostRate = 0.15;         // radians per second, with the bias
   const auto rate = mean_until(rates_, time, [](const AngularRate& sample) { return sample.rate; });
   if (!rate || rate->deviation > kMostRateNoise || rate->change > kMostRateChange || rate->mean.norm() > kMostRate) {
     return {};

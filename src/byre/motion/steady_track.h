@@ -8,24 +8,24 @@
 
 namespace byre {
 
-// What gyroscope and accelerometer told over the last seconds, and whether that was steady: a body at rest, or one that
-// changes its speed evenly. Which of both, they cannot tell.
+// Samples of gyroscope and accelerometer of the last seconds, and whether they are steady. They are steady at rest and
+// during even acceleration; the two cannot be distinguished.
 class SteadyTrack {
  public:
   static constexpr Timestamp kWindow = std::chrono::milliseconds(800);
 
-  // Samples that are not later than the one before are left out.
+  // Samples that are not later than the previous one are dropped.
   void add(const AngularRate& rate);
   void add(const Acceleration& acceleration);
   bool has_accelerations() const { return !accelerations_.empty(); }
 
-  // The means over the window that ends at a time, about the sensor's axes.
+  // Means over the window that ends at a time, about the sensor's axes.
   struct Steady {
-    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();   // a unit vector; wrong where the speed changed
-    double sigma = 0.0;                              // radians; the bias of a consumer's part, and how steady it was
-    Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, bias and all
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // a unit vector; biased during acceleration
+    double sigma = 0.0;  // radians, from a consumer sensor's bias and the deviation of samples
+    Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, with the bias
   };
-  // Empty where too little was told, and where it was not steady: vibration may be, a body that sways is not.
+  // Empty if samples are missing or not steady. Vibration is tolerated, sway is not.
   std::optional<Steady> until(Timestamp time) const;
 
  private:

@@ -13,15 +13,15 @@ using namespace std::chrono_literals;
 
 constexpr Timestamp kStep = 20ms;
 constexpr int kSteps = 10;              // either way
-constexpr int kStepsAround = 2;         // either way of what is known
-constexpr double kMostError = 0.03;     // radians that count: where a wheel slips, no offset makes up for it
-constexpr double kLeastTurnSeen = 1.5;  // radians, all turns together
+constexpr int kStepsAround = 2;         // either way of the earlier estimate
+constexpr double kMostError = 0.03;     // radians; larger errors, as by slip, are clipped
+constexpr double kLeastTurnSeen = 1.5;  // radians, sum of all turns
 
 double turn_of(const SeenMotion& motion, const Eigen::Vector3d& up) {
   return rotation_log(motion.body.rotation).dot(up);
 }
 
-// Sum of squared differences between turns seen and told, per turn that both tell; empty where wheels tell too few.
+// Mean squared difference between turns from images and from wheels; empty if wheels measure too few of them.
 std::optional<double> difference(const std::deque<SeenMotion>& seen, const Eigen::Vector3d& up,
                                  const WheelTrack& wheels, Timestamp offset) {
   double sum = 0.0;

@@ -10,10 +10,10 @@
 
 namespace byre {
 
-// By how much wheels stamp later than the camera, seconds: a frame at time t shows what they tell of t + offset. The
-// offset, of a fifth of a second at most either way, under which turns seen and turns told agree best. Empty where too
-// little was turned, or the best lies at the end of that fifth. up: the base's axis, as the body has it. known: what
-// was found before; then only its surroundings are tried.
+// Delay of wheel stamps against the camera's, seconds: a frame at time t corresponds to wheel samples at t + offset.
+// Searches the offset within 0.2 s either way at which turns from images and wheels agree best. Empty if the turns are
+// too small, or the best offset is at the end of the range. up: the base's axis in the body. known: earlier estimate;
+// only its neighbourhood is searched.
 std::optional<double> find_time_offset(const std::deque<SeenMotion>& seen, const Eigen::Vector3d& up,
                                        const WheelTrack& wheels, std::optional<double> known = {});
 

@@ -17,16 +17,16 @@ std::optional<Pose> pose_of_frame(const Trajectory& trajectory, Timestamp time) 
   return found->world_from_body;
 }
 
-// Frames that follow each other, and where each lies by what was told.
+// Consecutive frames and their poses relative to the first, from wheels.
 struct Chain {
   std::vector<Timestamp> times;
   std::vector<Pose> first_from_body;
-  std::vector<std::optional<Pose>> world_from_body;  // what is known
+  std::vector<std::optional<Pose>> world_from_body;  // poses of the trajectory, if available
 };
 
 using FrameIndex = std::optional<std::size_t>;
 
-// Where the frame lies by the nearest known ones before and after it; empty where there is none.
+// Pose of a frame from the nearest frames with a pose before and after it; empty if there is none.
 std::optional<Pose> led_to(const Chain& chain, std::size_t frame, const FrameIndex& before, const FrameIndex& after) {
   const auto& known = chain.world_from_body;
   const auto told = [&](std::size_t from, std::size_t to) {

@@ -8,32 +8,32 @@
 
 namespace byre {
 
-// The way through frames in which nothing was seen, as wheels told it. Often it is known only later how they are
-// mounted, as where one camera could not begin a map yet. Then these frames get their poses afterwards.
+// Path through untracked frames by wheel odometry. Computes their poses afterwards, once the mounting of wheels is
+// estimated; this covers frames before a monocular map begins.
 class UnseenWay {
  public:
-  // The base's motion between two frames, earlier_from_later in metres; empty where it was not told.
+  // The base's motion between two frames, earlier_from_later in metres; empty if not measured.
   using Tell = std::function<std::optional<Pose>(Timestamp earlier, Timestamp later)>;
-  // The body's motion, in the map's lengths, by that of the base.
+  // Converts the base's motion to the body's, in lengths of the map.
   using BodyMotionOf = std::function<Pose(const Pose& base)>;
 
-  // A frame, in order of time.
+  // Adds a frame, in order of time.
   void note(Timestamp time, bool is_seen);
 
   std::optional<Timestamp> last() const { return last_; }  // last frame
-  // Whether each frame between the two was seen, and they were.
+  // Whether both frames and all frames between them were tracked.
   bool is_seen(Timestamp earlier, Timestamp later) const;
-  // Steps that were not told yet begin at this time; empty: there are none.
+  // Start of the first step without a stored motion; empty if there is none.
   std::optional<Timestamp> first_untold() const;
-  // Takes down the steps that were not told yet.
+  // Stores the motions of these steps.
   void take_down(const Tell& tell);
 
-  // Poses that the trajectory has of frames in which nothing was seen: told at the time, perhaps by less than is known
-  // now.
+  // Treatment of poses that the trajectory already has for untracked frames: keep them, or recompute them with the
+  // present mounting.
   enum class OldPoses { kept, made_anew };
 
-  // The trajectory, with poses for the unseen frames that wheels lead to from one of its poses. Between two of them,
-  // each takes its share, by time, of what the way was told wrongly. world_from_body.
+  // The trajectory with added poses for untracked frames that wheels connect to one of its poses. Between two such
+  // poses the drift of wheels is distributed in proportion to time. world_from_body.
   Trajectory completed(Trajectory trajectory, const BodyMotionOf& body_motion_of, OldPoses old = OldPoses::kept) const;
 
  private:

@@ -17,7 +17,7 @@ Pose at(double x) {
   return {Eigen::Quaterniond::Identity(), {x, 0.0, 0.0}};
 }
 
-// Frames 0 to 10; told as the base drives, or times as much.
+// Frames 0 to 10. Wheels measure the motion of the base times a factor.
 UnseenWay way(const std::vector<bool>& is_seen, double told_per_true = 1.0, int untold = -1) {
   UnseenWay unseen;
   for (int i = 0; i < static_cast<int>(is_seen.size()); ++i)

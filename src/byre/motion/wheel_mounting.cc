@@ -12,11 +12,11 @@
 namespace byre {
 namespace {
 
-constexpr double kLeastTurn = 0.8;      // radians, all turns together; the deviations decide
-constexpr double kLeastWay = 1.0;       // metres, all ways together
-constexpr double kMaxAxisError = 0.35;  // radians, median angle between the axes of turns that were seen
-constexpr double kMaxSigma = 0.05;      // share of the scale, and radians of the direction
-constexpr int kRounds = 8;              // rounds of weighting again
+constexpr double kLeastTurn = 0.8;      // radians, sum of all turns; the standard deviations decide
+constexpr double kLeastWay = 1.0;       // metres, sum of all paths
+constexpr double kMaxAxisError = 0.35;  // radians, median angle between the axes of turns in images
+constexpr double kMaxSigma = 0.05;      // relative for the scale, radians for the direction
+constexpr int kRounds = 8;              // rounds of reweighting
 
 using Vector4 = Eigen::Vector4d;
 
@@ -28,11 +28,11 @@ Eigen::Vector3d up_of(const WheelMounting& mounting) {
   return mounting.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
 }
 
-// The axis of the base, upwards, as the body has it; empty where too little was turned, or about no common axis.
+// The base's up axis in the body; empty if turns are too small, or have no common axis.
 std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions,
                                        const std::optional<WheelMounting>& known) {
-  constexpr double kSmall = 0.03;  // radians, turns whose axis says little
-  constexpr double kKnown = 4.0;   // sum of squared turns that what is known counts for
+  constexpr double kSmall = 0.03;  // radians, turns with a poorly determined axis
+  constexpr double kKnown = 4.0;   // weight of the prior, sum of squared turns
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double turned = 0.0;
   if (known) {
@@ -54,7 +54,7 @@ std::optional<Eigen::Vector3d> find_up(const std::vector<MotionPair>& motions,
   return median_or(std::move(errors), kMaxAxisError) < kMaxAxisError ? std::optional(up) : std::nullopt;
 }
 
-// Least squares with the weights of Geman and McClure, held to what wheels usually are.
+// Least squares with Geman-McClure weights, with a prior of the usual errors of wheels.
 TurnErrors find_turn_errors(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up,
                             const std::optional<WheelMounting>& known) {
   const double scale_sigma = known ? 0.005 : 0.03;       // share, from day to day or among wheels
@@ -62,7 +62,7 @@ TurnErrors find_turn_errors(const std::vector<MotionPair>& motions, const Eigen:
   const TurnErrors before = known ? known->turn_errors : TurnErrors{};
   const Eigen::Matrix2d by_before =
       Eigen::Vector2d(1.0 / (scale_sigma * scale_sigma), 1.0 / (per_metre_sigma * per_metre_sigma)).asDiagonal();
-  constexpr double kLeastError = 0.001;  // radians: no eyes are better
+  constexpr double kLeastError = 0.001;  // radians: limit of the images' accuracy
   TurnErrors found = before;
   double usual = 0.01;  // radians
   for (int round = 0; round < kRounds; ++round) {
@@ -85,12 +85,12 @@ TurnErrors find_turn_errors(const std::vector<MotionPair>& motions, const Eigen:
   return found;
 }
 
-// One motion as two equations, in metres, linear in (s cos, s sin, x, y): s the metres in a unit, the angle that from
-// the levelled body to the base, x and y the lever arm.
+// One motion as two equations in metres, linear in (s cos, s sin, x, y): s metres per unit of the map, the angle from
+// the levelled body to the base, and x and y the lever arm.
 struct PlanarMotion {
   Eigen::Matrix<double, 2, 4> factors;
   Eigen::Vector2d base;
-  double way = 0.0;  // metres by the wheels
+  double way = 0.0;  // metres, measured by wheels
 };
 
 PlanarMotion planar(const MotionPair& motion, const Eigen::Quaterniond& level_from_body) {
@@ -111,14 +111,14 @@ std::vector<PlanarMotion> planar(const std::vector<MotionPair>& motions, const E
   return result;
 }
 
-// Metres by the wheels.
+// Metres, measured by wheels.
 double way_of(const std::vector<PlanarMotion>& motions) {
   double way = 0.0;
   for (const PlanarMotion& motion : motions) way += motion.way;
   return way;
 }
 
-// What was known of the unknowns.
+// Prior of the unknowns.
 struct KnownUnknowns {
   Vector4 values = Vector4::Zero();
   Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
@@ -142,9 +142,9 @@ double deviation(const PlanarMotion& motion, const Vector4& unknowns) {
   return (motion.factors * unknowns - motion.base).norm() / (motion.way + kNoise);
 }
 
-// Weighted least squares, again and again with the weights of Geman and McClure.
+// Iteratively reweighted least squares with Geman-McClure weights.
 std::optional<Solution> solve(const std::vector<PlanarMotion>& motions, const KnownUnknowns& known) {
-  constexpr double kLeastShare = 0.01;  // share of the way: no wheels are better
+  constexpr double kLeastShare = 0.01;  // share of the path length: limit of the wheels' accuracy
   constexpr double kNoise = 0.005;      // metres
   std::vector<double> weights(motions.size(), 1.0);
   Solution solution;
@@ -172,13 +172,13 @@ std::optional<Solution> solve(const std::vector<PlanarMotion>& motions, const Kn
   return solution;
 }
 
-// The axis nearest to the one that is presumed about which the body turns, and along which it does not drive.
+// Up axis from a prior and the turns of the body, made perpendicular to the driving direction.
 std::optional<Eigen::Vector3d> presumed_up(const std::vector<MotionPair>& motions, const Eigen::Vector3d& up_in_body,
                                            UpSource source) {
-  constexpr double kPresumed = 0.05;  // sum of squared turns that the presumption counts for
-  constexpr double kMeasured = 1.0;   // sum of squared turns that an accelerometer counts for
-  constexpr double kTurning = 0.1;    // radians, of a motion whose way tells badly what is ahead
-  constexpr double kLeast = 0.3;      // length of what is left of an axis
+  constexpr double kPresumed = 0.05;  // weight of a presumed axis, sum of squared turns
+  constexpr double kMeasured = 1.0;   // weight of an axis from an accelerometer, sum of squared turns
+  constexpr double kTurning = 0.1;    // radians; larger turns blur the driving direction
+  constexpr double kLeast = 0.3;      // relative length of the axis after the projection
   Eigen::Vector3d ahead = Eigen::Vector3d::Zero(), left = ahead,
                   turned = (source == UpSource::measured ? kMeasured : kPresumed) * up_in_body.normalized();
   for (const MotionPair& motion : motions) {
@@ -204,9 +204,9 @@ double median_turn_error(const std::vector<MotionPair>& motions, const Eigen::Ve
   return median_or(std::move(errors), 0.0);
 }
 
-// How wrongly wheels tell the way across, by the motions that went to the side.
+// Relative error of sideways motion measured by wheels, from the motions that went sideways.
 double side_error_of(const std::vector<MotionPair>& motions, const WheelMounting& mounting) {
-  constexpr double kSideways = 0.3;   // share of the way
+  constexpr double kSideways = 0.3;   // share of the path length
   constexpr double kShortWay = 0.02;  // metres
   constexpr std::size_t kLeast = 4;   // motions
   std::vector<double> errors;
@@ -219,7 +219,8 @@ double side_error_of(const std::vector<MotionPair>& motions, const WheelMounting
   return errors.size() < kLeast ? WheelMounting{}.side_error : median_or(std::move(errors), 0.0);
 }
 
-// Without what turns tell. Empty where scale or direction are known worse than max_sigma, a share and radians.
+// Without the members that turns determine. Empty if the standard deviation of scale (relative) or direction (radians)
+// exceeds max_sigma.
 std::optional<WheelMounting> mounting_of(const Solution& solved, const Eigen::Quaterniond& level_from_body,
                                          double max_sigma) {
   const double scale = solved.unknowns.head<2>().norm();
@@ -251,7 +252,7 @@ Eigen::Vector4d unknowns_about(const WheelMounting& mounting, const Eigen::Vecto
 }
 
 Eigen::Matrix4d usual_change(const WheelMounting& mounting) {
-  constexpr double kShare = 0.007;  // share of the scale, and radians
+  constexpr double kShare = 0.007;  // relative for the scale, radians for the direction
   constexpr double kArm = 0.01;     // metres
   const double scale = kShare * mounting.metres_per_unit;
   return Vector4(scale * scale, scale * scale, kArm * kArm, kArm * kArm).asDiagonal();
@@ -280,9 +281,9 @@ std::optional<WheelMounting> find_wheel_mounting(const std::vector<MotionPair>& 
 std::optional<WheelMounting> presume_wheel_mounting(const std::vector<MotionPair>& motions,
                                                     const Eigen::Vector3d& up_in_body, UpSource source) {
   constexpr double kArm = 0.3;         // metres, standard deviation
-  constexpr double kLeastWay = 0.3;    // metres, all ways together
-  constexpr double kMaxSigma = 0.2;    // share of the scale, and radians
-  constexpr double kLeastError = 0.1;  // share of ways and turns
+  constexpr double kLeastWay = 0.3;    // metres, sum of all paths
+  constexpr double kMaxSigma = 0.2;    // relative for the scale, radians for the direction
+  constexpr double kLeastError = 0.1;  // share of path lengths and turns
   const auto up = presumed_up(motions, up_in_body, source);
   if (!up) return {};
   const Eigen::Quaterniond level_from_body = rotation_between(*up, Eigen::Vector3d::UnitZ());
@@ -303,7 +304,7 @@ std::optional<WheelMounting> presume_looking_ahead(const Eigen::Vector3d& up_in_
                                                    const Eigen::Vector3d& ahead_in_body) {
   constexpr double kArm = 0.3;         // metres, standard deviation
   constexpr double kLeastLevel = 0.5;  // sine of the angle between the two axes
-  constexpr double kTurnError = 0.3;   // share of turns, as the body may be tilted
+  constexpr double kTurnError = 0.3;   // share of turns, because the body may be tilted
   const Eigen::Vector3d up = up_in_body.normalized();
   const Eigen::Vector3d level = ahead_in_body.normalized() - up * up.dot(ahead_in_body.normalized());
   if (level.norm() < kLeastLevel) return {};

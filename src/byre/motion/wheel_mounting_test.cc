@@ -55,8 +55,8 @@ TEST(WheelMounting, TellsTheMotionOfTheBody) {
   EXPECT_LT(angle_between(told.rotation, seen.rotation), 1e-5);
 }
 
-// A base on wheels that roll to all sides, which drives ahead, to the left and turns as it likes. Its rollers slide:
-// it goes less far to the side than they tell.
+// An omnidirectional base that drives ahead, to the left and turns independently. Its rollers slip: it moves less far
+// sideways than they measure.
 std::vector<MotionPair> pairs_of_omni(const Drive& drive, double seconds, double told_of_side, double turning,
                                       double ahead) {
   std::mt19937 random(3);
@@ -87,7 +87,7 @@ TEST(WheelMounting, IsFoundOfABaseThatDrivesToAllSides) {
 
 TEST(WheelMounting, SaysHowWronglyTheSideIsTold) {
   const Drive drive{.base_from_body = camera_on_base()};
-  for (const double ahead : {0.2, 0.6}) {  // the farther it goes ahead, the less the side matters to all of it
+  for (const double ahead : {0.2, 0.6}) {  // the faster it drives ahead, the smaller the effect of the sideways error
     const auto mounting = find_wheel_mounting(pairs_of_omni(drive, 60.0, 1.15, 0.2, ahead));
     ASSERT_TRUE(mounting);
     const Pose told = body_motion(*mounting, {Eigen::Quaterniond::Identity(), {0.0, 1.15, 0.0}});
@@ -129,7 +129,7 @@ TEST(WheelMounting, IsPresumedByASecondOfWay) {
   }
 }
 
-// Turns tell the axis in the end, whatever was presumed of it.
+// Turns determine the axis in the end, whatever was presumed.
 TEST(WheelMounting, IsPresumedAsItTurnsThoughItIsNotUpright) {
   Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.0, 0.0, 1.5});  // lies on its side
@@ -148,7 +148,7 @@ TEST(WheelMounting, IsPresumedToLookAheadBeforeAnythingIsSeen) {
       << "a camera that looks up tells nothing of what is ahead";
 }
 
-// Before it has turned, an accelerometer alone can tell of a camera that lies on its side.
+// Before the first turn, only an accelerometer detects a camera that lies on its side.
 TEST(WheelMounting, IsPresumedByAMeasuredUpThoughTheCameraLiesOnItsSide) {
   Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.0, 0.0, 1.5});

@@ -17,7 +17,7 @@ constexpr Timestamp kMaxAhead = 250ms;
 // earlier_from_later, along an arc.
 Pose arc_of(const BaseVelocity& velocity, double seconds) {
   const double half = 0.5 * velocity.turning * seconds;
-  const double chord = std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0;  // as a share of the arc
+  const double chord = std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0;  // relative to the arc
   const Eigen::Quaterniond half_turn = rotation_exp({0.0, 0.0, half});
   return {half_turn * half_turn, half_turn * Eigen::Vector3d(velocity.ahead, velocity.left, 0.0) * chord * seconds};
 }
@@ -31,7 +31,7 @@ BaseVelocity mean_of(const BaseVelocity& one, const BaseVelocity& other) {
 
 void WheelTrack::add(const StampedPose& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) return;
-  if (velocity_) breaks_.push_back(sample.time);  // it is of another frame
+  if (velocity_) breaks_.push_back(sample.time);  // velocities have no common frame with poses
   velocity_.reset();
   samples_.push_back(sample);
 }
@@ -55,7 +55,7 @@ void WheelTrack::add(const BaseVelocity& sample) {
   samples_.push_back({sample.time, base});
 }
 
-// Whether it is not known how the base went from one time to the other.
+// Whether the motion of the base between the two times is unknown.
 bool WheelTrack::is_broken(Timestamp earlier, Timestamp later) const {
   const auto next = std::ranges::upper_bound(breaks_, earlier);
   if (next == breaks_.end()) return false;

@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A base that drives as it is told at any time, from and until these seconds.
+// A base with a given velocity over time, between two times in seconds.
 template <typename Velocity>
 void add(WheelTrack& track, double from, double until, double step, const Velocity& velocity) {
   for (double t = from; t <= until + 1e-9; t += step) {
@@ -31,7 +31,7 @@ void expect_at(const Pose& pose, double x, double y, double yaw, double toleranc
 }
 
 TEST(WheelTrack, GoesAlongArcsOfVelocities) {
-  WheelTrack track;  // a quarter of a circle in two seconds, told at 5 Hz
+  WheelTrack track;  // a quarter of a circle in two seconds, sampled at 5 Hz
   add(track, 0.0, 2.0, 0.2, [](double) { return Eigen::Vector3d(0.25 * pi * 2.0, 0.0, 0.25 * pi); });
   expect_at(way(track, 0.0, 2.0), 2.0, 2.0, 0.5 * pi, 1e-9);
   expect_at(way(track, 0.0, 1.0), 2.0 * std::sin(0.25 * pi), 2.0 - 2.0 * std::cos(0.25 * pi), 0.25 * pi, 1e-9);
@@ -47,7 +47,7 @@ TEST(WheelTrack, GoesSidewaysWhereABaseCan) {
   WheelTrack track;
   add(track, 0.0, 2.0, 0.05, [](double) { return Eigen::Vector3d(0.0, -0.3, 0.0); });
   expect_at(way(track, 0.0, 2.0), 0.0, -0.6, 0.0, 1e-9);
-  WheelTrack circling;  // looks at one point while it goes around it
+  WheelTrack circling;  // faces one point while it circles around it
   add(circling, 0.0, 3.0, 0.1, [](double) { return Eigen::Vector3d(0.0, -pi / 6.0, pi / 6.0); });
   expect_at(way(circling, 0.0, 3.0), 1.0, -1.0, 0.5 * pi, 1e-6);
   EXPECT_NEAR(circling.distance(from_seconds(0.0), from_seconds(3.0))->metres, 0.5 * pi, 0.01);
