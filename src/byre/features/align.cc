@@ -6,19 +6,19 @@
 namespace byre {
 namespace {
 
-constexpr int kTemplateSize = 8;  // as of warp_square
+constexpr int kTemplateSize = 8;  // required by warp_square
 
 using Template = CentredTemplate<kTemplateSize>;
 
-// Refills the template with the reference as it would look in the current view. False where it leaves the patch.
+// Refills the template with the reference warped to the current view. False if it leaves the patch.
 bool warp(const Patch& reference, const Eigen::Vector2f& reference_pixel, const Eigen::Matrix2f& reference_from_current,
           Template& warped) {
   constexpr float kHalf = 0.5f * (kTemplateSize - 1);
-  // The warped square lies inside when its corners do. Each coordinate by itself: minCoeff() may pass over a NaN.
+  // The warped square is inside if its corners are. Tests each coordinate, because minCoeff() may ignore a NaN.
   const Eigen::Vector2f reach = reference_from_current.cwiseAbs() * Eigen::Vector2f::Constant(kHalf);
   const Eigen::Array2f low = reference_pixel - reach;
   const Eigen::Array2f high = reference_pixel + reach;
-  constexpr float kSlack = 0.01f;  // allowance for the rounding of places
+  constexpr float kSlack = 0.01f;  // tolerance for rounded positions
   if (!((low >= kSlack).all() && (high <= Patch::kSize - 1 - kSlack).all())) return false;
   const Eigen::Vector2f along_row = reference_from_current.col(0), along_column = reference_from_current.col(1);
   const Eigen::Vector2f first = reference_pixel - kHalf * (along_row + along_column);

@@ -4,8 +4,8 @@
 #include <array>
 #include <cassert>
 
-// The vectorised part of this file is compiled once for each instruction set; eight numbers are worked on side by side
-// whatever a vector holds, so that sums do not depend on it.
+// The vectorised part of this file is compiled once for each instruction set. Sums always use eight lanes, so that they
+// do not depend on the vector length.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/features/align_sums.cc"
 #include <hwy/foreach_target.h>
@@ -21,7 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kLanes = 8;
 using D = hn::CappedTag<float, kLanes>;
 
-// The sum of what is made of each eight numbers, from their index on.
+// Sum of make(index) over vectors, in eight lanes.
 template <int Count, typename Make>
 HWY_INLINE float sum_of(Make make) {
   const D d;
@@ -40,7 +40,7 @@ HWY_INLINE float dot(const float* a, const float* b) {
   return sum_of<Count>([=](int i) { return hn::Mul(hn::LoadU(d, a + i), hn::LoadU(d, b + i)); });
 }
 
-// Takes the mean of the first numbers out of them; those that fill up stay zero.
+// Subtracts the mean from the first Count numbers; the padding stays zero.
 template <int Count>
 HWY_INLINE void centre(float* values) {
   const D d;
@@ -59,7 +59,7 @@ HWY_INLINE void sum_up(const float* centred_template, float sum_of_squares, cons
   HWY_ALIGN float grey[kPadded], x[kPadded], y[kPadded], residual[kPadded];
   const auto half = hn::Set(d, 0.5f);
   for (int row = 0; row < Size; ++row) {
-    // The last eight of a row overlap with the first, so as to stay inside it.
+    // The last eight of a row overlap with the first, to stay inside the row.
     for (int first = 0; first <= Size - kLanes; first += Size == kLanes ? kLanes : Size - kLanes) {
       for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(d))) {
         const float* const at = around + (row + 1) * kStride + 1 + first + lane;
@@ -109,7 +109,7 @@ void warp(const std::uint8_t* pixels, const WarpedPlaces& places, float* values)
   const D d;
   const hn::Rebind<std::int32_t, D> d32;
   const auto low_byte = hn::Set(d32, 0xff);
-  // Neighbours in a row are read with two more bytes, which are not used.
+  // Gathers read two bytes more than are used.
   HWY_ALIGN std::uint8_t read[kSide * kSide + 2] = {};
   std::copy_n(pixels, kSide * kSide, read);
   const auto* const from = reinterpret_cast<const std::int32_t*>(read);
@@ -137,7 +137,7 @@ void warp(const std::uint8_t* pixels, const WarpedPlaces& places, float* values)
   }
 }
 
-// Columns from first on, eight of them, of all rows.
+// Interpolates eight columns, beginning at `first`, of all rows.
 HWY_INLINE void interpolate_columns(const std::uint8_t* pixels, std::ptrdiff_t stride, float right, float below,
                                     int size, float* values) {
   const D d;

@@ -5,44 +5,43 @@
 
 namespace byre {
 
-// Length of an array for so many numbers, with zeros after them until whole vectors are full.
+// Array length for `count` numbers, rounded up to whole vectors. The rest is zero.
 constexpr std::size_t padded(int count) {
   constexpr int kLanes = 8;
   return static_cast<std::size_t>((count + kLanes - 1) / kLanes * kLanes);
 }
 
-// What a step of aligning a template needs of grey values and their slopes x and y, each without its mean; residuals
-// are what the template, at the best gain of the light, leaves of the grey values.
+// Sums of a Gauss-Newton step over grey values and their gradients x and y, each with its mean removed. Residuals: grey
+// values minus the template at the best gain.
 struct AlignSums {
-  float xx = 0.0f, xy = 0.0f, yy = 0.0f;  // products of slopes
+  float xx = 0.0f, xy = 0.0f, yy = 0.0f;  // products of gradients
   float x_residual = 0.0f, y_residual = 0.0f;
   float residual_squares = 0.0f;
   float product = 0.0f;  // grey values times the template
   float squares = 0.0f;  // grey values squared
 };
 
-// The template has no mean, and padded(size * size) values; around are the image's (size + 2)^2, row by row. The same
-// to the last bit on every processor. Precondition: the size is 8 or 10.
+// The template has zero mean, and padded(size * size) values. around: (size + 2)^2 grey values, row by row.
+// Bit-identical on all processors. Precondition: the size is 8 or 10.
 AlignSums align_sums(const float* centred_template, float sum_of_squares, const float* around, int size);
 
-// Takes the mean out of the first size x size of padded(size * size) values, of which those after them are zero and
-// stay so. Returns the sum of their squares then; the same to the last bit on every processor. Precondition: the size
-// is 8 or 10.
+// Subtracts the mean from the first size x size of padded(size * size) values; the others are zero and stay zero.
+// Returns the sum of squares of the result. Bit-identical on all processors. Precondition: the size is 8 or 10.
 float centre_template(float* values, int size);
 
-// A place in an image and the steps to the next one in a row, and in a column.
+// A position in an image, and the steps to the next position in a row and in a column.
 struct WarpedPlaces {
   float x = 0.0f, y = 0.0f;
   float x_along_row = 0.0f, y_along_row = 0.0f;
   float x_along_column = 0.0f, y_along_column = 0.0f;
 };
 
-// Refills 8 x 8 values of an image of 16 x 16 pixels, interpolated at the places; the same to the last bit on every
-// processor. Precondition: a pixel lies to the right of and below each place, or on it.
+// Fills 8 x 8 values of an image of 16 x 16 pixels, interpolated at the positions. Bit-identical on all processors.
+// Precondition: each position has a pixel to the right and below, or is on a pixel.
 void warp_square(const std::uint8_t* pixels, const WarpedPlaces& places, float* values);
 
-// Refills size x size values, interpolated between pixels: so far right of and below the pixels from the first one on.
-// Precondition: the size is 8 to 16; a row and a column more than that can be read.
+// Fills size x size values, interpolated at the offset (right, below) in pixels from each pixel, starting at the first.
+// Preconditions: the size is 8 to 16; one more row and column are readable.
 void interpolate_square(const std::uint8_t* pixels, std::ptrdiff_t stride, float right, float below, int size,
                         float* values);
 

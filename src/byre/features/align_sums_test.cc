@@ -29,7 +29,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-// A template without its mean, and the image around where it is laid.
+// A template with zero mean, and the image around it.
 struct Square {
   explicit Square(int side)
       : size(side), around(drawn_greys((side + 2) * (side + 2))), reference(padded(side * side), 0.0f) {

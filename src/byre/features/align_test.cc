@@ -21,9 +21,9 @@ using testing::Eq;
 
 const Eigen::Vector2f kCentre = Eigen::Vector2f::Constant(Patch::kSize / 2);
 
-// How the current view differs from the reference view of the same corner.
+// Difference of the current view of a corner from the reference view.
 struct Change {
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // place of the corner from the current patch's centre
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // corner relative to the centre of the current patch
   Eigen::Matrix2d reference_from_current = Eigen::Matrix2d::Identity();
   double gain = 1.0;
   double offset = 0.0;  // grey values
@@ -60,10 +60,10 @@ Eigen::Matrix2d turned_and_scaled(double angle, double scale) {
   return scale * Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
 
-// How the alignments of many corners came out.
+// Results of the alignment of many corners.
 struct Score {
   int tried = 0;
-  std::vector<double> errors;  // octave pixels, of each axis of those aligned
+  std::vector<double> errors;  // octave pixels, per axis, of aligned corners
   std::vector<double> errors_by_sigma;
 
   void add(const std::optional<Alignment>& aligned, const Eigen::Vector2d& shift) {
@@ -84,7 +84,7 @@ struct Score {
     return static_cast<double>(inside) / static_cast<double>(errors_by_sigma.size());
   }
 
-  // The error that this share of all is below.
+  // Quantile of the errors.
   double quantile(double share) const {
     std::vector<double> sorted = errors;
     std::sort(sorted.begin(), sorted.end());
@@ -92,7 +92,7 @@ struct Score {
   }
 };
 
-// Aligns all corners of a texture under changes drawn anew for each; shifts are as good predictions leave them.
+// Aligns all corners of a texture under random changes; shifts are as large as errors of good predictions.
 Score align_corners(unsigned seed, const std::function<void(Change&, std::mt19937&)>& draw) {
   const Texture texture(seed, 0.7);
   std::mt19937 random(seed);
@@ -137,7 +137,7 @@ TEST(AlignPatches, TakesOutGainAndOffsetOfTheLight) {
   EXPECT_LE(score.quantile(0.95), 0.05);
 }
 
-// Under strong noise sigma is too small by about half: interpolation blurs the noise that it is estimated from.
+// Under strong noise sigma is too small by about half: interpolation blurs the noise from which it is estimated.
 TEST(AlignPatches, IsExactToItsSigmaUnderNoise) {
   const auto with_noise = [](double noise) {
     return align_corners(4, [=](Change& change, std::mt19937&) { change.noise = noise; });
@@ -261,13 +261,13 @@ TEST(AlignPatches, RefusesWarpsAndPixelsOutOfAllBounds) {
   }
 }
 
-// Whatever is asked, it reads only the patches: a run under the address sanitizer would end here otherwise.
+// Must read only the patches; the address sanitizer detects other reads.
 TEST(AlignPatches, StaysInsideThePatchesUnderArbitraryWarps) {
   std::mt19937 random(14);
   std::uniform_real_distribution<float> entry(-2.5f, 2.5f), coordinate(-4.0f, 20.0f);
   int aligned_count = 0;
   for (unsigned trial = 0; trial < 3000; ++trial) {
-    // On the heap, each for itself, so that what lies beyond them is known to the sanitizer.
+    // Separate heap blocks, so that the sanitizer detects reads beyond them.
     const std::vector<Patch> reference(1, render_patch(Texture(trial)));
     const std::vector<Patch> current(1, render_patch(Texture(trial)));
     Eigen::Matrix2f warp;

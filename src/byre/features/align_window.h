@@ -11,7 +11,7 @@
 
 namespace byre {
 
-// Grey values to read from; does not own them.
+// View of grey values; does not own them.
 struct GreyWindow {
   const std::uint8_t* pixels = nullptr;
   std::ptrdiff_t stride = 0;
@@ -19,14 +19,13 @@ struct GreyWindow {
   int height = 0;
 };
 
-// Refills `values` with Size x Size grey values, interpolated so that their middle lies at centre. False where they
-// leave the window.
+// Fills `values` with Size x Size interpolated grey values centred at `centre`. False if they exceed the window.
 template <int Size, std::size_t Count>
 bool sample(const GreyWindow& window, const Eigen::Vector2f& centre, std::array<float, Count>& values) {
   static_assert(Count >= Size * Size);
   const float left = centre.x() - 0.5f * (Size - 1);
   const float top = centre.y() - 0.5f * (Size - 1);
-  // Before the conversion to int, which is defined only for what fits.
+  // Checked before the conversion to int, which is undefined out of range.
   if (!(left >= 0.0f && top >= 0.0f)) return false;
   if (!(left < static_cast<float>(window.width - Size) && top < static_cast<float>(window.height - Size))) return false;
   const int column = static_cast<int>(left);
@@ -36,7 +35,7 @@ bool sample(const GreyWindow& window, const Eigen::Vector2f& centre, std::array<
   return true;
 }
 
-// A template, whose mean is taken out of it.
+// A template; centre() subtracts its mean.
 template <int Size>
 struct CentredTemplate {
   std::array<float, padded(Size* Size)> values{};
@@ -45,7 +44,7 @@ struct CentredTemplate {
   void centre() { sum_of_squares = centre_template(values.data(), Size); }
 };
 
-// The normal equations of one Gauss-Newton step, with the light's gain and offset eliminated.
+// Normal equations of one Gauss-Newton step, with gain and offset of the brightness eliminated.
 struct AlignStep {
   Eigen::Matrix2f hessian;
   Eigen::Vector2f gradient;
@@ -64,16 +63,16 @@ AlignStep align_step(const CentredTemplate<Size>& reference, const std::array<fl
   return step;
 }
 
-// The position's standard deviation along its worse axis, from the residuals (in place of the unknown image noise).
+// Standard deviation of the position along its worse axis, with the image noise estimated from the residuals.
 template <int Size>
 float position_sigma(const AlignStep& step) {
-  constexpr float kFreedom = Size * Size - 4;  // two of position, gain, offset
+  constexpr float kFreedom = Size * Size - 4;  // two parameters of position, gain, offset
   const float half_trace = 0.5f * step.hessian.trace();
   const float root = std::sqrt(std::max(0.0f, half_trace * half_trace - step.hessian.determinant()));
   return std::sqrt(step.residual_squares / kFreedom / std::max(1e-6f, half_trace - root));
 }
 
-// Gauss-Newton from start until the step is below a fiftieth of a pixel. See align_patches.
+// Gauss-Newton from start until the step is below 0.02 pixels. See align_patches.
 template <int Size>
 std::optional<Alignment> align_window(const CentredTemplate<Size>& reference, const GreyWindow& window,
                                       const Eigen::Vector2f& start, const AlignOptions& options) {

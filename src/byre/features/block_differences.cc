@@ -17,9 +17,9 @@ __m256i load_lanes(const std::uint8_t* low, const std::uint8_t* high) {
   return _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(high), reinterpret_cast<const __m128i*>(low));
 }
 
-// The low lane holds the first eight candidates, the high lane the others. MPSADBW, which Highway has no name for,
-// compares four columns of the block with those of eight neighbouring candidates at once; its immediate says which
-// four, and where in the register the candidates' own begin.
+// The low lane holds the first eight candidates, the high lane the others. MPSADBW, which Highway does not wrap,
+// compares four columns of the block with those of eight neighbouring candidates at once. Its immediate selects the
+// four columns, and the start of the candidates in the register.
 void sum_differences(const std::uint8_t* block, std::ptrdiff_t block_stride, const std::uint8_t* candidates,
                      std::ptrdiff_t candidates_stride, std::uint16_t* sums_of_candidates) {
   static_assert(kBlockColumns == 16 && kBlockCandidates == 16);
@@ -40,7 +40,7 @@ void sum_differences(const std::uint8_t* block, std::ptrdiff_t block_stride, con
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A lane for each candidate: one column of the block is compared with that of all of them at once.
+// One lane per candidate: one column of the block is compared with all candidates at once.
 void sum_differences(const std::uint8_t* block, std::ptrdiff_t block_stride, const std::uint8_t* candidates,
                      std::ptrdiff_t candidates_stride, std::uint16_t* sums_of_candidates) {
   static_assert(kBlockCandidates == 16);

@@ -9,9 +9,9 @@
 namespace byre {
 namespace {
 
-constexpr int kSearchRadius = 2;   // pixels, half the side of the square that a corner's depth is taken from
-constexpr double kMinShare = 0.4;  // least share of that square that shows one surface
-constexpr double kMaxGap = 0.03;   // gap between neighbours in depth on one surface, as a share of the depth
+constexpr int kSearchRadius = 2;   // pixels, half the side of the square sampled around a corner
+constexpr double kMinShare = 0.4;  // least share of that square on one surface
+constexpr double kMaxGap = 0.03;   // largest depth step between samples of one surface, relative to the depth
 
 // A depth near a keypoint.
 struct Sample {
@@ -19,14 +19,14 @@ struct Sample {
   Eigen::Vector2d offset_of_pixel{};  // from the keypoint to the pixel, pixels
 };
 
-// A plane's inverse depth is linear in the image (pixels of the left image as taken).
+// Plane with an inverse depth that is linear in the image (pixels of the original left image).
 struct Surface {
   double inverse_depth = 0.0;  // inverse depth at the keypoint, per metre
   Eigen::Vector2d slope;       // change of the inverse depth per pixel
   double residual = 0.0;       // root mean square, per metre
 };
 
-// All depths in the square around the pixel, the nearest first.
+// All depths in the square around the pixel, nearest first.
 std::vector<Sample> samples_around(const Eigen::Vector2d& pixel, const std::vector<float>& depths,
                                    const Camera& camera) {
   const int column = static_cast<int>(std::lround(pixel.x()));
@@ -43,7 +43,7 @@ std::vector<Sample> samples_around(const Eigen::Vector2d& pixel, const std::vect
   return samples;
 }
 
-// The samples up to the first gap. Precondition: in the order of depth.
+// Samples up to the first gap. Precondition: sorted by depth.
 std::span<const Sample> nearest_surface(const std::vector<Sample>& samples) {
   const auto is_gap = [&](const Sample& near, const Sample& far) {
     return far.depth - near.depth > kMaxGap * near.depth;
@@ -54,7 +54,7 @@ std::span<const Sample> nearest_surface(const std::vector<Sample>& samples) {
 }
 
 Surface fit_surface(std::span<const Sample> samples) {
-  constexpr double kRidge = 1e-6;  // what keeps the system regular where all samples lie in one row
+  constexpr double kRidge = 1e-6;  // keeps the system regular if all samples are in one row
   Eigen::Matrix3d normal_matrix = kRidge * Eigen::Matrix3d::Identity();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   for (const Sample& sample : samples) {
@@ -95,8 +95,8 @@ std::vector<float> DepthReader::depths_in_left(const DepthImage& image) const {
   return depths;
 }
 
-// Each depth goes to the pixel where the left camera sees it, and to as many beside it as leave no holes between two of
-// the depth camera's; of several the nearest stays.
+// Projects each depth to the left image, and spreads it over as many pixels as avoid holes between neighbours. The
+// nearest depth wins.
 std::vector<float> DepthReader::warped_to_left(const DepthImage& image) const {
   const int spread = static_cast<int>(std::ceil(left_.fx / depth_camera_.camera->fx)) - 1;
   std::vector<float> depths(static_cast<std::size_t>(left_.width) * static_cast<std::size_t>(left_.height), 0.0f);

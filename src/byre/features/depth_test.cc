@@ -23,7 +23,7 @@ Rig rig_of(const Calibration& calibration) {
   return Rectifier(calibration).rig();
 }
 
-// A plane through a point, both in the left camera.
+// A plane through a point, in the left camera's frame.
 struct Plane {
   Eigen::Vector3d point = {0.0, 0.0, 2.0};
   Eigen::Vector3d normal = {0.0, 0.0, -1.0};
@@ -33,7 +33,7 @@ struct Plane {
   }
 };
 
-// What a depth camera at this place sees, where depth_along gives the range along a ray of the left camera's frame.
+// Depth image of a scene; range gives the distance along a ray of the left camera's frame.
 DepthImage render_depth(const Camera& lens, const Pose& left_from_depth, double units_per_metre,
                         const std::function<double(const Eigen::Vector3d&, const Eigen::Vector3d&)>& range) {
   DepthImage image{lens.width, lens.height, {}};
@@ -52,7 +52,7 @@ DepthImage registered_image(const Calibration& calibration, const Plane& plane) 
                       [&](const auto& origin, const auto& direction) { return plane.range(origin, direction); });
 }
 
-// Its depth is the same everywhere, unless some pixels are changed later.
+// The same depth in all pixels; tests change some of them.
 DepthImage even_image(const Camera& lens, std::uint16_t units) {
   return {
       lens.width, lens.height,
@@ -118,7 +118,7 @@ TEST(DepthReader, KnowsASlantedSurfaceLess) {
   const auto upright = read_at(calibration, registered_image(calibration, {}), {79.5, 59.5});
   const auto reading = read_at(calibration, registered_image(calibration, slanted), {79.5, 59.5});
   ASSERT_TRUE(upright && reading);
-  // A pixel aside, inverse depth is tan(angle) / (focal depth) off.
+  // One pixel aside, the inverse depth is off by tan(angle) / (focal depth).
   const double slope = 2.0 / 2.0 * calibration.depth->baseline;
   EXPECT_NEAR(reading->sigma, std::hypot(upright->sigma, slope), 2e-3);
 }
@@ -163,7 +163,7 @@ TEST(DepthReader, LeavesOutAPixelThatFliesBeforeItsSurroundings) {
   EXPECT_TRUE(read_at(calibration, image, {54.0, 40.0}));
 }
 
-// The depth camera sits 6 cm to the right, is turned a little, and has a lens of its own.
+// A depth camera 6 cm to the right, slightly rotated, with other intrinsics.
 class DepthBesideColour : public testing::Test {
  protected:
   DepthBesideColour() : calibration_(with_depth(colour_lens())) {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// The vectorised part of this file is compiled once for each instruction set; not for those without arrays of vectors.
+// The vectorised part of this file is compiled once for each instruction set that supports arrays of vectors.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/features/descriptor.cc"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kPairs = 256;
 
-// Adds up rows of 32 pixels, each weighed by column and by row.
+// Adds up rows of 32 pixels, weighted by column and by row.
 void add_moments(const std::uint8_t* pixels, std::ptrdiff_t stride, int rows, const std::int16_t* by_column,
                  const std::int16_t* by_row, int* moments) {
   constexpr std::size_t kColumns = 32;
@@ -40,7 +40,7 @@ void add_moments(const std::uint8_t* pixels, std::ptrdiff_t stride, int rows, co
   moments[1] = hn::GetLane(hn::SumOfLanes(d32, hn::Add(y, more_y)));
 }
 
-// Offsets of the pattern's points once they are turned, from the pixel a number of bytes before the middle.
+// Byte offsets of the rotated pattern's points from the pixel `before_middle` bytes before the centre.
 void turn_pattern(const float* x, const float* y, float cosine, float sine, int stride, int before_middle,
                   std::uint32_t* offsets) {
   const hn::CappedTag<float, 16> d;
@@ -57,7 +57,7 @@ void turn_pattern(const float* x, const float* y, float cosine, float sine, int 
   }
 }
 
-// A bit for each pair: whether the first is darker.
+// One bit per pair: whether the first is darker.
 void compare_pairs(const std::uint8_t* first, const std::uint8_t* second, std::uint64_t* words) {
   const hn::CappedTag<std::uint8_t, 64> d;
   std::uint8_t bits[kPairs / 8 + 8];
@@ -85,7 +85,7 @@ HWY_EXPORT(compare_pairs);
 
 constexpr int kDiscRadius = 15;
 
-// Half-widths of the disc's rows, symmetric about the diagonal so that the sum is too.
+// Half-widths of the disc's rows, symmetric about the diagonal.
 std::array<int, kDiscRadius + 1> disc_rows() {
   std::array<int, kDiscRadius + 1> half_width{};
   const int diagonal = static_cast<int>(std::floor(kDiscRadius * std::sqrt(0.5) + 1.0));
@@ -101,8 +101,7 @@ std::array<int, kDiscRadius + 1> disc_rows() {
   return half_width;
 }
 
-// What each pixel of a square about the disc counts for in its moments; nothing outside the disc. Rows are as wide as
-// vector registers.
+// Weights of the pixels of a square in the disc's moments; zero outside the disc. Rows are as wide as vector registers.
 struct DiscWeights {
   static constexpr int kRows = 2 * kDiscRadius + 1;
   static constexpr int kColumns = 2 * kDiscRadius + 2;
@@ -125,7 +124,7 @@ DiscWeights disc_weights() {
   return weights;
 }
 
-// The pattern's points split by coordinate: the first of each pair, then the second.
+// The pattern's points by coordinate: first the first points of all pairs, then the second points.
 struct PatternColumns {
   std::array<float, 512> x;
   std::array<float, 512> y;

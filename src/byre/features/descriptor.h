@@ -8,7 +8,7 @@
 
 namespace byre {
 
-// Octave pixels around a keypoint that its orientation and its descriptor read.
+// Radius of the image region that orientation and descriptor of a keypoint read, octave pixels.
 inline constexpr int kDescriptorRadius = 19;
 
 // Direction from a pixel to the intensity centroid of the disc of radius 15 about it (Rublee 2011), radians.

@@ -30,7 +30,7 @@ const std::uint8_t* at(const cv::Mat& image, const cv::Point2f& pixel) {
 }
 
 struct OrbFeatures {
-  std::vector<cv::KeyPoint> keypoints;  // keypoints on whole pixels: only one octave
+  std::vector<cv::KeyPoint> keypoints;  // on whole pixels, because there is one octave
   cv::Mat descriptors;
 
   Descriptor descriptor(std::size_t i) const {
@@ -78,7 +78,7 @@ TEST(Orientation, PointsTowardsTheBrightSide) {
   }
 }
 
-// Without vectors.
+// Reference implementation without vectors.
 Descriptor described_plainly(const std::uint8_t* blurred_centre, std::ptrdiff_t stride, float angle) {
   const float cosine = std::cos(angle), sine = std::sin(angle);
   const auto grey = [&](std::size_t point) {
@@ -103,8 +103,8 @@ TEST(Describe, IsToTheLastBitWhatPlainCodeGives) {
   }
 }
 
-// The pattern's rotated points are rounded to pixels: one whose last digit differs, because a fused multiply-add rounds
-// once, may fall on the next pixel. So few bits may differ, of few descriptors.
+// Rotated points of the pattern are rounded to pixels. A fused multiply-add rounds only once, so that a point may fall
+// on the next pixel: a few bits of a few descriptors may differ.
 TEST(Describe, AgreesWithOrbAtTheSameAngle) {
   const cv::Mat image = textured_image();
   const cv::Mat blurred = blur(image);

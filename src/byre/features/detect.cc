@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Squares of the level inside its border, row by row; those of the last row and column are cut off.
+// Squares of the level inside its border, row by row; the last row and column may be cut off.
 struct CellGrid {
   cv::Rect area;
   int cell_size;
@@ -30,7 +30,7 @@ cv::Rect searched_area(const cv::Mat& level, int border) {
   return {border, border, level.cols - 2 * border, level.rows - 2 * border};
 }
 
-// What orders corners, smallest first: the square they lie in, then strength, then row and column.
+// Sort key of corners, smallest first: square, then decreasing strength, then row and column.
 using Key = std::uint64_t;
 
 constexpr unsigned kPlaceBits = 16, kStrengthShift = 2 * kPlaceBits, kSquareShift = kStrengthShift + 8;
@@ -47,12 +47,12 @@ Corner corner_of(Key key) {
           static_cast<float>(255 - static_cast<int>(key >> kStrengthShift & 0xff))};
 }
 
-// Strength, then square.
+// Orders by decreasing strength, then by square.
 Key key_among_equal_ranks(Key key, std::size_t square) {
   return (key >> kStrengthShift & 0xff) << 32U | static_cast<Key>(square);
 }
 
-// Memory of a detection, kept by its thread from one to the next.
+// Thread-local working memory of detections.
 struct Memory {
   std::vector<std::uint8_t> strengths;
   std::vector<std::uint8_t> cell;
@@ -61,10 +61,10 @@ struct Memory {
   std::vector<int> found;
   std::vector<bool> poor;
   std::vector<int> square_of_corner;
-  std::vector<std::size_t> begin;  // where each square begins in `ranked`, and the end
-  std::vector<Key> ranked;         // by square, strongest first
-  std::vector<int> of_rank;        // how many squares have a corner of that rank
-  std::vector<Key> last;           // corners of the last rank that gives any
+  std::vector<std::size_t> begin;  // start of each square in `ranked`, and the end
+  std::vector<Key> ranked;         // sorted by square, strongest first
+  std::vector<int> of_rank;        // number of squares with a corner of that rank
+  std::vector<Key> last;           // corners of the last rank used
 };
 
 Memory& memory_of_thread() {
@@ -72,13 +72,13 @@ Memory& memory_of_thread() {
   return memory;
 }
 
-// Pixels of an image that is used for a while.
+// Temporary image in the given memory.
 cv::Mat scratch_image(std::vector<std::uint8_t>& memory, cv::Size size) {
   memory.resize(std::max(memory.size(), static_cast<std::size_t>(size.area())));
   return {size, CV_8U, memory.data()};
 }
 
-// Corners of one cell at the lower threshold, each stronger than its neighbours in the cell.
+// Corners of one cell at the lower threshold; local maxima within the cell.
 void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, std::vector<std::uint8_t>& memory,
                  std::vector<Corner>& corners) {
   cv::Mat widened = scratch_image(memory, {cell.width + 2, cell.height + 2});
@@ -93,7 +93,7 @@ void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, 
   }
 }
 
-// Looks again, with the lower threshold, into the cells that gave less than their share of the corners wanted.
+// Searches the cells with less than their share of corners again, at the lower threshold.
 void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options, Memory& memory) {
   std::vector<Corner>& corners = memory.corners;
   const CellGrid grid{searched_area(strengths, options.border), options.cell_size};
@@ -112,14 +112,14 @@ void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOp
   for (std::size_t i = 0; i < grid.size(); ++i) {
     poor[i] = static_cast<double>(found[i]) * grid.area.area() < static_cast<double>(max_corners) * grid.cell(i).area();
   }
-  // Corners of poor cells are found again.
+  // The second search finds the corners of these cells again.
   std::erase_if(corners, [&](const Corner& corner) { return poor[cell_of(corner)]; });
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (poor[i]) search_cell(strengths, grid.cell(i), options.min_fast_threshold, memory.cell, corners);
   }
 }
 
-// Refills `ranked`, and where each of the squares begins in it.
+// Refills `ranked`, and the start of each square in it.
 void rank_in_squares(const cv::Size& size, int max_corners, Memory& memory) {
   const double area = static_cast<double>(size.width) * size.height;
   const double side = std::max(1.0, std::sqrt(area / std::max(1, max_corners)));
@@ -135,7 +135,7 @@ void rank_in_squares(const cv::Size& size, int max_corners, Memory& memory) {
   }
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   memory.ranked.resize(memory.corners.size());
-  // Each begin moves on to the next one's place.
+  // Each begin advances to that of the next square.
   for (std::size_t i = 0; i < squares.size(); ++i) {
     const int square = squares[i];
     memory.ranked[begin[static_cast<std::size_t>(square) + 1]++] = key_of(memory.corners[i], square);
@@ -147,7 +147,7 @@ void rank_in_squares(const cv::Size& size, int max_corners, Memory& memory) {
   }
 }
 
-// How many corners each square gives, and which of its next ones are taken besides: those before a key.
+// Number of corners that all squares contribute, and the end of the next rank's corners that are also used.
 struct Share {
   std::size_t of_all = 0;
   Key end_of_next = 0;  // see key_among_equal_ranks

@@ -10,17 +10,17 @@ namespace byre {
 
 struct DetectOptions {
   int fast_threshold = 20;     // grey values
-  int min_fast_threshold = 7;  // used in cells that give less than their share of corners at fast_threshold
-  int cell_size = 64;          // octave pixels: of the cells that are looked at again
+  int min_fast_threshold = 7;  // used in cells with less than their share of corners at fast_threshold
+  int cell_size = 64;          // octave pixels; cells of the second search
   int border = 19;             // octave pixels kept free of corners
 };
 
-// FAST-9 corners (Rosten 2006) of one octave, at most max_corners, spread evenly: the image is divided into about as
-// many squares as corners are wanted, each gives its strongest, then its second, until there are enough. Ordered by row
-// of squares; the same image gives the same corners.
+// FAST-9 corners (Rosten 2006) of one octave, at most max_corners, evenly distributed: the image is divided into about
+// max_corners squares; each contributes its strongest corner, then its second, until there are enough. Ordered by row
+// of squares. Deterministic.
 std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options);
 
-// The same; refills `corners`.
+// Same, refills `corners`.
 void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, std::vector<Corner>& corners);
 
 }  // namespace byre

@@ -26,7 +26,7 @@ bool same_corner(const Corner& a, const Corner& b) {
   return a.x == b.x && a.y == b.y && a.response == b.response;
 }
 
-// Corners in each square of the image that lies inside the border.
+// Number of corners in each square inside the border.
 std::vector<int> count_by_square(const std::vector<Corner>& corners, const cv::Size& size, int border, int side) {
   const int columns = (size.width - 2 * border) / side;
   const int rows = (size.height - 2 * border) / side;
@@ -107,7 +107,7 @@ TEST(DetectCorners, LooksAgainWithTheLowThresholdWhereTheImageIsDull) {
 }
 
 TEST(DetectCorners, KeepsTheHighThresholdWhereACellGivesItsShare) {
-  // Each cell of 32 pixels has a bright spot and a faint one, but the cells of the first row have no bright one.
+  // Cells of 32 pixels with a bright spot and a faint one; cells of the first row have no bright one.
   const cv::Mat image = render(230, 230, [](double x, double y) {
     const double u = std::fmod(x - 19.0 + 32.0, 32.0), v = std::fmod(y - 19.0 + 32.0, 32.0);
     const auto spot = [&](double at) { return std::exp(-0.25 * (std::pow(u - at, 2) + std::pow(v - at, 2))); };

@@ -9,14 +9,14 @@
 namespace byre {
 namespace {
 
-constexpr float kTolerable = 3.5f;  // grey values: noise up to which corners and patches do well
-constexpr float kLeft = 2.5f;       // grey values: noise that smoothing leaves
+constexpr float kTolerable = 3.5f;  // grey values: noise that corners and patches tolerate
+constexpr float kLeft = 2.5f;       // grey values: noise remaining after smoothing
 
-// Grey values below black where the square root begins. With it the noise of light, which grows with the root of the
-// light, is much the same in dark and bright places (Anscombe 1948), and windows do not use up what there is of grey.
+// Grey values below black at which the square root begins. Photon noise grows with the root of the intensity, so the
+// root equalises it (Anscombe 1948); it also keeps windows from using up the range of grey values.
 constexpr float kRootBegin = 32.0f;
 
-// What the curve makes of a grey value, for a gain of 1.
+// The curve for a gain of 1.
 float along_root(float grey) {
   return 2.0f * std::sqrt(kRootBegin) * (std::sqrt(std::max(0.0f, grey + kRootBegin)) - std::sqrt(kRootBegin));
 }
@@ -29,9 +29,9 @@ void draw_along_root(float gain, cv::Mat& fine) {
   fine.convertTo(fine, CV_32F, slope, -slope * std::sqrt(kRootBegin));
 }
 
-// The standard deviation of a Gaussian that leaves a share of white noise: 1 / (2 sqrt(pi) sigma), for wide ones.
+// Standard deviation of a Gaussian that leaves this share of white noise: 1 / (2 sqrt(pi) sigma), for wide ones.
 float smoothing_to(float share) {
-  constexpr float kWidest = 2.5f;  // pixels: beyond, there is nothing left to track
+  constexpr float kWidest = 2.5f;  // pixels: wider Gaussians leave nothing to track
   return std::min(kWidest, 1.0f / (2.0f * std::sqrt(std::numbers::pi_v<float>) * share));
 }
 
@@ -39,7 +39,7 @@ float smoothing_to(float share) {
 
 Development development_for(const ImageCondition& condition) {
   constexpr float kDull = 12.0f;      // grey values of contrast
-  constexpr float kLeastSeen = 0.5f;  // grey values of contrast: below there is nothing to bring out
+  constexpr float kLeastSeen = 0.5f;  // grey values of contrast: lower contrast has no signal to amplify
   constexpr float kMaxGain = 8.0f;
   constexpr float kDark = 18.0f;  // grey values of brightness
   constexpr float kGainOfDark = 2.0f;
@@ -49,7 +49,7 @@ Development development_for(const ImageCondition& condition) {
   const float least = development.is_curved ? kGainOfDark : 1.0f;
   development.gain = std::clamp(kDull / condition.contrast, least, kMaxGain);
   if (development.gain > 1.0f && !development.is_curved) {
-    const float brightness = std::clamp(condition.brightness, 64.0f, 192.0f);  // room for what is brought out
+    const float brightness = std::clamp(condition.brightness, 64.0f, 192.0f);  // leaves range for the amplified values
     development.offset = brightness - development.gain * condition.brightness;
   }
   const float noise = development.gain * condition.noise;

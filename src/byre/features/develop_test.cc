@@ -38,7 +38,7 @@ TEST(Development, SmoothsAwayWhatNoiseIsTooMuch) {
   EXPECT_EQ(development.gain, 1.0f);
   cv::Mat fine, smooth;
   develop(development, image, fine, smooth);
-  // Within a field, where there is nothing but noise.
+  // Inside a uniform field, which contains only noise.
   cv::Scalar mean, deviation;
   cv::meanStdDev(smooth(cv::Rect(100, 100, 16, 16)), mean, deviation);
   EXPECT_NEAR(deviation[0], 2.5, 0.8);
@@ -66,7 +66,7 @@ TEST(Development, SmoothsWhatIsDarkAsMuchAsItAmplifiesIt) {
   EXPECT_FALSE(development_for({.brightness = 35.0f, .contrast = 25.0f, .noise = 5.5f}).is_curved);
 }
 
-// That an image becomes what is foretold, and how it was developed.
+// Expects the condition of the developed image to be predicted; returns the development.
 Development expect_foretold(const cv::Mat& image) {
   const ImageCondition condition = measure_condition(to_image(image));
   const Development development = development_for(condition);

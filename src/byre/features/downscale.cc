@@ -6,8 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-// The vectorised part of this file is compiled once for each instruction set; not for those whose vectors are not made
-// of blocks of 16 bytes.
+// The vectorised part of this file is compiled once for each instruction set with vectors made of 16-byte blocks.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/features/downscale.cc"
@@ -19,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace byre::HWY_NAMESPACE {
 namespace {
 
-// A row's pixels, each between two of the source: 128 times its grey value.
+// Interpolates the pixels of a row between two source pixels each: 128 times the grey value.
 void scale_row(const std::uint8_t* source, const Downscale::Group* groups, std::size_t count, std::int16_t* sums) {
   const hn::CappedTag<std::uint8_t, 32> d8;
   const hn::Repartition<std::int16_t, decltype(d8)> d16;
@@ -36,7 +35,7 @@ void scale_row(const std::uint8_t* source, const Downscale::Group* groups, std::
   }
 }
 
-// Grey values between two such rows, whose weights are 2048 together.
+// Interpolates between two such rows, with weights that sum to 2048.
 void blend_rows(const std::int16_t* upper, const std::int16_t* lower, std::int16_t upper_weight,
                 std::int16_t lower_weight, std::size_t width, std::uint8_t* made) {
   const hn::ScalableTag<std::int16_t> d16;
@@ -70,7 +69,7 @@ HWY_EXPORT(blend_rows);
 constexpr int kReadAtOnce = 16;  // pixels of a row
 constexpr float kOne = 2048.0f;  // sum of two weights
 
-// Between two neighbours of a row or column.
+// Interpolation between two neighbours of a row or column.
 struct Place {
   int first = 0;
   int second = 0;
@@ -78,7 +77,7 @@ struct Place {
   std::int16_t second_weight = 0;
 };
 
-// A pixel on the border is its own neighbour.
+// Pixels on the border are their own neighbours.
 Place source_place(int made, double factor, int size) {
   const auto coordinate = static_cast<float>((made + 0.5) * factor - 0.5);
   const float first = std::floor(coordinate);
@@ -95,14 +94,14 @@ Downscale::Downscale(cv::Size source, double factor)
       size_(cv::saturate_cast<int>(source.width * (1.0 / factor)),
             cv::saturate_cast<int>(source.height * (1.0 / factor))) {
   assert(factor > 1.0 && factor <= kMaxFactor && std::min(source.width, source.height) >= kMinSide);
-  const double scale = 1.0 / (1.0 / factor);  // as cv::resize rounds it
+  const double scale = 1.0 / (1.0 / factor);  // rounding of cv::resize
   for (int u = 0; u < size_.width; u += Group::kPixels) {
     Group group;
     group.first = std::min(source_place(u, scale, source.width).first, source.width - kReadAtOnce);
     for (int i = 0; i < Group::kPixels && u + i < size_.width; ++i) {
       const Place place = source_place(u + i, scale, source.width);
       const auto at = static_cast<std::size_t>(i);
-      constexpr std::uint8_t kNothing = 0x80;  // the upper byte of 16 bits
+      constexpr std::uint8_t kNothing = 0x80;  // for the upper byte of 16 bits
       const auto neighbour = [&](int column) { return static_cast<std::uint8_t>(column - group.first); };
       group.neighbours[4 * at] = neighbour(place.first);
       group.neighbours[4 * at + 2] = neighbour(place.second);
@@ -121,7 +120,7 @@ Downscale::Downscale(cv::Size source, double factor)
 void Downscale::apply(const cv::Mat& image, cv::Mat& made) const {
   assert(image.type() == CV_8U && image.size() == source_);
   made.create(size_, CV_8U);
-  thread_local std::array<std::vector<std::int16_t>, 2> sums;  // the two rows made last
+  thread_local std::array<std::vector<std::int16_t>, 2> sums;  // the last two scaled rows
   std::array<int, 2> made_of = {-1, -1};
   for (std::vector<std::int16_t>& row : sums) row.resize(groups_.size() * Group::kPixels);
   const auto sums_of = [&](int row) {

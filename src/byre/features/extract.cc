@@ -43,18 +43,18 @@ void require_size(int width, int height, std::size_t pixels, const Camera& camer
   }
 }
 
-// A header over the image's own pixels; nothing writes through it.
+// Header over the image's own pixels; nothing writes through it.
 cv::Mat as_matrix(const Image& image, const Camera& camera) {
   require_size(image.width, image.height, image.pixels.size(), camera);
   return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
 }
 
-// The right image as the left camera would expose it. Images are compared by their grey values, so that a camera that
-// is much darker than the other would match nothing; small differences are left to what compares.
+// Adapts the exposure of the right image to the left one, because stereo matching compares grey values. Small
+// differences are left to the matching.
 cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, const ImageCondition& of_right) {
-  constexpr float kMinContrast = 1.0f;       // grey values: below there is nothing to bring out
+  constexpr float kMinContrast = 1.0f;       // grey values: lower contrast has no signal to amplify
   constexpr float kAlike = 1.25f;            // ratio of contrasts
-  constexpr float kMaxGain = 6.0f;           // beyond, steps between grey values are what would match
+  constexpr float kMaxGain = 6.0f;           // a larger gain would amplify quantisation steps, which would match
   constexpr float kAlikeBrightness = 25.0f;  // grey values
   if (of_left.contrast < kMinContrast || of_right.contrast < kMinContrast) return right;
   const float ratio = of_left.contrast / of_right.contrast;
@@ -67,7 +67,7 @@ cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, con
   return exposed;
 }
 
-// What was measured of each keypoint, where it was.
+// Stores the measured disparities in the keypoints.
 template <typename Measured>
 void take_over(std::span<const std::optional<Measured>> measured, std::span<Keypoint> keypoints) {
   for (std::size_t i = 0; i < measured.size(); ++i) {
@@ -77,7 +77,7 @@ void take_over(std::span<const std::optional<Measured>> measured, std::span<Keyp
   }
 }
 
-// How many features each octave gets: in proportion to its side, finer octaves more.
+// Number of features of each octave, proportional to its side length.
 std::array<int, kOctaves> share_out(int max_features) {
   double sum = 0.0;
   for (const float scale : kScaleOfOctave) sum += 1.0 / scale;
@@ -109,7 +109,7 @@ struct Described {
   std::vector<Descriptor> descriptors;
   std::vector<Patch> patches;
 
-  // The memory stays, as frames are much alike.
+  // Keeps the memory for the next frame.
   void clear() {
     keypoints.clear();
     descriptors.clear();
@@ -117,12 +117,12 @@ struct Described {
   }
 };
 
-// What an image is like once it is developed.
+// Predicted condition of the developed image.
 ImageCondition condition_of_developed(const ImageCondition& of_original) {
   return condition_after(development_for(of_original), of_original);
 }
 
-// An image as features are looked for in it.
+// An image prepared for feature detection.
 struct Developed {
   cv::Mat image;
   ImageCondition condition;
@@ -139,8 +139,8 @@ struct Developed {
   }
 
  private:
-  cv::Mat fine_;  // memory, see develop()
-  cv::Mat own_;   // the rectified image may be that of the caller
+  cv::Mat fine_;  // working memory, see develop()
+  cv::Mat own_;   // own memory, because the caller may own the rectified image
 };
 
 struct Extractor::State {
@@ -161,7 +161,7 @@ struct Extractor::State {
   std::array<cv::Mat, kOctaves> blurred;
   std::array<std::vector<Corner>, kOctaves> corners_of_octave;
   std::array<Described, kOctaves> described;
-  std::vector<Keypoint> keypoints;  // all octaves, the finest first; memory, as what follows
+  std::vector<Keypoint> keypoints;  // all octaves, the finest first; working memory as the next members
   std::vector<Descriptor> descriptors;
   SharedPool<std::vector<Patch>> patches_of_frames;
   SharedPool<Features> features_of_frames;
@@ -176,8 +176,8 @@ struct Extractor::State {
   void time_rows();
 };
 
-// Both images rectified and developed, at every octave, and what they are like as they came. The right one is exposed
-// as the left one is, which is known once both have been measured.
+// Rectified and developed pyramids of both images, and the condition of the original images. The exposure of the right
+// image follows the left one, so it needs the conditions of both.
 void Extractor::State::prepare(const ImageFrame& images, bool stereo, Frame& frame) {
   const cv::Mat left_image = as_matrix(images.left, calibration.left);
   const cv::Mat right_image = stereo ? as_matrix(*images.right, calibration.right->camera) : cv::Mat();
@@ -229,7 +229,7 @@ void Extractor::State::describe_octave(int octave, int quota) {
   }
 }
 
-// All octaves, one after the other. Returns the patches.
+// Describes all octaves. Returns the patches.
 std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all() {
   const std::array<int, kOctaves> quota = share_out(options.max_features);
   threads.run(kOctaves, [&](int octave) { describe_octave(octave, quota[static_cast<std::size_t>(octave)]); });

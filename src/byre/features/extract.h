@@ -11,28 +11,28 @@
 
 namespace byre {
 
-// Which matches are refined in the image to a fraction of a pixel. Anything less than all is for comparison.
-enum class Refinement : std::uint8_t { none, stereo, all };  // stereo: left to right only; all: over time too
+// Matches to refine to sub-pixel accuracy. Settings other than all are for comparison.
+enum class Refinement : std::uint8_t { none, stereo, all };  // stereo: only left to right; all: also over time
 
 std::string_view name_of(Refinement refinement);
 
 struct ExtractOptions {
   int max_features = 1000;
   int fast_threshold = 20;     // grey values
-  int min_fast_threshold = 7;  // used where the image is dull
+  int min_fast_threshold = 7;  // used in dull parts of the image
   Refinement refinement = Refinement::all;
   DepthOptions depth{};
-  int threads = 2;  // threads at work on one frame, the caller's too; what is extracted does not depend on them
+  int threads = 2;  // threads per frame, including the caller's; does not affect the result
 };
 
 // Wall time of the stages of one extraction, seconds.
 struct ExtractTimes {
-  double rectify = 0.0;  // with the pyramids
+  double rectify = 0.0;  // includes the pyramids
   double extract = 0.0;  // corners, descriptors, patches
-  double stereo = 0.0;   // matching left to right, or reading depths
+  double stereo = 0.0;   // stereo matching, or reading depths
 };
 
-// Which images of a stereo frame are looked at.
+// Images of a stereo frame to use.
 enum class ImagesUsed : std::uint8_t { all, left };
 
 struct Extraction {
@@ -40,25 +40,24 @@ struct Extraction {
   ExtractTimes times;
 };
 
-// The front end of one camera rig: pixels in, an immutable Frame out. Keeps its working memory and its threads between
-// calls; use one from one thread at a time.
+// Front end of one camera rig: turns images into an immutable Frame. Keeps working memory and threads between calls.
+// Not thread-safe.
 class Extractor {
  public:
-  // Throws InputError when the calibration cannot be rectified.
+  // Throws InputError if the calibration cannot be rectified.
   Extractor(const Calibration& calibration, const ExtractOptions& options);
   ~Extractor();
   Extractor(Extractor&&) noexcept;
   Extractor& operator=(Extractor&&) noexcept;
 
-  const Rig& rig() const;  // the ideal rig whose pixels the features are given in
+  const Rig& rig() const;  // the ideal rig of the features' pixels
 
-  // Rectifies, detects, describes and, where there is a right image, matches left to right; where there is a depth
-  // image, its depths become disparities. A frame of a stereo rig without either has no disparities.
-  // used: a right image that is there may be left alone. Throws InputError when an image's size is not the
-  // calibration's.
+  // Rectifies, detects and describes. A right image yields disparities by stereo matching, a depth image by its depths.
+  // Without either, a frame has no disparities.
+  // used: left ignores the right image. Throws InputError if the size of an image differs from the calibration.
   Extraction extract(const ImageFrame& images, ImagesUsed used = ImagesUsed::all);
 
-  // Lets its working memory go, which the next frame makes again: for when there is none for long.
+  // Frees the working memory before a long pause; the next frame allocates it again.
   void rest();
 
  private:

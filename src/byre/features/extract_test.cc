@@ -28,7 +28,7 @@ Calibration ideal_pair() {
           Pose{}};
 }
 
-// What two cameras see of a textured wall, a plane z = depth of the left camera frame.
+// A textured wall seen by two cameras: the plane z = depth of the left camera frame.
 struct Wall {
   Texture texture;
   double depth = 2.0;               // metres

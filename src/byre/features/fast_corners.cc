@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// The vectorised part of this file is compiled once for each instruction set; not for those without arrays of vectors.
+// The vectorised part of this file is compiled once for each instruction set that supports arrays of vectors.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/features/fast_corners.cc"
@@ -23,10 +23,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kCircle = 16;
 
-// The largest of the smallest values of nine neighbours on the circle, and the smallest of their largest ones.
+// Over all arcs of nine contiguous values on the circle: the largest minimum and the smallest maximum.
 template <class V>
 HWY_INLINE void find_extreme_arcs(const V* on_circle, V& least_of_brightest, V& most_of_darkest) {
-  // Extremes of two, four and eight neighbours from each second place of the circle on.
+  // Extremes of two, four and eight contiguous values, from every second position of the circle.
   V low_two[kCircle], high_two[kCircle], low_four[kCircle], high_four[kCircle];
   for (std::size_t i = 1; i < kCircle; i += 2) {
     low_two[i] = hn::Min(on_circle[i], on_circle[(i + 1) % kCircle]);
@@ -39,7 +39,7 @@ HWY_INLINE void find_extreme_arcs(const V* on_circle, V& least_of_brightest, V& 
   for (std::size_t i = 1; i < kCircle; i += 2) {
     const V low_eight = hn::Min(low_four[i], low_four[(i + 4) % kCircle]);
     const V high_eight = hn::Max(high_four[i], high_four[(i + 4) % kCircle]);
-    // The ninth lies before or after.
+    // The ninth value is before or after these.
     const V before = on_circle[i - 1], after = on_circle[(i + 8) % kCircle];
     const V low = hn::Min(low_eight, hn::Max(before, after)), high = hn::Max(high_eight, hn::Min(before, after));
     least_of_brightest = i == 1 ? low : hn::Max(least_of_brightest, low);
@@ -47,7 +47,7 @@ HWY_INLINE void find_extreme_arcs(const V* on_circle, V& least_of_brightest, V& 
   }
 }
 
-// Strengths of neighbouring pixels, at least as many as a vector's lanes; offsets lead from a pixel to its circle.
+// Strengths of at least as many neighbouring pixels as a vector has lanes. offsets: from a pixel to its circle.
 void measure_row(const std::uint8_t* pixels, const std::ptrdiff_t* offsets, std::size_t count, std::uint8_t threshold,
                  std::uint8_t* strengths) {
   const hn::CappedTag<std::uint8_t, 32> d;
@@ -55,11 +55,11 @@ void measure_row(const std::uint8_t* pixels, const std::ptrdiff_t* offsets, std:
   const std::size_t lanes = hn::Lanes(d);
   const auto limit = hn::Set(d, threshold);
   for (std::size_t x = 0; x < count; x += lanes) {
-    // The last ones overlap with those before, so as to stay inside the row.
+    // The last vector overlaps with the previous one, to stay inside the row.
     const std::size_t at = x + lanes <= count ? x : count - lanes;
     const auto centre = hn::LoadU(d, pixels + at);
     const auto neighbour = [&](std::size_t i) { return hn::LoadU(d, pixels + at + offsets[i]); };
-    // Nine neighbours hold one of each two that lie across from each other.
+    // Nine contiguous pixels contain one of each two opposite ones.
     const auto n0 = neighbour(0), n4 = neighbour(4), n8 = neighbour(8), n12 = neighbour(12);
     const auto brighter = hn::SaturatedSub(hn::Min(hn::Max(n0, n8), hn::Max(n4, n12)), centre);
     const auto darker = hn::SaturatedSub(centre, hn::Max(hn::Min(n0, n8), hn::Min(n4, n12)));
@@ -76,8 +76,8 @@ void measure_row(const std::uint8_t* pixels, const std::ptrdiff_t* offsets, std:
   }
 }
 
-// Which of a row's pixels are stronger than the threshold and than their neighbours. There is no branch to be guessed:
-// in most places the guess would be as good as drawn.
+// Pixels of a row that are stronger than the threshold and than their neighbours. Branchless, because branch prediction
+// would fail about as often as not.
 template <class D, class V>
 HWY_INLINE hn::Mask<D> peaks_among(D d, const std::uint8_t* strengths, std::ptrdiff_t stride, V limit) {
   const auto centre = hn::LoadU(d, strengths);
@@ -90,8 +90,8 @@ HWY_INLINE hn::Mask<D> peaks_among(D d, const std::uint8_t* strengths, std::ptrd
   return hn::Gt(centre, hn::Max(around, limit));
 }
 
-// Marks, a bit each and the first one lowest, those of a row's first pixels. At least as many pixels as a vector has
-// lanes; writes whole words.
+// Sets one bit per pixel of a row that is a peak, the first pixel in the lowest bit. Needs at least as many pixels as a
+// vector has lanes; writes whole words.
 void mark_peaks(const std::uint8_t* strengths, std::ptrdiff_t stride, std::size_t count, std::uint8_t threshold,
                 std::uint64_t* marks) {
   const hn::CappedTag<std::uint8_t, 32> d;
@@ -104,7 +104,7 @@ void mark_peaks(const std::uint8_t* strengths, std::ptrdiff_t stride, std::size_
   }
   for (std::size_t byte = x / 8; byte % 8 != 0 || 8 * byte < count; ++byte) bytes[byte] = 0;
   if (x == count) return;
-  // The last ones overlap with those before, so as to stay inside the row.
+  // The last vector overlaps with the previous one, to stay inside the row.
   const std::size_t at = count - lanes;
   std::uint8_t last[8] = {};
   hn::StoreMaskBits(d, peaks_among(d, strengths + at, stride, limit), last);

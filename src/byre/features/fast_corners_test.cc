@@ -18,10 +18,10 @@ cv::Mat noise_to_search(int width, int height, double blur) {
   return image;
 }
 
-// By OpenCV's detector: one more than the response of its corners.
+// Strengths by OpenCV's detector: its response plus one.
 cv::Mat expected_strengths(const cv::Mat& image, const cv::Rect& area, int threshold) {
   std::vector<cv::KeyPoint> corners;
-  // Without suppression OpenCV tells no responses: each pixel is asked for alone.
+  // OpenCV reports responses only with non-maximum suppression, so each pixel is tested alone.
   cv::Mat expected = cv::Mat::zeros(image.size(), CV_8U);
   for (int y = area.y; y < area.y + area.height; ++y) {
     for (int x = area.x; x < area.x + area.width; ++x) {

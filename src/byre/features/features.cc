@@ -19,7 +19,7 @@ std::vector<Item> in_order(std::vector<Item> items, const std::vector<int>& orde
   return sorted;
 }
 
-// Pixels. Small cells make small searches, but there are never many more of them than keypoints.
+// Cell size in pixels. Small cells make searches cheap; the number of cells stays proportional to that of keypoints.
 int cell_size_for(int width, int height, std::size_t keypoints) {
   constexpr double kSmallest = 16.0;
   const double max_cells = 4.0 * static_cast<double>(keypoints) + 256.0;
@@ -33,7 +33,7 @@ std::vector<int> one_each(std::size_t count) {
   return indices;
 }
 
-// The same, in the memory of the vector that it becomes.
+// Same, in the memory of the resulting vector.
 template <typename Item>
 void take_in_order(const std::vector<Item>& items, const std::vector<int>& order, std::vector<Item>& sorted) {
   sorted.clear();
@@ -41,15 +41,15 @@ void take_in_order(const std::vector<Item>& items, const std::vector<int>& order
   for (const int i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
 }
 
-// Keypoints counted and sorted by the cells of a grid; stable, so equal input gives equal output.
+// Keypoints counted and sorted by the cells of a grid; stable, therefore deterministic.
 struct Cells {
   int size = 0;  // pixels
   int columns = 0;
   int rows = 0;
-  // Indices of keypoints. Memory of the thread, used again by the next that are sorted.
+  // Indices of keypoints. Thread-local memory, reused by the next sort.
   std::vector<int>& order;
 
-  // begin becomes Features::cell_begin_, in the memory that it has.
+  // begin becomes Features::cell_begin_, and keeps its memory.
   Cells(int width, int height, const std::vector<Keypoint>& keypoints, std::vector<int>& begin)
       : size(cell_size_for(width, height, keypoints.size())),
         columns((width + size - 1) / size),
@@ -171,7 +171,7 @@ Features Features::with_patches_of(std::span<const int> features) const {
   return result;
 }
 
-// What is looked at together comes first, near each other.
+// Lists that are accessed together come first.
 std::array<std::span<const std::byte>, Features::kLists> Features::lists() const {
   return {std::as_bytes(keypoints()), std::as_bytes(patch_of_keypoint_.view()), std::as_bytes(cell_begin_.view()),
           std::as_bytes(descriptors()), std::as_bytes(patches())};

@@ -25,12 +25,12 @@ std::vector<Keypoint> random_keypoints(int count, unsigned seed) {
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     keypoints[i].pixel = {u(random), v(random)};
     keypoints[i].octave = static_cast<std::uint8_t>(octave(random));
-    keypoints[i].response = static_cast<float>(i);  // names it
+    keypoints[i].response = static_cast<float>(i);  // identifies the keypoint
   }
   return keypoints;
 }
 
-// Descriptor and patch say which keypoint they belong to.
+// Descriptor and patch identify their keypoint.
 Features make_features(const std::vector<Keypoint>& keypoints) {
   std::vector<Descriptor> descriptors;
   std::vector<Patch> patches;

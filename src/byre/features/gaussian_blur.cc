@@ -20,10 +20,10 @@ HWY_BEFORE_NAMESPACE();
 namespace byre::HWY_NAMESPACE {
 namespace {
 
-// 256ths; from the outermost tap to the middle one.
+// Weights in 256ths, from the outermost tap to the middle one.
 constexpr int kTap0 = 18, kTap1 = 34, kTap2 = 48, kTap3 = 56;
 
-// Weighted sums of seven rows, to 65280. Rows are padded so that whole vectors may be read and written.
+// Weighted sums of seven rows, up to 65280. Rows are padded to whole vectors.
 void add_rows(const std::uint8_t* const* rows, std::size_t width, std::uint16_t* sums) {
   const hn::ScalableTag<std::uint16_t> d16;
   const hn::Rebind<std::uint8_t, decltype(d16)> d8;
@@ -34,7 +34,7 @@ void add_rows(const std::uint8_t* const* rows, std::size_t width, std::uint16_t*
   };
   const std::size_t lanes = hn::Lanes(d16);
   for (std::size_t x = 0; x < width; x += lanes) {
-    // The last ones overlap with those before, so as to stay inside the row.
+    // The last vector overlaps with the previous one, to stay inside the row.
     const std::size_t at = x + lanes <= width ? x : width - lanes;
     const auto middle = hn::Mul(hn::PromoteTo(d16, hn::LoadU(d8, rows[3] + at)), hn::Set(d16, kTap3));
     const auto outer = hn::Add(two(0, 6, at, kTap0), two(1, 5, at, kTap1));
@@ -42,8 +42,8 @@ void add_rows(const std::uint8_t* const* rows, std::size_t width, std::uint16_t*
   }
 }
 
-// Weighted sums of seven neighbours in a row, rounded to grey values. sums begins three to the left of the first pixel,
-// and may be read to a vector's width beyond its end.
+// Weighted sums of seven neighbours in a row, rounded to grey values. sums begins three to the left of the first pixel;
+// a vector's width beyond its end is readable.
 void add_columns(const std::uint16_t* sums, std::size_t width, std::uint8_t* blurred) {
   const hn::ScalableTag<std::int16_t> d16;
   const hn::RebindToUnsigned<decltype(d16)> du16;
@@ -53,10 +53,10 @@ void add_columns(const std::uint16_t* sums, std::size_t width, std::uint8_t* blu
   const auto taps01 = repeated_pair(d16, kTap0, kTap1), taps23 = repeated_pair(d16, kTap2, kTap3);
   const auto taps21 = repeated_pair(d16, kTap2, kTap1), tap0 = repeated_pair(d16, kTap0, 0);
   const auto to_signed = hn::Set(du16, 0x8000);
-  // Makes up for it, and rounds.
+  // Compensates to_signed, and rounds.
   const auto offset = hn::Set(d32, 256 * 0x8000 + 0x8000);
   const auto load = [&](std::size_t x) { return hn::BitCast(d16, hn::Xor(hn::LoadU(du16, sums + x), to_signed)); };
-  // Sums at every second pixel from x on, in the upper 16 bits.
+  // Sums at every second pixel from x, in the upper 16 bits.
   const auto every_second = [&](std::size_t x) {
     const auto left = hn::Add(pairwise_sums(d32, load(x), taps01), pairwise_sums(d32, load(x + 2), taps23));
     const auto right = hn::Add(pairwise_sums(d32, load(x + 4), taps21), pairwise_sums(d32, load(x + 6), tap0));
@@ -95,7 +95,7 @@ int mirrored(int i, int size) {
   return i < 0 ? -i : i < size ? i : 2 * size - 2 - i;
 }
 
-// The image's rows and three mirrored columns to either side.
+// Mirrors three columns of the row to either side.
 void mirror_sides(std::uint16_t* sums, std::size_t width) {
   std::uint16_t* const first = sums + kRadius;
   std::uint16_t* const last = first + width - 1;
@@ -115,7 +115,7 @@ void gaussian_blur(const cv::Mat& image, cv::Mat& blurred) {
     return;
   }
   blurred.create(image.size(), CV_8U);
-  constexpr std::size_t kBeyond = 64;  // read, and not used
+  constexpr std::size_t kBeyond = 64;  // read but not used
   thread_local std::vector<std::uint16_t> sums;
   sums.assign(width + 2 * kRadius + kBeyond, 0);
   for (int y = 0; y < image.rows; ++y) {

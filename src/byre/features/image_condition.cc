@@ -12,7 +12,7 @@ namespace byre {
 namespace {
 
 constexpr int kRowStep = 8;
-constexpr int kMargin = 16;  // pixels: how far the other pixel of a pair lies at most, to each side and below
+constexpr int kMargin = 16;  // pixels, largest distance between the pixels of a pair, to each side and below
 
 // Pairs of pixels, near and far, along one direction of the image.
 struct Direction {
@@ -24,7 +24,7 @@ struct Direction {
   std::ptrdiff_t offset(int steps, std::ptrdiff_t stride) const { return steps * (down * stride + right); }
 };
 
-// 2 and 16 pixels apart, or nearly: the diagonals' steps are longer.
+// Distances of 2 and 16 pixels, approximately for the longer steps of the diagonals.
 constexpr std::array<Direction, 4> kDirections = {{{1, 0, 2, 16}, {0, 1, 2, 16}, {1, 1, 1, 11}, {-1, 1, 1, 11}}};
 
 // A structure function (Kolmogorov 1941): the mean squared difference at two distances.
@@ -84,14 +84,14 @@ Light light_of(const Image& image) {
   return {static_cast<float>(sum / count), static_cast<float>(clipped / count)};
 }
 
-// What a second difference in both directions leaves of an image (Immerkaer 1996, Fast noise variance estimation): of
-// noise six times its standard deviation. The lower quartile, as there is texture elsewhere. Clipped pixels have none.
+// Noise by second differences in both directions (Immerkaer 1996, Fast noise variance estimation), which have six times
+// its standard deviation. Uses their lower quartile, because of texture. Clipped pixels are excluded.
 float noise_of(const Image& image) {
   constexpr int kLargest = 8 * 255;
   constexpr std::uint16_t kClipped = kLargest + 1;
   constexpr double kQuartile = 0.3186;  // lower quartile of the magnitude of a normal distribution, in its sigmas
   constexpr double kGain = 6.0;         // root of the sum of the squared weights
-  // Two counts in turns, as the same one cannot be raised twice at once.
+  // Two alternating histograms: incrementing the same one twice in a row would stall.
   std::array<std::array<int, kClipped + 1>, 2> raised{};
   thread_local std::vector<std::int16_t> across;        // second differences between rows
   thread_local std::vector<std::uint16_t> differences;  // second differences in both directions
@@ -124,7 +124,7 @@ float noise_of(const Image& image) {
       below += counts[value];
       continue;
     }
-    // Values are rounded: zero stands for those up to a half, any other for those about it.
+    // Values are rounded: zero represents values up to 0.5, any other value v those from v - 0.5 to v + 0.5.
     const double share = (wanted - below) / counts[value];
     const double quartile = value == 0 ? 0.5 * share : static_cast<double>(value) - 0.5 + share;
     return static_cast<float>(quartile / (kQuartile * kGain));

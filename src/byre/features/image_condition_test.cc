@@ -12,7 +12,7 @@ namespace {
 constexpr int kWallWidth = 376;
 constexpr int kWallHeight = 240;
 
-// Rectangles of all sizes over one another, as edges lie in images of buildings (the dead leaves of Lee 2001).
+// Overlapping rectangles of all sizes, with edges as in images of buildings (dead leaves model, Lee 2001).
 cv::Mat wall_image(double contrast = 0.8) {
   std::mt19937 random(61);
   std::uniform_real_distribution<double> any(0.0, 1.0);
@@ -35,7 +35,7 @@ ImageFault fault_in(const cv::Mat& image) {
   return fault_of(condition_of(image), {});
 }
 
-// The image blurred by a straight motion of so many pixels.
+// The image blurred by a straight motion over a number of pixels.
 cv::Mat motion_blurred(const cv::Mat& image, double pixels, double angle) {
   cv::Mat1f path(31, 31, 0.0f);
   for (double along = -pixels / 2.0; along <= pixels / 2.0; along += 0.05) {

@@ -2,8 +2,8 @@
 
 namespace byre {
 
-// In how many threads OpenCV may work on one image, in the whole process; 1 leaves all work to the calling thread.
-// A frame's stages are too short to be worth handing out, and a pool of threads would compete with mapping.
+// Limits the threads of OpenCV in the whole process; 1 runs all work on the calling thread. The stages of a frame are
+// too short to distribute, and a thread pool would compete with mapping.
 void limit_image_threads(int count);
 
 }  // namespace byre

@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// Bytes of a pixel in the first plane, where there are several.
+// Bytes per pixel in the first plane.
 std::size_t bytes_of_pixel(PixelFormat format) {
   switch (format) {
     case PixelFormat::grey8:
@@ -31,7 +31,7 @@ std::size_t bytes_of_pixel(PixelFormat format) {
   return 0;
 }
 
-// Alignment of numbers of several bytes; 1 for single bytes.
+// Alignment of multi-byte numbers; 1 for single bytes.
 std::size_t alignment_of(PixelFormat format) {
   switch (format) {
     case PixelFormat::grey16:
@@ -65,13 +65,13 @@ int channels_of(PixelFormat format) {
   }
 }
 
-// Not a copy; OpenCV knows no constant pixels.
+// Without a copy; cv::Mat has no const pixels.
 cv::Mat pixels_of(const ImageView& view) {
   return {view.height, view.width, channels_of(view.format), const_cast<void*>(view.data), stride_of(view)};
 }
 
 std::uint16_t units_of(float metres, double units_per_metre) {
-  if (!(metres > 0.0f)) return 0;  // NaN too
+  if (!(metres > 0.0f)) return 0;  // NaN included
   constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
   const double units = std::round(metres * units_per_metre);
   return units <= kMost ? static_cast<std::uint16_t>(units) : 0;

@@ -17,7 +17,7 @@ struct MatchOptions {
   float max_ratio = 0.8f;  // best over second best
 };
 
-// Every feature of first against every one of second; only pairs that are each other's best. Ordered by first.
+// Compares each feature of first with each of second; yields mutual best matches only. Ordered by first.
 std::vector<Match> match_features(const Features& first, const Features& second, const MatchOptions& options);
 
 }  // namespace byre

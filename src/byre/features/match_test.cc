@@ -14,11 +14,11 @@ using testing::IsEmpty;
 
 Features features_of(const std::vector<Descriptor>& descriptors) {
   std::vector<Keypoint> keypoints(descriptors.size());
-  for (Keypoint& keypoint : keypoints) keypoint.pixel = {8.0f, 8.0f};  // one cell: the order stays
+  for (Keypoint& keypoint : keypoints) keypoint.pixel = {8.0f, 8.0f};  // one cell: keeps the order
   return {64, 64, keypoints, descriptors, {}};
 }
 
-// The first count bits set.
+// Descriptor with the first `count` bits set.
 Descriptor with_bits(int count) {
   Descriptor descriptor{};
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) descriptor[i / 64] |= 1ull << (i % 64);
@@ -42,7 +42,7 @@ Descriptor with_flipped_bits(Descriptor descriptor, int count, std::mt19937_64& 
 
 TEST(MatchFeatures, FindsEachDisturbedDescriptorAgain) {
   const auto first = random_descriptors(60, 1);
-  std::vector<Descriptor> second = random_descriptors(20, 2);  // descriptors that first has nothing of
+  std::vector<Descriptor> second = random_descriptors(20, 2);  // unrelated descriptors
   std::mt19937_64 random(3);
   for (const Descriptor& descriptor : first) second.push_back(with_flipped_bits(descriptor, 30, random));
   const auto matches = match_features(features_of(first), features_of(second), {});
@@ -55,7 +55,7 @@ TEST(MatchFeatures, FindsEachDisturbedDescriptorAgain) {
 }
 
 TEST(MatchFeatures, KeepsOnlyPairsThatAreEachOthersBest) {
-  // Both of first are nearest to the only one of second, which is nearest to the latter.
+  // Both features of first are nearest to the only one of second, which is nearest to the latter.
   const auto matches = match_features(features_of({with_bits(0), with_bits(15)}), features_of({with_bits(20)}), {});
   ASSERT_EQ(matches.size(), 1u);
   EXPECT_EQ(matches[0].first, 1);

@@ -1,4 +1,4 @@
-// What the vectorised loops share. Included once for each instruction set: no include guard of the usual kind.
+// Helpers of the vectorised loops. Included once for each instruction set, so it has no usual include guard.
 #if defined(BYRE_FEATURES_PAIRWISE_SUMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BYRE_FEATURES_PAIRWISE_SUMS_INL_H_
 #undef BYRE_FEATURES_PAIRWISE_SUMS_INL_H_
@@ -21,7 +21,7 @@ HWY_INLINE hn::Vec<D32> pairwise_sums(D32 d32, V16 a, V16 b) {
   return hn::RearrangeToOddPlusEven(even, odd);
 }
 
-// Every pair of 16-bit lanes: low, then high.
+// Vector with all pairs of 16-bit lanes set to (low, high).
 template <class D16>
 HWY_INLINE hn::Vec<D16> repeated_pair(D16 d16, int low, int high) {
   const hn::RepartitionToWide<D16> d32;

@@ -3,7 +3,7 @@
 namespace byre {
 
 void build_pyramid(const cv::Mat& image, Pyramid& pyramid) {
-  constexpr int kMinSide = 48;  // pixels: below it no keypoint keeps its distance from the border
+  constexpr int kMinSide = 48;  // pixels; smaller images have no keypoint far enough from the border
   pyramid.levels[0] = image;
   for (std::size_t octave = 1; octave < kOctaves; ++octave) {
     const cv::Mat& finer = pyramid.levels[octave - 1];

@@ -9,14 +9,14 @@
 
 namespace byre {
 
-// The same image at every octave. Pixel x of octave o lies at (x + 0.5) * kScaleOfOctave[o] - 0.5 of the image.
+// Image pyramid. Pixel x of octave o is at (x + 0.5) * kScaleOfOctave[o] - 0.5 of the image.
 struct Pyramid {
-  std::array<cv::Mat, kOctaves> levels;  // 8-bit grey; empty where the image is too small for the octave
-  // To each level from the one before, for images of the size seen last.
+  std::array<cv::Mat, kOctaves> levels;  // 8-bit grey; empty if the image is too small for the octave
+  // Downscales each level from the previous one, for the last image size.
   std::array<Downscale, kOctaves> downscales = {};
 };
 
-// Refills the pyramid in place; its memory is used again. The image itself becomes octave 0 and is not copied.
+// Refills the pyramid in place and reuses its memory. The image becomes octave 0 without a copy.
 void build_pyramid(const cv::Mat& image, Pyramid& pyramid);
 
 inline Eigen::Vector2f full_from_octave(const Eigen::Vector2f& octave_pixel, int octave) {

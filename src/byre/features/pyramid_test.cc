@@ -10,7 +10,6 @@
 namespace byre {
 namespace {
 
-// A bright spot on black.
 cv::Mat blob_image(const cv::Size& size, const Eigen::Vector2d& centre, double sigma) {
   return render(size.width, size.height, [&](double x, double y) {
     return 250.0 * std::exp(-0.5 * (Eigen::Vector2d(x, y) - centre).squaredNorm() / (sigma * sigma));
@@ -63,7 +62,7 @@ TEST(BuildPyramid, TakesTheImageItselfAsOctaveZero) {
 TEST(BuildPyramid, LeavesOctavesEmptyThatTheImageIsTooSmallFor) {
   Pyramid pyramid;
   build_pyramid(cv::Mat(480, 752, CV_8U, cv::Scalar(7)), pyramid);
-  build_pyramid(cv::Mat(70, 90, CV_8U, cv::Scalar(7)), pyramid);  // filled before: no old octave may stay
+  build_pyramid(cv::Mat(70, 90, CV_8U, cv::Scalar(7)), pyramid);  // reuses the pyramid: no old octave may remain
   EXPECT_EQ(pyramid.levels[1].rows, 58);
   for (std::size_t octave = 3; octave < kOctaves; ++octave) EXPECT_TRUE(pyramid.levels[octave].empty()) << octave;
 }

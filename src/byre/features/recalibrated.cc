@@ -13,7 +13,7 @@ Keypoint recalibrated(Keypoint keypoint, const RectifiedChange& change) {
   keypoint.row_offset = static_cast<float>(corner.row_offset);
   keypoint.disparity = static_cast<float>(corner.pixel.z());
   if (keypoint.disparity > 0.0f) return keypoint;
-  keypoint.disparity = keypoint.disparity_sigma = -1.0f;  // beyond infinity: too far away to tell
+  keypoint.disparity = keypoint.disparity_sigma = -1.0f;  // no depth: beyond infinity
   return keypoint;
 }
 
@@ -26,7 +26,7 @@ Features recalibrated(const Features& features, const RectifiedChange& change) {
 }
 
 void recalibrate_into(const Features& features, const RectifiedChange& change, Features& result) {
-  thread_local std::vector<Keypoint> keypoints;  // memory
+  thread_local std::vector<Keypoint> keypoints;  // working memory
   keypoints.assign(features.keypoints().begin(), features.keypoints().end());
   for (Keypoint& keypoint : keypoints) keypoint = recalibrated(keypoint, change);
   result.refill_moved(features, keypoints);

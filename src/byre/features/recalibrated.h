@@ -5,12 +5,12 @@
 
 namespace byre {
 
-// Features as they would be, had their images been rectified by another calibration; in the same order.
+// Features moved as if their images had been rectified with another calibration; in the same order.
 Features recalibrated(const Features& features, const RectifiedChange& change);
-// The same; refills `result`.
+// Same, refills `result`.
 void recalibrate_into(const Features& features, const RectifiedChange& change, Features& result);
 
-// Where a refined left pixel lies after the change.
+// Position of a refined left pixel after the change.
 Eigen::Vector2f recalibrated(const Eigen::Vector2f& pixel, const RectifiedChange& change);
 
 }  // namespace byre

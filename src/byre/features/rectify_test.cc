@@ -57,12 +57,12 @@ Camera equidistant() {
           {0.0034823, 0.00071503, -0.0020532, 0.00020293, 0.0}};
 }
 
-// A lens that sees more than half of all directions: 210 degrees from side to side.
+// A lens with a field of view of 210 degrees.
 Camera beyond_half_space() {
   return {CameraModel::equidistant, 320, 240, 87.3, 87.3, 159.5, 119.5, {0.001, -0.0005, 0.0, 0.0, 0.0}};
 }
 
-// Centred at right_in_left, and turned by a rotation vector.
+// Camera centred at right_in_left, rotated by a rotation vector.
 Pose right_from_left(const Eigen::Vector3d& right_in_left, const Eigen::Vector3d& turn = Eigen::Vector3d::Zero()) {
   const Pose left_from_right{rotation_exp(turn), right_in_left};
   return inverse(left_from_right);
@@ -102,9 +102,10 @@ std::ostream& operator<<(std::ostream& stream, const Case& tested) {
 INSTANTIATE_TEST_SUITE_P(Rectifier, RectifyDistorted, testing::ValuesIn(distorted_pairs()),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-constexpr double kSlope = 40.0;  // grey values a pixel
+constexpr double kSlope = 40.0;  // grey values per pixel
 
-// Grey values that rise along an axis (0: columns, 1: rows), 128 at a place, as far as there are grey values.
+// Linear ramp of grey values along an axis (0: columns, 1: rows), 128 at a position, clipped to the range of grey
+// values.
 cv::Mat ramp_image(const Camera& camera, int axis, double place) {
   cv::Mat image(camera.height, camera.width, CV_8U);
   for (int v = 0; v < camera.height; ++v) {
@@ -114,7 +115,7 @@ cv::Mat ramp_image(const Camera& camera, int axis, double place) {
   return image;
 }
 
-// The source pixel that a rectified image shows at a place, as ramps about the expected one tell.
+// Source pixel of a rectified pixel, measured with ramps about the expected position.
 template <typename Rectify>
 Eigen::Vector2d source_of(const Eigen::Vector2d& pixel, const Camera& camera, const Eigen::Vector2d& expected,
                           Rectify rectify) {
@@ -129,7 +130,7 @@ Eigen::Vector2d source_of(const Eigen::Vector2d& pixel, const Camera& camera, co
   return source;
 }
 
-// Points that a rig sees in both images, in its body frame.
+// Points in the field of view of both cameras, in the body frame.
 std::vector<Eigen::Vector3d> random_points_in_body(const Rig& rig, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> u(0.0, rig.width - 1.0), v(0.0, rig.height - 1.0), depth(0.5, 20.0);
@@ -143,7 +144,7 @@ std::vector<Eigen::Vector3d> random_points_in_body(const Rig& rig, unsigned seed
   return points;
 }
 
-// Pixels are made to a thirty-second of one, and looked up between pixels here, in whole grey values.
+// Maps are quantised to 1/32 pixel, and measured here by interpolation of whole grey values.
 constexpr double kMapPrecision = 0.06;
 
 TEST_P(RectifyDistorted, ShowsPointsWhereTheRigProjectsThem) {
@@ -180,7 +181,7 @@ TEST_P(RectifyDistorted, HasAnOriginalPixelForEachOfTheRig) {
   const Calibration calibration = GetParam().calibration;
   const Rig rig = Rectifier(calibration).rig();
   const Pose left_from_rectified = inverse(calibration.body_from_left) * rig.body_from_camera;
-  constexpr double kSlack = 0.1;  // pixels: the field is found from samples along the border
+  constexpr double kSlack = 0.1;  // pixels: the field is estimated from samples along the border
   const auto inside = [&](const Camera& camera, const Eigen::Vector3d& ray) {
     const auto pixel = camera.project(ray);
     return pixel && pixel->x() > -kSlack && pixel->y() > -kSlack && pixel->x() < camera.width - 1 + kSlack &&
@@ -268,7 +269,7 @@ TEST(Rectifier, GivesAWideLensAFocalLengthThatNeitherBlursNorCropsTooMuch) {
   }
 }
 
-// A white half-plane z = 1, x cos(turn) + y sin(turn) > offset, as the camera sees it; its border is soft.
+// White half-plane z = 1, x cos(turn) + y sin(turn) > offset, seen by the camera, with a soft border.
 cv::Mat image_of_half_plane(const Camera& camera, double turn, double offset) {
   constexpr double kSoftness = 0.04;
   cv::Mat image = cv::Mat::zeros(camera.height, camera.width, CV_8U);
@@ -284,7 +285,7 @@ cv::Mat image_of_half_plane(const Camera& camera, double turn, double offset) {
   return image;
 }
 
-// Where a row of the image turns from dark to bright.
+// Column of a row at which the image changes from dark to bright.
 std::optional<double> crossing(const cv::Mat& image, int row) {
   constexpr double kMiddle = 127.5;
   for (int u = 1; u < image.cols; ++u) {
@@ -362,7 +363,7 @@ TEST(Rectifier, RefusesABaselineThatMustBeInAnotherUnit) {
 }
 
 TEST(Rectifier, RefusesCamerasWhoseFieldsDoNotOverlap) {
-  // Each sees 65 degrees across; turned apart by 80.
+  // Each has a horizontal field of view of 65 degrees; the viewing directions differ by 80.
   EXPECT_NE(refusal(pinhole(), right_from_left({0.1, 0.0, 0.0}, {0.0, 1.4, 0.0})), "accepted");
 }
 

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-// The vectorised part of this file is compiled once for each instruction set; not for those whose vectors are not made
-// of blocks of 16 bytes.
+// The vectorised part of this file is compiled once for each instruction set with vectors made of 16-byte blocks.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/features/remap.cc"
@@ -24,7 +23,7 @@ using D8 = hn::Repartition<std::uint8_t, D16>;
 
 constexpr std::size_t kPixelsOfGroup = 8;
 
-// Bytes that neighbouring groups read in a row: sixteen at each offset.
+// Loads the source bytes of neighbouring groups: sixteen at each offset.
 template <class D>
 HWY_INLINE hn::Vec<D> bytes_at(D d, const std::uint8_t* source, const std::ptrdiff_t* offsets) {
   if constexpr (hn::MaxLanes(D()) == 32) {
@@ -35,14 +34,14 @@ HWY_INLINE hn::Vec<D> bytes_at(D d, const std::uint8_t* source, const std::ptrdi
   }
 }
 
-// How the pixels of as many groups as fill a vector are found in the bytes of a row.
+// Positions and weights of a vector of groups within the bytes of a row.
 struct Columns {
   hn::Vec<D8> left;
   hn::Vec<D8> right;
   hn::Vec<D16> left_weight;
   hn::Vec<D16> right_weight;
 
-  // 32 times the grey values between the two.
+  // Interpolates between the two columns: 32 times the grey value.
   HWY_INLINE hn::Vec<D16> in(hn::Vec<D8> bytes) const {
     const D16 d;
     return hn::Add(hn::Mul(hn::BitCast(d, hn::TableLookupBytesOr0(bytes, left)), left_weight),
@@ -61,7 +60,7 @@ HWY_INLINE Columns columns_of(hn::Vec<hn::RebindToUnsigned<D16>> places) {
           fraction};
 }
 
-// Makes all pixels of the groups, of which there are two at least. No row is read from beyond the last offset.
+// Computes all pixels of at least two groups. Does not read rows beyond the last offset.
 void look_up(const std::uint8_t* source, std::ptrdiff_t stride, std::ptrdiff_t last, const std::int32_t* first,
              const std::uint8_t* rows, const std::uint16_t* places, std::size_t groups, std::uint8_t* made) {
   const D16 d;
@@ -71,7 +70,7 @@ void look_up(const std::uint8_t* source, std::ptrdiff_t stride, std::ptrdiff_t l
   const hn::Rebind<std::uint8_t, D16> d_made;
   const std::size_t at_once = hn::Lanes(d) / kPixelsOfGroup;
   for (std::size_t g = 0; g < groups; g += at_once) {
-    // The last ones overlap with those before.
+    // The last groups overlap with the previous ones.
     const std::size_t at = std::min(g, groups - at_once);
     const auto place = hn::LoadU(du, places + at * kPixelsOfGroup);
     const Columns columns = columns_of(place);
@@ -115,17 +114,17 @@ namespace {
 
 HWY_EXPORT(look_up);
 
-constexpr int kSteps = 32;         // places between two pixels
+constexpr int kSteps = 32;         // positions between two pixels
 constexpr std::size_t kGroup = 8;  // pixels
-constexpr int kBytesAtOnce = 16;   // read of a row for a group
+constexpr int kBytesAtOnce = 16;   // source bytes read per row and group
 constexpr int kMostRows = 4;
 
 struct Neighbours {
-  int pixel = 0;     // with a neighbour after it
-  int fraction = 0;  // 0 to kSteps, of the way to that neighbour
+  int pixel = 0;     // always has a neighbour after it
+  int fraction = 0;  // 0 to kSteps, distance towards that neighbour
 };
 
-// What lies outside is on the outermost pixel.
+// Clamps coordinates to the outermost pixels.
 Neighbours neighbours_of(float coordinate, int size) {
   const float inside = std::min(std::max(coordinate, 0.0f), static_cast<float>(size - 1));
   const int steps = cvRound(inside * kSteps);
@@ -133,14 +132,14 @@ Neighbours neighbours_of(float coordinate, int size) {
   return {steps / kSteps, steps % kSteps};
 }
 
-// The neighbour itself where it is all that counts.
+// A full fraction becomes the next pixel with fraction 0.
 Neighbours without_whole_fraction(const Neighbours& found) {
   return found.fraction == kSteps ? Neighbours{found.pixel + 1, 0} : found;
 }
 
 }  // namespace
 
-// Empty where its pixels do not lie close enough together.
+// Empty if its pixels are too far apart in the source.
 struct Remap::Group {
   bool fits = false;
   std::int32_t first = 0;
@@ -157,7 +156,7 @@ Remap::Group Remap::group_of(const SinglePixel* pixels, cv::Size source) {
   const auto [left, right] = std::ranges::minmax(columns, {}, &Neighbours::pixel);
   const auto [top, bottom] = std::ranges::minmax(rows, {}, &Neighbours::pixel);
   const int row_count = bottom.pixel - top.pixel + 1;
-  // Below the last row there is nothing to read, and nothing that counts.
+  // Rows below the last one are not readable, and have no weight.
   const bool is_last_row = bottom.pixel == source.height - 1;
   const int last = source.area() - kBytesAtOnce;
   const int first = top.pixel * source.width + left.pixel;

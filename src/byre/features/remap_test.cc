@@ -16,7 +16,7 @@ struct Places {
   cv::Mat rows;
 };
 
-// A turned and magnified source, some of it outside.
+// Positions in a rotated and magnified source, some of them outside.
 Places turned(cv::Size size, cv::Size source, float turn = 0.06f) {
   Places places{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F)};
   for (int v = 0; v < size.height; ++v) {
@@ -35,7 +35,7 @@ TEST(Remap, GivesTheValuesOfOpenCv) {
   for (const cv::Size source :
        {cv::Size(160, 120), cv::Size(24, 300), cv::Size(33, 7), cv::Size(2, 2), cv::Size(3, 2)}) {
     for (const cv::Size size : {source, cv::Size(101, 57)}) {
-      // From hardly at all to far, where pixels of a row come from many rows.
+      // From almost no rotation to a large one, with sources of one row in many rows.
       for (const float turn : {0.0f, 0.06f, 0.3f, 0.6f, 2.0f}) {
         const cv::Mat image = white_noise(source, 5);
         const Places places = turned(size, source, turn);

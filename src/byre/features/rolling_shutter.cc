@@ -28,7 +28,7 @@ Features seen_at_once(const Features& features, const Rig& rig, const CameraMoti
 
 void see_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
                  Features& result) {
-  thread_local std::vector<Keypoint> keypoints;  // memory
+  thread_local std::vector<Keypoint> keypoints;  // working memory
   keypoints.assign(features.keypoints().begin(), features.keypoints().end());
   for (Keypoint& keypoint : keypoints) keypoint = seen_at_once(keypoint, rig, motion, readout_time);
   result.refill_moved(features, keypoints);

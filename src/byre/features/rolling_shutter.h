@@ -4,16 +4,16 @@
 
 namespace byre {
 
-// How a camera moved while it took an image, and how far away the scene is.
+// Velocity of a camera during one image, and depth of the scene.
 struct CameraMotion {
   Vector6 velocity = Vector6::Zero();  // per second: exp_pose(velocity * dt) * camera_from_world
-  double depth = 1.0;                  // depth of corners that tell none themselves, in the velocity's unit of length
+  double depth = 1.0;                  // default for corners without disparity, in the velocity's unit of length
 };
 
-// A rolling shutter reads row after row, so that each corner is where the camera was at its row's time: the corners as
-// all of them would be at the time of the middle row. readout_time in seconds, see Calibration.
+// Rolling-shutter correction: moves each corner, seen at the time of its row, to its position at the time of the middle
+// row. readout_time: seconds, see Calibration.
 Features seen_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time);
-// The same; refills `result`.
+// Same, refills `result`.
 void see_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
                  Features& result);
 

@@ -20,7 +20,7 @@ CameraMotion motion() {
   return motion;
 }
 
-// The point as it is seen when its row is read.
+// The point seen at the time of its row.
 Keypoint rolled(bool has_disparity) {
   const Rig rig = rig_of_camera();
   Keypoint keypoint;

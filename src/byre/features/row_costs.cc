@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cstdlib>
 
-// The vectorised part of this file is compiled once for each instruction set; not for those without arrays of vectors.
+// The vectorised part of this file is compiled once for each instruction set that supports arrays of vectors.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "byre/features/row_costs.cc"
@@ -27,7 +27,7 @@ HWY_INLINE std::uint16_t least_lane(hn::Vec<D> values) {
   return *std::min_element(lanes, lanes + hn::Lanes(d));
 }
 
-// Index of the least of the first numbers; those after them are no less.
+// Index of the least of the first numbers; the numbers after them are not smaller.
 std::size_t index_of_least(const std::uint16_t* costs, std::size_t count) {
   const D d;
   auto least = hn::Set(d, 0xffff);
@@ -39,7 +39,7 @@ std::size_t index_of_least(const std::uint16_t* costs, std::size_t count) {
   }
 }
 
-// The least cost between columns from a first one to before a last.
+// Least interpolated cost over the columns [first, last).
 std::uint16_t least_between(const std::uint16_t* costs, std::size_t first, std::size_t last) {
   const D d;
   const auto lanes = static_cast<std::uint16_t>(hn::Lanes(d));

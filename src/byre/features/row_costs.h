@@ -9,16 +9,16 @@ namespace byre {
 // The best of neighbouring columns, and the best of those more than one column away from it.
 struct LeastCosts {
   int best = 0;                                       // column; the first of equal ones
-  int cost = 0;                                       // at its place between the columns
-  int second_cost = std::numeric_limits<int>::max();  // where there is one
+  int cost = 0;                                       // interpolated to the minimum between columns
+  int second_cost = std::numeric_limits<int>::max();  // the maximum if there is none
 };
 
-inline constexpr std::size_t kCostsBeyond = 16;  // numbers after the costs that are written over
+inline constexpr std::size_t kCostsBeyond = 16;  // numbers after the costs that are overwritten
 
-// costs of columns, each below 0xffff. A minimum's cost counts at its place between the columns; the sum of absolute
-// differences grows linearly to both sides of it. On whole columns a repeating pattern would seem unique wherever one
-// of its copies happens to fall on a column. Precondition: there is a column; before the first stands a zero, below
-// which no minimum lies, and after the last there is room for one, and for kCostsBeyond more.
+// costs: one per column, each below 0xffff. Minima are interpolated between columns, because the sum of absolute
+// differences grows linearly on both sides. On whole columns a repetitive pattern would seem unique if one copy happens
+// to fall on a column. Preconditions: at least one column; a zero before the first cost, below which no minimum lies;
+// room after the last for one value and kCostsBeyond more.
 LeastCosts least_costs(std::uint16_t* costs, std::size_t count);
 
 }  // namespace byre

@@ -10,14 +10,14 @@
 namespace byre {
 namespace {
 
-// Costs with a zero to either side, and room after them.
+// Costs with a zero on either side, and room after them.
 std::vector<std::uint16_t> padded_costs(const std::vector<int>& costs) {
   std::vector<std::uint16_t> padded(costs.size() + 2 + kCostsBeyond, 0);
   for (std::size_t i = 0; i < costs.size(); ++i) padded[i + 1] = static_cast<std::uint16_t>(costs[i]);
   return padded;
 }
 
-// Without vectors.
+// Reference implementation without vectors.
 LeastCosts found_plainly(const std::vector<int>& costs) {
   const int count = static_cast<int>(costs.size());
   const auto at = [&](int i) { return i < 0 || i >= count ? 0 : costs[static_cast<std::size_t>(i)]; };

@@ -25,16 +25,16 @@ const std::uint8_t* block(const cv::Mat& level, int x, int y) {
 struct RowMatch {
   int x = -1;
   int cost = std::numeric_limits<int>::max();         // see least_costs
-  int second_cost = std::numeric_limits<int>::max();  // the best that is more than one pixel away
+  int second_cost = std::numeric_limits<int>::max();  // the best more than one pixel away
 
   bool is_unique(float max_ratio) const {
-    // A grey value per pixel: too little to tell candidates apart.
+    // One grey value per pixel: smaller differences do not distinguish candidates.
     constexpr int kAllowance = kBlockColumns * kBlockRows;
     return static_cast<float>(cost + kAllowance) < max_ratio * static_cast<float>(second_cost);
   }
 };
 
-// Costs of neighbouring columns as least_costs reads them.
+// Costs of neighbouring columns, in the layout of least_costs.
 using Costs = std::vector<std::uint16_t>;
 
 // Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row.
@@ -43,16 +43,16 @@ void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int 
   costs.front() = 0;
   const auto stride = [](const cv::Mat& image) { return static_cast<std::ptrdiff_t>(image.step); };
   for (int candidate = first; candidate <= last; candidate += kBlockCandidates) {
-    // The last ones overlap with those before, so as to stay inside the image.
+    // The last candidates overlap with the previous ones, to stay inside the image.
     const int begin = std::max(kLeftReach, std::min(candidate, last + 1 - kBlockCandidates));
     const auto sums = block_differences(block(from, x, y), stride(from), block(to, begin, y), stride(to));
-    // Where there are few columns, some of the sums lie before the first or after the last.
+    // With few columns, some sums are before the first or after the last.
     const int skipped = std::max(0, first - begin);
     std::copy(sums.begin() + skipped, sums.end(), costs.begin() + 1 + (begin + skipped - first));
   }
 }
 
-// The block of `from` at (x, y) searched in `to` over columns [first, last] of the same row.
+// Searches the block of `from` at (x, y) in `to` over the columns [first, last] of the same row.
 RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last) {
   thread_local Costs padded;
   compare_with_row(from, x, y, to, first, last, padded);
@@ -69,12 +69,12 @@ GreyWindow window_of(const cv::Mat& level) {
   return {level.ptr<std::uint8_t>(), static_cast<std::ptrdiff_t>(level.step), level.cols, level.rows};
 }
 
-// Columns of the right (or left) octave that hold the whole block.
+// Clamps a column such that the whole block is inside the octave.
 int clamp_column(const cv::Mat& level, int x) {
   return std::clamp(x, kLeftReach, level.cols - 1 - kRightReach);
 }
 
-// The right column of a left pixel, whole octave pixels, when the match is unique and mutual.
+// Right column of a left pixel, whole octave pixels, if the match is unique and mutual.
 std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x, int y, int max_disparity,
                                 const StereoOptions& options) {
   const RowMatch there = search_row(left, x, y, right, clamp_column(right, x - max_disparity), clamp_column(right, x));
@@ -85,7 +85,7 @@ std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x
   return there.x;
 }
 
-// The match of a left pixel to a right column, octave pixels.
+// Match of a left pixel with a right column, octave pixels.
 struct OctaveMatch {
   float disparity = 0.0f;
   float sigma = 0.0f;
@@ -110,7 +110,7 @@ std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& rig
 
 std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
                                      double max_disparity, const StereoOptions& options) {
-  constexpr float kRoundingSigma = 0.29f;  // standard error of a value rounded to a whole pixel
+  constexpr float kRoundingSigma = 0.29f;  // standard deviation of rounding to whole pixels
   const float scale = kScaleOfOctave[keypoint.octave];
   const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
   const int x = static_cast<int>(std::lround(centre.x()));

@@ -9,10 +9,10 @@
 namespace byre {
 
 struct StereoOptions {
-  double min_depth = 0.3;           // metres: nearer points are not looked for
+  double min_depth = 0.3;           // metres; nearer points are not searched
   double max_width_share = 0.25;    // largest disparity as a share of the image's width
-  float max_ratio = 0.85f;          // best over second best sum of absolute differences, elsewhere on the row
-  float max_vertical_error = 1.2f;  // octave pixels that rectification may be off
+  float max_ratio = 0.85f;          // best over second best sum of absolute differences on the row
+  float max_vertical_error = 1.2f;  // octave pixels, largest row error of the rectification
   float min_similarity = 0.85f;     // similarity of the refined match, see Alignment
   float min_sigma = 0.08f;          // octave pixels
   bool refine = true;               // false: whole octave pixels, for comparison
@@ -21,16 +21,16 @@ struct StereoOptions {
 struct StereoMatch {
   float disparity = 0.0f;   // full-resolution pixels
   float sigma = 0.0f;       // full-resolution pixels
-  float row_offset = 0.0f;  // the right row less the left one, full-resolution pixels
+  float row_offset = 0.0f;  // right row minus left row, full-resolution pixels
 };
 
-// Finds each keypoint in the right image: a search along its row with the sum of absolute differences, unique and
-// the same from right to left, then refined to sub-pixel in the image. One entry per keypoint, empty where unmatched.
-// The keypoints lie on whole octave pixels. Pyramids are those of a rectified pair.
+// Matches each keypoint in the right image: searches its row by the sum of absolute differences, requires a unique and
+// mutual best match, and refines it to sub-pixel accuracy. One entry per keypoint, empty if unmatched. Keypoints are on
+// whole octave pixels. Pyramids are those of a rectified pair.
 std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
                                                      std::span<const Keypoint> keypoints, const StereoOptions& options);
 
-// The same, written where there is room for one entry per keypoint.
+// Same, writes to `matches`, which has one entry per keypoint.
 void match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig, std::span<const Keypoint> keypoints,
                   const StereoOptions& options, std::span<std::optional<StereoMatch>> matches);
 

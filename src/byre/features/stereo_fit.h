@@ -11,32 +11,31 @@
 
 namespace byre {
 
-// How well the images of pairs fit together.
+// Consistency of the two images of stereo pairs.
 struct StereoFit {
   double matched = 0.0;          // share of the left image's features found in the right one, usually 0.4 and more
-  double matched_at_best = 0.0;  // the same in the tenth of the image where it is largest
-  double row_error = 0.0;        // pixels by which they lie off their row, median
+  double matched_at_best = 0.0;  // same in the tenth of the image with the largest share
+  double row_error = 0.0;        // median distance of matches from their row, pixels
 };
 
-// What a pair leaves whose images fit together: such a share of the features is found in the right image, and the
-// median of their rows is off by no more; worn calibrations leave up to 0.7.
+// Limits of consistent pairs: least share of features matched, and largest median row offset. Worn calibrations cause
+// up to 0.7 pixels.
 inline constexpr double kLeastStereoShare = 0.12;
 inline constexpr double kMostRowOffset = 0.8;  // pixels
 
-// Dirt on the lenses hides different parts of what the cameras see. What is left is found as it should be, and on its
-// rows. Where cameras are swapped, out of step or turned, features are found by chance, beside their rows.
+// Dirt on the lenses hides different parts of the two images. The remaining features match in the usual number and on
+// their rows. With swapped, unsynchronised or rotated cameras, features match by chance and off their rows.
 bool is_partly_hidden(const StereoFit& fit);
 
 bool images_fit(const StereoFit& fit);
 
-// The share of features that are found in the right image, by parts of the left one.
+// Share of features matched in the right image, per part of the left image.
 class MatchedByPart {
  public:
-  explicit MatchedByPart(double memory)
-      : memory_(memory) {}  // share of what was counted that is kept for the next pair
+  explicit MatchedByPart(double memory) : memory_(memory) {}  // share of earlier counts that is kept for the next pair
 
   void note(const Features& features, const Rig& rig);
-  double at_best() const;  // in the tenth of the parts where it is largest; 0 where none has enough features
+  double at_best() const;  // in the tenth of the parts with the largest share; 0 without enough features
 
  private:
   static constexpr int kColumns = 8, kRows = 6;
@@ -64,7 +63,7 @@ class CommonRowError {
 
  private:
   static constexpr int kBinsPerPixel = 50;
-  static constexpr int kBins = 9 * kBinsPerPixel;  // matches lie less than 4.5 pixels off their row
+  static constexpr int kBins = 9 * kBinsPerPixel;  // matches are less than 4.5 pixels off their row
 
   std::vector<int> counts_;  // features by region, then by row offset
 };

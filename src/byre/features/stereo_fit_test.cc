@@ -14,7 +14,7 @@ Rig image_of(int width, int height) {
   return rig;
 }
 
-// Features all over an image of 800 x 600 pixels, of which those left of a column are found in the right image.
+// Features all over an image of 800 x 600 pixels; those left of a column are matched in the right image.
 Features found_left_of(float column) {
   std::vector<Keypoint> keypoints;
   for (float v = 10.0f; v < 600.0f; v += 20.0f) {

@@ -27,7 +27,7 @@ Rig stereo_rig() {
   return rig;
 }
 
-// A rectified pair; the left pixel (x, y) lies at (x - disparity, y + vertical_error) in the right image.
+// A rectified pair; the left pixel (x, y) is at (x - disparity, y + vertical_error) in the right image.
 struct Scene {
   std::function<double(double, double)> grey;
   double disparity = 0.0;
@@ -67,7 +67,7 @@ std::vector<Keypoint> keypoints_of(const Pyramid& pyramid, int per_octave) {
   return keypoints;
 }
 
-// How the keypoints of a scene that the right image holds were matched.
+// Results for the keypoints of a scene that are inside the right image.
 struct StereoScore {
   int tried = 0;
   int matched = 0;
@@ -94,7 +94,7 @@ void add_scene(const Scene& scene, StereoScore& score) {
   const auto matches = match_stereo(pair.left, pair.right, stereo_rig(), keypoints, {});
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     const double scale = kScaleOfOctave[keypoints[i].octave];
-    constexpr double kBlock = 10.0;  // octave pixels about the match that must lie in the right image
+    constexpr double kBlock = 10.0;  // octave pixels around the match that must be inside the right image
     if (keypoints[i].pixel.x() - scene.disparity < kBlock * scale) continue;
     ++score.tried;
     if (!matches[i]) continue;
@@ -106,7 +106,7 @@ void add_scene(const Scene& scene, StereoScore& score) {
   }
 }
 
-// Disparities with all fractions of a pixel.
+// Disparities with various fractions of a pixel.
 StereoScore match_textures(double noise, double vertical_error = 0.0) {
   StereoScore score;
   std::uint64_t seed = 30;
@@ -159,8 +159,8 @@ std::size_t count_matches(const Scene& scene, const StereoOptions& options = {})
       std::count_if(matches.begin(), matches.end(), [](const auto& match) { return match.has_value(); }));
 }
 
-// Each candidate on a row is as good as the next, whether the copies fall on whole pixels or between. Only near the
-// left border, where the search ends before the second copy, a match is unique and right.
+// All candidates on a row are equally good, on whole pixels or between. Only near the left border, where the search
+// ends before the second copy, a match is unique and correct.
 TEST(MatchStereo, RejectsARepetitivePattern) {
   for (const double period : {12.0, 16.0, 16.37, 23.7}) {
     const auto dots = [=](double x, double y) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Synthetic images for tests: textures without end that can be looked up between pixels, so that any shift or warp of
-// an image is known exactly.
+// Synthetic images for tests: unbounded textures that can be sampled between pixels, so that any shift or warp of an
+// image is known exactly.
 
 #include "byre/features.h"
 #include "byre/image.h"
@@ -21,7 +21,7 @@ class Texture {
  public:
   explicit Texture(std::uint64_t seed, double contrast = 1.0) : seed_(seed), contrast_(contrast) {}
 
-  // The grey value at a place in pixels; of mean 128, not rounded, mostly within [0, 255].
+  // The grey value at a position in pixels; mean 128, not rounded, mostly within [0, 255].
   double operator()(double x, double y) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < kLayers.size(); ++i) {
@@ -33,14 +33,14 @@ class Texture {
  private:
   struct Layer {
     double spacing;   // pixels between the lattice's points
-    double strength;  // grey values of a lattice point at most
+    double strength;  // largest grey values of a lattice point
   };
   static constexpr std::array<Layer, 4> kLayers = {{{3.7, 110.0}, {6.1, 90.0}, {13.0, 60.0}, {29.0, 50.0}}};
 
-  // In [-1, 1], the same for the same place.
+  // In [-1, 1], deterministic.
   double lattice_value(std::size_t layer, std::int64_t column, std::int64_t row) const {
     std::uint64_t hash = seed_ * 0x9E3779B97F4A7C15u + layer;
-    for (const std::int64_t coordinate : {column, row}) {  // the mixing of splitmix64
+    for (const std::int64_t coordinate : {column, row}) {  // mixing of splitmix64
       hash = (hash ^ static_cast<std::uint64_t>(coordinate)) + 0x9E3779B97F4A7C15u;
       hash = (hash ^ (hash >> 30)) * 0xBF58476D1CE4E5B9u;
       hash = (hash ^ (hash >> 27)) * 0x94D049BB133111EBu;
@@ -78,7 +78,7 @@ inline std::uint8_t to_grey(double value) {
   return cv::saturate_cast<std::uint8_t>(value);
 }
 
-// The image of grey_at(x, y) at whole pixels.
+// Image of grey_at(x, y) at whole pixels.
 template <typename GreyAt>
 cv::Mat render(int width, int height, GreyAt grey_at) {
   cv::Mat image(height, width, CV_8U);
@@ -88,7 +88,7 @@ cv::Mat render(int width, int height, GreyAt grey_at) {
   return image;
 }
 
-// The patch of grey_at(x, y) with (0, 0) in its centre.
+// Patch of grey_at(x, y) centred at (0, 0).
 template <typename GreyAt>
 Patch render_patch(GreyAt grey_at) {
   constexpr int kCentre = Patch::kSize / 2;
@@ -103,7 +103,6 @@ Patch render_patch(GreyAt grey_at) {
   return patch;
 }
 
-// Grey values that are independent of each other.
 inline cv::Mat white_noise(cv::Size size, std::uint32_t seed) {
   cv::Mat image(size, CV_8U);
   std::mt19937 random(seed);
@@ -113,7 +112,7 @@ inline cv::Mat white_noise(cv::Size size, std::uint32_t seed) {
   return image;
 }
 
-// Adds normal noise of a standard deviation in grey values.
+// Adds normal noise; sigma in grey values.
 template <typename Pixels>
 void add_noise(Pixels first, Pixels last, double sigma, std::mt19937& random) {
   std::normal_distribution<double> noise(0.0, sigma);
