@@ -10,7 +10,6 @@
 
 namespace byre {
 
-// The messages of the images of a frame.
 struct BagFrame {
   Timestamp time{};
   BagMessage left;
@@ -21,7 +20,7 @@ struct BagFrames {
   std::vector<BagFrame> frames;
   TimeCorrections corrections;        // corrections of the left images
   SensorClock clock;                  // clock of the left images
-  std::vector<std::string> warnings;  // counts of corrections, and of images without a partner
+  std::vector<std::string> warnings;  // with counts of corrections, and of images without a partner
 };
 
 // Frames of the left images in order of time (timed_messages), each with the right image whose time differs by at most

@@ -15,14 +15,14 @@
 namespace byre {
 namespace {
 
-// How the pixels of an encoding lie, and what makes them grey.
+// Pixel layout of an encoding, and its conversion to grey.
 struct Layout {
   std::string_view encoding;
-  int type = CV_8UC1;  // OpenCV's, of the plane that is looked at
+  int type = CV_8UC1;  // OpenCV's type of the plane that is read
   std::optional<int> to_grey{};
 };
 
-// As sensor_msgs/image_encodings.hpp names them; OpenCV calls a Bayer pattern by its second row.
+// Names of sensor_msgs/image_encodings.hpp; OpenCV names a Bayer pattern by its second row.
 constexpr std::array kLayouts = {
     Layout{"mono8"},
     Layout{"8UC1"},
@@ -46,7 +46,7 @@ constexpr std::array kLayouts = {
     Layout{"bayer_grbg8", CV_8UC1, cv::COLOR_BayerGB2GRAY},
 };
 
-// Only the part of a header that a message's first bytes hold.
+// The beginning of a header, contained in a message's first bytes.
 struct HeaderStamp {
   static constexpr std::string_view kType = ros::Header::kType;
   ros::Time stamp{};
@@ -57,7 +57,7 @@ struct HeaderStamp {
   }
 };
 
-// Bytes of the plane that is looked at; its last row needs no padding.
+// Bytes of the plane that is read; its last row needs no padding.
 std::size_t bytes_needed(const ros::Image& image, int type) {
   const std::size_t row = std::size_t{image.width} * static_cast<std::size_t>(CV_ELEM_SIZE(type));
   return image.step < row ? SIZE_MAX : std::size_t{image.step} * (image.height - 1) + row;
@@ -127,7 +127,7 @@ Timestamp stamp_of(const BagContent& content, const BagMessage& message) {
   try {
     return ros::to_nanoseconds(
         ros::read_message<HeaderStamp>(message.head, *encoding_of(content.topics[message.topic]), "").stamp);
-  } catch (const InputError&) {  // too short to have one
+  } catch (const InputError&) {  // too short for a stamp
     return {};
   }
 }

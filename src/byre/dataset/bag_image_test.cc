@@ -52,7 +52,7 @@ TEST(BagImage, OfSixteenBitsIsReadInEitherOrder) {
 }
 
 TEST(BagImage, OfABayerPatternIsReadByTheRightPattern) {
-  // All red: the red cells are bright, so grey is about 0.299 of them wherever the pattern is read rightly.
+  // A red image: only red cells are bright, so grey is 0.299 of them if the pattern is read correctly.
   const std::vector<std::pair<std::string, std::vector<std::uint8_t>>> red = {{"bayer_rggb8", {200, 0, 0, 0}},
                                                                               {"bayer_bggr8", {0, 0, 0, 200}},
                                                                               {"bayer_grbg8", {0, 200, 0, 0}},

@@ -14,13 +14,13 @@
 namespace byre {
 namespace {
 
-// How a sensor is asked for.
+// Topic of a sensor in the options.
 struct Asked {
   const std::optional<std::string>& topic;  // empty: the only one
   const char* remedy;
 };
 
-// What a topic of these kinds is called in errors.
+// Names of these message types for errors.
 template <ros::Message First, ros::Message... Others>
 std::string kinds() {
   return (std::string(First::kType) + ... + (" or " + std::string(Others::kType)));
@@ -44,7 +44,7 @@ std::size_t choose_topic(const BagContent& content, const Asked& asked, const st
                    asked.remedy);
 }
 
-// What the messages of one topic tell.
+// Samples of the messages of one topic.
 template <ros::Message M, typename Sample>
 std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& place, const SensorClock& images,
                                std::vector<std::string>& warnings) {
@@ -60,7 +60,7 @@ std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& p
       const M read = ros::read_message<M>(bag.read(message), *encoding_of(kind), name);
       if (const auto sample = sample_of(read, time)) samples.push_back(*sample);
     } catch (const InputError&) {
-      // counted with those that hold no numbers
+      // Counted with the non-finite ones.
     }
   }
   if (const std::size_t unusable = timed.messages.size() - samples.size(); unusable > 0) {
@@ -80,7 +80,7 @@ std::vector<WheelSample> read_wheels(Bag& bag, std::size_t topic, const std::str
   return read_topic<ros::Odometry, WheelSample>(bag, topic, place, images, warnings);
 }
 
-// One kind is used of all messages, and may be known by the later ones alone.
+// All messages use one kind, which may only be decided by later ones.
 void take_over_wheels(const std::vector<WheelSample>& wheels, MotionSamples& samples) {
   WheelStream stream;
   for (const WheelSample& sample : wheels) stream.add(sample);

@@ -16,13 +16,13 @@ struct BagMotion {
   std::vector<std::string> warnings;
 };
 
-// Whether messages of a type are needed for what the options ask for, beside images.
+// Whether the options require messages of this type, other than images.
 bool is_of_motion(std::string_view type, const OpenOptions& options);
 
-// What wheels and a gyroscope told, at the times of the messages' headers:
-//   wheels      nav_msgs/Odometry, its poses or, where they never change, its twists; geometry_msgs/TwistStamped or
-//               TwistWithCovarianceStamped; of the topic that the options name; or the file that they name
-//   gyroscope   sensor_msgs/Imu of the topic that they name; of the only one, where they ask for a gyroscope alone
+// Samples of wheels and gyroscope, with header times:
+//   wheels      nav_msgs/Odometry: its poses, or its twists if the poses never change; geometry_msgs/TwistStamped or
+//               TwistWithCovarianceStamped. From the topic or the file that the options name.
+//   gyroscope   sensor_msgs/Imu. From the topic that the options name; from the only one if they name none.
 // place: name of the bag in errors and warnings. Warnings count damaged and non-finite messages, and corrections of
 // times. images: clock of the left images. Throws InputError, with a list of topics of that kind, for an absent topic
 // and if several topics qualify.

@@ -80,7 +80,7 @@ TEST_F(BagMotions, GiveVelocitiesOfWheelsThatTellNothingElse) {
   EXPECT_EQ(Eigen::Vector3d(last.ahead, last.left, last.turning), Eigen::Vector3d(0.6, 0.1, 0.3));
 }
 
-// A driver that leaves poses as they are made, and one that says so by its covariance.
+// A driver with constant default poses, and one that marks them as invalid by their covariance.
 TEST_F(BagMotions, GiveVelocitiesOfOdometryWithoutPoses) {
   std::vector<SceneMessage> messages;
   for (int i = 0; i < 20; ++i) {

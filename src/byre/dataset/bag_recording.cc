@@ -100,12 +100,12 @@ std::optional<ImageFrame> BagRecording::read(int index) {
   return images;
 }
 
-// What a bag says of the cameras, and where.
+// Calibration of the cameras from a bag.
 class BagCalibration {
  public:
   BagCalibration(Bag& bag, std::string place) : bag_(bag), place_(std::move(place)) {}
 
-  // Empty where no camera info goes with the left images.
+  // Empty without camera info for the left images.
   std::optional<PlacedCalibration> read(const ImageTopics& topics) const {
     const std::optional<PlacedCameraInfo> left = info_of(topics.left);
     if (!left) return std::nullopt;
@@ -124,7 +124,7 @@ class BagCalibration {
   }
 
  private:
-  // Empty when it is damaged.
+  // Empty if it is damaged.
   template <ros::Message M>
   std::optional<M> message(const BagMessage& message) const {
     const BagTopic& topic = bag_.content().topics[message.topic];
@@ -135,7 +135,7 @@ class BagCalibration {
     }
   }
 
-  // The first one of the topic that goes with the images.
+  // The first camera info for the topic of images.
   std::optional<PlacedCameraInfo> info_of(std::size_t images) const {
     const BagContent& content = bag_.content();
     const std::string wanted = camera_info_topic(content.topics[images].name);
@@ -176,7 +176,7 @@ PlacedCalibration calibration_of(Bag& bag, const fs::path& path, const ImageTopi
                    "name one (--calibration FILE)");
 }
 
-// Throws InputError where the first images that can be read are of another size than calibrated, or none can be read.
+// Throws InputError if the size of the first readable image differs from the calibration, or none is readable.
 void require_calibrated_size(Bag& bag, const std::vector<BagMessage>& messages, const Camera& camera,
                              const std::string& size, const fs::path& path) {
   std::string first_failure;
@@ -201,7 +201,7 @@ void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, con
   if (cameras.right) require_calibrated_size(bag, right, cameras.right->camera, right_size, path);
 }
 
-// Frames with the images of the cameras that are asked for.
+// Frames with the images of the chosen cameras.
 std::vector<BagFrame> frames_of_choice(std::vector<BagFrame> frames, const PlacedCalibration& calibration,
                                        const std::optional<CameraChoice>& choice) {
   if (calibration.cameras.right) return frames;

@@ -26,7 +26,7 @@ std::string parent_of(const std::string& name) {
   return raw.substr(0, raw.rfind('/') == std::string::npos ? 0 : raw.rfind('/'));
 }
 
-// How much was done to the images before: raw, grey, colour, rectified.
+// Processing stage of the images: raw, grey, colour, rectified.
 int processing(const std::string& name) {
   const std::string raw = without_compressed(name);
   const std::string kind = raw.substr(raw.rfind('/') + 1);
@@ -37,7 +37,7 @@ int processing(const std::string& name) {
   return 2 * steps + (raw == name ? 0 : 1);
 }
 
-// What a left camera's topic may be called in a right camera's place.
+// Possible names of the right camera's topic for a left one.
 std::set<std::string> names_of_right(const std::string& left) {
   using Words = std::pair<std::string_view, std::string_view>;
   constexpr std::array kWords = {Words{"left", "right"},        Words{"Left", "Right"},    Words{"LEFT", "RIGHT"},
@@ -109,7 +109,7 @@ class Chooser {
  private:
   const std::string& name(std::size_t topic) const { return content_.topics[topic].name; }
 
-  // Choices must be kinds of the images of one camera.
+  // Precondition: choices are kinds of the images of one camera.
   ImageTopics least_processed(std::vector<ImageTopics> choices) const {
     for (const ImageTopics& choice : choices) {
       if (parent_of(name(choice.left)) != parent_of(name(choices.front().left))) {

@@ -11,26 +11,26 @@
 
 namespace byre {
 
-// The topics of a recording's images, by their numbers in the bag.
+// Image topics of a recording, by their numbers in the bag.
 struct ImageTopics {
   std::size_t left = 0;
   std::optional<std::size_t> right{};
 };
 
-// Whether a topic is of images that can be a camera's: of a type that is read, with messages, and not of depths.
+// Whether a topic has images of a camera: a supported type, not depths, at least one message.
 bool is_of_images(const BagTopic& topic);
 
-// Whether its images are rectified, as its name tells.
+// Whether the images are rectified, by the name of the topic.
 bool is_rectified(const BagTopic& topic);
 
-// The topics that the options name; where they name none, the only pair whose names differ as those of left and right
-// cameras do, or the only topic of images. Of raw and compressed images of one camera the raw ones are taken, of
-// several kinds the least processed. Throws InputError, listing the topics of images, where that leaves a choice.
+// Image topics: those in the options; else the only pair with names of a left and a right camera, or the only image
+// topic. Raw images are preferred to compressed ones of the same camera, and the least processed kind of several.
+// Throws InputError with a list of the image topics if the choice is ambiguous.
 ImageTopics choose_image_topics(const BagContent& content, const OpenOptions& options,
                                 const std::filesystem::path& bag);
 
-// The topic of the camera info that goes with a topic of images, by its name: "/left/camera_info" for
-// "/left/image_raw" and "/left/image_raw/compressed".
+// The camera info topic for an image topic, by its name: "/left/camera_info" for "/left/image_raw" and
+// "/left/image_raw/compressed".
 std::string camera_info_topic(const std::string& images);
 
 }  // namespace byre

@@ -20,7 +20,7 @@ BagContent bag_of(const std::vector<std::string>& images) {
   return content;
 }
 
-// "left right", or what is wrong.
+// "left right", or the error.
 std::string chosen(const std::vector<std::string>& images, const OpenOptions& options = {}) {
   const BagContent content = bag_of(images);
   std::string names;

@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// OpenCV writes "%YAML:1.0" in the first line, which is no directive of YAML's; a comment keeps the line numbers.
+// OpenCV writes "%YAML:1.0" in the first line, which is an invalid directive; a comment keeps the line numbers.
 std::string readable_yaml(const std::filesystem::path& path) {
   refuse_pipe(path);
   std::ifstream file(path);
@@ -53,7 +53,7 @@ std::string CalibrationFields::place(const std::string& field) const {
 }
 
 YAML::Node CalibrationFields::find(const std::string& field) const {
-  const YAML::Node& fields = node_;  // looked up in a constant node, a name that is missing is not added
+  const YAML::Node& fields = node_;  // constant, because looking up a missing name would add it
   return fields[field];
 }
 

@@ -77,7 +77,7 @@ const std::string kSensor =
 
 class CalibrationFile : public TestFolder {
  protected:
-  // The file with one piece of its text replaced.
+  // The calibration of the file with one piece of its text replaced.
   Calibration read(std::string text, const std::string& old_text = "", const std::string& new_text = "") const {
     if (const std::size_t at = text.find(old_text); at != std::string::npos) {
       text.replace(at, old_text.size(), new_text);

@@ -47,7 +47,7 @@ void read_intrinsics(const CalibrationFields& fields, Camera& camera) {
   require_sense(camera, fields.place("intrinsics"));
 }
 
-// Precondition: the lens distorts.
+// Precondition: the lens has distortion.
 void read_distortion(const CalibrationFields& fields, const std::string& name, Camera& camera) {
   const std::vector<double> coefficients = fields.numbers(name);
   const bool has_k3 = camera.model == CameraModel::radial_tangential && coefficients.size() == 5;
@@ -55,7 +55,7 @@ void read_distortion(const CalibrationFields& fields, const std::string& name, C
   std::copy(coefficients.begin(), coefficients.end(), camera.distortion.begin());
 }
 
-// What OpenCV's programs and ROS call it; without a word, the lens of cv::calibrateCamera.
+// Model names of OpenCV's programs and ROS; without a name, the lens of cv::calibrateCamera.
 CameraModel read_opencv_model(const CalibrationFields& fields) {
   if (fields.has("distortion_model")) {
     const std::string distortion = fields.word("distortion_model");
@@ -81,7 +81,7 @@ void read_camera_matrix(const CalibrationFields& fields, Camera& camera) {
   require_sense(camera, place);
 }
 
-// OpenCV's longer lists go on with k4 to k6 of the rational model, thin prisms and a tilt: none of those is known here.
+// OpenCV's longer lists continue with k4 to k6 of the rational model, thin prisms and a tilt, which are not supported.
 void read_opencv_distortion(const CalibrationFields& fields, Camera& camera) {
   if (camera.model == CameraModel::equidistant) return read_distortion(fields, "distortion_coefficients", camera);
   const std::vector<double> coefficients = fields.numbers("distortion_coefficients");

@@ -68,7 +68,7 @@ Eigen::Matrix3d rotation_of(const ros::CameraInfo& info) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info.r.data());
 }
 
-// Translation of rectified frames: a point of the left one as the right one sees it.
+// Translation from the rectified left frame to the right one.
 Eigen::Vector3d shift_of(const ros::CameraInfo& right) {
   return {right.p[3] / right.p[0], right.p[7] / right.p[5], 0.0};
 }

@@ -8,22 +8,22 @@
 
 namespace byre {
 
-// Camera info as a driver of ROS tells it (REP-104), and how errors name it.
+// Camera info of a ROS driver (REP-104), and its name in errors.
 struct PlacedCameraInfo {
   ros::CameraInfo info;
   std::string place;          // "walk.bag: /left/camera_info", or the topic
-  bool is_rectified = false;  // the images that it goes with are
+  bool is_rectified = false;  // whether its images are rectified
 };
 
-// The camera of the images: raw ones by D and K, rectified ones by P. Throws InputError for a camera that is not
-// calibrated, of a model that byre does not know, or told in numbers that make no sense, and for binned or cut images.
+// The camera of the images: of raw ones by D and K, of rectified ones by P. Throws InputError for an uncalibrated
+// camera, an unsupported model, invalid numbers, and binned or cropped images.
 Camera camera_of(const PlacedCameraInfo& placed);
 
-// The right camera: of rectified images by its P. Of raw ones by R and P where P holds a baseline, and else by the
-// frames' tree. Throws InputError when neither tells where it is.
+// The right camera: of rectified images by its P; of raw ones by R and P if P has a baseline, else by the transform
+// tree. Throws InputError if neither determines its pose.
 StereoPartner partner_of(const PlacedCameraInfo& left, const PlacedCameraInfo& right, const StaticFrames& frames);
 
-// The camera in the robot's body: the frame base_link, where the tree leads there, else the camera itself.
+// Pose of the camera in the robot's body, the frame base_link. Identity if the tree does not connect them.
 Pose body_from_camera(const std::string& camera_frame, const StaticFrames& frames);
 
 }  // namespace byre

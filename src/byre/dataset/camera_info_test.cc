@@ -90,7 +90,7 @@ TEST(CameraInfo, HasTheBaselineOfTheProjectionOfRectifiedImages) {
 }
 
 TEST(CameraInfo, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
-  // Rectified frames as a stereo calibration makes them: turned like each other, one behind the other along x.
+  // Rectified frames of a stereo calibration: parallel, and offset along x.
   const Pose left_turn{rotation_exp({0.003, -0.01, 0.02}), Eigen::Vector3d::Zero()};
   const Pose right_turn{rotation_exp({-0.004, 0.02, 0.01}), Eigen::Vector3d::Zero()};
   const Pose expected = inverse(right_turn) * Pose{Eigen::Quaterniond::Identity(), {-0.11, 0.0, 0.0}} * left_turn;
@@ -129,7 +129,7 @@ TEST(CameraInfo, IsRefusedIfRIsNotARotation) {
   std::swap(left.info.r, right.info.r);
   EXPECT_THAT(error_of([&] { partner_of(left, right, {}); }),
               HasSubstr("walk.bag: /left/camera_info: has a field R that is not a rotation matrix"));
-  left.is_rectified = right.is_rectified = true;  // R is not needed for rectified images
+  left.is_rectified = right.is_rectified = true;  // rectified images do not need R
   EXPECT_NO_THROW(partner_of(left, right, {}));
 }
 

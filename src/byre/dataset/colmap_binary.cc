@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kNoPoint = std::numeric_limits<std::uint64_t>::max();
 
-// Reads one entry; where it is to be kept is told by its id.
+// Reads one entry and its id.
 template <typename Id, typename Entry>
 using EntryReader = std::pair<Id, Entry> (*)(ByteReader& reader);
 
@@ -96,7 +96,7 @@ std::pair<std::uint64_t, ColmapPoint> read_point(ByteReader& reader) {
   return {id, std::move(point)};
 }
 
-// min_bytes: the smallest size of an entry, so that no count is believed that the file cannot hold.
+// min_bytes: smallest size of an entry, to reject counts that exceed the file.
 template <typename Id, typename Entry>
 std::map<Id, Entry> read_entries(const fs::path& path, std::size_t min_bytes, EntryReader<Id, Entry> read_entry) {
   const std::vector<std::byte> bytes = read_file(path);

@@ -21,7 +21,7 @@ constexpr std::array<ColmapCameraKind, 11> kKinds = {{{0, "SIMPLE_PINHOLE", 3},
                                                       {9, "RADIAL_FISHEYE", 5},
                                                       {10, "THIN_PRISM_FISHEYE", 12}}};
 
-constexpr double kHalf = 0.5;  // COLMAP's principal points less byre's, pixels
+constexpr double kHalf = 0.5;  // COLMAP's principal points minus byre's, pixels
 
 Camera with_intrinsics(CameraModel model, double fx, double fy, double cx, double cy) {
   Camera camera;
@@ -33,14 +33,14 @@ Camera with_intrinsics(CameraModel model, double fx, double fy, double cx, doubl
   return camera;
 }
 
-// f, cx, cy, and what the lens does.
+// Parameters: f, cx, cy, and distortion.
 Camera with_one_focal_length(const std::vector<double>& p, CameraModel model) {
   Camera camera = with_intrinsics(model, p[0], p[0], p[1], p[2]);
   std::copy(p.begin() + 3, p.end(), camera.distortion.begin());
   return camera;
 }
 
-// fx, fy, cx, cy, and what the lens does.
+// Parameters: fx, fy, cx, cy, and distortion.
 Camera with_two_focal_lengths(const std::vector<double>& p, CameraModel model) {
   Camera camera = with_intrinsics(model, p[0], p[1], p[2], p[3]);
   std::copy_n(p.begin() + 4, std::min<std::size_t>(p.size() - 4, 5), camera.distortion.begin());

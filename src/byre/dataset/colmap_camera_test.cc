@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 constexpr double kFocal = 400.0;
 
-// Where a point at (0.3, -0.2, 1) appears, in COLMAP's pixels.
+// Projection of a point at (0.3, -0.2, 1), in COLMAP's pixels.
 Eigen::Vector2d pixel_in(const std::string& model, const std::vector<double>& parameters) {
   const Camera camera = camera_of({model, 640, 480, parameters}, "camera");
   return to_colmap_pixel(camera.project({0.3, -0.2, 1.0}).value());

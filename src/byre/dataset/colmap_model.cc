@@ -24,7 +24,7 @@ std::string point_place(const fs::path& folder, std::uint64_t id) {
   return (folder / "points3D").string() + ": point " + std::to_string(id);
 }
 
-// A model from elsewhere must not have files read that are none of its images.
+// Rejects names outside the image folder, so that a foreign model cannot access other files.
 void require_names_inside(const ColmapModel& model, const fs::path& folder) {
   for (const auto& [id, image] : model.images) {
     const fs::path name = image.name;

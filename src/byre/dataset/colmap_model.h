@@ -12,20 +12,20 @@
 
 namespace byre {
 
-// A structure-from-motion model as COLMAP keeps it, with its own ids, by plain values.
-// Format: https://colmap.github.io/format.html. Pixels are as COLMAP counts them: (0.5, 0.5) is the centre of the
-// top-left pixel, half a pixel more than byre's.
+// A structure-from-motion model in COLMAP's format, with its own ids, as plain values. Format:
+// https://colmap.github.io/format.html. Pixels are COLMAP's: (0.5, 0.5) is the centre of the top-left pixel, half a
+// pixel more than in byre.
 
 struct ColmapCamera {
   std::string model;  // name of the model, such as "OPENCV"
   std::uint64_t width = 0;
   std::uint64_t height = 0;
-  std::vector<double> parameters;  // parameters in the model's order, as many as it has
+  std::vector<double> parameters;  // parameters in the model's order and number
 };
 
 struct ColmapKeypoint {
   Eigen::Vector2d pixel;                  // COLMAP's pixels, of the original image
-  std::optional<std::uint64_t> point_id;  // empty where it is of no point
+  std::optional<std::uint64_t> point_id;  // empty without a point
 };
 
 struct ColmapImage {
@@ -43,7 +43,7 @@ struct ColmapTrackEntry {
 struct ColmapPoint {
   Eigen::Vector3d position_in_world;     // the model's own unit
   std::array<std::uint8_t, 3> colour{};  // red, green, blue
-  double error = -1.0;                   // mean reprojection error in pixels, negative where unknown
+  double error = -1.0;                   // mean reprojection error in pixels, negative if unknown
   std::vector<ColmapTrackEntry> track;
 };
 
@@ -55,13 +55,12 @@ struct ColmapModel {
 
 enum class ColmapFormat : std::uint8_t { text, binary };
 
-// Reads cameras, images and points3D (.bin, or .txt where the binary ones are not all there) of a folder. Throws
-// InputError naming file and line, or byte, on anything that is not as the format says, and on ids that are given
-// twice or lead nowhere.
+// Reads cameras, images and points3D of a folder (.bin; .txt if a binary file is missing). Throws InputError with file
+// and line, or byte, for violations of the format, duplicate ids and dangling references.
 ColmapModel read_colmap_model(const std::filesystem::path& folder);
 
-// Writes the three files into a folder that exists; numbers so that reading gives the same doubles. Throws InputError
-// when a file cannot be written.
+// Writes the three files to an existing folder; numbers round-trip exactly. Throws InputError if a file cannot be
+// written.
 void write_colmap_model(const ColmapModel& model, const std::filesystem::path& folder, ColmapFormat format);
 
 }  // namespace byre

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Positions, pixels and parameters bit by bit; quaternions to the last bits.
+// Positions, pixels and parameters bit by bit; quaternions up to rounding.
 void expect_equal(const ColmapModel& read, const ColmapModel& written) {
   ASSERT_EQ(read.cameras.size(), written.cameras.size());
   for (const auto& [id, camera] : written.cameras) {
@@ -49,7 +49,7 @@ void expect_equal(const ColmapModel& read, const ColmapModel& written) {
 
 class ColmapModelFiles : public TestFolder {
  protected:
-  // The error of reading a text model of which one file is this.
+  // The error of reading a text model with one file replaced.
   std::string error_with(const std::string& file, const std::string& content) const {
     for (const char* const part : {"cameras.txt", "images.txt", "points3D.txt"}) {
       std::filesystem::remove(std::filesystem::path(folder_) / part);

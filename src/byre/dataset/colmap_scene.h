@@ -6,7 +6,7 @@
 
 namespace byre {
 
-// Two cameras, three images of which one has no keypoints, two points. No number is a short one.
+// Two cameras, three images of which one has no keypoints, two points. All numbers need many digits.
 inline ColmapModel small_colmap_model() {
   ColmapModel model;
   model.cameras[1] = {"OPENCV", 752, 480, {458.654, 457.296, 367.715, 248.875, -0.28340811, 0.07395907, 1.9e-4, 1e-5}};

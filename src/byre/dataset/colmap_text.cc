@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kWhiteSpace = " \t\r";
 
-// All lines of a file, blank ones too: an image without keypoints has one.
+// All lines of a file, including blank ones: an image without keypoints has one.
 class Lines {
  public:
   explicit Lines(const fs::path& path) : path_(path) {
@@ -32,7 +32,7 @@ class Lines {
     return line;
   }
 
-  // The next line that says something.
+  // The next line that is neither blank nor a comment.
   std::optional<std::string_view> next_entry() {
     while (const std::optional<std::string_view> line = next()) {
       const std::size_t begin = line->find_first_not_of(kWhiteSpace);
@@ -50,7 +50,7 @@ class Lines {
   int number_ = 0;
 };
 
-// The values of a line, one after the other.
+// Consecutive values of a line.
 class Fields {
  public:
   Fields(std::string_view line, const Lines& lines) : rest_(line), lines_(lines) { skip_white_space(); }
@@ -161,7 +161,7 @@ void insert(std::map<Id, Entry>& entries, Id id, Entry entry, const std::string&
   throw InputError(place, "gives the id " + std::to_string(id) + " a second time");
 }
 
-// The shortest text that is read as the same number.
+// The shortest text that parses to the same number.
 template <typename Number>
 void append(std::string& text, Number number) {
   std::array<char, 32> digits{};

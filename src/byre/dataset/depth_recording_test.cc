@@ -45,7 +45,7 @@ class DepthRecording : public TestFolder {
   }
 };
 
-// The number in the last pixel of each frame's depth image; -1 where there is none.
+// The value of the last pixel of each frame's depth image; -1 without one.
 std::vector<int> units_of(Recording& recording) {
   std::vector<int> units;
   for (int i = 0; i < recording.size(); ++i) {

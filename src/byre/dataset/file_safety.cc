@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file or folder by what it is, not by its name.
+// Identity of a file or folder, independent of its name.
 struct Identity {
   dev_t device{};
   ino_t number{};
@@ -33,7 +33,7 @@ std::optional<Identity> identity_of(const fs::path& path) {
   return Identity{status.st_dev, status.st_ino};
 }
 
-// A terminal, a pipe: reading and writing it are two things.
+// Terminals and pipes: reading and writing them do not interfere.
 bool is_special(const fs::path& path) {
   std::error_code error;
   return fs::is_other(path, error);
@@ -56,7 +56,7 @@ std::vector<fs::path> files_of(const NamedInput& read) {
   return {};
 }
 
-// All that is written for an output, but for what comes into folders whose content is the command's own.
+// Files written for an output, except those in folders that belong to the command.
 std::vector<fs::path> files_of(const NamedOutput& written) {
   std::vector<fs::path> files;
   switch (written.output) {
@@ -77,8 +77,7 @@ std::vector<fs::path> files_of(const NamedOutput& written) {
   }
 }
 
-// Which argument reads a file or folder: those that are there by what they are, those that were named by their name
-// too.
+// Maps files and folders to the argument that reads them: existing ones by identity, named ones also by name.
 struct Owners {
   std::map<Identity, const NamedInput*> by_identity;
   std::map<fs::path, const NamedInput*> by_name;
@@ -87,7 +86,7 @@ struct Owners {
     const auto identity = identity_of(file);
     const auto same = identity ? by_identity.find(*identity) : by_identity.end();
     if (same != by_identity.end()) return same->second;
-    if (output == OutputKind::folder) return nullptr;  // it may bear the name of a protocol that comes with byre
+    if (output == OutputKind::folder) return nullptr;  // may have the name of a protocol that comes with byre
     const auto named = by_name.find(target_of(file));
     return named != by_name.end() && !is_special(file) ? named->second : nullptr;
   }
@@ -97,7 +96,7 @@ Owners owners_of(const std::vector<NamedInput>& inputs) {
   Owners owners;
   for (const NamedInput& read : inputs) {
     std::error_code error;
-    if (read.input == InputKind::file && fs::is_directory(read.path, error)) continue;  // no file, but a name like one
+    if (read.input == InputKind::file && fs::is_directory(read.path, error)) continue;  // names no file
     owners.by_name.emplace(target_of(read.path), &read);
     std::vector<fs::path> files = files_of(read);
     files.push_back(read.path);
@@ -108,7 +107,7 @@ Owners owners_of(const std::vector<NamedInput>& inputs) {
   return owners;
 }
 
-// A map may take the place of the map that it was made of.
+// A map may replace the map that it was derived from.
 bool may_be(const NamedOutput& written, const NamedInput& read) {
   constexpr std::array kInPlace = {OutputKind::refined_map, OutputKind::updated_map, OutputKind::viewed_map};
   if (std::ranges::count(kInPlace, written.output) == 0) return false;
@@ -123,14 +122,14 @@ void require_not_read(const NamedOutput& written, const fs::path& file, const Ow
 }
 
 void require_not_read(const NamedOutput& written, const Owners& owners) {
-  // The files of a model may be put beside those of a recording.
+  // A model may be written to the folder of a recording.
   std::error_code error;
   const bool is_shared_folder = written.output == OutputKind::colmap_model && fs::is_directory(written.path, error);
   if (!is_shared_folder) require_not_read(written, written.path, owners);
   for (const fs::path& file : files_of(written)) require_not_read(written, file, owners);
 }
 
-// Such as /dev/stdout, which may stand for a file that is gone on with.
+// Such as /dev/stdout, which may be a file that is appended to.
 bool is_device_name(const fs::path& path) {
   const std::string name = path.lexically_normal().string();
   return name.starts_with("/dev/") || name.starts_with("/proc/");

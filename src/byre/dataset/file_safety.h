@@ -9,8 +9,7 @@
 
 namespace byre {
 
-// What a command reads and writes, and the checks by which none destroys what it reads or what is of another kind than
-// it writes.
+// Inputs and outputs of a command, and checks that no output overwrites an input or a file of another kind.
 
 enum class InputKind : std::uint8_t {
   file,
@@ -18,37 +17,37 @@ enum class InputKind : std::uint8_t {
   plan,       // floor plan with its image
   colmap_model,
   images,  // image files, or folders of them
-  folder,  // folder of other things, which are named elsewhere
+  folder,  // folder of other things, which other arguments name
 };
 
 enum class OutputKind : std::uint8_t {
   map,
-  refined_map,  // the map that was read is replaced by it, unless another file is named
-  updated_map,  // may be the map that was read
-  viewed_map,   // map that may be the one that was read, and picks beside it
+  refined_map,  // replaces the map that was read, unless another file is named
+  updated_map,  // may replace the map that was read
+  viewed_map,   // same as updated_map, with picks next to it
   trajectory,
   json,
-  picture,  // as its name ends: .svg or .png
+  picture,  // format by extension: .svg or .png
   video,
   point_cloud,
   mcap,
   calibration,
   vocabulary,
   colmap_model,
-  recording,  // as its name ends: an .mcap file, else a folder
+  recording,  // format by extension: an .mcap file, else a folder
   folder,
 };
 
 struct NamedInput {
   InputKind input{};
   std::string argument;
-  std::filesystem::path path;  // as given
+  std::filesystem::path path;
 };
 
 struct NamedOutput {
   OutputKind output{};
   std::string argument;
-  std::filesystem::path path;  // as given
+  std::filesystem::path path;
 };
 
 struct NamedFiles {
@@ -56,7 +55,7 @@ struct NamedFiles {
   std::vector<NamedOutput> outputs;
 };
 
-// A file that may not be written, and the argument that names it.
+// An output that must not be written, and its argument.
 class FileConflict : public std::runtime_error {
  public:
   FileConflict(std::string argument, const std::string& message)
@@ -68,14 +67,14 @@ class FileConflict : public std::runtime_error {
   std::string argument_;
 };
 
-// Each throws FileConflict: when an output is, by any name for it, something that is read; when two outputs are
-// one file; when an output would replace what is of another kind; and when there is something that it would replace.
+// Each throws FileConflict. require_not_read: an output is an input, under any name. require_distinct: two outputs are
+// the same file. require_same_kinds: an output would replace a file of another kind. require_absent: an output exists.
 void require_not_read(const NamedFiles& arguments);
 void require_distinct(const std::vector<NamedOutput>& outputs);
 void require_same_kinds(const std::vector<NamedOutput>& outputs);
 void require_absent(const std::vector<NamedOutput>& outputs);
 
-// The last for a file or folder of an argument.
+// Same as require_absent, for one file or folder of an argument.
 void require_absent(const std::string& argument, const std::filesystem::path& file);
 
 }  // namespace byre

@@ -33,7 +33,7 @@ void add_if_there(const fs::path& file, Files& files) {
   if (is_file(file)) files.push_back(file);
 }
 
-// Links are followed, but not for ever where they go round in circles.
+// Follows links to a limited depth, because links may be circular.
 void add_below(const fs::path& folder, Files& files, int levels = 4) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -42,7 +42,7 @@ void add_below(const fs::path& folder, Files& files, int levels = 4) {
   }
 }
 
-// What a list in TUM's way names, which may lie anywhere.
+// Files in a list in TUM's format; their paths may be anywhere.
 void add_listed(const fs::path& list, Files& files) {
   try {
     if (!is_file(list)) return;
@@ -50,7 +50,7 @@ void add_listed(const fs::path& list, Files& files) {
       const std::vector<std::string_view> fields = split_fields(line.text);
       if (fields.size() >= 2) add_if_there(list.parent_path() / fields[1], files);
     }
-  } catch (const std::exception&) {  // no list, so it names nothing
+  } catch (const std::exception&) {  // not a list, so it names nothing
     return;
   }
 }
@@ -71,7 +71,7 @@ void add_images(const fs::path& folder, Files& files) {
   try {
     const Files images = images_in(folder);
     files.insert(files.end(), images.begin(), images.end());
-  } catch (const fs::filesystem_error&) {  // a folder that may not be looked into
+  } catch (const fs::filesystem_error&) {  // unreadable folder
     return;
   }
 }
@@ -79,7 +79,7 @@ void add_images(const fs::path& folder, Files& files) {
 void add_truth(const fs::path& recording, Files& files) {
   try {
     if (const std::optional<fs::path> truth = find_ground_truth(recording)) add_if_there(*truth, files);
-  } catch (const std::exception&) {  // no recording, so it has none
+  } catch (const std::exception&) {  // not a recording, so it has none
     return;
   }
 }
@@ -87,7 +87,7 @@ void add_truth(const fs::path& recording, Files& files) {
 void add_bag(const fs::path& folder, Files& files) {
   try {
     for (const fs::path& file : files_of_bag(folder)) add_if_there(file, files);
-  } catch (const std::exception&) {  // a folder that may not be looked into
+  } catch (const std::exception&) {  // unreadable folder
     return;
   }
 }
@@ -102,7 +102,7 @@ std::optional<fs::path> image_of_plan(const fs::path& plan) {
   try {
     const YAML::Node image = YAML::LoadFile(plan.string())["image"];
     if (image && image.IsScalar()) return plan.parent_path() / image.Scalar();
-  } catch (const YAML::Exception&) {  // no plan
+  } catch (const YAML::Exception&) {  // not a plan
   }
   return std::nullopt;
 }

@@ -15,7 +15,7 @@ using testing::UnorderedElementsAre;
 
 class FilesRead : public TestFolder {
  protected:
-  // Relative to the folder.
+  // Paths relative to the folder.
   std::vector<std::string> names(const std::vector<fs::path>& files) const {
     std::vector<std::string> names;
     for (const fs::path& file : files) names.push_back(file.lexically_relative(folder_).lexically_normal().string());

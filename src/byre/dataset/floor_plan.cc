@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSmallestPixel = 1e-4;  // metres; smaller ones may be degrees
+constexpr double kSmallestPixel = 1e-4;  // metres; smaller values may be degrees
 constexpr double kLargestPixel = 100.0;  // metres
 constexpr double kFarthest = 1e9;        // metres, largest coordinate of a projected system
 
@@ -93,7 +93,7 @@ PlanOrigin read_origin(const YAML::Node& root, const fs::path& path) {
 fs::path read_image_path(const YAML::Node& root, const fs::path& path) {
   const YAML::Node image = root["image"];
   if (!image || !image.IsScalar()) throw InputError(path.string() + ": image", "is missing");
-  return path.parent_path() / image.Scalar();  // an absolute one stays
+  return path.parent_path() / image.Scalar();  // keeps absolute paths
 }
 
 std::optional<double> read_occupied_threshold(const YAML::Node& root, const fs::path& path) {
@@ -183,7 +183,7 @@ void require_sound_pixels(const FloorPlan& plan, const fs::path& world_file) {
     throw InputError(world_file.string(), "has pixels of more than 100 metres, or lies a million kilometres away",
                      "give metres");
   }
-  const double turn = plan.metres_per_pixel.determinant();  // rows go down, y goes up
+  const double turn = plan.metres_per_pixel.determinant();  // sign of the orientation: rows go down, y goes up
   if (turn >= 0.0) throw InputError(world_file.string(), "mirrors the plan or makes it a line");
 }
 

@@ -21,7 +21,7 @@ struct Header {
   std::size_t stride() const { return width * bytes_a_pixel; }  // bytes
 };
 
-// Empty for what is not decoded here.
+// Empty for kinds that are not decoded here.
 std::optional<Header> header_of(Bytes data) {
   constexpr std::uint8_t kGrey = 0;
   if (data.size() != 13) return std::nullopt;
@@ -35,7 +35,7 @@ std::optional<Header> header_of(Bytes data) {
   return header;
 }
 
-// Filtered rows, each after the number of its filter; empty unless there are just so many bytes.
+// Filtered rows, each after the number of its filter; empty if the size differs.
 std::vector<std::uint8_t> inflate(Bytes compressed, std::size_t size) {
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(
       libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
@@ -54,7 +54,7 @@ int paeth(int left, int above, int corner) {
   return by_left <= std::min(by_above, by_corner) ? left : nearer;
 }
 
-// Pixel after pixel, from what is left of it, above, and above to the left; zero outside the image.
+// Reconstructs a row pixel by pixel from the pixels to the left, above, and above left; zero outside the image.
 template <std::size_t BytesAPixel, typename Prediction>
 void predict(Bytes differences, const std::uint8_t* above, Prediction prediction, std::uint8_t* row) {
   std::array<int, BytesAPixel> left{}, corner{};
@@ -68,7 +68,7 @@ void predict(Bytes differences, const std::uint8_t* above, Prediction prediction
   }
 }
 
-// One row from its differences to what its filter predicts; false for an unknown filter.
+// Reconstructs one row from its differences and its filter; false for an unknown filter.
 template <std::size_t BytesAPixel>
 bool unfilter(std::uint8_t filter, Bytes differences, const std::uint8_t* above, std::uint8_t* row) {
   switch (filter) {

@@ -16,7 +16,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// Smooth with some noise, so that encoders choose one filter here and another there.
+// A smooth image with some noise, such that encoders choose various filters.
 cv::Mat picture(int type, int width, int height) {
   cv::Mat made(height, width, type);
   std::mt19937 random(17);
@@ -36,7 +36,7 @@ Bytes png_of(const cv::Mat& image, int strategy) {
   return bytes;
 }
 
-// Values of one byte each, or of two, the more significant one first.
+// Values of one byte each, or of two, most significant byte first.
 Bytes values_of(const cv::Mat& image) {
   if (image.type() == CV_8U) return {image.data, image.data + image.total()};
   Bytes values;
@@ -80,7 +80,7 @@ TEST(GreyPng, IsNoneOfWhatIsDamaged) {
   auto without_pixels = *png_chunks(whole);
   std::erase_if(without_pixels, [](const PngChunk& chunk) { return chunk.type() == "IDAT"; });
   EXPECT_FALSE(decode_grey_png(without_pixels));
-  // A header of one row more than there are, with the right checksum.
+  // A header with one row too many, and the correct checksum.
   Bytes too_tall = whole;
   constexpr std::size_t kType = 12, kLowestOfHeight = 23, kChecksum = 29;
   ++too_tall[kLowestOfHeight];

@@ -8,13 +8,13 @@
 
 namespace byre {
 
-// OpenCV's decoders and encoders of image files, loaded by the first use: use these, not its own functions, which have
-// them loaded at every start of the program. All throw InputError where they cannot be loaded.
+// OpenCV's decoders and encoders of image files, loaded at first use. Calling OpenCV's functions directly would load
+// them at every start of the program. All throw InputError if they cannot be loaded.
 
-// flags: cv::ImreadModes. Empty for bytes that are no image.
+// flags: cv::ImreadModes. Empty if the bytes are not an image.
 cv::Mat decode_image(const std::vector<std::uint8_t>& bytes, int flags);
 
-// The same of a file; empty for one that is missing, too.
+// Same for a file; also empty if it is missing.
 cv::Mat decode_image_file(const std::filesystem::path& path, int flags);
 
 // extension: ".png", ".jpg"; parameters: cv::ImwriteFlags, each followed by its value.

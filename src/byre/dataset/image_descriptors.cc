@@ -21,7 +21,7 @@ std::vector<fs::path> images_by_name(const fs::path& folder) {
   return images;
 }
 
-// An ideal camera that sees 53 degrees across: descriptors do not depend on it.
+// An ideal camera with a field of view of 53 degrees; descriptors do not depend on it.
 Calibration ideal_calibration(int width, int height) {
   Calibration calibration;
   Camera& camera = calibration.left;

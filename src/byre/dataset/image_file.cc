@@ -22,8 +22,8 @@ namespace {
 
 using OwnBytes = std::vector<std::uint8_t>;
 
-// What a file holds, or why that cannot be known. A file that is there but not to be had, as where the program has too
-// many others open, is another thing than one that is missing or broken.
+// Content of a file, or the reason of failure. Distinguishes an existing file that cannot be opened, such as when too
+// many others are open, from a missing or damaged one.
 struct FileBytes {
   OwnBytes bytes;
   std::string failure;
@@ -45,7 +45,7 @@ FileBytes read_bytes(const std::filesystem::path& path) {
   return {std::move(bytes), {}};
 }
 
-// The decoder fills the missing part of a JPEG with grey and says nothing; its end marker tells whether it is whole.
+// The decoder silently fills the missing part of a JPEG with grey; the end marker shows whether it is complete.
 bool is_cut_jpeg(const OwnBytes& bytes) {
   constexpr std::array<std::uint8_t, 2> kStart = {0xFF, 0xD8};
   constexpr std::array<std::uint8_t, 2> kEnd = {0xFF, 0xD9};
@@ -55,7 +55,7 @@ bool is_cut_jpeg(const OwnBytes& bytes) {
   return std::search(tail, bytes.end(), kEnd.begin(), kEnd.end()) == bytes.end();
 }
 
-// Empty for what is left to OpenCV.
+// Empty for kinds that are left to OpenCV.
 cv::Mat decode_grey(std::span<const PngChunk> chunks) {
   const std::optional<GreyPng> image = decode_grey_png(chunks);
   if (!image) return {};

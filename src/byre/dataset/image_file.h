@@ -10,25 +10,25 @@
 
 namespace byre {
 
-// What came of reading an image file.
+// Result of reading an image file.
 template <typename AnyImage>
 struct ImageReading {
   std::optional<AnyImage> image;
-  std::string failure;  // why there is none, to be told behind the name of the file: "is not a whole image"
+  std::string failure;  // reason of failure, to follow the name of the file: "is not a whole image"
 };
 
-// As read_image and read_depth_image below.
+// Same as read_image and read_depth_image, with the reason of failure.
 ImageReading<Image> try_image(const std::filesystem::path& path);
 ImageReading<DepthImage> try_depth_image(const std::filesystem::path& path);
 
-// What the bytes of such a file hold.
+// Same for the bytes of such a file.
 ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes);
 
-// A PNG, JPEG or other common image file as 8-bit grey, not turned by its EXIF tag. Empty when the file is missing,
-// no image, or cut short. Of 16-bit images the upper byte is taken.
+// A PNG, JPEG or other common image file as 8-bit grey, not rotated by its EXIF tag. Empty if the file is missing, not
+// an image, or truncated. 16-bit images are reduced to their upper byte.
 std::optional<Image> read_image(const std::filesystem::path& path);
 
-// A depth image: one channel of 16 bits. Empty when the file is missing, cut short or anything else.
+// A depth image: one channel of 16 bits. Empty if the file is missing, truncated or of another kind.
 std::optional<DepthImage> read_depth_image(const std::filesystem::path& path);
 
 }  // namespace byre

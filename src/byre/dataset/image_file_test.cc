@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// While it lives, no further file can be opened.
+// Prevents opening further files during its lifetime.
 class NoDescriptors {
  public:
   NoDescriptors() {
@@ -57,7 +57,7 @@ TEST_F(ReadImage, TakesTheUpperByteOfSixteenBitsAndLeavesTransparencyOut) {
   EXPECT_EQ(clear->pixels, std::vector<std::uint8_t>(6, 90));
 }
 
-// What the decoder would say itself.
+// The decoder itself would print a warning.
 TEST_F(ReadImage, SaysNothingOnTheErrorStreamOfAFileThatIsDamaged) {
   cv::imwrite((folder_ / "cut.png").string(), cv::Mat(480, 640, CV_8U, cv::Scalar(77)));
   cut_in_half("cut.png");

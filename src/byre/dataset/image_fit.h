@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// The image scaled until it covers the size, and cut to it about its centre.
+// Scales the image to cover the size, and crops it about its centre.
 Image fit(const Image& image, int width, int height);
 
 }  // namespace byre

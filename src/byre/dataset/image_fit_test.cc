@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-// Grey values grow to the right and are the same in a column.
+// Grey values increase to the right and are constant in a column.
 Image ramp(int width, int height) {
   Image image{width, height, {}};
   for (int row = 0; row < height; ++row) {

@@ -28,7 +28,7 @@ std::vector<TimedFile> with_times(const std::vector<fs::path>& files, const std:
   return timed;
 }
 
-// Decimal fractions do not sort as whole numbers do, hence by time.
+// Natural order does not sort decimal fractions, so files are sorted by time.
 std::vector<TimedFile> sorted_by_time(std::vector<TimedFile> files) {
   std::ranges::stable_sort(files, {}, &TimedFile::time);
   const auto same = std::ranges::adjacent_find(files, {}, &TimedFile::time);

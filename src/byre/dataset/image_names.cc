@@ -16,7 +16,7 @@ bool is_digit(char character) {
   return std::isdigit(static_cast<unsigned char>(character)) != 0;
 }
 
-// Takes the digits that a name begins with, without leading zeros.
+// Removes the digits at the start of a name, and returns them without leading zeros.
 std::string_view take_number(std::string_view& name) {
   const std::string_view digits(name.begin(), std::ranges::find_if_not(name, is_digit));
   name.remove_prefix(digits.size());
@@ -81,7 +81,7 @@ bool comes_before(std::string_view name, std::string_view other) {
     name.remove_prefix(1);
     other.remove_prefix(1);
   }
-  if (name.empty() && other.empty()) return whole_name < whole_other;  // equal but for leading zeros
+  if (name.empty() && other.empty()) return whole_name < whole_other;  // equal except for leading zeros
   return name.empty();
 }
 

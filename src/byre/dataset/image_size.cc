@@ -30,7 +30,7 @@ bool starts_with(Bytes bytes, std::string_view start) {
                     [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
 }
 
-// The frame header (SOF) lies behind segments that each state their length.
+// The frame header (SOF) follows segments that each state their length.
 std::optional<ImageSize> size_of_jpeg(Bytes bytes) {
   std::size_t at = 2;
   while (at + 9 < bytes.size() && bytes[at] == 0xFF) {
@@ -57,7 +57,7 @@ std::optional<ImageSize> size_of_tiff(Bytes bytes, Order order) {
   return size;
 }
 
-// Two numbers behind "P1" to "P6", with white space and comments between.
+// Two numbers after "P1" to "P6", separated by white space and comments.
 std::optional<ImageSize> size_of_netpbm(Bytes bytes) {
   std::size_t at = 2;
   const auto take_number = [&] {
@@ -83,7 +83,7 @@ std::optional<ImageSize> stated_size(Bytes bytes) {
     return ImageSize{number_at(bytes, 16, 4, Order::big), number_at(bytes, 20, 4, Order::big)};
   if (starts_with(bytes, "\xFF\xD8")) return size_of_jpeg(bytes);
   if (starts_with(bytes, "BM")) {
-    const auto rows = static_cast<std::int32_t>(number_at(bytes, 22, 4, Order::little));  // negative: from the top
+    const auto rows = static_cast<std::int32_t>(number_at(bytes, 22, 4, Order::little));  // negative: top-down
     return ImageSize{number_at(bytes, 18, 4, Order::little), static_cast<std::uint32_t>(std::abs(std::int64_t{rows}))};
   }
   if (starts_with(bytes, "II*")) return size_of_tiff(bytes, Order::little);

@@ -14,11 +14,11 @@ struct ImageSize {
   double pixels() const { return static_cast<double>(width) * height; }
 };
 
-// More are not decoded, as a file of few bytes may state any size.
+// Larger images are not decoded, because a file of few bytes may state any size.
 inline constexpr double kMostPixels = 100e6;
 
-// What the beginning of a PNG, JPEG, BMP, TIFF or netpbm image says of its size; empty for what is none of these.
+// Size from the header of a PNG, JPEG, BMP, TIFF or netpbm image; empty for other formats.
 std::optional<ImageSize> stated_size(std::span<const std::uint8_t> bytes);
-std::optional<ImageSize> stated_size(const std::filesystem::path& image);  // empty also when it cannot be read
+std::optional<ImageSize> stated_size(const std::filesystem::path& image);  // empty also if the file cannot be read
 
 }  // namespace byre

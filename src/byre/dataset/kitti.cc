@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double kSameFocal = 1e-6;  // relative
 
-// The projection of a rectified camera: [f 0 cx f*tx; 0 f cy 0; 0 0 1 0], tx the left camera's x in this one, metres.
+// Projection of a rectified camera: [f 0 cx f*tx; 0 f cy 0; 0 0 1 0], with tx the left camera's x in this one, metres.
 using Projection = Eigen::Matrix<double, 3, 4>;
 
 Projection parse_projection(const TextLine& line, const std::string& place) {
@@ -33,7 +33,7 @@ Projection parse_projection(const TextLine& line, const std::string& place) {
   return projection;
 }
 
-// Precondition of all that follows: a rectified camera.
+// Precondition of all functions below: a rectified camera.
 void check_projection(const Projection& projection, const std::string& place) {
   const double fx = projection(0, 0);
   const double fy = projection(1, 1);

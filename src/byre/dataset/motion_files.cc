@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Three numbers from a field on.
+// Three numbers, beginning at a field.
 Eigen::Vector3d parse_vector(const std::vector<std::string_view>& fields, std::size_t first, const std::string& place) {
   Eigen::Vector3d vector;
   for (int axis = 0; axis < 3; ++axis) {
@@ -26,7 +26,7 @@ Eigen::Vector3d parse_vector(const std::vector<std::string_view>& fields, std::s
   return vector;
 }
 
-// "time_ns, w_x, w_y, w_z, a_x, a_y, a_z", the last three of which may be missing.
+// Format: "time_ns, w_x, w_y, w_z, a_x, a_y, a_z"; the last three may be missing.
 ImuSample parse_imu_line(const TextLine& line, const std::string& place) {
   constexpr std::size_t kLeastFields = 4, kAllFields = 7;
   const std::vector<std::string_view> fields = split_fields(line.text);
@@ -105,7 +105,7 @@ FileMotion read_motion(const fs::path& recording, const OpenOptions& options, co
     const fs::path imu = rates_of(recording);
     read_imu(imu, images, motion);
     const fs::path sensor = imu.parent_path() / "sensor.yaml";
-    const bool is_of_same_body = !options.calibration;  // another calibration may have another body
+    const bool is_of_same_body = !options.calibration;  // another calibration may define another body frame
     if (is_of_same_body && fs::is_regular_file(sensor)) {
       motion.samples.left_from_gyroscope = body_from_left.rotation.conjugate() * read_body_from_imu(sensor);
     }

@@ -11,19 +11,19 @@
 
 namespace byre {
 
-// What wheels and a gyroscope recorded beside the images of a folder:
-//   wheel.txt               poses of the base in the wheels' own frame, "time_s tx ty tz qx qy qz qw" (TUM)
+// Wheel and gyroscope samples recorded with the images of a folder:
+//   wheel.txt               poses of the base in the odometry frame, "time_s tx ty tz qx qy qz qw" (TUM)
 //   mav0/imu0/data.csv      EuRoC: time in nanoseconds, angular rates in radians per second, and accelerations in m/s^2
-//                           where there are some
-//   mav0/imu0/sensor.yaml   EuRoC: how the sensor is turned against the body (T_BS)
-// Wheels are used where the file is there or the options name one; the gyroscope where the options ask for it. Throws
-// InputError naming file and line: a file named is not there, or does not parse.
+//                           if available
+//   mav0/imu0/sensor.yaml   EuRoC: rotation of the sensor relative to the body (T_BS)
+// Wheels are used if the file exists or the options name one; the gyroscope if the options request it. Throws
+// InputError with file and line if a named file is missing or cannot be parsed.
 struct FileMotion {
   MotionSamples samples;
-  std::vector<std::string> warnings;  // corrections of times and lines left out, with counts
+  std::vector<std::string> warnings;  // corrections of times and dropped lines, with counts
 };
 
-// body_from_left: by the recording's own calibration. images: clock of the left images.
+// body_from_left: from the recording's own calibration. images: clock of the left images.
 FileMotion read_motion(const std::filesystem::path& recording, const OpenOptions& options,
                        const Pose& body_from_left = {}, const SensorClock& images = {});
 

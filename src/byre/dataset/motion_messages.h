@@ -7,18 +7,18 @@
 
 namespace byre {
 
-// A pose of ROS; empty where it holds no numbers, or no rotation.
+// A pose of ROS; empty if numbers are not finite, or the quaternion is not a rotation.
 std::optional<Pose> pose_of(const ros::Pose& message);
 
-// What one message of wheels tells: where the base is, how fast it moves, or both.
+// Sample of one wheel message: pose of the base, velocity, or both.
 struct WheelSample {
   Timestamp time{};
-  std::optional<Pose> pose{};              // in the wheels' own frame
-  std::optional<BaseVelocity> velocity{};  // in the plane that it drives in
+  std::optional<Pose> pose{};              // in the odometry frame
+  std::optional<BaseVelocity> velocity{};  // in the plane of the base
 };
 
-// With the time given; empty where the message holds no numbers. Odometry whose covariance begins below zero, or whose
-// orientation is zeros alone, has no pose.
+// Sample at the given time; empty if numbers are not finite. Odometry has no pose if its covariance begins with a
+// negative number or its orientation is all zeros.
 std::optional<WheelSample> sample_of(const ros::Odometry& message, Timestamp time);
 std::optional<WheelSample> sample_of(const ros::TwistStamped& message, Timestamp time);
 std::optional<WheelSample> sample_of(const ros::TwistWithCovarianceStamped& message, Timestamp time);
@@ -31,7 +31,7 @@ struct ImuSample {
 };
 
 // A sample at the given time; empty if a measured rate is not finite. A covariance that begins with -1 marks rates or
-// accelerations as not measured (sensor_msgs/Imu). Zero accelerations are left out.
+// accelerations as not measured (sensor_msgs/Imu). Zero accelerations are dropped.
 std::optional<ImuSample> sample_of(const ros::Imu& message, Timestamp time);
 
 // Warning for a topic whose messages mark rates as not measured.

@@ -18,7 +18,7 @@ InputError unusable(const char* name) {
   return {name, reason_of_failure(), "install this part of OpenCV, in the version that byre was built with"};
 }
 
-// Stays loaded.
+// The library stays loaded.
 void* load(const char* name) {
   void* const library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr) throw unusable(name);

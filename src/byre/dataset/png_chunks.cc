@@ -13,7 +13,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-constexpr std::size_t kFrame = 12;  // bytes of a chunk beside its data: length and type before it, checksum after it
+constexpr std::size_t kFrame = 12;  // bytes of a chunk without its data: length and type before it, checksum after it
 
 std::size_t number_at(Bytes bytes, std::size_t place) {
   std::size_t number = 0;
@@ -21,7 +21,7 @@ std::size_t number_at(Bytes bytes, std::size_t place) {
   return number;
 }
 
-// The chunk that begins there; empty when the file ends before it, or its checksum is wrong.
+// The chunk at `begin`; empty if it exceeds the file, or its checksum is wrong.
 std::optional<Bytes> chunk_at(Bytes bytes, std::size_t begin) {
   if (bytes.size() - begin < kFrame) return std::nullopt;
   const std::size_t length = number_at(bytes, begin);
@@ -31,7 +31,7 @@ std::optional<Bytes> chunk_at(Bytes bytes, std::size_t begin) {
   return checksum == number_at(chunk, length + 8) ? std::optional(chunk) : std::nullopt;
 }
 
-// Those that begin with a capital must be understood by all; transparency too changes what is seen.
+// Critical chunks have a capital first letter; transparency also affects the image.
 bool is_of_pixels(std::string_view type) {
   return (type[0] >= 'A' && type[0] <= 'Z') || type == "tRNS";
 }

@@ -10,7 +10,7 @@ namespace byre {
 
 bool is_png(std::span<const std::uint8_t> bytes);
 
-// A part of a PNG file (PNG specification, section 5).
+// A chunk of a PNG file (PNG specification, section 5).
 struct PngChunk {
   std::span<const std::uint8_t> bytes;  // length, type, data, checksum
 
@@ -18,12 +18,12 @@ struct PngChunk {
   std::span<const std::uint8_t> data() const { return bytes.subspan(8, bytes.size() - 12); }
 };
 
-// The chunks up to the last one; empty when the file is cut off or damaged. They are parts of the bytes. Precondition:
+// The chunks up to the last one; empty if the file is truncated or damaged. They refer to the bytes. Precondition:
 // is_png(bytes).
 std::optional<std::vector<PngChunk>> png_chunks(std::span<const std::uint8_t> bytes);
 
-// A PNG file of what the pixels are made of, and nothing else: of profiles and the like that do not suit it, the
-// decoder would tell on the standard error stream.
+// A PNG file with only the chunks that pixels need. For unsuitable profiles and similar chunks the decoder would print
+// warnings on the standard error stream.
 std::vector<std::uint8_t> png_of_pixels(std::span<const PngChunk> chunks);
 
 }  // namespace byre

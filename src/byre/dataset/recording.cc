@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The camera that depth images are pixel by pixel of.
+// The camera of the depth images' pixels.
 const Camera& depth_lens(const Calibration& calibration) {
   return calibration.depth->camera ? *calibration.depth->camera : calibration.left;
 }
@@ -85,7 +85,7 @@ std::optional<AnyImage> ImageFiles::read_calibrated(const fs::path& path, ImageR
   return std::nullopt;
 }
 
-// With the frames that are in range.
+// Keeps only the frames in range.
 RecordingIndex select(RecordingIndex index, const FrameRange& range, const fs::path& path) {
   std::vector<Timestamp> times;
   for (const FrameFiles& frame : index.frames) times.push_back(frame.time);
@@ -95,7 +95,7 @@ RecordingIndex select(RecordingIndex index, const FrameRange& range, const fs::p
   return index;
 }
 
-// The first depth image that can be read; throws InputError naming it when none can.
+// The first readable depth image; throws InputError with its name if there is none.
 DepthImage first_readable_depth(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     if (std::optional<DepthImage> image = read_depth_image(file)) return std::move(*image);
@@ -104,7 +104,7 @@ DepthImage first_readable_depth(const std::vector<fs::path>& files) {
                    "give depths as one channel of 16 bits, or take the camera alone: left");
 }
 
-// Throws InputError where the first images that can be read are of another size than calibrated.
+// Throws InputError if the size of the first readable images differs from the calibration.
 void require_calibrated_sizes(const RecordingIndex& index) {
   std::vector<fs::path> left, right, depth;
   for (const FrameFiles& frame : index.frames) {

@@ -85,7 +85,7 @@ void check_times(const std::vector<Timestamp>& times, RecordingCheck& check) {
   check.longest_gap_s = std::ranges::max(intervals);
 }
 
-// The first frames of pairs that follow each other, spread evenly over the recording.
+// Indices of the first frames of the sampled pairs, spread evenly over the recording.
 std::vector<int> spread_over(int frames, int samples) {
   std::vector<int> first;
   const int count = std::max(1, std::min(samples, frames / 2));
@@ -93,7 +93,7 @@ std::vector<int> spread_over(int frames, int samples) {
   return first;
 }
 
-// Looks at frames and adds up what they are like.
+// Accumulates properties of frames.
 class FrameSum {
  public:
   explicit FrameSum(const Calibration& calibration)
@@ -121,7 +121,7 @@ class FrameSum {
     }
   }
 
-  std::uint64_t content() const { return content_; }  // checksum of the last frame; 0 where it could not be read
+  std::uint64_t content() const { return content_; }  // checksum of the last frame; 0 if it was unreadable
 
   void tell(RecordingCheck& check) const {
     check.left = left_.result();

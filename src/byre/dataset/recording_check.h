@@ -12,7 +12,7 @@
 
 namespace byre {
 
-// Medians of the images of one camera that were looked at, and how many of them are of no use.
+// Medians over the sampled images of one camera, and counts of faults.
 struct CameraCheck {
   int images = 0;
   double brightness = 0.0;        // mean grey value, see ImageCondition
@@ -23,49 +23,50 @@ struct CameraCheck {
   int of_no_use() const { return images - by_fault[0]; }
 };
 
-// How left and right images fit together, medians over the pairs that were looked at.
+// Consistency of left and right images, medians over the sampled pairs.
 struct PairCheck {
   int pairs = 0;
-  double matched = 0.0;            // share of the left image's features found in the right one
-  double matched_at_best = 0.0;    // the same in the tenth of the image where it is largest
-  double row_error = 0.0;          // pixels by which they lie off their row
-  double calibration_error = 0.0;  // pixels off their row that features of a part of the image have in common, rms
+  double matched = 0.0;          // share of the left image's features matched in the right one
+  double matched_at_best = 0.0;  // same in the tenth of the image with the largest share
+  double row_error = 0.0;        // median distance of matches from their row, pixels
+  // Row error common to features of a region, pixels, root mean square over regions.
+  double calibration_error = 0.0;
 };
 
-// What can be said of a recording before anything is mapped.
+// Properties of a recording before mapping.
 struct RecordingCheck {
   int frames = 0;
   double rate_hz = 0.0;
-  int gaps = 0;  // intervals of more than half as much again as usual
+  int gaps = 0;  // intervals of more than 1.5 usual intervals
   double longest_gap_s = 0.0;
-  int looked_at = 0;      // frames that were looked at
-  int unreadable = 0;     // frames looked at that could not be read
-  int without_right = 0;  // frames looked at without a right image where there should be one
-  int repeated = 0;       // frames looked at that are the same as the frame before, bit by bit
+  int looked_at = 0;      // sampled frames
+  int unreadable = 0;     // sampled frames that could not be read
+  int without_right = 0;  // sampled frames that lack their right image
+  int repeated = 0;       // sampled frames that are bit-identical to the previous frame
   double features = 0.0;  // median count in a left image
   CameraCheck left;
-  std::optional<CameraCheck> right;  // empty unless it is a stereo pair
+  std::optional<CameraCheck> right;  // empty without a stereo pair
   std::optional<PairCheck> pair;
-  double field_of_view_deg = 0.0;  // left image's, horizontal
+  double field_of_view_deg = 0.0;  // horizontal, of the left image
   double baseline_m = 0.0;         // 0 for one camera
   TimeCorrections times{};         // corrections of frame times
 };
 
-// Looks at so many pairs of frames that follow each other, spread over the recording. Throws InputError for a
-// calibration that cannot be rectified. should_stop is asked before each.
+// Samples pairs of consecutive frames, spread over the recording. samples: number of pairs. Throws InputError for a
+// calibration that cannot be rectified. should_stop: polled before each pair.
 RecordingCheck check_recording(Recording& recording, int samples, const std::function<bool()>& should_stop = {});
 
-// Something to be done about a recording.
+// A problem of a recording, with a remedy.
 struct Finding {
-  bool is_grave = false;  // nothing good comes of it before it is mended
+  bool is_grave = false;  // the recording is unusable until it is fixed
   std::string what;
   std::string remedy;
 };
 
 std::vector<Finding> findings_of(const RecordingCheck& check);
 
-// Faults of wheels, gyroscope and accelerometer of the recording, by their samples alone. source_of: file or topic of a
-// sensor.
+// Faults of wheels, gyroscope and accelerometer of the recording, from their samples alone. source_of: file or topic of
+// a sensor.
 std::vector<Finding> motion_findings(const Recording& recording,
                                      const std::function<std::string(MotionSensor)>& source_of);
 

@@ -12,7 +12,7 @@ using testing::IsEmpty;
 
 constexpr int kWidth = 320, kHeight = 240, kDisparity = 8;
 
-// Squares of any brightness, which lie elsewhere in each frame.
+// Squares of random brightness, at different positions in each frame.
 Image texture(int frame, int shift) {
   Image image{kWidth, kHeight, std::vector<std::uint8_t>(static_cast<std::size_t>(kWidth * kHeight), 128)};
   std::mt19937 random(static_cast<unsigned>(frame));
@@ -29,7 +29,7 @@ Image texture(int frame, int shift) {
   return image;
 }
 
-// A pair that sees a wall, ten frames a second, and what is done to its images.
+// A stereo pair in front of a wall, at ten frames a second, with modified images.
 class MadeUpRecording : public Recording {
  public:
   using Change = std::function<void(ImageFrame& images, int index)>;
@@ -108,7 +108,7 @@ TEST(RecordingCheck, FindsSwappedCameras) {
 TEST(RecordingCheck, FindsACameraThatWasMovedByItsRows) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) {
     std::vector<std::uint8_t>& pixels = images.right->pixels;
-    std::shift_right(pixels.begin(), pixels.end(), kWidth);  // by a row
+    std::shift_right(pixels.begin(), pixels.end(), kWidth);  // shifts by a row
   });
   ASSERT_TRUE(check.pair);
   EXPECT_NEAR(check.pair->calibration_error, 1.0, 0.2);

@@ -157,8 +157,8 @@ TEST_F(EurocRecording, SortsAndCountsLateLines) {
                                                  HasSubstr("1 images have the time stamp of another one")));
 }
 
-// Twelve pairs, 100 ms apart, whose clock is set back by 350 ms before the seventh; wheels and gyroscope share the
-// clock.
+// Twelve pairs, 100 ms apart, with a clock that is set back by 350 ms before the seventh. Wheels and gyroscope share
+// the clock.
 class EurocOfAClockSetBack : public EurocRecording {
  protected:
   EurocOfAClockSetBack() {

@@ -7,9 +7,9 @@
 
 namespace byre {
 
-// How command lines and protocols say which frames and cameras of a recording they mean.
+// Syntax of command lines and protocols for frames and cameras of a recording.
 
-// "FIRST:END", END exclusive; either may be left out. Empty for anything else, and for a range without a frame.
+// "FIRST:END", END exclusive; either may be omitted. Empty for anything else, and for an empty range.
 std::optional<FrameRange> parse_frames(std::string_view text);
 
 // One of stereo, left, right and rgbd; empty for anything else.

@@ -28,7 +28,7 @@ constexpr Timestamp kLeastStep = 20ms;  // a shorter step looks like jitter
 // Later stamps are wrong. The difference of two stamps up to this one does not overflow.
 constexpr Timestamp kLastStamp = std::chrono::seconds(4'294'967'296);
 
-// Which items have a stamp. Zero is a valid stamp if the clock starts at zero: other stamps are near it, or only the
+// Flags of items with a stamp. Zero is a valid stamp if the clock starts at zero: other stamps are near it, or only the
 // first item has it and all others are within a day.
 std::vector<bool> which_are_stamped(const Times& stamps) {
   static constexpr Timestamp kNearZero = 10s;
@@ -157,8 +157,8 @@ class ContinuousLine {
     return std::ranges::min(delays_from(from)) - least_delay_before() > step / 2;
   }
 
-  // A burst after a stall is also received faster than it was stamped. But its items are delayed, those after a step
-  // are early.
+  // A burst after a stall is also received faster than it was stamped. However, its items are delayed, whereas items
+  // after a step are early.
   bool is_step_forward(std::size_t i) const {
     if (received_.empty()) return false;
     const Timestamp stamped = stamps_[i] - front(), waited = received_[i] - received_[front_];
@@ -248,7 +248,7 @@ class ContinuousLine {
     return count;
   }
 
-  // Too many steps for a clock: the list is unordered.
+  // The list is unordered: a clock does not have so many steps.
   void give_up() {
     times_ = stamps_;
     is_wrong_.assign(stamps_.size(), false);
@@ -263,7 +263,7 @@ class ContinuousLine {
 
   Times times_;
   std::vector<bool> is_wrong_;
-  Times latest_from_;  // latest stamp of the items from each one on
+  Times latest_from_;  // latest stamp among the items from each one on
   std::vector<Step> steps_;
   int late_ = 0;
 

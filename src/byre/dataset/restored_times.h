@@ -48,7 +48,7 @@ struct RestoredTimes {
 //   coarse stamps         Most items have the stamp of a neighbour, as with whole seconds. They are replaced by receive
 //                         times. If these are unknown or coarse too, the items of a stamp are spread evenly.
 //   repeated stamps       The first item with a stamp is kept.
-// Ascending stamps are returned unchanged. If all items have one stamp and receive times are of no use, one item is
+// Ascending stamps are returned unchanged. If all items have one stamp and receive times are unusable, one item is
 // kept. other: clock of the images, if the items are of another sensor.
 RestoredTimes restore_times(const RecordedStamps& recorded, const SensorClock& other = {});
 

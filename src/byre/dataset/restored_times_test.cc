@@ -164,7 +164,7 @@ TEST(RestoredTimes, AreUnchangedByABurstAfterAStall) {
   Times stamps = steady(200);
   stamps.erase(stamps.begin() + 110, stamps.begin() + 150);  // lost during the stall
   Times received = received_of(stamps);
-  for (std::size_t i = 100; i < 110; ++i) received[i] = received[110] - 1ms;  // ten that waited
+  for (std::size_t i = 100; i < 110; ++i) received[i] = received[110] - 1ms;  // ten delayed ones
   const RestoredTimes restored = restore_times({stamps, received});
   EXPECT_EQ(restored.times, stamps);
   EXPECT_FALSE(restored.corrections.any());
@@ -175,7 +175,7 @@ TEST(RestoredTimes, PutLateItemsInOrder) {
   for (const bool has_reception : {false, true}) {
     Times stamps = taken;
     std::swap(stamps[20], stamps[21]);                                           // overtaken by one
-    std::rotate(stamps.begin() + 40, stamps.begin() + 41, stamps.begin() + 45);  // by four
+    std::rotate(stamps.begin() + 40, stamps.begin() + 41, stamps.begin() + 45);  // overtaken by four
     const RestoredTimes restored = restore_times({stamps, has_reception ? received_of(taken) : Times()});
     EXPECT_EQ(restored.times, taken);
     EXPECT_EQ(restored.items[20], 21u);

@@ -32,7 +32,7 @@ YAML::Node load_settings(const fs::path& path) {
   }
 }
 
-// depth: of groups around this one. A group may hold itself, by YAML's aliases.
+// depth: number of enclosing groups. With YAML's aliases a group may contain itself.
 void append_settings(const YAML::Node& group, const std::string& prefix, int depth, const fs::path& path,
                      std::vector<Setting>& settings) {
   constexpr int kDeepest = 8;

@@ -6,15 +6,14 @@
 
 namespace byre {
 
-// A named word of a YAML file.
 struct Setting {
-  std::string name;  // full name: the groups that it is in, then its own, with dots between
+  std::string name;  // full name: names of its groups and its own, separated by dots
   std::string text;
-  int line = 0;  // as an editor counts them, from 1
+  int line = 0;  // from 1
 };
 
-// The words of a YAML file of named groups, in the order of the file. Throws InputError when it cannot be read, is no
-// such file, or names a setting twice.
+// The settings of a YAML file of named groups, in the order of the file. Throws InputError if it cannot be read, has
+// another structure, or names a setting twice.
 std::vector<Setting> read_settings(const std::filesystem::path& path);
 
 }  // namespace byre

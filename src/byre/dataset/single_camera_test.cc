@@ -22,7 +22,7 @@ std::string camera_yaml(const std::string& name, const std::string& more = "") {
          (name == "cam0" ? "15.5" : "16.5") + ", 11.5]\n" + more;
 }
 
-// Its right camera is 0.2 m to the right, and the body 0.1 m to the left of the left camera.
+// The right camera is 0.2 m to the right, and the body 0.1 m to the left of the left camera.
 const std::string kPair =
     camera_yaml("cam0", "  T_cam_imu: [[1, 0, 0, -0.1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n") +
     camera_yaml("cam1", "  T_cn_cnm1: [[1, 0, 0, -0.2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n");
@@ -53,7 +53,7 @@ std::vector<int> greys_of(Recording& recording) {
   return greys;
 }
 
-// Three frames of an EuRoC recording whose sensor files are missing; the second has no right image.
+// Three frames of an EuRoC recording without sensor files; the second has no right image.
 class OneOfAPair : public SingleCamera {
  protected:
   OneOfAPair() {
@@ -258,7 +258,7 @@ TEST_F(ImageFolder, RefusesWhatDoesNotBelongTogether) {
   EXPECT_THAT(open_error(), HasSubstr("holds no recording that byre knows"));
 }
 
-// Five frames of a film, grey 40, 80 and so on.
+// Five frames of a video, with grey values 40, 80 and so on.
 class VideoFile : public SingleCamera {
  protected:
   VideoFile() {

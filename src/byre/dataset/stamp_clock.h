@@ -18,8 +18,8 @@ constexpr bool is_set_forward(Timestamp stamped, Timestamp received) {
   return stamped > kLeastForward && stamped - received > kLeastForward;
 }
 
-// Continuous time from stamps of live images, whose clock may be set meanwhile. For recordings, whose later stamps are
-// known, see restore_times.
+// Continuous time from stamps of live images, whose clock may be set meanwhile. For recordings, where later stamps are
+// available, see restore_times.
 class StampClock {
  public:
   struct Reading {

@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-// As tf2 does: names of ROS 1 began with a slash.
+// Same as tf2: names of ROS 1 began with a slash.
 std::string bare(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
@@ -38,7 +38,7 @@ std::map<std::string, Pose> StaticFrames::above(const std::string& frame) const 
   Pose up_from_frame;
   for (auto parent = parents_.find(frame); parent != parents_.end(); parent = parents_.find(parent->second.name)) {
     up_from_frame = parent->second.parent_from_child * up_from_frame;
-    if (!chain.emplace(parent->second.name, up_from_frame).second) return chain;  // round in a circle
+    if (!chain.emplace(parent->second.name, up_from_frame).second) return chain;  // circular
   }
   return chain;
 }

@@ -9,13 +9,13 @@
 
 namespace byre {
 
-// The frames of /tf_static: what is fixed to what on the robot.
+// Tree of fixed transforms from /tf_static.
 class StaticFrames {
  public:
-  // Transforms that make no sense are left out, and so are frames beyond a thousand.
+  // Adds transforms. Invalid ones are dropped, and frames beyond a thousand.
   void take(const ros::TFMessage& message);
 
-  // Takes points of frame b to frame a; empty where no chain of fixed transforms leads from one to the other.
+  // Transform from frame b to frame a; empty if no chain of fixed transforms connects them.
   std::optional<Pose> between(const std::string& a, const std::string& b) const;
 
  private:
@@ -23,10 +23,10 @@ class StaticFrames {
     std::string name;
     Pose parent_from_child;
   };
-  // The frames above a frame with the way to them, itself first; the last one has no parent.
+  // Ancestors of a frame with the transforms to them, the frame itself included; the topmost has no parent.
   std::map<std::string, Pose> above(const std::string& frame) const;
 
-  std::map<std::string, Parent> parents_;  // by the child's name
+  std::map<std::string, Parent> parents_;  // key: name of the child
 };
 
 }  // namespace byre

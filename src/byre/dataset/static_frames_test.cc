@@ -35,7 +35,7 @@ TEST(StaticFrames, LeadUpAndDownTheTree) {
 TEST(StaticFrames, SurviveWhatMakesNoSense) {
   StaticFrames frames;
   frames.take(fixed("a", "b", some_pose(1)));
-  frames.take(fixed("b", "a", some_pose(2)));  // round in a circle
+  frames.take(fixed("b", "a", some_pose(2)));  // circular
   ros::TFMessage broken = fixed("a", "c", {});
   broken.transforms[0].transform.rotation.w = 0.0;
   frames.take(broken);

@@ -13,7 +13,7 @@
 
 namespace byre {
 
-// A folder for one test's recording, gone with the test.
+// Temporary folder of one test, removed after it.
 class TestFolder : public testing::Test {
  protected:
   TestFolder() {
@@ -27,7 +27,7 @@ class TestFolder : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << content;
   }
 
-  // An image that is grey all over, but for its top left pixel, which is black.
+  // Writes a uniformly grey image with a black top left pixel.
   void write_image(const std::string& name, int width, int height, int grey) const {
     std::filesystem::create_directories((folder_ / name).parent_path());
     cv::Mat image(height, width, CV_8U, cv::Scalar(grey));

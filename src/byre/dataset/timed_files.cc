@@ -26,7 +26,7 @@ Timestamp time_of(const Item& item) {
   return item.time;
 }
 
-// The one nearest in time, when it is within the tolerance; else the end. Precondition: they ascend in time.
+// The item nearest in time within the tolerance, else the end. Precondition: items ascend in time.
 template <typename Range>
 auto find_nearest(Range& items, Timestamp time, Timestamp tolerance) {
   const auto before = [](const auto& item, Timestamp t) { return time_of(item) < t; };

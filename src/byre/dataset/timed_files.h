@@ -12,7 +12,6 @@
 
 namespace byre {
 
-// An image file and when it was taken.
 struct TimedFile {
   Timestamp time{};
   std::filesystem::path path;
@@ -43,13 +42,12 @@ void require_times(std::size_t kept, int repeated, const std::string& place);
 std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
                                                          const std::vector<Timestamp>& others, Timestamp tolerance);
 
-// Frames of the left images, each with the right image within the tolerance, if there is one. Precondition: both ascend
-// in time.
+// Frames of the left images, each with the right image within the tolerance, if any. Precondition: both ascend in time.
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right,
                                   Timestamp tolerance);
 
-// Gives the frames their depth images: each image belongs to the frame nearest to it, when that is within 20 ms, and a
-// frame takes the nearest of its own. Precondition: both ascend in time.
+// Adds depth images to the frames: each image belongs to the nearest frame within 20 ms, and a frame takes the nearest
+// of its images. Precondition: both ascend in time.
 void add_depth(std::vector<FrameFiles>& frames, const std::vector<TimedFile>& depth);
 
 // Throws InputError with this place if no frame has a right image.

@@ -17,7 +17,7 @@ struct TimedMessages {
   std::vector<TimedMessage> messages;
   TimeCorrections corrections;
   SensorClock clock;
-  std::vector<std::string> warnings;  // corrections and messages left out, with counts
+  std::vector<std::string> warnings;  // corrections and dropped messages, with counts
 };
 
 // The messages of a topic in order of time, strictly increasing. Times are header stamps, corrected by restore_times.

@@ -10,7 +10,7 @@ namespace byre {
 // A trajectory file in any of the formats; KITTI's poses need the file of their times. Throws InputError.
 Trajectory load_trajectory(const std::filesystem::path& path, const std::optional<std::filesystem::path>& times);
 
-// True poses: a trajectory file, or the recording that holds one, whose own times are used unless others are given.
+// True poses: a trajectory file, or a recording with one. times: replace the recording's own.
 Trajectory load_truth(const std::filesystem::path& path, const std::optional<std::filesystem::path>& times = {});
 
 }  // namespace byre

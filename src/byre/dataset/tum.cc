@@ -35,7 +35,7 @@ bool is_there(const FrameFiles& frame) {
   return frame.depth && fs::exists(*frame.depth);
 }
 
-// Depth images are often left out of copies, whose lists still name them.
+// Copies of recordings often lack depth images that the lists still name.
 void add_listed_depth(const fs::path& folder, const OpenOptions& options, RecordingIndex& index) {
   const RestoredFiles depth_files = read_list(folder, "depth.txt", index.clock);
   index.warnings.insert(index.warnings.end(), depth_files.warnings.begin(), depth_files.warnings.end());

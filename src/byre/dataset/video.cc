@@ -21,16 +21,16 @@ namespace {
 namespace fs = std::filesystem;
 
 std::unique_ptr<cv::VideoCapture> open_capture(const fs::path& file) {
-  // One decoder, so that the same video gives the same frames wherever others are installed.
+  // A fixed decoder, so that results do not depend on the installed ones.
   std::unique_ptr<cv::VideoCapture> capture = open_video_capture(file.string());
   if (!capture->isOpened()) {
     throw InputError(file.string(), "cannot be opened as a video", "check that it is whole, or extract its images");
   }
-  capture->set(cv::CAP_PROP_ORIENTATION_AUTO, 0);  // as the camera calibrated sees it, whichever way it was held
+  capture->set(cv::CAP_PROP_ORIENTATION_AUTO, 0);  // keeps the orientation of the calibration
   return capture;
 }
 
-// Some containers do not say, or not rightly, how many frames they hold; then they are counted.
+// Counts the frames if the container does not state their number.
 std::size_t frame_count(const fs::path& file, const cv::VideoCapture& opened) {
   const double stated = opened.get(cv::CAP_PROP_FRAME_COUNT);
   if (stated >= 1.0) return static_cast<std::size_t>(stated);
@@ -41,7 +41,7 @@ std::size_t frame_count(const fs::path& file, const cv::VideoCapture& opened) {
   return count;
 }
 
-// Frames per second that the container states; empty when it is no sensible number.
+// Frame rate that the container states; empty if it is not plausible.
 std::optional<double> stated_frame_rate(const cv::VideoCapture& capture) {
   constexpr double kHighest = 1000.0;
   const double rate = capture.get(cv::CAP_PROP_FPS);
@@ -68,7 +68,7 @@ class Video final : public Recording {
         warnings_(std::move(warnings)),
         capture_(std::move(capture)) {}
 
-  // Keeps the frames that are in range. Called once, before any is read.
+  // Keeps the frames in range. Call it once, before reading.
   void select(std::vector<std::size_t> numbers, const std::vector<Timestamp>& times_of_all) {
     for (const std::size_t number : numbers) times_.push_back(times_of_all[number]);
     numbers_ = std::move(numbers);
@@ -87,12 +87,12 @@ class Video final : public Recording {
   std::vector<std::size_t> numbers_;           // numbers in the file of the frames in range, constant after select
   std::vector<Timestamp> times_;               // constant after select
   std::vector<std::string> warnings_;          // grows with read
-  std::unique_ptr<cv::VideoCapture> capture_;  // stands before frame next_
+  std::unique_ptr<cv::VideoCapture> capture_;  // positioned at frame next_
   std::size_t next_ = 0;
 };
 
-// Videos are decoded from frame to frame: what lies between is skipped, and to go back is to begin again. Seeking
-// would not find the very frame in many of them.
+// Decodes frames sequentially: skips frames in between, and reopens the file to go back. Seeking is inexact for many
+// videos.
 bool Video::grab(std::size_t number) {
   if (number < next_) {
     capture_ = open_capture(file_);

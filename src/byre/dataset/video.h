@@ -7,7 +7,7 @@
 
 namespace byre {
 
-// A video as a recording of one camera, its frames evenly spaced in time. Throws InputError as open_recording says.
+// A video as a recording of one camera, with frames evenly spaced in time. Throws InputError like open_recording.
 std::unique_ptr<Recording> open_video(const std::filesystem::path& file, const FrameRange& range,
                                       const OpenOptions& options);
 

@@ -7,8 +7,8 @@
 namespace byre {
 namespace {
 
-// Calls the constructor of that name with arguments of just these types. The destructor is virtual, so that the
-// library's own is found.
+// Calls the constructor with this symbol and exactly these argument types. The destructor is virtual, so the library's
+// own is called.
 template <typename Class, typename... Arguments>
 std::unique_ptr<Class> constructed(const char* constructor, Arguments... arguments) {
   using Construct = void(void*, Arguments...);

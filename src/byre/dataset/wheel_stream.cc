@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kAtRest = 1e-3;                               // metres, or radians, per second
 constexpr double kMoved = 0.05;                                // metres, or radians
-constexpr Timestamp kMaxGap = std::chrono::milliseconds(300);  // between velocities that tell a way
+constexpr Timestamp kMaxGap = std::chrono::milliseconds(300);  // largest gap between integrated velocities
 
 bool is_at_rest(const std::optional<BaseVelocity>& velocity) {
   return !velocity || (std::hypot(velocity->ahead, velocity->left) < kAtRest && std::abs(velocity->turning) < kAtRest);
@@ -21,7 +21,7 @@ bool is_same(const Pose& one, const Pose& other) {
 
 }  // namespace
 
-// By velocities: to and fro is no way, so that noise at rest tells none.
+// Integrates velocities with their sign, so that noise at rest does not add up to motion.
 bool WheelStream::has_moved_away(const WheelSample& sample) {
   if (!sample.velocity) return false;
   const BaseVelocity& now = *sample.velocity;

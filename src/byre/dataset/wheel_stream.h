@@ -6,17 +6,18 @@
 
 namespace byre {
 
-// What wheels tell, of which one of both is to be used: poses where they are filled in, else velocities. Drivers that
-// fill in the velocity alone leave the pose as it is for ever, while the base moves by what they say.
+// Selects poses or velocities of wheel samples: poses if they change, else velocities. Drivers that fill in only the
+// velocity leave the pose constant while the velocity reports motion.
 class WheelStream {
  public:
   enum class Kind { open, poses, velocities };
 
-  // In order of time. A base that begins to move is held back for some centimetres, until its kind is known.
+  // Samples in order of time. Samples of a base that begins to move are held back for some centimetres, until the kind
+  // is decided.
   void add(const WheelSample& sample);
 
   Kind kind() const { return kind_; }
-  // What came and is not held back, since it was taken last, in order of time; no sample has both.
+  // Samples since the last call that are not held back, in order of time; none has both pose and velocity.
   std::vector<WheelSample> take();
 
  private:
@@ -27,7 +28,7 @@ class WheelStream {
   Kind kind_ = Kind::open;
   std::optional<Pose> first_;
   std::optional<BaseVelocity> last_;
-  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();  // metres ahead and to the left, radians; by velocities alone
+  Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();  // metres ahead and to the left, radians; integrated velocities
   std::vector<WheelSample> held_;
   std::vector<WheelSample> told_;
 };

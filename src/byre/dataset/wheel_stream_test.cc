@@ -7,7 +7,7 @@ namespace {
 
 using Kind = WheelStream::Kind;
 
-// A driver at 20 Hz: the base stands for a second, then drives at half a metre per second.
+// A driver at 20 Hz: the base stands for a second, then drives at 0.5 m/s.
 WheelSample sample_at(int step, bool has_pose, bool has_velocity) {
   const double seconds = 0.05 * step, way = 0.5 * std::max(0.0, seconds - 1.0);
   WheelSample sample{from_seconds(seconds), {}, {}};
