@@ -13,7 +13,7 @@ bool is_near(Timestamp a, Timestamp b) {
 }  // namespace
 
 Timestamp monotonic_now() {
-  return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC, as drivers use it
+  return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC, same as drivers
 }
 
 std::string_view to_string(CameraClock clock) {

@@ -7,29 +7,30 @@
 
 namespace byre {
 
-// The clock that a device's time stamps are of.
-//   monotonic  the kernel's, which begins when the machine does: what nearly all drivers use
-//   utc        the time of day
-//   own        another one, as that of a program that feeds a virtual device
+// Clock of a device's time stamps.
+//   monotonic  the kernel's, which begins at boot: used by nearly all drivers
+//   utc        time of day
+//   own        another one, such as that of a program that feeds a virtual device
 enum class CameraClock : std::uint8_t { monotonic, utc, own };
 
 std::string_view to_string(CameraClock clock);
 
 Timestamp monotonic_now();
 
-// The machine's clocks at one moment.
+// Simultaneous readings of the machine's clocks.
 struct MachineTime {
   Timestamp monotonic{};
   Timestamp utc{};
 };
 
-// Both read as closely together as some attempts allow.
+// Best of several attempts to read both clocks together.
 MachineTime machine_time();
 
-// The clock whose time the stamp is within ten seconds of. Flags of drivers say less: some always claim monotonic.
+// The clock whose reading is within ten seconds of the stamp. Flags of drivers are unreliable: some always claim
+// monotonic.
 CameraClock clock_of(Timestamp stamp, const MachineTime& now);
 
-// What turns stamps of that clock into UTC, so that they fit to those of other sensors; nothing is known of an own one.
+// Offset from stamps of that clock to UTC, for comparison with other sensors; zero for a clock of its own.
 Timestamp utc_offset(CameraClock clock, const MachineTime& now);
 
 }  // namespace byre

@@ -7,11 +7,10 @@
 
 namespace byre {
 
-// Asks the devices for images of the calibrated size, unless another one is asked for.
+// Requests images of the calibrated size, unless the options request a size.
 void ask_for_size(const Calibration& calibration, LiveCameraOptions& options);
 
-// Throws InputError when the calibration is not of such cameras: of another number, or of images of another size.
-// place: its file.
+// Throws InputError if the calibration has another number of cameras, or another image size. place: its file.
 void require_fit(const Calibration& calibration, const CaptureThread& capture, const std::string& place);
 
 }  // namespace byre

@@ -8,7 +8,6 @@
 
 namespace byre {
 
-// How many corners there are in which part of an image.
 struct CornerGrid {
   static constexpr int kColumns = 8;
   static constexpr int kRows = 6;
@@ -18,7 +17,7 @@ struct CornerGrid {
   int cells_without() const;
 };
 
-// FAST corners, as tracking looks for them first.
+// FAST corners with the first threshold of tracking.
 CornerGrid count_corners(const Image& image);
 
 struct StampIntervals {

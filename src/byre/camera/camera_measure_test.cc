@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 
-// White dots on black, in the right half alone.
+// White dots on black, only in the right half.
 Image half_full() {
   Image image{320, 240, std::vector<std::uint8_t>(320 * 240)};
   for (int y = 0; y < 240; ++y) {

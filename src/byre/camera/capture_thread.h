@@ -11,16 +11,16 @@
 
 namespace byre {
 
-// What becomes of frames that nobody has taken yet.
-//   newest  the newest alone is kept: for who must not fall behind
-//   all     all are, as far as memory goes: for who must not miss any
+// Frames kept until they are taken.
+//   newest  only the newest: for consumers that must not fall behind
+//   all     all, within a memory limit: for consumers that must not miss any
 enum class KeptFrames : std::uint8_t { newest, all };
 
-// Takes what cameras give, in a thread of its own, so that no image waits in a driver. Whoever is slow misses the
-// oldest frames beyond those that are kept.
+// Captures frames in its own thread, so that no image waits in a driver. A slow consumer misses the oldest frames
+// beyond those kept.
 class CaptureThread {
  public:
-  CaptureThread(const LiveCameraOptions& options, KeptFrames kept);  // throws InputError as LiveCameras does
+  CaptureThread(const LiveCameraOptions& options, KeptFrames kept);  // throws InputError like LiveCameras
   ~CaptureThread();
   CaptureThread(const CaptureThread&) = delete;
   CaptureThread& operator=(const CaptureThread&) = delete;
@@ -29,28 +29,28 @@ class CaptureThread {
   bool has_right() const { return has_right_; }
   int width() const { return width_; }
   int height() const { return height_; }
-  double rate_hz() const { return rate_hz_; }  // zero: not told
+  double rate_hz() const { return rate_hz_; }  // zero: unknown
 
-  // The next frame, waited for at most so long. Throws InputError when the cameras turned out to be of no use.
+  // The next frame; waits at most this long. Throws InputError if the cameras are unusable.
   std::optional<ImageFrame> next(std::chrono::milliseconds at_most);
   std::vector<std::string> take_notes();
   int passed_over() const { return frames_.dropped(); }
 
-  // Ends the thread; frames that wait can still be taken.
+  // Ends the thread. Waiting frames can still be taken.
   void stop();
   LiveCameraReport report() const { return cameras_.report(); }  // after stop()
 
  private:
   void capture(const std::stop_token& stop);
 
-  LiveCameras cameras_;  // used by the thread alone until it has stopped
+  LiveCameras cameras_;  // used only by the thread until it has stopped
   const bool has_right_;
   const int width_;
   const int height_;
   const double rate_hz_;
   NewestQueue<ImageFrame> frames_;
   NewestQueue<std::string> notes_;
-  std::jthread thread_;  // the last member: it uses the others
+  std::jthread thread_;  // last member, because it uses the others
 };
 
 }  // namespace byre

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kGridColumns = 8;
 constexpr int kGridRows = 6;
-constexpr int kStep = 2;  // pixels from one that is looked at to the next, both ways
+constexpr int kStep = 2;  // pixels between sampled pixels, both ways
 
-// Shim's curve of a gradient, from 0 to 1: none below the threshold, which noise exceeds, and flat for strong ones.
+// Shim's curve of a gradient, from 0 to 1: zero below the noise threshold, and flat for strong gradients.
 double information_of(double gradient) {
   constexpr double kThreshold = 0.06;
   constexpr double kLambda = 1e3;
@@ -23,7 +23,7 @@ double information_of(double gradient) {
   return std::log(kLambda * (gradient - kThreshold) + 1.0) / scale;
 }
 
-// Information of differences of grey values, by their size.
+// Information by the difference of grey values.
 std::array<float, 256> information_table() {
   std::array<float, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -32,10 +32,10 @@ std::array<float, 256> information_table() {
   return table;
 }
 
-constexpr std::uint8_t kFull = 251;  // grey value from which on a pixel tells nothing
-constexpr int kNoise = 4;            // grey values: smaller gradients are none, however much more light there were
+constexpr std::uint8_t kFull = 251;  // grey value from which a pixel counts as saturated
+constexpr int kNoise = 4;            // grey values: smaller gradients count as zero at any exposure
 
-// Grey values as they would be with so many times the light.
+// Predicted grey values for an exposure factor.
 std::array<std::uint8_t, 256> values_with(double factor) {
   std::array<std::uint8_t, 256> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -45,7 +45,7 @@ std::array<std::uint8_t, 256> values_with(double factor) {
   return values;
 }
 
-// Where nothing is to be seen, no gradient tells the way, but an image that is nearly black, or white, does.
+// Without gradients, only a nearly black or nearly white image indicates a direction.
 double factor_of_blank(const Image& image) {
   constexpr double kMuch = 2.0;
   constexpr double kDark = 32.0, kBright = 223.0;  // mean grey values
@@ -84,7 +84,7 @@ double corner_information(const Image& image, double factor) {
 
 double best_light_factor(const Image& image) {
   constexpr std::array kFactors = {1.0, 1.0 / 1.1, 1.1, 1.0 / 1.3, 1.3, 1.0 / 1.7, 1.7, 1.0 / 2.3, 2.3, 4.0, 8.0};
-  constexpr double kClearly = 1.003;  // what is hardly better is no reason to change anything
+  constexpr double kClearly = 1.003;  // ignores insignificant improvements
   constexpr double kNothing = 1.0;
   double best = kFactors.front();
   double most = kClearly * corner_information(image, best);
@@ -98,7 +98,7 @@ double best_light_factor(const Image& image) {
 }
 
 CameraExposure next_exposure(const CameraExposure& now, double factor, const CameraExposureLimits& limits) {
-  constexpr double kShare = 0.7;  // share of the way, of the logarithm
+  constexpr double kShare = 0.7;  // share of the step, in the logarithm
   constexpr double kMost = 2.0;
   const double change = std::clamp(std::pow(factor, kShare), 1.0 / kMost, kMost);
   const double light = std::max(now.light(), limits.min_seconds) * change;

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-constexpr double kUnit = 1e-4;  // seconds of V4L2's absolute exposure
+constexpr double kUnit = 1e-4;  // seconds, unit of V4L2's absolute exposure
 
 std::optional<ControlRange> range_of(const VideoDescriptor& descriptor, std::uint32_t control) {
   v4l2_queryctrl query{};
@@ -48,7 +48,7 @@ double gain_factor(const ControlRange& range, int value) {
 ExposureControls::ExposureControls(const VideoDescriptor& descriptor, const std::string& place)
     : descriptor_(descriptor) {
   const auto exposure = range_of(descriptor, V4L2_CID_EXPOSURE_ABSOLUTE);
-  // Those that most cameras do not have are left alone where they are missing.
+  // Controls that most cameras lack; failures are ignored.
   set_control(descriptor, V4L2_CID_EXPOSURE_AUTO_PRIORITY, 0);
   set_control(descriptor, V4L2_CID_AUTOGAIN, 0);
   set_control(descriptor, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL);
@@ -75,7 +75,7 @@ CameraExposure ExposureControls::now() const {
   return exposure;
 }
 
-// Time is rounded down: a limit is one.
+// Rounds the time down, because of the limit.
 bool ExposureControls::set(const CameraExposure& exposure) const {
   constexpr double kRounding = 1e-6;  // units
   const int units = static_cast<int>(std::floor(exposure.seconds / kUnit + kRounding));

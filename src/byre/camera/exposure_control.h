@@ -8,37 +8,36 @@
 
 namespace byre {
 
-// A number that a driver lets be set.
 struct ControlRange {
   int min = 0;
   int max = 0;
   int step = 1;
 };
 
-// How many gain factors a driver's range of gain stands for. Drivers do not say; that it is about so, and what is seen
-// afterwards, is enough to come to the right brightness.
+// Assumed gain factor at the upper end of a driver's range, which drivers do not report. The feedback of images
+// corrects the error.
 inline constexpr double kMostGain = 16.0;
 
-// The value of a driver's control for a gain factor, and back.
+// Converts a gain factor to the value of a driver's control, and back.
 int gain_value(const ControlRange& range, double gain);
 double gain_factor(const ControlRange& range, int value);
 
-// Exposure time and gain of a device, by its driver's controls: exposure by hand, in units of 100 us.
+// Manual exposure time and gain of a device by its driver's controls. Exposure is in units of 100 us.
 class ExposureControls {
  public:
-  // Switches automatic exposure and gain off. Throws InputError for a device whose exposure time cannot be set.
+  // Disables automatic exposure and gain. Throws InputError for a device without a manual exposure time.
   ExposureControls(const VideoDescriptor& descriptor, const std::string& place);
 
-  // What can be had of these limits.
+  // Limits within the ranges of the device.
   CameraExposureLimits limits(double max_seconds) const;
   CameraExposure now() const;
-  // False when the device does not take it any more.
+  // False if the device rejects it.
   bool set(const CameraExposure& exposure) const;
 
  private:
   const VideoDescriptor& descriptor_;
   ControlRange exposure_;             // units of 100 us
-  std::optional<ControlRange> gain_;  // empty: the device has no gain to set
+  std::optional<ControlRange> gain_;  // empty if the device has no gain control
 };
 
 }  // namespace byre

@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 
-// Light that comes from a point of a scene, one for what fills a pixel in one millisecond.
+// Light from a point of a scene; 1 saturates a pixel in 1 ms.
 using Scene = std::function<double(int x, int y)>;
 
 bool is_dark_square(int x, int y) {
@@ -25,7 +25,7 @@ Scene squares(double light) {
   return [=](int x, int y) { return light * (is_dark_square(x, y) ? 0.4 : 1.0); };
 }
 
-// A camera whose pixels fill up.
+// Image of a camera whose pixels saturate.
 Image taken(const Scene& scene, const CameraExposure& exposure) {
   Image image{kWidth, kHeight, {}};
   for (int y = 0; y < kHeight; ++y) {
@@ -88,7 +88,7 @@ TEST(Exposure, FindsCornersFromTooDarkAndFromTooBright) {
   }
 }
 
-// A window without anything to see takes half of the image: its mean says nothing of the wall beside it.
+// A featureless window covers half of the image, so the mean does not represent the wall next to it.
 TEST(Exposure, LooksAtCornersAndNotAtTheMean) {
   const Scene scene = [](int x, int y) { return x < kWidth / 2 ? 5.0 : 0.15 * squares(1.0)(x, y); };
   const CameraExposure exposure = settled(scene, {2e-4, 1.0}, {.max_seconds = 0.05});

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A camera's folder of a EuRoC recording. An image is listed once its file is whole.
+// A camera's folder of a EuRoC recording. An image is listed after its file is complete.
 class EurocCamera {
  public:
   explicit EurocCamera(fs::path folder) : folder_(std::move(folder)) {
@@ -108,7 +108,7 @@ class McapSink final : public FrameSink {
  private:
   struct Topics {
     std::uint16_t image = 0;
-    std::optional<std::uint16_t> info{};  // where the camera is calibrated
+    std::optional<std::uint16_t> info{};  // only for a calibrated camera
   };
 
   Topics add_camera(const std::string& name) {

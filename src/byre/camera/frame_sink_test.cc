@@ -27,7 +27,7 @@ class FrameSinks : public testing::Test {
 
   static Calibration calibration() { return euroc_like_calibration(8); }
 
-  // Images of values that tell camera, frame and place.
+  // Images whose values identify camera, frame and pixel.
   static ImageFrame frame(int number) {
     const Camera& camera = calibration().left;
     const auto image = [&](int value) {
@@ -81,7 +81,7 @@ TEST_F(FrameSinks, AreWholeUpToTheLastFrameHoweverTheyEnd) {
     folder->write(frame(i));
     bag->write(frame(i));
   }
-  // Neither is finished, and both are still open.
+  // Neither sink is finished, and both are still open.
   std::ifstream list(folder_ / "walk" / "mav0" / "cam0" / "data.csv");
   int lines = 0;
   for (std::string line; std::getline(list, line);) ++lines;

@@ -14,7 +14,7 @@
 namespace byre {
 namespace {
 
-constexpr int kExposureInterval = 6;  // frames from one change to the next: a change is seen some frames later
+constexpr int kExposureInterval = 6;  // frames between changes: a change takes effect some frames later
 
 void require_sense(const LiveCameraOptions& options) {
   if (options.devices.empty() || options.devices.size() > 2) {
@@ -99,12 +99,12 @@ void LiveCameras::note_clock(Timestamp stamp) {
 }
 
 void LiveCameras::note_difference() {
-  constexpr int kEnough = 20;  // left images without a right one, until that is told
+  constexpr int kEnough = 20;  // left images without a right one, before it is reported
   const StampPairCounts& counts = pairing_.counts();
   if (has_told_difference_ || counts.left_alone < kEnough || counts.left_alone < counts.pairs) return;
   const auto difference = pairing_.last_difference();
   const bool is_apart = difference && std::chrono::abs(*difference) > options_.pairing.tolerance;
-  if (!is_apart) return;  // right images stay away
+  if (!is_apart) return;  // right images are missing
   has_told_difference_ = true;
   notes_.push_back(
       fmt::format("left and right images are {:.1f} ms apart, which is no pair; have both cameras triggered "

@@ -13,27 +13,26 @@
 
 namespace byre {
 
-// One camera, a pair in one image, or two devices whose images are put together by their stamps.
+// One camera, a pair in one image, or two devices whose images are paired by their stamps.
 struct LiveCameraOptions {
   std::vector<std::filesystem::path> devices;  // one, or left and right
-  bool side_by_side = false;                   // one device's images hold both cameras, the left one on the left
-  VideoRequest request{};                      // what each device is asked for
+  bool side_by_side = false;                   // images of one device contain both cameras, left one first
+  VideoRequest request{};                      // requested from each device
   PairingLimits pairing{};
-  std::optional<double> exposure_limit_s{};  // byre then controls exposure and gain; empty: the device does
+  std::optional<double> exposure_limit_s{};  // limit if byre controls exposure and gain; empty: the device does
 };
 
-// What came of the cameras so far.
 struct LiveCameraReport {
   std::vector<DeviceReport> devices;
   std::optional<CameraClock> clock;          // empty before the first image
-  std::optional<StampPairCounts> pairs;      // none for one device
+  std::optional<StampPairCounts> pairs;      // empty for one device
   std::optional<Timestamp> last_difference;  // right stamp minus left one, of the last left image
 };
 
-// Cameras that are looked at as they come. Called by one thread.
+// Live cameras. Use from one thread.
 class LiveCameras {
  public:
-  // Throws InputError as WatchedDevice does, and for images that cannot be halves of two cameras or a pair.
+  // Throws InputError like WatchedDevice, and for images that cannot be two halves or a pair.
   explicit LiveCameras(const LiveCameraOptions& options);
 
   bool has_right() const { return options_.side_by_side || devices_.size() > 1; }
@@ -41,11 +40,11 @@ class LiveCameras {
   int width() const;
   int height() const;
 
-  // Waits until an image comes, at most so long, and gives the frames that are complete. Times are UTC where the
-  // devices' clock is known, else as the devices tell them.
+  // Waits for an image for at most this long, and returns the complete frames. Times are UTC if the clock of the
+  // devices is recognised, else the device stamps.
   std::vector<ImageFrame> wait(int milliseconds);
 
-  std::vector<std::string> take_notes();  // what befell the cameras since it was asked last
+  std::vector<std::string> take_notes();  // events since the last call
   LiveCameraReport report() const;
 
  private:
@@ -59,13 +58,12 @@ class LiveCameras {
   StampPairing pairing_;
   std::optional<CameraClock> clock_;
   Timestamp utc_offset_{};
-  std::optional<CameraExposure> exposure_;  // empty until it is controlled
+  std::optional<CameraExposure> exposure_;  // empty until exposure is controlled
   int frames_since_exposure_ = 0;
   bool has_told_difference_ = false;
   std::vector<std::string> notes_;
 };
 
-// The report as rows of text.
 std::string to_text(const LiveCameraReport& report);
 
 }  // namespace byre

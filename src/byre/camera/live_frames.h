@@ -10,11 +10,11 @@
 
 namespace byre {
 
-// The frames of live cameras for a run: whoever is slow gets the newest one next.
+// Frames of live cameras for a run; a slow consumer gets the newest frame next.
 class LiveFrames final : public FrameSource {
  public:
-  // duration_s: from the first frame on; empty: without end. tell: called with what befalls the cameras, at once.
-  // Throws InputError as CaptureThread does, and where the calibration, of that file, is not of such cameras.
+  // duration_s: from the first frame on; empty: unlimited. tell: receives events of the cameras immediately. Throws
+  // InputError like CaptureThread, and if the calibration of that file does not match the cameras.
   LiveFrames(LiveCameraOptions options, const Calibration& calibration, const std::string& calibration_file,
              std::optional<double> duration_s, std::function<void(const std::string& note)> tell);
 
@@ -22,7 +22,7 @@ class LiveFrames final : public FrameSource {
   std::optional<SourceFrame> next(const std::function<bool()>& should_stop) override;
 
   int passed_over() const { return capture_.passed_over(); }
-  // Ends the cameras, and tells what came of them.
+  // Stops the cameras, and returns their statistics.
   LiveCameraReport finish();
 
  private:

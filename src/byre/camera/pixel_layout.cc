@@ -13,7 +13,7 @@
 namespace byre {
 namespace {
 
-// A format that is taken, in the order of preference.
+// A readable format; the list is in order of preference.
 struct KnownFormat {
   std::uint32_t code = 0;
   PixelFormat format = PixelFormat::grey8;
@@ -39,7 +39,7 @@ const KnownFormat* find(std::uint32_t code) {
   return found != kKnown.end() ? found : nullptr;
 }
 
-// Bytes that the last row needs, which drivers may hand over without padding.
+// Bytes of the last row, which drivers may deliver without padding.
 std::size_t bytes_of_row(const KnownFormat& known, int width) {
   const auto pixels = static_cast<std::size_t>(width);
   switch (known.format) {

@@ -10,31 +10,30 @@
 
 namespace byre {
 
-// How the bytes of a captured image lie. code: the four characters by which V4L2 names a format.
+// Memory layout of a captured image. code: four-character format code of V4L2.
 struct PixelLayout {
   std::uint32_t code = 0;
   int width = 0;           // pixels
   int height = 0;          // pixels
-  std::size_t stride = 0;  // bytes from one row to the next; of no meaning where images are compressed
+  std::size_t stride = 0;  // bytes from one row to the next; unused for compressed images
 };
 
-// "YUYV".
+// Code as text, such as "YUYV".
 std::string four_characters(std::uint32_t code);
-// Empty for a text that is not of one to four characters.
+// Empty unless the text has one to four characters.
 std::optional<std::uint32_t> parse_four_characters(const std::string& text);
 
-// Whether images of that format can be taken.
 bool is_readable(std::uint32_t code);
-// All that can be, in the order in which they are preferred, separated by commas.
+// All readable formats in order of preference, separated by commas.
 std::string readable_formats();
-// The place in that order; the fewest bytes that hold all grey values come first. Empty for what cannot be read.
+// Rank in that order: the fewest bytes with all grey values come first. Empty for unreadable formats.
 std::optional<int> preference_of(std::uint32_t code);
 
-// The image as 8-bit grey; of more bits the upper ones. Empty where bytes are missing, or compressed ones are no whole
+// The image as 8-bit grey; of more bits the upper ones. Empty if bytes are missing, or compressed bytes are not a whole
 // image of that size. Precondition: the format is readable.
 std::optional<Image> grey_of(const PixelLayout& layout, std::span<const std::uint8_t> bytes);
 
-// The left and the right half of an image that holds both. The width must be even.
+// Left and right half of an image that contains both. The width must be even.
 struct ImageHalves {
   Image left;
   Image right;

@@ -32,7 +32,7 @@ TEST(PixelLayout, PrefersGreyAndKnowsWhatItCannotRead) {
 }
 
 TEST(PixelLayout, TakesGreyWithoutPaddingOfRows) {
-  const Bytes bytes = {1, 2, 99, 3, 4};  // the last row may come without padding
+  const Bytes bytes = {1, 2, 99, 3, 4};  // the last row may lack its padding
   const auto grey = grey_of({V4L2_PIX_FMT_GREY, 2, 2, 3}, bytes);
   ASSERT_TRUE(grey);
   EXPECT_THAT(grey->pixels, ElementsAre(1, 2, 3, 4));

@@ -23,7 +23,7 @@ void tell_notes(CaptureThread& capture, int passed_over_before, const RecordHook
 RecordedFrames record_frames(CaptureThread& capture, FrameSink& sink, const RecordLimits& limits,
                              const RecordHooks& hooks) {
   constexpr auto kStopInterval = std::chrono::milliseconds(50);
-  constexpr double kPatience_s = 10.0;  // time that a camera has until its first frame
+  constexpr double kPatience_s = 10.0;  // longest wait for the first frame
   RecordedFrames recorded;
   const Stopwatch since_start;
   std::optional<Stopwatch> since_first;
@@ -51,7 +51,7 @@ RecordedFrames record_frames(CaptureThread& capture, FrameSink& sink, const Reco
     is_over = is_over || is_late(since_first ? since_first->seconds() : since_start.seconds() - kPatience_s);
   }
   capture.stop();
-  is_over = false;  // what came before is written, as far as it is within the limits
+  is_over = false;  // writes the queued frames within the limits
   while (write_next({})) {
   }
   sink.finish();

@@ -9,27 +9,27 @@
 
 namespace byre {
 
-// When to stop; whichever comes first.
+// Limits of a recording; the first one reached ends it.
 struct RecordLimits {
   std::optional<double> duration_s{};  // from the first frame on
   std::optional<int> frames{};
 };
 
 struct RecordHooks {
-  std::function<bool()> should_stop;  // asked all the time; frames that came before are still written
+  std::function<bool()> should_stop;  // polled continuously; earlier frames are still written
   std::function<void(int frames, const ImageFrame& newest)> after_frame;
-  std::function<void(const std::string& note)> tell;  // what befell the cameras, at once
+  std::function<void(const std::string& note)> tell;  // receives events of the cameras immediately
 };
 
 struct RecordedFrames {
   int frames = 0;
   int with_right = 0;
-  int passed_over = 0;  // frames that came faster than they could be written, for so long that they no longer fit
+  int passed_over = 0;  // frames dropped because writing was too slow and the queue was full
   std::optional<Timestamp> first{}, last{};
   LiveCameraReport cameras;
 };
 
-// Hands all that comes to a sink, until it is to stop. Throws InputError as the sink and the cameras do.
+// Writes all frames to a sink until a limit is reached. Throws InputError like the sink and the cameras.
 RecordedFrames record_frames(CaptureThread& capture, FrameSink& sink, const RecordLimits& limits,
                              const RecordHooks& hooks);
 

@@ -2,7 +2,7 @@
 
 namespace byre {
 
-// Numbers are counted modulo 2^32. Those that go back by less than half of it are those of a driver that began anew.
+// Numbers count modulo 2^32. A step back by less than half of it is a restart of the driver.
 void SequenceWatch::note_number(std::uint32_t sequence) {
   constexpr std::uint32_t kHalf = 1u << 31;
   const std::uint32_t gap = sequence - next_.value_or(sequence);

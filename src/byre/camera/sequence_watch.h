@@ -7,22 +7,21 @@
 
 namespace byre {
 
-// What became of the images that a device took.
 struct CaptureCounts {
-  int images = 0;        // images that were handed on
-  int lost = 0;          // images that the driver took and had no room for, by gaps of its numbers
-  int damaged = 0;       // images that the driver calls damaged, or that are cut
-  int out_of_order = 0;  // images whose stamp is not later than that of the one before
+  int images = 0;        // images that were passed on
+  int lost = 0;          // images that the driver dropped, by gaps of its sequence numbers
+  int damaged = 0;       // images that the driver marks as damaged, or that are truncated
+  int out_of_order = 0;  // images with a stamp not later than the previous one
 };
 
-// Counts images by the numbers and stamps that a driver gives them.
+// Counts images by a driver's sequence numbers and stamps.
 class SequenceWatch {
  public:
-  // Whether the image is to be handed on.
+  // Whether to pass the image on.
   bool note(std::uint32_t sequence, Timestamp stamp);
-  // The number counts on, so it is no gap.
+  // Advances the sequence number, so that the damaged image is not a gap.
   void note_damaged(std::uint32_t sequence);
-  // The device was opened anew: its numbers begin again.
+  // The device was reopened: its sequence numbers restart.
   void restart() { next_.reset(); }
 
   const CaptureCounts& counts() const { return counts_; }
@@ -30,7 +29,7 @@ class SequenceWatch {
  private:
   void note_number(std::uint32_t sequence);
 
-  std::optional<std::uint32_t> next_;  // number that the next image should have
+  std::optional<std::uint32_t> next_;  // expected number of the next image
   std::optional<Timestamp> last_stamp_;
   CaptureCounts counts_;
 };

@@ -7,7 +7,7 @@ namespace byre {
 
 namespace {
 
-constexpr std::size_t kMostRights = 32;  // where left images stay away
+constexpr std::size_t kMostRights = 32;  // right images kept while left ones are missing
 
 }  // namespace
 

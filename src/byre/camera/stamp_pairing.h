@@ -8,25 +8,25 @@
 
 namespace byre {
 
-// An image and when its driver says that it was taken.
+// An image and its time stamp by the driver.
 struct StampedImage {
   Timestamp stamp{};
   Image image;
 };
 
 struct PairingLimits {
-  Timestamp tolerance = std::chrono::milliseconds(5);  // most time between the stamps of a pair
-  Timestamp wait = std::chrono::milliseconds(200);     // time that a left image waits for its right one
+  Timestamp tolerance = std::chrono::milliseconds(5);  // largest difference between the stamps of a pair
+  Timestamp wait = std::chrono::milliseconds(200);     // longest time that a left image waits for its right one
 };
 
 struct StampPairCounts {
   int pairs = 0;
   int left_alone = 0;   // left images without a right one
-  int right_alone = 0;  // right images without a left one, which are left out
+  int right_alone = 0;  // right images without a left one, which are dropped
 };
 
-// Puts the images of two devices together by their stamps, each left one with the nearest right one. All are kept in
-// order, and a left image without a partner is handed on alone once none can come any more.
+// Pairs the images of two devices by their stamps: each left image with the nearest right one. The order is kept. A
+// left image is passed on alone once no partner can arrive any more.
 class StampPairing {
  public:
   struct Pair {
@@ -36,14 +36,14 @@ class StampPairing {
 
   explicit StampPairing(const PairingLimits& limits) : limits_(limits) {}
 
-  // now: when the image came, by a clock that never goes back.
+  // now: arrival time, by a monotonic clock.
   void add_left(StampedImage image, Timestamp now);
   void add_right(StampedImage image);
 
   std::optional<Pair> next(Timestamp now);
 
   const StampPairCounts& counts() const { return counts_; }
-  // Time from the left image that was handed on last to the right one nearest to it, pair or not.
+  // Time from the last left image passed on to its nearest right image, paired or not.
   std::optional<Timestamp> last_difference() const { return last_difference_; }
 
  private:

@@ -10,9 +10,9 @@
 namespace byre {
 
 std::vector<std::uint8_t> png_of(const Image& image) {
-  // OpenCV knows no constant pixels.
+  // cv::Mat has no const pixels.
   const cv::Mat pixels(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data()));
-  constexpr int kFastest = 1;  // noise does not compress: trying hard only takes time
+  constexpr int kFastest = 1;  // noise does not compress, at any effort
   return encode_image(".png", pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest});
 }
 

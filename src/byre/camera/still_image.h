@@ -7,10 +7,10 @@
 
 namespace byre {
 
-// A PNG file of the image, made fast rather than small.
+// A PNG file of the image, optimised for speed rather than size.
 std::vector<std::uint8_t> png_of(const Image& image);
 
-// Both beside one another. Precondition: they are of one height.
+// Both images side by side. Precondition: equal heights.
 Image side_by_side(const Image& left, const Image& right);
 
 }  // namespace byre

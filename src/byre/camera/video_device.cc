@@ -14,7 +14,7 @@
 namespace byre {
 namespace {
 
-constexpr std::uint32_t kBuffers = 8;  // images that the driver can fill while nobody looks
+constexpr std::uint32_t kBuffers = 8;  // images that the driver can buffer
 
 v4l2_buffer buffer_at(std::uint32_t index) {
   v4l2_buffer buffer{};
@@ -78,7 +78,7 @@ void VideoDevice::start() {
 
 void VideoDevice::stop() {
   int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  descriptor_.call(VIDIOC_STREAMOFF, &type);  // fails for one that is gone, which has stopped
+  descriptor_.call(VIDIOC_STREAMOFF, &type);  // fails for an unplugged device, which has stopped
   for (const std::span<std::uint8_t> buffer : buffers_) munmap(buffer.data(), buffer.size());
   buffers_.clear();
 }

@@ -11,14 +11,14 @@
 
 namespace byre {
 
-// A camera that Linux knows by V4L2, streaming into memory that it shares with the driver.
+// A V4L2 camera that streams into memory shared with the driver.
 class VideoDevice {
  public:
-  // What came of asking for an image.
-  //   image    one was there
-  //   nothing  none is waiting
-  //   damaged  one was there that the driver calls damaged, or that is cut
-  //   gone     the device was unplugged, or gives up
+  // Result of taking an image.
+  //   image    success
+  //   nothing  no image is waiting
+  //   damaged  the driver marks the image as damaged, or it is truncated
+  //   gone     the device was unplugged, or failed
   enum class Outcome : std::uint8_t { image, nothing, damaged, gone };
   struct Taken {
     Outcome outcome = Outcome::nothing;
@@ -27,7 +27,7 @@ class VideoDevice {
     StampedImage image{};  // the driver's stamp, and 8-bit grey
   };
 
-  // Throws InputError: no device of that name, none that captures, busy, or none of its formats and sizes fits.
+  // Throws InputError if the device does not exist, does not capture, is busy, or has no fitting format and size.
   VideoDevice(const std::filesystem::path& path, const VideoRequest& request);
   ~VideoDevice();
   VideoDevice(const VideoDevice&) = delete;
@@ -36,7 +36,7 @@ class VideoDevice {
   const VideoMode& mode() const { return mode_; }
   const VideoDescriptor& descriptor() const { return descriptor_; }
 
-  Taken take();  // waits for nothing
+  Taken take();  // does not wait
 
  private:
   void map_buffers();

@@ -13,7 +13,7 @@
 namespace byre {
 namespace {
 
-constexpr int kMostListed = 256;  // entries, for drivers that never come to an end
+constexpr int kMostListed = 256;  // entries, because some drivers list without end
 constexpr const char* kSeeList = "\"byre camera list\" tells what it offers";
 
 double rate_of(const v4l2_fract& interval) {
@@ -80,7 +80,7 @@ std::vector<std::uint32_t> offered_formats(const VideoDescriptor& descriptor) {
   return codes;
 }
 
-// Formats to try, the best first. Throws InputError when there is none.
+// Formats to try, best first. Throws InputError if there is none.
 std::vector<std::uint32_t> formats_to_try(const VideoDescriptor& descriptor, const VideoRequest& request,
                                           const std::string& place) {
   if (request.format && !is_readable(*request.format)) {
@@ -107,12 +107,12 @@ double set_rate(const VideoDescriptor& descriptor, const std::optional<double>& 
   if (rate_hz) {
     constexpr std::uint32_t kThousand = 1000;
     parameters.parm.capture.timeperframe = {kThousand, static_cast<std::uint32_t>(*rate_hz * kThousand + 0.5)};
-    descriptor.call(VIDIOC_S_PARM, &parameters);  // what came of it is seen below
+    descriptor.call(VIDIOC_S_PARM, &parameters);  // the rate returned below shows the result
   }
   return rate_of(parameters.parm.capture.timeperframe);
 }
 
-// What the device does when it is asked for that. Empty when it refuses.
+// The actual mode after a request with this format; empty if the device rejects it.
 std::optional<VideoMode> try_mode(const VideoDescriptor& descriptor, const VideoRequest& request, std::uint32_t code) {
   v4l2_format format{};
   format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -132,13 +132,13 @@ std::optional<VideoMode> try_mode(const VideoDescriptor& descriptor, const Video
 }
 
 bool is_as_asked(const VideoMode& mode, const VideoRequest& request) {
-  constexpr double kNearly = 0.98;  // 29.97 Hz are as good as 30
+  constexpr double kNearly = 0.98;  // accepts 29.97 Hz for 30 Hz
   const bool has_size = mode.layout.width == request.width.value_or(mode.layout.width) &&
                         mode.layout.height == request.height.value_or(mode.layout.height);
   return has_size && (!request.rate_hz || mode.rate_hz >= kNearly * *request.rate_hz);
 }
 
-// Drivers tell it with the first buffer that they give.
+// Drivers report the moment of stamps with the first buffer.
 std::optional<StampMoment> told_moment(const VideoDescriptor& descriptor) {
   v4l2_requestbuffers wanted{};
   wanted.count = 1;
@@ -150,7 +150,7 @@ std::optional<StampMoment> told_moment(const VideoDescriptor& descriptor) {
   buffer.memory = V4L2_MEMORY_MMAP;
   const bool is_told = descriptor.call(VIDIOC_QUERYBUF, &buffer);
   wanted.count = 0;
-  descriptor.call(VIDIOC_REQBUFS, &wanted);  // gives the buffer back
+  descriptor.call(VIDIOC_REQBUFS, &wanted);  // releases the buffer
   return is_told ? std::optional(moment_of(buffer.flags)) : std::nullopt;
 }
 

@@ -11,7 +11,7 @@
 
 namespace byre {
 
-// What a device is asked for; what is empty is left as it is set, or chosen.
+// Requested mode of a device; empty members keep the current setting, or are chosen.
 struct VideoRequest {
   std::optional<std::uint32_t> format{};  // four characters
   std::optional<int> width{};             // pixels; goes with height
@@ -19,24 +19,24 @@ struct VideoRequest {
   std::optional<double> rate_hz{};
 };
 
-// What a device does.
+// Actual mode of a device.
 struct VideoMode {
   PixelLayout layout;
-  double rate_hz = 0.0;  // zero: not told
+  double rate_hz = 0.0;  // zero: unknown
 };
 
-// "752 x 480 GREY at 20 Hz".
+// Text such as "752 x 480 GREY at 20 Hz".
 std::string describe(const VideoMode& mode);
 
-// When the driver reads the clock for an image's stamp.
+// Moment at which the driver reads the clock for an image's stamp.
 enum class StampMoment : std::uint8_t { exposure_start, frame_end };
 
 std::string_view to_string(StampMoment moment);
 
-// By the flags of a buffer (linux/videodev2.h).
+// From the flags of a buffer (linux/videodev2.h).
 StampMoment moment_of(std::uint32_t flags);
 
-// What a device says of itself.
+// Capabilities reported by a device.
 struct VideoFormats {
   struct Size {
     int width = 0;          // pixels
@@ -50,16 +50,16 @@ struct VideoFormats {
     std::vector<Size> sizes{};
   };
   std::string name;
-  std::string bus;  // where it is plugged in: the same after it was unplugged and plugged in again
+  std::string bus;  // bus address; the same after replugging
   std::vector<Format> formats{};
-  std::optional<StampMoment> moment{};  // empty where it is not told, as while another program uses the device
+  std::optional<StampMoment> moment{};  // empty if unknown, such as while another program uses the device
 };
 
-// Throws InputError for what is no camera.
+// Throws InputError if it is not a camera.
 VideoFormats formats_of(const VideoDescriptor& descriptor, const std::string& place);
 
-// Sets a device to what is asked for, and tells what it then does. Of formats that are left open the first one in the
-// order of preference that gives size and rate. Throws InputError, with what the device offers, when none does.
+// Sets the requested mode, and returns the actual one. Formats that the request leaves open are tried in order of
+// preference, until size and rate fit. Throws InputError with the device's capabilities if none fits.
 VideoMode set_mode(const VideoDescriptor& descriptor, const VideoRequest& request, const std::string& place);
 
 }  // namespace byre

@@ -14,9 +14,9 @@ using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
 constexpr Timestamp kRetryInterval = 200ms;
-constexpr int kMostAtOnce = 8;  // images, so that another device has its turn
+constexpr int kMostAtOnce = 8;  // images, so that other devices get their turn
 
-// Cameras need a while from when they start to their first image.
+// Cameras need some time from their start to the first image.
 Timestamp patience_for(const VideoMode& mode) {
   constexpr Timestamp kLeast = 3s;
   constexpr double kFrames = 10.0;
@@ -51,7 +51,7 @@ void WatchedDevice::open_again(Timestamp now) {
     open(same);
     watch_.restart();
     last_image_ = now;
-  } catch (const InputError&) {  // still away: that was told
+  } catch (const InputError&) {  // still away, already reported
     controls_.reset();
     device_.reset();
   }
@@ -115,7 +115,7 @@ void WatchedDevice::set_exposure(const CameraExposure& exposure) {
   const CameraExposureLimits limits = controls_->limits(*exposure_limit_);
   report_.exposure = CameraExposure{std::clamp(exposure.seconds, limits.min_seconds, limits.max_seconds),
                                     std::min(exposure.gain, limits.max_gain)};
-  controls_->set(*report_.exposure);  // a device that takes it no more is found to be away
+  controls_->set(*report_.exposure);  // a device that rejects it is detected as away
 }
 
 std::optional<CameraExposureLimits> WatchedDevice::exposure_limits() const {

@@ -12,36 +12,36 @@
 
 namespace byre {
 
-// What came of a device so far.
 struct DeviceReport {
   std::string path;
   VideoMode mode;
   StampMoment moment = StampMoment::frame_end;  // moment of the last image's stamp
   CaptureCounts counts;
-  int times_away = 0;         // times that it was unplugged, or gave no image for long, and had to be opened anew
-  double seconds_away = 0.0;  // without those since it went last, where it is away
+  // Number of times that it was unplugged, or sent no image for long, and had to be reopened.
+  int times_away = 0;
+  double seconds_away = 0.0;  // excludes the current absence
   bool is_away = false;
-  std::optional<CameraExposure> exposure{};  // where it is controlled
+  std::optional<CameraExposure> exposure{};  // empty unless controlled
 };
 
-// A device that may be unplugged: it is opened again when it is back. Times are monotonic ones of this machine.
+// A device that may be unplugged; it is reopened when it returns. Times are monotonic times of this machine.
 class WatchedDevice {
  public:
-  // exposure_limit: in seconds; empty leaves the exposure to the device. Throws InputError as VideoDevice and
-  // ExposureControls do.
+  // exposure_limit: seconds; empty leaves the exposure to the device. Throws InputError like VideoDevice and
+  // ExposureControls.
   WatchedDevice(const std::filesystem::path& path, const VideoRequest& request,
                 const std::optional<double>& exposure_limit, Timestamp now);
 
-  // To wait for; -1 while it is away.
+  // File descriptor to wait for; -1 while the device is away.
   int descriptor() const { return device_ ? device_->descriptor().number() : -1; }
-  // Images that are waiting, in order; not so many that others would have to wait.
+  // Waiting images in order. Their number is limited, so that other devices get their turn.
   std::vector<StampedImage> take(Timestamp now);
-  // Takes the same exposure as other devices do; no more than its limit.
+  // Sets an exposure chosen for all devices, clamped to its own limits.
   void set_exposure(const CameraExposure& exposure);
-  // Limits of exposure; empty where it is not controlled, or away.
+  // Limits of exposure; empty if it is not controlled, or the device is away.
   std::optional<CameraExposureLimits> exposure_limits() const;
 
-  // Since it was asked last: that it is away, and that it is back.
+  // Notes since the last call: the device went away, or returned.
   std::vector<std::string> take_notes();
   const DeviceReport& report() const { return report_; }
 
@@ -54,7 +54,7 @@ class WatchedDevice {
 
   std::filesystem::path path_;            // constant after construction
   std::optional<double> exposure_limit_;  // constant after construction
-  std::unique_ptr<VideoDevice> device_;   // null while it is away
+  std::unique_ptr<VideoDevice> device_;   // null while the device is away
   std::optional<ExposureControls> controls_;
   SequenceWatch watch_;
   Timestamp patience_{};  // longest time without an image
