@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kReadRemedy = "check that the file exists and may be read";
 constexpr std::string_view kChangeRemedy = "put another file in its place rather than to change it while it is in use";
-// An open file, closed at the end of its life.
+// An open file, closed by the destructor.
 class OpenFile {
  public:
   explicit OpenFile(const fs::path& path) : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -72,7 +72,7 @@ std::vector<std::byte> read_file(const fs::path& path) {
   std::size_t filled = 0;
   while (filled < bytes.size()) {
     const std::size_t count = file.read_some(std::span(bytes).subspan(filled));
-    if (count == 0) break;  // it has become shorter meanwhile
+    if (count == 0) break;  // the file was truncated meanwhile
     filled += count;
   }
   bytes.resize(filled);

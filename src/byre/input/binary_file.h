@@ -8,23 +8,22 @@
 
 namespace byre {
 
-// The whole file. Throws InputError when it cannot be read.
+// Content of a file. Throws InputError if it cannot be read.
 std::vector<std::byte> read_file(const std::filesystem::path& path);
 
 // The folder of a file; "." if the path names none.
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
-// An open file that is read piece by piece. Stays the same file if another one is put in its path. Several threads may
-// read at once.
+// An open file that is read piece by piece. Keeps reading the same file if its path is replaced. Thread-safe reads.
 class PiecewiseFile {
  public:
-  explicit PiecewiseFile(const std::filesystem::path& path);  // throws InputError when it cannot be opened
+  explicit PiecewiseFile(const std::filesystem::path& path);  // throws InputError if it cannot be opened
   ~PiecewiseFile();
   PiecewiseFile(const PiecewiseFile&) = delete;
   PiecewiseFile& operator=(const PiecewiseFile&) = delete;
 
-  std::size_t size() const { return size_; }  // when it was opened, bytes
-  // Throws InputError when it cannot be read, or ends before.
+  std::size_t size() const { return size_; }  // bytes, when it was opened
+  // Throws InputError if it cannot be read, or is too short.
   void read(std::size_t offset, std::span<std::byte> bytes) const;
 
  private:
@@ -33,10 +32,10 @@ class PiecewiseFile {
   std::size_t size_ = 0;
 };
 
-// A file as read-only memory, loaded page by page as it is looked at; for large files of our own that nobody writes to.
+// Read-only memory map of a file, loaded by page on access; for large files of byre that are not modified in place.
 class MappedFile {
  public:
-  explicit MappedFile(const std::filesystem::path& path);  // throws InputError when it cannot be mapped
+  explicit MappedFile(const std::filesystem::path& path);  // throws InputError if it cannot be mapped
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;

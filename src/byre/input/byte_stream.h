@@ -13,17 +13,17 @@
 
 namespace byre {
 
-// Binary files of byre are little-endian, as are the machines it runs on; numbers are copied as they lie in memory.
+// Binary files of byre are little-endian, as are all supported machines; numbers are copied without conversion.
 static_assert(std::endian::native == std::endian::little, "byre's binary files are little-endian");
 
 template <typename T>
 concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-// XXH3 (64 bits) of the bytes: tells damage, not malice.
+// XXH3 (64 bits) of the bytes: detects damage, not manipulation.
 std::uint64_t checksum(std::span<const std::byte> bytes);
-// The same of several pieces, as if they lay one behind the other.
+// Same, of several pieces as if they were concatenated.
 std::uint64_t checksum_of_pieces(std::span<const std::span<const std::byte>> pieces);
-// The same of so many bytes, which read_at gives piece by piece, from a place among them on.
+// Same, of `size` bytes beginning at `offset`, which read_at delivers piece by piece.
 using ReadAt = std::function<void(std::size_t offset, std::span<std::byte> bytes)>;
 std::uint64_t checksum_of_file(const ReadAt& read_at, std::size_t offset, std::size_t size);
 
@@ -40,9 +40,9 @@ class ByteWriter {
   }
   void write_bytes(std::span<const std::byte> bytes);
   void write_text(std::string_view text);  // length of the text (u32), then its bytes
-  // The lowest bytes of a number. Precondition: 1 to 8 bytes, and nothing in the others.
+  // Writes the `count` lowest bytes of a number. Precondition: 1 to 8 bytes, the others are zero.
   void write_low_bytes(std::uint64_t value, std::size_t count);
-  // Seven bits a byte, the lowest first; all bytes but the last have their highest bit set.
+  // Writes seven bits per byte, the lowest first; all bytes but the last have their highest bit set.
   void write_varint(std::uint32_t value);
 
   std::size_t size() const { return bytes_.size(); }
@@ -52,11 +52,11 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-// Takes numbers from a piece of a file and never reads beyond it. Borrows the bytes. Every failure is an InputError
-// whose place is "PLACE at byte N", N counted from the file's start.
+// Reads numbers from a piece of a file, never beyond its end. Borrows the bytes. Each failure is an InputError with the
+// place "PLACE at byte N"; N counts from the start of the file.
 class ByteReader {
  public:
-  // place: "barn.byre: section points"; first_byte: where the bytes begin in the file.
+  // place: "barn.byre: section points"; first_byte: offset of the bytes in the file.
   ByteReader(std::span<const std::byte> bytes, std::string place, std::size_t first_byte)
       : bytes_(bytes), place_(std::move(place)), first_byte_(first_byte) {}
 
@@ -76,8 +76,8 @@ class ByteReader {
     position_ += size;
     return bytes_.subspan(position_ - size, size);
   }
-  std::span<const std::byte> rest() const { return bytes_.subspan(position_); }  // what is left, not taken
-  std::string read_text();                           // text as ByteWriter::write_text wrote it
+  std::span<const std::byte> rest() const { return bytes_.subspan(position_); }  // the remaining bytes, not consumed
+  std::string read_text();                           // text written by ByteWriter::write_text
   std::uint64_t read_low_bytes(std::size_t count) {  // precondition: 1 to 8
     std::uint64_t value = 0;
     const std::size_t bits_above = 8 * (sizeof(value) - count);
@@ -86,20 +86,20 @@ class ByteReader {
     position_ += count;
     return value << bits_above >> bits_above;
   }
-  std::uint32_t read_varint();  // refuses what takes more bytes than it needs
-  void skip_varint();           // whatever it is
+  std::uint32_t read_varint();  // rejects encodings longer than necessary
+  void skip_varint();           // without checks
 
-  // A number (u32) of things that take at least bytes_each each: refuses more than the remaining bytes can hold, so
-  // that nothing is reserved that the file does not justify. Precondition: bytes_each > 0.
+  // Reads a count (u32) of items of at least bytes_each bytes. Rejects counts that exceed the remaining bytes, so that
+  // allocations are bounded by the file. Precondition: bytes_each > 0.
   std::uint32_t read_count(std::size_t bytes_each);
 
   std::size_t remaining() const { return bytes_.size() - position_; }
-  void require_end() const;  // fails when bytes are left over
+  void require_end() const;  // fails if bytes are left over
   [[noreturn]] void fail(std::string_view reason) const;
 
  private:
   [[noreturn]] void fail_to_take(std::size_t size) const;
-  std::uint64_t read_last_bytes(std::size_t count);  // as read_low_bytes, where fewer than 8 are left
+  std::uint64_t read_last_bytes(std::size_t count);  // read_low_bytes for fewer than 8 remaining bytes
 
   std::span<const std::byte> bytes_;
   std::string place_;

@@ -8,11 +8,11 @@
 
 namespace byre {
 
-// A table as spreadsheets write them: a line that names the columns, then a line for each row, separated by commas.
-// Cells hold no commas themselves.
+// A table in the format of spreadsheets: one line of column names, then one line per row, separated by commas. Cells
+// contain no commas.
 struct CsvTable {
   struct Row {
-    int line = 0;  // number of the line as an editor counts, from 1
+    int line = 0;  // from 1
     std::vector<std::string> cells;
   };
 
@@ -20,16 +20,16 @@ struct CsvTable {
   std::vector<std::string> columns;
   std::vector<Row> rows;
 
-  // Empty where there is no such column, or nothing in it.
+  // Empty if the column does not exist, or the cell is empty.
   std::optional<std::string_view> find(const Row& row, std::string_view column) const;
 
-  // "file:line", as InputError names a place.
+  // Place for an InputError: "file:line".
   std::string place_of(const Row& row) const;
 };
 
-// The first line that is not blank names the columns, with or without a "#" before it; later lines that begin with "#"
-// are comments. Throws InputError when the file cannot be read, a column is not among those known or comes twice, or a
-// row has another number of cells than there are columns.
+// The first line that is not blank has the column names, optionally after a "#"; later lines that begin with "#" are
+// comments. Throws InputError if the file cannot be read, a column is unknown or repeated, or a row has another number
+// of cells than there are columns.
 CsvTable read_csv_table(const std::filesystem::path& path, const std::vector<std::string_view>& known_columns);
 
 }  // namespace byre

@@ -19,7 +19,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-// The file that this code was loaded from: a program, or a shared object such as a module of Python.
+// The file of this code: a program, or a shared object such as a Python module.
 fs::path this_binary() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&this_binary), &info) == 0 || info.dli_fname == nullptr) return {};
@@ -32,7 +32,7 @@ fs::path this_program() {
   return fs::read_symlink("/proc/self/exe", ignored);
 }
 
-// The file in an installation that may have been moved: its prefix is one of the folders that the binary lies in.
+// The file in a relocated installation: its prefix is one of the folders above the binary.
 std::optional<fs::path> find_above(const fs::path& binary, const fs::path& name) {
   for (fs::path folder = binary.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
     const fs::path data = folder / BYRE_DATA_IN_PREFIX / name;
@@ -49,7 +49,7 @@ fs::path find_data_file(const fs::path& name, std::string_view remedy) {
   for (const fs::path& binary : {this_program(), this_binary()}) {
     if (const auto found = find_above(binary, name)) return *found;
   }
-  // Packages are installed below /usr, whatever prefix the library was built for.
+  // Packages are installed below /usr, independent of the configured prefix.
   for (const fs::path folder : {BYRE_INSTALLED_DATA, "/usr/local/share/byre", "/usr/share/byre", BYRE_SOURCE_DATA}) {
     if (is_file(folder / name)) return (folder / name).lexically_normal();
   }

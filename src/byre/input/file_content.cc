@@ -32,7 +32,7 @@ std::string_view first_line(std::string_view text) {
   return text.substr(0, text.find('\n'));
 }
 
-// The first line that is not blank and no comment; without one, the first line.
+// The first line that is neither blank nor a comment; without one, the first line.
 std::string_view first_entry(std::string_view text) {
   const std::string_view comment = first_line(text);
   while (!text.empty()) {
@@ -67,7 +67,7 @@ bool begins_with_any(std::string_view text, std::initializer_list<std::string_vi
   return std::ranges::any_of(beginnings, [&](std::string_view beginning) { return text.starts_with(beginning); });
 }
 
-// Whether text begins as the text files of COLMAP or of byre's export.
+// Whether text begins like the text files of COLMAP or of byre's export.
 bool is_colmap_text(std::string_view text) {
   return begins_with_any(text, {"# Camera list", "# Image list", "# 3D point list", "# CAMERA_ID MODEL",
                                 "# IMAGE_ID QW QX", "# POINT3D_ID X Y"});

@@ -5,7 +5,7 @@
 
 namespace byre {
 
-// Text of one line in XML or HTML, also in an attribute. Control characters are escaped as by printable().
+// Text of one line in XML or HTML, also in an attribute. Control characters are escaped by printable().
 std::string markup_escaped(std::string_view text);
 
 }  // namespace byre

@@ -231,7 +231,7 @@ TEST_F(OutputFileTest, IsKeptUnderASecondName) {
   EXPECT_EQ(refusal("barn.byre", kNewMap), "");
   EXPECT_EQ(read("previous.byre"), kMap);
   keep_as(folder_ / "barn.byre", folder_ / "previous.byre");
-  keep_as(folder_ / "barn.byre", folder_ / "previous.byre");  // one file already
+  keep_as(folder_ / "barn.byre", folder_ / "previous.byre");  // already the same file
   EXPECT_EQ(read("previous.byre"), kNewMap);
   put("letter.txt", "Dear reader\n");
   EXPECT_THROW(keep_as(folder_ / "barn.byre", folder_ / "letter.txt"), InputError);

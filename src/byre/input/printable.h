@@ -12,7 +12,7 @@ namespace byre {
 // `most` bytes is cut and ends in "...". Without a cut, a second application changes nothing.
 std::string printable(std::string_view text, std::size_t most = std::string_view::npos);
 
-// The same for text of several lines: line feeds are unchanged.
+// Same, for text of several lines: line feeds are unchanged.
 std::string printable_lines(std::string_view text);
 
 // JSON text with the characters that printable() escapes as \uNNNN in its strings, so that readers get the same

@@ -43,7 +43,7 @@ TEST(Printable, EscapesInvalidUtf8) {
   EXPECT_EQ(printable("\xe0\x80\xaf"), "\\xe0\\x80\\xaf");           // overlong
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // a surrogate
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
-  EXPECT_EQ(printable("\xe7\x89"), "\\xe7\\x89");                    // cut off
+  EXPECT_EQ(printable("\xe7\x89"), "\\xe7\\x89");                    // truncated
 }
 
 TEST(Printable, CutsLongText) {

@@ -4,8 +4,8 @@
 
 namespace byre {
 
-// Throws InputError for a pipe, a socket or a device, from which nothing may ever come, and for a link that leads round
-// in a circle. What is not there, and a folder, is left to who opens it.
+// Throws InputError for a pipe, a socket or a device, which may block for ever, and for a circular link. Missing files
+// and folders are left to the function that opens them.
 void refuse_pipe(const std::filesystem::path& path);
 
 }  // namespace byre

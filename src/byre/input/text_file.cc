@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kWhiteSpace) - begin + 1);
 }
 
-// The whole text as a value of a type that std::from_chars knows, which refuses a leading plus sign.
+// Parses the whole text with std::from_chars, which rejects a leading plus sign.
 template <typename Value>
 std::optional<Value> parse_whole(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -33,7 +33,7 @@ std::optional<Value> parse_whole(std::string_view text) {
   return value;
 }
 
-// The value of one digit that stands at a decimal place, 0 for units; empty when that overflows 64 bits.
+// The value of one digit at a decimal place, 0 for units; empty if it overflows 64 bits.
 std::optional<std::int64_t> value_of_digit(char digit, int place) {
   if (digit < '0' || digit > '9') return std::nullopt;
   std::int64_t value = digit - '0';
@@ -43,7 +43,7 @@ std::optional<std::int64_t> value_of_digit(char digit, int place) {
   return value;
 }
 
-// Splits "1.5e-3" into "1.5" and -3; the exponent is 0 where there is none.
+// Splits "1.5e-3" into "1.5" and -3; the exponent is 0 if there is none.
 std::optional<std::pair<std::string, int>> split_exponent(std::string_view text) {
   const std::size_t e = text.find_first_of("eE");
   if (e == std::string_view::npos) return std::pair(std::string(text), 0);

@@ -9,10 +9,10 @@
 
 namespace byre {
 
-// The lines and values of the text files that trajectories, time stamps and calibrations are kept in.
+// Lines and values of text files, such as trajectories, time stamps and calibrations.
 
 struct TextLine {
-  int number = 0;    // number as an editor counts lines, from 1
+  int number = 0;    // from 1
   std::string text;  // text of the line without white space at its ends
 };
 
@@ -23,7 +23,7 @@ std::vector<TextLine> read_lines(const std::filesystem::path& path);
 // Removes the byte order mark with which Windows editors and spreadsheets begin UTF-8 files. first_line: of a file.
 void skip_byte_order_mark(std::string& first_line);
 
-// "file:line", as InputError names a place.
+// Place for an InputError: "file:line".
 std::string place_of(const std::filesystem::path& path, const TextLine& line);
 
 // The fields of a line, separated by a comma or by white space. Views into the text.
@@ -32,7 +32,7 @@ std::vector<std::string_view> split_fields(std::string_view text);
 // Empty unless the whole text is one finite number.
 std::optional<double> parse_number(std::string_view text);
 
-// Seconds as a decimal number ("1403636584.763555584", "1.037e-01"), exact to the nanosecond, which a double is not.
+// Seconds as a decimal number ("1403636584.763555584", "1.037e-01"), exact to the nanosecond, unlike a double.
 std::optional<std::chrono::nanoseconds> parse_seconds(std::string_view text);
 std::optional<std::chrono::nanoseconds> parse_nanoseconds(std::string_view text);  // a whole number
 
