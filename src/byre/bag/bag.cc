@@ -45,7 +45,7 @@ bool is_rosbag2_metadata(const fs::path& file) {
          std::string_view::npos;
 }
 
-// A decompressed file of a bag, removed at the end of its life.
+// A decompressed file of a bag, removed by the destructor.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& bag) {
@@ -75,8 +75,8 @@ class TemporaryFile {
   fs::path path_;  // constant after construction
 };
 
-// One of the bags below with what is the same for all files: messages that are compressed one by one, which CDR never
-// looks like, and files that are compressed as a whole.
+// A bag file with the features common to all formats: individually compressed messages, recognised because CDR never
+// begins with zstd's magic number, and files compressed as a whole.
 class BagFile final : public Bag {
  public:
   BagFile(const fs::path& path, const TypeFilter& wanted, const BagLimits& limits);
@@ -85,12 +85,12 @@ class BagFile final : public Bag {
   std::vector<std::byte> read(const BagMessage& message) override;
 
  private:
-  // The first bytes of a message that is compressed; false when it is damaged.
+  // Decompresses the first bytes of a message; false if it is damaged.
   bool unpack_head(BagMessage& message);
 
   std::string place_;                            // constant after construction
   BagLimits limits_;                             // constant after construction
-  std::unique_ptr<TemporaryFile> decompressed_;  // outlives the bag that reads it
+  std::unique_ptr<TemporaryFile> decompressed_;  // must outlive bag_, which reads it
   std::unique_ptr<Bag> bag_;
   BagContent content_;
 };

@@ -16,11 +16,10 @@
 
 namespace byre {
 
-// A topic of a bag, and what is known of its messages.
 struct BagTopic {
   std::string name;
-  std::string type;      // as the bag has it: "sensor_msgs/msg/Image", or "sensor_msgs/Image" of ROS 1
-  std::string encoding;  // "cdr", "ros1", or one that byre cannot read
+  std::string type;      // name in the bag: "sensor_msgs/msg/Image", or "sensor_msgs/Image" of ROS 1
+  std::string encoding;  // "cdr", "ros1", or an unsupported one
   std::uint64_t messages = 0;
 };
 
@@ -31,13 +30,12 @@ bool holds(const BagTopic& topic) {
   return is_of_type(topic, M::kType);
 }
 
-// Empty for an encoding that byre cannot read.
+// Empty for an unsupported encoding.
 std::optional<ros::Encoding> encoding_of(const BagTopic& topic);
 
-// Where the bytes of a message lie.
 struct MessagePlace {
   std::uint32_t file = 0;                // number of the bag's file
-  std::optional<std::uint64_t> chunk{};  // where its compressed chunk begins in the file; empty: not in one
+  std::optional<std::uint64_t> chunk{};  // start of its compressed chunk in the file; empty if not in a chunk
   std::uint64_t begin = 0;               // first byte in the file or in the chunk, or the row in a database
   std::uint64_t size = 0;                // bytes; 0 in a database
 };
@@ -47,41 +45,41 @@ using MessageHead = std::array<std::byte, 16>;
 
 struct BagMessage {
   std::size_t topic = 0;  // number in BagContent::topics
-  Timestamp log_time{};   // when it was recorded
+  Timestamp log_time{};   // time of recording
   MessagePlace place{};
-  MessageHead head{};  // zeros behind the end of a shorter message
+  MessageHead head{};  // zeros after the end of a shorter message
 };
 
-// What a bag holds, found by going through all of it once. Of messages only those of the types asked for are listed.
+// Contents of a bag, collected in one pass. Lists only messages of the requested types.
 struct BagContent {
   std::string storage;                   // "mcap", "sqlite3", "rosbag 2.0"
-  std::vector<std::string> compression;  // "zstd", "lz4", "bz2": each that some of it is compressed with
+  std::vector<std::string> compression;  // all compressions in use: "zstd", "lz4", "bz2"
   std::uint64_t bytes = 0;               // size of its files
-  std::vector<BagTopic> topics;          // as they appear
+  std::vector<BagTopic> topics;          // in order of appearance
   std::vector<BagMessage> messages;      // ascending in log time
   std::uint64_t message_count = 0;       // messages of all types
   std::optional<Timestamp> first{};      // least and greatest log time of all messages
   std::optional<Timestamp> last{};
-  std::vector<std::string> damage;  // what of it cannot be read, and why; each names its file
+  std::vector<std::string> damage;  // unreadable parts and reasons; each names its file
 };
 
-// A bag of messages, of which those that are wanted are read one at a time.
+// A bag of messages, which are read one at a time.
 class Bag {
  public:
   virtual ~Bag() = default;
   virtual const BagContent& content() const = 0;
-  virtual BagContent take_content() = 0;  // leaves none behind
-  // The bytes of a message. Throws InputError when they cannot be read any more.
+  virtual BagContent take_content() = 0;  // leaves the content empty
+  // The bytes of a message. Throws InputError if they cannot be read any more.
   virtual std::vector<std::byte> read(const BagMessage& message) = 0;
 };
 
-// Whether messages of a type are to be listed; types are named as ROS 2 names them.
+// Whether to list messages of a type; types have their ROS 2 names.
 using TypeFilter = std::function<bool(std::string_view type)>;
 
-// A file or folder that holds a bag, by its first bytes or the names of its files.
+// Whether a file or folder is a bag, by its first bytes or the names of its files.
 bool is_bag(const std::filesystem::path& path);
 
-// Files of a bag that is there: the file itself, or metadata.yaml and the files that it names, or those beside it.
+// Files of an existing bag: the file itself, or metadata.yaml and the files in it, or the files next to it.
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path);
 
 // Bound of the decompressed size of a file: far above that of camera images, far below that of decompression bombs.
@@ -92,16 +90,15 @@ struct BagLimits {
   std::uint64_t most(std::uint64_t file_bytes) const { return free_bytes + ratio * file_bytes; }
 };
 
-// Goes through the bag once and keeps where the messages lie that are wanted: memory grows with their number, not with
-// their size. A bag that is damaged or cut is read as far as it is sound, which BagContent::damage tells. Formats:
+// Scans the bag once and stores the locations of the requested messages: memory grows with their number, not with their
+// size. Damaged or truncated bags are read as far as they are sound; BagContent::damage lists the rest. Formats:
 //   a folder of rosbag2, with metadata.yaml or without   the files in it
 //   .mcap                                                chunks none, lz4, zstd; with a summary or without
-//   .db3                                                 sqlite3 as rosbag2 writes it
-//   .mcap.zstd, .db3.zstd                                those, decompressed into a temporary file in TMPDIR
-//   .bag                                                 ROS 1, version 2.0: chunks none, bz2, lz4; with an index or
-//   not
-// Chunks beyond the limits are damage; a .zstd file beyond them is refused. Throws InputError for other files, and for
-// files that cannot be opened.
+//   .db3                                                 sqlite3 of rosbag2
+//   .mcap.zstd, .db3.zstd                                decompressed into a temporary file in TMPDIR
+//   .bag                                                 ROS 1, version 2.0: chunks none, bz2, lz4; index optional
+// Chunks beyond the limits count as damage; a .zstd file beyond them is refused. Throws InputError for other files, and
+// for files that cannot be opened.
 std::unique_ptr<Bag> open_bag(const std::filesystem::path& path, const TypeFilter& wanted,
                               const BagLimits& limits = {});
 

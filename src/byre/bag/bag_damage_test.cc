@@ -1,5 +1,5 @@
-// Bags that were cut or changed: what is sound of them is read, the rest is told or refused with an InputError. Seeds
-// are fixed.
+// Truncated or modified bags: sound parts are read, the rest is reported or refused with an InputError. Seeds are
+// fixed.
 
 #include "byre/bag/bag.h"
 #include "byre/bag/bag_scene.h"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bytes that belong to the bag that reads them.
+// Byte source that owns its bytes.
 class OwnedSource final : public ByteSource {
  public:
   explicit OwnedSource(BagBytes bytes) : bytes_(std::move(bytes)), source_(bytes_) {}
@@ -54,7 +54,7 @@ std::vector<Kind> kinds() {
           {"rosbag, lz4", ros1_bytes(scene_messages(), "lz4"), open_ros1}};
 }
 
-// How many messages could be read, or nothing when the bag was refused.
+// Number of readable messages; empty if the bag was refused.
 std::optional<std::size_t> read_all(const Open& open, const BagBytes& bytes) {
   try {
     return readable_messages(*open(bytes)).size();
@@ -63,7 +63,7 @@ std::optional<std::size_t> read_all(const Open& open, const BagBytes& bytes) {
   }
 }
 
-// A few bytes changed, to anything or to what lengths are made of.
+// Changes a few bytes, to random values or to values typical of lengths.
 BagBytes mutant_of(BagBytes bytes, std::mt19937& random) {
   const auto below = [&random](std::size_t end) { return random() % end; };
   constexpr std::array<unsigned, 6> kSpecial = {0x00, 0x01, 0x7F, 0x80, 0xFE, 0xFF};
@@ -90,7 +90,7 @@ TEST(DamagedBag, IsReadAsFarAsItIsThereWhenItIsCut) {
 }
 
 TEST(DamagedBag, GivesWhatItHeldBeforeTheCut) {
-  // Without compression each message is there from its last byte on.
+  // Without compression each message is readable once its last byte is present.
   const BagBytes bytes = mcap_bytes(scene_messages(), "-");
   EXPECT_EQ(read_all(open_mcap, {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() * 3 / 4)}),
             std::optional<std::size_t>(12));

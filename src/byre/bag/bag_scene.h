@@ -27,7 +27,7 @@ namespace byre {
 
 using BagBytes = std::vector<std::byte>;
 
-// A folder for one test's bags, gone with the test.
+// Temporary folder for the bags of one test, removed after it.
 class BagFolderTest : public testing::Test {
  protected:
   BagFolderTest() : folder_(std::filesystem::path(testing::TempDir()) / ("bag_" + std::to_string(getpid()))) {
@@ -49,7 +49,6 @@ class BagFolderTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-// One message of the bags below.
 struct SceneMessage {
   std::string topic;
   std::string type;
@@ -69,7 +68,7 @@ inline ros::Image scene_image(int number, Timestamp time) {
   return image;
 }
 
-// Twelve images of a pair, 50 ms apart, recorded 3 ms after they were taken, with words between.
+// Six image pairs, 50 ms apart, recorded 3 ms after their stamps, with text messages between them.
 inline std::vector<SceneMessage> scene_messages() {
   std::vector<SceneMessage> messages;
   for (int i = 0; i < 6; ++i) {
@@ -131,7 +130,7 @@ inline BagBytes lz4_frame(std::span<const std::byte> bytes) {
   return frame;
 }
 
-// An MCAP file without summary: unchunked where the compression is "-", else in one chunk of none (""), "lz4", "zstd".
+// An MCAP file without summary: unchunked for the compression "-", else in one chunk of none (""), "lz4", "zstd".
 inline BagBytes mcap_bytes(const std::vector<SceneMessage>& messages, const std::string& compression) {
   const ByteWriter records = mcap_records(messages);
   ByteWriter file, header, end;
@@ -198,7 +197,7 @@ inline std::uint64_t ros1_time(Timestamp time) {
   return static_cast<std::uint64_t>(parts.nanosec) << 32 | static_cast<std::uint32_t>(parts.sec);
 }
 
-// A bag of ROS 1 as a recorder leaves it that did not close it: chunks of none or lz4, no index.
+// A bag of ROS 1 that its recorder did not close: chunks of none or lz4, no index.
 inline BagBytes ros1_bytes(const std::vector<SceneMessage>& messages, const std::string& compression = "none") {
   ByteWriter records;
   std::map<std::string, std::uint32_t> connections;
@@ -228,7 +227,7 @@ inline BagBytes ros1_bytes(const std::vector<SceneMessage>& messages, const std:
   return file.bytes();
 }
 
-// A database as rosbag2 of Humble writes it; pack changes the bytes of each message before they are stored.
+// A database in the format of rosbag2 in Humble; pack changes the bytes of each message before they are stored.
 inline void write_db3(const std::filesystem::path& path, const std::vector<SceneMessage>& messages,
                       const std::function<BagBytes(const BagBytes&)>& pack = {}) {
   sqlite3* database = nullptr;
@@ -268,7 +267,7 @@ inline bool every_type(std::string_view /*type*/) {
   return true;
 }
 
-// Each message that can be read, as "topic log_time size".
+// Each readable message, as "topic log_time size".
 inline std::vector<std::string> readable_messages(Bag& bag) {
   std::vector<std::string> found;
   for (const BagMessage& message : bag.content().messages) {

@@ -29,7 +29,7 @@ std::vector<std::string> expected_messages(ros::Encoding encoding) {
 
 class BagFiles : public BagFolderTest {
  protected:
-  // The messages of a bag as they were written, and what it says of itself.
+  // Expects the messages of the scene, and the contents to describe them.
   void expect_scene(const fs::path& path, ros::Encoding encoding, const std::string& storage) const {
     const auto bag = open_bag(path, every_type);
     const BagContent& content = bag->content();
@@ -244,7 +244,7 @@ TEST_F(BagFiles, ThatAreNoneAreRefusedByName) {
 TEST_F(BagFiles, GoOnBehindAChunkThatIsDamaged) {
   const fs::path path = write_by_writer("scene.mcap");
   BagBytes bytes = read_file(path);
-  std::size_t third = 0;  // where the third chunk's frame of zstd begins
+  std::size_t third = 0;  // start of the third chunk's zstd frame
   for (int chunk = 0; chunk < 3; ++third) chunk += is_zstd(std::span(bytes).subspan(third)) ? 1 : 0;
   std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(third) + 20, 8, std::byte{0});
   write("scene.mcap", bytes);

@@ -9,23 +9,23 @@
 
 namespace byre {
 
-// Bytes that are read piece by piece, wherever they are.
+// Random access to bytes.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
   virtual std::uint64_t size() const = 0;
-  // Fills the piece with the bytes that begin there. Throws InputError when they cannot be read. Precondition: they lie
-  // within size().
+  // Fills the piece with the bytes at `begin`. Throws InputError if they cannot be read. Precondition: they are within
+  // size().
   virtual void read(std::uint64_t begin, std::span<std::byte> piece) = 0;
 };
 
-// The bytes from there on, at most so many and none behind the end.
+// At most `most` bytes at `begin`, fewer at the end.
 std::vector<std::byte> read_piece(ByteSource& source, std::uint64_t begin, std::uint64_t most);
 
-// A file, read where it is asked for; small pieces close to each other cost one call.
+// A file; neighbouring small reads cost one system call.
 class FileSource final : public ByteSource {
  public:
-  explicit FileSource(const std::filesystem::path& path);  // throws InputError when it cannot be opened
+  explicit FileSource(const std::filesystem::path& path);  // throws InputError if it cannot be opened
   ~FileSource() override;
   FileSource(const FileSource&) = delete;
   FileSource& operator=(const FileSource&) = delete;

@@ -16,15 +16,14 @@
 
 namespace byre {
 
-// A compressed piece of a file.
 struct CompressedPiece {
   Compression compression = Compression::none;
   std::uint64_t begin = 0;          // first byte in the file
-  std::uint64_t size = 0;           // bytes in the file, as far as they are there
-  std::uint64_t original_size = 0;  // bytes when decompressed, as the file says
+  std::uint64_t size = 0;           // bytes in the file, fewer if truncated
+  std::uint64_t original_size = 0;  // stated size after decompression, bytes
 };
 
-// A bag in one file whose messages lie in it as they are or in compressed chunks. The formats say where.
+// A bag in one file, with messages directly in it or in compressed chunks. Derived classes implement the formats.
 class ChunkedBag : public Bag {
  public:
   const BagContent& content() const final { return content_; }
@@ -32,11 +31,11 @@ class ChunkedBag : public Bag {
   std::vector<std::byte> read(const BagMessage& message) final;
 
  protected:
-  // storage: what the format is called; place: how errors name the file.
+  // storage: name of the format; place: name of the file in errors.
   ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted,
              const BagLimits& limits);
 
-  // The compressed piece of the chunk whose record begins there. Throws InputError when there is none any more.
+  // The compressed piece of the chunk with its record at this position. Throws InputError if there is none any more.
   virtual CompressedPiece piece_at(std::uint64_t chunk) = 0;
 
   ByteSource& file() { return *source_; }
@@ -46,13 +45,13 @@ class ChunkedBag : public Bag {
   std::optional<Decompressed> scan_piece(const CompressedPiece& piece);
 
   std::size_t topic_number(const std::string& name, const std::string& type, const std::string& encoding);
-  // Bytes that lie in source, which is the file or a chunk of it.
+  // source: the file or a chunk of it.
   void add_message(std::size_t topic, Timestamp log_time, ByteSource& source, const MessagePlace& place);
   void add_compression(Compression compression);
   void add_damage(const std::string& what) { content_.damage.push_back(place_ + ": " + what); }
-  // Counts chunks and other records that are damaged, of which the first is told.
+  // Counts damaged chunks and other records; the first one is reported.
   void add_broken(std::uint64_t record, const std::string& why);
-  void finish_scan();  // to be called when all was added
+  void finish_scan();  // call it after the last addition
 
  private:
   struct CachedChunk {
@@ -67,20 +66,21 @@ class ChunkedBag : public Bag {
   std::string place_;  // constant after construction
   TypeFilter wanted_;  // constant after construction
   BagContent content_;
-  std::vector<bool> is_wanted_;  // by topic
+  std::vector<bool> is_wanted_;  // indexed by topic
   std::unordered_map<std::string, std::size_t> topic_numbers_;
   std::uint64_t most_decompressed_;  // bound of all chunks, bytes; constant after construction
   std::uint64_t decompressed_ = 0;   // stated bytes of the chunks scanned so far
   std::uint64_t left_out_ = 0;       // number of chunks beyond most_decompressed_
   std::uint64_t broken_ = 0;
   std::string first_broken_;
-  std::array<std::optional<CachedChunk>, 2> cache_;  // the last one first: left and right images may lie in two
+  // Last one first. Two, because left and right images may be in different chunks.
+  std::array<std::optional<CachedChunk>, 2> cache_;
 };
 
-// "is cut or damaged from byte 120 of 400 on; what comes before was read"
+// Text such as "is cut or damaged from byte 120 of 400 on; what comes before was read".
 std::string cut_at(std::uint64_t begin, std::uint64_t size);
 
-// How many bytes a chunk may have when decompressed; more is taken for damage.
+// Largest size of a decompressed chunk, bytes; a larger one counts as damage.
 inline constexpr std::uint64_t kMostChunkBytes = 256u << 20;
 
 }  // namespace byre

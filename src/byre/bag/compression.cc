@@ -16,12 +16,12 @@
 namespace byre {
 namespace {
 
-// What one step of a decoder took and made.
+// Bytes consumed and produced by one step of a decoder.
 struct Step {
   std::size_t taken = 0;
   std::size_t made = 0;
-  bool is_end = false;   // the compressed bytes end here
-  bool is_sound = true;  // false: they are damaged
+  bool is_end = false;   // end of the compressed data
+  bool is_sound = true;  // false: the data is damaged
 };
 
 class ZstdDecoder {
@@ -88,7 +88,7 @@ Decompressed decompress_with(std::span<const std::byte> bytes, std::size_t most)
   std::size_t made = 0;
   while (true) {
     if (made == result.bytes.size()) {
-      if (made == most) break;  // one more step may still come to the end
+      if (made == most) break;  // one more step may still reach the end
       result.bytes.resize(std::min(most, std::max({kFirst, 2 * made, 2 * bytes.size()})));
     }
     const Step step = decoder.step(bytes, std::span(result.bytes).subspan(made));

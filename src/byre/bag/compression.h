@@ -14,26 +14,26 @@ enum class Compression : std::uint8_t { none, zstd, lz4, bz2 };  // lz4: frames,
 
 std::string_view to_string(Compression compression);
 
-// Named by the words that bags use: "", "none", "zstd", "lz4", "bz2". Empty for any other.
+// Accepts the names used in bags: "", "none", "zstd", "lz4", "bz2". Empty for any other.
 std::optional<Compression> parse_compression(std::string_view text);
 
-// What came of decompressing: all, or the bytes before the fault.
+// Result of decompression: everything, or the bytes before the fault.
 struct Decompressed {
   std::vector<std::byte> bytes;
-  bool is_whole = false;  // the compressed bytes ended, and none were left out
+  bool is_whole = false;  // the compressed data ended, and all of it was decompressed
 };
 
-// At most so many bytes are made; memory grows as they come, whatever the bytes claim.
+// Decompresses at most `most` bytes; memory grows with the output, independent of stated sizes.
 Decompressed decompress(Compression compression, std::span<const std::byte> bytes, std::size_t most);
 
-// Whether they begin as zstd's frames do.
+// Whether the bytes begin with the magic number of zstd frames.
 bool is_zstd(std::span<const std::byte> bytes);
 
 std::vector<std::byte> compress_zstd(std::span<const std::byte> bytes);
 
-// Decompresses a file of zstd frames into another. False if it is cut or damaged; the part before is written. Throws
-// InputError if one cannot be read or the other not be written, and if it needs more than `most` bytes or nine tenths
-// of the free disk space.
+// Decompresses a file of zstd frames into another. False if it is truncated or damaged; the part before is written.
+// Throws InputError if a file cannot be read or written, and if the output exceeds `most` bytes or nine tenths of the
+// free disk space.
 bool decompress_zstd_file(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t most);
 
 }  // namespace byre

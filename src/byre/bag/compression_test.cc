@@ -17,7 +17,7 @@ BagBytes pattern(std::size_t size) {
 
 BagBytes bz2_of(BagBytes bytes) {
   auto size = static_cast<unsigned>(bytes.size() + 1000);
-  bytes.reserve(1);  // no null pointer
+  bytes.reserve(1);  // avoids a null pointer
   BagBytes packed(size);
   BZ2_bzBuffToBuffCompress(reinterpret_cast<char*>(packed.data()), &size, reinterpret_cast<char*>(bytes.data()),
                            static_cast<unsigned>(bytes.size()), 9, 0, 0);

@@ -48,7 +48,7 @@ std::uint64_t McapBag::scan(const Region& region) {
     } catch (const InputError& error) {
       add_broken(begin, "cannot be read: " + error.reason());
     }
-    if (size > left) break;  // a chunk that is cut: what it begins with was taken
+    if (size > left) break;  // a truncated chunk, whose beginning was read
     begin = content + size;
   }
   return begin;
@@ -64,12 +64,12 @@ void McapBag::take_record(McapRecord kind, std::uint64_t begin, std::uint64_t si
     case McapRecord::message:
       return take_message(begin, size, region);
     case McapRecord::chunk:
-      if (!region.is_chunk) take_chunk(begin, size);  // there are none within others
+      if (!region.is_chunk) take_chunk(begin, size);  // chunks are not nested
       return;
     case McapRecord::data_end:
       if (!region.is_chunk) is_closed_ = true;
       return;
-    default:  // what byre has no use for, and what later versions may add
+    default:  // unused records, and those of later versions
       return;
   }
 }

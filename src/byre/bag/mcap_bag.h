@@ -12,32 +12,31 @@
 
 namespace byre {
 
-// An MCAP file, read from its front to its back, so that it makes no difference whether it has a summary.
+// An MCAP file, read sequentially, so that a summary is not required.
 class McapBag final : public ChunkedBag {
  public:
-  // Throws InputError when it does not begin as MCAP files do.
+  // Throws InputError if it does not begin with the magic number of MCAP.
   McapBag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits = {});
 
  private:
-  // What is read of a chunk before its records.
   struct Chunk {
-    std::uint32_t checksum = 0;  // CRC-32 of what it holds, 0 where none was taken
+    std::uint32_t checksum = 0;  // CRC-32 of the content, 0 if not recorded
     CompressedPiece piece{};
-    bool is_known = true;  // its compression is
+    bool is_known = true;  // whether its compression is supported
   };
 
-  // Where records follow each other: in the file or in a chunk.
+  // A sequence of records: the file or a chunk.
   struct Region {
     ByteSource& source;
     std::uint64_t begin = 0, end = 0;
     bool is_chunk = false;
-    std::optional<std::uint64_t> compressed_chunk{};  // where its record begins in the file
+    std::optional<std::uint64_t> compressed_chunk{};  // position of its record in the file
   };
 
   CompressedPiece piece_at(std::uint64_t chunk) override;
-  // Takes all records of a region; gives where the first one begins that is cut or no record, else the end.
+  // Reads all records of a region; returns the position of the first one that is truncated or invalid, else the end.
   std::uint64_t scan(const Region& region);
-  // All take the content of a record, which begins there and is so long.
+  // All process the content of a record, which has this begin and size.
   void take_record(McapRecord kind, std::uint64_t begin, std::uint64_t size, const Region& region);
   Chunk chunk_of(std::uint64_t begin, std::uint64_t size);
   void take_chunk(std::uint64_t begin, std::uint64_t size);
@@ -47,8 +46,8 @@ class McapBag final : public ChunkedBag {
 
   std::unordered_map<std::uint16_t, std::string> schemas_;   // names of types
   std::unordered_map<std::uint16_t, std::size_t> channels_;  // numbers of topics
-  bool is_closed_ = false;                                   // the end of the data was read
-  std::uint64_t unknown_messages_ = 0;                       // messages of channels that were not read
+  bool is_closed_ = false;                                   // whether the end of the data was read
+  std::uint64_t unknown_messages_ = 0;                       // messages of channels without a readable definition
 };
 
 }  // namespace byre

@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// The MCAP container, version 0: https://mcap.dev/spec. All numbers lie lowest byte first.
+// The MCAP container, version 0: https://mcap.dev/spec. Numbers are little-endian.
 inline constexpr std::array kMcapMagic = {std::byte{0x89}, std::byte{'M'}, std::byte{'C'},  std::byte{'A'},
                                           std::byte{'P'},  std::byte{'0'}, std::byte{'\r'}, std::byte{'\n'}};
 

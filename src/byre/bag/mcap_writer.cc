@@ -25,7 +25,7 @@ void write_entries(ByteWriter& writer, const ByteWriter& entries) {
   writer.write_bytes(entries.bytes());
 }
 
-// The qualities of service that a recorder of ROS 2 would have found, as rosbag2 keeps them up to version 8.
+// Quality-of-service settings that a ROS 2 recorder would have stored, in the format of rosbag2 up to version 8.
 std::string qos_of(ros::Durability durability) {
   const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
   return "- history: 1\n  depth: 10\n  reliability: 1\n  durability: " +
@@ -222,7 +222,7 @@ void McapWriter::close() {
   const std::uint64_t offsets_begin = summary_begin + summary.size();
   summary.write_bytes(offsets.bytes());
 
-  // The checksum covers the footer's own first fields.
+  // The checksum includes the first fields of the footer.
   summary.write(McapRecord::footer);
   summary.write(std::uint64_t{kMcapFooter});
   summary.write(summary_begin);

@@ -15,8 +15,8 @@
 
 namespace byre {
 
-// Writes an MCAP file of ROS 2 messages (profile ros2): chunks compressed with zstd, indexed. What was written before
-// the program or the machine stops can be read, up to the last flush. All throw InputError when the file cannot be
+// Writes an MCAP file of ROS 2 messages (profile ros2): chunks compressed with zstd, indexed. After a crash of the
+// program or the machine, messages up to the last flush are readable. All throw InputError if the file cannot be
 // written.
 class McapWriter : public ros::MessageSink {
  public:
@@ -26,8 +26,8 @@ class McapWriter : public ros::MessageSink {
   bool is_wanted(TopicId /*topic*/) const override { return true; }
   void put(TopicId topic, Timestamp time, std::vector<std::byte> cdr) override;
 
-  void flush();  // ends the chunk, so that it is on its way to the disk
-  void close();  // writes the summary. To be called once, as the last
+  void flush();  // ends the chunk and writes it
+  void close();  // writes the summary; call it once, last
 
  private:
   struct Channel {
@@ -42,7 +42,7 @@ class McapWriter : public ros::MessageSink {
   };
   struct ChunkIndex {
     std::uint64_t start = 0, end = 0;     // log times
-    std::uint64_t begin = 0, length = 0;  // place of its record
+    std::uint64_t begin = 0, length = 0;  // position of its record
     std::map<std::uint16_t, std::uint64_t> message_indexes{};
     std::uint64_t message_index_length = 0;
     std::uint64_t compressed_size = 0, size = 0;
@@ -57,12 +57,12 @@ class McapWriter : public ros::MessageSink {
 
   std::unique_ptr<OutputFile> file_;
   std::uint64_t position_ = 0;     // bytes written to the file
-  std::vector<Schema> schemas_;    // by id - 1
-  std::vector<Channel> channels_;  // by id
+  std::vector<Schema> schemas_;    // indexed by id - 1
+  std::vector<Channel> channels_;  // indexed by id
   std::vector<ChunkIndex> chunks_;
-  ByteWriter chunk_;  // records that no chunk holds yet
+  ByteWriter chunk_;  // records of the current chunk
   std::uint64_t chunk_start_ = 0, chunk_end_ = 0;
-  std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> chunk_messages_;  // time, place
+  std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> chunk_messages_;  // time, position
 };
 
 }  // namespace byre

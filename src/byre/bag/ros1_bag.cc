@@ -25,7 +25,7 @@ enum class Operation : std::uint8_t {
   connection = 7
 };
 
-// Fields of a header: each its length, its name, "=" and its value.
+// Fields of a header, each consisting of length, name, "=" and value.
 Fields fields_of(std::span<const std::byte> bytes, const std::string& place, std::uint64_t begin) {
   Fields fields;
   ByteReader reader(bytes, place, begin);

@@ -14,32 +14,32 @@
 
 namespace byre {
 
-// A bag of ROS 1, version 2.0 (http://wiki.ros.org/Bags/Format/2.0), read from its front to its back, so that it makes
-// no difference whether it has an index.
+// A bag of ROS 1, version 2.0 (http://wiki.ros.org/Bags/Format/2.0), read sequentially, so that an index is not
+// required.
 class Ros1Bag final : public ChunkedBag {
  public:
-  // Throws InputError when it does not begin as such bags do.
+  // Throws InputError if it does not begin with the magic number of such bags.
   Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits = {});
 
  private:
-  // Where records follow each other: in the file or in a chunk.
+  // A sequence of records: the file or a chunk.
   struct Region {
     ByteSource& source;
     std::uint64_t begin = 0, end = 0;
     bool is_chunk = false;
-    std::optional<std::uint64_t> compressed_chunk{};  // where its record begins in the file
+    std::optional<std::uint64_t> compressed_chunk{};  // position of its record in the file
   };
   struct Record {
     std::map<std::string, std::vector<std::byte>, std::less<>> fields;
-    std::uint64_t data_begin = 0;  // in its source
-    std::uint64_t data_size = 0;   // bytes, as far as they are there
+    std::uint64_t data_begin = 0;  // position in its source
+    std::uint64_t data_size = 0;   // bytes, fewer if truncated
     bool is_whole = true;
   };
 
   CompressedPiece piece_at(std::uint64_t chunk) override;
-  // The record that begins there; empty when it is cut before its data, or no record.
+  // The record at this position; empty if it is truncated before its data, or invalid.
   std::optional<Record> record_at(const Region& region, std::uint64_t begin);
-  // Takes all records of a region; gives where the first one begins that is cut or no record, else the end.
+  // Reads all records of a region; returns the position of the first one that is truncated or invalid, else the end.
   std::uint64_t scan(const Region& region);
   void take_record(const Record& record, std::uint64_t begin, const Region& region);
   void take_file_header(const Record& record);
@@ -49,7 +49,7 @@ class Ros1Bag final : public ChunkedBag {
 
   std::unordered_map<std::uint32_t, std::size_t> connections_;  // numbers of topics
   bool is_indexed_ = false;
-  std::uint64_t unknown_messages_ = 0;  // messages of connections that were not read
+  std::uint64_t unknown_messages_ = 0;  // messages of connections without a readable definition
 };
 
 }  // namespace byre

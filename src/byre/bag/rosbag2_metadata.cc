@@ -20,7 +20,7 @@ std::vector<fs::path> files_beside(const fs::path& folder) {
     std::error_code unreadable;
     if (has_rosbag2_name(entry->path()) && entry->is_regular_file(unreadable)) files.push_back(entry->path());
   }
-  // Recorders number them; "bag_10" comes after "bag_9".
+  // Recorders number the files; "bag_10" sorts after "bag_9".
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
     const std::string name = a.filename().string(), other = b.filename().string();
     return name.size() != other.size() ? name.size() < other.size() : name < other;
@@ -28,14 +28,14 @@ std::vector<fs::path> files_beside(const fs::path& folder) {
   return files;
 }
 
-// Relative to the folder; the first versions put the folder's own name before them.
+// Path relative to the folder; the first versions prefix the folder's own name.
 fs::path found_in(const fs::path& folder, const fs::path& named) {
   const std::array<fs::path, 2> places = {folder / named, folder / named.filename()};
   std::error_code error;
   return fs::exists(places[0], error) || !fs::exists(places[1], error) ? places[0] : places[1];
 }
 
-// The files of metadata.yaml, each once, with a warning if it repeats files.
+// The files of metadata.yaml without duplicates, with a warning about these.
 Rosbag2Files files_named(const fs::path& metadata) {
   const YAML::Node bag = YAML::LoadFile(metadata.string())[kRosbag2Key];
   Rosbag2Files named;

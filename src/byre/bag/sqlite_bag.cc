@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As a file that nobody writes to, unless a recorder left a journal beside it: so nothing is made in its folder.
+// Opened as immutable unless a recorder left a journal, so that SQLite creates no files in its folder.
 std::string address_of(const fs::path& path) {
   std::error_code error;
   fs::path journal = path;
@@ -56,7 +56,7 @@ SqliteBag::SqliteBag(const fs::path& path, std::string place, const TypeFilter& 
   refuse_pipe(path);
   const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
   if (sqlite3_open_v2(address_of(path).c_str(), &database_.handle, flags, nullptr) != SQLITE_OK) fail();
-  // What a file says must not make the program do anything but read two tables.
+  // Restricts a malicious file: only two tables are read.
   sqlite3_db_config(database_.handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(database_.handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(database_.handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
@@ -91,7 +91,7 @@ void SqliteBag::read_topics(const TypeFilter& wanted) {
   if (result != SQLITE_DONE) fail();
 }
 
-// In the order of rows, which is that of the file; so the bytes of large messages are not read.
+// Reads in the order of rows, which is that of the file; avoids reading the bytes of large messages.
 void SqliteBag::read_messages() {
   const Statement messages = prepare("SELECT id, topic_id, timestamp, substr(data, 1, 16) FROM messages");
   int result = SQLITE_OK;

@@ -14,11 +14,10 @@ struct sqlite3_stmt;
 
 namespace byre {
 
-// A database as rosbag2 writes it. Only its tables topics and messages are read.
+// A database of rosbag2. Reads only its tables topics and messages.
 class SqliteBag final : public Bag {
  public:
-  // Throws InputError when it cannot be opened or lacks those tables.
-  // place: how errors name the file.
+  // Throws InputError if it cannot be opened or lacks these tables. place: name of the file in errors.
   SqliteBag(const std::filesystem::path& path, std::string place, const TypeFilter& wanted);
   ~SqliteBag() override;
 
@@ -40,10 +39,10 @@ class SqliteBag final : public Bag {
 
   std::string place_;  // constant after construction
   Database database_;
-  Statement message_;  // gives the bytes of a row
+  Statement message_;  // selects the bytes of a row
   BagContent content_;
   std::vector<std::int64_t> topic_ids_;  // ids in the database, by topic
-  std::vector<bool> is_wanted_;          // by topic
+  std::vector<bool> is_wanted_;          // indexed by topic
 };
 
 }  // namespace byre
