@@ -7,7 +7,7 @@
 
 namespace byre {
 
-// point_in_target = target_from_source.rotation * (scale * point_in_source) + target_from_source.translation
+// Transform with scale: point_in_target = rotation * (scale * point_in_source) + translation of target_from_source.
 struct Similarity {
   double scale = 1.0;
   Pose target_from_source;
@@ -17,17 +17,18 @@ struct Similarity {
   }
 };
 
-// A pose, or the covariance of a small motion, with all lengths times the scale.
+// Scales lengths: the translation of a pose, or the translation part of a small motion's covariance.
 Pose scale_lengths(const Pose& pose, double scale);
 Matrix6 scale_lengths(const Matrix6& covariance, double scale);
 
-// Where a camera lies that goes along with all it sees: the image stays the same, and depths grow with the scale.
+// Pose of a camera after the transform is applied to camera and scene together. Its image does not change; depths grow
+// with the scale.
 Pose move_camera(const Similarity& target_from_source, const Pose& camera_from_source);
 
 enum class Scale { fixed, free };
 
-// Least-squares fit of source onto target (Umeyama 1991, eq. 34 to 43). Empty when the points do not
-// determine a transform: fewer than three, or all on one line. Precondition: equal sizes.
+// Least-squares fit of source onto target (Umeyama 1991, eq. 34 to 43). Empty if the points do not determine a
+// transform: fewer than three, or collinear. Precondition: equal sizes.
 std::optional<Similarity> align(std::span<const Eigen::Vector3d> points_in_source,
                                 std::span<const Eigen::Vector3d> points_in_target, Scale scale);
 

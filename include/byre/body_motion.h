@@ -10,53 +10,53 @@
 
 namespace byre {
 
-// How the body moved from one moment to a later one, as something else than the camera tells it.
+// Motion of the body between two times, measured by another sensor than the camera.
 struct BodyMotion {
-  // With the covariance of ordinary wheels: 2 % of the way and of the turn, and 1 degree on each metre.
+  // With the covariance of ordinary wheels: 2 % of path and turn, and 1 degree per metre (one sigma).
   BodyMotion(const Pose& earlier_from_later);  // NOLINT(google-explicit-constructor): a pose is a motion
   BodyMotion(const Pose& earlier_from_later, const Matrix6& motion_covariance)
       : last_from_body(earlier_from_later), covariance(motion_covariance) {}
 
-  Pose last_from_body;  // metres
+  Pose last_from_body;  // pose at the later time in the frame of the earlier one, metres
   Matrix6 covariance;   // covariance of delta in last_from_body * exp_pose(delta)
 };
 
+// Standstill, without uncertainty.
 inline BodyMotion no_motion() {
   return {Pose{}, Matrix6::Zero()};
 }
 
-// One motion after another. What errs in both is taken to be the same, as the radius of a wheel or the bias of a
-// gyroscope is: deviations add up, not variances.
+// Concatenates two motions. Errors are taken as fully correlated, as from a wheel radius or a gyroscope bias: standard
+// deviations add up, not variances.
 BodyMotion operator*(const BodyMotion& first, const BodyMotion& second);
 
-// How fast wheels say that the robot's base moves, in the base's own axes. One whose wheels drive it ahead alone has
-// nothing to the left.
+// Measured velocity of the robot's base, in its own axes. `left` is zero for wheels that only roll ahead.
 struct BaseVelocity {
   Timestamp time{};
   double ahead = 0.0;    // metres per second
   double left = 0.0;     // metres per second
-  double turning = 0.0;  // radians per second, to the left
+  double turning = 0.0;  // radians per second, positive to the left
 };
 
-// What a gyroscope tells.
+// Sample of a gyroscope.
 struct AngularRate {
   Timestamp time{};
-  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, about the gyroscope's own axes
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();  // radians per second, about the gyroscope's axes
 };
 
-// What an accelerometer tells. At rest it points up, as long as gravity.
+// Sample of an accelerometer: specific force. At rest it points up and has the length of gravity.
 struct Acceleration {
   Timestamp time{};
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, about the axes of the gyroscope beside it
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // m/s^2, along the axes of the gyroscope
 };
 
-// What was recorded of a robot's motion beside its images.
+// Motion measurements of a recording. Each list is in order of time.
 struct MotionSamples {
-  Trajectory wheels;                        // poses of the robot's base in a frame of the wheels' own
-  std::vector<BaseVelocity> velocities;     // motion of wheels that tell no poses, in order of time
-  std::vector<AngularRate> rates;           // in order of time
-  std::vector<Acceleration> accelerations;  // in order of time
-  // How the gyroscope is turned against the left camera, where the recording says so.
+  Trajectory wheels;                     // wheel odometry: poses of the base in the odometry frame
+  std::vector<BaseVelocity> velocities;  // wheel odometry that measures velocities only
+  std::vector<AngularRate> rates;
+  std::vector<Acceleration> accelerations;
+  // Rotation from gyroscope to left camera; empty if the recording does not contain it.
   std::optional<Eigen::Quaterniond> left_from_gyroscope;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// All of byre's library. A robot's own program needs byre/slam.h; see docs/library.md.
+// The whole library. A robot's program needs byre/slam.h only; see docs/library.md.
 
 #include "byre/alignment.h"
 #include "byre/body_motion.h"

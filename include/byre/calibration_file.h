@@ -8,35 +8,34 @@
 
 namespace byre {
 
-// The calibration of a camera or of a pair, in a YAML file by itself. It is told by its fields which it is:
-//   EuRoC sensor.yaml  intrinsics, distortion_coefficients, T_BS (body from camera, identity where it is missing)
-//   OpenCV, ROS        camera_matrix, distortion_coefficients, likewise with T_BS
-//   Kalibr camchain    cam0 and perhaps cam1, with T_cn_cnm1 (this camera from the one before) and perhaps T_cam_imu,
-//                      whose inverse is body from camera; cameras after the second are left out
-// Each camera (the first of a chain) may tell its rolling shutter: readout_time, or line_delay as Kalibr has it;
-// seconds, of all rows and of one. Throws InputError naming the field for a model that is not supported, and for what
-// is missing or makes no sense.
+// Reads the calibration of one camera or a stereo pair from a YAML file. The fields determine the format:
+//   EuRoC sensor.yaml  intrinsics, distortion_coefficients, T_BS (body from camera, default identity)
+//   OpenCV, ROS        camera_matrix, distortion_coefficients, T_BS as above
+//   Kalibr camchain    cam0 and optionally cam1, with T_cn_cnm1 (this camera from the previous one) and optionally
+//                      T_cam_imu, whose inverse is body from camera; further cameras are ignored
+// Optional per camera, read from the first of a chain: readout_time or Kalibr's line_delay, seconds for all rows or one
+// row. Throws InputError with the field for an unsupported model and for a missing or invalid value.
 Calibration read_calibration(const std::filesystem::path& path);
 
-// The text of such a file, as Kalibr has it: read again, it gives the same calibration to the last digit but for
-// rotations, which are rounded as matrices are.
+// Text of a Kalibr camchain. Reading it back yields the same calibration bit by bit, except for the rounding of
+// rotation matrices.
 std::string write_calibration(const Calibration& calibration);
 
-// What such a file says of a depth camera, in fields of its own beside the others (or by themselves):
-//   depth_scale   units per metre of the numbers in its images; 5000 where it is missing, as in TUM's
-//   depth_sigma   metres, of a depth of one metre; it grows with the square of depth
-//   depth_camera  where its images are not registered to the colour camera's: its own lens, described as above in any
-//                 of the ways for one camera, and colour_from_depth, the 4x4 matrix of its pose in the colour camera
-// Throws InputError naming the field for what makes no sense.
+// Reads a depth camera from fields of a calibration file, which may also stand alone:
+//   depth_scale   units of the depth images per metre; default 5000, as in TUM
+//   depth_sigma   standard deviation of a depth of one metre, metres; grows with the square of depth
+//   depth_camera  only if depth images are not registered to the colour camera: intrinsics in any format for one
+//                 camera, and colour_from_depth, the 4x4 matrix of its pose in the colour camera
+// Throws InputError with the field for an invalid value.
 DepthCamera read_depth_camera(const std::filesystem::path& path);
 
-// Whether the file has any of these fields. Throws InputError when it cannot be read.
+// Whether the file has any field of a depth camera. Throws InputError if it cannot be read.
 bool names_depth_camera(const std::filesystem::path& path);
 
-// Throws InputError with this place when the cameras of a pair sit in one place, so that no depth can be seen.
+// Throws InputError with this place if the baseline of the pair is zero, as depth is then unobservable.
 void require_baseline(const StereoPartner& partner, const std::string& place);
 
-// The calibration that lies in a folder: calibration.yaml, camera.yaml or sensor.yaml. Empty when there is none.
+// Calibration file in a folder: calibration.yaml, camera.yaml or sensor.yaml. Empty if there is none.
 std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
 
 }  // namespace byre

@@ -19,72 +19,71 @@
 
 namespace byre {
 
-using Descriptor = std::array<std::uint64_t, 4>;  // 256-bit rotated BRIEF, bit i of byte j as cv::ORB packs them
+using Descriptor = std::array<std::uint64_t, 4>;  // 256-bit rotated BRIEF; bit i of byte j as packed by cv::ORB
 
-// The scale pyramid: octave o is smaller than the image by kOctaveScale^o.
+// Scale pyramid: octave o is the image scaled down by kOctaveScale^o.
 inline constexpr int kOctaves = 8;
 inline constexpr double kOctaveScale = 1.2;
 inline constexpr std::array<float, kOctaves> kScaleOfOctave = {1.0f,    1.2f,     1.44f,     1.728f,
                                                                2.0736f, 2.48832f, 2.985984f, 3.5831808f};
 
-// A detected corner, in the left rectified image.
+// Detected corner in the left rectified image.
 struct Keypoint {
-  Eigen::Vector2f pixel;          // full-resolution pixels; centre of its patch to sub-pixel precision
-  float disparity = -1.0f;        // pixels, negative when not matched in the right image
+  Eigen::Vector2f pixel;          // full-resolution pixels; centre of its patch, with sub-pixel precision
+  float disparity = -1.0f;        // pixels; negative without a match in the right image
   float disparity_sigma = -1.0f;  // pixels
-  float row_offset = 0.0f;        // pixels, right less left row of its match, zero if all is calibrated
-  float angle = 0.0f;             // radians, of the intensity centroid (Rublee 2011)
-  float response = 0.0f;          // corner strength, larger is better
-  float row_time = 0.0f;          // reading time of its row, from the middle row on: -0.5 to 0.5 times the readout time
+  float row_offset = 0.0f;  // row in the right image minus row in the left one, pixels; zero for a perfect calibration
+  float angle = 0.0f;       // orientation by the intensity centroid, radians (Rublee 2011)
+  float response = 0.0f;    // corner strength; larger is stronger
+  float row_time = 0.0f;    // time of its row after the middle row, -0.5 to 0.5 readout times
   std::uint8_t octave = 0;
 
   bool has_disparity() const { return disparity > 0.0f; }
 };
 
-// The grey values around a keypoint in its own octave, kept so that matches can be refined to sub-pixel later,
-// long after the image is gone.
+// Grey values around a keypoint in its octave. Kept for sub-pixel refinement of later matches without the image.
 struct Patch {
   static constexpr int kSize = 16;                   // octave pixels
   std::array<std::uint8_t, kSize * kSize> pixels{};  // row-major
-  Eigen::Vector2f centre;                            // place of the keypoint in the patch, octave pixels, near (8, 8)
+  Eigen::Vector2f centre;  // position of the keypoint in the patch, octave pixels; near (8, 8)
 };
 
-// A list of one's own of what a view shows.
+// Copies the items of a view.
 template <typename Item>
 std::vector<Item> to_vector(std::span<const Item> items) {
   return {items.begin(), items.end()};
 }
 
-// Keypoints, their descriptors and patches, one each; sorted by grid cell, so that an area is a few short ranges.
-// Views of them last as long as the features do.
+// Keypoints with descriptors and patches of one image, sorted by grid cell for fast area queries. Returned views are
+// valid as long as the features.
 class Features {
  public:
   Features() = default;
-  // patches may be empty (simulated features): then matches keep the precision of the keypoints.
-  // Reorders all three by grid cell. Precondition: equal sizes; keypoints lie in the image.
+  // Sorts all lists by grid cell. patches may be empty (simulated features): matches then keep the precision of the
+  // keypoints. Preconditions: equal sizes; keypoints lie in the image.
   Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
            std::vector<Patch> patches);
-  // With patches of some keypoints only: patch_of_keypoint is an index into patches, or -1. Sized like keypoints.
+  // With patches for some keypoints only. patch_of_keypoint: one index into patches per keypoint, or -1.
   Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
            std::vector<Patch> patches, std::vector<int> patch_of_keypoint);
 
-  // Becomes what the constructor makes of these, in the memory that it has.
+  // Same result as the constructor, reusing allocated memory.
   void refill(int width, int height, const std::vector<Keypoint>& keypoints, const std::vector<Descriptor>& descriptors,
               const std::shared_ptr<const std::vector<Patch>>& patches);
 
-  // The order that features have: that of the constructor, indices into keypoints in any other.
+  // Sorting order that the constructor applies: indices into keypoints.
   static std::vector<int> order_of(int width, int height, const std::vector<Keypoint>& keypoints);
 
-  // The same corners in the same order, each a little elsewhere in the image. Precondition: as many as there are.
+  // Copy with other keypoints: the same corners in the same order, slightly displaced. Precondition: equal number.
   Features moved(std::vector<Keypoint> keypoints) const;
-  // Becomes the same in the memory that it has.
+  // Same result as features.moved(keypoints), reusing allocated memory.
   void refill_moved(const Features& features, const std::vector<Keypoint>& keypoints);
 
-  // The same, but for the patches of other features. Precondition: indices, ascending.
+  // Copy that keeps patches of these features only. Precondition: indices, ascending.
   Features with_patches_of(std::span<const int> features) const;
 
-  // All that takes memory, list by list, and the same features whose lists lie elsewhere. A list without another place
-  // stays where it is. Precondition: copies of what lists() shows, aligned as that is.
+  // Bytes of all arrays, to be stored elsewhere, and a copy of the features that refers to stored arrays. An array with
+  // a null place is copied. Precondition: places hold copies of what lists() returns, equally aligned.
   static constexpr std::size_t kLists = 5;
   std::array<std::span<const std::byte>, kLists> lists() const;
   Features with_lists_at(const std::array<std::shared_ptr<const std::byte>, kLists>& places) const;
@@ -94,22 +93,22 @@ class Features {
   std::span<const Descriptor> descriptors() const { return descriptors_.view(); }
   const Keypoint& keypoint(int i) const { return keypoints()[static_cast<std::size_t>(i)]; }
   const Descriptor& descriptor(int i) const { return descriptors()[static_cast<std::size_t>(i)]; }
-  // nullptr where none was kept: a patch takes several times the memory of all the rest.
+  // Patch of a keypoint; nullptr if it was not kept.
   const Patch* find_patch(int i) const {
     const std::span<const int> indices = patch_of_keypoint_.view();
     const int patch = indices.empty() ? -1 : indices[static_cast<std::size_t>(i)];
     return patch < 0 ? nullptr : patches().data() + patch;
   }
-  // Those that were kept, in any order.
+  // All kept patches, in no particular order.
   std::span<const Patch> patches() const { return patches_.view(); }
 
-  // Calls visit(index) for each keypoint within radius (pixels, per axis) of a pixel whose octave lies in
-  // [min_octave, max_octave], in ascending order of rows of cells.
+  // Calls visit(index) for each keypoint in octaves [min_octave, max_octave] whose column and row differ from the
+  // pixel's by at most radius pixels. Order: ascending rows of cells.
   template <typename Visitor>
   void visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave, Visitor visit) const;
 
  private:
-  // Items of its own, or such as lie elsewhere, which copies share.
+  // Array that owns its items or refers to shared ones.
   template <typename Item>
   class Items {
    public:
@@ -131,17 +130,17 @@ class Features {
       return *this;
     }
 
-    // As many of them that lie elsewhere.
+    // Refers to count shared items.
     Items(std::shared_ptr<const Item> elsewhere, std::size_t count)
         : elsewhere_(std::move(elsewhere)), view_(elsewhere_.get(), count) {}
-    // The same at that place, if there is one.
+    // Refers to the same number of items at a place; a copy if the place is null.
     Items at(const std::shared_ptr<const std::byte>& place) const {
       if (!place) return *this;
       return {{place, reinterpret_cast<const Item*>(place.get())}, view_.size()};
     }
 
     std::span<const Item> view() const { return view_; }
-    // Has fill write items of its own, in the memory that it has.
+    // Calls fill to write own items into allocated memory.
     template <typename Fill>
     void refill(Fill fill) {
       elsewhere_.reset();
@@ -153,7 +152,7 @@ class Features {
     }
 
    private:
-    std::vector<Item> own_;  // empty where they lie elsewhere
+    std::vector<Item> own_;  // empty if items are shared
     std::shared_ptr<const Item> elsewhere_;
     std::span<const Item> view_;
   };
@@ -164,20 +163,20 @@ class Features {
   int cell_size_ = 0;  // pixels
   int columns_ = 0;
   int rows_ = 0;
-  float slack_ = 0.0f;  // pixels by which a keypoint may have left its cell
+  float slack_ = 0.0f;  // largest displacement of a keypoint out of its cell, pixels
   Items<Keypoint> keypoints_;
   Items<Descriptor> descriptors_;
-  Items<Patch> patches_;  // elsewhere: shared with copies that were moved
+  Items<Patch> patches_;  // shared with displaced copies
   Items<int> patch_of_keypoint_;
-  Items<int> cell_begin_;  // index of each cell's first keypoint, and one past the last
+  Items<int> cell_begin_;  // index of the first keypoint of each cell, then the number of keypoints
 };
 
-// What the rest of byre sees of one (stereo) image: never pixels, never changed once made.
+// Front-end result of one mono, stereo or RGB-D image: features without pixels. Immutable once made.
 struct Frame {
   Timestamp time{};
   std::shared_ptr<const Features> features;
-  std::optional<ImageCondition> condition = {};        // what the left image is like; empty for simulated frames
-  std::optional<ImageCondition> right_condition = {};  // what the right image is like, where there is one
+  std::optional<ImageCondition> condition = {};        // condition of the left image; empty for simulated frames
+  std::optional<ImageCondition> right_condition = {};  // condition of the right image; empty without one
   std::uint64_t content = 0;                           // checksum of the left image's pixels; 0 for simulated frames
 };
 
@@ -185,7 +184,7 @@ template <typename Visitor>
 void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_octave, int max_octave,
                           Visitor visit) const {
   const auto cell = [this](float coordinate, int count) {
-    constexpr float kFar = 1e6f;  // beyond any image, yet an int; what is no number counts as zero
+    constexpr float kFar = 1e6f;  // beyond any image, but fits an int; NaN counts as zero
     return std::min(static_cast<int>(std::min(std::max(0.0f, coordinate), kFar)) / cell_size_, count - 1);
   };
   if (columns_ == 0) return;
@@ -193,8 +192,7 @@ void Features::visit_area(const Eigen::Vector2f& pixel, float radius, int min_oc
   const int first_column = cell(pixel.x() - reach, columns_);
   const int last_column = cell(pixel.x() + reach, columns_);
   const int last_row = cell(pixel.y() + reach, rows_);
-  // Whether a keypoint lies in the area is as good as drawn. So no branch depends on it: all of a cell are written
-  // down, and those outside are written over.
+  // Branch-free, as membership is unpredictable: all indices of a cell are written, those outside are overwritten.
   constexpr std::size_t kAtOnce = 64;
   std::array<int, kAtOnce> inside;
   std::size_t count = 0;

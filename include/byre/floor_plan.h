@@ -24,50 +24,52 @@ enum class PlanMode : std::uint8_t {
 // Occupancy of a pixel, percent, or unknown.
 inline constexpr std::int8_t kFreePixel = 0, kOccupiedPixel = 100, kUnknownPixel = -1;
 
-// An image of a floor plan and the position of its pixels. The plan's frame is that of its file: metres on the floor,
-// for a geo-referenced plan those of the projected coordinate system, which may be millions; seen from above, y is 90
-// degrees to the left of x. Pixels are continuous, whole numbers are centres, (0, 0) is that of the top left one.
+// Image of a floor plan with its georeference. Plan frame: that of the plan's file, metres on the floor, y 90 degrees
+// to the left of x seen from above. For a geo-referenced plan it is the projected coordinate system; coordinates may be
+// millions. Pixels are continuous: integers are pixel centres, (0, 0) is the centre of the top left one.
 struct FloorPlan {
-  std::string name;             // name of the file that describes the plan
-  std::filesystem::path image;  // path that can be opened as it is
+  std::string name;             // file name of the plan's description
+  std::filesystem::path image;  // path of the image file, including the folder
   int width = 0;                // pixels
   int height = 0;
   Eigen::Matrix2d metres_per_pixel = Eigen::Matrix2d::Identity();  // columns: a step to the right, a step down
-  Eigen::Vector2d top_left_in_plan = Eigen::Vector2d::Zero();      // centre of the top left pixel
-  // Darkness, from 0 to 1, above which a pixel is occupied. Empty: the plan has no walls, as dark pixels may be
-  // letters; its occupancy is read with 0.65.
+  Eigen::Vector2d top_left_in_plan = Eigen::Vector2d::Zero();      // centre of the top left pixel, metres
+  // Darkness, 0 to 1, above which a pixel is occupied. Empty: dark pixels may be text, so the plan has no walls;
+  // occupancy then uses 0.65.
   std::optional<double> occupied_threshold{};
   double free_threshold = 0.196;  // darkness below which a pixel is free
   PlanMode mode = PlanMode::trinary;
-  bool is_negated = false;  // white is occupied, black free
+  bool is_negated = false;  // white is occupied, black is free
 
-  // Metres on the plan and pixels of its image, which may lie outside of it.
+  // Conversion between plan coordinates (metres) and pixels, which may lie outside the image.
   Eigen::Vector2d point_at(const Eigen::Vector2d& pixel) const { return top_left_in_plan + metres_per_pixel * pixel; }
   Eigen::Vector2d pixel_at(const Eigen::Vector2d& point_in_plan) const {
     return metres_per_pixel.inverse() * (point_in_plan - top_left_in_plan);
   }
 };
 
-// Reads NAME.yaml or an image with a world file. NAME.yaml has the format of ROS' map_server
-// (http://wiki.ros.org/map_server): the image's file, metres per pixel (resolution), and the pose [x, y, yaw] of the
-// lower left corner of the lower left pixel (origin); occupied_thresh, free_thresh, negate and mode are optional. A
-// world file lies beside the image (.pgw, .tfw, .jgw; .pngw and the like; .wld) and has six lines: the step to the
-// right in x and in y, the step down in x and in y, the centre of the top left pixel. Throws InputError with file and
-// field if a file is missing, cannot be read or has an invalid value.
+// Reads a plan from NAME.yaml or from an image with a world file.
+//   NAME.yaml   format of ROS' map_server (http://wiki.ros.org/map_server): image file, metres per pixel (resolution),
+//               pose [x, y, yaw] of the lower left corner of the lower left pixel (origin); optionally occupied_thresh,
+//               free_thresh, negate and mode
+//   world file  next to the image (.pgw, .tfw, .jgw, .pngw and the like, .wld); six lines: x and y of a step to the
+//               right, x and y of a step down, x and y of the top left pixel's centre
+// Throws InputError with file and field if a file is missing or unreadable, or a value is invalid.
 FloorPlan read_floor_plan(const std::filesystem::path& path);
 
-// A plan with the pixels of its image, in rows from the top left pixel.
+// Floor plan with its pixels, row-major from the top left.
 struct DrawnFloorPlan {
   FloorPlan plan;
-  Image image;  // grey values for display: transparent pixels on white, a negated plan inverted
+  Image image;  // grey values for display: transparent pixels are white, a negated plan is inverted
   std::vector<std::int8_t> occupancy{};  // 0 (free) to 100 (occupied), -1 (unknown); fully transparent pixels: -1
 };
 
-// Throws InputError if the image is damaged or has other than 8 or 16 bits.
+// Throws InputError if the image is damaged or its depth is not 8 or 16 bits.
 DrawnFloorPlan read_plan_pixels(const FloorPlan& plan);
-DrawnFloorPlan read_drawn_floor_plan(const std::filesystem::path& path);  // read_floor_plan with its pixels
+// read_floor_plan, then read_plan_pixels.
+DrawnFloorPlan read_drawn_floor_plan(const std::filesystem::path& path);
 
-// The one beside an image, where there is one.
+// World file next to an image; empty if there is none.
 std::optional<std::filesystem::path> find_world_file(const std::filesystem::path& image);
 
 }  // namespace byre

@@ -2,11 +2,11 @@
 
 namespace byre {
 
-// What was left out of a frame so that it keeps to its deadline, see the option frame.deadline_ms.
+// Work skipped in a frame to keep its deadline (option frame.deadline_ms).
 struct FrameCuts {
-  // Fewer points of the session's own map were looked for: none where points of an offline map hold the pose.
+  // Fewer online points were searched; none while offline points hold the pose.
   bool online_points = false;
-  bool right_image = false;  // the frame was tracked by its left image alone
+  bool right_image = false;  // the right image was skipped
 };
 
 }  // namespace byre

@@ -17,21 +17,21 @@
 
 namespace byre {
 
-// What was wrong with a frame as it was handed over. From no_image on it was dropped: nothing was made of it.
+// Fault of the input of a frame. Frames with a fault from no_image on are dropped without processing.
 enum class InputFault : std::uint8_t {
   none,
-  after_gap,       // the frame came long after the one before: the pose may have been lost for it
-  missing_right,   // the left image of a stereo pair came alone
-  late_right,      // the right image was taken at another time, and left out
-  missing_depth,   // the image of a depth camera came without depths
-  late_depth,      // the depth image was taken at another time, and left out
-  no_image,        // the left image holds nothing
-  wrong_size,      // an image is not of the calibration's size, or its rows are shorter than their pixels
-  wrong_format,    // a depth image where a picture is to be, or the other way round
-  wrong_features,  // own features outside the image, of an octave that does not exist, or a disparity without its sigma
-  repeated_time,   // the frame has the time of the one before
-  out_of_order,    // the frame has an earlier time than the one before
-  after_finishing  // Slam::finish was called before
+  after_gap,       // more than SlamOptions::max_gap after the previous frame; tracking may have been lost
+  missing_right,   // no right image for a stereo pair
+  late_right,      // right image ignored: its time differs by more than max_pair_difference
+  missing_depth,   // no depth image for a depth camera
+  late_depth,      // depth image ignored: its time differs by more than max_pair_difference
+  no_image,        // left image without data
+  wrong_size,      // image size differs from the calibration, or the stride is shorter than a row
+  wrong_format,    // depth format for a grey or colour image, or vice versa
+  wrong_features,  // caller's features: outside the image, invalid octave, or disparity without sigma
+  repeated_time,   // time equal to that of the previous frame
+  out_of_order,    // earlier than the previous frame
+  after_finishing  // after Slam::finish
 };
 
 std::string_view to_string(InputFault fault);
@@ -40,39 +40,39 @@ inline bool is_dropped(InputFault fault) {
   return fault >= InputFault::no_image;
 }
 
-// What the caller learns about one frame.
+// Result of one frame. A dropped frame has no pose.
 struct FrameReport {
   Timestamp time{};
   State state = State::initialising;
-  InputFault input = InputFault::none;  // fault of the images handed over; a frame that was dropped has no pose
-  // In the frame of the offline map, or in that of the session's own map where there is no offline one. Corrected
-  // whenever more is known, so it may jump. Empty while it is not known.
+  InputFault input = InputFault::none;
+  // Pose in the frame of the offline map; without one in the frame of the session's own map. Corrected as the map is
+  // refined, so it may jump. Empty while the pose is unknown.
   std::optional<Pose> map_from_body;
   // Covariance of delta in map_from_body * exp_pose(delta), relative to the map's origin.
   Matrix6 covariance = Matrix6::Zero();
-  // How a correction of the map moved the robot since the frame before: after_from_before, both in the map's frame.
-  // Poses kept from earlier frames are as they were: Slam::trajectory has them as they are now.
+  // Correction of the map since the previous frame, applied to the pose: after_from_before, both in the map frame.
+  // Poses of earlier reports are not updated; Slam::trajectory() returns them corrected.
   std::optional<Pose> correction;
-  // Smooth: moves with what was seen from one frame to the next, and never jumps; its frame is the body's at the start.
+  // Smooth odometry: integrates frame-to-frame motion, drifts, never jumps. Its frame is the body's at the start.
   std::optional<Pose> odometry_from_body;
   Matrix6 odometry_covariance = Matrix6::Zero();  // covariance of delta in odometry_from_body * exp_pose(delta)
   Health health;
-  int features = 0;
+  int features = 0;         // features detected
   int expected_points = 0;  // map points in the frustum
-  int matches = 0;
-  int inliers = 0;
+  int matches = 0;          // map points matched
+  int inliers = 0;          // matches that fit the pose
   bool keyframe_added = false;
-  FrameCuts cuts;        // what was left out
-  bool is_late = false;  // it took longer than its deadline all the same
-  // Why the robot cannot be where this frame, or one shortly before, was found in the offline map: Health::doubt tells
-  // it as well where there is no other pose.
+  FrameCuts cuts;
+  bool is_late = false;  // exceeded its deadline despite the cuts
+  // Reason for rejecting the place where this or a recent frame was found in the offline map. Repeated in Health::doubt
+  // if there is no other pose.
   Doubt refused_place = Doubt::none;
-  TwoViewFailure start_failure = TwoViewFailure::none;  // why one camera could not begin a map with this frame
-  std::vector<SessionEvent> events;                     // what happened in this frame, in order
-  std::vector<MotionWarning> warnings;                  // faults of motion inputs since the last frame; each kind once
-  double track_seconds = 0.0;                           // wall time of tracking on the calling thread
-  double map_seconds = 0.0;                             // wall time of mapping on the calling thread, with inline jobs
-  std::optional<double> job_seconds;  // wall time of the mapping job whose result was taken over in this frame
+  TwoViewFailure start_failure = TwoViewFailure::none;  // reason why a monocular map was not initialised
+  std::vector<SessionEvent> events;                     // in order
+  std::vector<MotionWarning> warnings;  // faults of motion inputs since the previous frame; each kind once
+  double track_seconds = 0.0;           // wall time of tracking on the calling thread
+  double map_seconds = 0.0;             // wall time of mapping on the calling thread, including inline jobs
+  std::optional<double> job_seconds;    // wall time of the mapping job whose result was applied in this frame
 
   bool has(SessionEvent event) const { return std::ranges::find(events, event) != events.end(); }
 };

@@ -7,29 +7,28 @@
 
 namespace byre {
 
-// How usable an image is, whatever it shows. Grey values run from 0 to 255.
+// Exposure and focus of an image, independent of its content. Grey values are 0 to 255.
 struct ImageCondition {
   float brightness = 0.0f;  // mean grey value
-  float contrast = 0.0f;    // grey values by which pixels 16 apart differ, over the root of two; noise is left out
-  float clipped = 0.0f;     // share of pixels that are black or white beyond measure
-  // How much of the difference between pixels 16 apart is there 2 apart already, in the direction in which it is least:
-  // 1 for sharp edges, falls with the square of the length of blur. Exposure does not change it; noise and fine texture
-  // raise it.
+  float contrast = 0.0f;    // RMS grey-value difference of pixels 16 apart, over the root of two, corrected for noise
+  float clipped = 0.0f;     // share of black (up to 2) or white (from 253) pixels
+  // Mean squared difference per distance of pixels 2 apart, relative to pixels 16 apart, in the direction of the least
+  // ratio: 1 for sharp edges, falls with the square of the blur length. Independent of exposure; raised by noise and
+  // fine texture.
   float sharpness = 0.0f;
-  float noise = 0.0f;  // grey values, standard deviation from pixel to pixel; fine texture everywhere raises it
+  float noise = 0.0f;  // standard deviation between neighbouring pixels, grey values; dense fine texture raises it
 };
 
-// Measured on every eighth row, of an image as the camera gave it: rectifying it takes a fifth of the sharpness of
-// sharp images, and less of that of blurred ones. Of an image smaller than 33 x 17 only brightness and clipped are
-// known.
+// Uses every eighth row of an unrectified image: rectification reduces the sharpness of sharp images by a fifth, that
+// of blurred ones by less. Images of at most 32 x 16 pixels yield brightness and clipped only.
 ImageCondition measure_condition(const Image& image);
 
-// Why an image is of no use; none when it may be.
+// Reason why an image is unusable.
 enum class ImageFault : std::uint8_t { none, dark, overexposed, flat, blurred };
 
 std::string_view to_string(ImageFault fault);
 
-// Nothing that is still tracked is a fault: docs/mission_tests.md has the distributions that these lie outside of.
+// Thresholds beyond the distributions of images that are still tracked; docs/mission_tests.md has the distributions.
 struct ImageConditionOptions {
   float min_brightness = 8.0f;    // grey values
   float max_brightness = 247.0f;  // grey values
@@ -37,7 +36,7 @@ struct ImageConditionOptions {
   float min_sharpness = 0.23f;
 };
 
-// The first fault found, in the order of ImageFault.
+// First fault in the order of ImageFault.
 ImageFault fault_of(const ImageCondition& condition, const ImageConditionOptions& options);
 
 }  // namespace byre

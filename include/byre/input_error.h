@@ -6,12 +6,12 @@
 
 namespace byre {
 
-// Bad input found at an edge of the program: a file, an option, a calibration. Says what, where, why and
-// what to do about it; what() reads "place: reason (remedy)".
+// Bad input, detected where a file, an option or a calibration is read. what() reads "place: reason (remedy)".
 class InputError : public std::runtime_error {
  public:
-  // place: "file", "file:line" or "file: field"; remedy: may be empty. Control characters and invalid UTF-8 are escaped
-  // as \n, \t, \r or \xNN.
+  // place: "file", "file:line" or "file: field"; remedy: advice to the user, may be empty. Control characters and
+  // invalid UTF-8 are escaped as \
+  // , \\t, \\r or \\xNN.
   InputError(std::string_view place, std::string_view reason, std::string_view remedy = {});
 
   const std::string& place() const { return place_; }

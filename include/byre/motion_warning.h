@@ -26,7 +26,7 @@ struct MotionWarning {
   std::string remedy;  // advice to the user
 };
 
-// "wheels (barn/wheel.txt), at 12.340 s: WHAT; REMEDY". source: file or topic of the samples; may be empty.
+// Text "wheels (barn/wheel.txt), at 12.340 s: WHAT; REMEDY". source: file or topic of the samples; may be empty.
 std::string to_text(const MotionWarning& warning, std::string_view source = "");
 
 }  // namespace byre

@@ -33,34 +33,35 @@ inline Pose inverse(const Pose& a_from_b) {
   return {b_from_a, -(b_from_a * a_from_b.translation)};
 }
 
-// Rotation vector (axis times angle, radians) to unit quaternion and back; the logarithm's angle is at most pi.
+// Conversion between rotation vector (axis times angle, radians) and unit quaternion. The logarithm's angle is at most
+// pi.
 Eigen::Quaterniond rotation_exp(const Eigen::Vector3d& rotation_vector);
 Eigen::Vector3d rotation_log(const Eigen::Quaterniond& rotation);
 
-// A rotation matrix as written in a file, its rounding errors removed; empty when it is none (to 1e-3 an entry of
-// R^T R), or mirrors.
+// Rotation of a matrix read from a file, without its rounding errors. Empty if R^T R differs from identity by more than
+// 1e-3 in an entry, or if the matrix is a reflection.
 std::optional<Eigen::Quaterniond> rotation_from_matrix(const Eigen::Matrix3d& matrix);
 
-// The cross-product matrix: skew(a) * b = a x b.
+// Cross-product matrix: skew(a) * b = a x b.
 Eigen::Matrix3d skew(const Eigen::Vector3d& vector);
 
-// A small motion is (translation in metres, rotation vector in radians), in that order, throughout byre.
-// exp_pose(delta) * a_from_b moves the pose by delta as seen in frame a; a_from_b * exp_pose(delta) as seen in b.
-// Translation and rotation are decoupled: R = exp(rotation), t = translation.
+// Small motions are (translation in metres, rotation vector in radians), in this order, throughout byre.
+// exp_pose(delta) * a_from_b moves the pose by delta in frame a, a_from_b * exp_pose(delta) in frame b. Translation and
+// rotation are decoupled: R = exp(rotation), t = translation; this is not the exponential map of SE(3).
 Pose exp_pose(const Vector6& delta);
 Vector6 log_pose(const Pose& pose);
 
-// Moves a small motion (and, as A * covariance * A^T, its covariance) from frame b to frame a:
-// a_from_b * exp_pose(delta) = exp_pose(adjoint(a_from_b) * delta) * a_from_b to first order.
+// Matrix A that transforms a small motion from frame b to frame a, and its covariance as A * covariance * A^T:
+// a_from_b * exp_pose(delta) = exp_pose(A * delta) * a_from_b to first order.
 Matrix6 adjoint(const Pose& a_from_b);
 
-// The covariance of a small motion as seen in frame a, given it as seen in frame b.
+// Covariance of a small motion in frame a, given its covariance in frame b.
 Matrix6 move_covariance(const Matrix6& covariance_in_b, const Pose& a_from_b);
 
 // Angle between two rotations, radians, 0 to pi.
 double angle_between(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second);
 
-// Straight-line and slerp interpolation; fraction 0 gives first, 1 gives second, values beyond extrapolate.
+// Linear and slerp interpolation: fraction 0 yields first, 1 yields second, values beyond extrapolate.
 Pose interpolate(const Pose& first, const Pose& second, double fraction);
 
 }  // namespace byre

@@ -4,12 +4,12 @@
 
 namespace byre {
 
-// Where somebody who may err says that the robot is.
+// Approximate pose of the robot, given by an operator.
 struct PoseHint {
   Pose map_from_body;
-  double radius = 2.0;    // metres by which it may be off
-  double turn = 1.0;      // radians by which it may be turned
-  double seconds = 10.0;  // time of the frames from now on in which it counts
+  double radius = 2.0;    // largest position error, metres
+  double turn = 1.0;      // largest rotation error, radians
+  double seconds = 10.0;  // lifetime from the next frame on, seconds of frame time
 };
 
 }  // namespace byre

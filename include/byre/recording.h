@@ -15,21 +15,21 @@
 namespace byre {
 
 //   euroc   mav0/cam0, and mav0/cam1 for stereo
-//   kitti   a sequence of KITTI odometry: calib.txt, times.txt, image_0, and image_1 for stereo
-//   tum     rgb.txt of a TUM RGB-D folder, and depth.txt for depth
+//   kitti   sequence of KITTI odometry: calib.txt, times.txt, image_0, and image_1 for stereo
+//   tum     TUM RGB-D folder: rgb.txt, and depth.txt for depth
 //   images  image files in a folder, or for stereo in its folders left and right
-//   video   a video file
-//   bag     what ROS records: a folder of rosbag2, an .mcap, .db3 or .bag file
+//   video   video file
+//   bag     rosbag2 folder, or an .mcap, .db3 or .bag file
 enum class RecordingFormat : std::uint8_t { euroc, kitti, tum, images, video, bag };
 
 std::string_view to_string(RecordingFormat format);
 
-// Which of a recording's cameras to use: both of a pair, one of them alone, or the left one with the depth camera.
+// Cameras used of a recording: both of a stereo pair, one of them, or the left one with the depth camera.
 enum class CameraChoice : std::uint8_t { stereo, left, right, rgbd };
 
 std::string_view to_string(CameraChoice choice);
 
-// Which frames of a recording to read. Both limits apply.
+// Frames read of a recording. Both limits apply.
 struct FrameRange {
   std::optional<double> start_s{};  // seconds from the first frame of the recording
   std::optional<double> end_s{};    // seconds from the first frame of the recording, exclusive
@@ -64,70 +64,72 @@ struct TimeCorrections {
   bool any() const { return source != TimeSource::stamps || !clock_steps.empty() || late + repeated + unstamped > 0; }
 };
 
-// What a recording does not say of itself, or is to be taken otherwise.
+// Choices that override a recording or complete it.
 struct OpenOptions {
-  std::optional<CameraChoice> camera{};  // empty: both where there are two, with depth where there is depth
-  std::optional<std::filesystem::path> calibration{};  // a file read_calibration knows, in place of the recording's own
-  std::optional<double> frame_rate_hz{};               // frame rate of images and videos, in place of what they say
-  // Topics of a bag's images; empty where it leaves no choice. The left one alone: that camera, or its only pair.
+  std::optional<CameraChoice> camera{};                // empty: stereo pair if available, with depth if available
+  std::optional<std::filesystem::path> calibration{};  // replaces the recording's calibration; see read_calibration
+  std::optional<double> frame_rate_hz{};               // replaces the frame rate of images and videos
+  // Image topics of a bag; empty: detected, an error if ambiguous. left_topic alone selects that camera, or its pair if
+  // there is exactly one.
   std::optional<std::string> left_topic{};
   std::optional<std::string> right_topic{};
-  std::optional<std::filesystem::path> wheels{};  // file of wheel odometry, in place of wheel.txt in the folder
-  bool use_wheels = true;                         // whether wheel.txt is used where it is there
-  bool use_gyroscope = false;  // whether imu0 of the folder, or the only sensor_msgs/Imu of a bag is used
-  std::optional<std::string> wheels_topic{};  // topic of a bag's wheels, nav_msgs/Odometry or twists; empty: none
-  std::optional<std::string> imu_topic{};     // topic of the gyroscope that is used, sensor_msgs/Imu
-  std::optional<double> pair_tolerance_s{};   // largest difference between the stamps of a pair, seconds; empty: 0.002
-  // Baseline of a stereo pair in metres, replaces that of the calibration. A calibration with a baseline outside 2 mm
-  // to 1 m is refused unless it is confirmed here, as extrinsics in centimetres or millimetres are likelier.
+  std::optional<std::filesystem::path> wheels{};  // file of wheel odometry, replaces wheel.txt of the folder
+  bool use_wheels = true;                         // whether to use wheel.txt of the folder if present
+  bool use_gyroscope = false;  // whether to use imu0 of the folder, or the only sensor_msgs/Imu topic of a bag
+  std::optional<std::string> wheels_topic{};  // wheel odometry in a bag, nav_msgs/Odometry or twists; empty: not used
+  std::optional<std::string> imu_topic{};     // sensor_msgs/Imu topic to use
+  std::optional<double> pair_tolerance_s{};   // largest time difference within a stereo pair, seconds; empty: 0.002
+  // Baseline of a stereo pair in metres; replaces that of the calibration. A calibrated baseline outside 2 mm to 1 m is
+  // rejected unless confirmed here, as extrinsics in centimetres or millimetres are likelier.
   std::optional<double> baseline{};
 };
 
-// A recorded sequence of one camera, of one with a depth camera or of a stereo pair, read one frame at a time. Of the
-// right camera alone, left image and left calibration are that camera's.
+// Recorded sequence of a camera, a stereo pair, or a camera with a depth camera, read frame by frame. For
+// CameraChoice::right, left image and left calibration are those of the right camera.
 class Recording {
  public:
   virtual ~Recording() = default;
 
   virtual const Calibration& calibration() const = 0;
-  // Time stamps of the frames in range, strictly increasing. A left image without a right partner is in it.
+  // Times of the frames in range, strictly increasing, including frames without a right image.
   virtual const std::vector<Timestamp>& times() const = 0;
-  // The i-th frame, decoded. Empty, with a warning added, when the left image cannot be read or is of another size than
-  // calibrated; without a right image, with a warning added, when that one is absent, unreadable or of another size;
-  // likewise without a depth image, but no warning where none was taken.
-  // May be called from any thread, but from one at a time.
+  // Decodes a frame. Empty if the left image is unreadable or has another size than calibrated; without right or depth
+  // image if that is missing, unreadable or of another size. Each fault adds a warning, except a missing depth image.
+  // May be called from any thread, but not concurrently.
   virtual std::optional<ImageFrame> read(int index) = 0;
-  // What wheels and a gyroscope told meanwhile; none where nothing was recorded or asked for.
+  // Samples of wheels and gyroscope; empty if not recorded or not selected.
   virtual const MotionSamples& motion() const;
-  // Differences between times() and the recorded stamps; none for recordings timed by a frame rate. Each correction is
-  // among the warnings too.
+  // Differences between times() and the recorded stamps; none for recordings timed by a frame rate. Each also adds a
+  // warning.
   virtual const TimeCorrections& time_corrections() const;
-  virtual const std::vector<std::string>& warnings() const = 0;  // warnings of opening it first, then of reading
+  // Warnings of opening, then of reading.
+  virtual const std::vector<std::string>& warnings() const = 0;
 
   int size() const { return static_cast<int>(times().size()); }
 };
 
-// Tells the format by what the folder or file holds; throws InputError saying what was looked for when it is none.
+// Detects the format from the contents of a folder or file. Throws InputError with the patterns searched if there is
+// none.
 RecordingFormat guess_format(const std::filesystem::path& path);
 
-// A file that holds a video, by its extension.
+// Whether the extension is that of a video file.
 bool is_video_file(const std::filesystem::path& path);
 
-// A recording in any of the formats. Images and videos need a calibration: that of the options, or one that
-// find_calibration finds in the folder (of a video: beside it). They have the times that their file names say, else
-// those of a steady frame rate, 30 Hz with a warning if it is unknown. Bags have their calibration in camera info and
-// /tf_static. If a recording has one camera and its calibration is of a pair, the choice of camera selects the one of
-// the two. Throws InputError with file and reason for missing files, a calibration that does not parse, is invalid, has
-// an absurd baseline (see OpenOptions) or is of another image size, an absent camera, images that all have one time
-// stamp, and a range without frames.
+// Opens a recording of any format.
+//   calibration  images and videos: OpenOptions::calibration, else find_calibration() in the folder; bags: camera info
+//                and /tf_static. If a pair is calibrated but one camera recorded, OpenOptions::camera selects which
+//   times        images and videos: from file names, else a constant frame rate, by default 30 Hz with a warning
+// Throws InputError with file and reason for missing files, an unreadable or invalid calibration, an implausible
+// baseline (see OpenOptions), a calibration for another image size, an absent camera, images that share one time stamp,
+// and a range without frames.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& path, const FrameRange& range,
                                           const OpenOptions& options = {});
 
-// The cameras that a recording opened so gives.
+// Cameras that open_recording selects with these options.
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options);
 
-// The ground truth that came with the recording, where there is one: inside an EuRoC folder, beside the sequences of
-// KITTI (../../poses/00.txt for sequences/00), groundtruth.txt in a folder of images.
+// Ground truth of a recording: inside an EuRoC folder, next to the sequences of KITTI (../../poses/00.txt for
+// sequences/00), or groundtruth.txt in a folder of images. Empty if there is none.
 std::optional<std::filesystem::path> find_ground_truth(const std::filesystem::path& path);
 
 }  // namespace byre

@@ -5,25 +5,25 @@
 
 namespace byre {
 
-// What may happen in a frame and is worth telling somebody.
+// Event in a frame, for logs and operators.
 enum class SessionEvent : std::uint8_t {
-  initialised,          // a first map was made of what is seen
-  localised,            // found in the offline map for the first time, and confirmed
-  pose_lost,            // tracking failed, see Health::doubt for why
-  relocalised,          // found again, and confirmed
-  blinded,              // the image shows too little: dark, blurred, covered or blank
-  left_mapped_area,     // no offline point in view any more, as the map's extent led to expect
+  initialised,          // first map initialised
+  localised,            // first confirmed pose in the offline map
+  pose_lost,            // tracking failed, see Health::doubt
+  relocalised,          // confirmed pose after a loss
+  blinded,              // offline points lost: the image shows too little, as it is dark, blurred, covered or blank
+  left_mapped_area,     // offline points lost as predicted from the extent of the map
   entered_mapped_area,  // offline points hold the pose again
-  navigation_error,     // not known where the robot is for StateOptions::lost_after; told once each time
-  restarted,            // a new submap of the online map was begun, for the way back was not found
-  place_refused,        // found where the robot cannot be, see FrameReport::refused_place; told once each time
-  place_refuted,        // it was tracked and trusted at a place that looks alike: poses before are not to be relied on
-  online_corrected,     // the online map was moved so that it agrees with the offline one
-  loop_found,           // the online map met itself: its ends are fused, or a correction was begun
-  map_corrected,        // a correction of the whole online map was taken over
-  recalibrated,         // what the map tells of the calibration was taken over
-  dirt_found,           // dirt on a lens hides a part of the image; told again when it has become half as much again
-  dirt_gone             // no part of an image is hidden any more
+  navigation_error,     // no confirmed pose for 10 s (option mission.lost_after_s); once per loss
+  restarted,            // new submap of the online map started, as relocalisation failed
+  place_refused,     // impossible place found, see FrameReport::refused_place; once per reason until a pose is trusted
+  place_refuted,     // trusted place rejected for a similar-looking one: earlier poses are unreliable
+  online_corrected,  // online map moved to agree with the offline map
+  loop_found,        // loop closed in the online map: duplicate points fused, or a correction started
+  map_corrected,     // correction of the whole online map applied
+  recalibrated,      // refined calibration applied
+  dirt_found,        // dirt on a lens detected; again when the hidden share has grown by half
+  dirt_gone
 };
 
 std::string_view to_string(SessionEvent event);

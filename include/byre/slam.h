@@ -24,127 +24,125 @@
 
 namespace byre {
 
-// Where mapping is worked out beside tracking.
-//   live        on threads of their own, taken over when it is ready: for robots
-//   repeatable  on threads of their own, taken over after a fixed number of frames: the same images give the same poses
-//   none        in process(), which then takes as long as mapping does
+// Threads of mapping.
+//   live        worker threads; results are applied when ready: for robots
+//   repeatable  worker threads; results are applied after a fixed number of frames: equal images yield equal poses
+//   none        no threads; process() includes the time of mapping
 enum class Workers : std::uint8_t { live, repeatable, none };
 
 struct SlamOptions {
   Workers workers = Workers::live;
-  bool refine_calibration = true;      // whether the calibration is refined by what is seen
-  bool map_online = true;              // whether a mission maps; false: it tracks on the kept map alone
-  double max_pair_difference = 0.005;  // seconds between left image and right or depth image
-  double max_gap = 1.0;                // seconds between frames, until one is told to come after a gap
-  int max_features = 1000;             // most features a frame
-  int image_threads = 2;               // threads that work on the images of a frame; poses do not depend on them
-  // Baseline of a stereo pair in metres, replaces that of the calibration. A calibration with a baseline outside 2 mm
-  // to 1 m is refused unless it is confirmed here, as extrinsics in centimetres or millimetres are likelier.
+  bool refine_calibration = true;      // whether to refine the calibration from the images
+  bool map_online = true;              // whether a mission maps; false: localises on the offline map only
+  double max_pair_difference = 0.005;  // largest time difference between left and right or depth image, seconds
+  double max_gap = 1.0;                // largest time difference between frames without InputFault::after_gap, seconds
+  int max_features = 1000;             // features per frame
+  int image_threads = 2;               // threads for the images of a frame; no effect on poses
+  // Baseline of a stereo pair in metres; replaces that of the calibration. A calibrated baseline outside 2 mm to 1 m is
+  // rejected unless confirmed here, as extrinsics in centimetres or millimetres are likelier.
   std::optional<double> baseline{};
-  std::string recording = "live";                     // name of the frames in a kept map
-  std::string site;                                   // place where the map was made, noted in it unless empty
-  std::optional<std::filesystem::path> vocabulary{};  // empty: the one that comes with byre
-  // Options of docs/options.md, by name, and their values, as text. They win over the fields above.
+  std::string recording = "live";                     // name of this session in a saved map
+  std::string site;                                   // place where the map was made, stored in it unless empty
+  std::optional<std::filesystem::path> vocabulary{};  // empty: the vocabulary installed with byre
+  // Options of docs/options.md as pairs of name and value. They override the fields above.
   std::vector<std::pair<std::string, std::string>> settings{};
-  // The floor plan that the map of a mission lies on (read_drawn_floor_plan): where it says what a wall is, the robot
-  // is not taken to be behind one. Empty: walls are not known.
+  // Floor plan on which the mission's map is registered (read_drawn_floor_plan). Places behind its walls are rejected.
+  // Empty: no walls.
   std::optional<DrawnFloorPlan> plan{};
 };
 
-// One robot's SLAM: images in, poses out. Call it from one thread; mapping has threads of its own.
-// Making one throws InputError: a calibration that makes no sense or cannot be rectified, a map or a vocabulary that
-// cannot be loaded, settings that are none.
-// Later, whatever is wrong with a frame is told in its report.
+// Visual SLAM of one robot: images in, poses out. Call it from one thread; mapping has its own threads. Construction
+// throws InputError for a calibration that is invalid or cannot be rectified, a map or a vocabulary that cannot be
+// loaded, and invalid settings. Faults of frames are reported in FrameReport::input.
 class Slam {
  public:
-  // Maps what is seen. Without right and depth camera lengths have no unit, and poses are those of the camera.
+  // Makes a new map. One camera without depth has an arbitrary scale, and poses are those of the camera.
   static Slam mapping(const Calibration& calibration, const SlamOptions& options = {});
 
-  // Goes on with a kept map: finds itself in it first, and what it maps becomes part of it.
+  // Continues a saved map: relocalises in it first, then adds to it.
   static Slam extending(const Calibration& calibration, const std::filesystem::path& map,
                         const SlamOptions& options = {});
 
-  // A mission on a kept map, which stays as it is: poses are in its frame, with verdicts.
+  // Mission on an offline map, which is not modified. Poses are in its frame, with verdicts.
   static Slam on_map(const Calibration& calibration, const std::filesystem::path& map, const SlamOptions& options = {});
 
   Slam(Slam&&) noexcept;
   Slam& operator=(Slam&&) noexcept;
   ~Slam();
 
-  // Tracks the next frame. The images are borrowed for the time of the call.
-  // told: how the body has moved since the frame handed over before, in metres. It takes the place of the guess that
-  // the body moves on as it did. Where nothing is recognised the pose goes on by it, with a covariance that grows, and
-  // is caught again by the map. Of no use where lengths are no metres, and left alone there. Empty: what wheels and a
-  // gyroscope told, if they did.
+  // Tracks the next frame. The images are borrowed for the duration of the call.
+  // told: measured motion of the body since the previous call, metres. It replaces the constant-velocity prediction,
+  // and bridges frames without recognised points, with growing covariance. Ignored while the scale is unknown. Empty:
+  // wheel and gyroscope samples are used, if any.
   FrameReport process(const CameraImages& images, const std::optional<BodyMotion>& told = {});
 
-  // Tracks the next frame by features of one's own, in pixels of rig().
+  // Tracks the next frame with the caller's features, in pixels of rig().
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& told = {});
 
-  // What wheels tell, at any rate: the pose of the robot's base in a frame of their own, which drifts; metres. In order
-  // of time, by the clock of the images, before the frames that it leads to; what comes up to a fifth of a second late
-  // is made up for. How the camera is mounted on the base, how late wheels stamp and, with one camera, how long the
-  // map's unit is, byre finds out while the robot drives and turns; until then it presumes it, with errors to match.
-  // Where wheels slip they are left out. What one camera maps has metres by them once it is finished.
+  // Wheel odometry at any rate: pose of the base in a drifting odometry frame, metres. Samples are in order of time, by
+  // the clock of the images, and precede the frame that they lead to; delays up to 0.2 s are bridged. Driving and
+  // turning determine the mounting of the camera on the base, the offset of the stamps (0.2 s at most) and, for one
+  // camera, the metric scale; until then defaults with a larger covariance are used. Wheel slip is rejected. finish()
+  // scales a monocular map to metres.
   void tell_wheels(const StampedPose& odometry_from_base);
-  // The same by wheels that tell how fast the base moves, and no poses. No motion is made up where none was told for
-  // three tenths of a second. One robot's wheels tell the one or the other.
+  // Wheel odometry as velocities. Motion is not interpolated across gaps of more than 0.3 s. Give either poses or
+  // velocities.
   void tell_wheels(const BaseVelocity& velocity);
-  // What a gyroscope tells, likewise. Its bias and how it is turned against the body are found out.
+  // Gyroscope sample; order and clock as for wheels. Its bias and its rotation to the body are estimated.
   void tell_gyroscope(const AngularRate& rate);
-  // What an accelerometer of the same part tells, about the same axes, likewise. It tells which way is up while the
-  // robot stands still, and nothing else.
+  // Sample of the accelerometer on the gyroscope's axes; order and clock as for wheels. Only used at standstill, as the
+  // direction of gravity.
   void tell_accelerometer(const Acceleration& acceleration);
-  // How gyroscope and accelerometer are turned against the left camera, where somebody has calibrated it: to a degree
-  // or two. Before anything is told; found out otherwise.
+  // Calibrated rotation from gyroscope and accelerometer to the left camera, accurate to one or two degrees. Call it
+  // before the first sample. Without it the rotation is estimated.
   void tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope);
 
-  // Where the robot is, as somebody says: of use where places look alike, such as the two ends of a barn. While a
-  // mission finds itself from nothing it looks in the kept map there alone, for the hint's seconds; then everywhere
-  // again. What is tracked goes on as it is. The last hint counts. No other task has a use for it.
+  // Limits relocalisation to the surroundings of a pose for the hint's lifetime, for buildings with similar-looking
+  // places. Does not affect tracking. Replaces an earlier hint. Invalid poses are ignored. Only for on_map().
   void look_near(const PoseHint& hint);
 
-  // While it is paused nothing is added to the map, and frames are tracked on what there is: where the robot stands
-  // among cows, or the way is known. No map begins meanwhile.
+  // While paused, frames are tracked, but the map is neither initialised nor extended, for example among cows.
   void pause_mapping(bool is_paused);
   bool is_mapping_paused() const;
 
-  // Damage of the file of a mission's map: file, section, reason and remedy; empty without damage. A mission reads its
-  // map as it drives. After damage it continues on the parts read before, untrusted; save() works.
+  // Damage of the offline map's file: file, section, reason and remedy; empty if undamaged. A mission reads its map
+  // while driving. After damage it continues, untrusted, on the parts already read; save() works.
   std::optional<std::string> map_damage() const;
 
-  // Waits for mapping, closes the last loops and adjusts the map as a whole, which takes seconds to minutes.
-  // should_stop is asked before and between the steps; then the map stays as far as it was adjusted. Frames that come
-  // later are dropped.
+  // Waits for mapping jobs, closes remaining loops and adjusts the whole map; takes seconds to minutes. should_stop is
+  // called before and between steps; the map keeps the steps done. Later frames are dropped as after_finishing.
   void finish(const std::function<bool()>& should_stop = {});
 
-  // Writes the map, with or without finish() before; of a mission, the online map. Replaces the file as a whole. Blocks
-  // tracking for some milliseconds per keyframe. Throws InputError if the file cannot be written, is there and is no
-  // map, or is the map of the mission, and if nothing was mapped yet.
+  // Writes the map, before or after finish(); for a mission the online map. Replaces the file atomically. Blocks the
+  // calling thread for some milliseconds per keyframe. Throws InputError if nothing was mapped yet, if the file cannot
+  // be written, exists and is no map, or is the mission's offline map.
   void save(const std::filesystem::path& path) const;
 
-  // Every frame that had a pose, as the map has it now. Where wheels lead on from these poses, or back to the frames
-  // before the first one, frames without a pose have one here as well.
+  // map_from_body of all tracked frames, with all corrections so far. Gaps, also before the first pose, are filled by
+  // wheel odometry.
   Trajectory trajectory() const;
 
-  // Where a pose in the map lies on the floor plan that the map is registered on; empty when it is on none.
+  // Pose on the floor plan of a pose in the map; empty if the map is not registered on a plan.
   std::optional<Pose> plan_from_body(const Pose& map_from_body) const;
-  // How well it is known there: as FrameReport::covariance, which is that of the pose in the map, with what the
-  // registration leaves open. Empty when the map is on no plan.
+  // Covariance of plan_from_body() as in FrameReport::covariance: the given covariance in the map plus that of the
+  // registration. Empty if the map is not registered on a plan.
   std::optional<Matrix6> plan_covariance(const Pose& map_from_body, const Matrix6& covariance) const;
 
-  const Rig& rig() const;           // the ideal camera that features are given in
-  Calibration calibration() const;  // calibration as it is known by now
-  bool is_metric() const;           // whether lengths are metres; see tell_wheels
-  // Keyframes and points of the map that is made, with those of a map that it goes on with; not of the map that a
-  // mission is on.
+  // Rectified camera, in whose pixels features are given.
+  const Rig& rig() const;
+  // Calibration with all refinements so far.
+  Calibration calibration() const;
+  // Whether lengths are metres.
+  bool is_metric() const;
+  // Size of the map being made, including a map that it extends; without the offline map of a mission.
   int keyframes() const;
   int points() const;
-  std::vector<Eigen::Vector3d> point_positions() const;  // places of these points, in the frame of map_from_body
-  // Faults of motion inputs so far, each kind once. FrameReport::warnings holds the new ones of each frame.
+  // Positions of these points, in the frame of map_from_body.
+  std::vector<Eigen::Vector3d> point_positions() const;
+  // Faults of motion inputs so far, each kind once. FrameReport::warnings holds those new in a frame.
   const std::vector<MotionWarning>& motion_warnings() const;
-  int frames() const;                  // all frames handed over
-  int frames(InputFault fault) const;  // frames handed over with that fault
+  int frames() const;                  // all frames, including dropped ones
+  int frames(InputFault fault) const;  // frames with this fault
 
  private:
   struct Parts;

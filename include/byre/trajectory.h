@@ -15,6 +15,7 @@ inline double to_seconds(Timestamp time) {
 }
 Timestamp from_seconds(double seconds);  // rounded to the nearest nanosecond
 
+// Pose of the body in the world, by time.
 struct StampedPose {
   Timestamp time{};
   Pose world_from_body;
@@ -22,7 +23,7 @@ struct StampedPose {
 
 using Trajectory = std::vector<StampedPose>;  // strictly increasing in time
 
-// The pose at a time between two samples at most max_gap apart; empty outside the trajectory or in a larger gap.
+// Interpolated pose, between samples at most max_gap apart. Empty outside the trajectory and in larger gaps.
 std::optional<Pose> pose_at(const Trajectory& trajectory, Timestamp time, Timestamp max_gap);
 
 }  // namespace byre

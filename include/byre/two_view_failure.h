@@ -5,16 +5,16 @@
 
 namespace byre {
 
-// Why two views do not tell how the camera moved; ordered by how far the attempt came.
+// Reason why two views do not determine a motion, in the order of the steps of the estimator.
 enum class TwoViewFailure : std::uint8_t {
   none,
-  too_few_matches,   // too few corners of one view were found in the other
-  no_common_motion,  // too few matches agree on any motion
-  rotation_only,     // a turn on the spot explains the matches as well
-  small_parallax,    // the camera has hardly moved
-  planar_ambiguity,  // two motions explain the matches alike, as a plane allows
-  too_few_points,    // too few matches tell a depth
-  uncertain          // the matches leave the direction of the motion open by more than is useful
+  too_few_matches,   // too few matches between the views
+  no_common_motion,  // too few matches agree on a motion
+  rotation_only,     // a pure rotation explains the matches as well
+  small_parallax,    // baseline too short
+  planar_ambiguity,  // two motions explain the matches equally well, as for a planar scene
+  too_few_points,    // too few matches with a depth
+  uncertain          // direction of motion too uncertain
 };
 
 std::string_view to_string(TwoViewFailure failure);
