@@ -21,7 +21,7 @@ struct SeenKind {
   Symbol symbol;
 };
 
-// In the order they are drawn.
+// In drawing order.
 constexpr std::array kKinds = {
     SeenKind{"online-outliers", "online outlier", Origin::online, false, Symbol::plus},
     SeenKind{"offline-outliers", "offline outlier", Origin::offline, false, Symbol::cross},
@@ -29,14 +29,14 @@ constexpr std::array kKinds = {
     SeenKind{"offline-inliers", "offline inlier", Origin::offline, true, Symbol::disc},
 };
 
-// Small images are enlarged by a whole number, large ones made smaller.
+// Integer factor for small images; large images are reduced.
 double scale_of(const Image& image) {
   constexpr double kNarrowest = 640.0, kWidest = 1280.0;  // pixels
   if (image.width < kNarrowest) return std::ceil(kNarrowest / image.width);
   return std::min(1.0, kWidest / image.width);
 }
 
-// The middle of an image's pixel is half a pixel from its corner.
+// The centre of an image pixel is half a pixel from its corner.
 Eigen::Vector2d on_pane(const Eigen::Vector2f& pixel, double scale) {
   return scale * (pixel.cast<double>() + Eigen::Vector2d::Constant(0.5));
 }
@@ -87,7 +87,7 @@ Picture picture_of(Pane pane) {
   return picture;
 }
 
-// Down to where the picture ends.
+// Extends the panes to the bottom of the picture.
 Picture filled_up(Picture picture) {
   for (Pane& pane : picture.panes) {
     const bool is_last = std::ranges::none_of(

@@ -13,7 +13,7 @@ using ::testing::Not;
 
 constexpr Colour kGrey{90, 90, 90};
 
-// A grey image, with one point of each kind far from the others.
+// Grey image with one point of each kind, far apart.
 FrameScene four_points(int width = 752, int height = 480) {
   FrameScene scene;
   scene.left = {width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(width * height), kGrey.red)};

@@ -67,7 +67,7 @@ void FoxgloveClient::add(Waiting waiting) {
   }
 }
 
-// Last messages that topics keep stay as long as there are others.
+// Keeps the last message of kept topics while other messages can be dropped.
 void FoxgloveClient::drop_oldest() {
   const auto passes = [this](const Waiting& each) { return !topics_.kept(each.message.topic); };
   const auto found = std::ranges::find_if(waiting_, passes);

@@ -13,21 +13,21 @@
 
 namespace byre {
 
-// What is sent at once: the head, then the rest.
+// Message to send: head, then rest.
 struct FoxgloveOutput {
   std::string head;
   bool is_binary = false;
-  std::shared_ptr<const std::vector<std::byte>> rest;  // null: the head is all
+  std::shared_ptr<const std::vector<std::byte>> rest;  // null: head only
 };
 
 struct FoxgloveLimits {
-  std::size_t most_bytes = std::size_t{32} << 20;  // bytes of messages that wait for a client
-  std::size_t most_messages = 500;                 // messages that wait for a client
-  std::size_t most_answers = 64;                   // answers that wait; who asks on and never reads is sent away
+  std::size_t most_bytes = std::size_t{32} << 20;  // bytes of queued messages
+  std::size_t most_messages = 500;                 // number of queued messages
+  std::size_t most_answers = 64;  // number of queued answers; above, the client is disconnected as it never reads
 };
 
-// What a client of Foxglove's protocol has asked for, and what it is to be sent. Messages for a slow client are left
-// out, the oldest first, and it is told so. Owned by the server's thread.
+// Subscriptions and output queue of a Foxglove client. For a slow client the oldest messages are dropped, with a status
+// message. Owned by the server's thread.
 class FoxgloveClient {
  public:
   // The topics outlive this.
@@ -36,19 +36,19 @@ class FoxgloveClient {
   FoxgloveClient(const FoxgloveClient&) = delete;
   FoxgloveClient& operator=(const FoxgloveClient&) = delete;
 
-  // What it sends. False: it is to be sent away.
+  // Handles a request. False: disconnect the client.
   bool receive(std::string_view bytes, bool is_binary);
 
-  // A message of a topic, taken over where it is subscribed.
+  // Queues a message if its topic is subscribed.
   void offer(const LiveMessage& message);
 
-  // What it is to be sent next.
+  // Next message to send.
   std::optional<FoxgloveOutput> next();
 
  private:
   struct Waiting {
     std::uint32_t subscription = 0;
-    bool is_new = false;  // no message from before the subscription
+    bool is_new = false;  // accept no message older than the subscription
     LiveMessage message;
   };
 
@@ -61,12 +61,12 @@ class FoxgloveClient {
   LiveTopics& topics_;
   FoxgloveLimits limits_;  // constant after construction
   std::deque<std::string> answers_;
-  std::size_t advertised_ = 0;                                     // topics that it was told of
-  std::map<std::uint32_t, ros::MessageSink::TopicId> subscribed_;  // topics by the ids of subscriptions
+  std::size_t advertised_ = 0;                                     // topics advertised so far
+  std::map<std::uint32_t, ros::MessageSink::TopicId> subscribed_;  // topics by subscription id
   std::deque<Waiting> waiting_;
   std::size_t waiting_bytes_ = 0;
-  bool leaves_out_ = false;  // whether messages were left out since none waited
-  Timestamp time_{};         // time that it was told last
+  bool leaves_out_ = false;  // whether messages were dropped since the queue was empty
+  Timestamp time_{};         // last time sent
 };
 
 }  // namespace byre

@@ -21,20 +21,20 @@ class FoxgloveClientTest : public testing::Test {
  protected:
   static constexpr FoxgloveLimits kLimits{.most_bytes = 1000, .most_messages = 4, .most_answers = 3};
 
-  void SetUp() override { said(); }  // what it is told at the beginning
+  void SetUp() override { said(); }  // drains the initial messages
 
   void subscribe(std::uint32_t id, std::uint32_t channel) {
     ask({{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel}}}}});
   }
   bool ask(const Json& request) { return client_.receive(request.dump(), false); }
 
-  // A message of a topic on its way to all clients.
+  // Offers a message of a topic to the client.
   void put(LiveTopics::TopicId topic, int time, std::size_t size = 4) {
     topics_.put(topic, Timestamp(time), std::vector<std::byte>(size));
     for (const LiveMessage& message : topics_.take()) client_.offer(message);
   }
 
-  // All that the client is sent: "status ...", "time T" or "message SUBSCRIPTION T".
+  // Output of the client: "status ...", "time T" or "message SUBSCRIPTION T".
   std::vector<std::string> said() {
     std::vector<std::string> all;
     while (const auto output = client_.next()) all.push_back(summary(*output));

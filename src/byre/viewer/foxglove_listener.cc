@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kMaxClientMessageBytes = 64 << 10;  // message from a client, which lists subscriptions
+constexpr std::size_t kMaxClientMessageBytes = 64 << 10;  // largest client message: a list of subscriptions
 
 }  // namespace
 

@@ -11,8 +11,7 @@
 
 namespace byre {
 
-// A WebSocket that speaks Foxglove's protocol. Lives as long as an operation on it is under way. Owned by the server's
-// thread, as all that it uses is.
+// WebSocket connection with Foxglove's protocol. Alive while an operation is pending. Used by the server's thread only.
 class FoxgloveListener : public std::enable_shared_from_this<FoxgloveListener> {
  public:
   // session: see server_info_text
@@ -20,10 +19,10 @@ class FoxgloveListener : public std::enable_shared_from_this<FoxgloveListener> {
                    const std::string& session)
       : seat_(std::move(seat)), socket_(std::move(socket)), client_(topics, session) {}
 
-  // protocol: sub-protocol that is spoken
+  // protocol: chosen sub-protocol
   void start(const WebUpgrade& request, std::string_view protocol);
 
-  // Takes over what it has subscribed, and sends what is new, unless that is being done.
+  // Queues messages of subscribed topics, and starts sending unless busy.
   void tell(const std::vector<LiveMessage>& messages);
 
  private:
@@ -33,7 +32,7 @@ class FoxgloveListener : public std::enable_shared_from_this<FoxgloveListener> {
   std::unique_ptr<WebSeat> seat_;
   WebSocket socket_;
   FoxgloveClient client_;
-  FoxgloveOutput output_;  // what is being sent
+  FoxgloveOutput output_;  // message being sent
   bool is_open_ = false;
   bool is_sending_ = false;
 };

@@ -55,7 +55,7 @@ TEST_F(FoxgloveServerTest, TellsTheSameSessionToAllAndSendsMessagesAsTheyAre) {
   server.wake();
   subscribe(client);
   LiveClient::Message message = client.next();
-  if (message.bytes[0] == 2) message = client.next();  // time, where it subscribed before the server took the message
+  if (message.bytes[0] == 2) message = client.next();  // time, if subscribed before the server took the message
   ASSERT_TRUE(message.is_binary);
   ASSERT_GT(message.bytes.size(), 13u);
   EXPECT_EQ(message.bytes.substr(0, 13), std::string("\x01\x07\0\0\0\x05\0\0\0\0\0\0\0", 13));
@@ -79,7 +79,7 @@ TEST_F(FoxgloveServerTest, ClosesOnMessagesThatAreTooLong) {
   LiveClient client = connect(server);
   client.next();
   client.next();
-  const auto talk = [&client] {  // the server may have closed before all of it was sent
+  const auto talk = [&client] {  // the server may close before everything is sent
     client.say(std::string(100'000, ' '));
     client.next();
   };
@@ -93,7 +93,7 @@ TEST_F(FoxgloveServerTest, NeverWaitsForAClientThatDoesNotRead) {
   subscribe(quick);
   for (int i = 0; i < 2; ++i) quick.next();
   while (!topics_->is_wanted(words_)) std::this_thread::yield();
-  for (int time = 1; time <= 60; ++time) {  // more than both sockets hold
+  for (int time = 1; time <= 60; ++time) {  // exceeds both socket buffers
     topics_->put(words_, Timestamp(time), std::vector<std::byte>(1 << 20));
     server.wake();
   }

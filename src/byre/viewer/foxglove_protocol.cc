@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 constexpr std::array<std::string_view, 2> kProtocols = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
 constexpr std::uint8_t kMessageData = 1;
 constexpr std::uint8_t kTime = 2;
-constexpr std::size_t kMostQuoted = 40;  // bytes of a client's word in an answer
+constexpr std::size_t kMostQuoted = 40;  // bytes of client text quoted in a status message
 
 std::string text_of(const ByteWriter& writer) {
   return {reinterpret_cast<const char*>(writer.bytes().data()), writer.size()};

@@ -8,17 +8,17 @@
 
 namespace byre {
 
-// Makes the images of a run fit what was seen in them: the left ones, rectified as features were taken from them. Call
-// it from one thread.
+// Rectifies left images with the calibration used for features, so that features match the images. Call it from one
+// thread.
 class FrameView {
  public:
-  // Throws InputError when the calibration cannot be rectified.
+  // Throws InputError if the calibration cannot be rectified.
   explicit FrameView(const Calibration& calibration);
   ~FrameView();
 
   const Rig& rig() const;
 
-  // Precondition: the image is of the calibrated size.
+  // Precondition: the image has the calibrated size.
   FrameScene scene_of(const Image& left, const FrameReport& report, const std::vector<SeenPoint>& seen) const;
 
  private:

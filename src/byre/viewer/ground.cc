@@ -8,10 +8,11 @@
 namespace byre {
 namespace {
 
-// The path may be rough by so much of its length before heights above it mean nothing: it was flown, or carried about.
+// Largest roughness of the path relative to its length. Above, the robot was flown or carried, and heights have no
+// meaning.
 constexpr double kRoughest = 0.1;
 
-// Unit vector in the plane along which the path is longest, the way it was gone.
+// Unit vector in the plane along the largest extent of the path, in driving direction.
 Eigen::Vector3d direction_of(const DrivingPlane& plane) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   const Eigen::Matrix3d onto_plane = Eigen::Matrix3d::Identity() - plane.up_in_map * plane.up_in_map.transpose();
@@ -26,7 +27,7 @@ Eigen::Vector3d direction_of(const DrivingPlane& plane) {
   return along.dot(gone) < 0.0 ? (-along).eval() : along;
 }
 
-// With the world's z up, where the cameras do not tell.
+// Plane fitted to the positions; up is the world's z if the cameras do not determine it.
 DrivingPlane plane_of_places(const Map& map) {
   std::vector<Eigen::Vector3d> path;
   for (const KeyframeId id : map.keyframe_ids()) path.push_back(body_at(map, *map.find_keyframe(id)));

@@ -9,19 +9,18 @@
 
 namespace byre {
 
-// What a map is seen against from above. The ground's frame has x and y on the floor and z up, the height above the
-// plane that was driven on; metres, or the map's own unit where that is not known in metres.
+// Ground frame of plan pictures: x and y on the floor, z up, height zero on the plane driven on. Metres, or map units
+// for a map without metric scale.
 struct Ground {
   Similarity ground_from_map;
   bool is_metric = true;
-  bool is_level = false;               // a plane was driven on, so that heights above it mean something
-  std::optional<FloorPlan> plan;       // plan whose frame is the ground's
-  std::shared_ptr<const Image> image;  // plan's image; null without a plan
+  bool is_level = false;               // a driving plane was fitted, so heights are meaningful
+  std::optional<FloorPlan> plan;       // plan whose frame is the ground frame
+  std::shared_ptr<const Image> image;  // image of the plan; null without a plan
 };
 
-// On the floor plan that the map was registered on, else on the plane fitted to its path, along which x then lies. The
-// plan's image is read unless the plan is empty. Throws InputError when that cannot be read. Preconditions: the map
-// holds a keyframe, and is registered where a plan is given.
+// Ground of a registered map's floor plan, else the driving plane, with x along the path. Reads the plan's image.
+// Throws InputError if that fails. Preconditions: the map has a keyframe, and is registered if a plan is given.
 Ground ground_of(const StoredMap& stored, const std::optional<FloorPlan>& plan = {});
 
 }  // namespace byre

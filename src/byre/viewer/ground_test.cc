@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-// Keyframes of a level camera that looks along x of the world, whose z is up, at these places.
+// Keyframes of a level camera looking along the world's x, z up, at the given places.
 StoredMap map_of(const std::vector<Eigen::Vector3d>& places) {
   Eigen::Matrix3d camera_from_world;
   camera_from_world << 0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0;
@@ -29,7 +29,7 @@ StoredMap map_of(const std::vector<Eigen::Vector3d>& places) {
   return stored;
 }
 
-// Once around a rectangle, longer in y than in x, at this height; rising and falling by as much as told.
+// Round trip along a rectangle, longer in y than in x, at a height that varies by `uneven`.
 StoredMap round_trip(double height, double uneven) {
   std::vector<Eigen::Vector3d> places;
   for (int i = 0; i < 40; ++i) {

@@ -13,17 +13,17 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kMargin = 16.0;  // pixels, as all lengths here
+constexpr double kMargin = 16.0;  // pixels, for all lengths in this file
 constexpr double kRight = kHealthPanelWidth - kMargin;
 constexpr double kTextSize = 13.0;
 constexpr double kMeterRow = 36.0;
 
-// A measure with its value in words and as a bar.
+// Measure with its value as text and as a bar.
 struct Meter {
   std::string name;
   std::string value;
-  double filled = 0.0;            // filled share of the bar, from 0 to 1
-  std::optional<double> limit{};  // place of the tick on the bar, from 0 to 1
+  double filled = 0.0;            // filled share of the bar, 0 to 1
+  std::optional<double> limit{};  // position of the tick on the bar, 0 to 1
   Colour colour = palette::kKeyframe;
 };
 
@@ -49,7 +49,7 @@ std::vector<PictureMark> marks_of(const Meter& meter, double top) {
   return marks;
 }
 
-// Measured where it should be above the limit, or below.
+// Side of the limit on which a measure is good.
 enum class Good : std::uint8_t { high, low };
 
 Meter limited(std::string name, std::string value, double measured, double limit, double whole, Good good) {
@@ -102,7 +102,7 @@ Symbol symbol_of(Verdict verdict) {
   return verdict == Verdict::degraded ? Symbol::triangle : Symbol::cross;
 }
 
-// The verdict on its colour; a doubt, where there is one, under it.
+// Verdict on its colour, with the doubt below.
 std::vector<PictureMark> verdict_marks(const Health& health, double top) {
   constexpr double kHeight = 34.0;
   std::vector<PictureMark> marks;

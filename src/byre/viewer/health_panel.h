@@ -10,7 +10,7 @@ namespace byre {
 
 inline constexpr int kHealthPanelWidth = 300;  // pixels
 
-// State, verdict and doubt of a frame, and a meter for each measure with a tick where the limits have it.
+// State, verdict and doubt of a frame, and a meter per health measure with a tick at its limit.
 Pane health_panel(const std::string& title, State state, const Health& health, const HealthOptions& limits);
 
 }  // namespace byre

@@ -17,7 +17,7 @@ void ImageStore::thin_out() {
   const std::size_t older = images_.size() / 2;
   auto image = images_.begin();
   for (std::size_t i = 0; i < older; i += 2) {
-    ++image;  // the first is kept
+    ++image;  // keeps the first image
     bytes_ -= image->second.size();
     image = images_.erase(image);
   }

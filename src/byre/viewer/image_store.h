@@ -6,15 +6,15 @@
 
 namespace byre {
 
-// Images of a run, as bytes by the number of their frame, in bounded memory: when they become too many, every second
-// one of the older half is forgotten.
+// Encoded images of a run by frame number, in bounded memory: when full, every second image of the older half is
+// dropped.
 class ImageStore {
  public:
   explicit ImageStore(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   void add(std::size_t frame, std::string bytes);
 
-  // The image of the frame or, where it has none, of the kept frame nearest to it; nullptr while there is none at all.
+  // Image of the frame, else of the nearest stored frame; nullptr if empty.
   const std::string* find_nearest(std::size_t frame) const;
 
   std::size_t count() const { return images_.size(); }
@@ -25,7 +25,7 @@ class ImageStore {
 
   std::size_t max_bytes_;  // constant after construction
   std::map<std::size_t, std::string> images_;
-  std::size_t bytes_ = 0;  // size of all images together
+  std::size_t bytes_ = 0;  // total size of all images
 };
 
 }  // namespace byre

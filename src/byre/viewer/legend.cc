@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kLegendTextSize = 13.0;  // pixels, as all lengths here
-constexpr double kCharacter = 7.6;        // most that a character of that size is wide on average
+constexpr double kLegendTextSize = 13.0;  // pixels, for all lengths in this file
+constexpr double kCharacter = 7.6;        // upper bound of the mean character width at that size
 constexpr double kLegendMargin = 16.0;
 constexpr double kSample = 24.0;
 constexpr double kSampleGap = 8.0;

@@ -27,7 +27,7 @@ void LiveTopics::put(TopicId topic, Timestamp time, std::vector<std::byte> cdr) 
   make_room();
 }
 
-// Leaves out the oldest messages; those of topics that keep them only where a newer one of theirs waits.
+// Drops the oldest messages; of kept topics only those followed by a newer one.
 void LiveTopics::make_room() {
   for (std::size_t i = 0; i + 1 < waiting_.size() && waiting_bytes_ > most_bytes_;) {
     const TopicId topic = waiting_[i].topic;

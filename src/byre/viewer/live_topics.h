@@ -13,19 +13,18 @@
 
 namespace byre {
 
-// A message on its way to those who watch; its bytes are shared by them.
+// Message for subscribers; they share its bytes.
 struct LiveMessage {
   ros::MessageSink::TopicId topic = 0;
   Timestamp time{};
   std::shared_ptr<const std::vector<std::byte>> cdr;
 };
 
-// Where the thread of a run leaves messages for those who watch, without waiting. Messages that nobody has subscribed
-// are not kept, but for the last one of topics that say so. A server's thread takes them; where that is slow the oldest
-// are left out.
+// Queue from the thread of a run to the server's thread. put() never waits. Messages without subscribers are dropped,
+// except the last one of a kept topic. If the server is slow, the oldest messages are dropped.
 class LiveTopics : public ros::MessageSink {
  public:
-  // most_bytes: bytes of messages that wait to be taken
+  // most_bytes: size of the queue in bytes
   explicit LiveTopics(std::size_t most_bytes = std::size_t{64} << 20) : most_bytes_(most_bytes) {}
 
   // Called from any thread.
@@ -36,11 +35,11 @@ class LiveTopics : public ros::MessageSink {
   // Called from the server's thread.
   std::vector<ros::Topic> topics_from(std::size_t first) const;
   bool is_known(std::size_t topic) const;
-  void subscribe(TopicId topic);  // once for each that watches
+  void subscribe(TopicId topic);  // once per subscriber
   void unsubscribe(TopicId topic);
-  std::vector<LiveMessage> take();  // messages since it was called last, the oldest first
+  std::vector<LiveMessage> take();  // messages since the previous call, oldest first
 
-  // The last message that was taken of a topic that keeps it.
+  // Last message taken of a kept topic.
   std::optional<LiveMessage> kept(TopicId topic) const;
 
  private:
@@ -49,9 +48,9 @@ class LiveTopics : public ros::MessageSink {
 
   std::size_t most_bytes_;  // constant after construction
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below, up to kept_
   std::vector<ros::Topic> topics_;
-  std::vector<int> subscribers_;  // by topic
+  std::vector<int> subscribers_;  // numbers of subscribers, by topic
   std::deque<LiveMessage> waiting_;
   std::size_t waiting_bytes_ = 0;
 

@@ -15,7 +15,6 @@ using ::testing::IsEmpty;
 
 class LiveTopicsTest : public testing::Test {
  protected:
-  // The times of what is taken.
   static std::vector<int> taken(LiveTopics& topics) {
     std::vector<int> times;
     for (const LiveMessage& message : topics.take()) times.push_back(static_cast<int>(message.time.count()));

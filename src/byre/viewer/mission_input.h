@@ -6,8 +6,8 @@
 
 namespace byre {
 
-// The way of a mission with its verdicts, from the statistics that "byre run --stats" wrote. Throws InputError for a
-// file that is none, and for one whose poses are not in the map's frame.
+// Path of a mission with verdicts, from a statistics file of "byre run --stats". Throws InputError if the file is none,
+// or if its poses are not in the map frame.
 PlanPath load_mission(const std::filesystem::path& stats);
 
 }  // namespace byre

@@ -13,7 +13,7 @@
 namespace byre {
 namespace {
 
-constexpr double kHighestVideoRate = 30.0;  // Hz: of more frames some are left out
+constexpr double kHighestVideoRate = 30.0;  // Hz; above, frames are skipped
 
 Timestamp median_step(const std::vector<Timestamp>& times) {
   std::vector<Timestamp> steps;

@@ -11,29 +11,29 @@
 
 namespace byre {
 
-// What of a mission is to be drawn beside its way.
+// Outputs to draw of a mission besides its path.
 struct MissionPainting {
-  bool keeps_frame = false;    // whether a frame is kept for a picture of what the camera saw
-  std::optional<double> at_s;  // moment of the frame kept, from the recording's first; empty: the last one
+  bool keeps_frame = false;    // whether to keep a frame for a camera picture
+  std::optional<double> at_s;  // time of that frame since the start of the recording, seconds; empty: the last frame
   std::optional<std::filesystem::path> video;
-  double speed = 1.0;  // speed of the video over that of the recording
+  double speed = 1.0;  // playback speed of the video
   HeightBand heights;
 };
 
-// What is kept of a mission to draw it.
+// Data for pictures of a mission.
 struct PaintedMission {
-  PlanPath way;                     // poses as published, with their verdicts
-  std::optional<FrameScene> frame;  // empty when no frame could be read up to then
-  std::optional<double> frame_s;    // time of the frame, from the recording's first
-  std::optional<Rig> rig;           // rig that took the frame
+  PlanPath way;                     // poses as published, with verdicts
+  std::optional<FrameScene> frame;  // empty if no frame was readable up to that time
+  std::optional<double> frame_s;    // time of the frame since the start of the recording, seconds
+  std::optional<Rig> rig;           // rig of the frame
   int video_frames = 0;
-  bool plays_in_browsers = false;  // whether browsers play the video
+  bool plays_in_browsers = false;  // whether browsers can play the video
 };
 
-// Looks at each frame of a run, and keeps and draws what was asked for.
+// Collects picture data and writes the video while a mission runs.
 class MissionPainter {
  public:
-  // first: time of the recording's first frame, of which fewer may be run. background: the scene without the mission.
+  // first: time of the first frame of the whole recording. background: scene without the mission.
   MissionPainter(const MissionPainting& painting, const Recording& recording, Timestamp first,
                  const PlanScene& background);
 
@@ -49,10 +49,10 @@ class MissionPainter {
   const FrameView view_;
   std::size_t offline_points_ = 0;
   PlanPictureOptions plan_options_;
-  int every_ = 1;  // frames for each that is filmed
+  int every_ = 1;  // every n-th frame is filmed
   double video_rate_ = 1.0;
 
-  PlanScene scene_;  // as after the last frame
+  PlanScene scene_;  // state after the last frame
   int frames_ = 0;
   std::optional<RunVideo> video_;
   PaintedMission mission_;

@@ -8,8 +8,7 @@
 
 namespace byre::palette {
 
-// What pictures are painted with. The three verdicts differ in lightness too, and wherever they are drawn also in
-// shape.
+// Colours of pictures. The verdicts also differ in lightness, and in pictures in shape.
 
 inline constexpr Colour kPaper{255, 255, 255};
 inline constexpr Colour kInk{31, 35, 40};
@@ -24,7 +23,7 @@ inline constexpr Colour kUntrusted{207, 34, 46};
 inline constexpr Colour kCamera{9, 105, 218};
 inline constexpr Colour kKeyframe{87, 96, 106};
 
-// Colours of paths that are told apart by name alone.
+// Colours of paths that differ by name only.
 inline constexpr std::array kPaths = {Colour{9, 105, 218}, Colour{191, 57, 137}, Colour{180, 95, 6},
                                       Colour{17, 130, 140}, Colour{87, 60, 180}};
 

@@ -41,7 +41,7 @@ void write_picture(const Picture& picture, const std::filesystem::path& file) {
 std::vector<Eigen::Vector2d> corners_of(Symbol symbol, double size) {
   const double half = 0.5 * size;
   if (symbol == Symbol::square) return {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
-  constexpr double kSlender = 1.2;  // factor on the size, with which other shapes have nearly the area of a disc
+  constexpr double kSlender = 1.2;  // scale that gives other shapes nearly the area of a disc
   const double reach = kSlender * half;
   if (symbol == Symbol::diamond) return {{0.0, -reach}, {reach, 0.0}, {0.0, reach}, {-reach, 0.0}};
   return {{0.0, -reach}, {reach, 0.8 * reach}, {-reach, 0.8 * reach}};

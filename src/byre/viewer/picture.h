@@ -16,8 +16,8 @@
 
 namespace byre {
 
-// A drawing as a value: what is on it, not how it is put on screen. to_svg and to_png make the same picture of it.
-// Positions are pixels of the pane they are in, x right, y down, continuous: the top left pixel covers 0 to 1.
+// Vector drawing as a value; to_svg and to_png render it equally. Positions are pixels of the pane, x right, y down,
+// continuous: the top left pixel covers 0 to 1.
 
 struct Colour {
   std::uint8_t red = 0;
@@ -43,23 +43,23 @@ struct PictureArea {
 
 enum class Symbol : std::uint8_t { disc, square, diamond, triangle, cross, plus };
 
-// Equal symbols in many places: what there can be thousands of.
+// Equal symbols at many positions, possibly thousands.
 struct PictureSymbols {
   std::string name;  // class of the element in the SVG
   Symbol symbol = Symbol::disc;
   std::vector<Eigen::Vector2d> centres;
-  double size = 4.0;  // across
+  double size = 4.0;  // width and height, pixels
   Colour colour;
   double opacity = 1.0;
-  std::optional<Colour> rim{};  // one pixel around each
+  std::optional<Colour> rim{};  // colour of a rim one pixel wide
 };
 
 enum class Align : std::uint8_t { left, centre, right };
 
 struct PictureText {
-  Eigen::Vector2d at;  // place on the baseline
+  Eigen::Vector2d at;  // position on the baseline
   std::string text;    // ASCII
-  double size = 13.0;  // height of capitals and of what hangs below the line together
+  double size = 13.0;  // height of capitals plus descenders, pixels
   Colour colour;
   Align align = Align::left;
   bool bold = false;
@@ -67,20 +67,20 @@ struct PictureText {
 
 struct PictureImage {
   std::shared_ptr<const Image> image;           // not null
-  Eigen::Matrix<double, 2, 3> pane_from_image;  // affine; of the image's pixels, whole numbers are centres
+  Eigen::Matrix<double, 2, 3> pane_from_image;  // affine; integers are centres of image pixels
   double opacity = 1.0;
 };
 
 using PictureMark = std::variant<PictureImage, PictureArea, PictureLine, PictureSymbols, PictureText>;
 
-// A rectangle of the picture that nothing drawn in it leaves.
+// Rectangle of the picture; clips its marks.
 struct Pane {
   int left = 0;
   int top = 0;
   int width = 0;
   int height = 0;
   Colour background{255, 255, 255};
-  std::vector<PictureMark> marks;  // later ones above earlier ones
+  std::vector<PictureMark> marks;  // later marks cover earlier ones
 };
 
 struct Picture {
@@ -89,17 +89,17 @@ struct Picture {
   std::vector<Pane> panes;
 };
 
-// The second at the right of the first one, or below it.
+// Places the second picture to the right of the first one, or below it.
 Picture beside(Picture first, const Picture& second);
 Picture below(Picture first, const Picture& second);
 
-// Self-contained: images are in it, fonts are the viewer's own sans serif.
+// Self-contained SVG with embedded images; text in the viewer's sans serif font.
 std::string to_svg(const Picture& picture);
 
-// The bytes of a PNG file of the picture's size.
+// PNG file of the picture's size.
 std::vector<std::byte> to_png(const Picture& picture);
 
-// SVG where the file is called so, else PNG. Throws InputError when it cannot be written.
+// Writes SVG for the extension .svg, else PNG. Throws InputError if the file cannot be written.
 void write_picture(const Picture& picture, const std::filesystem::path& file);
 
 }  // namespace byre

@@ -20,7 +20,7 @@ inline Colour colour_at(const cv::Mat& drawn, int x, int y) {
   return {bgr[2], bgr[1], bgr[0]};
 }
 
-// How many symbols a class of a picture's SVG has: each begins with a move, those of strokes with as many as strokes.
+// Number of moves in the path of an SVG class: one per filled symbol, one per stroke for stroked symbols.
 inline int moves_in_class(const std::string& svg, const std::string& name) {
   const std::size_t group = svg.find("class=\"" + name + "\"");
   if (group == std::string::npos) return 0;
@@ -30,7 +30,7 @@ inline int moves_in_class(const std::string& svg, const std::string& name) {
                                      svg.begin() + static_cast<std::ptrdiff_t>(end), 'M'));
 }
 
-// Whether every element is closed in its turn.
+// Whether all elements are closed in order.
 inline bool is_well_formed(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {

@@ -1,4 +1,4 @@
-// A picture as pixels: drawn at twice its size and halved, so that lines and small letters stay sharp.
+// Raster rendering: drawn at twice the size and halved, so that lines and small text stay sharp.
 
 #include "byre/dataset/image_codec.h"
 #include "byre/viewer/picture_shapes.h"
@@ -13,13 +13,13 @@ namespace byre {
 namespace {
 
 constexpr int kOversampling = 2;
-constexpr int kFractionBits = 4;  // bits for fractions of a canvas pixel, in what OpenCV's drawing takes
+constexpr int kFractionBits = 4;  // fractional bits of OpenCV's drawing coordinates
 
 cv::Scalar bgr(const Colour& colour) {
   return {static_cast<double>(colour.blue), static_cast<double>(colour.green), static_cast<double>(colour.red)};
 }
 
-// OpenCV has whole numbers as centres of pixels, pictures have them between two.
+// Shift by half a pixel: integers are pixel centres in OpenCV, pixel borders in pictures.
 cv::Point on_canvas(const Eigen::Vector2d& point) {
   constexpr double kSteps = 1 << kFractionBits;
   const Eigen::Vector2d steps = kSteps * (kOversampling * point - Eigen::Vector2d::Constant(0.5));
@@ -36,7 +36,7 @@ int canvas_width(double width) {
   return std::max(1, cvRound(kOversampling * width));
 }
 
-// Smoothed lines come out wider than OpenCV is told.
+// Anti-aliased lines of OpenCV are wider than requested.
 void draw_line(cv::Mat& canvas, const std::vector<Eigen::Vector2d>& points, const Colour& colour, double width) {
   constexpr double kSmoothed = 1.7;  // canvas pixels
   const std::vector<cv::Point> line = on_canvas(points);
@@ -49,11 +49,11 @@ void draw_area(cv::Mat& canvas, const std::vector<Eigen::Vector2d>& corners, con
   cv::fillPoly(canvas, std::vector<std::vector<cv::Point>>{area}, bgr(colour), cv::LINE_AA, kFractionBits);
 }
 
-// What is left of a line between the gaps, each as long as it is told.
+// Splits a line into dashes.
 std::vector<std::vector<Eigen::Vector2d>> dashes(const std::vector<Eigen::Vector2d>& points, double dash, double gap) {
   std::vector<std::vector<Eigen::Vector2d>> pieces;
   bool is_drawn = false;
-  double left = 0.0;  // what is left of the dash or gap
+  double left = 0.0;  // remaining length of the dash or gap
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d step = points[i] - points[i - 1];
     const double length = step.norm();
@@ -78,7 +78,7 @@ void draw_disc(cv::Mat& canvas, const Eigen::Vector2d& centre, double size, cons
   cv::circle(canvas, on_canvas(centre), radius, bgr(colour), cv::FILLED, cv::LINE_AA, kFractionBits);
 }
 
-// To whole pixels of the canvas: the one symbol there are very many of.
+// Snapped to canvas pixels; the only symbol drawn in large numbers.
 void draw_square(cv::Mat& canvas, const Eigen::Vector2d& centre, double size, const Colour& colour) {
   const int width = canvas_width(size);
   const cv::Rect square(cvRound(kOversampling * centre.x() - 0.5 * width),
@@ -104,7 +104,7 @@ void draw_symbol(cv::Mat& canvas, const PictureSymbols& mark, const Eigen::Vecto
   draw_line(canvas, corners, colour, 2.0 * rim);
 }
 
-// The same picture on a coarser grid, so that every pixel counts when it is drawn much smaller.
+// Same picture on a coarser grid, averaging all pixels for strong reduction.
 PictureImage thinned(const PictureImage& mark, int factor) {
   const Image& image = *mark.image;
   const cv::Mat pixels(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
@@ -147,7 +147,7 @@ void draw(cv::Mat& canvas, const PictureArea& mark) {
 void draw(cv::Mat& canvas, const PictureLine& mark) {
   if (mark.stroke == Stroke::solid) return draw_line(canvas, mark.points, mark.colour, mark.width);
   const bool is_dashed = mark.stroke == Stroke::dashed;
-  const double dash = is_dashed ? (kDash - 1.0) * mark.width : 0.0;  // round ends add to it
+  const double dash = is_dashed ? (kDash - 1.0) * mark.width : 0.0;  // round ends lengthen it
   const double gap = is_dashed ? (kDashGap + 1.0) * mark.width : kDotGap * mark.width;
   for (const auto& piece : dashes(mark.points, dash, gap)) {
     if (is_dashed) draw_line(canvas, piece, mark.colour, mark.width);
@@ -163,15 +163,15 @@ void draw(cv::Mat& canvas, const PictureSymbols& mark) {
 }
 
 void draw(cv::Mat& canvas, const PictureText& mark) {
-  constexpr double kCapitals = 0.70;      // height of a sans serif's capitals, in sizes
+  constexpr double kCapitals = 0.70;      // height of sans serif capitals, in sizes
   constexpr double kFaceCapitals = 21.0;  // height of OpenCV's capitals, pixels
-  constexpr double kPen = 0.085;          // width of a stroke in sizes
+  constexpr double kPen = 0.085;          // stroke width, in sizes
   constexpr int kFace = cv::FONT_HERSHEY_SIMPLEX;
   const double scale = kOversampling * kCapitals * mark.size / kFaceCapitals;
   const int pen = std::max(1, cvRound((mark.bold ? 1.5 : 1.0) * kPen * kOversampling * mark.size));
   int baseline = 0;
   const int width = cv::getTextSize(mark.text, kFace, scale, pen, &baseline).width;
-  const double share = 0.5 * static_cast<int>(mark.align);  // share of the width that lies left of the place named
+  const double share = 0.5 * static_cast<int>(mark.align);  // share of the width to the left of the anchor
   const cv::Point start(cvRound(kOversampling * mark.at.x() - share * width), cvRound(kOversampling * mark.at.y()));
   cv::putText(canvas, mark.text, start, kFace, scale, bgr(mark.colour), pen, cv::LINE_AA);
 }

@@ -1,4 +1,4 @@
-// A picture as SVG. Thousands of equal symbols are one path, so that a map of a building stays a small file.
+// SVG rendering. Equal symbols form one path, which keeps the file of a building's map small.
 
 #include "byre/dataset/image_codec.h"
 #include "byre/input/markup.h"
@@ -37,7 +37,7 @@ string px(const std::vector<Eigen::Vector2d>& points) {
   return all;
 }
 
-// Attributes by name; those without a value are left out.
+// Attributes by name; those without a value are omitted.
 using Attributes = std::vector<std::pair<std::string_view, string>>;
 
 string begun(std::string_view name, const Attributes& attributes) {
@@ -83,7 +83,7 @@ string base64(const std::vector<unsigned char>& bytes) {
   return text;
 }
 
-// As PNG or JPEG, whichever is smaller: drawings are the one, photographs the other.
+// PNG or JPEG, whichever is smaller: drawings suit PNG, photographs JPEG.
 string data_address(const Image& image) {
   constexpr int kJpegQuality = 90;
   const cv::Mat pixels(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
@@ -93,7 +93,7 @@ string data_address(const Image& image) {
   return joined({"data:image/", is_drawing ? "png" : "jpeg", ";base64,", base64(is_drawing ? png : jpeg)});
 }
 
-// A centre of a pixel is half a pixel from where SVG has the image begin.
+// Shift by half a pixel: SVG places an image by its corner, not by a pixel centre.
 string matrix_of(const Eigen::Matrix<double, 2, 3>& pane_from_image) {
   Eigen::Matrix<double, 2, 3> pane_from_corner = pane_from_image;
   pane_from_corner.col(2) = pane_from_image * Eigen::Vector3d(-0.5, -0.5, 1.0);
@@ -137,7 +137,7 @@ bool is_dot(Symbol symbol) {
   return symbol == Symbol::disc || symbol == Symbol::square;
 }
 
-// One symbol as a piece of a path: a dot is a line without length, whose ends are its shape.
+// Path of one symbol. A dot is a line of zero length with round caps.
 string path_of(Symbol symbol, const Eigen::Vector2d& centre, double size) {
   if (is_dot(symbol)) return joined({"M", px(centre), "h0"});
   string path;
@@ -153,7 +153,7 @@ string path_of(Symbol symbol, const Eigen::Vector2d& centre, double size) {
   return joined({path, "Z"});
 }
 
-// All of them, each wider by the rim at either side.
+// Path of all symbols, widened by the rim on each side.
 string path_of(const PictureSymbols& mark, double rim, const Colour& colour) {
   const bool is_filled = !is_dot(mark.symbol) && !is_stroked(mark.symbol);
   const double pen = is_filled ? 0.0 : is_stroked(mark.symbol) ? stroke_width(mark.size) : mark.size;

@@ -97,7 +97,7 @@ TEST(Picture, ShowsAnImagePixelByPixel) {
   auto image = std::make_shared<Image>(Image{40, 30, std::vector<std::uint8_t>(1200)});
   for (std::size_t i = 0; i < image->pixels.size(); ++i) image->pixels[i] = static_cast<std::uint8_t>(i * 37);
   PictureImage mark{image, Eigen::Matrix<double, 2, 3>::Zero()};
-  mark.pane_from_image << 1.0, 0.0, 10.5, 0.0, 1.0, 20.5;  // the first centre to that of pixel (10, 20)
+  mark.pane_from_image << 1.0, 0.0, 10.5, 0.0, 1.0, 20.5;  // first centre on the centre of pixel (10, 20)
   const cv::Mat shown = drawn({mark});
   for (int y = 0; y < 30; ++y) {
     for (int x = 0; x < 40; ++x) {

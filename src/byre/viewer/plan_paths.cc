@@ -1,4 +1,4 @@
-// Ways, keyframes and the camera on a plan picture.
+// Paths, keyframes and the camera on a plan picture.
 
 #include "byre/geometry/median.h"
 #include "byre/viewer/palette.h"
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kCasing = 1.5;  // pixels of white at either side of a way, so that it stands out from the points
+constexpr double kCasing = 1.5;  // pixels of white on each side of a path, for contrast with points
 constexpr std::array kVerdicts = {Verdict::trusted, Verdict::degraded, Verdict::untrusted};
 
 double median_pixel_step(const std::vector<Vector2d>& pixels) {
@@ -24,7 +24,7 @@ double median_pixel_step(const std::vector<Vector2d>& pixels) {
   return median_or(std::move(steps), 0.0);
 }
 
-// A piece of a way without a gap, of one verdict.
+// Part of a path without gaps and with one verdict.
 struct Piece {
   std::optional<Verdict> verdict;
   std::vector<Vector2d> pixels;
@@ -34,7 +34,7 @@ std::optional<Verdict> verdict_of(const PlanPath& path, std::size_t i) {
   return path.verdicts.empty() ? std::nullopt : std::optional(path.verdicts[i]);
 }
 
-// The longest time between poses of a way where it was followed all along.
+// Longest time between consecutive poses of an uninterrupted path.
 Timestamp longest_step(const PlanPath& path) {
   constexpr int kMissed = 10;  // frames
   std::vector<Timestamp> steps;
@@ -44,7 +44,7 @@ Timestamp longest_step(const PlanPath& path) {
   return kMissed * median_or(std::move(steps), Timestamp::zero());
 }
 
-// Points closer than half a pixel to the one before add nothing to be seen.
+// Skips points closer than half a pixel to the previous one.
 void add_visible(std::vector<Vector2d>& pixels, const Vector2d& pixel) {
   constexpr double kVisible = 0.5;
   if (pixels.empty() || (pixel - pixels.back()).norm() >= kVisible) pixels.push_back(pixel);
@@ -59,7 +59,7 @@ std::vector<Piece> pieces_of(const PlanPath& path, const PlanView& view) {
     const Vector2d pixel = view.pixel_of(sample.world_from_body.translation);
     const bool is_gap = i == 0 || sample.time - path.map_from_body[i - 1].time > longest;
     const bool is_change = i > 0 && pieces.back().verdict != verdict;
-    if (is_change && !is_gap) pieces.back().pixels.push_back(pixel);  // so that the next piece joins
+    if (is_change && !is_gap) pieces.back().pixels.push_back(pixel);  // joins the next piece
     if (is_gap || is_change) pieces.push_back({verdict, {}});
     add_visible(pieces.back().pixels, pixel);
   }
@@ -71,7 +71,7 @@ Stroke stroke_of(Verdict verdict) {
   return verdict == Verdict::degraded ? Stroke::dashed : Stroke::dotted;
 }
 
-// How a way's name, or what is thought of it, looks.
+// Legend entry of a path or of a verdict.
 LegendEntry look_of(const PlanPath& path, const std::optional<Verdict>& verdict, std::size_t number) {
   if (!verdict) return {path.name, palette::kPaths[number % palette::kPaths.size()], {}, Stroke::solid};
   LegendEntry look = verdict_entry(*verdict);
@@ -121,7 +121,7 @@ LegendEntry verdict_entry(Verdict verdict) {
 }
 
 ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view) {
-  constexpr double kFarthest = 6.0;  // times the usual distance between keyframes
+  constexpr double kFarthest = 6.0;  // in usual distances between keyframes
   constexpr double kWidth = 0.75;
   std::vector<SceneKeyframe> keyframes = map.keyframes;
   const auto order = [](const SceneKeyframe& keyframe) { return std::pair(keyframe.origin, keyframe.time); };
@@ -162,14 +162,14 @@ ExplainedMarks path_marks(const std::vector<PlanPath>& paths, const PlanView& vi
 
 ExplainedMarks camera_marks(const PlanCamera& camera, const PlanView& view) {
   constexpr double kReach = 70.0;    // pixels
-  constexpr double kSteepest = 0.2;  // least part of the unit direction along the ground: with less, none is shown
+  constexpr double kSteepest = 0.2;  // least horizontal part of the unit viewing direction; below, no heading is drawn
   constexpr int kParts = 12;
   const Vector2d at = view.pixel_of(camera.map_from_camera.translation);
   const Eigen::Vector3d ahead =
       view.ground_from_map.target_from_source.rotation * (camera.map_from_camera.rotation * Eigen::Vector3d::UnitZ());
   ExplainedMarks all;
   if (ahead.head<2>().norm() > kSteepest) {
-    const double heading = std::atan2(-ahead.y(), ahead.x());  // heading in the picture, whose y points down
+    const double heading = std::atan2(-ahead.y(), ahead.x());  // heading in the picture, y down
     std::vector<Vector2d> wedge = {at};
     for (int i = 0; i <= kParts; ++i) {
       const double angle = heading + camera.field_of_view * (static_cast<double>(i) / kParts - 0.5);

@@ -8,26 +8,25 @@
 
 namespace byre {
 
-// A point of a map that was picked together with its place on the plan.
+// Map point with its position on the plan, picked by a user.
 struct PlanPick {
-  std::string name;                                         // holds no commas and no line ends
-  std::uint32_t point = 0;                                  // number of a point of the map
+  std::string name;                                         // no commas or line breaks
+  std::uint32_t point = 0;                                  // index of the map point
   Eigen::Vector2d point_in_plan = Eigen::Vector2d::Zero();  // metres
 };
 
-// From the page's JSON: {"picks": [{"name": "gate post", "point": 17, "plan": [12.4, 3.85]}]}. Commas and line ends in
-// names become spaces. Throws InputError for anything else, and for points that the map does not have.
+// Parses the page's JSON: {"picks": [{"name": "gate post", "point": 17, "plan": [12.4, 3.85]}]}. Commas and line breaks
+// in names become spaces. Throws InputError for other input, and for points missing in the map.
 std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map);
 
-// What somebody was told that the map is off by, in metres, and wants it saved all the same ("accepted_residual_m"
-// beside the picks); kFarOffPlan where nobody was asked.
+// Residual in metres that the user has accepted ("accepted_residual_m" in the JSON); default kFarOffPlan.
 double accepted_residual(const std::string& json);
 
-// pick_sigma: of x and of y as picked on the plan, metres. Precondition: the map has the points.
+// pick_sigma: standard deviation of x and y of the picks, metres. Precondition: the map has the points.
 std::vector<PlanCorrespondence> correspondences_of(const std::vector<PlanPick>& picks, const StoredMap& stored,
                                                    double pick_sigma);
 
-// In the columns that "byre register" reads.
+// CSV in the columns of "byre register".
 std::string picks_csv(const std::vector<PlanPick>& picks);
 
 }  // namespace byre

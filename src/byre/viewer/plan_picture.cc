@@ -30,7 +30,7 @@ bool is_in(const HeightBand& heights, double height) {
   return height >= heights.low && height <= heights.high;
 }
 
-// On the ground, those within the heights where it is level.
+// Points on the ground; on level ground only those in the height band.
 std::vector<Vector2d> points_on_ground(const PlanScene& scene, const HeightBand& heights, Origin origin) {
   std::vector<Vector2d> points;
   for (const ScenePoint& point : scene.map.points) {
@@ -42,7 +42,7 @@ std::vector<Vector2d> points_on_ground(const PlanScene& scene, const HeightBand&
   return points;
 }
 
-// The range that all but a hundredth of the values at either end are in.
+// Range without one per cent of the values at each end.
 std::pair<double, double> usual_range(std::vector<double> values) {
   constexpr double kUnusual = 0.01;
   const auto skipped = static_cast<std::ptrdiff_t>(kUnusual * static_cast<double>(values.size()));
@@ -95,7 +95,7 @@ AlignedBox2d with_margin(const AlignedBox2d& box, double share) {
   return {box.min() - Vector2d::Constant(margin), box.max() + Vector2d::Constant(margin)};
 }
 
-// Half a pixel is the finest that can be told apart: what lies closer is drawn once.
+// Merges points that coincide at half a pixel.
 std::vector<Vector2d> distinct_pixels(const std::vector<Vector2d>& on_ground, const PlanView& view, const Pane& pane) {
   std::vector<std::pair<int, int>> cells;
   for (const Vector2d& point : on_ground) {
@@ -123,7 +123,7 @@ PictureSymbols dots(const PlanScene& scene, const HeightBand& heights, Origin or
 }
 
 PictureImage plan_image(const Ground& ground, const PlanView& view) {
-  constexpr double kFaded = 0.55;  // walls are to be seen, but not before all else
+  constexpr double kFaded = 0.55;  // keeps walls visible in the background
   PictureImage image;
   image.image = ground.image;
   Eigen::Matrix2d pixels_from_metres = view.pixels_per_metre * Eigen::Matrix2d::Identity();
@@ -134,9 +134,9 @@ PictureImage plan_image(const Ground& ground, const PlanView& view) {
   return image;
 }
 
-// Where there is no plan to tell how large things are.
+// Grid that shows the scale without a plan.
 std::vector<PictureMark> grid(const PlanView& view, const Pane& pane) {
-  constexpr double kStep = 140.0;  // pixels at most
+  constexpr double kStep = 140.0;  // pixels, largest
   const double step = round_length(view.pixels_per_metre, kStep);
   std::vector<PictureMark> lines;
   for (double x = std::ceil(view.shown.min().x() / step) * step; x < view.shown.max().x(); x += step) {
@@ -155,7 +155,7 @@ void append(ExplainedMarks more, Pane& pane, std::vector<LegendEntry>& entries) 
   std::ranges::move(more.legend, std::back_inserter(entries));
 }
 
-// The ground and what lies on it; later marks lie above earlier ones.
+// Ground and content; later marks cover earlier ones.
 ExplainedMarks ground_marks(const PlanScene& scene, const PlanPictureOptions& options, const PlanView& view,
                             const Pane& pane) {
   ExplainedMarks all;
@@ -190,7 +190,7 @@ std::vector<LegendEntry> whole_legend() {
   return entries;
 }
 
-// What it is of, and how large that is.
+// Title and size of the scene.
 Pane head(const PlanScene& scene, const PlanView& view, int width) {
   constexpr double kMargin = 16.0, kLine = 25.0, kTitle = 16.0;  // pixels
   Pane pane;
@@ -223,7 +223,7 @@ PlanCamera plan_camera(const Pose& map_from_body, const Rig& rig) {
 AlignedBox2d shown_ground(const PlanScene& scene, const HeightBand& heights) {
   constexpr double kMargin = 0.04;     // margin as a share of the larger side
   constexpr double kSiteMargin = 0.2;  // margin around a part of a large plan, as a share of the larger side
-  constexpr double kSite = 4.0;        // length of a large plan, in lengths of the map
+  constexpr double kSite = 4.0;        // smallest large plan, in lengths of the map
   const AlignedBox2d of_map = box_of_map(scene, heights);
   if (!scene.ground.plan) return with_margin(of_map, kMargin);
   const AlignedBox2d of_plan = box_of_plan(*scene.ground.plan);

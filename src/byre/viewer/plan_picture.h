@@ -12,21 +12,21 @@
 
 namespace byre {
 
-// A way through the building.
+// Path through the building.
 struct PlanPath {
-  std::string name;  // name in the legend
+  std::string name;
   Trajectory map_from_body;
-  std::vector<Verdict> verdicts;  // one for each pose, shown by colour and stroke; or none: one colour for the path
+  std::vector<Verdict> verdicts;  // one per pose, drawn as colour and stroke; empty: one colour for the path
 };
 
-// A camera on the plan, as a wedge that opens where it looks.
+// Camera on the plan, drawn as a wedge in viewing direction.
 struct PlanCamera {
   Pose map_from_camera;
-  double field_of_view = 1.2;  // radians, across
+  double field_of_view = 1.2;  // horizontal, radians
 };
 PlanCamera plan_camera(const Pose& map_from_body, const Rig& rig);
 
-// What the plan picture shows.
+// Content of a plan picture.
 struct PlanScene {
   std::string title;
   Ground ground;
@@ -42,20 +42,19 @@ struct HeightBand {
 };
 
 struct PlanPictureOptions {
-  int width = 1200;    // pixels: what the ground is fitted into
-  int height = 900;    // pixels, the legend not counted
-  HeightBand heights;  // points outside are left out where the ground is level, so that floor and ceiling do not smear
+  int width = 1200;    // pixels, of the area that the ground is fitted into
+  int height = 900;    // pixels, without the legend
+  HeightBand heights;  // hides points outside on level ground, such as floor and ceiling
   bool keyframes = true;
-  bool whole_legend = false;  // explains every sign there may be, so that pictures of one run are of one size
-  // Part of the ground to show, metres; else that of what there is to see, see shown_ground.
+  bool whole_legend = false;  // lists all symbols, for pictures of equal size
+  // Part of the ground to show, metres; empty: see shown_ground.
   std::optional<Eigen::AlignedBox2d> shown;
 };
 
-// The ground that a scene takes up: its points but for the farthest, its paths, and the plan too unless that is several
-// times as large.
+// Extent of a scene on the ground: points without outliers, paths, and the plan unless it is several times larger.
 Eigen::AlignedBox2d shown_ground(const PlanScene& scene, const HeightBand& heights);
 
-// The map and ways through it from above, with legend and scale bar.
+// Map and paths from above, with legend and scale bar.
 Picture plan_picture(const PlanScene& scene, const PlanPictureOptions& options = {});
 
 }  // namespace byre

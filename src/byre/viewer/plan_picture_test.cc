@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// A barn of 40 x 20 m, drawn at 20 pixels a metre below the head. The picture's rows count down from y = 20.
+// Barn of 40 x 20 m at 20 pixels per metre below the head. Picture rows count down from y = 20.
 constexpr double kPixels = 20.0;
 constexpr int kHead = 38;
 
@@ -53,7 +53,7 @@ bool is_purplish(const Colour& colour) {
   return colour.red > colour.green + 30 && colour.blue > colour.green + 30;
 }
 
-// Straight along y = 10 from x = 5, ten poses a metre, ten a second.
+// Straight path along y = 10 from x = 5, ten poses per metre and per second.
 PlanPath straight_path(int poses) {
   PlanPath path{"round", {}, {}};
   for (int i = 0; i < poses; ++i) {
@@ -94,7 +94,7 @@ TEST(PlanPicture, MovesTheMapOntoTheGround) {
   PlanScene scene = level_scene();
   scene.ground.ground_from_map = {
       2.0, {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())), {20.0, 10.0, 0.5}}};
-  scene.map.points = {point_at(2.9875, 4.9875, 0.5, Origin::offline)};  // on the ground at (10.025, 15.975, 1.5)
+  scene.map.points = {point_at(2.9875, 4.9875, 0.5, Origin::offline)};  // (10.025, 15.975, 1.5) on the ground
   EXPECT_TRUE(is_greenish(colour_on(drawn(scene), 10.01, 15.99)));
 }
 
@@ -146,7 +146,7 @@ TEST(PlanPicture, TellsWaysApartByColourAndName) {
 
 TEST(PlanPicture, OpensAWedgeWhereTheCameraLooks) {
   PlanScene scene = level_scene();
-  Eigen::Matrix3d map_from_camera;  // looks along x of the map, level
+  Eigen::Matrix3d map_from_camera;  // level, looking along x of the map
   map_from_camera << 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0;
   scene.camera = PlanCamera{{Eigen::Quaterniond(map_from_camera), {20.0, 10.0, 0.0}}, 1.2};
   const cv::Mat barn = drawn(scene);
@@ -179,7 +179,7 @@ TEST(PlanPicture, JoinsKeyframesButForLongLeaps) {
   EXPECT_GT(colour_on(barn, 20.5, 8.0).red, 200);
 }
 
-// A plan of 400 x 200 pixels of 0.1 m, white with a black square of a metre at (30..31, 4..5).
+// White plan of 400 x 200 pixels of 0.1 m, with a black square of 1 m at (30..31, 4..5).
 PlanScene scene_on_plan() {
   PlanScene scene = level_scene();
   FloorPlan plan;

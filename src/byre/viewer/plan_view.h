@@ -10,7 +10,7 @@
 
 namespace byre {
 
-// The ground as a plan picture shows it: x right, y up on it.
+// Projection of the ground to pixels: x right, y up.
 struct PlanView {
   Eigen::AlignedBox2d shown;  // metres
   double pixels_per_metre = 1.0;
@@ -24,17 +24,17 @@ struct PlanView {
   }
 };
 
-// Marks, and what they mean.
+// Marks with their legend.
 struct ExplainedMarks {
   std::vector<PictureMark> marks;
   std::vector<LegendEntry> legend;
 };
 
-// Keyframes, and the way from one to the next; a much longer one than usual is left out.
+// Keyframes, joined by lines; unusually long gaps are left open.
 ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view);
 
-// Ways through the building with the place where each starts. A way with verdicts has a line that tells them: solid
-// where trusted, dashed where degraded, dotted where untrusted, and none where there was no pose.
+// Paths with their starts. Verdicts are drawn as strokes: solid for trusted, dashed for degraded, dotted for untrusted;
+// no line without a pose.
 ExplainedMarks path_marks(const std::vector<PlanPath>& paths, const PlanView& view);
 
 LegendEntry verdict_entry(Verdict verdict);

@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// What is replaced is freed after the mutex is.
+// Replaced values are freed outside the lock.
 
 void RunMailbox::put(ShownFrame frame, FrameScene scene) {
   std::optional<FrameScene> incoming = std::move(scene);

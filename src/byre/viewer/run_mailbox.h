@@ -8,29 +8,29 @@
 
 namespace byre {
 
-// The report of a frame, and what there was of the online map then.
+// Report of a frame, with the size of the online map at that time.
 struct ShownFrame {
   FrameReport report;
   int online_keyframes = 0;
   int online_points = 0;
 };
 
-// Where the thread of a run leaves what there is to show, without waiting: reports gather, as they are small, and of
-// images and maps the newest takes the place of one that nobody has taken yet. May be used from two threads.
+// Mailbox from the thread of a run to the viewer's thread; put() never waits. Reports accumulate; of images and maps
+// only the newest is held. Thread-safe.
 class RunMailbox {
  public:
   struct Content {
     std::vector<ShownFrame> frames;
-    std::optional<FrameScene> newest;  // scene of the newest of these frames; left is as recorded, not rectified
+    std::optional<FrameScene> newest;  // scene of the newest of these frames; the left image is not rectified
     std::optional<MapScene> online;
-    bool has_ended = false;  // no more frames will come
+    bool has_ended = false;  // no more frames follow
   };
 
   void put(ShownFrame frame, FrameScene scene);
   void put(MapScene online);
   void put_end();
 
-  // All there is, and leaves the mailbox empty.
+  // Removes and returns all content.
   Content take();
 
  private:

@@ -19,7 +19,7 @@ int even(int length) {
 Picture frame_and_plan(const FrameScene& frame, const CameraPictureOptions& camera_options, const PlanScene& plan,
                        PlanPictureOptions plan_options) {
   constexpr double kWide = 1.5;
-  constexpr int kLegend = 100;  // pixels, more or less
+  constexpr int kLegend = 100;  // pixels, approximate
   assert(plan_options.shown);
   Picture camera = camera_picture(frame, camera_options);
   const Eigen::Vector2d size = plan_options.shown->sizes();

@@ -14,30 +14,30 @@ class VideoWriter;
 
 namespace byre {
 
-// A frame and its place on the ground as one picture: the plan below the camera where the ground is wide, else beside
-// it. The ground is that of the options, so that all pictures of a run are of one size. Precondition: options.shown is
+// One picture of a frame and its place on the ground: plan below the camera image if the ground is wide, else beside
+// it. plan_options fixes the ground, so that all pictures of a run have one size. Precondition: plan_options.shown is
 // set.
 Picture frame_and_plan(const FrameScene& frame, const CameraPictureOptions& camera_options, const PlanScene& plan,
                        PlanPictureOptions plan_options);
 
-// An MP4 file of pictures of one size, H.264 where the system's FFmpeg can, else MPEG-4.
+// MP4 writer for pictures of one size: H.264 if the system's FFmpeg supports it, else MPEG-4.
 class RunVideo {
  public:
-  // Throws InputError if no such file can be written.
+  // Throws InputError if the file cannot be written.
   RunVideo(const std::filesystem::path& file, double frame_rate_hz, int width, int height);
   ~RunVideo();
 
-  // Cut off, or filled up with white, where it is of another size.
+  // Crops or pads (white) pictures of another size.
   void add(const Picture& picture);
 
-  // Gives the file its name. Call once, after the last picture.
+  // Moves the file to its final name. Call once, after the last picture.
   void finish();
 
   bool plays_in_browsers() const { return is_h264_; }
 
  private:
   OutputFile file_;
-  int width_;  // pixels, even as the format wants it
+  int width_;  // pixels, even as required by the codec
   int height_;
   bool is_h264_ = false;
   std::unique_ptr<cv::VideoWriter> writer_;

@@ -10,8 +10,7 @@
 
 namespace byre {
 
-// What pictures and viewers show, as copied values: whoever draws never holds on to a session or its map. Lengths are
-// metres in the map's frame.
+// Values to draw, copied from a session so that viewers hold no reference to it. Metres in the map frame.
 
 struct ScenePoint {
   Eigen::Vector3f position_in_map;
@@ -29,14 +28,14 @@ struct MapScene {
   std::vector<SceneKeyframe> keyframes;
 };
 
-// Both maps, the offline one first, each in the order of its ids.
+// Points and keyframes of both maps: offline first, each in order of ids.
 MapScene scene_of(const MapView& map);
 
-// One frame of a run.
+// Frame of a run to draw.
 struct FrameScene {
   FrameReport report;
-  Image left;                   // rectified: seen points lie in it
-  std::vector<SeenPoint> seen;  // map points matched in it
+  Image left;                   // rectified; the frame of `seen`
+  std::vector<SeenPoint> seen;  // matched map points
 };
 
 }  // namespace byre

@@ -16,7 +16,7 @@ Rig rig_ahead_of_the_body() {
   return rig;
 }
 
-// A map of one keyframe whose camera is at the origin, which sees one point.
+// Map with one keyframe at the origin that observes one point.
 Map map_of_one_point(Origin origin, double depth) {
   Map map(origin);
   Keyframe keyframe;

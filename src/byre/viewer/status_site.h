@@ -9,14 +9,14 @@
 
 namespace byre {
 
-// How a program is, as others ask it by HTTP.
+// Status of a program for HTTP clients.
 struct ProgramStatus {
   bool is_well = false;
-  std::string summary;  // a line
-  std::string metrics;  // figures as Prometheus reads them
+  std::string summary;  // one line
+  std::string metrics;  // Prometheus text format
 };
 
-// Where a program puts how it is, from any thread.
+// Current status of a program; thread-safe.
 class StatusBoard {
  public:
   void put(ProgramStatus status) {
@@ -33,7 +33,7 @@ class StatusBoard {
   ProgramStatus status_;  // guarded by mutex_
 };
 
-// /healthz: 200 where the program is well, else 503; /metrics: its figures.
+// Serves /healthz (200 if the program is well, else 503) and /metrics.
 class StatusSite : public WebSite {
  public:
   explicit StatusSite(std::shared_ptr<const StatusBoard> board) : board_(std::move(board)) {}

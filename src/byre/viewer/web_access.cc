@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-// The name in "name:port", "[::1]:port" or a name alone.
+// Host name in "name:port", "[::1]:port" or "name".
 std::string_view name_in(std::string_view host) {
   const std::size_t closing = host.find(']');
   if (closing != std::string_view::npos) return host.substr(0, closing + 1);
@@ -21,7 +21,7 @@ bool is_own_page(const WebOrigin& from) {
   return from.origin.empty() || (from.origin.starts_with(kScheme) && from.origin.substr(kScheme.size()) == from.host);
 }
 
-// The name of the machine in "http://name:port" or "https://name".
+// Host name in "http://name:port" or "https://name".
 std::string_view machine_of(std::string_view origin) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (origin.starts_with(scheme)) return name_in(origin.substr(scheme.size()));

@@ -6,38 +6,36 @@
 
 namespace byre {
 
-// Who may ask a web server for anything.
+// Access rules of a web server.
 struct WebAccess {
-  std::vector<std::string> host_names;  // names that the server may be called by, without the port; empty: any
-  std::string token;                    // value that the query of each request must hold ("?token=..."); empty: none
+  std::vector<std::string> host_names;  // accepted host names, without port; empty: any
+  std::string token;                    // required query parameter ("?token=..."); empty: none
 };
 
-// On loopback anybody on this machine may ask, by the names of loopback alone: a page from elsewhere whose name was
-// made to lead here (DNS rebinding) is refused. Opened to the network, whoever knows the token may.
+// Access for a bound address. On loopback: any local client, with a loopback host name, which prevents DNS rebinding.
+// On the network: clients with the token.
 WebAccess access_to(const std::string& bound_address);
 
 // Whether the address is in 127.0.0.0/8 or ::1.
 bool is_loopback(const std::string& address);
 
-// 128 bits from the system's source of randomness, as hexadecimal digits.
+// 128 random bits from the system, as hexadecimal digits.
 std::string make_token();
 
-// What a request says of where it comes from; header fields are empty when they are missing.
+// Origin of a request; fields of missing headers are empty.
 struct WebOrigin {
   std::string_view host;     // header Host
-  std::string_view origin;   // header Origin: sent by browsers, names the page that asks
+  std::string_view origin;   // header Origin: page of the request, sent by browsers
   std::string_view target;   // path and query
-  bool is_foxglove = false;  // whether it asks to speak Foxglove's protocol
+  bool is_foxglove = false;  // request for Foxglove's protocol
 };
 
-// A page that asks must be byre's own. Foxglove's protocol is also spoken with the applications that know it: those of
-// Foxglove and those that this machine serves or has as files; through the network with whoever has the token.
-//
-// Why a request is refused, for whoever reads it in a browser; empty when it is not. Tokens are compared in a time that
-// tells nothing of them.
+// Reason for rejecting a request; empty if accepted. Requests of pages must come from byre's own page. Foxglove's
+// protocol is also accepted from Foxglove's applications, local servers and files; over the network with the token.
+// Tokens are compared in constant time.
 std::string_view refusal(const WebAccess& access, const WebOrigin& from);
 
-// The parts of a target: what is before the "?", and the value of a name after it, or nothing.
+// Parts of a target: path before the "?", and value of a query parameter or empty.
 std::string_view path_of(std::string_view target);
 std::string_view query_value(std::string_view target, std::string_view name);
 

@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// Empty for other kinds of addresses, and for those that hold on one link alone and need its name beside them.
+// Empty for other address families, and for link-local addresses, which need an interface name.
 std::string text_of(const sockaddr& address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address.sa_family == AF_INET) {

@@ -5,9 +5,8 @@
 
 namespace byre {
 
-// The addresses by which a server that is bound to one can be reached, those of the network first. Of 0.0.0.0 and ::,
-// which no browser can open, these are the addresses of this machine's interfaces, and last that of loopback; of any
-// other it is that one.
+// Addresses at which a server is reachable. For 0.0.0.0 and ::, the addresses of all interfaces, loopback last; else
+// the bound address.
 std::vector<std::string> reachable_addresses(const std::string& bound_address);
 
 }  // namespace byre

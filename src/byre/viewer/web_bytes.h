@@ -7,15 +7,14 @@
 
 namespace byre {
 
-// What goes to the page as bytes instead of text, little-endian; web/src/decode.ts reads them.
+// Binary messages to the page, little-endian; decoded by web/src/decode.ts.
 
-// uint32 points and keyframes, then for each point float32 x, y, z, for each keyframe float32 x, y, z and its rotation
-// as a quaternion x, y, z, w (map_from_body), and at last an uint8 for each point and for each keyframe: its origin, 0
-// offline and 1 online.
+// uint32 counts of points and keyframes; float32 x, y, z per point; float32 x, y, z and quaternion x, y, z, w per
+// keyframe (map_from_body); uint8 origin per point and per keyframe: 0 offline, 1 online.
 std::string map_bytes(const MapScene& scene);
 
-// uint32 number of the frame and count of points, for each point float32 u, v and an uint8 (1 online, 2 inlier, or
-// both), then a JPEG file. Columns stand together: all pixels, then all kinds.
+// uint32 frame number and count of points; float32 u, v of all points; uint8 flags of all points (1 online, 2 inlier);
+// then a JPEG file.
 std::string image_bytes(std::size_t frame, std::span<const SeenPoint> seen, std::span<const unsigned char> jpeg);
 
 }  // namespace byre

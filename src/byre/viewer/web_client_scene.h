@@ -11,7 +11,7 @@
 
 namespace byre {
 
-// What a browser does, for tests: waits for each answer.
+// Blocking HTTP client for tests.
 class WebClient {
  public:
   struct Answer {
@@ -37,13 +37,13 @@ class WebClient {
   std::uint16_t port_;
 };
 
-// A page that listens. Throws boost::system::system_error when it is refused, and when the connection ends.
+// WebSocket client. Throws boost::system::system_error if rejected or disconnected.
 class LiveClient {
  public:
-  // headers: those of its request, beside what a WebSocket needs
+  // headers: additional request headers
   explicit LiveClient(int port, const std::string& target = "/live", const WebClient::Headers& headers = {});
 
-  const std::string& protocol() const { return protocol_; }  // sub-protocol that the server chose
+  const std::string& protocol() const { return protocol_; }  // sub-protocol chosen by the server
 
   void say(const std::string& bytes, bool is_binary = false);
 

@@ -27,7 +27,7 @@ std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-// Nothing is asked of other servers, and no other page may show this one.
+// Headers forbid loading from other servers, and embedding in other pages.
 Response finished(const WebResponse& answer, const Request& request) {
   Response response(static_cast<http::status>(answer.status), request.version());
   response.set(http::field::content_type, answer.content_type);
@@ -88,7 +88,7 @@ void WebConnection::read_head(std::chrono::milliseconds patience) {
   });
 }
 
-// The protocol of Foxglove that is asked for and spoken; empty: none.
+// Foxglove sub-protocol requested and supported; empty: none.
 std::string_view WebConnection::protocol_of(const Request& request) const {
   if (!service_.topics || !websocket::is_upgrade(request)) return {};
   return foxglove_protocol(view(request[http::field::sec_websocket_protocol]));
@@ -138,7 +138,7 @@ void WebConnection::answer_request() {
 void WebConnection::respond(const WebResponse& response, bool may_go_on) {
   const Request& request = parser_->get();
   response_ = finished(response, request);
-  // What is left of a request that was refused would be taken for the next one.
+  // The rest of a rejected request would be parsed as the next request.
   if (!may_go_on || !parser_->is_done()) response_.keep_alive(false);
   stream_.expires_after(kIdleTime);
   http::async_write(stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {

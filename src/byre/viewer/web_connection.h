@@ -19,21 +19,20 @@
 
 namespace byre {
 
-// What connections are served from. Owned by the server's thread.
+// State shared by all connections. Owned by the server's thread.
 struct WebService {
   std::unique_ptr<WebSite> site;
-  std::shared_ptr<LiveTopics> topics;  // null: Foxglove's protocol is not spoken
+  std::shared_ptr<LiveTopics> topics;  // null: without Foxglove's protocol
   WebAccess access;
-  std::string session;  // text that no other server has, for Foxglove's protocol
+  std::string session;  // unique text per server, for Foxglove's protocol
   std::vector<std::weak_ptr<WebListener>> listeners;
   std::vector<std::weak_ptr<FoxgloveListener>> foxglove_listeners;
 
   void tell_listeners();
 };
 
-// Requests of one HTTP connection, one after the other, until one of them makes a listener of it. Of a stranger nothing
-// is read but the head of one request, in the time it has for that; if it is refused, the connection ends. Owned by the
-// server's thread.
+// HTTP connection: serves requests in turn until one upgrades to a WebSocket. A connection without an accepted request
+// may send a single request head within a time limit, and is closed if rejected. Used by the server's thread only.
 class WebConnection : public std::enable_shared_from_this<WebConnection> {
  public:
   // The service outlives this.
@@ -58,9 +57,9 @@ class WebConnection : public std::enable_shared_from_this<WebConnection> {
   boost::beast::tcp_stream stream_;
   WebService& service_;
   boost::beast::flat_buffer buffer_;
-  std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;  // parser of one request
-  boost::beast::http::response<boost::beast::http::string_body> response_;  // response that is being sent
-  bool is_known_ = false;                                                   // whether it has asked for what it may have
+  std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;  // current request
+  boost::beast::http::response<boost::beast::http::string_body> response_;                     // response being sent
+  bool is_known_ = false;  // whether a request was accepted
 };
 
 }  // namespace byre

@@ -19,7 +19,7 @@ WebGuests::Id WebGuests::oldest_of_the_most() const {
   std::map<std::string, int> counts;
   for (const auto& [id, address] : strangers_) ++counts[address];
   const auto count_of = [&counts](const auto& stranger) { return counts.at(stranger.second); };
-  return std::ranges::max_element(strangers_, {}, count_of)->first;  // the first of equals
+  return std::ranges::max_element(strangers_, {}, count_of)->first;  // first of equals
 }
 
 bool WebGuests::introduce(Id id) {

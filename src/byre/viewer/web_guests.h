@@ -9,22 +9,20 @@
 
 namespace byre {
 
-// What connections may take of a program that has more important things to do. A stranger is a connection that has not
-// yet asked for anything it may have: anybody who reaches the port can open one, so there are few of them, not for
-// long.
+// Limits of connections, for the benefit of the program's main task. A stranger is a connection without an accepted
+// request. Anyone who reaches the port can open one, so strangers are few and have little time.
 struct WebLimits {
-  int known = 48;                            // connections at a time that are no strangers
-  int strangers = 16;                        // strangers at a time
-  std::chrono::milliseconds patience{3000};  // time that a stranger has to ask, from when it came
-  // Connections let in. More wait in the kernel, and are turned away there where they are too many.
+  int known = 48;                            // largest number of accepted connections
+  int strangers = 16;                        // largest number of strangers
+  std::chrono::milliseconds patience{3000};  // time for the first request, from the connection on
+  // Rate of accepting connections. The kernel queues further ones, and rejects them if its queue is full.
   double arrivals_per_second = 300.0;
-  int arrivals_at_once = 64;  // connections let in at once after a while without any
-  int free_descriptors = 32;  // descriptors left to the program, or half of all where it may have few
+  int arrivals_at_once = 64;  // burst of accepted connections
+  int free_descriptors = 32;  // file descriptors reserved for the program; at most half of all
 };
 
-// Who is connected to a web server, and who has to go when there are too many. Strangers make room for strangers: of
-// the address that has the most of them the oldest goes, so that whoever asks at once is answered however many others
-// only wait.
+// Connections of a web server, and which to close above the limits. A new stranger displaces the oldest one of the
+// address with most strangers, so that prompt requests are served however many connections idle.
 class WebGuests {
  public:
   using Id = std::uint64_t;
@@ -33,11 +31,11 @@ class WebGuests {
 
   struct Arrival {
     Id id = 0;
-    std::optional<Id> to_close;  // whoever makes room; perhaps the one that has come
+    std::optional<Id> to_close;  // connection to close in exchange; possibly the new one
   };
   Arrival arrive(const std::string& address);
 
-  // It has asked for what it may have, and is no stranger any more; false: there are too many known ones.
+  // Marks a connection as accepted. False: too many accepted connections.
   bool introduce(Id id);
 
   void leave(Id id);
@@ -49,12 +47,12 @@ class WebGuests {
   Id oldest_of_the_most() const;
 
   WebLimits limits_;                     // constant after construction
-  std::map<Id, std::string> strangers_;  // addresses of strangers; ids grow, so the oldest comes first
+  std::map<Id, std::string> strangers_;  // addresses of strangers; ids ascend, so the oldest is first
   int known_ = 0;
   Id next_ = 1;
 };
 
-// How many connections may be let in at a time: a bucket of them that fills at a steady rate.
+// Token bucket that limits accepted connections.
 class ArrivalRate {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -64,7 +62,7 @@ class ArrivalRate {
 
   void count(Time now);
 
-  // Until the next one may come in; zero: it may now.
+  // Time until the next connection may be accepted; zero: now.
   std::chrono::milliseconds wait(Time now) const;
 
  private:
@@ -72,12 +70,12 @@ class ArrivalRate {
 
   double per_second_;  // constant after construction
   double most_;        // constant after construction
-  double left_;        // connections in the bucket at the time last_
+  double left_;        // connections available at time last_
   Time last_;
 };
 
-// The number that a new descriptor must be below to leave those free that the limits say. The system gives the lowest
-// number that is free, so it tells how many are taken.
+// Bound for new descriptors that keeps the reserved number free. The system assigns the lowest free number, so a new
+// descriptor's number counts those in use.
 int end_of_descriptors(const WebLimits& limits);
 
 }  // namespace byre

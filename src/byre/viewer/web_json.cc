@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 constexpr double kMillimetresPerMetre = 1e3;
 constexpr double kMillisecondsPerSecond = 1e3;
 
-// To four digits after the point: a tenth of a millimetre, of a quaternion a hundredth of a degree. Short to send.
+// Four decimals for short messages: 0.1 mm, and 0.01 degrees of a quaternion.
 double rounded(double value) {
   return std::round(1e4 * value) / 1e4;
 }

@@ -6,7 +6,7 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kMaxPageMessageBytes = 1 << 10;  // message from a page, which has nothing to say there
+constexpr std::size_t kMaxPageMessageBytes = 1 << 10;  // largest message from a page, which sends none
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void WebListener::tell() {
   });
 }
 
-// What it is sent is dropped; reading is how a closed connection is noticed.
+// Received messages are dropped; reading detects a closed connection.
 void WebListener::read() {
   socket_.read([self = shared_from_this()](const WebSocketMessage* message) {
     if (message) {

@@ -9,8 +9,8 @@
 
 namespace byre {
 
-// A WebSocket to a page, which is told what a site has to tell. Lives as long as an operation on it is under way. Owned
-// by the server's thread, as all that it uses is.
+// WebSocket connection to a page, sending the messages of a site. Alive while an operation is pending. Used by the
+// server's thread only.
 class WebListener : public std::enable_shared_from_this<WebListener> {
  public:
   WebListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<WebSeat> seat, WebSite& site)
@@ -18,7 +18,7 @@ class WebListener : public std::enable_shared_from_this<WebListener> {
 
   void start(const WebUpgrade& request);
 
-  // Sends what is new, unless that is being done.
+  // Starts sending new messages unless busy.
   void tell();
 
  private:
@@ -28,7 +28,7 @@ class WebListener : public std::enable_shared_from_this<WebListener> {
   WebSocket socket_;
   WebSite& site_;
   ListenerProgress progress_;
-  WebMessage message_;  // message that is being sent
+  WebMessage message_;  // message being sent
   bool is_open_ = false;
   bool is_sending_ = false;
 };

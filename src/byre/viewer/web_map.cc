@@ -91,7 +91,7 @@ class MapSite : public WebSite {
     return *found;
   }
 
-  // Gives the names of the files written.
+  // Returns the names of the written files.
   std::vector<std::string> save(const WebRequest& request) {
     const std::vector<PlanPick> picks = picks_of(request);
     if (!map_.output) throw InputError(map_.name, "cannot be saved", "start \"byre view\" with -o FILE");
@@ -107,12 +107,12 @@ class MapSite : public WebSite {
     return {map_.output->string(), csv_path.string()};
   }
 
-  ViewedMap map_;  // constant but for the registration, which changes when it is saved
+  ViewedMap map_;  // constant except for the registration, which saving updates
 
   // Constant after construction.
   std::optional<DrivingPlane> driving_plane_;
   std::string points_;
-  std::string plan_;  // PNG, empty without a plan
+  std::string plan_;  // PNG; empty without a plan
 };
 
 }  // namespace

@@ -11,20 +11,20 @@
 
 namespace byre {
 
-// A map to look at and, with a plan, to find on it.
+// Map to view and, with a plan, to register on it.
 struct ViewedMap {
   std::string name;
   StoredMap stored;
   std::optional<FloorPlan> plan;
-  std::optional<std::filesystem::path> output;     // file for the registered copy; empty: it cannot be saved
+  std::optional<std::filesystem::path> output;     // file for the registered copy; empty: saving is disabled
   double pick_sigma = PlanCorrespondence{}.sigma;  // metres
   PlanRegistrationOptions registration;
 };
 
-// Shows a map in a browser, and registers it on a plan by what is picked there.
+// Shows a map in a browser, and registers it on a plan by picked points.
 class MapViewer {
  public:
-  // Throws InputError as WebServer does, and when the plan's image cannot be read.
+  // Throws InputError as WebServer does, and if the plan's image cannot be read.
   MapViewer(ViewedMap map, const WebServerOptions& server);
 
   const std::vector<std::string>& urls() const { return server_.urls(); }

@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using Json = nlohmann::json;
 
-// A barn whose signs are points of the map, and its plan.
+// Barn with signs that are map points, and its plan.
 class MapViewerTest : public TestFolder {
  protected:
   MapViewerTest() : signs_(scene_.correspondences(6)) {
@@ -27,7 +27,7 @@ class MapViewerTest : public TestFolder {
     viewed_.output = folder_ / "barn-plan.byre";
   }
 
-  // Each sign is seen as the one feature of a keyframe of its own.
+  // Each sign is the only feature of its own keyframe.
   Map map_with_signs() {
     Map map = scene_.driven_map(scene_.path_in_map());
     for (const PlanCorrespondence& sign : signs_) {
@@ -102,7 +102,7 @@ TEST_F(MapViewerTest, SavesTheRegisteredMapAndThePicks) {
 }
 
 TEST_F(MapViewerTest, SavesWhatIsFarOffOnlyWhenTheFigureIsConfirmed) {
-  for (PlanCorrespondence& sign : signs_) sign.point_in_plan *= 1.5;  // as by a plan of a wrong resolution
+  for (PlanCorrespondence& sign : signs_) sign.point_in_plan *= 1.5;  // simulates a plan with a wrong resolution
   const MapViewer viewer(viewed_, any_port_);
   const WebClient client = client_of(viewer);
   const Json fit = client.post("/registration", picks(6)).json();

@@ -1,6 +1,6 @@
 #include "byre/viewer/web_page.h"
 
-// The assembler copies the file in, as it is: BYRE_WEB_PAGE is its path.
+// The assembler embeds the file BYRE_WEB_PAGE.
 __asm__(
     ".pushsection .rodata\n"
     ".global byre_web_page_begin\n"

@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// The viewer's page, whole in one piece of HTML: what web/ was built to, as it was when byre was compiled.
+// HTML of the viewer's page, built from web/ and embedded at compile time.
 std::string_view web_page();
 
 }  // namespace byre

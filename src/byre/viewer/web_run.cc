@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr std::string_view kImagesFolder = "/images/";
 constexpr std::size_t kFramesAMessage = 500;
-constexpr int kTimeBetweenCopies = 500;  // least time between copies of the online map, in times that the last one took
+constexpr int kTimeBetweenCopies = 500;  // least time between copies of the online map, in durations of the last copy
 
 std::optional<std::size_t> parse_count(std::string_view text) {
   std::size_t value = 0;
@@ -42,7 +42,7 @@ std::string scene_text(const RunDescription& run, const Rig& rig) {
                  {"registration", fields_or_null(run.registration, registration_fields)}});
 }
 
-// Keeps the history of a run, so that a page that is opened late can be told all of it.
+// Keeps the history of a run for pages opened later.
 class RunSite : public WebSite {
  public:
   RunSite(const RunDescription& run, const RunViewerOptions& options, std::shared_ptr<RunMailbox> mailbox)
@@ -122,15 +122,15 @@ class RunSite : public WebSite {
   int jpeg_quality_;
   std::string scene_;
   std::string offline_;
-  std::string plan_;  // PNG, empty without a plan
+  std::string plan_;  // PNG; empty without a plan
   std::shared_ptr<RunMailbox> mailbox_;
 
   // Owned by the server's thread.
-  std::vector<std::string> frames_;  // each as JSON
+  std::vector<std::string> frames_;  // JSON per frame
   std::string online_;
   std::size_t map_count_ = 0;  // online maps so far
   ImageStore images_;
-  std::size_t image_count_ = 0;  // images so far, also those forgotten
+  std::size_t image_count_ = 0;  // images so far, including dropped ones
   bool has_ended_ = false;
 };
 

@@ -25,7 +25,7 @@ std::uint32_t number_at(const std::string& bytes, std::size_t offset) {
   return number;
 }
 
-// A short run that is shown, and a page that listens to it.
+// Short run shown to a connected page.
 class RunViewerTest : public testing::Test {
  protected:
   RunViewerTest()
@@ -64,7 +64,7 @@ class RunViewerTest : public testing::Test {
   Session session_;
 };
 
-// Everything that is told up to the end of the run.
+// Messages up to the end of the run.
 struct Told {
   Json frames = Json::array();
   std::string last_image;

@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// The place of a connection among the guests, given back at the end of its life.
+// Place of a connection in WebGuests, released on destruction.
 class WebSeat {
  public:
   // The guests outlive this.

@@ -25,7 +25,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr auto kPauseAfterFailure = std::chrono::milliseconds(200);
-constexpr int kMaxWaiting = 512;  // connections that the kernel keeps until they are let in
+constexpr int kMaxWaiting = 512;  // length of the kernel's queue of connections
 
 tcp::endpoint endpoint_of(const WebServerOptions& options) {
   error_code error;
@@ -119,7 +119,7 @@ class WebServer::Core {
     }
     acceptor_.async_accept([this](error_code error, tcp::socket socket) {
       if (error) {
-        // Where there are too many open files, asking again at once would only take up the processor.
+        // With too many open files, retrying immediately would only burn processor time.
         accept_after(kPauseAfterFailure);
         return;
       }
@@ -140,7 +140,7 @@ class WebServer::Core {
     if (socket.native_handle() >= end_of_descriptors_) return;  // closes the socket
     error_code error;
     const tcp::endpoint peer = socket.remote_endpoint(error);
-    if (error) return;  // it is gone again
+    if (error) return;  // already disconnected
     const WebGuests::Arrival arrival = guests_.arrive(peer.address().to_string());
     const auto connection =
         std::make_shared<WebConnection>(std::move(socket), std::make_unique<WebSeat>(guests_, arrival.id), service_);
@@ -156,13 +156,13 @@ class WebServer::Core {
     if (const std::shared_ptr<WebConnection> connection = found->second.lock()) connection->close();
   }
 
-  WebService service_;  // used by the server's thread alone
+  WebService service_;  // used by the server's thread only
 
   // Constant after construction.
   WebLimits limits_;
   int end_of_descriptors_;
 
-  // Owned by the server's thread. What waits in the context uses what is above it, and goes before that.
+  // Owned by the server's thread. Queued operations use the members above, so the context is destroyed first.
   WebGuests guests_;
   ArrivalRate rate_;
   std::map<WebGuests::Id, std::weak_ptr<WebConnection>> connections_;

@@ -11,31 +11,29 @@
 namespace byre {
 
 struct WebServerOptions {
-  std::string address = "127.0.0.1";  // an IP address of this machine; 0.0.0.0 or :: for all of them
-  int port = 8017;                    // 0: one that is free
+  std::string address = "127.0.0.1";  // IP address of this machine; 0.0.0.0 or :: for all interfaces
+  int port = 8017;                    // 0: any free port
   WebLimits limits{};
 };
 
-// Serves a site over HTTP and, at the path /live, WebSocket, from a thread of its own, until it is destroyed: that
-// closes all connections and waits for nobody. What may be asked by whom is said in web_access.h, and how much
-// connections may take of the program in web_guests.h.
+// Serves a site over HTTP, and WebSocket at /live, on its own thread. Destruction closes all connections without
+// waiting for clients. Access rules: web_access.h; limits: web_guests.h.
 class WebServer {
  public:
-  // Throws InputError when the address is none of this machine's or the port is in use or not allowed.
-  // topics: told to whoever speaks Foxglove's protocol, at any path; without them nobody is.
+  // topics: served with Foxglove's protocol at any path; null: not served. Throws InputError if the address is not of
+  // this machine, or the port is in use or not permitted.
   WebServer(const WebServerOptions& options, std::unique_ptr<WebSite> site,
             std::shared_ptr<LiveTopics> topics = nullptr);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  // To open in a browser; holds the token where one is needed. At all addresses of the machine there are several, those
-  // that other machines can open first, and last the one for this machine.
+  // URLs for a browser, with the token if required. For all interfaces: network addresses first, loopback last.
   const std::vector<std::string>& urls() const;
   int port() const;
 
-  // Has the site refreshed, messages of the topics taken and listeners told what is new, soon and in the server's
-  // thread. May be called from any.
+  // Schedules, on the server's thread, refresh() of the site, sending of topic messages, and news to listeners.
+  // Thread-safe.
   void wake();
 
  private:

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-// Says back what it was asked, and counts up to a number for its listeners.
+// Echoes requests, and counts up to a number for its listeners.
 class EchoSite : public WebSite {
  public:
   explicit EchoSite(const std::atomic<int>& last) : last_(last) {}
@@ -125,7 +125,7 @@ TEST_F(WebServerTest, NamesAddressesThatOtherMachinesCanOpen) {
   EXPECT_THAT(server.urls().back(), StartsWith("http://127.0.0.1:"));
 }
 
-// Connections that never ask for anything they may have; their sockets are this process' own.
+// Connections without an accepted request; the test process holds their sockets.
 class Crowd {
  public:
   explicit Crowd(int port) : port_(static_cast<std::uint16_t>(port)) {}
@@ -138,7 +138,7 @@ class Crowd {
     }
   }
 
-  // One more byte of each request that never ends.
+  // Sends one more byte of each unfinished request.
   void drip() {
     for (boost::asio::ip::tcp::socket& socket : sockets_) {
       boost::system::error_code ignored;

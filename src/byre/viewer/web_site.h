@@ -12,7 +12,7 @@ struct WebRequest {
   enum class Method : std::uint8_t { get, post };
 
   Method method = Method::get;
-  std::string path;  // path without the query
+  std::string path;  // without the query
   std::string body;
 };
 
@@ -22,38 +22,38 @@ struct WebResponse {
   std::string body;  // text or bytes
 };
 
-WebResponse page_response();  // the viewer's page
+WebResponse page_response();
 WebResponse bytes_response(std::string bytes, const char* content_type = "application/octet-stream");
 WebResponse problem_response(int status, std::string_view problem);  // JSON with the field "problem"
 WebResponse not_found(const WebRequest& request);
 
-// A message of a WebSocket.
+// WebSocket message.
 struct WebMessage {
   std::string bytes;
   bool is_binary = false;
 };
 
-// How much of what a site has to tell a listener (a page that is open somewhere) has been told.
+// Progress of the messages sent to a listener (an open page).
 struct ListenerProgress {
-  std::size_t frames = 0;     // reports of frames
-  std::size_t images = 0;     // the newest image that was sent, counted from 1
-  std::size_t maps = 0;       // the newest map that was announced, counted from 1
-  bool end_is_known = false;  // whether the end of the run has been told
+  std::size_t frames = 0;     // reports sent
+  std::size_t images = 0;     // number of the newest image sent, from 1
+  std::size_t maps = 0;       // number of the newest map announced, from 1
+  bool end_is_known = false;  // whether the end of the run was sent
 };
 
-// What a web server serves. All functions are called from the server's thread, one at a time.
+// Content of a web server. All functions are called from the server's thread.
 class WebSite {
  public:
   virtual ~WebSite() = default;
 
-  // An exception becomes a response: InputError 400, others 500, both with what() as the "problem".
+  // Exceptions become responses with what() as the "problem": InputError 400, others 500.
   virtual WebResponse answer(const WebRequest& request) = 0;
 
-  // Takes in what other threads have handed over, after WebServer::wake().
+  // Takes over data of other threads, after WebServer::wake().
   virtual void refresh() {}
 
-  // What a listener should be sent next, and notes it in its progress; empty when it knows all there is. Asked again
-  // only once the last message is sent, so that a slow listener is told less, and nothing queues up for it.
+  // Next message for a listener; updates its progress. Empty if the listener is up to date. Called after the previous
+  // message was sent, so a slow listener skips messages instead of queueing them.
   virtual std::optional<WebMessage> next_message(ListenerProgress&) { return std::nullopt; }
 };
 

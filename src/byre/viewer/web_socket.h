@@ -19,8 +19,8 @@ struct WebSocketMessage {
   bool is_binary = false;
 };
 
-// A connection that became a WebSocket. Each kind of operation is under way once at a time; what is called when it is
-// done keeps the owner alive until then. Owned by the server's thread.
+// WebSocket of an upgraded connection. At most one operation of each kind is pending; its callback keeps the owner
+// alive. Used by the server's thread only.
 class WebSocket {
  public:
   using Done = std::function<void(bool is_open)>;
@@ -29,21 +29,21 @@ class WebSocket {
   explicit WebSocket(boost::asio::ip::tcp::socket&& socket) : stream_(std::move(socket)) {}
 
   struct Terms {
-    std::string_view protocol;   // sub-protocol that is spoken; empty: none
-    std::size_t most_bytes = 0;  // bytes of a message from the other side
+    std::string_view protocol;   // chosen sub-protocol; empty: none
+    std::size_t most_bytes = 0;  // largest message from the client, bytes
   };
   void accept(const WebUpgrade& request, const Terms& terms, Done done);
 
-  // Sends head and rest as one message; both must live until it is done.
+  // Sends head and rest as one message; both must live until done.
   void write(const WebSocketMessage& head, std::span<const std::byte> rest, Done done);
 
   void read(Received received);
 
-  // At once, without waiting for the other side, which may read nothing.
+  // Closes immediately, without the closing handshake, as the client may not be reading.
   void close();
 
  private:
-  boost::beast::websocket::stream<boost::beast::tcp_stream, false> stream_;  // never deflates
+  boost::beast::websocket::stream<boost::beast::tcp_stream, false> stream_;  // without compression
   boost::beast::flat_buffer received_;
 };
 
