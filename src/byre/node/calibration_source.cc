@@ -51,7 +51,7 @@ std::optional<Calibration> CalibrationSource::cameras() {
   if (!left_) awaited_ = "camera info on " + config_.topic(config_.left_info);
   if (left_ && config_.has_right() && !right_) awaited_ = "camera info on " + config_.topic(config_.right_info);
   if (!left_ || (config_.has_right() && !right_)) return std::nullopt;
-  // Each is looked at once: drivers send the same again and again.
+  // Each is processed once, as drivers repeat them.
   const auto placed = [&](std::optional<ros::CameraInfo>& info, const std::string& topic) {
     return PlacedCameraInfo{*std::exchange(info, std::nullopt), config_.topic(topic), config_.is_rectified};
   };

@@ -10,18 +10,18 @@
 
 namespace byre {
 
-// Where the calibration of a node's cameras comes from: a file, or camera info; and how they sit on the robot. Its body
-// is the base frame.
+// Calibration of a node's cameras, from a file or from camera info, with their mounting on the robot. Body frame: the
+// base frame.
 class CalibrationSource {
  public:
-  // Throws InputError for a calibration file that cannot be read or lacks the right camera.
+  // Throws InputError if the calibration file cannot be read or lacks the right camera.
   CalibrationSource(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph);
 
-  // Takes what came. left_frame: of the images; empty while none came. Empty while something is missing. Throws
-  // InputError for camera info that cannot be used.
+  // Processes received messages; empty while any are missing. left_frame: frame of the left images; empty before the
+  // first one. Throws InputError for unusable camera info.
   std::optional<Calibration> take(const std::string& left_frame);
 
-  const std::string& awaited() const { return awaited_; }  // what is missing, for people
+  const std::string& awaited() const { return awaited_; }  // missing input, as text
 
  private:
   std::optional<Calibration> cameras();
@@ -33,7 +33,7 @@ class CalibrationSource {
   std::optional<ros::CameraInfo> left_;
   std::optional<ros::CameraInfo> right_;
   StaticFrames frames_;
-  std::optional<Calibration> cameras_;  // as soon as it is known
+  std::optional<Calibration> cameras_;  // empty until received
   std::string awaited_;
 };
 

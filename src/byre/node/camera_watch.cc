@@ -16,7 +16,7 @@ constexpr std::byte kError = ros::DiagnosticStatus::kError;
 constexpr std::byte kStale = ros::DiagnosticStatus::kStale;
 
 constexpr Timestamp kRecently = 1s;
-constexpr Timestamp kRemembered = 10s;  // so that somebody who looks now and then sees what is over
+constexpr Timestamp kRemembered = 10s;  // shows past faults to a late observer
 
 }  // namespace
 
@@ -56,7 +56,7 @@ void CameraWatch::forget_before(Timestamp time) {
   while (!passed_over_at_.empty() && passed_over_at_.front() < time) passed_over_at_.pop_front();
 }
 
-// Slow cameras are silent for longer.
+// Grows with the interval of slow cameras.
 Timestamp CameraWatch::longest_silence() const {
   return std::max<Timestamp>(500ms, 3 * interval_);
 }
@@ -76,7 +76,7 @@ std::optional<CameraWatch::Finding> CameraWatch::lost_right_images() const {
   if (lacking == 0) return std::nullopt;
   std::string text = fmt::format("right images are missing: {} of the last {}", static_cast<int>(lacking),
                                  static_cast<int>(frames_.size()));
-  // Cameras that are not triggered together have stamps of their own.
+  // Stamps of unsynchronised cameras differ.
   constexpr Timestamp kLikelyItsOwn = 50ms;
   if (const auto nearest = frames_.back().nearest_right; nearest && *nearest < kLikelyItsOwn) {
     text += fmt::format(", the nearest stamp is {:.1f} ms off, see images.pair_tolerance", 1e3 * to_seconds(*nearest));

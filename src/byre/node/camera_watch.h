@@ -13,28 +13,27 @@
 
 namespace byre {
 
-// What a frame tells of the cameras.
+// Input side of a frame.
 struct CameraFrame {
   bool has_right = true;
   bool wants_right = true;
-  bool is_frozen = false;  // whether the image is the one before, bit by bit
-  double seconds = 0.0;    // from the image's arrival to the poses
+  bool is_frozen = false;  // image equal to the previous one, bit by bit
+  double seconds = 0.0;    // from arrival of the image to the pose
   InputFault fault = InputFault::none;
-  std::optional<Timestamp> nearest_right;  // where there is no right image: distance to the stamp of the nearest one
-  std::optional<Timestamp> jump;           // how far the stamps jumped before it
+  std::optional<Timestamp> nearest_right;  // without a right image: distance to the nearest right stamp
+  std::optional<Timestamp> jump;           // jump of the stamps before this frame
 };
 
-// Looks at what comes from the cameras, and says what is wrong with it within a second. Times are of one clock that
-// never goes back.
+// Monitors the cameras, and reports faults within a second. Times are of one monotonic clock.
 class CameraWatch {
  public:
-  // topic: of the left images, for messages; now: the beginning.
+  // topic: of the left images, for messages; now: start time.
   CameraWatch(std::string topic, Timestamp now) : topic_(std::move(topic)), since_(now) {}
 
-  void note_arrival(Timestamp now);                            // a left image came
-  void note_unusable(const InputError& fault, Timestamp now);  // an image or calibration that cannot be used
+  void note_arrival(Timestamp now);                            // left image received
+  void note_unusable(const InputError& fault, Timestamp now);  // unusable image or calibration
   void note_frame(const CameraFrame& frame, Timestamp now);
-  void note_passed_over(int total, Timestamp now);  // images left out since the beginning, as newer ones were there
+  void note_passed_over(int total, Timestamp now);  // total: images skipped so far for newer ones
 
   ros::DiagnosticStatus status(Timestamp now) const;
 
@@ -48,7 +47,7 @@ class CameraWatch {
     std::optional<Timestamp> nearest_right{};
   };
   struct Finding {
-    std::byte level{};  // as diagnostics have it
+    std::byte level{};  // level of diagnostic_msgs
     std::string text;
   };
   struct Note {
@@ -65,7 +64,7 @@ class CameraWatch {
   std::string topic_;  // constant after construction
   Timestamp since_;    // constant after construction
   std::optional<Timestamp> last_arrival_;
-  Timestamp interval_{};  // usual time between images
+  Timestamp interval_{};  // typical interval between images
   int arrived_ = 0;
   int passed_over_ = 0;
   std::deque<Timestamp> passed_over_at_;  // times within the last second

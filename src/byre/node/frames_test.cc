@@ -1,4 +1,4 @@
-// Frames of a robot: map -> odom -> base.
+// Robot frames: map -> odom -> base.
 
 #include "byre/assessment/pose_messages.h"
 #include "byre/node/pose_frames.h"
@@ -67,10 +67,10 @@ TEST(PoseFrames, GoOnWithOdometryWhereTrackingBeginsAnew) {
 
 TEST(PoseMessages, TurnCovariancesIntoTheParentsAxes) {
   Matrix6 covariance = Matrix6::Zero();
-  covariance(0, 0) = 4.0;   // along the body's x
-  covariance(5, 5) = 0.01;  // about its z
+  covariance(0, 0) = 4.0;   // along x of the body
+  covariance(5, 5) = 0.01;  // about z of the body
   covariance(0, 5) = covariance(5, 0) = 0.1;
-  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));  // x becomes y
+  const Eigen::Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));  // turns x to y
   const std::array<double, 36> turned = ros_covariance(covariance, quarter);
   EXPECT_NEAR(turned[0], 0.0, 1e-12);
   EXPECT_NEAR(turned[7], 4.0, 1e-12);

@@ -10,19 +10,19 @@
 
 namespace byre {
 
-// Diagnostic of the pose, by its verdict: OK trusted, WARN degraded, ERROR untrusted.
+// Diagnostic of the pose: OK for trusted, WARN for degraded, ERROR for untrusted.
 ros::DiagnosticStatus localisation_status(const FrameReport& report);
 
 // Remedy for a doubt; empty without one.
 std::string advice_for(Doubt doubt);
 
-// Logs events of a frame, damage of the map when it is found, faults of motion inputs, and a change of the verdict.
-// last: report of the frame before; map_damage: see Slam; source_of: topic of a sensor.
+// Logs events of a frame, new damage of the map, faults of motion inputs, and a change of the verdict.
+// last: report of the previous frame; map_damage: see Slam; source_of: topic of a sensor.
 void log_changes(const FrameReport& report, const std::optional<FrameReport>& last,
                  const std::optional<std::string>& map_damage,
                  const std::function<std::string(MotionSensor sensor)>& source_of, const NodeLog& log);
 
-// Time, state, health and the pose in the map, as one line of JSON.
+// Time, state, health and map pose as one line of JSON.
 std::string health_line(const FrameReport& report);
 
 }  // namespace byre

@@ -7,9 +7,9 @@
 
 namespace byre {
 
-// What a pose given by hand says, in its own frame: three sigmas of it, but 3 m and 1 rad at least, as a click on a map
-// has no height and no exact direction. Without a direction (RViz 2 sends one, other programs leave it zero) any will
-// do. Empty without a finite position.
+// Hint from a pose set by hand, in the frame of the message. Radius and turn are three sigmas, but at least 3 m and
+// 1 rad, because a click on a map is imprecise. A zero quaternion permits any direction, as some programs other than
+// RViz 2 send none. Empty without a finite position.
 std::optional<PoseHint> hint_of(const ros::PoseWithCovarianceStamped& message);
 
 }  // namespace byre

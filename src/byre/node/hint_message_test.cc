@@ -12,7 +12,7 @@ ros::PoseWithCovarianceStamped clicked() {
   ros::PoseWithCovarianceStamped message;
   message.pose.pose.position = {4.0, -2.0, 0.0};
   message.pose.pose.orientation = {0.0, 0.0, 0.6, 0.8};
-  message.pose.covariance[0] = message.pose.covariance[7] = 0.25;  // as RViz says
+  message.pose.covariance[0] = message.pose.covariance[7] = 0.25;  // default of RViz
   message.pose.covariance[35] = 0.07;
   return message;
 }

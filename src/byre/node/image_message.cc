@@ -15,12 +15,12 @@
 namespace byre {
 namespace {
 
-// How an encoding of sensor_msgs/image_encodings.hpp is taken. Old names, which drivers still send, count as well.
+// Conversion of an encoding of sensor_msgs/image_encodings.hpp, including old names that drivers still send.
 struct Encoding {
   std::string_view name;
   PixelFormat format = PixelFormat::grey8;
-  int cv_type = CV_8UC1;            // type of the rows as they come
-  std::optional<int> to_grey = {};  // OpenCV's conversion, where tracking does not take the format as it is
+  int cv_type = CV_8UC1;            // type of the received rows
+  std::optional<int> to_grey = {};  // OpenCV's conversion; empty if tracking accepts the format
 };
 
 constexpr std::array kEncodings = {
@@ -38,7 +38,7 @@ constexpr std::array kEncodings = {
     Encoding{"yuv422_yuy2", PixelFormat::yuyv, CV_8UC2},
     Encoding{"uyvy", PixelFormat::grey8, CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
     Encoding{"yuv422", PixelFormat::grey8, CV_8UC2, cv::COLOR_YUV2GRAY_UYVY},
-    // OpenCV names a pattern by its second row's second and third pixel.
+    // OpenCV names a Bayer pattern by the second and third pixel of its second row.
     Encoding{"bayer_rggb8", PixelFormat::grey8, CV_8UC1, cv::COLOR_BayerBG2GRAY},
     Encoding{"bayer_bggr8", PixelFormat::grey8, CV_8UC1, cv::COLOR_BayerRG2GRAY},
     Encoding{"bayer_gbrg8", PixelFormat::grey8, CV_8UC1, cv::COLOR_BayerGR2GRAY},
@@ -88,7 +88,7 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
     cv::Mat written(height, width, CV_8UC1, grey.pixels.data());
     try {
       cv::cvtColor(given, written, *encoding->to_grey);
-    } catch (const cv::Exception& exception) {  // sizes that a conversion does not support
+    } catch (const cv::Exception& exception) {  // size not supported by a conversion
       throw InputError(place, "has an image that cannot be converted from '" + message.encoding + "': " + exception.err,
                        "check width, height and encoding of the images of the camera driver");
     }

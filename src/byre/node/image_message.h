@@ -9,10 +9,10 @@
 
 namespace byre {
 
-// An image that came in, in a form that tracking takes.
+// Received image in a format for tracking.
 struct ReceivedImage {
   ros::Header header;
-  ImageView about{};  // all but the pixels
+  ImageView about{};  // format and size; data is null
   std::vector<std::uint8_t> pixels;
 
   ImageView view() const {
@@ -22,8 +22,8 @@ struct ReceivedImage {
   }
 };
 
-// Throws InputError for an encoding that is not known, for sizes that are not those of the data, and for what is no
-// whole JPEG or PNG. place: the topic.
+// Throws InputError for an unsupported encoding, sizes that do not match the data, and an incomplete JPEG or PNG.
+// place: the topic.
 ReceivedImage received_image(ros::Image message, const std::string& place);
 ReceivedImage received_image(const ros::CompressedImage& message, const std::string& place);
 

@@ -12,18 +12,17 @@ namespace byre {
 
 struct PairingOptions {
   bool has_right = true;
-  Timestamp tolerance{};  // most time between the stamps of a pair
-  Timestamp wait{};       // time that a left image waits for its right one
+  Timestamp tolerance{};  // largest time between the stamps of a pair
+  Timestamp wait{};       // time that a left image waits for its right image
 };
 
 struct PairingCounts {
-  int passed_over = 0;    // left images that were left out, as a newer one was there
-  int without_right = 0;  // left images that were handed over alone
+  int passed_over = 0;    // left images skipped for newer ones
+  int without_right = 0;  // left images returned without a right image
 };
 
-// Puts left and right images together by their stamps. Whoever asks late by one pair misses none; by more, the newest
-// wins.
-// Times of arrival are those of one clock that never goes back.
+// Pairs left and right images by stamp. A caller that lags by one pair misses none; with more lag, the newest pair is
+// returned. Arrival times are of one monotonic clock.
 template <typename Image>
 class ImagePairs {
  public:
@@ -31,8 +30,7 @@ class ImagePairs {
     Timestamp stamp{};
     Image left;
     std::optional<Image> right;
-    std::optional<Timestamp>
-        nearest{};  // where there is no right image: distance to the stamp of the nearest right one
+    std::optional<Timestamp> nearest{};  // without a right image: distance to the nearest right stamp
   };
 
   explicit ImagePairs(const PairingOptions& options) : options_(options) {}
@@ -40,7 +38,7 @@ class ImagePairs {
   void add_left(Timestamp stamp, Image image, Timestamp arrival) { add(lefts_, stamp, std::move(image), arrival); }
   void add_right(Timestamp stamp, Image image, Timestamp arrival) { add(rights_, stamp, std::move(image), arrival); }
 
-  // The older one of two complete pairs, the newest of more; else the newest left image that has waited long enough.
+  // Older one of two complete pairs, newest one of more; else the newest left image whose waiting time is over.
   std::optional<Pair> next(Timestamp now) {
     if (const auto left = next_whole()) return take(*left, partner_of(lefts_[*left].stamp));
     for (std::size_t i = lefts_.size(); i-- > 0;) {
@@ -73,9 +71,9 @@ class ImagePairs {
     if (&queue == &lefts_) ++counts_.passed_over;
   }
 
-  // Index of the left image whose pair comes next; empty where none is complete.
+  // Index of the left image of the next complete pair; empty if there is none.
   std::optional<std::size_t> next_whole() const {
-    constexpr std::size_t kCaughtUp = 2;  // complete pairs, of which none is left out
+    constexpr std::size_t kCaughtUp = 2;  // complete pairs up to which none is skipped
     std::optional<std::size_t> newest, oldest;
     std::size_t count = 0;
     for (std::size_t i = lefts_.size(); i-- > 0;) {
@@ -112,8 +110,8 @@ class ImagePairs {
   }
 
   PairingOptions options_;
-  Queue lefts_;   // in the order of arrival
-  Queue rights_;  // in the order of arrival
+  Queue lefts_;   // in order of arrival
+  Queue rights_;  // in order of arrival
   PairingCounts counts_;
 };
 

@@ -1,4 +1,4 @@
-// Stream of images: pairs, and findings about the cameras.
+// Image stream: pairing, and faults of cameras.
 
 #include "byre/node/camera_watch.h"
 #include "byre/node/image_pairs.h"
@@ -14,7 +14,7 @@ using std::chrono_literals::operator""s;
 
 using Pairs = ImagePairs<int>;
 
-// So many pairs that nobody has asked for yet.
+// Pairs that are queued but not taken.
 Pairs waiting_pairs(int count) {
   Pairs pairs({true, 0ms, 50ms});
   for (int i = 1; i <= count; ++i) {

@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-// From pixels to metres by one number, without a mirror: then only a turn is left, which the grid's origin tells.
+// Side of a square, unmirrored pixel in metres; the rotation is left for the grid's origin.
 double side_of_pixel(const FloorPlan& plan) {
   const Eigen::Vector2d right = plan.metres_per_pixel.col(0), up = -plan.metres_per_pixel.col(1);
   constexpr double kMostSkew = 1e-3;
@@ -36,7 +36,7 @@ ros::OccupancyGrid grid_of(const FloorPlan& plan) {
   const Eigen::AngleAxisd turn(std::atan2(right.y(), right.x()), Eigen::Vector3d::UnitZ());
   grid.info.origin = ros_pose({Eigen::Quaterniond(turn), {corner.x(), corner.y(), 0.0}});
   grid.data.reserve(occupancy.size());
-  for (int row = plan.height - 1; row >= 0; --row) {  // from the lowest up
+  for (int row = plan.height - 1; row >= 0; --row) {  // from the bottom row up
     const auto begin = occupancy.begin() + static_cast<std::ptrdiff_t>(row) * plan.width;
     grid.data.insert(grid.data.end(), begin, begin + plan.width);
   }

@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// A message that came in; empty for bytes that are none of its type, which anybody may send.
+// Parses a received message; empty for invalid bytes, as any peer may send.
 template <ros::Message T>
 std::optional<T> parsed_message(const Message& message, const std::string& topic) {
   try {

@@ -7,15 +7,15 @@
 
 namespace byre {
 
-// What a node counts, since it began.
+// Counters of a node since its start.
 struct NodeFigures {
-  int images = 0;    // left images that came
-  int left_out = 0;  // left images left out, as newer ones were there
-  int frames = 0;    // frames handed to tracking
+  int images = 0;    // left images received
+  int left_out = 0;  // left images skipped for newer ones
+  int frames = 0;    // frames tracked
   std::optional<FrameReport> last{};
 };
 
-// As Prometheus reads it, https://prometheus.io/docs/instrumenting/exposition_formats
+// Prometheus text format, https://prometheus.io/docs/instrumenting/exposition_formats
 std::string metrics_text(const NodeFigures& figures);
 
 }  // namespace byre

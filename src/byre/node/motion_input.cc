@@ -10,16 +10,15 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kMostKept = 10'000;  // some seconds of the fastest sensor
+constexpr std::size_t kMostKept = 10'000;  // several seconds of the fastest sensor
 
-// Adds a sample, and leaves the oldest out where no frame asks for it.
+// Adds a sample; drops the oldest one if no frame takes samples.
 template <typename Sample>
 void keep(const Sample& sample, std::deque<Sample>& samples) {
   samples.push_back(sample);
   if (samples.size() > kMostKept) samples.pop_front();
 }
 
-// What came.
 template <ros::Message M, typename Use>
 void take_samples(Subscriber& subscriber, const std::string& topic, const Use& use) {
   for (const Message& message : subscriber.take()) {
@@ -45,14 +44,14 @@ MotionInput::MotionInput(const NodeConfig& config, Participant& participant, Gra
 }
 
 Subscriber MotionInput::subscribe(const std::string& topic, const MessageType& type) {
-  // Best effort, like sensor drivers.
+  // Best effort, as sensor drivers publish.
   const TopicQos qos{.is_reliable = false, .depth = 1000, .most_bytes = kMostBytesWithoutImage};
   Subscriber subscriber = participant_.subscribe(config_.topic(topic), type, qos);
   graph_.add(subscriber);
   return subscriber;
 }
 
-// Who publishes tells of which type wheels are.
+// The publisher determines the type of the wheels topic.
 void MotionInput::look_for_wheels() {
   const auto type = wheels_type(participant_.published_types(config_.topic(config_.wheels)));
   if (!type) return;

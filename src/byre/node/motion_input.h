@@ -12,18 +12,18 @@
 
 namespace byre {
 
-// What the topics of wheels and of a gyroscope bring. It is kept until the next frame, whose stamp tells whether the
-// clock was set meanwhile.
+// Samples from the topics of wheels and gyroscope. Held until the next frame, whose stamp reveals whether the clock was
+// set.
 class MotionInput {
  public:
   MotionInput(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph);
 
   void take();
-  // Precondition: the runner is running. clock: of the images.
+  // Passes samples on. clock: of the images. Precondition: the runner is running.
   void tell(const StampClock& clock, SlamRunner& runner);
-  // Fault of a topic, reported once; empty: nothing new.
+  // New fault of a topic, reported once; empty without one.
   std::string news();
-  // Topic of a sensor.
+  // Topic of a sensor, for messages.
   std::string source_of(MotionSensor sensor) const;
 
  private:
@@ -35,14 +35,14 @@ class MotionInput {
   Participant& participant_;
   GraphAnnouncement& graph_;
 
-  std::optional<Subscriber> wheels_;  // once somebody publishes their topic
+  std::optional<Subscriber> wheels_;  // empty until the topic has a publisher
   std::string wheels_type_;
   std::optional<Subscriber> gyroscope_;
   WheelStream stream_;
-  bool are_rates_unmeasured_ = false;  // a message marked rates as not measured
+  bool are_rates_unmeasured_ = false;  // whether a message marked rates as not measured
   bool is_reported_ = false;
-  std::deque<WheelSample> samples_;  // the last seconds of wheels, by their own stamps
-  std::deque<ImuSample> imu_;        // the last seconds, by their own stamps
+  std::deque<WheelSample> samples_;  // wheel samples of the last seconds, by their own stamps
+  std::deque<ImuSample> imu_;        // samples of the last seconds, by their own stamps
 };
 
 }  // namespace byre

@@ -19,17 +19,17 @@ namespace {
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-// A time that never goes back, and is none of the day.
+// Monotonic clock, unrelated to the time of day.
 Timestamp steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-constexpr std::size_t kShownOfText = 100;  // bytes of text from outside shown in an answer or a log line
+constexpr std::size_t kShownOfText = 100;  // bytes of external text quoted in an answer or a log line
 
-// Reading and writing a site's map on a slow disk: nothing is tracked meanwhile.
+// Bound for reading or writing a building's map on a slow disk; tracking pauses meanwhile.
 constexpr std::chrono::minutes kLongestWithFiles{5};
 
-// Numbers change all the time.
+// Texts are compared without numbers, which change all the time.
 std::string without_digits(std::string text) {
   std::erase_if(text, [](char letter) { return letter >= '0' && letter <= '9'; });
   return text;
@@ -84,7 +84,7 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
 
 void Node::take_images(Timestamp now) {
   const auto stamp_of = [](const Message& message, const std::string& topic) -> std::optional<ros::Header> {
-    return parsed_message<ros::Header>(message, topic);  // both kinds of images begin with one
+    return parsed_message<ros::Header>(message, topic);  // both image types begin with a header
   };
   for (Message& message : left_->take()) {
     const auto header = stamp_of(message, config_.left);
@@ -153,8 +153,7 @@ void Node::begin_anew() {
   last_report_.reset();
 }
 
-// A pose given by hand is a hint: where it contradicts a pose that is relied on, the robot is looked for anew, near it
-// first.
+// A pose set by hand is a hint. If it contradicts a reliable pose, relocalisation restarts, near the hint first.
 std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
   constexpr double kNear = 2.0;  // metres
   const std::string& frame = message.header.frame_id;
@@ -169,7 +168,7 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
     const double distance = (map_from_body_->translation - hint->map_from_body.translation).head<2>().norm();
     if (distance <= kNear) return fmt::format("agrees with the present pose within {:.1f} m", distance);
     answer = fmt::format("{:.1f} m from the present pose; ", distance) + runner_.relocalise() + "; ";
-    hint->map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has none
+    hint->map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has no height
     begin_anew();
   }
   if (!runner_.look_near(*hint)) return "the robot is being looked for in the whole map anyway";
@@ -239,7 +238,7 @@ void Node::process(const Pairs::Pair& pair) {
 }
 
 void Node::publish(const ReceivedImage& left, const FrameReport& report) {
-  if (is_dropped(report.input)) return;  // it has no pose, and says nothing of where the robot is
+  if (is_dropped(report.input)) return;  // without a pose
   map_from_body_ = report.map_from_body;
   pose_frames_.note(report);
   outputs_.tell_frame(left.header, report, pose_frames_);
@@ -266,7 +265,7 @@ void Node::tell_status(const ros::DiagnosticStatus& localisation, const ros::Dia
   board_->put({is_well, summary, metrics_text({watch_.arrived(), pairs_.counts().passed_over, frames_, last_report_})});
 }
 
-// Once a second, and at once where there is something new to say.
+// Once a second, and immediately after a change.
 void Node::tell_state(Timestamp now) {
   std::vector<ros::DiagnosticStatus> statuses = {localisation(), watch_.status(now)};
   const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message);
@@ -282,7 +281,7 @@ void Node::tell_state(Timestamp now) {
     outputs_.tell_points(runner_);
     last_slow_told_ = now;
   }
-  // That the loop turns proves little: where images come, some must have been tracked.
+  // A running loop is not sufficient: while images arrive, some must be tracked.
   const bool is_at_work = frames_ != frames_at_last_sign_ || watch_.arrived() == arrived_at_last_sign_;
   if (!is_at_work && runner_.is_running()) return;
   manager_.alive();

@@ -27,15 +27,13 @@
 
 namespace byre {
 
-// A node of ROS 2 that tracks what its topics bring, docs/ros2.md. One thread runs it; DDS and mapping have their own.
+// ROS 2 node that tracks images from topics, docs/ros2.md. One thread runs it; DDS and mapping have their own.
 class Node {
  public:
-  // log: is told in a line what happens. Throws InputError for files that cannot be used, and std::runtime_error where
-  // DDS refuses.
+  // log: receives one line per event. Throws InputError for unusable files, and std::runtime_error for errors of DDS.
   Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings, NodeLog log);
 
-  // Until should_stop says so; then keeps what was mapped, where there is a file for it. Throws InputError when that
-  // cannot be written.
+  // Runs until should_stop returns true, then saves the map if a file is configured. Throws InputError if that fails.
   void run(const std::function<bool()>& should_stop);
 
  private:
@@ -67,7 +65,7 @@ class Node {
   std::shared_ptr<LiveTopics> watchers_;  // null without a web server
   NodeOutputs outputs_;
   std::optional<Subscriber> left_, right_, command_, initial_pose_;
-  std::optional<NodeServices> services_;  // empty where none are offered
+  std::optional<NodeServices> services_;  // empty if services are disabled
   MotionInput motion_;
   Pairs pairs_;
   StampClock clock_;
@@ -75,19 +73,19 @@ class Node {
   PoseFrames pose_frames_;
   ServiceManager manager_;
   std::shared_ptr<StatusBoard> board_ = std::make_shared<StatusBoard>();
-  std::optional<FleetLink> fleet_;       // where a fleet is told
-  std::optional<WebServer> web_server_;  // reads the board, and serves watchers
+  std::optional<FleetLink> fleet_;       // empty without a fleet interface
+  std::optional<WebServer> web_server_;  // uses board_ and watchers_
 
-  std::optional<Calibration> calibration_;  // once it is known
+  std::optional<Calibration> calibration_;  // empty until available
   std::string left_frame_;                  // frame of the left images; empty before the first one
   bool has_told_cameras_ = false;
   std::optional<FrameReport> last_report_;
-  std::optional<Pose> map_from_body_;  // as it was published last
+  std::optional<Pose> map_from_body_;  // last published pose
   Timestamp last_image_time_{};
   std::string last_diagnosis_;
-  std::string last_fault_;      // fault of the calibration that was told last
-  Timestamp last_told_{};       // when diagnostics were told
-  Timestamp last_slow_told_{};  // when path and points were told
+  std::string last_fault_;      // last reported fault of the calibration
+  Timestamp last_told_{};       // time of the last diagnostics
+  Timestamp last_slow_told_{};  // time of the last path and points
   int arrived_at_last_sign_ = 0;
   int frames_ = 0;
   int frames_at_last_sign_ = 0;

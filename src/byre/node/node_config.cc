@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The known name that shares most letters at the beginning of its last part.
+// Setting whose last part shares the longest prefix with the unknown one.
 std::string remedy_for_unknown(std::string_view name) {
   const std::string_view word = name.substr(name.rfind('.') + 1);
   for (const NodeSetting& setting : node_settings()) {
@@ -25,7 +25,7 @@ std::string remedy_for_unknown(std::string_view name) {
   return "see byre node --print-config";
 }
 
-// Files that are named with a path from the file of settings.
+// Paths relative to the configuration file.
 std::array<std::optional<fs::path>*, 7> paths_of(NodeConfig& config) {
   return {&config.map,
           &config.save,
@@ -36,7 +36,7 @@ std::array<std::optional<fs::path>*, 7> paths_of(NodeConfig& config) {
           &config.fleet.password_file};
 }
 
-// Settings that go together only in some ways; told at the line of the first one that the file has.
+// Constraints between settings; faults are reported at the first line involved.
 class Consistency {
  public:
   Consistency(const fs::path& path, const std::vector<Setting>& given, std::vector<InputError>& faults)
@@ -99,8 +99,7 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "use letters, digits and underscores");
 }
 
-// A scalar of YAML. Text of other characters than those of numbers, paths and topics is quoted, with the escapes of
-// JSON.
+// YAML scalar. Text with characters beyond those of numbers, paths and topics is quoted with JSON escapes.
 std::string yaml_scalar(const std::string& text) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./";
   const bool is_plain = !text.empty() && text.find_first_not_of(kPlain) == std::string::npos;
@@ -110,7 +109,7 @@ std::string yaml_scalar(const std::string& text) {
 }  // namespace
 
 std::string NodeConfig::topic(const std::string& given) const {
-  // Names of one's own are within the node's, as "/byre/odometry".
+  // Relative names resolve within the node, such as "/byre/odometry".
   return given.empty() ? "" : resolved(given, full_name());
 }
 
@@ -128,7 +127,7 @@ NodeConfigReading read_node_config(const fs::path& path) {
     }
   }
   for (std::optional<fs::path>* const named : paths_of(reading.config)) {
-    if (*named) **named = path.parent_path() / **named;  // an absolute one stays
+    if (*named) **named = path.parent_path() / **named;  // absolute paths are kept
   }
   check(reading.config, {path, given, reading.faults});
   return reading;

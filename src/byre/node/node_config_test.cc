@@ -26,7 +26,7 @@ class NodeConfigFile : public testing::Test {
     std::ofstream(folder_ / "robot.yaml") << text;
     return read_node_config(folder_ / "robot.yaml");
   }
-  // All faults, a line each.
+  // All faults, one per line.
   std::string faults(const std::string& text) const {
     std::string lines;
     for (const InputError& fault : read(text).faults) lines += std::string(fault.what()) + "\n";

@@ -9,15 +9,15 @@
 
 namespace byre {
 
-// How much a line matters, by the numbers of syslog(3).
+// Severities as numbered by syslog(3).
 enum class LogLevel : std::uint8_t { error = 3, warning = 4, notice = 5, info = 6 };
 
-// Told what happens, a line each.
+// Receiver of log lines.
 using NodeLog = std::function<void(LogLevel level, const std::string& line)>;
 
-// Writes lines for a terminal, or for the journal of systemd with their level in front (sd-daemon(3)). Text from
-// outside cannot begin another line. Lines beyond kAtOnce, and then beyond kPerSecond, are left out and counted,
-// because a verdict may change with every frame.
+// Writes lines for a terminal, or for systemd's journal with their level in front (sd-daemon(3)). Line breaks in text
+// are escaped. At most kAtOnce lines in a burst and kPerSecond on average; the rest is counted and dropped, as verdicts
+// may change at every frame.
 class NodeLogger {
  public:
   static constexpr double kAtOnce = 30.0;
@@ -26,7 +26,7 @@ class NodeLogger {
   // stream outlives this.
   NodeLogger(std::ostream& stream, bool is_for_journal) : stream_(stream), is_for_journal_(is_for_journal) {}
 
-  // now: of a steady clock. Errors are never left out.
+  // now: of a steady clock. Errors are never dropped.
   void tell(LogLevel level, const std::string& line, Timestamp now);
 
  private:
@@ -35,11 +35,11 @@ class NodeLogger {
   std::ostream& stream_;  // outlives this
   bool is_for_journal_;   // constant after construction
   Timestamp last_{};
-  double allowed_ = kAtOnce;  // lines
+  double allowed_ = kAtOnce;  // lines that may be written now
   int left_out_ = 0;
 };
 
-// Whether the standard error stream goes to the journal, as systemd tells in JOURNAL_STREAM.
+// Whether standard error is connected to the journal, by JOURNAL_STREAM of systemd.
 bool is_journal_read();
 
 }  // namespace byre

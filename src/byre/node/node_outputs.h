@@ -17,32 +17,32 @@
 
 namespace byre {
 
-// What a node tells, and how. Topics that are left out are not there.
+// Output topics of a node. Disabled topics have no publisher.
 class NodeOutputs {
  public:
-  // watchers: where everything is told as well; null for nowhere. All but the settings outlive this.
+  // watchers: additional sink for all messages; may be null. All arguments but the settings outlive this.
   NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, ros::MessageSink* watchers);
 
-  // Everything about a frame, its pose in the map frame that is published. image: of its left image.
+  // Publishes all messages of a frame. image: header of its left image. The pose is in the published map frame.
   void tell_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames);
   void tell_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
-  // Images as they came, to watchers alone.
+  // Sends received images to watchers only.
   void tell_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
   void tell_diagnostics(std::vector<ros::DiagnosticStatus> statuses);
   void tell_answer(const std::string& asked, bool is_done, const std::string& answer);
   void tell_plan();
-  // Only while somebody listens.
+  // Only with subscribers.
   void tell_path(const SlamRunner& runner, Timestamp image_time);
   void tell_points(const SlamRunner& runner);
-  void forget_points() { has_told_points_ = false; }  // another map is loaded
+  void forget_points() { has_told_points_ = false; }  // after loading another map
 
  private:
-  // A topic that is told, to readers of DDS and to watchers.
+  // Topic with DDS readers and watchers.
   struct Output {
     Publisher publisher;
     std::optional<ros::MessageSink::TopicId> watched;
   };
-  using OptionalOutput = std::optional<Output>;  // empty: it is left out
+  using OptionalOutput = std::optional<Output>;  // empty: disabled
 
   template <ros::Message T>
   OptionalOutput open(const std::string& topic, const TopicQos& qos);
@@ -63,8 +63,8 @@ class NodeOutputs {
   Participant& participant_;                               // outlives this
   GraphAnnouncement& graph_;                               // outlives this
   ros::MessageSink* watchers_;                             // outlives this; null without watchers
-  std::optional<ros::MessageSink::TopicId> left_, right_;  // images as watchers see them
-  Timestamp stamp_ = wall_time();                          // stamp of the last image, or of the beginning
+  std::optional<ros::MessageSink::TopicId> left_, right_;  // image topics of watchers
+  Timestamp stamp_ = wall_time();                          // stamp of the last image; start time before the first
   OptionalOutput odometry_, pose_, tf_, tf_static_, diagnostics_, path_, points_, grid_, health_, events_;
   struct LastPose {
     Timestamp time{};
@@ -74,7 +74,7 @@ class NodeOutputs {
   std::ostringstream event_lines_;
   EventLog event_log_{event_lines_};
   int frames_ = 0;
-  bool has_told_points_ = false;  // whether the points of a map that does not change are out
+  bool has_told_points_ = false;  // whether the points of a constant map were published
 };
 
 }  // namespace byre

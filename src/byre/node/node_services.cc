@@ -10,8 +10,8 @@
 namespace byre {
 namespace {
 
-// A request by its bytes, which must be all of them: one in the words of another vendor's DDS has no id in front, and
-// may be taken for another request.
+// Parses a request that must use all bytes: requests of other DDS vendors lack the id and could be mistaken for another
+// one.
 template <ros::Message Body>
 std::optional<ServiceMessage<Body>> whole_request(const Message& message, const std::string& service) {
   constexpr std::size_t kMostPadding = 3;

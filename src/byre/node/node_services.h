@@ -13,35 +13,35 @@
 
 namespace byre {
 
-// What a service asks of a node: a command, as on the topic of commands, or where the robot is, as somebody says.
+// Request of a service: a command as on the command topic, or a pose hint.
 struct ServiceCall {
   std::string command{};
   std::optional<ros::PoseWithCovarianceStamped> hint{};
 };
 
-// Whether what was asked for was done, and what there is to say to that.
+// Result of a request with a text.
 struct Outcome {
   bool is_done = false;
   std::string answer{};
 };
 
-// The commands of a node as services of ROS, docs/ros2.md.
+// Commands of a node as ROS services, docs/ros2.md.
 class NodeServices {
  public:
-  // log: is told where a service is called in words that it does not understand.
+  // log: receives requests in an unknown encoding.
   NodeServices(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, NodeLog log);
 
   using Act = std::function<Outcome(const ServiceCall& call)>;
-  // Has done what was asked for since it was asked last. now: of a clock that never goes back.
+  // Executes requests received since the previous call, and replies. now: of a monotonic clock.
   void answer(const Act& act, Timestamp now);
 
  private:
   struct Service {
     std::string name;
     ServiceServer server;
-    // The reply's bytes; empty where the request's are none of this service.
+    // Bytes of the reply; empty if the request is not of this service's type.
     std::function<std::optional<std::vector<std::byte>>(const Message& request, const Act& act)> reply_to;
-    bool was_misunderstood = false;  // a request, which was told
+    bool was_misunderstood = false;  // an invalid request was logged
   };
 
   template <typename Kind>

@@ -79,7 +79,7 @@ NodeSetting seconds(const char* name, double most, Place place, const char* mean
 template <typename Value>
 using Names = std::vector<std::pair<std::string_view, Value>>;
 
-// The first name is that of no value where Value is optional.
+// The first name stands for the empty value if Value is optional.
 template <typename Value, typename Place>
 NodeSetting choice(const char* name, Names<Value> names, Place place, const char* meaning) {
   std::string range;

@@ -6,20 +6,20 @@
 
 namespace byre {
 
-// The frames of REP-105 by what tracking reports: map -> odom -> base. odom never jumps, not even where tracking begins
-// anew. map -> odom is known while the pose in the map may be relied on, held where it may not for a while, and
-// withdrawn once it is not known where the robot is, so that whoever steers by the map stops.
+// Frames of REP-105 from tracking reports: map -> odom -> base. odom never jumps, even if tracking is restarted.
+// map -> odom is updated while the verdict is not `untrusted`, held otherwise, and withdrawn once the robot is lost, so
+// that controllers in the map frame stop.
 class PoseFrames {
  public:
-  // Poses that come next are of another run, whose odometry has a frame of its own, and of another map.
+  // Starts a new run: its odometry has a new frame, and its map may be another one.
   void begin_anew();
 
-  // The report's pose in the map: in the map frame that is published.
+  // Precondition: map_from_body of the report is in the published map frame.
   void note(const FrameReport& report);
 
-  const std::optional<Pose>& odom_from_base() const { return odom_from_base_; }  // empty while it is not known
-  const std::optional<Pose>& map_from_odom() const { return map_from_odom_; }    // empty before and when withdrawn
-  bool is_held() const { return is_held_; }                                      // whether map_from_odom is an old one
+  const std::optional<Pose>& odom_from_base() const { return odom_from_base_; }  // empty while unknown
+  const std::optional<Pose>& map_from_odom() const { return map_from_odom_; }    // empty while unknown or withdrawn
+  bool is_held() const { return is_held_; }                                      // whether map_from_odom is outdated
 
  private:
   std::optional<Pose> odom_from_start_ = Pose{};  // empty until the first pose of a run

@@ -17,7 +17,7 @@ std::string reason() {
 }  // namespace
 
 void apply_process_settings(const NodeConfig& config, const NodeLog& log) {
-  // Pages are held from when they are used, as most of a kept map never is.
+  // MCL_ONFAULT locks pages on first use, as most of a map is never used.
   if (config.locks_memory && mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) {
     log(LogLevel::warning, "process.lock_memory: not allowed (" + reason() + "): raise LimitMEMLOCK of the service");
   }

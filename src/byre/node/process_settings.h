@@ -5,9 +5,8 @@
 
 namespace byre {
 
-// Keeps the program's memory from being paged out, and lets the calling thread, which is to run the node, go before
-// those of other programs; threads that it begins do not. As the settings want it; what the system does not allow is
-// told, and left alone.
+// Locks the program's memory, and sets the real-time priority of the calling thread, but not of threads that it starts,
+// according to the settings. Missing permissions are logged.
 void apply_process_settings(const NodeConfig& config, const NodeLog& log);
 
 }  // namespace byre

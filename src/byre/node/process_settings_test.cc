@@ -9,7 +9,7 @@ namespace {
 
 using testing::IsEmpty;
 
-// What was told; the settings are taken back.
+// Log lines of applying the settings, which are then reverted.
 std::string told_by(const NodeConfig& config, int& policy) {
   std::string told;
   apply_process_settings(config, [&told](LogLevel, const std::string& line) { told += line + "\n"; });

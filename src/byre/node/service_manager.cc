@@ -11,7 +11,7 @@ namespace byre {
 
 ServiceManager::ServiceManager() {
   std::uint64_t microseconds = 0;
-  // Half of what the manager waits, as sd_watchdog_enabled(3) has it.
+  // Half of the timeout, as recommended by sd_watchdog_enabled(3).
   if (sd_watchdog_enabled(0, &microseconds) > 0) interval_ = std::chrono::microseconds(microseconds / 2);
 }
 
@@ -42,7 +42,7 @@ void ServiceManager::alive() {
 void ServiceManager::busy(std::chrono::seconds longest) {
   if (!interval_ || longest <= 2 * *interval_) return;
   is_busy_ = true;
-  set_watchdog(longest);  // from now on
+  set_watchdog(longest);  // starting now
 }
 
 void ServiceManager::set_watchdog(std::chrono::microseconds time) {

@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-// The socket of a service manager.
+// Notification socket of a service manager.
 class NotifySocket {
  public:
   NotifySocket() {

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A node runs for weeks. The way of a quarter of an hour at 20 frames a second, and what came before it every so often.
+// A node runs for weeks: a quarter of an hour at 20 Hz in full, older poses subsampled.
 constexpr const char* kMostPoses = "20000";
 
 SlamOptions slam_options(const NodeConfig& config) {
@@ -32,20 +32,21 @@ SlamOptions slam_options(const NodeConfig& config) {
   options.max_pair_difference = std::max(options.max_pair_difference, config.pair_tolerance);
   if (!config.options) return options;
   EngineOptions checked;
-  read_options(*config.options, checked);  // its messages tell the line
+  read_options(*config.options, checked);  // its messages name the line
   for (const Setting& setting : read_settings(*config.options)) {
-    if (setting.name != "pace") options.settings.emplace_back(setting.name, setting.text);  // workers tell that here
+    if (setting.name != "pace") options.settings.emplace_back(setting.name, setting.text);  // replaced by workers
   }
   return options;
 }
 
-// Whether the map lies on the plan: another one that is loaded need not.
+// Whether the map is registered on the plan; another map need not be.
 bool lies_on(const fs::path& map, const fs::path& plan) {
   const auto registration = load_plan_registration(map);
   return registration && registration->plan == plan.filename().string();
 }
 
-// A name in the folder of the map that is loaded, and no way out of it: whoever may send commands may not read files.
+// File in the folder of the loaded map. Other folders are rejected, as senders of commands may not read arbitrary
+// files.
 fs::path beside(const fs::path& map, const std::string& name) {
   if (name.empty() || name.starts_with('.') || name.find('/') != std::string::npos) {
     throw InputError("load", "'" + name.substr(0, 100) + "' is no file's name",
@@ -54,8 +55,8 @@ fs::path beside(const fs::path& map, const std::string& name) {
   return map.parent_path() / name;
 }
 
-// Throws InputError if slam.save may not be written, or if it or its previous version is a file that the node reads;
-// the map that is extended is permitted.
+// Throws InputError if slam.save may not be written, or if it or its previous version is an input of the node, other
+// than the map to extend.
 void require_safe_save(const NodeConfig& config) {
   if (!config.save) return;
   NamedFiles files;
