@@ -16,8 +16,7 @@
 namespace byre {
 namespace {
 
-// The callbacks below are called by threads of Cyclone DDS, which is C: no exception leaves them, and a null pointer
-// tells it that there is no memory.
+// Callbacks for threads of Cyclone DDS, which is C: they throw no exceptions; a null pointer means out of memory.
 
 struct CdrType : ddsi_sertype {
   std::size_t most_bytes = 0;  // longer received messages are dropped
@@ -28,8 +27,8 @@ std::size_t most_bytes_of(const ddsi_sertype* type) {
 }
 
 struct Sample : ddsi_serdata {
-  std::vector<std::byte> bytes;  // up to a whole number of four bytes, as Cyclone may ask for that
-  std::size_t size = 0;          // bytes of the message
+  std::vector<std::byte> bytes;  // padded to a multiple of four, as Cyclone may read that far
+  std::size_t size = 0;          // bytes without padding
 };
 
 const Sample& sample_of(const ddsi_serdata* data) {
@@ -46,7 +45,7 @@ Sample* new_sample(const ddsi_sertype* type, ddsi_serdata_kind kind) {
   return sample;
 }
 
-// Null without memory, or where fill finds that the bytes are not all there.
+// Null if out of memory, or if fill finds the bytes incomplete.
 template <typename Fill>
 ddsi_serdata* filled_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size,
                             const Fill& fill) noexcept {
@@ -62,14 +61,14 @@ ddsi_serdata* filled_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, st
 }
 
 bool equal_keys(const ddsi_serdata*, const ddsi_serdata*) {
-  return true;  // there are no keys
+  return true;  // without keys, all are equal
 }
 
 std::uint32_t size_of(const ddsi_serdata* data) {
   return static_cast<std::uint32_t>(sample_of(data).size);
 }
 
-// Fragments follow one another from the first byte on, and may overlap.
+// Fragments are in order, complete from the first byte, and may overlap.
 bool gather(const nn_rdata* fragment, std::span<std::byte> bytes) {
   std::size_t done = 0;
   for (; fragment != nullptr; fragment = fragment->nextfrag) {
@@ -108,7 +107,7 @@ ddsi_serdata* from_key_hash(const ddsi_sertype* type, const ddsi_keyhash*) {
   return without_bytes(type);
 }
 
-// Messages are handed over as bytes alone; Cyclone asks for empty ones when it disposes of any.
+// Messages are passed as bytes only; Cyclone requests empty ones on disposal.
 ddsi_serdata* from_struct(const ddsi_sertype* type, ddsi_serdata_kind kind, const void*) {
   return kind == SDK_KEY ? without_bytes(type) : nullptr;
 }

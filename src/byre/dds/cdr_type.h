@@ -10,17 +10,16 @@ struct ddsi_sertype;
 
 namespace byre {
 
-// Messages as Cyclone DDS is to carry them for byre: bytes that it does not look into. All types are as those of ROS 2,
-// without keys and in the first version of the encoding (XCDR1). A message is four bytes that name the encoding and its
-// byte order, then its fields.
+// Cyclone DDS type for messages as opaque bytes. All types are those of ROS 2: without keys, in XCDR1. A message is
+// four bytes for encoding and byte order, then its fields.
 
-// A type for dds_create_topic_sertype, which takes ownership. Received messages of more than most_bytes are dropped.
+// Type for dds_create_topic_sertype, which takes ownership. Longer received messages than most_bytes are dropped.
 ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t most_bytes);
 
-// A message of a topic's type for dds_writecdr, which takes it over; null without memory.
+// Message of a topic's type for dds_writecdr, which takes ownership; null if out of memory.
 ddsi_serdata* make_cdr_sample(const ddsi_sertype* type, std::vector<std::byte> message) noexcept;
 
-// What dds_takecdr gave, as long as that is kept; empty for news about a writer.
+// Bytes of a sample from dds_takecdr, valid as long as it is; empty for a change of a writer's state.
 std::span<const std::byte> bytes_of(const ddsi_serdata& sample);
 
 }  // namespace byre

@@ -15,7 +15,7 @@ namespace {
 using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 
 Qos make_qos(const TopicQos& wanted) {
-  // Writers of ROS wait forever; a robot's tracking waits for nobody.
+  // ROS writers block without limit; tracking must not wait.
   constexpr dds_duration_t kLongestWait = DDS_MSECS(20);
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_reliability(qos.get(), wanted.is_reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
@@ -126,7 +126,7 @@ Participant::Participant(const RosNetwork& network, const std::string& own_setti
   const std::string doing = "join the domain " + std::to_string(network.domain);
   domain_ = DdsEntity(dds_create_domain(number, cyclone_settings(network, own_settings).c_str()), doing);
   const Qos qos(dds_create_qos(), &dds_delete_qos);
-  constexpr std::string_view kEnclave = "enclave=/;";  // mark of a program of ROS
+  constexpr std::string_view kEnclave = "enclave=/;";  // identifies a ROS process
   dds_qset_userdata(qos.get(), kEnclave.data(), kEnclave.size());
   participant_ = DdsEntity(dds_create_participant(number, qos.get(), nullptr), doing);
   wake_ = DdsEntity(dds_create_waitset(participant_.handle()), doing);

@@ -18,26 +18,26 @@ struct ddsi_sertype;
 
 namespace byre {
 
-// What is asked of a topic. Both sides must fit: who reads reliably needs a reliable writer, who reads what was written
-// before it came needs a latched one.
+// Quality of service of a topic. Reader and writer must match: reliable readers need reliable writers, latched readers
+// need latched writers.
 struct TopicQos {
   bool is_reliable = true;
-  bool is_latched = false;  // whether the last messages are kept for those who come later ("transient local")
-  int depth = 10;           // messages kept for a reader that is slow
+  bool is_latched = false;                          // keeps the last messages for late subscribers ("transient local")
+  int depth = 10;                                   // messages kept for a slow reader
   std::size_t most_bytes = std::size_t{128} << 20;  // longer received messages are dropped
 };
 
 // Largest received message without an image: commands, poses, camera calibrations, motion, transforms.
 inline constexpr std::size_t kMostBytesWithoutImage = std::size_t{256} << 10;
 
-// A 16-byte id of DDS.
+// 16-byte GUID of DDS.
 using EntityId = std::array<std::uint8_t, 16>;
 
-// Something of Cyclone DDS, deleted with it.
+// Handle of a Cyclone DDS entity, deleted on destruction.
 class DdsEntity {
  public:
   DdsEntity() = default;
-  // doing: what was asked for, for messages. Throws std::runtime_error for an error's number.
+  // doing: attempted action, for messages. Throws std::runtime_error if the handle is an error code.
   DdsEntity(std::int32_t handle, const std::string& doing);
   DdsEntity(DdsEntity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
   DdsEntity& operator=(DdsEntity&& other) noexcept;
@@ -46,29 +46,29 @@ class DdsEntity {
   std::int32_t handle() const { return handle_; }
 
  private:
-  std::int32_t handle_ = 0;  // zero: none
+  std::int32_t handle_ = 0;  // zero: no entity
 };
 
-// Messages of one topic on their way out. Made by a Participant.
+// Writer of a topic. Made by a Participant.
 class Publisher {
  public:
-  // Hands a message over, as CDR. Waits a little for readers that are slow, then leaves it out.
+  // Publishes a CDR message. Waits briefly for slow readers, then drops it.
   void publish(std::vector<std::byte> message);
 
   int subscribers() const;
   bool has_subscribers() const { return subscribers() > 0; }
   EntityId id() const;
-  int left_out() const { return left_out_; }  // messages
+  int left_out() const { return left_out_; }  // dropped messages
 
  private:
   friend class Participant;
-  const ddsi_sertype* type_ = nullptr;  // constant after construction, held by the topic
+  const ddsi_sertype* type_ = nullptr;  // constant after construction; owned by the topic
   DdsEntity topic_;
   DdsEntity writer_;
   int left_out_ = 0;
 };
 
-// A message that came in. Its bytes stay where they are as long as it lives.
+// Received message. Its bytes stay valid for its lifetime.
 class Message {
  public:
   explicit Message(ddsi_serdata* taken) : taken_(taken) {}
@@ -82,10 +82,10 @@ class Message {
   ddsi_serdata* taken_ = nullptr;
 };
 
-// Messages of one topic on their way in. Made by a Participant.
+// Reader of a topic. Made by a Participant.
 class Subscriber {
  public:
-  // All that came since it was asked last, the oldest first; no more than the topic's depth.
+  // Messages since the previous call, oldest first, at most the depth of the topic.
   std::vector<Message> take();
 
   int publishers() const;
@@ -98,25 +98,25 @@ class Subscriber {
   DdsEntity condition_;
 };
 
-// A program in a domain of ROS 2, by Cyclone DDS, which has threads of its own: call this from one thread. Publishers
-// and subscribers are to be gone before it. All throw std::runtime_error for what DDS refuses.
+// Participant in a ROS 2 domain by Cyclone DDS, which has its own threads. Call it from one thread. It outlives its
+// publishers and subscribers. All functions throw std::runtime_error for errors of DDS.
 class Participant {
  public:
-  // own_settings: CYCLONEDDS_URI. One at a time in a program may have a domain of one number.
+  // own_settings: CYCLONEDDS_URI. A process may have one participant per domain number at a time.
   Participant(const RosNetwork& network, const std::string& own_settings);
 
-  // topic: begins with a slash, or is a name of DDS as it is. note: what other programs are told of the writer or
-  // reader beside its type, as "key=value;".
+  // topic: ROS name with a leading slash, or a plain DDS name. note: user data of the writer or reader besides its
+  // type, as "key=value;".
   Publisher publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
                     const std::string& note = {});
-  // Its messages wake wait().
+  // Received messages wake wait().
   Subscriber subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
                        const std::string& note = {});
 
-  // The types of all that is published on a topic, as is known by now: "nav_msgs/msg/Odometry".
+  // Types of the publishers on a topic discovered so far: "nav_msgs/msg/Odometry".
   std::vector<std::string> published_types(const std::string& topic);
 
-  // Until a subscriber has messages, at longest for a time.
+  // Waits until a subscriber has messages, or for the given time.
   void wait(std::chrono::nanoseconds longest);
 
   EntityId id() const;
@@ -127,7 +127,7 @@ class Participant {
   DdsEntity domain_;
   DdsEntity participant_;
   DdsEntity wake_;
-  DdsEntity publications_;  // reader of what others publish, once it is asked for
+  DdsEntity publications_;  // reader of discovered publications, made on first use
 };
 
 }  // namespace byre

@@ -22,8 +22,8 @@ std::vector<std::byte> message_of(std::size_t size) {
   return message;
 }
 
-// Two participants on the loopback interface. To Cyclone DDS their domains have numbers of their own, or it would hand
-// messages over within the program; on the wire they have one.
+// Two participants on the loopback interface. Their domain ids differ inside Cyclone DDS, to prevent delivery within
+// the process; on the wire they are equal.
 class TwoParticipants : public testing::Test {
  protected:
   static std::string settings() {
@@ -35,7 +35,7 @@ class TwoParticipants : public testing::Test {
     return Participant({.domain = number, .range = DiscoveryRange::localhost}, settings());
   }
 
-  // The next message, once it comes within some seconds.
+  // Next message, waiting some seconds.
   std::optional<Message> next(Participant& participant, Subscriber& subscriber) {
     const auto end = std::chrono::steady_clock::now() + 20s;
     while (std::chrono::steady_clock::now() < end) {

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// rmw_dds_common's messages. Ids have 24 bytes up to Humble, of which the last 8 are zero, and 16 from Iron on.
+// Messages of rmw_dds_common. Ids have 24 bytes up to Humble, the last 8 of them zero, and 16 bytes from Iron on.
 template <std::size_t length>
 struct Gid {
   static constexpr std::string_view kType = "rmw_dds_common/msg/Gid";

@@ -8,25 +8,24 @@
 
 namespace byre {
 
-// A node as it is told to other programs, for `ros2 node list` and `ros2 node info`.
+// Node for `ros2 node list` and `ros2 node info`.
 struct NodeDescription {
-  std::string name;              // "byre"
+  std::string name;              // such as "byre"
   std::string name_space = "/";  // begins with a slash
   std::vector<EntityId> readers{};
   std::vector<EntityId> writers{};
 };
 
-// The message of ros_discovery_info by which a program with one node tells of it, as programs of that distribution take
-// it.
+// Message on ros_discovery_info of a process with one node, in the encoding of a distribution.
 std::vector<std::byte> graph_message(const EntityId& participant, const NodeDescription& node,
                                      RosDistribution distribution);
 
-// Tells others of the node as long as it lives.
+// Announces the node for its own lifetime.
 class GraphAnnouncement {
  public:
   GraphAnnouncement(Participant& participant, NodeDescription node);
 
-  // Endpoints that came after.
+  // Adds endpoints made later.
   void add(const Publisher& publisher);
   void add(const Subscriber& subscriber);
   void tell();

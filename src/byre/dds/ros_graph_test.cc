@@ -21,10 +21,10 @@ std::vector<std::byte> graph_bytes(std::initializer_list<int> values) {
 
 const NodeDescription kNode{"byre", "/", {id_of(32)}, {}};
 
-// The bytes below are put together by hand: encapsulation, id, one node, "/", "byre", one reader, no writer.
+// Bytes written by hand: encapsulation, id, one node, "/", "byre", one reader, no writer.
 TEST(GraphMessage, HasIdsOf16BytesFromIronOn) {
   EXPECT_EQ(graph_message(id_of(1), kNode, RosDistribution::jazzy),
-            graph_bytes({0,  1,  0,  0,                                                       // CDR, lowest byte first
+            graph_bytes({0,  1,  0,  0,                                                       // CDR, little-endian
                          1,  2,  3,  4,  5,   6,   7,   8,   9,  10, 11, 12, 13, 14, 15, 16,  // participant
                          1,  0,  0,  0,                                                       // nodes
                          2,  0,  0,  0,  '/', 0,   0,   0,                                    // padded to four

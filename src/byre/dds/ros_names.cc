@@ -45,7 +45,7 @@ std::string ros_type_name(std::string_view dds_type) {
 }
 
 std::string fault_in_name(std::string_view name) {
-  constexpr std::size_t kLongest = 240;  // characters: DDS takes 256 with all that is put before and behind
+  constexpr std::size_t kLongest = 240;  // characters; DDS accepts 256 including prefix and suffix
   if (name.size() > kLongest) return "is longer than 240 characters";
   if (!name.starts_with('/')) return "does not begin with a slash";
   if (name == "/") return "";

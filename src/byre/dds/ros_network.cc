@@ -13,7 +13,7 @@
 namespace byre {
 namespace {
 
-constexpr int kMostDomain = 232;  // beyond, there are no ports
+constexpr int kMostDomain = 232;  // largest domain with valid ports
 
 int read_domain(const Environment& environment) {
   const std::string text = environment("ROS_DOMAIN_ID").value_or("");
@@ -69,7 +69,7 @@ std::string discovery_settings(const RosNetwork& network) {
   std::vector<std::string> peers = network.peers;
   if (network.range == DiscoveryRange::localhost) peers.insert(peers.begin(), "localhost");
   if (peers.empty()) return "";
-  // Peers that are asked one by one are found at ports that follow from numbers, the first of which are tried.
+  // Unicast discovery tries the ports of the first participant indices.
   std::string xml =
       "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32"
       "</MaxAutoParticipantIndex><Peers>";
@@ -105,7 +105,7 @@ std::optional<RosDistribution> distribution_of(std::string_view name) {
   const bool is_name =
       !name.empty() && std::ranges::all_of(name, [](unsigned char letter) { return std::islower(letter) != 0; });
   if (!is_name) return std::nullopt;
-  // Releases are named by the alphabet; Iron was the first with the shorter ids.
+  // Release names ascend alphabetically; ids are shorter from Iron on.
   return name < "iron" ? RosDistribution::humble : RosDistribution::jazzy;
 }
 
@@ -123,7 +123,7 @@ std::string cyclone_settings(const RosNetwork& network, const std::string& own_s
   const std::string found = interface_settings(network) + discovery_settings(network);
   std::string settings = found.empty() ? "" : "<CycloneDDS><Domain>" + found + "</Domain></CycloneDDS>,";
   if (!own_settings.empty()) settings += own_settings + ",";
-  // Shared memory is for messages of one size each, and byre's types know no sizes.
+  // Shared memory needs types of fixed size, which byre's opaque types are not.
   return settings + "<CycloneDDS><Domain><SharedMemory><Enable>false</Enable></SharedMemory></Domain></CycloneDDS>";
 }
 

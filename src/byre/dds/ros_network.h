@@ -9,40 +9,40 @@
 
 namespace byre {
 
-// How far programs of ROS 2 look for one another by themselves, as ROS_AUTOMATIC_DISCOVERY_RANGE has it.
-//   subnet     in the local network
-//   localhost  on this computer
-//   off        nowhere: peers are named
-//   system     wherever the middleware's own settings say
+// Range of automatic discovery, as in ROS_AUTOMATIC_DISCOVERY_RANGE.
+//   subnet     local network
+//   localhost  this computer
+//   off        named peers only
+//   system     as configured in the middleware
 enum class DiscoveryRange : std::uint8_t { subnet, localhost, off, system };
 
-// Releases of ROS 2 in which programs tell their nodes to one another in the same way.
-//   humble    and before: ids of 24 bytes, no hashes of types
-//   jazzy     and all others from Iron on: ids of 16 bytes, hashes of types
+// Groups of ROS 2 releases with equal discovery messages.
+//   humble    up to Humble: ids of 24 bytes, no type hashes
+//   jazzy     from Iron on: ids of 16 bytes, type hashes
 enum class RosDistribution : std::uint8_t { humble, jazzy };
 
-// Where ROS is said to be, by the variables of the environment that its own programs heed.
+// ROS network settings from the standard environment variables.
 struct RosNetwork {
   int domain = 0;
   DiscoveryRange range = DiscoveryRange::subnet;
-  std::vector<std::string> peers{};  // addresses of computers to ask as well
+  std::vector<std::string> peers{};  // addresses of further computers for discovery
   RosDistribution distribution = RosDistribution::jazzy;
-  bool has_cyclone = false;  // whether its programs are by Cyclone DDS
+  bool has_cyclone = false;  // whether RMW_IMPLEMENTATION is Cyclone DDS
 };
 
-// An environment variable's text; empty where it is not set.
+// Value of an environment variable; empty if unset.
 using Environment = std::function<std::optional<std::string>(const char* name)>;
 
 Environment program_environment();
 
-// The distribution by its name, as "humble": all before Iron count as humble. Empty for what is no name.
+// Distribution of a release name such as "humble"; names before Iron map to humble. Empty for an invalid name.
 std::optional<RosDistribution> distribution_of(std::string_view name);
 
-// From ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO and
-// RMW_IMPLEMENTATION. Throws InputError for a value that is none of a variable's.
+// Reads ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO and
+// RMW_IMPLEMENTATION. Throws InputError for an invalid value.
 RosNetwork read_ros_network(const Environment& environment);
 
-// The settings of Cyclone DDS that do that, as XML. own_settings: CYCLONEDDS_URI, which wins over the variables of ROS.
+// Cyclone DDS configuration, XML. own_settings: CYCLONEDDS_URI, which overrides the ROS variables.
 std::string cyclone_settings(const RosNetwork& network, const std::string& own_settings);
 
 }  // namespace byre

@@ -7,9 +7,9 @@
 namespace byre {
 namespace {
 
-// By what a client finds that both ends are of one server.
+// User data by which a client matches the two endpoints of a server.
 std::string service_note(EntityId id, const std::string& service) {
-  // The last four bytes tell the endpoints of a participant apart; here they tell its services apart.
+  // The last four bytes distinguish the endpoints of a participant; here they distinguish its services.
   std::uint32_t hash = 2166136261U;  // FNV-1a
   for (const char letter : service) hash = (hash ^ static_cast<std::uint8_t>(letter)) * 16777619U;
   for (std::size_t i = 0; i < sizeof hash; ++i) id[id.size() - 1 - i] = static_cast<std::uint8_t>(hash >> (8 * i));
@@ -29,7 +29,7 @@ ServiceServer::ServiceServer(Participant& participant, GraphAnnouncement& graph,
 }
 
 void ServiceServer::reply(std::vector<std::byte> message, std::chrono::nanoseconds now) {
-  constexpr std::chrono::milliseconds kPatience(100);  // as servers of rmw_cyclonedds have
+  constexpr std::chrono::milliseconds kPatience(100);  // timeout of rmw_cyclonedds servers
   waiting_.push_back({std::move(message), now + kPatience});
   send_waiting(now);
 }

@@ -13,7 +13,7 @@
 
 namespace byre {
 
-// What comes before the fields of a request, and of the reply to it: who asked, and which of its requests it is.
+// Header of requests and replies: client and sequence number.
 struct ServiceCallId {
   std::uint64_t client = 0;
   std::int64_t sequence = 0;
@@ -23,7 +23,7 @@ struct ServiceCallId {
   }
 };
 
-// A request or a reply as it is on the wire. Body: that of a struct of ros/services.h.
+// Request or reply on the wire. Body: a struct of ros/services.h.
 template <ros::Message Body>
 struct ServiceMessage {
   static constexpr std::string_view kType = Body::kType;
@@ -35,21 +35,21 @@ struct ServiceMessage {
   }
 };
 
-// A service of ROS 2 as programs by its Cyclone DDS have it (rmw_cyclonedds_cpp). Those by other vendors' DDS, who tell
-// the caller apart from the message, neither understand it nor are understood.
+// ROS 2 service in the protocol of rmw_cyclonedds_cpp. Incompatible with other DDS vendors, which transfer the client
+// id outside of the message.
 class ServiceServer {
  public:
-  // service: begins with a slash; type: "std_srvs/srv/Trigger". The graph is told of both its ends.
+  // service: begins with a slash; type: "std_srvs/srv/Trigger". Both endpoints are added to the graph.
   ServiceServer(Participant& participant, GraphAnnouncement& graph, const std::string& service,
                 const std::string& type);
 
-  // Requests that came since it was asked last, the oldest first, each a ServiceMessage.
+  // Requests since the previous call, oldest first, each a ServiceMessage.
   std::vector<Message> take() { return requests_.take(); }
 
-  // Hands over a reply, a ServiceMessage, now or once its reader is there: whoever asks may be heard before it hears,
-  // and what it does not hear is lost. now: of a clock that never goes back.
+  // Sends a reply, a ServiceMessage, once the client's reader is discovered, as DDS would lose it before. now: of a
+  // monotonic clock.
   void reply(std::vector<std::byte> message, std::chrono::nanoseconds now);
-  // To be called now and then, for replies that wait.
+  // Sends delayed replies; call it periodically.
   void send_waiting(std::chrono::nanoseconds now);
 
  private:

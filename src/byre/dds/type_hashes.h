@@ -7,7 +7,7 @@
 
 namespace byre {
 
-// The hash of a message's fields (REP-2011: RIHS01_ and 64 digits); empty for messages that are never sent alone.
+// Type hash of a message (REP-2011: RIHS01_ and 64 digits); empty for messages that are only sent as parts.
 std::string_view type_hash(std::string_view type_name);
 
 template <ros::Message T>
