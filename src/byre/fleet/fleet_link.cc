@@ -10,7 +10,7 @@ MqttOptions named(MqttOptions broker, const FleetIdentity& identity) {
   return broker;
 }
 
-// The standard has messages of the topic connection retained and acknowledged.
+// The standard requires retained and acknowledged messages on the topic connection.
 MqttClient::Presence presence_of(const FleetIdentity& identity) {
   const auto count = std::make_shared<std::atomic<std::uint32_t>>(0);
   const auto message = [identity, count](FleetConnection state) {

@@ -10,24 +10,24 @@
 namespace byre {
 
 struct FleetOptions {
-  MqttOptions broker;  // the client's id is made of who the robot is
+  MqttOptions broker;  // the client id is derived from the identity
   FleetIdentity identity;
-  double rate = 2.0;  // most messages a second on a topic
+  double rate = 2.0;  // largest number of messages per second and topic
 };
 
-// Tells a fleet by MQTT where the robot is. Called from one thread; waits for nobody.
+// Publishes the robot's position to a fleet manager by MQTT. Call it from one thread; never blocks.
 class FleetLink {
  public:
   explicit FleetLink(const FleetOptions& options);
 
-  // A frame, as FleetPositionKeeper takes it.
+  // Adds a frame, see FleetPositionKeeper.
   void note(const FrameReport& report, Timestamp arrived, const std::string& advice);
   void begin_anew() { keeper_.begin_anew(); }
 
-  // Publishes what is due. now: a time that never goes back
+  // Publishes due messages. now: of a monotonic clock.
   void tell(const FleetMap& map, Timestamp now);
 
-  // What is new of the connection, a line for people.
+  // Change of the connection state, a line of text.
   std::optional<std::string> news();
 
  private:

@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-constexpr Timestamp kMostSilence = std::chrono::seconds(3);  // time without frames, after which nothing is known
+constexpr Timestamp kMostSilence = std::chrono::seconds(3);  // time without frames after which the position is invalid
 constexpr double kMostDegraded = 0.4;
 constexpr double kUntrusted = 0.1;
 

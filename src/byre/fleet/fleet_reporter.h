@@ -11,23 +11,23 @@
 
 namespace byre {
 
-// When which message of VDA 5050 is published: visualization at a rate, state when it changes,
-// upon each connection, and every 30 s at latest.
+// Schedules VDA 5050 messages: visualization at a fixed rate; state on change, after each connection, and at least
+// every 30 s.
 class FleetReporter {
  public:
   using Send = std::function<void(const MqttMessage&)>;
   using WallTime = std::chrono::system_clock::time_point;
 
-  // rate: most messages a second on a topic
+  // rate: largest number of messages per second and topic
   FleetReporter(const FleetIdentity& identity, double rate, Send send);
 
-  // now: a time that never goes back; connections: those made so far
+  // now: of a monotonic clock; connections: number of connections so far
   void tell(const FleetPosition& position, const FleetMap& map, Timestamp now, WallTime wall, int connections);
 
  private:
   struct Told {
     Timestamp at{};
-    std::string summary;  // what must change to be told at once
+    std::string summary;  // content whose change triggers a message
   };
 
   bool is_state_due(const std::string& summary, Timestamp now, int connections) const;
@@ -39,8 +39,8 @@ class FleetReporter {
 
   std::uint32_t states_ = 0, visualizations_ = 0;  // messages so far
   std::optional<Told> state_;
-  std::optional<Timestamp> visualization_;  // time of the last one
-  int connections_ = 0;                     // connections that state was told upon
+  std::optional<Timestamp> visualization_;  // time of the last message
+  int connections_ = 0;                     // number of connections at the last state message
 };
 
 }  // namespace byre

@@ -17,7 +17,7 @@ using ::testing::IsEmpty;
 
 class FleetReporterTest : public testing::Test {
  protected:
-  // The messages of a moment, by the last part of their topics and their ids.
+  // Messages sent at a time: last part of the topic, and id.
   std::vector<std::string> tell(Timestamp now, int connections = 1) {
     sent_.clear();
     reporter_.tell(position_, {"barn", ""}, now, {}, connections);

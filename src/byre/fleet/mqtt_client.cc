@@ -14,14 +14,14 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 
-constexpr int kKeepAlive = 15;         // seconds without a message, after which broker and client ask each other
-constexpr auto kRetry = 1000ms;        // pause before a broker is asked anew
-constexpr auto kStep = 20ms;           // least time between looks at what is waited for
-constexpr auto kMostFarewell = 500ms;  // time for the last message to leave
+constexpr int kKeepAlive = 15;         // seconds without a message before a ping
+constexpr auto kRetry = 1000ms;        // pause before reconnecting
+constexpr auto kStep = 20ms;           // polling interval
+constexpr auto kMostFarewell = 500ms;  // time to send the last message
 constexpr int kLoopWait = 100;         // milliseconds
 constexpr int kMostUnderWay = 8;       // messages
 
-// The library is set up once, and stays so.
+// The library is initialised once, and never released.
 void set_up_library() {
   static const int result = mosquitto_lib_init();
   if (result != MOSQ_ERR_SUCCESS) throw std::runtime_error("MQTT: the library cannot be set up");
@@ -86,7 +86,7 @@ void MqttClient::run(const std::stop_token& stop) {
     while (code == MOSQ_ERR_SUCCESS && !stop.stop_requested()) code = mosquitto_loop(client_.get(), kLoopWait, 1);
     is_connected_ = false;
     under_way_ = 0;
-    fault_ = code == MOSQ_ERR_ERRNO ? -errno : code;  // errno belongs to this thread
+    fault_ = code == MOSQ_ERR_ERRNO ? -errno : code;  // errno is per thread
     wait_at_most(kRetry, [&stop] { return stop.stop_requested(); });
   }
 }
@@ -116,7 +116,7 @@ void MqttClient::note_disconnect(mosquitto* /*client*/, void* self, int /*code*/
   static_cast<MqttClient*>(self)->is_connected_ = false;
 }
 
-// Messages of an earlier connection may be acknowledged now, and are not counted.
+// Acknowledgements of messages from an earlier connection are not counted.
 void MqttClient::note_published(mosquitto* /*client*/, void* self, int /*id*/) {
   std::atomic<int>& under_way = static_cast<MqttClient*>(self)->under_way_;
   int count = under_way;

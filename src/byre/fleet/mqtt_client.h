@@ -13,7 +13,7 @@ namespace byre {
 struct MqttOptions {
   std::string host;
   int port = 1883;
-  std::string user;  // empty: none is told
+  std::string user;  // empty: no login
   std::string password;
   std::string client_id;
 };
@@ -21,18 +21,18 @@ struct MqttOptions {
 struct MqttMessage {
   std::string topic;
   std::string text;
-  bool is_retained = false;      // whether the broker gives it to who comes later
-  bool is_acknowledged = false;  // sent at least once (QoS 1), else at most once (QoS 0)
+  bool is_retained = false;      // whether the broker keeps it for late subscribers
+  bool is_acknowledged = false;  // at least once (QoS 1) instead of at most once (QoS 0)
 };
 
-// A connection to a broker of MQTT, made and made anew by a thread of its own. Nothing of it waits for the broker but
-// its end, half a second at most once the broker's name is resolved.
+// Connection to an MQTT broker; connects and reconnects on its own thread. Only destruction waits for the broker: half
+// a second at most, after name resolution.
 class MqttClient {
  public:
   struct Presence {
-    std::function<MqttMessage()> greeting;  // published whenever it is connected; called from the client's thread
-    MqttMessage will;                       // published by the broker where the connection breaks
-    std::function<MqttMessage()> farewell;  // published when this ends
+    std::function<MqttMessage()> greeting;  // published after each connection; called from the client's thread
+    MqttMessage will;                       // published by the broker if the connection breaks
+    std::function<MqttMessage()> farewell;  // published on destruction
   };
 
   MqttClient(const MqttOptions& options, Presence presence);
@@ -40,12 +40,12 @@ class MqttClient {
   MqttClient(const MqttClient&) = delete;
   MqttClient& operator=(const MqttClient&) = delete;
 
-  // Hands a message over. Left out without a connection, and while the broker is slow to take earlier ones.
+  // Queues a message. Drops it without a connection, and while the broker is slow.
   void publish(const MqttMessage& message);
 
-  int connections() const { return connections_; }  // connections made so far
+  int connections() const { return connections_; }  // number of connections so far
   bool is_connected() const { return is_connected_; }
-  std::string state() const;  // a line for people
+  std::string state() const;  // a line of text
 
  private:
   struct Deleter {
@@ -65,9 +65,9 @@ class MqttClient {
 
   std::atomic<bool> is_connected_ = false;
   std::atomic<int> connections_ = 0;
-  std::atomic<int> under_way_ = 0;  // messages that were handed over and have not left yet
-  std::atomic<int> refusal_ = 0;    // code by which the broker refused the last connection
-  std::atomic<int> fault_ = 0;      // error of the last connection or attempt: MOSQ_ERR, or -errno if negative
+  std::atomic<int> under_way_ = 0;  // messages queued and not yet sent
+  std::atomic<int> refusal_ = 0;    // broker's error code for the last connection
+  std::atomic<int> fault_ = 0;      // error of the last attempt or connection: MOSQ_ERR, or -errno if negative
   std::jthread thread_;             // runs the client
 };
 

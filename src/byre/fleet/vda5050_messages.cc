@@ -17,14 +17,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kVersion = "2.1.0";
 constexpr std::string_view kTopicVersion = "v2";
-constexpr std::string_view kMarks = "_.:-";  // characters of identities beside letters and digits
-constexpr double kStanding = 0.02;           // m/s and rad/s; slower is no driving
+constexpr std::string_view kMarks = "_.:-";  // permitted characters of identities besides letters and digits
+constexpr double kStanding = 0.02;           // m/s and rad/s; below, the robot is at standstill
 
 std::string text_of(const Json& json) {
   return printable_json(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// "2026-11-23T14:05:06.123Z"
+// Time such as "2026-11-23T14:05:06.123Z".
 std::string utc(std::chrono::system_clock::time_point time) {
   const auto milliseconds = std::chrono::floor<std::chrono::milliseconds>(time).time_since_epoch().count();
   const auto seconds = static_cast<std::time_t>(milliseconds / 1000);

@@ -9,28 +9,27 @@
 
 namespace byre {
 
-// Messages of VDA 5050, version 2.1, as far as byre knows what they tell. See github.com/VDA5050/VDA5050,
-// json_schemas/.
+// Messages of VDA 5050, version 2.1, with the fields that byre can fill. See github.com/VDA5050/VDA5050, json_schemas/.
 
-// Who a robot is among others. Together they are the first parts of all topics' names.
+// Identity of a robot: the leading parts of its topics.
 struct FleetIdentity {
   std::string interface_name = "uagv";
   std::string manufacturer = "byre";
   std::string serial_number = "byre";
 };
 
-// Why a text cannot be a manufacturer or a serial number; empty where it can.
+// Fault of a manufacturer or serial number; empty if valid.
 std::string_view fault_in_identity(std::string_view text);
 
-// "uagv/v2/byre/robot7/state"
+// Topic such as "uagv/v2/byre/robot7/state".
 std::string fleet_topic(const FleetIdentity& identity, std::string_view topic);
 
 struct FleetHeader {
-  std::uint32_t id = 0;  // count of messages on the topic
+  std::uint32_t id = 0;  // number of the message on its topic
   std::chrono::system_clock::time_point time;
 };
 
-// The map that the position is in.
+// Map of the position.
 struct FleetMap {
   std::string id;
   std::string description;  // may be empty
@@ -43,9 +42,8 @@ std::string connection_text(const FleetIdentity& identity, const FleetHeader& he
 std::string visualization_text(const FleetIdentity& identity, const FleetHeader& header, const FleetPosition& position,
                                const FleetMap& map);
 
-// What byre does not know has the value for nothing: no order, an empty battery, no emergency stop. The operating mode
-// is MANUAL, so that nobody gives orders. A position that is not trusted is an error: FATAL while it is not known where
-// the robot is, else WARNING.
+// Fields without data have neutral values: no order, an empty battery, no emergency stop. The operating mode is MANUAL,
+// which prevents orders. A position that is not trusted is an error: FATAL if invalid, else WARNING.
 std::string state_text(const FleetIdentity& identity, const FleetHeader& header, const FleetPosition& position,
                        const FleetMap& map);
 

@@ -15,7 +15,7 @@ using ::testing::Not;
 using ::testing::SizeIs;
 using Json = nlohmann::json;
 
-// What the standard's schemas require, json_schemas/ of version 2.1.
+// Required fields of the standard's schemas, json_schemas/ of version 2.1.
 const std::vector<const char*> kHeaderFields = {"headerId", "timestamp", "version", "manufacturer", "serialNumber"};
 const std::vector<const char*> kStateFields = {"orderId",      "orderUpdateId", "lastNodeId", "lastNodeSequenceId",
                                                "nodeStates",   "edgeStates",    "driving",    "actionStates",
