@@ -12,7 +12,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-// Bytes as two digits each, with spaces between them.
+// Bytes of hexadecimal text with spaces between them.
 Bytes bytes_of(const std::string& hex) {
   Bytes bytes;
   for (std::size_t i = 0; i < hex.size(); i += 3) bytes.push_back(std::byte(std::stoi(hex.substr(i, 2), nullptr, 16)));
@@ -55,7 +55,7 @@ OccupancyGrid grid() {
   return {header(), {{5, 6}, 0.05f, 2, 1, pose()}, {-1, 100}};
 }
 
-// Calls check with a message of each type that stands alone, filled in.
+// Calls check with a filled message of each independent type.
 template <typename Check>
 void for_each_message(Check check) {
   check(String{"hello"});
@@ -87,7 +87,7 @@ TEST(MessageBytes, AreWithoutZerosAndPaddingInRos1) {
 TEST(MessageBytes, AreAlignedFromBehindTheFirstFourInCdr) {
   EXPECT_EQ(write_message(PointField{"x", 4, 7, 1}, Encoding::cdr),
             bytes_of("00 01 00 00 02 00 00 00 78 00 00 00 04 00 00 00 07 00 00 00 01 00 00 00"));
-  // Time, "m", then a double at 16, the next multiple of eight.
+  // Time, "m", then a double at offset 16, a multiple of eight.
   const Bytes bytes = write_message(PoseStamped{{{1, 2}, "m"}, {{1.0, 0.0, 0.0}, {}}}, Encoding::cdr);
   const std::string begin = "00 01 00 00 01 00 00 00 02 00 00 00 02 00 00 00 6d 00 00 00 00 00 00 00 00 00 f0 3f";
   EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 28), bytes_of(begin));
@@ -129,7 +129,8 @@ TEST(MessageBytes, AreRefusedWhenCutAnywhere) {
     for (const Encoding encoding : {Encoding::cdr, Encoding::ros1}) {
       const Bytes whole = write_message(message, encoding);
       for (std::size_t size = 0; size < whole.size(); ++size) {
-        const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));  // beyond it is found out
+        // Exact size, so that sanitizers detect reads beyond.
+        const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
         EXPECT_THROW(read_message<M>(cut, encoding, "test"), InputError) << M::kType << " cut to " << size;
       }
     }
@@ -139,7 +140,7 @@ TEST(MessageBytes, AreRefusedWhenCutAnywhere) {
 TEST(MessageBytes, AreRefusedWhenTheyClaimMoreThanIsThere) {
   for_each_message([]<typename M>(const M& message) {
     const Bytes whole = write_message(message, Encoding::ros1);
-    for (std::size_t place = 0; place + 4 <= whole.size(); ++place) {  // lengths among them
+    for (std::size_t place = 0; place + 4 <= whole.size(); ++place) {  // includes lengths
       Bytes changed = whole;
       std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(place), 4, std::byte{0xFF});
       try {
@@ -149,7 +150,7 @@ TEST(MessageBytes, AreRefusedWhenTheyClaimMoreThanIsThere) {
     }
   });
   EXPECT_THROW(read_message<TFMessage>(bytes_of("00 01 00 00 ff ff ff ff"), Encoding::cdr, "test"), InputError);
-  // One transform takes 72 bytes at least, so that two cannot be in these.
+  // A transform takes at least 72 bytes, so these cannot hold two.
   EXPECT_THROW(
       {
         Bytes bytes = bytes_of("02 00 00 00");

@@ -12,15 +12,15 @@
 
 namespace byre::ros {
 
-// Fewest bytes that a value takes in either encoding.
+// Smallest size of a value in either encoding.
 template <typename T>
 std::size_t least_size();
 
-// Takes the fields of a message from bytes and never reads beyond them; nothing is reserved that the bytes left do not
-// justify. Borrows the bytes. Every failure is an InputError whose place is "PLACE at byte N".
+// Parses the fields of a message within bounds; allocates no more than the remaining bytes justify. Borrows the bytes.
+// Throws InputError with the place "PLACE at byte N".
 class MessageReader {
  public:
-  // Fails when cdr does not begin as ROS 2 begins its messages.
+  // Throws InputError if cdr bytes lack the header of ROS 2.
   MessageReader(std::span<const std::byte> bytes, Encoding encoding, std::string place);
 
   template <typename T>
@@ -66,7 +66,7 @@ class MessageReader {
 
   std::size_t remaining() const { return bytes_.size() - position_; }
   std::size_t read_count(std::size_t bytes_each);
-  void align(std::size_t size);  // as cdr does
+  void align(std::size_t size);  // alignment of cdr
   std::span<const std::byte> take(std::size_t size);
   static void swap_each(std::span<std::byte> bytes, std::size_t size);
   [[noreturn]] void fail(std::string_view reason) const;
@@ -74,12 +74,12 @@ class MessageReader {
   std::span<const std::byte> bytes_;
   Encoding encoding_;
   std::string place_;
-  bool is_swapped_ = false;  // highest byte first
+  bool is_swapped_ = false;  // big-endian
   std::size_t position_ = 0;
 };
 
-// The message. Bytes behind it are left alone, as some middleware pads messages. Throws InputError when the bytes end
-// too early or are no such message; place: "barn.mcap: /left, message 7".
+// Parses a message. Ignores trailing bytes, as some middleware pads messages. Throws InputError for truncated or
+// invalid bytes; place: "barn.mcap: /left, message 7".
 template <Message T>
 T read_message(std::span<const std::byte> bytes, Encoding encoding, std::string place) {
   T message;
@@ -88,7 +88,7 @@ T read_message(std::span<const std::byte> bytes, Encoding encoding, std::string 
   return message;
 }
 
-// Adds up the fewest bytes of fields.
+// Sums the smallest sizes of fields.
 class LeastSize {
  public:
   template <typename T>
@@ -117,7 +117,7 @@ std::size_t least_size() {
   } else if constexpr (requires { std::tuple_size<T>::value; }) {
     return std::tuple_size<T>::value * least_size<typename T::value_type>();
   } else {
-    return sizeof(std::uint32_t);  // a string or a sequence, empty
+    return sizeof(std::uint32_t);  // an empty string or sequence
   }
 }
 

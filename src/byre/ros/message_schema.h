@@ -11,7 +11,7 @@
 
 namespace byre::ros {
 
-// Collects the text of a message's .msg file, and those of the messages it is made of, each once.
+// Collects the .msg text of a message and of its parts, each once.
 class SchemaWriter {
  public:
   template <Message T>
@@ -34,7 +34,7 @@ class SchemaWriter {
   }
   void in_ros1_alone(const std::uint32_t& /*value*/) {}
 
-  // The first message's text, then each other one's behind a line of 80 "=" and one with its name.
+  // Text of the first message, then of the others, each after a line of 80 "=" and a line with its name.
   std::string text() const;
 
  private:
@@ -75,11 +75,10 @@ class SchemaWriter {
   }
 
   std::vector<Definition> definitions_;
-  std::string current_;  // text of the message whose fields are visited
+  std::string current_;  // text of the current message
 };
 
-// The message's definition as ROS 2 keeps it with recordings ("ros2msg"): its .msg file without comments, with those of
-// the messages it is made of.
+// Message definition in the format "ros2msg" of recordings: .msg text without comments, including all parts.
 template <Message T>
 std::string message_schema() {
   SchemaWriter writer;

@@ -12,13 +12,13 @@
 
 namespace byre::ros {
 
-// Whether who comes later still gets the last message of a topic.
+// Whether late subscribers receive the last message of a topic.
 enum class Durability : std::uint8_t { only_new, kept };
 
 struct Topic {
   std::string name;    // begins with a slash
-  std::string type;    // type with its package: "nav_msgs/msg/Odometry"
-  std::string schema;  // definition of the type, as message_schema() has it
+  std::string type;    // with package: "nav_msgs/msg/Odometry"
+  std::string schema;  // definition, see message_schema()
   Durability durability = Durability::only_new;
 };
 
@@ -27,7 +27,7 @@ Topic topic_of(const std::string& name, Durability durability = Durability::only
   return {name, std::string(M::kType), message_schema<M>(), durability};
 }
 
-// Where messages of ROS 2 go: a file, or whoever watches.
+// Receiver of ROS 2 messages: a file or live subscribers.
 class MessageSink {
  public:
   using TopicId = std::uint16_t;
@@ -39,7 +39,7 @@ class MessageSink {
 
   virtual TopicId add(Topic topic) = 0;
 
-  // Whether a message of the topic would reach anybody now, so that it is worth to be made.
+  // Whether the topic has a receiver, so that a message is worth making.
   virtual bool is_wanted(TopicId topic) const = 0;
 
   virtual void put(TopicId topic, std::chrono::nanoseconds time, std::vector<std::byte> cdr) = 0;

@@ -12,7 +12,7 @@ MessageWriter::MessageWriter(Encoding encoding) : encoding_(encoding) {
 }
 
 void MessageWriter::write(const std::string& text) {
-  const std::size_t size = text.size() + (encoding_ == Encoding::cdr ? 1 : 0);  // with the zero at its end
+  const std::size_t size = text.size() + (encoding_ == Encoding::cdr ? 1 : 0);  // with the terminating zero
   write(static_cast<std::uint32_t>(size));
   writer_.write_all(std::span(text.c_str(), size));
 }

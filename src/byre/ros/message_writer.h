@@ -11,7 +11,7 @@
 
 namespace byre::ros {
 
-// Appends the fields of a message to its bytes, lowest byte first.
+// Serialises the fields of a message, little-endian.
 class MessageWriter {
  public:
   explicit MessageWriter(Encoding encoding);
@@ -55,7 +55,7 @@ class MessageWriter {
     }
   }
 
-  void align(std::size_t size);  // as cdr does
+  void align(std::size_t size);  // alignment of cdr
 
   Encoding encoding_;
   ByteWriter writer_;

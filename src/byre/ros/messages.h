@@ -8,12 +8,11 @@
 #include <string_view>
 #include <vector>
 
-// The messages of ROS that byre reads and writes. Each lists its fields once, in their order on the wire; reading,
-// writing and the text of its definition (message_schema.h) are made of that list. Frames, units and signs are those of
-// REP-103 and REP-105.
+// ROS messages used by byre. Each lists its fields once, in wire order, for reading, writing and its definition
+// (message_schema.h). Frames, units and signs are those of REP-103 and REP-105.
 namespace byre::ros {
 
-// builtin_interfaces: since 1970, as a rule.
+// Usually since 1970.
 struct Time {
   static constexpr std::string_view kType = "builtin_interfaces/msg/Time";
   std::int32_t sec = 0;
@@ -26,13 +25,13 @@ struct Time {
 };
 
 std::chrono::nanoseconds to_nanoseconds(const Time& time);
-Time to_time(std::chrono::nanoseconds time);  // seconds beyond 32 bits are cut off
+Time to_time(std::chrono::nanoseconds time);  // seconds are truncated to 32 bits
 
 struct Header {
   static constexpr std::string_view kType = "std_msgs/msg/Header";
   Time stamp{};
   std::string frame_id{};
-  std::uint32_t seq = 0;  // count of messages, in ROS 1 alone
+  std::uint32_t seq = 0;  // message counter, ROS 1 only
   static void fields(auto& self, auto& visit) {
     visit.in_ros1_alone(self.seq);
     visit("stamp", self.stamp);
@@ -107,7 +106,7 @@ struct PoseStamped {
 struct PoseWithCovariance {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseWithCovariance";
   Pose pose{};
-  std::array<double, 36> covariance{};  // x, y, z, then rotations about the fixed axes of the parent; row-major
+  std::array<double, 36> covariance{};  // x, y, z, then rotations about the parent's fixed axes; row-major
   static void fields(auto& self, auto& visit) {
     visit("pose", self.pose);
     visit("covariance", self.covariance);
@@ -151,7 +150,7 @@ struct TwistWithCovariance {
 struct TwistStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/TwistStamped";
   Header header{};
-  Twist twist{};  // motion of the header's frame, as seen in it
+  Twist twist{};  // motion of the header's frame, in its own axes
   static void fields(auto& self, auto& visit) {
     visit("header", self.header);
     visit("twist", self.twist);
@@ -162,7 +161,7 @@ struct TwistStamped {
 struct TwistWithCovarianceStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/TwistWithCovarianceStamped";
   Header header{};
-  TwistWithCovariance twist{};  // motion of the header's frame, as seen in it
+  TwistWithCovariance twist{};  // motion of the header's frame, in its own axes
   static void fields(auto& self, auto& visit) {
     visit("header", self.header);
     visit("twist", self.twist);
@@ -181,7 +180,7 @@ struct Transform {
   bool operator==(const Transform&) const = default;
 };
 
-// Takes points in the child frame to points in the header's frame.
+// Transform from the child frame to the header's frame.
 struct TransformStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/TransformStamped";
   Header header{};
@@ -207,7 +206,7 @@ struct Odometry {
   Header header{};
   std::string child_frame_id{};
   PoseWithCovariance pose{};    // pose of the child frame in the header's frame
-  TwistWithCovariance twist{};  // motion as seen in the child frame
+  TwistWithCovariance twist{};  // motion in the child frame
   static void fields(auto& self, auto& visit) {
     visit("header", self.header);
     visit("child_frame_id", self.child_frame_id);
@@ -249,7 +248,7 @@ struct OccupancyGrid {
   static constexpr std::string_view kType = "nav_msgs/msg/OccupancyGrid";
   Header header{};
   MapMetaData info{};
-  std::vector<std::int8_t> data{};  // rows from the lowest up; 0 free to 100 occupied, -1 unknown
+  std::vector<std::int8_t> data{};  // rows from the bottom up; 0 free to 100 occupied, -1 unknown
   static void fields(auto& self, auto& visit) {
     visit("header", self.header);
     visit("info", self.info);
@@ -260,7 +259,7 @@ struct OccupancyGrid {
 
 struct Image {
   static constexpr std::string_view kType = "sensor_msgs/msg/Image";
-  Header header{};  // time of the exposure; frame: the camera's optical one, x right, y down, z forward
+  Header header{};  // exposure time; optical frame of the camera: x right, y down, z forward
   std::uint32_t height = 0;
   std::uint32_t width = 0;
   std::string encoding{};
@@ -314,7 +313,7 @@ struct CameraInfo {
   std::uint32_t width = 0;
   std::string distortion_model{};
   std::vector<double> d{};     // distortion
-  std::array<double, 9> k{};   // intrinsics of the raw image, row-major; all zero: not calibrated
+  std::array<double, 9> k{};   // intrinsics of the raw image, row-major; all zero: uncalibrated
   std::array<double, 9> r{};   // rotation into the rectified frame
   std::array<double, 12> p{};  // projection of the rectified image; p[3] = -fx * baseline
   std::uint32_t binning_x = 0;
@@ -340,10 +339,10 @@ struct Imu {
   static constexpr std::string_view kType = "sensor_msgs/msg/Imu";
   Header header{};
   Quaternion orientation{};
-  std::array<double, 9> orientation_covariance{};  // first element -1: no orientation is given
+  std::array<double, 9> orientation_covariance{};  // first element -1: no orientation
   Vector3 angular_velocity{};                      // rad/s
   std::array<double, 9> angular_velocity_covariance{};
-  Vector3 linear_acceleration{};  // m/s^2, with gravity
+  Vector3 linear_acceleration{};  // m/s^2, including gravity
   std::array<double, 9> linear_acceleration_covariance{};
   static void fields(auto& self, auto& visit) {
     visit("header", self.header);
@@ -379,14 +378,14 @@ struct PointField {
 struct PointCloud2 {
   static constexpr std::string_view kType = "sensor_msgs/msg/PointCloud2";
   Header header{};
-  std::uint32_t height = 0;  // 1 for points without order
+  std::uint32_t height = 0;  // 1 for unordered points
   std::uint32_t width = 0;
-  std::vector<PointField> point_fields{};  // "fields" in its definition
+  std::vector<PointField> point_fields{};  // named "fields" in the definition
   bool is_bigendian = false;
   std::uint32_t point_step = 0;  // bytes
   std::uint32_t row_step = 0;    // bytes
   std::vector<std::uint8_t> data{};
-  bool is_dense = false;  // no point is invalid
+  bool is_dense = false;  // all points are valid
   static void fields(auto& self, auto& visit) {
     visit("header", self.header);
     visit("height", self.height);

@@ -6,8 +6,7 @@
 #include <string>
 #include <string_view>
 
-// The services of ROS that byre offers. A request or a response is a message that goes with its service alone. One
-// without fields has a byte of its own on the wire.
+// ROS services offered by byre, with request and response messages. Empty ones take a byte on the wire.
 namespace byre::ros {
 
 struct Trigger {
