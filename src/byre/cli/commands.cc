@@ -55,7 +55,7 @@ void declare_commands(CLI::App& app, Action& action) {
   declare_no_overwrite(app);
   for (const Command& command : kCommands) {
     CLI::App* const declared = app.add_subcommand(command.name, command.summary);
-    check_when_parsed(*declared);  // unless it declares a check of its own
+    check_when_parsed(*declared);  // a command's own check replaces it
     declared->callback([&action, run = command.declare(*declared)] { action = run; });
     std::vector<CLI::App*> writing = declared->get_subcommands([](CLI::App*) { return true; });
     writing.push_back(declared);

@@ -9,18 +9,17 @@ class App;
 
 namespace byre::cli {
 
-// What the program ends with; when it was interrupted, with 128 and the signal's number (130: Ctrl-C).
+// Exit codes of the program. If interrupted: 128 plus the signal's number (130: Ctrl-C).
 enum ExitCode : int { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, interrupted = 130 };
 
-// Does what a command is for, with the options it was given, and writes its result. Throws InputError for bad input and
-// any other exception for a failure at work. Gives interrupted when it was stopped by a signal, else done.
+// Runs a command with its parsed options, and writes its result. Throws InputError for bad input, and any other
+// exception for a failure. Returns interrupted if stopped by a signal, else done.
 using Action = std::function<ExitCode(std::ostream& result)>;
 
-// Declares all commands; the one on the command line becomes the action when that is parsed.
+// Declares all commands; parsing sets the action of the one given.
 void declare_commands(CLI::App& app, Action& action);
 
-// Each declares the options of a command, and lives in a folder of its name. The action is to be called once
-// the command line is parsed.
+// Each declares the options of a command, in the folder of its name. Call the returned action after parsing.
 Action declare_demo(CLI::App& command);
 Action declare_map(CLI::App& command);
 Action declare_run(CLI::App& command);
@@ -33,7 +32,7 @@ Action declare_scale(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
 Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
-Action declare_node(CLI::App& command);  // where byre is built with ROS 2
+Action declare_node(CLI::App& command);  // only if built with ROS 2
 Action declare_register(CLI::App& command);
 Action declare_draw(CLI::App& command);
 Action declare_view(CLI::App& command);

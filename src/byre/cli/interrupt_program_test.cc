@@ -1,4 +1,4 @@
-// What is left of a run that is interrupted or killed, or that cannot write.
+// Outputs of a run that is interrupted or killed, or that cannot write.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"
@@ -19,7 +19,7 @@ using testing::SizeIs;
 
 class InterruptedProgram : public ProgramTest {
  protected:
-  // Gives up after half a minute.
+  // Waits half a minute at most.
   bool comes_to_be(const std::string& file) const {
     for (int i = 0; i < 3000 && !fs::exists(folder_ / file); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -29,7 +29,7 @@ class InterruptedProgram : public ProgramTest {
 };
 
 TEST_F(InterruptedProgram, StopsAndStillWritesEverything) {
-  const RenderedFixture slow("byre_slow_room", 2, 1.0 / 3600.0);  // live, its second frame is due in an hour
+  const RenderedFixture slow("byre_slow_room", 2, 1.0 / 3600.0);  // live; the second frame is due in an hour
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     for (const char* const file : {"room.byre", "final.txt", "causal.txt", "stats.json", "stderr.txt"}) {
       fs::remove(folder_ / file);
@@ -86,7 +86,7 @@ TEST_F(InterruptedProgram, WritesEverythingWhenNobodyReadsWhatItSays) {
                               small.folder().string() +
                               "' -o room.byre --trajectory final.txt; echo $? >code.txt; } 2>&1 | true";
   EXPECT_EQ(std::system(command.c_str()), 0);
-  EXPECT_TRUE(appears("1\n", "code.txt"));  // it says that the result could not be written
+  EXPECT_TRUE(appears("1\n", "code.txt"));  // reports that the result could not be written
   EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(2));
   EXPECT_GT(load_map(folder_ / "room.byre").map.keyframe_count(), 0);
 }
@@ -102,7 +102,7 @@ TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd)
   EXPECT_THAT(full.errors, HasSubstr("byre: error: events are missing: /dev/full"));
   EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(8));
 
-  // Found in a map after some frames, which is another event than that it is in view.
+  // Localised after some frames; the map being in view is a different event.
   EXPECT_EQ(run("map '" + small.folder().string() + "' -o known.byre").exit_code, 0);
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   const std::string reading = "cd '" + folder_.string() + "' && head -c 1 pipe >/dev/null &";
@@ -116,7 +116,7 @@ TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd)
 TEST_F(InterruptedProgram, EndsAtOnceAtTheSecondCtrlCAndLeavesNoBrokenFile) {
   const RenderedFixture slow("byre_twice_stopped_room", 2, 1.0 / 3600.0);
   const fs::path pipe = folder_ / "pipe";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // nobody reads it, so writing it does not end
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // without a reader, so writing blocks
   const pid_t process = start({"map", slow.folder().string(), "--pace", "live", "-o", (folder_ / "room.byre").string(),
                                "--trajectory", pipe.string()});
   ASSERT_GT(process, 0);

@@ -39,7 +39,7 @@ int run(const Action& action, CLI::App& app) {
     return is_written ? static_cast<int>(code) : report(kUnwritten, failed);
   } catch (const byre::InputError& error) {
     return report(error.what(), bad_input);
-  } catch (const std::filesystem::filesystem_error& error) {  // such as a link that leads round in a circle
+  } catch (const std::filesystem::filesystem_error& error) {  // such as a cyclic link
     return report(error.path1().string() + ": " + error.code().message(), bad_input);
   } catch (const std::bad_alloc&) {
     return report("out of memory (free memory, or raise the limit that \"ulimit -v\" shows)", failed);
@@ -53,8 +53,8 @@ int run(const Action& action, CLI::App& app) {
   }
 }
 
-// What large buffers took goes back to the system when they are freed. By default the allocator keeps the more the
-// larger they are, which makes up a tenth of the memory of a run.
+// Returns large freed buffers to the system. By default the allocator raises its thresholds with the buffer size, which
+// costs a tenth of the memory of a run.
 void keep_little_memory() {
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   mallopt(M_TRIM_THRESHOLD, 4 << 20);
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
   declare_commands(app, action);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {  // parse errors, and --help and --version, which succeed
+  } catch (const CLI::ParseError& error) {  // parse errors; also --help and --version, which succeed
     if (app.exit(error) != done) return wrong_usage;
     return std::cout.flush() ? static_cast<int>(done) : report(kUnwritten, failed);
   } catch (const byre::InputError& error) {  // bad input read by --print-options

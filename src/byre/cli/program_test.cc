@@ -1,4 +1,4 @@
-// Runs the program as a user does: exit codes, and what it says on which stream.
+// Runs the program: exit codes, stdout and stderr.
 
 #include "byre/cli/shared/program_fixture.h"
 
@@ -138,7 +138,7 @@ TEST_F(Program, PrintsArgumentsWithoutControlCharacters) {
   }
 }
 
-// What decodes all kinds of images and videos takes most of the memory of a program that is linked with it.
+// Libraries for image and video formats would take most of the program's memory if linked.
 TEST_F(Program, IsNotLinkedWithWhatFewRunsNeed) {
   const std::string list = (folder_ / "libraries.txt").string();
   const std::string command = std::string("LD_TRACE_LOADED_OBJECTS=1 '") + BYRE_PROGRAM + "' > '" + list + "'";

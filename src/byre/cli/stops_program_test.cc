@@ -1,4 +1,5 @@
-// Stops at random moments: what "byre map" and "byre run" leave must be whole. BYRE_STOPS=1000 does so many of them.
+// Stops "byre map" and "byre run" at random times; all outputs must be complete. BYRE_STOPS=1000 sets the number of
+// stops.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"
@@ -28,10 +29,10 @@ unsigned wanted_seed() {
   return wanted == nullptr ? 1u : static_cast<unsigned>(std::atoi(wanted));
 }
 
-// How a stopped process ended.
+// Exit status of a stopped process.
 struct End {
   int signal = 0;  // signal that killed it, or 0
-  int code = -1;   // exit code, or -1 where it was killed
+  int code = -1;   // exit code, or -1 if killed
 };
 
 class Stops : public ProgramTest {
@@ -110,12 +111,12 @@ class Stops : public ProgramTest {
     }
   }
 
-  // When the map that is there was saved; before everything else where there is none.
+  // Time of the saved map; the earliest time without one.
   fs::file_time_type time_saved() const {
     return is_there("room.byre") ? fs::last_write_time(folder_ / "room.byre") : fs::file_time_type::min();
   }
 
-  // Expects that everything there is whole.
+  // Expects that all existing files are complete.
   void expect_whole_files() const {
     if (is_there("room.byre")) expect_sound_map();
     for (const char* const name : {"final.txt", "causal.txt"}) {
@@ -125,7 +126,7 @@ class Stops : public ProgramTest {
     EXPECT_TRUE(!is_there("stats.json") || nlohmann::json::accept(read("stats.json")));
   }
 
-  // A run that has seen something leaves everything.
+  // Expects all outputs of a run with at least one frame.
   void expect_everything() const {
     for (const char* const name : {"final.txt", "causal.txt", "stats.json"}) EXPECT_TRUE(is_there(name)) << name;
     const bool has_poses = read("causal.txt").find('\n') + 1 < read("causal.txt").size();
@@ -169,7 +170,7 @@ TEST_F(Stops, AtRandomMomentsLeaveWholeFiles) {
     const bool is_stopped = end.code == 128 + signal;
     EXPECT_TRUE(is_whole_run || is_stopped || end.signal == signal) << read("stderr.txt");
     if (is_whole_run || is_stopped) expect_everything();
-    // Before it can be stopped, and after all is done, it just ends.
+    // Before the handler is installed and after the run the process just ends.
     if (end.signal == signal && signal != SIGKILL) {
       is_there("stats.json") ? expect_everything() : expect_nothing();
     }

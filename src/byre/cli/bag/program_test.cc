@@ -1,4 +1,4 @@
-// "byre bag" as a user runs it, and bags where commands take recordings.
+// "byre bag", and bags as recordings of other commands.
 
 #include "byre/bag/bag_scene.h"
 #include "byre/cli/shared/program_fixture.h"

@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 
 struct BenchmarkCommandOptions {
   std::string protocol;
-  SpeedCase speed;  // measured in place of a protocol, where it names a recording
+  SpeedCase speed;  // measured instead of a protocol if it names a recording
   BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .engine = {}};
   OptionsFile options_file;
   std::optional<Pace> pace;
@@ -64,7 +64,7 @@ with CPU time, memory, and where the machine tells it instructions; with -o as s
 Ctrl-C keeps what was measured until then, then the exit code is 130. docs/benchmark.md explains the protocol and the
 figures.)";
 
-// The plots of the cases, as Markdown that shows them.
+// Writes the plots of the cases; returns Markdown that shows them.
 std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
   std::string markdown;
   for (const CaseResult& one : result.cases) {
@@ -85,7 +85,7 @@ void write_results(const BenchmarkResult& result, const BenchmarkProtocol& proto
   write_whole(folder / "benchmark.json", to_json(result, protocol, setting));
 }
 
-// Tells on the standard error stream what is run, and how far it is.
+// Prints the current case and its progress to stderr.
 class BenchmarkProgress {
  public:
   explicit BenchmarkProgress(bool quiet) : style_(progress_style(quiet)) {}
@@ -180,7 +180,7 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
 
 }  // namespace
 
-// What is only of --speed; returns that.
+// Options for --speed only; returns --speed.
 CLI::Option* declare_speed(CLI::App& command, SpeedCase& speed) {
   CLI::Option* const recording = add_input(command, Input::recording, "--speed", speed.recording,
                                            "Measure the speed of this recording, in place of a protocol")

@@ -1,4 +1,3 @@
-// "byre benchmark" as a user runs it.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/simulation/rendered_fixture.h"

@@ -4,8 +4,7 @@
 
 namespace byre::cli {
 
-// The commands below "byre camera". Each declares its options, and gives the action to be called once the command line
-// is parsed.
+// Subcommands of "byre camera". Each declares its options; call the returned action after parsing.
 Action declare_camera_list(CLI::App& command);
 Action declare_camera_show(CLI::App& command);
 Action declare_camera_record(CLI::App& command);

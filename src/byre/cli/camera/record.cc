@@ -43,7 +43,7 @@ in it, however the program ends (of an MCAP file, all but the last second). What
 
 Exit codes: 0 done, 1 no frame came, 3 a camera or a file cannot be had; 130 ended by Ctrl-C, which is as good as 0.)";
 
-// With the calibration to keep, where there is one, opened with images of its size.
+// Opens the cameras, with the image size of the calibration if there is one.
 std::unique_ptr<CaptureThread> open_cameras(const RecordOptions& options,
                                             const std::optional<Calibration>& calibration) {
   LiveCameraOptions live = options.cameras.live();

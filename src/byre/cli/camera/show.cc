@@ -29,7 +29,7 @@ struct CameraShowOptions {
   std::optional<std::filesystem::path> still;
 };
 
-// What was seen of the cameras.
+// Images and stamps received.
 struct Shown {
   std::vector<Timestamp> stamps;
   std::optional<ImageFrame> newest;

@@ -1,4 +1,3 @@
-// "byre check" as a user runs it.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/simulation/rendered_fixture.h"

@@ -15,7 +15,7 @@ namespace {
 
 enum class Completed : std::uint8_t { nothing, choices, files, folders };
 
-// A command with the names that lead to it, without the program's: "vocabulary train".
+// Command with its path, without the program's name: "vocabulary train".
 struct NamedCommand {
   std::string names;
   CLI::App* command = nullptr;
@@ -64,7 +64,7 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
   return text;
 }
 
-// In single quotes, as both shells take them.
+// Single quotes for both shells.
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char letter : text) {
@@ -114,7 +114,7 @@ std::string bash_action(CLI::Option& option) {
   return ":";
 }
 
-// What is completed after an option.
+// Completions after an option.
 std::string bash_values(const NamedCommand& named) {
   std::string text;
   for (CLI::Option* const option : named.command->get_options()) {
@@ -126,7 +126,7 @@ std::string bash_values(const NamedCommand& named) {
   return text;
 }
 
-// What is completed elsewhere on a command's line: its options, else the commands below it or its first argument.
+// Completions elsewhere: options, else subcommands or the first argument.
 std::string bash_words(const NamedCommand& named) {
   std::vector<std::string> options;
   std::string otherwise = ":";
@@ -161,7 +161,7 @@ std::string escaped(std::string_view text, std::string_view letters) {
   return result;
 }
 
-// ":MESSAGE:ACTION", as _arguments takes it.
+// ":MESSAGE:ACTION" for _arguments.
 std::string zsh_action(CLI::Option& option) {
   const std::string message = option.nonpositional() ? option.get_type_name() : option.get_name();
   std::string action = " ";
@@ -182,7 +182,7 @@ std::string zsh_argument(CLI::Option& option) {
   return text + in_quotes(explained + (has_value ? zsh_action(option) : ""));
 }
 
-// The commands below one, and then what the given one of them takes.
+// Subcommands, then the arguments of the one given.
 std::string zsh_state(const NamedCommand& named) {
   std::string commands, calls;
   for (CLI::App* const below : commands_below(*named.command)) {

@@ -7,12 +7,12 @@
 
 namespace byre::cli {
 
-// Scripts that complete a program's commands, their options and what these take, made from how all are declared: files
-// and folders for inputs and outputs, the choices of a type like "first|second".
+// Shell scripts that complete commands, options and values, generated from the declarations: files and folders for
+// inputs and outputs, choices of types like "first|second".
 std::string bash_completion(CLI::App& program);
 std::string zsh_completion(CLI::App& program);
 
-// Words that an option takes, as its type lists them; empty where it takes other things.
+// Choices in the type of an option; empty if it has none.
 std::vector<std::string> choices_of(const CLI::Option& option);
 
 }  // namespace byre::cli

@@ -1,5 +1,4 @@
-// Completes command lines in the shells themselves, for all that the commands declare: a new option is covered by
-// itself.
+// Completes command lines in the shells for all declarations of commands: new options are covered automatically.
 
 #include "byre/cli/completion/script.h"
 
@@ -22,9 +21,9 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
 
-// A command line whose last word is to be completed, and what should come of it.
+// Command line with the expected completions of its last word.
 struct Expected {
-  std::string line;  // with a space at its end where a new word is begun
+  std::string line;  // a trailing space begins a new word
   std::set<std::string> words;
 };
 
@@ -39,7 +38,7 @@ std::set<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-// All commands, all their options, and all choices that options give.
+// All commands, options and choices.
 void collect(CLI::App& command, const std::string& line, std::vector<Expected>& expected) {
   Expected options{line + "-", {}}, below{line, {}};
   for (const CLI::Option* const option : command.get_options()) {
@@ -62,7 +61,7 @@ class Completion : public ProgramTest {
  protected:
   Completion() { declare_commands(app_, action_); }
 
-  // What bash offers for each line.
+  // Completions of bash for each line.
   std::vector<std::set<std::string>> in_bash(const std::vector<std::string>& lines) const {
     std::string script =
         "source completion\ncomplete_line() {\n  COMP_WORDS=(\"$@\")\n  COMP_CWORD=$(($# - 1))\n  _byre\n";
@@ -86,7 +85,7 @@ class Completion : public ProgramTest {
     return offered;
   }
 
-  // What the line becomes in zsh once the key for completion was pressed.
+  // Line after completion by zsh.
   std::string in_zsh(const std::string& line) const {
     std::filesystem::create_directories(folder_ / "functions");
     write("functions/_byre", run("completion zsh").output);

@@ -1,4 +1,4 @@
-// "byre demo" as a user runs it, on a few small images.
+// "byre demo" on a few small images.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"

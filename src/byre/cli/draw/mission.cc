@@ -16,9 +16,9 @@
 namespace byre::cli {
 namespace {
 
-// Nothing after the moment of the camera picture is needed for that one alone.
+// If only the camera picture is requested, the range ends with its frame.
 FrameRange needed_range(const DrawOptions& options) {
-  constexpr double kBeyond = 1e-6;  // seconds: the end is exclusive
+  constexpr double kBeyond = 1e-6;  // seconds, as the end is exclusive
   FrameRange range = options.range;
   if (!options.at_s || options.plan_picture || options.video) return range;
   range.end_s = std::min(range.end_s.value_or(*options.at_s + kBeyond), *options.at_s + kBeyond);

@@ -9,15 +9,15 @@
 
 namespace byre::cli {
 
-// A mission as it was run.
+// Mission to draw.
 struct DrawnMission : PaintedMission {
-  MapScene online;  // what was mapped beside the offline map
+  MapScene online;  // online map
   std::vector<std::string> warnings;
-  bool stopped = false;  // by Ctrl-C
+  bool stopped = false;  // whether Ctrl-C stopped it
 };
 
-// Runs the recording on the map, and writes the video on the way. background: the scene without the mission. Throws
-// InputError as opening the recording and the map do, and for a moment that is not in the range.
+// Runs the recording on the map, and writes the video. background: scene without the mission. Throws InputError as
+// opening the recording and the map do, and for a time outside the range.
 DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const PlanScene& background);
 
 }  // namespace byre::cli

@@ -1,4 +1,4 @@
-// "byre draw" as a user runs it: exit codes, what it says, and that its pictures show what was asked for.
+// "byre draw": exit codes, messages, and content of the pictures.
 
 #include "byre/archive/register_scene.h"
 #include "byre/cli/shared/program_fixture.h"
@@ -134,7 +134,7 @@ TEST_F(DrawProgram, NamesBadInput) {
   }
 }
 
-// A map that was registered on a plan.
+// Map registered on a plan.
 class DrawOnPlanProgram : public ProgramTest {
  protected:
   DrawOnPlanProgram() {

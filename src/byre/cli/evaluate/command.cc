@@ -53,7 +53,7 @@ camera alone is the path of that camera, in units of its own: --estimate-of came
 --frames-of, and --alignment sim3 finds the unit. Segments are those of KITTI's development kit: the error of the motion
 along 100 to 800 m of the true path, in per cent and degrees a metre.)";
 
-// True poses of what the estimate is of.
+// True poses of the estimated frame: body or camera.
 Trajectory true_path(const EvaluateOptions& options) {
   Trajectory truth = load_truth(options.truth, options.times);
   if (!options.is_of_camera) return truth;

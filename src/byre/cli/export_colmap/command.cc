@@ -22,9 +22,9 @@ struct ExportCommandOptions {
   fs::path map;
   fs::path model;
   std::vector<fs::path> recordings;
-  OpenOptions open;  // how to take those
+  OpenOptions open;
   bool text = false;
-  bool binary = false;  // the default, said
+  bool binary = false;  // the default, made explicit
 };
 
 constexpr const char* kExportColmapFooter = R"(Examples:

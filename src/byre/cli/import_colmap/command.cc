@@ -29,7 +29,7 @@ struct ImportCommandOptions {
   fs::path map;
   std::optional<double> scale;
   std::optional<fs::path> body_of;
-  OpenOptions open;  // how to take that recording
+  OpenOptions open;
   std::optional<fs::path> vocabulary;
   std::string site;
   bool model_points_only = false;
@@ -71,7 +71,7 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
   const InterruptCatcher interrupt;
   const ColmapImport imported = run_with_progress(model, options, interrupt);
   if (!options.quiet) show_warnings(std::cerr, imported.warnings);
-  if (interrupt.caught()) return ExitCode::interrupted;  // a part of a model is not what was asked for
+  if (interrupt.caught()) return ExitCode::interrupted;  // no incomplete model
   save_for_use(imported.stored, vocabulary, options.site, options.map);
   result << to_text(imported) << "map                " << printable(options.map.string()) << "\n";
   return ExitCode::done;

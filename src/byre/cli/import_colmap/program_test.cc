@@ -1,4 +1,4 @@
-// "byre export-colmap" and "byre import-colmap" as a user runs them.
+// "byre export-colmap" and "byre import-colmap".
 
 #include "byre/archive/colmap_scene.h"
 #include "byre/cli/shared/program_fixture.h"

@@ -1,4 +1,4 @@
-// byre inspect and byre validate as a user runs them.
+// "byre inspect" and "byre validate".
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_bytes_scene.h"

@@ -62,7 +62,7 @@ bool is_recording(const fs::path& input) {
   return fs::is_directory(input) || is_video_file(input) || is_bag(input);
 }
 
-// One recording, or images that exist.
+// Requires one recording, or existing images.
 void require_inputs(const std::vector<fs::path>& inputs) {
   for (const fs::path& input : inputs) {
     if (!fs::exists(input)) throw InputError(input.string(), "does not exist", "name a recording, or image files");
@@ -79,7 +79,7 @@ Calibration calibration_of_map(const StoredMap& stored, const fs::path& path) {
                    "name the calibration of their camera (--calibration FILE)");
 }
 
-// The camera that took single images: that of the calibration named, or one like the map's.
+// Camera of single images: from the named calibration, else that of the map.
 Calibration camera_of_images(const LocaliseCommandOptions& options, const StoredMap& stored) {
   const fs::path source = options.open.calibration.value_or(options.map);
   const Calibration calibration =
@@ -125,7 +125,7 @@ std::optional<LocalisationErrors> judge(const LocaliseCommandOptions& options, c
   return errors_in_map(run, stored, options.map_truth ? load_truth(*options.map_truth) : truth, truth);
 }
 
-// In the order of their times, in which images need not have been named; of one time the first.
+// In order of time, which may differ from the order of names; of equal times the first.
 void write_found(const Work& work, const fs::path& path) {
   Trajectory found;
   for (const LocalisedFrame& frame : work.run.frames) {

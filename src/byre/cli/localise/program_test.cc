@@ -1,4 +1,3 @@
-// "byre localise" as a user runs it.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
@@ -20,7 +19,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// Every other frame of the room is mapped, and the others are looked for.
+// Every other frame of the room is mapped; the rest is localised.
 class LocaliseProgram : public ProgramTest {
  protected:
   LocaliseProgram() { map_room("--stride 2", "room.byre"); }

@@ -26,15 +26,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is kept with a map, and where; all but the map itself.
+// Data saved with a map, and its path, without the map itself.
 struct MapRecord {
   StoredMap about;
-  std::optional<Vocabulary> vocabulary;  // empty when no map is kept
+  std::optional<Vocabulary> vocabulary;  // empty if no map is saved
   std::string site;
   fs::path path;
 };
 
-// The map is as it was read again after that.
+// Saves the map; then `offline` equals the map read from the file.
 void save(Map& offline, const KeptWithMap& kept, const MapRecord& record) {
   const auto& [calibration, mounting, metres_sigma] = kept;
   StoredMap stored = record.about;
@@ -81,7 +81,7 @@ void write_results(const MapOptions& options, const MapRun& run, const MapProtoc
   });
 }
 
-// The map that is gone on with, out of which its record takes all but the map.
+// Takes the map to extend out of its record.
 std::optional<Map> take_extended(const MapOptions& options, MapRecord& record) {
   if (!options.extended) return std::nullopt;
   record.about = load_for_mapping(*options.extended, *record.vocabulary);
@@ -91,14 +91,14 @@ std::optional<Map> take_extended(const MapOptions& options, MapRecord& record) {
   return online;
 }
 
-// A recording that was given the same calibration as an earlier one of the map is rectified by the same refined one.
+// A recording with the calibration of an earlier recording shares its refined calibration.
 void take_known_calibration(std::vector<SourceRecording>& recordings) {
   recordings.back().refined = known_calibration(recordings, recordings.back().calibration);
 }
 
 MapRecord record_of(const MapOptions& options) {
   MapRecord record;
-  // Found to be missing now, not after an hour of mapping.
+  // Detects a missing vocabulary before mapping.
   if (options.map || !options.no_loops) record.vocabulary = open_vocabulary(options.vocabulary);
   record.site = options.site;
   if (options.map) record.path = *options.map;
@@ -145,7 +145,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   input.note_times(run, record.about.recordings.back());
   input.note_frames(run, protocol);
   record.about.scale = run.is_metric ? MapScale::metric : MapScale::unknown;
-  if (run.final.empty()) options.map.reset();  // there is nothing to keep
+  if (run.final.empty()) options.map.reset();  // nothing to save
   OutputWriter outputs;
   outputs.attempt([&] {
     if (options.map) save(run.map, {run.calibration, run.told.to_keep, run.told.metres_sigma}, record);

@@ -1,4 +1,4 @@
-// A recording by a depth camera as a user maps it, and missions with one camera and with two on that map.
+// Mapping with a depth camera, and missions with one and two cameras on that map.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"
@@ -28,7 +28,7 @@ const Calibration& pair() {
   return calibration;
 }
 
-// Along the optical axis, pixel by pixel of the left camera, the upper byte first.
+// Depths along the optical axis per pixel of the left camera, big-endian.
 std::string depth_bytes(const RenderedRoom& room, const Camera& lens, const Pose& world_from_left) {
   std::string bytes;
   const Eigen::Vector3f origin = world_from_left.translation.cast<float>();
@@ -70,7 +70,7 @@ void write_calibration(const fs::path& file) {
        << "\n";
 }
 
-// The left images of the bend, with depth. The destructor removes the files.
+// Left images of the bend with depth images. The destructor removes the files.
 class DepthFixture {
  public:
   DepthFixture() {

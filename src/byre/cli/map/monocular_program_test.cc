@@ -1,4 +1,4 @@
-// Recordings of one camera as a user maps them, and missions by one camera on a map that two have made.
+// Mapping with one camera, and missions with one camera on a stereo map.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"

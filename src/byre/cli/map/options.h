@@ -16,33 +16,33 @@ class App;
 
 namespace byre::cli {
 
-// The command line of "byre map".
+// Options of "byre map".
 struct MapOptions {
-  std::filesystem::path recording;  // empty where cameras are live
+  std::filesystem::path recording;  // empty for live cameras
   LiveOptions live;
   std::optional<std::filesystem::path> map;
   std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> causal_trajectory;
   std::optional<std::filesystem::path> stats;
-  std::optional<std::filesystem::path> given_poses;  // trajectory of the recording; empty: it is estimated
-  std::optional<std::filesystem::path> vocabulary;   // empty: the vocabulary that comes with byre
-  std::optional<std::filesystem::path> extended;     // a map to go on with
+  std::optional<std::filesystem::path> given_poses;  // given trajectory of the recording; empty: it is estimated
+  std::optional<std::filesystem::path> vocabulary;   // empty: the vocabulary installed with byre
+  std::optional<std::filesystem::path> extended;     // map to extend
   std::optional<double> autosave_s;
   std::string site;
   FrameRange range;
-  OpenOptions open;  // how to take the recording
+  OpenOptions open;
   OptionsFile options_file;
   std::optional<Pace> pace;
   std::optional<Refinement> refinement;
   bool no_loops = false;
   bool no_self_calibration = false;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
-  std::optional<std::filesystem::path> record;  // what happens, as messages of ROS 2
+  std::optional<std::filesystem::path> record;  // bag of ROS 2 messages
   bool record_images = false;
   bool quiet = false;
 
-  std::vector<std::filesystem::path> outputs() const;  // outputs that were asked for
-  EngineOptions engine_options() const;                // options by the file and the command line; not the maps
+  std::vector<std::filesystem::path> outputs() const;
+  EngineOptions engine_options() const;  // from the file and the command line, without maps
 };
 
 // The options must outlive the parsing of the command line.

@@ -7,8 +7,7 @@
 
 namespace byre::cli {
 
-// "byre map --poses": a map of frames whose poses somebody else has found out. Precondition: options.given_poses and
-// options.map are set.
+// "byre map --poses": map from externally estimated poses. Precondition: options.given_poses and options.map are set.
 ExitCode run_posed_map(const MapOptions& options, std::ostream& result);
 
 }  // namespace byre::cli

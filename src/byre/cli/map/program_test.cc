@@ -1,4 +1,4 @@
-// "byre map" as a user runs it: exit codes, what it says on which stream, and the files it leaves.
+// "byre map": exit codes, stdout and stderr, output files.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"

@@ -17,7 +17,7 @@ namespace {
 
 struct NodeOptions {
   std::optional<std::filesystem::path> config;
-  std::string distribution;  // empty: by the environment
+  std::string distribution;  // empty: from the environment
   bool check = false;
   bool quiet = false;
 };
@@ -41,7 +41,7 @@ NodeConfig sound_config(const NodeOptions& options) {
   return reading.config;
 }
 
-// All that is wrong, and not just the first thing.
+// Reports all faults, not only the first.
 ExitCode check(const std::filesystem::path& path, std::ostream& result) {
   NodeConfigReading reading = read_node_config(path);
   std::vector<InputError> faults = std::move(reading.faults);

@@ -1,4 +1,4 @@
-// "byre node" as a user runs it, up to where it speaks to others: tests/ros2 has the rest.
+// "byre node" without communication; tests/ros2 has the rest.
 
 #include "byre/cli/shared/program_fixture.h"
 

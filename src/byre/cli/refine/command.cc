@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct RefineOptions {
   fs::path map;
-  std::optional<fs::path> output;  // empty: the map is replaced
+  std::optional<fs::path> output;  // empty: replaces the input
   std::optional<fs::path> vocabulary;
   bool json = false;
   bool quiet = false;

@@ -1,4 +1,4 @@
-// "byre refine" and "byre map --extend" as a user runs them.
+// "byre refine" and "byre map --extend".
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/map/map_file.h"
@@ -18,7 +18,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-// The room's first half is mapped, and not finished.
+// Unfinished map of the room's first half.
 class RefineProgram : public ProgramTest {
  protected:
   RefineProgram() { map_room("--frames :14 --no-loops", "room.byre"); }

@@ -26,7 +26,7 @@ struct RegisterCommandOptions {
   fs::path picks;
   std::optional<fs::path> output;
   RegisterOptions registering;
-  std::optional<double> accepted_residual;  // metres; else kFarOffPlan
+  std::optional<double> accepted_residual;  // metres; empty: kFarOffPlan
   bool fix_scale = false;
   bool json = false;
 };

@@ -1,4 +1,3 @@
-// byre register as a user runs it.
 
 #include "byre/archive/register_scene.h"
 #include "byre/cli/shared/program_fixture.h"
@@ -67,7 +66,7 @@ TEST_F(RegisterProgram, NamesAWrongPick) {
 
 TEST_F(RegisterProgram, WritesNoMapThatIsFarOffUnlessThatIsAccepted) {
   auto correspondences = scene_.correspondences(6);
-  for (PlanCorrespondence& each : correspondences) each.point_in_plan *= 1.5;  // as by a wrong resolution
+  for (PlanCorrespondence& each : correspondences) each.point_in_plan *= 1.5;  // wrong resolution of the plan
   write("picks.csv", picks_csv(correspondences));
   const std::string command = "register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre";
   const Outcome refused = run(command);

@@ -34,7 +34,7 @@ Trajectory load_truth_later_by(const fs::path& path, Timestamp offset) {
   return truth;
 }
 
-// Read before the run and not after an hour of it.
+// Read before the run, so that errors appear early.
 std::optional<MissionTruth> load_truths(const RunOptions& options) {
   if (!options.truth) return std::nullopt;
   const Timestamp offset = from_seconds(options.time_offset_s);
@@ -69,8 +69,8 @@ MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   return protocol;
 }
 
-// Events, written frame by frame, so that they are kept however the program ends. A failure to write is reported at
-// once, because another program may wait for events.
+// Events are written after each frame, so that they survive any end of the program. A write failure is reported
+// immediately, because another program may wait for events.
 class EventFile {
  public:
   explicit EventFile(const std::optional<fs::path>& path) : path_(path) {
@@ -96,7 +96,7 @@ class EventFile {
   }
 
  private:
-  std::optional<fs::path> path_;  // empty: nothing is noted
+  std::optional<fs::path> path_;  // empty: disabled
   std::optional<OutputFile> file_;
   std::ostringstream text_;  // lines not yet written
   EventLog log_{text_};

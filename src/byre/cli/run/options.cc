@@ -116,7 +116,7 @@ void require_consistent(const RunOptions& options) {
   }
 }
 
-// How points of the two maps go together; the defaults were measured.
+// Combination of points of both maps; the defaults were chosen by measurement.
 void declare_tracking(CLI::App& command, RunOptions& options) {
   command
       .add_option("--offline-weight", options.offline_weight,

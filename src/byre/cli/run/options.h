@@ -17,11 +17,11 @@ class App;
 
 namespace byre::cli {
 
-// The command line of "byre run".
+// Options of "byre run".
 struct RunOptions {
-  std::filesystem::path recording;  // empty where cameras are live
+  std::filesystem::path recording;  // empty for live cameras
   LiveOptions live;
-  std::optional<std::filesystem::path> map;  // the offline map; without it plain SLAM
+  std::optional<std::filesystem::path> map;  // offline map; empty: plain SLAM
   bool localise_only = false;
   PoseFrame frame = PoseFrame::map;
   std::optional<std::filesystem::path> online_map;
@@ -31,25 +31,25 @@ struct RunOptions {
   std::optional<std::filesystem::path> odometry;
   std::optional<std::filesystem::path> stats;
   std::optional<std::filesystem::path> truth;
-  std::optional<std::filesystem::path> map_truth;       // truth of the map's own recording, where that is another
+  std::optional<std::filesystem::path> map_truth;       // truth of the map's recording, if that is another one
   std::optional<std::filesystem::path> map_trajectory;  // trajectory of the run that made the map
-  bool align_scale = false;    // the map is laid on the truth with its scale, which an erring baseline changes
+  bool align_scale = false;    // aligns the map to the truth with scale, which a wrong baseline changes
   double time_offset_s = 0.0;  // added to the time stamps of truth and map truth
-  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary that comes with byre
+  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   FrameRange range;
-  OpenOptions open;  // how to take the recording
+  OpenOptions open;
   OptionsFile options_file;
   std::optional<Pace> pace;
   std::optional<double> offline_weight;
   std::optional<OfflinePolicy> offline_policy;
   ViewOptions view;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
-  std::optional<std::filesystem::path> record;  // what happens, as messages of ROS 2
+  std::optional<std::filesystem::path> record;  // bag of ROS 2 messages
   bool record_images = false;
   bool quiet = false;
 
-  std::vector<std::filesystem::path> outputs() const;  // outputs that were asked for
-  EngineOptions engine_options() const;                // options by the file and the command line; not the maps
+  std::vector<std::filesystem::path> outputs() const;
+  EngineOptions engine_options() const;  // from the file and the command line, without maps
 };
 
 // The options must outlive the parsing of the command line.

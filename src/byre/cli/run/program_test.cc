@@ -1,4 +1,4 @@
-// "byre run" as a user runs it: exit codes, what it says on which stream, and the files it leaves.
+// "byre run": exit codes, stdout and stderr, output files.
 
 #include "byre/alignment.h"
 #include "byre/cli/shared/program_fixture.h"
@@ -131,7 +131,7 @@ TEST_F(RunProgram, NamesBadInput) {
 }
 
 TEST_F(RunProgram, KeepsEverythingSoFarAtCtrlC) {
-  const RenderedFixture slow("byre_slow_mission", 2, 1.0 / 3600.0);  // live, its second frame is due in an hour
+  const RenderedFixture slow("byre_slow_mission", 2, 1.0 / 3600.0);  // live; the second frame is due in an hour
   const pid_t process =
       start({"run", slow.folder().string(), "--pace", "live", "--save-online", (folder_ / "online.byre").string(),
              "--events", (folder_ / "events.jsonl").string(), "--causal-trajectory", (folder_ / "causal.txt").string(),
@@ -146,7 +146,7 @@ TEST_F(RunProgram, KeepsEverythingSoFarAtCtrlC) {
   EXPECT_EQ(load_map(folder_ / "online.byre").map.keyframe_count(), 1);
 }
 
-// Every other frame of the room is mapped, and the others are the mission.
+// Every other frame of the room is mapped; the rest is the mission.
 class MissionProgram : public RunProgram {
  protected:
   MissionProgram() { map_room("--stride 2", "room.byre"); }
@@ -211,8 +211,7 @@ TEST_F(MissionProgram, SaysWhereThePlansWallsBoundNothing) {
   EXPECT_THAT(outcome.errors, HasSubstr("plan.yaml: its walls bound nothing: it has no occupied_thresh"));
 }
 
-// As after the map's scale was corrected on a floor plan; the recording still says what the baseline was taken for
-// then.
+// State after a scale correction on a floor plan: the recording still has the original baseline.
 TEST_F(MissionProgram, TakesTheBaselineThatItsMapHas) {
   constexpr double kFactor = 0.95;
   ASSERT_EQ(mission("--causal-trajectory before.txt --quiet").exit_code, 0);

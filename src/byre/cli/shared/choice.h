@@ -12,8 +12,7 @@
 
 namespace byre::cli {
 
-// Transforms a name into the text of its value, which is an enumerator, a bool or a string. Other text is refused with
-// the list of names.
+// Maps a name to the text of its value, an enumerator, bool or string. Rejects other text with the list of names.
 template <typename Value>
 CLI::Validator one_of(const std::map<std::string, Value>& by_name) {
   const auto transform = [by_name](std::string& text) {
@@ -35,7 +34,7 @@ CLI::Validator one_of(const std::map<std::string, Value>& by_name) {
   return CLI::Validator(transform, "");
 }
 
-// A switch that takes one of these values by their names. The value must outlive the parsing of the command line.
+// Option with the values as choices by name. The value must outlive the parsing of the command line.
 template <typename Value>
 void add_choice(CLI::App& command, const char* name, std::optional<Value>& value, std::initializer_list<Value> known,
                 const char* help) {

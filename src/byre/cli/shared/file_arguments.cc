@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kNoOverwrite = "--no-overwrite";
 
-// An option carries its declaration as the name of a validator, which help does not show.
+// An option stores its declaration as the name of a validator, which the help does not show.
 constexpr const char* kText = "text";
 constexpr std::array kInputs = {
     std::pair(Input::file, "reads file"),     std::pair(Input::recording, "reads recording"),
@@ -51,8 +51,8 @@ std::optional<Kind> kind_named(const std::array<std::pair<Kind, const char*>, n>
   return std::nullopt;
 }
 
-// Name of the validator that declares the option; empty without one. Validators are counted off, because a search by
-// name throws for each name that is absent, and commands have hundreds of options.
+// Name of the validator that declares the option; empty without one. Iterates by index, because a search by name throws
+// for each absent name, and commands have hundreds of options.
 std::string declaration_of(CLI::Option& option) {
   try {
     for (int i = 0;; ++i) {
@@ -71,7 +71,7 @@ CLI::Option* declare_file(CLI::Option* option, const char* name) {
   return option->check(CLI::Validator(require_name, "", name));
 }
 
-// The commands that were given, one below the other, outermost first.
+// Given commands, outermost first.
 std::vector<CLI::App*> given_commands(CLI::App& command) {
   std::vector<CLI::App*> commands = {&command};
   for (CLI::App* const below : command.get_subcommands()) {
@@ -106,7 +106,7 @@ bool has_no_overwrite(const CLI::App& command) {
   return option != nullptr && option->count() > 0;
 }
 
-// It may stand anywhere on the command line.
+// --no-overwrite may be anywhere on the command line.
 bool wants_no_overwrite(CLI::App& command) {
   for (const CLI::App* each = command.get_parent(); each != nullptr; each = each->get_parent()) {
     if (has_no_overwrite(*each)) return true;
@@ -114,7 +114,7 @@ bool wants_no_overwrite(CLI::App& command) {
   return std::ranges::any_of(given_commands(command), [](const CLI::App* given) { return has_no_overwrite(*given); });
 }
 
-// Where no file is named for it, a refined map replaces the one that was read.
+// Without a named output, a refined map replaces its input.
 void require_absent_map(CLI::App& command, const NamedFiles& arguments) {
   for (CLI::Option* const option : command.get_options()) {
     if (output_of(*option) != Output::refined_map || option->count() > 0) continue;

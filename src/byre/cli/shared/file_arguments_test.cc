@@ -1,4 +1,4 @@
-// What holds for every command, made from what the commands declare: a new option is covered by itself.
+// Properties of all commands, generated from their declarations: new options are covered automatically.
 
 #include "byre/cli/shared/file_arguments.h"
 
@@ -23,12 +23,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// A command line by the options on it, in words of their own.
+// Parser of command lines, given as words.
 class CommandLine {
  public:
   CommandLine() { declare_commands(app_, action_); }
 
-  // All commands that are no mere groups of others, outermost name first.
+  // All commands without subcommands, outermost name first.
   std::vector<std::vector<std::string>> commands() {
     std::vector<std::vector<std::string>> found;
     collect(app_, {}, found);
@@ -41,7 +41,7 @@ class CommandLine {
     return *command;
   }
 
-  // What is wrong with it; empty where nothing is.
+  // Fault of a command line; empty if valid.
   std::string fault_of(std::vector<std::string> words) {
     std::ranges::reverse(words);
     try {
@@ -145,7 +145,7 @@ class FileArguments : public ProgramTest {
     return {};
   }
 
-  // A path that an output may be given, which is the file by another name.
+  // Path for an output that is another name of the file.
   std::string alias(const fs::path& file, Output output, const std::string& name) const {
     if (output == Output::folder || output == Output::recording || fs::is_directory(file)) return file.string();
     fs::path link = folder_ / (name + extension_of(output));
@@ -156,7 +156,7 @@ class FileArguments : public ProgramTest {
     return path.string();
   }
 
-  // The command with these two options, all that it requires, and all that these need.
+  // The command with these options, all required options, and all that they need.
   std::vector<std::string> words(const std::vector<std::string>& names, CLI::App& command,
                                  const std::map<CLI::Option*, std::string>& wanted) const {
     std::map<CLI::Option*, std::string> values = wanted;
@@ -208,7 +208,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-// By design refine, register and, when it is allowed to, view replace the map that they read.
+// refine, register and, with permission, view replace their input by design.
 bool may_replace(CLI::Option& output, CLI::Option& input) {
   const auto written = output_of(output);
   const bool is_in_place =
@@ -255,7 +255,7 @@ TEST_F(FileArguments, AreRefusedWhereAnOutputIsAnInputByAnyName) {
   }
   EXPECT_GT(pairs, 200);
   EXPECT_THAT(CommandLine().fault_of({"map", "rec", "--extend", "none.byre", "-o", "./none.byre"}),
-              HasSubstr("so it may not be written"));  // fault found although there is no such file
+              HasSubstr("so it may not be written"));  // detected although no such file exists
 }
 
 TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {
@@ -277,7 +277,7 @@ TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {
         const Outcome outcome = run(line);
         EXPECT_EQ(outcome.exit_code, 2) << line << outcome.errors;
         EXPECT_EQ(bytes(), before) << line;
-        break;  // one input is enough: the test above tries all
+        break;  // one input suffices: the test above tries all
       }
     }
   }
@@ -315,7 +315,7 @@ TEST_F(FileArguments, ReplaceNothingOfAnotherKindAndNothingAtAllWhereAsked) {
       const bool is_map = output->get_type_name() == "MAP" || names == std::vector<std::string>{"import-colmap"};
       if (is_map) write(file, "\x89PNG\r\n is how an image begins");
       EXPECT_THAT(CommandLine().fault_of(keeping), HasSubstr("--no-overwrite keeps what is")) << joined(line);
-      if (is_folder) continue;  // what is in it is the command's own
+      if (is_folder) continue;  // its contents belong to the command
       if (output_of(*output) == Output::colmap_model) continue;
       EXPECT_THAT(CommandLine().fault_of(line), HasSubstr("is there and is no ")) << joined(line);
       write(file, "");
@@ -328,8 +328,8 @@ TEST_F(FileArguments, AreRefusedAsTwoOutputsOfOneName) {
   for (const char* const other : {"out.txt", "./out.txt", "link.txt"}) {
     start_over();
     fs::create_symlink("out.txt", folder_ / "link.txt");
-    const Outcome outcome =
-        run("map absent -o out.txt --trajectory '" + std::string(other) + "'");  // neither is there, nor the recording
+    // Neither file exists, nor does the recording.
+    const Outcome outcome = run("map absent -o out.txt --trajectory '" + std::string(other) + "'");
     EXPECT_EQ(outcome.exit_code, 2) << other;
     EXPECT_THAT(outcome.errors, HasSubstr("is named for two outputs")) << other;
   }

@@ -11,12 +11,12 @@ namespace byre::cli {
 namespace {
 
 constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
-constexpr int kSignalled = 128;  // added to a signal, as shells do it
+constexpr int kSignalled = 128;  // added to a signal's number, as shells do
 
 std::atomic<int> noted_signal = 0;  // 0: none
 static_assert(std::atomic<int>::is_always_lock_free, "else a signal handler may not write it");
 
-// Calls only what a signal handler may.
+// Async-signal-safe.
 extern "C" void note_signal(int signal) {
   int none = 0;
   if (noted_signal.compare_exchange_strong(none, signal) || signal == SIGHUP) return;

@@ -5,10 +5,10 @@
 
 namespace byre::cli {
 
-// During its life the first Ctrl-C (SIGINT), request to end (SIGTERM) or loss of the terminal (SIGHUP) is only noted. A
-// second one removes temporary files, so that outputs are unchanged, and ends the program with exit code 128 plus the
-// signal's number. SIGHUP never ends the program, because a closing terminal sends several. An ignored signal, as by
-// nohup, stays ignored. Only one may exist at a time.
+// Records the first SIGINT (Ctrl-C), SIGTERM or SIGHUP (terminal closed) during its lifetime. A second signal removes
+// temporary files, so that outputs are unchanged, and ends the program with exit code 128 plus the signal's number.
+// SIGHUP never ends the program, because a closing terminal sends several. Ignored signals stay ignored, as with nohup.
+// At most one instance may exist.
 class InterruptCatcher {
  public:
   InterruptCatcher();
@@ -22,11 +22,11 @@ class InterruptCatcher {
   std::array<struct sigaction, 3> previous_{};  // constant after construction
 };
 
-// The exit code of a program that ends for the signal that the last catcher noted.
+// Exit code for the signal that the last catcher recorded.
 int exit_code_of_interrupt();
 
-// From now on, writing to a pipe that nobody reads and beyond the limit of file sizes fails, instead of ending the
-// program before its other outputs are written.
+// From now on, writing to a closed pipe or beyond the file size limit fails, instead of ending the program before its
+// other outputs are written.
 void let_writing_fail();
 
 }  // namespace byre::cli

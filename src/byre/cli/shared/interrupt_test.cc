@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
-// Sets what the signals do, and puts back what they did before.
+// Sets the signals' handlers, and restores the previous ones.
 class Interrupt : public testing::Test {
  protected:
   Interrupt() {

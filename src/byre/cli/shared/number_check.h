@@ -4,7 +4,7 @@
 
 namespace byre::cli {
 
-// Checks of numbers on the command line, which nan and infinities never pass; help does not show them.
+// Validators of numbers; reject NaN and infinity; not shown in the help.
 CLI::Validator between(double low, double high);  // both inclusive
 CLI::Validator from(double low);
 CLI::Validator above_zero();

@@ -12,14 +12,14 @@ class App;
 
 namespace byre::cli {
 
-// What --options names.
+// Value of --options.
 using OptionsFile = std::optional<std::filesystem::path>;
 
-// The defaults, changed by that file.
+// Default options, modified by the file.
 EngineOptions read_engine_options(const OptionsFile& file);
 
-// --options and --print-options, which prints what used gives and ends the program. Declare them after all that used
-// asks for. All must outlive the parsing of the command line.
+// --options and --print-options, which prints the result of used() and ends the program. Declare them after the options
+// that used() reads. All must outlive the parsing of the command line.
 void declare_options_file(CLI::App& command, OptionsFile& file, std::function<EngineOptions()> used);
 
 }  // namespace byre::cli

@@ -1,4 +1,4 @@
-// "--options" and "--print-options" as a user has them: what is printed, what wins, and what is refused.
+// "--options" and "--print-options": output, precedence and rejection.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/simulation/rendered_fixture.h"
@@ -16,7 +16,7 @@ using testing::IsEmpty;
 
 class OptionsProgram : public ProgramTest {
  protected:
-  // A command that has all options it requires, and these.
+  // A command with all required options, plus these arguments.
   Outcome map(const std::string& arguments) const {
     return run("map '" + RenderedFixture::shared().folder().string() + "' --trajectory out.txt --quiet " + arguments);
   }

@@ -12,24 +12,24 @@
 
 namespace byre::cli {
 
-// Writes the outputs of a command so that one that fails does not keep the others from being written.
+// Writes the outputs of a command; a failure does not prevent the other outputs.
 class OutputWriter {
  public:
   void attempt(const std::function<void()>& write);
-  // Where a file is asked for.
+  // Writes the file if a path is given.
   void attempt(const std::optional<std::filesystem::path>& path, const Trajectory& trajectory, TrajectoryFormat format);
-  void require_written() const;  // throws what the first that failed threw
+  void require_written() const;  // rethrows the first failure
 
  private:
   std::exception_ptr first_failure_;
 };
 
-// The files that are asked for, in this order.
+// Files with a given path, in order.
 std::vector<std::filesystem::path> asked_for(std::initializer_list<std::optional<std::filesystem::path>> files);
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
 
-// With those above it. Throws InputError when that cannot be done.
+// Creates a folder with its parents. Throws InputError on failure.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace byre::cli

@@ -14,16 +14,16 @@ class Option;
 
 namespace byre::cli {
 
-// The frame that poses in a map are written in.
+// Frame of poses in output files.
 enum class PoseFrame : std::uint8_t { map, plan };
 
-// The option --frame.
+// Declares --frame.
 CLI::Option* declare_pose_frame(CLI::App& command, PoseFrame& frame);
 
-// Where the map lies on its floor plan. Throws InputError, naming the map's file, when that is not known.
+// Registration of a map on its floor plan. Throws InputError with the map's file if there is none.
 const PlanRegistration& require_plan(const std::optional<PlanRegistration>& plan, const std::filesystem::path& map);
 
-// --format: of all trajectories that a command writes. The format must outlive the parsing of the command line.
+// --format of all trajectories that a command writes. The format must outlive the parsing of the command line.
 void declare_trajectory_format(CLI::App& command, TrajectoryFormat& format);
 
 }  // namespace byre::cli

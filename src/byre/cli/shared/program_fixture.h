@@ -23,7 +23,7 @@
 
 namespace byre::cli {
 
-// As a word of the shell.
+// Quotes a path for the shell.
 inline std::string quoted(const std::filesystem::path& path) {
   return "'" + path.string() + "'";
 }
@@ -32,8 +32,7 @@ inline std::string rendered_room() {
   return quoted(RenderedFixture::shared().folder());
 }
 
-// A bend through the room, where walls do not fill the image, at twice the resolution of rendered_room(). Rendered
-// once.
+// Curved path through the room without frame-filling walls, at twice the resolution of rendered_room(). Rendered once.
 inline const RenderedFixture& bend_recording() {
   static const Calibration calibration = euroc_like_calibration(2);
   static const RenderedFixture recording("byre_cli_bend", calibration,
@@ -51,7 +50,7 @@ struct Outcome {
   std::string errors;
 };
 
-// Runs the program as a user does, in a folder that is there for one test.
+// Runs the program in a folder of its own per test.
 class ProgramTest : public testing::Test {
  protected:
   ProgramTest() {
@@ -81,8 +80,8 @@ class ProgramTest : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
   }
 
-  // Runs a command once for all tests of this process. Later calls give the same outcome and copies of the files that
-  // it wrote. Precondition: it reads no file of the test, and replaces none.
+  // Runs a command once per process. Later calls return the same outcome and restore the files that it wrote.
+  // Precondition: it reads and replaces no files of the test.
   Outcome run_once(const std::string& arguments) const {
     static std::map<std::string, std::pair<Outcome, std::map<std::string, std::string>>> runs;
     auto known = runs.find(arguments);
@@ -107,7 +106,7 @@ class ProgramTest : public testing::Test {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   }
 
-  // Starts the program with these signals as they are in a terminal, and with a file as its standard input.
+  // Starts the program with default handling of these signals, and a file as standard input.
   pid_t start(std::vector<std::string> arguments, const std::vector<int>& signals = {SIGINT, SIGTERM, SIGHUP},
               const char* input = "/dev/null") const {
     arguments.insert(arguments.begin(), BYRE_PROGRAM);
@@ -151,7 +150,7 @@ class ProgramTest : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  // Names of all files in the folder and below it, relative to it.
+  // Relative names of all files in the folder, recursively.
   std::set<std::string> names_of_files() const {
     std::set<std::string> names;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {

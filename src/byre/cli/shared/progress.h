@@ -8,29 +8,28 @@
 
 namespace byre::cli {
 
-//   bar           one line, drawn again and again: for a terminal
-//   coloured_bar  the same, with the state in a colour by how good it is
-//   lines         a line every tenth of the work or ten seconds: for a log
+//   bar           a line that is redrawn: for a terminal
+//   coloured_bar  a bar with a coloured state
+//   lines         a line per tenth of the work or ten seconds: for a log
 enum class ProgressStyle : std::uint8_t { none, bar, coloured_bar, lines };
 
-// How good a state is, where that can be said: on a terminal green, yellow and red.
+// Rating of a state: green, yellow and red on a terminal.
 enum class Tone : std::uint8_t { plain, good, doubtful, bad };
 
-// What suits the standard error stream. Without colours where NO_COLOR is set (no-color.org) or the terminal has none.
+// Style for stderr. No colours with NO_COLOR (no-color.org), or on a terminal without colours.
 ProgressStyle progress_style(bool quiet);
 
-// Tells how far the frames, or other things, are, how fast they go, and for how long they still will.
+// Displays progress, rate and remaining time.
 class Progress {
  public:
-  // total: zero where nobody knows how many there will be. unit: what is counted, in the plural. The stream must
-  // outlive it.
+  // total: zero if unknown. unit: counted items, in the plural. The stream must outlive it.
   Progress(std::ostream& stream, ProgressStyle style, int total, std::string unit = "frames")
       : stream_(stream), style_(style), total_(total), unit_(std::move(unit)) {}
 
-  // After each one: how many are done, in how many seconds, and what state the last one left.
+  // Call after each item: number done, elapsed seconds, and state of the last item.
   void update(int done, double elapsed_s, std::string_view state, Tone tone = Tone::plain);
 
-  // Leaves the bar standing; call it before anything else is printed.
+  // Keeps the last bar visible; call it before other output.
   void close();
 
  private:

@@ -10,7 +10,7 @@ class App;
 
 namespace byre::cli {
 
-// How formats of recordings are told of in the help of a command.
+// Help text for recordings.
 inline constexpr const char* kRecordingHelp =
     "Folder of a recording (EuRoC, KITTI odometry, TUM RGB-D, images), a video file, or a bag of ROS 1 or ROS 2";
 
@@ -18,11 +18,11 @@ inline constexpr const char* kRecordingHelp =
 // --left, --right and --pair-tolerance. The options must outlive the parsing of the command line.
 void declare_open_options(CLI::App& command, OpenOptions& options);
 
-// --start, --end, --frames and --stride: which frames of a recording a command works on. The range must outlive the
-// parsing of the command line.
+// --start, --end, --frames and --stride: range of frames of a recording. The range must outlive the parsing of the
+// command line.
 void declare_frame_range(CLI::App& command, FrameRange& range);
 
-// Throws CLI::ValidationError for a range that cannot hold a frame.
+// Throws CLI::ValidationError for an empty range.
 void require_sense(const FrameRange& range);
 
 // --pace. The pace must outlive the parsing of the command line.

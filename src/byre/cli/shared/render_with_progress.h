@@ -7,7 +7,7 @@
 
 namespace byre::cli {
 
-// render_cowshed, stopped by Ctrl-C, that tells on the standard error stream how far it is unless quiet.
+// render_cowshed with progress on stderr unless quiet; stopped by Ctrl-C.
 Rendering render_with_progress(const CowshedRecordingOptions& options, const std::filesystem::path& folder,
                                const InterruptCatcher& interrupt, bool quiet);
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kLiveName = "live";
 
-// One camera that maps from nothing is itself the body, as open_scaled has it for recordings.
+// Monocular mapping uses the camera as the body, as open_scaled does for recordings.
 Calibration scaled_calibration(Calibration calibration, bool has_metric_map, ScaledRecording& scaled) {
   if (has_metric_map || calibration.tells_metres()) return calibration;
   scaled.is_metric = false;
@@ -65,7 +65,10 @@ RunInput::RunInput(Choice choice) : choice_(std::move(choice)) {
     return;
   }
   const std::filesystem::path& file = *choice_.open.calibration;
-  const auto tell = [](const std::string& note) { show_warnings(std::cerr, {note}); };  // somebody is to see to it
+  // Shown even if quiet, as it needs attention.
+  const auto tell = [](const std::string& note) {
+    show_warnings(std::cerr, {note});
+  };  // shown even if quiet, as it needs attention
   const Calibration calibration =
       with_checked_baseline(read_calibration(file), choice_.open.baseline, file.string(), "--baseline ");
   live_ = std::make_unique<LiveFrames>(choice_.live.cameras.live(),

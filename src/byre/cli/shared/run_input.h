@@ -20,7 +20,7 @@ class Option;
 
 namespace byre::cli {
 
-// --live and what goes with it: cameras in place of a recording.
+// --live with its options: cameras instead of a recording.
 struct LiveOptions {
   CameraOptions cameras;
   std::optional<double> duration_s;
@@ -28,14 +28,14 @@ struct LiveOptions {
   bool is_wanted() const { return !cameras.devices.empty(); }
 };
 
-// Declares --live, --duration and the options of cameras. What is only of recordings, declared before, excludes it. The
+// Declares --live, --duration and the options of cameras. Options of recordings, declared before, exclude them. The
 // options must outlive the parsing of the command line.
 void declare_live_options(CLI::App& command, LiveOptions& options);
 
-// Throws CLI::ValidationError unless there is a recording or live cameras with their calibration, and not both.
+// Throws CLI::ValidationError unless there is either a recording, or live cameras with a calibration.
 void require_one_input(const std::filesystem::path& recording, const LiveOptions& live, const OpenOptions& open);
 
-// What a run takes its frames from, a recording or live cameras.
+// Frames of a run: a recording or live cameras.
 class RunInput {
  public:
   struct Choice {
@@ -43,32 +43,32 @@ class RunInput {
     FrameRange range;
     OpenOptions open;
     LiveOptions live;
-    bool has_metric_map = false;  // it tells one camera the scale
-    bool quiet = false;           // no warnings are shown
+    bool has_metric_map = false;  // a map provides the scale for one camera
+    bool quiet = false;           // suppresses warnings
   };
 
-  // Throws InputError when the recording or the cameras cannot be opened.
+  // Throws InputError if the recording or the cameras cannot be opened.
   explicit RunInput(Choice choice);
 
-  const ScaledRecording& scaled() const { return scaled_; }  // without a recording where cameras are live
+  const ScaledRecording& scaled() const { return scaled_; }  // without a recording for live cameras
   const Calibration& calibration() const;
 
-  // What is known beforehand: of a recording its summary, and what would spoil the run.
+  // Prints a summary of the recording and its problems before the run.
   void show_check() const;
-  // All that a protocol says of where frames come from.
+  // Fills in the source of frames.
   void describe(MapProtocol& protocol) const;
-  // What a map says of it; of live cameras times only once note_times has them.
+  // Description for a map; for live cameras, note_times adds the times.
   SourceRecording source() const;
-  // What the viewer tells of it.
+  // Description for the viewer.
   WatchedRun watched(const std::optional<std::filesystem::path>& map, std::shared_ptr<const OfflineMap> offline) const;
 
-  // run_with_progress over its frames.
+  // run_with_progress on its frames.
   MapRun run(const EngineOptions& options, const MapRunHooks& hooks, const InterruptCatcher& interrupt,
              std::optional<Map> before = {});
-  // What is known of live cameras after the run alone; of a recording it was known before.
+  // Adds data of live cameras that are only available after the run.
   void note_times(const MapRun& run, SourceRecording& source) const;
   void note_frames(const MapRun& run, MapProtocol& protocol) const;
-  // What came of the cameras, as rows of the report; of a recording nothing. To be asked once, after the run.
+  // Report rows about live cameras; empty for recordings. Call it once, after the run.
   std::string report();
 
  private:

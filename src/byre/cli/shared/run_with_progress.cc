@@ -43,7 +43,7 @@ FinishHooks finish_hooks(const InterruptCatcher& interrupt, bool quiet) {
 
 namespace {
 
-// frames: how many will come; zero: not known.
+// frames: number expected; zero: unknown.
 template <typename Source>
 MapRun run_source(Source& source, int frames, const EngineOptions& options, const MapRunHooks& more_hooks,
                   const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {

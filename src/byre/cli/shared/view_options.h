@@ -11,20 +11,20 @@ class App;
 
 namespace byre::cli {
 
-// How a command takes the viewer.
+// Options of the viewer.
 struct ViewOptions {
   bool is_wanted = false;
   WebServerOptions server;
   std::optional<std::filesystem::path> plan;
-  std::optional<double> stay_s;  // after a run, infinite: until Ctrl-C; else that with a terminal, and 0 without one
+  std::optional<double> stay_s;  // time after a run; infinity: until Ctrl-C; empty: infinity with a terminal, else 0
 };
 
-// For each: the options must outlive the parsing of the command line.
+// The options must outlive the parsing of the command line.
 
-// --view [PORT], --view-for, --bind and --plan: for a command that may be watched.
+// --view [PORT], --view-for, --bind and --plan of a command with a run.
 void declare_watching(CLI::App& command, ViewOptions& options);
 
-// --port, --bind and --plan: for the command that is there to view.
+// --port, --bind and --plan of "byre view".
 void declare_viewing(CLI::App& command, ViewOptions& options);
 
 }  // namespace byre::cli

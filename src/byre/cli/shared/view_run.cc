@@ -37,7 +37,7 @@ RunDescription describe(const ViewOptions& options, const WatchedRun& run) {
   return description;
 }
 
-// Somebody is there to end the program.
+// Whether a user can end the program.
 bool has_terminal() {
   return isatty(STDIN_FILENO) != 0 || isatty(STDOUT_FILENO) != 0;
 }

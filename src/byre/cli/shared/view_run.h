@@ -13,41 +13,41 @@
 
 namespace byre::cli {
 
-// What the viewer tells of a run.
+// Description of a run for the viewer.
 struct WatchedRun {
   std::string name;
   const Calibration& calibration;
-  int frames = 0;                             // zero: nobody knows how many there will be
-  Timestamp last_time{};                      // time of the last frame, where that is known
-  std::optional<std::filesystem::path> map;   // the offline map's file
-  std::shared_ptr<const OfflineMap> offline;  // what is in it
+  int frames = 0;                             // zero: unknown
+  Timestamp last_time{};                      // time of the last frame, if known
+  std::optional<std::filesystem::path> map;   // file of the offline map
+  std::shared_ptr<const OfflineMap> offline;  // its contents
 };
 
-// A run that is watched: in the viewer, and as messages of ROS by whoever speaks Foxglove's protocol.
+// Shows a run in the viewer, and publishes it to Foxglove clients.
 class WatchedRunViewer {
  public:
-  // Tells its addresses on the standard error stream, quiet or not. Throws InputError when the port cannot be had or
-  // the plan cannot be read, and when the map was not registered on a plan.
+  // Prints its addresses to stderr, even if quiet. Throws InputError if the port is not available, the plan cannot be
+  // read, or the map is not registered on a plan.
   WatchedRunViewer(const ViewOptions& options, const WatchedRun& run);
 
-  // One of both after each frame, in order.
-  void note(const RunView& view);              // where its images could be read
-  void note_unread(const MappedFrame& frame);  // where they could not
+  // Call one of both after each frame, in order.
+  void note(const RunView& view);              // frame with readable images
+  void note_unread(const MappedFrame& frame);  // frame with unreadable images
 
-  void finish(const MapRun& run);  // no more frames will come
+  void finish(const MapRun& run);  // no more frames follow
 
  private:
   RunViewer viewer_;
-  RunMessages messages_;  // put where the viewer says
+  RunMessages messages_;  // uses the sink of viewer_
 };
 
-// Tells at which addresses a viewer can be opened, on the standard error stream.
+// Prints the addresses of a viewer to stderr.
 void announce(const std::vector<std::string>& urls);
 
-// For pages to be looked at: tells so on the standard error stream unless quiet, and returns upon Ctrl-C.
+// Serves pages until Ctrl-C; prints this to stderr unless quiet.
 void serve_until_interrupted(const InterruptCatcher& interrupt, bool quiet);
 
-// Serves the page once a run is over, for as long as the options say.
+// Serves the page after a run, as long as the options require.
 void serve_after_run(const ViewOptions& options, const InterruptCatcher& interrupt, bool quiet);
 
 }  // namespace byre::cli

@@ -6,7 +6,7 @@
 
 namespace byre::cli {
 
-// One a line; of very many only the first, and how many more there are.
+// One per line; of a large number only the first, and the number of the rest.
 void show_warnings(std::ostream& stream, const std::vector<std::string>& warnings);
 
 }  // namespace byre::cli

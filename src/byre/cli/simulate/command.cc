@@ -140,7 +140,7 @@ void declare_night(CLI::App& command, NightOptions& night) {
   out->needs(add_time("--lights-on", night.lights_on, "When it is on again")->needs(out));
 }
 
-// Throws CLI::ValidationError unless the text is a width and a height.
+// Parses width and height. Throws CLI::ValidationError for other text.
 std::array<int, 2> size_of(const std::string& text) {
   std::array<int, 2> size{};
   const char* const end = text.data() + text.size();

@@ -21,7 +21,7 @@ void add_number(CLI::App& command, const char* name, std::optional<Number>& valu
       ->group("Camera that errs");
 }
 
-// A number of one unit in another; what is there already where none is given.
+// Converts a given number to another unit; without one keeps the value.
 template <typename Number>
 void replace(Number& value, const std::optional<Number>& given, Number per_unit = 1) {
   if (given) value = *given * per_unit;

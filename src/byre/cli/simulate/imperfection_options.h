@@ -10,9 +10,9 @@ class App;
 
 namespace byre::cli {
 
-// What a user asks of a simulated camera: a condition, and what is to differ from it.
+// Imperfections of a simulated camera: a condition, and differences from it.
 struct ImperfectionOptions {
-  std::optional<CameraCondition> condition{};  // exact where none is given
+  std::optional<CameraCondition> condition{};  // empty: a perfect camera
   std::optional<double> calibration_level{};
   std::optional<std::uint64_t> calibration_seed{};
   std::optional<double> rolling_shutter_ms{};

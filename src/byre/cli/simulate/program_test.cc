@@ -1,4 +1,3 @@
-// "byre simulate" as a user runs it.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/recording.h"

@@ -61,7 +61,7 @@ ExitCode view(const ViewCommandOptions& options) {
   return ExitCode::done;
 }
 
-// Sees through other names for a file; neither need exist.
+// Resolves links; neither file needs to exist.
 bool is_same_file(const fs::path& a, const fs::path& b) {
   return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
 }

@@ -82,8 +82,8 @@ TEST_F(ViewProgram, StaysWhereThereIsATerminal) {
   close(terminal);
 }
 
-// Connections to a port of this machine, none of which asks for anything it may have: some wait, some send a request
-// that never ends, garbage, or a wrong token, and others come and go.
+// Connections without an accepted request: idle, with an endless request, garbage or a wrong token, and short-lived
+// ones.
 class HostileCrowd {
  public:
   explicit HostileCrowd(int port) : port_(port) {}

@@ -30,7 +30,7 @@ struct TrainOptions {
   std::vector<fs::path> images;
   fs::path output;
   VocabularyOptions tree;
-  int features = 5000;  // per image, at most
+  int features = 5000;  // largest number per image
   bool quiet = false;
 };
 
@@ -40,7 +40,7 @@ struct ImportOptions {
 };
 
 struct VocabularyShowOptions {
-  std::optional<fs::path> file;  // the vocabulary that comes with byre unless given
+  std::optional<fs::path> file;  // empty: the vocabulary installed with byre
 };
 
 constexpr const char* kTrainFooter = R"(Examples:
@@ -138,7 +138,7 @@ void declare_train(CLI::App& command, TrainOptions& options) {
   command.footer(kTrainFooter);
 }
 
-// Adds a subcommand that becomes the chosen action when it is on the command line.
+// Adds a subcommand that sets the chosen action when parsed.
 template <typename Options>
 CLI::App& add(CLI::App& command, const char* name, const char* summary, const std::shared_ptr<Options>& options,
               void (*run)(const Options&, std::ostream&), const std::shared_ptr<Action>& chosen) {

@@ -1,4 +1,3 @@
-// Makes vocabularies as a user does.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/dataset/image_descriptors.h"
@@ -17,7 +16,7 @@ using testing::StartsWith;
 
 class VocabularyProgram : public ProgramTest {
  protected:
-  // A binary PGM image of random rectangles.
+  // Writes a binary PGM image of random rectangles.
   void write_image(const std::string& name, int width, int height, unsigned seed) const {
     std::mt19937 random(seed);
     std::string pixels(static_cast<std::size_t>(width * height), '\x80');
