@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
 
-// The second lane of a mission looks for places in the offline map. Paced reading of the map ends before the next frame
-// changes it.
+// The second lane of a mission searches places in the offline map. Paced reading of the map ends before the next frame
+// modifies it.
 Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
   switch (pace) {
     case Pace::same_thread:
@@ -41,7 +41,7 @@ KnownMounting mounting_before(const Calibration& given, const EngineOptions& opt
   return mounting_for(options.offline->mounting(), options.offline->recordings(), given);
 }
 
-// Other cameras than those of the map may sit at another height, and tilted.
+// Other cameras than those of the map may be mounted at another height or tilt.
 SessionOptions session_options(const Calibration& given, const EngineOptions& options) {
   SessionOptions session = options.session;
   const bool is_told = options.offline && !options.offline->recordings().empty();
@@ -99,7 +99,7 @@ Engine::Engine(const Calibration& given, const EngineOptions& options, std::opti
   if (before) session_.continue_map(std::move(*before));
 }
 
-// Refines the readout time alone of cameras that are known, or that a map before lies by.
+// Refines only the readout time if the calibration is refined already, or an extended map depends on it.
 void Engine::refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended) {
   if (known_ || is_extended) {
     session_.refine_readout(known_.value_or(RefinedCalibration{given}));
@@ -174,7 +174,7 @@ Finishing Engine::finish_map(const FinishHooks& hooks) {
   return finishing;
 }
 
-// Where motions leave open how long the unit is, it stays the map's own.
+// Keeps the map's own unit if motions do not determine the scale.
 void Engine::measure_by_wheels() {
   constexpr double kMaxSigma = 0.02;     // share
   constexpr double kMaxTurnScale = 0.1;  // natural logarithm

@@ -19,7 +19,7 @@ Calibration one_camera() {
   return calibration;
 }
 
-// A figure of eight, driven by a robot that one camera looks out of.
+// Robot with one camera that drives a figure of eight.
 SimulatedMission figure_eight(const Rig& rig) {
   Trajectory path = figure_eight_trajectory(200, 10.0, 4.0, 1.0, robot_from_camera());
   for (StampedPose& pose : path) pose.world_from_body = pose.world_from_body * robot_from_camera();
@@ -28,7 +28,6 @@ SimulatedMission figure_eight(const Rig& rig) {
   return simulate_mission(rig, path, visit);
 }
 
-// The map of one camera gets metres in the end where wheels have told them.
 TEST(Engine, MeasuresWhatOneCameraMapsByWheels) {
   for (const bool has_wheels : {true, false}) {
     EngineOptions options;

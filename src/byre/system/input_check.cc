@@ -21,7 +21,7 @@ bool is_there(const std::optional<ImageView>& view) {
   return view && view->data != nullptr;
 }
 
-// The first of them that drops the frame, else the first there is.
+// First fault that drops the frame, else the first fault.
 InputFault worst_of(std::initializer_list<InputFault> faults) {
   for (const InputFault fault : faults) {
     if (is_dropped(fault)) return fault;
@@ -39,7 +39,7 @@ InputFault InputCheck::fault_of_time(Timestamp time) const {
   return to_seconds(time) - to_seconds(*last_time_) > options_.max_gap ? InputFault::after_gap : InputFault::none;
 }
 
-// In seconds, as the difference of times that make no sense is no time.
+// Compares seconds, as the difference of invalid times may overflow.
 bool InputCheck::is_beside(const ImageView& view, const ImageView& left) const {
   return view.time == Timestamp{} ||
          std::abs(to_seconds(view.time) - to_seconds(left.time)) <= options_.max_pair_difference;

@@ -13,23 +13,23 @@
 namespace byre {
 
 struct InputCheckOptions {
-  double max_pair_difference = 0.005;  // seconds between left and right image, or a picture and its depths
+  double max_pair_difference = 0.005;  // seconds between left and right or depth image
   double max_gap = 1.0;                // seconds between frames
 };
 
-// Looks at frames as they are handed over, one after the other, and counts what is wrong with them.
+// Detects and counts faults of consecutive frames.
 class InputCheck {
  public:
-  // rig: that features are given in.
+  // rig: camera of the caller's features.
   InputCheck(const Calibration& calibration, const Rig& rig, const InputCheckOptions& options)
       : calibration_(calibration), rig_(rig), options_(options) {}
 
   InputFault note(const CameraImages& images);
   InputFault note(const Frame& frame);
-  InputFault note(InputFault fault);  // fault that was found elsewhere
+  InputFault note(InputFault fault);  // fault detected elsewhere
 
   InputFault last() const { return last_; }
-  // Whether the right image or the depths of the images looked at last may be used.
+  // Whether right image and depths of the last frame are usable.
   bool may_use_right() const { return is_right_sound_; }
   bool may_use_depth() const { return is_depth_sound_; }
 
@@ -48,7 +48,7 @@ class InputCheck {
   Rig rig_;
   InputCheckOptions options_;
 
-  std::optional<Timestamp> last_time_;  // time of the last frame that was not dropped
+  std::optional<Timestamp> last_time_;  // time of the last frame not dropped
   InputFault last_ = InputFault::none;
   bool is_right_sound_ = false;
   bool is_depth_sound_ = false;

@@ -22,14 +22,14 @@ std::string to_text(Number value) {
   return {text.data(), end};
 }
 
-// A bound without an exponent.
+// Bound without an exponent.
 std::string in_full(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed).ptr;
   return {text.data(), end};
 }
 
-// Whole numbers as such, others in any form that a number has.
+// Integers in plain notation, others in any notation.
 template <typename Number>
 std::optional<Number> from_text(std::string_view text) {
   if constexpr (std::is_floating_point_v<Number>) {
@@ -42,7 +42,7 @@ std::optional<Number> from_text(std::string_view text) {
   }
 }
 
-// place: from options, changeable or not, to what is set.
+// place: accessor of the member, for constant and mutable options.
 template <typename Place>
 EngineOption number(const char* name, const char* unit, double low, double high, Place place, const char* meaning) {
   using Number = std::remove_cvref_t<std::invoke_result_t<Place, EngineOptions&>>;
@@ -411,7 +411,7 @@ void add_image(Table& table) {
       [](auto& o) -> auto& { return o.session.image.min_sharpness; }, "sharpness below which an image is blurred"));
 }
 
-// Levenshtein's distance: letters added, left out or exchanged.
+// Levenshtein distance.
 std::size_t distance_between(std::string_view one, std::string_view other) {
   std::vector<std::size_t> row(other.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -11,30 +11,30 @@
 
 namespace byre {
 
-// One thing that can be set of an Engine, by name and as text. What a run is given (recording, maps, vocabulary, known
-// calibration) is none.
+// Option of an Engine, by name and text. Inputs of a run (recording, maps, vocabulary, given calibration) are no
+// options.
 struct EngineOption {
-  std::string name;     // groups and a word, with dots between them: tracking.search_radius_px
+  std::string name;     // groups and a word, separated by dots: tracking.search_radius_px
   std::string unit;     // in words; empty for flags and choices
   std::string range;    // "from 1 to 100" or "first|together"
   std::string meaning;  // a noun phrase
-  std::function<std::string(const EngineOptions&)> get;            // shortest text that set takes back exactly
-  std::function<bool(EngineOptions&, std::string_view text)> set;  // false for what is no value of it, or out of range
+  std::function<std::string(const EngineOptions&)> get;            // shortest text from which set restores the value
+  std::function<bool(EngineOptions&, std::string_view text)> set;  // false for an invalid value
 };
 
-// All of them, in groups.
+// All options, by group.
 const std::vector<EngineOption>& option_table();
 
-// Names and values of those that are not as by default.
+// Names and values of options that differ from the default.
 std::vector<std::pair<std::string, std::string>> changed_options(const EngineOptions& options);
 
-// Why an option could not be set.
+// Reason for rejecting an option.
 struct OptionFault {
   std::string reason;
   std::string remedy;
 };
 
-// Empty once it is set. An unknown name is told with the known one that is most like it.
+// Empty on success. For an unknown name the remedy is the most similar option.
 std::optional<OptionFault> set_option(EngineOptions& options, std::string_view name, std::string_view text);
 
 }  // namespace byre

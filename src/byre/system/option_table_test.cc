@@ -12,13 +12,13 @@ namespace {
 
 using testing::HasSubstr;
 
-// What every member of a struct can be made of.
+// Converts to any member of a struct.
 struct Anything {
   template <typename Member>
-  operator Member() const;  // NOLINT(google-explicit-constructor): it is what members are initialised by
+  operator Member() const;  // NOLINT(google-explicit-constructor): initialises members
 };
 
-// How many members an aggregate has.
+// Number of members of an aggregate.
 template <typename Struct, typename... Members>
 constexpr std::size_t member_count() {
   if constexpr (requires { Struct{Members{}..., Anything{}}; }) {
@@ -33,7 +33,7 @@ constexpr std::size_t members_of() {
   return (member_count<Structs>() + ...);
 }
 
-// Every text that the option may have, as far as its range tells some.
+// Valid texts of an option, derived from its range.
 std::vector<std::string> some_values(const EngineOption& option) {
   std::string words = option.range;
   std::ranges::replace(words, '|', ' ');
@@ -47,7 +47,7 @@ std::vector<std::string> values(const EngineOptions& options) {
   return all;
 }
 
-// Cells that dirt hides are found out, and nobody's to set: of tracking and of finding places.
+// Hidden cells of tracking and of place search are estimated, so they are no options.
 constexpr std::size_t kHiddenCells = 2;
 
 TEST(OptionTable, ListsEveryLeaf) {
@@ -57,14 +57,14 @@ TEST(OptionTable, ListsEveryLeaf) {
       options;
   // pace, self_calibrate, use_known_mounting, wheel_scale_sigma, frame_deadline_ms
   const std::size_t in_engine = 5;
-  const std::size_t in_session = member_count<SessionOptions>() - 1 - 11;  // without the recording, and groups
+  const std::size_t in_session = member_count<SessionOptions>() - 1 - 11;  // without the recording and the groups
   const std::size_t in_groups =
       members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
                  HealthOptions, ImageConditionOptions, StateOptions, HindsightOptions>() -
-      1 - kHiddenCells;  // without the length that a map of one camera calls one
+      1 - kHiddenCells;  // without the unit of length of a monocular map
   const std::size_t in_mission = member_count<MissionOptions>() - 4 +
                                  members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>() +
-                                 member_count<PlaceBoundsOptions>() - 1;  // without what other cameras set
+                                 member_count<PlaceBoundsOptions>() - 1;  // without the flag for other cameras
   const std::size_t in_extract = member_count<ExtractOptions>() - 1 + member_count<DepthOptions>();
   EXPECT_EQ(option_table().size(), in_engine + in_session + in_groups + in_mission + in_extract +
                                        member_count<SelfCalibrationOptions>() + member_count<MotionLimits>());

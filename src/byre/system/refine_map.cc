@@ -13,11 +13,11 @@ namespace byre {
 Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
   const Stopwatch watch;
   Map online = online_copy(stored.map);
-  stored.map = Map(Origin::offline);  // hundreds of megabytes
+  stored.map = Map(Origin::offline);  // frees hundreds of megabytes
   ScratchFile stowed;
   stow_features(online, stowed);
   Finishing finishing;
-  // What reading left free, and each step, is of another kind than the next step needs.
+  // Memory freed by reading and by each step does not fit the allocations of the next step.
   const FinishHooks frugal{forgetting_looks(stowed, hooks.should_stop), [&hooks](const char* step) {
                              release_free_memory();
                              if (hooks.before_step) hooks.before_step(step);

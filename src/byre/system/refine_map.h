@@ -7,9 +7,9 @@
 
 namespace byre {
 
-// What mapping ends with, once more: looks for loops, adjusts all of the map, and removes weak points and redundant
-// keyframes. The map must have the vocabulary's words; its poses are the method's own afterwards, wherever they are
-// from.
+// Repeats the final steps of mapping: loop search, adjustment of the whole map, removal of weak points and redundant
+// keyframes. Afterwards poses count as estimated by SLAM, whatever their origin. Precondition: the map has words of the
+// vocabulary.
 Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks);
 
 }  // namespace byre

@@ -34,7 +34,7 @@ double resident_memory_mb() {
 }
 
 void allow_many_descriptors() {
-  constexpr rlim_t kMany = 1024;  // select() knows no more
+  constexpr rlim_t kMany = 1024;  // limit of select()
   rlimit descriptors{};
   if (getrlimit(RLIMIT_NOFILE, &descriptors) != 0 || descriptors.rlim_cur >= kMany) return;
   descriptors.rlim_cur = std::min(kMany, descriptors.rlim_max);

@@ -19,11 +19,11 @@ TEST(ResidentMemory, IsNoMoreThanItEverWas) {
   EXPECT_LE(now, 1.1 * resources_used_so_far().peak_memory_mb);
 }
 
-#ifndef BYRE_SANITIZED  // sanitizers keep what was freed
+#ifndef BYRE_SANITIZED  // sanitizers keep freed memory
 TEST(ReleaseFreeMemory, LeavesLessResident) {
   std::vector<std::vector<char>> blocks;
-  for (int i = 0; i < 40000; ++i) blocks.emplace_back(1000, 'x');  // small: from the heap
-  const std::vector<char> last(1000, 'y');                         // keeps its end in use
+  for (int i = 0; i < 40000; ++i) blocks.emplace_back(1000, 'x');  // small blocks: on the heap
+  const std::vector<char> last(1000, 'y');                         // keeps the end of the heap in use
   const double before = resident_memory_mb();
   blocks.clear();
   release_free_memory();

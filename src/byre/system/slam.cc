@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGivenCalibration = "the calibration given to Slam";
 
-// Throws InputError for values that no camera has. Calibrations from files were checked on reading; others were not.
+// Throws InputError for an invalid calibration. Those from files were checked on reading; others were not.
 void require_sense(const Calibration& calibration, const SlamOptions& options) {
   const auto refuse = [](std::string_view reason) {
     throw InputError(kGivenCalibration, reason, "see byre/calibration.h");
@@ -39,7 +39,7 @@ void require_sense(const Calibration& calibration, const SlamOptions& options) {
   if (options.image_threads < 1) throw InputError("SlamOptions::image_threads", "is less than one");
 }
 
-// The calibration with the baseline of the options. Throws InputError for an invalid calibration.
+// Calibration with the baseline of the options. Throws InputError if invalid.
 Calibration checked(const Calibration& calibration, const SlamOptions& options) {
   require_sense(calibration, options);
   return with_checked_baseline(calibration, options.baseline, kGivenCalibration, "SlamOptions::baseline = ");
@@ -79,7 +79,6 @@ EngineOptions engine_options(const SlamOptions& options, const Vocabulary& vocab
 
 }  // namespace
 
-// What a Slam consists of.
 struct Slam::Parts {
   Parts(const Calibration& given_calibration, const SlamOptions& slam_options, const Vocabulary& used_vocabulary,
         const EngineOptions& engine_options, StoredMap beside, std::optional<Map> before = {})
@@ -95,12 +94,12 @@ struct Slam::Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  // The images that the engine is to see; empty where they are dropped, see input.
+  // Images for the engine; empty if dropped, see input.
   const ImageFrame* take(const CameraImages& images);
-  // How the body has moved since the frame that the engine saw last.
+  // Motion of the body since the last frame processed by the engine.
   std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& told, Timestamp time, bool is_dropped);
   FrameReport noted(FrameReport report);
-  // Whether anything was mapped; where a map is gone on with, whether anything was added to it.
+  // Whether the map is not empty; for an extended map, whether anything was added.
   bool has_mapped() const { return engine.online().keyframe_count() > 0 && (had_pose || !is_extended); }
   FrameReport dropped(Timestamp time) const;
   StoredMap kept() const;
@@ -109,21 +108,20 @@ struct Slam::Parts {
   Calibration given;
   SlamOptions options;
   Vocabulary vocabulary;
-  StoredMap about;  // what is kept with the map, all but the map and the recording that is going on
+  StoredMap about;  // saved data besides the map and the current recording
   std::shared_ptr<const OfflineMap> offline;
   bool is_extended = false;
-  std::optional<fs::path> mission_map;   // file of the map of a mission
-  std::optional<PlanRegistration> plan;  // place of the map that poses are in on its floor plan
+  std::optional<fs::path> mission_map;   // map file of a mission
+  std::optional<PlanRegistration> plan;  // registration of the map frame on its floor plan
 
   Engine engine;
   InputCheck input;
-  ImageFrame buffer;  // holds the images while they are looked at
-  std::optional<BodyMotion> unseen_motion =
-      no_motion();                      // motion over frames that were dropped since; empty: not known
-  State state = State::initialising;    // state after the last frame
-  std::optional<Timestamp> first_time;  // time of the first frame that was not dropped
+  ImageFrame buffer;                                      // holds the images during a call
+  std::optional<BodyMotion> unseen_motion = no_motion();  // motion over dropped frames; empty: unknown
+  State state = State::initialising;                      // state after the last frame
+  std::optional<Timestamp> first_time;                    // time of the first frame not dropped
   Timestamp last_time{};
-  bool had_pose = false;  // whether any frame had a pose in the map
+  bool had_pose = false;  // whether any frame had a map pose
   bool is_finished = false;
 };
 
@@ -146,7 +144,7 @@ const ImageFrame* Slam::Parts::take(const CameraImages& images) {
 std::optional<BodyMotion> Slam::Parts::take_motion(const std::optional<BodyMotion>& told, Timestamp time,
                                                    bool is_dropped) {
   const std::optional<BodyMotion> motion = engine.checked(told, time);
-  const bool is_of_use = engine.is_metric();  // nobody can tell metres to who knows none
+  const bool is_of_use = engine.is_metric();  // metric priors need a metric map
   const auto since = is_of_use && unseen_motion && motion ? std::optional(*unseen_motion * *motion) : std::nullopt;
   unseen_motion = is_dropped ? since : no_motion();
   return since;
@@ -188,7 +186,7 @@ Slam::~Slam() = default;
 Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
   Calibration given = checked(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
-  if (!given.tells_metres()) given.body_from_left = {};  // an arm in metres means nothing to who knows none
+  if (!given.tells_metres()) given.body_from_left = {};  // a lever arm in metres needs a metric map
   return Slam(std::make_unique<Parts>(given, options, vocabulary, engine_options(options, vocabulary), StoredMap{}));
 }
 
@@ -264,7 +262,7 @@ bool Slam::is_mapping_paused() const {
 }
 
 void Slam::look_near(const PoseHint& hint) {
-  constexpr double kMostOff = 0.1;  // share of the length 1
+  constexpr double kMostOff = 0.1;  // tolerance of the quaternion's length 1
   const bool is_sound = is_finite(hint.map_from_body) && std::abs(hint.map_from_body.rotation.norm() - 1.0) < kMostOff;
   if (is_sound) parts_->engine.look_near(hint);
 }

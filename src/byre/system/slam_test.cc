@@ -119,7 +119,7 @@ TEST_F(SlamWithAFile, TellsWhereAMissionIsOnAMap) {
   EXPECT_GT(slam.trajectory().size(), 10u);
 }
 
-// Overwrites the bytes of a file in place, as a failing disk does.
+// Overwrites a file in place, as a failing disk does.
 void zero_in_place(const fs::path& file) {
   const std::string zeros(fs::file_size(file), '\0');
   std::fstream(file, std::ios::in | std::ios::out | std::ios::binary) << zeros;
@@ -137,7 +137,7 @@ TEST_F(SlamWithAFile, ReportsDamageOfItsMapAndLosesNothing) {
       Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
       for (std::size_t i = 0; i < frames.size(); ++i) {
         if (i == good_frames) damage(map_);
-        const bool was_damaged = slam.map_damage().has_value();  // a search beside tracking may find it first
+        const bool was_damaged = slam.map_damage().has_value();  // a background search may detect the damage first
         const FrameReport report = slam.process(view_of(frames[i]));
         const bool is_damaged = report.health.doubt == Doubt::map_damaged;
         EXPECT_TRUE(is_damaged || !was_damaged) << i;
@@ -410,7 +410,7 @@ Pose hostile_pose(std::mt19937& random) {
   return pose;
 }
 
-// Adds samples of each motion input before a frame, sound or invalid, also with times out of order or range.
+// Adds samples of each motion input before a frame: valid or invalid, also with times out of order or range.
 void tell_hostile(Slam& slam, Timestamp time, std::mt19937& random) {
   const auto value = [&] { return hostile_values()[random() % hostile_values().size()]; };
   const std::vector<Timestamp> times = {
@@ -438,7 +438,7 @@ std::optional<BodyMotion> hostile_motion(std::mt19937& random) {
 TEST_F(SlamWithAFile, StaysFiniteWhateverMotionInputsReport) {
   map_shared();
   std::vector<ImageFrame> frames = shared_frames();
-  for (std::size_t i = frames.size() / 3; i < frames.size() / 2; ++i) {  // so that measured motion bridges frames
+  for (std::size_t i = frames.size() / 3; i < frames.size() / 2; ++i) {  // measured motion bridges frames
     std::ranges::fill(frames[i].left.pixels, std::uint8_t{0});
     if (frames[i].right) std::ranges::fill(frames[i].right->pixels, std::uint8_t{0});
   }

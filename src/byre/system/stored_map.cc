@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Empty where the plan does not say what a wall is.
+// Empty if the plan does not define walls.
 std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map, const DrawnFloorPlan& drawn) {
   const FloorPlan& plan = drawn.plan;
   if (!stored.plan) {
@@ -26,7 +26,7 @@ std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map
   return place_walls(stored.map, *stored.plan, PlanWalls(plan, drawn.occupancy));
 }
 
-// Throws for a map that nothing can be measured on, and adds words.
+// Adds words. Throws InputError for a map without metric scale.
 StoredMap made_ready(StoredMap stored, const fs::path& path, const Vocabulary& vocabulary) {
   if (stored.scale != MapScale::metric) {
     throw InputError(path.string(), "has no metric scale, so nothing can be measured on it",

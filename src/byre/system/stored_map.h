@@ -13,26 +13,25 @@
 
 namespace byre {
 
-// The vocabulary of a file, or the one that comes with byre. Throws InputError when it cannot be loaded.
+// Vocabulary from a file, or the installed one. Throws InputError if it cannot be loaded.
 Vocabulary open_vocabulary(const std::optional<std::filesystem::path>& path);
 
-// A map that a recording may be tracked in: its keyframes have words of this vocabulary. Throws InputError when it
-// cannot be loaded, or has no metric scale, without which stereo and loops cannot be compared with it.
+// Loads a map for tracking; its keyframes get words of the vocabulary. Throws InputError if it cannot be loaded, or has
+// no metric scale, which stereo tracking and loop closing need.
 StoredMap load_for_mapping(const std::filesystem::path& path, const Vocabulary& vocabulary);
 
-// The same as the offline map of missions. plan: the floor plan that it lies on, whose walls then bound where the robot
-// can be; empty for none. Throws InputError also where the map does not lie on that plan.
+// Loads the offline map of missions, with the same requirements. plan: floor plan on which the map is registered, whose
+// walls limit relocalisation; may be empty. Throws InputError also if the map is not registered on that plan.
 std::shared_ptr<const OfflineMap> load_offline_map(const std::filesystem::path& path, const Vocabulary& vocabulary,
                                                    const std::optional<DrawnFloorPlan>& plan = {});
 
-// How many keyframes are of each of so many recordings.
+// Number of keyframes per recording.
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings);
 
-// Saves the map with what later missions need beside it: words of the vocabulary, the site's name unless it is empty,
-// and the version of byre.
+// Saves the map with the data that missions need: words of the vocabulary, site name unless empty, version of byre.
 void save_for_use(StoredMap stored, const Vocabulary& vocabulary, const std::string& site,
                   const std::filesystem::path& path);
-// The same, after which the map is as it was read again from what is written.
+// Also updates `stored` to the map as read back from the file.
 void save_for_use_and_reread(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
                              const std::filesystem::path& path);
 
