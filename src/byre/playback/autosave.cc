@@ -21,7 +21,7 @@ void Autosave::finish() {
   try {
     saving_.get();
     ++saved_;
-  } catch (const std::exception& error) {  // mapping goes on: the next try may succeed
+  } catch (const std::exception& error) {  // mapping continues; the next save may succeed
     failures_.emplace_back(error.what());
   }
 }

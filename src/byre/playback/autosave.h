@@ -10,8 +10,8 @@
 
 namespace byre {
 
-// Keeps the map so far, every so many seconds of wall time. Only copying the map takes time of the calling thread;
-// saving has a thread of its own, and a map that comes due meanwhile is passed over.
+// Saves the map at intervals of wall time. The calling thread only copies the map; another thread saves it. Skips a
+// save while one is running.
 class Autosave {
  public:
   using Save = std::function<void(const Map& online, const KeptWithMap& kept)>;
@@ -21,8 +21,8 @@ class Autosave {
   void offer(const Map& online, const KeptWithMap& kept);  // after each frame
   void finish();                                           // waits for the thread
 
-  int saved() const { return saved_; }                                    // how often it was
-  const std::vector<std::string>& failures() const { return failures_; }  // why it was not
+  int saved() const { return saved_; }                                    // number of saves
+  const std::vector<std::string>& failures() const { return failures_; }  // reasons of failed saves
 
  private:
   bool is_saving() const;

@@ -11,26 +11,26 @@
 
 namespace byre {
 
-// A frame of a recording, once it is in memory.
+// Decoded frame of a recording.
 struct DecodedFrame {
   Timestamp time{};
-  std::optional<ImageFrame> images;   // empty when they cannot be read
-  std::vector<std::string> warnings;  // warnings that reading it gave
-  double seconds = 0.0;               // wall time that reading it took
+  std::optional<ImageFrame> images;   // empty if unreadable
+  std::vector<std::string> warnings;  // warnings of reading this frame
+  double seconds = 0.0;               // wall time of reading
 };
 
-// Reads the frames of a recording in order, in a thread of its own that stays a few frames ahead.
+// Reads a recording in order on its own thread, a few frames ahead.
 class DecodeAhead {
  public:
   static constexpr int kAhead = 3;  // frames
 
-  // The recording must outlive it, and nobody else may read from it meanwhile.
+  // The recording must outlive it, and must not be read by others meanwhile.
   explicit DecodeAhead(Recording& recording);
-  ~DecodeAhead();  // does not wait for frames nobody asked for
+  ~DecodeAhead();  // does not wait for remaining frames
   DecodeAhead(const DecodeAhead&) = delete;
   DecodeAhead& operator=(const DecodeAhead&) = delete;
 
-  // Waits for the next frame; empty after the last one. A frame whose reading throws has no images, and a warning.
+  // Waits for the next frame; empty after the last one. If reading throws, the frame has no images, and a warning.
   std::optional<DecodedFrame> next();
 
  private:
@@ -38,13 +38,13 @@ class DecodeAhead {
   DecodedFrame decode(int index);
   DecodedFrame& slot_of(int index) { return slots_[static_cast<std::size_t>(index % kAhead)]; }
 
-  Recording& recording_;  // read from by the thread alone
+  Recording& recording_;  // read by the thread only
   int taken_ = 0;         // owned by the caller of next()
-  // A slot belongs to the thread from when it is free until it is filled, then to the caller until it is free again.
+  // A slot is owned by the thread while free, and by the caller once filled.
   std::array<DecodedFrame, kAhead> slots_;
-  std::counting_semaphore<kAhead + 1> free_{kAhead};  // room for one more, to wake the thread when it is to stop
+  std::counting_semaphore<kAhead + 1> free_{kAhead};  // one extra to wake the thread on stop
   std::counting_semaphore<kAhead> filled_{0};
-  std::jthread thread_;  // the last member: it uses the others
+  std::jthread thread_;  // last member, as it uses the others
 };
 
 }  // namespace byre

@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// Frame 2 cannot be read.
+// Recording whose frame 2 is unreadable.
 class FakeRecording final : public Recording {
  public:
   explicit FakeRecording(int frames) {

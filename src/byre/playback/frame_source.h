@@ -9,26 +9,26 @@
 
 namespace byre {
 
-// Where the frames of a run come from, one after the other.
+// Source of the frames of a run, in order.
 class FrameSource {
  public:
   struct SourceFrame {
     DecodedFrame decoded;
-    double late_s = 0.0;  // seconds by which it comes too late, where frames are fed at their own time stamps
+    double late_s = 0.0;  // delay when playing in real time, seconds
   };
 
   virtual ~FrameSource() = default;
   virtual const Calibration& calibration() const = 0;
-  // What wheels and a gyroscope tell beside the frames; live cameras come without.
+  // Samples of wheels and gyroscope; empty for live cameras.
   virtual const MotionSamples& motion() const;
-  // Waits for the next frame; empty after the last one, and where nothing comes before should_stop() holds.
+  // Waits for the next frame; empty after the last one, or if none arrives before should_stop() is true.
   virtual std::optional<SourceFrame> next(const std::function<bool()>& should_stop) = 0;
 };
 
-// The frames of a recording, as fast as they are asked for, or at their own time stamps.
+// Frames of a recording, on demand or in real time.
 class PlayedRecording final : public FrameSource {
  public:
-  // The recording must outlive it, and nobody else may read from it meanwhile.
+  // The recording must outlive it, and must not be read by others meanwhile.
   PlayedRecording(Recording& recording, bool is_live) : recording_(recording), decoder_(recording), is_live_(is_live) {}
 
   const Calibration& calibration() const override { return recording_.calibration(); }
@@ -42,7 +42,7 @@ class PlayedRecording final : public FrameSource {
   const bool is_live_;
 };
 
-// As run_map of map_run.h, which plays a recording: maps all frames that come, until there are no more.
+// Same as run_map of map_run.h, for any source of frames.
 MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before = {});
 

@@ -20,7 +20,7 @@ Calibration best_calibration(const std::vector<SourceRecording>& recordings, con
   return known ? known->calibration : given;
 }
 
-// Extracts frames of one camera and looks for each in the map.
+// Extracts features of one camera and localises each frame in the map.
 class Finder {
  public:
   Finder(const SearchableMap& map, const Calibration& given)
@@ -52,7 +52,7 @@ class Finder {
   Extractor extractor_;
 };
 
-// The image as the camera would have taken it; empty, with a warning added, when it cannot be read.
+// Image scaled to the camera; empty, with a warning added, if unreadable.
 std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std::vector<std::string>& warnings) {
   auto [image, failure] = try_image(path);
   if (!image) {
@@ -67,7 +67,7 @@ std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std
   return fit(*image, camera.width, camera.height);
 }
 
-// All as their names say or, where one of them says nothing, a second apart.
+// Times from the names; one second apart if any name lacks a time.
 std::vector<Timestamp> times_of(const std::vector<fs::path>& images) {
   std::vector<Timestamp> times;
   for (const fs::path& image : images) {

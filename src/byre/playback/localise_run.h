@@ -14,27 +14,27 @@
 
 namespace byre {
 
-// One frame looked for in a map, without a thought of the others.
+// Result of localising one frame independently.
 struct LocalisedFrame {
-  std::string name;                     // its image file, or its time stamp in seconds
-  Timestamp time{};                     // time in an image's name, else as many seconds as its place in the list
-  std::optional<Pose> world_from_body;  // empty when it was not found
+  std::string name;                     // image file, or time stamp in seconds
+  Timestamp time{};                     // time in the image's name, else its index in seconds
+  std::optional<Pose> world_from_body;  // empty if not localised
   Localisation localisation;
   double extract_seconds = 0.0;
   double localise_seconds = 0.0;
 };
 
 struct LocaliseRun {
-  std::vector<LocalisedFrame> frames;  // unreadable ones are left out
+  std::vector<LocalisedFrame> frames;  // without unreadable ones
   std::vector<std::string> warnings;
 };
 
 struct LocaliseHooks {
-  std::function<bool()> should_stop;  // asked before each frame
+  std::function<bool()> should_stop;  // called before each frame
   std::function<void(int done, const LocalisedFrame& frame)> after_frame;
 };
 
-// A map ready for queries. Borrows the map.
+// Map with a place index. Borrows the map.
 struct SearchableMap {
   SearchableMap(const StoredMap& stored, const Vocabulary& vocabulary)
       : is_metric(stored.scale == MapScale::metric),
@@ -42,7 +42,7 @@ struct SearchableMap {
         recordings(stored.recordings),
         index(index_of(stored.map, vocabulary)) {}
 
-  bool is_metric;  // whether disparities, which are metric, can be compared with the map
+  bool is_metric;  // whether disparities are comparable with the map
   const Map& map;
   const std::vector<SourceRecording>& recordings;
   Map nothing_online{Origin::online};
@@ -51,10 +51,10 @@ struct SearchableMap {
   MapView view() const { return {&map, nothing_online}; }
 };
 
-// Every frame of a recording. Throws InputError when its calibration cannot be rectified.
+// Localises each frame of a recording. Throws InputError if its calibration cannot be rectified.
 LocaliseRun localise_recording(const SearchableMap& map, Recording& recording, const LocaliseHooks& hooks);
 
-// Images taken by the camera: of another size, they are scaled to its own, with a warning.
+// Localises images of a camera. Images of another size are scaled, with a warning.
 LocaliseRun localise_images(const SearchableMap& map, const std::vector<std::filesystem::path>& images,
                             const Calibration& camera, const LocaliseHooks& hooks);
 

@@ -13,26 +13,26 @@ namespace byre {
 struct PosedRunOptions {
   ExtractOptions extract;
   KnownPoseOptions map;
-  Timestamp max_gap = std::chrono::milliseconds(100);  // between two poses that one may be interpolated in
+  Timestamp max_gap = std::chrono::milliseconds(100);  // largest gap between poses that are interpolated
 };
 
-// A map made from a recording and the poses of its frames.
+// Map made from a recording with given poses.
 struct PosedRun {
   Map map{Origin::offline};
-  Trajectory trajectory;  // given poses of the frames that are in the map
-  int frames = 0;         // frames looked at
-  int without_pose = 0;   // frames left out because the trajectory says nothing of their time
-  int unreadable = 0;     // frames left out because their images cannot be read
+  Trajectory trajectory;  // given poses of the keyframes
+  int frames = 0;         // frames processed
+  int without_pose = 0;   // frames skipped as the trajectory does not cover their time
+  int unreadable = 0;     // frames skipped as their images are unreadable
   std::vector<std::string> warnings;
 };
 
 struct PosedRunHooks {
-  std::function<bool()> should_stop;  // asked before each frame
+  std::function<bool()> should_stop;  // called before each frame
   std::function<void(int done)> after_frame;
 };
 
-// Every frame of the recording with a pose becomes a keyframe; the world is the trajectory's. Throws InputError when
-// the calibration cannot be rectified, and when no frame has a pose.
+// Turns each frame with a pose into a keyframe; the world frame is that of the trajectory. Throws InputError if the
+// calibration cannot be rectified, or no frame has a pose.
 PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_body, const PosedRunOptions& options,
                             const PosedRunHooks& hooks);
 

@@ -31,7 +31,7 @@ MappedFrame mapped(Engine& engine, const DecodedFrame& decoded) {
   return frame;
 }
 
-// Hands over what was told of the motion up to a frame, as it would have come on the robot.
+// Passes on motion samples up to a frame, in the order of a live robot.
 class MotionFeed {
  public:
   explicit MotionFeed(const MotionSamples& samples) : samples_(samples) {}
@@ -60,13 +60,12 @@ class MotionFeed {
   std::size_t acceleration_ = 0;
 };
 
-// Jobs that finished since the last frame began, without those that were noted already.
+// Adds jobs finished since the current frame began, except those noted before.
 void note_jobs(const Engine& engine, MapRun& run, std::size_t noted = 0) {
   const std::vector<double>& seconds = engine.log().job_seconds;
   run.job_seconds.insert(run.job_seconds.end(), seconds.begin() + static_cast<std::ptrdiff_t>(noted), seconds.end());
 }
 
-// What was found out of wheels and a gyroscope.
 ToldMotion told_motion(const MotionPrior& prior, const Session& session) {
   ToldMotion told;
   told.is_told = !prior.is_empty();
@@ -101,7 +100,7 @@ void take_over_result(Engine& engine, MapRun& run) {
   }
 }
 
-// Each step needs as much memory as the ones before it together, and of another kind.
+// Each step needs about as much memory as all earlier ones, in other block sizes.
 FinishHooks frugal(const MapRunHooks& hooks) {
   return {hooks.should_stop, [announce = hooks.before_finishing_step](const char* step) {
             release_free_memory();

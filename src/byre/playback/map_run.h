@@ -15,51 +15,51 @@ struct MappedFrame {
   Timestamp time{};
   bool has_right = false;
   bool has_depth = false;
-  std::optional<FrameReport> report;  // empty when its images could not be read and it was left out
+  std::optional<FrameReport> report;  // empty if the images were unreadable and the frame was skipped
   StageSeconds seconds;
   int keyframes = 0;       // keyframes of the map after the frame
   int points = 0;          // points of the map after the frame
-  double memory_mb = 0.0;  // resident memory of the whole program
+  double memory_mb = 0.0;  // resident memory of the process
 };
 
-// What was found out of what told the robot's motion.
+// Estimates from wheels and inertial sensors.
 struct ToldMotion {
-  bool is_told = false;  // by wheels or a gyroscope
+  bool is_told = false;  // whether wheels or a gyroscope gave samples
   std::optional<WheelMounting> wheels;
   std::optional<GyroscopeMounting> gyroscope;
-  double time_offset = 0.0;            // seconds that wheels stamp later than the camera
-  int slips = 0;                       // times that wheels were left out
-  bool is_mounted_otherwise = false;   // wheels, than when the map was made
-  KnownMounting to_keep;               // for the next drive
-  int stops = 0;                       // times that the body stood still, as accelerations show too
-  double stood_s = 0.0;                // seconds that it did
-  int tilts_held = 0;                  // bridged frames whose roll and pitch accelerations held
-  std::optional<double> metres_sigma;  // standard deviation of metres by wheels alone, as a share
-  int led_afterwards = 0;              // final poses of frames that had none, where wheels led from those that had
+  double time_offset = 0.0;            // delay of wheel stamps relative to the camera, seconds
+  int slips = 0;                       // number of rejections for wheel slip
+  bool is_mounted_otherwise = false;   // wheel mounting differs from that of the map
+  KnownMounting to_keep;               // mounting to save for later runs
+  int stops = 0;                       // standstills confirmed by the accelerometer
+  double stood_s = 0.0;                // duration of the standstills, seconds
+  int tilts_held = 0;                  // bridged frames with roll and pitch from the accelerometer
+  std::optional<double> metres_sigma;  // relative standard deviation of a scale measured by wheels only
+  int led_afterwards = 0;              // frames whose final pose is filled in by wheel odometry
 };
 
 struct MapRun {
-  std::vector<MappedFrame> frames;  // one for each frame of the recording, fewer when the run was stopped
-  Trajectory causal;                // poses as published when their frames came
-  Trajectory final;                 // poses as recomputed after the last frame
-  Trajectory odometry;              // the smooth poses as published, in a frame of their own
-  Map map{Origin::offline};         // map as it is kept; of the keyframes made, others were found redundant
-  std::optional<RefinedCalibration> calibration;  // calibration that the map lies by, where it was refined
-  std::optional<double> row_error;  // row error of the calibration in use, pixels (CommonRowError); empty without pairs
-  std::optional<Finishing> finishing;  // empty when it was left out: stopped before, or without a vocabulary
-  std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map as a whole
+  std::vector<MappedFrame> frames;                // one per frame of the recording; fewer if stopped
+  Trajectory causal;                              // poses as published at their frames
+  Trajectory final;                               // poses after the last frame, with all corrections
+  Trajectory odometry;                            // smooth odometry as published, in its own frame
+  Map map{Origin::offline};                       // saved map, without redundant keyframes
+  std::optional<RefinedCalibration> calibration;  // calibration of the map; empty unless refined
+  std::optional<double> row_error;     // row error of the calibration in use, pixels; empty without stereo pairs
+  std::optional<Finishing> finishing;  // empty if skipped: stopped before, or without a vocabulary
+  std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map
   std::vector<double> job_seconds;                  // wall time of each mapping job
   ToldMotion told;
-  bool is_metric = true;  // lengths of the map and of final poses are metres
+  bool is_metric = true;  // whether map and final poses are in metres
   // Damage of the offline map's file that ended the mission, see Engine::map_damage.
   std::optional<InputError> map_damage;
   std::vector<std::string> warnings;           // warnings of the recording
   std::vector<MotionWarning> motion_warnings;  // faults of wheels, gyroscope and accelerometer
-  std::vector<double> lateness;                // seconds by which late frames were fed too late, in a live run
+  std::vector<double> lateness;                // delays of late frames in a live run, seconds
   double wall_seconds = 0.0;                   // wall time of the whole run
 };
 
-// What can be seen of a run right after a frame: valid for the time of the call.
+// State of a run after a frame; valid during a call.
 struct RunView {
   const ImageFrame& images;
   const MappedFrame& frame;
@@ -67,17 +67,16 @@ struct RunView {
 };
 
 struct MapRunHooks {
-  std::function<bool()> should_stop;                                    // asked before each frame, and when finishing
-  std::function<void(int done, const MappedFrame& frame)> after_frame;  // not in the frame's time
-  std::function<void(const RunView& view)> look;  // unless empty, after each frame that could be read; not in its time
-  // Unless empty, after each frame from the first with a pose on.
+  std::function<bool()> should_stop;                                    // called before each frame and while finishing
+  std::function<void(int done, const MappedFrame& frame)> after_frame;  // not part of the frame's time
+  std::function<void(const RunView& view)> look;  // optional; after each readable frame, not part of its time
+  // Optional; after each frame from the first pose on.
   std::function<void(const Map& online, const KeptWithMap& kept)> offer_map;
   std::function<void(const char* step)> before_finishing_step;
 };
 
-// Maps a recording from its first to its last frame, and finishes the map. Frames whose images cannot be read
-// are left out. Goes on with the map before, an online copy, if there is one: it needs the vocabulary's words, and
-// options a vocabulary. Throws InputError when the calibration cannot be rectified.
+// Maps a recording and finishes the map. Skips unreadable frames. before: map to extend, an online copy with words of
+// the vocabulary, which options must contain. Throws InputError if the calibration cannot be rectified.
 MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before = {});
 

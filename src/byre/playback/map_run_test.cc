@@ -160,7 +160,7 @@ TEST(RunMap, OffersTheMapFromTheFirstPoseOn) {
 TEST(RunMap, OffersHowWheelsAreMountedWithTheMap) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 2});
   EngineOptions options;
-  options.mounting.wheels.emplace().metres_per_unit = 1.02;  // as when the map was made that is gone on with
+  options.mounting.wheels.emplace().metres_per_unit = 1.02;  // from the map that is extended
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};

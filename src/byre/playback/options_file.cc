@@ -14,7 +14,7 @@ void read_options(const std::filesystem::path& path, EngineOptions& options) {
   }
 }
 
-// Precondition: names have one group at most, and those of a group follow one another.
+// Precondition: at most one level of groups, options of a group adjacent.
 std::string options_file(const EngineOptions& options) {
   std::string text;
   std::string group;

@@ -7,11 +7,11 @@
 
 namespace byre {
 
-// Sets what a YAML file names (docs/options.md); all else stays. Throws InputError, with the line, for what is no
-// option, or no value of one.
+// Sets the options in a YAML file (docs/options.md); others are unchanged. Throws InputError with the line for an
+// unknown option or an invalid value.
 void read_options(const std::filesystem::path& path, EngineOptions& options);
 
-// All options as a file that read_options takes back, each with its meaning, unit and range.
+// File for read_options with all options, their meanings, units and ranges.
 std::string options_file(const EngineOptions& options);
 
 }  // namespace byre

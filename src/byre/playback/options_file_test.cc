@@ -25,7 +25,7 @@ class OptionsFile : public TestFolder {
   }
 };
 
-// Every option at the other end of its range, or another of its words.
+// All options at another value: the other end of the range, or another choice.
 EngineOptions all_changed() {
   EngineOptions options;
   for (const EngineOption& option : option_table()) {

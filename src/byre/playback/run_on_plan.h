@@ -5,10 +5,10 @@
 
 namespace byre {
 
-// Poses in the map, on its floor plan, with covariances that hold what the registration adds. How far poses may be
-// relied on is judged in the map all the same: there the robot knows its way, however the map lies on the plan.
+// Transforms poses from the map to its floor plan, and adds the covariance of the registration. Verdicts are still
+// those in the map, as the registration does not affect navigation.
 Trajectory on_plan(Trajectory trajectory, const PlanRegistration& registration);
 MappedFrame on_plan(MappedFrame frame, const PlanRegistration& registration);
-MapRun on_plan(MapRun run, const PlanRegistration& registration);  // all but odometry and the map itself
+MapRun on_plan(MapRun run, const PlanRegistration& registration);  // without odometry and the map itself
 
 }  // namespace byre

@@ -37,7 +37,7 @@ TEST(RunOnPlan, MovesEveryPoseInTheMapAndNoOther) {
 
 TEST(RunOnPlan, TellsWhatTheRegistrationLeavesOpen) {
   PlanRegistration registration = turned_and_shifted();
-  registration.covariance(5, 5) = 1e-4;  // about the map's vertical, beside whose origin the body stands
+  registration.covariance(5, 5) = 1e-4;  // about the vertical through the origin of the map
   MappedFrame frame;
   frame.report.emplace();
   frame.report->map_from_body = Pose{Eigen::Quaterniond::Identity(), {10.0, 0.0, 0.0}};

@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-// The same frames, with the camera for the body.
+// Same frames with the camera as the body.
 class OfCamera final : public Recording {
  public:
   explicit OfCamera(std::unique_ptr<Recording> recording)

@@ -8,18 +8,18 @@
 
 namespace byre {
 
-// A recording that is to be mapped, or run on a map. One camera that maps from nothing knows no metres, so the arm from
-// it to the body means nothing to it either: then the recording says that its camera is the body.
+// Recording for mapping or a mission. Monocular mapping has no metric scale, so a lever arm in metres is meaningless:
+// then the camera frame serves as the body frame.
 struct ScaledRecording {
   std::unique_ptr<Recording> recording;
   bool is_metric = true;
-  Pose body_from_camera;  // identity where the recording is metric
+  Pose body_from_camera;  // identity if metric
 
-  // The path of what moves along the run's poses.
+  // Path of the body, given the poses of a run.
   Trajectory path_of(const Trajectory& world_from_body) const;
 };
 
-// Throws InputError as open_recording does. A map that is there tells one camera the scale.
+// Throws InputError as open_recording does. A metric map provides the scale for one camera.
 ScaledRecording open_scaled(const std::filesystem::path& path, const FrameRange& range, const OpenOptions& options,
                             bool has_metric_map);
 

@@ -8,7 +8,7 @@
 
 namespace byre {
 
-// What a map says of a recording it was made from: not where it lies, so that equal maps are equal.
+// Description of a recording for a map made from it. Contains no path, so that equal maps are equal.
 SourceRecording describe_source(const std::filesystem::path& folder, const Recording& recording,
                                 const std::optional<RefinedCalibration>& refined = {});
 
