@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 
 constexpr int kCornerRays = 14;
 
-// Directions about the z axis, more of them near it as the cosine law has it (a spiral of Fibonacci).
+// Cosine-weighted directions about the z axis (Fibonacci spiral).
 std::array<Vector3f, kCornerRays> corner_directions() {
   std::array<Vector3f, kCornerRays> directions;
   for (int i = 0; i < kCornerRays; ++i) {
@@ -26,7 +26,7 @@ std::array<Vector3f, kCornerRays> corner_directions() {
   return directions;
 }
 
-// The share of light from near directions that no wall is in the way of.
+// Share of the nearby directions that no wall blocks.
 float openness(const Vector3f& point, const Vector3f& normal, const RayScene& still) {
   constexpr float kReach = 1.8f;  // metres
   static const std::array<Vector3f, kCornerRays> kDirections = corner_directions();
@@ -37,7 +37,7 @@ float openness(const Vector3f& point, const Vector3f& normal, const RayScene& st
   return static_cast<float>(std::ranges::count_if(kDirections, is_open)) / kCornerRays;
 }
 
-// What a small piece of a window, of an area, sends to a white surface.
+// Light that a white surface receives from a piece of a window; area of the piece in square metres.
 float light_from_piece(const Vector3f& piece, const WindowLight& window, float area, const Vector3f& point,
                        const Vector3f& normal, const RayScene& still) {
   const Vector3f way = piece - point;
@@ -79,7 +79,7 @@ float light_at(const Vector3f& point, const Vector3f& normal, const RayScene& st
 }  // namespace
 
 std::vector<float> light_at_vertices(const QuadMesh& mesh, const RayScene& still, const BarnLight& light, int threads) {
-  constexpr float kLift = 0.02f;  // metres off the surface, which else would shade itself
+  constexpr float kLift = 0.02f;  // metres off the surface, against self-shadowing
   constexpr int kAtOnce = 256;
   const int count = static_cast<int>(mesh.vertices.size());
   std::vector<float> result(mesh.vertices.size());

@@ -6,7 +6,7 @@
 
 namespace byre {
 
-// A window or skylight: a parallelogram that shines into the half space that its normal points to.
+// A window or skylight: a parallelogram that shines into the half space of its normal.
 struct WindowLight {
   Eigen::Vector3f centre;
   Eigen::Vector3f half_x;
@@ -20,18 +20,18 @@ struct Lamp {
   float intensity = 0.0f;  // radiance times square metres
 };
 
-// Where the light of a barn comes from. Radiances have a unit of their own: the camera's exposure control settles it.
+// Light sources of a barn. The unit of radiance is arbitrary: automatic exposure compensates for it.
 struct BarnLight {
   std::vector<WindowLight> windows{};
   std::vector<Lamp> lamps{};
   float ambient = 0.0f;  // radiance from everywhere, less in corners
 };
 
-// What a white surface at each vertex of a mesh sends out, shadows and corners included. still: what shadows fall from.
-// The same whatever the number of threads (0: as many as the machine has).
+// Light that a white surface reflects at each vertex of a mesh, with shadows and darker corners. still: casts the
+// shadows. The result does not depend on the number of threads (0: one per core).
 std::vector<float> light_at_vertices(const QuadMesh& mesh, const RayScene& still, const BarnLight& light, int threads);
 
-// For what moves: without shadows, light comes from above more than from below. mean: the scene's own.
+// Shadowless light for moving meshes, stronger from above than from below. mean: mean light of the scene.
 std::vector<float> plain_light_at_vertices(const QuadMesh& mesh, float mean);
 
 }  // namespace byre

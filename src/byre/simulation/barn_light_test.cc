@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// A floor of four metres with its vertices half a metre apart, and a wall across it at x = 0.
+// A floor 4 m wide, vertices every 0.5 m, and a wall at x = 0.
 QuadMesh floor_with_wall() {
   QuadMesh mesh;
   add_panel(mesh, {-2.0f, -2.0f, 0.0f}, {4.0f, 0.0f, 0.0f}, {0.0f, 4.0f, 0.0f}, {});
@@ -50,7 +50,7 @@ TEST(BarnLight, ComesFromTheSideThatAWindowFaces) {
   BarnLight light;
   light.windows.push_back({{0.0f, 0.0f, 3.0f}, {0.5f, 0.0f, 0.0f}, {0.0f, 0.5f, 0.0f}, {0.0f, 0.0f, -1.0f}, 4.0f});
   const RayScene rays(mesh, 0);
-  // A square metre at three metres, of a radiance of 4: 4 * 1 / (pi * 9).
+  // One square metre of radiance 4, 3 m away: 4 * 1 / (pi * 9).
   EXPECT_NEAR(light_on_floor(mesh, light_at_vertices(mesh, rays, light, 1), Vector3f::Zero()), 0.14f, 0.01f);
   light.windows.front().normal.z() = 1.0f;
   EXPECT_EQ(light_on_floor(mesh, light_at_vertices(mesh, rays, light, 1), Vector3f::Zero()), 0.0f);

@@ -14,11 +14,11 @@
 namespace byre {
 namespace {
 
-constexpr int kFineSize = 1024;  // texels a side of what is seen from near
+constexpr int kFineSize = 1024;  // texels a side of pictures seen from near
 constexpr int kSmallSize = 512;
 constexpr float kUpright = 0.5f * std::numbers::pi_v<float>;
 
-// Two layers of noise, as most materials begin with: blotches, and the grain of single texels.
+// Two noise layers, common to most materials: blotches and single-texel grain.
 struct Grain {
   Grain(int picture_size, SeededDraws& draws)
       : size(picture_size),
@@ -64,7 +64,7 @@ TilingCanvas draw_dung(SeededDraws& draws) {
   TilingCanvas canvas(kFineSize, 0.0f);
   const Grain grain(kFineSize, draws);
   canvas.fill([&](int column, int row, float) {
-    const float slot = away_from_line(row, 128, 7.0f);  // the gaps of a slatted floor
+    const float slot = away_from_line(row, 128, 7.0f);  // gaps of a slatted floor
     return (0.2f + grain.at(column, row, 0.1f, 0.05f)) * (0.35f + 0.65f * slot);
   });
   canvas.scatter({.count = 240, .length = {4, 26}, .width = {8, 26}, .reflectance = {0.06f, 0.24f}}, draws);
@@ -88,7 +88,7 @@ void draw_knots(TilingCanvas& canvas, int count, SeededDraws& draws) {
   }
 }
 
-// Boards of a width, each of its own grey, with gaps between them and joints at different heights.
+// Boards of equal width and different greys, with gaps and joints at different heights.
 TilingCanvas draw_boards(int board_width, float darkest, float brightest, SeededDraws& draws) {
   TilingCanvas canvas(kFineSize, 0.0f);
   const Grain blotches(kFineSize, draws);
@@ -113,7 +113,7 @@ TilingCanvas draw_boards(int board_width, float darkest, float brightest, Seeded
   return canvas;
 }
 
-// Stalks lying all ways, over a dark ground.
+// Stalks in all directions over a dark ground.
 TilingCanvas draw_stalks(int count, float longest, float darkest, float brightest, SeededDraws& draws) {
   TilingCanvas canvas(kFineSize, 0.0f);
   const Grain grain(kFineSize, draws);
@@ -177,7 +177,7 @@ TilingCanvas draw_plastic(SeededDraws& draws) {
   return canvas;
 }
 
-// A board in a frame with a number, a few bars under it, and dirt.
+// A framed board with a number, a few bars under it, and dirt.
 void draw_sign(cv::Mat board, int number, SeededDraws& draws) {
   const bool is_dark = draws.below(3) == 0;
   const cv::Scalar ground(is_dark ? 0.14 : 0.78);
@@ -205,7 +205,7 @@ TilingCanvas draw_signs(SeededDraws& draws) {
   }
   TilingCanvas canvas(kFineSize, 0.0f);
   const Grain grain(kFineSize, draws);
-  canvas.fill([&](int column, int row, float) {  // v points up where boards hang
+  canvas.fill([&](int column, int row, float) {  // rows flipped: v points up on boards that hang
     return boards.at<float>(kFineSize - 1 - row, column) * (0.92f + grain.at(column, row, 0.12f, 0.03f));
   });
   canvas.scatter({.count = 500, .length = {1, 14}, .width = {1, 4}, .reflectance = {0.15f, 0.5f}}, draws);

@@ -18,7 +18,7 @@ class NormalDraws {
  public:
   NormalDraws(double level, std::uint64_t seed) : level_(level), draws_(seed, 61) {}
 
-  // About normal: the sum of twelve uniform numbers, whose variance is one.
+  // Approximately normal: the sum of twelve uniform numbers has variance 1.
   double operator()(double sigma) {
     double sum = 0.0;
     for (int i = 0; i < 12; ++i) sum += static_cast<double>(draws_.between(-0.5f, 0.5f));

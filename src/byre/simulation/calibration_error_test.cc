@@ -18,7 +18,7 @@ using ::testing::Not;
 
 constexpr int kSeeds = 1000;
 
-// The root mean square of a number over many errors.
+// Root mean square of a number over many errors.
 double sigma_of(double level, const std::function<double(const CalibrationError&)>& number) {
   double sum = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -38,7 +38,7 @@ TEST(CalibrationError, IsNoneAtLevelZero) {
 }
 
 TEST(CalibrationError, HasTheStandardDeviationsOfItsLevel) {
-  constexpr double kTolerance = 0.08;  // share of a deviation: three times what a thousand draws vary by
+  constexpr double kTolerance = 0.08;  // relative: three standard errors of a thousand draws
   const auto expect_sigma = [&](double sigma, const std::function<double(const CalibrationError&)>& number) {
     EXPECT_NEAR(sigma_of(1.0, number) / sigma, 1.0, kTolerance);
     EXPECT_NEAR(sigma_of(3.0, number) / sigma, 3.0, 3.0 * kTolerance);
@@ -85,7 +85,7 @@ TEST(CalibrationError, GivesAPinholeCameraALensAndLeavesOneCameraAlone) {
   EXPECT_FALSE(told.right);
 }
 
-// What calibration tools report of a good calibration, and a good deal more of a worn one.
+// Level 1 matches the reprojection error that calibration tools report; level 3 is several times larger.
 TEST(CalibrationError, MovesPixelsByTenthsAtLevelOne) {
   const Camera camera = euroc_like_calibration(1).left;
   const auto moved = [&](double level) {

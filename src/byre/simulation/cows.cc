@@ -1,4 +1,4 @@
-// Cows, as a few smooth bodies each: enough for what a mapping robot makes of them.
+// Cows, each a few smooth bodies.
 
 #include "byre/simulation/cowshed_parts.h"
 
@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 
 constexpr float kMetresPerStride = 1.5f;
 
-// Where a walk has led: the cow turns within the last metre before either end.
+// State of a walk: the cow turns within the last metre before either end.
 struct Whereabouts {
   Eigen::Vector2f position;
   float heading = 0.0f;
@@ -23,7 +23,7 @@ struct Whereabouts {
 
 Whereabouts whereabouts(const Cow& cow, float time_s) {
   if (!cow.walks) return {cow.position, cow.heading, 0.0f};
-  constexpr float kHalfLoop = 0.5f * std::numbers::pi_v<float> * 0.5f;  // metres: half a circle of a radius of 0.25
+  constexpr float kHalfLoop = 0.5f * std::numbers::pi_v<float> * 0.5f;  // metres: half a circle of radius 0.25
   const float half = cow.reach + kHalfLoop;
   const float way = cow.speed * (time_s + cow.phase);
   const float along = std::fmod(way, half);
@@ -44,7 +44,8 @@ void add_legs(QuadMesh& mesh, const Isometry3f& world_from_cow, float stride, co
   for (int leg = 0; leg < 4; ++leg) {
     const bool is_front = leg < 2;
     const float y = leg % 2 == 0 ? -0.2f : 0.2f;
-    const float beat = stride + (leg == 0 || leg == 3 ? 0.0f : std::numbers::pi_v<float>);  // opposite legs together
+    // Diagonal legs move together.
+    const float beat = stride + (leg == 0 || leg == 3 ? 0.0f : std::numbers::pi_v<float>);
     const Vector3f hip(is_front ? 0.52f : -0.6f, y, 0.85f);
     const Vector3f knee = hip + Vector3f(0.07f * std::sin(beat), 0.0f, -0.42f);
     const Vector3f hoof(hip.x() + 0.18f * std::sin(beat), y, std::max(0.08f * std::cos(beat), 0.0f));
@@ -95,7 +96,7 @@ std::vector<Cow> cows_of(const CowshedOptions& options, int count) {
     cow.size = draws.between(0.88f, 1.05f);
     cow.speed = cow.walks ? draws.between(0.4f, 0.8f) : 0.0f;
     cow.reach = draws.between(8.0f, 20.0f);
-    cow.heading = -0.5f * std::numbers::pi_v<float> * side;  // with the head through the fence
+    cow.heading = -0.5f * std::numbers::pi_v<float> * side;  // head through the fence
     const float x = draws.between(2.0f, 26.0f - (cow.walks ? cow.reach : 0.0f));
     cow.position = {x, side * (cow.walks ? 4.6f : 3.55f) - (cow.walks ? 0.25f : 0.0f)};
     cows.push_back(cow);

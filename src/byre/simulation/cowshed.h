@@ -13,22 +13,22 @@ namespace byre {
 enum class BarnTime : std::uint8_t { day, dusk };
 enum class BarnGate : std::uint8_t { closed, open };  // gate of the feed store, in the eastern gable
 
-// A cowshed and one visit to it. World frame: x along the feed alley from the western gable, y to the north from the
-// middle of the alley, z up from its floor; metres.
+// A cowshed during one visit. World frame: x along the feed alley from the western gable, y north from the alley's
+// centre line, z up from its floor; metres.
 struct CowshedOptions {
   std::uint64_t seed = 1;          // draws the building
-  int mission = 1;                 // number from 1, draws what differs from visit to visit
-  double change = 0.25;            // share of the movable things that a later mission finds elsewhere
+  int mission = 1;                 // from 1; draws the changes between visits
+  double change = 0.25;            // share of movable things that later missions find moved
   std::optional<BarnTime> time{};  // empty: day, in even missions dusk
   std::optional<int> cows{};       // empty: 3 in the first mission, 8 in later ones
   std::optional<BarnGate> gate{};  // empty: closed in the first mission, open in later ones
-  double dust = 0.0;               // dust in the air: 0 none, 1 so much that half of the light is lost in 14 m
+  double dust = 0.0;               // dust in the air: 0 none, 1 loses half of the light in 14 m
 };
 
 struct CowshedSize {
   float length = 30.0f;
   float half_width = 8.5f;
-  float alley_half_width = 2.5f;  // from the middle of the alley to the fence
+  float alley_half_width = 2.5f;  // from the centre line of the alley to the fence
   float eaves = 3.4f;
   float ridge = 6.2f;
   float bay = 5.0f;  // distance between columns
@@ -40,12 +40,12 @@ struct CowshedSize {
 };
 inline constexpr CowshedSize kCowshedSize;
 
-// What a floor plan shows of a thing: its outline on the floor.
+// Outline of a thing on the floor plan.
 struct PlanOutline {
   std::vector<Eigen::Vector2d> corners_in_world;
 };
 
-// A point that can be told in images and on the plan.
+// A landmark that can be recognised in images and on the plan.
 struct NamedPoint {
   std::string name;
   Eigen::Vector3d point_in_world;
@@ -54,43 +54,43 @@ struct NamedPoint {
 enum class ThingKind : std::uint8_t { bucket, wheelbarrow, pallet, broom, bale, crate };
 inline constexpr int kThingKinds = 6;
 
-// Something that people carry about.
+// A movable thing.
 struct MovableThing {
   ThingKind kind = ThingKind::bucket;
-  Eigen::Vector3f position;  // place of its foot, in the world
+  Eigen::Vector3f position;  // position of its foot in the world
   float yaw = 0.0f;          // radians
 };
 
 struct Cow {
-  bool walks = false;  // up and down along the alley, else it stands and eats
+  bool walks = false;  // true: walks up and down the alley; false: stands and eats
   Eigen::Vector2f position;
-  float heading = 0.0f;  // radians, of a cow that stands
+  float heading = 0.0f;  // radians, of a standing cow
   float reach = 0.0f;    // metres between the ends of a walk, which begins at position along x
   float speed = 0.0f;    // metres per second
-  float phase = 0.0f;    // seconds by which it is ahead
+  float phase = 0.0f;    // seconds added to the time of its walk
   float size = 1.0f;
 };
 
-// All that a visit finds, as shapes and lights.
+// Shapes and lights of one visit.
 struct Cowshed {
   QuadMesh still;
   BarnLight light;
   Air air;
-  std::vector<PlanOutline> outlines;  // outlines of what stays where it is
+  std::vector<PlanOutline> outlines;  // outlines of static things
   std::vector<NamedPoint> marks;
   std::vector<MovableThing> things;
   std::vector<Cow> cows;
 };
 
-// What the visit finds unless the options say otherwise.
+// Resolves options that are empty by default.
 BarnTime time_of(const CowshedOptions& options);
 BarnGate gate_of(const CowshedOptions& options);
 
-// Throws InputError when a number makes no sense: a mission before the first, a share beyond 0 to 1, dust or a number
-// of cows that is negative or too large.
+// Throws InputError for options out of range: mission below 1, share outside 0 to 1, dust or number of cows negative or
+// too large.
 Cowshed build_cowshed(const CowshedOptions& options);
 
-// The cows at a time in seconds from the start of the recording, in the world.
+// The cows in the world at a time, seconds from the start of the recording.
 QuadMesh cows_at(const std::vector<Cow>& cows, double time_s);
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-// The building: floor, walls, roof and what carries it.
+// The building: floor, walls, roof and load-bearing frame.
 
 #include "byre/simulation/cowshed_parts.h"
 
@@ -15,14 +15,14 @@ constexpr float kLength = kCowshedSize.length;
 constexpr float kHalfWidth = kCowshedSize.half_width;
 constexpr float kCurbInside = kCowshedSize.alley_half_width - 0.15f;
 constexpr float kCurbOutside = kCowshedSize.alley_half_width + 0.15f;
-constexpr float kPlinth = 1.2f;  // metres: the height of concrete walls
+constexpr float kPlinth = 1.2f;  // height of concrete walls, metres
 
 const SurfaceLook kConcrete{.picture = BarnPicture::concrete, .picture_width = 2.2f};
 const SurfaceLook kPlanks{.picture = BarnPicture::planks, .picture_width = 1.7f};
 const SurfaceLook kTimber{.picture = BarnPicture::timber, .picture_width = 1.3f};
 const SurfaceLook kRoof{.picture = BarnPicture::roof_sheet, .brightness = 1.1f, .picture_width = 2.6f};
 
-// In slabs, none like another.
+// A floor of slabs with different looks.
 void add_floor(Cowshed& barn, SeededDraws& draws) {
   constexpr float kSlab = 2.5f;  // metres along the alley
   const SurfaceLook dung{.picture = BarnPicture::dung, .picture_width = 1.9f};
@@ -38,8 +38,7 @@ void add_floor(Cowshed& barn, SeededDraws& draws) {
   }
 }
 
-// A part of a gable between two heights and from one y to another, seen from inside; to_roof: its upper edge is the
-// roof.
+// Part of a gable between two heights and two y, seen from inside. to_roof: the roof is its upper edge.
 void add_gable_part(QuadMesh& mesh, float x, const Vector2f& y_range, const Vector2f& z_range, bool to_roof,
                     const SurfaceLook& look) {
   const auto point_at = [&](float u, float v) -> Vector3f {
@@ -53,12 +52,12 @@ void add_gable_part(QuadMesh& mesh, float x, const Vector2f& y_range, const Vect
            {width, height}, look);
 }
 
-// Concrete below, planks above, and an opening for a gate. inward: 1 where the barn lies on the side of larger x, or
-// -1.
+// A gable of concrete below and planks above, with an opening for a gate. inward: x direction of the barn's interior, 1
+// or -1.
 void add_gable(Cowshed& barn, float x, float inward, SeededDraws& draws) {
   constexpr float kGate = kCowshedSize.gate_half_width;
   for (const float side : {-1.0f, 1.0f}) {
-    const bool is_left = side * inward < 0.0f;  // seen from inside
+    const bool is_left = side * inward < 0.0f;  // as seen from inside
     const float outer = side * kHalfWidth;
     const Vector2f y_range = is_left ? Vector2f(outer, side * kGate) : Vector2f(side * kGate, outer);
     add_gable_part(barn.still, x, y_range, {0.0f, kPlinth}, false, varied(kConcrete, draws));
@@ -70,10 +69,10 @@ void add_gable(Cowshed& barn, float x, float inward, SeededDraws& draws) {
                  {kCowshedSize.gate_height, kCowshedSize.ridge}, true, varied(kPlanks, draws));
 }
 
-// Two leaves of steel with wooden bars, that open away from the barn. inward: as for add_gable.
+// Two steel leaves with wooden bars that open away from the barn. inward: as for add_gable.
 void add_gate(QuadMesh& mesh, float x, float inward, BarnGate state) {
   const SurfaceLook steel{.picture = BarnPicture::rust, .brightness = 0.8f, .picture_width = 1.1f};
-  constexpr float kLeaf = 0.5f * kCowshedSize.gate_half_width;  // half of its width
+  constexpr float kLeaf = 0.5f * kCowshedSize.gate_half_width;  // half of a leaf's width
   for (const float side : {-1.0f, 1.0f}) {
     const float swing = state == BarnGate::open ? -0.5f * std::numbers::pi_v<float> * side * inward : 0.0f;
     const Eigen::Isometry3f hinge = placed({x + 0.08f * inward, side * 2.0f * kLeaf, 0.0f}, swing);
@@ -85,7 +84,7 @@ void add_gate(QuadMesh& mesh, float x, float inward, BarnGate state) {
   }
 }
 
-// A side wall of one bay: plinth, boards, an open band where daylight comes in, boards.
+// Side wall of one bay: plinth, boards, an open band that lets daylight in, boards.
 void add_side_bay(Cowshed& barn, float x, float side, float daylight, SeededDraws& draws) {
   const float y = side * kHalfWidth;
   constexpr float kSill = 1.75f;
@@ -101,7 +100,7 @@ void add_side_bay(Cowshed& barn, float x, float side, float daylight, SeededDraw
   SurfaceLook sky = kPlanks;
   sky.glow = daylight;
   add_band(kSill, kLintel, sky);
-  for (int i = 1; i < 5; ++i) {  // slats before the opening
+  for (int i = 1; i < 5; ++i) {  // slats in front of the opening
     const float slat_x = x + kCowshedSize.bay * static_cast<float>(i) / 5.0f;
     add_box(barn.still, placed({slat_x, y - 0.05f * side, 0.5f * (kSill + kLintel)}), {0.05f, 0.03f, 0.6f},
             varied(kTimber, draws));
@@ -113,11 +112,11 @@ void add_side_bay(Cowshed& barn, float x, float side, float daylight, SeededDraw
                                 daylight});
 }
 
-// One bay of a slope of the roof, with a translucent sheet in the middle of it.
+// One bay of a roof slope, with a translucent sheet in its middle.
 void add_roof_bay(Cowshed& barn, float x, float side, float daylight, SeededDraws& draws) {
   const Vector3f eaves(0.0f, side * kHalfWidth, kCowshedSize.eaves);
   const Vector3f slope = Vector3f(0.0f, 0.0f, kCowshedSize.ridge) - eaves;
-  const auto add_sheet = [&](float from_x, float to_x, const SurfaceLook& look) {  // its normal points down
+  const auto add_sheet = [&](float from_x, float to_x, const SurfaceLook& look) {  // normal points down
     const float begin = side > 0.0f ? from_x : to_x;
     add_panel(barn.still, eaves + Vector3f(begin, 0.0f, 0.0f),
               {side > 0.0f ? to_x - from_x : from_x - to_x, 0.0f, 0.0f}, slope, look, 0.6f);
@@ -137,13 +136,13 @@ void add_roof_bay(Cowshed& barn, float x, float side, float daylight, SeededDraw
                                 daylight});
 }
 
-// A beam of a square section between two points.
+// A beam of rectangular section between two points.
 void add_beam(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float half_width, float half_height,
               const SurfaceLook& look) {
   const Vector3f along = (to - from).normalized();
   const Vector3f sideways = Vector3f::UnitZ().cross(along).normalized();
   Eigen::Isometry3f world_from_beam = Eigen::Isometry3f::Identity();
-  world_from_beam.linear() << sideways, along.cross(sideways), along;  // the grain runs along the beam
+  world_from_beam.linear() << sideways, along.cross(sideways), along;  // grain runs along the beam
   world_from_beam.translation() = 0.5f * (from + to);
   add_box(mesh, world_from_beam, {half_width, half_height, 0.5f * (to - from).norm()}, look);
 }
@@ -158,7 +157,7 @@ void add_column(Cowshed& barn, float x, float y, const SurfaceLook& post, const 
 
 void add_truss(Cowshed& barn, float x, SeededDraws& draws) {
   const Vector3f ridge(x, 0.0f, kCowshedSize.ridge - 0.2f);
-  constexpr float kTie = 3.55f;  // metres: the height of the beam across
+  constexpr float kTie = 3.55f;  // height of the cross beam, metres
   for (const float side : {-1.0f, 1.0f}) {
     const float inner_y = side * 3.0f;
     add_beam(barn.still, {x, side * kHalfWidth, kCowshedSize.eaves - 0.15f}, ridge, 0.08f, 0.12f,
@@ -205,7 +204,7 @@ void add_shell(Cowshed& barn, BarnTime time, std::uint64_t seed) {
   add_gable(barn, 0.0f, 1.0f, draws);
   add_gable(barn, kLength, -1.0f, draws);
   for (float x = 0.0f; x < kLength - 0.1f; x += kCowshedSize.bay) {
-    add_side_bay(barn, x, 1.0f, is_day ? 3.6f : 0.16f, draws);  // the sun stands in the south, behind the other wall
+    add_side_bay(barn, x, 1.0f, is_day ? 3.6f : 0.16f, draws);  // the sun is south, behind the other wall
     add_side_bay(barn, x, -1.0f, is_day ? 5.2f : 0.3f, draws);
     add_roof_bay(barn, x, 1.0f, is_day ? 3.0f : 0.1f, draws);
     add_roof_bay(barn, x, -1.0f, is_day ? 3.8f : 0.14f, draws);

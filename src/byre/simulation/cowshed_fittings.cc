@@ -1,4 +1,4 @@
-// What is fixed in the building: fences, cubicles, signs, lamps; and the feed before the fences.
+// Fixed fittings: fences, cubicles, signs, lamps; and the feed along the fences.
 
 #include "byre/simulation/cowshed_parts.h"
 
@@ -17,7 +17,7 @@ constexpr float kFence = kCowshedSize.alley_half_width;
 const SurfaceLook kSteel{.picture = BarnPicture::rust, .picture_width = 0.7f};
 const SurfaceLook kFloorConcrete{.picture = BarnPicture::concrete, .picture_width = 1.5f};
 
-// A place to eat: two bars that lean towards each other, one of them with a shackle.
+// A feeding place: two bars leaning towards each other, one with a shackle.
 void add_feeding_place(QuadMesh& mesh, float x, float y, SeededDraws& draws) {
   const SurfaceLook look = varied(kSteel, draws);
   const float lean = draws.between(0.06f, 0.17f);
@@ -29,7 +29,7 @@ void add_feeding_place(QuadMesh& mesh, float x, float y, SeededDraws& draws) {
 void add_fence(Cowshed& barn, float side, SeededDraws& draws) {
   QuadMesh& mesh = barn.still;
   const float y = side * kFence;
-  constexpr float kCurb = 2.5f;  // metres: the length of a piece
+  constexpr float kCurb = 2.5f;  // length of a curb piece, metres
   for (float x = 0.5f * kCurb; x < kAlleyLength; x += kCurb) {
     add_box(mesh, placed({x, y, 0.24f}), {0.5f * kCurb, 0.15f, 0.24f}, varied(kFloorConcrete, draws), 0.4f);
   }
@@ -40,13 +40,13 @@ void add_fence(Cowshed& barn, float side, SeededDraws& draws) {
     add_bar(mesh, {post_x, y, 0.4f}, {post_x, y, 1.6f}, 0.05f, varied(kSteel, draws), 10);
     add_drum(mesh, {post_x, y, 1.6f}, {post_x, y, 1.64f}, 0.06f, 0.05f, varied(kSteel, draws));
     for (int place = 0; place < 3; ++place) {
-      if (draws.below(9) == 0) continue;  // lost its bars
+      if (draws.below(9) == 0) continue;  // this place lost its bars
       add_feeding_place(mesh, x + 0.3f + 0.72f * static_cast<float>(place), y, draws);
     }
   }
 }
 
-// Bent tubes between two cows' places.
+// Bent tubes between two cubicles.
 void add_divider(QuadMesh& mesh, float x, float side, SeededDraws& draws) {
   const SurfaceLook look = varied(kSteel, draws);
   const auto at = [&](float y, float z) { return Vector3f(x, side * y, z); };
@@ -69,7 +69,7 @@ void add_sign(Cowshed& barn, const Eigen::Isometry3f& world_from_sign, float hal
   barn.marks.push_back({name, centre.cast<double>()});
 }
 
-// The placement of a board that hangs upright and is looked at along -normal.
+// Placement of an upright board, viewed along -normal.
 Eigen::Isometry3f hanging(const Vector3f& centre, const Vector3f& normal) {
   Eigen::Isometry3f world_from_sign = Eigen::Isometry3f::Identity();
   world_from_sign.linear() << Vector3f::UnitZ().cross(normal), Vector3f::UnitZ(), normal;
@@ -77,7 +77,7 @@ Eigen::Isometry3f hanging(const Vector3f& centre, const Vector3f& normal) {
   return world_from_sign;
 }
 
-// On the columns, those of the north seen from the west and those of the south from the east, as the robot comes.
+// Signs on the columns, facing the approaching robot: north ones face west, south ones east.
 void add_signs(Cowshed& barn) {
   int number = 0;
   for (const float x : bay_lines()) {
@@ -91,7 +91,7 @@ void add_signs(Cowshed& barn) {
   add_sign(barn, hanging({kAlleyLength - 0.02f, 3.3f, 1.9f}, -Vector3f::UnitX()), 0.4f, 15, "east-gable-north");
 }
 
-// A pile is highest at its middle and uneven everywhere.
+// An uneven pile, highest in its middle.
 void add_pile(QuadMesh& mesh, float from_x, float to_x, float side, SeededDraws& draws) {
   const float length = to_x - from_x;
   const float height = draws.between(0.22f, 0.42f);

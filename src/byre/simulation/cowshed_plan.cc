@@ -19,7 +19,7 @@ constexpr double kMargin = 1.0;  // metres around the building
 constexpr std::uint8_t kFree = 254;
 constexpr std::uint8_t kOccupied = 0;
 
-// write: writes the content to a stream.
+// write: callable that takes the stream.
 template <typename Write>
 void write_fixed_text(const fs::path& path, Write write) {
   std::ostringstream text;
@@ -43,7 +43,7 @@ FloorPlanImage draw_floor_plan(const std::vector<PlanOutline>& outlines) {
   const int width = static_cast<int>(std::lround((length + 2.0 * kMargin) / plan.resolution));
   const int height = static_cast<int>(std::lround((2.0 * kCowshedSize.half_width + 2.0 * kMargin) / plan.resolution));
   cv::Mat pixels(height, width, CV_8UC1, cv::Scalar(kFree));
-  const auto pixel_of = [&](const Eigen::Vector2d& point) {  // whole numbers are pixel centres
+  const auto pixel_of = [&](const Eigen::Vector2d& point) {  // integers are pixel centres
     const Eigen::Vector2d cell = (point - plan.origin) / plan.resolution - Eigen::Vector2d::Constant(0.5);
     return cv::Point(static_cast<int>(std::lround(cell.x())), height - 1 - static_cast<int>(std::lround(cell.y())));
   };

@@ -8,28 +8,28 @@
 
 namespace byre {
 
-// The floor plan of a cowshed: an image and where it lies, as ROS' map_server keeps them.
+// Floor plan of a cowshed: image and placement, in the format of the ROS map_server.
 struct FloorPlanImage {
-  Image image;                                       // black: walls, posts, curbs; white: free; its top is the north
+  Image image;                                       // black: walls, posts, curbs; white: free space; north up
   double resolution = 0.02;                          // metres per pixel
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  // lower left corner of the lower left pixel on the plan
 };
 
-// On the plan lie the barn's own metres: x and y of the world frame, see CowshedOptions.
+// Plan coordinates are x and y of the world frame, metres (see CowshedOptions).
 FloorPlanImage draw_floor_plan(const std::vector<PlanOutline>& outlines);
 
-// A point as somebody would pick it for a registration of the map on the plan.
+// A point correspondence for registering the map on the plan.
 struct MarkPick {
   std::string name;
   Eigen::Vector3d point_in_map;
   Eigen::Vector2d point_in_plan;
 };
 
-// The named points of a barn, in the frame that a map has when it is made from a recording whose first frame has the
-// body there (docs/conventions.md: the world of a map).
+// Picks of a barn's landmarks, in the frame of a map whose first frame has the given body pose (docs/conventions.md:
+// the world of a map).
 std::vector<MarkPick> picks_of(const std::vector<NamedPoint>& marks, const Pose& world_from_first_body);
 
-// Where a named point is seen in an image of the left camera.
+// Observation of a landmark in a left image.
 struct MarkSighting {
   std::string name;
   Timestamp time{};

@@ -16,7 +16,7 @@
 namespace byre {
 namespace {
 
-constexpr double kIntoStore = 9.0;  // metres by which the robot goes farther where the gate is open
+constexpr double kIntoStore = 9.0;  // metres added to the course where the gate is open
 
 const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
   const auto require = [](bool holds, const char* reason) {
@@ -43,7 +43,7 @@ Calibration calibration_of(const CowshedRecordingOptions& options) {
   return calibration;
 }
 
-// The clocks of missions do not overlap.
+// Frame times. Those of different missions do not overlap.
 std::vector<Timestamp> frame_times(const CowshedRecordingOptions& options) {
   const Timestamp start = std::chrono::seconds(100'000) * options.barn.mission;
   std::vector<Timestamp> times;
@@ -53,7 +53,7 @@ std::vector<Timestamp> frame_times(const CowshedRecordingOptions& options) {
   return times;
 }
 
-// One of the instants of an exposure of so many parts; each lies at another place within the pixel.
+// Instant i of count within an exposure, each with its own sub-pixel offset.
 ExposureInstant instant_of(int i, int count) {
   if (count == 1) return {};
   constexpr float kRadius = 0.3f;  // pixels
@@ -61,7 +61,7 @@ ExposureInstant instant_of(int i, int count) {
   return {{kRadius * std::cos(angle), kRadius * std::sin(angle)}, false};
 }
 
-// Geometries that rays tell apart.
+// Ids of ray geometries.
 constexpr unsigned kStill = 0;
 constexpr unsigned kMoving = 1;
 
@@ -95,10 +95,10 @@ struct CowshedRecording::RobotCamera {
   PixelRays pixels;
   ImageSensor sensor;
   Pose body_from_camera;
-  double delay_s;  // seconds by which it is exposed later than the left one
+  double delay_s;  // exposure delay relative to the left camera, seconds
 };
 
-// What stays the same for all frames.
+// Scene data shared by all frames.
 struct CowshedRecording::Scene {
   explicit Scene(const CowshedRecordingOptions& options)
       : barn(build_cowshed(options.barn)),
@@ -183,20 +183,20 @@ std::optional<MotionSamples> CowshedRecording::motion() const {
   return simulated_motion(truth(), sensors);
 }
 
-// Seconds by which a row is exposed after the middle of the image.
+// Exposure time of a row relative to the middle row, seconds.
 double CowshedRecording::row_offset(double row) const {
   return options_.camera.rolling_shutter_s * ((row + 0.5) / scene_->calibration.left.height - 0.5);
 }
 
 Illumination CowshedRecording::illumination_at(double time_s) const {
-  constexpr double kMoonlight = 1e-4;     // share of the light that is there without lamps
+  constexpr double kMoonlight = 1e-4;     // share of the light that remains without lamps
   constexpr double kFullHeadlight = 1.3;  // radiance times square metres
   const NightOptions& night = options_.night;
   const bool is_out = night.lights_out <= time_s && time_s < night.lights_on;
   return {static_cast<float>(is_out ? kMoonlight : night.light), static_cast<float>(kFullHeadlight * night.headlight)};
 }
 
-// What a camera sees whose middle row is exposed so many seconds from the start.
+// View of a camera whose middle row is exposed at time_s, seconds from the start.
 SceneView CowshedRecording::view_at(const RobotCamera& camera, double time_s) const {
   SceneView view{camera.pixels, course_.world_from_body(time_s) * camera.body_from_camera, illumination_at(time_s)};
   if (options_.camera.rolling_shutter_s == 0.0) return view;
@@ -207,7 +207,7 @@ SceneView CowshedRecording::view_at(const RobotCamera& camera, double time_s) co
   return view;
 }
 
-// From when the first row is exposed until the last one is.
+// Moving meshes over the readout, from the first row's exposure to the last row's.
 LitMesh CowshedRecording::moving_at(double time_s) const {
   const double until_last = row_offset(scene_->calibration.left.height - 1);
   const QuadMesh begin = cows_at(scene_->barn.cows, time_s - until_last);
@@ -216,7 +216,7 @@ LitMesh CowshedRecording::moving_at(double time_s) const {
   return {begin, cows_at(scene_->barn.cows, time_s + until_last), light, kMoving, RayScene::Build::quick};
 }
 
-// Pixels by which what is 1.5 m away moves in the image.
+// Image motion of an object 1.5 m away during the exposure, pixels.
 double CowshedRecording::motion_during_exposure(double time_s) const {
   const double half = 0.5 * static_cast<double>(exposure_.time_s);
   const Pose begin = course_.world_from_body(time_s - half);
@@ -225,7 +225,7 @@ double CowshedRecording::motion_during_exposure(double time_s) const {
   return scene_->calibration.left.fx * (angle_between(begin.rotation, end.rotation) + travelled / 1.5);
 }
 
-// The mean of what both cameras see in the course of an exposure, left and right.
+// Mean radiance of the left and right image over the exposure.
 std::array<std::vector<float>, 2> CowshedRecording::exposed_radiance(double middle_s) const {
   constexpr double kPixelsPerInstant = 1.6;
   constexpr int kMostInstants = 4;
@@ -256,7 +256,7 @@ ImageFrame CowshedRecording::render_next() {
     Image image = scene_->cameras[camera].sensor.expose(radiance[camera], exposure_, noise_seed, options_.threads);
     return options_.camera.jpeg_quality > 0 ? jpeg_kept(image, options_.camera.jpeg_quality) : image;
   };
-  if (next_ == 0) {  // the camera was on before the recording
+  if (next_ == 0) {  // lets automatic exposure settle, as if the camera had been on before the recording
     constexpr int kFramesToSettle = 12;
     for (int i = 0; i < kFramesToSettle; ++i) exposure_ = next_exposure(exposure_, mean_grey(image_of(0)), {});
   }
@@ -271,11 +271,11 @@ std::vector<float> CowshedRecording::left_depths(Timestamp time) const {
   return scene_->renderer.depths(view_at(scene_->cameras.front(), time_s), moving_at(time_s));
 }
 
-// Where the left camera sees a mark of a frame, unhidden and not at the rim; empty where it does not.
+// Pixel of a landmark in the left image; empty when occluded, too near, outside or close to the image border.
 std::optional<MarkSighting> CowshedRecording::sighting_at(const NamedPoint& mark, Timestamp time) const {
   constexpr double kNearest = 1.0;  // metres
   constexpr double kRim = 0.06;     // share of the image's width
-  constexpr int kRounds = 3;        // rounds of finding the row, and when that is exposed
+  constexpr int kRounds = 3;        // fixed-point iterations between pixel row and exposure time
   const Camera& camera = scene_->calibration.left;
   Pose world_from_camera;
   std::optional<Eigen::Vector2d> pixel(Eigen::Vector2d(0.0, 0.5 * (camera.height - 1)));
@@ -295,7 +295,7 @@ std::optional<MarkSighting> CowshedRecording::sighting_at(const NamedPoint& mark
 
 std::optional<MarkSighting> CowshedRecording::best_sighting(const NamedPoint& mark) const {
   constexpr std::size_t kStride = 5;  // frames
-  double nearest = 9.0;               // metres: what is farther is too small to pick
+  double nearest = 9.0;               // metres; farther landmarks are too small to pick
   std::optional<MarkSighting> best;
   for (std::size_t i = 0; i < times_.size(); i += kStride) {
     const Pose camera_from_world = inverse(world_from_body(times_[i]) * scene_->calibration.body_from_left);
@@ -326,7 +326,7 @@ void write_cowshed_recording(CowshedRecording& recording, const std::filesystem:
   write_floor_plan(draw_floor_plan(recording.barn().outlines), picks_of(recording.barn().marks, world_from_first_body),
                    recording.sightings(), folder / "plan");
   const int total = static_cast<int>(recording.times().size());
-  std::future<void> writing;  // writes the frame before, beside rendering
+  std::future<void> writing;  // writes the previous frame during rendering
   for (int i = 0; i < total; ++i) {
     ImageFrame frame = recording.render_next();
     if (writing.valid()) writing.get();

@@ -15,12 +15,12 @@
 
 namespace byre {
 
-// Less light than the barn has.
+// Reduced light.
 struct NightOptions {
-  double light = 1.0;       // share of the light of the barn's day or dusk
-  double headlight = 0.0;   // lamp on the robot: 1 lights a wall 3 m ahead as lamps light the alley at dusk
+  double light = 1.0;       // share of the barn's light at day or dusk
+  double headlight = 0.0;   // robot's lamp; 1: a wall 3 m ahead as bright as the lit alley at dusk
   double lights_out = 0.0;  // seconds from the start when the barn's light goes out
-  double lights_on = 0.0;   // seconds from the start when it is on again; not after the former: it stays on
+  double lights_on = 0.0;   // seconds from the start when it comes back on; not after lights_out: it stays on
 };
 
 struct CowshedRecordingOptions {
@@ -29,49 +29,50 @@ struct CowshedRecordingOptions {
   TurnKind turn = TurnKind::arc;
   double frame_rate_hz = 20.0;
   int image_divisor = 1;                           // 1: 752 x 480 pixels
-  std::optional<std::array<int, 2>> image_size{};  // width and height in pixels; empty: by the divisor
-  double dirt = 0.0;                               // dirt on the lenses: 0 none, 1 a dozen of soft spots each
+  std::optional<std::array<int, 2>> image_size{};  // width, height in pixels; empty: by the divisor
+  double dirt = 0.0;                               // dirt on the lenses: 0 none, 1 a dozen soft spots each
   NightOptions night;
   CameraImperfection camera;
-  std::optional<MotionSensorOptions> motion{};  // wheels and gyroscope that are recorded too; their seed is the barn's
-  int threads = 0;                              // 0: as many as the machine has; changes no byte
+  std::optional<MotionSensorOptions> motion{};  // sensors to record; their seed follows from the barn
+  int threads = 0;                              // 0: one per core; does not change the output
 };
 
-// Where the robot drives. Missions keep to the same course, a hand's breadth aside and begun elsewhere; where the gate
-// is open, it reaches into the feed store.
+// Course of the robot. Missions share it but for a shift by a hand's breadth and another start; with an open gate it
+// reaches into the feed store.
 FeedingCourseOptions course_of(const CowshedRecordingOptions& options);
 
-// A visit of a feeding robot to a cowshed, rendered frame by frame. Even missions find it at dusk, and each drives a
-// little differently.
+// A feeding robot's visit to a cowshed, rendered frame by frame. Even missions are at dusk; each course differs
+// slightly.
 class CowshedRecording {
  public:
-  // Builds and lights the barn: takes a second or two. Throws InputError when an option makes no sense.
+  // Builds and lights the barn, which takes a second or two. Throws InputError for options out of range.
   explicit CowshedRecording(const CowshedRecordingOptions& options);
   ~CowshedRecording();
 
-  const Calibration& calibration() const;       // calibration of the cameras that see
-  const Calibration& told_calibration() const;  // calibration that is told: it errs where the options ask for that
+  const Calibration& calibration() const;       // true calibration of the cameras
+  const Calibration& told_calibration() const;  // calibration written to the recording, with the error of the options
   const Cowshed& barn() const;
   const std::vector<Timestamp>& times() const;
 
-  // Whether what is told of the cameras is true.
+  // Whether the written calibration equals the true one.
   bool is_calibration_exact() const { return options_.camera.calibration_level == 0.0; }
 
-  // world_from_body at 200 Hz, frames included.
+  // world_from_body at 200 Hz and at each frame.
   Trajectory truth() const;
   Pose world_from_body(Timestamp time) const;
 
-  // What wheels and a gyroscope tell; empty where none are recorded.
+  // Samples of wheels and gyroscope; empty when not recorded.
   std::optional<MotionSamples> motion() const;
 
-  // The frame after the last one rendered: frames follow one another, as automatic exposure learns from each.
-  // Precondition: there is one.
+  // Renders the next frame. Frames are sequential because automatic exposure depends on the previous one. Precondition:
+  // a frame remains.
   ImageFrame render_next();
 
-  // Depth along the left camera's axis at each pixel centre, at the instant of its row, row-major, metres.
+  // Depth along the optical axis at each pixel centre of the left camera, at the exposure time of its row; row-major,
+  // metres.
   std::vector<float> left_depths(Timestamp time) const;
 
-  // For each mark that the left camera sees unhidden, the frame that sees it best: large, and not at the rim.
+  // The best observation of each landmark that the left camera sees: large, unoccluded and away from the image border.
   std::vector<MarkSighting> sightings() const;
 
  private:
@@ -98,8 +99,8 @@ class CowshedRecording {
   std::size_t next_ = 0;  // index of the next frame
 };
 
-// Renders a whole visit into a folder: an EuRoC recording, and plan/ with the floor plan and points to register a map
-// on it. Asks go_on after each frame, and stops where that gives false: the rest of the images is missing then. Throws
+// Renders a whole visit into a folder: an EuRoC recording, and plan/ with the floor plan and points for registration.
+// Calls go_on after each frame and stops when it returns false; the remaining images are then missing. Throws
 // InputError when a file cannot be written. Precondition: no frame has been rendered yet.
 void write_cowshed_recording(CowshedRecording& recording, const std::filesystem::path& folder,
                              const std::function<bool(int frames_done)>& go_on);

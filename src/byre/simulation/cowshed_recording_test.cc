@@ -47,7 +47,7 @@ std::uint8_t grey_at(const Image& image, double u, double v) {
   return image.pixels[static_cast<std::size_t>(std::lround(v) * image.width + std::lround(u))];
 }
 
-// Mean difference of grey values between 5 x 5 pixels of both images.
+// Mean absolute difference of grey values between 5 x 5 pixels of both images.
 double difference(const Image& left, const Vector2d& in_left, const Image& right, const Vector2d& in_right) {
   double sum = 0.0;
   for (int dv = -2; dv <= 2; ++dv) {
@@ -59,7 +59,7 @@ double difference(const Image& left, const Vector2d& in_left, const Image& right
   return sum / 25.0;
 }
 
-// Rendered once for all tests, which only read what was rendered.
+// Rendered once; the tests only read it.
 class CowshedVisit : public ::testing::Test {
  protected:
   struct Rendered {
@@ -125,7 +125,8 @@ TEST_F(CowshedVisit, ShowsInTheRightImageWhatDepthSaysOfTheLeft) {
       const Vector2d pixel(column, row);
       const Vector3d bearing = calibration.left.bearing(pixel).value();
       const double depth = depths[static_cast<std::size_t>(row * left.width + column)];
-      if (depth > 4.0 || difference(left, pixel, left, pixel + Vector2d(2.0, 0.0)) < 12.0) continue;  // far or flat
+      // Skips far and untextured pixels.
+      if (depth > 4.0 || difference(left, pixel, left, pixel + Vector2d(2.0, 0.0)) < 12.0) continue;
       const Vector3d point_in_left = bearing * (depth / bearing.z());
       const auto predicted = calibration.right->camera.project(calibration.right->right_from_left * point_in_left);
       if (!predicted || predicted->x() < 6.0) continue;
@@ -251,7 +252,7 @@ TEST(CowshedVisits, ShowMarksWhereARollingShutterSeesThem) {
   EXPECT_GT(moved, 0);
 }
 
-// Whether nothing stands between two places of the robot, whose body is so wide and high.
+// Whether the robot's volume is free of obstacles between two poses.
 bool is_clear(const RayScene& rays, const Pose& before, const Pose& after) {
   for (const double side : {-0.35, 0.0, 0.35}) {
     for (const double height : {0.15, 0.5, 1.0}) {
@@ -306,11 +307,11 @@ TEST(CowshedPlan, ShowsColumnsWhereTheyStandAndTheAlleyFree) {
   EXPECT_EQ(grey(7.5, -3.0), 0);
   EXPECT_EQ(grey(7.5, 3.3), 254);
   EXPECT_EQ(grey(15.0, 0.0), 254);
-  EXPECT_EQ(grey(15.0, 2.5), 0);  // the curb
+  EXPECT_EQ(grey(15.0, 2.5), 0);  // curb
   EXPECT_EQ(grey(-0.5, 0.0), 254);
-  EXPECT_EQ(grey(30.0, 0.0), 254);  // the gate
+  EXPECT_EQ(grey(30.0, 0.0), 254);  // gate
   EXPECT_EQ(grey(30.0, 2.5), 0);
-  EXPECT_EQ(grey(40.0, 0.0), 0);  // the store's far wall
+  EXPECT_EQ(grey(40.0, 0.0), 0);  // far wall of the store
 }
 
 class WrittenCowshed : public ::testing::Test {

@@ -19,7 +19,7 @@ void require_no_recording(const fs::path& folder) {
   throw InputError(folder.string(), "already holds a recording", "name another folder, or remove that one first");
 }
 
-// A part of a recording is of no use to anybody.
+// Removes an incomplete recording.
 void remove_recording(const fs::path& folder) {
   fs::remove_all(folder / "mav0");
   fs::remove_all(folder / "plan");

@@ -14,7 +14,7 @@ constexpr float kWest = kCowshedSize.length + 0.15f;
 constexpr float kEast = kCowshedSize.length + kCowshedSize.store_length;
 constexpr float kStoreHalfWidth = kCowshedSize.store_half_width;
 constexpr float kHeight = kCowshedSize.store_height;
-constexpr float kStorePlinth = 1.2f;  // metres: the height of concrete walls
+constexpr float kStorePlinth = 1.2f;  // height of concrete walls, metres
 
 const SurfaceLook kStoreConcrete{.picture = BarnPicture::concrete, .brightness = 0.9f, .picture_width = 1.9f};
 const SurfaceLook kStorePlanks{.picture = BarnPicture::planks, .brightness = 0.9f, .picture_width = 1.5f};
@@ -44,9 +44,9 @@ void add_walls(Cowshed& barn) {
   }
 }
 
-// With a strip along the middle through which daylight comes in.
+// A ceiling with a daylight strip along its middle.
 void add_ceiling(Cowshed& barn, float daylight, SeededDraws& draws) {
-  constexpr float kStrip = 0.5f;  // metres: half of its width
+  constexpr float kStrip = 0.5f;  // half of the strip's width, metres
   const float length = kEast - kWest;
   const auto add_part = [&](float from_y, float to_y, const SurfaceLook& look) {
     add_panel(barn.still, {kWest, to_y, kHeight}, {length, 0.0f, 0.0f}, {0.0f, from_y - to_y, 0.0f}, look);
@@ -68,7 +68,7 @@ void add_ceiling(Cowshed& barn, float daylight, SeededDraws& draws) {
                                 daylight});
 }
 
-// Bales piled up along the northern wall, each a little askew.
+// Stacked bales along the northern wall, each slightly rotated.
 void add_bales(Cowshed& barn, SeededDraws& draws) {
   const Vector3f half_size(0.45f, 0.24f, 0.21f);
   const SurfaceLook straw{.picture = BarnPicture::straw, .brightness = 0.9f, .picture_width = 1.0f};
@@ -83,7 +83,7 @@ void add_bales(Cowshed& barn, SeededDraws& draws) {
   }
 }
 
-// Silage against the southern wall, steepest there.
+// Silage against the southern wall, steepest at the wall.
 void add_heap(QuadMesh& mesh, float x, float length, SeededDraws& draws) {
   const float phases[] = {draws.between(0.0f, 6.0f), draws.between(0.0f, 6.0f)};
   const auto point_at = [&](float u, float v) -> Vector3f {
@@ -98,7 +98,7 @@ void add_heap(QuadMesh& mesh, float x, float length, SeededDraws& draws) {
       mesh, 40, 16, [&](float u, float v) { return point_at(1.0f - u, 1.0f - v); }, {length, 2.0f}, feed);
 }
 
-// Barrels and crates before the eastern wall, and boards above them.
+// Barrels and crates in front of the eastern wall, boards above them.
 void add_stock(Cowshed& barn, SeededDraws& draws) {
   const SurfaceLook plastic{.picture = BarnPicture::plastic, .brightness = 0.7f, .picture_width = 1.0f};
   const SurfaceLook wood{.picture = BarnPicture::planks, .picture_width = 1.3f};

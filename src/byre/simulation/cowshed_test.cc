@@ -45,9 +45,9 @@ TEST(Cowshed, ChangesOtherThingsInOtherMissions) {
 }
 
 TEST(Cowshed, LeavesTheRobotItsWay) {
-  constexpr float kFarthestLane = 1.25f;  // metres from the middle of the alley, of any mission
-  constexpr float kRobot = 0.35f;         // metres: half its width
-  constexpr float kThing = 0.3f;          // metres: half a usual one's
+  constexpr float kFarthestLane = 1.25f;  // metres from the centre line of the alley, over all missions
+  constexpr float kRobot = 0.35f;         // half of the robot's width, metres
+  constexpr float kThing = 0.3f;          // half of a usual thing's width, metres
   for (const int mission : {1, 2, 3}) {
     for (const MovableThing& thing : build_cowshed({.mission = mission, .change = 1.0}).things) {
       const bool is_in_alley = std::abs(thing.position.y()) < kCowshedSize.alley_half_width;
@@ -142,7 +142,7 @@ TEST(Cows, StandWhereTheyEatAndMoveTheirHeads) {
   ASSERT_FALSE(cows[1].walks);
   const QuadMesh before = cows_at({cows[1]}, 1.0);
   const QuadMesh after = cows_at({cows[1]}, 2.0);
-  EXPECT_EQ(before.vertices.front(), after.vertices.front());  // the body
+  EXPECT_EQ(before.vertices.front(), after.vertices.front());  // body
   EXPECT_NE(before.vertices, after.vertices);
 }
 

@@ -1,4 +1,4 @@
-// What people carry about in a cowshed: buckets, wheelbarrows, pallets, brooms, bales, crates.
+// Movable things in a cowshed: buckets, wheelbarrows, pallets, brooms, bales, crates.
 
 #include "byre/simulation/cowshed_parts.h"
 
@@ -49,7 +49,7 @@ void add_pallet(QuadMesh& mesh, const Isometry3f& world_from_thing, const Surfac
   }
 }
 
-// Leans back.
+// A broom that leans back.
 void add_broom(QuadMesh& mesh, const Isometry3f& world_from_thing, const SurfaceLook& look) {
   add_bar(mesh, world_from_thing * Vector3f(0.0f, 0.0f, 0.1f), world_from_thing * Vector3f(-0.4f, 0.05f, 1.4f), 0.016f,
           look);
@@ -64,12 +64,12 @@ void add_crate(QuadMesh& mesh, const Isometry3f& world_from_thing, const Surface
   }
 }
 
-// A place along the fences or before the western gate, out of the robot's way.
+// A position along the fences or in front of the western gate, off the robot's course.
 MovableThing draw_thing(ThingKind kind, SeededDraws& draws) {
   const float side = draws.below(2) == 0 ? -1.0f : 1.0f;
   const float yaw = draws.between(-0.6f, 0.6f) + (draws.below(2) == 0 ? 0.0f : 1.5708f);
   switch (draws.below(5)) {
-    case 0:  // before the western gate
+    case 0:  // in front of the western gate
       return {kind, {draws.between(1.0f, 1.6f), side * draws.between(0.2f, 1.4f), 0.0f}, yaw};
     case 1:  // between fence and cubicles
       return {kind, {draws.between(2.0f, 28.0f), side * draws.between(4.7f, 5.1f), 0.0f}, yaw};
@@ -78,7 +78,7 @@ MovableThing draw_thing(ThingKind kind, SeededDraws& draws) {
   }
 }
 
-// Numbers of the things in an order drawn for a mission: the first ones are those that were moved.
+// Indices of the things in an order drawn for a mission; the first ones are moved.
 std::vector<std::size_t> shuffled(std::size_t count, SeededDraws& draws) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), 0u);

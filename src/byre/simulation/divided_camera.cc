@@ -3,7 +3,7 @@
 namespace byre {
 namespace {
 
-// u of a pixel's centre when n x n pixels become one: the image's edge, at -0.5, stays where it is.
+// u of a pixel centre after binning by divisor: the image border at -0.5 stays fixed.
 double divided_centre(double centre, double divisor) {
   return (centre + 0.5) / divisor - 0.5;
 }
@@ -22,7 +22,7 @@ Camera divided_camera(Camera camera, int divisor) {
 
 Camera resized_camera(Camera camera, int width, int height) {
   const double divisor = static_cast<double>(camera.width) / width;
-  const double lost = 0.5 * (camera.height / divisor - height);  // rows above, of the new size
+  const double lost = 0.5 * (camera.height / divisor - height);  // rows cut off above, at the new size
   camera.fx /= divisor;
   camera.fy /= divisor;
   camera.cx = divided_centre(camera.cx, divisor);

@@ -4,11 +4,11 @@
 
 namespace byre {
 
-// The same camera with divisor x divisor pixels made one; what is left over at the right and the bottom is lost.
+// The camera after binning of divisor x divisor pixels; remaining columns and rows at the right and bottom are cut off.
 Camera divided_camera(Camera camera, int divisor);
 
-// The same camera with images of another size, in pixels. The horizontal field of view stays; the vertical one grows or
-// shrinks with the height, above and below alike.
+// The camera with another image size, in pixels. The horizontal field of view is kept; the vertical one is cropped or
+// extended equally above and below.
 Camera resized_camera(Camera camera, int width, int height);
 
 }  // namespace byre

@@ -11,7 +11,7 @@ Pose to_pose(const Eigen::Matrix<double, 3, 4>& matrix) {
 }  // namespace
 
 Calibration euroc_like_calibration(int divisor) {
-  // The sensor.yaml of cam0 and cam1 of the Machine Hall and Vicon Room recordings.
+  // sensor.yaml of cam0 and cam1 of the Machine Hall and Vicon Room recordings.
   const Camera left{.model = CameraModel::radial_tangential,
                     .width = 752,
                     .height = 480,

@@ -1,4 +1,4 @@
-// The files of a EuRoC recording (Burri 2016).
+// Files of a EuRoC recording (Burri 2016).
 
 #include "byre/simulation/euroc_writer.h"
 
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 void make_folder_of(const fs::path& path) {
   std::error_code failure;
-  fs::create_directories(path.parent_path(), failure);  // on failure, writing the file reports the reason
+  fs::create_directories(path.parent_path(), failure);  // failures are reported when the file is written
 }
 
 std::ostringstream exact_text() {
@@ -36,7 +36,7 @@ void write_text(const fs::path& path, const std::ostringstream& text) {
   write_whole(path, text.view());
 }
 
-// Precondition: it is the calibration of a pair.
+// Precondition: a stereo calibration.
 Pose body_from_right(const Calibration& calibration) {
   return calibration.body_from_left * inverse(calibration.right->right_from_left);
 }
@@ -75,7 +75,7 @@ void write_recorded_image(const fs::path& folder, const Image& image, Timestamp 
   const fs::path path = folder / "data" / image_name(time);
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);
-  constexpr int kFastest = 1;  // noise does not compress: trying hard only takes time
+  constexpr int kFastest = 1;  // noise does not compress, so higher levels only cost time
   write_image_file(path, pixels, {cv::IMWRITE_PNG_COMPRESSION, kFastest});
 }
 
@@ -101,7 +101,7 @@ void write_truth(const fs::path& folder, const Trajectory& truth) {
     for (const double value : translation) file << "," << value;
     file << "," << rotation.w() << "," << rotation.x() << "," << rotation.y() << "," << rotation.z();
     for (const double value : velocity) file << "," << value;
-    file << ",0,0,0,0,0,0\n";  // there is no gyroscope and no accelerometer to have biases
+    file << ",0,0,0,0,0,0\n";  // biases of gyroscope and accelerometer, unused
   }
   write_text(path, file);
 }

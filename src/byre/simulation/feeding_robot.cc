@@ -10,8 +10,8 @@
 namespace byre {
 namespace {
 
-constexpr double kStep_s = 0.005;          // time between samples of the way travelled
-constexpr double kOverlap = 1.0;           // metres driven beyond a whole lap
+constexpr double kStep_s = 0.005;          // time step of the travelled distance
+constexpr double kOverlap = 1.0;           // metres driven beyond a full lap
 constexpr double kShortestStraight = 4.0;  // metres
 constexpr double kTurnOnTheSpot = 3.0;     // metres that it counts for: 6 s, at most 60 degrees a second
 constexpr int kTurnSteps = 2000;
@@ -21,12 +21,12 @@ double eased(double x) {
   return part * part * (3.0 - 2.0 * part);
 }
 
-// Radians turned after a part of a half turn: the curvature rises from nothing and falls back to it.
+// Heading change after a part of a half turn, radians: the curvature rises from zero and falls back to it.
 double turned(double part) {
   return std::numbers::pi * part - 0.5 * std::sin(2.0 * std::numbers::pi * part);
 }
 
-// Positions along a half turn to the left of length 1 that begins at the origin along x.
+// Positions along a left half turn of length 1 that begins at the origin along x.
 std::vector<Eigen::Vector2d> unit_turn() {
   std::vector<Eigen::Vector2d> positions{Eigen::Vector2d::Zero()};
   for (int i = 0; i < kTurnSteps; ++i) {
@@ -36,7 +36,7 @@ std::vector<Eigen::Vector2d> unit_turn() {
   return positions;
 }
 
-// A few oscillations of random phase, together about as large as amplitude.
+// A sum of oscillations of random phase, about as large as amplitude.
 double vibration(double time_s, double amplitude, std::uint64_t seed, std::uint64_t axis) {
   SeededDraws draws(seed, 40 + axis);
   double sum = 0.0;
@@ -77,7 +77,7 @@ FeedingCourse::FeedingCourse(const FeedingCourseOptions& options) : options_(opt
   const double arc_length = lane_distance() / turn_.back().y();
   for (Eigen::Vector2d& position : turn_) position *= arc_length;
   turn_length_ = options.turn == TurnKind::spot ? kTurnOnTheSpot : arc_length;
-  const auto laps_missed = [&](double straight, int laps) {  // metres, negative: beyond the last lap
+  const auto laps_missed = [&](double straight, int laps) {  // metres; negative: beyond the last lap
     return laps * 2.0 * (straight + turn_length_) + kOverlap - drive(straight).back();
   };
   int laps = 1;
@@ -92,7 +92,7 @@ FeedingCourse::FeedingCourse(const FeedingCourseOptions& options) : options_(opt
   travelled_ = drive(straight_);
 }
 
-// Metres per second. A robot that turns on the spot has all but stopped before and after.
+// Target speed, metres per second. A robot that turns on the spot nearly stops before and after.
 double FeedingCourse::wanted_speed(double along_half_lap, double straight) const {
   constexpr double kSlowing = 1.5;                                             // metres
   constexpr double kStopping = 0.5;                                            // metres
@@ -104,9 +104,9 @@ double FeedingCourse::wanted_speed(double along_half_lap, double straight) const
   return kCrawling + (limit - kCrawling) * eased(std::max(to_turn, in_turn) / kStopping);
 }
 
-// Metres travelled every kStep_s seconds on a lap whose straights have a length.
+// Distance travelled every kStep_s seconds on a lap with the given straights, metres.
 std::vector<double> FeedingCourse::drive(double straight) const {
-  constexpr double kStart_s = 2.5;  // time to reach the speed wanted
+  constexpr double kStart_s = 2.5;  // time to reach the target speed
   const double half_lap = straight + turn_length_;
   const double first = 2.0 * half_lap * options_.start;
   const auto steps = static_cast<int>(std::ceil(options_.duration_s / kStep_s));
@@ -137,7 +137,7 @@ FeedingCourse::PathPoint FeedingCourse::turn_point(double along_turn) const {
   return {(1.0 - part) * turn_[before] + part * turn_[before + 1], turned(step / kTurnSteps)};
 }
 
-// The second half of a lap is the first one turned by half a turn about the middle of the course.
+// The second half of a lap is the first one rotated by 180 degrees about the centre of the course.
 FeedingCourse::PathPoint FeedingCourse::path_point(double along_lap) const {
   const double half_lap = straight_ + turn_length_;
   const double along = std::fmod(along_lap, half_lap);
@@ -158,7 +158,7 @@ Pose FeedingCourse::world_from_body(double time_s) const {
   constexpr double kBounce = 0.002;  // metres
   const double way = travelled(time_s);
   const PathPoint point = path_point(lap_length() * options_.start + way);
-  const double driving = eased(way / 0.5);  // nothing shakes while the robot stands
+  const double driving = eased(way / 0.5);  // no vibration at standstill
   const auto shake = [&](double amplitude, std::uint64_t axis) {
     return driving * vibration(time_s, amplitude, options_.seed, axis);
   };

@@ -80,7 +80,7 @@ TEST(FeedingCourse, ComesBackOnTheOtherSideInTheOtherDirection) {
 TEST(FeedingCourse, TurnsOnTheSpotAndComesBackOnTheSameLane) {
   const FeedingCourse course({.turn = TurnKind::spot, .duration_s = 60.0});
   double fastest_spin = 0.0;  // radians per second
-  double spun = 0.0;          // radians while it all but stands
+  double spun = 0.0;          // radians turned while nearly at rest
   for (double time_s = 3.0; time_s < 60.0; time_s += 0.1) {
     const Pose before = course.world_from_body(time_s - 0.1);
     const Pose here = course.world_from_body(time_s);
@@ -102,7 +102,7 @@ double farthest_x(const FeedingCourse& course, double duration_s) {
 }
 
 TEST(FeedingCourse, TurnsAtItsFarEndWhenItIsLongEnough) {
-  constexpr double kTurn = 2.1;  // metres that it reaches beyond
+  constexpr double kTurn = 2.1;  // metres that the turn adds
   for (const double duration_s : {50.0, 70.0}) {
     const FeedingCourse course({.far_x = 24.0, .latest_near_x = 18.0, .duration_s = duration_s});
     EXPECT_NEAR(farthest_x(course, duration_s), 24.0 + kTurn, 0.1) << duration_s;

@@ -13,9 +13,9 @@ namespace {
 constexpr float kGreyPerLight = 60000.0f;    // grey values per unit of radiance and second
 constexpr float kShotVariance = 0.026f;      // grey values squared per grey value, at a gain of 1
 constexpr float kReadSigma = 0.6f;           // grey values, at a gain of 1
-constexpr float kBrightestCounted = 300.0f;  // grey values: how far windows count when light is scattered
+constexpr float kBrightestCounted = 300.0f;  // grey values: clamps windows in the scattered light
 
-// About a normal distribution with a sigma of 1: the sum of four uniform numbers of 16 bits.
+// Approximately normal with sigma 1: the sum of four uniform 16-bit numbers.
 float normal_from(std::uint64_t bits) {
   constexpr float kSigma = 65536.0f * 0.5773503f;
   const std::uint64_t sum = (bits & 0xffff) + ((bits >> 16) & 0xffff) + ((bits >> 32) & 0xffff) + (bits >> 48);
@@ -63,7 +63,7 @@ ImageSensor::ImageSensor(const Camera& camera, const ImageSensorOptions& options
   }
 }
 
-// Out of focus: it fades towards its uneven rim.
+// A dirt spot out of focus, fading towards its uneven border.
 void ImageSensor::add_spot(float x, float y, float radius, float strength, std::uint64_t seed) {
   SeededDraws draws(seed, 2);
   const float lobes = std::floor(draws.between(2.0f, 6.0f));

@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// How long the sensor gathers light, and how much it amplifies.
+// Exposure time and gain of the sensor.
 struct Exposure {
   float time_s = 0.003f;
   float gain = 1.0f;
@@ -19,31 +19,31 @@ struct ExposureLimits {
   float min_time_s = 0.0002f;
   float max_time_s = 0.010f;
   float max_gain = 8.0f;
-  float wanted_grey = 105.0f;  // mean of the image
+  float wanted_grey = 105.0f;  // target mean of the image
 };
 
-// What an automatic exposure chooses for the next frame, given the mean grey value of this one: half of the way, time
-// before gain.
+// Automatic exposure: the setting for the next frame from this frame's mean grey value. Corrects half of the error, by
+// time before gain.
 Exposure next_exposure(const Exposure& exposure, float mean_grey, const ExposureLimits& limits);
 
 float mean_grey(const Image& image);
 
 struct ImageSensorOptions {
   float vignetting = 0.35f;  // share of the light lost in the corners
-  float dirt = 0.0f;         // dirt on the lens: 0 none, 1 a dozen of soft spots
-  float noise = 1.0f;        // times that of a usual sensor
-  float gain = 1.0f;         // times what the exposure asks for
-  float offset = 0.0f;       // grey values without light
+  float dirt = 0.0f;         // dirt on the lens: 0 none, 1 a dozen soft spots
+  float noise = 1.0f;        // relative to a usual sensor
+  float gain = 1.0f;         // multiplies the exposure's gain
+  float offset = 0.0f;       // grey value without light
   LensBlurOptions blur{};
   std::uint64_t seed = 1;
 };
 
-// A lens and the sensor behind it: light in, grey values out.
+// A lens and a sensor: converts radiance to grey values.
 class ImageSensor {
  public:
   ImageSensor(const Camera& camera, const ImageSensorOptions& options);
 
-  // radiance: of each pixel, row-major. The same arguments give the same bytes, whatever the number of threads.
+  // radiance: one value per pixel, row-major. Deterministic for any number of threads.
   Image expose(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
                int threads) const;
 
@@ -58,8 +58,8 @@ class ImageSensor {
   float gain_;
   float offset_;
   LensBlur blur_;
-  std::vector<float> transmission_;  // share of the light that comes through, of each pixel
-  std::vector<float> veil_;          // share of the image's mean light that dirt scatters there
+  std::vector<float> transmission_;  // share of the light that each pixel receives
+  std::vector<float> veil_;          // share of the image's mean light that dirt scatters into each pixel
 };
 
 }  // namespace byre

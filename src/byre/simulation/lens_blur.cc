@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// What one pass over neighbours can blur by: weights of a quarter, a half and a quarter.
+// Largest variance of one pass over neighbours: weights 1/4, 1/2, 1/4.
 constexpr float kMostVariancePerStep = 0.5f;
 
 }  // namespace
@@ -41,7 +41,7 @@ float LensBlur::sigma_at(int column, int row) const {
   return is_sharp() ? 0.0f : std::sqrt(step_variance_ * variances_[index(column, row)]);
 }
 
-// Everywhere by the variance of one step, down the columns and along the rows.
+// One pass down the columns and along the rows; adds the variance of one step everywhere.
 std::vector<float> LensBlur::step_further(const std::vector<float>& image, int threads) const {
   const float aside = 0.5f * step_variance_;
   const float middle = 1.0f - step_variance_;
@@ -64,7 +64,7 @@ std::vector<float> LensBlur::step_further(const std::vector<float>& image, int t
   return result;
 }
 
-// A mixture of two normal distributions has the mixture of their variances.
+// Interpolates between passes: the variance of a mixture of two normal distributions is the mixture of theirs.
 std::vector<float> LensBlur::blurred(const std::vector<float>& image, int threads) const {
   std::vector<float> result = image;
   std::vector<float> here = image;

@@ -8,12 +8,12 @@
 namespace byre {
 
 struct LensBlurOptions {
-  float corner_sigma = 0.0f;             // pixels, as far from the sharpest place as a corner is from the middle
-  Eigen::Vector2f sharpest{0.0f, 0.0f};  // off the image's middle, in widths of the image
+  float corner_sigma = 0.0f;  // pixels, at the distance from the sharpest point that a corner has from the centre
+  Eigen::Vector2f sharpest{0.0f, 0.0f};  // offset from the image centre, in image widths
 };
 
-// A lens that draws sharply in one place and ever softer away from it, as a curved field of focus does: the sigma of
-// the blur, which is about normal, grows with the square of the distance.
+// Lens blur from field curvature: approximately Gaussian, with a sigma that grows with the square of the distance from
+// the sharpest point.
 class LensBlur {
  public:
   LensBlur(int width, int height, const LensBlurOptions& options);
@@ -21,8 +21,7 @@ class LensBlur {
   bool is_sharp() const { return steps_ == 0; }  // everywhere
   float sigma_at(int column, int row) const;     // pixels
 
-  // image: of each pixel, row-major. The same image gives the same numbers, whatever the number of threads (0: as many
-  // as the machine has).
+  // image: one value per pixel, row-major. Deterministic for any number of threads (0: one per core).
   std::vector<float> blurred(const std::vector<float>& image, int threads) const;
 
  private:
@@ -31,9 +30,9 @@ class LensBlur {
 
   int width_;
   int height_;
-  int steps_ = 0;                 // number of blurs of equal variance up to the largest
+  int steps_ = 0;                 // number of equal variance steps up to the largest blur
   float step_variance_ = 0.0f;    // pixels squared
-  std::vector<float> variances_;  // variance of each pixel, in steps; empty where all is sharp
+  std::vector<float> variances_;  // variance of each pixel, in steps; empty when is_sharp()
 };
 
 }  // namespace byre

@@ -21,7 +21,7 @@ std::size_t index(int column, int row) {
   return static_cast<std::size_t>(row * kWidth + column);
 }
 
-// Variance along u of what becomes of a single bright pixel.
+// Variance along u of the blur of a single bright pixel.
 double variance_of_a_dot(const LensBlur& blur, int column, int row) {
   std::vector<float> image = even(0.0f);
   image[index(column, row)] = 1.0f;

@@ -6,7 +6,8 @@
 namespace byre {
 namespace {
 
-// The facet's place in its picture changes by the diagonals' differences along the diagonals, and not across the facet.
+// Slopes of the picture coordinates: they change by the diagonals' differences along the diagonals and are constant
+// across the facet's plane.
 void set_slopes(LitMesh::Facet& facet, const Eigen::Vector3f& first_diagonal, const Eigen::Vector3f& second_diagonal) {
   const Eigen::Vector3f area = first_diagonal.cross(second_diagonal);
   const float squared = std::max(area.squaredNorm(), 1e-20f);

@@ -7,24 +7,24 @@
 
 namespace byre {
 
-// A mesh ready to be seen: what rays find, and what a facet looks like.
+// A mesh prepared for rendering: ray geometry and facet appearance.
 class LitMesh {
  public:
-  // light: of each vertex, what a white surface sends out there; id: see RayScene.
+  // light: radiance of a white surface at each vertex; id: see RayScene.
   LitMesh(const QuadMesh& mesh, const std::vector<float>& light, unsigned id,
           RayScene::Build build = RayScene::Build::careful)
       : LitMesh(mesh, mesh, light, id, build) {}
 
-  // A mesh that moves, see RayScene: it looks as it does at the beginning.
+  // A moving mesh (see RayScene); its appearance is that of the beginning.
   LitMesh(const QuadMesh& begin, const QuadMesh& end, const std::vector<float>& light, unsigned id,
           RayScene::Build build);
 
-  // What a facet looks like. Arrays are by corner, in the order of the mesh.
+  // Appearance of a facet. Arrays are by corner, in mesh order.
   struct Facet {
     std::array<Eigen::Vector2f, 4> picture_places;
     std::array<float, 4> light;
     Eigen::Vector3f normal;            // unit length
-    Eigen::Vector3f u_slope, v_slope;  // slopes of the picture's place over the surface, pictures per metre
+    Eigen::Vector3f u_slope, v_slope;  // derivatives of the picture coordinates over the surface, pictures per metre
     std::uint32_t surface = 0;
   };
 

@@ -14,7 +14,7 @@ std::uint8_t to_texel(float reflectance) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(reflectance, 0.0f, 1.0f) * 255.0f));
 }
 
-// Each texel the mean of four of the finer level.
+// Averages 2 x 2 texels of the finer level.
 std::vector<float> halved(const std::vector<float>& texels, int size) {
   const int half = size / 2;
   const auto at = [&](int row, int column) { return texels[static_cast<std::size_t>(row * size + column)]; };
@@ -29,7 +29,7 @@ std::vector<float> halved(const std::vector<float>& texels, int size) {
   return result;
 }
 
-// To 0.09, from the bits of the number: levels of detail need no more.
+// Accurate to 0.09, from the float's bits: sufficient for mip levels.
 float rough_log2(float positive) {
   return static_cast<float>(std::bit_cast<std::int32_t>(positive)) * 0x1p-23f - 127.0f;
 }
@@ -97,7 +97,7 @@ float MipTexture::sample(const Eigen::Vector2f& place, float width) const {
   return bilinear(place, nearest_level(width));
 }
 
-// The level, with its fraction, whose texels are as wide as a footprint in pictures.
+// Fractional level whose texels are as wide as the footprint, in pictures.
 float MipTexture::level_of(float width) const {
   return rough_log2(std::max(width, 1e-9f)) + static_cast<float>(size_log2_);
 }

@@ -7,7 +7,7 @@
 
 namespace byre {
 
-// What a pixel covers of a texture: the steps to the next pixel to the right and below, in widths of the picture.
+// Texture area of a pixel: steps to the next pixel to the right and below, in picture widths.
 struct TextureFootprint {
   Eigen::Vector2f right;
   Eigen::Vector2f down;
@@ -19,11 +19,11 @@ class MipTexture {
   // texels: size x size, row-major, 0 to 1; size is a power of two.
   MipTexture(int size, const std::vector<float>& texels);
 
-  // The mean reflectance, 0 to 1, of what a pixel covers around a place. Footprints that are long and narrow, as of a
-  // floor seen at a slant, are looked up in several places along them.
+  // Mean reflectance, 0 to 1, of a footprint around a place. Long narrow footprints, as on a floor at grazing angle,
+  // are sampled at several places.
   float sample(const Eigen::Vector2f& place, const TextureFootprint& footprint) const;
 
-  // The mean over a round footprint of a width in pictures, from the level next to it alone: for what is smooth.
+  // Mean over a round footprint, its width in pictures, from the nearest level only: for smooth pictures.
   float sample(const Eigen::Vector2f& place, float width) const;
 
  private:
@@ -33,7 +33,7 @@ class MipTexture {
   int nearest_level(float width) const;
 
   int size_log2_;
-  std::vector<std::uint8_t> texels_;  // all levels, one after the other, the finest first
+  std::vector<std::uint8_t> texels_;  // all levels, finest first
   std::vector<int> first_texel_;      // index of each level's first texel
 };
 

@@ -10,9 +10,9 @@ using ::testing::FloatNear;
 
 constexpr int kTextureSize = 64;
 constexpr float kTexel = 1.0f / kTextureSize;
-constexpr float kStep = 1.0f / 255.0f;  // step between values that are stored
+constexpr float kStep = 1.0f / 255.0f;  // step between stored values
 
-// Columns of 0 and 1 in turn, so many texels wide.
+// Alternating columns of 0 and 1, each width texels wide.
 MipTexture columns(int width) {
   std::vector<float> texels;
   for (int i = 0; i < kTextureSize * kTextureSize; ++i)

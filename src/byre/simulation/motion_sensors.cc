@@ -15,7 +15,7 @@ constexpr std::uint64_t kRateStream = 72;
 constexpr std::uint64_t kAccelerationStream = 73;
 constexpr double kGravity = 9.81;  // m/s^2
 
-// Normally distributed, by Box and Muller.
+// Normally distributed (Box-Muller).
 double normal(SeededDraws& draws) {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - static_cast<double>(draws.between(0.0f, 1.0f))));
   return radius * std::cos(2.0 * std::numbers::pi * static_cast<double>(draws.between(0.0f, 1.0f)));
@@ -26,7 +26,7 @@ class Wheel {
  public:
   Wheel(double told_per_true, const MotionSensorOptions& options) : told_per_true_(told_per_true), options_(options) {}
 
-  // The metres that the odometry is told, in whole ticks, when the wheel has rolled so far.
+  // Odometry increment in whole encoder ticks for a rolled distance, both in metres.
   double roll(double metres, SeededDraws& draws) {
     way_ += told_per_true_ * metres * (1.0 + options_.slip * normal(draws));
     const double ticks = std::floor(way_ / options_.tick);
@@ -38,13 +38,13 @@ class Wheel {
  private:
   double told_per_true_;
   MotionSensorOptions options_;
-  double way_ = 0.0;  // metres
+  double way_ = 0.0;  // metres of odometry
   double ticks_ = 0.0;
 };
 
-// Odometry of two wheels: an arc between samples.
+// Differential-drive odometry: an arc between samples.
 Trajectory told_by_wheels(const Trajectory& truth, const MotionSensorOptions& options) {
-  constexpr double kFreeSpeed = 1.0;  // metres per second of a wheel in the air
+  constexpr double kFreeSpeed = 1.0;  // metres per second of a spinning wheel
   SeededDraws draws(options.seed, kWheelStream);
   const double told = 1.0 / (1.0 - options.radius_error), half = 0.5 * options.radius_difference;
   Wheel left(told * (1.0 - half), options), right(told * (1.0 + half), options);
@@ -91,7 +91,7 @@ std::vector<AngularRate> told_by_gyroscope(const Trajectory& truth, const Motion
   return rates;
 }
 
-// metres per second, from one pose of the path to the next
+// Velocity from pose i to the next, metres per second.
 Eigen::Vector3d velocity_after(const Trajectory& truth, std::size_t i) {
   const Eigen::Vector3d way = truth[i + 1].world_from_body.translation - truth[i].world_from_body.translation;
   return way / to_seconds(truth[i + 1].time - truth[i].time);

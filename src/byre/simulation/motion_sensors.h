@@ -6,27 +6,27 @@
 
 namespace byre {
 
-// How the wheels and the gyroscope of a simulated robot err: two driven wheels with cheap encoders, and gyroscope and
-// accelerometer of a consumer's part (as the ICM-20948's data sheet has it). All that is drawn follows from the seed.
+// Errors of a simulated robot's wheels, gyroscope and accelerometer: two driven wheels with cheap encoders, a
+// consumer-grade IMU (values of the ICM-20948 data sheet). All draws depend on the seed.
 struct MotionSensorOptions {
   double wheel_distance = 0.6;       // metres between the wheels
-  double radius_error = 0.01;        // share by which both wheels are smaller than the odometry takes them to be
-  double radius_difference = 0.002;  // share by which the left wheel is larger than the right one
-  double slip = 0.01;                // deviation of each wheel's way, as a share of it
-  double tick = 0.001;               // metres of a wheel's way that an encoder resolves
+  double radius_error = 0.01;        // relative error by which the odometry overestimates both wheel radii
+  double radius_difference = 0.002;  // relative amount by which the left wheel is larger than the right
+  double slip = 0.01;                // standard deviation of each wheel's distance, relative
+  double tick = 0.001;               // encoder resolution, metres
   double wheel_rate_hz = 50.0;
-  double wheel_delay = 0.03;           // seconds that wheels stamp later
-  double lifted_from = 0.0;            // seconds from the start, when the left wheel begins to spin freely
-  double lifted_to = 0.0;              // seconds from the start
+  double wheel_delay = 0.03;           // delay of wheel timestamps, seconds
+  double lifted_from = 0.0;            // seconds from the start: the left wheel begins to spin freely
+  double lifted_to = 0.0;              // seconds from the start: the left wheel grips again
   double rate_noise = 2.6e-4;          // radians per second and square root of a hertz
-  double rate_bias = 0.02;             // radians per second, deviation of the bias about each axis
+  double rate_bias = 0.02;             // radians per second, standard deviation per axis
   double acceleration_noise = 2.3e-3;  // m/s^2 and square root of a hertz
-  double acceleration_bias = 0.05;     // m/s^2, deviation of the bias along each axis, once it was calibrated at rest
+  double acceleration_bias = 0.05;     // m/s^2, standard deviation per axis after calibration at rest
   std::uint64_t seed = 1;
 };
 
-// What they tell while the body, whose origin lies on the floor between the wheels, moves along its true path:
-// gyroscope and accelerometer samples at each pose of the path, about the body's axes, at the body's origin.
+// Simulates sensors along a true trajectory. The body's origin is on the floor between the wheels; gyroscope and
+// accelerometer are sampled at each pose, in the body's axes, at its origin.
 MotionSamples simulated_motion(const Trajectory& world_from_body, const MotionSensorOptions& options);
 
 }  // namespace byre

@@ -23,7 +23,7 @@ Pose motion_between(const Trajectory& path, double from, double to) {
   return inverse(*pose_at(path, from_seconds(from), kGap)) * *pose_at(path, from_seconds(to), kGap);
 }
 
-// What a sensor without errors tells, integrated twice, leads where the path does.
+// An error-free accelerometer, integrated twice, reproduces the trajectory.
 TEST(MotionSensors, TellAccelerationsWithGravity) {
   const Trajectory truth = drive();
   const MotionSamples exact = simulated_motion(truth, {.acceleration_noise = 0.0, .acceleration_bias = 0.0});

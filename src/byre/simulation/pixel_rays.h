@@ -7,7 +7,7 @@
 
 namespace byre {
 
-// The rays of a camera's pixels. Made once per camera, as undoing the distortion of the lens is slow.
+// Rays of a camera's pixels. Construction is slow (undistortion); construct once per camera.
 class PixelRays {
  public:
   explicit PixelRays(const Camera& camera);
@@ -15,8 +15,8 @@ class PixelRays {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Directions in the camera's frame through a pixel's corners, which bound all rays that it collects: top left, top
-  // right, bottom left, bottom right. Not of unit length: z = 1. Empty where the lens lets no light in.
+  // Rays through a pixel's four corners in the camera frame, with z = 1; they bound all light of the pixel. Empty
+  // outside the lens's field of view.
   struct Corners {
     Eigen::Vector3f top_left, top_right, bottom_left, bottom_right;
 
@@ -30,7 +30,7 @@ class PixelRays {
  private:
   int width_;
   int height_;
-  std::vector<Eigen::Vector3f> rays_;  // (width + 1) x (height + 1), row-major; NaN where there is none
+  std::vector<Eigen::Vector3f> rays_;  // (width + 1) x (height + 1), row-major; NaN outside the field of view
 };
 
 }  // namespace byre

@@ -24,7 +24,7 @@ TEST(PixelRays, PassThroughTheirPixelsDespiteTheDistortion) {
 
 TEST(PixelRays, AreEmptyWhereTheLensLetsNoLightIn) {
   Camera camera{.width = 200, .height = 200, .fx = 40.0, .fy = 40.0, .cx = 99.5, .cy = 99.5, .distortion = {}};
-  camera.model = CameraModel::equidistant;  // a half sphere: 63 pixels around the centre
+  camera.model = CameraModel::equidistant;  // half sphere: radius 63 pixels around the centre
   const PixelRays rays(camera);
   EXPECT_TRUE(rays.corners(99, 99));
   EXPECT_TRUE(rays.corners(99, 160));

@@ -16,7 +16,7 @@ int facets_along(float length, float max_facet) {
   return std::max(1, static_cast<int>(std::ceil(length / max_facet - 1e-3f)));
 }
 
-// Adds what the facets around a vertex say of its normal.
+// Sums the facet normals at each vertex.
 void add_normals(QuadMesh& mesh, std::size_t first_vertex, std::size_t first_quad) {
   for (std::size_t i = first_quad; i < mesh.quads.size(); ++i) {
     const auto& quad = mesh.quads[i];
@@ -27,14 +27,14 @@ void add_normals(QuadMesh& mesh, std::size_t first_vertex, std::size_t first_qua
   for (std::size_t i = first_vertex; i < mesh.normals.size(); ++i) mesh.normals[i].normalize();
 }
 
-// Two directions across an axis, right-handed with it.
+// Two directions perpendicular to an axis, right-handed with it.
 std::pair<Vector3f, Vector3f> across(const Vector3f& axis) {
   const Vector3f other = std::abs(axis.z()) < 0.9f ? Vector3f::UnitZ() : Vector3f::UnitX();
   const Vector3f first = other.cross(axis).normalized();
   return {first, axis.cross(first)};
 }
 
-// The mantle of a bar whose radius changes evenly.
+// Lateral surface of a bar with linearly changing radius.
 void add_mantle(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float from_radius, float to_radius,
                 const SurfaceLook& look, int facets) {
   const Vector3f bar = to - from;
@@ -130,7 +130,7 @@ void add_drum(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float fr
 void add_ellipsoid(QuadMesh& mesh, const Eigen::Isometry3f& world_from_ellipsoid, const Vector3f& radii,
                    const SurfaceLook& look, int facets) {
   const auto point_at = [&](float u, float v) -> Vector3f {
-    const float height = std::numbers::pi_v<float> * (v - 0.5f) * 0.998f;  // the poles have a little width
+    const float height = std::numbers::pi_v<float> * (v - 0.5f) * 0.998f;  // leaves the poles a small width
     const Vector3f direction(std::cos(height) * std::cos(kRound * u), std::cos(height) * std::sin(kRound * u),
                              std::sin(height));
     return world_from_ellipsoid * Vector3f(radii.cwiseProduct(direction));

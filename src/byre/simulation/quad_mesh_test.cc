@@ -9,7 +9,7 @@ using Eigen::Vector3f;
 
 const SurfaceLook kLook{.picture_width = 0.5f};
 
-// The normal that the corners of a facet say, counter-clockwise.
+// Normal from a facet's corners, counter-clockwise.
 Vector3f facet_normal(const QuadMesh& mesh, std::size_t quad) {
   const auto& corners = mesh.quads[quad];
   return (mesh.vertices[corners[2]] - mesh.vertices[corners[0]])

@@ -33,14 +33,14 @@ RTCGeometry geometry_of(RTCDevice device, const QuadMesh& begin, const QuadMesh&
 
 RayScene::RayScene(const QuadMesh& begin, const QuadMesh& end, unsigned id, Build build) {
   assert(begin.quads == end.quads && begin.vertices.size() == end.vertices.size());
-  device_.reset(rtcNewDevice("threads=1"));  // built by one thread, so that it is built the same each time
+  device_.reset(rtcNewDevice("threads=1"));  // one thread, so that builds are deterministic
   if (!device_) throw std::runtime_error("Embree cannot be started");
   scene_.reset(rtcNewScene(device_.get()));
   rtcSetSceneBuildQuality(scene_.get(), build == Build::careful ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW);
   if (!begin.quads.empty()) {
     const RTCGeometry geometry = geometry_of(device_.get(), begin, end);
     rtcAttachGeometryByID(scene_.get(), geometry, id);
-    rtcReleaseGeometry(geometry);  // the scene keeps it
+    rtcReleaseGeometry(geometry);  // the scene holds a reference
   }
   rtcCommitScene(scene_.get());
   if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot hold the scene");
@@ -54,7 +54,7 @@ void RayScene::intersect(const int* valid, RTCRayHit8& rays) const {
 }
 
 bool RayScene::is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
-  constexpr float kEnd = 1e-3f;  // share of the way left out at both ends: what the points themselves lie on
+  constexpr float kEnd = 1e-3f;  // share of the segment left out at both ends, whose points lie on surfaces
   const Eigen::Vector3f way = to - from;
   RTCRay ray{};
   ray.org_x = from.x();
@@ -69,7 +69,7 @@ bool RayScene::is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) c
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene_.get(), &context, &ray);
-  return ray.tfar >= 0.0f;  // Embree sets it to minus infinity
+  return ray.tfar >= 0.0f;  // Embree sets tfar to minus infinity on a hit
 }
 
 }  // namespace byre

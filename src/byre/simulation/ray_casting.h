@@ -8,23 +8,24 @@
 
 namespace byre {
 
-// Finds where rays meet a mesh, with Embree (Wald 2014). The same rays give the same hits, whichever thread asks.
+// Intersects rays with a mesh by Embree (Wald 2014). Deterministic, thread-safe for const calls.
 class RayScene {
  public:
-  enum class Build : std::uint8_t { careful, quick };  // careful for many frames, quick for one
+  // careful: slow build, fast queries, for many frames; quick: fast build for one frame.
+  enum class Build : std::uint8_t { careful, quick };
 
-  // id: what hits on this scene have as geomID. The mesh is copied.
+  // id: geomID of hits on this scene. The mesh is copied.
   RayScene(const QuadMesh& mesh, unsigned id, Build build = Build::careful) : RayScene(mesh, mesh, id, build) {}
 
-  // A mesh that moves: rays meet it as it is at their time, from 0, at the beginning, to 1, at the end. Precondition:
-  // the meshes differ in where their vertices are, and in nothing else.
+  // A moving mesh: rays intersect it at their time, from 0 (begin) to 1 (end). Precondition: the meshes differ only in
+  // their vertices.
   RayScene(const QuadMesh& begin, const QuadMesh& end, unsigned id, Build build);
 
-  // Makes the rays of a packet end at this scene where it is nearer than where they end so far. valid: -1 for the rays
-  // that count, 0 for the others; both are aligned as Embree asks.
+  // Shortens the rays of a packet to their first hit on this scene. valid: -1 for active rays, 0 for others; both
+  // aligned as Embree requires.
   void intersect(const int* valid, RTCRayHit8& rays) const;
 
-  // Whether nothing lies between two points, both of them left out.
+  // Whether nothing lies between two points, exclusive of both.
   bool is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
 
  private:

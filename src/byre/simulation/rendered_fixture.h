@@ -12,7 +12,7 @@
 
 namespace byre {
 
-// A small stereo recording of a made-up room with its truth, in EuRoC's format; its files go when it goes.
+// A small rendered stereo recording with truth, in EuRoC format; the destructor removes its files.
 class RenderedFixture {
  public:
   RenderedFixture(const std::string& name, int frames, double frame_rate_hz)
@@ -34,7 +34,7 @@ class RenderedFixture {
     return folder_ / "mav0" / camera / "data" / (std::to_string(truth_[frame].time.count()) + ".png");
   }
 
-  // Rendered once for all tests, which must leave it as it is.
+  // Rendered once and shared by all tests, which must not modify it.
   static const RenderedFixture& shared() {
     static const RenderedFixture recording("byre_cli_room", 24, 20.0);
     return recording;

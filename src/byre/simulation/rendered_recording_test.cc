@@ -29,7 +29,7 @@ std::vector<std::string> lines_of(const fs::path& path) {
   return lines;
 }
 
-// Written anew for each test into a folder of its own.
+// Written for each test into a separate folder.
 class WrittenRecording : public ::testing::Test {
  protected:
   WrittenRecording() {

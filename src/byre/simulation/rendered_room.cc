@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-constexpr int kSamplesPerSide = 2;  // samples a side of a pixel, against the stairs at the edges of surfaces
+constexpr int kSamplesPerSide = 2;  // samples per pixel side, for antialiasing
 
 void check(const RenderedRoomOptions& options) {
   const bool has_size = options.room_size.allFinite() && options.room_size.minCoeff() > 0.0;
@@ -21,7 +21,7 @@ void check(const RenderedRoomOptions& options) {
   if (!(options.noise_sigma >= 0.0)) throw InputError("rendered room", "the noise must not be negative");
 }
 
-// The surface on the side of an axis that a ray meets when it leaves a box it starts in.
+// Hit of a ray that starts inside a box, on its exit side.
 SurfaceHit leave_box(const Eigen::Array3f& near, const Eigen::Array3f& far, const Eigen::Vector3f& direction) {
   SurfaceHit hit;
   hit.distance = near.max(far).minCoeff(&hit.axis);
@@ -29,7 +29,7 @@ SurfaceHit leave_box(const Eigen::Array3f& near, const Eigen::Array3f& far, cons
   return hit;
 }
 
-// The surface that a ray meets when it enters a box from outside; empty when it misses the box.
+// Hit of a ray that starts outside a box; empty when it misses.
 std::optional<SurfaceHit> enter_box(const Eigen::Array3f& near, const Eigen::Array3f& far,
                                     const Eigen::Vector3f& direction) {
   SurfaceHit hit;
@@ -39,9 +39,10 @@ std::optional<SurfaceHit> enter_box(const Eigen::Array3f& near, const Eigen::Arr
   return hit;
 }
 
-// About a normal distribution: the sum of four uniform numbers (Irwin-Hall), which no look-up or branch is needed for.
+// Approximately normal: the sum of four uniform numbers (Irwin-Hall), without tables or branches.
 float noise_from(std::uint64_t bits, float sigma) {
-  constexpr float kUniformSigma = 65536.0f * 0.5773503f;  // standard error of the sum of four uniform 16-bit numbers
+  // Standard deviation of the sum of four uniform 16-bit numbers.
+  constexpr float kUniformSigma = 65536.0f * 0.5773503f;
   const std::uint64_t sum = (bits & 0xffff) + ((bits >> 16) & 0xffff) + ((bits >> 32) & 0xffff) + (bits >> 48);
   return sigma / kUniformSigma * (static_cast<float>(sum) - 2.0f * 65535.0f);
 }
@@ -64,7 +65,7 @@ RenderedRoom::RenderedRoom(const RenderedRoomOptions& options) : options_(option
   std::mt19937_64 random(options.seed);
   const auto draw = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
   for (int i = 0; i < options.boxes; ++i) {
-    // Braces, so that the numbers are drawn from left to right with every compiler.
+    // Braced initialisation fixes the order of the draws for every compiler.
     const Eigen::Vector3f half_size{draw(0.06f, 0.18f) * room.x(), draw(0.06f, 0.18f) * room.y(),
                                     draw(0.10f, 0.30f) * room.z()};
     const Eigen::Vector3f reach = room - half_size;
@@ -100,7 +101,7 @@ float RenderedRoom::pixel_grey(const PixelRays::Corners& corners_in_world, const
     const Eigen::Vector3f direction = corners_in_world.at(x, y);
     const SurfaceHit surface = hit(origin, direction);
     const Eigen::Vector3f point = origin + surface.distance * direction;
-    // A pixel covers more of a surface that is seen at a slant; the mean of both directions.
+    // Geometric mean of the footprint in both directions: a slanted surface is foreshortened in one.
     const float slant = std::sqrt(direction.norm() / std::max(std::abs(direction[surface.axis]), 1e-3f));
     const SurfaceSpot spot{point[(surface.axis + 1) % 3], point[(surface.axis + 2) % 3],
                            pixel_width * surface.distance * slant};

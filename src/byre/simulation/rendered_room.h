@@ -13,9 +13,9 @@
 
 namespace byre {
 
-// A box of a room with a few boxes standing on its floor, all covered with a procedural, band-limited texture: small
-// stereo recordings with exact truth for tests and for the first demo, where no data set is at hand.
-// World frame: origin at the room's centre, z up. The boxes leave free what is above the lower third of the room.
+// A room with a few boxes on its floor, covered with a procedural, band-limited texture. Renders small stereo
+// recordings with exact truth for tests and for a demo without a data set. World frame: origin at the room's centre, z
+// up. The boxes leave the space above the lower third of the room free.
 struct RenderedRoomOptions {
   Eigen::Vector3d room_size{8.0, 6.0, 3.0};  // metres
   int boxes = 6;
@@ -23,7 +23,7 @@ struct RenderedRoomOptions {
   std::uint64_t seed = 1;
 };
 
-// A stereo pair (or one camera) ready for rendering: rendering many frames, make it once.
+// Precomputed rays of a stereo pair or one camera; construct once for many frames.
 struct RenderedCameras {
   explicit RenderedCameras(const Calibration& calibration);
 
@@ -32,24 +32,24 @@ struct RenderedCameras {
   std::optional<PixelRays> right;
 };
 
-// Where a ray meets a surface of the room.
+// First intersection of a ray with the room.
 struct SurfaceHit {
-  float distance = 0.0f;  // distance in lengths of the ray's direction
-  int box = 0;            // 0: the room itself
-  int axis = 0;           // the world's axis across the surface
-  bool is_upper = false;  // the surface on the positive side of its box
+  float distance = 0.0f;  // in lengths of the ray's direction
+  int box = 0;            // 0: the room
+  int axis = 0;           // world axis perpendicular to the surface
+  bool is_upper = false;  // on the positive side of its box
 };
 
 class RenderedRoom {
  public:
-  // Throws InputError when the room has no size or its options are negative.
+  // Throws InputError for a room without size or negative options.
   explicit RenderedRoom(const RenderedRoomOptions& options);
 
   // Deterministic: the same room, calibration, pose and time give the same bytes.
   ImageFrame render(const RenderedCameras& cameras, const Pose& world_from_body, Timestamp time) const;
   ImageFrame render(const Calibration& calibration, const Pose& world_from_body, Timestamp time) const;
 
-  // The first surface on a ray in the world frame. Precondition: the origin lies inside the room and outside its boxes.
+  // First hit of a ray in the world frame. Precondition: the origin lies inside the room and outside its boxes.
   SurfaceHit hit(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
 
  private:
@@ -62,16 +62,16 @@ class RenderedRoom {
   float pixel_grey(const PixelRays::Corners& corners_in_world, const Eigen::Vector3f& origin) const;
 
   RenderedRoomOptions options_;
-  std::vector<Box> boxes_;  // the room itself first, seen from inside
+  std::vector<Box> boxes_;  // first the room, seen from inside
 };
 
-// Renders a trajectory into an EuRoC ASL folder (mav0/cam0, cam1, state_groundtruth_estimate0). Calls progress, unless
-// it is empty, with the number of frames done. Throws InputError when a file cannot be written.
+// Renders a trajectory into an EuRoC ASL folder (mav0/cam0, cam1, state_groundtruth_estimate0). progress may be empty.
+// Throws InputError when a file cannot be written.
 void write_euroc_recording(const RenderedRoom& room, const Calibration& calibration, const Trajectory& truth,
                            const std::filesystem::path& folder,
                            const std::function<void(int done, int total)>& progress);
 
-// EuRoC's own stereo cameras, from its published calibration; resolution divided by a whole number, 1 at least.
+// EuRoC's stereo calibration, resolution divided by divisor >= 1.
 Calibration euroc_like_calibration(int divisor);
 
 }  // namespace byre

@@ -20,7 +20,7 @@ RenderedRoom room_with_noise(double sigma) {
   return RenderedRoom(options);
 }
 
-// A camera in its place: what is needed to find out what a pixel sees.
+// A posed camera and its image.
 struct View {
   Camera camera;
   Pose world_from_camera;
@@ -48,7 +48,7 @@ double grey_at(const Image& image, int column, int row) {
   return image.pixels[static_cast<std::size_t>(row * image.width + column)];
 }
 
-// Bilinear. Precondition: the pixel lies inside, not on the last row or column.
+// Bilinear interpolation. Precondition: the pixel lies inside, not on the last row or column.
 double grey_at(const Image& image, const Eigen::Vector2d& pixel) {
   const int column = static_cast<int>(pixel.x());
   const int row = static_cast<int>(pixel.y());
@@ -58,7 +58,7 @@ double grey_at(const Image& image, const Eigen::Vector2d& pixel) {
          y * ((1.0 - x) * grey_at(image, column, row + 1) + x * grey_at(image, column + 1, row + 1));
 }
 
-// Where the second view sees what the first sees at a pixel; empty outside, and where it sees something in front.
+// Pixel in the second view of the surface point at a pixel of the first; empty outside the image or when occluded.
 std::optional<Eigen::Vector2d> same_place(const RenderedRoom& room, const View& first, const View& second,
                                           const Eigen::Vector2d& pixel_in_first) {
   const Eigen::Vector3d point = point_seen(room, first, pixel_in_first);
@@ -70,8 +70,8 @@ std::optional<Eigen::Vector2d> same_place(const RenderedRoom& room, const View& 
 }
 
 struct Difference {
-  double warped = 0.0;    // mean absolute difference of grey values at the same place of the room
-  double unwarped = 0.0;  // mean absolute difference of grey values at the same pixel
+  double warped = 0.0;    // mean absolute grey difference at the same surface point
+  double unwarped = 0.0;  // mean absolute grey difference at the same pixel
   int count = 0;
 };
 

@@ -4,8 +4,8 @@
 
 namespace byre {
 
-// Calls work once for each row, 0 to rows - 1, in so many threads; 0 stands for as many as the machine has. Which
-// thread does which row is not fixed: rows must not depend on one another, and work must not throw.
+// Calls work for each row, 0 to rows - 1, on several threads (0: one per core). The assignment of rows to threads
+// varies: rows must be independent, and work must not throw.
 void for_each_row(int rows, int threads, const std::function<void(int row)>& work);
 
 }  // namespace byre

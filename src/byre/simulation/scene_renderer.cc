@@ -12,14 +12,14 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr unsigned kMovingBit = 0x80000000u;  // tells surfaces of what moves from those of what does not
+constexpr unsigned kMovingBit = 0x80000000u;  // marks surfaces of the moving mesh
 constexpr unsigned kNoSurface = 0xffffffffu;
-constexpr float kNearest = 0.02f;  // metres: what is nearer is not seen
+constexpr float kNearest = 0.02f;  // near clipping distance, metres
 
-// Further rays' offsets from the pixel's centre where surfaces end; the centre stays the mean of all.
+// Offsets of additional rays at edges, from the pixel centre; their mean with the centre is the centre.
 constexpr std::array<std::array<float, 2>, 2> kEdgeOffsets{{{0.33f, 0.17f}, {-0.33f, -0.17f}}};
 
-// Bilinear, in the order of a facet's corners.
+// Bilinear interpolation, in the order of a facet's corners.
 template <typename Value>
 Value across_facet(const std::array<Value, 4>& corners, const Vector2f& in_facet) {
   const float u = in_facet.x();
@@ -28,9 +28,9 @@ Value across_facet(const std::array<Value, 4>& corners, const Vector2f& in_facet
          (1.0f - u) * v * corners[3];
 }
 
-// What a lamp beside the camera sends to a white surface. ray: to the surface, as long as depth counts.
+// Headlight that reaches a white surface. ray: to the surface, scaled to depth 1.
 float headlight_on(const Vector3f& ray, float depth, const Vector3f& normal, float headlight) {
-  constexpr int kBeamWidth = 6;  // half as bright 27 degrees beside
+  constexpr int kBeamWidth = 6;  // half as bright 27 degrees off axis
   const float length = ray.norm();
   const float arriving = std::abs(ray.dot(normal)) / length;
   const float ahead = 1.0f / length;  // cosine of the angle to the optical axis
@@ -48,14 +48,14 @@ struct SceneRenderer::PlacedView {
 
   bool rolls() const { return placements.size() > 1; }
   const Placement& placement(int row) const { return placements[rolls() ? static_cast<std::size_t>(row) : 0]; }
-  float time(int row) const {  // as RayScene counts it
+  float time(int row) const {  // in the range of RayScene
     return rolls() ? static_cast<float>(row) / static_cast<float>(placements.size() - 1) : 0.0f;
   }
 
   const PixelRays& pixels;
   const LitMesh& moving;
   Illumination illumination;
-  std::vector<Placement> placements;  // one for each row where the shutter rolls, else one for all
+  std::vector<Placement> placements;  // one per row for a rolling shutter, else one
 };
 
 struct SceneRenderer::Target {
@@ -70,7 +70,7 @@ struct SceneRenderer::Sample {
   unsigned surface = kNoSurface;
 };
 
-// A ray and those to the next pixels, in the world frame. A ray's length counts depths.
+// Rays of a pixel and its neighbours in the world frame, scaled to depth 1.
 struct SceneRenderer::RayFan {
   Vector3f ray;
   Vector3f to_right;
@@ -78,7 +78,7 @@ struct SceneRenderer::RayFan {
 };
 
 struct SceneRenderer::Packet {
-  alignas(32) std::array<int, kRays> valid{};  // as Embree has it: -1 or 0
+  alignas(32) std::array<int, kRays> valid{};  // Embree's convention: -1 or 0
   alignas(32) RTCRayHit8 rays;
   std::array<RayFan, kRays> fans;
 };
@@ -94,7 +94,7 @@ float SceneRenderer::radiance_of(const LitMesh& mesh, const LitMesh::Facet& face
   const Vector3f down = depth * (fan.to_below - fan.ray * (fan.to_below.dot(facet.normal) / slant));
   const TextureFootprint footprint{{facet.u_slope.dot(right), facet.v_slope.dot(right)},
                                    {facet.u_slope.dot(down), facet.v_slope.dot(down)}};
-  constexpr float kStainWidth = 7.3f;  // metres that the picture of stains covers
+  constexpr float kStainWidth = 7.3f;  // metres per picture of stains
   const float to_stains = look.picture_width / kStainWidth;
   const float stain = picture_of(pictures_, BarnPicture::stains)
                           .sample(to_stains * place, to_stains * (footprint.right + footprint.down).norm());
@@ -177,7 +177,7 @@ std::vector<SceneRenderer::Sample> SceneRenderer::sample_centres(const PlacedVie
   return samples;
 }
 
-// A row's radiance, with further rays where surfaces end.
+// Radiance of a row, with additional rays at edges.
 std::vector<float> SceneRenderer::smooth_row(const PlacedView& view, int row, const std::vector<Sample>& centres,
                                              const Vector2f& offset) const {
   const int width = view.pixels.width();

@@ -11,50 +11,50 @@
 
 namespace byre {
 
-// Air that is not clear: far surfaces fade into its own light.
+// Hazy air: far surfaces fade into its own radiance.
 struct Air {
-  float haze = 0.0f;  // share of a surface's light lost in a metre, for small numbers
+  float haze = 0.0f;  // share of a surface's light lost per metre, for small values
   float glow = 0.0f;  // radiance of the air itself
 };
 
-// What lights the scene at an instant.
+// Light of the scene at an instant.
 struct Illumination {
-  float share = 1.0f;      // share of the light that the scene was lit with, and of what glows by itself
-  float headlight = 0.0f;  // radiance times square metres, straight ahead, of a lamp beside the camera
+  float share = 1.0f;      // multiplies the scene's light and glow
+  float headlight = 0.0f;  // lamp at the camera, straight ahead: radiance times square metres
 };
 
-// A camera somewhere in the scene. Borrows the rays.
+// A posed camera. Borrows the rays.
 struct SceneView {
   const PixelRays& pixels;
   Pose world_from_camera;
   Illumination illumination{};
-  // The same at each row's own instant, where the shutter rolls, else empty. What moves is then seen by the first row
-  // as it is at the beginning, and by the last one as at the end.
+  // Pose of each row at its exposure time with a rolling shutter, else empty. Moving meshes then go from their
+  // beginning at the first row to their end at the last.
   std::vector<Pose> world_from_camera_by_row{};
 };
 
-// One of the instants that an exposure is made of.
+// One instant of an exposure.
 struct ExposureInstant {
-  Eigen::Vector2f pixel_offset{0.0f, 0.0f};  // pixels by which all rays are off their pixels' centres
-  bool smooth_edges = true;                  // more rays where surfaces end
+  Eigen::Vector2f pixel_offset{0.0f, 0.0f};  // offset of all rays from the pixel centres
+  bool smooth_edges = true;                  // additional rays at edges
 };
 
-// Renders a scene with Embree, eight rays at a time. Borrows all that it is given. The same view gives the same
-// numbers, whatever the number of threads (0: as many as the machine has).
+// Renders a scene with Embree in packets of eight rays. Borrows its arguments. Deterministic for any number of threads
+// (0: one per core).
 class SceneRenderer {
  public:
   SceneRenderer(const LitMesh& still, const BarnPictures& pictures, const Air& air, int threads)
       : still_(still), pictures_(pictures), air_(air), threads_(threads) {}
 
-  // The radiance of each pixel at an instant, in the unit of the mesh's light, row-major; where nothing is it is the
-  // air's. moving: what moves, at this instant.
+  // Radiance of each pixel at an instant, in the unit of the mesh's light, row-major; pixels without a surface get the
+  // air's. moving: moving meshes at this instant.
   std::vector<float> radiance(const SceneView& view, const LitMesh& moving, const ExposureInstant& instant) const;
 
-  // Depth along the optical axis at each pixel's centre, row-major, metres; infinite where nothing is.
+  // Depth along the optical axis at each pixel centre, row-major, metres; infinite without a surface.
   std::vector<float> depths(const SceneView& view, const LitMesh& moving) const;
 
  private:
-  static constexpr int kRays = 8;  // rays in a packet
+  static constexpr int kRays = 8;  // rays per packet
 
   struct PlacedView;
   struct Target;

@@ -27,7 +27,7 @@ SurfaceLook glowing(float radiance) {
   return look;
 }
 
-// Seen by a camera at the origin that looks along z: a wall, and before it a marker from -0.5, -0.3 to 0.3, 0.4.
+// View of a camera at the origin along z: a wall, and before it a marker from (-0.5, -0.3) to (0.3, 0.4) metres.
 QuadMesh wall_and_marker() {
   QuadMesh mesh;
   add_panel(mesh, {-20.0f, 20.0f, kWallDepth}, {40.0f, 0.0f, 0.0f}, {0.0f, -40.0f, 0.0f}, glowing(kWall), 10.0f);
@@ -45,7 +45,7 @@ class RenderedMarker : public ::testing::Test {
     return SceneRenderer(still, pictures, air, threads).radiance({pixels, {}}, nothing, instant);
   }
 
-  // Where along a row the radiance rises to the marker's, or falls from it: between pixels, by their share.
+  // Sub-pixel position along a row of the step between wall and marker radiance.
   static double rise(const std::vector<float>& row, int from, int to) {
     double covered = 0.0;
     for (int i = from; i <= to; ++i) covered += (row[static_cast<std::size_t>(i)] - kWall) / (kMarker - kWall);
@@ -54,7 +54,7 @@ class RenderedMarker : public ::testing::Test {
 
   const Camera camera = feeding_robot_calibration(2).left;
   const PixelRays pixels{camera};
-  const BarnPictures pictures{kBarnPictures, MipTexture(1, {0.5f})};  // nothing here shows one
+  const BarnPictures pictures{kBarnPictures, MipTexture(1, {0.5f})};  // no surface here shows a picture
   const LitMesh still = unlit(wall_and_marker(), 0);
   const LitMesh nothing = unlit({}, 1);
 };
@@ -127,7 +127,7 @@ TEST_F(RenderedMarker, IsHiddenByWhatMovesBeforeIt) {
   EXPECT_THAT(SceneRenderer(still, pictures, {}, 1).radiance({pixels, {}}, moving, {}), Each(FloatEq(2.0f)));
 }
 
-// Seconds do not matter: the first row looks from the beginning of the way, the last one from its end.
+// Row poses decide, not their times: the first row looks from the start of the motion, the last one from its end.
 TEST_F(RenderedMarker, IsSeenByEachRowFromWhereTheCameraIsThen) {
   const auto camera_at = [&](int row) {
     return Pose{Eigen::Quaterniond::Identity(), {0.4 * row / (camera.height - 1.0), 0.0, 0.0}};
@@ -140,7 +140,7 @@ TEST_F(RenderedMarker, IsSeenByEachRowFromWhereTheCameraIsThen) {
   for (const int row : {camera.height / 2 - 25, camera.height / 2 + 25}) {
     const auto begin = radiance.begin() + static_cast<std::ptrdiff_t>(row) * camera.width;
     const std::vector<float> line(begin, begin + camera.width);
-    double u = 0.5 * camera.width;  // column of the marker's left edge: the lens bends it a little along the row
+    double u = 0.5 * camera.width;  // column of the marker's left edge, which lens distortion bends along the row
     for (int round = 0; round < 4; ++round) {
       const double v_of_edge = camera.bearing({u, static_cast<double>(row)}).value().y();
       const double z_of_edge = camera.bearing({u, static_cast<double>(row)}).value().z();
@@ -163,10 +163,10 @@ TEST_F(RenderedMarker, LetsEachRowSeeWhatMovesWhereItIsThen) {
   const SceneView view{pixels, {}, {}, std::vector<Pose>(static_cast<std::size_t>(camera.height))};
   const std::vector<float> depths = SceneRenderer(still, pictures, {}, 1).depths(view, moving);
   for (int row = 0; row < camera.height; row += 30) {
-    const double edge = 0.5 * row / (camera.height - 1.0);  // the panel's right end
+    const double edge = 0.5 * row / (camera.height - 1.0);  // right end of the panel
     for (int column = 0; column < camera.width; ++column) {
       const Vector3d ray = camera.bearing({static_cast<double>(column), static_cast<double>(row)}).value();
-      const double x = ray.x() / ray.z();  // where it meets the panel's plane
+      const double x = ray.x() / ray.z();  // intersection with the panel's plane
       if (x < -1.4 || std::abs(x - edge) < 0.01) continue;
       const auto i = static_cast<std::size_t>(row * camera.width + column);
       EXPECT_EQ(depths[i] < 1.5f, x < edge) << "row " << row << ", column " << column;
@@ -178,7 +178,7 @@ TEST(RayScene, TellsWhetherAWallIsBetweenTwoPoints) {
   const RayScene rays(wall_and_marker(), 0);
   EXPECT_TRUE(rays.is_free({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.9f}));
   EXPECT_FALSE(rays.is_free({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.1f}));
-  EXPECT_TRUE(rays.is_free({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, kMarkerDepth}));  // the marker itself
+  EXPECT_TRUE(rays.is_free({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, kMarkerDepth}));  // the marker's surface
   EXPECT_TRUE(rays.is_free({2.0f, 0.0f, 0.0f}, {2.0f, 0.0f, 3.9f}));
 }
 

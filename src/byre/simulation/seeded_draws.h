@@ -6,17 +6,17 @@
 
 namespace byre {
 
-// Random numbers that follow from a seed alone, the same with every compiler.
+// Random numbers determined by a seed alone, identical for every compiler.
 class SeededDraws {
  public:
-  // stream: what the numbers are for; other streams of the same seed are independent.
+  // stream: purpose of the numbers; streams of one seed are independent.
   SeededDraws(std::uint64_t seed, std::uint64_t stream) : seed_(hash(seed, stream, 0)) {}
 
   std::uint64_t bits() { return hash(seed_, ++count_, 0); }
 
   // Uniform in [low, high).
   float between(float low, float high) {
-    constexpr float kStep = 1.0f / 16777216.0f;  // step of 24 bits, as many as a float has
+    constexpr float kStep = 1.0f / 16777216.0f;  // step of a float's 24 bits
     return low + (high - low) * kStep * static_cast<float>(bits() >> 40);
   }
 

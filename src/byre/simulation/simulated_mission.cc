@@ -18,8 +18,8 @@ using Random = std::mt19937_64;
 
 struct Landmark {
   Eigen::Vector3d position_in_world;
-  Eigen::Vector3d direction_in_world;  // direction in its surface that the angle of its keypoints follows
-  double size = 0.0;                   // metres across the patch that describes it
+  Eigen::Vector3d direction_in_world;  // in its surface; determines the angle of its keypoints
+  double size = 0.0;                   // metres across its descriptor patch
   float response = 0.0f;
   Descriptor descriptor{};
 };
@@ -40,7 +40,7 @@ double draw_log_uniform(Random& random, double low, double high) {
   return std::exp(draw_uniform(random, std::log(low), std::log(high)));
 }
 
-// The axis across a face of the room, drawn so that large faces carry more landmarks.
+// Axis perpendicular to a face of the room, drawn in proportion to face area.
 int draw_axis(Random& random, const Eigen::Vector3d& room_size) {
   const double volume = room_size.prod();
   std::discrete_distribution<int> by_area{volume / room_size.x(), volume / room_size.y(), volume / room_size.z()};
@@ -76,9 +76,9 @@ std::vector<Landmark> draw_landmarks(const SimulationOptions& options) {
   return landmarks;
 }
 
-// The octave in which the landmark fills a descriptor's patch; empty when it is too large or too small for all.
+// Octave in which the landmark fills a descriptor patch; empty when none fits.
 std::optional<std::uint8_t> octave_of(const Landmark& landmark, double focal, double distance) {
-  constexpr double kPatchSize = 31.0;  // octave pixels, as ORB's (Rublee 2011)
+  constexpr double kPatchSize = 31.0;  // octave pixels (ORB, Rublee 2011)
   const double scale = landmark.size * focal / (distance * kPatchSize);
   const auto octave = std::lround(std::log(scale) / std::log(kOctaveScale));
   if (octave < 0 || octave >= kOctaves) return std::nullopt;
@@ -92,7 +92,7 @@ float angle_of(const Landmark& landmark, const Rig& rig, const Pose& camera_from
   return static_cast<float>(std::atan2(motion.y(), motion.x()));
 }
 
-// Without noise; empty when the camera does not see the landmark.
+// Noise-free projection; empty when the landmark is not visible.
 std::optional<Keypoint> project(const Landmark& landmark, const Rig& rig, const Pose& camera_from_world) {
   constexpr double kMinDepth = 0.1;  // metres
   const Eigen::Vector3d point_in_camera = camera_from_world * landmark.position_in_world;
@@ -110,7 +110,7 @@ std::optional<Keypoint> project(const Landmark& landmark, const Rig& rig, const 
   return keypoint;
 }
 
-// Adds the noise of measuring; the pixel may leave the image.
+// Adds measurement noise; the pixel may leave the image.
 Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& random) {
   const double scale = kScaleOfOctave[keypoint.octave];
   keypoint.pixel.x() += static_cast<float>(draw_normal(random, options.pixel_sigma * scale));
@@ -123,7 +123,7 @@ Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& ra
   return keypoint;
 }
 
-// The keypoint with its appearance somewhere else.
+// The keypoint moved to a random pixel and disparity: an outlier.
 Keypoint displace(Keypoint keypoint, const Rig& rig, const SimulationOptions& options, Random& random) {
   constexpr double kLeastDepth = 0.5;  // metres
   keypoint.pixel.x() = static_cast<float>(draw_uniform(random, 0.0, rig.width - 1.0));
@@ -181,7 +181,7 @@ Features to_features(const std::vector<Detection>& detections, const Rig& rig) {
   return Features(rig.width, rig.height, std::move(keypoints), std::move(descriptors), {});
 }
 
-// Features reorders what it is given; a descriptor and a pixel tell which feature came from which detection.
+// Maps features to landmarks: Features reorders its input, so pixel and descriptor identify a detection.
 std::vector<int> landmarks_of(const Features& features, const std::vector<Detection>& detections) {
   const auto key_of = [](const Keypoint& keypoint, const Descriptor& descriptor) {
     return std::tuple(keypoint.pixel.x(), keypoint.pixel.y(), descriptor);
@@ -195,14 +195,14 @@ std::vector<int> landmarks_of(const Features& features, const std::vector<Detect
   return landmarks;
 }
 
-// A landmark as the keyframes of a map see it; observations ascend.
+// Observations of each landmark by a map's keyframes, ascending.
 using Tracks = std::vector<std::vector<Observation>>;
 
 Pose camera_from_world_at(const SimulatedMission& mission, std::size_t frame) {
   return inverse(mission.truth[frame].world_from_body * mission.rig.body_from_camera);
 }
 
-// Adds every n-th frame to the map as a keyframe that sees no points yet, and tells which landmarks they see.
+// Adds every n-th frame to the map as a keyframe without points. Returns the landmarks' observations.
 Tracks add_keyframes(Map& map, const SimulatedMission& mission, int frames_per_keyframe) {
   Tracks tracks(mission.landmarks_in_world.size());
   std::optional<KeyframeId> parent;
@@ -229,7 +229,7 @@ const Features& features_of(const Map& map, const Observation& observation) {
   return *map.find_keyframe(observation.keyframe)->frame.features;
 }
 
-// The one with the least Hamming distance to all others.
+// Descriptor with the least Hamming distance to all others.
 Descriptor central_descriptor(const Map& map, const std::vector<Observation>& observations) {
   std::vector<Descriptor> descriptors;
   for (const Observation& seen : observations) descriptors.push_back(features_of(map, seen).descriptor(seen.feature));

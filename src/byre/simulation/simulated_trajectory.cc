@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
-// From a camera (x right, y down, z forward) to axes x forward, y left, z up.
+// forward_from_camera: camera axes x right, y down, z forward to x forward, y left, z up.
 Eigen::Quaterniond forward_from_camera() {
   Eigen::Matrix3d axes;
   axes << 0.0, 0.0, 1.0,  //
@@ -18,13 +18,13 @@ Eigen::Quaterniond forward_from_camera() {
   return Eigen::Quaterniond(axes);
 }
 
-// heading: radians to the left of the world's x axis; lean: radians by which the camera rolls to its right.
+// heading: radians to the left of the world's x axis; lean: roll to the camera's right, radians.
 Pose world_from_camera(const Eigen::Vector3d& position, double heading, double lean) {
   const Eigen::Quaterniond world_from_forward = rotation_exp({0.0, 0.0, heading}) * rotation_exp({lean, 0.0, 0.0});
   return {world_from_forward * forward_from_camera(), position};
 }
 
-// world_from_camera_at takes the way done, 0 to 1.
+// world_from_camera_at: callable of progress, 0 to 1.
 template <typename WorldFromCameraAt>
 Trajectory sample(int frames, double frame_rate_hz, const Pose& body_from_camera,
                   WorldFromCameraAt world_from_camera_at) {

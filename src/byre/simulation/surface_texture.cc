@@ -9,11 +9,11 @@
 namespace byre {
 namespace {
 
-// A square of the grid that a layer of the texture is laid out in.
+// A grid cell of a texture layer.
 struct Cell {
   std::int32_t column = 0;
   std::int32_t row = 0;
-  float x = 0.0f;  // place within, 0 to 1
+  float x = 0.0f;  // position within the cell, 0 to 1
   float y = 0.0f;
 };
 
@@ -29,22 +29,22 @@ std::uint64_t hash_of(std::uint64_t seed, std::int32_t column, std::int32_t row)
   return hash(seed, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
 }
 
-// The index-th byte of some bits as a number in [low, high].
+// Byte index of bits, mapped to [low, high].
 float byte_between(std::uint64_t bits, int index, float low, float high) {
   return low + (high - low) / 255.0f * static_cast<float>((bits >> (8 * index)) & 0xff);
 }
 
-// How much of detail of a size is left at a footprint: all above four footprints, nothing below two.
+// Visible share of detail of a size: 1 above four footprints, 0 below two.
 float visible_part(float size, float footprint) {
   return std::clamp(0.5f * size / footprint - 1.0f, 0.0f, 1.0f);
 }
 
-// Unlike std::lerp not exact at the far end, and several times as fast.
+// Faster than std::lerp; not exact at the far end.
 float mix(float from, float to, float part) {
   return from + part * (to - from);
 }
 
-// Value noise (Perlin's lattice with values instead of gradients), -1 to 1.
+// Value noise (lattice of values, not gradients), -1 to 1.
 float value_noise(std::uint64_t seed, const SurfaceSpot& spot, float wavelength) {
   const Cell cell = cell_at(spot, wavelength);
   const auto value = [&](std::int32_t column, std::int32_t row) {
@@ -61,11 +61,11 @@ struct Shape {
   enum class Kind : std::uint8_t { none, disc, half_disc, rectangle };
   Kind kind = Kind::none;
   float grey = 0.0f;
-  float x = 0.0f;  // centre and half sizes in cells, such that the shape stays inside its cell
+  float x = 0.0f;  // centre and half sizes in cells; the shape stays inside its cell
   float y = 0.0f;
   float half_length = 0.0f;
   float half_width = 0.0f;
-  float cosine = 1.0f;  // cosine of the angle from the cell's x axis to the shape's length
+  float cosine = 1.0f;  // cosine of the angle from the cell's x axis to the shape's long side
   float sine = 0.0f;
 };
 
@@ -74,7 +74,7 @@ struct Direction {
   float sine;
 };
 
-// 64 directions around the circle: drawing one is a look-up.
+// 64 precomputed directions around the circle.
 const std::array<Direction, 64>& directions() {
   static const std::array<Direction, 64> kDirections = [] {
     std::array<Direction, 64> all{};
@@ -99,7 +99,7 @@ Shape draw_shape(std::uint64_t bits) {
           .sine = sine};
 }
 
-// Distance to the outline in cells, negative inside; near corners a lower bound, which is as good at a pixel's reach.
+// Signed distance to the outline in cells, negative inside; a lower bound near corners, sufficient within a pixel.
 float signed_distance(const Shape& shape, const Cell& cell) {
   const float dx = cell.x - shape.x;
   const float dy = cell.y - shape.y;
@@ -117,7 +117,7 @@ float signed_distance(const Shape& shape, const Cell& cell) {
   }
 }
 
-// Lays a layer of shapes, one to a cell, over a grey value. The outline is blurred over one footprint.
+// Draws a layer of shapes, one per cell, over a grey value. Outlines are blurred over one footprint.
 float cover_with_shapes(float grey, std::uint64_t seed, const SurfaceSpot& spot, float cell_size) {
   constexpr float kDetail = 0.4f;  // typical size of a shape, as a share of its cell
   const float opacity = visible_part(kDetail * cell_size, 0.5f * spot.footprint);
@@ -145,9 +145,9 @@ float surface_grey(std::uint64_t seed, const SurfaceSpot& spot) {
     float amplitude;  // grey values
   };
   constexpr std::array<Layer, 4> kNoise{{{1.7f, 40.0f}, {0.45f, 25.0f}, {0.13f, 18.0f}, {0.045f, 12.0f}}};
-  constexpr std::array<float, 4> kShapeCells{0.95f, 0.41f, 0.17f, 0.073f};  // metres, large ones below
+  constexpr std::array<float, 4> kShapeCells{0.95f, 0.41f, 0.17f, 0.073f};  // metres, largest first
 
-  float grey = byte_between(hash(seed, 0, 0), 0, 95.0f, 160.0f);  // surfaces are lit differently
+  float grey = byte_between(hash(seed, 0, 0), 0, 95.0f, 160.0f);  // base grey of the surface
   for (const float cell_size : kShapeCells) grey = cover_with_shapes(grey, ++seed, spot, cell_size);
   for (const auto& [size, amplitude] : kNoise) {
     const float visible = visible_part(size, spot.footprint);

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// Along a line across a surface, a spot every millimetre.
+// Greys at every millimetre along a line.
 std::vector<float> greys_along_a_line(std::uint64_t seed, float footprint) {
   std::vector<float> greys;
   for (int i = 0; i < 4000; ++i) {

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-// The values of one octave on its lattice.
+// Lattice values of one octave.
 std::vector<float> lattice_values(int cells_x, int cells_y, std::uint64_t seed) {
   SeededDraws draws(seed, static_cast<std::uint64_t>(cells_x) << 32 | static_cast<std::uint64_t>(cells_y));
   std::vector<float> values(static_cast<std::size_t>(cells_x) * static_cast<std::size_t>(cells_y));
