@@ -18,7 +18,7 @@ double duration_s(const BagContent& content) {
   return content.first ? to_seconds(*content.last - *content.first) : 0.0;
 }
 
-// The topics that a run would take, or why none are.
+// Topics that a run would use, or the reason for none.
 struct Choice {
   std::optional<ImageTopics> topics;
   std::string reason;

@@ -8,7 +8,7 @@
 
 namespace byre {
 
-// What a bag holds, for people and for programs. bag: its path.
+// Content of a bag as text and JSON. bag: its path.
 std::string describe(const BagContent& content, const std::string& bag);
 nlohmann::ordered_json bag_json(const BagContent& content, const std::string& bag);
 

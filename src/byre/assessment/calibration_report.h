@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// The refinement in a sentence.
+// One-sentence summary of the refinement.
 std::string describe_calibration(const RefinedCalibration& refined);
 
 // Row of a report on the calibration given to a run; empty if it was not refined. row_error: by CommonRowError; empty

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// Five seconds at 20 Hz on a circle of 2 m, about 10 m of path.
+// Five seconds at 20 Hz on a circle of radius 2 m: a path of about 10 m.
 Trajectory circle() {
   Trajectory trajectory;
   for (int i = 0; i <= 100; ++i) {
@@ -89,7 +89,7 @@ TEST(EvaluationReport, LaysTheFirstPoseOnTheTrueOneWhereAsked) {
   EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("alignment    origin: the first pose is laid on the true one"));
 }
 
-// 50 m along a line, with some sway.
+// A line of 50 m with lateral sway.
 EvaluationReport report_of_line(double sway, double error, PoseAlignment alignment) {
   Trajectory truth, estimate;
   for (int i = 0; i <= 500; ++i) {
@@ -126,7 +126,7 @@ TEST(EvaluationReport, HasTheSegmentsOfKitti) {
   EvaluationProtocol protocol;
   protocol.alignment = PoseAlignment::none;
   const EvaluationReport report = evaluate(scaled(truth, 1.02), truth, protocol, {}).value();
-  // From poses 0, 10, ... 40, each to the first that is more than 100 m on: 101 m, of which 2 % are 2.02 m.
+  // Segments begin at poses 0, 10, ... 40 and end at the first pose beyond 100 m: 101 m, 2 % of which is 2.02 m.
   EXPECT_THAT(to_text(report, "a", "b"),
               HasSubstr("segments (KITTI)          2.0200 %    0.000000 deg/m        5 segments\n"
                         "  of 100 m                2.0200 %    0.000000 deg/m        5 segments\n"));

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What every line tells.
+// Fields of every line.
 Json line_of(int number, const FrameReport& report, std::string_view event) {
   return {{"time_s", to_seconds(report.time)},
           {"time_ns", report.time.count()},
@@ -39,7 +39,7 @@ bool moves_the_pose(SessionEvent event) {
   }
 }
 
-// How far the pose in the map is from where odometry alone would have put it: null where that is not known.
+// Distance between the map pose and its prediction by odometry alone; null if either is missing.
 Json jump_json(const FrameReport& report, const std::optional<Pose>& map_from_odometry_before) {
   if (!map_from_odometry_before || !report.map_from_body || !report.odometry_from_body) return nullptr;
   const Pose expected = *map_from_odometry_before * *report.odometry_from_body;

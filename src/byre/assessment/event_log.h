@@ -7,21 +7,21 @@
 
 namespace byre {
 
-// Tells what happens as it happens: JSON lines, one object for each event of the session and for each change of its
-// state and of its verdict, as docs/mission.md describes them. The stream must outlive it.
+// Writes JSON lines: one object per session event, state change and verdict change (docs/mission.md). The stream must
+// outlive it.
 class EventLog {
  public:
   explicit EventLog(std::ostream& stream) : stream_(stream) {}
 
-  // After each frame, in order; number: the frame's, from 0. What it writes is flushed.
+  // Call after each frame, in order; number: frame number from 0. Flushes the stream.
   void note(int number, const MappedFrame& frame);
 
  private:
   std::ostream& stream_;
-  // As the last frame that was read left them.
+  // Values after the last readable frame.
   std::optional<State> state_;
   std::optional<Verdict> verdict_;
-  std::optional<Pose> map_from_odometry_;  // as last known
+  std::optional<Pose> map_from_odometry_;  // last available value
 };
 
 }  // namespace byre

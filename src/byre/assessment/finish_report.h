@@ -8,7 +8,7 @@
 
 namespace byre {
 
-// Rows for people, each a name and what is known under it.
+// Rows of a name and a value.
 std::string to_text(const Finishing& finishing);
 nlohmann::ordered_json to_json(const Finishing& finishing);
 

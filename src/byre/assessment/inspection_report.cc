@@ -29,7 +29,7 @@ std::string size_text(std::size_t bytes) {
   return size < kMegabyte ? fmt::format("{:.1f} kB", size / kKilobyte) : fmt::format("{:.1f} MB", size / kMegabyte);
 }
 
-// A map of unknown scale has a unit of its own.
+// A map of unknown scale has arbitrary units.
 const char* unit_of(const StoredMap& stored) {
   return stored.scale == MapScale::metric ? "m" : "units";
 }

@@ -13,7 +13,7 @@ struct InspectedFile {
   std::vector<SectionSize> sections;
 };
 
-// A page for people, and the same for programs.
+// The report as text and as JSON.
 std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 std::string to_json(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 

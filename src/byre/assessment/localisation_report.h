@@ -9,28 +9,27 @@
 
 namespace byre {
 
-// Errors in the map's frame: the map is aligned to the truth once, by its own keyframes, not by what was localised.
+// Errors in the map's frame. The map is aligned to the truth once, by its keyframes, never by localised poses.
 struct LocalisationErrors {
-  std::vector<PoseError> errors;  // errors of the frames that were found and have truth
-  int alignment_keyframes = 0;    // zero: the truth is taken for given in the map's frame
+  std::vector<PoseError> errors;  // errors of localised frames with truth
+  int alignment_keyframes = 0;    // 0: the truth is assumed to be in the map's frame
 };
 
-// map_truth holds the truth at the times of the map's keyframes, where it does: with less than three of them aligned
-// nothing is.
+// map_truth: truth at the times of the map's keyframes. With fewer than three of them nothing is aligned.
 LocalisationErrors errors_in_map(const LocaliseRun& run, const StoredMap& stored, const Trajectory& map_truth,
                                  const Trajectory& truth);
 
-// How the run was made.
+// Protocol of a localisation run.
 struct LocaliseProtocol {
   std::string map;
   std::string input;                          // recording, or number of images
-  int frames = 0;                             // number of frames asked for
-  std::optional<PlanRegistration> plan = {};  // place of the map on its plan, when poses are wanted on it too
+  int frames = 0;                             // number of input frames
+  std::optional<PlanRegistration> plan = {};  // registration of the map, for poses on the plan
 };
 
 std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
                     const std::optional<LocalisationErrors>& errors);
-// With an object for each frame.
+// Includes an object per frame.
 std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
                     const std::optional<LocalisationErrors>& errors);
 

@@ -13,7 +13,7 @@ Pose at(double x) {
   return {Eigen::Quaterniond::Identity(), {x, 0.1 * x * x, 0.0}};
 }
 
-// Four keyframes and four frames found, of which the last is a metre off, and one not found.
+// Four keyframes; five frames: four localised, the last of them 1 m off, and one not.
 StoredMap small_map() {
   StoredMap stored;
   stored.map.add_rig({});
@@ -38,7 +38,7 @@ LocaliseRun small_run() {
   return run;
 }
 
-// True poses twice a second, in a frame that is turned and shifted against the map's.
+// True poses every 0.5 s, in a frame rotated and translated relative to the map's.
 const Pose kPlanFromMap{rotation_exp({0.0, 0.0, 1.0}), {5.0, 6.0, 7.0}};
 
 Trajectory truth_of_run() {

@@ -26,7 +26,7 @@ void count_events(const FrameReport& report, FrameCounts& counts) {
 }  // namespace
 
 TimeSummary summarise_times(std::vector<double> seconds) {
-  for (double& each : seconds) each *= 1e3;  // milliseconds
+  for (double& each : seconds) each *= 1e3;
   const Distribution ms = distribution_of(std::move(seconds));
   return {ms.count, ms.mean, ms.p50, ms.p95, ms.p99, ms.max};
 }

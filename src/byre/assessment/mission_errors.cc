@@ -20,7 +20,7 @@ bool is_far(const PoseError& error) {
   return error.position() > kFarMetres;
 }
 
-// From the first to the last of consecutive frames, so that a single one lasts no time.
+// Duration from the first to the last frame of an episode; 0 for a single frame.
 double longest_wrong_trust(const MapRun& run, const std::vector<PoseError>& trusted) {
   double longest_s = 0.0;
   const MappedFrame* first = nullptr;
@@ -36,16 +36,16 @@ double longest_wrong_trust(const MapRun& run, const std::vector<PoseError>& trus
   return longest_s;
 }
 
-// The covariance is of a small motion as seen in the body, as the error is: their positions can be held together.
+// Compares position errors with covariances: both refer to a small motion in the body frame.
 std::optional<double> share_within_bound(const MapRun& run, const std::vector<PoseError>& causal) {
-  constexpr double kBound95 = 7.815;  // 95 % of chi-square with three degrees of freedom
+  constexpr double kBound95 = 7.815;  // 95 % quantile of chi-square with three degrees of freedom
   int within = 0;
   int judged = 0;
   for (const MappedFrame& frame : run.frames) {
     const PoseError* const error = find_error(causal, frame.time);
     if (error == nullptr) continue;
     const Eigen::Matrix3d covariance = frame.report->covariance.topLeftCorner<3, 3>();
-    if (covariance.trace() <= 0.0) continue;  // where a map begins: exact by definition
+    if (covariance.trace() <= 0.0) continue;  // first pose of a map: exact by definition
     const Eigen::Vector3d position = error->delta.head<3>();
     ++judged;
     within += position.dot(covariance.ldlt().solve(position)) <= kBound95 ? 1 : 0;
@@ -54,7 +54,7 @@ std::optional<double> share_within_bound(const MapRun& run, const std::vector<Po
   return static_cast<double>(within) / judged;
 }
 
-// What verdicts are worth, given the causal errors.
+// Errors by verdict, from the causal errors.
 void judge_trust(const MapRun& run, MissionErrors& errors) {
   errors.trusted = errors_with(Verdict::trusted, run, errors.causal);
   errors.degraded = errors_with(Verdict::degraded, run, errors.causal);

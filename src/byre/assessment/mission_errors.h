@@ -8,29 +8,29 @@
 
 namespace byre {
 
-// How far the poses of a run are from the truth.
+// Pose errors of a run against the truth.
 struct MissionErrors {
-  // True: in the frame of the offline map, which alone was aligned to the truth. False: of a run without one, whose
-  // causal and final trajectories were each aligned to the truth.
+  // True: errors in the frame of the offline map, the only thing aligned to the truth. False: a run without offline
+  // map; causal and final trajectories are each aligned to the truth.
   bool in_map_frame = false;
-  int alignment_poses = 0;          // poses of the run that made the map; zero: the truth is given in the map's frame
-  std::vector<PoseError> causal;    // errors of poses as published
-  std::vector<PoseError> trusted;   // errors of published poses reported as trusted
-  std::vector<PoseError> degraded;  // errors of published poses reported as degraded
-  std::vector<PoseError> final;     // errors of poses as recomputed after the last frame
-  int wrongly_trusted = 0;          // frames trusted and yet off by more than kFarMetres
+  int alignment_poses = 0;          // poses of the mapping run that align the map; 0: the truth is in the map's frame
+  std::vector<PoseError> causal;    // published poses
+  std::vector<PoseError> trusted;   // published poses with verdict trusted
+  std::vector<PoseError> degraded;  // published poses with verdict degraded
+  std::vector<PoseError> final;     // poses recomputed after the last frame
+  int wrongly_trusted = 0;          // trusted frames with an error above kFarMetres
   double longest_wrong_trust_s = 0.0;
   std::optional<double> within_bound;             // share of causal positions within the 95 % bound of their covariance
-  std::vector<PoseError> map;                     // errors of the poses that the map was aligned by
-  std::optional<double> within_bound_beside_map;  // share within it when the map's own error there is taken off
+  std::vector<PoseError> map;                     // poses that align the map
+  std::optional<double> within_bound_beside_map;  // within_bound after subtraction of the map's local error
 };
 
 inline constexpr double kFarMetres = 0.2;
 
-// Errors in the frame of a map that was aligned so.
+// Errors in the frame of an aligned map.
 MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth);
 
-// Errors after alignment, of a run without an offline map; of one camera alone with its scale.
+// Errors after alignment, for a run without an offline map. scale: free for a monocular map.
 MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth, Scale scale);
 
 }  // namespace byre

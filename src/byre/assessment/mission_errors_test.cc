@@ -15,7 +15,7 @@ Pose pose_after(double x) {
 
 const Pose kTruthFromMap{rotation_exp({0.0, 0.0, 1.0}), {5.0, 6.0, 7.0}};
 
-// Ten poses a second for ten seconds.
+// Ten seconds of poses at 10 Hz.
 Trajectory truth() {
   Trajectory result;
   for (int i = 0; i <= 100; ++i) result.push_back({from_seconds(0.1 * i), kTruthFromMap * pose_after(0.1 * i)});
@@ -38,7 +38,7 @@ MapAlignment aligned_map() {
   return align_to_truth(keyframe_path(offline_map()), Scale::fixed, truth());
 }
 
-// Ten frames half a second apart, each off by so many metres along its own x axis, with a sigma of a centimetre.
+// Frames every 0.5 s, each with the given error along its x axis, metres, and a sigma of 1 cm.
 MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Verdict::trusted) {
   MapRun run;
   for (std::size_t i = 0; i < errors_m.size(); ++i) {
@@ -77,7 +77,7 @@ TEST(MissionErrors, SayHowMuchTrustWasWrong) {
 }
 
 TEST(MissionErrors, HoldErrorsAgainstTheirCovariance) {
-  // The bound for three degrees of freedom is 2.8 sigmas.
+  // The 95 % bound for three degrees of freedom is 2.8 sigmas.
   const MapRun run = run_with_errors({0.0, 0.027, 0.029, 0.1});
   EXPECT_EQ(mission_errors(run, aligned_map(), truth()).within_bound, 0.5);
 }

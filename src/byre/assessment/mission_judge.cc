@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-// The path by which the map was made, of the body that the mission's cameras sit on.
+// Trajectory of the mapping run, converted to the body of the mission's calibration.
 Trajectory path_of(const OfflineMap& offline, const std::optional<Trajectory>& map_run, const Calibration& given) {
   Trajectory path = map_run ? *map_run : keyframe_path(offline.map());
   const Pose map_body_from_body = known_body_from_body(offline.recordings(), given).value_or(Pose{});

@@ -8,16 +8,16 @@
 
 namespace byre {
 
-// True poses that a mission is judged by.
+// Truth that a mission is evaluated against.
 struct MissionTruth {
   Trajectory of_frames;
-  Trajectory of_map;  // poses at the times of the map's own recording
-  // Poses, not true ones, of the run that made the map, by which it is aligned to the truth; empty: its keyframes.
+  Trajectory of_map;  // true poses at the times of the map's recording
+  // Estimated poses of the mapping run, which align the map to the truth; empty: its keyframes.
   std::optional<Trajectory> map_run;
-  Scale map_scale = Scale::fixed;  // whether the alignment of the map may change its scale
+  Scale map_scale = Scale::fixed;  // whether the alignment of the map estimates scale
 };
 
-// What a run came to: in the frame of its offline map, or without one after alignment. Errors only with truth.
+// Statistics and errors of a run: in the frame of its offline map, or without one after alignment. Errors need truth.
 MissionOutcome judge_mission(const MapRun& run, const EngineOptions& options, const std::optional<MissionTruth>& truth,
                              const ScaledRecording& recording);
 

@@ -45,7 +45,7 @@ std::string describe_losses(const MissionStatistics& statistics) {
                      statistics.relocalisations, statistics.navigation_errors);
 }
 
-// What it was at most.
+// Maximum dirt over the mission.
 std::string describe_dirt(const MissionStatistics& statistics) {
   Health health;
   health.hidden_share = statistics.most_hidden;
@@ -53,7 +53,7 @@ std::string describe_dirt(const MissionStatistics& statistics) {
   return note_on_dirt(health) + fmt::format(" (at most; {} frames)", statistics.frames_with_dirt);
 }
 
-// Empty where the mission did not come to such places.
+// Empty if the mission had no such places.
 std::string keyframe_row(const char* places, const KeyframeRate& rate) {
   if (rate.minutes <= 0.0) return "";
   return row("keyframes", fmt::format("{:.1f} a minute in {} places ({} in {:.0f} s)", rate.per_minute(), places,

@@ -10,13 +10,13 @@
 
 namespace byre {
 
-// What a run of "byre run" came to.
+// Result of a run of "byre run".
 struct MissionOutcome {
   MissionStatistics statistics;
-  std::optional<MissionErrors> errors;  // with truth
+  std::optional<MissionErrors> errors;  // only with truth
 };
 
-// Rows for people, each a name and what is known under it.
+// Rows of a name and a value.
 std::string to_text(const MissionStatistics& statistics);
 std::string to_text(const MissionErrors& errors);
 

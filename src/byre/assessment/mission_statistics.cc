@@ -53,7 +53,7 @@ ErrorStatistics inliers_with_pose(const std::vector<MappedFrame>& frames, int He
   return summarise(std::move(counts));
 }
 
-// The time a frame stands for is that since the frame before it.
+// A frame accounts for the time since the previous one.
 void add_to_rate(const FrameReport& report, double seconds, KeyframeRate& rate) {
   rate.keyframes += report.keyframe_added ? 1 : 0;
   rate.minutes += seconds / kSecondsPerMinute;

@@ -9,7 +9,7 @@
 
 namespace byre {
 
-// Keyframes made in so much time of the recording.
+// Keyframe count over a duration of the recording.
 struct KeyframeRate {
   int keyframes = 0;
   double minutes = 0.0;
@@ -17,35 +17,35 @@ struct KeyframeRate {
   double per_minute() const { return minutes > 0.0 ? keyframes / minutes : 0.0; }
 };
 
-// What a mission on a map came to.
+// Statistics of a mission on a map.
 struct MissionStatistics {
   int frames = 0;
-  int missing = 0;  // frames that could not be read: none of what follows is known of them
+  int missing = 0;  // unreadable frames, not counted below
   int trusted = 0;
   int degraded = 0;
   int untrusted = 0;
-  std::vector<std::pair<Doubt, int>> doubts;  // in frames that are not trusted, the most frequent first
+  std::vector<std::pair<Doubt, int>> doubts;  // doubts of frames that are not trusted, most frequent first
   std::optional<double> seconds_to_first_pose;
   int losses = 0;
   int relocalisations = 0;
   int navigation_errors = 0;
-  KeyframeRate in_known_places;     // offline points held the pose
-  KeyframeRate in_changed_or_new;   // the rest of the frames with a pose
-  ErrorStatistics offline_inliers;  // offline inliers of frames with a pose
-  ErrorStatistics online_inliers;   // online inliers of frames with a pose
-  int most_suspended = 0;           // most offline points suspended at a time
-  double most_hidden = 0.0;         // most of a left image that dirt hid, as a share
-  double most_hidden_right = 0.0;   // most of a right image that it hid, as a share
-  int frames_with_dirt = 0;         // frames with any of either image hidden
+  KeyframeRate in_known_places;     // frames whose pose rests on offline points
+  KeyframeRate in_changed_or_new;   // all other frames with a pose
+  ErrorStatistics offline_inliers;  // per frame with a pose
+  ErrorStatistics online_inliers;   // per frame with a pose
+  int most_suspended = 0;           // maximum number of offline points suspended at once
+  double most_hidden = 0.0;         // maximum share of a left image hidden by dirt
+  double most_hidden_right = 0.0;   // maximum share of a right image hidden by dirt
+  int frames_with_dirt = 0;         // frames with dirt in either image
 };
 
-// Whether so many frames are missing that the others do not represent the recording.
+// Whether too many frames are missing for the rest to represent the recording.
 bool is_full_of_gaps(int missing, int frames);
 inline bool is_full_of_gaps(const MissionStatistics& statistics) {
   return is_full_of_gaps(statistics.missing, statistics.frames);
 }
 
-// A place is known where a frame has at least so many offline inliers.
+// min_offline_inliers: offline inliers from which a frame counts as in_known_places.
 MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers);
 
 }  // namespace byre

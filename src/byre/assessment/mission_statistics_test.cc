@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-// Frames a second apart.
+// A frame at number seconds.
 MappedFrame frame_with(int number, Verdict verdict, Doubt doubt, int offline_inliers) {
   FrameReport report;
   report.time = from_seconds(number);
@@ -27,7 +27,7 @@ MappedFrame frame_with(int number, Verdict verdict, Doubt doubt, int offline_inl
   return frame;
 }
 
-// A frame without a pose, two in a known place, one that could not be read, and two in a changed place.
+// A frame without pose, two in a mapped place, one unreadable, and two in a changed place.
 std::vector<MappedFrame> mission() {
   std::vector<MappedFrame> frames = {frame_with(0, Verdict::untrusted, Doubt::no_pose, 0),
                                      frame_with(1, Verdict::trusted, Doubt::none, 100),

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-// How long they tell a unit of the map to be. Nothing where they have told its metres: then it is one.
+// Length of a map unit by the wheels. Empty if the wheels set the scale, which makes it 1.
 std::string describe_lengths(const WheelMounting& wheels, const MapRun& run, bool sees_metres) {
   const double share = 100.0 * wheels.scale_sigma;
   if (sees_metres) {

@@ -6,8 +6,8 @@
 
 namespace byre {
 
-// Rows of a report: what was found out of wheels and a gyroscope, and how many poses went on by them alone. Empty where
-// nothing told the motion. sees_metres: cameras do, as a pair or on a map.
+// Report rows on wheel and gyroscope calibration and on poses from dead reckoning. Empty without such sensors.
+// sees_metres: the cameras are a metric source (a stereo pair, or a map).
 std::string motion_rows(const MapRun& run, bool sees_metres);
 
 }  // namespace byre

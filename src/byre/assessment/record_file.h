@@ -8,8 +8,8 @@
 
 namespace byre {
 
-// The file that a run is recorded in, where one is asked for. It is written as the run goes on, so that what is known
-// of it is kept however it ends. That it cannot be written any more is told at once, and the run goes on.
+// Optional MCAP file of a run. Messages are written during the run, so an aborted run leaves a readable file. A write
+// failure is reported once by warn, and the run continues.
 class RecordFile {
  public:
   using Warn = std::function<void(const std::string& fault)>;
@@ -17,17 +17,17 @@ class RecordFile {
   RecordFile(std::optional<McapWriter> writer, const Calibration& calibration, bool with_images, Warn warn);
 
   bool is_wanted() const { return record_.has_value(); }
-  void note(const RunView& view);              // after each frame whose images could be read
-  void note_unread(const MappedFrame& frame);  // after each other one
+  void note(const RunView& view);              // call after each frame with readable images
+  void note_unread(const MappedFrame& frame);  // call after each other frame
   void finish(const MapRun& run);
-  void require_written() const;  // throws when anything is missing
+  void require_written() const;  // throws if anything could not be written
 
  private:
   template <typename Write>
   void attempt(Write write);
 
   Warn warn_;
-  std::optional<RunRecord> record_;  // empty: nothing is recorded
+  std::optional<RunRecord> record_;  // empty: not recording
   std::optional<std::string> fault_;
 };
 

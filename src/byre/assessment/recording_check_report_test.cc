@@ -27,7 +27,7 @@ TEST(RecordingCheckReport, GivesTheShareOfFeaturesInBothImages) {
                     HasSubstr("off by about 0.10 px, by the rows of the pair")));
 }
 
-// Some images have features, but the median is zero.
+// The median number of features is zero although some images have features.
 TEST(RecordingCheckReport, GivesNoShareWithoutFeatures) {
   EXPECT_EQ(summary_of(check_of_pairs(0.0)), "20.0 Hz, 2 gaps; 0 features");
   EXPECT_THAT(describe(check_of_pairs(0.0), {}),

@@ -7,15 +7,15 @@
 
 namespace byre {
 
-// What was registered, and where the result went; empty for nowhere.
+// Input and output files of a registration; written: empty if nothing was written.
 struct RegisterProtocol {
   std::string map;
   FloorPlan plan;
   std::string written;
-  std::optional<double> scaled_by;  // where the scale was to be mended; 1: there was nothing to mend
+  std::optional<double> scaled_by;  // set if scale correction was requested; 1: no correction needed
 };
 
-// A page for people, and the same for programs.
+// The report as text and as JSON.
 std::string to_text(const Registering& registering, const RegisterProtocol& protocol);
 std::string to_json(const Registering& registering, const RegisterProtocol& protocol);
 

@@ -11,18 +11,18 @@
 
 namespace byre {
 
-// With units in the names, as docs/mission.md describes it.
+// Keys carry units (docs/mission.md).
 nlohmann::ordered_json health_json(const Health& health);
 
-// position_m, quaternion_xyzw and body_covariance: of a small motion as seen in the body, row-major.
+// Keys position_m, quaternion_xyzw and body_covariance (of a small motion in the body frame, row-major).
 nlohmann::ordered_json pose_json(const Pose& frame_from_body, const Matrix6& covariance);
 
 nlohmann::ordered_json position_json(const std::optional<Pose>& frame_from_body);  // null without a pose
 
-// Where a map lies on a plan, with units in the names; the covariance row by row, see PlanRegistration.
+// Pose of a map on a plan. Keys carry units; covariance row-major, see PlanRegistration.
 nlohmann::ordered_json registration_json(const PlanRegistration& registration);
 
-// One line, or indented by so many spaces. Bytes that are not UTF-8 are replaced, control characters escaped.
+// One line, or indented by indent spaces. Replaces invalid UTF-8 and escapes control characters.
 std::string dumped(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace byre

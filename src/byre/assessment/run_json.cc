@@ -23,7 +23,7 @@ constexpr const char* kCovariance =
     "6x6, row-major, of a small motion (translation in metres, rotation vector in radians) as seen in the body, "
     "relative to the map's origin";
 
-// To the microsecond: more digits would only be noise.
+// Rounded to microseconds; further digits are noise.
 double rounded_ms(double milliseconds) {
   return std::round(1e3 * milliseconds) / 1e3;
 }
@@ -33,7 +33,7 @@ Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
 
-// What decides how much is computed, and what is not as the version has it.
+// Options that determine the computational load, and all changed from their defaults.
 Json options_json(const EngineOptions& options) {
   Json changed = Json::object();
   for (const auto& [name, value] : changed_options(options)) changed[name] = value;
@@ -115,7 +115,7 @@ Json counts_json(const MapRun& run) {
           {"corrections_on_the_way", counts.corrections}};
 }
 
-// Keyframes of each recording, and how long the new one took to be found in the map; null without an extended map.
+// Keyframes per recording, and frames until the new recording was localised in the map; null unless a map is extended.
 Json extension_json(const MapRun& run, const MapProtocol& protocol) {
   if (protocol.extended.empty()) return nullptr;
   const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());

@@ -13,8 +13,8 @@ using std::chrono::steady_clock;
 
 constexpr Timestamp kMapInterval = std::chrono::seconds(10);
 constexpr Timestamp kWatchedMapInterval = std::chrono::seconds(1);
-constexpr int kTimeBetweenMaps = 500;  // least time between watched maps, in times that the last one took
-constexpr double kPathStep = 0.1;      // metres between poses of the path
+constexpr int kTimeBetweenMaps = 500;  // pause after a map message, as a multiple of the time it took
+constexpr double kPathStep = 0.1;      // metres between poses of the path message
 
 }  // namespace
 

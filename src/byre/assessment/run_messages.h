@@ -12,22 +12,22 @@
 namespace byre {
 
 struct RunMessageOptions {
-  bool with_images = false;  // images and camera info too
-  // Whether the run is watched: path and map then come each second, but take a 500th of the run's time at most.
+  bool with_images = false;  // adds images and camera info
+  // Whether a live viewer watches: path and map are then published every second, within 1/500 of the run's time.
   bool is_watched = false;
 };
 
-// Tells what happens in a run as messages of ROS 2 that docs/bags.md lists: those that the sink wants.
+// Publishes a run as ROS 2 messages (docs/bags.md), limited to the topics that the sink wants.
 class RunMessages {
  public:
-  // Adds its topics. The sink outlives this.
+  // Adds its topics to the sink, which must outlive it.
   RunMessages(ros::MessageSink& sink, const Calibration& calibration, const RunMessageOptions& options);
 
-  // One of both after each frame, in order.
-  void note(const RunView& view);              // where its images could be read
-  void note_unread(const MappedFrame& frame);  // where they could not
+  // Call one of the two after each frame, in order.
+  void note(const RunView& view);              // frame with readable images
+  void note_unread(const MappedFrame& frame);  // frame without
 
-  void finish(const MapRun& run);  // after the last: the final path and map, whether they are wanted or not
+  void finish(const MapRun& run);  // call after the last frame: publishes final path and map, wanted or not
 
  private:
   using TopicId = ros::MessageSink::TopicId;
@@ -54,15 +54,15 @@ class RunMessages {
   ros::MessageSink& sink_;
   bool is_watched_;
   Topics topics_{};
-  std::optional<CameraTopics> left_, right_;  // where images are told
+  std::optional<CameraTopics> left_, right_;  // only with images
 
   std::ostringstream event_text_;
   EventLog events_{event_text_};
-  std::optional<StampedPose> odometry_;  // pose of the last frame that had one
-  Trajectory path_;                      // poses that were believed, some way apart
+  std::optional<StampedPose> odometry_;  // pose of the last frame with odometry
+  Trajectory path_;                      // trusted or degraded poses at least kPathStep apart
   int frames_ = 0;
-  std::optional<Timestamp> map_time_;                  // time of the frame when path and map were last told
-  std::chrono::steady_clock::time_point map_pause_{};  // time until which they are not told again
+  std::optional<Timestamp> map_time_;                  // frame time of the last path and map message
+  std::chrono::steady_clock::time_point map_pause_{};  // earliest time of the next one
   bool has_begun_ = false;
   Timestamp last_time_{};
 };

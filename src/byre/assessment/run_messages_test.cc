@@ -17,7 +17,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::Key;
 
-// Counts messages by topic, and wants those of some.
+// Counts messages by topic; wants a given set of topics.
 class CountingSink : public ros::MessageSink {
  public:
   explicit CountingSink(std::set<std::string> wanted) : wanted_(std::move(wanted)) {}

@@ -7,25 +7,25 @@
 
 namespace byre {
 
-// Writes the messages of a run into an MCAP file. All throw InputError when the file cannot be written; what was
-// written before can be read.
+// Writes the messages of a run into an MCAP file. All functions throw InputError when the file cannot be written;
+// earlier messages stay readable.
 class RunRecord {
  public:
-  // with_images: images and camera info too, so that the file can be run again.
+  // with_images: includes images and camera info, so that the file can be replayed as a recording.
   RunRecord(McapWriter writer, const Calibration& calibration, bool with_images);
 
   RunRecord(const RunRecord&) = delete;
   RunRecord& operator=(const RunRecord&) = delete;
 
-  // One of both after each frame, in order.
-  void note(const RunView& view);              // where its images could be read
-  void note_unread(const MappedFrame& frame);  // where they could not
+  // Call one of the two after each frame, in order.
+  void note(const RunView& view);              // frame with readable images
+  void note_unread(const MappedFrame& frame);  // frame without
 
-  void finish(const MapRun& run);  // after the last: the final path and map
+  void finish(const MapRun& run);  // call after the last frame: writes final path and map
 
  private:
   McapWriter writer_;
-  RunMessages messages_;  // written by the writer
+  RunMessages messages_;  // refers to writer_
   std::optional<Timestamp> flush_time_;
 };
 

@@ -49,7 +49,7 @@ class RecordedRun {
   const fs::path& path() const { return path_; }
   const MapRun& run() const { return run_; }
 
-  // All messages of a topic, by the reader of bags.
+  // All messages of a topic, read back as a bag.
   template <ros::Message M>
   std::vector<M> messages(const std::string& topic) const {
     const auto bag = open_bag(path_, [](std::string_view) { return true; });

@@ -30,7 +30,7 @@ std::string describe_map(const MapRun& run, const MapProtocol& protocol, const F
                      protocol.extended.empty() ? "" : "those before and ", counts.keyframes, run.map.point_count());
 }
 
-// The most frequent reason first; empty where there is none.
+// Most frequent reason first; empty without refusals.
 std::string describe_refusals(const FrameCounts& counts) {
   std::vector<std::pair<int, TwoViewFailure>> ranked;
   for (const auto& [failure, frames] : counts.refused_starts) ranked.emplace_back(-frames, failure);
@@ -42,7 +42,7 @@ std::string describe_refusals(const FrameCounts& counts) {
   return text.empty() ? text : text + " frames";
 }
 
-// How one camera came to a map of its own; empty for other runs.
+// Initialisation and scale of a monocular map; empty for other runs.
 std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
   if (protocol.is_metric) return "";
   std::string begun = "never";
@@ -69,7 +69,7 @@ std::string describe_loops(const FrameCounts& counts) {
   return text;
 }
 
-// Empty for a map that goes on with no other.
+// Empty unless a map is extended.
 std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
   if (protocol.extended.empty()) return "";
   const std::string found = counts.frames_to_first
@@ -180,7 +180,7 @@ std::string describe_offline(const MapProtocol& protocol) {
          (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
 }
 
-// What "byre map" is about.
+// Rows of a "byre map" report.
 std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
   std::string text = row("poses", describe_poses(counts));
@@ -200,7 +200,7 @@ std::string describe_coverage(const MapRun& run, const MissionStatistics& statis
   return text + fmt::format(", the first after {:.2f} s", *statistics.seconds_to_first_pose);
 }
 
-// Without the offline points that its keyframes see.
+// Without the offline points that online keyframes observe.
 std::string describe_online(const MapRun& run, const FrameCounts& counts) {
   if (run.frames.empty()) return "none";
   return fmt::format("{} keyframes, of {} made; {} points", run.frames.back().keyframes, counts.keyframes,
@@ -213,7 +213,7 @@ std::string describe_mission_finishing(const MapRun& run) {
                      *run.mission_finishing_seconds);
 }
 
-// What "byre run" is about, with an offline map or without.
+// Rows of a "byre run" report, with or without an offline map.
 std::string mission_rows(const MissionOutcome& mission, const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
   const bool has_map = protocol.options.offline != nullptr;

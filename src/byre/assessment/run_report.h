@@ -11,7 +11,7 @@
 
 namespace byre {
 
-// How a run was made; without it its figures cannot be compared with others.
+// Protocol of a run, needed to compare its figures with others.
 struct MapProtocol {
   std::string recording;
   std::optional<RecordingFormat> format = RecordingFormat::euroc;  // empty: live cameras
@@ -20,32 +20,31 @@ struct MapProtocol {
   int frames_in_range = 0;
   TimeCorrections times;  // differences between frame times and recorded stamps
   EngineOptions options;
-  std::string extended;                  // the map that was gone on with; empty for none
-  std::vector<std::string> recordings;   // recordings of the whole map
-  std::string offline;                   // the map of a mission; empty for none
-  std::optional<PlanRegistration> plan;  // plan that the map lies on and poses are given in; empty: in the map's frame
+  std::string extended;                  // map that the run extended; empty for none
+  std::vector<std::string> recordings;   // all recordings of the map
+  std::string offline;                   // offline map of a mission; empty for none
+  std::optional<PlanRegistration> plan;  // plan in whose frame poses are given; empty: the map's frame
   std::string program = "byre map";
-  bool is_metric = true;  // false for one camera that maps from nothing: lengths are in units of the map's own
+  bool is_metric = true;  // false for a monocular map from scratch, in arbitrary units
 };
 
-// Everything known about the run: protocol, figures, and an array with an object for each frame, one a line. With a
-// mission also what that came to.
+// Full report: protocol, figures, and an array with one object per frame, one a line. mission adds its outcome.
 std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
                     const std::optional<MissionOutcome>& mission = {});
 
-// A page for people, about the map, or with a mission about that. The files are those that were written.
+// Text report on the map, or with mission on the mission. files: the files written.
 std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
                     const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission = {});
 
-// Throws std::runtime_error, with the first warning and a remedy, if so many frames could not be read that the result
-// does not represent the recording (is_full_of_gaps).
+// Throws std::runtime_error, with the first warning and a remedy, if too many frames were unreadable for the result to
+// represent the recording (is_full_of_gaps).
 void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings);
 inline void require_frames(const MapRun& run) {
   const FrameCounts counts = count_frames(run.frames);
   require_frames(counts.unreadable, counts.frames, run.warnings);
 }
 
-// Throws std::runtime_error, which says why, when no frame got a pose.
+// Throws std::runtime_error with the reason if no frame has a pose.
 void require_poses(const MapRun& run, const MapProtocol& protocol);
 
 }  // namespace byre

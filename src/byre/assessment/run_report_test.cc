@@ -43,7 +43,7 @@ MappedFrame tracked_frame(int number) {
   return {report.time, true, false, report, seconds, 1 + number, 500 * number, 60.04 + number};
 }
 
-// Four frames, the second of which could not be read.
+// Four frames, the second unreadable.
 MapRun small_map_run() {
   MapRun run;
   for (int i = 0; i < 4; ++i) run.frames.push_back(tracked_frame(i));

@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// Figures of a number of values, in their unit. Percentiles are interpolated between their neighbours.
+// Statistics of values, in their unit. Percentiles are interpolated.
 struct Distribution {
   int count = 0;
   double mean = 0.0;
@@ -14,6 +14,6 @@ struct Distribution {
   double max = 0.0;
 };
 
-Distribution distribution_of(std::vector<double> values);  // all zero for none
+Distribution distribution_of(std::vector<double> values);  // all zero for an empty vector
 
 }  // namespace byre

@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kSpanSource = "frames that fit into the truth's span at the estimate's median interval";
 
-// The first estimated pose laid on the true one of its time.
+// Aligns the first estimated pose with the true pose of its time.
 Similarity origin_alignment(const PosePair& first) {
   return {1.0, first.true_world_from_body * inverse(first.estimated_world_from_body)};
 }
@@ -27,8 +27,8 @@ double true_path(const std::vector<PosePair>& pairs) {
 }  // namespace
 
 bool is_nearly_a_line(const EvaluationReport& report) {
-  constexpr double kThinnest = 0.01;     // least share of the length; less is the unevenness of a floor, or of a hand
-  constexpr double kErrorsAcross = 3.0;  // the width in errors of the position from which on it tells a turn
+  constexpr double kThinnest = 0.01;     // share of the length; less is unevenness of a floor or of a hand-held path
+  constexpr double kErrorsAcross = 3.0;  // least width that determines the rotation about the line, in position errors
   const double width = report.true_spread[1];
   const double error = report.ate ? report.ate->translation.rmse : 0.0;
   return width < std::max(kThinnest * report.true_spread[0], kErrorsAcross * error);

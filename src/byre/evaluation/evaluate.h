@@ -11,14 +11,14 @@ namespace byre {
 
 enum class PoseAlignment { se3, sim3, origin, none };
 
-// How figures were made; without it they cannot be compared with others.
+// Protocol of an evaluation, needed to compare its figures with others.
 struct EvaluationProtocol {
-  std::string label = "not stated";  // kind of the poses, causal or final
+  std::string label = "not stated";  // kind of poses: causal or final
   PoseAlignment alignment = PoseAlignment::se3;
   AssociationOptions association;
 };
 
-// The frames that should have a pose, and where they come from, as the report says it.
+// Frames that should have a pose; source: their description in the report.
 struct ExpectedFrames {
   std::vector<Timestamp> times;
   std::string source;
@@ -29,22 +29,22 @@ struct EvaluationReport {
   int estimated_poses = 0;
   int true_poses = 0;
   int pairs = 0;
-  double true_path = 0.0;                      // metres, between the poses that were compared
-  std::optional<Coverage> coverage;            // empty when it cannot be told
-  std::string coverage_source;                 // what the expected frames are
-  std::optional<AbsoluteTrajectoryError> ate;  // empty when the positions determine no alignment
+  double true_path = 0.0;                      // metres, between the compared poses
+  std::optional<Coverage> coverage;            // empty if undetermined
+  std::string coverage_source;                 // description of the expected frames
+  std::optional<AbsoluteTrajectoryError> ate;  // empty if the positions determine no alignment
   RelativePoseError rpe_frame;
   RelativePoseError rpe_second;
   RelativePoseError rpe_metre;
-  SegmentErrors segments;  // errors of KITTI's segments; none where the path is shorter than 100 m
+  SegmentErrors segments;                                 // KITTI segments; none for paths shorter than 100 m
   Eigen::Vector3d true_spread = Eigen::Vector3d::Zero();  // see principal_spread
 };
 
-// The true path is so near to a line that an alignment is free to turn about it: what lies across the line is not much
-// more than the errors, or next to nothing of what lies along it.
+// Whether the true path is so nearly a line that the rotation about it is undetermined: its width is below a few
+// position errors or a small share of its length.
 bool is_nearly_a_line(const EvaluationReport& report);
 
-// Empty when no estimated pose has truth at its time.
+// Empty if no estimated pose has truth at its time.
 std::optional<EvaluationReport> evaluate(const Trajectory& estimate, const Trajectory& truth,
                                          const EvaluationProtocol& protocol,
                                          const std::optional<ExpectedFrames>& expected);

@@ -25,7 +25,7 @@ PoseError error_of(const PosePair& pair, const Pose& estimated) {
   return {pair.time, log_pose(inverse(estimated) * pair.true_world_from_body)};
 }
 
-// How far the poses of a map are off, looked up by where they truly were.
+// Position error of a map's poses, indexed by true position.
 class MapDeformation {
  public:
   explicit MapDeformation(const MapAlignment& alignment) {
@@ -36,7 +36,7 @@ class MapDeformation {
     }
   }
 
-  // That of the nearest pose within reach.
+  // Error of the nearest pose within kReach; empty without one.
   std::optional<Eigen::Vector3d> at(const Eigen::Vector3d& place) const {
     constexpr int kAround = 1;
     std::optional<Eigen::Vector3d> error;
@@ -87,7 +87,7 @@ struct StraightPath {
 };
 
 std::optional<StraightPath> straight_path(const std::vector<PosePair>& pairs) {
-  constexpr double kWidest = 0.1;  // metres, root mean square beside the line
+  constexpr double kWidest = 0.1;  // metres, root mean square distance from the line
   const double share = 1.0 / static_cast<double>(pairs.size());
   StraightPath path{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (const PosePair& pair : pairs) {
@@ -105,12 +105,12 @@ std::optional<StraightPath> straight_path(const std::vector<PosePair>& pairs) {
   return path;
 }
 
-// Takes the direction of the path from positions, and the rotation about it from orientations.
+// Direction from positions, rotation about it from orientations.
 std::optional<Similarity> fit_to_straight_path(const StraightPath& path, const std::vector<PosePair>& pairs,
                                                Scale scale) {
   Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();  // in the map, times the true length
-  double true_way = 0.0;                          // squared
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();  // direction in the map, times the squared true length
+  double true_way = 0.0;                          // squared true length
   for (const PosePair& pair : pairs) {
     turns +=
         (pair.true_world_from_body.rotation * pair.estimated_world_from_body.rotation.conjugate()).toRotationMatrix();

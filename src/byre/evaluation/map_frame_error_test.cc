@@ -31,7 +31,7 @@ TEST(MapAlignment, RestsOnPosesOfTheMap) {
   EXPECT_NEAR(log_pose(inverse(alignment.truth_from_map.target_from_source) * kTurnedTruthFromMap).norm(), 0.0, 1e-9);
 }
 
-// Millimetres of noise beside a straight path would turn the map about it by any angle.
+// Millimetres of noise across a straight path leave the rotation about it arbitrary.
 TEST(MapAlignment, TurnsAboutAStraightPathAsOrientationsDo) {
   Trajectory truth, estimate;
   for (int i = 0; i < 20; ++i) {
@@ -71,8 +71,7 @@ TEST(ErrorsInMap, AreMotionsOfTheBodyFromTheEstimateToTheTruth) {
   EXPECT_NEAR(rotation_statistics(errors).max, 0.1 * std::sqrt(6.0) * 180.0 / 3.14159265358979, 1e-6);
 }
 
-// A map whose metres are a tenth too long, as of a baseline that was measured wrongly, and a mission that is where the
-// map has it but for some centimetres.
+// A map distorted in scale by 10 %, as by a wrong baseline, and a mission within centimetres of it.
 TEST(ErrorsBesideMap, LeaveOutWhatTheMapErrsByItself) {
   Trajectory map_path, mission, path;
   for (int i = 0; i <= 20; ++i) {

@@ -24,7 +24,7 @@ std::vector<double> true_distances(const std::vector<PosePair>& pairs) {
   return distances;
 }
 
-// What the estimated motion from first to last adds to the true one.
+// Error of the estimated motion from first to last: its correction to the true one.
 Pose motion_error(const PosePair& first, const PosePair& last, double scale) {
   Pose estimated = inverse(first.estimated_world_from_body) * last.estimated_world_from_body;
   estimated.translation *= scale;

@@ -10,7 +10,7 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// Round and round a hill, with an estimate that is too large and turns too far.
+// Circles over hilly ground; the estimate has a larger scale and turns too far.
 std::vector<PosePair> rounds(int count) {
   std::vector<PosePair> pairs;
   for (int i = 0; i < count; ++i) {
@@ -27,7 +27,7 @@ std::vector<PosePair> rounds(int count) {
   return pairs;
 }
 
-// Figures of a transcription of KITTI's evaluate_odometry.cpp to numpy, and of its singular value decomposition.
+// Reference values: a numpy transcription of KITTI's evaluate_odometry.cpp and numpy's SVD.
 TEST(SegmentErrors, AreThoseOfTheDevelopmentKit) {
   const SegmentErrors errors = segment_errors(rounds(900), 1.0);
   EXPECT_EQ(errors.all.count, 447);

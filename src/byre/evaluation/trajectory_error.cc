@@ -11,14 +11,14 @@
 namespace byre {
 namespace {
 
-constexpr double kIntervalTolerance = 0.1;  // share of the interval or length
+constexpr double kIntervalTolerance = 0.1;  // relative to the interval or length
 constexpr Timestamp kSameFrame = std::chrono::milliseconds(1);
 
 double to_degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
 
-// The sample nearest to a time, when it is near enough.
+// The sample nearest to a time, if within max_difference.
 std::optional<Pose> nearest_pose(const Trajectory& trajectory, Timestamp time, Timestamp max_difference) {
   const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time,
                                       [](const StampedPose& sample, Timestamp t) { return sample.time < t; });
@@ -31,7 +31,7 @@ std::optional<Pose> nearest_pose(const Trajectory& trajectory, Timestamp time, T
   return nearest->world_from_body;
 }
 
-// inv(inv(Q_i) Q_j) (inv(P_i) P_j): what the estimated motion adds to the true one.
+// inv(inv(Q_i) Q_j) (inv(P_i) P_j): the error of the estimated motion.
 Pose relative_error(const PosePair& first, const PosePair& second, double scale) {
   Pose estimated_first_from_second = inverse(first.estimated_world_from_body) * second.estimated_world_from_body;
   estimated_first_from_second.translation *= scale;
@@ -52,7 +52,7 @@ RelativePoseError relative_pose_error(const std::vector<PosePair>& pairs, const 
   return {summarise(std::move(metres)), summarise(std::move(degrees))};
 }
 
-// For each of ascending positions the one nearest to a step further on, where it is within tolerance.
+// For each of ascending positions, the one nearest to a step beyond it, if within tolerance.
 IndexPairs pairs_apart(const std::vector<double>& positions, double step) {
   IndexPairs indices;
   for (std::size_t first = 0; first < positions.size(); ++first) {
@@ -180,7 +180,7 @@ Coverage coverage_of_frames(const Trajectory& estimate, const std::vector<Timest
     while (sample != estimate.end() && sample->time < time - kSameFrame) ++sample;
     if (sample == estimate.end() || sample->time > time + kSameFrame) continue;
     ++coverage.with_pose;
-    ++sample;  // a pose speaks for one frame only
+    ++sample;  // each pose counts for one frame only
   }
   return coverage;
 }

@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// A helix flown with a slow roll: no symmetry, 20 Hz.
+// A helix with slow roll at 20 Hz, without symmetry.
 Trajectory helix(int samples) {
   Trajectory trajectory;
   for (int i = 0; i < samples; ++i) {
@@ -136,7 +136,7 @@ TEST(AbsoluteTrajectoryError, OfAShiftIsTheShiftWhenNothingIsAligned) {
   EXPECT_NEAR(error.rotation.mean, 10.0, 1e-9);
 }
 
-// Four corners of a square, two of them lifted by 2h and two lowered, crosswise: no rigid motion improves on that.
+// Corners of a square, alternately raised and lowered: no rigid motion reduces the error.
 TEST(AbsoluteTrajectoryError, AgreesWithAHandComputedCase) {
   const double height = 0.1;
   const Trajectory truth = {{seconds(0), {{1, 0, 0, 0}, {1, 1, 0}}},
@@ -185,7 +185,7 @@ TEST(RelativePoseError, OfAScaledCopyVanishesWithItsScale) {
   EXPECT_GT(relative_pose_error_by_time(pairs, seconds(1), 1.0).translation.rmse, 0.1);
 }
 
-// Each step of 1 m is estimated as 1.1 m, so each interval errs by a tenth of its length.
+// Each step of 1 m is estimated as 1.1 m: a relative error of 0.1.
 TEST(RelativePoseError, AgreesWithAHandComputedCase) {
   const std::vector<PosePair> pairs = pairs_of(straight_line(31, 1.1), straight_line(31, 1.0));
   const RelativePoseError by_frame = relative_pose_error_by_frame(pairs, 1.0);
@@ -241,7 +241,7 @@ std::vector<Timestamp> times_of(const Trajectory& trajectory) {
 TEST(CoverageOfFrames, CountsFramesWithoutAPose) {
   Trajectory estimate = helix(100);
   estimate.erase(estimate.begin() + 20, estimate.begin() + 45);
-  estimate.front().time += std::chrono::microseconds(3);  // as if written with six digits
+  estimate.front().time += std::chrono::microseconds(3);  // rounding to six digits
   const Coverage coverage = coverage_of_frames(estimate, times_of(helix(100)));
   EXPECT_EQ(coverage.expected, 100);
   EXPECT_EQ(coverage.with_pose, 75);

@@ -144,7 +144,7 @@ void for_each_pose(const fs::path& path, const Use& use) {
 Timestamp parse_time(const TextLine& line, const std::string& place) {
   const std::string_view first = split_fields(line.text).front();
   if (line.text.find(',') != std::string::npos) return time_of(parse_nanoseconds(first), first, "nanoseconds", place);
-  // Whole numbers too large for seconds are nanoseconds, as ORB-SLAM3 writes them, with zeros after the point.
+  // Integers too large for seconds are nanoseconds, as ORB-SLAM3 writes them, with zeros after the point.
   std::optional<Timestamp> time = parse_seconds(first);
   const std::string_view whole = first.substr(0, first.find('.'));
   const bool is_whole = first.find_first_not_of(".0", whole.size()) == std::string_view::npos;

@@ -188,7 +188,7 @@ TEST(RealTrajectories, OfEurocAgreeInBothFormats) {
     const std::optional<Pose> other = pose_at(from_tum, sample.time, std::chrono::milliseconds(20));
     ASSERT_TRUE(other.has_value());
     ASSERT_LT((other->translation - sample.world_from_body.translation).norm(),
-              1e-4);  // its times are rounded to 10 us
+              1e-4);  // the file rounds times to 10 us
     ASSERT_LT(angle_between(other->rotation, sample.world_from_body.rotation), 1e-4);
   }
 }

@@ -8,11 +8,10 @@
 
 namespace byre {
 
-// Poses in the order of the lines, without a check of the order of times. Otherwise throws InputError as
-// read_trajectory does.
+// Poses in file order, without a check of time order. Otherwise throws InputError like read_trajectory.
 Trajectory parse_pose_lines(const std::filesystem::path& path);
 
-// Time at the beginning of a line: nanoseconds if the line has commas, else seconds. Throws InputError with the place.
+// Time at the start of a line: nanoseconds if the line has commas, else seconds. Throws InputError with the place.
 Timestamp parse_time(const TextLine& line, const std::string& place);
 
 }  // namespace byre
