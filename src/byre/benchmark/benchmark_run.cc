@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A recording that is there, with its truth.
+// An available recording and its truth.
 struct Source {
   fs::path folder;
   FrameRange range;
@@ -32,7 +32,7 @@ struct Source {
   ScaledRecording open_frames(bool has_map) const { return open_scaled(folder, range, open, has_map); }
 };
 
-using Sources = std::map<std::string, Source>;  // by the recording's name
+using Sources = std::map<std::string, Source>;  // by recording name
 
 std::vector<std::string> recordings_of(const BenchmarkCase& benchmark_case) {
   std::vector<std::string> names = {benchmark_case.recording};
@@ -55,7 +55,7 @@ std::vector<BenchmarkCase> chosen_cases(const BenchmarkProtocol& protocol, const
   return chosen;
 }
 
-// Why a case cannot be run; empty when nothing is missing.
+// Reason why a case cannot run; empty when all data is present.
 std::optional<SkippedCase> missing_data(const BenchmarkCase& benchmark_case, const BenchmarkProtocol& protocol,
                                         const fs::path& data) {
   for (const std::string& name : recordings_of(benchmark_case)) {
@@ -68,13 +68,13 @@ std::optional<SkippedCase> missing_data(const BenchmarkCase& benchmark_case, con
 Source open_source(const BenchmarkRecording& recording, const fs::path& data) {
   Source source{data / recording.folder, recording.range, recording.open, {}};
   if (recording.open.calibration) source.open.calibration = data / *recording.open.calibration;
-  source.open_frames(false);  // what is wrong with it is told now
+  source.open_frames(false);  // opened once for early error reports
   source.truth = load_truth(recording.truth ? data / *recording.truth : source.folder);
   for (StampedPose& sample : source.truth) sample.time += recording.truth_offset;
   return source;
 }
 
-// A mission needs metres.
+// Throws InputError for a recording without metric scale, which missions need.
 void require_metric(const Source& source) {
   if (source.open_frames(false).is_metric) return;
   throw InputError(source.folder.string(), "is of one camera, so its map has no metric scale for missions",
@@ -100,7 +100,7 @@ Trajectory truth_during(const Trajectory& truth, const Recording& recording) {
   return part;
 }
 
-// A run with what its cost was.
+// A run and its cost.
 struct TimedRun {
   MapRun run;
   CostMeasures cost;
@@ -194,7 +194,7 @@ class BenchmarkRunner {
     }
   }
 
-  // The arm as far as it has come.
+  // Stores the runs of an arm so far.
   void keep(const ArmResult& result) {
     std::vector<ArmResult>& arms = result_.cases.back().arms;
     if (result.runs.size() > 1) arms.pop_back();
@@ -202,7 +202,7 @@ class BenchmarkRunner {
     hooks_.after_run(result_);
   }
 
-  // Made at the first call; null when that failed or was stopped.
+  // Built at the first call; null if that failed or was stopped.
   const MadeMap* map_of(const std::string& name) {
     const auto made = std::ranges::find(result_.maps, name, &MadeMap::recording);
     if (made != result_.maps.end()) return &*made;

@@ -15,13 +15,13 @@
 namespace byre {
 
 struct BenchmarkOptions {
-  std::filesystem::path data;     // folder in which the recordings lie
-  std::filesystem::path output;   // folder in which maps and trajectories are put
-  std::vector<std::string> only;  // names of cases; all when empty
-  EngineOptions engine;           // every run's, but for maps and seeds
+  std::filesystem::path data;     // folder of the recordings
+  std::filesystem::path output;   // folder for maps and trajectories
+  std::vector<std::string> only;  // names of cases; empty: all
+  EngineOptions engine;           // options of every run except maps and seeds
 };
 
-// An offline map, made once for all cases on it.
+// An offline map, built once for all cases on it.
 struct MadeMap {
   std::string recording;
   std::filesystem::path file;
@@ -34,23 +34,23 @@ struct MadeMap {
 struct BenchmarkRunResult {
   std::uint64_t seed = 0;
   RunMeasures measures;
-  std::vector<std::string> warnings;  // warnings of the recording
+  std::vector<std::string> warnings;  // warnings about the recording
 };
 
 struct ArmResult {
   Arm arm = Arm::no_map;
   std::vector<BenchmarkRunResult> runs;
-  std::vector<TracePoint> final_trace;   // way by final poses of the first run
-  std::vector<TracePoint> causal_trace;  // way by causal poses of the first run
+  std::vector<TracePoint> final_trace;   // final positions of the first run
+  std::vector<TracePoint> causal_trace;  // causal positions of the first run
 
-  std::vector<RunMeasures> measures() const;  // measures of each run
+  std::vector<RunMeasures> measures() const;  // one per run
 };
 
 struct CaseResult {
   BenchmarkCase what;
-  std::vector<ArmResult> arms;  // arms begun
+  std::vector<ArmResult> arms;  // arms begun so far
   RecordingFormat format = RecordingFormat::euroc;
-  Trajectory truth;  // true poses while the recording lasts
+  Trajectory truth;  // true poses during the recording
   CameraChoice camera = CameraChoice::stereo;
 };
 
@@ -61,26 +61,26 @@ struct SkippedCase {
 
 struct BenchmarkResult {
   std::vector<MadeMap> maps;
-  std::vector<CaseResult> cases;  // cases begun
+  std::vector<CaseResult> cases;  // cases begun so far
   std::vector<SkippedCase> skipped;
-  bool stopped = false;  // stopped by who was asked, between two runs or in one that was then left out
+  bool stopped = false;  // should_stop returned true; a run in progress was discarded
 };
 
 struct BenchmarkHooks {
-  std::function<bool()> should_stop;                                    // asked before each frame
+  std::function<bool()> should_stop;                                    // called before each frame
   std::function<void(const std::string& what, int frames)> before_run;  // "mh_02* hybrid, run 1 of 3"
   std::function<void(int done, const MappedFrame& frame)> after_frame;
   std::function<void(const BenchmarkResult& so_far)> after_run;
   std::function<void(const SkippedCase& skipped)> on_skipped;
 };
 
-// Makes the maps that are asked for, then every case with every arm as often as the protocol says. A case whose
-// recording is not there, or on a map that cannot be made, is skipped. Throws InputError when a case to be run does not
-// exist, none has its recording, or a recording is broken, has no right camera or no truth: before anything is run.
+// Builds the required maps, then runs every case with every arm as often as the protocol requires. Skips cases without
+// recording or map. Throws InputError before the first run if a requested case does not exist, no recording is present,
+// or a recording is broken or has no right camera or truth.
 BenchmarkResult run_benchmark(const BenchmarkProtocol& protocol, const BenchmarkOptions& options,
                               const Vocabulary& vocabulary, const BenchmarkHooks& hooks);
 
-// A name as a part of file names: "mh_02*" becomes "mh_02-star".
+// A name made safe for file names: "mh_02*" becomes "mh_02-star".
 std::string file_name_of(const std::string& name);
 
 }  // namespace byre

@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-// Protocols on the rendered room, with results in a folder that is there for one test.
+// Runs protocols on the rendered room, with results in a temporary folder.
 class BenchmarkRun : public testing::Test {
  protected:
   BenchmarkRun() {

@@ -16,7 +16,7 @@ namespace {
 constexpr double kWidth = 860.0, kLeft = 72.0, kRight = 24.0, kTop = 92.0, kBottom = 56.0;  // pixels
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
 constexpr double kPlotHeight = 340.0, kLeastPlotHeight = 260.0, kMostPlotHeight = 760.0;
-constexpr double kMargin = 0.05;  // around the values, share of their range
+constexpr double kMargin = 0.05;  // share of the value range, on each side
 constexpr const char* kInk = "#222222";
 constexpr const char* kFaint = "#666666";
 constexpr const char* kGrid = "#e4e4e0";
@@ -35,7 +35,7 @@ struct Range {
   void grow_to(double new_length) { *this = {middle() - 0.5 * new_length, middle() + 0.5 * new_length}; }
 };
 
-// Where values lie in the picture; y as it is drawn, the logarithm where the axis is logarithmic.
+// Mapping from values to pixels; y is the logarithm on a logarithmic axis.
 struct ChartFrame {
   Range x;
   Range y;
@@ -64,7 +64,7 @@ void for_each_point(const Chart& chart, const std::function<void(const Eigen::Ve
   }
 }
 
-// Something to divide by also where all values are alike, or there are none.
+// Adds a margin; gives a non-empty range also for equal or no values.
 Range widened(const Range& range) {
   if (range.least > range.most) return {0.0, 1.0};
   Range result = range;
@@ -103,11 +103,11 @@ std::string line(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const c
 }
 
 struct Tick {
-  double at = 0.0;  // as drawn
+  double at = 0.0;  // position; logarithm on a logarithmic axis
   std::string label;
 };
 
-// With as many digits as tell neighbours apart.
+// Labels have as many digits as distinguish neighbours.
 std::vector<Tick> linear_ticks(const Range& range) {
   const std::vector<double> values = round_ticks(range.least, range.most);
   const double step = values.size() > 1 ? values[1] - values[0] : 1.0;
@@ -117,7 +117,7 @@ std::vector<Tick> linear_ticks(const Range& range) {
   return ticks;
 }
 
-// Powers of ten, and where those are few 2 and 5 times as much.
+// Powers of ten; over few decades also 2 and 5 times as much.
 std::vector<Tick> logarithmic_ticks(const Range& range) {
   constexpr double kFewDecades = 4.0;
   const std::vector<double> factors =
@@ -156,7 +156,7 @@ std::string axes(const Chart& chart, const ChartFrame& frame) {
   return svg;
 }
 
-// Points closer than half a pixel to the one before add nothing to be seen.
+// Skips points closer than half a pixel to the previous one.
 std::string polyline(const std::vector<Eigen::Vector2d>& piece, const ChartSeries& series, const Chart& chart,
                      const ChartFrame& frame) {
   constexpr double kVisible = 0.5;  // pixels

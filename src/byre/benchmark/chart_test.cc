@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 
-// What keeps a text from being well-formed XML, as far as the tags go; empty for nothing.
+// First violation of well-formed XML, tags only; empty for none.
 std::string fault_of_xml(const std::string& text) {
   static const std::regex kTag(R"re(<(/?)([a-z]+)((?: [A-Za-z0-9_:-]+="[^"<>&]*")*)(/?)>)re");
   std::vector<std::string> open;
@@ -93,7 +93,7 @@ TEST(Chart, DrawsAxesAlsoWithoutAnyPoint) {
   }
 }
 
-// The corners of the polyline, in pixels.
+// Corners of the polyline, in pixels.
 std::vector<Eigen::Vector2d> corners(const std::string& svg) {
   static const std::regex kPoint(R"((-?[0-9.]+),(-?[0-9.]+))");
   const std::size_t begin = svg.find("points=\"");

@@ -21,7 +21,7 @@ Timestamp longest_step(const std::vector<PosePair>& pairs) {
   return std::max(longest, 5 * mean);
 }
 
-// The estimate as it is aligned. Precondition: the report has an absolute error, of these pairs.
+// The aligned estimate. Precondition: the report has an absolute error of these pairs.
 std::vector<TracePoint> trace_of(const EvaluationReport& report, const std::vector<PosePair>& pairs) {
   std::vector<TracePoint> trace;
   for (std::size_t i = 0; i < pairs.size(); ++i) {

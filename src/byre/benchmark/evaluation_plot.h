@@ -6,9 +6,9 @@
 
 namespace byre {
 
-// An SVG picture: the true and the aligned estimated path from above, and below it the error of the position over time.
-// From above means along z, or along y where the truth is KITTI's, whose y points down. Precondition: the report has an
-// absolute error, of these trajectories.
+// SVG picture: true and aligned estimated path from above, and the position error over time below. The view is along z,
+// or along y for KITTI truth, whose y points down. Precondition: the report has an absolute error of these
+// trajectories.
 std::string evaluation_plot(const EvaluationReport& report, const Trajectory& estimate, const Trajectory& truth,
                             bool y_points_down);
 

@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-// Either is empty when no two poses are that far apart.
+// Leaves both empty when no two poses are that far apart.
 void note(const RelativePoseError& error, Figure& translation, Figure& rotation) {
   if (error.translation.count == 0) return;
   translation = error.translation.rmse;
@@ -49,7 +49,7 @@ void note_trust(const MissionErrors& errors, BehaviourMeasures& measures) {
   if (!errors.trusted.empty()) measures.trusted_map_error_max = position_statistics(errors.trusted).max;
 }
 
-// Empty for places in which the robot never was.
+// Empty if no time was spent in such places.
 Figure keyframes_per_minute(const KeyframeRate& rate) {
   if (rate.minutes <= 0.0) return std::nullopt;
   return rate.per_minute();

@@ -9,24 +9,24 @@
 
 namespace byre {
 
-// What a run is compared with.
+// Truth that a run is evaluated against.
 struct RunTruth {
-  const Trajectory& poses;          // true poses at the times of the recording
-  std::optional<MapAlignment> map;  // alignment of the run's offline map to the truth; empty for a run without one
-  Scale scale = Scale::fixed;       // free for one camera without a map
+  const Trajectory& poses;          // true poses at the recording's times
+  std::optional<MapAlignment> map;  // alignment of the run's offline map; empty without one
+  Scale scale = Scale::fixed;       // free for a monocular run without a map
 };
 
-// All but memory and CPU time, which the run itself does not tell.
+// All measures except memory and CPU time, which a MapRun does not contain.
 RunMeasures judge(const MapRun& run, const RunTruth& truth);
 
-// Where a run was at a time, and how far off.
+// Position and error of a run at a time.
 struct TracePoint {
   Timestamp time{};
   Eigen::Vector3d position_in_truth;
   double error = 0.0;  // metres
 };
 
-// In the map's frame where there is a map, else after alignment. Empty where that is impossible.
+// In the map's frame with a map, else after alignment. Empty if there is no alignment.
 std::vector<TracePoint> trace_of(const Trajectory& estimate, const RunTruth& truth);
 
 }  // namespace byre

@@ -20,7 +20,7 @@ Timestamp time_of(int frame) {
   return frame * kInterval;
 }
 
-// A circle of 2 m that rises, at 0.4 m/s.
+// A rising circle of radius 2 m at 0.4 m/s.
 Pose true_pose(int frame) {
   const double angle = 0.01 * frame;
   return {Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ())),
@@ -33,7 +33,7 @@ Trajectory truth() {
   return poses;
 }
 
-// A run in the frame of a map that lies 5 m along x in the truth, off by the same 10 mm along z everywhere.
+// The map's origin is 5 m along x in the truth; all poses have the same error of 10 mm along z.
 const Pose kTruthFromMap{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
 constexpr double kOffset = 0.01;  // metres
 
@@ -57,7 +57,7 @@ MappedFrame frame_with_pose(int index, double sigma) {
   return frame;
 }
 
-// Frames first to last have a pose.
+// Only frames first to last have a pose.
 MapRun run_with_poses(int first, int last, double sigma) {
   MapRun run;
   for (int i = 0; i < kFrames; ++i) {

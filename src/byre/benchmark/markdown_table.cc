@@ -6,7 +6,7 @@
 namespace byre {
 namespace {
 
-// Characters as a terminal shows them: bytes of UTF-8 that begin one.
+// Number of UTF-8 characters.
 std::size_t shown_length(std::string_view text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xc0U) != 0x80U; }));

@@ -6,10 +6,9 @@
 
 namespace byre {
 
-inline constexpr const char* kNothing = "–";  // the cell of what there is no figure of
+inline constexpr const char* kNothing = "–";  // cell without a figure
 
-// A table in Markdown whose columns are padded, so that it can be read as it is. Columns without any content are left
-// out.
+// A Markdown table with padded columns, readable as plain text. Empty columns are left out.
 class MarkdownTable {
  public:
   explicit MarkdownTable(std::vector<std::string> titles) : titles_(std::move(titles)) {}

@@ -10,7 +10,7 @@ namespace byre {
 bool reset_peak_memory() {
   malloc_trim(0);
   std::ofstream file("/proc/self/clear_refs");
-  file << "5" << std::flush;  // see proc(5)
+  file << "5" << std::flush;  // resets the peak, see proc(5)
   return file.good();
 }
 

@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// Straight from the system, for sanitizers keep freed memory of the heap for a while.
+// mmap instead of the heap, because sanitizers delay the release of freed heap memory.
 void use_for_a_moment(std::size_t bytes) {
   void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);

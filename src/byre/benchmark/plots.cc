@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-constexpr Timestamp kLongestStep = std::chrono::milliseconds(500);  // between poses; more is a gap in the line
+constexpr Timestamp kLongestStep = std::chrono::milliseconds(500);  // longer intervals between poses break the line
 
 const char* colour_of(Arm arm) {
   switch (arm) {
@@ -19,7 +19,7 @@ const char* colour_of(Arm arm) {
   return "";
 }
 
-// Pixels; the later is drawn on top, and both are seen where they coincide.
+// Pixels. The hybrid's line is drawn last and is narrower, so that both stay visible where they coincide.
 double width_of(Arm arm) {
   return arm == Arm::localise_only ? 3.4 : 1.6;
 }
@@ -30,7 +30,7 @@ std::string shown_name(Arm arm) {
   return name;
 }
 
-// The horizontal axes of the truth: EuRoC's z points up, KITTI's y points down.
+// Horizontal axes of the truth: z points up in EuRoC, y points down in KITTI.
 Eigen::Vector2d from_above(const Eigen::Vector3d& position, RecordingFormat format) {
   return {position.x(), format == RecordingFormat::kitti ? position.z() : position.y()};
 }

@@ -5,10 +5,10 @@
 
 namespace byre {
 
-// From above, in the frame of the truth: the truth in grey, and the final poses of each arm's first run.
+// View from above in the truth's frame: truth in grey, and final poses of each arm's first run.
 Chart path_chart(const CaseResult& result);
 
-// Over time: the error of the causal poses of each arm's first run.
+// Error over time of the causal poses of each arm's first run.
 Chart error_chart(const CaseResult& result);
 
 }  // namespace byre

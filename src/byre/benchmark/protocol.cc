@@ -134,7 +134,7 @@ PublishedFigures read_published(const YamlValue& value, const BenchmarkProtocol&
   return published;
 }
 
-// The entries of a list, each read by read(entry), under names that differ.
+// Reads each entry of a list by read(entry); names must differ.
 template <typename Read>
 auto read_named(const YamlValue& list, Read read) {
   std::vector<decltype(read(list))> result;

@@ -16,7 +16,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-// A protocol in a file that is there for one test.
+// Writes a protocol to a temporary file.
 class Protocols : public testing::Test {
  protected:
   ~Protocols() override { fs::remove(path_); }
@@ -26,7 +26,7 @@ class Protocols : public testing::Test {
     return read_benchmark_protocol(path_);
   }
 
-  // What is said of a protocol that is wrong.
+  // Error message of an invalid protocol.
   std::string fault_of(const std::string& yaml) const {
     try {
       read(yaml);

@@ -8,20 +8,20 @@
 
 namespace byre {
 
-// What the figures rest on beside the protocol; without it they cannot be compared with others.
+// Setting of a benchmark beside its protocol, needed to compare its figures with others.
 struct BenchmarkSetting {
   std::string protocol_file;
   std::string data;
   Pace pace = Pace::paced;
   int cores = 0;                                                       // cores of the machine
-  std::vector<std::pair<std::string, std::string>> changed_options{};  // names and values, other than by default
+  std::vector<std::pair<std::string, std::string>> changed_options{};  // names and values that differ from the defaults
 };
 
-// Tables in Markdown. The header says how the figures were made.
+// Markdown tables. The header states protocol and setting.
 std::string to_markdown(const BenchmarkResult& result, const BenchmarkProtocol& protocol,
                         const BenchmarkSetting& setting);
 
-// Everything: protocol, setting, maps, every figure of every run and their summaries, and what was published.
+// Everything: protocol, setting, maps, all figures of all runs with summaries, and published results.
 std::string to_json(const BenchmarkResult& result, const BenchmarkProtocol& protocol, const BenchmarkSetting& setting);
 
 }  // namespace byre

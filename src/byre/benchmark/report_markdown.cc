@@ -15,7 +15,7 @@ std::string number(double value, double scale, int digits) {
   return fmt::format("{:.{}f}", scale * value, digits);
 }
 
-// Mean, median and worst, or one figure where they agree; and of how many runs, where not all have it.
+// Mean, median and worst, or one figure if they agree; with the number of runs if some lack the figure.
 template <typename Measures>
 std::string cell(const std::vector<Measures>& runs, const Measure<Measures>& measure) {
   const std::optional<RunSummary> summary = summarise_runs(runs, measure);
@@ -135,7 +135,7 @@ std::string skipped_list(const BenchmarkResult& result) {
   return text;
 }
 
-// Those whose figures are shown.
+// Notes on the published results that are shown.
 std::string notes(const BenchmarkResult& result, const BenchmarkProtocol& protocol) {
   std::string text;
   for (const PublishedFigures& published : protocol.published) {

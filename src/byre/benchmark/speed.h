@@ -12,49 +12,49 @@
 
 namespace byre {
 
-// A stage of a frame: how it is called, and where its time is kept.
+// A stage of a frame: its name and its field of StageSeconds.
 struct FrameStage {
   const char* name;
   const char* key;  // in JSON
   double StageSeconds::*seconds;
 };
 
-std::span<const FrameStage> frame_stages();  // in order; the last one is the whole frame
+std::span<const FrameStage> frame_stages();  // in order; the last is the whole frame
 
-// What is run to measure its speed.
+// Input of a speed measurement.
 struct SpeedCase {
   std::filesystem::path recording;
   FrameRange range;
   OpenOptions open;
-  std::optional<std::filesystem::path> map;  // the offline map of a mission; empty: plain SLAM
-  EngineOptions engine;                      // with a vocabulary, without a map
+  std::optional<std::filesystem::path> map;  // offline map of a mission; empty: plain SLAM
+  EngineOptions engine;                      // with a vocabulary and without a map
   int cores = 0;                             // cores of the machine
 };
 
-// What one run cost.
+// Cost of one run.
 struct SpeedMeasures {
-  int frames = 0;  // frames that were processed
+  int frames = 0;  // processed frames
   int with_pose = 0;
-  int keyframes = 0;              // keyframes that were made
-  int late = 0;                   // frames that took longer than their deadline, where there is one
-  int without_online_points = 0;  // see FrameCounts, as the next
+  int keyframes = 0;              // added keyframes
+  int late = 0;                   // frames that missed their deadline, if there is one
+  int without_online_points = 0;  // see FrameCounts, like the next
   int with_left_alone = 0;
-  std::vector<TimeSummary> stages;            // one for each of frame_stages()
+  std::vector<TimeSummary> stages;            // one per frame_stages()
   TimeSummary jobs;                           // mapping jobs
   std::optional<double> first_pose_seconds;   // wall time from opening recording and map to the first pose
-  double wall_seconds = 0.0;                  // wall time of it all
-  double cpu_seconds = 0.0;                   // seconds in all threads, decoding and finishing included
-  std::optional<std::uint64_t> instructions;  // in all threads, outside the kernel; empty where they are not told
-  std::optional<double> peak_memory_mb;       // most resident memory of the program; empty where it is not told
+  double wall_seconds = 0.0;                  // total wall time
+  double cpu_seconds = 0.0;                   // in all threads, including decoding and finishing
+  std::optional<std::uint64_t> instructions;  // in all threads, user space; empty if unavailable
+  std::optional<double> peak_memory_mb;       // peak resident memory of the program; empty if unavailable
 };
 
-// Runs it once. A run that is stopped is measured as far as it came. Throws InputError when the recording or the map
-// cannot be opened.
+// Runs once. A stopped run is measured up to the stop. Throws InputError when the recording or the map cannot be
+// opened.
 SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks);
 
-// A table in Markdown of the run whose mean frame time is the median, with the range of what several runs measured.
+// Markdown table of the run with the median mean frame time, with the range over all runs.
 std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> runs);
 
-std::string speed_json(const SpeedCase& what, const std::vector<SpeedMeasures>& runs);  // every run
+std::string speed_json(const SpeedCase& what, const std::vector<SpeedMeasures>& runs);  // all runs
 
 }  // namespace byre

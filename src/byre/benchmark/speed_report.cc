@@ -19,7 +19,7 @@ double mean_frame_ms(const SpeedMeasures& run) {
   return run.stages.back().mean_ms;
 }
 
-// The figure of the median run, and where runs differ the range of all.
+// Figure of the median run, with the range over all runs if they differ.
 std::string cell_with_range(const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median,
                             const SpeedFigure& figure, int digits) {
   const auto shown = [digits](double value) { return fmt::format("{:.{}f}", value, digits); };

@@ -12,23 +12,22 @@
 
 namespace byre {
 
-// A value in a YAML file that knows where it stands, so that whatever is wrong with it is an InputError with the place
-// "FILE:LINE".
+// A YAML value with its position, so that errors in it are InputErrors at "FILE:LINE".
 class YamlValue {
  public:
-  // The whole file: named fields. Throws InputError when it cannot be read, is no YAML, or is something else.
+  // Loads a file of named fields. Throws InputError if it cannot be read or is not of this form.
   static YamlValue load(const std::filesystem::path& path);
 
-  // Each throws InputError when the value is of another kind, or outside the limits, which are included.
+  // Each throws InputError if the value is of another kind or outside the inclusive limits.
   std::string text() const;
   double number(double least, double most) const;
   int whole_number(int least, int most) const;
-  std::vector<YamlValue> entries() const;                        // entries of a list that is not empty
-  std::vector<std::pair<YamlValue, YamlValue>> fields() const;   // names and values, as they stand in the file
-  YamlValue operator[](const std::string& name) const;           // value of a field that must be there
-  std::optional<YamlValue> find(const std::string& name) const;  // value of a field that may be missing
+  std::vector<YamlValue> entries() const;                        // entries of a list, not empty
+  std::vector<std::pair<YamlValue, YamlValue>> fields() const;   // names and values in file order
+  YamlValue operator[](const std::string& name) const;           // value of a required field
+  std::optional<YamlValue> find(const std::string& name) const;  // value of an optional field
 
-  // Throws InputError for a field that is none of these, and for one that is given twice.
+  // Throws InputError for a field not among names, or given twice.
   void require_fields(std::initializer_list<std::string_view> names) const;
 
   [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const;

@@ -26,16 +26,16 @@ namespace fs = std::filesystem;
 
 constexpr int kStages = 6;
 
-// The barn as the first visit left it known.
+// Result of the first visit.
 struct KnownBarn {
-  StoredMap stored;  // lies on the plan
+  StoredMap stored;  // registered on the plan
   FloorPlan plan;
-  Trajectory path;  // path of the first visit, in the map
+  Trajectory path;  // path of the first visit in the map's frame
 };
 
 CowshedRecordingOptions visit_options(const DemoOptions& options, int mission) {
-  constexpr double kMoved = 0.5;         // share of the things
-  constexpr double kSecondVisit = 1.25;  // times the first one's duration: the way into the store
+  constexpr double kMoved = 0.5;         // share of things moved between visits
+  constexpr double kSecondVisit = 1.25;  // duration relative to the first visit, for the way into the store
   CowshedRecordingOptions visit;
   visit.barn.seed = options.seed;
   visit.barn.mission = mission;
@@ -46,7 +46,7 @@ CowshedRecordingOptions visit_options(const DemoOptions& options, int mission) {
   return visit;
 }
 
-// In the store that the first visit did not see, from the first frame on.
+// Time spans in the store, which the first visit did not see; from the first frame.
 std::vector<TimeSpan> spans_off_the_map(const Trajectory& truth) {
   std::vector<TimeSpan> spans;
   bool was_off = false;
@@ -60,7 +60,7 @@ std::vector<TimeSpan> spans_off_the_map(const Trajectory& truth) {
   return spans;
 }
 
-// Where a run lies that was told its true start and nothing else.
+// Alignment of a run by its true first pose alone.
 MapAlignment alignment_at_start(const Trajectory& published, const Trajectory& truth) {
   const std::vector<PosePair> pairs = associate(published, truth, {});
   if (pairs.empty()) return {};
@@ -197,13 +197,13 @@ class DemoRunner {
 
   fs::path map_file() const { return options_.output / "barn.byre"; }
 
-  // Constant after construction; the first two borrowed.
+  // Constant after construction; options and hooks are borrowed.
   const DemoOptions& options_;
   const DemoHooks& hooks_;
   const Vocabulary vocabulary_;
 
   int stage_ = 0;
-  KnownBarn barn_;  // once the first visit is mapped
+  KnownBarn barn_;  // set once the first visit is mapped
   DemoFindings findings_;
 };
 

@@ -13,15 +13,15 @@
 namespace byre {
 
 struct DemoOptions {
-  std::filesystem::path output = "byre_demo";  // folder for the page, the recordings and what is made of them
+  std::filesystem::path output = "byre_demo";  // folder for page, recordings and results
   std::uint64_t seed = 1;                      // seed of the barn
-  double duration_s = 50.0;                    // seconds of the first visit; the second takes a quarter longer
+  double duration_s = 50.0;                    // seconds of the first visit; the second is a quarter longer
   double frame_rate_hz = 8.0;
   int image_divisor = 1;                            // 1: 752 x 480 pixels
-  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary that comes with byre
+  std::optional<std::filesystem::path> vocabulary;  // empty: byre's own
 };
 
-// How the work of a demonstration is done, so that whoever asked for it can tell how far it is.
+// Callbacks for rendering, running and progress.
 struct DemoHooks {
   std::function<bool()> should_stop;
   std::function<void(const std::string& stage)> before_stage;  // "1 of 6: rendering the first visit, by day"
@@ -29,9 +29,9 @@ struct DemoHooks {
   std::function<MapRun(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks)> run;
 };
 
-// Renders two visits to the simulated cowshed, maps the first, lays its map on the floor plan, and runs the second with
-// each arm. Empty when it was stopped. Throws InputError when the folder holds recordings already, and runtime_error
-// when the first visit gives no map.
+// Renders two visits to the simulated cowshed, maps the first, registers its map on the floor plan, and runs the second
+// with each arm. Empty when stopped. Throws InputError when the folder already holds recordings, and runtime_error when
+// the first visit gives no map.
 std::optional<DemoFindings> run_demo(const DemoOptions& options, const DemoHooks& hooks);
 
 }  // namespace byre

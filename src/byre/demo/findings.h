@@ -18,14 +18,14 @@ struct DemoMoment {
   int offline_inliers = 0;
   int online_inliers = 0;
   double position_sigma = 0.0;  // metres, see Health
-  std::optional<double> error;  // metres, of the position as published on the plan; empty without a pose there
+  std::optional<double> error;  // metres, of the published position on the plan; empty without a pose
 };
 
-// The second visit as one of the arms saw it.
+// Run of the second visit by one arm.
 struct DemoArm {
   Arm arm = Arm::hybrid;
   RunMeasures measures;
-  double close_share = 0.0;  // share of all frames that published a position within kCloseMetres of the truth
+  double close_share = 0.0;  // share of all frames with a published position within kCloseMetres of the truth
   std::vector<DemoMoment> moments;
 };
 
@@ -36,7 +36,7 @@ struct TimeSpan {
   double end_s = 0.0;
 };
 
-// What a demonstration came to.
+// Results of a demonstration.
 struct DemoFindings {
   int map_frames = 0;  // frames of the first visit
   int map_keyframes = 0;
@@ -44,10 +44,10 @@ struct DemoFindings {
   double map_ate = 0.0;  // metres RMSE, final poses
   int picks = 0;
   std::vector<DemoArm> arms;
-  std::vector<TimeSpan> off_the_map;  // while the robot was where the first visit never was
+  std::vector<TimeSpan> off_the_map;  // spans in which the robot was outside the first visit's area
   std::string plan_picture;           // SVG
   std::string camera_picture;         // SVG
-  std::optional<double> camera_s;     // when the latter was taken, from the first frame
+  std::optional<double> camera_s;     // time of the camera picture, from the first frame
   double rendering_s = 0.0;           // wall time
   double total_s = 0.0;
 };

@@ -6,11 +6,10 @@
 
 namespace byre {
 
-// The page that shows a demonstration: one HTML file that needs no other, and no network. Dark where the reader's
-// system is.
+// The demonstration as one self-contained HTML page that needs no network. Follows the system's dark mode.
 std::string demo_page(const DemoFindings& findings);
 
-// A picture as the address of an image that holds it.
+// Data URL of a picture.
 std::string data_address(const std::string& svg);
 
 }  // namespace byre

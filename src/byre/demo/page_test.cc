@@ -16,7 +16,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-// Elements that are not closed in their order, or closed and not open.
+// Elements that are not closed in their order, or closed but not open.
 std::vector<std::string> unbalanced_elements(const std::string& html) {
   std::vector<std::string> open;
   std::vector<std::string> faults;
@@ -47,7 +47,7 @@ TEST(DemoPage, HoldsTableBothPicturesAndTimeline) {
 
 TEST(DemoPage, NeedsNothingButItself) {
   const std::string html = demo_page(small_findings());
-  EXPECT_THAT(html, Not(HasSubstr("http:")));  // in the pictures' addresses it is escaped
+  EXPECT_THAT(html, Not(HasSubstr("http:")));  // escaped in the pictures' data URLs
   EXPECT_THAT(html, Not(HasSubstr("https:")));
   EXPECT_THAT(html, Not(HasSubstr("url(")));
   EXPECT_THAT(html, Not(HasSubstr("<script")));

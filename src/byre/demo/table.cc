@@ -8,11 +8,11 @@
 namespace byre {
 namespace {
 
-// A row as it is made: the figure that arms are compared by, and what is shown of it.
+// A table row: the figure that arms are compared by, and its text.
 struct RowKind {
   std::string measure;
   std::function<Figure(const DemoArm&)> figure;
-  std::function<std::string(const DemoArm&)> text;  // where the figure is not empty
+  std::function<std::string(const DemoArm&)> text;  // for non-empty figures
   bool more_is_better = false;
 };
 
@@ -20,7 +20,7 @@ std::string percent(double share) {
   return fmt::format("{:.1f}", 1e2 * share);
 }
 
-// Below a metre with a decimal, above without.
+// One decimal below a metre, none above.
 std::string centimetres(double metres) {
   return fmt::format("{:.{}f}", 1e2 * metres, metres < 1.0 ? 1 : 0);
 }
@@ -54,8 +54,7 @@ RowKind time_row() {
           }};
 }
 
-// A figure of verdicts: without a map they are about a frame of the run's own, and say nothing of the place on the
-// plan.
+// A figure of verdicts. Empty without a map: verdicts then concern the run's own frame, not the plan.
 std::function<Figure(const DemoArm&)> on_the_plan(Figure BehaviourMeasures::*figure) {
   return [figure](const DemoArm& arm) { return arm.arm == Arm::no_map ? Figure() : arm.measures.behaviour.*figure; };
 }
@@ -74,7 +73,7 @@ std::vector<RowKind> row_kinds() {
           time_row()};
 }
 
-// The best figure's arm is marked, and those that read the same.
+// Marks the best arm and those with the same text.
 DemoRow row_of(const RowKind& kind, const std::vector<DemoArm>& arms) {
   DemoRow row{kind.measure, {}};
   const DemoArm* best = nullptr;

@@ -7,21 +7,21 @@
 
 namespace byre {
 
-// What one row of the comparison says of an arm.
+// One cell of the comparison.
 struct DemoCell {
-  std::string text;  // a dash where it does not apply
+  std::string text;  // a dash if not applicable
   bool is_best = false;
 };
 
 struct DemoRow {
-  std::string measure;  // with the unit
+  std::string measure;  // with unit
   std::vector<DemoCell> cells;
 };
 
-// The arms side by side, a cell for each in their order.
+// A comparison with one cell per arm, in their order.
 std::vector<DemoRow> demo_table(const std::vector<DemoArm>& arms);
 
-// "Hybrid", as a page calls it.
+// "Hybrid", as on the page.
 std::string shown_name(Arm arm);
 
 // The table for a terminal.

@@ -14,7 +14,7 @@
 namespace byre {
 namespace {
 
-// Pixels. Panels lie one below the other.
+// Pixels. Panels are stacked vertically.
 constexpr double kWidth = 1000.0, kLeft = 96.0, kRight = 16.0;
 constexpr double kTitle = 30.0;  // above a panel
 constexpr double kBand = 16.0, kBandGap = 6.0;
@@ -22,8 +22,8 @@ constexpr double kBandsTop = kTitle, kPointsTop = 116.0, kErrorsTop = 306.0;
 constexpr double kPointsHeight = 150.0, kErrorsHeight = 190.0;
 constexpr double kBottom = kErrorsTop + kErrorsHeight;
 constexpr double kHeight = kBottom + 44.0;
-constexpr double kLeastError = 1e-3, kMostError = 30.0;  // metres: what the axis of errors reaches from and to
-constexpr double kLongestGap_s = 0.5;                    // between frames of a line; more breaks it
+constexpr double kLeastError = 1e-3, kMostError = 30.0;  // range of the error axis, metres
+constexpr double kLongestGap_s = 0.5;                    // longest time between frames of a line without a gap
 
 struct TimeAxis {
   double duration_s = 1.0;
@@ -57,7 +57,7 @@ std::string class_of(const DemoMoment& moment) {
   return moment.has_pose ? std::string(to_string(moment.verdict)) : "none";
 }
 
-// A bar of equal frames each time, so that thousands of frames are few elements.
+// One bar per run of equal verdicts, to limit the number of elements.
 std::string verdict_band(const DemoArm& arm, double top, const TimeAxis& axis) {
   std::string svg = text_at(kLeft - 8.0, top + 12.5, shown_name(arm.arm), "end");
   for (std::size_t begin = 0; begin < arm.moments.size();) {
@@ -76,24 +76,24 @@ std::string verdicts_panel(const DemoFindings& findings, const TimeAxis& axis) {
   std::string svg = text_at(kLeft, kBandsTop - 12.0, "Verdict on each frame", "title");
   double top = kBandsTop;
   for (const DemoArm& arm : findings.arms) {
-    if (arm.arm == Arm::no_map) continue;  // its verdicts are not about the plan
+    if (arm.arm == Arm::no_map) continue;  // its verdicts do not concern the plan
     svg += verdict_band(arm, top, axis);
     top += kBand + kBandGap;
   }
   return svg;
 }
 
-// Where values of a panel lie, from the lowest at its bottom to the highest at its top.
+// Vertical axis of a panel, from the lowest value at its bottom.
 struct ValueAxis {
   double top = 0.0;
   double height = 0.0;
-  double least = 0.0;  // as drawn
+  double least = 0.0;  // log10 of the value on a logarithmic axis
   double most = 1.0;
 
   double y(double drawn) const { return top + height * (most - std::clamp(drawn, least, most)) / (most - least); }
 };
 
-// A line through what value gives of the moments; it breaks where that is empty.
+// Line through the non-empty values of the moments, with gaps at empty ones.
 std::string line_of(const std::vector<DemoMoment>& moments, const std::function<Figure(const DemoMoment&)>& value,
                     const ValueAxis& values, const TimeAxis& axis, std::string_view kind) {
   std::string path;
@@ -155,7 +155,7 @@ std::string errors_panel(const DemoFindings& findings, const TimeAxis& axis) {
   return hybrid == nullptr ? svg : svg + line_of(hybrid->moments, sigma, values, axis, "sigma");
 }
 
-// Behind the panels: seconds, and where the robot was off the map.
+// Background of the panels: time grid and spans off the map.
 std::string background(const DemoFindings& findings, const TimeAxis& axis) {
   std::string svg;
   for (const TimeSpan& span : findings.off_the_map) {

@@ -6,9 +6,8 @@
 
 namespace byre {
 
-// What became of each frame of the second visit, over time: the verdict of each arm, the points that held the hybrid's
-// pose, and how far off the published positions were. An SVG element to stand in a page, whose colours come from the
-// page's style sheet by class (see demo_page.cc).
+// Timeline of the second visit: verdict of each arm, points that hold the hybrid's pose, and errors of published
+// positions. An SVG element for embedding; its colours come from the page's style sheet by class (page.cc).
 std::string demo_timeline(const DemoFindings& findings);
 
 }  // namespace byre

@@ -16,7 +16,7 @@ int count(const std::string& text, const std::string& part) {
   return found;
 }
 
-// The path of a line of a class.
+// SVG path of the first line of a class.
 std::string line_of(const std::string& svg, const std::string& kind) {
   const std::size_t begin = svg.find("class=\"line " + kind + "\"");
   return begin == std::string::npos ? "" : svg.substr(begin, svg.find("/>", begin) - begin);
