@@ -4,7 +4,7 @@
 
 namespace byre {
 
-// What operator new has handed out to this thread, whether freed again or not.
+// Total of operator new in this thread, including freed memory.
 struct Allocations {
   std::size_t count = 0;
   std::size_t bytes = 0;

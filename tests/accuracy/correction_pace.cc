@@ -1,7 +1,7 @@
-// How long frames take while the whole map is corrected beside them: frames come every 50 ms, and every loop found is
-// made to correct the whole map, however small its drift.
+// Measures frame times while corrections of the whole map run in parallel: frames come every 50 ms, and every loop
+// found corrects the whole map, however small its drift.
 // Usage: byre_correction_pace RECORDING
-// Prints each correction with the frames that came meanwhile, and the slowest of them. Exit code 2: wrong usage.
+// Prints each correction with the frames during it and the slowest of them. Exit code 2: wrong usage.
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
@@ -32,7 +32,7 @@ void run(const char* folder) {
   Session session(extractor.rig(), options, Lanes(make_live_executor(), make_live_executor()),
                   Vocabulary::load(default_vocabulary_path()));
   double copy_ms = 0.0, slowest_ms = 0.0;  // times of the frame that began the correction, and of the slowest since
-  int frames = -1;                         // frames since the correction began; -1: there is none
+  int frames = -1;                         // frames since the correction began; -1: no correction
   const Clock::time_point begin = Clock::now();
   for (int i = 0; i < recording->size(); ++i) {
     const auto images = recording->read(i);

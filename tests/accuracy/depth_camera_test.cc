@@ -1,4 +1,4 @@
-// A real recording by a depth camera turned by hand; one frame in six has a depth image.
+// A real recording of a hand-turned depth camera; one frame in six has a depth image.
 
 #include "mapped_recording.h"
 
@@ -16,7 +16,7 @@ TEST(DepthCameraInFreiburg1, FollowsEveryFrameInMetresThoughFewHaveDepth) {
   if (!folder) GTEST_SKIP() << missing(kRecording);
   const MappedRecording mapped = map_recording(*folder, {}, make_paced_executor(4), {.camera = CameraChoice::rgbd});
   EXPECT_LE(frames_without_pose(mapped), 5);
-  // The error is a part of 52 mm of movement about the middle while the camera turns; its shutter rolls.
+  // The path spreads 52 mm about its mean while the camera turns, with a rolling shutter.
   EXPECT_LE(position_error(mapped.final, load_truth(*folder)), 0.032);
 }
 

@@ -1,6 +1,6 @@
-// One hand-held camera at one desk, recorded twice (TUM RGB-D): a walk around it is mapped, and in the mission the
-// camera is turned by hand on the spot. Both truths are in one frame, so poses in the map's frame are judged as they
-// come. The camera has a rolling shutter, of which its calibration says nothing.
+// One hand-held camera at one desk, recorded twice (TUM RGB-D): a walk around the desk is mapped; in the mission the
+// camera is turned by hand on the spot. Both truths are in one frame, so errors in the map's frame need no further
+// alignment. The camera has a rolling shutter that its calibration does not mention.
 
 #include "mapped_recording.h"
 
@@ -23,14 +23,14 @@ namespace {
 
 constexpr const char* kDesk = "tum/freiburg1_desk";
 constexpr const char* kTurns = "tum/freiburg1_rpy";
-constexpr double kAsGood = 1.1;  // times the error of what it is compared with
+constexpr double kAsGood = 1.1;  // largest ratio of errors
 
 struct Poses {
   Trajectory causal;
   Trajectory final;
 };
 
-// As the program does it: on a map that knows the camera, only the shutter is refined further.
+// Like the program: with the map's calibration of the camera, only the readout time is refined further.
 void refine(Session& session, const Calibration& given, const std::optional<RefinedCalibration>& known) {
   if (known) {
     session.refine_readout(*known);
@@ -52,7 +52,7 @@ Poses follow(Session& session, Recording& recording, Extractor& extractor) {
   return poses;
 }
 
-// A map that has its size from the truth, as one camera knows none.
+// A monocular map, scaled by the truth.
 struct DeskMap {
   std::shared_ptr<const OfflineMap> map;
   Similarity truth_from_map;
@@ -107,12 +107,12 @@ class DeskMissions : public testing::Test {
     limit_image_threads(1);
   }
 
-  // In the map's frame, metres.
+  // RMSE in the map's frame, metres.
   static double error_in_map(const Trajectory& poses) {
     return absolute_trajectory_error(associate(poses, truth(), {}), desk().truth_from_map).translation.rmse;
   }
 
-  // Laid on the truth, its size too, metres.
+  // RMSE after Sim(3) alignment, metres.
   static double error_of_shape(const Trajectory& poses) {
     return absolute_trajectory_error(associate(poses, truth(), {}), Scale::free).value().translation.rmse;
   }

@@ -16,7 +16,7 @@ MappedRecording map_all(std::unique_ptr<Executor> executor) {
   return map_recording(*find_recording(kRecordingName), {}, std::move(executor));
 }
 
-// The truth's clock is late by about 7.5 ms; what of the error is not due to that shows once it is corrected.
+// The truth's clock is late by about 7.5 ms; this correction shows the error without it.
 AssociationOptions corrected_clock() {
   AssociationOptions options;
   options.time_offset = std::chrono::microseconds(-7500);
@@ -30,7 +30,7 @@ class EurocMh01 : public testing::Test {
     truth_ = load_truth(*find_recording(kRecordingName));
   }
 
-  // The run that most tests judge, made once.
+  // The run that most tests evaluate, made once.
   static const MappedRecording& inline_run() {
     static const MappedRecording mapped = map_all(make_inline_executor());
     return mapped;
@@ -71,7 +71,7 @@ TEST_F(EurocMh01, PacedMappingGivesTheSameBytesAgainAndIsHardlyWorse) {
   EXPECT_LE(final_error(once), 1.5 * final_error(inline_run()));
 }
 
-// Frames come as fast as they can be worked on, faster than the camera's.
+// Frames are fed without pause, faster than the camera's rate.
 TEST_F(EurocMh01, LiveMappingIsHardlyWorse) {
   const MappedRecording live = map_all(make_live_executor());
   EXPECT_EQ(frames_without_pose(live), 0);

@@ -1,4 +1,4 @@
-// KITTI odometry 00 (Geiger 2012), its first 60 rectified stereo pairs: a car that drives 55 m along a street.
+// KITTI odometry 00 (Geiger 2012), its first 60 rectified stereo pairs: a car drives 55 m along a street.
 
 #include "mapped_recording.h"
 
@@ -32,8 +32,8 @@ TEST_F(Kitti00, EveryFrameHasAPose) {
   EXPECT_EQ(frames_without_pose(inline_run()), 0);
 }
 
-// Only frames 17 to 38 are judged, where the truth is smooth. Its first 17 poses are a constant step of 0.859 m apart,
-// although the images show the car accelerating from 0.68 m a frame, and it jumps at frames 39 to 45.
+// Evaluates frames 17 to 38 only, where the truth is smooth. Its first 17 poses have a constant step of 0.859 m,
+// although the images show an acceleration from 0.68 m per frame, and it jumps at frames 39 to 45.
 TEST_F(Kitti00, FinalTrajectoryIsTrueToCentimetresWhereTheTruthIsSmooth) {
   ASSERT_EQ(frames_without_pose(inline_run()), 0);
   EXPECT_LE(position_error(part(inline_run().final, 17, 38), load_truth(*find_recording(kSequence))), 0.03);

@@ -1,5 +1,5 @@
-// Frames of real recordings looked for in a map without any guess: 100 stereo pairs of EuRoC V1_01 spread over its
-// flight, every second of which is mapped from its true pose, and MH_01, whose first half is mapped by byre itself.
+// Localisation of real frames without a pose prior: 100 stereo pairs of EuRoC V1_01 spread over its flight, every
+// second one mapped at its true pose; and MH_01, whose first half byre maps.
 
 #include "mapped_recording.h"
 
@@ -26,7 +26,7 @@ constexpr const char* kSparse = "euroc/V1_01_easy_sparse";
 constexpr const char* kHall = "euroc/MH_01_easy";
 constexpr const char* kElsewhere = "vocabulary";
 
-// A map with its words, ready to look for frames in it.
+// A map with words, ready for localisation.
 struct KnownPlace {
   explicit KnownPlace(const Map& mapped) {
     stored.map = offline_copy(mapped);
@@ -48,7 +48,7 @@ struct PosedFrames {
   std::vector<PosedFrame> frames;
 };
 
-// All frames of a recording whose pose is known, extracted.
+// Extracts all frames with a true pose.
 PosedFrames posed_frames(const char* name, const FrameRange& range) {
   limit_image_threads(1);
   const auto recording = open_recording(*find_recording(name), range);
@@ -78,7 +78,7 @@ class LocalisationInV101 : public testing::Test {
     return frames;
   }
 
-  // Every second frame, from the first or from the second.
+  // Every second frame, starting with frame first.
   static std::vector<PosedFrame> half(std::size_t first) {
     std::vector<PosedFrame> frames;
     for (std::size_t i = first; i < all().frames.size(); i += 2) frames.push_back(all().frames[i]);
@@ -150,7 +150,7 @@ TEST(LocalisationInMh01, FindsTheSecondHalfOfAFlightInTheFirst) {
   }
   EXPECT_GE(static_cast<double>(found.size()), 0.99 * static_cast<double>(wanted.frames.size()));
 
-  // The map is aligned to the truth by its own keyframes, once, and not by what was found in it.
+  // The map is aligned to the truth once, by its own keyframes, not by localised frames.
   const Trajectory truth = load_truth(*find_recording(kHall));
   Trajectory keyframes;
   for (const KeyframeId id : place.stored.map.keyframe_ids()) {

@@ -1,4 +1,4 @@
-// Looks for loops in a kept map as mapping does, with place recognition disturbed, and judges each by the truth.
+// Searches loops in a saved map as mapping does, with disturbed place recognition, and compares each with the truth.
 // Usage: byre_loop_noise MAP TRUTH [SEEDS]
 // MAP was made with "byre map --no-loops -o MAP"; TRUTH is the trajectory of its recording, or the recording itself.
 // Seed 0 is undisturbed; with the others candidates come in random order and 30 % of them are missing.
@@ -19,7 +19,7 @@
 namespace byre {
 namespace {
 
-// A false loop is one that says something else than the truth by more than this.
+// Largest error of a loop's relative pose; a larger one makes it false.
 constexpr double kMaxShift = 0.2;  // metres
 constexpr double kMaxTurn = 0.05;  // radians
 
@@ -30,7 +30,7 @@ std::optional<Pose> true_camera_from_world(const Map& map, KeyframeId id, const 
   return inverse(*world_from_body * map.rigs()[static_cast<std::size_t>(keyframe.rig)].body_from_camera);
 }
 
-// What the loop says of where its keyframes lie to each other, compared with the truth.
+// Error of a loop's relative pose between its keyframes.
 std::optional<Pose> error_of(const LoopEdge& loop, const Map& map, const Trajectory& truth) {
   const auto keyframe = true_camera_from_world(map, loop.keyframe, truth);
   const auto place = true_camera_from_world(map, loop.place, truth);

@@ -13,10 +13,10 @@
 
 namespace byre {
 
-// What byre makes of a recording, with the options a user gets. Trajectories are world_from_body.
+// Result of a run on a recording with default options. Trajectories are world_from_body.
 struct MappedRecording {
   std::vector<Timestamp> frame_times;
-  Trajectory causal;  // poses as they were published when their frame came
+  Trajectory causal;  // published poses
   Trajectory final;   // poses of all these frames after the last correction
   Map map{Origin::online};
 };
@@ -24,22 +24,22 @@ struct MappedRecording {
 MappedRecording map_recording(const std::filesystem::path& folder, const FrameRange& range,
                               std::unique_ptr<Executor> executor, const OpenOptions& options = {});
 
-// Frames that have no final pose.
+// Number of frames without a final pose.
 int frames_without_pose(const MappedRecording& mapped);
 
-// Root mean square of the position error after rigid alignment, metres; infinite when the estimate cannot be aligned.
+// RMSE of positions after rigid alignment, metres; infinite when alignment is impossible.
 double position_error(const Trajectory& estimate, const Trajectory& truth, const AssociationOptions& options = {});
 
-// The bytes of the file that the trajectory is written to.
+// Content of the file that the trajectory is written to.
 std::string written(const Trajectory& trajectory);
 
-// Where a real recording lies; empty when it is not there.
+// Folder of a real recording; empty when it is missing.
 std::optional<std::filesystem::path> find_recording(const std::filesystem::path& name);
 
-// Why a test without its recording is skipped, and how to have it run.
+// Skip message for a missing recording, with the remedy.
 std::string missing(const std::filesystem::path& name);
 
-// What byre brings along.
+// byre's own vocabulary.
 const Vocabulary& shipped_vocabulary();
 
 }  // namespace byre

@@ -1,5 +1,5 @@
-// One camera alone: a real recording mapped from nothing, and a turn on the spot, which tells one camera no distances,
-// rendered here.
+// Monocular mapping: a real recording from scratch, and a rendered rotation on the spot, which gives one camera no
+// depth.
 
 #include "mapped_recording.h"
 
@@ -63,8 +63,8 @@ TEST(OneCameraInMh01, BeginsWithinTwoSecondsAndFollowsEveryFrameToMillimetres) {
   EXPECT_LE(error->translation.rmse, 0.008);
 }
 
-// Once around about the left camera's own centre, in a room of its own; begun so many seconds later, so that no image
-// of one turn is that of another.
+// One turn about the left camera's centre in a rendered room. later_s shifts the times, so that no image of one turn
+// equals one of another.
 class TurnOnTheSpot : public testing::Test {
  protected:
   static Trajectory turn(double later_s) {
@@ -109,7 +109,7 @@ TEST_F(TurnOnTheSpot, IsFollowedFrameByFrameOnAStereoMap) {
   const Trajectory truth = turn(100.025);
   const auto reports = run(mission, left_alone(kCalibration), truth);
   EXPECT_THAT(has_pose(reports), Each(true));
-  // The map's frame is the body at its first frame.
+  // The map's frame is the body frame of the first image.
   const Pose truth_from_map = turn(0.0).front().world_from_body;
   for (std::size_t i = 0; i < reports.size(); ++i) {
     if (!reports[i].map_from_body) continue;

@@ -1,5 +1,5 @@
-// A recording rendered here, of half EuRoC's resolution and with exact truth: from image files to a trajectory wherever
-// byre is built.
+// A rendered recording at half of EuRoC's resolution with exact truth: tests the way from image files to a trajectory
+// without external data.
 
 #include "mapped_recording.h"
 

@@ -1,4 +1,4 @@
-// Commands on live cameras, which a stand-in for V4L2 plays: made-up images always, real ones where they are at hand.
+// Commands on live cameras, simulated by a V4L2 stand-in that plays rendered images, and real ones if available.
 
 #include "byre/calibration_file.h"
 #include "byre/cli/shared/program_fixture.h"
@@ -44,7 +44,7 @@ class LiveCamera : public ProgramTest {
     for (const auto& [name, value] : settings_) unsetenv(("BYRE_STAND_IN_" + name).c_str());
   }
 
-  // What the made-up cameras do from now on, and the calibration they have, as calibration.yaml.
+  // Settings of the simulated cameras from now on; writes their calibration to calibration.yaml.
   void plug_in(const fs::path& recording, Settings settings) {
     settings["RECORDING"] = recording.string();
     for (const auto& [name, value] : settings) setenv(("BYRE_STAND_IN_" + name).c_str(), value.c_str(), 1);
@@ -53,8 +53,7 @@ class LiveCamera : public ProgramTest {
     setenv("LD_PRELOAD", BYRE_STAND_IN, 1);
   }
 
-  // Frames of the recording that the program wrote, against those that were played, which stamps of V4L2 know to the
-  // microsecond.
+  // Compares frames of the written recording with those played. V4L2 timestamps have a resolution of one microsecond.
   void expect_same(const fs::path& written, const fs::path& played, int first, int count) const {
     unsetenv("LD_PRELOAD");
     const auto recorded = open_recording(folder_ / written, {});
@@ -207,7 +206,7 @@ TEST_F(LiveCamera, IsExposedWithinTheLimit) {
   EXPECT_LE(ms, 6.0) << outcome.output;
 }
 
-// Positions on a map, of a run on live cameras and of the recording that they play.
+// Compares positions of a live run on a map with those of a run on the recording that the cameras play.
 void expect_same_path(const Trajectory& live, const Trajectory& played, double tolerance) {
   ASSERT_GE(live.size(), 5u) << "however slow the machine is";
   double worst = 0.0;

@@ -24,7 +24,7 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-// The numbers behind the device's name in a list "left:3,right:5".
+// Numbers after a device's name in a list "left:3,right:5".
 std::vector<std::vector<int>> numbers_for(const std::string& device, const char* name) {
   std::vector<std::vector<int>> found;
   for (const std::string& entry : split(setting(name), ',')) {
@@ -120,7 +120,7 @@ bool Device::open() {
   return true;
 }
 
-// As it is with nobody using it; the recording goes on.
+// State of a closed device; its recording continues.
 Device Device::stopped() const {
   Device device = *this;
   device.is_open_ = device.is_streaming_ = false;
@@ -141,7 +141,7 @@ void Device::stop() {
   done_.clear();
 }
 
-// What happened since: frames that were due went into buffers, or were lost for lack of one.
+// Brings the state up to date: due frames go into buffers, or are lost without one.
 void Device::advance() {
   while (begun_ && next_ < frames_.size() && !is_away()) {
     const bool is_paced = speed_ > 0.0;

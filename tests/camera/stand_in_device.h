@@ -28,18 +28,18 @@ class Device {
  public:
   static constexpr std::size_t kBuffers = 8;
 
-  // The device of that path; null when there is none.
+  // The device at a path; nullptr if it is none.
   static Device* find(const std::string& path);
 
   explicit Device(const std::string& name);
 
   bool is_away();
-  bool open();  // false when it is open already
+  bool open();  // false if already open
   void close() { *this = stopped(); }
 
   int width() const { return width_; }
   int height() const { return height_; }
-  std::size_t bytes() const;  // room for an image
+  std::size_t bytes() const;  // size of an image buffer
   std::uint32_t format() const { return format_; }
   double rate_hz() const { return rate_hz_; }
 
@@ -48,7 +48,7 @@ class Device {
   void queue(std::uint32_t buffer) { advance(), queued_.push_back(buffer); }
   bool is_ready();
 
-  // An image that is handed over.
+  // A filled buffer.
   struct Filled {
     std::uint32_t buffer = 0;
     std::uint32_t sequence = 0;
@@ -56,16 +56,16 @@ class Device {
     bool is_damaged = false;
     std::size_t bytes = 0;
   };
-  // The next image, written into the memory of its buffer, which is found from that of the first one.
+  // Writes the next image into its buffer. memory: address of the first buffer.
   std::optional<Filled> take(std::uint8_t* memory);
 
-  std::map<std::uint32_t, int> controls;  // values by their ids
+  std::map<std::uint32_t, int> controls;  // values by id
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Frame {
     std::int64_t time_ns = 0;
-    std::string left, right;  // files
+    std::string left, right;  // file names
   };
 
   Device stopped() const;
@@ -84,10 +84,10 @@ class Device {
   double rate_hz_ = 20.0;
 
   bool is_open_ = false, is_streaming_ = false;
-  std::optional<Clock::time_point> begun_;  // when the first frame was due
+  std::optional<Clock::time_point> begun_;  // due time of the first frame
   std::optional<Clock::time_point> away_until_;
   std::size_t next_ = 0;         // frame
-  std::uint32_t opened_at_ = 0;  // frame that has number zero since it was opened
+  std::uint32_t opened_at_ = 0;  // frame with sequence number 0 since opening
   std::deque<std::uint32_t> queued_;
   std::deque<std::pair<std::uint32_t, std::size_t>> done_;  // buffer, frame
 };

@@ -1,4 +1,4 @@
-// The system's calls by which a camera is used, with made-up devices among the real ones. To be preloaded.
+// Replacements of the system calls that access cameras, which add simulated devices to the real ones. For LD_PRELOAD.
 
 #include "stand_in_device.h"
 
@@ -20,7 +20,7 @@
 namespace byre::stand_in {
 namespace {
 
-// An open device: a file in memory, which the program maps, and what stands behind it.
+// An open simulated device: a memory file, mapped by the program, and its Device.
 struct Opened {
   Device* device = nullptr;
   std::uint8_t* memory = nullptr;
@@ -181,7 +181,7 @@ int call(const Opened& open, unsigned long request, void* argument) {
   }
 }
 
-// Those of made-up devices that have something to say.
+// Number of polled simulated devices with an event.
 int ready_among(pollfd* waiting, nfds_t count) {
   const std::lock_guard lock(mutex);
   int ready = 0;

@@ -1,4 +1,4 @@
-// A map to a COLMAP model, through COLMAP's own programs, and back to a map.
+// Round trip of a map through a COLMAP model and COLMAP's own programs.
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/dataset/colmap_model.h"
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// A small rendered recording in the test's folder and its map, of true poses.
+// A small rendered recording in the test's folder and its map with true poses.
 class ColmapProgram : public ProgramTest {
  protected:
   void SetUp() override {
@@ -31,7 +31,7 @@ class ColmapProgram : public ProgramTest {
 
   static void require(const Outcome& outcome) { ASSERT_EQ(outcome.exit_code, 0) << outcome.errors; }
 
-  // What the program says, on both streams.
+  // Runs colmap; returns stdout and stderr.
   std::string colmap(const std::string& arguments) const {
     const std::string command =
         "cd '" + folder_.string() + "' && QT_QPA_PLATFORM=offscreen colmap " + arguments + " >colmap.txt 2>&1";
@@ -80,8 +80,7 @@ TEST_F(ColmapProgram, ConvertsAnExportedModelAndChangesNoPosition) {
   expect_same_positions(read_colmap_model(folder_ / "to_binary"), original);
 }
 
-// Poses and points of a map that went through COLMAP's files and back are those it had. Points are known again by their
-// position, as ids are not kept.
+// Poses and points survive the round trip. Points are matched by position because ids change.
 TEST_F(ColmapProgram, HandsBackAMapThatByreImportsWithTheSamePositions) {
   require(run("export-colmap room.byre -o binary"));
   make("to_text");
@@ -111,7 +110,7 @@ TEST_F(ColmapProgram, HandsBackAMapThatByreImportsWithTheSamePositions) {
   EXPECT_GT(known_again, 50);
 }
 
-// Bundle adjustment starts from poses and points that agree with the key points, so that it has next to nothing to do.
+// Bundle adjustment starts from poses and points consistent with the keypoints, so its initial cost is small.
 TEST_F(ColmapProgram, AgreesThatPointsProjectOntoTheirKeypoints) {
   require(run("export-colmap room.byre -o binary"));
   make("adjusted");

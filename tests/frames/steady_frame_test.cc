@@ -19,8 +19,8 @@
 namespace byre {
 namespace {
 
-// How often steady frames have asked for memory: those that become no keyframe, some frames after the last one, when
-// mapping has nothing to hand over, and images and features have memory to take turns again. Not the first of them.
+// Counts heap allocations of steady frames: frames with a pose, at least kFramesOfKeyframe after the last keyframe. By
+// then mapping has nothing to hand over, and images and features reuse their memory. Skips warm-up frames.
 class SteadyFrames {
  public:
   template <typename Process>
@@ -40,13 +40,13 @@ class SteadyFrames {
   }
 
   int counted() const { return static_cast<int>(allocations_.size()); }
-  // Share of the frames that asked for none. In the others a list was longer than ever before, as that of poses is.
+  // Share of steady frames without an allocation. The others grow a list, such as that of poses, beyond its capacity.
   double share_without() const {
     return static_cast<double>(std::ranges::count(allocations_, 0U)) / static_cast<double>(counted());
   }
 
  private:
-  std::vector<std::size_t> allocations_;  // a frame
+  std::vector<std::size_t> allocations_;  // per frame
   int frames_since_keyframe_ = 0;
   int frames_to_warm_up_ = 30;
 };

@@ -1,4 +1,5 @@
-// Maps what a stereo camera sees that moves sideways along a wall of random bricks, and tells all digits of the result.
+// Maps a simulated wall of random bricks, along which a stereo camera moves sideways, and prints the result with all
+// digits.
 
 #include "byre/slam.h"
 
@@ -14,7 +15,7 @@ constexpr int kWidth = 640;                // pixels
 constexpr int kHeight = 480;               // pixels
 constexpr double kFocal = 400.0;           // pixels
 constexpr double kBaseline = 0.1;          // metres
-constexpr double kNear = 2.0, kFar = 4.0;  // metres: the upper half of the wall is nearer
+constexpr double kNear = 2.0, kFar = 4.0;  // metres; the upper half of the wall is nearer
 
 byre::Calibration calibration() {
   byre::Calibration calibration;

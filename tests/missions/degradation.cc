@@ -17,12 +17,12 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// A header over the image's own pixels; nothing writes through it.
+// A header over the image's own pixels; read-only use.
 cv::Mat as_matrix(const Image& image) {
   return {image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
 }
 
-// Rounded and clipped to what a pixel can hold.
+// Rounded and clipped to 8 bits.
 Image to_image(const cv::Mat& grey) {
   cv::Mat bytes;
   grey.convertTo(bytes, CV_8U);
@@ -42,15 +42,15 @@ cv::Mat white_noise(cv::Size size, double sigma, std::uint64_t seed) {
   return noise;
 }
 
-// Noise of this standard deviation without detail finer than so many pixels.
+// Gaussian noise of this standard deviation, without detail below this number of pixels.
 cv::Mat smooth_noise(cv::Size size, double sigma, double pixels, std::uint64_t seed) {
   cv::Mat noise;
   cv::GaussianBlur(white_noise(size, 1.0, seed), noise, {}, pixels);
-  const double left = 1.0 / (2.0 * std::sqrt(kPi) * pixels);  // deviation that the blur leaves of one
+  const double left = 1.0 / (2.0 * std::sqrt(kPi) * pixels);  // deviation left by the blur of unit noise
   return noise * (sigma / left);
 }
 
-// From 0 at or below -width / 2 to 1 at or above width / 2, without corners.
+// 0 for values below -width / 2, 1 above width / 2, smooth between.
 double soft_step(double value, double width) {
   const double t = std::clamp(value / width + 0.5, 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
@@ -63,7 +63,7 @@ float quantile_of(const cv::Mat1f& values, double share) {
   return *at;
 }
 
-// Drawn on a canvas of twice the image's height and a little more than its width, so that it can come from below.
+// A hand, drawn on a canvas of twice the image's height and 1.25 times its width, so that it can enter from below.
 class Hand {
  public:
   Hand(cv::Size image, double coverage)
@@ -83,7 +83,7 @@ class Hand {
     }
   }
 
-  // So many pixels right of and below where it rests.
+  // The image with the hand shifted right and down from its position of rest, pixels.
   Image before(const Image& image, int right, int down) const {
     const cv::Rect seen = at_rest_ - cv::Point(right, down);
     cv::Mat scene;
@@ -93,7 +93,7 @@ class Hand {
   }
 
  private:
-  // 1 on an outline with five bulges, the knuckles.
+  // Distance from the middle, 1 on an outline with five bulges, the knuckles.
   cv::Mat1f distance_from_middle(cv::Size size) const {
     const double centre_x = at_rest_.x + 0.42 * image_.width, centre_y = at_rest_.y + 0.62 * image_.height;
     cv::Mat1f distance(size);
@@ -109,7 +109,7 @@ class Hand {
   }
 
   cv::Size image_;
-  cv::Rect at_rest_;  // what the left image sees where the hand rests
+  cv::Rect at_rest_;  // part of the canvas that the left image shows when the hand rests
   cv::Mat1f grey_;
   cv::Mat1f opacity_;
 };
@@ -134,7 +134,7 @@ Image without_light(const Image& image, std::uint64_t seed) {
 Image motion_blurred(const Image& image, double pixels, double angle) {
   const int half = static_cast<int>(std::ceil(pixels / 2.0));
   cv::Mat1f path(2 * half + 1, 2 * half + 1, 0.0f);
-  constexpr int kMoments = 200;  // at which the image is added up
+  constexpr int kMoments = 200;  // samples of the motion path
   for (int i = 0; i < kMoments; ++i) {
     const double along = ((i + 0.5) / kMoments - 0.5) * pixels;
     const double x = half + along * std::cos(angle), y = half + along * std::sin(angle);
@@ -195,7 +195,7 @@ Degradation black_frames() {
 }
 
 Degradation hand_over_the_lens(double coverage) {
-  const auto drawn = std::make_shared<std::optional<Hand>>();  // once the size of the images is known
+  const auto drawn = std::make_shared<std::optional<Hand>>();  // drawn once the image size is given
   return [coverage, drawn](const ImageFrame& images, int step) {
     constexpr int kComing = 5;  // steps until it rests
     if (!*drawn) drawn->emplace(cv::Size(images.left.width, images.left.height), coverage);
@@ -209,7 +209,7 @@ Degradation hand_over_the_lens(double coverage) {
 
 Degradation motion_blur(double pixels) {
   return [pixels](const ImageFrame& images, int step) {
-    const double angle = 0.7 + 2.4 * step;  // radians: no two steps have the same
+    const double angle = 0.7 + 2.4 * step;  // radians; differs in every step
     return change_each(images, [&](const Image& image, int) { return motion_blurred(image, pixels, angle); });
   };
 }
@@ -244,7 +244,7 @@ Degradation dirt(int spots) {
 
 namespace {
 
-// What cv::flip makes of an image: about the axis of this code.
+// cv::flip of an image; code: its axis.
 Image flipped(const Image& image, int code) {
   cv::Mat result;
   cv::flip(as_matrix(image), result, code);
@@ -257,7 +257,7 @@ Image with_noise(const Image& image, double sigma, std::uint64_t seed) {
   return to_image(grey + white_noise(grey.size(), sigma, seed));
 }
 
-// Delays images by a number of steps; gives the first image until then. Step 0 restarts.
+// Delays images by a number of steps; returns the first image until then. Step 0 restarts.
 class Delay {
  public:
   explicit Delay(int steps) : steps_(steps) {}
@@ -274,7 +274,7 @@ class Delay {
   std::deque<Image> waiting_;
 };
 
-// Changes the right image alone.
+// Changes the right image only.
 template <typename Change>
 ImageFrame change_right(const ImageFrame& images, Change change) {
   ImageFrame changed = images;

@@ -7,54 +7,54 @@
 
 namespace byre {
 
-// What may go wrong before or in a camera, done to images as they were recorded. The same image, options and seed give
-// the same bytes.
+// Simulated faults in front of or inside a camera, applied to recorded images. Deterministic in image, options and
+// seed.
 
-// What a camera gives without light: its black level, and a little noise.
+// A dark frame: the camera's black level and little noise.
 Image without_light(const Image& image, std::uint64_t seed);
 
-// Moved by so many pixels while the shutter was open. The angle is that of the motion, radians from the u axis.
+// Motion blur over a distance in pixels. angle: direction of motion, radians from the u axis.
 Image motion_blurred(const Image& image, double pixels, double angle);
 
-// Exposed so many times as long; what is brighter than white is white.
+// Exposure time multiplied by times; saturates at white.
 Image exposed(const Image& image, double times);
 
-// Seen through haze that lets through this share of the light, and shines itself.
+// Haze with this transmission; it adds its own light.
 Image hazed(const Image& image, double transmission);
 
-// Grey values drawn together about their mean, to this share of their contrast.
+// Contrast reduced to this share about the mean grey value.
 Image flattened(const Image& image, double share);
 
-// Through a lens with spots of dirt on it, all out of focus. They lie where the seed says, frame after frame.
+// Dirt on the lens: spots out of focus, at positions that depend on the seed only.
 Image dirtied(const Image& image, int spots, std::uint64_t seed);
 
-// A bright wall without texture right before the camera: shading and faint noise. The noise differs between seeds.
+// A bright wall without texture close to the camera: shading and faint noise that depends on the seed.
 Image blank_wall(const Image& image, std::uint64_t seed);
 
-// What happens to the images of a rig, step by step from the frame it begins with (step 0).
+// A fault over time: called for each frame, step 0 is the first.
 using Degradation = std::function<ImageFrame(const ImageFrame& images, int step)>;
 
 Degradation black_frames();
 
-// A hand comes before both lenses within five steps, and rests there, covering this share of the left image: softly
-// edged, with a little of the skin's texture, and further left in the right image.
+// A hand covers both lenses within five steps and stays: this share of the left image, further left in the right one.
+// Its edge is soft and its skin has faint texture.
 Degradation hand_over_the_lens(double coverage);
 
-Degradation motion_blur(double pixels);                          // in ever another direction
-Degradation exposure_jumps(double factor, int steps_per_level);  // longer, as it was, shorter, as it was, ...
+Degradation motion_blur(double pixels);                          // in a different direction each step
+Degradation exposure_jumps(double factor, int steps_per_level);  // alternates longer, normal, shorter, normal, ...
 Degradation blank_close_up();
 Degradation haze(double transmission);
-Degradation dirt(int spots);  // other ones on each lens
+Degradation dirt(int spots);  // different spots on each lens
 Degradation contrast_loss(double share);
 
-// Cameras that lie. Those that remember images are for one run, step by step.
-Degradation frozen(double sigma = 0.0);   // repeats the image of step 0, with fresh noise (grey values)
+// Sensor faults: images that are not what they claim to be. Stateful ones are for one run, step by step.
+Degradation frozen(double sigma = 0.0);   // repeats the image of step 0 with fresh noise (sigma in grey values)
 Degradation right_exposed(double times);  // 0: dead
-Degradation right_noisy(double sigma);    // grey values
-Degradation right_late(int steps);        // the right image is late by a number of steps
-Degradation left_late(int steps);         // the left image is late by a number of steps
-Degradation swapped();                    // left for right
-Degradation mirrored();                   // left to right
+Degradation right_noisy(double sigma);    // sigma in grey values
+Degradation right_late(int steps);        // delays the right image by a number of steps
+Degradation left_late(int steps);         // delays the left image by a number of steps
+Degradation swapped();                    // exchanges left and right image
+Degradation mirrored();                   // mirrors images horizontally
 Degradation upside_down();
 
 }  // namespace byre

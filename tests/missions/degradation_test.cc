@@ -97,7 +97,7 @@ TEST(Degradation, AHandCoversItsShareOfTheImageAndRestsThere) {
   const ImageFrame images = pair_of_images();
   const Degradation hand = hand_over_the_lens(0.7);
   const Image resting = hand(images, 10).left;
-  // The edge is soft, so that a little less than 30 % is as it was.
+  // The soft edge leaves slightly less than 30 % unchanged.
   EXPECT_NEAR(share_unchanged(images.left, resting), 0.27, 0.05);
   EXPECT_EQ(hand(images, 30).left.pixels, resting.pixels);
 }

@@ -9,7 +9,7 @@
 namespace byre {
 namespace {
 
-// One of a pair's cameras, once the size of its images is known.
+// One camera of a pair; initialised with the first image's size.
 class ImperfectCamera {
  public:
   ImperfectCamera(const CameraImperfection& imperfection, StereoSide side) : imperfection_(imperfection), side_(side) {}

@@ -10,23 +10,22 @@
 
 namespace byre {
 
-// How far a robot's camera is from what the robot knows of it. Recordings stay as they are: calibrations are made to
-// err, and images degraded while they are read.
+// Deviations of a robot's camera from its calibration. Recordings stay unchanged: calibrations are perturbed, and
+// images are degraded when read.
 struct Imperfection {
   CameraCondition condition = CameraCondition::good;
   std::uint64_t calibration_seed = 1;
-  double focal_factor = 1.0;  // told focal lengths over the true ones
+  double focal_factor = 1.0;  // ratio of given to true focal lengths
 
   bool operator==(const Imperfection&) const = default;
 };
 
-std::string name_of(const Imperfection& imperfection);  // "exact", "good_1"; different for different ones
+std::string name_of(const Imperfection& imperfection);  // unique name such as "exact" or "good_1"
 
-// What the robot takes its cameras for.
+// The perturbed calibration that the robot is given.
 Calibration told_calibration(const Calibration& calibration, const Imperfection& imperfection);
 
-// What its cameras make of images: blur of the lenses, gain and offset of the right one, loss by JPEG. Nothing where
-// they are exact.
+// Degradations of the images: lens blur, gain and offset of the right camera, JPEG loss. None for exact cameras.
 Degradation imperfect_cameras(const Imperfection& imperfection);
 
 }  // namespace byre

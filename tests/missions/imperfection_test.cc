@@ -19,7 +19,8 @@ ImageFrame two_textures() {
           to_image(render(376, 240, Texture(72, 0.6)))};
 }
 
-// Mean difference of neighbours along rows: within a corner's or the middle's tenth of the image.
+// Mean difference of horizontal neighbours in a window a tenth of the image wide and high; x, y: its corner, relative
+// to the size.
 double detail(const Image& image, double x, double y) {
   const int left = static_cast<int>(x * image.width), top = static_cast<int>(y * image.height);
   double sum = 0.0;

@@ -23,10 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Rendered recordings: where they are, and the file of theirs that is written last.
+// Location of rendered recordings, and the file that rendering writes last.
 struct RenderedFolder {
-  const char* variable;  // environment variable that may name it
-  const char* cached;    // its name in ~/.cache/byre
+  const char* variable;  // environment variable with the folder
+  const char* cached;    // default folder in ~/.cache/byre
   const char* last_file;
 };
 
@@ -48,7 +48,7 @@ fs::path folder_of(const RecordingName& name) {
   throw InputError(name.name, "is no recording here", why_missing(name));
 }
 
-// Frames of a recording as a robot with such a camera has them.
+// Reads and extracts the frames of an imperfect camera.
 class MapFrames {
  public:
   MapFrames(Recording& recording, const Imperfection& imperfection)
@@ -60,7 +60,7 @@ class MapFrames {
 
   const Rig& rig() const { return extractor_.rig(); }
 
-  // Empty where its images cannot be read.
+  // Empty for unreadable images.
   std::optional<Frame> read(int index) {
     const auto images = recording_.read(index);
     return images ? std::optional(extractor_.extract(cameras_(*images, index)).frame) : std::nullopt;
@@ -72,7 +72,7 @@ class MapFrames {
   Extractor extractor_;
 };
 
-// A map, and what making it told of the calibration.
+// A map and its refined calibration.
 struct MadeMap {
   Map map;
   std::optional<RefinedCalibration> refined{};
@@ -123,7 +123,7 @@ StoredMap make_map(const MapRecipe& recipe) {
   return stored;
 }
 
-// Empty when there is none that this program can read.
+// Empty when there is no map that this version can read.
 std::optional<StoredMap> load_cached(const fs::path& file) {
   try {
     StoredMap stored = load_map(file);

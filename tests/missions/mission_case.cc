@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-// Images of a frame. Those of the last recording are kept, because many missions are flown on the same frames.
+// Images of a frame. Caches those of the last recording, because many missions use the same frames.
 std::optional<ImageFrame> read_once(const std::filesystem::path& folder, Recording& recording, int frame) {
   constexpr std::size_t kMostKept = 200;  // pairs; 145 MB at 752x480 pixels
   static std::filesystem::path kept_folder;
@@ -26,7 +26,7 @@ std::optional<ImageFrame> read_once(const std::filesystem::path& folder, Recordi
   return images;
 }
 
-// By the refined calibration of the map where that was made with the one that is told, as "byre run" does it.
+// Like "byre run": uses the map's refined calibration if the map was made with the calibration given here.
 std::vector<MissionFrame> run(const MissionPlan& plan, const MissionCase& mission_case, Recording& recording,
                               std::shared_ptr<const OfflineMap> map) {
   const Imperfection& imperfection = mission_case.imperfection;
@@ -50,7 +50,7 @@ std::vector<MissionFrame> run(const MissionPlan& plan, const MissionCase& missio
   return frames;
 }
 
-// As the first pose has it.
+// Alignment by the first pose.
 std::optional<Similarity> truth_from_own_map(const std::vector<MissionFrame>& frames) {
   for (const MissionFrame& frame : frames) {
     if (!frame.report.map_from_body || !frame.true_world_from_body) continue;

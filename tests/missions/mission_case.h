@@ -11,24 +11,24 @@
 
 namespace byre {
 
-// Which map the mission is given.
+// Map given to a mission.
 struct MapChoice {
   MapRecipe recipe;
-  double share_deleted = 0.0;  // share of the map's points that are deleted
-  std::optional<Span> hole{};  // seconds of its recording of which it knows nothing
+  double share_deleted = 0.0;  // share of the map's points to delete
+  std::optional<Span> hole{};  // seconds of its recording removed from the map
   bool is_of_another_place = false;
-  bool is_absent = false;  // plain SLAM, its frame laid on the truth by the first pose
+  bool is_absent = false;  // plain SLAM; its frame is aligned to the truth by the first pose
 };
 
-// What the robot must get right beyond never trusting a wrong pose for long.
+// Requirements beyond never trusting a wrong pose for long.
 struct Demand {
-  bool recovers = true;            // trusted again soon after the disturbance
-  double min_trusted_share = 0.0;  // least share of all frames that are trusted
-  bool is_never_wrong = false;     // no frame is trusted that is off by more than kMaxTrustedError
-  std::optional<Doubt> doubt{};    // is told within kMaxTimeToDoubt of when the disturbance begins
+  bool recovers = true;            // trusted again within kMaxRecovery of the disturbance's end
+  double min_trusted_share = 0.0;  // least share of trusted frames
+  bool is_never_wrong = false;     // no trusted frame has an error above kMaxTrustedError
+  std::optional<Doubt> doubt{};    // is reported within kMaxTimeToDoubt of the disturbance's begin
 };
 
-// A mission that tries the session's health.
+// A mission that tests the session's health.
 struct MissionCase {
   std::string name;
   RecordingName recording;
@@ -36,7 +36,7 @@ struct MissionCase {
   MapChoice map;
   std::function<MissionPlan(const std::vector<Timestamp>& times)> plan;
   Demand demand{};
-  std::optional<double> mapped_again_after{};  // seconds: when it comes back from outside the mapped area
+  std::optional<double> mapped_again_after{};  // seconds after which the robot is back in the mapped area
   Imperfection imperfection{};                 // imperfection of the mission's camera
 };
 
@@ -44,17 +44,17 @@ inline constexpr double kMaxWrongTrust = 0.5;   // seconds
 inline constexpr double kMaxRecovery = 2.0;     // seconds
 inline constexpr double kMaxTimeToDoubt = 0.5;  // seconds
 
-// The same with the cameras of map and mission in this condition, and the map's error of calibration drawn by the seed.
-// Where mission and map had one error they still do.
+// The case with cameras of map and mission in this condition, and the map's calibration error drawn by its seed.
+// Mission and map still share one error if they did before.
 MissionCase flown_with(MissionCase mission_case, const Imperfection& imperfection);
 
 std::vector<MissionCase> real_mission_cases();
 std::vector<MissionCase> twin_mission_cases();
 
-// What cameras may say that is not so, in the hall and in the rendered room, with the map of it and without any.
+// Sensor faults in the hall and in the rendered room, with and without their map.
 std::vector<MissionCase> lying_mission_cases();
 
-// The first recording that the case needs and that is not there.
+// First missing recording of a case.
 std::optional<RecordingName> missing_recording(const MissionCase& mission_case);
 
 struct FlownMission {
@@ -63,7 +63,7 @@ struct FlownMission {
   MissionScore score;
 };
 
-// Maps that were made or loaded, for the missions that follow. Owned by the calling thread.
+// Cache of maps for a sequence of missions. Owned by the calling thread.
 class KnownMaps {
  public:
   // Throws InputError when the map's recording is missing or damaged.
@@ -73,10 +73,10 @@ class KnownMaps {
   std::map<std::string, KnownMap> maps_;
 };
 
-// Throws InputError when a recording is missing or damaged.
+// Runs a mission. Throws InputError when a recording is missing or damaged.
 FlownMission fly(const MissionCase& mission_case, KnownMaps& maps);
 
-// What the mission should have got right and did not, in words.
+// Descriptions of the unmet requirements.
 std::vector<std::string> broken_demands(const MissionCase& mission_case, const MissionScore& score);
 
 }  // namespace byre

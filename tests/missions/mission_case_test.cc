@@ -1,4 +1,4 @@
-// Missions that go wrong, on real and on rendered recordings: what health says of them, judged by the truth.
+// Missions with faults, on real and rendered recordings: health reports compared with the truth.
 
 #include "mission_case.h"
 

@@ -1,4 +1,4 @@
-// The missions that try the session's health: what is done to which recording, on which map.
+// Missions that test the session's health: recordings, maps and disturbances.
 
 #include "mission_case.h"
 
@@ -56,7 +56,7 @@ struct NamedPlan {
   Plan plan;
 };
 
-// What any recording can be put through, for the seconds of a span.
+// Disturbances during a span that apply to any recording.
 std::vector<NamedPlan> passing_disturbances(const Span& span) {
   return {{"black", degrade(span, black_frames())},
           {"hand", degrade(span, hand_over_the_lens(kHandCoverage))},
@@ -69,7 +69,7 @@ std::vector<NamedPlan> passing_disturbances(const Span& span) {
 const MapRecipe kHall{{Source::real, "euroc/MH_01_easy", std::chrono::microseconds(-7500)}, frames(0, 150)};
 const MapRecipe kRealRoom{real("euroc/V1_01_easy_sparse"), {}, true};
 const MapRecipe kTwinRoom{twin("V1_01_easy")};
-const MapRecipe kTwinShed{twin("cowshed_m1"), frames(0, 1320)};  // the way out, and the turn at its end
+const MapRecipe kTwinShed{twin("cowshed_m1"), frames(0, 1320)};  // the way out and the turn at its end
 
 MissionCase in_hall(const char* name, const FrameRange& range, const Plan& plan) {
   return {std::string("hall_") + name, kHall.recording, range, {kHall}, plan};
@@ -115,7 +115,7 @@ constexpr Demand kHonestOnly{false, 0.0};
 constexpr Imperfection kExact{CameraCondition::exact, 1};
 constexpr Imperfection kOtherError{CameraCondition::good, 2};
 
-// Not, as everywhere else, with one and the same good camera for map and mission.
+// Cases in which map and mission do not share one good camera.
 std::vector<MissionCase> calibrated_otherwise() {
   const MissionCase undisturbed = with_demand(in_hall("undisturbed", frames(150, 300), as_recorded), kHardlyDisturbed);
   MissionCase recalibrated = named(undisturbed, "hall_recalibrated");
@@ -125,7 +125,8 @@ std::vector<MissionCase> calibrated_otherwise() {
 
 }  // namespace
 
-// The second half of the flight on the map of the first, or as much of it as is needed. All of it is mapped.
+// Missions on the second half of the flight, or the necessary part of it, and on the map of the first half. The map
+// covers all of the second half.
 std::vector<MissionCase> real_mission_cases() {
   const FrameRange whole = frames(150, 300), six_seconds = frames(150, 270), four_seconds = frames(150, 230);
   std::vector<MissionCase> cases = {with_demand(in_hall("undisturbed", whole, as_recorded), kHardlyDisturbed)};
@@ -163,7 +164,7 @@ std::vector<MissionCase> room_cases() {
   return cases;
 }
 
-// Where the map has nothing: beyond the turn of mission 1; and where a stretch of the map was taken out.
+// Drives beyond the turn of mission 1, outside the map; and through a stretch removed from the map.
 std::vector<MissionCase> detours() {
   MissionCase beyond = in_shed("detour", seconds(50.0, 101.0), as_recorded);
   beyond.mapped_again_after = 46.0;
@@ -176,7 +177,7 @@ std::vector<MissionCase> detours() {
 std::vector<MissionCase> shed_cases() {
   const FrameRange eight_seconds = seconds(21.0, 29.0);
   std::vector<MissionCase> cases = {in_shed("black", eight_seconds, degrade({2.0, 4.0}, black_frames()))};
-  // Along the fence, where one place looks like the next.
+  // Along the fence, with strong perceptual aliasing.
   const FrameRange along_fence = seconds(6.0, 40.0);
   cases.push_back(in_shed("kidnapped", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 0.0)));
   cases.push_back(in_shed("kidnapped_in_the_dark", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 1.0)));
@@ -200,7 +201,7 @@ std::vector<MissionCase> twin_mission_cases() {
 
 namespace {
 
-// What is done to a mission, and what it is to say of that.
+// A sensor fault and the doubt expected for it.
 struct Lie {
   const char* name;
   Plan plan;
@@ -220,7 +221,7 @@ Plan clock_jumping(const Span& span, double jump_seconds) {
   return [=](const std::vector<Timestamp>& times) { return late(times, span, jump_seconds); };
 }
 
-// Frozen for two seconds only, as what follows is to be found again.
+// frozen lasts for two seconds only, because recovery is tested as well.
 std::vector<Lie> lies() {
   const auto always = [](const Degradation& degradation) { return degrade_all(degradation); };
   return {{"frozen", degrade({1.5, 3.5}, frozen()), Doubt::frozen},
@@ -255,7 +256,7 @@ MissionCase without_map(MissionCase mission_case) {
   return mission_case;
 }
 
-// Without points of a map nothing tells of a wrong focal length at once.
+// Without map points a wrong focal length cannot be detected immediately.
 MissionCase told(MissionCase mission_case, const Lie& lie) {
   mission_case.name += std::string("lie_") + lie.name;
   mission_case.plan = lie.plan;

@@ -10,46 +10,46 @@
 
 namespace byre {
 
-// One image pair that the robot is given.
+// One image pair for the robot.
 struct MissionStep {
-  int frame = 0;                                         // number of the frame in the recording
-  Timestamp time{};                                      // time that the robot is told
-  std::function<ImageFrame(const ImageFrame&)> disturb;  // what is done to the images; empty: nothing
+  int frame = 0;                                         // frame number in the recording
+  Timestamp time{};                                      // time stamp given to the robot
+  std::function<ImageFrame(const ImageFrame&)> disturb;  // change of the images; empty: none
 };
 
-// What happens to the robot, as a rearrangement of a recording.
+// A mission as a rearrangement of a recording.
 struct MissionPlan {
   std::vector<MissionStep> steps;
-  // From when on nothing disturbs any more; the first step's where nothing ever does, empty where it does to the end.
+  // Time from which on no step is disturbed: the first step's if none is, empty if disturbances last to the end.
   std::optional<Timestamp> undisturbed_from;
 
-  // Time of the first step whose images are disturbed; of the very first where none is.
+  // Time of the first disturbed step; the first step's if none is.
   Timestamp disturbed_from() const;
 };
 
-// Seconds from the beginning of a recording, end exclusive.
+// Seconds from the start of a recording, end exclusive.
 struct Span {
   double start = 0.0;
   double end = 0.0;
 };
 
-// All frames, at their own times. Precondition, as below: times ascend and there are some.
+// All frames at their own times. Precondition of all plans: times ascend and are not empty.
 MissionPlan as_recorded(const std::vector<Timestamp>& times);
 
-// The same with the images of a span degraded. A span that reaches the end is never over.
+// Degrades the images of a span. A span that reaches the end of the recording never ends.
 MissionPlan degraded(const std::vector<Timestamp>& times, const Span& span, const Degradation& degradation);
 
-// The robot is carried away after the first span and set down where the second begins; times go on as if nothing had
-// happened. For so many seconds before it is set down the images are black.
+// Kidnaps the robot: after the first span it is moved to where the second begins, while times continue without a gap.
+// The last dark_seconds of the first span are black.
 MissionPlan kidnapped(const std::vector<Timestamp>& times, const Span& before, const Span& after, double dark_seconds);
 
-// Each image is given so many times in a row, at the times of those it takes the place of.
+// Repeats each image times_each times, at the times of the images it replaces.
 MissionPlan repeated(const std::vector<Timestamp>& times, int times_each);
 
-// One image of so many arrives.
+// Keeps one image of every kept_every.
 MissionPlan dropped(const std::vector<Timestamp>& times, int kept_every);
 
-// The clock is put forward when the span begins, and back again, as far as time may, when it ends.
+// Advances the clock at the start of the span, and sets it back at its end as far as times stay ascending.
 MissionPlan late(const std::vector<Timestamp>& times, const Span& span, double jump_seconds);
 
 }  // namespace byre

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-// Ten frames a second for ten seconds, from second 100 on.
+// Ten seconds at 10 Hz, from 100 s on.
 std::vector<Timestamp> frame_times() {
   std::vector<Timestamp> times;
   for (int i = 0; i < 100; ++i) times.push_back(from_seconds(100.0) + i * std::chrono::milliseconds(100));

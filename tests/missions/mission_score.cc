@@ -15,7 +15,7 @@ bool is_trusted(const MissionFrame& frame) {
   return frame.report.health.verdict == Verdict::trusted;
 }
 
-// The true position as seen from the reported body, metres.
+// True position in the estimated body frame, metres.
 Eigen::Vector3d offset_in_body(const Pose& map_from_body, const Pose& true_world_from_body,
                                const Similarity& truth_from_map) {
   const Pose estimated_world_from_body = aligned(truth_from_map, map_from_body);
@@ -36,7 +36,7 @@ double share(std::ptrdiff_t count, std::size_t of) {
   return of == 0 ? 0.0 : static_cast<double>(count) / static_cast<double>(of);
 }
 
-// Share of the poses said to be of use that lie within the bound of their covariance.
+// Share of trusted and degraded poses within the bound of their covariance.
 double share_within_bound(std::span<const MissionFrame> frames, const std::optional<Similarity>& truth_from_map) {
   if (!truth_from_map) return 0.0;
   std::ptrdiff_t within = 0;
@@ -73,7 +73,7 @@ bool is_wrongly_trusted(const MissionFrame& frame, const std::optional<Similarit
   return is_trusted(frame) && position_error(frame, truth_from_map).value_or(0.0) > kMaxTrustedError;
 }
 
-// A row of wrong frames lasts until the next frame comes that is not wrong.
+// A sequence of wrong frames lasts until the next right one.
 double longest_wrong_trust(std::span<const MissionFrame> frames, const std::optional<Similarity>& truth_from_map) {
   Timestamp longest{0};
   std::optional<Timestamp> since;

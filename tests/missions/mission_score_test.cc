@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kInterval = 0.1;  // seconds
 
-// The map lies 10 m from the truth's origin, and is turned.
+// The map's origin is 10 m from the truth's, and its axes are rotated.
 Similarity truth_from_map() {
   return {1.0, {rotation_exp({0.0, 0.0, 0.7}), {10.0, 0.0, 0.0}}};
 }
@@ -18,7 +18,7 @@ Pose true_pose(int i) {
   return {rotation_exp({0.1 * i, 0.0, 0.3}), {0.05 * i, 1.0, 0.0}};
 }
 
-// Reported so many metres off, along the body's x axis, with 0.1 m of standard deviation.
+// A pose with this error along the body's x axis, metres, and a standard deviation of 0.1 m.
 MissionFrame frame(int i, Verdict verdict, double error) {
   MissionFrame frame;
   frame.report.time = from_seconds(kInterval * i);
@@ -90,7 +90,7 @@ TEST(MissionScore, NothingIsRightOnAMapOfAnotherPlace) {
 }
 
 TEST(MissionScore, CountsErrorsInsideTheBoundOfTheirCovariance) {
-  std::vector<MissionFrame> mission = frames(10, Verdict::trusted, 0.2);  // 2 sigma, of three dimensions: inside
+  std::vector<MissionFrame> mission = frames(10, Verdict::trusted, 0.2);  // 2 sigma: inside in three dimensions
   mission[0] = frame(0, Verdict::degraded, 0.3);                          // 3 sigma
   mission[1] = frame(1, Verdict::untrusted, 0.3);                         // not counted
   EXPECT_NEAR(score_of(mission).within_bound, 8.0 / 9.0, 1e-9);

@@ -1,10 +1,12 @@
-// Flies the missions that try the session's health, and prints a row of a table for each.
+// Runs the missions that test the session's health, and prints a table row for each.
 // Usage: byre_mission_trials [--list] [--trace FOLDER] [--dump FOLDER] [--imperfection exact|good|worn]
 //                            [--calibration-seed N] [CASE...]
-// All cases whose recordings are there are flown unless some are named. --trace writes a line of CSV for each frame
-// into FOLDER/CASE.csv. --dump flies nothing, and writes what the degradations make of an image into FOLDER as PNG.
-// --imperfection has all of them flown with cameras in that condition, and --calibration-seed with that error.
-// Exit code: 0 all demands are met, 1 some are not, 2 wrong usage or bad data.
+// Runs the named cases, by default all whose recordings are present.
+//   --trace             writes a line of CSV per frame into FOLDER/CASE.csv
+//   --dump              runs nothing; writes examples of degraded images into FOLDER as PNG
+//   --imperfection      camera condition of all cases
+//   --calibration-seed  calibration error of all cases
+// Exit code: 0 all requirements are met, 1 some are not, 2 wrong usage or bad data.
 
 #include "mission_case.h"
 
@@ -140,7 +142,7 @@ void print_row(const MissionCase& mission_case, const MissionScore& score) {
   std::fflush(stdout);
 }
 
-// Whether all demands are met.
+// Whether all requirements are met.
 bool fly_and_tell(const MissionCase& mission_case, const TrialOptions& options, KnownMaps& maps) {
   if (const auto missing = missing_recording(mission_case)) {
     std::fprintf(stderr, "%s: left out, %s\n", mission_case.name.c_str(), why_missing(*missing).c_str());
@@ -159,7 +161,7 @@ void write_png(const Image& image, const fs::path& file) {
   if (!cv::imwrite(file.string(), pixels)) throw InputError(file.string(), "cannot be written");
 }
 
-// Writes each case's image pairs when its disturbance begins, and when it has come.
+// Writes each case's image pairs at the start of the disturbance and at its full extent.
 void dump(const MissionCase& mission_case, const fs::path& folder) {
   if (missing_recording(mission_case)) return;
   const auto recording = open_recording(*find(mission_case.recording), mission_case.range);

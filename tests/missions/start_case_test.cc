@@ -1,5 +1,5 @@
-// Missions that start all along a barn, on a map of another visit: whatever looks alike, no frame is trusted and wrong,
-// and the robot is found soon where it looks at what the map shows.
+// Missions that start all along a barn, on a map of another visit: despite perceptual aliasing no frame may be wrongly
+// trusted, and the robot must be localised soon when mapped points are in view.
 
 #include "mission_case.h"
 #include "start_run.h"
@@ -19,7 +19,7 @@ struct StartCase {
   OpenOptions open{.use_wheels = true, .use_gyroscope = true};
 };
 
-// Wanted is none. At dusk on a map of the day the place search misses 6 of 20 starts with images of 376x240.
+// The target is 0. At dusk on a map of the day, place search misses 6 of 20 starts with images of 376x240.
 constexpr double kMostFoundLate = 0.35;
 
 RecordingName barn(const std::string& name) {
@@ -30,7 +30,7 @@ MapChoice map_of(const std::string& name) {
   return {{barn(name)}};
 }
 
-// The first 13 s of a visit: the way along one side of the alley, up to the turn.
+// The first 13 s of a visit: along one side of the alley, up to the turn.
 MapChoice one_way_map_of(const std::string& name) {
   MapChoice map = map_of(name);
   map.recipe.range.last = 130;
@@ -54,7 +54,7 @@ std::vector<StartCase> start_cases() {
   cases.push_back({"gate_open_wheels", whole, "gate_open", all_along});
   cases.push_back({"gate_open_one_camera", whole, "gate_open", all_along, left});
   cases.push_back({"swapped_things", whole, "swapped_things", all_along, no_wheels});
-  // The robot drives along bays that the map does not show, past others that it does.
+  // The robot passes bays that are missing in the map, among mapped ones that look alike.
   MapChoice with_hole = whole;
   with_hole.hole = Span{4.0, 10.0};
   cases.push_back(

@@ -14,7 +14,7 @@
 namespace byre {
 namespace {
 
-using Frames = std::vector<std::optional<Frame>>;  // empty for images that cannot be read
+using Frames = std::vector<std::optional<Frame>>;  // empty for unreadable images
 
 Frames extract_all(Recording& recording, const Calibration& calibration, const Imperfection& imperfection) {
   limit_image_threads(1);
@@ -46,7 +46,7 @@ struct Visit {
   const StartPlan& plan;
 };
 
-// Passes on samples up to a time, but for those earlier than a quarter of a second before the first frame.
+// Adds the samples up to a time, from 0.25 s before the first frame.
 template <typename Sample, typename Add>
 void feed(const std::vector<Sample>& samples, std::size_t& next, Timestamp begin, Timestamp until, Add add) {
   for (; next < samples.size() && samples[next].time <= until; ++next) {
@@ -100,7 +100,7 @@ bool is_map_in_view(const Visit& visit, const Rig& rig, const MissionFrame& fram
   return in_view >= kPointsInView;
 }
 
-// Whether the map was in view for kMaxTimeToFind before the first trusted pose.
+// Whether the map was in view for kMaxTimeToFind without a trusted pose.
 bool is_found_late(const Visit& visit, const Rig& rig, const std::vector<MissionFrame>& frames) {
   std::optional<Timestamp> since;
   for (const MissionFrame& frame : frames) {

@@ -13,20 +13,20 @@
 
 namespace byre {
 
-// Missions that start at regular times of a recording, on a map.
+// Missions on a map that start at regular times of a recording.
 struct StartPlan {
   double every_s = 0.5;                                // seconds between starts
   double length_s = 11.0;                              // duration of each mission, seconds
   double from_s = 0.0;                                 // first start, seconds of the recording
   double to_s = 1e9;                                   // last start
-  std::optional<std::pair<double, double>> cover_s{};  // seconds after each start between which images are black
+  std::optional<std::pair<double, double>> cover_s{};  // interval of black images, seconds after each start
 };
 
 struct StartedMission {
   double start_s = 0.0;  // seconds of the recording
   std::vector<MissionFrame> frames;
   MissionScore score;
-  // The map was in view for kMaxTimeToFind, and no pose was trusted in that time.
+  // The map was in view for kMaxTimeToFind without a trusted pose.
   bool is_found_late = false;
 };
 
@@ -35,8 +35,8 @@ struct StartTotals {
   int starts = 0;
   int frames = 0;
   int with_pose = 0;
-  int trusted_right = 0;             // frames that are trusted and within kMaxTrustedError
-  int trusted_wrong = 0;             // frames that are trusted and farther off
+  int trusted_right = 0;             // trusted frames with an error up to kMaxTrustedError
+  int trusted_wrong = 0;             // trusted frames with a larger error
   int starts_wrong = 0;              // starts with such a frame
   int found_late = 0;                // starts that are found late
   double worst_trusted_error = 0.0;  // metres
@@ -45,10 +45,10 @@ struct StartTotals {
 };
 
 inline constexpr double kMaxTimeToFind = 3.0;  // seconds
-inline constexpr int kPointsInView = 60;       // points that keyframes near the true pose saw: the map is in view
+inline constexpr int kPointsInView = 60;       // points seen by keyframes near the true pose: the map is in view
 
-// Starts missions with the recording's images, extracted once, and its wheels and gyroscope where they were opened.
-// each: called after each mission. Throws InputError for damaged data.
+// Starts missions with the recording's images, extracted once, and its wheels and gyroscope if opened. each: called
+// after each mission. Throws InputError for damaged data.
 StartTotals run_starts(Recording& recording, const Trajectory& truth, std::shared_ptr<const OfflineMap> map,
                        const Similarity& truth_from_map, const Imperfection& imperfection, const StartPlan& plan,
                        const std::function<void(const StartedMission&)>& each);

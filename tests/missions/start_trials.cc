@@ -1,7 +1,6 @@
-// Starts missions on a map at regular times of a recording, and counts frames that are trusted and wrong.
+// Starts missions on a map at regular times of a recording, and counts wrongly trusted frames.
 // Usage: byre_start_trials MISSION --map MAP --map-truth RECORDING [options]
-// MISSION is a recording with ground truth. MAP is an offline map made from RECORDING, and is aligned by its ground
-// truth.
+// MISSION is a recording with ground truth. MAP is an offline map of RECORDING, whose ground truth aligns it.
 //   --every S          seconds between starts (0.5)
 //   --length S         duration of each mission, seconds (11)
 //   --from S --to S    first and last start, seconds of the recording
@@ -11,7 +10,7 @@
 //   --cover A:B        black images from A to B seconds after each start
 //   --trace FILE       writes a line of CSV for each frame
 // Found late: the map was in view for 3 s without a trusted pose. Features of each frame are extracted once. Exit code:
-// 0 without frames that are trusted and wrong, 1 with such frames, 2 bad usage or data.
+// 0 no wrongly trusted frames, 1 some, 2 bad usage or data.
 
 #include "known_map.h"
 #include "start_run.h"
@@ -123,7 +122,7 @@ int run(const StartOptions& options) {
   const auto recording = open_recording(options.mission, {}, options.open);
   std::ofstream trace;
   if (options.trace) trace.open(*options.trace);
-  const Imperfection exact{CameraCondition::exact};  // recordings err by themselves
+  const Imperfection exact{CameraCondition::exact};  // recordings contain their own imperfections
   const StartTotals totals = run_starts(*recording, load_truth(options.mission), map, truth_from_map, exact,
                                         options.plan, [&](const StartedMission& mission) {
                                           if (options.trace) write_trace(trace, mission, truth_from_map);

@@ -1,5 +1,5 @@
-// Renders a small stereo recording of a made-up room, with exact ground truth, in the format of the EuRoC data set:
-// something to run byre on where no data set is at hand. The same options give the same bytes.
+// Renders a small stereo recording of a room with exact ground truth in EuRoC format, for use without a data set.
+// Deterministic in its options.
 
 #include "byre/input_error.h"
 #include "byre/simulation/rendered_room.h"

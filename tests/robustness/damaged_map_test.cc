@@ -1,5 +1,5 @@
-// Damaged map files: each is either read as a sound map or refused with an InputError. $BYRE_MUTANTS says how many are
-// tried; by default a few thousand.
+// Damaged map files: each is either read as a valid map or refused with an InputError. $BYRE_MUTANTS is the number of
+// files, by default a few thousand.
 
 #include "../allocations.h"
 #include "mutate_map.h"
@@ -38,7 +38,7 @@ std::vector<MapBytes> originals() {
   return files;
 }
 
-// What became of the mutants so far.
+// Results of the mutants so far.
 struct Tally {
   std::size_t read = 0;
   std::size_t read_with_right_checksums = 0;
@@ -54,7 +54,7 @@ std::string section_named_in(const InputError& error) {
   return place.substr(begin + 8, place.find(" at byte") - begin - 8);
 }
 
-// The map, or what it was refused for.
+// The map; empty after counting the refusal.
 std::optional<StoredMap> read_or_refuse(const Mutant& mutant, Tally& tally) {
   try {
     return read_map(mutant.bytes, "mutant.byre");
@@ -113,7 +113,7 @@ TEST(DamagedMaps, AreReadAsSoundMapsOrRefused) {
   }
   print(tally, count);
 
-  // Otherwise the mutants say nothing.
+  // Every section must have been refused, or the mutants do not reach its parser.
   for (const char* const section :
        {"summary", "notes", "provenance", "rigs", "keyframes", "features", "patches", "points", "observations", "words",
         "plan", "calibrations", "shutters", "descriptors", "observers", "lookup", "header"}) {

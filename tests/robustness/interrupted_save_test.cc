@@ -1,4 +1,4 @@
-// A save that fails or is killed at any moment leaves a map that can be read: the old one or the new one, whole.
+// A save that fails or is killed at any moment leaves a complete readable map: the old one or the new one.
 
 #include "system_calls.h"
 
@@ -118,7 +118,7 @@ TEST_F(InterruptedSave, LeavesTheOldMapWhenTheDiskFillsUpMidway) {
   }
 }
 
-// In a process of its own, whose files may not grow beyond so many bytes. Whether the save succeeded.
+// Saves in a child process whose files are limited to this size. Returns whether the save succeeded.
 bool save_with_file_limit(const StoredMap& map, const fs::path& file, std::size_t bytes) {
   const pid_t process = fork();
   if (process == 0) {
@@ -149,7 +149,7 @@ TEST_F(InterruptedSave, LeavesTheOldMapWhenTheSystemAllowsNoLargerFile) {
   EXPECT_EQ(read_file(file_), new_bytes_);
 }
 
-// Saves one map after the other over the same file until it is killed; says whether it is at it.
+// Alternately saves two maps to one file until killed; is_saving: set during saves.
 [[noreturn]] void save_forever(const StoredMap& first, const StoredMap& second, const fs::path& file,
                                std::atomic<bool>& is_saving) {
   for (bool is_first = true;; is_first = !is_first) {
@@ -159,7 +159,7 @@ TEST_F(InterruptedSave, LeavesTheOldMapWhenTheSystemAllowsNoLargerFile) {
   }
 }
 
-// A flag that survives the process that sets it.
+// A flag that outlives the process that sets it.
 class SharedFlag {
  public:
   SharedFlag()
@@ -177,7 +177,7 @@ class SharedFlag {
   Flag* flag_;
 };
 
-// Waits until the condition holds, for at most five seconds.
+// Waits up to five seconds until the condition holds.
 void wait_until(const std::function<bool()>& holds) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (!holds() && std::chrono::steady_clock::now() < deadline) {
@@ -215,7 +215,7 @@ TEST_F(InterruptedSave, LeavesAMapWhenItsProcessIsKilled) {
   std::printf("%d kills inside a save, %d of them between the first byte and the rename\n", inside, while_writing);
   EXPECT_EQ(inside, kKills);
   EXPECT_GT(while_writing, 0);
-  save_map(new_map_, file_);  // whatever the kills have left
+  save_map(new_map_, file_);  // must succeed whatever files the kills left
   EXPECT_EQ(read_file(file_), new_bytes_);
 }
 

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-// Numbers that parsers stumble over, of all widths; cut to the width that is written.
+// Integers at typical parser limits, truncated to the written width.
 constexpr std::array<std::uint64_t, 12> kIntegers = {0,          1,          2,          0x7f,       0xff,       0xffff,
                                                      0x7fffffff, 0x80000000, 0xfffffff0, 0xffffffff, 1ull << 40, ~0ull};
 constexpr std::array<double, 10> kReals = {0.0,
@@ -49,7 +49,7 @@ std::string MapMutator::damage(MapBytes& bytes) {
     const char* name;
     void (MapMutator::*do_it)(MapBytes& bytes);
   };
-  // Numbers twice: they are what parsers reason about.
+  // Numbers occur twice: parsers depend on them most.
   static constexpr std::array<Damage, 12> kDamages = {Damage{"flipped bits", &MapMutator::flip_bits},
                                                       {"other number", &MapMutator::write_number},
                                                       {"other number", &MapMutator::write_number},
@@ -67,7 +67,7 @@ std::string MapMutator::damage(MapBytes& bytes) {
   return name;
 }
 
-// Small sections are as likely as large ones. The first is never empty.
+// Chooses each section with equal probability, regardless of its size. The first is never empty.
 std::size_t MapMutator::any_filled_section(const MapBytes& bytes) {
   std::size_t index = below(section_count(bytes));
   while (table_entry(bytes, index).size == 0) index = below(section_count(bytes));
@@ -76,13 +76,13 @@ std::size_t MapMutator::any_filled_section(const MapBytes& bytes) {
 
 std::size_t MapMutator::place_in_any_section(const MapBytes& bytes) {
   const TableEntry section = table_entry(bytes, any_filled_section(bytes));
-  // Counts and the first entries more often than the rest.
+  // Prefers counts and first entries.
   const std::size_t size = below(2) == 0 ? std::min<std::size_t>(section.size, 64) : section.size;
   return section.offset + below(size);
 }
 
 void MapMutator::flip_bits(MapBytes& bytes) {
-  std::vector<std::size_t> places(1 + below(4));  // all chosen before the table may change
+  std::vector<std::size_t> places(1 + below(4));  // all chosen before the section table may change
   for (std::size_t& place : places) place = below(4) == 0 ? below(bytes.size()) : place_in_any_section(bytes);
   for (const std::size_t place : places) bytes[place] ^= std::byte{1} << below(8);
 }
@@ -136,7 +136,7 @@ void MapMutator::swap_sections(MapBytes& bytes) {
 void MapMutator::swap_table_entries(MapBytes& bytes) {
   const std::size_t first = table_entry(bytes, below(section_count(bytes))).at;
   const std::size_t second = table_entry(bytes, below(section_count(bytes))).at;
-  const std::size_t skipped = below(2) == 0 ? 0 : 16;  // the names
+  const std::size_t skipped = below(2) == 0 ? 0 : 16;  // section names
   if (first == second) return;
   std::swap_ranges(at(bytes, first + skipped), at(bytes, first + kTableEntrySize), at(bytes, second + skipped));
 }

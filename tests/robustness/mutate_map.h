@@ -8,19 +8,19 @@
 
 namespace byre {
 
-// A map file that was damaged.
+// A damaged map file.
 struct Mutant {
   MapBytes bytes;
-  std::string damage;  // what was done to it
+  std::string damage;  // description of the damage
   bool has_right_checksums = false;
 };
 
-// Damages map files in ever new ways: flipped bits, other numbers (huge counts, NaN, indices out of range), cut-off
-// and appended bytes, sections swapped, cut and grown, and pieces copied. Every second mutant gets right checksums, so
-// that the damage reaches the parser. The same seed gives the same mutants.
+// Damages map files in random ways: flipped bits, other numbers (huge counts, NaN, indices out of range), truncated and
+// appended bytes, sections swapped, truncated and extended, and pieces copied. Every second mutant gets right
+// checksums, so that the damage reaches the parser. Deterministic in the seed.
 class MapMutator {
  public:
-  // Precondition: sound map files, at least one.
+  // Precondition: at least one original, all valid map files.
   MapMutator(std::vector<MapBytes> originals, std::uint64_t seed) : originals_(std::move(originals)), random_(seed) {}
 
   Mutant next();

@@ -1,5 +1,5 @@
-// Files of every format that byre ever wrote stay readable, and are written in the newest. A file here is never
-// changed; a new format adds one.
+// Files of every format that byre ever wrote stay readable, and are saved in the newest. Files here never change; each
+// new format adds one.
 
 #include "byre/input/binary_file.h"
 #include "byre/map/map_bytes_scene.h"
@@ -16,7 +16,7 @@ using testing::IsEmpty;
 
 const std::filesystem::path kFormats = std::filesystem::path(BYRE_SOURCE_DIR) / "tests/robustness/formats";
 
-// Once it is, it is written the same for good.
+// Checks that saving gives the newest format, and that saving again gives the same bytes.
 void expect_to_be_written_in_the_newest(const StoredMap& stored) {
   const MapBytes written = write_map(stored);
   EXPECT_EQ(value_at<std::uint32_t>(written, kFormatAt), kNewestFormat);
@@ -34,7 +34,7 @@ std::string refusal_with(const char* section_name, std::size_t place, std::uint3
   return refusal_of(bytes);
 }
 
-// Places follow docs/map_format.md.
+// Offsets follow docs/map_format.md.
 TEST(OldFormats, AreRefusedWithValuesThatNoMapHas) {
   constexpr std::uint32_t kHuge = 0xfffffff0;
   EXPECT_THAT(refusal_with("patches", 0, kHuge), HasSubstr("claims 4294967280 entries"));

@@ -35,7 +35,7 @@ bool note(const char* name, int descriptor) {
 
 }  // namespace
 
-// These stand before the C library's in the search for the name.
+// Symbol lookup finds these before the C library's.
 extern "C" {
 
 int open(const char* path, int flags, ...) {

@@ -9,11 +9,10 @@ namespace byre {
 
 struct SystemCall {
   std::string name;            // open, write, fsync, rename
-  std::filesystem::path path;  // the file's; of rename: the new one
+  std::filesystem::path path;  // path of the file; the new one for rename
 };
 
-// While it lives, notes the calls that change files of a folder, as they reach the operating system, and may let them
-// fail. One at a time.
+// Records the calls that change files of a folder, and can make them fail. At most one instance at a time.
 class SystemCallTrace {
  public:
   explicit SystemCallTrace(const std::filesystem::path& folder);
@@ -21,14 +20,14 @@ class SystemCallTrace {
   SystemCallTrace(const SystemCallTrace&) = delete;
   SystemCallTrace& operator=(const SystemCallTrace&) = delete;
 
-  // The n-th call from now on fails with this error and changes nothing.
+  // Makes the n-th next call fail with this error, without effect.
   void fail_call(std::size_t n, int error) { failing_call_ = calls_.size() + n, error_ = error; }
-  // From now on a call writes at most so many bytes.
+  // Limits each following write to this number of bytes.
   void shorten_writes(std::size_t bytes) { max_write_ = bytes; }
 
   const std::vector<SystemCall>& calls() const { return calls_; }
 
-  // For the calls themselves. Whether it may go on; sets errno if not.
+  // For the intercepted calls only. Returns false, with errno set, if the call must fail.
   bool note(const char* name, const std::filesystem::path& path);
   std::optional<std::size_t> max_write() const { return max_write_; }
 

@@ -1,4 +1,4 @@
-// `byre node` and cameras of other vendors' programs: their calibrations, and what may be wrong with them.
+// `byre node` with cameras driven by other vendors' programs: their calibrations, and faults in them.
 
 #include "node_fixture.h"
 
@@ -16,7 +16,7 @@ using std::chrono_literals::operator""h;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-// Feeds the node until it is killed, in a process of its own.
+// Feeds the node from a separate process until killed.
 TEST(KilledFeeder, DISABLED_Feeds) {
   FastPeer peer(std::atoi(std::getenv("BYRE_TEST_DOMAIN")));
   CameraFeed feed(peer);
@@ -97,7 +97,7 @@ TEST_F(ByreNode, TakesItsCalibrationFromCameraInfoAndItsMountingFromTransforms) 
       "slam:\n  task: map\n  workers: repeatable\n  save: made.byre\nimages:\n  reliable: true\n  pair_wait: 0.2\n",
       domain_);
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: localisation", "waiting for camera info on /left/camera_info"));
-  // Rectified axes: x along the baseline, as calibration of a pair chooses them.
+  // Rectified axes: x along the baseline, as stereo calibration chooses them.
   const Pose left_from_right = inverse(calibration.right->right_from_left);
   const Eigen::Vector3d x = left_from_right.translation.normalized();
   const Eigen::Vector3d y = Eigen::Vector3d::UnitZ().cross(x).normalized();
@@ -136,7 +136,7 @@ TEST_F(ByreNode, TakesItsCalibrationFromCameraInfoAndItsMountingFromTransforms) 
 
   calibration.body_from_left = {Eigen::Quaterniond::Identity(), {0.3, 0.0, 0.0}};
   const auto expected = room.tracked(Slam::mapping(calibration, Room::options()));
-  // Images that come before the calibration are lost, and the one that tells the frame is.
+  // Images before the calibration are lost, and so is the one that determines the frame.
   bool is_first_tracked = false;
   for (int i = 0; i < 20 && !is_first_tracked; ++i) {
     left_info->write(&left);
@@ -177,7 +177,7 @@ TEST_F(ByreNode, TakesCompressedImagesOfOneCamera) {
     message.data(room.file("cam0", i));
     left->write(&message);
     const FrameReport expected = slam.process({view_of(room.frames()[i]).left});
-    // The newest frame wins, so the next one waits for the answer to this one.
+    // The node skips to the newest frame, so each frame waits for the answer to the previous one.
     const std::string time = "\"time_ns\":" + std::to_string(room.frames()[i].time.count()) + ",";
     ASSERT_TRUE(health.find([&](const auto& text) { return text.data().find(time) != std::string::npos; }))
         << "frame " << i << "\n"
@@ -201,7 +201,7 @@ TEST_F(ByreNode, SurvivesAFloodOfImages) {
   unreliable.replace(unreliable.find("reliable: true"), 14, "reliable: false");
   NodeProcess node(folder_, unreliable, domain_);
   ASSERT_TRUE(is_connected() && flood.is_heard()) << node.said();
-  for (int i = 0; i < 2000; ++i) {  // a thousand a second
+  for (int i = 0; i < 2000; ++i) {  // a thousand per second
     ImageFrame frame = Room::shared().frames()[static_cast<std::size_t>(i) % 40];
     frame.time = std::chrono::milliseconds(i);
     flood.send(frame);

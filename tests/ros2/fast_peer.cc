@@ -34,7 +34,7 @@ FastPeer::FastPeer(int domain) {
   transport->sendBufferSize = transport->receiveBufferSize = 4 << 20;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports = {transport};
-  // Others on this computer are asked one by one, as ROS has it asked where discovery is confined to localhost.
+  // Unicast discovery on localhost, as ROS does when confined to it.
   eprosima::fastrtps::rtps::Locator_t localhost;
   eprosima::fastrtps::rtps::IPLocator::setIPv4(localhost, "127.0.0.1");
   qos.wire_protocol().builtin.initialPeersList.push_back(localhost);

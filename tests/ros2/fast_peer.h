@@ -27,7 +27,7 @@ struct PeerQos {
   int depth = 10;
 };
 
-// A program of ROS 2 by Fast DDS, on the loopback interface, without shared memory.
+// A ROS 2 participant by Fast DDS, on the loopback interface, without shared memory.
 class FastPeer {
  public:
   explicit FastPeer(int domain);
@@ -40,7 +40,7 @@ class FastPeer {
   eprosima::fastdds::dds::DataReader* reader(const std::string& topic, eprosima::fastdds::dds::TypeSupport type,
                                              const PeerQos& qos, eprosima::fastdds::dds::DataReaderListener* listener);
 
-  // Whether the writer has a reader, or gets one within some seconds.
+  // Whether the writer gets a reader within some seconds.
   static bool is_heard(eprosima::fastdds::dds::DataWriter* writer);
 
  private:
@@ -51,7 +51,7 @@ class FastPeer {
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
 };
 
-// Keeps all messages of a topic, as they come.
+// Stores all messages of a topic.
 template <typename Message, typename Type>
 class Inbox : private eprosima::fastdds::dds::DataReaderListener {
  public:
@@ -59,7 +59,7 @@ class Inbox : private eprosima::fastdds::dds::DataReaderListener {
       : reader_(peer.reader(topic, eprosima::fastdds::dds::TypeSupport(new Type), qos, this)) {}
   ~Inbox() override { reader_->set_listener(nullptr); }
 
-  // The first message that fits, of those that came or come within some seconds.
+  // The first message that fits, waiting for it up to patience.
   std::optional<Message> find(const std::function<bool(const Message&)>& fits,
                               std::chrono::seconds patience = std::chrono::seconds(20)) {
     std::unique_lock lock(mutex_);

@@ -1,4 +1,4 @@
-// byre node and a fleet: positions by MQTT, as VDA 5050 has them, through a real broker.
+// byre node and fleet control: positions by MQTT, following VDA 5050, through a real broker.
 
 #include "mqtt_peer.h"
 #include "node_fixture.h"
@@ -28,7 +28,7 @@ class FleetTest : public ByreNode {
                    (folder_ / "password").string() + "\n");
   }
 
-  // Sends frames until the fleet hears of a known place.
+  // Sends frames until the fleet receives a localised position.
   bool is_found(MqttListener& fleet) {
     for (const ImageFrame& frame : Room::shared().frames()) {
       answer_to(feed_, odometry_, frame);

@@ -1,4 +1,4 @@
-// byre node leaves its maps whole, and finds itself again, wherever it is killed: BYRE_NODE_KILLS, docs/ros2.md.
+// byre node keeps its maps intact and relocalises, whenever it is killed: BYRE_NODE_KILLS, docs/ros2.md.
 
 #include "byre/input/binary_file.h"
 #include "byre/map/map_file.h"
@@ -41,7 +41,7 @@ const char* name_of(Moment moment) {
 struct RobotTask {
   std::string name;
   fs::path map;
-  fs::path saved;  // the map itself where that is gone on with
+  fs::path saved;  // equal to map if the map is extended
 
   bool is_extended() const { return map == saved; }
   std::string config() const {
@@ -49,7 +49,7 @@ struct RobotTask {
   }
 };
 
-// A robot whose node is killed again and again, and started with the same settings.
+// A robot whose node is repeatedly killed and restarted with the same settings.
 class KilledRobot {
  public:
   KilledRobot(fs::path folder, int domain, RobotTask task, std::uint64_t seed)
@@ -58,7 +58,7 @@ class KilledRobot {
     map_bytes_ = read_file(task_.map);
   }
 
-  // The node begins, finds itself, saves, and ends when it is asked to.
+  // A session that ends normally: start, localise, drive, save, stop.
   void live() {
     const int before = sessions();
     begin();
@@ -75,7 +75,7 @@ class KilledRobot {
                 task_.name.c_str(), seconds_to_begin_, frames_to_find_, seconds_to_save_, sessions());
   }
 
-  // The node begins, finds itself, is killed, and what it leaves is looked at.
+  // A session that is killed; checks the files that it leaves.
   void live_and_die(Moment moment) {
     const int before = sessions();
     const auto mark = mark_of_unfinished();
@@ -102,7 +102,7 @@ class KilledRobot {
   }
 
   const std::string& name() const { return task_.name; }
-  int unfinished_files() const { return unfinished_; }  // kills that left one
+  int unfinished_files() const { return unfinished_; }  // kills that left a temporary file
   int saves() const { return saved_; }                  // saves that were answered before the kill
   int most_frames_to_find() const { return most_frames_to_find_; }
 
@@ -127,7 +127,7 @@ class KilledRobot {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(draw(random_)));
   }
   int draw(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
-  // Recordings that the saved map is made of.
+  // Number of recordings in the saved map.
   int sessions() const {
     return fs::exists(task_.saved) ? static_cast<int>(load_map(task_.saved).recordings.size()) : 0;
   }
@@ -143,7 +143,7 @@ class KilledRobot {
   void find_itself() {
     ASSERT_TRUE(others_->is_connected()) << node_->said();
     seconds_to_begin_ = seconds_since(begin_);
-    constexpr int kKnown = 20;  // frames of a visit that the map at its smallest surely shows
+    constexpr int kKnown = 20;  // frames of a visit that even the smallest map covers
     for (int i = 0; i < kFramesToFind; ++i) {
       at_ = i % (2 * kKnown) < kKnown ? i % kKnown : kKnown - 1 - i % kKnown;  // forth and back
       const auto answer = others_->answer_to(frame(), next_time());
@@ -156,7 +156,7 @@ class KilledRobot {
     FAIL() << "it does not find itself in " << kFramesToFind << " frames\n" << node_->said();
   }
 
-  // Onwards, to where half a map does not reach.
+  // Drives on, beyond the area of half_map().
   void drive() {
     for (const int end = draw(40, std::ssize(Visits::shared()[visit_]) - 1); at_ < end;) {
       ++at_;
@@ -170,7 +170,7 @@ class KilledRobot {
       std::this_thread::sleep_for(up_to(0.03));
       return;
     }
-    // What another save left is there already; it is shorter or older then.
+    // An earlier save may have left a shorter or older file.
     const auto mark = mark_of_unfinished();
     others_->command("save");
     if (moment == Moment::saving) {
@@ -206,7 +206,7 @@ class KilledRobot {
     const fs::path previous = task_.saved.parent_path() / (task_.saved.stem().string() + ".previous.byre");
     for (const fs::path& file : {task_.saved, previous}) names.erase(file.filename().string());
     if (const auto file = unfinished()) names.erase(file->filename().string());
-    std::erase_if(names, [&](const std::string& name) {  // a link left by a kill before it was renamed
+    std::erase_if(names, [&](const std::string& name) {  // a link left by a kill before its rename
       return name.starts_with(previous.filename().string() + ".") && name.ends_with(".unfinished");
     });
     EXPECT_THAT(names, testing::IsEmpty()) << "nothing piles up";
@@ -224,7 +224,7 @@ class KilledRobot {
   }
 
   // Constant after construction.
-  fs::path folder_;  // what the node is started with
+  fs::path folder_;  // contains the node's configuration
   int domain_;
   RobotTask task_;
   std::vector<std::byte> map_bytes_;

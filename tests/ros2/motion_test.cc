@@ -1,4 +1,4 @@
-// `byre node` and the odometry of wheels that another vendor's program sends.
+// `byre node` with wheel odometry from another vendor's program.
 
 #include "node_fixture.h"
 
@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kFrameRate = 5.0;  // Hz
 constexpr int kFrames = 76;
-constexpr int kFirstDark = 70;  // frame from which on images are black
+constexpr int kFirstDark = 70;  // first black image
 constexpr int kWheelSamplesPerFrame = 4;
 
-// A base that drives three metres through the room's middle, in bends to the left and to the right.
+// A base that drives three metres through the middle of the room, in bends to both sides.
 Pose room_from_base(double seconds) {
   constexpr double kStep = 0.01;
   constexpr double kSpeed = 0.22;  // metres per second
@@ -38,7 +38,7 @@ nav_msgs::msg::Odometry wheel_message(Timestamp time) {
   return message;
 }
 
-// What a camera on that base sees.
+// Images of a camera on that base.
 class DriveThroughRoom {
  public:
   DriveThroughRoom() : rendered_("byre_ros2_drive", euroc_like_calibration(4), truth()) {
@@ -82,7 +82,7 @@ geometry_msgs::msg::TwistStamped twist_message(Timestamp time) {
 
 class ByreNodeOnWheels : public ByreNode {
  protected:
-  // message_of: what wheels tell of a time, on a topic of the type that message and type are of.
+  // Tests dead reckoning without images. message_of: wheel odometry at a time, as a message of the given type.
   template <typename Message>
   void expect_to_go_on_in_the_dark(const TypeSupport& type, Message (*message_of)(Timestamp));
 };

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using boost::asio::ip::tcp;
 
-// Debian has it where only administrators look.
+// Debian installs it outside the PATH of normal users.
 fs::path broker_program() {
   for (const char* path : {"/usr/sbin/mosquitto", "/usr/bin/mosquitto", "/usr/local/sbin/mosquitto"}) {
     if (fs::exists(path)) return path;
@@ -64,7 +64,7 @@ MqttBroker::MqttBroker(const fs::path& folder, const std::string& user, const st
   fs::remove(passwords);
   const std::string command = "mosquitto_passwd -c -b " + passwords + " " + user + " " + password + " 2>/dev/null";
   if (std::system(command.c_str()) != 0) throw std::runtime_error("mosquitto_passwd fails");
-  // A broker that root starts becomes another user, who may not read the file of passwords.
+  // A broker started by root drops its privileges, and then cannot read the password file.
   std::ofstream(config) << "listener " << port_ << " 127.0.0.1\npassword_file " << passwords
                         << "\nuser root\nlog_dest none\n";
   const std::string program = broker_program().string();

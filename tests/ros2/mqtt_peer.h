@@ -16,15 +16,15 @@ struct mosquitto;
 
 namespace byre::testing_ros2 {
 
-// Whether it becomes so in a minute.
+// Polls until the condition holds, for up to a minute.
 bool eventually(const std::function<bool()>& is_so);
 
-// A broker of MQTT on the loopback interface, that knows one user; killed with this.
+// An MQTT broker on the loopback interface with one user. The destructor kills it.
 class MqttBroker {
  public:
   static bool is_installed();
 
-  // port: 0 for one that is free. Returns once it answers.
+  // port: 0 for any free one. Returns once the broker answers.
   MqttBroker(const std::filesystem::path& folder, const std::string& user, const std::string& password, int port = 0);
   ~MqttBroker() { kill(); }
   MqttBroker(const MqttBroker&) = delete;
@@ -41,7 +41,7 @@ class MqttBroker {
   pid_t process_ = -1;
 };
 
-// Messages of a broker's topics.
+// Receives messages of a broker's topics.
 class MqttListener {
  public:
   using Condition = std::function<bool(const nlohmann::json&)>;
@@ -51,14 +51,14 @@ class MqttListener {
   MqttListener(const MqttListener&) = delete;
   MqttListener& operator=(const MqttListener&) = delete;
 
-  // The first message of a topic that is so, among those that came and those that come in some time.
+  // The first message of a topic that fulfils the condition, waiting for it up to patience.
   std::optional<nlohmann::json> find(const std::string& topic, const Condition& is_so,
                                      std::chrono::milliseconds patience = std::chrono::minutes(1));
 
  private:
   mosquitto* client_;
   std::mutex mutex_;
-  std::vector<std::pair<std::string, nlohmann::json>> messages_;  // topic and text; guarded by the mutex
+  std::vector<std::pair<std::string, nlohmann::json>> messages_;  // topic and text; guarded by mutex_
 };
 
 }  // namespace byre::testing_ros2

@@ -38,8 +38,8 @@ inline void send_text(eprosima::fastdds::dds::DataWriter* writer, const std::str
   writer->write(&message);
 }
 
-// Whether the node and its peer have. Endpoints are told in the order in which they were made: where the node answers a
-// command, it knows the cameras' writers too, and where the answer arrives, so do its other messages.
+// Waits until node and peer have discovered each other. Endpoints are announced in order of creation: a node that
+// answers a command has discovered the cameras' writers, and a peer that receives the answer gets all other messages.
 inline bool have_found_one_another(CameraFeed& feed, Texts& events, eprosima::fastdds::dds::DataWriter* command) {
   if (!feed.is_heard()) return false;
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -54,7 +54,7 @@ inline bool have_found_one_another(CameraFeed& feed, Texts& events, eprosima::fa
 inline constexpr PeerQos kVolatile{true, false, 100};
 inline constexpr PeerQos kLatched{true, true, 100};
 
-// A room of made-up walls, with the calibration that the node is given, and what is mapped of it.
+// A rendered room, the node's calibration, and a map of the room.
 class Room {
  public:
   static const Room& shared() {
@@ -65,12 +65,12 @@ class Room {
   fs::path calibration() const { return folder_ / "camchain.yaml"; }
   fs::path map() const { return folder_ / "room.byre"; }
   const std::vector<ImageFrame>& frames() const { return frames_; }
-  // The PNG file of an image.
+  // Content of the image's PNG file.
   std::vector<std::uint8_t> file(const std::string& camera, std::size_t frame) const {
     std::ifstream stream(rendered_.image(camera, frame), std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
-  // What a Slam of one's own makes of the frames.
+  // Reports of a Slam instance on the frames, for comparison.
   std::vector<FrameReport> tracked(Slam slam) const {
     std::vector<FrameReport> reports;
     for (const ImageFrame& frame : frames_) reports.push_back(slam.process(view_of(frame)));
@@ -118,14 +118,14 @@ class ByreNode : public testing::Test {
   bool is_connected() { return diagnostics_.first() && have_found_one_another(feed_, events_, command_); }
   void command(const std::string& text) { send_text(command_, text); }
 
-  // Sends a frame and waits for what the node makes of it.
+  // Sends a frame and waits for its odometry message.
   std::optional<nav_msgs::msg::Odometry> answer_to(CameraFeed& feed, Odometry& odometry, const ImageFrame& frame,
                                                    Timestamp later = {}) const {
     feed.send(frame, later);
     return odometry.find([&](const auto& message) { return time_of(message.header().stamp()) == frame.time + later; });
   }
 
-  // What a status of the diagnostics says, once it says such a thing.
+  // Message of a diagnostics status, once it contains part.
   static std::optional<std::string> diagnosis(Diagnostics& diagnostics, const std::string& name,
                                               const std::string& part) {
     std::optional<std::string> text;

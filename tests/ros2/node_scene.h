@@ -16,19 +16,19 @@
 
 namespace byre::testing_ros2 {
 
-// `byre node` as a service manager starts it, on the loopback interface; killed with this if it is still there.
+// `byre node` on the loopback interface, started as by a service manager. The destructor kills it.
 class NodeProcess {
  public:
-  // variables: of its environment, as NAME=VALUE, beside those of this program.
+  // variables: additional environment variables, as NAME=VALUE.
   NodeProcess(const std::filesystem::path& folder, const std::string& config, int domain,
               std::vector<std::string> variables = {});
   ~NodeProcess();
   NodeProcess(const NodeProcess&) = delete;
   NodeProcess& operator=(const NodeProcess&) = delete;
 
-  int stop();  // by SIGTERM; the exit code, or -1 when it ended otherwise
+  int stop();  // by SIGTERM; the exit code, or -1 if it ended otherwise
   bool is_running() const;
-  std::string said() const;  // on the standard error stream
+  std::string said() const;  // output on stderr
   pid_t process() const { return process_; }
 
  private:
@@ -36,18 +36,18 @@ class NodeProcess {
   pid_t process_ = -1;
 };
 
-// Cyclone DDS leaves out what a reliable writer sends before its first heartbeat is in. Sends a message of no use, and
-// waits until it is acknowledged.
+// Sends a dummy message and waits for its acknowledgment: Cyclone DDS drops messages of a reliable writer before its
+// first heartbeat.
 template <typename Message>
 bool settle(eprosima::fastdds::dds::DataWriter* writer, Message message) {
   writer->write(&message);
   return writer->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(20, 0)) == ReturnCode_t::RETCODE_OK;
 }
 
-// A port of TCP that nobody listens at.
+// A free TCP port.
 int free_port();
 
-// A domain that no other test of this machine has by chance.
+// A random domain, unlikely to be used by other tests on this machine.
 int some_domain();
 
 sensor_msgs::msg::Image image_message(const Image& image, Timestamp time, const std::string& frame);
@@ -55,13 +55,13 @@ builtin_interfaces::msg::Time ros_time(Timestamp time);
 Timestamp time_of(const builtin_interfaces::msg::Time& time);
 Eigen::Vector3d vector_of(const geometry_msgs::msg::Point& point);
 
-// Sends the images of a stereo recording as a camera's driver does.
+// Sends the images of a stereo recording like a camera driver.
 class CameraFeed {
  public:
   explicit CameraFeed(FastPeer& peer, bool is_reliable = true);
 
   bool is_heard() const;
-  bool settle();  // both writers, by images of no use
+  bool settle();  // settles both writers with dummy images
   void send(const ImageFrame& frame, Timestamp later = {}) {
     send_left(frame, later);
     if (frame.right) send_right(frame, later);

@@ -1,4 +1,4 @@
-// What `byre node` tells another vendor's programs of ROS 2, and how it obeys them.
+// Messages of `byre node` to other vendors' ROS 2 programs, and its handling of their commands.
 
 #include "byre/map/map_file.h"
 #include "mapped_recording.h"
@@ -38,7 +38,7 @@ TEST_F(ByreNode, GivesEachFrameThePosesThatSlamGives) {
   EXPECT_TRUE(fs::exists(folder_ / "made.byre")) << "what was mapped is kept at the end";
 }
 
-// The node's poses of the frames, as it publishes them one by one.
+// Compares the published pose of each frame.
 TEST_F(ByreNode, GivesEachFrameOfAMissionThePoseInTheMapThatSlamGives) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =
@@ -162,7 +162,7 @@ TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
     return event.data().find(R"("command":"save\\n<3>fake")") != std::string::npos;
   })) << node.said();
   EXPECT_EQ(node.said().find("\n<3>fake"), std::string::npos) << node.said();
-  command(std::string(1 << 20, 'a'));  // longer than a command may be
+  command(std::string(1 << 20, 'a'));  // longer than the limit of commands
   EXPECT_EQ(answer("load room.byre").at("done"), true);
   EXPECT_EQ(node.said().find("aaa"), std::string::npos);
   EXPECT_EQ(answer("relocalise").at("done"), true);
@@ -241,7 +241,7 @@ TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-// Seconds of processor time that a process has used.
+// Processor time of a process, seconds.
 double processor_seconds(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string word;

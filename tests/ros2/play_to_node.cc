@@ -1,7 +1,7 @@
-// Plays a stereo recording in real time to `byre node` on a kept map, as a camera's driver does, and compares what it
-// answers with what Slam makes of the same frames in this process.
-// Usage: byre_play_to_node RECORDING MAP [HZ]      20 Hz unless given; images are sent reliably
-// Exit code: 0 every frame was answered, with the poses of Slam to 1e-6 m, 1 not so, 2 wrong usage.
+// Plays a stereo recording in real time to `byre node` on a saved map, like a camera driver, and compares the answers
+// with Slam in this process on the same frames.
+// Usage: byre_play_to_node RECORDING MAP [HZ]      20 Hz by default; images are sent reliably
+// Exit code: 0 every frame was answered, with the poses of Slam to 1e-6 m, 1 otherwise, 2 wrong usage.
 
 #include "node_fixture.h"
 
@@ -22,7 +22,7 @@ double milliseconds(Clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-// The odometry of each frame and when it came.
+// Odometry messages and their arrival times.
 class Answers : private eprosima::fastdds::dds::DataReaderListener {
  public:
   struct Answer {
@@ -56,7 +56,7 @@ class Answers : private eprosima::fastdds::dds::DataReaderListener {
   eprosima::fastdds::dds::DataReader* reader_;
 };
 
-// Processor time of this process, or of those that it began and that have ended (getrusage(2)).
+// Processor time of this process, or of its terminated children (getrusage(2)).
 double processor_seconds(int of_whom) {
   rusage usage{};
   getrusage(of_whom, &usage);
@@ -82,11 +82,11 @@ struct Playing {
   double rate = 20.0;
 };
 
-// What the node made of the frames, sent as in real time once it hears the cameras.
+// Results of the node, which received the frames in real time.
 struct Played {
   std::vector<double> latency_ms;
   std::map<Timestamp, Answers::Answer> answers;
-  double node_seconds = 0.0;  // processor time, with opening the map
+  double node_seconds = 0.0;  // processor time, including loading the map
 };
 
 Played play(const Playing& playing, const std::string& workers) {
@@ -117,11 +117,11 @@ Played play(const Playing& playing, const std::string& workers) {
   return played;
 }
 
-// What Slam makes of the frames, as fast as it goes.
+// Results of Slam on the same frames, without pauses.
 struct Tracked {
   std::vector<double> process_ms;
   std::vector<FrameReport> reports;
-  double seconds = 0.0;  // processor time, with opening the map
+  double seconds = 0.0;  // processor time, including loading the map
 };
 
 Tracked track(const Playing& playing, Workers workers) {
@@ -142,7 +142,7 @@ Tracked track(const Playing& playing, Workers workers) {
   return tracked;
 }
 
-// The furthest that the node's odometry lies from Slam's, metres, and frames with odometry that have no answer.
+// Largest distance between the node's odometry and Slam's, metres, and number of frames with odometry but no answer.
 std::pair<double, int> compared(const Tracked& tracked, const Played& played) {
   double furthest = 0.0;
   int missing = 0;

@@ -1,4 +1,4 @@
-// The commands of byre node as services, called by Fast DDS as rmw_cyclonedds calls them: with an id in front.
+// Commands of byre node as services, called by Fast DDS with the request ids of rmw_cyclonedds.
 
 #include "mqtt_peer.h"
 #include "node_fixture.h"
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Calls one service, and keeps the replies to itself as clients of ROS do.
+// Calls one service, and keeps only replies to itself, like ROS clients.
 template <typename Request, typename RequestType, typename Response, typename ResponseType>
 class Client {
  public:
@@ -102,7 +102,7 @@ TEST_F(ByreNode, PausesMappingByServiceAndByCommand) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-// A request by Fast DDS's own words has no id in front.
+// Requests in the native form of Fast DDS have no id.
 TEST_F(ByreNode, LeavesRequestsAloneThatItDoesNotUnderstand) {
   NodeProcess node(folder_, kOffered + mission(), domain_);
   TypeSupport bare(new std_srvs::srv::BareTrigger_RequestPubSubType);
@@ -113,7 +113,7 @@ TEST_F(ByreNode, LeavesRequestsAloneThatItDoesNotUnderstand) {
   requests->write(&request);
   command("hello again");
   ASSERT_TRUE(events_.find([](const auto& event) { return event.data().find("hello again") != std::string::npos; }));
-  // It reads commands and requests in no order.
+  // Commands and requests are read in any order.
   const std::string refusal = "/byre/save is called in words that are not rmw_cyclonedds_cpp's";
   EXPECT_TRUE(eventually([&] { return node.said().find(refusal) != std::string::npos; })) << node.said();
   EXPECT_EQ(node.stop(), 0);

@@ -1,4 +1,4 @@
-// byre node stays up while it is fed frames for as long as is wanted: BYRE_NODE_SOAK_FRAMES, docs/ros2.md.
+// Long-run test of byre node: BYRE_NODE_SOAK_FRAMES, docs/ros2.md.
 
 #include "staying_up_scene.h"
 
@@ -18,7 +18,7 @@
 namespace byre::testing_ros2 {
 namespace {
 
-// The socket of a service manager, and how long the node was silent at most.
+// A service manager's notification socket; measures the node's longest silence.
 class Watchdog {
  public:
   explicit Watchdog(const fs::path& folder) : path_(folder / "notify") {
@@ -36,19 +36,19 @@ class Watchdog {
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  static constexpr std::chrono::seconds kTime{10};  // as in byre.service
+  static constexpr std::chrono::seconds kTime{10};  // WatchdogSec of byre.service
   std::vector<std::string> variables() const {
     return {"NOTIFY_SOCKET=" + path_.string(),
             "WATCHDOG_USEC=" + std::to_string(std::chrono::microseconds(kTime).count())};
   }
 
-  // The time since the last sign counts as well.
+  // Includes the time since the last notification.
   void stop() {
     reader_.request_stop();
     reader_.join();
     note(Clock::now());
   }
-  // After stop().
+  // Valid after stop().
   int signs() const { return signs_; }
   double longest_silence() const { return longest_; }  // seconds
 
@@ -74,17 +74,17 @@ class Watchdog {
 
   fs::path path_;
   int socket_ = -1;
-  // Written by the reader until it is stopped.
+  // Written by the reader thread until it is stopped.
   std::optional<Clock::time_point> last_;
   double longest_ = 0.0;
   int signs_ = 0;
   std::jthread reader_;
 };
 
-// What a process holds.
+// Resource use of a process.
 struct Usage {
-  long resident_kb = 0;   // all of its memory that is there
-  long anonymous_kb = 0;  // without what is read from files
+  long resident_kb = 0;   // resident memory
+  long anonymous_kb = 0;  // without file-backed memory
   long descriptors = 0;
 };
 
@@ -102,7 +102,7 @@ Usage usage_of(pid_t process) {
 
 TEST_F(ByreNodeStaysUp, ThroughOneVisitAfterAnother) {
   const int frames = number_from_environment("BYRE_NODE_SOAK_FRAMES", 200);
-  // The node's memory grows until it has as many poses of its way as it keeps, so short runs do not judge it.
+  // Memory grows until the node's path has its maximum length, so short runs do not evaluate it.
   constexpr int kSettled = 20'000;  // frames
   constexpr int kJudged = 40'000;   // frames
   constexpr double kGrowth = 1.05;

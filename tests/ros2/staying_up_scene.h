@@ -1,6 +1,6 @@
 #pragma once
 
-// What soak_test.cc and kill_test.cc share: visits to a room, and other programs that a robot's node works with.
+// Shared by soak_test.cc and kill_test.cc: visits to a room, and peer programs of a robot's node.
 
 #include "byre/calibration_file.h"
 #include "byre/simulation/rendered_room.h"
@@ -34,7 +34,7 @@ inline int number_from_environment(const char* name, int otherwise) {
   return text == nullptr ? otherwise : std::stoi(text);
 }
 
-// Visits to a room of made-up walls, and maps of it, with images as small as are tracked well: 188 x 120 pixels.
+// Visits to a rendered room, and maps of it, with the smallest images that track well: 188 x 120 pixels.
 class Visits {
  public:
   static const Visits& shared() {
@@ -43,8 +43,8 @@ class Visits {
   }
 
   fs::path calibration() const { return folder_ / "camchain.yaml"; }
-  fs::path whole_map() const { return folder_ / "whole.byre"; }  // all that the visits show
-  fs::path half_map() const { return folder_ / "half.byre"; }    // what they show until their middle
+  fs::path whole_map() const { return folder_ / "whole.byre"; }  // covers all visits
+  fs::path half_map() const { return folder_ / "half.byre"; }    // covers the first half of the visits' course
   std::size_t count() const { return visits_.size(); }
   const std::vector<ImageFrame>& operator[](std::size_t number) const { return visits_[number]; }
 
@@ -65,7 +65,7 @@ class Visits {
     fs::remove_all(folder_, ignored);
   }
 
-  // length: of the way's figure of eight, metres. Each visit has noise of its own.
+  // length: of the figure of eight, metres. Each visit has different noise.
   static std::vector<ImageFrame> visit(const RenderedCameras& cameras, double length, std::ptrdiff_t number) {
     const RenderedRoom room({});
     std::vector<ImageFrame> frames;
@@ -89,7 +89,7 @@ class Visits {
   std::vector<std::vector<ImageFrame>> visits_;
 };
 
-// Goes forth and back through a visit, so that the motion has no jump, until another visit begins.
+// Plays a visit forth and back, without jumps, until it cuts to another visit.
 class Player {
  public:
   explicit Player(std::uint64_t seed) : random_(seed) {}
@@ -121,14 +121,14 @@ class Player {
   int cuts_ = 0;
 };
 
-// Other programs that a robot's node works with.
+// Peer programs of a robot's node.
 class Others {
  public:
   explicit Others(int domain) : peer_(domain) {}
 
   bool is_connected() { return have_found_one_another(feed_, events_, command_); }
   void command(const std::string& text) { send_text(command_, text); }
-  // What was done, or could not be done, as the node says.
+  // The node's answer to a command: done, or failed.
   std::optional<nlohmann::json> answer(const std::string& command, std::chrono::seconds patience = 20s) {
     const std::string part = "\"command\":\"" + command + "\"";
     const auto told =
@@ -136,7 +136,7 @@ class Others {
     return told ? std::optional(nlohmann::json::parse(told->data())) : std::nullopt;
   }
 
-  // What the node makes of a frame: its health and, where it has a pose in the map, its odometry.
+  // The node's answer to a frame: its health and, if it has a map pose, its odometry.
   struct Answer {
     bool has_pose = false;
   };
@@ -155,7 +155,7 @@ class Others {
     return answer;
   }
   void send(const ImageFrame& frame, Timestamp time) { feed_.send(frame, time - frame.time); }
-  // So that what was heard takes no more room.
+  // Frees the memory of received messages.
   void forget() { events_.forget(); }
 
  private:

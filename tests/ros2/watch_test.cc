@@ -1,4 +1,4 @@
-// byre node watched by Foxglove's protocol, at the port of /healthz and /metrics.
+// byre node watched by a Foxglove client, on the port of /healthz and /metrics.
 
 #include "byre/ros/message_reader.h"
 #include "byre/ros/messages.h"
@@ -16,11 +16,11 @@
 namespace byre::testing_ros2 {
 namespace {
 
-// Subscribes topics, and reads what comes of them.
+// Subscribes to topics and reads their messages.
 class Watcher {
  public:
   explicit Watcher(int port) : client_(port, "/", {{"Sec-WebSocket-Protocol", "foxglove.sdk.v1"}}) {
-    client_.next();  // what the server is
+    client_.next();  // serverInfo
     const nlohmann::json advertise = client_.next().json();
     for (const auto& channel : advertise.at("channels")) ids_[channel.at("topic")] = channel.at("id");
   }
@@ -31,14 +31,14 @@ class Watcher {
     client_.say(request.dump());
   }
 
-  // Returns once all that was asked for is done.
+  // Returns once the server has processed all requests.
   void settle() {
     client_.say("hello");
     while (client_.next().is_binary) {
     }
   }
 
-  // The message of a topic at a time, whatever comes before it.
+  // The message of a topic at a time; skips others.
   template <ros::Message M>
   M message(const std::string& topic, Timestamp time) {
     constexpr std::size_t kHead = 13;

@@ -1,8 +1,8 @@
-// Flies one simulated mission after another in one process, each from opening the map to keeping what was mapped
-// beside it, and tells what memory, descriptors and errors come to.
-// Usage: byre_soak [FRAMES]      300000 unless given; a mission has 600
-// Exit code: 0 after the first tenth memory and descriptors stay within 5 %, and no pose was trusted and wrong, 1 not
-// so, 2 wrong usage.
+// Runs many simulated missions in one process, each from loading the map to saving the online map, and reports memory,
+// descriptors and errors.
+// Usage: byre_soak [FRAMES]      300000 by default; a mission has 600
+// Exit code: 0 memory and descriptors stay within 5 % after the first tenth, and no pose was trusted and wrong, 1
+// otherwise, 2 wrong usage.
 
 #include "byre/place/map_words.h"
 #include "byre/session/session.h"
@@ -25,9 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFramesPerMission = 600;  // at 20 Hz
-constexpr int kVisits = 4;              // visits that differ; later missions are like earlier ones, at another time
+constexpr int kVisits = 4;              // different visits; later missions repeat them at other times
 constexpr double kWrong = 0.2;          // metres
-constexpr double kTolerance = 0.05;     // share by which memory and descriptors may differ from where they settled
+constexpr double kTolerance = 0.05;  // largest relative deviation of memory and descriptors from their settled values
 
 SimulatedMission visit(double laps, int frames, std::uint64_t noise_seed) {
   SimulationOptions options;
@@ -37,7 +37,7 @@ SimulatedMission visit(double laps, int frames, std::uint64_t noise_seed) {
   return simulate_mission(simulated_rig(), circling_trajectory(frames, 20.0, 2.0, laps), options);
 }
 
-// The recording of the simulated rig, as a map file tells it.
+// Description of the simulated rig's recording, as stored in a map file.
 SourceRecording source() {
   const Rig rig = simulated_rig();
   const Camera camera{CameraModel::pinhole, rig.width, rig.height, rig.focal, rig.focal, rig.cx, rig.cy};
@@ -45,7 +45,7 @@ SourceRecording source() {
   return {"simulated", {camera, StereoPartner{camera, right_from_left}, Pose{}}, from_seconds(0.0), from_seconds(30.0)};
 }
 
-// A folder that is gone when the program ends.
+// A temporary folder; the destructor removes it.
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_(fs::temp_directory_path() / ("byre_soak." + std::to_string(getpid()))) {
@@ -64,7 +64,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-// What the process holds, and how missions went.
+// Resource use of the process after a mission.
 struct Usage {
   double resident_mb = 0.0;
   int descriptors = 0;
@@ -84,9 +84,9 @@ struct Tally {
   int frames = 0;
   int with_pose = 0;
   int trusted = 0;
-  int trusted_wrong = 0;  // trusted poses off by more than kWrong
+  int trusted_wrong = 0;  // trusted poses with an error above kWrong
   int mapped = 0;         // keyframes
-  int broken_maps = 0;    // maps that were kept, and have faults when they are read again
+  int broken_maps = 0;    // saved maps that are invalid when read again
 
   void add(const Tally& other) {
     frames += other.frames;
@@ -98,7 +98,7 @@ struct Tally {
   }
 };
 
-// The frame at its place in the mission: now and then the camera is covered, and once the robot is carried off.
+// Frame i of a mission: the camera is covered for 20 frames, and later the robot is kidnapped.
 const Frame& frame_at(const SimulatedMission& visit, int mission, int i, const Frame& covered) {
   const int start = 100 + 37 * mission % 200;
   if (i >= start && i < start + 20) return covered;
@@ -108,7 +108,7 @@ const Frame& frame_at(const SimulatedMission& visit, int mission, int i, const F
 class Soak {
  public:
   Soak() : vocabulary_(vocabulary_of(visit(1.0, 200, 1))) {
-    // A lap's first half is known; the other is mapped in each mission.
+    // The first half of a lap is in the offline map; each mission maps the other half.
     StoredMap stored;
     stored.map = true_map(visit(0.5, 150, 2), 5, Origin::offline);
     stored.recordings = {source()};
@@ -157,7 +157,7 @@ class Soak {
     if ((report.map_from_body->translation - truth.translation).norm() > kWrong) ++tally.trusted_wrong;
   }
 
-  // Whether what was mapped is found without fault in its file.
+  // Saves the online map; returns whether it is valid when read again.
   bool keep(const Session& session) const {
     StoredMap stored;
     stored.map = offline_copy(session.map().online());
@@ -172,7 +172,7 @@ class Soak {
   std::vector<SimulatedMission> visits_;
 };
 
-// The mean of what is held after each mission of a tenth of them.
+// Mean resource use over a tenth of the missions.
 struct Tenth {
   double resident_mb = 0.0;
   double descriptors = 0.0;
@@ -196,7 +196,7 @@ bool is_near(double value, double settled) {
   return std::abs(value - settled) <= kTolerance * settled;
 }
 
-// Megabytes that a day of 20 frames a second would add, by the line through the tenths after the first.
+// Memory growth per day at 20 Hz, megabytes: slope of a line through the tenths after the first.
 double growth_in_a_day(const std::vector<Tenth>& tenths, int frames) {
   const double middle = 0.5 * static_cast<double>(1 + tenths.size() - 1);
   double product = 0.0, square = 0.0;
@@ -223,7 +223,7 @@ int soak(int frames) {
     }
   }
   const std::vector<Tenth> tenths = tenths_of(usages);
-  // In the first tenth the heap finds its size.
+  // The heap reaches its size during the first tenth.
   const Tenth& settled = tenths[1];
   const bool is_flat = std::all_of(tenths.begin() + 2, tenths.end(), [&](const Tenth& tenth) {
     return is_near(tenth.resident_mb, settled.resident_mb) && is_near(tenth.descriptors, settled.descriptors);
