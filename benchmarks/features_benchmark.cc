@@ -22,7 +22,7 @@ struct RenderedPair {
   ImageFrame images;
 };
 
-// A pair of EuRoC's resolution. One for the whole process: rendering it takes longer than most benchmarks.
+// A stereo pair of EuRoC's resolution, rendered once per process because rendering is slower than most benchmarks.
 const RenderedPair& rendered_pair() {
   static const RenderedPair pair = [] {
     limit_image_threads(1);
@@ -37,7 +37,7 @@ cv::Mat as_matrix(const Image& image) {
   return cv::Mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())).clone();
 }
 
-// What stereo matching starts from.
+// Input of stereo matching.
 struct DetectedPair {
   Rig rig;
   Pyramid left;
@@ -56,7 +56,7 @@ DetectedPair detected_pair() {
   return pair;
 }
 
-// By one thread, so that all that is allocated counts.
+// Single-threaded, so that all allocations are counted.
 void extract_images(benchmark::State& state, const ImageFrame& images) {
   ExtractOptions options;
   options.threads = 1;
@@ -78,7 +78,7 @@ void extract_images(benchmark::State& state, const ImageFrame& images) {
   state.counters["stereo_ms"] = mean_ms(total.stereo);
 }
 
-// The loops over whole images, one by one.
+// Single loops over whole images.
 void rectify_left_image(benchmark::State& state) {
   const Rectifier rectifier(rendered_pair().calibration);
   const cv::Mat image = as_matrix(rendered_pair().images.left);
@@ -132,7 +132,7 @@ void match_stereo_pair(benchmark::State& state) {
 }
 BENCHMARK(match_stereo_pair)->Unit(benchmark::kMillisecond);
 
-// Every descriptor against every one, as relocalisation does.
+// Exhaustive matching, as in relocalisation.
 void match_all_descriptors(benchmark::State& state) {
   SimulationOptions options;
   options.landmarks = 12000;

@@ -6,9 +6,9 @@
 
 namespace byre {
 
-// Measures work that is done over and over, once it has been done a few times: until then memory that takes turns is
-// still being made. Counters say what this thread allocates each time; tools/check_hot_loops.py compares them, and the
-// instructions between the loop's first and last, with those kept in hot_loops.json.
+// Measures repeated work after a few warm-up passes, in which reused memory is allocated. Counters report allocations
+// of this thread per pass; tools/check_hot_loops.py compares them, and the instructions of one pass, with
+// hot_loops.json.
 template <typename Work>
 void measure_hot_loop(benchmark::State& state, Work&& work) {
   constexpr int kTimesBefore = 3;

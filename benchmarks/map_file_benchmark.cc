@@ -21,7 +21,7 @@ Map room_map(int room) {
   return true_map(simulate_mission(simulated_rig(), path, options), 1, Origin::offline);
 }
 
-// Simulated features have no patches: those that define a point are given one, as mapping leaves them.
+// Simulated features have no patches; adds them to features that define a point, as mapping stores them.
 std::shared_ptr<const Features> with_patches(const Map& map, KeyframeId id) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
@@ -86,7 +86,7 @@ void count_contents(benchmark::State& state) {
   state.counters["bytes_per_keyframe"] = static_cast<double>(std::filesystem::file_size(building_file())) / keyframes;
 }
 
-// With the file in the system's cache.
+// The file is in the page cache.
 void load_map_file(benchmark::State& state) {
   save_map(building(), building_file());
   for (auto _ : state) benchmark::DoNotOptimize(load_map(building_file()));

@@ -18,7 +18,7 @@
 namespace byre {
 namespace {
 
-// A camera that moves a quarter round a room full of landmarks.
+// A camera that moves through a quarter circle in a room with many landmarks.
 SimulatedMission mission_of(int frames) {
   SimulationOptions options;
   options.landmarks = 12000;
@@ -26,7 +26,7 @@ SimulatedMission mission_of(int frames) {
   return simulate_mission(simulated_rig(), circling_trajectory(frames, 10.0, 2.0, 0.25), options);
 }
 
-// Fills in what a pose's and a bundle's observation have in common.
+// Sets the fields common to observations of poses and of bundles.
 template <typename AnyObservation>
 AnyObservation measured(const Keypoint& keypoint) {
   const double scale = kScaleOfOctave[keypoint.octave];
@@ -73,7 +73,7 @@ struct BundleSize {
   std::size_t views_per_point;
 };
 
-// Per landmark, the poses that see it, and where.
+// Observations of each landmark.
 std::vector<std::vector<BundleObservation>> views_of_landmarks(const SimulatedMission& mission) {
   std::vector<std::vector<BundleObservation>> views(mission.landmarks_in_world.size());
   for (std::size_t frame = 0; frame < mission.frames.size(); ++frame) {
@@ -87,7 +87,7 @@ std::vector<std::vector<BundleObservation>> views_of_landmarks(const SimulatedMi
   return views;
 }
 
-// Points and movable poses are displaced; each point is seen from poses next to each other.
+// Points and movable poses are perturbed; each point is observed from consecutive poses.
 BundleProblem bundle_of(const BundleSize& size) {
   const SimulatedMission mission = mission_of(size.fixed_poses + size.movable_poses);
   std::mt19937 generator(1);
@@ -111,7 +111,7 @@ BundleProblem bundle_of(const BundleSize& size) {
   return problem;
 }
 
-// As large as a local bundle in a well-known room; with the covariance of the newest pose, as mapping asks for it.
+// The size of a local bundle in a well-mapped room; with the covariance of the newest pose, as in mapping.
 void adjust_local_bundle(benchmark::State& state) {
   const BundleProblem problem =
       bundle_of({.movable_poses = 15, .fixed_poses = 20, .points = 2500, .views_per_point = 4});
@@ -125,7 +125,7 @@ void adjust_local_bundle(benchmark::State& state) {
 }
 BENCHMARK(adjust_local_bundle)->Unit(benchmark::kMillisecond);
 
-// The most memory this program has used so far; of one benchmark only when it runs alone.
+// Peak memory of the program; that of one benchmark only if it runs alone.
 double peak_megabytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -134,15 +134,15 @@ double peak_megabytes() {
   return 0.0;
 }
 
-// A camera that looks ahead while it goes twice round a ring of corridors, a third of a metre of corridor for each
-// keyframe, and meets in the second round what it saw in the first.
+// A forward-looking camera that drives twice around a ring of corridors, one pose every third of a metre, and observes
+// in the second round the points of the first.
 class Building {
  public:
   Building(int poses, int points) : poses_(poses) {
     problem_.rigs = {simulated_rig()};
     for (int i = 0; i < poses; ++i) problem_.poses.push_back({true_camera_from_world(i), 0, i == 0});
     for (int i = 0; i < points; ++i) add_point();
-    std::ranges::stable_sort(problem_.observations, {}, &BundleObservation::pose);  // as keyframes list them
+    std::ranges::stable_sort(problem_.observations, {}, &BundleObservation::pose);  // the order of keyframes
     for (BundlePose& pose : problem_.poses) {
       if (!pose.fixed) pose.camera_from_world = exp_pose(random_motion(0.03, 0.01)) * pose.camera_from_world;
     }
@@ -151,7 +151,7 @@ class Building {
 
   const BundleProblem& problem() const { return problem_; }
 
-  // Root mean square, metres.
+  // Root mean square error, metres.
   double position_error(const std::vector<Pose>& camera_from_world) const {
     double sum = 0.0;
     for (int i = 0; i < poses_; ++i) {
@@ -163,7 +163,7 @@ class Building {
  private:
   static constexpr double kPixelSigma = 0.8;
   static constexpr double kDisparitySigma = 0.4;
-  static constexpr double kOutliers = 0.03;  // share of the observations that are outliers
+  static constexpr double kOutliers = 0.03;  // share of outliers among the observations
 
   Pose true_camera_from_world(int pose) const {
     const double radius = poses_ / 3.0 / (2.0 * std::numbers::pi);
@@ -202,7 +202,7 @@ class Building {
     return poses;
   }
 
-  // Seen from four to eight poses.
+  // Adds a point with four to eight observations.
   void add_point() {
     const Rig& rig = problem_.rigs[0];
     for (;;) {
@@ -219,7 +219,7 @@ class Building {
     }
   }
 
-  // Adds what a pose sees of the newest point.
+  // Adds the observation of the newest point by a pose.
   void add_observation(int pose) {
     BundleObservation observation{.pose = pose, .point = static_cast<int>(problem_.points.size()) - 1, .measured = {}};
     observation.measured =
@@ -236,7 +236,7 @@ class Building {
   BundleProblem problem_;
 };
 
-// Global bundle adjustment, wall and CPU time; for the memory of one size, run it alone.
+// Global bundle adjustment, wall and CPU time. To measure the memory of one size, run it alone.
 void adjust_building(benchmark::State& state) {
   const Building building(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
   const double before = peak_megabytes();
@@ -258,7 +258,7 @@ BENCHMARK(adjust_building)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 
-// Two rounds of odometry with loop edges between them.
+// Two rounds of odometry, connected by loop edges.
 void optimise_graph(benchmark::State& state, bool scale_is_free) {
   const PoseGraph measured = measured_graph(
       1, {.nodes = 1000, .radius = 20.0, .links = 2, .loops = 6, .position_noise = 0.02, .rotation_noise = 0.002});

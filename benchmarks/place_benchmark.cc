@@ -26,7 +26,7 @@ void load_vocabulary(benchmark::State& state) {
 }
 BENCHMARK(load_vocabulary)->Unit(benchmark::kMillisecond);
 
-// Finds the words of the features of one frame.
+// Finds the words of one frame's features.
 void find_words(benchmark::State& state) {
   const Vocabulary vocabulary = default_vocabulary();
   std::mt19937_64 random(1);
@@ -37,7 +37,7 @@ void find_words(benchmark::State& state) {
 }
 BENCHMARK(find_words)->Unit(benchmark::kMillisecond);
 
-// Words as unevenly spread as those of images: some come up a hundred times as often as others.
+// Words with the frequency spread of real images: some occur a hundred times as often as others.
 std::vector<Word> uneven_words(const Vocabulary& vocabulary, std::mt19937_64& random) {
   std::vector<Word> words(kFeatures);
   for (Word& word : words) {
@@ -47,7 +47,7 @@ std::vector<Word> uneven_words(const Vocabulary& vocabulary, std::mt19937_64& ra
   return words;
 }
 
-// So many keyframes in a row, each of which sees a point with each of its five neighbours on either side.
+// A chain of keyframes, each of which shares a point with each of its five neighbours on either side.
 Map chain_of_keyframes(int count, const Vocabulary& vocabulary) {
   constexpr int kNeighbours = 5;
   Map map(Origin::offline);

@@ -16,9 +16,9 @@ namespace {
 constexpr int kKeyframesOfHall = 100;
 constexpr int kHalls = 20;
 constexpr double kFrameRateHz = 10.0;
-constexpr std::size_t kFramesBefore = 10;  // frames of a mission before those that are measured
+constexpr std::size_t kFramesBefore = 10;  // frames of a mission before the measurement
 
-// A lap through one of several halls, which have nothing in common.
+// A lap through one of several halls, which share no landmarks.
 SimulatedMission lap(int hall, std::uint64_t noise_seed) {
   SimulationOptions options;
   options.landmarks = 12000;
@@ -27,7 +27,7 @@ SimulatedMission lap(int hall, std::uint64_t noise_seed) {
   return simulate_mission(simulated_rig(), circling_trajectory(kKeyframesOfHall, kFrameRateHz, 2.0, 1.0), options);
 }
 
-// Appends a lap as if its hall stood beside the others.
+// Appends a lap, with its hall placed next to the others.
 void append(const SimulatedMission& lap, int hall, SimulatedMission& building) {
   const Eigen::Vector3d offset(20.0 * hall, 0.0, 0.0);
   const Timestamp time_offset = hall * (lap.frames.back().time - lap.frames.front().time + std::chrono::seconds(1));
@@ -54,7 +54,7 @@ const Vocabulary& vocabulary() {
   return trained;
 }
 
-// The map of the first so many halls, each frame of a lap through them a keyframe.
+// The map of the first halls with this number of keyframes; every frame of a lap is a keyframe.
 std::shared_ptr<const OfflineMap> map_of(int keyframes) {
   static std::map<int, std::shared_ptr<const OfflineMap>> made;
   if (made.contains(keyframes)) return made[keyframes];
@@ -72,7 +72,8 @@ Session session_on(const std::shared_ptr<const OfflineMap>& offline) {
   return {simulated_rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), offline};
 }
 
-// Another lap through the first hall, found and tracked; the argument is the number of keyframes of the offline map.
+// A second lap through the first hall, localised and tracked; the argument is the number of keyframes of the offline
+// map.
 void track_mission(benchmark::State& state) {
   const auto offline = map_of(static_cast<int>(state.range(0)));
   const SimulatedMission mission = lap(0, 2);
@@ -98,7 +99,7 @@ void track_mission(benchmark::State& state) {
 }
 BENCHMARK(track_mission)->Arg(kKeyframesOfHall)->Arg(kHalls* kKeyframesOfHall)->Unit(benchmark::kMillisecond);
 
-// A frame found from nothing.
+// Localisation of one frame without a prior.
 void find_itself_in_the_map(benchmark::State& state) {
   const auto offline = map_of(static_cast<int>(state.range(0)));
   const SimulatedMission mission = lap(0, 2);

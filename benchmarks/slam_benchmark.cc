@@ -13,12 +13,12 @@
 namespace byre {
 namespace {
 
-// Points projected from a pose that is slightly off, then looked for around where they should be.
+// Projects points from a slightly wrong pose and searches around the predicted pixels.
 void find_expected_points(benchmark::State& state) {
   SimulationOptions options;
   options.landmarks = 12000;
   const auto mission = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.5), options);
-  const Map map = true_map(mission, 2, Origin::online);  // map of the even frames; looked for in an odd one
+  const Map map = true_map(mission, 2, Origin::online);  // map of the even frames; the search is in an odd frame
   const MapView view(nullptr, map);
   constexpr int kFrame = 21;
   const Pose prediction_error{rotation_exp({0.003, 0.003, 0.003}), {0.01, 0.01, 0.01}};
@@ -35,13 +35,13 @@ void find_expected_points(benchmark::State& state) {
 }
 BENCHMARK(find_expected_points)->Unit(benchmark::kMicrosecond);
 
-// A map made from rendered images, at the moment when mapping has yet to work on its newest keyframe.
+// A map of rendered images before mapping has processed its newest keyframe.
 struct UnfinishedMap {
   Map map{Origin::online};
   KeyframeId newest;
 };
 
-// Options under which every frame becomes a keyframe: a full window from few frames, as rendering takes long.
+// Makes every frame a keyframe, which fills the window with few frames because rendering is slow.
 SessionOptions every_frame_a_keyframe() {
   SessionOptions options;
   options.keyframes.min_frames = 1;
@@ -49,7 +49,7 @@ SessionOptions every_frame_a_keyframe() {
   return options;
 }
 
-// The session's inline executor has run the job of the last frame, but hands its result over in the next one.
+// The session's inline executor has run the last frame's job but applies its result in the next frame.
 const UnfinishedMap& unfinished_map() {
   static const UnfinishedMap unfinished = [] {
     limit_image_threads(1);

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kImages = 64;  // more than fit into the processor's cache, as a camera's are new each time
+constexpr std::size_t kImages = 64;  // exceeds the processor's cache, because a camera's images are new each time
 
 // A session after a few frames, and images of EuRoC's size.
 struct ShownRun {
@@ -31,7 +31,7 @@ struct ShownRun {
   std::vector<Image> images;
 };
 
-// What the frame thread spends on the viewer in each frame, the viewer's own thread at work beside it.
+// Time of the frame thread for the viewer per frame, while the viewer's own thread runs.
 void show_frame(benchmark::State& state) {
   ShownRun run;
   RunDescription description;
@@ -43,9 +43,9 @@ void show_frame(benchmark::State& state) {
   std::size_t next = 0;
   for (auto _ : state) viewer.show(run.images[next++ % kImages], run.report, run.session);
 }
-BENCHMARK(show_frame)->Unit(benchmark::kMicrosecond)->Iterations(5000);  // all reports are kept
+BENCHMARK(show_frame)->Unit(benchmark::kMicrosecond)->Iterations(5000);  // bounded because all reports are kept
 
-// What it spends on a copy of the map, once a second.
+// Time of the map copy, once per second.
 void copy_map(benchmark::State& state) {
   Map map(Origin::online);
   for (int i = 0; i < state.range(0); ++i) {

@@ -1,6 +1,6 @@
-// What Clang compiles before all else. A random number of libstdc++ asks for the logarithm of how many values the
-// engine has, in long double, which GCC works out when it compiles and Clang at each number: half the time of many
-// tests. These give the same numbers without.
+// Included first when compiling with Clang. The random numbers of libstdc++ need the logarithm of the engine's range in
+// long double. GCC computes it at compile time, Clang for each number, which takes half the time of many tests. These
+// specialisations give the same numbers without it.
 #pragma once
 
 #include <cmath>

@@ -1,8 +1,8 @@
-// A robot's loop: a camera that waits for nobody, and SLAM that always takes the newest pair of images.
+// A robot's main loop: SLAM always takes the newest stereo pair from a free-running camera.
 //
 //   01_live_stereo RECORDING
 //
-// A recording stands in for the camera here. Put your driver's callback in the place of play().
+// A recording replaces the camera here. Replace play() by your driver's callback.
 
 #include "byre/byre.h"
 
@@ -17,7 +17,7 @@
 
 namespace {
 
-// Holds one frame. Whoever is slow misses frames, and nobody waits for him.
+// Holds the newest frame. A slow reader skips frames; the writer never waits.
 class NewestFrame {
  public:
   void put(byre::ImageFrame frame) {
@@ -31,7 +31,7 @@ class NewestFrame {
     is_closed_ = true;
     changed_.notify_one();
   }
-  // Waits for a frame that was not taken yet; empty once there are no more.
+  // Waits for a new frame; empty once there are no more.
   std::optional<byre::ImageFrame> take() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return frame_ || is_closed_; });
@@ -50,7 +50,7 @@ class NewestFrame {
   int missed_ = 0;
 };
 
-// The camera: frames at their own times.
+// Simulates the camera: frames at their own times.
 void play(byre::Recording& recording, NewestFrame& newest) {
   const auto start = std::chrono::steady_clock::now() - recording.times().front();
   for (int i = 0; i < recording.size(); ++i) {

@@ -1,4 +1,4 @@
-// Maps a recording, keeps the map, and writes where the robot went.
+// Maps a recording, saves the map, and writes the robot's trajectory.
 //
 //   02_map_a_recording RECORDING MAP [TRAJECTORY]
 
@@ -11,7 +11,7 @@ namespace {
 void map(const char* path, const char* map_path, const char* trajectory_path) {
   const auto recording = byre::open_recording(path, {});
   byre::SlamOptions options;
-  options.workers = byre::Workers::repeatable;  // the same recording, the same map
+  options.workers = byre::Workers::repeatable;  // deterministic: same recording, same map
   options.recording = path;
   byre::Slam slam = byre::Slam::mapping(recording->calibration(), options);
   for (int i = 0; i < recording->size(); ++i) {

@@ -1,4 +1,4 @@
-// A mission on a kept map: says what happens, and whenever the robot may no longer rely on its pose, or may again.
+// A mission on a saved map: prints events, and each change in the trust of the pose.
 //
 //   03_mission_on_a_map RECORDING MAP
 
@@ -34,8 +34,8 @@ class Log {
     std::printf("%.3f s  %s\n", byre::to_seconds(report.time), what.c_str());
   }
 
-  std::optional<byre::Verdict> verdict_;  // of the frame before
-  int trusted_ = 0;                       // frames
+  std::optional<byre::Verdict> verdict_;  // verdict of the previous frame
+  int trusted_ = 0;                       // number of trusted frames
 };
 
 void run(const char* path, const char* map_path) {

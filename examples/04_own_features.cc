@@ -1,5 +1,5 @@
-// Features of one's own instead of images: here landmarks on the walls of a room that does not exist, each with 256
-// random bits for a descriptor, as a stereo camera on a lap through the room would see them.
+// SLAM on features from another source instead of images: here simulated landmarks on the walls of a room, each with
+// 256 random bits as descriptor, seen by a stereo camera on a lap through the room.
 //
 //   04_own_features
 
@@ -35,7 +35,7 @@ std::vector<Landmark> landmarks_on_walls(int count) {
   return landmarks;
 }
 
-// A pair with parallel cameras 12 cm apart.
+// A pair of parallel cameras 12 cm apart.
 byre::Calibration stereo_camera() {
   byre::Calibration calibration;
   calibration.left = {byre::CameraModel::pinhole, 640, 480, 400.0, 400.0, 319.5, 239.5, {}};
@@ -45,7 +45,7 @@ byre::Calibration stereo_camera() {
   return calibration;
 }
 
-// On a circle of 2 m, looking along it; camera axes are x right, y down, z forward.
+// On a circle of radius 2 m, looking along it; camera axes are x right, y down, z forward.
 byre::Pose world_from_camera(int frame) {
   const double angle = 2.0 * std::numbers::pi * frame / 400.0;
   Eigen::Matrix3d axes;
@@ -90,7 +90,8 @@ int main() {
   for (int i = 0; i < 400; ++i) {
     const byre::FrameReport report = slam.process(seen(landmarks, slam.rig(), i));
     if (!report.map_from_body) continue;
-    const byre::Pose truth = inverse(world_from_camera(0)) * world_from_camera(i);  // a map begins where its robot does
+    // The map's origin is the robot's first pose.
+    const byre::Pose truth = inverse(world_from_camera(0)) * world_from_camera(i);
     worst = std::max(worst, (report.map_from_body->translation - truth.translation).norm());
     ++poses;
   }

@@ -1,5 +1,5 @@
-// Reads whatever bytes it is given as a bag or as a message: what is damaged must be told, by the content of the bag or
-// by an InputError. The first byte says as what they are read.
+// Reads any bytes as a bag or a message, chosen by the first byte: damage must be reported in the bag's content or by
+// an InputError.
 
 #include "byre/bag/bag_scene.h"
 #include "byre/bag/mcap_bag.h"
@@ -13,9 +13,9 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace byre {
 namespace {
 
-constexpr unsigned kKinds = 4;  // MCAP, bag of ROS 1, messages of ROS 2, messages of ROS 1
+constexpr unsigned kKinds = 4;  // MCAP, ROS 1 bag, ROS 2 messages, ROS 1 messages
 
-// Bytes that a bag reads and others own.
+// A source of bytes that it does not own.
 class BorrowedSource final : public ByteSource {
  public:
   explicit BorrowedSource(std::span<const std::byte> bytes) : size_(bytes.size()), source_(bytes) {}
@@ -27,7 +27,7 @@ class BorrowedSource final : public ByteSource {
   MemorySource source_;
 };
 
-// Messages that the content lists must be there.
+// All messages listed in the content must be readable.
 template <typename AnyBag>
 void read_bag(std::span<const std::byte> bytes) {
   AnyBag bag(std::make_unique<BorrowedSource>(bytes), "fuzz", every_type);
@@ -54,7 +54,7 @@ void read_as(unsigned kind, std::span<const std::byte> bytes) {
                ros::DiagnosticArray>(bytes, kind == 2 ? ros::Encoding::cdr : ros::Encoding::ros1);
 }
 
-// What mutations begin with, as random bytes would never become a bag.
+// Valid start of mutations, because random bytes never become a bag.
 BagBytes original(unsigned seed) {
   const std::vector<SceneMessage> messages = scene_messages();
   const unsigned kind = seed % kKinds;

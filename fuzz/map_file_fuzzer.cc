@@ -1,6 +1,6 @@
-// Reads whatever bytes it is given as a map file: it must be refused, or be a sound map that is written back the same;
-// of an older format, the same once it was written in the newest. What is read as a whole can be read as it is looked
-// at.
+// Reads any bytes as a map file, which must be refused or be a valid map. A valid map must be written back unchanged,
+// or for an older format unchanged after conversion to the newest. A map that can be read as a whole can also be read
+// in parts on demand.
 
 #include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
@@ -13,7 +13,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 
 namespace {
 
-// Looks at all of a map that is read as it is looked at, as missions do. Whether it could be read.
+// Reads all parts of a map on demand, as missions do. Returns whether that succeeded.
 bool look_at_all(std::span<const std::byte> bytes) {
   try {
     const auto read_at = [bytes](std::size_t offset, std::span<std::byte> into) {
@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-// Random bytes would never become a map: mutations begin with one, and mostly get right checksums.
+// Mutations begin with a valid map, because random bytes never become one, and mostly get right checksums.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned int seed) {
   if (size < byre::kSmallestHeaderSize) {

@@ -12,7 +12,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-// A list of poses that Python sees as one object, not as a list.
+// Python gets a list of poses as an opaque object, not as a list.
 PYBIND11_MAKE_OPAQUE(byre::Trajectory)
 
 namespace byre::python {
@@ -24,13 +24,13 @@ void bind_cameras(py::module_& module);
 void bind_slam(py::module_& module);
 void bind_evaluation(py::module_& module);
 
-// Text that need not be UTF-8, as names of files are.
+// Decodes text that may not be UTF-8, such as file names.
 py::str text_of(std::string_view text);
 
-// In Python a pose is a 4x4 matrix.
+// Poses are 4x4 matrices in Python.
 Eigen::Matrix4d matrix_of(const Pose& pose);
 std::optional<Eigen::Matrix4d> matrix_of(const std::optional<Pose>& pose);
-// Throws InputError when it is no rigid motion. name: of the argument.
+// Throws InputError if the matrix is no rigid motion. name: the argument's name.
 Pose pose_of(const Eigen::Matrix4d& matrix, std::string_view name);
 
 }  // namespace byre::python

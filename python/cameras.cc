@@ -100,18 +100,18 @@ void bind_calibration(py::module_& module) {
              "The calibration of a file: EuRoC's sensor.yaml, a camera chain of Kalibr, OpenCV or ROS.");
 }
 
-// A view of the pixels that keeps the frame alive.
+// A view of the pixels; keeps the frame alive.
 template <typename Number>
 py::array array_of(const std::vector<Number>& numbers, int width, int height, const py::object& owner) {
   return py::array_t<Number>({height, width}, numbers.data(), owner);
 }
 
-// A recording that any thread may read from, one at a time.
+// A recording with serialised, thread-safe access.
 class SharedRecording {
  public:
   explicit SharedRecording(std::unique_ptr<Recording> recording) : recording_(std::move(recording)) {}
 
-  const Recording& constant() const { return *recording_; }  // what reading does not change
+  const Recording& constant() const { return *recording_; }  // access to what reading does not change
   int size() const { return recording_->size(); }
   std::optional<ImageFrame> read(int index) {
     const std::scoped_lock lock(mutex_);
@@ -170,7 +170,7 @@ py::list warnings_of(SharedRecording& recording) {
   return texts;
 }
 
-// Leaves out frames that cannot be read.
+// Skips unreadable frames.
 struct FrameIterator {
   std::shared_ptr<SharedRecording> recording;
   int next = 0;

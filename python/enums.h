@@ -10,10 +10,10 @@
 
 namespace byre::python {
 
-// Enumerations are those of Python's own enum module, one type for each.
+// Enumerations use Python's enum module, one type each.
 template <typename Enum>
 struct PythonEnum {
-  inline static py::handle type;  // of Python; made by bind_enums, never released
+  inline static py::handle type;  // Python type; created by bind_enums, never released
 };
 
 // Precondition: bind_enums was called.

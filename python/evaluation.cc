@@ -11,8 +11,7 @@
 namespace byre::python {
 namespace {
 
-using Times =
-    py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;  // whole numbers, see make_trajectory
+using Times = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;  // integers, see make_trajectory
 using Matrices = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 Trajectory make_trajectory(const py::array& times, const Matrices& poses) {

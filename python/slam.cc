@@ -10,7 +10,7 @@
 namespace byre::python {
 namespace {
 
-// Slam waits for its workers at its end, without keeping Python from going on.
+// Releases the GIL during destruction, because Slam waits for its workers.
 struct ReleasingDelete {
   void operator()(Slam* slam) const {
     const py::gil_scoped_release release;
@@ -116,7 +116,7 @@ PixelFormat picture_format(const py::array& image, const std::optional<PixelForm
   throw py::type_error(kPictures);
 }
 
-// The array's own memory: rows may be apart, pixels in a row not.
+// Borrows the array's memory: rows may be strided, pixels within a row must be packed.
 ImageView view_of(const py::array& image, PixelFormat format, Timestamp time, int bits) {
   if (image.size() == 0) return {};
   const py::ssize_t channels = image.ndim() == 3 ? image.shape(2) : 1;
@@ -157,7 +157,7 @@ FrameReport process_images(Slam& slam, const ImageFrame& images, const std::opti
   return slam.process(view_of(images), motion);
 }
 
-// Ctrl-C makes an end; the map stays as far as it was adjusted.
+// Ctrl-C stops finishing; the adjustments so far are kept.
 void finish(Slam& slam) {
   bool is_interrupted = false;
   {
@@ -171,7 +171,7 @@ void finish(Slam& slam) {
   if (is_interrupted) throw py::error_already_set();
 }
 
-// Takes its fields by name.
+// Sets fields by name.
 SlamOptions options_of(const py::kwargs& fields) {
   SlamOptions options;
   const py::object self = py::cast(&options, py::return_value_policy::reference);

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kStep = 1.0 / 3.0;  // metres between poses
 constexpr double kBetween = 10.0;    // metres between lanes
-constexpr double kAside = 2.5;       // metres from the middle of a lane to its walls
+constexpr double kAside = 2.5;       // metres from the centre line of a lane to its walls
 constexpr double kReach = 10.0;      // metres ahead
 constexpr double kPixelSigma = 0.8;
 constexpr double kDisparitySigma = 0.4;
-constexpr double kOutliers = 0.03;  // share of the observations that are outliers
+constexpr double kOutliers = 0.03;  // share of outliers among the observations
 
 std::pair<int, int> cell_of(const Eigen::Vector3d& place) {
   return {static_cast<int>(std::floor(place.x() / kReach)), static_cast<int>(std::floor(place.z() / kReach))};
@@ -34,7 +34,7 @@ ConnectedSite::ConnectedSite(int poses, int points)
     truth_.push_back(pose);
   }
   while (static_cast<int>(problem_.points.size()) < points) add_point();
-  std::ranges::stable_sort(problem_.observations, {}, &BundleObservation::pose);  // as keyframes list them
+  std::ranges::stable_sort(problem_.observations, {}, &BundleObservation::pose);  // the order of keyframes
   for (BundlePose& pose : problem_.poses) {
     if (!pose.fixed) pose.camera_from_world = exp_pose(random_motion(0.03, 0.01)) * pose.camera_from_world;
   }
@@ -49,7 +49,7 @@ double ConnectedSite::position_error(const std::vector<Pose>& camera_from_world)
   return std::sqrt(sum / static_cast<double>(truth_.size()));
 }
 
-// After so many metres of the way; lanes lie on the ground, x and z, and are so long.
+// Pose after a driven distance, metres. Lanes of the given length lie in the ground plane, x and z.
 Pose ConnectedSite::pose_after(double way, double length) const {
   const int lane = static_cast<int>(way / length);
   const bool is_across = lane >= lanes_;
@@ -74,7 +74,7 @@ bool ConnectedSite::sees(int pose, const Eigen::Vector3d& point_in_world) const 
          rig.contains(rig.project(point_in_camera).head<2>());
 }
 
-// Up to so many that see a point: two of other lanes, and those of its own that are nearest to the given one.
+// Up to most poses that see a point: two of other lanes, and the nearest of the given pose's lane.
 std::vector<int> ConnectedSite::poses_that_see(const Eigen::Vector3d& point_in_world, int near,
                                                std::size_t most) const {
   constexpr int kSameLane = 30;  // poses apart
@@ -96,7 +96,7 @@ std::vector<int> ConnectedSite::poses_that_see(const Eigen::Vector3d& point_in_w
   return same;
 }
 
-// One that is seen from three to nine poses, unless too few see where it would be.
+// Adds a point with three to nine observations; none if too few poses see it.
 void ConnectedSite::add_point() {
   const Rig& rig = problem_.rigs[0];
   const auto near = static_cast<int>(uniform(0.0, static_cast<double>(truth_.size())));
@@ -108,7 +108,7 @@ void ConnectedSite::add_point() {
   for (const int pose : poses) add_observation(pose);
 }
 
-// Adds what a pose sees of the newest point.
+// Adds the observation of the newest point by a pose.
 void ConnectedSite::add_observation(int pose) {
   BundleObservation observation{.pose = pose, .point = static_cast<int>(problem_.points.size()) - 1, .measured = {}};
   observation.measured =

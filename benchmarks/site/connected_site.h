@@ -9,15 +9,15 @@
 
 namespace byre {
 
-// A bundle problem of a whole site. A camera that looks ahead drives all lanes of a square site up and down, first
-// those along, then those across. Where lanes cross, it sees again what it saw on the other one. So what is seen
-// connects the poses as a net, and all lanes must be cut to part the site in two.
+// Bundle problem of a whole site. A forward-looking camera drives all lanes of a square site up and down, first the
+// lanes along, then those across. At crossings it observes the points of the other lane. Co-observations thus connect
+// the poses as a grid, and a cut through the site crosses all lanes.
 class ConnectedSite {
  public:
   ConnectedSite(int poses, int points);
 
   const BundleProblem& problem() const { return problem_; }
-  // Root mean square, metres.
+  // Root mean square error, metres.
   double position_error(const std::vector<Pose>& camera_from_world) const;
 
  private:
@@ -35,7 +35,7 @@ class ConnectedSite {
   int lanes_;  // in each direction
   std::mt19937 generator_{1};
   BundleProblem problem_;
-  std::map<Cell, std::vector<int>> cells_;  // poses by where they stand
+  std::map<Cell, std::vector<int>> cells_;  // poses by position
   std::vector<Pose> truth_;
 };
 

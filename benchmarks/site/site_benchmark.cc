@@ -1,5 +1,5 @@
-// How byre grows with the map: a kept map is tiled to sites of so many keyframes, and a recording of that map is run on
-// each. With --write the site is kept in a file, to be extended or adjusted by the program.
+// Scaling of byre with map size: a saved map is tiled to sites of given numbers of keyframes, and a recording of that
+// map runs on each. --write saves a site, for extension or adjustment by the program.
 
 #include "connected_site.h"
 #include "tiled_map.h"
@@ -40,7 +40,7 @@ constexpr double kMegabyte = 1e6;
 constexpr double kMilliseconds = 1e3;
 constexpr double kMicroseconds = 1e6;
 
-// CPU time of the calling thread alone: what the frame thread does, however busy the machine is.
+// CPU time of the calling thread, independent of the machine's load.
 class ThreadStopwatch {
  public:
   double seconds() const { return now() - begin_; }
@@ -62,10 +62,10 @@ struct Writing {
 };
 
 struct Opening {
-  double seconds = 0.0;            // wall time, the best of three
-  double cpu_seconds = 0.0;        // CPU time of all threads, the least of three
-  double first_cpu_seconds = 0.0;  // CPU time of the first, when the program has no memory yet
-  double resident_mb = 0.0;        // what the program has more than before
+  double seconds = 0.0;            // wall time, best of three
+  double cpu_seconds = 0.0;        // CPU time of all threads, least of three
+  double first_cpu_seconds = 0.0;  // CPU time of the first opening, before the program has heap memory to reuse
+  double resident_mb = 0.0;        // increase of the program's resident memory
 };
 
 struct Use {
@@ -96,7 +96,7 @@ fs::path site_file() {
   return fs::temp_directory_path() / fmt::format("byre_site_{}.byre", static_cast<int>(getpid()));
 }
 
-// Runs it in a process of its own, so that memory that one measurement leaves is not counted to the next.
+// Runs a measurement in a child process, so that memory left by one does not count in the next.
 template <typename Result>
 Result in_child(const std::function<Result()>& measure) {
   static_assert(std::is_trivially_copyable_v<Result>);
@@ -129,7 +129,7 @@ Writing write_site(const Inputs& inputs, int keyframes, const fs::path& file) {
   return {watch.seconds(), static_cast<double>(fs::file_size(file)) / kMegabyte, site.map.point_count()};
 }
 
-// The file is in the system's cache.
+// The file is in the page cache.
 Opening open_site(const Inputs& inputs, const fs::path& file) {
   constexpr int kTimes = 3;
   Opening best;
@@ -159,7 +159,7 @@ Calibration calibration_of(const OfflineMap& offline, const Recording& recording
   return known ? known->calibration : recording.calibration();
 }
 
-// Every tenth frame of the recording, each without a guess.
+// Localises every tenth frame of the recording without a prior.
 void measure_places(const OfflineMap& offline, Recording& recording, Use& use) {
   constexpr int kStride = 10;
   Extractor extractor(calibration_of(offline, recording), {});
@@ -182,7 +182,7 @@ void measure_places(const OfflineMap& offline, Recording& recording, Use& use) {
   use.localise_ms = distribution_of(searches);
 }
 
-// The recording as a mission.
+// Runs the recording as a mission.
 void measure_frames(const Inputs& inputs, const std::shared_ptr<const OfflineMap>& offline, Recording& recording,
                     Use& use) {
   EngineOptions options;
@@ -205,7 +205,7 @@ void measure_frames(const Inputs& inputs, const std::shared_ptr<const OfflineMap
   use.frame_cpu_ms = distribution_of(cpu);
 }
 
-// A map that was driven has a ground; the recording need not be of one.
+// Uses a synthetic driven map, because the recording need not have a ground plane.
 void measure_ground(int keyframes, Use& use) {
   constexpr int kStands = 1000;
   const Map field = driven_field(keyframes);
@@ -229,7 +229,7 @@ Use use_site(const Inputs& inputs, int keyframes, const fs::path& file) {
   return use;
 }
 
-// What the program has more after opening and the mission than before, with all that the mission makes.
+// Increase of resident memory by opening the map and running the mission, including the mission's own data.
 double memory_of_mission(const Inputs& inputs, const fs::path& file) {
   const double before = resident_memory_mb();
   const auto offline = load_offline_map(file, inputs.vocabulary);
@@ -289,7 +289,7 @@ std::vector<int> sizes_in(int argc, char** argv, int first) {
   return sizes.empty() ? std::vector<int>{100, 1000, 10000} : sizes;
 }
 
-// Adjusts sites whose lanes cross, with a hundred points a pose, as far as a whole map is.
+// Adjusts sites with crossing lanes, with a hundred points per pose, up to the size of a whole map.
 void adjust_sites(const std::vector<int>& sizes) {
   constexpr int kPointsOfPose = 100;
   MarkdownTable table({"poses", "points", "observations", "iterations", "wall, s", "CPU, s", "position error, mm",

@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-constexpr int kFlippedBits = 3;  // in each point's descriptor
+constexpr int kFlippedBits = 3;  // bits flipped in each point's descriptor
 constexpr double kGap = 10.0;    // metres between copies
 
 Descriptor difference(const Descriptor& one, const Descriptor& other) {
@@ -19,7 +19,7 @@ Descriptor difference(const Descriptor& one, const Descriptor& other) {
   return result;
 }
 
-// The first keyframes of a map, with the points that these define.
+// The first keyframes of a map and the points that they define.
 MapParts parts_of(const Map& map, std::uint32_t keyframes) {
   MapParts parts{map.rigs(), {}, {}};
   std::vector<std::optional<PointId>> kept(static_cast<std::size_t>(map.point_count()));
@@ -38,7 +38,7 @@ MapParts parts_of(const Map& map, std::uint32_t keyframes) {
   return parts;
 }
 
-// Where copies lie: beside each other in the plane in which cameras stand upright.
+// Placement of copies: side by side on the ground plane.
 class Ground {
  public:
   Ground(const MapParts& one, int copies)
@@ -96,7 +96,7 @@ std::shared_ptr<const Features> with_descriptors(const Features& features, const
                                           std::move(descriptors), std::move(patches), std::move(patch_of_keypoint));
 }
 
-// The features of a keyframe whose points were described otherwise before.
+// Updates a keyframe's features whose points have new descriptors.
 void follow_points(const std::vector<MapPoint>& before, const MapParts& parts, const Vocabulary& vocabulary,
                    Keyframe& keyframe) {
   std::vector<Descriptor> descriptors = to_vector(keyframe.frame.features->descriptors());
@@ -156,12 +156,13 @@ StoredMap tiled_map(const StoredMap& one, int keyframes, const Vocabulary& vocab
 }
 
 Map driven_field(int keyframes) {
-  constexpr int kLane = 120;         // keyframes of a lane
+  constexpr int kLane = 120;         // keyframes per lane
   constexpr double kStep = 0.5;      // metres between keyframes
   constexpr double kBetween = 3.0;   // metres between lanes
-  constexpr double kUneven = 0.005;  // metres
+  constexpr double kUneven = 0.005;  // metres of unevenness
   Rig rig{752, 480, 400.0, 376.0, 240.0, 0.11, {}};
-  rig.body_from_camera.rotation = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);  // the camera looks ahead, x of the body
+  // Forward-looking camera: its z axis is x of the body.
+  rig.body_from_camera.rotation = Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5);
   MapParts parts{{rig}, std::vector<Keyframe>(static_cast<std::size_t>(keyframes)), {}};
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
