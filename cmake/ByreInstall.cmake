@@ -1,8 +1,9 @@
-# What `cmake --install` lays down: the library, its headers, and the package that find_package(byre) reads. Each file
-# belongs to a component, which ByrePackages.cmake makes a package of.
+# Installation: the library, its headers, and the package files for find_package(byre). Each file belongs to a
+# component, which ByrePackages.cmake turns into a Debian package.
 include(CMakePackageConfigHelpers)
 
-# Its headers are those of include/byre, which name the standard library and Eigen alone; those of the rooms stay home.
+# Installs the headers of include/byre, which include only the standard library and Eigen. Headers of rooms are
+# internal.
 function(byre_install_library)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/byre/*.h)
   set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/byre)
@@ -13,7 +14,7 @@ function(byre_install_library)
     list(APPEND libraries byre_shared)
   endif()
   foreach(component library IN ZIP_LISTS components libraries)
-    if(component MATCHES "^(core|shared)$") # the two that a program may be linked with alone
+    if(component MATCHES "^(core|shared)$") # the two libraries that a program may link directly
       target_sources(${library} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include FILES ${headers})
     endif()
     install(TARGETS ${library} EXPORT byre_${component}
@@ -30,7 +31,7 @@ function(byre_install_library)
           DESTINATION ${package_dir} COMPONENT development)
 endfunction()
 
-# What comes with byre, the vocabulary and the protocols of benchmarks, and where input/data_file.cc looks for it.
+# byre's own data, vocabulary and benchmark protocols, at the location where input/data_file.cc searches for it.
 function(byre_install_data)
   set(folder share/byre)
   install(FILES ${folder}/default.vocabulary DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT data)
@@ -39,8 +40,8 @@ function(byre_install_data)
     "BYRE_DATA_IN_PREFIX=\"${CMAKE_INSTALL_DATADIR}/byre\";BYRE_INSTALLED_DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/byre\";BYRE_SOURCE_DATA=\"${CMAKE_CURRENT_SOURCE_DIR}/${folder}\"")
 endfunction()
 
-# Sets a variable, for install(DESTINATION), to a folder below the prefix: to the first one given, or to the second when
-# the prefix is Debian's own, /usr, which is known no sooner than at the installation.
+# Sets a variable, for install(DESTINATION), to a folder below the prefix: debian_folder if the prefix is /usr, else
+# folder. The prefix is not final before installation.
 function(byre_install_dir variable folder debian_folder component)
   install(CODE "
     set(BYRE_${variable} ${folder})
@@ -50,7 +51,7 @@ function(byre_install_dir variable folder debian_folder component)
   set(${variable} "\${BYRE_${variable}}" PARENT_SCOPE)
 endfunction()
 
-# The service of `byre node`, for systemd, which only an administrator starts; and what goes with it in ROS.
+# systemd service of `byre node`, not enabled by default, and its ROS files.
 function(byre_install_service)
   byre_install_dir(service_dir ${CMAKE_INSTALL_LIBDIR}/systemd/system lib/systemd/system program)
   install(FILES share/systemd/byre.service DESTINATION ${service_dir} COMPONENT program)

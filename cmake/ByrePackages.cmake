@@ -1,9 +1,8 @@
-# Packages of Debian, which CPack makes of what is built: one of each component of the installation. Run by
-# scripts/package.sh.
+# Debian packages by CPack, one per installation component. Used by scripts/package.sh.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME byre)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # set per package
 set(CPACK_PACKAGE_CONTACT "byre maintainers <maintainers@byre.invalid>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -12,10 +11,10 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
-set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON) # of the same version, see CPACK_COMPONENT_<component>_DEPENDS below
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON) # requires the same version, see CPACK_COMPONENT_<component>_DEPENDS below
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-# Documents that policy wants in every package.
+# Documents that Debian policy requires in every package.
 file(READ ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE license)
 string(REGEX MATCH "Copyright \\(c\\) ([^\n]*)" found "${license}")
 set(byre_copyright ${CMAKE_MATCH_1})
@@ -23,7 +22,7 @@ string(REGEX REPLACE ".*Copyright \\(c\\) [^\n]*\n\n" "" byre_license "${license
 string(STRIP "${byre_license}" byre_license)
 string(REPLACE "\n\n" "\n.\n" byre_license "${byre_license}")
 string(REPLACE "\n" "\n " byre_license " ${byre_license}")
-string(TIMESTAMP byre_date "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH where that is set
+string(TIMESTAMP byre_date "%a, %d %b %Y %H:%M:%S +0000" UTC) # SOURCE_DATE_EPOCH if set
 set(byre_debian_dir ${CMAKE_CURRENT_BINARY_DIR}/debian)
 configure_file(cmake/debian/copyright.in ${byre_debian_dir}/copyright @ONLY)
 configure_file(cmake/debian/changelog.in ${byre_debian_dir}/changelog @ONLY)
@@ -32,9 +31,8 @@ if(BYRE_GZIP)
   execute_process(COMMAND ${BYRE_GZIP} -9nkf ${byre_debian_dir}/changelog)
 endif()
 
-# A package of one component: PACKAGE is its name; SECTION is Debian's; NEEDS are components; DEPENDS and RECOMMENDS are
-# packages, beside those of the shared libraries that are found in it. Scripts that dpkg runs are in
-# cmake/debian/<component>.
+# A package of one component. PACKAGE: its name; SECTION: Debian section; NEEDS: components; DEPENDS and RECOMMENDS:
+# packages in addition to the shared libraries found in it. Maintainer scripts are in cmake/debian/<component>.
 function(byre_add_package component)
   cmake_parse_arguments(PARSE_ARGV 1 debian "" "PACKAGE;SECTION;SUMMARY;DESCRIPTION;DEPENDS;RECOMMENDS;ARCHITECTURE" "NEEDS")
   string(TOUPPER ${component} upper)
@@ -64,7 +62,7 @@ if(BYRE_ARCH)
   set(processors "\nIt is made for processors with the instructions of ${BYRE_ARCH}.")
 endif()
 
-# Libraries that are loaded by the first use, which nothing is linked with.
+# Libraries loaded by dlopen on first use, which dpkg-shlibdeps cannot find.
 foreach(module imgcodecs videoio)
   get_target_property(file opencv_${module} LOCATION)
   execute_process(COMMAND dpkg-query --search ${file} OUTPUT_VARIABLE owner ERROR_QUIET)
@@ -101,7 +99,7 @@ if(BYRE_BUILD_PYTHON)
     DESCRIPTION "${about}${processors}\n.\nThis package holds the library for Python, with arrays of numpy in and out.")
 endif()
 
-# All that packages are made of.
+# All targets that packages contain.
 get_property(components GLOBAL PROPERTY BYRE_COMPONENTS)
 list(TRANSFORM components PREPEND byre_component_)
 set(packaged byre_shared byre_manual byre_python ${components})

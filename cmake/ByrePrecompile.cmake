@@ -1,5 +1,5 @@
-# Precompiled headers of the libraries that most files include: reading those is much of compiling a file. A
-# file that lacks an include compiles all the same.
+# Precompiled headers of the most used libraries, because parsing them dominates compile time. They hide missing
+# includes.
 option(BYRE_PRECOMPILE "Precompile the headers of libraries, for a faster build from scratch" ON)
 
 set(BYRE_PRECOMPILED_room <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits>
@@ -13,15 +13,14 @@ set(BYRE_PRECOMPILED_program_test ${BYRE_PRECOMPILED_test})
 set(BYRE_PRECOMPILED_command ${BYRE_PRECOMPILED_room} <iostream> <nlohmann/json.hpp> <CLI/CLI.hpp>)
 set(BYRE_PRECOMPILED_command_test ${BYRE_PRECOMPILED_command} <gmock/gmock.h> <gtest/gtest.h>)
 
-# The first target of a kind precompiles, the others of that kind, which must be compiled with the same flags, use what
-# it has made.
+# The first target of a kind builds the precompiled header. The others, which need the same compiler flags, reuse it.
 function(byre_precompile kind target)
   if(NOT BYRE_PRECOMPILE)
     return()
   endif()
-  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # without it ccache finds nothing
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # required by ccache
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # It takes what is precompiled for code of ours, and warns of the standard library's, falsely.
+    # GCC before 13 treats precompiled system headers as user code and gives false warnings about the standard library.
     target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread
                            -Wno-maybe-uninitialized -Wno-restrict)
   endif()
@@ -34,8 +33,8 @@ function(byre_precompile kind target)
   endif()
 endfunction()
 
-# The same for programs, each of which defines this and that: what is precompiled for all of them belongs to none. KIND:
-# program, or program_test of those that are linked with GoogleTest.
+# Precompiled header for programs. Their compile definitions differ, so a separate target owns it. KIND: program, or
+# program_test if linked with GoogleTest.
 function(byre_precompile_program kind target)
   set(owner byre_precompiled_${kind})
   if(BYRE_PRECOMPILE AND NOT TARGET ${owner})

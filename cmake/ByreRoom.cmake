@@ -1,47 +1,49 @@
-# How rooms become the library: one object library a room, so that a room and the floors below it build and test alone.
+# Builds the library from rooms: one object library per room, so that a room and the floors below it build and test
+# alone.
 
-# Flags every target of this project is compiled with. They stay inside: consumers get only what the headers need.
+# Compiler flags of every target of this project; not exported to consumers.
 add_library(byre_flags INTERFACE)
 target_compile_features(byre_flags INTERFACE cxx_std_20)
 target_compile_options(byre_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
-# GCC collects garbage from 700 MB on, not from 130 MB: an eighth of its time for half a gigabyte more at most.
+# Garbage collection of GCC starts at 700 MB instead of 130 MB: saves an eighth of its time for at most 0.5 GB more
+# memory.
 target_compile_options(byre_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=700000>)
 if(BYRE_ARCH)
   target_compile_options(byre_flags INTERFACE -march=${BYRE_ARCH})
 endif()
-# What is rounded where must not depend on which files are compiled together.
+# Rounding must not depend on which files are compiled together.
 target_compile_options(byre_flags INTERFACE -ffp-contract=off)
 if(BYRE_SANITIZE)
   target_compile_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE})
   target_compile_definitions(byre_flags INTERFACE BYRE_SANITIZED)
 endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_UNITY) # it takes another file's constants for shadowed ones
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_UNITY) # Clang reports constants of other files as shadowed
   target_compile_options(byre_flags INTERFACE -Wno-shadow)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_SANITIZE)
   target_compile_options(byre_flags INTERFACE "SHELL:-include ${CMAKE_CURRENT_SOURCE_DIR}/cmake/quick_random.h")
 endif()
-# Debian's Ceres is built for 16-byte alignment; byre and its consumers must agree with it whatever -march they use.
+# Debian's Ceres is built for 16-byte alignment; byre and its consumers must use the same for any -march.
 target_compile_definitions(byre_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 target_include_directories(byre_flags INTERFACE ${CMAKE_CURRENT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR}/include)
 target_compile_definitions(byre_flags INTERFACE BYRE_VERSION="${PROJECT_VERSION}")
 
-# Every room's test program, so that the unit tests can be built without the programs and examples.
+# All unit test programs, without programs and examples.
 if(BYRE_BUILD_TESTS)
   add_custom_target(byre_unit_tests)
 endif()
 
-# Rooms in which nothing is hot and much is libraries' templates, which GCC takes a third less time to compile so. What
-# robots link, and what figures come from, is not among them: see also cli/CMakeLists.txt.
+# Rooms without hot code but with many library templates: -O1 saves a third of their compile time. Excludes what robots
+# link and what produces figures; see also cli/CMakeLists.txt.
 set(BYRE_ROOMS_COLD ros bag viewer benchmark demo dds fleet node)
 
-# Compiles a target for a short build rather than for a fast program.
+# Compiles a target for short build time instead of speed.
 function(byre_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# What tests do by themselves is little: under sanitizers they take a third of the time to compile so, and run as fast.
+# Tests contain little hot code: under sanitizers this saves a third of their compile time at equal run time.
 function(byre_compile_test target)
   byre_compile_quickly(${target})
   if(BYRE_SANITIZE)
@@ -49,18 +51,18 @@ function(byre_compile_test target)
   endif()
 endfunction()
 
-# Those whose tests take longest, so that none of them runs alone at the end.
+# Rooms with the slowest tests, started first so that none of them runs alone at the end.
 set(BYRE_ROOMS_TESTED_FIRST session slam playback simulation)
 
-# Those whose tests read files of the source tree or beside it. The others do not know where it is, so that clones in
-# several folders share what the compiler cache has.
+# Rooms whose tests read files of the source tree. All others must not depend on its path, so that clones in several
+# folders share the compiler cache.
 set(BYRE_ROOMS_WITH_DATA dataset evaluation place)
 
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
     ${BYRE_FMT} ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
-# Adds src/byre/<room>: its objects as byre_<room>, and its tests as byre_<room>_tests. LINKS: what it needs beside what
-# all rooms are linked with.
+# Adds src/byre/<room>: its objects as byre_<room>, its tests as byre_<room>_tests. LINKS: libraries in addition to
+# those of all rooms.
 function(byre_add_room room)
   cmake_parse_arguments(PARSE_ARGV 1 its "" "" "LINKS")
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/${room}/*.cc)
@@ -96,7 +98,7 @@ function(byre_add_room room)
       byre_precompile(test byre_${room}_test_files)
       byre_unite(byre_${room}_test_files)
     endif()
-    # Linked last: of what both have made of a template the library's is taken.
+    # Test objects are linked last, so that template instances of the library take precedence.
     add_executable(byre_${room}_tests $<TARGET_OBJECTS:byre_${room}>)
     foreach(below IN LISTS rooms_below)
       target_sources(byre_${room}_tests PRIVATE $<TARGET_OBJECTS:byre_${below}>)
@@ -120,8 +122,8 @@ function(byre_set_usage library)
   target_link_libraries(${library} PUBLIC Eigen3::Eigen PRIVATE $<BUILD_INTERFACE:byre_flags>)
 endfunction()
 
-# A part of the library that can be linked alone, byre::<component>: the objects of its rooms, the components it needs
-# and the libraries it is linked with. Static whatever BUILD_SHARED_LIBS says: see byre_add_shared_library.
+# A separately linkable part of the library, byre::<component>: the objects of its rooms, the components it needs and
+# the libraries it links. Always static, see byre_add_shared_library.
 function(byre_add_component component)
   cmake_parse_arguments(PARSE_ARGV 1 part "" "" "ROOMS;NEEDS;LINKS")
   set(library byre_component_${component})
@@ -137,8 +139,8 @@ function(byre_add_component component)
   set_property(GLOBAL APPEND PROPERTY BYRE_COMPONENTS ${component})
 endfunction()
 
-# libbyre.so, byre::shared: the objects of the component core and those that read calibrations, so that it needs neither
-# image files nor videos. Programs see what the public headers declare, but for recordings and floor plans.
+# libbyre.so, byre::shared: the objects of core and those that read calibrations, without readers of image files and
+# videos. Exports the functions of the public headers, except recordings and floor plans.
 function(byre_add_shared_library)
   add_library(byre_shared SHARED)
   target_sources(byre_shared PRIVATE
@@ -157,7 +159,7 @@ function(byre_add_shared_library)
   set(exports ${CMAKE_CURRENT_BINARY_DIR}/byre_exports.map)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/byre/*.h)
   list(FILTER headers EXCLUDE REGEX "/(floor_plan|recording)\\.h$")
-  # Before 1.0 a minor version may break the interface, so both numbers are in every program that is linked.
+  # Before 1.0 a minor version may break the interface, so the version of the exported symbols contains both numbers.
   add_custom_command(OUTPUT ${exports} DEPENDS ${script} ${headers} VERBATIM
     COMMAND Python3::Interpreter ${script} ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${exports} ${headers})
   target_sources(byre_shared PRIVATE ${exports})
@@ -166,7 +168,7 @@ function(byre_add_shared_library)
                       LINKER:--version-script=${exports} LINKER:--as-needed LINKER:--no-undefined)
 endfunction()
 
-# All components as one, byre::byre.
+# All components, as byre::byre.
 function(byre_finish_library)
   add_library(byre INTERFACE)
   add_library(byre::byre ALIAS byre)

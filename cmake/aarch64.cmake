@@ -1,5 +1,5 @@
-# Compiles for robots' computers with 64-bit ARM processors on a Debian of another kind; tests run by QEMU. What is linked
-# comes from the folder BYRE_SYSROOT of the environment, which scripts/cross-build.sh fills.
+# Toolchain for 64-bit ARM robot computers, cross-compiled on another Debian architecture; tests run in QEMU. Libraries
+# come from the folder in the environment variable BYRE_SYSROOT, which scripts/cross-build.sh fills.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the linker's list of what libbyre.so exports: the functions, classes and members that its headers declare.
+"""Writes the linker's export list of libbyre.so: the functions, classes and members that its headers declare.
 
-The list takes the place of hiding all else from the compiler (-fvisibility=hidden), which would then inline more, so
-that poses differ in their last digits.
+Replaces -fvisibility=hidden, with which the compiler would inline more and poses would differ in their last digits.
 
-Usage: make_exports.py VERSION OUTPUT HEADER...      VERSION is that of the interface, "0.1"
+Usage: make_exports.py VERSION OUTPUT HEADER...      VERSION: of the interface, "0.1"
 """
 import pathlib
 import re
@@ -18,7 +17,7 @@ TYPE = re.compile(r"^(?:class|struct|enum class) (\w+)", re.MULTILINE)
 
 
 def first_parameter(parameters: str, own_types: set[str]) -> str:
-    """What overloads are told apart by: the type of the first parameter, as far as it is no other name for another."""
+    """Type of the first parameter, which distinguishes overloads; empty if it may be an alias."""
     found = re.match(r"(?:const )?([\w:]+)", parameters)
     if found and found[1] in own_types:
         return f"byre::{found[1]}"
@@ -29,7 +28,7 @@ def patterns(text: str, own_types: set[str]) -> list[str]:
     result = []
     for name, parameters in FUNCTION.findall(CLASS.sub("", text)):
         first = first_parameter(parameters, own_types)
-        result += [f"{name}({first}*", f"{name}[abi:*({first}*"]  # "[abi:cxx11]" marks functions that give strings
+        result += [f"{name}({first}*", f"{name}[abi:*({first}*"]  # "[abi:cxx11]" marks functions that return strings
     for name, body in CLASS.findall(text):
         result += [f"{name}::{member}(*" for member in dict.fromkeys(MEMBER.findall(body))]
     return result
@@ -41,7 +40,7 @@ def exports(texts: list[str]) -> list[str]:
     for text in texts:
         lines += [f"{kind} for byre::{name}" for name, _ in CLASS.findall(text)
                   for kind in ("vtable", "typeinfo", "typeinfo name")]
-    # The linker's patterns are made of names, "::", "*" and "?", which stands for any sign.
+    # The linker's patterns consist of names, "::", "*" and "?" for any character.
     return [re.sub(r"(?<!:):(?!:)|[^\w:*]", "?", line) for line in lines]
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the manual pages of byre of what its commands say of themselves: byre.1 and a page for each command.
+"""Generates the manual pages of byre from the help of its commands: byre.1 and one page per command.
 
-Usage: make_manual.py BYRE FOLDER      BYRE is the program; FOLDER gets byre.1.gz, byre-map.1.gz, ...
+Usage: make_manual.py BYRE FOLDER      BYRE is the program; output: byre.1.gz, byre-map.1.gz, ... in FOLDER
 """
 import gzip
 import pathlib
@@ -10,8 +10,8 @@ import subprocess
 import sys
 from typing import NamedTuple
 
-COMMANDS = "Subcommands"  # the heading that lists them
-COLUMN = 30  # where texts begin
+COMMANDS = "Subcommands"  # heading of the list of commands
+COLUMN = 30  # first column of descriptions
 
 
 class Entry(NamedTuple):
@@ -29,7 +29,7 @@ class Help(NamedTuple):
 
 
 def parse_entries(lines: list[str]) -> list[Entry]:
-    """Names are indented by two; their texts stand in a column of their own, or below names that reach into it."""
+    """Names are indented by two; descriptions are in a separate column, or below names that reach into it."""
     margin = " " * COLUMN
     entries: list[Entry] = []
     for line, next_line in zip(lines, [*lines[1:], ""]):
@@ -91,7 +91,7 @@ def example_lines(examples: str) -> list[str]:
 
 
 def below(program: str, names: list[str], of: Help) -> list[str]:
-    """What a page says of the commands below its own."""
+    """Section on the subcommands of a command."""
     lines = []
     for entry in of.groups.get(COMMANDS, []):
         inner = help_of(program, [*names, entry.name])
@@ -124,7 +124,7 @@ def main() -> int:
     version = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.strip()
     top = help_of(program, [])
     folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.glob("byre*.1.gz"):  # of commands that are no more
+    for old in folder.glob("byre*.1.gz"):  # may belong to removed commands
         old.unlink()
     for names in [[], *([entry.name] for entry in top.groups[COMMANDS])]:
         text = page(program, version, names, top).encode()

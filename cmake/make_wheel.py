@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes a wheel of the package for Python: the one file that pip installs, with the vocabulary in it.
+"""Builds a wheel of the Python package for pip, including the vocabulary.
 
 Usage: make_wheel.py PACKAGE DATA LICENSE WHEEL
-PACKAGE is the folder byre as it was built, DATA the folder that holds default.vocabulary. The name of WHEEL says the
-rest: version, and the Python and system that the module was built for, as in byre-0.1.0-cp311-cp311-linux_x86_64.whl.
+PACKAGE is the built folder byre, DATA the folder of default.vocabulary. The name of WHEEL gives version, Python and
+platform of the module, as in byre-0.1.0-cp311-cp311-linux_x86_64.whl.
 """
 import pathlib
 import shutil
@@ -13,7 +13,7 @@ import tempfile
 
 PACKAGE_FILES = ("__init__.py", "__init__.pyi", "py.typed", "_byre.*.so")
 VOCABULARY = "default.vocabulary"
-DATA_FOLDER = pathlib.Path("share") / "byre"  # beside the module, where input/data_file.cc looks for it
+DATA_FOLDER = pathlib.Path("share") / "byre"  # next to the module, where input/data_file.cc searches for it
 
 METADATA = """\
 Metadata-Version: 2.1

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the viewer's page, web/dist/index.html, from its source in web/src: needed only when that was changed, as the
-# page is kept in the repository. Needs Node 20.19 or newer with npm.
-# Usage: build-web.sh [--check]        --check changes nothing and fails when the page is not what its source gives
+# Builds the viewer's page, web/dist/index.html, from web/src. Only needed after changes, as the page is in the
+# repository. Needs Node 20.19 or newer with npm.
+# Usage: build-web.sh [--check]        --check changes nothing; fails if the page differs from its source
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../web"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, configures a preset of CMakePresets.json and builds it.
-# Usage: build.sh [PRESET [TARGET...]]       release and everything unless given
+# Installs missing dependencies, configures a preset of CMakePresets.json and builds it.
+# Usage: build.sh [PRESET [TARGET...]]       default: release, all targets
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Compiles the program, the libraries and their unit tests for 64-bit ARM, on a Debian of another kind, and with --test
-# runs the unit tests by QEMU. What they are linked with is unpacked once from Debian's packages into
-# build/sysroot-aarch64 (1.3 GB), or into the folder that the environment names as BYRE_SYSROOT.
+# Cross-compiles program, libraries and unit tests for 64-bit ARM on another Debian architecture, and runs the tests in
+# QEMU with --test. Dependencies are unpacked once from Debian packages into build/sysroot-aarch64 (1.3 GB), or into the
+# folder in the environment variable BYRE_SYSROOT.
 # Usage: cross-build.sh [--test | --processor]
-#   --test        runs the unit tests of all rooms, but for the slowest (see the preset aarch64)
-#   --processor   builds nothing but the unit tests of rooms that have code for each processor, and of what that rests
-#                 on, for scripts/test.sh --arm64, which runs them
-# Exit code 77: something is to be fetched, and Debian's mirror cannot be reached.
+#   --test        runs the unit tests of all rooms except the slowest (see the preset aarch64)
+#   --processor   builds only the unit tests of rooms with processor-specific code and of the rooms they depend on, for
+#                 scripts/test.sh --arm64, which runs them
+# Exit code 77: a download is needed, and Debian's mirror is unreachable.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -20,8 +20,8 @@ case ${1:-} in
 esac
 
 tools=(g++-aarch64-linux-gnu mmdebstrap qemu-user-static)
-# Those of scripts/install-dependencies.sh that are linked with. libblas-dev and liblapack-dev are named, as ATLAS
-# would be taken otherwise, which SuiteSparse is not made for.
+# The linked packages of scripts/install-dependencies.sh. libblas-dev and liblapack-dev are explicit, because otherwise
+# ATLAS is selected, which SuiteSparse is not built for.
 packages=(
   libc6-dev libstdc++-12-dev libblas-dev liblapack-dev
   libeigen3-dev libopencv-dev libceres-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev
@@ -61,11 +61,11 @@ if [[ ! -e $BYRE_SYSROOT/complete ]]; then
   mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$(IFS=,; echo "${packages[*]}")" \
     "$release" "$BYRE_SYSROOT" "$mirror"
   libraries=$BYRE_SYSROOT/usr/lib/aarch64-linux-gnu
-  for name in blas lapack; do # links that installing the packages would have made
+  for name in blas lapack; do # links that an installation would create
     ln -sf "$name/lib$name.so" "$libraries/lib$name.so"
     ln -sf "$name/lib$name.so.3" "$libraries/lib$name.so.3"
   done
-  # Ceres names what its static library is linked with by where it would lie once installed.
+  # Ceres refers to the dependencies of its static library by their installed paths.
   sed -i "s#;/usr/lib/aarch64-linux-gnu/#;$libraries/#g" "$libraries/cmake/Ceres/CeresTargets.cmake"
   touch "$BYRE_SYSROOT/complete"
 fi

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# Shows byre at work. Without a recording: two visits to a simulated cowshed, as a page to look at (byre demo). With one:
-# maps it, keeps the map, tells what it holds, finds frames in it and, where the recording holds ground truth, says how
-# exact the result is.
+# Demonstrates byre. Without a recording: two visits to a simulated cowshed, as an HTML page (byre demo). With one: maps
+# it, saves and inspects the map, localises frames in it and, with ground truth, evaluates the accuracy.
 # Usage: demo.sh [RECORDING]
 # RECORDING is a folder in EuRoC or KITTI format. Results go to $BYRE_DEMO_DIR, or to ~/.cache/byre/demo.
 set -euo pipefail
@@ -39,7 +38,7 @@ echo "Finding every twentieth frame in it, without tracking"
 "$byre" localise "$results/map.byre" "$recording" --stride 20 --trajectory "$results/found.txt" |
   tee "$results/localisation.txt"
 
-# EuRoC keeps the ground truth inside a recording, KITTI beside its sequences.
+# Ground truth is inside a recording in EuRoC, and next to the sequences in KITTI.
 has_truth=false
 for truth in "$recording"/{mav0/,}state_groundtruth_estimate0/data.csv "$recording/../../poses/${recording##*/}.txt"; do
   [[ ! -f $truth ]] || has_truth=true

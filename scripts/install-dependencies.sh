@@ -1,35 +1,35 @@
 #!/usr/bin/env bash
-# Installs what building and testing byre needs, on Debian 12 or anything with the same package names. Packages that
-# are there are left alone; when all are, nothing is asked and nothing is changed. Needs root or sudo otherwise.
+# Installs the dependencies for building and testing byre, on Debian 12 or systems with the same package names.
+# Installed packages are not touched; with all present the script does nothing. Otherwise it needs root or sudo.
 set -euo pipefail
 
 packages=(
-  # building
+  # build
   g++ cmake ninja-build ccache git
-  # the library. OpenCV's CMake files are in libopencv-dev alone, the packages of single modules lack them.
+  # library. OpenCV's CMake files are only in libopencv-dev, not in the packages of single modules.
   libeigen3-dev libopencv-dev libceres-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev
   libdeflate-dev libembree-dev libboost-dev
   # bags
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
-  # the program
+  # program
   libcli11-dev python3
-  # byre node, and the tests with a broker of MQTT and with another DDS, whose types are made by a program in Java
+  # byre node, and its tests with an MQTT broker and another DDS, whose type generator needs Java
   cyclonedds-dev libsystemd-dev libmosquitto-dev
   mosquitto
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
-  # the package for Python
+  # Python package
   pybind11-dev python3-dev python3-numpy python3-pytest python3-pip python3-wheel
-  # packages
+  # Debian packages
   dpkg-dev file
   # tests, fuzzing, benchmarks, rules
   libgtest-dev libgmock-dev libbenchmark-dev valgrind clang-format zsh
-  # sanitizers, whose tests take less than half as long by this version as by g++ 12, and fuzzing
+  # sanitizers, whose tests run in less than half the time of g++ 12, and fuzzing
   clang-16 libclang-rt-16-dev
-  # tests of bags that others wrote
+  # tests of bags written by other software
   python3-rosbag python3-sensor-msgs python3-tf2-msgs
 )
-# Of tests in a browser, which are skipped without. Node may come from anywhere: Debian's npm does not go together with
-# another's Node.
+# For browser tests, which are skipped without. Node may come from another source: Debian's npm conflicts with other
+# Node packages.
 browser_packages=(chromium)
 command -v node >/dev/null || browser_packages+=(nodejs)
 command -v npm >/dev/null || browser_packages+=(npm)

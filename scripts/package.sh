@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Makes Debian packages of byre in build/packages: the program, its data, the shared library, what programs are built
-# with, and the package for Python.
+# Builds Debian packages in build/packages: program, data, shared library, development files, and Python package.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Checks everything: builds the release, runs all tests (of units, of accuracy on whole recordings, and that every
-# benchmark runs), checks the formatting, then runs the library's unit tests under the address and undefined-behaviour
-# sanitizers and those of rooms with threads under the thread sanitizer, and fuzzes the reading of map files. Says which
-# tests were skipped for lack of their recordings, and which took longest.
+# Runs all checks: builds the release, runs all tests (unit tests, accuracy on whole recordings, every benchmark once),
+# checks the formatting, runs unit tests of the library under address and undefined-behaviour sanitizers and those of
+# threaded rooms under the thread sanitizer, and fuzzes the file readers. Reports tests skipped for missing recordings,
+# and the slowest tests.
 # Usage: test.sh [--quick | --arm64]
-#   --quick   leaves sanitizers and fuzzing out
-#   --arm64   runs unit tests for 64-bit ARM too, by QEMU, of rooms that have code for each processor, and of what that
-#             rests on; fetches 1.3 GB of Debian's packages for arm64 the first time
+#   --quick   skips sanitizers and fuzzing
+#   --arm64   also runs unit tests for 64-bit ARM in QEMU, of rooms with processor-specific code and the rooms they
+#             depend on; the first time downloads 1.3 GB of Debian packages for arm64
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -25,13 +25,13 @@ skipped=0
 failures=()
 failure_logs=()
 
-# The sanitizers of GCC 12 cannot start where the kernel spreads addresses wider than they expect.
+# The sanitizers of GCC 12 fail to start if the kernel randomises addresses beyond their expected range.
 runner=()
 ! setarch --addr-no-randomize true 2>/dev/null || runner=(setarch --addr-no-randomize)
 
 headline() { printf '\n== %s\n' "$1"; }
 
-# What each part took, told at the end: "<seconds> s  <part>", from the last call on.
+# Duration of each part since the previous call, "<seconds> s  <part>", printed at the end.
 parts=()
 part_began=$SECONDS
 end_part() {
@@ -39,20 +39,19 @@ end_part() {
   part_began=$SECONDS
 }
 
-# Why tests of a preset were skipped, in their own words; also those within a program that ran others.
+# Prints the skip messages of a preset's tests, including those of tests within a program that ran others.
 print_skips() {
   local output=build/$1/Testing/Temporary/LastTest.log
   grep -A1 -E ': Skipped$' "$output" | grep -vE '^--$|: Skipped$' | sort -u | sed 's/^/Skipped: /' || true
 }
 
-# The tests of a preset that took longest, in seconds.
+# Prints the slowest tests of a preset, in seconds.
 print_slowest() {
   sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .* ([0-9.]+) sec.*$/\2 s  \1/p' "build/$1/tests.log" |
     sort -rn | head -n 8 | sed '1s/^/Slowest: /; 2,$s/^/         /'
 }
 
-# Keeps the names of a preset's failed tests, each with the end of what it printed, to be told once more at the end: by
-# then what ctest said of them is far up.
+# Stores names and last output of a preset's failed tests, for a summary at the end, far below ctest's own output.
 keep_failures() {
   local preset=$1 name reason
   while read -r name reason; do
@@ -63,8 +62,8 @@ keep_failures() {
   done < <(sed -nE 's/^[[:space:]]+[0-9]+ - ([^ ]+) \((.*)\)$/\1 (\2)/p' "build/$preset/tests.log" | grep -v '(Skipped)$')
 }
 
-# Runs the tests of a preset and adds up what ctest's closing lines say; it counts skipped tests among the passed ones.
-# One test more than there are processors, as some wait for most of their time.
+# Runs the tests of a preset and sums ctest's closing lines, which count skipped tests as passed. Runs one test more
+# than there are processors, because some tests mostly wait.
 run_tests() {
   local preset=$1 log=build/$1/tests.log closing skips
   "${runner[@]}" ctest --preset "$preset" --parallel $(($(nproc) + 1)) | tee "$log" || true

@@ -1,13 +1,13 @@
-# Sourced by tests that run in Node: skips them where there is none, and fetches their packages.
+# Sourced by tests that run in Node: skips them when it is missing, and installs their packages.
 
 skip() {
   echo "Skipped: $1"
   exit 77
 }
 
-# fetch_packages SOURCE FOLDER PACKAGE: copies the test's files from SOURCE to FOLDER and goes there, with the packages
-# beside them. npm puts packages beside the files that use them: not into the source tree. PACKAGE is named when they
-# cannot be had.
+# fetch_packages SOURCE FOLDER PACKAGE: copies the test's files from SOURCE to FOLDER, installs their packages there and
+# changes to it. npm installs packages next to the files that use them, so not in the source tree. PACKAGE is named in
+# the skip message.
 fetch_packages() {
   command -v node >/dev/null || skip "Node is not installed"
   command -v npm >/dev/null || skip "npm is not installed"

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""How far poses went wrong that were bridged by wheels or a gyroscope: a line for each gap of a run.
+"""Prints the error of dead reckoning by wheels or gyroscope, one line per gap of a run.
 
-Usage: bridge_errors.py STATS RECORDING      STATS: what byre map or byre run wrote by --stats; RECORDING: EuRoC, with truth
+Usage: bridge_errors.py STATS RECORDING      STATS: output of byre map or byre run --stats; RECORDING: EuRoC, with truth
 
-Errors are those at the last frame of a gap, against the truth, with both laid on each other at the last frame before
-it. The bound is that of the run's own covariance: 95 % of errors are to lie within. Needs numpy.
+Errors are at the last frame of a gap, after alignment with the truth at the last frame before it. The bound is the 95 %
+bound of the run's covariance. Needs numpy.
 """
 import json
 import pathlib
@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 
-BOUND = 12.59  # squared Mahalanobis distance that 95 % of errors of six numbers lie within
+BOUND = 12.59  # 95 % quantile of chi-squared with six degrees of freedom
 
 
 def pose(position, quaternion_xyzw) -> np.ndarray:
@@ -45,7 +45,7 @@ def is_bridged(frame) -> bool:
 
 
 def gaps_of(frames):
-    """Pairs of indices: the last frame before a gap, the last one in it."""
+    """Pairs of indices: last frame before a gap, last frame in it."""
     begin = None
     for i, frame in enumerate(frames):
         if is_bridged(frame):

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Looks for functions of Eigen that allocate or free memory and that the compiler did not inline. byre is compiled for
-# AVX, Debian's Ceres is not, and Eigen aligns memory otherwise then: where the linker lets Ceres call such a function
-# of byre's, Ceres frees what it never allocated. Such a file is to be compiled apart, see cmake/ByreUnity.cmake.
-# Usage: check_allocations.sh BUILD        BUILD is a folder that was built, such as build/release
-# Exit code: 0 none, 1 some, which are listed; 2 nothing to look at.
+# Searches for Eigen functions that allocate or free memory and were not inlined. byre is compiled for AVX, Debian's
+# Ceres is not, and Eigen's allocation depends on that: if the linker lets Ceres call byre's version of such a function,
+# Ceres frees memory that it did not allocate. Files with such functions must compile separately, see
+# cmake/ByreUnity.cmake.
+# Usage: check_allocations.sh BUILD        BUILD: a build folder, such as build/release
+# Exit code: 0 none, 1 some, which are listed; 2 no objects found.
 set -euo pipefail
 
 functions='(conditional_)?aligned_(malloc|realloc|free|new|delete)|handmade_aligned'

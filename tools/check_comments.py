@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Checks that comments stand alone: each can be read without the line of code above it.
 
-Usage: check_comments.py [FOLDER...]        include and src of this project unless given.
+Usage: check_comments.py [FOLDER...]        default: include and src of this project.
 
-A comment behind code neither begins with a word that ties it to the line above ("of those", "likewise") nor runs on
-into the next line: what is too long for its line goes on lines of its own above the code. Comments on lines of their
-own are prose; all that is asked of them is not to begin with "Of", "Likewise" or "Ditto".
-Prints one line per fault, "file:line: what is wrong". Exit code: 0 all comments stand alone, 1 faults found, 2 nothing
-to check.
+A comment behind code must neither begin with a word that ties it to the line above ("of those", "likewise") nor
+continue on the next line: longer comments go on lines of their own above the code. Comments on lines of their own are
+prose; they only must not begin with "Of", "Likewise" or "Ditto".
+Prints one line per fault, "file:line: what is wrong". Exit code: 0 all comments stand alone, 1 faults found, 2 no
+source files.
 """
 import pathlib
 import re
@@ -18,8 +18,8 @@ from check_floors import Fault, TOKEN, source_files
 
 MEANT_FOR_TOOLS = re.compile(r"NOLINT|IWYU|clang-format|namespace\b")
 
-# First words behind code that have their noun on another line. Those that may begin a noun phrase of their own ("both
-# cameras", "too few points", "which of the maps", "the same as before") count only where they do not.
+# First words behind code whose noun is on another line. Words that can begin a noun phrase ("both cameras", "too few
+# points", "which of the maps", "the same as before") count only if they do not.
 LEANING = re.compile(
     r"""(?:of|and|or|nor|but|also|else|otherwise|ditto|likewise|again|then|that|whose|those|these|they|them)\b
       | (?:by|for|from|in|on|to|with)\s(?:which|those|these|them|that)\b
@@ -27,7 +27,7 @@ LEANING = re.compile(
       | which\b(?!\sof\b)
       | (?:the\s)?same\b(?!\s(?:as|in|on|at)\b)
     """, re.IGNORECASE | re.VERBOSE)
-# Words that point to another line wherever they stand.
+# Words that refer to another line at any position.
 POINTING = re.compile(r"\b(?:likewise|ditto|as (?:above|below)|see (?:above|below)|(?:of|by|in|with) (?:those|these)$)",
                       re.IGNORECASE)
 UNFINISHED = re.compile(r",$|\b(?:and|or|nor|the|a|an|than)$", re.IGNORECASE)
@@ -36,13 +36,13 @@ LEANING_PROSE = re.compile(r"(?:Of|Likewise|Ditto)\b")
 
 class Comment(NamedTuple):
     line: int  # from 1
-    column: int  # where its slashes are, from 0
-    text: str  # without slashes and the spaces around it
+    column: int  # of its slashes, from 0
+    text: str  # without slashes and surrounding spaces
     is_behind_code: bool
 
 
 def comments(text: str) -> dict[int, Comment]:
-    """The comments after two slashes by line, from top to bottom, without empty ones and those meant for tools."""
+    """Comments after two slashes by line, in order, without empty ones and those for tools."""
     found = {}
     line, counted = 1, 0
     for token in TOKEN.finditer(text):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of check_comments.py on small trees made for each case."""
+"""Tests of check_comments.py on small generated trees."""
 import contextlib
 import io
 import pathlib

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Checks the house rules that the compiler does not: which room may include what, and what no library code may do.
+"""Checks rules beyond the compiler: which rooms a room may include, and calls forbidden in library code.
 
-Usage: check_floors.py [SOURCE]        SOURCE is the folder of rooms, src/byre of this project unless given.
+Usage: check_floors.py [SOURCE]        SOURCE: folder of rooms, default: src/byre of this project.
 
-A room may include rooms on lower floors only. Some headers and calls are fenced in, see KEPT_IN and FORBIDDEN. A type
-is defined by one header only: two of one name may be linked into one program, which then takes either for both. What
-a file keeps to itself has a name that no other file of its room has, as several are compiled as one. Functions may be
-overloaded by types of byre. Those that take others, which convert into each other, may not, or another file might call
-one for what a header declares.
-Prints one line per fault, "file:line: what is wrong". Exit code: 0 all rules hold, 1 faults found, 2 nothing to check.
+A room may include only rooms on lower floors. Some headers and calls are restricted, see KEPT_IN and FORBIDDEN. A type
+is defined by one header only: two types of one name in one program violate the one-definition rule. Names local to a
+file are unique in its room, because several files compile as one (unity builds). File-local functions may overload by
+types of byre. They may not overload by convertible types such as numbers, or another file could call them instead of a
+function that a header declares.
+Prints one line per fault, "file:line: what is wrong". Exit code: 0 all rules hold, 1 faults found, 2 no source files.
 """
 import functools
 import pathlib
@@ -16,7 +16,7 @@ import re
 import sys
 from typing import Iterator, NamedTuple
 
-# From the ground up; ARCHITECTURE.md says what each room is for.
+# From the ground up; ARCHITECTURE.md describes the rooms.
 FLOORS = [
     {"input", "workers"},
     {"geometry", "ros"},
@@ -36,7 +36,7 @@ FLOORS = [
     {"demo", "node"},
     {"cli"},
 ]
-# Headers of include/byre, by the room that each belongs to.
+# Room of each header of include/byre.
 PUBLIC = {
     "input_error.h": "input",
     "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "pose_hint.h": "geometry",
@@ -53,7 +53,7 @@ PUBLIC = {
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 EVERY_ROOM = frozenset(FLOOR)
 
-# Headers that only some rooms may include. Tests are free to.
+# Headers that only some rooms may include. Tests may include all.
 KEPT_IN = {
     r"thread|condition_variable|future|stop_token|semaphore|latch|barrier": {
         "workers", "simulation", "mapping", "playback", "viewer", "camera", "fleet", "cli"},
@@ -78,11 +78,11 @@ KEPT_IN = {
 
 class Rule(NamedTuple):
     pattern: str
-    rooms: frozenset  # where the rule does not hold
+    rooms: frozenset  # exempt from the rule
     reason: str
 
 
-# Calls that library code does without. Tests keep to these too.
+# Calls forbidden in library code and its tests.
 FORBIDDEN = [
     Rule(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(std::)?(printf|fprintf|puts|fputs|putchar|perror)\s*\(",
          frozenset({"cli"}), "only cli prints: return what is to be told, or throw InputError"),
@@ -116,7 +116,7 @@ TOKEN = re.compile(
 
 
 def without_comments(text: str) -> str:
-    """The code with comments and raw strings blanked out; line numbers stay, and so do other literals."""
+    """Blanks out comments and raw strings; line numbers and other literals stay."""
     def kept(found: re.Match) -> str:
         is_literal = found[0][0] in "\"'"
         return found[0] if is_literal else "\n" * found[0].count("\n")
@@ -188,8 +188,8 @@ OPENING = re.compile(
 ANONYMOUS = "{anonymous}"
 
 
-# What a file declares or defines outside of types and functions, each name with its namespace and its line: types,
-# constants, and functions that take no type of byre first, with "()" behind them.
+# Declarations and definitions of a file at namespace scope, each as qualified name and line: types, constants, and
+# functions whose first parameter is no type of byre, marked by "()".
 def definitions(text: str) -> Iterator[tuple[str, int]]:
     code = "\n".join(without_strings(line) for line in without_comments(text).split("\n"))
     code = re.sub(r"'(?:\\.|[^'\\\n])'", "' '", code)
@@ -222,7 +222,7 @@ def twice_defined_faults(headers: list[pathlib.Path]) -> Iterator[Fault]:
     return faults_of_names(headers, lambda name: ANONYMOUS not in name and not name.endswith("()"), {})
 
 
-# What headers on the floors up to a room's declare, as if each file kept it to itself.
+# Declarations of the headers on the floors up to a room's, in the form of file-local names.
 def declared_names(headers: list[tuple[str, pathlib.Path]], room: str) -> dict[str, pathlib.Path]:
     names = {}
     for other, path in headers:
@@ -233,7 +233,7 @@ def declared_names(headers: list[tuple[str, pathlib.Path]], room: str) -> dict[s
     return names
 
 
-# Of files that are compiled as one: those of a room, its tests apart.
+# Name clashes of files that compile as one: those of a room; its tests separately.
 def clash_faults(source: pathlib.Path, public: pathlib.Path) -> Iterator[Fault]:
     together = {}
     headers = [(PUBLIC[path.name], path) for path in source_files(public) if path.name in PUBLIC]
@@ -252,7 +252,7 @@ def source_files(source: pathlib.Path) -> list[pathlib.Path]:
     return sorted(path for path in source.rglob("*") if path.suffix in {".h", ".cc"} and path.is_file())
 
 
-# A public header may name others of its kind, the standard library and Eigen.
+# A public header may include public headers, the standard library and Eigen.
 def public_faults(path: pathlib.Path) -> Iterator[Fault]:
     for fault in file_faults(path, PUBLIC[path.name]):
         yield fault

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of check_floors.py on small trees made for each case."""
+"""Tests of check_floors.py on small generated trees."""
 import contextlib
 import io
 import pathlib
@@ -65,7 +65,7 @@ class Types(CheckFloorsTest):
                    "namespace byre {\nstruct Pose {\n  int size() const;\n};\nPose inverse(int x);\n}\n")
         self.write("map/map.h", "namespace byre {\nint far(int x);\n}\n")
         self.write("dataset/a.cc", kept % "int inverse(int x)")
-        self.write("dataset/b.cc", kept % "int far(int x)")  # of a floor above
+        self.write("dataset/b.cc", kept % "int far(int x)")  # on a floor above
         self.write("dataset/c.cc", kept % "int size(int x)")
         self.write("dataset/d.cc", kept % "double size(double x)")
         self.write("dataset/overload.cc", kept % "Pose inverse(const Pose& pose)")

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Compares what the hot loops cost with what they cost before, in instructions and in memory allocated.
+"""Compares the cost of the hot loops with stored values, in instructions and allocated memory.
 
-Both say the same on every machine with the same instruction set, whatever runs beside it; times do not. Instructions
-are counted by valgrind (callgrind) between the first and the last of one pass of the loop.
+Unlike times, both are the same on every machine with the same instruction set, at any load. Valgrind (callgrind)
+counts the instructions of one pass of the loop.
 
 Usage: check_hot_loops.py BENCHMARKS KEPT.json [--write]
-  BENCHMARKS is the program byre_benchmarks, KEPT.json holds figures by the name of the benchmark. With --write they are
-  replaced by those measured now.
-Exit code: 0 none costs more than a tenth more, 1 some do, 2 wrong usage, 77 valgrind is not installed.
+  BENCHMARKS is the program byre_benchmarks, KEPT.json stores figures by benchmark name. --write replaces them by the
+  measured ones.
+Exit code: 0 no cost exceeds its stored value by more than 10 %, 1 some do, 2 wrong usage, 77 valgrind is not installed.
 """
 
 import json
@@ -18,17 +18,17 @@ import subprocess
 import sys
 import tempfile
 
-ALLOWED = 1.10  # times what was kept
+ALLOWED = 1.10  # ratio to the stored value
 FIGURES = ("instructions", "allocations", "allocated_bytes")
 SKIPPED = 77
 
 
 def chosen(names):
-    return ["--benchmark_filter=^(" + "|".join(names) + ")$", "--benchmark_min_time=0"]  # so each loop has one pass
+    return ["--benchmark_filter=^(" + "|".join(names) + ")$", "--benchmark_min_time=0"]  # one pass per loop
 
 
 def measured_memory(program, names):
-    """Allocations and bytes of one pass, by name, in the order in which they are run."""
+    """Allocations and bytes of one pass, by name, in the order of execution."""
     output = subprocess.run([program, *chosen(names), "--benchmark_format=json"], check=True, capture_output=True,
                             text=True).stdout
     return {one["name"]: {figure: round(one[figure]) for figure in FIGURES[1:]}
@@ -36,8 +36,8 @@ def measured_memory(program, names):
 
 
 def measured_instructions(program, names):
-    """Instructions of one pass, in the order in which they are run. A pass lies between two functions of the benchmark
-    library; callgrind counts from the first and writes a file at the second."""
+    """Instructions of one pass, in the order of execution. Two functions of the benchmark library delimit a pass:
+    callgrind counts from the first and writes a file at the second."""
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out",
@@ -62,7 +62,7 @@ def measured(program, names):
 
 
 def compare(kept, now):
-    """Lines of a table, and whether anything costs too much."""
+    """Table rows, and whether a cost exceeds its limit."""
     lines, too_much = [f"{'':40} {'instructions':>22} {'allocations':>16} {'bytes':>18}"], False
     for name, before in kept.items():
         cells = []

@@ -1,4 +1,4 @@
-"""That what costs more is marked, and what costs less is not."""
+"""Higher costs are marked, lower ones are not."""
 
 import unittest
 

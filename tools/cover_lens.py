@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Copies an EuRoC recording with its lenses covered for a while: in these gaps all images are black.
+"""Copies an EuRoC recording with covered lenses: all images in the given gaps are black.
 
 Usage: cover_lens.py RECORDING COPY FROM:TO [FROM:TO ...]      seconds from the first frame
 
-Everything but the black images is linked to the recording, which stays as it is. Exit code: 0 done, 1 not possible.
+All other files are links to the recording, which stays unchanged. Exit code: 0 done, 1 not possible.
 """
 import csv
 import os
@@ -33,7 +33,7 @@ def link_all(source: pathlib.Path, target: pathlib.Path) -> None:
 
 
 def cover(camera: pathlib.Path, copy: pathlib.Path, gaps: list[tuple[float, float]]) -> int:
-    """The covered camera in place of the linked one; how many images are black."""
+    """Replaces the linked camera by the covered one. Returns the number of black images."""
     copy.unlink()
     link_all(camera, copy)
     (copy / "data").unlink()

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Tells the scale of a KITTI sequence by means that share nothing with byre, beside byre's own and the truth's.
+"""Estimates the scale of a KITTI sequence independently of byre, and compares it with byre's and the truth's.
 
-From frame to frame: corners, followed left to right and forth in time by pyramidal Lucas-Kanade, both ways; depths by
-the baseline given; the motion from points and pixels (solvePnPRansac, refined). Lengths of steps are added up over each
-stretch of frames and compared with the truth's. Where both estimates differ alike from the truth, it is the baseline
-given or the truth that is off. Needs python3-opencv and python3-numpy.
+Per frame: corners are tracked from left to right and forward in time by pyramidal Lucas-Kanade with a backward check;
+depths follow from the given baseline, motion from points and pixels (solvePnPRansac, refined). Step lengths are summed
+over each range of frames and compared with the truth's. If both estimates deviate equally from the truth, the given
+baseline or the truth is wrong. Needs python3-opencv and python3-numpy.
 
 Usage: independent_scale.py SEQUENCE POSES TRAJECTORY FIRST:LAST...
        independent_scale.py kitti/sequences/00 kitti/poses/00.txt out.txt 17:38 17:27 27:38 46:59
-       TRAJECTORY is what `byre map SEQUENCE --trajectory` wrote
+       TRAJECTORY is the output of `byre map SEQUENCE --trajectory`
 """
 
 import argparse
@@ -34,7 +34,7 @@ class Sequence:
 
 
 def follow(first, second, points):
-    """Where the points of one image are in another, and which of them are found back again."""
+    """Positions of one image's points in another, and which of them pass the backward check."""
     there, found, _ = cv2.calcOpticalFlowPyrLK(first, second, points, None, **LUCAS_KANADE)
     back, found_back, _ = cv2.calcOpticalFlowPyrLK(second, first, there, None, **LUCAS_KANADE)
     is_back = np.linalg.norm((points - back)[:, 0], axis=1) < 0.1
@@ -42,7 +42,7 @@ def follow(first, second, points):
 
 
 def step_m(sequence, frame):
-    """Length of the camera's way from a frame to the next, by points that are near."""
+    """Distance of the camera from a frame to the next, estimated from near points."""
     left, right, later = sequence.image(0, frame), sequence.image(1, frame), sequence.image(0, frame + 1)
     corners = cv2.goodFeaturesToTrack(left, 3000, 0.005, 7)
     corners = cv2.cornerSubPix(left, corners, (3, 3), (-1, -1), (3, 30, 0.01))

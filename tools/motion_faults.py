@@ -12,7 +12,7 @@ byre simulate cowshed --motion. Each fault is made in a copy whose images are li
   wrong      trusted frames more than 0.2 m off (missions); limit 0
   worst m    largest error of a trusted frame, and of any frame (missions)
   jump mm    largest error of an odometry step from frame to frame
-  of bound   the same as a multiple of the odometry's own 95 % bound; limit 1
+  of bound   jump as a multiple of the odometry's own 95 % bound; limit 1
   RMSE mm    root mean square error of frames with a pose (missions), or ATE of the final trajectory (mapping)
   ratio      RMSE relative to a run without wheels and IMU; over frames with a pose in both runs (missions)
   warnings   warnings of the run about wheels, gyroscope or accelerometer
@@ -44,7 +44,7 @@ def rotation(quaternion_xyzw) -> np.ndarray:
 
 
 def product(a, b) -> np.ndarray:
-    """Quaternions as x, y, z, w."""
+    """Quaternion product; x, y, z, w."""
     vector = a[3] * b[:3] + b[3] * a[:3] + np.cross(a[:3], b[:3])
     return np.append(vector, a[3] * b[3] - a[:3] @ b[:3])
 
@@ -90,7 +90,7 @@ def scaled(factor):
 
 
 def mirrored(rows):
-    rows[:, [2, 6]] *= -1  # y, and the turn about z
+    rows[:, [2, 6]] *= -1  # y, and rotation about z
     return rows
 
 
@@ -202,7 +202,7 @@ def read_truth(recording: pathlib.Path):
 
 
 def true_steps(truth, times_ns):
-    """The true position at each time, and the body's axes, from the nearest sample."""
+    """True position and body axes at each time, from the nearest sample."""
     times, positions, quaternions = truth
     seconds, at = (times - times[0]) * 1e-9, (np.array(times_ns) - times[0]) * 1e-9
     interpolated = np.stack([np.interp(at, seconds, positions[:, axis]) for axis in range(3)], axis=1)
@@ -211,7 +211,7 @@ def true_steps(truth, times_ns):
 
 
 def odometry_jump(frames, truth):
-    """Largest error of a step of the odometry, metres, and the largest as a multiple of its 95 % bound."""
+    """Largest error of an odometry step, metres, and largest ratio to its 95 % bound."""
     kept = [(i, f) for i, f in enumerate(frames) if f.get("odometry")]
     if len(kept) < 2:
         return 0.0, 0.0
@@ -221,7 +221,7 @@ def odometry_jump(frames, truth):
         if kept[k][0] != kept[k - 1][0] + 1:
             continue
         before, after = kept[k - 1][1]["odometry"], kept[k][1]["odometry"]
-        if None in before["position_m"] + after["position_m"]:  # NaN has no JSON
+        if None in before["position_m"] + after["position_m"]:  # JSON null for NaN
             return float("inf"), float("inf")
         step = rotation(before["quaternion_xyzw"]).T @ (np.array(after["position_m"]) - before["position_m"])
         error = step - axes[k - 1].T @ (positions[k] - positions[k - 1])

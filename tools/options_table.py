@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the table of options into a page, as "byre map --print-options" tells them.
+"""Writes the output of "byre map --print-options" as a table into a page.
 
 Usage: options_table.py PROGRAM PAGE [--check]        PROGRAM is byre, PAGE docs/options.md
 
-The table stands between two lines of the page, BEGIN and END below. Exit code: 0 the page is as it should be, 1 it was
-not, and with --check it still is not, 2 the page has no such lines, or the program's options are not understood.
+The table is between the lines BEGIN and END (below) of the page. Exit code: 0 the page was up to date, 1 it was not and
+was updated unless --check is given, 2 the page has no such lines, or the program's output cannot be parsed.
 """
 import pathlib
 import re

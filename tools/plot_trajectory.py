@@ -3,8 +3,8 @@
 
     tools/plot_trajectory.py --estimate out.txt --truth data.csv --time-offset -0.0075 -o plot.svg
 
-Both files in TUM format, the truth also as EuRoC's state_groundtruth_estimate0/data.csv. Needs python3-numpy and
-python3-matplotlib. Errors are after a rigid alignment, as `byre evaluate` has them.
+Both files are in TUM format, the truth alternatively as EuRoC's state_groundtruth_estimate0/data.csv. Needs
+python3-numpy and python3-matplotlib. Errors are after rigid alignment, like those of `byre evaluate`.
 """
 import argparse
 import sys

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Prints the size of the product: lines of C++ without tests, and types per 1,000 of these lines.
 
-Usage: product_size.py [FOLDER]      the project's folder, the present one unless given
+Usage: product_size.py [FOLDER]      the project's folder, default: the current one
 
-Counted are .h and .cc files in include, src and python. Tests (*_test.cc), scenes and other helpers of tests
-(*_scene.h, *_matchers.h) are left out. A type is a class, struct or enum with a body.
+Counts .h and .cc files in include, src and python, except tests (*_test.cc) and their helpers (*_scene.h,
+*_matchers.h). A type is a class, struct or enum with a body.
 """
 import pathlib
 import re

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Copies an EuRoC recording with dirt on its lenses: blots behind which images are dim and blurred.
+"""Copies an EuRoC recording with dirt on its lenses: spots that dim and blur the image.
 
-Usage: soil_lens.py RECORDING COPY SHARE [SEED]     share of the image behind blots, such as 0.3
+Usage: soil_lens.py RECORDING COPY SHARE [SEED]     share of the image behind spots, such as 0.3
 
-The blots stay where they are for the whole recording, and are others on each camera. Everything but the images is
-linked to the recording, which stays as it is. Needs python3-numpy and python3-pil. Exit code: 0 done, 1 not possible.
+The spots are fixed during the recording, and differ between the cameras. All other files are links to the recording,
+which stays unchanged. Needs python3-numpy and python3-pil. Exit code: 0 done, 1 not possible.
 """
 import csv
 import pathlib
@@ -16,11 +16,11 @@ from PIL import Image, ImageFilter
 from cover_lens import link_all
 
 BLUR_PIXELS = 10
-GREY, TRANSPARENCY = 60.0, 0.25  # of dried mud
+GREY, TRANSPARENCY = 60.0, 0.25  # dried mud
 
 
 def blots(size: tuple[int, int], share: float, seed: int) -> numpy.ndarray:
-    """How much of each pixel is behind dirt, from 0 to 1, with soft edges."""
+    """Opacity of the dirt at each pixel, 0 to 1, with soft edges."""
     width, height = size
     random = numpy.random.default_rng(seed)
     rows, columns = numpy.mgrid[0:height, 0:width]
@@ -33,7 +33,7 @@ def blots(size: tuple[int, int], share: float, seed: int) -> numpy.ndarray:
 
 
 def soil(camera: pathlib.Path, copy: pathlib.Path, share: float, seed: int) -> int:
-    """The soiled camera in place of the linked one; how many images it has."""
+    """Replaces the linked camera by the soiled one. Returns its number of images."""
     copy.unlink()
     link_all(camera, copy)
     (copy / "data").unlink()

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Tells a mission that the robot is some metres from where it is, at many moments, and what comes of it.
+"""Starts a mission at many times with pose hints that are wrong by some metres, and reports the results.
 
     PYTHONPATH=build/release/python tools/wrong_hints.py MISSION MAP [--shifts -10 -5 5 10] [--frames 220] [--every 120]
 
-A line a start: the first pose and its error against the same mission without a hint, how many poses were wrong (off by
-more than 0.2 m), how many of them were trusted, and what happened.
+One line per start: first pose and its error relative to the same mission without a hint, number of wrong poses (error
+above 0.2 m), number of those trusted, and events.
 """
 import argparse
 

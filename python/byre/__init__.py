@@ -10,7 +10,7 @@
     slam.finish()
     slam.save("hall.byre")
 
-A robot hands over its own images: slam.process(time_ns, left, right), arrays of numpy.
+Robots pass their own images as numpy arrays: slam.process(time_ns, left, right).
 Poses are 4x4 matrices named a_from_b: point_in_a = a_from_b @ point_in_b. Metres, radians, nanoseconds.
 """
 from ._byre import (

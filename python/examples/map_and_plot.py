@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Maps a recording, tells how far the trajectory is from the truth where there is one, and plots it from above.
+"""Maps a recording, reports the trajectory error if there is ground truth, and plots the trajectory from above.
 
     map_and_plot.py MH_01_easy -o trajectory.svg [--map hall.byre]
 

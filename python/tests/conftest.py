@@ -1,4 +1,4 @@
-"""What tests of the package byre have in common."""
+"""Shared fixtures for tests of the package byre."""
 import os
 import subprocess
 

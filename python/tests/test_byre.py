@@ -1,4 +1,4 @@
-"""The package byre, on a small recording of a made-up room."""
+"""Tests of the package byre on a small rendered recording of a room."""
 import enum
 import gc
 import os
@@ -135,7 +135,7 @@ def test_colours_are_weighed_as_their_order_says(room, frames):
         slam = byre.Slam.mapping(calibration, REPEATABLE)
         for images in frames[:3]:
             colour = np.zeros((240, 376, 3), np.uint8)
-            colour[:, :, 2] = images.left  # red, or blue: three times as bright or dark
+            colour[:, :, 2] = images.left  # red or blue, which differ by a factor of three in brightness
             reports[order] = slam.process(images.time_ns, colour, images.right, format=order)
     assert (reports[byre.PixelFormat.bgr8].map_from_body != reports[byre.PixelFormat.rgb8].map_from_body).any()
 
@@ -315,7 +315,7 @@ def test_other_threads_run_while_a_map_is_finished(room, frames):
     slam.finish()
     after = time.monotonic()
     stop.set()
-    # A lock that is kept lets a thread go on once at most, when the call is over.
+    # With the GIL held, another thread would run at most once, after the call.
     assert sum(before < at < after - 0.002 for at in ticks) > 1
 
 

@@ -1,4 +1,4 @@
-"""The wheel of the package byre, installed by pip where nothing else of byre is."""
+"""Tests of the wheel, installed by pip without any other part of byre."""
 import base64
 import csv
 import email

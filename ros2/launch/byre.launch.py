@@ -1,8 +1,8 @@
-"""Starts `byre node` beside other nodes of ROS 2:
+"""Starts `byre node` together with other ROS 2 nodes:
 
     ros2 launch ros2/launch/byre.launch.py config:=robot.yaml [rviz:=true]
 
-byre needs no ROS, so this is a process and no package: it is found where the shell finds it.
+byre needs no ROS, so it is started as a process from the PATH, not from a ROS package.
 """
 import pathlib
 

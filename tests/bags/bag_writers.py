@@ -12,7 +12,7 @@ from tf2_msgs.msg import TFMessage
 
 
 class Cdr:
-    """Bytes of a message in ROS 2's encoding."""
+    """Serialiser for the ROS 2 message encoding (CDR)."""
 
     def __init__(self):
         self.bytes = bytearray(b"\x00\x01\x00\x00")
@@ -38,7 +38,7 @@ class Cdr:
 
 
 def cdr(message):
-    """The same message in ROS 2."""
+    """Converts a ROS 1 message to ROS 2 encoding."""
     out = Cdr()
     if isinstance(message, CompressedImage):
         out.header(message.header).text(message.format).blob(message.data)
@@ -119,7 +119,7 @@ def mcap_record(kind, content):
 
 
 def write_rosbag2_mcap(folder, messages):
-    """One chunk of lz4 for every twenty messages, no summary."""
+    """One lz4 chunk per twenty messages, no summary."""
     folder.mkdir()
     topics = topics_of(messages)
     head = b""

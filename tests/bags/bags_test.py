@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""byre on bags that others wrote, made of the recording MH_01_easy: what it gives must be what the folder gives.
+"""byre on bags written by other software from the recording MH_01_easy: results must equal those on the folder.
 
-Usage: bags_test.py BYRE        BYRE is the program; the recording is looked for below $BYRE_DATA, or in ../shared/data
-beside the project's folder. Exit code 77 where it or a writer of bags is missing.
+Usage: bags_test.py BYRE        BYRE is the program; the recording is searched below $BYRE_DATA, or ../shared/data
+next to the project's folder. Exit code 77 if it or a bag writer is missing.
 """
 import json
 import os

@@ -1,4 +1,4 @@
-"""An EuRoC recording as messages of ROS 1, for bags to be made of."""
+"""Converts an EuRoC recording to ROS 1 messages, from which bags are written."""
 import re
 import struct
 import zlib
@@ -29,7 +29,7 @@ class Camera:
 
 
 def rotation_of(matrix):
-    """x, y, z, w of a rotation whose w is not small, or which is turned until it is."""
+    """Quaternion x, y, z, w of a rotation matrix, computed from its largest component for stability."""
     r = matrix[:3, :3]
     squares = [1 + r[0, 0] - r[1, 1] - r[2, 2], 1 - r[0, 0] + r[1, 1] - r[2, 2],
                1 - r[0, 0] - r[1, 1] + r[2, 2], 1 + numpy.trace(r)]
@@ -43,7 +43,7 @@ def rotation_of(matrix):
 
 
 def camchain(cameras):
-    """Both cameras as Kalibr writes them."""
+    """Both cameras in Kalibr's format."""
     text = ""
     for i, camera in enumerate(cameras):
         text += f"cam{i}:\n  camera_model: pinhole\n  intrinsics: {camera.intrinsics}\n"
@@ -109,7 +109,7 @@ def info_message(camera, number):
 
 
 def messages_of(cameras, frames, raw):
-    """(topic, message, time in ns) of both cameras' first frames, recorded a little later than they were taken."""
+    """(topic, message, time in ns) of both cameras' first frames, with log times slightly after their stamps."""
     begin = cameras[0].images[0][0]
     mounts = [transform("base_link", f"cam{i}", camera.body_from_camera, rotation_of(camera.body_from_camera))
               for i, camera in enumerate(cameras)]

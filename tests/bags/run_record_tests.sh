@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Records a run in an MCAP file and has it read by the readers of those who made the format.
+# Records a run in an MCAP file and reads it with the reference implementation of the format.
 # Usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER
-# FOLDER holds the packages and the recording. Exit code 77: skipped, for lack of Node or the registry of its packages.
+# FOLDER is for packages and the recording. Exit code 77: skipped, because Node or its package registry is unavailable.
 set -euo pipefail
 
 byre=${1:?usage: run_record_tests.sh BYRE RENDER_ROOM FOLDER}
@@ -21,7 +21,7 @@ RECORD=record.mcap TRAJECTORY=causal.txt node --test record_test.mjs
 "$byre" map record.mcap --pace inline --quiet --trajectory again.txt >/dev/null
 [[ $(wc -l <again.txt) == $(wc -l <final.txt) ]] || { echo "the record gives another number of poses" >&2; exit 1; }
 
-# The same messages, written by others, give the same poses.
+# The same messages, rewritten by the reference implementation, must give the same poses.
 node rewrite_mcap.mjs record.mcap rewritten.mcap
 "$byre" bag info rewritten.mcap
 "$byre" map rewritten.mcap --pace inline --quiet --trajectory rewritten.txt >/dev/null

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Shows a small recording in a headless browser and tests what the viewer's page does.
+# Tests the viewer's page in a headless browser on a small recording.
 # Usage: run_browser_tests.sh BYRE RENDER_ROOM FOLDER
-# FOLDER holds the packages, the recording and the screenshots. Exit code 77: skipped, for lack of a browser, Node or
-# the registry of its packages.
+# FOLDER is for packages, recording and screenshots. Exit code 77: skipped, because a browser, Node or its package
+# registry is unavailable.
 set -euo pipefail
 
 byre=${1:?usage: run_browser_tests.sh BYRE RENDER_ROOM FOLDER}
@@ -20,5 +20,5 @@ fetch_packages "$source" "$folder" playwright-core
 rm -rf room
 "$render_room" room --frames 60 --rate 3 --laps 0.4 2>/dev/null # twenty seconds
 "$byre" map room -o room.byre --quiet >/dev/null
-"$byre" map room --end 12 -o part.byre --quiet >/dev/null # the rest of the way is new to it
+"$byre" map room --end 12 -o part.byre --quiet >/dev/null # the rest of the recording is outside this map
 BYRE=$byre BROWSER=$browser node --test --test-concurrency=1 viewer_test.mjs

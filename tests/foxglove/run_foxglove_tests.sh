@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Watches a run by the client of those who made Foxglove's protocol, and compares what it is sent with what is recorded.
+# Watches a run with the reference client of Foxglove's protocol, and compares the received messages with the recorded
+# ones.
 # Usage: run_foxglove_tests.sh BYRE RENDER_ROOM FOLDER
-# FOLDER holds the packages and the recording. Exit code 77: skipped, for lack of Node or the registry of its packages.
+# FOLDER is for packages and the recording. Exit code 77: skipped, because Node or its package registry is unavailable.
 set -euo pipefail
 
 byre=${1:?usage: run_foxglove_tests.sh BYRE RENDER_ROOM FOLDER}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that a shared library exports what its headers declare, all of it and nothing else.
+"""Checks that a shared library exports all that its headers declare, and nothing else.
 
 Usage: check_exports.py LIBRARY HEADERS      HEADERS is the folder include/byre
 Prints one line per fault. Exit code: 0 none, 1 faults found.
@@ -10,13 +10,13 @@ import re
 import subprocess
 import sys
 
-NOT_IN_IT = ("floor_plan.h", "recording.h")  # of the component data, which is static alone
+NOT_IN_IT = ("floor_plan.h", "recording.h")  # of the component data, which is static only
 FUNCTION = re.compile(r"(?!inline|template|constexpr|using)[A-Za-z][\w:<>, ]*?[ >&*](\w+)\(")
 TYPE = re.compile(r"(?:class|struct|enum class) (\w+)")
 
 
 def declared(folder: pathlib.Path) -> tuple[collections.Counter, set[str]]:
-    """How many functions of each name there are, and the types, those within types included."""
+    """Number of functions by name, and the types, including nested ones."""
     functions, types = collections.Counter(), set()
     for path in folder.glob("*.h"):
         text = re.sub(r"^(template <.*>)\n", r"\1 ", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
@@ -32,11 +32,11 @@ def exported_symbols(library: str) -> set[str]:
     listed = subprocess.run(["nm", "--dynamic", "--demangle", "--defined-only", library], check=True,
                             capture_output=True, text=True).stdout
     lines = [line.split(" ", 2) for line in listed.splitlines()]
-    return {re.sub(r"@@\S*$", "", symbol) for _, kind, symbol in lines if kind != "A"}  # A: the interface's version
+    return {re.sub(r"@@\S*$", "", symbol) for _, kind, symbol in lines if kind != "A"}  # A: version symbol
 
 
 def is_declared(symbol: str, functions: collections.Counter, types: set[str]) -> bool:
-    """Whether it is byre::function(...), byre::Type::member(...) or type information, with declared types alone."""
+    """Whether it is byre::function(...), byre::Type::member(...) or type information, with declared types only."""
     if found := re.match(r"(?:vtable|typeinfo|typeinfo name) for byre::(\w+)$", symbol):
         return found[1] in types
     own = re.match(r"byre::(\w+)(?:::([~\w]+|operator[^(]+))?(?:\[abi:\w+\])?\(", symbol)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs a built byre into a new folder, builds a project that finds it there and the examples, and runs them.
+# Installs a build into a new folder, builds a project and the examples against it, and runs them.
 # Usage: run_install_test.sh BUILD_DIR
 set -euo pipefail
 
@@ -33,7 +33,7 @@ grep -q "libbyre\.so\.0 => $prefix/" <(ldd "$work/shared/consumer") || fail "byr
 "$source_dir/tests/install/check_exports.py" "$(find "$prefix" -name libbyre.so)" "$prefix/include/byre" ||
   fail "exports are wrong"
 
-# The installed program uses what was installed with it.
+# The installed program must use the installed data.
 byre=$prefix/bin/byre
 [[ -x $byre ]] || { echo "no program was built: the examples are not run"; exit 0; }
 shown=$("$byre" vocabulary show)
@@ -45,7 +45,7 @@ for package in "$prefix"/lib/python3*/dist-packages/byre; do
   PYTHONPATH=${package%/byre} /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'
 done
 
-# The example in docs/floor_plan.md compiles against the installation.
+# The example in docs/floor_plan.md must compile against the installation.
 mkdir "$work/from_docs"
 sed -n '/^## From C++$/,$p' "$source_dir/docs/floor_plan.md" | sed -n '/^```cpp$/,/^```$/p' | sed '/^```/d' \
   >"$work/from_docs/floor_plan.cc"

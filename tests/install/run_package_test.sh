@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes packages of a built byre, installs them into a new folder with a package database of its own, uses what is there
-# as somebody does who has nothing else, and removes them.
-# Usage: run_package_test.sh BUILD_DIR       Exit code 77: skipped, as dpkg is not here
+# Builds packages, installs them into a new folder with a separate package database, uses them without the source tree,
+# and removes them.
+# Usage: run_package_test.sh BUILD_DIR       Exit code 77: skipped, because dpkg is missing
 set -euo pipefail
 
 build_dir=${1:?usage: run_package_test.sh BUILD_DIR}
@@ -16,7 +16,7 @@ packages=$work/packages
 
 fail() { echo "run_package_test.sh: $1" >&2; exit 1; }
 
-# Packages of the system are not in the folder's database, and scripts run outside of it.
+# The system's packages are not in this database, and maintainer scripts run outside the folder.
 dpkg_here() {
   dpkg --root="$root" --log=/dev/null --force-not-root --force-depends --force-script-chrootless "$@"
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Renders the recordings of missions that start all along a barn (start_case_test.cc) into $BYRE_BARNS, or into
-# ~/.cache/byre/barns: 1.5 GB, half an hour on two cores. Recordings that are complete are kept.
-# Usage: render_barns.sh        BYRE names the program (build/release/src/byre/cli/byre unless set)
+# Renders the recordings of start_case_test.cc into $BYRE_BARNS, or into ~/.cache/byre/barns: 1.5 GB, half an hour on
+# two cores. Complete recordings are reused.
+# Usage: render_barns.sh        BYRE: path of the program (default: build/release/src/byre/cli/byre)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 byre=${BYRE:-build/release/src/byre/cli/byre}

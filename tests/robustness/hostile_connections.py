@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Does to a viewer what must not disturb the run it shows, and tells how it took it.
+"""Stress-tests a viewer with hostile connections, which must not disturb the run.
 
 Usage: hostile_connections.py URL [--connections N] [--seconds S] [--per-second N]
 
-URL is one that byre tells, token included. N connections at a time, in equal parts, wait without a word; send a request
-that never ends, a byte now and then; send garbage; ask with a wrong token; come and go. Where the viewer ends one,
-another takes its place, no more than so many a second. Twice a second somebody who knows the token asks for /scene.
-Prints one line of JSON: connections made and ended by the viewer, and how long whoever knew the token waited.
+URL is printed by byre and includes the token. N simultaneous connections, in equal parts, send nothing; send an endless
+request, one byte at a time; send garbage; use a wrong token; connect and disconnect. Connections closed by the viewer
+are replaced, at a limited rate per second. Twice a second a client with the right token requests /scene. Prints one line
+of JSON: connections made and closed by the viewer, and waiting times of the client with the token.
 """
 import argparse
 import itertools
@@ -32,7 +32,7 @@ def send(connection: socket.socket, data: bytes) -> None:
     try:
         connection.send(data)
     except OSError:
-        pass  # not connected yet, or no longer
+        pass  # not connected
 
 
 def is_over(connection: socket.socket) -> bool:
@@ -47,7 +47,7 @@ def is_over(connection: socket.socket) -> bool:
 
 
 def ask(address: tuple[str, int], token: str) -> float:
-    """Seconds until somebody who knows the token has the first bytes of an answer; infinite without one."""
+    """Seconds until a client with the right token receives the first bytes of an answer; infinite without one."""
     start = time.monotonic()
     try:
         with socket.create_connection(address, timeout=10) as connection:
@@ -62,7 +62,7 @@ class Crowd:
     def __init__(self, address: tuple[str, int], size: int, per_second: float) -> None:
         self.address, self.size, self.per_second = address, size, per_second
         self.kinds = itertools.cycle(FIRST_BYTES)
-        self.members: list[tuple[str, socket.socket, bool]] = []  # whether the first bytes are sent
+        self.members: list[tuple[str, socket.socket, bool]] = []  # kind, socket, first bytes sent
         self.made = self.ended = 0
         self.allowance = 0.0
 
@@ -91,7 +91,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--per-second", type=float, default=300.0)
     options = parser.parse_args()
-    os.nice(19)  # what is measured is the viewer, not who takes the processor first
+    os.nice(19)  # leaves the processor to the viewer, which is measured
     url = urllib.parse.urlsplit(options.url)
     address = (url.hostname, url.port)
     token = urllib.parse.parse_qs(url.query).get("token", [""])[0]

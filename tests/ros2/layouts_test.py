@@ -1,6 +1,6 @@
-"""The layouts for RViz and Foxglove name topics that a node with default settings has.
+"""Checks that the layouts for RViz and Foxglove use topics of a node with default settings.
 
-Usage: layouts_test.py BYRE FOLDER      the program, and the folder ros2 of the source
+Usage: layouts_test.py BYRE FOLDER      BYRE: the program; FOLDER: the source folder ros2
 """
 import json
 import pathlib
@@ -10,7 +10,7 @@ import sys
 import unittest
 
 BYRE, FOLDER = sys.argv[1], pathlib.Path(sys.argv[2])
-# Topics of the node that no setting names, and those of others that a layout may send to.
+# Topics of the node without a setting, and topics of other nodes that a layout may publish.
 BEYOND_SETTINGS = {"/tf", "/tf_static", "/diagnostics", "/goal_pose", "/clicked_point"}
 
 
