@@ -37,7 +37,6 @@ cv::Mat as_matrix(const Image& image) {
   return cv::Mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())).clone();
 }
 
-// Input of stereo matching.
 struct DetectedPair {
   Rig rig;
   Pyramid left;

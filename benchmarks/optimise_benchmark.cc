@@ -73,7 +73,6 @@ struct BundleSize {
   std::size_t views_per_point;
 };
 
-// Observations of each landmark.
 std::vector<std::vector<BundleObservation>> views_of_landmarks(const SimulatedMission& mission) {
   std::vector<std::vector<BundleObservation>> views(mission.landmarks_in_world.size());
   for (std::size_t frame = 0; frame < mission.frames.size(); ++frame) {
@@ -163,7 +162,7 @@ class Building {
  private:
   static constexpr double kPixelSigma = 0.8;
   static constexpr double kDisparitySigma = 0.4;
-  static constexpr double kOutliers = 0.03;  // share of outliers among the observations
+  static constexpr double kOutliers = 0.03;
 
   Pose true_camera_from_world(int pose) const {
     const double radius = poses_ / 3.0 / (2.0 * std::numbers::pi);

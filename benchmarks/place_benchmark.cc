@@ -26,7 +26,6 @@ void load_vocabulary(benchmark::State& state) {
 }
 BENCHMARK(load_vocabulary)->Unit(benchmark::kMillisecond);
 
-// Finds the words of one frame's features.
 void find_words(benchmark::State& state) {
   const Vocabulary vocabulary = default_vocabulary();
   std::mt19937_64 random(1);

@@ -15,7 +15,7 @@ constexpr double kAside = 2.5;       // metres from the centre line of a lane to
 constexpr double kReach = 10.0;      // metres ahead
 constexpr double kPixelSigma = 0.8;
 constexpr double kDisparitySigma = 0.4;
-constexpr double kOutliers = 0.03;  // share of outliers among the observations
+constexpr double kOutliers = 0.03;
 
 std::pair<int, int> cell_of(const Eigen::Vector3d& place) {
   return {static_cast<int>(std::floor(place.x() / kReach)), static_cast<int>(std::floor(place.z() / kReach))};

@@ -156,7 +156,7 @@ StoredMap tiled_map(const StoredMap& one, int keyframes, const Vocabulary& vocab
 }
 
 Map driven_field(int keyframes) {
-  constexpr int kLane = 120;         // keyframes per lane
+  constexpr int kLane = 120;
   constexpr double kStep = 0.5;      // metres between keyframes
   constexpr double kBetween = 3.0;   // metres between lanes
   constexpr double kUneven = 0.005;  // metres of unevenness

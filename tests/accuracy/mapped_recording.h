@@ -24,7 +24,6 @@ struct MappedRecording {
 MappedRecording map_recording(const std::filesystem::path& folder, const FrameRange& range,
                               std::unique_ptr<Executor> executor, const OpenOptions& options = {});
 
-// Number of frames without a final pose.
 int frames_without_pose(const MappedRecording& mapped);
 
 // RMSE of positions after rigid alignment, metres; infinite when alignment is impossible.

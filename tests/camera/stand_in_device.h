@@ -13,22 +13,21 @@
 
 namespace byre::stand_in {
 
-// A made-up camera that plays a EuRoC recording, as the environment says:
+// A simulated camera that plays a EuRoC recording, configured by environment variables:
 //   BYRE_STAND_IN_RECORDING   its folder
-//   BYRE_STAND_IN_FRAMES      FIRST:COUNT, all unless given
-//   BYRE_STAND_IN_SPEED       how many times faster than recorded; 0: a frame whenever there is a buffer for it
-//   BYRE_STAND_IN_FORMAT      GREY (unless given), YUYV or MJPG
-//   BYRE_STAND_IN_STAMPS      recorded (unless given), or monotonic: those of the kernel's clock
-//   BYRE_STAND_IN_LOSE        DEVICE:FRAME,...: frames that its driver loses
-//   BYRE_STAND_IN_DAMAGE      DEVICE:FRAME,...: frames that its driver calls damaged
-//   BYRE_STAND_IN_SKEW        DEVICE:MICROSECONDS,...: added to its stamps
-//   BYRE_STAND_IN_UNPLUG      DEVICE:FRAME:MILLISECONDS: before that frame it is unplugged for so long
-// DEVICE is left, right or both: /dev/video-stand-in-left and so on; both gives the images side by side.
+//   BYRE_STAND_IN_FRAMES      FIRST:COUNT; default: all
+//   BYRE_STAND_IN_SPEED       playback speed relative to the recording; 0: a frame whenever a buffer is queued
+//   BYRE_STAND_IN_FORMAT      GREY (default), YUYV or MJPG
+//   BYRE_STAND_IN_STAMPS      recorded (default), or monotonic: stamps of the kernel's clock
+//   BYRE_STAND_IN_LOSE        DEVICE:FRAME,...: frames that the driver loses
+//   BYRE_STAND_IN_DAMAGE      DEVICE:FRAME,...: frames that the driver flags as damaged
+//   BYRE_STAND_IN_SKEW        DEVICE:MICROSECONDS,...: added to the stamps
+//   BYRE_STAND_IN_UNPLUG      DEVICE:FRAME:MILLISECONDS: duration of an unplugging before that frame
+// DEVICE is left, right or both, as in /dev/video-stand-in-left; both gives side-by-side images.
 class Device {
  public:
   static constexpr std::size_t kBuffers = 8;
 
-  // The device at a path; nullptr if it is none.
   static Device* find(const std::string& path);
 
   explicit Device(const std::string& name);
@@ -48,7 +47,6 @@ class Device {
   void queue(std::uint32_t buffer) { advance(), queued_.push_back(buffer); }
   bool is_ready();
 
-  // A filled buffer.
   struct Filled {
     std::uint32_t buffer = 0;
     std::uint32_t sequence = 0;
@@ -65,7 +63,7 @@ class Device {
   using Clock = std::chrono::steady_clock;
   struct Frame {
     std::int64_t time_ns = 0;
-    std::string left, right;  // file names
+    std::string left, right;
   };
 
   Device stopped() const;

@@ -274,7 +274,6 @@ class Delay {
   std::deque<Image> waiting_;
 };
 
-// Changes the right image only.
 template <typename Change>
 ImageFrame change_right(const ImageFrame& images, Change change) {
   ImageFrame changed = images;

@@ -51,10 +51,10 @@ Degradation contrast_loss(double share);
 Degradation frozen(double sigma = 0.0);   // repeats the image of step 0 with fresh noise (sigma in grey values)
 Degradation right_exposed(double times);  // 0: dead
 Degradation right_noisy(double sigma);    // sigma in grey values
-Degradation right_late(int steps);        // delays the right image by a number of steps
-Degradation left_late(int steps);         // delays the left image by a number of steps
-Degradation swapped();                    // exchanges left and right image
-Degradation mirrored();                   // mirrors images horizontally
+Degradation right_late(int steps);
+Degradation left_late(int steps);
+Degradation swapped();   // exchanges left and right image
+Degradation mirrored();  // mirrors images horizontally
 Degradation upside_down();
 
 }  // namespace byre

@@ -11,10 +11,9 @@
 
 namespace byre {
 
-// Map given to a mission.
 struct MapChoice {
   MapRecipe recipe;
-  double share_deleted = 0.0;  // share of the map's points to delete
+  double share_deleted = 0.0;
   std::optional<Span> hole{};  // seconds of its recording removed from the map
   bool is_of_another_place = false;
   bool is_absent = false;  // plain SLAM; its frame is aligned to the truth by the first pose
@@ -28,7 +27,6 @@ struct Demand {
   std::optional<Doubt> doubt{};    // is reported within kMaxTimeToDoubt of the disturbance's begin
 };
 
-// A mission that tests the session's health.
 struct MissionCase {
   std::string name;
   RecordingName recording;
@@ -37,7 +35,7 @@ struct MissionCase {
   std::function<MissionPlan(const std::vector<Timestamp>& times)> plan;
   Demand demand{};
   std::optional<double> mapped_again_after{};  // seconds after which the robot is back in the mapped area
-  Imperfection imperfection{};                 // imperfection of the mission's camera
+  Imperfection imperfection{};
 };
 
 inline constexpr double kMaxWrongTrust = 0.5;   // seconds

@@ -10,7 +10,6 @@
 
 namespace byre {
 
-// One image pair for the robot.
 struct MissionStep {
   int frame = 0;                                         // frame number in the recording
   Timestamp time{};                                      // time stamp given to the robot

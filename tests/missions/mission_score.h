@@ -9,7 +9,6 @@
 
 namespace byre {
 
-// Report of a frame and the true pose.
 struct MissionFrame {
   FrameReport report;
   std::optional<Pose> true_world_from_body;  // empty outside the truth
@@ -19,8 +18,8 @@ struct MissionFrame {
 // offline map, which was aligned to the truth when it was made.
 struct MissionScore {
   int frames = 0;
-  double coverage = 0.0;                // share of frames with a pose, of any verdict
-  double trusted = 0.0;                 // share of trusted frames
+  double coverage = 0.0;  // share of frames with a pose, of any verdict
+  double trusted = 0.0;
   int wrongly_trusted = 0;              // trusted frames with an error above kMaxTrustedError
   double worst_trusted_error = 0.0;     // infinite for a trusted pose on the wrong map
   double longest_wrong_trust = 0.0;     // longest span of consecutive wrongly trusted poses, seconds

@@ -14,7 +14,7 @@ namespace {
 struct StartCase {
   std::string name;
   MapChoice map;
-  std::string mission;  // recording in the folder of barns
+  std::string mission;
   StartPlan plan{};
   OpenOptions open{.use_wheels = true, .use_gyroscope = true};
 };

@@ -28,7 +28,6 @@ Frames extract_all(Recording& recording, const Calibration& calibration, const I
   return frames;
 }
 
-// The frame with a covered lens.
 Frame covered(const Frame& frame) {
   Frame dark = frame;
   dark.features = std::make_shared<const Features>();

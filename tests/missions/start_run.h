@@ -15,10 +15,10 @@ namespace byre {
 
 // Missions on a map that start at regular times of a recording.
 struct StartPlan {
-  double every_s = 0.5;                                // seconds between starts
-  double length_s = 11.0;                              // duration of each mission, seconds
-  double from_s = 0.0;                                 // first start, seconds of the recording
-  double to_s = 1e9;                                   // last start
+  double every_s = 0.5;    // seconds between starts
+  double length_s = 11.0;  // duration of each mission, seconds
+  double from_s = 0.0;     // first start, seconds of the recording
+  double to_s = 1e9;
   std::optional<std::pair<double, double>> cover_s{};  // interval of black images, seconds after each start
 };
 
@@ -35,10 +35,10 @@ struct StartTotals {
   int starts = 0;
   int frames = 0;
   int with_pose = 0;
-  int trusted_right = 0;             // trusted frames with an error up to kMaxTrustedError
-  int trusted_wrong = 0;             // trusted frames with a larger error
-  int starts_wrong = 0;              // starts with such a frame
-  int found_late = 0;                // starts that are found late
+  int trusted_right = 0;  // trusted frames with an error up to kMaxTrustedError
+  int trusted_wrong = 0;  // trusted frames with a larger error
+  int starts_wrong = 0;   // starts with such a frame
+  int found_late = 0;
   double worst_trusted_error = 0.0;  // metres
 
   void add(const StartedMission& mission);

@@ -5,8 +5,8 @@ Usage: hostile_connections.py URL [--connections N] [--seconds S] [--per-second 
 
 URL is printed by byre and includes the token. N simultaneous connections, in equal parts, send nothing; send an endless
 request, one byte at a time; send garbage; use a wrong token; connect and disconnect. Connections closed by the viewer
-are replaced, at a limited rate per second. Twice a second a client with the right token requests /scene. Prints one line
-of JSON: connections made and closed by the viewer, and waiting times of the client with the token.
+are replaced, at a limited rate per second. Twice a second a client with the right token requests /scene. Prints one
+line of JSON: connections made and closed by the viewer, and waiting times of the client with the token.
 """
 import argparse
 import itertools

@@ -8,10 +8,9 @@
 
 namespace byre {
 
-// A damaged map file.
 struct Mutant {
   MapBytes bytes;
-  std::string damage;  // description of the damage
+  std::string damage;
   bool has_right_checksums = false;
 };
 

@@ -51,7 +51,6 @@ class FastPeer {
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
 };
 
-// Stores all messages of a topic.
 template <typename Message, typename Type>
 class Inbox : private eprosima::fastdds::dds::DataReaderListener {
  public:

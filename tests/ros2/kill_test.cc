@@ -19,7 +19,6 @@
 namespace byre::testing_ros2 {
 namespace {
 
-// When a node is killed.
 enum class Moment : std::uint8_t { writing, saving, loading, tracking };
 
 constexpr std::array kMoments = {Moment::writing, Moment::saving, Moment::loading, Moment::tracking};

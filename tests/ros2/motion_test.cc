@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFrameRate = 5.0;  // Hz
 constexpr int kFrames = 76;
-constexpr int kFirstDark = 70;  // first black image
+constexpr int kFirstDark = 70;
 constexpr int kWheelSamplesPerFrame = 4;
 
 // A base that drives three metres through the middle of the room, in bends to both sides.

@@ -41,7 +41,6 @@ class MqttBroker {
   pid_t process_ = -1;
 };
 
-// Receives messages of a broker's topics.
 class MqttListener {
  public:
   using Condition = std::function<bool(const nlohmann::json&)>;

@@ -44,7 +44,6 @@ bool settle(eprosima::fastdds::dds::DataWriter* writer, Message message) {
   return writer->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(20, 0)) == ReturnCode_t::RETCODE_OK;
 }
 
-// A free TCP port.
 int free_port();
 
 // A random domain, unlikely to be used by other tests on this machine.

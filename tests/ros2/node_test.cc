@@ -38,7 +38,6 @@ TEST_F(ByreNode, GivesEachFrameThePosesThatSlamGives) {
   EXPECT_TRUE(fs::exists(folder_ / "made.byre")) << "what was mapped is kept at the end";
 }
 
-// Compares the published pose of each frame.
 TEST_F(ByreNode, GivesEachFrameOfAMissionThePoseInTheMapThatSlamGives) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =
@@ -241,7 +240,6 @@ TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-// Processor time of a process, seconds.
 double processor_seconds(pid_t process) {
   std::ifstream file("/proc/" + std::to_string(process) + "/stat");
   std::string word;

@@ -81,9 +81,8 @@ class Watchdog {
   std::jthread reader_;
 };
 
-// Resource use of a process.
 struct Usage {
-  long resident_kb = 0;   // resident memory
+  long resident_kb = 0;
   long anonymous_kb = 0;  // without file-backed memory
   long descriptors = 0;
 };

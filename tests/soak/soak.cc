@@ -45,7 +45,6 @@ SourceRecording source() {
   return {"simulated", {camera, StereoPartner{camera, right_from_left}, Pose{}}, from_seconds(0.0), from_seconds(30.0)};
 }
 
-// A temporary folder; the destructor removes it.
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_(fs::temp_directory_path() / ("byre_soak." + std::to_string(getpid()))) {

@@ -9,7 +9,6 @@
 
 namespace byre {
 
-// One-sentence summary of the refinement.
 std::string describe_calibration(const RefinedCalibration& refined);
 
 // Row of a report on the calibration given to a run; empty if it was not refined. row_error: by CommonRowError; empty

@@ -41,7 +41,6 @@ std::string describe_alignment(const EvaluationReport& report) {
   return fmt::format("Sim(3) over all pairs (Umeyama), scale {:.6f}", report.ate->truth_from_estimate.scale);
 }
 
-// Empty without a caveat.
 std::string caveat_row(const EvaluationReport& report) {
   const PoseAlignment alignment = report.protocol.alignment;
   if (!is_nearly_a_line(report) || (alignment != PoseAlignment::se3 && alignment != PoseAlignment::sim3)) return "";

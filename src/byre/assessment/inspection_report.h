@@ -13,7 +13,6 @@ struct InspectedFile {
   std::vector<SectionSize> sections;
 };
 
-// The report as text and as JSON.
 std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 std::string to_json(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 

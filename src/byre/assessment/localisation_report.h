@@ -19,11 +19,10 @@ struct LocalisationErrors {
 LocalisationErrors errors_in_map(const LocaliseRun& run, const StoredMap& stored, const Trajectory& map_truth,
                                  const Trajectory& truth);
 
-// Protocol of a localisation run.
 struct LocaliseProtocol {
   std::string map;
-  std::string input;                          // recording, or number of images
-  int frames = 0;                             // number of input frames
+  std::string input;  // recording, or number of images
+  int frames = 0;
   std::optional<PlanRegistration> plan = {};  // registration of the map, for poses on the plan
 };
 

@@ -29,7 +29,7 @@ struct FrameCounts {
   int frames = 0;
   int with_pose = 0;
   int unreadable = 0;
-  int without_right_image = 0;  // readable frames without a right image
+  int without_right_image = 0;
   int with_depth_image = 0;
   int without_online_points = 0;  // frames that searched few or no online points to meet their deadline
   int with_left_alone = 0;        // frames that skipped their right image to meet their deadline
@@ -39,7 +39,7 @@ struct FrameCounts {
   int lost = 0;    // frames in lost episodes
   int resets = 0;  // maps abandoned for a new one
   int relocalisations = 0;
-  int loops = 0;                                 // loops found during the run
+  int loops = 0;
   int corrections = 0;                           // corrections of the whole map applied during the run
   std::optional<int> frames_to_first;            // frames before the first pose; empty without a pose
   std::map<TwoViewFailure, int> refused_starts;  // frames with which monocular initialisation failed, by reason

@@ -10,7 +10,6 @@
 
 namespace byre {
 
-// Result of a run of "byre run".
 struct MissionOutcome {
   MissionStatistics statistics;
   std::optional<MissionErrors> errors;  // only with truth

@@ -7,7 +7,7 @@ namespace byre {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-constexpr double kMostMissing = 0.05;  // largest share of missing frames
+constexpr double kMostMissing = 0.05;
 
 void count_verdict(const Health& health, MissionStatistics& statistics) {
   switch (health.verdict) {

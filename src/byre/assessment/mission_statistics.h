@@ -9,7 +9,6 @@
 
 namespace byre {
 
-// Keyframe count over a duration of the recording.
 struct KeyframeRate {
   int keyframes = 0;
   double minutes = 0.0;
@@ -17,7 +16,6 @@ struct KeyframeRate {
   double per_minute() const { return minutes > 0.0 ? keyframes / minutes : 0.0; }
 };
 
-// Statistics of a mission on a map.
 struct MissionStatistics {
   int frames = 0;
   int missing = 0;  // unreadable frames, not counted below

@@ -12,7 +12,6 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-// A frame at number seconds.
 MappedFrame frame_with(int number, Verdict verdict, Doubt doubt, int offline_inliers) {
   FrameReport report;
   report.time = from_seconds(number);

@@ -20,14 +20,14 @@ class RecordFile {
   void note(const RunView& view);              // call after each frame with readable images
   void note_unread(const MappedFrame& frame);  // call after each other frame
   void finish(const MapRun& run);
-  void require_written() const;  // throws if anything could not be written
+  void require_written() const;
 
  private:
   template <typename Write>
   void attempt(Write write);
 
   Warn warn_;
-  std::optional<RunRecord> record_;  // empty: not recording
+  std::optional<RunRecord> record_;
   std::optional<std::string> fault_;
 };
 

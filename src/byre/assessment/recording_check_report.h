@@ -13,7 +13,6 @@ namespace byre {
 // features for one camera, and if most images have none.
 std::string summary_of(const RecordingCheck& check);
 
-// Report rows, then the findings with remedies.
 std::string describe(const RecordingCheck& check, const std::vector<Finding>& findings);
 
 // {"source": "stamps", "clock_steps": [{"frame": 70, "by_s": -0.62}], "late": 0, "repeated": 0, "unstamped": 0}

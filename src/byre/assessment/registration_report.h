@@ -15,7 +15,6 @@ struct RegisterProtocol {
   std::optional<double> scaled_by;  // set if scale correction was requested; 1: no correction needed
 };
 
-// The report as text and as JSON.
 std::string to_text(const Registering& registering, const RegisterProtocol& protocol);
 std::string to_json(const Registering& registering, const RegisterProtocol& protocol);
 

@@ -17,7 +17,7 @@ nlohmann::ordered_json health_json(const Health& health);
 // Keys position_m, quaternion_xyzw and body_covariance (of a small motion in the body frame, row-major).
 nlohmann::ordered_json pose_json(const Pose& frame_from_body, const Matrix6& covariance);
 
-nlohmann::ordered_json position_json(const std::optional<Pose>& frame_from_body);  // null without a pose
+nlohmann::ordered_json position_json(const std::optional<Pose>& frame_from_body);
 
 // Pose of a map on a plan. Keys carry units; covariance row-major, see PlanRegistration.
 nlohmann::ordered_json registration_json(const PlanRegistration& registration);

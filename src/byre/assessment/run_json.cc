@@ -152,7 +152,6 @@ Json late_json(const MapRun& run) {
   return {{"frames", late.count}, {"max_ms", rounded_ms(late.max_ms)}};
 }
 
-// null without a deadline.
 Json deadline_json(const MapRun& run, double deadline_ms) {
   if (deadline_ms <= 0.0) return nullptr;
   const FrameCounts counts = count_frames(run.frames);

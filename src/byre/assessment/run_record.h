@@ -25,7 +25,7 @@ class RunRecord {
 
  private:
   McapWriter writer_;
-  RunMessages messages_;  // refers to writer_
+  RunMessages messages_;
   std::optional<Timestamp> flush_time_;
 };
 

@@ -180,7 +180,6 @@ std::string describe_offline(const MapProtocol& protocol) {
          (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
 }
 
-// Rows of a "byre map" report.
 std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
   std::string text = row("poses", describe_poses(counts));

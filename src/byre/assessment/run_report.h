@@ -20,9 +20,9 @@ struct MapProtocol {
   int frames_in_range = 0;
   TimeCorrections times;  // differences between frame times and recorded stamps
   EngineOptions options;
-  std::string extended;                  // map that the run extended; empty for none
-  std::vector<std::string> recordings;   // all recordings of the map
-  std::string offline;                   // offline map of a mission; empty for none
+  std::string extended;  // map that the run extended; empty for none
+  std::vector<std::string> recordings;
+  std::string offline;
   std::optional<PlanRegistration> plan;  // plan in whose frame poses are given; empty: the map's frame
   std::string program = "byre map";
   bool is_metric = true;  // false for a monocular map from scratch, in arbitrary units

@@ -100,7 +100,6 @@ Trajectory truth_during(const Trajectory& truth, const Recording& recording) {
   return part;
 }
 
-// A run and its cost.
 struct TimedRun {
   MapRun run;
   CostMeasures cost;

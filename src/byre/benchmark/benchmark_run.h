@@ -34,7 +34,7 @@ struct MadeMap {
 struct BenchmarkRunResult {
   std::uint64_t seed = 0;
   RunMeasures measures;
-  std::vector<std::string> warnings;  // warnings about the recording
+  std::vector<std::string> warnings;
 };
 
 struct ArmResult {
@@ -43,12 +43,12 @@ struct ArmResult {
   std::vector<TracePoint> final_trace;   // final positions of the first run
   std::vector<TracePoint> causal_trace;  // causal positions of the first run
 
-  std::vector<RunMeasures> measures() const;  // one per run
+  std::vector<RunMeasures> measures() const;
 };
 
 struct CaseResult {
   BenchmarkCase what;
-  std::vector<ArmResult> arms;  // arms begun so far
+  std::vector<ArmResult> arms;
   RecordingFormat format = RecordingFormat::euroc;
   Trajectory truth;  // true poses during the recording
   CameraChoice camera = CameraChoice::stereo;
@@ -61,7 +61,7 @@ struct SkippedCase {
 
 struct BenchmarkResult {
   std::vector<MadeMap> maps;
-  std::vector<CaseResult> cases;  // cases begun so far
+  std::vector<CaseResult> cases;
   std::vector<SkippedCase> skipped;
   bool stopped = false;  // should_stop returned true; a run in progress was discarded
 };

@@ -12,7 +12,7 @@ namespace byre {
 
 // A polyline, in several pieces if it has gaps.
 struct ChartSeries {
-  std::string name;    // shown in the legend
+  std::string name;
   std::string colour;  // SVG colour: "#0072b2"
   double width = 1.6;  // pixels
   std::vector<std::vector<Eigen::Vector2d>> pieces;
@@ -46,7 +46,6 @@ struct Chart {
 // A stand-alone picture, 860 pixels wide, on a light background; axes with ticks, and a legend.
 std::string to_svg(const Chart& chart);
 
-// Several charts, one below the other.
 std::string to_svg(const std::vector<Chart>& charts);
 
 // Round values in a range, ascending: at least four, at most ten intervals. Precondition: least < most.

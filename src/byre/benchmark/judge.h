@@ -9,7 +9,6 @@
 
 namespace byre {
 
-// Truth that a run is evaluated against.
 struct RunTruth {
   const Trajectory& poses;          // true poses at the recording's times
   std::optional<MapAlignment> map;  // alignment of the run's offline map; empty without one
@@ -19,7 +18,6 @@ struct RunTruth {
 // All measures except memory and CPU time, which a MapRun does not contain.
 RunMeasures judge(const MapRun& run, const RunTruth& truth);
 
-// Position and error of a run at a time.
 struct TracePoint {
   Timestamp time{};
   Eigen::Vector3d position_in_truth;

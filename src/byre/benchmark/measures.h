@@ -25,7 +25,6 @@ struct TrajectoryMeasures {
   Figure rpe_metre_deg;
 };
 
-// Behaviour of a mission by its causal poses.
 struct BehaviourMeasures {
   Figure first_pose;             // seconds from the first frame to the first pose
   Figure losses;                 // number of tracking losses
@@ -68,15 +67,13 @@ std::span<const Measure<TrajectoryMeasures>> trajectory_measures();
 std::span<const Measure<BehaviourMeasures>> behaviour_measures();
 std::span<const Measure<CostMeasures>> cost_measures();
 
-// Summary of one figure over the runs that have it.
 struct RunSummary {
-  int runs = 0;  // runs that have the figure
+  int runs = 0;
   double mean = 0.0;
   double median = 0.0;  // mean of the middle two for an even number
   double worst = 0.0;
 };
 
-// Empty without figures.
 std::optional<RunSummary> summarise_runs(const std::vector<Figure>& figures, bool more_is_better);
 
 template <typename Measures>

@@ -16,7 +16,7 @@ namespace byre {
 // Mode of a run.
 //   no_map         plain SLAM: maps from scratch, with finishing
 //   localise_only  tracks on the offline map, maps nothing
-//   hybrid         tracks on the offline map and maps online beside it
+//   hybrid         tracks on the offline map and extends it by an online map
 enum class Arm : std::uint8_t { no_map, localise_only, hybrid };
 
 std::string_view name_of(Arm arm);  // as in a protocol
@@ -55,8 +55,8 @@ struct BenchmarkProtocol {
   std::vector<BenchmarkCase> cases;
   std::vector<PublishedFigures> published;
 
-  const BenchmarkRecording& recording(const std::string& recording_name) const;  // precondition: it exists
-  std::uint64_t seed_of_run(int run) const;                                      // run counts from 0
+  const BenchmarkRecording& recording(const std::string& recording_name) const;
+  std::uint64_t seed_of_run(int run) const;  // run counts from 0
 };
 
 // A protocol file, or the name of an installed one ("euroc"). Throws InputError if neither exists.

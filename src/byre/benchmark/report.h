@@ -8,12 +8,12 @@
 
 namespace byre {
 
-// Setting of a benchmark beside its protocol, needed to compare its figures with others.
+// Setting of a benchmark in addition to its protocol, needed to compare its figures with others.
 struct BenchmarkSetting {
   std::string protocol_file;
   std::string data;
   Pace pace = Pace::paced;
-  int cores = 0;                                                       // cores of the machine
+  int cores = 0;
   std::vector<std::pair<std::string, std::string>> changed_options{};  // names and values that differ from the defaults
 };
 

@@ -21,28 +21,26 @@ struct FrameStage {
 
 std::span<const FrameStage> frame_stages();  // in order; the last is the whole frame
 
-// Input of a speed measurement.
 struct SpeedCase {
   std::filesystem::path recording;
   FrameRange range;
   OpenOptions open;
   std::optional<std::filesystem::path> map;  // offline map of a mission; empty: plain SLAM
   EngineOptions engine;                      // with a vocabulary and without a map
-  int cores = 0;                             // cores of the machine
+  int cores = 0;
 };
 
-// Cost of one run.
 struct SpeedMeasures {
-  int frames = 0;  // processed frames
+  int frames = 0;
   int with_pose = 0;
-  int keyframes = 0;              // added keyframes
+  int keyframes = 0;
   int late = 0;                   // frames that missed their deadline, if there is one
   int without_online_points = 0;  // see FrameCounts, like the next
   int with_left_alone = 0;
-  std::vector<TimeSummary> stages;            // one per frame_stages()
-  TimeSummary jobs;                           // mapping jobs
-  std::optional<double> first_pose_seconds;   // wall time from opening recording and map to the first pose
-  double wall_seconds = 0.0;                  // total wall time
+  std::vector<TimeSummary> stages;  // one per frame_stages()
+  TimeSummary jobs;
+  std::optional<double> first_pose_seconds;  // wall time from opening recording and map to the first pose
+  double wall_seconds = 0.0;
   double cpu_seconds = 0.0;                   // in all threads, including decoding and finishing
   std::optional<std::uint64_t> instructions;  // in all threads, user space; empty if unavailable
   std::optional<double> peak_memory_mb;       // peak resident memory of the program; empty if unavailable

@@ -22,10 +22,10 @@ class YamlValue {
   std::string text() const;
   double number(double least, double most) const;
   int whole_number(int least, int most) const;
-  std::vector<YamlValue> entries() const;                        // entries of a list, not empty
-  std::vector<std::pair<YamlValue, YamlValue>> fields() const;   // names and values in file order
-  YamlValue operator[](const std::string& name) const;           // value of a required field
-  std::optional<YamlValue> find(const std::string& name) const;  // value of an optional field
+  std::vector<YamlValue> entries() const;                       // entries of a list, not empty
+  std::vector<std::pair<YamlValue, YamlValue>> fields() const;  // names and values in file order
+  YamlValue operator[](const std::string& name) const;          // value of a required field
+  std::optional<YamlValue> find(const std::string& name) const;
 
   // Throws InputError for a field not among names, or given twice.
   void require_fields(std::initializer_list<std::string_view> names) const;

@@ -30,7 +30,7 @@ constexpr int kStages = 6;
 struct KnownBarn {
   StoredMap stored;  // registered on the plan
   FloorPlan plan;
-  Trajectory path;  // path of the first visit in the map's frame
+  Trajectory path;
 };
 
 CowshedRecordingOptions visit_options(const DemoOptions& options, int mission) {

@@ -14,8 +14,8 @@ namespace byre {
 
 struct DemoOptions {
   std::filesystem::path output = "byre_demo";  // folder for page, recordings and results
-  std::uint64_t seed = 1;                      // seed of the barn
-  double duration_s = 50.0;                    // seconds of the first visit; the second is a quarter longer
+  std::uint64_t seed = 1;
+  double duration_s = 50.0;  // seconds of the first visit; the second is a quarter longer
   double frame_rate_hz = 8.0;
   int image_divisor = 1;                            // 1: 752 x 480 pixels
   std::optional<std::filesystem::path> vocabulary;  // empty: byre's own

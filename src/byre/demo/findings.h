@@ -10,7 +10,6 @@
 
 namespace byre {
 
-// One frame of a demonstrated run.
 struct DemoMoment {
   double time_s = 0.0;  // from the first frame
   bool has_pose = false;
@@ -36,7 +35,6 @@ struct TimeSpan {
   double end_s = 0.0;
 };
 
-// Results of a demonstration.
 struct DemoFindings {
   int map_frames = 0;  // frames of the first visit
   int map_keyframes = 0;

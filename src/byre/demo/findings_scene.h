@@ -4,7 +4,6 @@
 
 namespace byre {
 
-// Results of an arm over ten frames.
 inline DemoArm ten_frames(Arm arm) {
   DemoArm result{.arm = arm, .measures = {}, .close_share = 1.0, .moments = {}};
   for (int i = 0; i < 10; ++i) {

@@ -7,7 +7,6 @@
 
 namespace byre {
 
-// One cell of the comparison.
 struct DemoCell {
   std::string text;  // a dash if not applicable
   bool is_best = false;
@@ -24,7 +23,6 @@ std::vector<DemoRow> demo_table(const std::vector<DemoArm>& arms);
 // "Hybrid", as on the page.
 std::string shown_name(Arm arm);
 
-// The table for a terminal.
 std::string to_text(const std::vector<DemoRow>& rows, const std::vector<DemoArm>& arms);
 
 }  // namespace byre

@@ -15,7 +15,6 @@ class DemoTable : public testing::Test {
  protected:
   DemoArm& arm(Arm wanted) { return *std::ranges::find(arms, wanted, &DemoArm::arm); }
 
-  // The row whose measure begins with begin.
   DemoRow row(const std::string& begin) const {
     for (const DemoRow& row : demo_table(arms)) {
       if (row.measure.starts_with(begin)) return row;

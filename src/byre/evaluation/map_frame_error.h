@@ -6,7 +6,6 @@
 
 namespace byre {
 
-// Alignment of a map's frame to the truth.
 struct MapAlignment {
   Similarity truth_from_map;
   int poses = 0;                 // number of poses aligned; 0: the truth is assumed to be in the map's frame

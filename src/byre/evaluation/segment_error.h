@@ -11,7 +11,7 @@ struct SegmentError {
   double length = 0.0;       // metres; 0: all lengths together
   double translation = 0.0;  // relative to the length: 0.01 is one per cent
   double rotation = 0.0;     // degrees per metre
-  int count = 0;             // number of segments
+  int count = 0;
 };
 
 struct SegmentErrors {

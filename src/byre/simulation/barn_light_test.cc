@@ -17,7 +17,6 @@ QuadMesh floor_with_wall() {
   return mesh;
 }
 
-// A lamp low on the right side of the wall.
 BarnLight lamp_on_the_right() {
   return {.windows = {}, .lamps = {{{1.0f, 0.0f, 1.0f}, 2.0f}}, .ambient = 0.1f};
 }

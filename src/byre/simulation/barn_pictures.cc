@@ -113,7 +113,6 @@ TilingCanvas draw_boards(int board_width, float darkest, float brightest, Seeded
   return canvas;
 }
 
-// Stalks in all directions over a dark ground.
 TilingCanvas draw_stalks(int count, float longest, float darkest, float brightest, SeededDraws& draws) {
   TilingCanvas canvas(kFineSize, 0.0f);
   const Grain grain(kFineSize, draws);

@@ -7,14 +7,12 @@
 
 namespace byre {
 
-// Calibration error of one camera.
 struct CameraError {
   double focal = 0.0;                                // relative error of both focal lengths
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // principal point, pixels
   std::array<double, 4> distortion{};                // first coefficients of the lens model
 };
 
-// Calibration error of a stereo pair.
 struct CalibrationError {
   CameraError left;
   CameraError right;

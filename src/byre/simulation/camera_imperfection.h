@@ -16,10 +16,10 @@ struct CameraImperfection {
   double rolling_shutter_s = 0.0;  // readout time from the first row to the last; 0: global shutter
   double time_offset_s = 0.0;      // exposure delay of the right camera, seconds
   double lens_blur = 0.0;          // sigma in the corners of the left image, pixels; see lens_blur_of
-  double gain = 1.0;               // gain of the right camera relative to the left one
-  double offset = 0.0;             // grey values that the right camera adds
-  double vignetting = 0.35;        // share of the light lost in the corners
-  int jpeg_quality = 0;            // 1 to 100; 0: lossless
+  double gain = 1.0;
+  double offset = 0.0;       // grey values that the right camera adds
+  double vignetting = 0.35;  // share of the light lost in the corners
+  int jpeg_quality = 0;      // 1 to 100; 0: lossless
 };
 
 // exact: matches its calibration; good: calibrated with care; worn: years of use.

@@ -40,7 +40,6 @@ struct CowshedSize {
 };
 inline constexpr CowshedSize kCowshedSize;
 
-// Outline of a thing on the floor plan.
 struct PlanOutline {
   std::vector<Eigen::Vector2d> corners_in_world;
 };
@@ -54,7 +53,6 @@ struct NamedPoint {
 enum class ThingKind : std::uint8_t { bucket, wheelbarrow, pallet, broom, bale, crate };
 inline constexpr int kThingKinds = 6;
 
-// A movable thing.
 struct MovableThing {
   ThingKind kind = ThingKind::bucket;
   Eigen::Vector3f position;  // position of its foot in the world
@@ -76,7 +74,7 @@ struct Cowshed {
   QuadMesh still;
   BarnLight light;
   Air air;
-  std::vector<PlanOutline> outlines;  // outlines of static things
+  std::vector<PlanOutline> outlines;
   std::vector<NamedPoint> marks;
   std::vector<MovableThing> things;
   std::vector<Cow> cows;

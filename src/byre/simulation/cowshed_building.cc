@@ -22,7 +22,6 @@ const SurfaceLook kPlanks{.picture = BarnPicture::planks, .picture_width = 1.7f}
 const SurfaceLook kTimber{.picture = BarnPicture::timber, .picture_width = 1.3f};
 const SurfaceLook kRoof{.picture = BarnPicture::roof_sheet, .brightness = 1.1f, .picture_width = 2.6f};
 
-// A floor of slabs with different looks.
 void add_floor(Cowshed& barn, SeededDraws& draws) {
   constexpr float kSlab = 2.5f;  // metres along the alley
   const SurfaceLook dung{.picture = BarnPicture::dung, .picture_width = 1.9f};
@@ -136,7 +135,6 @@ void add_roof_bay(Cowshed& barn, float x, float side, float daylight, SeededDraw
                                 daylight});
 }
 
-// A beam of rectangular section between two points.
 void add_beam(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float half_width, float half_height,
               const SurfaceLook& look) {
   const Vector3f along = (to - from).normalized();

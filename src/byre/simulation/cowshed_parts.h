@@ -18,18 +18,17 @@ SurfaceLook varied(SurfaceLook look, SeededDraws& draws);
 void add_outline_of_box(Cowshed& barn, const Eigen::Isometry3f& world_from_box, const Eigen::Vector3f& half_size);
 
 void add_shell(Cowshed& barn, BarnTime time, std::uint64_t seed);  // floor, walls, roof, windows
-void add_gates(Cowshed& barn, BarnGate eastern);                   // gates in the gables
+void add_gates(Cowshed& barn, BarnGate eastern);
 void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed);  // feed store behind the eastern gable
 void add_frame(Cowshed& barn, std::uint64_t seed);                 // columns, trusses, purlins
-void add_fences(Cowshed& barn, std::uint64_t seed);                // fences between alley and cows
-void add_cubicles(Cowshed& barn, std::uint64_t seed);              // cubicles in which the cows lie
-void add_fittings(Cowshed& barn, std::uint64_t seed);              // signs, pipes, troughs, barrels
+void add_fences(Cowshed& barn, std::uint64_t seed);
+void add_cubicles(Cowshed& barn, std::uint64_t seed);
+void add_fittings(Cowshed& barn, std::uint64_t seed);  // signs, pipes, troughs, barrels
 // A tube lamp along x that hangs from the ceiling and is lit at dusk.
 void add_lamp(Cowshed& barn, const Eigen::Vector3f& middle, float ceiling, BarnTime time);
 void add_lamps(Cowshed& barn, BarnTime time);
 void add_feed(Cowshed& barn, const CowshedOptions& options);  // piles along the fence, different in each mission
 
-// Movable things of a mission, at their positions.
 std::vector<MovableThing> things_of(const CowshedOptions& options);
 void add_thing(QuadMesh& mesh, const MovableThing& thing);
 

@@ -15,7 +15,6 @@
 
 namespace byre {
 
-// Reduced light.
 struct NightOptions {
   double light = 1.0;       // share of the barn's light at day or dusk
   double headlight = 0.0;   // robot's lamp; 1: a wall 3 m ahead as bright as the lit alley at dusk
@@ -49,7 +48,7 @@ class CowshedRecording {
   explicit CowshedRecording(const CowshedRecordingOptions& options);
   ~CowshedRecording();
 
-  const Calibration& calibration() const;       // true calibration of the cameras
+  const Calibration& calibration() const;
   const Calibration& told_calibration() const;  // calibration written to the recording, with the error of the options
   const Cowshed& barn() const;
   const std::vector<Timestamp>& times() const;
@@ -61,7 +60,7 @@ class CowshedRecording {
   Trajectory truth() const;
   Pose world_from_body(Timestamp time) const;
 
-  // Samples of wheels and gyroscope; empty when not recorded.
+  // Samples of wheels, gyroscope and accelerometer; empty when not recorded.
   std::optional<MotionSamples> motion() const;
 
   // Renders the next frame. Frames are sequential because automatic exposure depends on the previous one. Precondition:
@@ -95,8 +94,8 @@ class CowshedRecording {
   FeedingCourse course_;
   std::vector<Timestamp> times_;
   std::unique_ptr<const Scene> scene_;
-  Exposure exposure_;     // exposure of the next frame
-  std::size_t next_ = 0;  // index of the next frame
+  Exposure exposure_;
+  std::size_t next_ = 0;
 };
 
 // Renders a whole visit into a folder: an EuRoC recording, and plan/ with the floor plan and points for registration.

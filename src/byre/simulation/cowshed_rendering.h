@@ -7,7 +7,6 @@
 
 namespace byre {
 
-// Result of rendering a recording.
 struct Rendering {
   int frames = 0;  // stereo pairs
   double preparing_s = 0.0;

@@ -23,7 +23,7 @@ class EurocWriter {
   void write(const ImageFrame& frame) const;
 
  private:
-  std::filesystem::path mav_;  // constant after construction
+  std::filesystem::path mav_;
 };
 
 // Writes wheel, gyroscope and accelerometer samples into a recording: wheel.txt, and data.csv and sensor.yaml in

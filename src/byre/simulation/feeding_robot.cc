@@ -106,7 +106,7 @@ double FeedingCourse::wanted_speed(double along_half_lap, double straight) const
 
 // Distance travelled every kStep_s seconds on a lap with the given straights, metres.
 std::vector<double> FeedingCourse::drive(double straight) const {
-  constexpr double kStart_s = 2.5;  // time to reach the target speed
+  constexpr double kStart_s = 2.5;
   const double half_lap = straight + turn_length_;
   const double first = 2.0 * half_lap * options_.start;
   const auto steps = static_cast<int>(std::ceil(options_.duration_s / kStep_s));

@@ -25,7 +25,7 @@ struct FeedingCourseOptions {
   double far_x = 26.5;          // metres: largest x at which the outbound straight may end
   double latest_near_x = 22.0;  // metres: largest x at which it may begin; shorter laps end before far_x
   double lane_distance = 2.0;   // metres between outbound and return straight, of arcs
-  double max_straight = 18.0;   // metres; longer missions drive several laps
+  double max_straight = 18.0;   // longest straight, metres; longer missions drive several laps
   double cruise_speed = 0.75;   // metres per second
   double turn_speed = 0.5;      // metres per second
   double duration_s = 40.0;     // one lap plus a metre, or several
@@ -34,7 +34,6 @@ struct FeedingCourseOptions {
   std::uint64_t seed = 1;       // draws the vibration
 };
 
-// Body pose as a function of time.
 class FeedingCourse {
  public:
   explicit FeedingCourse(const FeedingCourseOptions& options);

@@ -9,7 +9,6 @@
 
 namespace byre {
 
-// Exposure time and gain of the sensor.
 struct Exposure {
   float time_s = 0.003f;
   float gain = 1.0f;
@@ -38,7 +37,6 @@ struct ImageSensorOptions {
   std::uint64_t seed = 1;
 };
 
-// A lens and a sensor: converts radiance to grey values.
 class ImageSensor {
  public:
   ImageSensor(const Camera& camera, const ImageSensorOptions& options);

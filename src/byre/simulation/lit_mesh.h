@@ -31,7 +31,7 @@ class LitMesh {
   const RayScene& rays() const { return rays_; }
   const Facet& facet(unsigned index) const { return facets_[index]; }
   const SurfaceLook& look(const Facet& facet) const { return looks_[facet.surface]; }
-  float mean_light() const { return mean_light_; }  // over all vertices
+  float mean_light() const { return mean_light_; }
 
  private:
   RayScene rays_;

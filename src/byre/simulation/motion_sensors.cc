@@ -21,7 +21,6 @@ double normal(SeededDraws& draws) {
   return radius * std::cos(2.0 * std::numbers::pi * static_cast<double>(draws.between(0.0f, 1.0f)));
 }
 
-// One wheel with its encoder.
 class Wheel {
  public:
   Wheel(double told_per_true, const MotionSensorOptions& options) : told_per_true_(told_per_true), options_(options) {}

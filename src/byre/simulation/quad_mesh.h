@@ -12,13 +12,12 @@
 
 namespace byre {
 
-// Appearance of a surface.
 struct SurfaceLook {
   BarnPicture picture = BarnPicture::concrete;
-  float brightness = 1.0f;                     // multiplies the picture's reflectance
-  float picture_width = 2.0f;                  // metres of surface per picture width
-  Eigen::Vector2f picture_offset{0.0f, 0.0f};  // in pictures
-  float glow = 0.0f;                           // radiance; a glowing surface shows neither picture nor light
+  float brightness = 1.0f;     // multiplies the picture's reflectance
+  float picture_width = 2.0f;  // metres of surface per picture width
+  Eigen::Vector2f picture_offset{0.0f, 0.0f};
+  float glow = 0.0f;  // radiance; a glowing surface shows neither picture nor light
 };
 
 // Surfaces of four-sided facets, in the world frame, metres.

@@ -34,7 +34,7 @@ class RayScene {
     void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
   };
   std::unique_ptr<RTCDeviceTy, Release> device_;
-  std::unique_ptr<RTCSceneTy, Release> scene_;  // constant after construction
+  std::unique_ptr<RTCSceneTy, Release> scene_;
 };
 
 }  // namespace byre

@@ -20,7 +20,6 @@ RenderedRoom room_with_noise(double sigma) {
   return RenderedRoom(options);
 }
 
-// A posed camera and its image.
 struct View {
   Camera camera;
   Pose world_from_camera;

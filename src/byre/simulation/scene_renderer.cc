@@ -42,7 +42,7 @@ float headlight_on(const Vector3f& ray, float depth, const Vector3f& normal, flo
 
 struct SceneRenderer::PlacedView {
   struct Placement {
-    Eigen::Matrix3f world_from_camera;  // rotation
+    Eigen::Matrix3f world_from_camera;
     Vector3f origin;
   };
 

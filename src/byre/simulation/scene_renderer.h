@@ -17,7 +17,6 @@ struct Air {
   float glow = 0.0f;  // radiance of the air itself
 };
 
-// Light of the scene at an instant.
 struct Illumination {
   float share = 1.0f;      // multiplies the scene's light and glow
   float headlight = 0.0f;  // lamp at the camera, straight ahead: radiance times square metres
@@ -33,7 +32,6 @@ struct SceneView {
   std::vector<Pose> world_from_camera_by_row{};
 };
 
-// One instant of an exposure.
 struct ExposureInstant {
   Eigen::Vector2f pixel_offset{0.0f, 0.0f};  // offset of all rays from the pixel centres
   bool smooth_edges = true;                  // additional rays at edges

@@ -34,7 +34,6 @@ SimulatedMission simulate(const SimulationOptions& options) {
   return simulate_mission(simulated_rig(robot_from_camera()), short_circle(), options);
 }
 
-// A feature and the true position of its landmark.
 struct Seen {
   Keypoint keypoint;
   Descriptor descriptor{};

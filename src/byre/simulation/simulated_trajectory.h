@@ -19,7 +19,6 @@ Pose robot_from_camera();
 Trajectory circling_trajectory(int frames, double frame_rate_hz, double radius_m, double laps,
                                const Pose& body_from_camera = {});
 
-// Turns left on the spot at the room's centre.
 Trajectory turning_in_place_trajectory(int frames, double frame_rate_hz, double turns,
                                        const Pose& body_from_camera = {});
 

@@ -9,7 +9,6 @@
 namespace byre {
 namespace {
 
-// A grid cell of a texture layer.
 struct Cell {
   std::int32_t column = 0;
   std::int32_t row = 0;

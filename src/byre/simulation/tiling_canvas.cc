@@ -7,7 +7,6 @@
 namespace byre {
 namespace {
 
-// Lattice values of one octave.
 std::vector<float> lattice_values(int cells_x, int cells_y, std::uint64_t seed) {
   SeededDraws draws(seed, static_cast<std::uint64_t>(cells_x) << 32 | static_cast<std::uint64_t>(cells_y));
   std::vector<float> values(static_cast<std::size_t>(cells_x) * static_cast<std::size_t>(cells_y));

@@ -19,8 +19,8 @@ class TilingCanvas {
   void fill(const std::function<float(int column, int row, float before)>& value);
 
   struct Stroke {
-    float x = 0.0f, y = 0.0f;  // start
-    float direction = 0.0f;    // radians
+    float x = 0.0f, y = 0.0f;
+    float direction = 0.0f;  // radians
     float length = 0.0f;
     float width = 1.0f;
     float reflectance = 0.0f;
