@@ -24,7 +24,7 @@ CellEvidence evidence_of_cell(double expected) {
 }
 
 constexpr double kMinExpected = 6.0;  // expected points from which a cell counts
-constexpr double kLeastSeen = 0.5;      // least seen points of an agreeing cell, mean of its frames
+constexpr double kLeastSeen = 0.5;    // least seen points of an agreeing cell, mean of its frames
 constexpr double kMinShare = 0.02;    // least share of seen points of an agreeing cell; chance gives a seventh of it
 
 // Prior: one find in ten is of a moved object.
