@@ -198,10 +198,10 @@ void add_frames(Table& table) {
 void add_motion(Table& table) {
   table.push_back(topic(
       "motion.wheels", [](auto& c) -> auto& { return c.wheels; },
-      "nav_msgs/Odometry by wheels alone, or their twists, docs/wheels.md; empty: none"));
+      "nav_msgs/Odometry by wheels alone, or their twists, docs/how-to/use_wheels_and_imu.md; empty: none"));
   table.push_back(topic(
       "motion.gyroscope", [](auto& c) -> auto& { return c.gyroscope; },
-      "sensor_msgs/Imu, docs/wheels.md; empty: none"));
+      "sensor_msgs/Imu, docs/how-to/use_wheels_and_imu.md; empty: none"));
 }
 
 void add_topics(Table& table) {

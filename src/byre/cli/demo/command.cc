@@ -34,7 +34,7 @@ constexpr const char* kDemoFooter = R"(Examples:
 Shows the main job on simulated input, in a few minutes: two visits of a robot to a cowshed are rendered, the first is
 mapped and its map laid on the floor plan, and the second is run on it in three ways. FOLDER gets index.html, one page
 that needs neither server nor network, and beside it the recordings, the map, the trajectories and both pictures.
-Ctrl-C leaves what is done until then, but no page. docs/demo.md explains what the page shows.)";
+Ctrl-C leaves what is done until then, but no page. docs/tutorials/demo.md explains what the page shows.)";
 
 void make_new_folder(const fs::path& folder) {
   make_folder(folder);

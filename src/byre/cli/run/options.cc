@@ -44,8 +44,8 @@ more. The run goes on until --duration is over, or Ctrl-C.
 With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C, or without a terminal for
 as long as --view-for says; docs/viewer.md says more.
 Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
-when no frame got a pose, more than one frame in twenty could not be read, or events could not be written. docs/mission.md
-describes the events and what health means.)";
+when no frame got a pose, more than one frame in twenty could not be read, or events could not be written.
+docs/reference/health_and_events.md describes the events and what health means.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
