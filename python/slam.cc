@@ -224,7 +224,7 @@ void bind_options(py::module_& module) {
             options.plan = file ? std::optional(read_drawn_floor_plan(*file)) : std::nullopt;
           },
           "The floor plan that the map of a mission lies on: its file is given, and the name of that is told.")
-      .def_property("settings", &settings_of, &set_settings, "Options of docs/options.md by name.");
+      .def_property("settings", &settings_of, &set_settings, "Options of docs/reference/options.md by name.");
 }
 
 using SlamClass = py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the output of "byre map --print-options" as a table into a page.
 
-Usage: options_table.py PROGRAM PAGE [--check]        PROGRAM is byre, PAGE docs/options.md
+Usage: options_table.py PROGRAM PAGE [--check]        PROGRAM is byre, PAGE docs/reference/options.md
 
 The table is between the lines BEGIN and END (below) of the page. Exit code: 0 the page was up to date, 1 it was not and
 was updated unless --check is given, 2 the page has no such lines, or the program's output cannot be parsed.

@@ -47,7 +47,7 @@ done
 
 # The example in docs/floor_plan.md must compile against the installation.
 mkdir "$work/from_docs"
-sed -n '/^## From C++$/,$p' "$source_dir/docs/floor_plan.md" | sed -n '/^```cpp$/,/^```$/p' | sed '/^```/d' \
+sed -n '/^## From C++$/,$p' "$source_dir/docs/reference/floor_plan.md" | sed -n '/^```cpp$/,/^```$/p' | sed '/^```/d' \
   >"$work/from_docs/floor_plan.cc"
 cat >"$work/from_docs/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.25)

@@ -126,7 +126,7 @@ void add_slam(Table& table) {
       "slam.save", [](auto& c) -> auto& { return c.save; },
       "file of what is mapped, written on the command save and at the end"));
   table.push_back(file(
-      "slam.options", [](auto& c) -> auto& { return c.options; }, "file of options, docs/options.md"));
+      "slam.options", [](auto& c) -> auto& { return c.options; }, "file of options, docs/reference/options.md"));
   table.push_back(file(
       "slam.vocabulary", [](auto& c) -> auto& { return c.vocabulary; },
       "visual vocabulary, instead of the one that comes with byre"));

@@ -61,8 +61,8 @@ go benchmark.md (the tables that are printed), benchmark.json, plots as SVG, the
 for "byre evaluate". Cases whose recordings are not there are skipped.
 With --speed one recording is run, at its own pace unless told otherwise, and the times of a frame's stages are printed,
 with CPU time, memory, and where the machine tells it instructions; with -o as speed.md and speed.json too.
-Ctrl-C keeps what was measured until then, then the exit code is 130. docs/benchmark.md explains the protocol and the
-figures.)";
+Ctrl-C keeps what was measured until then, then the exit code is 130. docs/reference/benchmark.md explains the protocol
+and the figures.)";
 
 // Writes the plots of the cases; returns Markdown that shows them.
 std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {

@@ -31,7 +31,7 @@ Of a map alone, its picture from above: points, keyframes, and the ways given by
 "byre run --stats" wrote, which tell how far each pose was to be trusted. Of a recording, which is run on --map as "byre
 run" does it, also what the camera saw with the map points found in it, and a video of both. --at is the moment of the
 camera picture, whose place and direction the plan picture shows. A plan is drawn below maps that "byre register" found
-on it. Exit code 1 when no frame of the recording could be read. docs/pictures.md explains the signs.)";
+on it. Exit code 1 when no frame of the recording could be read. docs/how-to/draw_pictures.md explains the signs.)";
 
 std::string extension_of(const fs::path& path) {
   std::string extension = path.extension().string();

@@ -30,7 +30,8 @@ constexpr const char* kNodeFooter = R"(Examples:
 
 A node of ROS 2 that needs no ROS: it speaks to others by Cyclone DDS. It heeds ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY,
 ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO, RMW_IMPLEMENTATION and CYCLONEDDS_URI, and goes on until
-it is stopped (Ctrl-C, SIGTERM), when it keeps what was mapped. docs/ros2.md tells its topics, frames and settings.
+it is stopped (Ctrl-C, SIGTERM), when it keeps what was mapped. docs/reference/ros2.md tells its topics, frames and
+settings.
 
 Exit codes: 0 stopped, or --check found nothing wrong, 1 failed at work, 3 settings or files that cannot be used.)";
 

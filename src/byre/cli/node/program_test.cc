@@ -17,7 +17,8 @@ class NodeProgram : public ProgramTest {};
 TEST_F(NodeProgram, ExplainsItself) {
   const Outcome help = run("node --help");
   EXPECT_EQ(help.exit_code, 0);
-  EXPECT_THAT(help.output, AllOf(HasSubstr("--print-config"), HasSubstr("ROS_DOMAIN_ID"), HasSubstr("docs/ros2.md")));
+  EXPECT_THAT(help.output,
+              AllOf(HasSubstr("--print-config"), HasSubstr("ROS_DOMAIN_ID"), HasSubstr("docs/reference/ros2.md")));
 }
 
 TEST_F(NodeProgram, PrintsSettingsThatItTakesBack) {

@@ -43,8 +43,8 @@ with a world file beside it. Which way is up, and how high the floor lies, comes
 pick is found when four or more are given, better six. A map without a metric scale gets one on the plan; of a metric
 map the plan tells whether its scale is right. A stereo map that is too large or too small has a baseline that is:
 --fix-scale mends both, where the plan is to scale. Doubts are told, and are no errors; but a map
-that is off its plan by more than half a metre is not written unless --accept-residual says so. docs/floor_plan.md describes the
-files and the figures.)";
+that is off its plan by more than half a metre is not written unless --accept-residual says so.
+docs/reference/floor_plan.md describes the files and the figures.)";
 
 MendedMap register_as_asked(const RegisterCommandOptions& options, const FloorPlan& plan) {
   StoredMap stored = load_map(options.map);

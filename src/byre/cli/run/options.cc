@@ -39,10 +39,10 @@ beside the map; with --frame plan poses in the map become poses on the floor pla
 Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
 frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
 that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
-With --live the newest frame of the cameras is taken, and --pace live holds unless told otherwise; docs/cameras.md says
-more. The run goes on until --duration is over, or Ctrl-C.
+With --live the newest frame of the cameras is taken, and --pace live holds unless told otherwise;
+docs/how-to/live_cameras.md says more. The run goes on until --duration is over, or Ctrl-C.
 With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C, or without a terminal for
-as long as --view-for says; docs/viewer.md says more.
+as long as --view-for says; docs/how-to/watch_in_browser.md says more.
 Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
 when no frame got a pose, more than one frame in twenty could not be read, or events could not be written.
 docs/reference/health_and_events.md describes the events and what health means.)";

@@ -52,7 +52,7 @@ FOLDER gets an EuRoC recording with exact truth (mav0), and a floor plan with po
 on it (plan). Where the calibration errs, sensor.yaml has the erring one, and true_sensor.yaml beside it what rendered
 the images. With --motion it gets what two driven wheels and a gyroscope told too (wheel.txt, mav0/imu0), with their
 errors. The same options give the same bytes, whatever the number of threads. Ctrl-C leaves nothing behind.
-docs/simulation.md describes both.)";
+docs/reference/simulation.md describes both.)";
 
 std::string to_text(const SimulateOptions& options, const Rendering& rendering) {
   return fmt::format("rendered     {} stereo pairs in {:.1f} s ({:.1f} a second), after {:.1f} s to build the barn\n",

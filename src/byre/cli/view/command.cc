@@ -37,7 +37,7 @@ constexpr const char* kViewFooter = R"(Examples:
 Shows a map in a browser, at the address that is told on the standard error stream, until Ctrl-C. With a floor plan,
 points are picked in the map and on the plan, and the page tells how well they fit; with -o it can save a copy of the
 map that knows its place on the plan, as "byre register" does it, and the picks beside it (barn-plan.picks.csv).
-docs/viewer.md describes the page.)";
+docs/how-to/watch_in_browser.md describes the page.)";
 
 std::vector<fs::path> outputs_of(const ViewCommandOptions& options) {
   if (!options.output) return {};
