@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Writes the output of "byre map --print-options" as a table into a page.
 
-Usage: options_table.py PROGRAM PAGE [--check]        PROGRAM is byre, PAGE docs/reference/options.md
+Usage: options_table.py PROGRAM PAGE [--node] [--check]        PROGRAM is byre, PAGE docs/reference/options.md
+                                                               --node: "byre node --print-config",
+                                                               PAGE docs/reference/ros2_settings.md
 
 The table is between the lines BEGIN and END (below) of the page. Exit code: 0 the page was up to date, 1 it was not and
 was updated unless --check is given, 2 the page has no such lines, or the program's output cannot be parsed.
@@ -25,9 +27,10 @@ class Option(NamedTuple):
     default: str
     meaning: str
 
-    def row(self) -> str:
+    def row(self, has_units: bool) -> str:
         accepted = self.range.replace("|", ", ")
-        return f"| `{self.name}` | {self.unit} | {self.default} | {accepted} | {self.meaning} |"
+        unit = f" {self.unit} |" if has_units else ""
+        return f"| `{self.name}` |{unit} {self.default} | {accepted} | {self.meaning} |"
 
 
 def options_in(text: str) -> Iterator[Option]:
@@ -44,10 +47,13 @@ def options_in(text: str) -> Iterator[Option]:
 
 
 def table_of(text: str) -> str:
-    rows = [option.row() for option in options_in(text)]
-    if not rows:
+    options = list(options_in(text))
+    if not options:
         raise ValueError("no options")
-    return "\n".join(["| option | unit | default | accepted | meaning |", "|---|---|---|---|---|", *rows])
+    has_units = any(option.unit for option in options)
+    head = ["option", *(["unit"] if has_units else []), "default", "accepted", "meaning"]
+    rows = [option.row(has_units) for option in options]
+    return "\n".join([f"| {' | '.join(head)} |", "|---" * len(head) + "|", *rows])
 
 
 def with_table(page: str, table: str) -> str:
@@ -59,11 +65,12 @@ def with_table(page: str, table: str) -> str:
 
 def main(arguments: list[str]) -> int:
     names = [argument for argument in arguments if not argument.startswith("-")]
-    if len(names) != 2 or any(argument not in (*names, "--check") for argument in arguments):
+    if len(names) != 2 or any(argument not in (*names, "--node", "--check") for argument in arguments):
         print(__doc__, file=sys.stderr)
         return 2
     program, path = names[0], pathlib.Path(names[1])
-    printed = subprocess.run([program, "map", "--print-options"], capture_output=True, text=True, check=True).stdout
+    command = ["node", "--print-config"] if "--node" in arguments else ["map", "--print-options"]
+    printed = subprocess.run([program, *command], capture_output=True, text=True, check=True).stdout
     page = path.read_text(encoding="utf-8")
     try:
         wanted = with_table(page, table_of(printed))
@@ -73,7 +80,8 @@ def main(arguments: list[str]) -> int:
     if page == wanted:
         return 0
     if "--check" in arguments:
-        print(f"{path}: the table is not up to date: run tools/options_table.py {program} {path}")
+        node = " --node" if "--node" in arguments else ""
+        print(f"{path}: the table is not up to date: run tools/options_table.py {program} {path}{node}")
     else:
         path.write_text(wanted, encoding="utf-8")
     return 1

@@ -8,6 +8,11 @@ import unittest
 
 TOOL = pathlib.Path(__file__).resolve().parent / "options_table.py"
 PROGRAM = """#!/bin/sh
+if [ "$1 $2" = "node --print-config" ]; then
+  echo 'images:'
+  echo '  right: ""  # images of the right camera; empty with one (topic or empty)'
+  exit
+fi
 echo 'pace: paced  # place of mapping (paced|live)'
 echo 'tracking:'
 echo '  radius_px: 12.5  # first search (pixels at octave 0, from 0.5 to 1000)'
@@ -21,6 +26,8 @@ More words.
 """
 ROWS = ["| `pace` |  | paced | paced, live | place of mapping |",
         "| `tracking.radius_px` | pixels at octave 0 | 12.5 | from 0.5 to 1000 | first search |"]
+
+SETTING = '| `images.right` | "" | topic or empty | images of the right camera; empty with one |'
 
 
 class OptionsTable(unittest.TestCase):
@@ -43,6 +50,13 @@ class OptionsTable(unittest.TestCase):
         self.assertEqual([line for line in lines if line.startswith("| `")], ROWS)
         self.assertEqual((lines[0], lines[-1]), ("Words.", "More words."))
         self.assertEqual(self.run_tool(), 0, "the page is as it should be")
+
+    def test_writes_the_settings_of_the_node(self):
+        self.assertEqual(self.run_tool("--node"), 1)
+        lines = [line for line in self.page.read_text().splitlines() if line.startswith("|")]
+        self.assertEqual(lines, ["| option | default | accepted | meaning |", "|---|---|---|---|", SETTING])
+        self.assertEqual(self.run_tool("--node", "--check"), 0)
+        self.assertEqual(self.run_tool("--check"), 1)
 
     def test_check_tells_and_writes_nothing(self):
         self.assertEqual(self.run_tool("--check"), 1)
