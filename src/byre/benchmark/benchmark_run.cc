@@ -127,7 +127,7 @@ class BenchmarkRunner {
     std::erase_if(cases, [this](const BenchmarkCase& candidate) { return skip_without_data(candidate); });
     if (cases.empty()) {
       throw InputError(options_.data.string(), "holds none of the recordings of " + protocol_.name,
-                       "name the folder in which they lie (--data), or get them: see docs/reference/benchmark.md");
+                       "name the folder in which they lie (--data), or get them: see docs/how-to/benchmark.md");
     }
     sources_ = open_sources(cases, protocol_, options_.data);
     for (const BenchmarkCase& benchmark_case : cases) run_case(benchmark_case);
