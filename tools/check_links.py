@@ -18,7 +18,7 @@ SKIPPED = {"build", "node_modules"}
 FENCE = re.compile(r" {0,3}(`{3,}|~{3,})(.*)")
 HEADING = re.compile(r" {0,3}(#{1,6})[ \t]+(.*?)[ \t]*#*[ \t]*$")
 UNDERLINE = re.compile(r" {0,3}(=+|-+)[ \t]*$")
-CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)")
+CODE = re.compile(r"(?<!`)(`+)(?!`).+?(?<!`)\1(?!`)", re.DOTALL)
 INLINE = re.compile(r"\]\(\s*(?:<([^<>]*)>|((?:[^\s()]|\([^\s()]*\))*))(?:\s+(?:\"[^\"]*\"|'[^']*'))?\s*\)")
 DEFINITION = re.compile(r" {0,3}\[(?!\^)[^\]]+\]:\s*(?:<([^<>]*)>|(\S+))")
 TAG = re.compile(r"<[a-z][^<>]*?\s(?:href|src)\s*=\s*[\"']([^\"']*)[\"']", re.IGNORECASE)
@@ -59,6 +59,18 @@ def prose_of(text: str) -> Iterator[tuple[int, str]]:
         yield number, line
 
 
+def without_code(lines: list[tuple[int, str]]) -> Iterator[tuple[int, str]]:
+    """The same lines without code spans, which may go on from line to line of a paragraph."""
+    paragraph: list[tuple[int, str]] = []
+    for number, line in [*lines, (0, "")]:
+        if line.strip():
+            paragraph.append((number, line))
+            continue
+        text = CODE.sub(lambda span: "\n" * span[0].count("\n"), "\n".join(line for _, line in paragraph))
+        yield from zip((number for number, _ in paragraph), text.split("\n"))
+        paragraph = []
+
+
 def slug_of(heading: str) -> str:
     """The anchor that GitHub gives a heading."""
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading)  # a link's text
@@ -70,7 +82,8 @@ def read_page(path: pathlib.Path) -> Page:
     links, anchors = [], set()
     counts: dict[str, int] = {}
     last = ""
-    for number, line in prose_of(path.read_text(encoding="utf-8")):
+    lines = list(prose_of(path.read_text(encoding="utf-8")))
+    for _, line in lines:
         heading = HEADING.match(line)
         title = heading[2] if heading else last if UNDERLINE.match(line) and last else None
         if title is not None:
@@ -79,7 +92,7 @@ def read_page(path: pathlib.Path) -> Page:
             counts[slug] = count + 1
             anchors.add(f"{slug}-{count}" if count else slug)
         last = "" if heading or line.lstrip().startswith(("|", "-", "*", ">")) else line.strip()
-        text = CODE.sub("", line)
+    for number, text in without_code(lines):
         anchors.update(TAG_ID.findall(text))
         found = [first or second for first, second in INLINE.findall(text)]
         if definition := DEFINITION.match(text):

@@ -52,6 +52,9 @@ class Files(CheckLinksTest):
     def test_finds_a_missing_file_with_page_and_line(self):
         self.assert_broken("Words.\n\n[a](none.md) and [b](https://example.org)\n", 3, "link 'none.md' names no file")
 
+    def test_finds_links_between_code_spans_that_go_on_in_the_next_line(self):
+        self.assert_broken("Write `a\nb` and [a](none.md) or `c`.\n\nAn odd ` does not reach\n\nthe `next` one.\n", 2)
+
     def test_resolves_links_by_the_folder_of_their_page(self):
         self.write("top.md")
         self.write("docs/page.md", "[up](../top.md) [wrong](top.md)")
@@ -73,7 +76,7 @@ class Files(CheckLinksTest):
         self.write("web/node_modules/page.md", "[a](none.md)")
         self.write(".hidden/page.md", "[a](none.md)")
         self.assert_sound("```sh\n[a](none.md)\n```\n`[a](none.md)` ``[b](none.md) ` ``\n~~~~\n~~~\n[a](none.md)\n~~~~\n"
-                          "<!-- [a](none.md)\n[b](none.md) -->\n[^1]: a footnote\n")
+                          "`a span\nof [a](none.md) two lines`\n\n<!-- [a](none.md)\n[b](none.md) -->\n[^1]: a footnote\n")
 
 
 class Anchors(CheckLinksTest):
