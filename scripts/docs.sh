@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Builds the site of docs/ in build/site, by mkdocs.yml. Needs mkdocs and installs nothing; uses no network.
-# Usage: docs.sh [--check]        --check fails if a link of the repository or a page of the navigation is broken, or if
-# a page of the site links to a file outside of docs/
+# Usage: docs.sh [--check]        --check fails if a link of the repository is broken or a page of the navigation missing
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
