@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the output of "byre map --print-options" as a table into a page.
+"""Writes a table into a page: the options of "byre map --print-options", or with --node the settings of the node.
 
 Usage: options_table.py PROGRAM PAGE [--node] [--check]        PROGRAM is byre, PAGE docs/reference/options.md
                                                                --node: "byre node --print-config",

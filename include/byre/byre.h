@@ -1,6 +1,6 @@
 #pragma once
 
-// The whole library. A robot's program needs byre/slam.h only; see docs/library.md.
+// The whole library. A robot's program needs byre/slam.h only; see docs/reference/library.md.
 
 #include "byre/alignment.h"
 #include "byre/body_motion.h"

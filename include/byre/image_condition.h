@@ -28,7 +28,8 @@ enum class ImageFault : std::uint8_t { none, dark, overexposed, flat, blurred };
 
 std::string_view to_string(ImageFault fault);
 
-// Thresholds beyond the distributions of images that are still tracked; docs/mission_tests.md has the distributions.
+// Thresholds beyond the distributions of images that are still tracked; docs/lab/mission_tests.md has the
+// distributions.
 struct ImageConditionOptions {
   float min_brightness = 8.0f;    // grey values
   float max_brightness = 247.0f;  // grey values

@@ -44,7 +44,7 @@ struct SlamOptions {
   std::string recording = "live";                     // name of this session in a saved map
   std::string site;                                   // place where the map was made, stored in it unless empty
   std::optional<std::filesystem::path> vocabulary{};  // empty: the vocabulary installed with byre
-  // Options of docs/options.md as pairs of name and value. They override the fields above.
+  // Options of docs/reference/options.md as pairs of name and value. They override the fields above.
   std::vector<std::pair<std::string, std::string>> settings{};
   // Floor plan on which the mission's map is registered (read_drawn_floor_plan). Places behind its walls are rejected.
   // Empty: no walls.

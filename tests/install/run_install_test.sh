@@ -45,7 +45,7 @@ for package in "$prefix"/lib/python3*/dist-packages/byre; do
   PYTHONPATH=${package%/byre} /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'
 done
 
-# The example in docs/floor_plan.md must compile against the installation.
+# The example in docs/reference/floor_plan.md must compile against the installation.
 mkdir "$work/from_docs"
 sed -n '/^## From C++$/,$p' "$source_dir/docs/reference/floor_plan.md" | sed -n '/^```cpp$/,/^```$/p' | sed '/^```/d' \
   >"$work/from_docs/floor_plan.cc"

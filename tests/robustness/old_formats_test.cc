@@ -34,7 +34,7 @@ std::string refusal_with(const char* section_name, std::size_t place, std::uint3
   return refusal_of(bytes);
 }
 
-// Offsets follow docs/map_format.md.
+// Offsets follow docs/reference/map_format.md.
 TEST(OldFormats, AreRefusedWithValuesThatNoMapHas) {
   constexpr std::uint32_t kHuge = 0xfffffff0;
   EXPECT_THAT(refusal_with("patches", 0, kHuge), HasSubstr("claims 4294967280 entries"));

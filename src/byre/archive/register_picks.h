@@ -13,9 +13,9 @@ struct PickOptions {
   double positions_scale = 1.0;               // current length over length at the time of picking positions
 };
 
-// Correspondences of a map and a plan from a table (CSV) with column names in its first line; docs/floor_plan.md lists
-// the columns. Throws InputError naming the line for a row without exactly one position on the plan and one in the map,
-// and for points, keyframes and pixels that do not exist in the map.
+// Correspondences of a map and a plan from a table (CSV) with column names in its first line;
+// docs/reference/floor_plan.md lists the columns. Throws InputError naming the line for a row without exactly one
+// position on the plan and one in the map, and for points, keyframes and pixels that do not exist in the map.
 std::vector<PlanCorrespondence> read_plan_correspondences(const std::filesystem::path& path, const FloorPlan& plan,
                                                           const StoredMap& stored, const PickOptions& options);
 

@@ -7,8 +7,8 @@
 
 namespace byre {
 
-// Writes JSON lines: one object per session event, state change and verdict change (docs/mission.md). The stream must
-// outlive it.
+// Writes JSON lines: one object per session event, state change and verdict change
+// (docs/reference/health_and_events.md). The stream must outlive it.
 class EventLog {
  public:
   explicit EventLog(std::ostream& stream) : stream_(stream) {}

@@ -11,7 +11,7 @@
 
 namespace byre {
 
-// Keys carry units (docs/mission.md).
+// Keys carry units (docs/reference/health_and_events.md).
 nlohmann::ordered_json health_json(const Health& health);
 
 // Keys position_m, quaternion_xyzw and body_covariance (of a small motion in the body frame, row-major).

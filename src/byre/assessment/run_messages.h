@@ -17,7 +17,7 @@ struct RunMessageOptions {
   bool is_watched = false;
 };
 
-// Publishes a run as ROS 2 messages (docs/bags.md), limited to the topics that the sink wants.
+// Publishes a run as ROS 2 messages (docs/reference/recordings.md), limited to the topics that the sink wants.
 class RunMessages {
  public:
   // Adds its topics to the sink, which must outlive it.

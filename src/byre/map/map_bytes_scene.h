@@ -14,7 +14,7 @@
 namespace byre {
 
 // Access to the bytes of a map file, for tests that damage them. Independent of byre's reader and writer, so that tests
-// detect changes of the format. See docs/map_format.md.
+// detect changes of the format. See docs/reference/map_format.md.
 
 using MapBytes = std::vector<std::byte>;
 

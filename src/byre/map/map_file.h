@@ -83,8 +83,8 @@ struct SectionSize {
   std::size_t bytes = 0;
 };
 
-// Format: docs/map_format.md. Equal maps give equal bytes, also after reading. Values are rounded far below their
-// noise. Throws InputError for a map with a damaged source. Preconditions: ids without gaps, and keyframes with
+// Format: docs/reference/map_format.md. Equal maps give equal bytes, also after reading. Values are rounded far below
+// their noise. Throws InputError for a map with a damaged source. Preconditions: ids without gaps, and keyframes with
 // existing rigs.
 std::vector<std::byte> write_map(const StoredMap& stored);
 

@@ -214,7 +214,7 @@ MapBytes bytes_of(T value) {
 
 constexpr std::uint32_t kHuge = 0xfffffff0;
 
-// Offsets follow docs/map_format.md; the scene's keyframes have 9 features each, 8 of them with a point.
+// Offsets follow docs/reference/map_format.md; the scene's keyframes have 9 features each, 8 of them with a point.
 const std::vector<BrokenValue>& broken_values() {
   static const std::vector<BrokenValue> all = {
       {"Summary", "summary", "does not tell what the other sections hold", 8, bytes_of(std::uint64_t{1})},

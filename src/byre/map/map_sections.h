@@ -12,8 +12,8 @@
 
 namespace byre {
 
-// Sections of a map file in their order (docs/map_format.md). Readers consume the whole section. They throw InputError
-// for invalid values and for bytes that no writer produces, so that reading and writing reproduces the file.
+// Sections of a map file in their order (docs/reference/map_format.md). Readers consume the whole section. They throw
+// InputError for invalid values and for bytes that no writer produces, so that reading and writing reproduces the file.
 
 using Keyframes = std::vector<const Keyframe*>;  // all keyframes of a map, by number
 Keyframes keyframes_of(const Map& map);

@@ -27,7 +27,8 @@
 
 namespace byre {
 
-// ROS 2 node that tracks images from topics, docs/ros2.md. One thread runs it; DDS and mapping have their own.
+// ROS 2 node that tracks images from topics, docs/reference/ros2.md. One thread runs it; DDS and mapping have their
+// own.
 class Node {
  public:
   // log: receives one line per event. Throws InputError for unusable files, and std::runtime_error for errors of DDS.

@@ -25,7 +25,7 @@ enum class NodeTask : std::uint8_t { mission, extend, map };
 //   camera  identity: the base frame is the camera frame, x right, y down, z forward
 enum class Mounting : std::uint8_t { file, tf, camera };
 
-// Interface to a fleet manager, docs/integration.md.
+// Interface to a fleet manager, docs/how-to/connect_a_fleet.md.
 struct FleetSettings {
   std::string host;  // MQTT broker; empty: disabled
   int port = 1883;
@@ -50,7 +50,7 @@ struct NodeConfig {
   NodeTask task = NodeTask::mission;
   std::optional<std::filesystem::path> map;         // offline map, or map to extend
   std::optional<std::filesystem::path> save;        // file for the new map, saved on request and at the end
-  std::optional<std::filesystem::path> options;     // docs/options.md
+  std::optional<std::filesystem::path> options;     // docs/reference/options.md
   std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   std::optional<std::filesystem::path> plan;        // floor plan to publish
   Workers workers = Workers::live;

@@ -25,7 +25,7 @@ struct Outcome {
   std::string answer{};
 };
 
-// Commands of a node as ROS services, docs/ros2.md.
+// Commands of a node as ROS services, docs/reference/ros2.md.
 class NodeServices {
  public:
   // log: receives requests in an unknown encoding.

@@ -7,8 +7,8 @@
 
 namespace byre {
 
-// Sets the options in a YAML file (docs/options.md); others are unchanged. Throws InputError with the line for an
-// unknown option or an invalid value.
+// Sets the options in a YAML file (docs/reference/options.md); others are unchanged. Throws InputError with the line
+// for an unknown option or an invalid value.
 void read_options(const std::filesystem::path& path, EngineOptions& options);
 
 // File for read_options with all options, their meanings, units and ranges.

@@ -25,8 +25,8 @@ struct MarkPick {
   Eigen::Vector2d point_in_plan;
 };
 
-// Picks of a barn's landmarks, in the frame of a map whose first frame has the given body pose (docs/conventions.md:
-// the world of a map).
+// Picks of a barn's landmarks, in the frame of a map whose first frame has the given body pose
+// (docs/explanation/conventions.md: the world of a map).
 std::vector<MarkPick> picks_of(const std::vector<NamedPoint>& marks, const Pose& world_from_first_body);
 
 // Observation of a landmark in a left image.
