@@ -10,8 +10,8 @@ namespace byre {
 class InputError : public std::runtime_error {
  public:
   // place: "file", "file:line" or "file: field"; remedy: advice to the user, may be empty. Control characters and
-  // invalid UTF-8 are escaped as \
-  // , \\t, \\r or \\xNN.
+  // invalid UTF-8 are escaped, as "\xNN" for
+  // example.
   InputError(std::string_view place, std::string_view reason, std::string_view remedy = {});
 
   const std::string& place() const { return place_; }
