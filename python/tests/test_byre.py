@@ -48,7 +48,7 @@ def test_recordings_are_lists_of_frames(room):
         recording[30]
     assert byre.Recording(room, camera=byre.CameraChoice.left)[0].right is None
     assert len(byre.Recording(room, start_s=1.0, end_s=2.0)) == 10
-    with pytest.raises(byre.InputError, match="is no bag"):
+    with pytest.raises(byre.InputError, match="is not a bag"):
         byre.Recording(room, left_topic="/left", right_topic="/right")
 
 
@@ -269,7 +269,7 @@ def test_calibrations_may_be_made_by_hand():
     assert pair == byre.Calibration(camera, camera, right_from_left) and pair != byre.Calibration(camera)
     with pytest.raises(ValueError, match="needs a model"):
         byre.Camera(640, 480, 400.0, 400.0, 319.5, 239.5, distortion=[0.1])
-    with pytest.raises(ValueError, match="belong together"):
+    with pytest.raises(ValueError, match="do not define pairs"):
         byre.Calibration(camera, camera)
     with pytest.raises(byre.InputError, match="right_from_left"):
         byre.Calibration(camera, camera, 2 * right_from_left)

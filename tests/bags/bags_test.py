@@ -104,7 +104,7 @@ class Bags(unittest.TestCase):
         cut.write_bytes((self.folder / "whole.bag").read_bytes()[:4_000_000])
         told = run("bag", "info", cut, expected=1)
         self.assertIn("DAMAGE", told)
-        self.assertIn("is cut or damaged from byte", told)
+        self.assertIn("is truncated or damaged from byte", told)
         checked = json.loads(run("check", cut, "--calibration", self.calibration, "--json"))
         self.assertGreaterEqual(checked["frames"], 4)
         self.assertLess(checked["frames"], 10)

@@ -38,12 +38,12 @@ std::string refusal_with(const char* section_name, std::size_t place, std::uint3
 TEST(OldFormats, AreRefusedWithValuesThatNoMapHas) {
   constexpr std::uint32_t kHuge = 0xfffffff0;
   EXPECT_THAT(refusal_with("patches", 0, kHuge), HasSubstr("claims 4294967280 entries"));
-  EXPECT_THAT(refusal_with("patches", 4 + 268, 0), HasSubstr("has features out of order"));
-  EXPECT_THAT(refusal_with("points", 4 + 128, kHuge), HasSubstr("names feature 4294967280"));
-  EXPECT_THAT(refusal_with("observations", 4 + 20, 0), HasSubstr("has features out of order"));
-  EXPECT_THAT(refusal_with("observations", 8, kHuge), HasSubstr("names point 4294967280 of"));
-  EXPECT_THAT(refusal_with("observations", 8 + 20, 0), HasSubstr("point 0 is seen twice by a keyframe"));
-  EXPECT_THAT(refusal_with("features", 4 + 16, 0x7fc00000), HasSubstr("keypoint without proper values"));
+  EXPECT_THAT(refusal_with("patches", 4 + 268, 0), HasSubstr("has unsorted features"));
+  EXPECT_THAT(refusal_with("points", 4 + 128, kHuge), HasSubstr("refers to feature 4294967280"));
+  EXPECT_THAT(refusal_with("observations", 4 + 20, 0), HasSubstr("has unsorted features"));
+  EXPECT_THAT(refusal_with("observations", 8, kHuge), HasSubstr("refers to point 4294967280 of"));
+  EXPECT_THAT(refusal_with("observations", 8 + 20, 0), HasSubstr("point 0 is observed twice by a keyframe"));
+  EXPECT_THAT(refusal_with("features", 4 + 16, 0x7fc00000), HasSubstr("keypoint with invalid values"));
 }
 
 TEST(OldFormats, FirstIsReadAndWrittenInTheNewest) {

@@ -138,7 +138,7 @@ TEST_F(ImportedMap, NamesTheCameraItDoesNotHave) {
     import(model_);
     FAIL() << "imported";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("model: camera 1: cameras of the model FOV"));
+    EXPECT_THAT(error.what(), HasSubstr("model: camera 1: camera model FOV"));
   }
 }
 

@@ -120,7 +120,7 @@ TEST_F(RegisterMap, MendsNoScaleThatThePicksDoNotTell) {
   EXPECT_THAT([&] { mend(stored, scene.correspondences(3)); },
               ThrowsMessage<InputError>(HasSubstr("does not tell the scale: fewer than four")));
   EXPECT_THAT([&] { mend(stored, scene.correspondences(8, 2.0)); },
-              ThrowsMessage<InputError>(HasSubstr("the correspondences do not agree")));
+              ThrowsMessage<InputError>(HasSubstr("the correspondences are inconsistent")));
 }
 
 TEST_F(RegisterMap, NeedsAMapThatTellsWhichWayIsUp) {

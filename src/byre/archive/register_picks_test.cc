@@ -147,7 +147,7 @@ TEST_F(RegisterPicks, AreRefusedWhereANumberIsNone) {
   EXPECT_THAT(refusal_of(columns + ",,,1,2,,1,2,\n"), HasSubstr("has no number as map_z_m"));
   EXPECT_THAT(refusal_of(columns + ",,,1,2,high,1,2,\n"), HasSubstr("has no number as map_z_m"));
   EXPECT_THAT(refusal_of(columns + "0,,,,,,1,2,-1\n"), HasSubstr("has a sigma_m that is not positive"));
-  EXPECT_THAT(refusal_of("map_x,plan_x_m\n"), HasSubstr("names a column \"map_x\""));
+  EXPECT_THAT(refusal_of("map_x,plan_x_m\n"), HasSubstr("contains the unknown column \"map_x\""));
 }
 
 }  // namespace

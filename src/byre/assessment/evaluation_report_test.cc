@@ -148,7 +148,7 @@ TEST(EvaluationReport, EstimatesTheFramesWhereNoneAreGiven) {
   Trajectory estimate = circle();
   estimate.resize(76);
   EXPECT_THAT(to_text(report_of(estimate, PoseAlignment::se3), "a", "b"),
-              HasSubstr("coverage     75.2 % (76 of 101 frames that fit into the truth's span"));
+              HasSubstr("coverage     75.2 % (76 of 101 frames expected from the time span of the truth"));
 }
 
 TEST(EvaluationReport, OfOnePoseSaysWhatCannotBeTold) {

@@ -26,8 +26,8 @@ TEST(InspectReport, IsReadable) {
   EXPECT_THAT(text, HasSubstr("file           12.3 MB, 2469.1 kB per keyframe\n"));
   EXPECT_THAT(text, HasSubstr("header 432 B, points 2.0 MB"));
   EXPECT_THAT(text, HasSubstr("faults         none\n"));
-  inspection.faults = {"point 3 is seen by no keyframe"};
-  EXPECT_THAT(to_text(stored, inspection, file), HasSubstr("fault          point 3 is seen by no keyframe\n"));
+  inspection.faults = {"point 3 is not observed by any keyframe"};
+  EXPECT_THAT(to_text(stored, inspection, file), HasSubstr("fault          point 3 is not observed by any keyframe\n"));
 }
 
 TEST(InspectReport, SaysWhichCamerasMadeTheMap) {

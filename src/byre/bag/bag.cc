@@ -51,12 +51,11 @@ class TemporaryFile {
   explicit TemporaryFile(const fs::path& bag) {
     const std::string ending = bag.stem().extension().string();
     const auto refuse = [&bag](const std::string& reason) {
-      throw InputError(bag.string(), "cannot be decompressed: " + reason,
-                       "set TMPDIR to a folder that exists and may be written to");
+      throw InputError(bag.string(), "cannot be decompressed: " + reason, "set TMPDIR to an existing, writable folder");
     };
     std::error_code error;
     const fs::path folder = fs::temp_directory_path(error);
-    if (error) refuse("TMPDIR names no folder");
+    if (error) refuse("TMPDIR is not a folder");
     std::string name = (folder / "byre-XXXXXX").string() + ending;
     const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
     if (descriptor < 0) refuse("a file in " + folder.string() + " cannot be created: " + std::strerror(errno));
@@ -105,8 +104,8 @@ std::unique_ptr<Bag> open_file(const fs::path& path, const std::string& place, c
                          kMcapMagic)) {
     return std::make_unique<McapBag>(std::move(source), place, wanted, limits);
   }
-  throw InputError(place, head.empty() ? "is empty" : "is no bag: neither MCAP nor sqlite3 nor a bag of ROS 1",
-                   "name a .mcap, .db3 or .bag file, or the folder of a rosbag2");
+  throw InputError(place, head.empty() ? "is empty" : "is not a bag in MCAP, sqlite3 or ROS 1 format",
+                   "give a .mcap, .db3 or .bag file, or the folder of a rosbag2 bag");
 }
 
 BagFile::BagFile(const fs::path& path, const TypeFilter& wanted, const BagLimits& limits)
@@ -120,7 +119,7 @@ BagFile::BagFile(const fs::path& path, const TypeFilter& wanted, const BagLimits
   }
   bag_ = open_file(decompressed_ ? decompressed_->path() : path, path.string(), wanted, limits);
   content_ = bag_->take_content();
-  if (is_cut) content_.damage.push_back(place_ + ": is cut or damaged: what comes before was read");
+  if (is_cut) content_.damage.push_back(place_ + ": is truncated or damaged: the part before the damage was read");
   std::size_t packed = 0;
   const std::size_t broken = std::erase_if(content_.messages, [&](BagMessage& message) {
     if (!is_zstd(message.head)) return false;
@@ -148,7 +147,7 @@ std::vector<std::byte> BagFile::read(const BagMessage& message) {
   Decompressed whole = decompress(Compression::zstd, bytes,
                                   std::min(kMostChunkBytes, kMostOfSmallMessage + limits_.ratio * bytes.size()));
   if (whole.is_whole) return std::move(whole.bytes);
-  throw InputError(place_, "a message cannot be decompressed", "the bag is damaged; leave that frame out");
+  throw InputError(place_, "a message cannot be decompressed", "the bag is damaged; exclude this frame");
 }
 
 // The files of a rosbag2 folder as one bag.
@@ -180,7 +179,8 @@ BagFolder::BagFolder(const fs::path& folder, const TypeFilter& wanted, const Bag
     }
   }
   if (files_.empty() && first_error) throw *first_error;
-  if (files_.empty()) throw InputError(folder.string(), "holds no bag", "look for its .mcap or .db3 files");
+  if (files_.empty())
+    throw InputError(folder.string(), "contains no bag", "give the folder with its .mcap or .db3 files");
   std::ranges::stable_sort(content_.messages, {}, &BagMessage::log_time);
 }
 

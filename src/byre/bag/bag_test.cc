@@ -137,7 +137,8 @@ TEST_F(BagFiles, MayBeCompressedAsAWhole) {
   BagBytes cut = compress_zstd(std::span(bytes).first(bytes.size() / 2));
   const BagBytes rest = compress_zstd(std::span(bytes).subspan(bytes.size() / 2));
   cut.insert(cut.end(), rest.begin(), rest.end() - 9);
-  EXPECT_THAT(damage_of(write("cut.mcap.zstd", cut)), testing::Contains(HasSubstr("cut.mcap.zstd: is cut or damaged")));
+  EXPECT_THAT(damage_of(write("cut.mcap.zstd", cut)),
+              testing::Contains(HasSubstr("cut.mcap.zstd: is truncated or damaged")));
 }
 
 TEST_F(BagFiles, AreNamedIfTheyCannotBeDecompressed) {
@@ -156,8 +157,8 @@ TEST_F(BagFiles, AreNamedIfTheyCannotBeDecompressed) {
     return reason;
   };
   EXPECT_EQ(refusal(folder_ / "absent"), whole.string() +
-                                             ": cannot be decompressed: TMPDIR names no folder (set TMPDIR to "
-                                             "a folder that exists and may be written to)");
+                                             ": cannot be decompressed: TMPDIR is not a folder (set TMPDIR to "
+                                             "an existing, writable folder)");
   EXPECT_EQ(refusal(folder_), "");
 }
 
@@ -182,7 +183,7 @@ TEST_F(BagFiles, RepeatedInMetadataAreReadOnce) {
   write("bag/metadata.yaml",
         "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.mcap, ./bag_0.mcap, bag_0.mcap, link.mcap]\n");
   expect_scene(folder_ / "bag", ros::Encoding::cdr, "mcap");
-  EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: has 3 repeated file names")));
+  EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: has 3 duplicate file names")));
 }
 
 TEST_F(BagFiles, AreNotDecompressedBeyondTheirBound) {
@@ -234,7 +235,7 @@ TEST_F(BagFiles, ThatAreNoneAreRefusedByName) {
       open_bag(write(name, std::string("hello, this is text")), every_type);
       FAIL() << name;
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(std::string(name) + ": is no bag"));
+      EXPECT_THAT(error.what(), HasSubstr(std::string(name) + ": is not a bag"));
     }
   }
   EXPECT_THROW(open_bag(folder_ / "absent.mcap", every_type), InputError);

@@ -28,7 +28,7 @@ FileSource::FileSource(const std::filesystem::path& path) : path_(path) {
   if (descriptor_ < 0 || fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
     const std::string reason = descriptor_ < 0 || !S_ISDIR(status.st_mode) ? std::strerror(errno) : "it is a folder";
     if (descriptor_ >= 0) close(descriptor_);
-    throw InputError(path.string(), "cannot be opened: " + reason, "check that the file exists and may be read");
+    throw InputError(path.string(), "cannot be opened: " + reason, "check that the file exists and is readable");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
@@ -44,8 +44,8 @@ void FileSource::read_directly(std::uint64_t begin, std::span<std::byte> piece) 
     if (count <= 0) {
       throw InputError(
           path_.string(),
-          count < 0 ? std::string("cannot be read: ") + std::strerror(errno) : "has become shorter while it was read",
-          "check the disk, and that nothing writes to the file");
+          count < 0 ? std::string("cannot be read: ") + std::strerror(errno) : "was truncated while being read",
+          "check the disk, and that no program writes to the file");
     }
     piece = piece.subspan(static_cast<std::size_t>(count));
     begin += static_cast<std::uint64_t>(count);

@@ -55,7 +55,7 @@ std::vector<std::byte> ChunkedBag::read(const BagMessage& message) {
     bytes.assign(found.begin(), found.end());
   }
   if (bytes.size() == place.size) return bytes;
-  throw InputError(place_, "a message cannot be read any more", "check the disk, and that nothing writes to the file");
+  throw InputError(place_, "a message can no longer be read", "check the disk, and that no program writes to the file");
 }
 
 std::size_t ChunkedBag::topic_number(const std::string& name, const std::string& type, const std::string& encoding) {
@@ -92,9 +92,9 @@ void ChunkedBag::add_broken(std::uint64_t record, const std::string& why) {
 
 void ChunkedBag::finish_scan() {
   if (left_out_ > 0) {
-    add_damage(std::to_string(left_out_) + " chunks were not read, because all chunks together become more than " +
+    add_damage(std::to_string(left_out_) + " chunks were not read: the chunks exceed " +
                std::to_string(most_decompressed_ >> 20) +
-               " MB when decompressed; if the bag is sound, have its recorder write it without compression");
+               " MB when decompressed; if the bag is intact, record without compression");
   }
   if (broken_ > 0) {
     add_damage(std::to_string(broken_) + (broken_ == 1 ? " record is damaged: " : " records are damaged: ") +
@@ -105,8 +105,8 @@ void ChunkedBag::finish_scan() {
 }
 
 std::string cut_at(std::uint64_t begin, std::uint64_t size) {
-  return "is cut or damaged from byte " + std::to_string(begin) + " of " + std::to_string(size) +
-         " on; what comes before was read";
+  return "is truncated or damaged from byte " + std::to_string(begin) + " of " + std::to_string(size) +
+         " on; the part before was read";
 }
 
 }  // namespace byre

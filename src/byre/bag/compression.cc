@@ -167,12 +167,12 @@ bool decompress_zstd_file(const std::filesystem::path& from, const std::filesyst
       left = left.subspan(step.taken);
       written += step.made;
       if (written > most) {
-        throw InputError(from.string(), "becomes more than " + std::to_string(most >> 20) + " MB when decompressed",
-                         "if the bag is sound, decompress it with \"zstd -d\" and name the result");
+        throw InputError(from.string(), "exceeds " + std::to_string(most >> 20) + " MB when decompressed",
+                         "if the bag is intact, decompress it with \"zstd -d\" and give the result");
       }
       if (!error && written > usable) {
-        throw InputError(from.string(), "needs more than the space that is free in " + to.parent_path().string(),
-                         "make space there, or set TMPDIR to another folder");
+        throw InputError(from.string(), "needs more than the free space in " + to.parent_path().string(),
+                         "free disk space there, or set TMPDIR to another folder");
       }
       output.append(std::span(made).first(step.made));
       is_sound = step.is_sound;
@@ -185,7 +185,7 @@ bool decompress_zstd_file(const std::filesystem::path& from, const std::filesyst
 } catch (const InputError& error) {
   if (error.place() != to.string()) throw;
   throw InputError(from.string(), "cannot be decompressed into " + to.string() + ": " + error.reason(),
-                   "make space there, or set TMPDIR to another folder");
+                   "free disk space there, or set TMPDIR to another folder");
 }
 
 }  // namespace byre

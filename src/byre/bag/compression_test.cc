@@ -96,7 +96,7 @@ TEST_F(CompressedFile, IsRefusedBeyondTheBound) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.place(), packed.string());
-    EXPECT_EQ(error.reason(), "becomes more than 4 MB when decompressed");
+    EXPECT_EQ(error.reason(), "exceeds 4 MB when decompressed");
   }
   EXPECT_TRUE(decompress_zstd_file(packed, folder_ / "file", bytes.size()));
 }

@@ -20,14 +20,15 @@ McapBag::McapBag(std::unique_ptr<ByteSource> source, std::string place, TypeFilt
     : ChunkedBag("mcap", std::move(source), std::move(place), std::move(wanted), limits) {
   const std::vector<std::byte> magic = read_piece(file(), 0, kMcapMagic.size());
   if (!std::ranges::equal(magic, kMcapMagic)) {
-    throw InputError(this->place(), "does not begin as MCAP files do", "use a copy, or record it again");
+    throw InputError(this->place(), "does not begin with the MCAP magic", "use a copy, or record again");
   }
   const std::uint64_t end = file().size();
   const std::uint64_t stop = scan({file(), kMcapMagic.size(), end});
   if (unknown_messages_ > 0) {
-    add_damage(std::to_string(unknown_messages_) + " messages are of channels that are not described");
+    add_damage(std::to_string(unknown_messages_) + " messages belong to undeclared channels");
   }
-  if (!is_closed_) add_damage(stop == end ? "was not closed: only the end of its data is missing" : cut_at(stop, end));
+  if (!is_closed_)
+    add_damage(stop == end ? "was not closed: only the end of the data section is missing" : cut_at(stop, end));
   finish_scan();
 }
 
@@ -106,7 +107,7 @@ void McapBag::take_chunk(std::uint64_t begin, std::uint64_t size) {
   const std::uint64_t record = begin - kMcapRecordHead;
   const Chunk chunk = chunk_of(begin, size);
   const CompressedPiece& piece = chunk.piece;
-  if (!chunk.is_known) return add_broken(record, "is compressed in a way that byre does not know");
+  if (!chunk.is_known) return add_broken(record, "has an unsupported compression");
   add_compression(piece.compression);
   if (piece.compression == Compression::none) {
     const std::uint64_t end = piece.begin + piece.size;
@@ -116,10 +117,10 @@ void McapBag::take_chunk(std::uint64_t begin, std::uint64_t size) {
   const std::optional<Decompressed> chunk_content = scan_piece(piece);
   if (!chunk_content) return;
   const bool is_matched = chunk.checksum == 0 || mcap_checksum(chunk_content->bytes) == chunk.checksum;
-  if (chunk_content->is_whole && !is_matched) return add_broken(record, "does not match its checksum");
+  if (chunk_content->is_whole && !is_matched) return add_broken(record, "has a wrong checksum");
   MemorySource source(chunk_content->bytes);
   const bool is_complete = scan({source, 0, source.size(), true, record}) == source.size();
-  if (!chunk_content->is_whole || !is_complete) add_broken(record, "cannot be decompressed to its end");
+  if (!chunk_content->is_whole || !is_complete) add_broken(record, "cannot be decompressed completely");
 }
 
 void McapBag::take_schema(std::span<const std::byte> bytes, std::uint64_t begin) {

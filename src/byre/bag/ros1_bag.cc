@@ -32,7 +32,7 @@ Fields fields_of(std::span<const std::byte> bytes, const std::string& place, std
   while (reader.remaining() > 0) {
     const std::string field = reader.read_text();
     const std::size_t equals = field.find('=');
-    if (equals == std::string::npos) reader.fail("a field of a header lacks its \"=\"");
+    if (equals == std::string::npos) reader.fail("a header field has no \"=\"");
     const std::span<const std::byte> value = std::as_bytes(std::span(field)).subspan(equals + 1);
     fields[field.substr(0, equals)] = {value.begin(), value.end()};
   }
@@ -65,13 +65,13 @@ Ros1Bag::Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilt
     : ChunkedBag("rosbag 2.0", std::move(source), std::move(place), std::move(wanted), limits) {
   const std::vector<std::byte> magic = read_piece(file(), 0, kMagic.size());
   if (!std::ranges::equal(magic, std::as_bytes(std::span(kMagic)))) {
-    throw InputError(this->place(), "does not begin as bags of ROS 1, version 2.0, do",
+    throw InputError(this->place(), "does not begin with the magic of ROS 1 bags, version 2.0",
                      "use a copy, or convert older versions with \"rosbag fix\"");
   }
   const std::uint64_t end = file().size();
   const std::uint64_t stop = scan({file(), kMagic.size(), end});
   if (unknown_messages_ > 0) {
-    add_damage(std::to_string(unknown_messages_) + " messages are of connections that are not described");
+    add_damage(std::to_string(unknown_messages_) + " messages belong to undeclared connections");
   }
   if (stop < end) add_damage(cut_at(stop, end));
   if (stop == end && !is_indexed_) add_damage("was not closed: it has no index");
@@ -148,7 +148,7 @@ void Ros1Bag::take_message(const Record& record, const Region& region) {
 
 void Ros1Bag::take_chunk(const Record& record, std::uint64_t begin) {
   const std::optional<Compression> compression = parse_compression(text(record.fields, "compression"));
-  if (!compression) return add_broken(begin, "is compressed in a way that byre does not know");
+  if (!compression) return add_broken(begin, "has an unsupported compression");
   add_compression(*compression);
   if (*compression == Compression::none) {
     const std::uint64_t end = record.data_begin + record.data_size;
@@ -160,12 +160,12 @@ void Ros1Bag::take_chunk(const Record& record, std::uint64_t begin) {
   if (!chunk) return;
   MemorySource source(chunk->bytes);
   const bool is_complete = scan({source, 0, source.size(), true, begin}) == source.size();
-  if (!chunk->is_whole || !is_complete) add_broken(begin, "cannot be decompressed to its end");
+  if (!chunk->is_whole || !is_complete) add_broken(begin, "cannot be decompressed completely");
 }
 
 CompressedPiece Ros1Bag::piece_at(std::uint64_t chunk) {
   const std::optional<Record> record = record_at({file(), 0, file().size()}, chunk);
-  if (!record) throw InputError(place(), "has changed while it was read", "see that nothing writes to the file");
+  if (!record) throw InputError(place(), "has changed while being read", "check that no program writes to the file");
   return {parse_compression(text(record->fields, "compression")).value_or(Compression::none), record->data_begin,
           record->data_size, number<std::uint32_t>(record->fields, "size").value_or(0)};
 }

@@ -53,7 +53,7 @@ Rosbag2Files files_named(const fs::path& metadata) {
   }
   if (repeated > 0) {
     named.warnings.push_back(metadata.string() + ": has " + std::to_string(repeated) +
-                             " repeated file names; each file is read once");
+                             " duplicate file names; each file is read once");
   }
   return named;
 }
@@ -71,17 +71,17 @@ Rosbag2Files rosbag2_files(const fs::path& folder) {
   std::error_code error;
   std::string why;
   if (!fs::is_regular_file(metadata, error)) {
-    why = "is missing, as after a recorder that was stopped hard";
+    why = "is missing, as after a killed recorder";
   } else {
     try {
       Rosbag2Files named = files_named(metadata);
       if (!named.files.empty()) return named;
-      why = "names no files";
+      why = "lists no files";
     } catch (const YAML::Exception& exception) {
-      why = std::string("cannot be understood (") + exception.what() + ")";
+      why = std::string("cannot be parsed (") + exception.what() + ")";
     }
   }
-  return {files_beside(folder), {metadata.string() + ": " + why + "; the files beside it are taken"}};
+  return {files_beside(folder), {metadata.string() + ": " + why + "; bag files in its folder are used"}};
 }
 
 }  // namespace byre

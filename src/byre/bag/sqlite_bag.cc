@@ -70,8 +70,8 @@ SqliteBag::SqliteBag(const fs::path& path, std::string place, const TypeFilter& 
 
 void SqliteBag::fail() const {
   const std::string why = database_.handle == nullptr ? "out of memory" : sqlite3_errmsg(database_.handle);
-  throw InputError(place_, "cannot be read as a database of rosbag2: " + why,
-                   "use a copy, or see what \"sqlite3 FILE .recover\" saves");
+  throw InputError(place_, "cannot be read as a rosbag2 database: " + why,
+                   "use a copy, or recover data with \"sqlite3 FILE .recover\"");
 }
 
 SqliteBag::Statement SqliteBag::prepare(const char* text) const {
@@ -117,11 +117,10 @@ void SqliteBag::read_messages() {
   }
   if (result != SQLITE_DONE) {
     content_.damage.push_back(
-        place_ + ": is damaged, so that only what comes before was read: " + sqlite3_errmsg(database_.handle));
+        place_ + ": is damaged; only the part before the damage was read: " + sqlite3_errmsg(database_.handle));
   }
   if (unknown > 0) {
-    content_.damage.push_back(place_ + ": " + std::to_string(unknown) +
-                              " messages are of topics that are not described");
+    content_.damage.push_back(place_ + ": " + std::to_string(unknown) + " messages belong to undeclared topics");
   }
   std::ranges::stable_sort(content_.messages, {}, &BagMessage::log_time);
 }

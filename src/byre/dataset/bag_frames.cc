@@ -41,8 +41,8 @@ std::vector<std::string> add_right(std::vector<BagFrame>& frames, const std::vec
   if (alone == frames.size()) throw no_pairs(place, times, right_times, tolerance);
   if (alone + unused == 0) return {};
   return {place + ": " + std::to_string(alone) + " of " + std::to_string(frames.size()) +
-          " left images have no right one taken within " + in_ms(tolerance) + ", " + std::to_string(unused) + " of " +
-          std::to_string(right.size()) + " right images no left one"};
+          " left images have no right image within " + in_ms(tolerance) + ", " + std::to_string(unused) + " of " +
+          std::to_string(right.size()) + " right images have no left image"};
 }
 
 }  // namespace

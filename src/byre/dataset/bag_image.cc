@@ -86,16 +86,16 @@ void copy_grey(const ros::Image& image, const Layout& layout, cv::Mat& grey) {
 ImageReading<Image> grey_of(const ros::Image& image) {
   const auto layout = std::ranges::find(kLayouts, image.encoding, &Layout::encoding);
   if (layout == kLayouts.end()) {
-    return {std::nullopt, "is encoded as \"" + image.encoding + "\", which byre does not read"};
+    return {std::nullopt, "has the unsupported encoding \"" + image.encoding + "\""};
   }
   const ImageSize size{image.width, image.height};
   if (image.width == 0 || image.height == 0 || size.pixels() > kMostPixels) {
-    return {std::nullopt, "is of no sensible size"};
+    return {std::nullopt, "has an invalid size"};
   }
-  if (image.data.size() < bytes_needed(image, layout->type)) return {std::nullopt, "is not a whole image"};
+  if (image.data.size() < bytes_needed(image, layout->type)) return {std::nullopt, "is not a complete image"};
   if (image.step % CV_ELEM_SIZE1(layout->type) != 0) {
     return {std::nullopt,
-            "has rows of " + std::to_string(image.step) + " bytes, which is no multiple of the size of a number"};
+            "has rows of " + std::to_string(image.step) + " bytes, not a multiple of the size of a channel value"};
   }
   Image result{static_cast<int>(image.width), static_cast<int>(image.height), {}};
   result.pixels.resize(std::size_t{image.width} * image.height);
@@ -116,7 +116,7 @@ ImageReading<Image> image_of(Bag& bag, const BagMessage& message) {
     if (holds<ros::Image>(topic)) return grey_of(ros::read_message<ros::Image>(bytes, encoding, topic.name));
     const auto compressed = ros::read_message<ros::CompressedImage>(bytes, encoding, topic.name);
     ImageReading<Image> image = decoded_image(compressed.data);
-    if (!image.image) image.failure += " of the format \"" + compressed.format + "\"; JPEG and PNG are read";
+    if (!image.image) image.failure += " (format \"" + compressed.format + "\"; supported: JPEG and PNG)";
     return image;
   } catch (const InputError& error) {
     return {std::nullopt, error.reason()};

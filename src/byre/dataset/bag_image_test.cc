@@ -72,13 +72,13 @@ TEST(BagImage, ThatMakesNoSenseIsRefusedWithAReason) {
   EXPECT_THAT(grey_of(image("jpeg2000", 2, 1, {1, 2}, 2)).failure, HasSubstr("encoded as \"jpeg2000\""));
   EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3}, 2)).failure, "is not a whole image");
   EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3, 4}, 1)).failure, "is not a whole image");
-  EXPECT_EQ(grey_of(image("mono8", 0, 2, {}, 0)).failure, "is of no sensible size");
-  EXPECT_EQ(grey_of(image("mono8", 0xFFFFFFFF, 0xFFFFFFFF, {1}, 0xFFFFFFFF)).failure, "is of no sensible size");
+  EXPECT_EQ(grey_of(image("mono8", 0, 2, {}, 0)).failure, "has an invalid size");
+  EXPECT_EQ(grey_of(image("mono8", 0xFFFFFFFF, 0xFFFFFFFF, {1}, 0xFFFFFFFF)).failure, "has an invalid size");
 }
 
 TEST(BagImage, ThatOpencvRefusesIsUnreadableWithItsReason) {
   EXPECT_THAT(grey_of(image("mono16", 2, 2, std::vector<std::uint8_t>(10), 5)).failure,
-              HasSubstr("rows of 5 bytes, which is no multiple"));
+              HasSubstr("rows of 5 bytes, not a multiple"));
   for (const auto& [encoding, width] : {std::pair("yuyv", 3u), std::pair("uyvy", 1u)}) {
     const ImageReading<Image> read =
         grey_of(image(encoding, width, 2, std::vector<std::uint8_t>(4 * width), 2 * width));

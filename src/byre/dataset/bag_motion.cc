@@ -38,9 +38,9 @@ std::size_t choose_topic(const BagContent& content, const Asked& asked, const st
   }
   if (topics.size() == 1) return topics.front();
   throw InputError(place,
-                   (asked.topic ? "has no " + kinds<Ms...>() + " of the topic " + *asked.topic
-                                : "does not tell which " + kinds<Ms...>() + " to take") +
-                       "; its topics of that kind: " + (names.empty() ? "none" : names),
+                   (asked.topic ? "has no " + kinds<Ms...>() + " messages on topic " + *asked.topic
+                                : "has no unique topic of type " + kinds<Ms...>()) +
+                       "; available topics of this type: " + (names.empty() ? "none" : names),
                    asked.remedy);
 }
 
@@ -64,7 +64,7 @@ std::vector<Sample> read_topic(Bag& bag, std::size_t topic, const std::string& p
     }
   }
   if (const std::size_t unusable = timed.messages.size() - samples.size(); unusable > 0) {
-    warnings.push_back(name + ": " + std::to_string(unusable) + " messages are damaged or hold no numbers");
+    warnings.push_back(name + ": " + std::to_string(unusable) + " messages are damaged or contain no finite values");
   }
   return samples;
 }
@@ -109,13 +109,13 @@ BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::strin
   if (options.wheels) {
     motion.samples.wheels = read_wheel_file(*options.wheels, images, motion.warnings);
   } else if (options.wheels_topic) {
-    const Asked asked{options.wheels_topic, "name one of them: --wheels-topic TOPIC"};
+    const Asked asked{options.wheels_topic, "select one with --wheels-topic TOPIC"};
     const std::size_t topic =
         choose_topic<ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped>(bag.content(), asked, place);
     take_over_wheels(read_wheels(bag, topic, place, images, motion.warnings), motion.samples);
   }
   if (wants_gyroscope(options)) {
-    const Asked asked{options.imu_topic, "name one of them: --imu-topic TOPIC, or leave the gyroscope out"};
+    const Asked asked{options.imu_topic, "select one with --imu-topic TOPIC, or omit the gyroscope"};
     const std::size_t topic = choose_topic<ros::Imu>(bag.content(), asked, place);
     std::size_t unmeasured = 0;
     for (const ImuSample& sample : read_topic<ros::Imu, ImuSample>(bag, topic, place, images, motion.warnings)) {

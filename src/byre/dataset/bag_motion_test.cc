@@ -147,8 +147,8 @@ TEST_F(BagMotions, TakeTheOnlyGyroscopeButNoneOfTwo) {
 TEST_F(BagMotions, SayWhichTopicsThereAre) {
   EXPECT_THAT(read_error({odometry(kOdometry, 1000, 1003, 0.5)}, {.wheels_topic = "/odom"}),
               AllOf(HasSubstr("has no nav_msgs/msg/Odometry or geometry_msgs/msg/TwistStamped or "),
-                    HasSubstr(" of the topic /odom; its topics of that kind: /wheel/odometry")));
-  EXPECT_THAT(read_error({imu(kImuData, 1005, 0.2)}, {.wheels_topic = "/odom"}), HasSubstr("of that kind: none"));
+                    HasSubstr(" messages on topic /odom; available topics of this type: /wheel/odometry")));
+  EXPECT_THAT(read_error({imu(kImuData, 1005, 0.2)}, {.wheels_topic = "/odom"}), HasSubstr("of this type: none"));
 }
 
 TEST_F(BagMotions, AreInOrderWhateverWasRecorded) {

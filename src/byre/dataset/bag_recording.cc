@@ -95,7 +95,7 @@ std::optional<ImageFrame> BagRecording::read(int index) {
   if (frame.right) {
     images.right = read_image(frame, *frame.right, calibration().right->camera);
   } else {
-    warn(frame, frame.left, "has no right image of the same time");
+    warn(frame, frame.left, "has no right image with the same time stamp");
   }
   return images;
 }
@@ -115,8 +115,8 @@ class BagCalibration {
     if (!topics.right) return calibration;
     const std::optional<PlacedCameraInfo> right = info_of(*topics.right);
     if (!right) {
-      throw InputError(place_, "has no camera info of " + bag_.content().topics[*topics.right].name,
-                       "name a calibration of the pair (--calibration FILE), or take one camera: --camera left");
+      throw InputError(place_, "has no camera info for " + bag_.content().topics[*topics.right].name,
+                       "give a stereo calibration with --calibration FILE, or use one camera with --camera left");
     }
     calibration.cameras.right = partner_of(*left, *right, frames);
     calibration.right_size = right->place;
@@ -171,9 +171,9 @@ PlacedCalibration calibration_of(Bag& bag, const fs::path& path, const ImageTopi
   if (auto calibration = BagCalibration(bag, path.string()).read(topics)) return std::move(*calibration);
   if (find_calibration(folder)) return calibration_for(folder, options);
   throw InputError(path.string(),
-                   "has no camera info of the topic " + camera_info_topic(bag.content().topics[topics.left].name) +
-                       ", and no calibration lies beside it",
-                   "name one (--calibration FILE)");
+                   "has no camera info on topic " + camera_info_topic(bag.content().topics[topics.left].name) +
+                       ", and its folder contains no calibration file",
+                   "give one with --calibration FILE");
 }
 
 // Throws InputError if the size of the first readable image differs from the calibration, or none is readable.
@@ -185,8 +185,7 @@ void require_calibrated_size(Bag& bag, const std::vector<BagMessage>& messages, 
     if (read.image) return require_calibrated_size(read.image->width, read.image->height, camera, size);
     if (first_failure.empty()) first_failure = bag.content().topics[message.topic].name + " " + read.failure;
   }
-  throw InputError(path.string(), "none of its images can be read: " + first_failure,
-                   "take another topic: --left TOPIC");
+  throw InputError(path.string(), "no image can be read: " + first_failure, "select another topic with --left TOPIC");
 }
 
 void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, const PlacedCalibration& calibration,
@@ -229,7 +228,7 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
 
   PlacedCalibration calibration = calibration_of(*bag, path, topics, options);
   if (topics.right && !calibration.cameras.right && !options.camera) {
-    warnings.push_back(place + ": is calibrated for one camera only, so its right images are left out");
+    warnings.push_back(place + ": the calibration has one camera only; right images are ignored");
   }
   calibration = choose_calibration(calibration, {.right = topics.right.has_value()}, options.camera, path);
   calibration.cameras =

@@ -68,8 +68,8 @@ std::string listing(const BagContent& content) {
 }
 
 [[noreturn]] void fail(const fs::path& bag, const std::string& reason, const BagContent& content) {
-  throw InputError(bag.string(), reason + "; its topics of images: " + listing(content),
-                   "say which to take: --left TOPIC and --right TOPIC, or --left TOPIC alone");
+  throw InputError(bag.string(), reason + "; available image topics: " + listing(content),
+                   "select topics with --left TOPIC and --right TOPIC, or with --left TOPIC alone");
 }
 
 class Chooser {
@@ -84,7 +84,7 @@ class Chooser {
     for (const std::size_t i : images_) {
       if (this->name(i) == name || this->name(i) == "/" + name) return i;
     }
-    fail(bag_, "has no images of the topic " + name, content_);
+    fail(bag_, "has no images on topic " + name, content_);
   }
 
   std::optional<std::size_t> right_of(std::size_t left) const {
@@ -101,7 +101,7 @@ class Chooser {
       if (const std::optional<std::size_t> right = right_of(i)) pairs.push_back({i, right});
     }
     if (!pairs.empty()) return least_processed(std::move(pairs));
-    if (images_.empty()) fail(bag_, "holds no images that byre reads", content_);
+    if (images_.empty()) fail(bag_, "contains no images of a supported type", content_);
     for (const std::size_t i : images_) pairs.push_back({i});
     return least_processed(std::move(pairs));
   }
@@ -113,7 +113,7 @@ class Chooser {
   ImageTopics least_processed(std::vector<ImageTopics> choices) const {
     for (const ImageTopics& choice : choices) {
       if (parent_of(name(choice.left)) != parent_of(name(choices.front().left))) {
-        fail(bag_, "holds images of several cameras, and which to take cannot be told", content_);
+        fail(bag_, "contains images of several cameras; the choice is ambiguous", content_);
       }
     }
     return *std::ranges::min_element(
@@ -141,8 +141,8 @@ bool is_rectified(const BagTopic& topic) {
 ImageTopics choose_image_topics(const BagContent& content, const OpenOptions& options, const fs::path& bag) {
   const Chooser chooser(content, bag);
   if (!options.left_topic && options.right_topic) {
-    throw InputError(bag.string(), "the topic of the right camera is named, but not that of the left one",
-                     "name both: --left TOPIC --right TOPIC");
+    throw InputError(bag.string(), "the topic of the right camera is given without that of the left camera",
+                     "give both: --left TOPIC --right TOPIC");
   }
   if (!options.left_topic) return chooser.guessed();
   const std::size_t left = chooser.named(*options.left_topic);

@@ -61,12 +61,12 @@ TEST(BagTopics, AreThoseOfTheOnlyCamera) {
 
 TEST(BagTopics, AreAskedForWhereSeveralCamerasCouldBeMeant) {
   const std::string front_and_rear = chosen({"/front/image", "/rear/image"});
-  EXPECT_THAT(front_and_rear, HasSubstr("walk.bag: holds images of several cameras"));
+  EXPECT_THAT(front_and_rear, HasSubstr("walk.bag: contains images of several cameras"));
   EXPECT_THAT(front_and_rear, HasSubstr("/front/image (7), /rear/image (7)"));
   EXPECT_THAT(front_and_rear, HasSubstr("--left TOPIC"));
   EXPECT_THAT(chosen({"/front/left/image", "/front/right/image", "/rear/left/image", "/rear/right/image"}),
               HasSubstr("several cameras"));
-  EXPECT_THAT(chosen({}), HasSubstr("holds no images that byre reads; its topics of images: none"));
+  EXPECT_THAT(chosen({}), HasSubstr("contains no images of a supported type; available image topics: none"));
 }
 
 TEST(BagTopics, AreThoseThatAreNamed) {
@@ -74,8 +74,8 @@ TEST(BagTopics, AreThoseThatAreNamed) {
   EXPECT_EQ(chosen(images, {.left_topic = "/rear/image"}), "/rear/image");
   EXPECT_EQ(chosen(images, {.left_topic = "front/image", .right_topic = "/rear/image"}), "/front/image /rear/image");
   EXPECT_EQ(chosen(images, {.left_topic = "/rig/left/image"}), "/rig/left/image /rig/right/image");
-  EXPECT_THAT(chosen(images, {.left_topic = "/imu"}), HasSubstr("has no images of the topic /imu; its topics"));
-  EXPECT_THAT(chosen(images, {.right_topic = "/rear/image"}), HasSubstr("not that of the left one"));
+  EXPECT_THAT(chosen(images, {.left_topic = "/imu"}), HasSubstr("has no images on topic /imu; available image topics"));
+  EXPECT_THAT(chosen(images, {.right_topic = "/rear/image"}), HasSubstr("without that of the left camera"));
 }
 
 TEST(BagTopics, LieBesideTheirCameraInfo) {

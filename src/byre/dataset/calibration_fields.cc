@@ -16,7 +16,7 @@ namespace {
 std::string readable_yaml(const std::filesystem::path& path) {
   refuse_pipe(path);
   std::ifstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
   std::ostringstream text;
   text << file.rdbuf();
   std::string yaml = text.str();
@@ -31,7 +31,7 @@ void append_numbers(const YAML::Node& list, const std::string& place, std::vecto
       continue;
     }
     const std::optional<double> number = entry.IsScalar() ? parse_number(entry.Scalar()) : std::nullopt;
-    if (!number) throw InputError(place, "holds something that is not a number");
+    if (!number) throw InputError(place, "contains a value that is not a number");
     numbers.push_back(*number);
   }
 }
@@ -41,7 +41,7 @@ void append_numbers(const YAML::Node& list, const std::string& place, std::vecto
 CalibrationFields CalibrationFields::load(const std::filesystem::path& path) {
   try {
     CalibrationFields fields(path.string() + ": ", YAML::Load(readable_yaml(path)));
-    if (!fields.node_.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields");
+    if (!fields.node_.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
     return fields;
   } catch (const YAML::Exception& error) {
     throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
@@ -70,7 +70,7 @@ CalibrationFields CalibrationFields::group(const std::string& field) const {
 
 std::string CalibrationFields::word(const std::string& field) const {
   if (!has(field)) throw InputError(place(field), "is missing");
-  if (!find(field).IsScalar()) throw InputError(place(field), "is not a word");
+  if (!find(field).IsScalar()) throw InputError(place(field), "is not a scalar");
   return find(field).Scalar();
 }
 
@@ -96,9 +96,9 @@ Pose CalibrationFields::pose(const std::string& field) const {
   const std::vector<double> values = numbers(field, 16);
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(values.data());
   const std::optional<Eigen::Quaterniond> rotation = rotation_from_matrix(matrix.topLeftCorner<3, 3>());
-  if (!rotation) throw InputError(place(field), "its 3x3 part is not a rotation", "give the matrix row by row");
+  if (!rotation) throw InputError(place(field), "the 3x3 part is not a rotation", "give the matrix row by row");
   if (matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
-    throw InputError(place(field), "its last row is not 0 0 0 1", "give the matrix row by row");
+    throw InputError(place(field), "the last row is not 0 0 0 1", "give the matrix row by row");
   }
   return {*rotation, matrix.topRightCorner<3, 1>()};
 }
@@ -106,7 +106,7 @@ Pose CalibrationFields::pose(const std::string& field) const {
 double CalibrationFields::positive(const std::string& field) const {
   const std::optional<double> number = parse_number(word(field));
   if (number && *number > 0.0) return *number;
-  throw InputError(place(field), "is not a number above zero");
+  throw InputError(place(field), "is not a positive number");
 }
 
 int CalibrationFields::pixels(const std::string& field) const {
@@ -118,7 +118,7 @@ int CalibrationFields::pixels(const std::string& field) const {
 int to_image_side(double pixels, const std::string& place) {
   constexpr int kMaxSide = 20000;
   if (pixels >= 1.0 && pixels <= kMaxSide && pixels == std::floor(pixels)) return static_cast<int>(pixels);
-  throw InputError(place, "is not a width and a height in pixels");
+  throw InputError(place, "is not a width and height in pixels");
 }
 
 }  // namespace byre

@@ -96,8 +96,9 @@ Calibration read_calibration(const fs::path& path) {
   if (fields.has("cam0")) return kalibr_chain(fields);
   if (fields.has("camera_matrix")) return one_camera(read_opencv_camera(fields), fields);
   if (fields.has("intrinsics")) return one_camera(read_camera_fields(fields, "distortion_coefficients"), fields);
-  throw InputError(path.string(), "is no calibration that byre knows",
-                   "looked for intrinsics (EuRoC sensor.yaml), camera_matrix (OpenCV, ROS) and cam0 (Kalibr camchain)");
+  throw InputError(path.string(), "is not a supported calibration file",
+                   "supported files have the field intrinsics (EuRoC sensor.yaml), camera_matrix (OpenCV, ROS) or cam0 "
+                   "(Kalibr camchain)");
 }
 
 std::string write_calibration(const Calibration& calibration) {
@@ -139,8 +140,8 @@ bool names_depth_camera(const fs::path& path) {
 void require_baseline(const StereoPartner& partner, const std::string& place) {
   constexpr double kLeast = 1e-3;  // metres
   if (partner.right_from_left.translation.norm() >= kLeast) return;
-  throw InputError(place, "puts both cameras in the same place",
-                   "calibrate the stereo pair, or take the left camera alone");
+  throw InputError(place, "places both cameras at the same position",
+                   "calibrate the stereo pair, or use the left camera alone");
 }
 
 std::optional<fs::path> find_calibration(const fs::path& folder) {

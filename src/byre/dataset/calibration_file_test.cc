@@ -159,7 +159,8 @@ TEST_F(CalibrationFile, TellsHowLongARollingShutterTakes) {
   EXPECT_EQ(read(kSensor + "readout_time: 0.015\n").readout_time, 0.015);
   EXPECT_NEAR(read(kKalibr, "cam_overlaps: [1]", "line_delay: 2.5e-5").readout_time, 480 * 2.5e-5, 1e-12);
   EXPECT_EQ(read(kRos + "readout_time: -0.02\n").readout_time, -0.02);
-  EXPECT_THAT(error(kSensor + "readout_time: 15\n", "", ""), HasSubstr("camera.yaml: readout_time: is not a time"));
+  EXPECT_THAT(error(kSensor + "readout_time: 15\n", "", ""),
+              HasSubstr("camera.yaml: readout_time: is not a valid readout time"));
   EXPECT_THAT(error(kSensor + "readout_time: nan\n", "", ""), HasSubstr("readout_time"));
 }
 
@@ -179,7 +180,7 @@ TEST_F(CalibrationFile, NamesTheFieldThatMakesNoSense) {
   };
   const std::vector<Case> cases = {
       {kRos, "image_width: 640", "image_width: wide", "camera.yaml: image_width: is not a number"},
-      {kRos, "image_width: 640", "image_width: 0", "image_width: is not a width and a height"},
+      {kRos, "image_width: 640", "image_width: 0", "image_width: is not a width and height"},
       {kRos, "image_height: 480", "", "image_height: is missing"},
       {kRos, "[530, 0,", "[530, 1,", "camera_matrix: is not of the form fx 0 cx"},
       {kRos, "[530, 0,", "[530,", "camera_matrix: has 8 numbers instead of 9"},
@@ -191,9 +192,10 @@ TEST_F(CalibrationFile, NamesTheFieldThatMakesNoSense) {
       {kKalibr, "[461.629, ", "[", "cam0.intrinsics: has 3 numbers instead of 4"},
       {kKalibr, "distortion_coeffs: [-0.28, ", "distortion_coeffs: [", "cam0.distortion_coeffs: has 3 numbers"},
       {kKalibr, "T_cn_cnm1", "T_x", "cam1.T_cn_cnm1: is missing"},
-      {kKalibr, "- [0.0, -1.0, 0.0, 0.1]", "- [0.0, -1.1, 0.0, 0.1]", "cam0.T_cam_imu: its 3x3 part is not"},
+      {kKalibr, "- [0.0, -1.0, 0.0, 0.1]", "- [0.0, -1.1, 0.0, 0.1]", "cam0.T_cam_imu: the 3x3 part is not"},
       {kKalibr, "cam0:", "cam0: 5\ncam5:", "cam0: has no named fields"},
-      {kSensor, "intrinsics", "focal", "camera.yaml: is no calibration that byre knows (looked for intrinsics"},
+      {kSensor, "intrinsics", "focal",
+       "camera.yaml: is not a supported calibration file (supported files have the field intrinsics"},
       {"a: [1", "", "", "camera.yaml:1: "},
       {"", "", "", "is not a YAML file of named fields"},
   };
@@ -202,7 +204,7 @@ TEST_F(CalibrationFile, NamesTheFieldThatMakesNoSense) {
   }
   std::string together = kKalibr;
   together.replace(together.find("-0.11]"), 6, "0.0]");
-  EXPECT_THAT(error(together, "0.002]", "0.0]"), HasSubstr("cam1.T_cn_cnm1: puts both cameras in the same place"));
+  EXPECT_THAT(error(together, "0.002]", "0.0]"), HasSubstr("cam1.T_cn_cnm1: places both cameras at the same position"));
   EXPECT_THAT(error_of([&] { read_calibration(folder_ / "absent.yaml"); }), HasSubstr("absent.yaml: cannot be opened"));
 }
 

@@ -12,9 +12,10 @@ namespace byre {
 namespace {
 
 [[noreturn]] void refuse_model(const std::string& place, const std::string& model) {
-  throw InputError(place, "\"" + model + "\" is not supported",
-                   "supported are pinhole cameras with radial-tangential (radtan), equidistant (fisheye) or no "
-                   "distortion (none): calibrate with one of these, Kalibr by --models pinhole-radtan or pinhole-equi");
+  throw InputError(
+      place, "\"" + model + "\" is not supported",
+      "supported models: pinhole with radial-tangential (radtan), equidistant (fisheye) or no "
+      "distortion (none); calibrate with one of these, in Kalibr with --models pinhole-radtan or pinhole-equi");
 }
 
 CameraModel lens_of_word(const CalibrationFields& fields) {
@@ -90,8 +91,8 @@ void read_opencv_distortion(const CalibrationFields& fields, Camera& camera) {
   const auto known = coefficients.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(coefficients.size(), 5));
   const auto is_zero = [](double value) { return value == 0.0; };
   if (!std::all_of(known, coefficients.end(), is_zero)) {
-    throw InputError(place, "has more than k1, k2, p1, p2 and k3, and those behind are not zero",
-                     "calibrate with five coefficients at most, or as a fisheye: the rational model is not supported");
+    throw InputError(place, "has coefficients other than zero after k1, k2, p1, p2 and k3",
+                     "the rational model is not supported; calibrate with at most five coefficients, or as a fisheye");
   }
   std::copy(coefficients.begin(), known, camera.distortion.begin());
   if (std::all_of(coefficients.begin(), known, is_zero)) camera.model = CameraModel::pinhole;
@@ -102,7 +103,8 @@ void read_opencv_distortion(const CalibrationFields& fields, Camera& camera) {
 void require_sense(const Camera& camera, const std::string& place) {
   if (!(camera.fx > 0.0) || !(camera.fy > 0.0)) throw InputError(place, "the focal lengths must be positive");
   if (camera.contains({camera.cx, camera.cy})) return;
-  throw InputError(place, "the principal point lies outside the image", "check that they belong to this resolution");
+  throw InputError(place, "the principal point lies outside the image",
+                   "check that the intrinsics belong to this resolution");
 }
 
 Camera read_camera_fields(const CalibrationFields& fields, const std::string& coefficients) {
@@ -130,8 +132,8 @@ double read_readout_time(const CalibrationFields& fields, const Camera& camera) 
     if (!fields.has(field)) continue;
     const std::optional<double> number = parse_number(fields.word(field));
     if (number && std::abs(*number * unit) <= kLongest) return *number * unit;
-    throw InputError(fields.place(field), "is not a time in which an image is read",
-                     "give seconds (of a row: line_delay; of all rows: readout_time)");
+    throw InputError(fields.place(field), "is not a valid readout time",
+                     "give seconds: line_delay per row, or readout_time for all rows");
   }
   return 0.0;
 }

@@ -14,7 +14,7 @@
 namespace byre {
 namespace {
 
-constexpr std::string_view kGiveFile = "name a calibration file of the cameras";
+constexpr std::string_view kGiveFile = "give a calibration file of the cameras";
 
 [[noreturn]] void refuse(const PlacedCameraInfo& placed, const std::string& reason, const std::string& remedy = {}) {
   throw InputError(placed.place, reason,
@@ -29,17 +29,19 @@ void require_sense(const PlacedCameraInfo& placed) {
   constexpr std::uint32_t kMostSide = 1U << 16U;  // pixels
   const ros::CameraInfo& info = placed.info;
   if (!all_finite(info.k) || !all_finite(info.d) || !all_finite(info.r) || !all_finite(info.p)) {
-    refuse(placed, "holds numbers that are none");
+    refuse(placed, "contains values that are not finite");
   }
-  if (!(info.k[0] > 0.0) || !(info.k[4] > 0.0)) refuse(placed, "says that the camera is not calibrated");
+  if (!(info.k[0] > 0.0) || !(info.k[4] > 0.0))
+    refuse(placed, "describes an uncalibrated camera: its focal lengths are not positive");
   const bool has_size = info.width > 0 && info.height > 0 && info.width <= kMostSide && info.height <= kMostSide;
-  if (!has_size) refuse(placed, "has no width and height", "correct what the camera's driver says");
+  if (!has_size) refuse(placed, "has no width and height", "correct the camera info of the driver");
   const ros::RegionOfInterest& roi = info.roi;
   const bool is_cut = roi.x_offset != 0 || roi.y_offset != 0 || (roi.width != 0 && roi.width != info.width) ||
                       (roi.height != 0 && roi.height != info.height);
-  if (is_cut) refuse(placed, "is of images that are cut out", "have the driver send whole images");
+  if (is_cut)
+    refuse(placed, "describes a region of interest, not the whole image", "let the driver publish whole images");
   if (info.binning_x > 1 || info.binning_y > 1) {
-    refuse(placed, "is of images that are binned", "calibrate at the size of the images");
+    refuse(placed, "describes binned images", "calibrate at the size of the binned images");
   }
 }
 
@@ -56,9 +58,9 @@ void take_distortion(const PlacedCameraInfo& placed, Camera& camera) {
       !std::all_of(info.d.begin() + static_cast<std::ptrdiff_t>(count), info.d.end(), is_zero) || count < 4;
   if ((!is_fisheye && !is_radial) || has_more) {
     refuse(placed,
-           "is of the lens model \"" + info.distortion_model.substr(0, 40) + "\" with " +
-               std::to_string(info.d.size()) + " coefficients, which byre does not know",
-           "calibrate with plumb_bob (5) or equidistant (4), or have rectified images");
+           "has the unsupported lens model \"" + info.distortion_model.substr(0, 40) + "\" with " +
+               std::to_string(info.d.size()) + " coefficients",
+           "calibrate with plumb_bob (5) or equidistant (4), or publish rectified images");
   }
   camera.model = is_fisheye ? CameraModel::equidistant : CameraModel::radial_tangential;
   std::copy_n(info.d.begin(), count, camera.distortion.begin());
@@ -107,19 +109,19 @@ Camera camera_of(const PlacedCameraInfo& placed) {
 StereoPartner partner_of(const PlacedCameraInfo& left, const PlacedCameraInfo& right, const StaticFrames& frames) {
   require_sense(right);
   if (right.info.p[3] > 0.0) {
-    refuse(right, "says that the camera is left of the left one: the fourth number of P is above zero",
-           "exchange left and right");
+    refuse(right, "places the right camera to the left of the left camera: the fourth value of P is positive",
+           "swap left and right");
   }
   std::optional<Pose> right_from_left = by_projections(left, right);
   if (!right_from_left) right_from_left = frames.between(right.info.header.frame_id, left.info.header.frame_id);
   if (!right_from_left && has_baseline(right.info)) {
     for (const PlacedCameraInfo* const each : {&left, &right}) {
       if (rotation_from_matrix(rotation_of(each->info))) continue;
-      refuse(*each, "has a field R that is not a rotation matrix", "correct R of the driver's calibration");
+      refuse(*each, "has a matrix R that is not a rotation", "correct R in the calibration of the driver");
     }
   }
   if (!right_from_left) {
-    refuse(right, "has no baseline in P, and /tf_static does not lead from the frame \"" + left.info.header.frame_id +
+    refuse(right, "has no baseline in P, and /tf_static does not connect the frame \"" + left.info.header.frame_id +
                       "\" to \"" + right.info.header.frame_id + "\"");
   }
   StereoPartner partner{camera_of(right), *right_from_left};

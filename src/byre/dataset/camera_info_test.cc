@@ -67,16 +67,17 @@ TEST(CameraInfo, IsRefusedWhereByreDoesNotKnowTheLens) {
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d = {0.1, 0.1, 0.0, 0.0, 0.1, 0.2, 0.2, 0.1};
   EXPECT_THAT(error_of([&] { camera_of(rational); }),
-              HasSubstr("walk.bag: /left/camera_info: is of the lens model \"rational_polynomial\" with 8"));
+              HasSubstr("walk.bag: /left/camera_info: has the unsupported lens model \"rational_polynomial\" with 8"));
   PlacedCameraInfo none = placed_info("left");
   none.info.k = {};
-  EXPECT_THAT(error_of([&] { camera_of(none); }), HasSubstr("not calibrated (name a calibration"));
+  EXPECT_THAT(error_of([&] { camera_of(none); }),
+              HasSubstr("uncalibrated camera: its focal lengths are not positive (give a calibration"));
   PlacedCameraInfo binned = placed_info("left");
   binned.info.binning_x = 2;
   EXPECT_THAT(error_of([&] { camera_of(binned); }), HasSubstr("binned"));
   PlacedCameraInfo cut = placed_info("left");
   cut.info.roi = {10, 10, 100, 100, false};
-  EXPECT_THAT(error_of([&] { camera_of(cut); }), HasSubstr("cut out"));
+  EXPECT_THAT(error_of([&] { camera_of(cut); }), HasSubstr("region of interest"));
 }
 
 TEST(CameraInfo, HasTheBaselineOfTheProjectionOfRectifiedImages) {
@@ -114,7 +115,7 @@ TEST(CameraInfo, HasThePairOfTheFramesWhereTheProjectionTellsNone) {
 
 TEST(CameraInfo, IsRefusedWhereNothingTellsTheBaseline) {
   EXPECT_THAT(error_of([] { partner_of(placed_info("left"), placed_info("right"), {}); }),
-              HasSubstr("does not lead from the frame \"left\" to \"right\" (name a calibration"));
+              HasSubstr("does not connect the frame \"left\" to \"right\" (give a calibration"));
   EXPECT_THAT(error_of([] { partner_of(placed_info("left"), placed_info("left"), {}); }),
               HasSubstr("walk.bag: /left/camera_info"));
   EXPECT_THAT(body_from_camera("left", {}), PoseNear(Pose(), 1e-15, 1e-15));
@@ -125,10 +126,10 @@ TEST(CameraInfo, IsRefusedIfRIsNotARotation) {
   right.info.p = {430.0, 0.0, 360.0, -43.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   right.info.r[4] = 2.0;
   EXPECT_THAT(error_of([&] { partner_of(left, right, {}); }),
-              HasSubstr("walk.bag: /right/camera_info: has a field R that is not a rotation matrix"));
+              HasSubstr("walk.bag: /right/camera_info: has a matrix R that is not a rotation"));
   std::swap(left.info.r, right.info.r);
   EXPECT_THAT(error_of([&] { partner_of(left, right, {}); }),
-              HasSubstr("walk.bag: /left/camera_info: has a field R that is not a rotation matrix"));
+              HasSubstr("walk.bag: /left/camera_info: has a matrix R that is not a rotation"));
   left.is_rectified = right.is_rectified = true;  // rectified images do not need R
   EXPECT_NO_THROW(partner_of(left, right, {}));
 }

@@ -21,7 +21,7 @@ using EntryReader = std::pair<Id, Entry> (*)(ByteReader& reader);
 std::uint64_t read_count(ByteReader& reader, std::size_t bytes_each) {
   const auto count = reader.read<std::uint64_t>();
   if (count > reader.remaining() / bytes_each) {
-    reader.fail("claims " + std::to_string(count) + " entries, more than the " + std::to_string(reader.remaining()) +
+    reader.fail("declares " + std::to_string(count) + " entries, more than the " + std::to_string(reader.remaining()) +
                 " remaining bytes can hold");
   }
   return count;
@@ -29,7 +29,7 @@ std::uint64_t read_count(ByteReader& reader, std::size_t bytes_each) {
 
 double read_finite(ByteReader& reader) {
   const auto value = reader.read<double>();
-  if (!std::isfinite(value)) reader.fail("holds a number that is not finite");
+  if (!std::isfinite(value)) reader.fail("contains a value that is not finite");
   return value;
 }
 
@@ -41,21 +41,21 @@ Eigen::Vector3d read_vector(ByteReader& reader) {
 std::string read_name(ByteReader& reader) {
   std::string name;
   for (char c = reader.read<char>(); c != '\0'; c = reader.read<char>()) name.push_back(c);
-  if (name.empty()) reader.fail("holds an image without a name");
+  if (name.empty()) reader.fail("contains an image without a name");
   return name;
 }
 
 Pose read_pose(ByteReader& reader) {
   const double w = read_finite(reader), x = read_finite(reader), y = read_finite(reader), z = read_finite(reader);
   const std::optional<Eigen::Quaterniond> rotation = colmap_rotation(w, x, y, z);
-  if (!rotation) reader.fail("holds a quaternion that is not of unit length");
+  if (!rotation) reader.fail("contains a quaternion that is not of unit length");
   return {*rotation, read_vector(reader)};
 }
 
 std::pair<std::uint32_t, ColmapCamera> read_camera(ByteReader& reader) {
   const auto id = reader.read<std::uint32_t>();
   const ColmapCameraKind* const kind = find_colmap_camera_kind(reader.read<std::int32_t>());
-  if (kind == nullptr) reader.fail("holds a camera of an unknown model");
+  if (kind == nullptr) reader.fail("contains a camera of an unknown model");
   ColmapCamera camera;
   camera.model = kind->name;
   camera.width = reader.read<std::uint64_t>();
@@ -104,7 +104,7 @@ std::map<Id, Entry> read_entries(const fs::path& path, std::size_t min_bytes, En
   std::map<Id, Entry> entries;
   const std::uint64_t count = read_count(reader, min_bytes);
   for (std::uint64_t i = 0; i < count; ++i) {
-    if (!entries.insert(read_entry(reader)).second) reader.fail("gives an id twice");
+    if (!entries.insert(read_entry(reader)).second) reader.fail("contains a duplicate id");
   }
   reader.require_end();
   return entries;

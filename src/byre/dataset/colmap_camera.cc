@@ -59,9 +59,9 @@ Camera lens_of(const ColmapCamera& camera, const std::string& place) {
   const bool is_polynomial =
       camera.model == "FULL_OPENCV" && std::all_of(p.begin() + 9, p.end(), [](double k) { return k == 0.0; });
   if (is_polynomial) return with_two_focal_lengths(p, CameraModel::radial_tangential);
-  throw InputError(place, "cameras of the model " + camera.model + " are not supported",
-                   "make the model with SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or OPENCV_FISHEYE, or "
-                   "undistort its images with \"colmap image_undistorter\"");
+  throw InputError(place, "camera model " + camera.model + " is not supported",
+                   "reconstruct with SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or OPENCV_FISHEYE, or "
+                   "undistort the images with \"colmap image_undistorter\"");
 }
 
 }  // namespace
@@ -80,10 +80,10 @@ Camera camera_of(const ColmapCamera& camera, const std::string& place) {
   constexpr std::uint64_t kMaxSide = 20000;  // pixels
   const ColmapCameraKind* const kind = find_colmap_camera_kind(camera.model);
   if (kind == nullptr || kind->parameters != camera.parameters.size()) {
-    throw InputError(place, "is no camera that COLMAP knows");
+    throw InputError(place, "is not a camera model of COLMAP");
   }
   if (camera.width == 0 || camera.height == 0 || camera.width > kMaxSide || camera.height > kMaxSide) {
-    throw InputError(place, "its width and height are those of no image");
+    throw InputError(place, "the width or height is invalid");
   }
   Camera result = lens_of(camera, place);
   result.width = static_cast<int>(camera.width);

@@ -50,7 +50,7 @@ TEST(CameraOf, RefusesWhatByreCannotProject) {
   const auto error = [](const std::string& model, const std::vector<double>& parameters) {
     return error_of([&] { camera_of({model, 640, 480, parameters}, "camera 3"); });
   };
-  EXPECT_THAT(error("FOV", {1, 1, 1, 1, 1}), HasSubstr("camera 3: cameras of the model FOV are not supported"));
+  EXPECT_THAT(error("FOV", {1, 1, 1, 1, 1}), HasSubstr("camera 3: camera model FOV is not supported"));
   EXPECT_THAT(error("FULL_OPENCV", {400, 400, 320, 240, 0, 0, 0, 0, 0, 0.1, 0, 0}), HasSubstr("not supported"));
   EXPECT_THAT(error("PINHOLE", {0, 400, 320, 240}), HasSubstr("focal"));
   EXPECT_THAT(error("PINHOLE", {400, 400, 700, 240}), HasSubstr("principal point"));

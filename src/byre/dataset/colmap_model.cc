@@ -30,9 +30,8 @@ void require_names_inside(const ColmapModel& model, const fs::path& folder) {
     const fs::path name = image.name;
     const bool is_inside = !name.empty() && !name.is_absolute() && std::ranges::count(name, fs::path("..")) == 0;
     if (is_inside) continue;
-    throw InputError(image_place(folder, id),
-                     "is named \"" + image.name + "\", which leads out of the folder of images",
-                     "give it a name in that folder");
+    throw InputError(image_place(folder, id), "has the name \"" + image.name + "\", which is outside the image folder",
+                     "use a name relative to that folder");
   }
 }
 
@@ -40,12 +39,12 @@ void require_known_camera_and_points(const ColmapModel& model, const fs::path& f
   for (const auto& [id, image] : model.images) {
     if (!model.cameras.contains(image.camera_id)) {
       throw InputError(image_place(folder, id),
-                       "was taken by camera " + std::to_string(image.camera_id) + ", which is not in the model");
+                       "refers to camera " + std::to_string(image.camera_id) + ", which is not in the model");
     }
     for (const ColmapKeypoint& keypoint : image.keypoints) {
       if (!keypoint.point_id || model.points.contains(*keypoint.point_id)) continue;
       throw InputError(image_place(folder, id),
-                       "sees point " + std::to_string(*keypoint.point_id) + ", which is not in the model");
+                       "refers to point " + std::to_string(*keypoint.point_id) + ", which is not in the model");
     }
   }
 }
@@ -56,12 +55,13 @@ void require_mutual_tracks(const ColmapModel& model, const fs::path& folder) {
       const auto image = model.images.find(entry.image_id);
       if (image == model.images.end()) {
         throw InputError(point_place(folder, id),
-                         "is seen in image " + std::to_string(entry.image_id) + ", which is not in the model");
+                         "refers to image " + std::to_string(entry.image_id) + ", which is not in the model");
       }
       const std::vector<ColmapKeypoint>& keypoints = image->second.keypoints;
       if (entry.keypoint >= keypoints.size() || keypoints[entry.keypoint].point_id != id) {
-        throw InputError(point_place(folder, id), "is said to be keypoint " + std::to_string(entry.keypoint) +
-                                                      " of image " + std::to_string(entry.image_id) + ", which is not");
+        throw InputError(point_place(folder, id), "refers to keypoint " + std::to_string(entry.keypoint) +
+                                                      " of image " + std::to_string(entry.image_id) +
+                                                      ", which does not refer back to it");
       }
     }
   }
@@ -84,8 +84,8 @@ ColmapModel read_colmap_model(const fs::path& folder) {
     model = {read_colmap_cameras_text(folder / "cameras.txt"), read_colmap_images_text(folder / "images.txt"),
              read_colmap_points_text(folder / "points3D.txt")};
   } else {
-    throw InputError(folder.string(), "holds no COLMAP model",
-                     "name the folder with cameras, images and points3D, all .bin or all .txt, such as sparse/0");
+    throw InputError(folder.string(), "contains no COLMAP model",
+                     "give the folder with cameras, images and points3D, all .bin or all .txt, such as sparse/0");
   }
   require_names_inside(model, folder);
   require_known_camera_and_points(model, folder);

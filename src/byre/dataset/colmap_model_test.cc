@@ -108,7 +108,7 @@ TEST_F(ColmapModelFiles, NameFileAndLineOfWhatIsWrong) {
   EXPECT_THAT(error_with("cameras.txt", "\n1 PINHOLE 640 480 500\n"), HasSubstr("cameras.txt:2: ends before"));
   EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 480 5 5 5 5 5\n"), HasSubstr("cameras.txt:1: goes on"));
   EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 -480 5 5 5 5\n"), HasSubstr("\"-480\" is no height"));
-  EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 6 4 5 5 5 5\n1 PINHOLE 6 4 5 5 5 5\n"), HasSubstr("second time"));
+  EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 6 4 5 5 5 5\n1 PINHOLE 6 4 5 5 5 5\n"), HasSubstr("twice"));
   EXPECT_THAT(error_with("images.txt", "1 2 0 0 0 0 0 0 1 a.png\n\n"), HasSubstr("images.txt:1"));
   EXPECT_THAT(error_with("images.txt", "1 1 0 0 0 0 0 0 1 a.png\n1 2\n"), HasSubstr("images.txt:2: ends before"));
   EXPECT_THAT(error_with("images.txt", "1 1 0 0 0 0 nan 0 1 a.png\n\n"), HasSubstr("\"nan\" is no translation"));
@@ -118,9 +118,9 @@ TEST_F(ColmapModelFiles, NameFileAndLineOfWhatIsWrong) {
 
 TEST_F(ColmapModelFiles, MustAgreeWithEachOther) {
   EXPECT_THAT(error_after([](ColmapModel& model) { model.cameras.erase(7); }), HasSubstr("camera 7"));
-  EXPECT_THAT(error_after([](ColmapModel& model) { model.points.erase(5); }), HasSubstr("sees point 5"));
+  EXPECT_THAT(error_after([](ColmapModel& model) { model.points.erase(5); }), HasSubstr("refers to point 5"));
   EXPECT_THAT(error_after([](ColmapModel& model) { model.points.at(5).track[0].image_id = 99; }),
-              HasSubstr("seen in image 99"));
+              HasSubstr("refers to image 99"));
   EXPECT_THAT(error_after([](ColmapModel& model) { model.points.at(5).track[0].keypoint = 1000; }),
               HasSubstr("keypoint 1000"));
   EXPECT_THAT(error_after([](ColmapModel& model) { model.points.at(5).track[0].keypoint = 2; }),
@@ -128,7 +128,7 @@ TEST_F(ColmapModelFiles, MustAgreeWithEachOther) {
 }
 
 TEST_F(ColmapModelFiles, ThatAreNotThereAreAsked) {
-  EXPECT_THAT(error_of([this] { read_colmap_model(folder_); }), HasSubstr("holds no COLMAP model"));
+  EXPECT_THAT(error_of([this] { read_colmap_model(folder_); }), HasSubstr("contains no COLMAP model"));
 }
 
 TEST_F(ColmapModelFiles, KeepNamesWithBlanksInBinaryOnly) {
@@ -173,8 +173,8 @@ INSTANTIATE_TEST_SUITE_P(Each, DamagedBinaryFile, testing::Values("cameras.bin",
 TEST_F(ColmapModelFiles, AreRefusedWhereAnImageIsNamedOutsideOfTheFolder) {
   for (const char* const name : {"/etc/passwd", "../1.png", "a/../../1.png", "a/..", ".."}) {
     const auto rename = [name](ColmapModel& model) { model.images.at(3).name = name; };
-    EXPECT_THAT(error_after(rename), HasSubstr("images: image 3: is named \"" + std::string(name) +
-                                               "\", which leads out of the folder of images"));
+    EXPECT_THAT(error_after(rename), HasSubstr("images: image 3: has the name \"" + std::string(name) +
+                                               "\", which is outside the image folder"));
   }
   EXPECT_EQ(error_after([](ColmapModel& model) { model.images.at(3).name = "a/..b/...png"; }), "no InputError");
 }

@@ -88,11 +88,11 @@ class Fields {
   }
 
   void require_end() const {
-    if (!at_end()) throw InputError(lines_.place(), "goes on where the entry should end");
+    if (!at_end()) throw InputError(lines_.place(), "contains extra text after the entry");
   }
 
   [[noreturn]] void fail(const char* what, std::string_view text) const {
-    throw InputError(lines_.place(), "\"" + std::string(text) + "\" is no " + what);
+    throw InputError(lines_.place(), "\"" + std::string(text) + "\" is not a valid " + what);
   }
 
  private:
@@ -158,7 +158,7 @@ ColmapPoint read_point(Fields& fields) {
 template <typename Id, typename Entry>
 void insert(std::map<Id, Entry>& entries, Id id, Entry entry, const std::string& place) {
   if (entries.emplace(id, std::move(entry)).second) return;
-  throw InputError(place, "gives the id " + std::to_string(id) + " a second time");
+  throw InputError(place, "contains the id " + std::to_string(id) + " twice");
 }
 
 // The shortest text that parses to the same number.
@@ -200,8 +200,8 @@ std::string camera_text(const ColmapModel& model) {
 
 void require_writable_name(const std::string& name, const fs::path& path) {
   if (name.find_first_of(" \t\r\n") == std::string::npos) return;
-  throw InputError(path.string(), "cannot hold the image name \"" + name + "\": names end at white space",
-                   "write the binary format");
+  throw InputError(path.string(), "cannot hold the image name \"" + name + "\": names must not contain white space",
+                   "use the binary format");
 }
 
 std::string image_text(const ColmapModel& model, const fs::path& path) {

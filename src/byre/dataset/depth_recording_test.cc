@@ -87,7 +87,7 @@ TEST_F(DepthRecording, SaysWhenItsDepthImagesWereLeftOutOfTheCopy) {
   fs::remove_all(folder_ / "depth");
   const auto recording = open();
   EXPECT_FALSE(recording->calibration().depth);
-  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("depth.txt: none of its images is there")));
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("depth.txt: no listed image exists")));
   EXPECT_THAT(open_error({.camera = CameraChoice::rgbd}), HasSubstr("has no depth images"));
   fs::remove(folder_ / "depth.txt");
   EXPECT_THAT(open()->warnings(), IsEmpty());
@@ -105,11 +105,11 @@ TEST_F(DepthRecording, LeavesOutDepthImagesThatCannotBeUsed) {
 
 TEST_F(DepthRecording, RefusesImagesThatAreNoDepths) {
   for (const int i : {0, 2, 3}) write_image("depth/" + std::to_string(i) + ".png", 32, 24, 10);
-  EXPECT_THAT(open_error(), HasSubstr("depth/0.png: is no whole image of 16 bits"));
+  EXPECT_THAT(open_error(), HasSubstr("depth/0.png: is not a complete 16-bit image"));
   for (const int i : {0, 2, 3}) write_depth(std::to_string(i), 1000, 16, 12);
   EXPECT_THAT(open_error(), HasSubstr("camera.yaml: is 32x24, but the images are 16x12"));
   write("depth.txt", "100.0\n");
-  EXPECT_THAT(open_error(), HasSubstr("depth.txt:1: names no image file"));
+  EXPECT_THAT(open_error(), HasSubstr("depth.txt:1: has no name of an image file"));
 }
 
 TEST_F(DepthRecording, TakesScaleNoiseAndPlaceOfTheDepthCameraFromTheCalibration) {
@@ -138,9 +138,9 @@ TEST_F(DepthRecording, LooksForThemBesideACalibrationThatHasNone) {
 
 TEST_F(DepthRecording, NamesTheFieldThatMakesNoSense) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"depth_scale: 0", "depth.yaml: depth_scale: is not a number above zero"},
-      {"depth_scale: many", "depth.yaml: depth_scale: is not a number above zero"},
-      {"depth_sigma: -1", "depth.yaml: depth_sigma: is not a number above zero"},
+      {"depth_scale: 0", "depth.yaml: depth_scale: is not a positive number"},
+      {"depth_scale: many", "depth.yaml: depth_scale: is not a positive number"},
+      {"depth_sigma: -1", "depth.yaml: depth_sigma: is not a positive number"},
       {"depth_camera: 1", "depth.yaml: depth_camera: has no named fields"},
       {"depth_camera: {camera_model: pinhole}", "depth.yaml: depth_camera.distortion_model: is missing"},
       {"depth_camera: {resolution: [16, 12], camera_model: pinhole, distortion_model: none, intrinsics: [9, 9, 8, 6]}",

@@ -17,7 +17,7 @@ TimedFile parse_euroc_line(const TextLine& line, const fs::path& images, const s
   const std::vector<std::string_view> fields = split_fields(line.text);
   const std::optional<Timestamp> time = parse_nanoseconds(fields.front());
   if (!time) throw InputError(place, "\"" + std::string(fields.front()) + "\" is not a time in nanoseconds");
-  if (fields.size() < 2 || fields[1].empty()) throw InputError(place, "names no image file");
+  if (fields.size() < 2 || fields[1].empty()) throw InputError(place, "has no name of an image file");
   return {*time, images / fields[1]};
 }
 
@@ -61,7 +61,7 @@ std::optional<fs::path> find_mav_folder(const fs::path& folder) {
 
 RecordingIndex index_euroc(const fs::path& folder, const OpenOptions& options) {
   const std::optional<fs::path> mav = find_mav_folder(folder);
-  if (!mav) throw InputError(folder.string(), "holds no folder mav0/cam0");
+  if (!mav) throw InputError(folder.string(), "contains no folder mav0/cam0");
   const bool has_right = options.camera != CameraChoice::left && fs::is_directory(*mav / "cam1");
   RecordingIndex index;
   index.calibration = options.calibration ? calibration_for(folder, options) : read_sensors(*mav, has_right);

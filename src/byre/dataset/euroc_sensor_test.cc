@@ -77,17 +77,17 @@ TEST_F(EurocSensorFile, NamesTheFieldThatMakesNoSense) {
     std::string old_text, new_text, message;
   };
   const std::vector<Case> cases = {
-      {"0.0, -1.0, 0.0, 0.5", "0.0, -1.1, 0.0, 0.5", "sensor.yaml: T_BS: its 3x3 part is not a rotation"},
-      {"0.0, 0.0, 1.0, 2.0", "0.0, 0.0, -1.0, 2.0", "T_BS: its 3x3 part is not a rotation"},
-      {"0.0, 0.0, 0.0, 1.0]", "0.0, 0.5, 0.0, 1.0]", "T_BS: its last row"},
+      {"0.0, -1.0, 0.0, 0.5", "0.0, -1.1, 0.0, 0.5", "sensor.yaml: T_BS: the 3x3 part is not a rotation"},
+      {"0.0, 0.0, 1.0, 2.0", "0.0, 0.0, -1.0, 2.0", "T_BS: the 3x3 part is not a rotation"},
+      {"0.0, 0.0, 0.0, 1.0]", "0.0, 0.5, 0.0, 1.0]", "T_BS: the last row"},
       {"0.0, 0.0, 0.0, 1.0]", "1.0]", "T_BS: has 13 numbers instead of 16"},
       {"T_BS", "T_CB", "T_BS: is missing"},
-      {"[752, 480]", "[752, 0]", "resolution: is not a width and a height"},
+      {"[752, 480]", "[752, 0]", "resolution: is not a width and height"},
       {"[752, 480]", "752", "resolution: is not a list of numbers"},
       {"[752, 480]", "[300, 200]", "intrinsics: the principal point lies outside the image"},
       {"458.654", "-458.654", "intrinsics: the focal lengths must be positive"},
-      {"458.654", "wide", "intrinsics: holds something that is not a number"},
-      {"458.654", ".nan", "intrinsics: holds something that is not a number"},
+      {"458.654", "wide", "intrinsics: contains a value that is not a number"},
+      {"458.654", ".nan", "intrinsics: contains a value that is not a number"},
       {"458.654, ", "", "intrinsics: has 3 numbers instead of 4"},
       {"model: pinhole", "model: omni", "camera_model: \"omni\" is not supported"},
       {"radial-tangential", "fov", "distortion_model: \"fov\" is not supported"},

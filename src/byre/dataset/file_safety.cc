@@ -117,8 +117,8 @@ bool may_be(const NamedOutput& written, const NamedInput& read) {
 void require_not_read(const NamedOutput& written, const fs::path& file, const Owners& owners) {
   const NamedInput* const owner = owners.find(file, written.output);
   if (owner == nullptr || may_be(written, *owner)) return;
-  throw FileConflict(written.argument, file.string() + " is read, for " + owner->argument +
-                                           ", so it may not be written: name another file");
+  throw FileConflict(written.argument, file.string() + " is also an input (" + owner->argument +
+                                           ") and cannot be overwritten: choose another file");
 }
 
 void require_not_read(const NamedOutput& written, const Owners& owners) {
@@ -176,8 +176,9 @@ void require_same_kind(const NamedOutput& written, const fs::path& file) {
   const auto content = content_of(file);
   const FileContent expected = content_written(written, file);
   if (!content || may_replace(*content, expected)) return;
-  throw FileConflict(written.argument, file.string() + " is there and is no " + std::string(name_of(expected)) +
-                                           ": name another file, or remove that one first");
+  throw FileConflict(written.argument, file.string() + " exists and is not the expected kind of file (" +
+                                           std::string(name_of(expected)) +
+                                           "): choose another file, or remove the existing one first");
 }
 
 }  // namespace
@@ -192,7 +193,7 @@ void require_distinct(const std::vector<NamedOutput>& outputs) {
   std::set<fs::path> files;
   std::set<Identity> identities;
   const auto require_new = [](bool is_new, const fs::path& file) {
-    if (!is_new) throw FileConflict(file.string(), "is named for two outputs");
+    if (!is_new) throw FileConflict(file.string(), "is given for two outputs");
   };
   for (const NamedOutput& written : outputs) {
     for (const fs::path& file : files_of(written)) {
@@ -223,7 +224,7 @@ void require_absent(const std::string& argument, const fs::path& file) {
   const fs::file_status status = fs::status(file, error);
   const bool is_full_folder = fs::is_directory(status) && !fs::is_empty(file, error);
   if (!fs::is_regular_file(status) && !is_full_folder) return;
-  throw FileConflict(argument, file.string() + " is there, and --no-overwrite keeps what is");
+  throw FileConflict(argument, file.string() + " exists and is not replaced because of --no-overwrite");
 }
 
 }  // namespace byre

@@ -30,9 +30,9 @@ void read_image_size(FloorPlan& plan) {
   const std::optional<ImageSize> size = stated_size(plan.image);
   if (size && size->pixels() > kMostPixels) {
     throw InputError(plan.image.string(),
-                     "is of " + std::to_string(size->width) + " x " + std::to_string(size->height) +
-                         " pixels, more than the 100 million that a floor plan may have",
-                     "make the image smaller, and its pixels larger");
+                     "has " + std::to_string(size->width) + " x " + std::to_string(size->height) +
+                         " pixels; the limit for floor plans is 100 million",
+                     "reduce the image and increase its resolution value (metres per pixel)");
   }
   const std::optional<Image> image = read_image(plan.image);
   if (!image) {
@@ -47,10 +47,10 @@ YAML::Node load_yaml(const fs::path& path) {
   refuse_pipe(path);
   try {
     YAML::Node root = YAML::LoadFile(path.string());
-    if (!root.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields");
+    if (!root.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
     return root;
   } catch (const YAML::BadFile&) {
-    throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+    throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
   } catch (const YAML::Exception& error) {
     throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
   }
@@ -83,11 +83,11 @@ PlanOrigin read_origin(const YAML::Node& root, const fs::path& path) {
   const YAML::Node origin = root["origin"];
   if (!origin) throw InputError(place, "is missing");
   if (!origin.IsSequence() || origin.size() != 3) {
-    throw InputError(place, "is no list of three numbers", "give x, y and yaw of the lower left corner");
+    throw InputError(place, "is not a list of three numbers", "give x, y and yaw of the lower left corner");
   }
   const PlanOrigin read{{to_number(origin[0], place), to_number(origin[1], place)}, to_number(origin[2], place)};
   if (read.corner_in_plan.cwiseAbs().maxCoeff() <= kFarthest) return read;
-  throw InputError(place, "lies more than a million kilometres away", "give x and y in metres");
+  throw InputError(place, "is more than a million kilometres away", "give x and y in metres");
 }
 
 fs::path read_image_path(const YAML::Node& root, const fs::path& path) {
@@ -120,8 +120,7 @@ bool read_is_negated(const YAML::Node& root, const fs::path& path) {
   bool is_true = false;
   if (YAML::convert<int>::decode(negate, number)) return number != 0;
   if (YAML::convert<bool>::decode(negate, is_true)) return is_true;
-  throw InputError(path.string() + ": negate", "is neither 0 or 1 nor true or false",
-                   "give 1 if white is occupied, else 0");
+  throw InputError(path.string() + ": negate", "is not 0, 1, true or false", "give 1 if white is occupied, else 0");
 }
 
 PlanMode read_mode(const YAML::Node& root, const fs::path& path) {
@@ -132,7 +131,7 @@ PlanMode read_mode(const YAML::Node& root, const fs::path& path) {
   if (word == "trinary") return PlanMode::trinary;
   if (word == "scale") return PlanMode::scale;
   if (word == "raw") return PlanMode::raw;
-  throw InputError(path.string() + ": mode", "is none of trinary, scale and raw", "leave it out for trinary");
+  throw InputError(path.string() + ": mode", "is not trinary, scale or raw", "omit it for trinary");
 }
 
 void require_scale(const FloorPlan& plan, const fs::path& path) {
@@ -175,16 +174,17 @@ std::array<double, 6> read_six_numbers(const fs::path& path) {
 
 void require_sound_pixels(const FloorPlan& plan, const fs::path& world_file) {
   if (plan.metres_per_pixel.colwise().norm().minCoeff() < kSmallestPixel) {
-    throw InputError(world_file.string(), "has pixels of less than a tenth of a millimetre",
-                     "if it is in degrees, reproject the plan to a system in metres, such as UTM");
+    throw InputError(world_file.string(), "has pixels smaller than 0.1 mm",
+                     "if its unit is degrees, reproject the plan to a coordinate system in metres, such as UTM");
   }
   const double farthest = plan.top_left_in_plan.cwiseAbs().maxCoeff();
   if (plan.metres_per_pixel.cwiseAbs().maxCoeff() > kLargestPixel || farthest > kFarthest) {
-    throw InputError(world_file.string(), "has pixels of more than 100 metres, or lies a million kilometres away",
-                     "give metres");
+    throw InputError(world_file.string(),
+                     "has pixels larger than 100 m, or an origin more than a million kilometres away",
+                     "give values in metres");
   }
   const double turn = plan.metres_per_pixel.determinant();  // sign of the orientation: rows go down, y goes up
-  if (turn >= 0.0) throw InputError(world_file.string(), "mirrors the plan or makes it a line");
+  if (turn >= 0.0) throw InputError(world_file.string(), "has a mirrored or degenerate transform");
 }
 
 FloorPlan read_geo_referenced_plan(const fs::path& path) {
@@ -194,8 +194,8 @@ FloorPlan read_geo_referenced_plan(const fs::path& path) {
   read_image_size(plan);
   const std::optional<fs::path> world_file = find_world_file(path);
   if (!world_file) {
-    throw InputError(path.string(), "has no world file beside it that says where it lies",
-                     "add one, or name the YAML file of a map_server map");
+    throw InputError(path.string(), "has no world file in its folder, so its position and scale are unknown",
+                     "add a world file, or give the YAML file of a map_server map");
   }
   const std::array<double, 6> numbers = read_six_numbers(*world_file);
   plan.metres_per_pixel << numbers[0], numbers[2], numbers[1], numbers[3];

@@ -103,25 +103,26 @@ TEST_F(FloorPlans, AreRefusedWithTheFieldThatIsWrong) {
   }
   EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [0, 0, .nan]\n"), HasSubstr("is not a number"));
   EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [1e300, 0, 0]\n"),
-              HasSubstr("origin: lies more than a million kilometres away"));
-  EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [0, 0]\n"), HasSubstr("no list of three numbers"));
+              HasSubstr("origin: is more than a million kilometres away"));
+  EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [0, 0]\n"),
+              HasSubstr("not a list of three numbers"));
   EXPECT_THAT(fault_in_yaml("image: plan.png\nresolution: 1\norigin: [0, a, 0]\n"), HasSubstr("is not a number"));
   EXPECT_THAT(fault_in_yaml("image: no.png\nresolution: 1\norigin: [0, 0, 0]\n"), HasSubstr("no.png: cannot be read"));
 }
 
 TEST_F(FloorPlans, AreRefusedWithAWorldFileThatMakesNoSense) {
-  EXPECT_THAT(error_of([&] { read_floor_plan(folder_ / "plan.png"); }), HasSubstr("has no world file beside it"));
+  EXPECT_THAT(error_of([&] { read_floor_plan(folder_ / "plan.png"); }), HasSubstr("has no world file in its folder"));
   EXPECT_THAT(fault_in_world_file("1\n0\n0\n-1\n7\n"), HasSubstr("plan.pgw: has 5 lines instead of six"));
   EXPECT_THAT(fault_in_world_file("1\n0\n0\nx\n7\n8\n"), HasSubstr("plan.pgw:4: is not a number"));
-  EXPECT_THAT(fault_in_world_file("1\n0\n0\n1\n7\n8\n"), HasSubstr("mirrors the plan"));
-  EXPECT_THAT(fault_in_world_file("1e308\n0\n0\n-1e308\n0\n0\n"), HasSubstr("has pixels of more than 100 metres"));
+  EXPECT_THAT(fault_in_world_file("1\n0\n0\n1\n7\n8\n"), HasSubstr("has a mirrored or degenerate transform"));
+  EXPECT_THAT(fault_in_world_file("1e308\n0\n0\n-1e308\n0\n0\n"), HasSubstr("has pixels larger than 100 m"));
   EXPECT_THAT(fault_in_world_file("1e-6\n0\n0\n-1e-6\n11.2\n48.1\n"), AllOf(HasSubstr("degrees"), HasSubstr("UTM")));
 }
 
 TEST_F(FloorPlans, OfMoreThanAHundredMillionPixelsAreNotDecoded) {
   write("plan.pgm", "P5\n30000 30000\n255\n");
   EXPECT_THAT(fault_in_yaml("image: plan.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n"),
-              HasSubstr("plan.pgm: is of 30000 x 30000 pixels, more than the 100 million that a floor plan may have"));
+              HasSubstr("plan.pgm: has 30000 x 30000 pixels; the limit for floor plans is 100 million"));
 }
 
 }  // namespace

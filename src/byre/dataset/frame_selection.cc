@@ -17,7 +17,7 @@ bool is_within(const FrameRange& range, int number, double seconds) {
 
 std::string describe_extent(const std::vector<Timestamp>& times) {
   const double span = to_seconds(times.back() - times.front());
-  return "it holds " + std::to_string(times.size()) + " frames in " + std::to_string(span) + " s";
+  return "the recording has " + std::to_string(times.size()) + " frames in " + std::to_string(span) + " s";
 }
 
 PlacedCalibration without_right(PlacedCalibration calibration) {
@@ -45,14 +45,15 @@ bool has_right_image(const FrameFiles& frame) {
 
 void require_pair(const PlacedCalibration& calibration, const BesideLeft& beside, const fs::path& path) {
   if (beside.right && calibration.cameras.right) return;
-  throw InputError(path.string(), beside.right ? "is calibrated for one camera only" : "has images of one camera only",
-                   "take that camera alone: left, or right of a calibrated pair");
+  throw InputError(path.string(),
+                   beside.right ? "has a calibration of one camera only" : "has images of one camera only",
+                   "select one camera: left, or right of a calibrated pair");
 }
 
 void require_depth(const PlacedCalibration& calibration, const BesideLeft& beside, const fs::path& path) {
   if (beside.depth && calibration.cameras.depth) return;
   throw InputError(path.string(), "has no depth images",
-                   "give the folder of an RGB-D recording, whose depth.txt lists them (TUM), or take the camera alone: "
+                   "give the folder of an RGB-D recording with depth.txt (TUM), or select the camera alone: "
                    "left");
 }
 
@@ -67,7 +68,7 @@ std::vector<std::size_t> frames_in_range(const std::vector<Timestamp>& times, co
     if (!is_within(range, static_cast<int>(i), to_seconds(times[i] - times.front()))) continue;
     if (within++ % range.stride == 0) selected.push_back(i);
   }
-  if (selected.empty()) throw InputError(path.string(), "no frame lies in the range asked for", describe_extent(times));
+  if (selected.empty()) throw InputError(path.string(), "the selected range contains no frame", describe_extent(times));
   return selected;
 }
 
@@ -77,8 +78,8 @@ PlacedCalibration choose_calibration(const PlacedCalibration& calibration, const
   switch (choice.value_or(is_pair ? CameraChoice::stereo : CameraChoice::rgbd)) {
     case CameraChoice::right:
       if (calibration.cameras.right) return right_alone(calibration);
-      throw InputError(path.string(), "has no right camera in its calibration",
-                       "give the calibration of a pair, or take the left camera");
+      throw InputError(path.string(), "has a calibration without right camera",
+                       "give a stereo calibration, or select the left camera");
     case CameraChoice::stereo:
       require_pair(calibration, beside, path);
       return without_depth(calibration);
@@ -96,7 +97,7 @@ void require_calibrated_size(int width, int height, const Camera& camera, const 
   throw InputError(place,
                    "is " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
                        ", but the images are " + std::to_string(width) + "x" + std::to_string(height),
-                   "use a calibration made at the size of the images");
+                   "use a calibration for this image size");
 }
 
 BesideLeft images_beside_left(const RecordingIndex& index) {
@@ -107,7 +108,7 @@ BesideLeft images_beside_left(const RecordingIndex& index) {
 RecordingIndex choose_camera(RecordingIndex index, const BesideLeft& beside, const std::optional<CameraChoice>& choice,
                              const fs::path& path) {
   if (beside.right && !index.calibration.cameras.right && !choice) {
-    index.warnings.push_back(path.string() + ": is calibrated for one camera only, so its right images are left out");
+    index.warnings.push_back(path.string() + ": the calibration has one camera only; right images are ignored");
   }
   index.calibration = choose_calibration(index.calibration, beside, choice, path);
   if (index.calibration.cameras.right) return index;
@@ -115,7 +116,7 @@ RecordingIndex choose_camera(RecordingIndex index, const BesideLeft& beside, con
     std::erase_if(index.frames, [](const FrameFiles& frame) { return !has_right_image(frame); });
     for (FrameFiles& frame : index.frames) frame.left = *frame.right;
   }
-  if (index.frames.empty()) throw InputError(path.string(), "no frame in the range asked for has a right image");
+  if (index.frames.empty()) throw InputError(path.string(), "no frame in the selected range has a right image");
   for (FrameFiles& frame : index.frames) {
     frame.right.reset();
     if (!index.calibration.cameras.depth) frame.depth.reset();

@@ -35,7 +35,7 @@ std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pix
   std::vector<std::uint8_t> bytes;
   if (!encode(extension, pixels, bytes, parameters)) {
     throw InputError("image", std::string("cannot be encoded as ") + extension,
-                     "give a name that ends in .png or .jpg");
+                     "choose a name that ends in .png or .jpg");
   }
   return bytes;
 }

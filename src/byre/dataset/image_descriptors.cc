@@ -16,7 +16,7 @@ std::vector<fs::path> images_by_name(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.is_regular_file() && has_image_name(entry.path())) images.push_back(entry.path());
   }
-  if (images.empty()) throw InputError(folder.string(), "holds no images", "name the folder they are in");
+  if (images.empty()) throw InputError(folder.string(), "contains no images", "give the folder of the images");
   std::ranges::sort(images);
   return images;
 }
@@ -38,7 +38,7 @@ Calibration ideal_calibration(int width, int height) {
 std::vector<fs::path> find_images(std::span<const fs::path> files_and_folders) {
   std::vector<fs::path> images;
   for (const fs::path& path : files_and_folders) {
-    if (!fs::exists(path)) throw InputError(path.string(), "does not exist", "name images and folders of images");
+    if (!fs::exists(path)) throw InputError(path.string(), "does not exist", "give images or folders of images");
     if (!fs::is_directory(path)) {
       images.push_back(path);
       continue;

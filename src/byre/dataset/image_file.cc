@@ -98,7 +98,7 @@ ImageReading<Image> try_image(const std::filesystem::path& path) {
 }
 
 ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes) {
-  const ImageReading<Image> broken{std::nullopt, "is not a whole image"};
+  const ImageReading<Image> broken{std::nullopt, "is not a complete image"};
   if (bytes.empty() || is_cut_jpeg(bytes)) return broken;
   const cv::Mat grey = decode(bytes, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) return broken;
@@ -107,7 +107,7 @@ ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes) {
 }
 
 ImageReading<DepthImage> try_depth_image(const std::filesystem::path& path) {
-  const ImageReading<DepthImage> broken{std::nullopt, "is not a whole image of 16 bits"};
+  const ImageReading<DepthImage> broken{std::nullopt, "is not a complete 16-bit image"};
   const auto [bytes, failure] = read_bytes(path);
   if (!failure.empty()) return {std::nullopt, failure};
   if (bytes.empty()) return broken;

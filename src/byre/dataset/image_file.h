@@ -14,7 +14,7 @@ namespace byre {
 template <typename AnyImage>
 struct ImageReading {
   std::optional<AnyImage> image;
-  std::string failure;  // reason of failure, to follow the name of the file: "is not a whole image"
+  std::string failure;  // reason of failure, to follow the name of the file: "is not a complete image"
 };
 
 // Same as read_image and read_depth_image, with the reason of failure.

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRateWarning = "the names of the images are no time stamps, so 30 frames a second are assumed";
+constexpr const char* kRateWarning = "image names are not time stamps; 30 frames per second are assumed";
 
 struct ImageFolders {
   fs::path left;
@@ -33,8 +33,8 @@ std::vector<TimedFile> sorted_by_time(std::vector<TimedFile> files) {
   std::ranges::stable_sort(files, {}, &TimedFile::time);
   const auto same = std::ranges::adjacent_find(files, {}, &TimedFile::time);
   if (same == files.end()) return files;
-  throw InputError(std::next(same)->path.string(), "bears the same time as " + same->path.filename().string(),
-                   "keep one of the two");
+  throw InputError(std::next(same)->path.string(), "has the same time stamp as " + same->path.filename().string(),
+                   "remove one of the two");
 }
 
 std::optional<std::vector<TimedFile>> timed_by_name(const std::vector<fs::path>& files, const OpenOptions& options) {
@@ -52,9 +52,9 @@ void require_equal_count(const std::vector<fs::path>& left, const std::vector<fs
                          const fs::path& folder) {
   if (left.size() == right.size()) return;
   throw InputError(folder.string(),
-                   "holds " + std::to_string(left.size()) + " left and " + std::to_string(right.size()) +
-                       " right images, whose names do not tell which belong together",
-                   "name them by their time stamps in nanoseconds, or take one camera alone");
+                   "contains " + std::to_string(left.size()) + " left and " + std::to_string(right.size()) +
+                       " right images, and their names do not define pairs",
+                   "name the images by their time stamps in nanoseconds, or select one camera");
 }
 
 // Left and right images with times from one source.

@@ -23,11 +23,11 @@ using Projection = Eigen::Matrix<double, 3, 4>;
 
 Projection parse_projection(const TextLine& line, const std::string& place) {
   const std::vector<std::string_view> fields = split_fields(line.text);
-  if (fields.size() != 13) throw InputError(place, "does not hold twelve numbers behind its name");
+  if (fields.size() != 13) throw InputError(place, "does not have twelve numbers after its name");
   Projection projection;
   for (int i = 0; i < 12; ++i) {
     const std::optional<double> number = parse_number(fields[static_cast<std::size_t>(i) + 1]);
-    if (!number) throw InputError(place, "holds something that is not a number");
+    if (!number) throw InputError(place, "contains a value that is not a number");
     projection(i / 4, i % 4) = *number;
   }
   return projection;
@@ -41,7 +41,8 @@ void check_projection(const Projection& projection, const std::string& place) {
   const bool rectified = std::abs(fx - fy) <= kSameFocal * fx && projection(0, 1) == 0.0 && projection(1, 0) == 0.0 &&
                          projection.row(2) == Eigen::RowVector4d(0.0, 0.0, 1.0, 0.0);
   if (!rectified)
-    throw InputError(place, "is not the projection of a rectified camera", "use KITTI odometry's calib.txt");
+    throw InputError(place, "is not the projection matrix of a rectified camera",
+                     "use the calib.txt of KITTI odometry");
 }
 
 Projection read_projection(const fs::path& calibration, const std::string& name) {
@@ -64,14 +65,15 @@ Camera pinhole(const Projection& projection, const Image& image, const std::stri
   camera.cx = projection(0, 2);
   camera.cy = projection(1, 2);
   if (camera.contains({camera.cx, camera.cy})) return camera;
-  throw InputError(place, "the principal point lies outside the images", "check that they belong to this sequence");
+  throw InputError(place, "the principal point lies outside the images",
+                   "check that calibration and images belong to the same sequence");
 }
 
 StereoPartner read_partner(const fs::path& calibration, const Projection& left, const Image& image) {
   const std::string place = calibration.string() + ": P1";
   const Projection right = read_projection(calibration, "P1");
   const double baseline = (left(0, 3) - right(0, 3)) / right(0, 0);
-  if (baseline <= 0.0) throw InputError(place, "does not put the right camera to the right of the left one");
+  if (baseline <= 0.0) throw InputError(place, "does not place the right camera to the right of the left camera");
   return {pinhole(right, image, place), {Eigen::Quaterniond::Identity(), {-baseline, 0.0, 0.0}}};
 }
 
@@ -97,7 +99,7 @@ PlacedCalibration read_projections(const fs::path& file, const Image& image, boo
 std::vector<Timestamp> read_stamps(const fs::path& file) {
   std::vector<Timestamp> stamps;
   for (const TextLine& line : read_lines(file)) stamps.push_back(parse_time(line, place_of(file, line)));
-  if (stamps.empty()) throw InputError(file.string(), "holds no times");
+  if (stamps.empty()) throw InputError(file.string(), "contains no times");
   return stamps;
 }
 
@@ -122,7 +124,7 @@ RecordingIndex index_kitti(const fs::path& folder, const OpenOptions& options) {
   if (const std::size_t images = images_in(folder / "image_0").size(); images > times.size()) {
     index.warnings.push_back(times_file.string() + ": has " + std::to_string(times.size()) + " times for " +
                              std::to_string(images) + " images: the last " + std::to_string(images - times.size()) +
-                             " are left out");
+                             " are ignored");
   }
   index.corrections = std::move(restored.corrections);
   index.clock = std::move(restored.clock);

@@ -31,7 +31,7 @@ ImuSample parse_imu_line(const TextLine& line, const std::string& place) {
   constexpr std::size_t kLeastFields = 4, kAllFields = 7;
   const std::vector<std::string_view> fields = split_fields(line.text);
   if (fields.size() < kLeastFields) {
-    throw InputError(place, "has fewer than four fields", "a time in nanoseconds and three rates in rad/s are needed");
+    throw InputError(place, "has fewer than four fields", "expected: a time in nanoseconds and three rates in rad/s");
   }
   const std::optional<Timestamp> time = parse_nanoseconds(fields[0]);
   if (!time) throw InputError(place, "\"" + std::string(fields[0]) + "\" is not a time in nanoseconds");
@@ -75,7 +75,7 @@ fs::path rates_of(const fs::path& recording) {
   const auto folder = find_mav_folder(recording);
   const fs::path path = folder.value_or(recording) / "imu0" / "data.csv";
   if (fs::is_regular_file(path)) return path;
-  throw InputError(path.string(), "is not there", "leave the gyroscope out, or put what it recorded there");
+  throw InputError(path.string(), "does not exist", "omit the gyroscope, or add its samples as this file");
 }
 
 }  // namespace

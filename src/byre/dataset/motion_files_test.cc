@@ -85,7 +85,7 @@ TEST_F(MotionFiles, SayWhatIsWrongWithAGyroscope) {
     }
     return std::string("read");
   };
-  EXPECT_THAT(failure(""), HasSubstr("is not there"));
+  EXPECT_THAT(failure(""), HasSubstr("does not exist"));
   EXPECT_THAT(failure("100,0.1,0.2\n"), HasSubstr("fewer than four fields"));
   EXPECT_THAT(failure("100,0.1,0.2,left\n"), HasSubstr("\"left\" is not a number"));
   EXPECT_THAT(failure("100,0,0,0\n1 s,0,0,0\n"), HasSubstr("data.csv:2: \"1 s\" is not a time in nanoseconds"));

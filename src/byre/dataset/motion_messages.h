@@ -36,7 +36,7 @@ std::optional<ImuSample> sample_of(const ros::Imu& message, Timestamp time);
 
 // Warning for a topic whose messages mark rates as not measured.
 inline constexpr const char* kRatesNotMeasured =
-    "angular_velocity_covariance[0] is -1, which marks rates as not measured; these messages are not used; choose the "
+    "angular_velocity_covariance[0] is -1, which marks rates as not measured; these messages are ignored; choose the "
     "topic of the gyroscope, or correct the driver";
 
 }  // namespace byre

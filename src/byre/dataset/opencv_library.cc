@@ -15,7 +15,7 @@ std::string reason_of_failure() {
 }
 
 InputError unusable(const char* name) {
-  return {name, reason_of_failure(), "install this part of OpenCV, in the version that byre was built with"};
+  return {name, reason_of_failure(), "install this OpenCV module in the version used to build byre"};
 }
 
 // The library stays loaded.

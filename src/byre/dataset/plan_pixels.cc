@@ -52,7 +52,7 @@ std::vector<std::int8_t> read_occupancy(const FloorPlan& plan) {
       pixels.channels() == 1 || pixels.channels() == kColours || pixels.channels() == kWithAlpha;
   if (has_known_channels && pixels.depth() == CV_8U) return occupancy_of_all<std::uint8_t>(pixels, kWhite8, plan);
   if (has_known_channels && pixels.depth() == CV_16U) return occupancy_of_all<std::uint16_t>(pixels, kWhite16, plan);
-  throw InputError(plan.image.string(), "is not a grey or colour image of 8 or 16 bits", "save it as an 8-bit PNG");
+  throw InputError(plan.image.string(), "is not a grey or colour image with 8 or 16 bits", "save it as an 8-bit PNG");
 }
 
 void put_on_white(cv::Mat& image) {

@@ -146,8 +146,8 @@ TEST_F(PlanImages, AreReadInTheirMode) {
 TEST_F(PlanImages, AreRefusedWithAnInvalidField) {
   const cv::Mat image = (cv::Mat_<std::uint8_t>(1, 1) << 0);
   const auto fault = [&](const std::string& fields) { return error_of([&] { read(image, fields); }); };
-  EXPECT_THAT(fault("negate: perhaps\n"), HasSubstr("plan.yaml: negate: is neither 0 or 1 nor true or false"));
-  EXPECT_THAT(fault("mode: binary\n"), HasSubstr("plan.yaml: mode: is none of trinary, scale and raw"));
+  EXPECT_THAT(fault("negate: perhaps\n"), HasSubstr("plan.yaml: negate: is not 0, 1, true or false"));
+  EXPECT_THAT(fault("mode: binary\n"), HasSubstr("plan.yaml: mode: is not trinary, scale or raw"));
   EXPECT_THAT(fault("free_thresh: 20\n"), HasSubstr("free_thresh: is not between 0 and 1"));
   EXPECT_THAT(fault("mode: scale\nfree_thresh: 0.7\n"), HasSubstr("free_thresh: is not below occupied_thresh"));
 }

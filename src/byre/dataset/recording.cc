@@ -62,7 +62,7 @@ std::optional<ImageFrame> ImageFiles::read(int index) {
 std::optional<Image> ImageFiles::read_right(const FrameFiles& files) {
   if (!calibration().right) return std::nullopt;
   if (files.right) return read_calibrated(*files.right, try_image(*files.right), calibration().right->camera);
-  warnings_.push_back(files.left.string() + ": has no right image of the same time");
+  warnings_.push_back(files.left.string() + ": has no right image with the same time stamp");
   return std::nullopt;
 }
 
@@ -100,8 +100,8 @@ DepthImage first_readable_depth(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     if (std::optional<DepthImage> image = read_depth_image(file)) return std::move(*image);
   }
-  throw InputError(files.front().string(), "is no whole image of 16 bits, nor is any other of the depth images",
-                   "give depths as one channel of 16 bits, or take the camera alone: left");
+  throw InputError(files.front().string(), "is not a complete 16-bit image, and neither is any other depth image",
+                   "store depths in one 16-bit channel, or select the camera alone: left");
 }
 
 // Throws InputError if the size of the first readable images differs from the calibration.
@@ -126,27 +126,27 @@ void require_calibrated_sizes(const RecordingIndex& index) {
 
 void require_untimed(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
   if (!options.frame_rate_hz || format == RecordingFormat::images || format == RecordingFormat::video) return;
-  throw InputError(path.string(), "has time stamps, so no frame rate can be given",
-                   "leave it out, or name the folder of the images");
+  throw InputError(path.string(), "has time stamps; a frame rate is not accepted",
+                   "omit the frame rate, or give the folder of the images");
 }
 
 void require_no_topics(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
   const bool is_any_named = options.left_topic || options.right_topic || options.wheels_topic || options.imu_topic;
   if (format == RecordingFormat::bag || !is_any_named) return;
-  throw InputError(path.string(), "is no bag, so it has no topics", "leave them out");
+  throw InputError(path.string(), "is not a bag and has no topics", "omit the topics");
 }
 
 void require_no_motion(const fs::path& path, const OpenOptions& options) {
   if (!options.wheels && !options.use_gyroscope) return;
-  throw InputError(path.string(), "is a video, and wheels and gyroscopes are read of bags and beside folders of images",
-                   "leave them out, or extract the images");
+  throw InputError(path.string(), "is a video; wheel and gyroscope samples are read from bags and folders only",
+                   "omit them, or extract the images");
 }
 
 fs::path calibration_file_for(const fs::path& folder, const OpenOptions& options) {
   if (options.calibration) return *options.calibration;
   if (const std::optional<fs::path> file = find_calibration(folder)) return *file;
-  throw InputError(folder.empty() ? "." : folder.string(), "holds no calibration of the camera",
-                   "name one (--calibration FILE), or put it there as calibration.yaml, camera.yaml or sensor.yaml");
+  throw InputError(folder.empty() ? "." : folder.string(), "contains no camera calibration",
+                   "give one with --calibration FILE, or add it as calibration.yaml, camera.yaml or sensor.yaml");
 }
 
 }  // namespace
@@ -158,7 +158,7 @@ Image first_readable(const std::vector<fs::path>& files) {
     if (read.image) return std::move(*read.image);
     if (first_failure.empty()) first_failure = file.filename().string() + " " + read.failure;
   }
-  throw InputError(files.front().parent_path().string(), "none of the images listed can be read: " + first_failure,
+  throw InputError(files.front().parent_path().string(), "no listed image can be read: " + first_failure,
                    "check that the folder is complete");
 }
 
@@ -225,7 +225,7 @@ RecordingFormat guess_format(const fs::path& path) {
   if (is_video_file(path)) return RecordingFormat::video;
   if (!fs::is_directory(path)) {
     if (is_bag(path)) return RecordingFormat::bag;
-    throw InputError(path.string(), "is no folder, no video and no bag",
+    throw InputError(path.string(), "is not a folder, video or bag",
                      "give the folder of a recording, a video file or a bag");
   }
   if (find_mav_folder(path)) return RecordingFormat::euroc;
@@ -233,9 +233,9 @@ RecordingFormat guess_format(const fs::path& path) {
   if (fs::exists(path / "calib.txt") || fs::is_directory(path / "image_0")) return RecordingFormat::kitti;
   if (is_bag(path)) return RecordingFormat::bag;
   if (holds_images(path)) return RecordingFormat::images;
-  throw InputError(path.string(), "holds no recording that byre knows",
-                   "looked for mav0/cam0 or cam0 (EuRoC), calib.txt or image_0 (KITTI odometry), rgb.txt (TUM RGB-D), "
-                   "and images, in it or in left and right");
+  throw InputError(path.string(), "contains no recording in a supported format",
+                   "supported: mav0/cam0 or cam0 (EuRoC), calib.txt or image_0 (KITTI odometry), rgb.txt (TUM RGB-D), "
+                   "image files, also in folders left and right");
 }
 
 RecordingIndex index_recording(const fs::path& path, const OpenOptions& options) {

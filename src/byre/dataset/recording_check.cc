@@ -142,22 +142,23 @@ class FrameSum {
 
 void add_times(const RecordingCheck& check, std::vector<Finding>& findings) {
   if (check.rate_hz > 0.0 && check.rate_hz < 5.0) {
-    findings.push_back({false, fmt::format("only {:.1f} frames a second", check.rate_hz),
-                        "drive slowly: what turns out of view between two frames cannot be followed"});
+    findings.push_back({false, fmt::format("frame rate of only {:.1f} Hz", check.rate_hz),
+                        "drive slowly: features that leave the view between two frames cannot be tracked"});
   }
   if (check.gaps > check.frames / 50) {
     findings.push_back({false,
                         fmt::format("{} gaps between frames, the longest {:.2f} s", check.gaps, check.longest_gap_s),
-                        "look for what is too slow while recording: the disk, the cable, the encoder"});
+                        "check disk, cable and encoder for insufficient speed while recording"});
   }
   if (check.unreadable > 0) {
     findings.push_back({check.unreadable > check.looked_at / 10,
-                        fmt::format("{} of the images looked at cannot be read", check.unreadable),
-                        "record again, or leave them out with --frames"});
+                        fmt::format("{} of the checked images cannot be read", check.unreadable),
+                        "record again, or exclude them with --frames"});
   }
   if (check.repeated > check.looked_at / 20) {
-    findings.push_back({true, fmt::format("{} images are the same as the one before, bit by bit", check.repeated),
-                        "the camera or its driver stands still; a robot steered by it would not know that it moves"});
+    findings.push_back(
+        {true, fmt::format("{} images are identical to the previous one, bit by bit", check.repeated),
+         "the camera or its driver stalls; restart it and check for a fault, as motion is not measured meanwhile"});
   }
 }
 
@@ -165,44 +166,41 @@ void add_clock(const TimeCorrections& times, std::vector<Finding>& findings) {
   if (!times.clock_steps.empty()) {
     const ClockStep& first = times.clock_steps.front();
     const std::string count =
-        fmt::format("the clock of the images was set {} time{} while recording",
-                    static_cast<int>(times.clock_steps.size()), times.clock_steps.size() > 1 ? "s" : "");
-    findings.push_back(
-        {false,
-         count + fmt::format(", first by {:.3f} s at frame {}; times after it are shifted", to_seconds(first.by),
-                             first.frame),
-         "set clocks before recording, and slew them afterwards instead of stepping them (chrony without "
-         "makestep); do not record a bag that is played in a loop"});
+        fmt::format("the image clock was set {} time{} while recording", static_cast<int>(times.clock_steps.size()),
+                    times.clock_steps.size() > 1 ? "s" : "");
+    findings.push_back({false,
+                        count + fmt::format(", first by {:.3f} s at frame {}; times after it are shifted",
+                                            to_seconds(first.by), first.frame),
+                        "set clocks before recording and slew them afterwards instead of stepping (chrony without "
+                        "makestep); do not record a bag that is played in a loop"});
   }
   if (times.source != TimeSource::stamps) {
-    const char* const used =
-        times.source == TimeSource::receive_times ? "receive times are used" : "images of each stamp are spread evenly";
+    const char* const used = times.source == TimeSource::receive_times ? "receive times are used"
+                                                                       : "images of each time stamp are spread evenly";
     findings.push_back(
-        {false, std::string("images have no time stamps, or stamps as coarse as whole seconds; ") + used,
-         "stamp each image to the microsecond in the driver: velocities, wheels and gyroscopes need it"});
+        {false, std::string("images have no time stamps, or time stamps in whole seconds; ") + used,
+         "stamp each image in the driver with microsecond resolution: velocities, wheels and gyroscopes require it"});
   }
   if (times.unstamped > 0) {
-    findings.push_back({false,
-                        fmt::format("{} images have a time stamp of zero or a wrong one; their times are interpolated",
-                                    times.unstamped),
-                        "start recording once the driver stamps its images"});
+    findings.push_back(
+        {false, fmt::format("{} images have a zero or wrong time stamp; their times are interpolated", times.unstamped),
+         "start recording after the driver begins to stamp images"});
   }
   if (times.late > 0) {
-    findings.push_back({false,
-                        fmt::format("{} images were recorded after later ones, and are put in order", times.late),
+    findings.push_back({false, fmt::format("{} images were recorded after later ones; they are sorted", times.late),
                         "check for a node that republishes images, and record the driver's own topic"});
   }
   if (times.repeated > 0) {
     findings.push_back({false,
-                        fmt::format("{} images have the time stamp of another one, and are left out", times.repeated),
+                        fmt::format("{} images have the time stamp of another image; they are ignored", times.repeated),
                         "check for two publishers of one topic, and for a driver that repeats images"});
   }
 }
 
 void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding>& findings) {
   constexpr std::array<std::string_view, 5> kRemedies = {
-      "", "give it more light, a longer exposure or more gain", "expose it for shorter",
-      "take the cap off, clean the lens, look for what covers it", "focus the lens, expose it for shorter"};
+      "", "increase light, exposure time or gain", "reduce the exposure time",
+      "remove the cap or cover, clean the lens", "focus the lens, reduce the exposure time"};
   for (std::size_t i = 1; i < camera.by_fault.size(); ++i) {
     if (camera.by_fault[i] <= camera.images / 20) continue;
     findings.push_back({camera.by_fault[i] > camera.images / 2,
@@ -215,38 +213,39 @@ void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding
 void add_pair(const RecordingCheck& check, std::vector<Finding>& findings) {
   if (check.without_right > check.looked_at / 20) {
     findings.push_back({false, fmt::format("{} frames have no right image", check.without_right),
-                        "look for what drops them, or use one camera with --camera left"});
+                        "check why the recorder drops them, or use one camera with --camera left"});
   }
   if (!check.pair || (check.right && check.right->of_no_use() > check.right->images / 2)) return;
   if (is_partly_hidden({check.pair->matched, check.pair->matched_at_best, check.pair->row_error})) {
     findings.push_back(
         {false,
-         fmt::format("only {:.1f} % of the features are found in the right image, but {:.0f} % in parts of it",
+         fmt::format("only {:.1f} % of the features match in the right image, but {:.0f} % in parts of it",
                      100.0 * check.pair->matched, 100.0 * check.pair->matched_at_best),
-         "something hides parts of what the cameras see: see that the lenses are clean"});
+         "parts of the images are hidden: clean the lenses"});
   } else if (check.pair->matched < kLeastStereoShare) {
     findings.push_back(
-        {true, fmt::format("only {:.1f} % of the features are found in the right image", 100.0 * check.pair->matched),
-         "left and right may be swapped, upside down or out of step, or the calibration another one's"});
+        {true, fmt::format("only {:.1f} % of the features match in the right image", 100.0 * check.pair->matched),
+         "check whether left and right are swapped, upside down or unsynchronised, and whether the calibration is of "
+         "this pair"});
   } else if (check.pair->row_error > kMostRowOffset) {
     findings.push_back({true,
-                        fmt::format("features of the right image lie {:.2f} px off their row", check.pair->row_error),
-                        "the cameras are out of step, or one was moved since they were calibrated: see to the trigger, "
-                        "then \"byre calibrate\""});
+                        fmt::format("features of the right image are {:.2f} px off their row", check.pair->row_error),
+                        "the cameras are unsynchronised, or one has moved since calibration: check the trigger, "
+                        "then run \"byre calibrate\""});
   } else if (check.pair->calibration_error > kFarOffCalibration) {
-    findings.push_back({false, fmt::format("the calibration is off by about {:.2f} px", check.pair->calibration_error),
-                        "\"byre calibrate\" finds a better one from a minute of motion"});
+    findings.push_back({false, fmt::format("the calibration error is about {:.2f} px", check.pair->calibration_error),
+                        "run \"byre calibrate\" on a minute of motion"});
   }
 }
 
 void add_rig(const RecordingCheck& check, std::vector<Finding>& findings) {
   if (check.field_of_view_deg < 30.0 || check.field_of_view_deg > 170.0) {
     findings.push_back({false, fmt::format("a field of view of {:.0f} degrees", check.field_of_view_deg),
-                        "see that the calibration is of this camera at this resolution"});
+                        "check that the calibration is of this camera at this resolution"});
   }
   if (check.features < 200.0 && check.left.of_no_use() <= check.left.images / 2) {
-    findings.push_back({false, fmt::format("only {:.0f} features in an image", check.features),
-                        "look at things with texture; clean the lens; see to light and focus"});
+    findings.push_back({false, fmt::format("only {:.0f} features per image", check.features),
+                        "record scenes with texture; clean the lens; check light and focus"});
   }
 }
 

@@ -97,7 +97,7 @@ TEST(RecordingCheck, OfASoundPairMeasuresWhatItIs) {
 TEST(RecordingCheck, FindsACameraThatRepeatsItsImage) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) { images.left = texture(0, 0); });
   EXPECT_EQ(check.repeated, 5);
-  EXPECT_THAT(grave_findings(check), HasSubstr("same as the one before"));
+  EXPECT_THAT(grave_findings(check), HasSubstr("identical to the previous one"));
 }
 
 TEST(RecordingCheck, FindsSwappedCameras) {
@@ -179,11 +179,11 @@ INSTANTIATE_TEST_SUITE_P(
                     },
                     false, "5 gaps between frames, the longest 1.23 s"},
         FindingCase{[](RecordingCheck& check) { check.unreadable = 3; }, false,
-                    "3 of the images looked at cannot be read"},
+                    "3 of the checked images cannot be read"},
         FindingCase{[](RecordingCheck& check) { check.unreadable = 12; }, true,
-                    "12 of the images looked at cannot be read"},
+                    "12 of the checked images cannot be read"},
         FindingCase{[](RecordingCheck& check) { check.repeated = 6; }, true,
-                    "6 images are the same as the one before, bit by bit"},
+                    "6 images are identical to the previous one, bit by bit"},
         FindingCase{[](RecordingCheck& check) { give_fault(check.left, ImageFault::dark, 51); }, true,
                     "51 of 100 left images are dark"},
         FindingCase{[](RecordingCheck& check) { give_fault(*check.right, ImageFault::overexposed, 6); }, false,
@@ -202,19 +202,19 @@ INSTANTIATE_TEST_SUITE_P(
                       check.pair->matched = 0.101;
                       check.pair->matched_at_best = 0.34;
                     },
-                    false, "only 10.1 % of the features are found in the right image, but 34 % in parts of it"},
+                    false, "only 10.1 % of the features match in the right image, but 34 % in parts of it"},
         FindingCase{[](RecordingCheck& check) {
                       check.pair->matched = 0.011;
                       check.pair->matched_at_best = 0.02;
                     },
-                    true, "only 1.1 % of the features are found in the right image"},
+                    true, "only 1.1 % of the features match in the right image"},
         FindingCase{[](RecordingCheck& check) { check.pair->row_error = 1.234; }, true,
-                    "features of the right image lie 1.23 px off their row"},
+                    "features of the right image are 1.23 px off their row"},
         FindingCase{[](RecordingCheck& check) { check.pair->calibration_error = 0.62; }, false,
-                    "the calibration is off by about 0.62 px"},
+                    "the calibration error is about 0.62 px"},
         FindingCase{[](RecordingCheck& check) { check.field_of_view_deg = 3.4; }, false,
                     "a field of view of 3 degrees"},
-        FindingCase{[](RecordingCheck& check) { check.features = 20.4; }, false, "only 20 features in an image"}));
+        FindingCase{[](RecordingCheck& check) { check.features = 20.4; }, false, "only 20 features per image"}));
 
 TEST(RecordingCheck, HasNoFindingWithoutProblems) {
   EXPECT_TRUE(findings_of(sound_check()).empty());
@@ -239,11 +239,11 @@ TEST(RecordingCheck, NamesCorrectionsOfTimesAndARemedy) {
     return text;
   };
   EXPECT_THAT(findings_with({.clock_steps = {{70, std::chrono::milliseconds(-620)}}}),
-              HasSubstr("the clock of the images was set 1 time while recording, first by -0.620 s at frame 70; times "
+              HasSubstr("the image clock was set 1 time while recording, first by -0.620 s at frame 70; times "
                         "after it are shifted: set clocks before recording"));
   EXPECT_THAT(findings_with({.source = TimeSource::receive_times}), HasSubstr("receive times are used"));
   EXPECT_THAT(findings_with({.source = TimeSource::even_spacing}), HasSubstr("spread evenly"));
-  EXPECT_THAT(findings_with({.unstamped = 3}), HasSubstr("3 images have a time stamp of zero or a wrong one"));
+  EXPECT_THAT(findings_with({.unstamped = 3}), HasSubstr("3 images have a zero or wrong time stamp"));
   EXPECT_THAT(findings_with({.late = 2}), HasSubstr("2 images were recorded after later ones"));
   EXPECT_THAT(findings_with({.repeated = 4}), HasSubstr("4 images have the time stamp of another one"));
 }

@@ -437,24 +437,24 @@ std::vector<std::string> describe(const TimeCorrections& corrections, const Item
   const std::string items = names.kind + "s";
   const auto add = [&](const std::string& text) { lines.push_back(names.place + ": " + text); };
   if (corrections.source == TimeSource::receive_times) {
-    add("time stamps are zero, or as coarse as whole seconds; receive times are used for all " + items);
+    add("time stamps are zero or in whole seconds; receive times are used for all " + items);
   } else if (corrections.source == TimeSource::even_spacing) {
-    add("time stamps are as coarse as whole seconds; the " + items + " of each stamp are spread evenly");
+    add("time stamps are in whole seconds; the " + items + " of each time stamp are spread evenly");
   }
   constexpr std::size_t kMostListed = 10;
   const auto& steps = corrections.clock_steps;
   for (std::size_t i = 0; i < std::min(steps.size(), kMostListed); ++i) {
     const double by = to_seconds(steps[i].by);
-    add(fmt::format("clock set {} by {:.3f} s at {} {}: times after it are shifted to continue",
+    add(fmt::format("clock set {} by {:.3f} s at {} {}: later times are shifted to continue",
                     by < 0.0 ? "back" : "forward", std::abs(by), names.counted, steps[i].frame));
   }
-  if (steps.size() > kMostListed) add(std::to_string(steps.size() - kMostListed) + " more steps of the clock");
+  if (steps.size() > kMostListed) add(std::to_string(steps.size() - kMostListed) + " more clock steps");
   const auto add_count = [&](int count, const std::string& text) {
     if (count > 0) add(std::to_string(count) + " " + items + " " + text);
   };
-  add_count(corrections.unstamped, "have a time stamp of zero or a wrong one: timed between their neighbours");
-  add_count(corrections.late, "were recorded after later ones: put in order");
-  add_count(corrections.repeated, "have the time stamp of another one and are left out");
+  add_count(corrections.unstamped, "have a zero or wrong time stamp: times are interpolated");
+  add_count(corrections.late, "were recorded after later ones: sorted by time");
+  add_count(corrections.repeated, "have the time stamp of another one: ignored");
   return lines;
 }
 

@@ -316,9 +316,9 @@ TEST(TimeCorrections, AreDescribedWithTheirEffect) {
   EXPECT_THAT(
       describe(corrections, {"walk.mcap: /left", "image", "frame"}),
       ElementsAre("walk.mcap: /left: clock set back by 0.620 s at frame 70: times after it are shifted to continue",
-                  HasSubstr("4 images have a time stamp of zero or a wrong one: timed between their neighbours"),
-                  HasSubstr("2 images were recorded after later ones: put in order"),
-                  HasSubstr("3 images have the time stamp of another one and are left out")));
+                  HasSubstr("4 images have a zero or wrong time stamp: times are interpolated"),
+                  HasSubstr("2 images were recorded after later ones: sorted by time"),
+                  HasSubstr("3 images have the time stamp of another one: ignored")));
   corrections = {.source = TimeSource::receive_times};
   EXPECT_THAT(describe(corrections, {"a", "image", "frame"}), ElementsAre(HasSubstr("receive times are used")));
 }

@@ -22,11 +22,11 @@ int line_of(const YAML::Node& node) {
 
 YAML::Node load_settings(const fs::path& path) {
   refuse_pipe(path);
-  if (fs::is_directory(path)) throw InputError(path.string(), "is a folder", "name a file");
+  if (fs::is_directory(path)) throw InputError(path.string(), "is a folder", "give a file");
   try {
     return YAML::LoadFile(path.string());
   } catch (const YAML::BadFile&) {
-    throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+    throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
   } catch (const YAML::Exception& error) {
     throw InputError(place_of_line(path, error.mark.line + 1), error.msg, "correct the YAML");
   }
@@ -41,8 +41,7 @@ void append_settings(const YAML::Node& group, const std::string& prefix, int dep
     if (!entry.first.IsScalar()) throw InputError(place_of_line(path, line), "has no name", "write NAME: VALUE");
     const std::string name = prefix + entry.first.Scalar();
     if (entry.second.IsMap()) {
-      if (depth == kDeepest)
-        throw InputError(place_of_line(path, line), "lies too deep in groups", "write fewer of them");
+      if (depth == kDeepest) throw InputError(place_of_line(path, line), "is nested too deeply", "use fewer groups");
       append_settings(entry.second, name + ".", depth + 1, path, settings);
     } else if (entry.second.IsSequence()) {
       throw InputError(place_of_line(path, line), name + " is a list", "give one value");
@@ -60,7 +59,7 @@ std::vector<Setting> read_settings(const fs::path& path) {
   const YAML::Node root = load_settings(path);
   std::vector<Setting> settings;
   if (root.IsNull()) return settings;
-  if (!root.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields", "write NAME: VALUE");
+  if (!root.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields", "write NAME: VALUE");
   append_settings(root, "", 0, path, settings);
   return settings;
 }

@@ -111,7 +111,7 @@ TEST_F(OneOfAPair, KeepsTheReadoutTimeThatItWasTold) {
 TEST_F(OneOfAPair, CountsFramesTheSameWhicheverIsTaken) {
   EXPECT_THAT(open(options(CameraChoice::right), {.first = 2})->times(), ElementsAre(milliseconds(300)));
   EXPECT_THAT(open_error(options(CameraChoice::right), {.first = 1, .last = 2}),
-              HasSubstr("no frame in the range asked for has a right image"));
+              HasSubstr("no frame in the selected range has a right image"));
   EXPECT_FALSE(open(options({}), {.first = 1, .last = 2})->read(0)->right);
 }
 
@@ -119,10 +119,10 @@ TEST_F(OneOfAPair, NeedsNoCalibrationOfTheOther) {
   const auto recording = open({.calibration = calibration(kOne)});
   EXPECT_FALSE(recording->calibration().right);
   EXPECT_FALSE(recording->read(0)->right);
-  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("its right images are left out")));
-  EXPECT_THAT(open_error({CameraChoice::stereo, calibration(kOne)}), HasSubstr("is calibrated for one camera only"));
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("right images are ignored")));
+  EXPECT_THAT(open_error({CameraChoice::stereo, calibration(kOne)}), HasSubstr("has a calibration of one camera only"));
   EXPECT_THAT(open_error({CameraChoice::right, calibration(kOne)}),
-              HasSubstr("has no right camera in its calibration"));
+              HasSubstr("has a calibration without right camera"));
 }
 
 TEST_F(OneOfAPair, HasTheSizeThatItsOwnCalibrationSays) {
@@ -134,7 +134,7 @@ TEST_F(OneOfAPair, HasTheSizeThatItsOwnCalibrationSays) {
 TEST_F(OneOfAPair, RefusesAFrameRateBesideTimeStamps) {
   OpenOptions timed = options({});
   timed.frame_rate_hz = 20.0;
-  EXPECT_THAT(open_error(timed), HasSubstr("has time stamps, so no frame rate can be given"));
+  EXPECT_THAT(open_error(timed), HasSubstr("has time stamps; a frame rate is not accepted"));
 }
 
 class TumRecording : public SingleCamera {
@@ -172,7 +172,7 @@ TEST_F(TumRecording, TakesTheCalibrationNamedBeforeTheOneInTheFolder) {
 
 TEST_F(TumRecording, SaysWhichCalibrationIsMissing) {
   fs::remove(folder_ / "camera.yaml");
-  EXPECT_THAT(open_error(), HasSubstr("holds no calibration of the camera (name one (--calibration FILE), or put it"));
+  EXPECT_THAT(open_error(), HasSubstr("contains no camera calibration (give one with --calibration FILE, or add it"));
   EXPECT_THAT(open_error({.calibration = folder_ / "absent.yaml"}), HasSubstr("absent.yaml: cannot be opened"));
 }
 
@@ -180,7 +180,7 @@ TEST_F(TumRecording, NamesTheLineOfTheListThatIsWrong) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"#\n2.0 rgb/a.png\n2.0 rgb/b.png\n", "rgb.txt: all of its 2 images have the same time stamp"},
       {"noon rgb/a.png\n", "rgb.txt:1: \"noon\" is not a time in seconds"},
-      {"1.0\n", "rgb.txt:1: names no image file"},
+      {"1.0\n", "rgb.txt:1: has no name of an image file"},
       {"# nothing\n", "rgb.txt: lists no images"},
   };
   for (const auto& [list, message] : cases) {
@@ -209,7 +209,7 @@ TEST_F(ImageFolder, IsInTheOrderOfTimeThoughNamesAreShort) {
   write_frame("12.5.png", 20);
   EXPECT_THAT(open()->times(), ElementsAre(milliseconds(12250), milliseconds(12500)));
   write_frame("12.50.png", 30);
-  EXPECT_THAT(open_error(), HasSubstr("bears the same time as 12.5"));
+  EXPECT_THAT(open_error(), HasSubstr("has the same time stamp as 12.5"));
 }
 
 TEST_F(ImageFolder, IsTakenAtTheRateGivenOrAtThirtyWithAWarning) {
@@ -220,7 +220,7 @@ TEST_F(ImageFolder, IsTakenAtTheRateGivenOrAtThirtyWithAWarning) {
   EXPECT_THAT(steady->warnings(), IsEmpty());
   const auto assumed = open();
   EXPECT_NEAR(to_seconds(assumed->times()[1]), 1.0 / 30.0, 1e-9);
-  EXPECT_THAT(assumed->warnings(), ElementsAre(HasSubstr("30 frames a second are assumed")));
+  EXPECT_THAT(assumed->warnings(), ElementsAre(HasSubstr("30 frames per second are assumed")));
 }
 
 TEST_F(ImageFolder, MayHoldAPairInFoldersLeftAndRight) {
@@ -236,7 +236,7 @@ TEST_F(ImageFolder, MayHoldAPairInFoldersLeftAndRight) {
   EXPECT_THAT(greys_of(*open({.camera = CameraChoice::left, .frame_rate_hz = 10.0})), ElementsAre(10, 20));
 
   write_frame("right/3.png", 35);
-  EXPECT_THAT(open_error(), HasSubstr("holds 2 left and 3 right images, whose names do not tell"));
+  EXPECT_THAT(open_error(), HasSubstr("contains 2 left and 3 right images, and their names do not define pairs"));
 }
 
 TEST_F(ImageFolder, PairsImagesByTheTimesOfTheirNames) {
@@ -255,7 +255,7 @@ TEST_F(ImageFolder, RefusesWhatDoesNotBelongTogether) {
   write_image("1.png", 16, 12, 10);
   EXPECT_THAT(open_error(), HasSubstr("calibration.yaml: is 32x24, but the images are 16x12"));
   fs::remove(folder_ / "1.png");
-  EXPECT_THAT(open_error(), HasSubstr("holds no recording that byre knows"));
+  EXPECT_THAT(open_error(), HasSubstr("contains no recording in a supported format"));
 }
 
 // Five frames of a video, with grey values 40, 80 and so on.
@@ -306,7 +306,7 @@ TEST_F(VideoFile, SaysWhatIsWrongWithIt) {
   write("calibration.yaml", "cam0:\n  camera_model: ds\n");
   EXPECT_THAT(film_error(), HasSubstr("calibration.yaml: cam0.camera_model: \"ds\" is not supported"));
   fs::remove(folder_ / "calibration.yaml");
-  EXPECT_THAT(film_error(), HasSubstr("holds no calibration of the camera"));
+  EXPECT_THAT(film_error(), HasSubstr("contains no camera calibration"));
   write("film.avi", "no film");
   EXPECT_THAT(film_error({.calibration = calibration(kOne)}), HasSubstr("film.avi: cannot be opened as a video"));
 }

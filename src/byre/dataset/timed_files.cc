@@ -62,8 +62,9 @@ Timestamp pair_tolerance(const OpenOptions& options) {
 
 void require_times(std::size_t kept, int repeated, const std::string& place) {
   if (kept > 1 || repeated == 0) return;
-  throw InputError(place, "all of its " + std::to_string(repeated + 1) + " images have the same time stamp",
-                   "stamp images by a running clock, or extract them into a folder and give their rate (--fps)");
+  throw InputError(
+      place, "all of its " + std::to_string(repeated + 1) + " images have the same time stamp",
+      "stamp images with a running clock, or extract them into a folder and give the frame rate with --fps");
 }
 
 RestoredFiles restore_files(const std::vector<TimedFile>& listed, const std::string& place, const SensorClock& other) {
@@ -134,16 +135,16 @@ InputError no_pairs(const std::string& place, const std::vector<Timestamp>& left
   constexpr double kLikelyOnePair = 0.1;  // seconds
   const double difference = to_seconds(usual_difference(left, right));
   const std::string reason =
-      fmt::format("no right image was taken within {:g} ms of a left one; the median distance is {:.3f} ms",
+      fmt::format("no right image is within {:g} ms of a left image; the median difference is {:.3f} ms",
                   1e3 * to_seconds(tolerance), 1e3 * difference);
   if (difference > kLikelyOnePair) {
-    return {place, reason, "check that both cameras use one clock, or use the left one alone: --camera left"};
+    return {place, reason, "check that both cameras use one clock, or use the left camera alone: --camera left"};
   }
   return {place, reason,
-          fmt::format(
-              "trigger both cameras together; if these are pairs, allow the difference (--pair-tolerance {:.3f}); or "
-              "use the left camera alone: --camera left",
-              std::ceil(1e3 * difference + 1.0) / 1e3)};
+          fmt::format("trigger both cameras together; if the images are pairs, accept the difference with "
+                      "--pair-tolerance {:.3f}; or "
+                      "use the left camera alone: --camera left",
+                      std::ceil(1e3 * difference + 1.0) / 1e3)};
 }
 
 }  // namespace byre

@@ -16,7 +16,7 @@ Trajectory load_trajectory(const fs::path& path, const std::optional<fs::path>& 
 Trajectory load_truth(const fs::path& path, const std::optional<fs::path>& times) {
   if (!fs::is_directory(path)) return load_trajectory(path, times);
   const std::optional<fs::path> file = find_ground_truth(path);
-  if (!file) throw InputError(path.string(), "is a recording without ground truth", "name the file with it");
+  if (!file) throw InputError(path.string(), "is a recording without ground truth", "give the ground truth file");
   return load_trajectory(*file, times.value_or(path / "times.txt"));
 }
 

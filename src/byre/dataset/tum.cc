@@ -16,7 +16,7 @@ TimedFile parse_tum_line(const TextLine& line, const fs::path& folder, const std
   const std::vector<std::string_view> fields = split_fields(line.text);
   const std::optional<Timestamp> time = parse_seconds(fields.front());
   if (!time) throw InputError(place, "\"" + std::string(fields.front()) + "\" is not a time in seconds");
-  if (fields.size() < 2 || fields[1].empty()) throw InputError(place, "names no image file");
+  if (fields.size() < 2 || fields[1].empty()) throw InputError(place, "has no name of an image file");
   return {*time, folder / fields[1]};
 }
 
@@ -42,7 +42,7 @@ void add_listed_depth(const fs::path& folder, const OpenOptions& options, Record
   add_depth(index.frames, depth_files.files);
   if (std::ranges::none_of(index.frames, is_there)) {
     index.warnings.push_back((folder / "depth.txt").string() +
-                             ": none of its images is there and within 20 ms of a frame, so depth is left out");
+                             ": no listed image exists within 20 ms of a frame; depth is ignored");
     for (FrameFiles& frame : index.frames) frame.depth.reset();
     return;
   }

@@ -24,7 +24,8 @@ std::unique_ptr<cv::VideoCapture> open_capture(const fs::path& file) {
   // A fixed decoder, so that results do not depend on the installed ones.
   std::unique_ptr<cv::VideoCapture> capture = open_video_capture(file.string());
   if (!capture->isOpened()) {
-    throw InputError(file.string(), "cannot be opened as a video", "check that it is whole, or extract its images");
+    throw InputError(file.string(), "cannot be opened as a video",
+                     "check that the file is complete, or extract its images");
   }
   capture->set(cv::CAP_PROP_ORIENTATION_AUTO, 0);  // keeps the orientation of the calibration
   return capture;
@@ -37,7 +38,8 @@ std::size_t frame_count(const fs::path& file, const cv::VideoCapture& opened) {
   std::unique_ptr<cv::VideoCapture> capture = open_capture(file);
   std::size_t count = 0;
   while (capture->grab()) ++count;
-  if (count == 0) throw InputError(file.string(), "holds no frame that can be decoded", "check that it is whole");
+  if (count == 0)
+    throw InputError(file.string(), "contains no frame that can be decoded", "check that the file is complete");
   return count;
 }
 
@@ -141,7 +143,7 @@ std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& ra
                           calibration.left_size);
   const std::optional<double> rate = options.frame_rate_hz ? options.frame_rate_hz : stated_frame_rate(*capture);
   std::vector<std::string> warnings;
-  if (!rate) warnings.push_back(file.string() + ": does not say its frame rate, so 30 frames a second are assumed");
+  if (!rate) warnings.push_back(file.string() + ": has no frame rate; 30 frames per second are assumed");
   const std::vector<Timestamp> times = steady_times(frame_count(file, *capture), rate.value_or(kAssumedFrameRate));
   auto video = std::make_unique<Video>(file, std::move(capture), calibration.cameras, std::move(warnings));
   video->select(frames_in_range(times, range, file), times);

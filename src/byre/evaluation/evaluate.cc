@@ -5,7 +5,8 @@
 namespace byre {
 namespace {
 
-constexpr const char* kSpanSource = "frames that fit into the truth's span at the estimate's median interval";
+constexpr const char* kSpanSource =
+    "frames expected from the time span of the truth and the median interval of the estimate";
 
 // Aligns the first estimated pose with the true pose of its time.
 Similarity origin_alignment(const PosePair& first) {

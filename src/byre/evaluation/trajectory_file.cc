@@ -52,7 +52,7 @@ StampedPose parse_stamped_pose(const TextLine& line, TrajectoryFormat format, co
   const bool enough = format == TrajectoryFormat::euroc ? fields.size() >= kPoseFields : fields.size() == kPoseFields;
   if (!enough) {
     throw InputError(place, "has " + std::to_string(fields.size()) + " columns instead of 8",
-                     "time, position and quaternion are expected");
+                     "expected: time, position and quaternion");
   }
   const std::vector<double> n = parse_numbers(Fields(fields).subspan(1, kPoseFields - 1), place);
   const Eigen::Quaterniond rotation = format == TrajectoryFormat::euroc
@@ -65,7 +65,7 @@ Pose parse_kitti_pose(const TextLine& line, const std::string& place) {
   const std::vector<std::string_view> fields = split_fields(line.text);
   if (fields.size() != kKittiFields) {
     throw InputError(place, "has " + std::to_string(fields.size()) + " columns instead of 12",
-                     "the rows of a 3x4 matrix are expected");
+                     "expected: the rows of a 3x4 matrix");
   }
   const std::vector<double> numbers = parse_numbers(fields, place);
   const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> world_from_camera(numbers.data());
@@ -76,7 +76,7 @@ Pose parse_kitti_pose(const TextLine& line, const std::string& place) {
 
 void require_later(Timestamp time, std::optional<Timestamp> previous, const std::string& place) {
   if (!previous || time > *previous) return;
-  throw InputError(place, time == *previous ? "repeats the time stamp before it" : "is earlier than the line before it",
+  throw InputError(place, time == *previous ? "repeats the previous time stamp" : "is earlier than the line before it",
                    "sort the lines by time and remove duplicates");
 }
 
@@ -131,7 +131,7 @@ template <typename Use>
 void for_each_pose(const fs::path& path, const Use& use) {
   const TrajectoryFormat format = guess_trajectory_format(path);
   if (format == TrajectoryFormat::kitti) {
-    throw InputError(path.string(), "is in KITTI format, which has no time stamps", "give a file of times with it");
+    throw InputError(path.string(), "is in KITTI format, which has no time stamps", "also give a file of times");
   }
   for (const TextLine& line : read_lines(path)) {
     const std::string place = place_of(path, line);
@@ -154,21 +154,22 @@ Timestamp parse_time(const TextLine& line, const std::string& place) {
 
 TrajectoryFormat guess_trajectory_format(const fs::path& path) {
   const std::vector<TextLine> lines = read_lines(path);
-  if (lines.empty()) throw InputError(path.string(), "holds no poses");
+  if (lines.empty()) throw InputError(path.string(), "contains no poses");
   const std::string& first = lines.front().text;
   if (first.find(',') != std::string::npos) return TrajectoryFormat::euroc;
   const std::size_t columns = split_fields(first).size();
   if (columns == kKittiFields) return TrajectoryFormat::kitti;
   if (columns == kPoseFields) return TrajectoryFormat::tum;
   throw InputError(place_of(path, lines.front()),
-                   "has " + std::to_string(columns) + " columns, which no known trajectory format has",
-                   "TUM has 8, KITTI 12, EuRoC at least 8 separated by commas");
+                   "has " + std::to_string(columns) + " columns, which matches no supported trajectory format",
+                   "TUM has 8 columns, KITTI 12, EuRoC at least 8 separated by commas");
 }
 
 Trajectory read_trajectory(const fs::path& path) {
   if (fs::is_directory(path)) {
     const std::optional<fs::path> truth = find_euroc_ground_truth(path);
-    if (!truth) throw InputError(path.string(), "holds no ground truth in mav0/state_groundtruth_estimate0/data.csv");
+    if (!truth)
+      throw InputError(path.string(), "contains no ground truth in mav0/state_groundtruth_estimate0/data.csv");
     return read_trajectory(*truth);
   }
   Trajectory trajectory;
@@ -190,9 +191,9 @@ Trajectory read_kitti_poses(const fs::path& poses, const fs::path& times) {
   const std::vector<Timestamp> stamps = read_times(times);
   if (lines.size() != stamps.size()) {
     throw InputError(poses.string(),
-                     "holds " + std::to_string(lines.size()) + " poses, but " + times.string() + " holds " +
+                     "contains " + std::to_string(lines.size()) + " poses, but " + times.string() + " contains " +
                          std::to_string(stamps.size()) + " times",
-                     "give the times of the same sequence");
+                     "give the times file of the same sequence");
   }
   Trajectory trajectory;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -209,7 +210,7 @@ std::vector<Timestamp> read_times(const fs::path& path) {
     require_later(time, times.empty() ? std::nullopt : std::optional(times.back()), place);
     times.push_back(time);
   }
-  if (times.empty()) throw InputError(path.string(), "holds no times");
+  if (times.empty()) throw InputError(path.string(), "contains no times");
   return times;
 }
 

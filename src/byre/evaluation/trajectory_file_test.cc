@@ -134,14 +134,14 @@ TEST_F(TrajectoryFile, NamesTheLineOfWhatItCannotRead) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"1 0 0 0 0 0 0 1\n2 0 0 x 0 0 0 1\n", "bad.txt:2: \"x\" is not a number"},
       {"1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0\n", "bad.txt:2: has 7 columns instead of 8"},
-      {"1 0 0 0 0 0 0 1\n\n1 0 0 0 0 0 0 1\n", "bad.txt:3: repeats the time stamp"},
+      {"1 0 0 0 0 0 0 1\n\n1 0 0 0 0 0 0 1\n", "bad.txt:3: repeats the previous time stamp"},
       {"2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "bad.txt:2: is earlier"},
       {"1 0 0 0 0 0 0 1.1\n", "bad.txt:1: the quaternion has length 1.1"},
       {"1 0 nan 0 0 0 0 1\n", "bad.txt:1: \"nan\" is not a number"},
       {"1.5,0,0,0,1,0,0,0\n", "bad.txt:1: \"1.5\" is not a time in nanoseconds"},
       {"noon 0 0 0 0 0 0 1\n", "bad.txt:1: \"noon\" is not a time in seconds"},
-      {"1 2 3\n", "bad.txt:1: has 3 columns, which no known"},
-      {"# nothing\n", "bad.txt: holds no poses"},
+      {"1 2 3\n", "bad.txt:1: has 3 columns, which matches no"},
+      {"# nothing\n", "bad.txt: contains no poses"},
   };
   for (const auto& [content, message] : cases) {
     const fs::path path = write("bad.txt", content);
@@ -155,7 +155,7 @@ TEST_F(TrajectoryFile, IsFoundInsideARecording) {
   EXPECT_EQ(find_euroc_ground_truth(folder_ / "room" / "mav0"), truth);
   EXPECT_EQ(find_euroc_ground_truth(folder_), std::nullopt);
   EXPECT_EQ(read_trajectory(folder_ / "room").size(), 1u);
-  EXPECT_THAT(error_of([&] { read_trajectory(folder_); }), HasSubstr("holds no ground truth"));
+  EXPECT_THAT(error_of([&] { read_trajectory(folder_); }), HasSubstr("contains no ground truth"));
 }
 
 TEST_F(TrajectoryFile, ThatCannotBeWrittenIsAnError) {
@@ -168,7 +168,7 @@ TEST_F(TrajectoryFile, OfTimesMayBeSecondsOrNanosecondsWithCommas) {
               testing::ElementsAre(Timestamp(500'000'000), Timestamp(1'500'000'000)));
   EXPECT_THAT(read_times(write("data.csv", "#time,file\n7,7.png\n9,9.png\n")),
               testing::ElementsAre(Timestamp(7), Timestamp(9)));
-  EXPECT_THAT(error_of([&] { read_times(write("none.txt", "")); }), HasSubstr("holds no times"));
+  EXPECT_THAT(error_of([&] { read_times(write("none.txt", "")); }), HasSubstr("contains no times"));
   EXPECT_THAT(error_of([&] { read_times(write("back.txt", "2\n1\n")); }), HasSubstr("back.txt:2: is earlier"));
 }
 

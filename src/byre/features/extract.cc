@@ -33,13 +33,14 @@ double seconds_between(Clock::time_point from, Clock::time_point to) {
 void require_size(int width, int height, std::size_t pixels, const Camera& camera) {
   if (width != camera.width || height != camera.height) {
     throw InputError("image",
-                     "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, the calibration says " +
-                         std::to_string(camera.width) + " x " + std::to_string(camera.height),
+                     "is " + std::to_string(width) + " x " + std::to_string(height) +
+                         " pixels; the calibration is for " + std::to_string(camera.width) + " x " +
+                         std::to_string(camera.height),
                      "use the calibration of this camera at this resolution");
   }
   if (pixels != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
-    throw InputError("image", "holds " + std::to_string(pixels) + " pixels, not width times height",
-                     "give 8-bit grey pixels (of depths: 16 bits), row after row without padding");
+    throw InputError("image", "has " + std::to_string(pixels) + " pixels instead of width times height",
+                     "give 8-bit grey pixels (depth: 16 bits), row by row without padding");
   }
 }
 

@@ -333,14 +333,14 @@ std::string refusal(const Camera& camera, const Pose& pose) {
 }
 
 TEST(Rectifier, RefusesSwappedCameras) {
-  EXPECT_THAT(refusal(pinhole(), right_from_left({-0.11, 0.0, 0.0})), HasSubstr("not lie to the right"));
-  EXPECT_THAT(refusal(equidistant(), right_from_left(-kRightInLeft, kTurn)), HasSubstr("not lie to the right"));
+  EXPECT_THAT(refusal(pinhole(), right_from_left({-0.11, 0.0, 0.0})), HasSubstr("not to the right"));
+  EXPECT_THAT(refusal(equidistant(), right_from_left(-kRightInLeft, kTurn)), HasSubstr("not to the right"));
 }
 
 TEST(Rectifier, RefusesCamerasThatAreNotBesideEachOther) {
-  EXPECT_THAT(refusal(pinhole(), Pose{}), HasSubstr("not lie to the right")) << "at the same place";
-  EXPECT_THAT(refusal(pinhole(), right_from_left({0.0, 0.1, 0.0})), HasSubstr("not lie to the right")) << "above";
-  EXPECT_THAT(refusal(pinhole(), right_from_left({0.0, 0.0, 0.1})), HasSubstr("not lie to the right")) << "behind";
+  EXPECT_THAT(refusal(pinhole(), Pose{}), HasSubstr("not to the right")) << "at the same place";
+  EXPECT_THAT(refusal(pinhole(), right_from_left({0.0, 0.1, 0.0})), HasSubstr("not to the right")) << "above";
+  EXPECT_THAT(refusal(pinhole(), right_from_left({0.0, 0.0, 0.1})), HasSubstr("not to the right")) << "behind";
 }
 
 TEST(Rectifier, RefusesCamerasThatLookInOppositeDirections) {

@@ -34,13 +34,13 @@ Calibration with_checked_baseline(Calibration calibration, const std::optional<d
   const double baseline = baseline_of(calibration);
   if (confirmed) {
     if (!(*confirmed > 0.0) || !std::isfinite(*confirmed)) {
-      throw InputError(place, "is given a baseline that is not a positive number of metres", "see " + option);
+      throw InputError(place, "has a given baseline that is not a positive number of metres", "see " + option);
     }
     if (!calibration.right) {
-      throw InputError(place, "is of one camera, which has no baseline", "leave out " + option);
+      throw InputError(place, "has one camera only, so a baseline does not apply", "omit " + option);
     }
     if (!(baseline > 0.0)) {
-      throw InputError(place, "has both cameras at one place, so the direction of the baseline is unknown",
+      throw InputError(place, "has both cameras at the same position, so the direction of the baseline is unknown",
                        "correct the translation between the cameras");
     }
     calibration.right->right_from_left.translation *= *confirmed / baseline;
@@ -49,9 +49,9 @@ Calibration with_checked_baseline(Calibration calibration, const std::optional<d
   if (!calibration.right || is_usual_baseline(baseline)) return calibration;
   const auto likely = in_smaller_unit(baseline);
   std::string remedy = "check that the extrinsics are in metres";
-  if (likely) remedy += fmt::format("; correct the baseline by {}{:g}", option, *likely);
+  if (likely) remedy += fmt::format("; correct the baseline with {}{:g}", option, *likely);
   if (baseline >= kShortestConfirmed && baseline <= kLongestConfirmed) {
-    remedy += fmt::format("{}confirm it by {}{:g}", likely ? ", or " : "; ", option, baseline);
+    remedy += fmt::format("{}confirm it with {}{:g}", likely ? ", or " : "; ", option, baseline);
   }
   throw InputError(
       place,

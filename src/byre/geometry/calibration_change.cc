@@ -72,11 +72,11 @@ const std::array<CalibrationParameter, kCalibrationParameters>& calibration_para
       {"right distortion 2", "", kRadialSigma},
       {"right distortion 3", "", kTangentialSigma},
       {"right distortion 4", "", kTangentialSigma},
-      {"right camera's turn about x", "deg", kRotationSigma},
-      {"right camera's turn about y", "deg", kRotationSigma},
-      {"right camera's turn about z", "deg", kRotationSigma},
-      {"baseline's turn about z", "deg", kBaselineTurnSigma},
-      {"baseline's turn about y", "deg", kBaselineTurnSigma},
+      {"right camera rotation about x", "deg", kRotationSigma},
+      {"right camera rotation about y", "deg", kRotationSigma},
+      {"right camera rotation about z", "deg", kRotationSigma},
+      {"baseline rotation about z", "deg", kBaselineTurnSigma},
+      {"baseline rotation about y", "deg", kBaselineTurnSigma},
   }};
   return kParameters;
 }

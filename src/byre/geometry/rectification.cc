@@ -39,7 +39,7 @@ Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& bord
     if (ray.z() > kMinForward) return ray.head<2>() / ray.z();
   }
   if (invertible) {
-    throw InputError("calibration", "the cameras look in directions too far apart to be rectified",
+    throw InputError("calibration", "the optical axes differ too much for rectification",
                      "check the extrinsic calibration of the pair");
   }
   throw InputError("calibration", "the distortion cannot be inverted near the image centre",
@@ -66,7 +66,7 @@ Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
   const Pose left_from_right = inverse(partner.right_from_left);
   const Eigen::Vector3d x_axis = left_from_right.translation.normalized();
   if (!(left_from_right.translation.norm() > 1e-6) || x_axis.x() < 0.5) {
-    throw InputError("calibration", "the right camera does not lie to the right of the left one",
+    throw InputError("calibration", "the right camera is not to the right of the left camera",
                      "check the extrinsic calibration; left and right may be swapped");
   }
   const Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitZ() + left_from_right.rotation * Eigen::Vector3d::UnitZ();
@@ -106,7 +106,7 @@ Rig rig_of_field(const Field& field, const Camera& source) {
   const double width = field.right - field.left;
   const double height = field.bottom - field.top;
   if (!(width > 0.0) || !(height > 0.0)) {
-    throw InputError("calibration", "the cameras' fields of view do not overlap",
+    throw InputError("calibration", "the fields of view of the cameras do not overlap",
                      "check the extrinsic calibration of the pair");
   }
   // Very wide lenses are cropped: the resolution is at most this factor below that of the source's centre.
@@ -134,7 +134,7 @@ Rectification rectification_of(const Calibration& calibration) {
   constexpr double kMost = 10.0;  // metres; also limits a baseline that a user confirms
   if (baseline > kMost) {
     throw InputError("calibration", fmt::format("has a baseline of {:g} m", baseline),
-                     "give lengths of the extrinsic calibration in metres");
+                     "give the extrinsic calibration in metres");
   }
   Rectification result;
   if (is_rectified(calibration)) {

@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
   throw InputError(path.string(), std::string(what) + ": " + std::strerror(errno), remedy);
 }
 
-constexpr std::string_view kReadRemedy = "check that the file exists and may be read";
-constexpr std::string_view kChangeRemedy = "put another file in its place rather than to change it while it is in use";
+constexpr std::string_view kReadRemedy = "check that the file exists and is readable";
+constexpr std::string_view kChangeRemedy = "replace the file instead of changing it while it is in use";
 // An open file, closed by the destructor.
 class OpenFile {
  public:
@@ -67,7 +67,7 @@ std::vector<std::byte> read_file(const fs::path& path) {
   refuse_pipe(path);
   const OpenFile file(path);
   const struct stat status = file.status();
-  if (S_ISDIR(status.st_mode)) throw InputError(path.string(), "is a folder", "name a file in it");
+  if (S_ISDIR(status.st_mode)) throw InputError(path.string(), "is a folder", "give a file in it");
   std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
   std::size_t filled = 0;
   while (filled < bytes.size()) {
@@ -83,10 +83,11 @@ PiecewiseFile::PiecewiseFile(const fs::path& path) : path_(path) {
   refuse_pipe(path);
   const OpenFile file(path);
   const struct stat status = file.status();
-  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is no file", "name a file");
+  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is not a regular file", "give a regular file");
   size_ = static_cast<std::size_t>(status.st_size);
   descriptor_ = fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0);
-  if (descriptor_ < 0) fail(path, "cannot be kept open", "close other files, or raise their limit (ulimit -n)");
+  if (descriptor_ < 0)
+    fail(path, "cannot be kept open", "close other files, or raise the limit of open files (ulimit -n)");
 }
 
 PiecewiseFile::~PiecewiseFile() {
@@ -98,7 +99,7 @@ void PiecewiseFile::read(std::size_t offset, std::span<std::byte> bytes) const {
     const ssize_t count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) fail(path_, "cannot be read", kReadRemedy);
-    if (count == 0) throw InputError(path_.string(), "has become shorter since it was opened", kChangeRemedy);
+    if (count == 0) throw InputError(path_.string(), "was truncated after it was opened", kChangeRemedy);
     offset += static_cast<std::size_t>(count);
     bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
@@ -108,7 +109,7 @@ MappedFile::MappedFile(const fs::path& path) {
   refuse_pipe(path);
   const OpenFile file(path);
   const struct stat status = file.status();
-  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is no file", "name a file");
+  if (!S_ISREG(status.st_mode)) throw InputError(path.string(), "is not a regular file", "give a regular file");
   size_ = static_cast<std::size_t>(status.st_size);
   if (size_ == 0) return;
   void* const address = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);

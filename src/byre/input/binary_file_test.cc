@@ -77,7 +77,7 @@ TEST_F(BinaryFile, SaysThatItHasBecomeShorter) {
     file.read(4, piece);
     FAIL() << "read";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("has become shorter since it was opened"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("was truncated after it was opened"));
   }
 }
 

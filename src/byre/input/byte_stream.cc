@@ -111,13 +111,13 @@ std::uint32_t ByteReader::read_varint() {
     if (!is_shortest || value > std::numeric_limits<std::uint32_t>::max()) break;
     return static_cast<std::uint32_t>(value);
   }
-  fail("has a number that is not written as numbers are");
+  fail("has a number with an invalid encoding");
 }
 
 std::uint32_t ByteReader::read_count(std::size_t bytes_each) {
   const auto count = read<std::uint32_t>();
   if (count > remaining() / bytes_each) {
-    fail("claims " + std::to_string(count) + " entries, more than the " + std::to_string(remaining()) +
+    fail("declares " + std::to_string(count) + " entries, more than the " + std::to_string(remaining()) +
          " remaining bytes can hold");
   }
   return count;
@@ -129,7 +129,7 @@ void ByteReader::require_end() const {
 
 void ByteReader::fail(std::string_view reason) const {
   throw InputError(place_ + " at byte " + std::to_string(first_byte_ + position_), reason,
-                   "the file is damaged; use a copy, or make it again");
+                   "the file is damaged; use a copy, or create it again");
 }
 
 }  // namespace byre

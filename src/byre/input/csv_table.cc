@@ -30,9 +30,9 @@ void require_known(const std::vector<std::string>& columns, const std::vector<st
                    const std::string& place) {
   for (const std::string& column : columns) {
     if (std::ranges::find(known, column) == known.end()) {
-      throw InputError(place, "names a column \"" + column + "\"", "the columns are " + listing(known));
+      throw InputError(place, "contains the unknown column \"" + column + "\"", "the columns are " + listing(known));
     }
-    if (std::ranges::count(columns, column) > 1) throw InputError(place, "names the column " + column + " twice");
+    if (std::ranges::count(columns, column) > 1) throw InputError(place, "contains the column " + column + " twice");
   }
 }
 
@@ -41,7 +41,7 @@ void require_cells(const CsvTable& table, const CsvTable::Row& row) {
   throw InputError(
       table.place_of(row),
       "has " + std::to_string(row.cells.size()) + " cells for " + std::to_string(table.columns.size()) + " columns",
-      "separate cells by commas, and leave commas out of names");
+      "separate cells by commas; names must not contain commas");
 }
 
 }  // namespace
@@ -59,9 +59,9 @@ std::string CsvTable::place_of(const Row& row) const {
 
 CsvTable read_csv_table(const std::filesystem::path& path, const std::vector<std::string_view>& known_columns) {
   refuse_pipe(path);
-  if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "name a file");
+  if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "give a file");
   std::ifstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
   CsvTable table{path, {}, {}};
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -76,7 +76,7 @@ CsvTable read_csv_table(const std::filesystem::path& path, const std::vector<std
     }
   }
   if (file.bad()) throw InputError(path.string(), "cannot be read", "check the disk");
-  if (table.columns.empty()) throw InputError(path.string(), "is empty", "begin it with the names of its columns");
+  if (table.columns.empty()) throw InputError(path.string(), "is empty", "write the column names in the first line");
   return table;
 }
 

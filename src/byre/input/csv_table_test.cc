@@ -55,9 +55,9 @@ TEST_F(CsvTables, AreReadAsSpreadsheetsAndProgramsWriteThem) {
 }
 
 TEST_F(CsvTables, AreRefusedWithThePlaceAndWhatToDo) {
-  EXPECT_THAT(refusal_of(""), HasSubstr("is empty (begin it with the names of its columns)"));
-  EXPECT_THAT(refusal_of("x,z\n"), HasSubstr(":1: names a column \"z\" (the columns are name, x, y)"));
-  EXPECT_THAT(refusal_of("x,x\n"), HasSubstr(":1: names the column x twice"));
+  EXPECT_THAT(refusal_of(""), HasSubstr("is empty (write the column names in the first line)"));
+  EXPECT_THAT(refusal_of("x,z\n"), HasSubstr(":1: contains the unknown column \"z\" (the columns are name, x, y)"));
+  EXPECT_THAT(refusal_of("x,x\n"), HasSubstr(":1: contains the column x twice"));
   EXPECT_THAT(refusal_of("x,name\n1,gate\n2,post, left\n"), HasSubstr(":3: has 3 cells for 2 columns"));
   EXPECT_THROW(read_csv_table("/absent.csv", {"x"}), InputError);
 }

@@ -54,8 +54,8 @@ fs::path find_data_file(const fs::path& name, std::string_view remedy) {
     if (is_file(folder / name)) return (folder / name).lexically_normal();
   }
   throw InputError(name.string(),
-                   std::string("is neither in ") + BYRE_INSTALLED_DATA +
-                       ", /usr/local/share/byre or /usr/share/byre, nor in the source tree, nor where BYRE_DATA says",
+                   std::string("is not found in ") + BYRE_INSTALLED_DATA +
+                       ", /usr/local/share/byre, /usr/share/byre, the source tree or the folder given by BYRE_DATA",
                    remedy);
 }
 

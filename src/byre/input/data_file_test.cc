@@ -36,7 +36,7 @@ TEST(DataFile, SaysWhatToDoWithoutIt) {
     find_data_file("protocols/absent.yaml", "name a protocol that is there");
     FAIL() << "no InputError";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("protocols/absent.yaml: is neither in"));
+    EXPECT_THAT(error.what(), HasSubstr("protocols/absent.yaml: is not found in"));
     EXPECT_EQ(error.remedy(), "name a protocol that is there");
   }
 }

@@ -134,7 +134,7 @@ std::string_view name_of(FileContent content) {
     case FileContent::svg:
       return "SVG picture";
     case FileContent::json:
-      return "JSON";
+      return "JSON file";
     case FileContent::trajectory:
       return "trajectory";
     case FileContent::yaml:
@@ -142,11 +142,11 @@ std::string_view name_of(FileContent content) {
     case FileContent::table:
       return "table of comma-separated values";
     case FileContent::colmap_model:
-      return "part of a COLMAP model";
+      return "file of a COLMAP model";
     case FileContent::page:
       return "HTML or Markdown page";
     case FileContent::text:
-      return "text";
+      return "text file";
     case FileContent::other:
       break;
   }

@@ -36,24 +36,24 @@ std::string_view remedy_of(int error) {
   switch (error) {
     case ENOSPC:
     case EDQUOT:
-      return "make space, or name a file on another disk";
+      return "free disk space, or choose a file on another disk";
     case EFBIG:
       return "raise the limit of file sizes (ulimit -f)";
     case EROFS:
-      return "name a file on a disk that is not mounted read-only";
+      return "choose a file on a disk that is not mounted read-only";
     case EACCES:
     case EPERM:
-      return "allow writing to its folder (chmod u+w), or name a file in another folder";
+      return "make the folder writable (chmod u+w), or choose a file in another folder";
     case ENOENT:
     case ENOTDIR:
-      return "create its folder, or name a file in another one";
+      return "create the folder, or choose a file in another one";
     case EMFILE:
     case ENFILE:
-      return "close other files, or raise their limit (ulimit -n)";
+      return "close other files, or raise the limit of open files (ulimit -n)";
     case ENAMETOOLONG:
       return "choose a shorter name";
     default:
-      return "check that its folder exists, may be written to and has space";
+      return "check that the folder exists, is writable and has free space";
   }
 }
 
@@ -131,51 +131,53 @@ struct Destination {
 void require_replaceable(const fs::path& path, const fs::path& target, FileContent content, const struct stat& there) {
   constexpr mode_t kWritable = S_IWUSR | S_IWGRP | S_IWOTH;
   if ((there.st_mode & kWritable) == 0 || access(target.c_str(), W_OK) != 0) {
-    refuse(path, "is write-protected", "name another file, or allow writing (chmod u+w)");
+    refuse(path, "is write-protected", "choose another file, or make this one writable (chmod u+w)");
   }
   const auto present = content_of(target);
   if (!present) {
-    refuse(path, "is there and cannot be read, so its kind is unknown", "name another file, or remove that one first");
+    refuse(path, "exists and cannot be read, so its kind is unknown",
+           "choose another file, or remove the existing one first");
   }
   if (may_replace(*present, content)) return;
-  refuse(path, "is there and is no " + std::string(name_of(content)), "name another file, or remove that one first");
+  refuse(path, "exists and is not the expected kind of file (" + std::string(name_of(content)) + ")",
+         "choose another file, or remove the existing one first");
 }
 
 void require_folder(const fs::path& path, const fs::path& target) {
   const fs::path folder = folder_of(target);
   std::error_code unknown;
   if (!fs::is_directory(folder, unknown)) {
-    refuse(path, "cannot be written: its folder does not exist", "create the folder " + folder.string());
+    refuse(path, "cannot be written: the folder does not exist", "create the folder " + folder.string());
   }
   if (access(folder.c_str(), W_OK | X_OK) == 0) return;
   refuse(path, std::string("cannot be written: ") + std::strerror(errno), remedy_of(errno));
 }
 
-// Throws InputError if the path may not be written. content: empty for a check of the place alone.
+// Throws InputError if the path is not writable. content: empty for a check of the place alone.
 Destination destination_of(const fs::path& path, std::optional<FileContent> content) {
   if (const auto descriptor = named_descriptor(path)) {
     const int flags = fcntl(*descriptor, F_GETFL);
     const int mode = flags & O_ACCMODE;
     if (flags >= 0 && (mode == O_WRONLY || mode == O_RDWR)) return {path, true, descriptor};
-    refuse(path, "is not open for writing", "name a file");
+    refuse(path, "is not open for writing", "choose a file");
   }
-  if (path.filename().empty()) refuse(path, "is a folder", "name a file in it");
+  if (path.filename().empty()) refuse(path, "is a folder", "choose a file in it");
   struct stat status {};
   const bool is_link = lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
   Destination to{is_link ? target_of(path) : path};
   const bool is_there = stat(to.target.c_str(), &status) == 0;
   if (!is_there && errno == ELOOP) {
-    refuse(path, "is a circular link", "name a file");
+    refuse(path, "is a circular link", "choose a regular file");
   }
-  if (is_there && S_ISDIR(status.st_mode)) refuse(path, "is a folder", "name a file in it");
+  if (is_there && S_ISDIR(status.st_mode)) refuse(path, "is a folder", "choose a file in it");
   if (is_there && !S_ISREG(status.st_mode)) {
     to.is_direct = !is_link && (S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode));
-    if (!to.is_direct) refuse(path, "is not a file, but a link to a device, a socket or a block device", "name a file");
-    if (access(path.c_str(), W_OK) != 0) refuse(path, "may not be written", "check its permissions");
+    if (!to.is_direct) refuse(path, "is a link to a device, a socket or a block device", "choose a regular file");
+    if (access(path.c_str(), W_OK) != 0) refuse(path, "is not writable", "check its permissions");
     return to;
   }
   if (is_of_system(target_of(to.target))) {
-    refuse(path, "is in a system folder", "name a file in another folder");
+    refuse(path, "is in a system folder", "choose a file in another folder");
   }
   require_folder(path, to.target);
   if (!is_there) return to;
@@ -355,7 +357,7 @@ void write_whole(const fs::path& path, std::string_view text) {
 void keep_as(const fs::path& file, const fs::path& path) {
   const FileContent content = content_of(file).value_or(FileContent::other);
   const Destination to = destination_of(path, content);
-  if (to.is_direct) refuse(path, "is a device or a pipe", "name a file");
+  if (to.is_direct) refuse(path, "is a device or a pipe", "choose a regular file");
   remove_leftovers(to.target, content);
   const fs::path temporary = temporary_beside(to.target, content);
   if (link(target_of(file).c_str(), temporary.c_str()) != 0) return write_whole(path, read_file(file));

@@ -91,7 +91,9 @@ TEST_F(OutputFileTest, ReplacesFilesOfOneKindAndEmptyOnesOnly) {
       {"walk.mcap", "\x89MCAP0\r\n"}, {"photo.jpg", "\xff\xd8\xff\xe0"},   {"stats.json", "{}"}};
   for (const auto& [name, content] : others) {
     put(name, content);
-    EXPECT_THAT(refusal(name, kNewMap), HasSubstr("is there and is no map (name another file, or remove that one"))
+    EXPECT_THAT(
+        refusal(name, kNewMap),
+        HasSubstr("exists and is not the expected kind of file (map) (choose another file, or remove the existing one"))
         << name;
     EXPECT_EQ(read(name), content);
   }
@@ -124,7 +126,7 @@ TEST_F(OutputFileTest, IsWrittenThroughALinkUnderTheSameRules) {
 
   put("letter.txt", "Dear reader\n");
   fs::create_symlink("letter.txt", folder_ / "trap.byre");
-  EXPECT_THAT(refusal("trap.byre", kNewMap), HasSubstr("is there and is no map"));
+  EXPECT_THAT(refusal("trap.byre", kNewMap), HasSubstr("exists and is not the expected kind of file (map)"));
   fs::create_symlink("new.byre", folder_ / "dangling.byre");
   EXPECT_EQ(refusal("dangling.byre", kNewMap), "");
   EXPECT_EQ(read("new.byre"), kNewMap);
@@ -159,12 +161,12 @@ TEST_F(OutputFileTest, ContinuesAFileThatOutputIsRedirectedTo) {
 }
 
 TEST_F(OutputFileTest, NamesReasonAndRemedy) {
-  EXPECT_THAT(refusal("absent/out.byre", kNewMap), HasSubstr("its folder does not exist (create the folder"));
+  EXPECT_THAT(refusal("absent/out.byre", kNewMap), HasSubstr("the folder does not exist (create the folder"));
   EXPECT_THAT(refusal(folder_, kNewMap), HasSubstr("is a folder (name a file in it)"));
   EXPECT_THAT(refusal(fs::path(""), kNewMap), HasSubstr("is a folder"));
   EXPECT_THAT(
       refusal(fs::path("/dev/full"), kNewMap),
-      HasSubstr("/dev/full: cannot be written: No space left on device (make space, or name a file on another"));
+      HasSubstr("/dev/full: cannot be written: No space left on device (free disk space, or choose a file on another"));
   put("protected.byre", kMap);
   fs::permissions(folder_ / "protected.byre", fs::perms::owner_read);
   EXPECT_THAT(refusal("protected.byre", kNewMap), HasSubstr("is write-protected"));

@@ -56,9 +56,9 @@ std::optional<std::pair<std::string, int>> split_exponent(std::string_view text)
 
 std::vector<TextLine> read_lines(const std::filesystem::path& path) {
   refuse_pipe(path);
-  if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "name a file");
+  if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "give a file");
   std::ifstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
   std::vector<TextLine> lines;
   std::string text;
   for (int number = 1; std::getline(file, text); ++number) {

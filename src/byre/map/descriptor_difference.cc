@@ -113,7 +113,7 @@ Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
     reader.read_all<std::uint64_t>(descriptor);
     Descriptor difference;
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = descriptor[i] ^ from[i];
-    if (!is_told_whole(difference)) reader.fail("has a descriptor that is not told by its difference");
+    if (!is_told_whole(difference)) reader.fail("has a descriptor stored in full although its difference is shorter");
     return descriptor;
   }
   HalfReader halves(reader);
@@ -126,13 +126,13 @@ Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
     } while (skipped == kSkip && bit < kBits);
     if (++bit >= kBits) {
       halves.take();
-      reader.fail("has a descriptor of more than " + std::to_string(kBits) + " bits");
+      reader.fail("has a descriptor with more than " + std::to_string(kBits) + " bits");
     }
     descriptor[static_cast<std::size_t>(bit) / 64] ^= std::uint64_t{1} << (bit % 64);
   }
   halves.take();
   if (halves.leaves_something() || halves.count() > kMostHalves)
-    reader.fail("has a descriptor that is not told as it is");
+    reader.fail("has a descriptor that is not in canonical encoding");
   return descriptor;
 }
 

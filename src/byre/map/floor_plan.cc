@@ -237,15 +237,15 @@ std::vector<PlanDoubt> doubts_about(Correspondences correspondences, const Drivi
 std::string_view to_string(PlanDoubt doubt) {
   switch (doubt) {
     case PlanDoubt::few_points:
-      return "fewer than three correspondences took part, so nothing checks them: pick more";
+      return "fewer than three correspondences are used, so errors cannot be detected: pick more";
     case PlanDoubt::in_line:
-      return "the correspondences lie nearly on a line: pick some to the side of it";
+      return "the correspondences are nearly collinear: pick some to the side of the line";
     case PlanDoubt::in_a_corner:
-      return "the correspondences lie close together and the map reaches far beyond: pick some at its other end";
+      return "the correspondences cover a small part of the map: pick some at its other end";
     case PlanDoubt::disagreement:
-      return "the correspondences do not agree: check them, the scale of the plan and that of the map";
+      return "the correspondences are inconsistent: check them, the scale of the plan and the scale of the map";
     case PlanDoubt::uneven_path:
-      return "the path lies in no plane: which way is up was taken from how the camera was held";
+      return "the path is not planar: the up direction is taken from the orientation of the camera";
   }
   return "";
 }

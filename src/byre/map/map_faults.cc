@@ -38,14 +38,15 @@ bool is_parent_sound(const Map& map, KeyframeId id, const Keyframe& keyframe) {
 
 void check_sightings(const Map& map, KeyframeId id, const Keyframe& keyframe, Faults& faults) {
   const std::size_t feature_count = keyframe.frame.features ? keyframe.frame.features->keypoints().size() : 0;
-  if (keyframe.sightings.size() != feature_count) faults.push_back(name_of(id) + " has not one sighting per feature");
+  if (keyframe.sightings.size() != feature_count)
+    faults.push_back(name_of(id) + " does not have one sighting per feature");
   for (std::size_t i = 0; i < keyframe.sightings.size(); ++i) {
     const std::optional<PointId> point = keyframe.sightings[i].point;
     if (!point) continue;
     if (point->origin == map.origin() && !map.find_point(*point)) {
       faults.push_back(name_of(id) + " sees the removed " + name_of(*point));
     } else if (!is_observed(map, *point, {id, static_cast<int>(i)})) {
-      faults.push_back(name_of(id) + " sees " + name_of(*point) + ", which does not know of it");
+      faults.push_back(name_of(id) + " sees " + name_of(*point) + ", which does not list the observation");
     }
   }
 }
@@ -55,8 +56,8 @@ void check_keyframe(const Map& map, KeyframeId id, Faults& faults) {
   if (keyframe.rig < 0 || static_cast<std::size_t>(keyframe.rig) >= map.rigs().size()) {
     faults.push_back(name_of(id) + " has no rig");
   }
-  if (!is_sound(keyframe.camera_from_world)) faults.push_back(name_of(id) + " has no proper pose");
-  if (!is_parent_sound(map, id, keyframe)) faults.push_back(name_of(id) + " has no living, older parent");
+  if (!is_sound(keyframe.camera_from_world)) faults.push_back(name_of(id) + " has an invalid pose");
+  if (!is_parent_sound(map, id, keyframe)) faults.push_back(name_of(id) + " has a removed or younger parent");
   check_sightings(map, id, keyframe, faults);
 }
 
@@ -65,12 +66,12 @@ void check_observations(const Map& map, PointId id, Faults& faults) {
   const std::vector<Observation>& observations = map.observations(id);
   const auto by_keyframe = [](const Observation& a, const Observation& b) { return a.keyframe >= b.keyframe; };
   if (std::ranges::adjacent_find(observations, by_keyframe) != observations.end()) {
-    faults.push_back(name_of(id) + " has observations out of order or two by one keyframe");
+    faults.push_back(name_of(id) + " has unsorted or duplicate observations");
   }
   for (const auto& [keyframe_id, feature] : observations) {
     const Keyframe* keyframe = map.find_keyframe(keyframe_id);
     if (!keyframe || keyframe->sightings.at(static_cast<std::size_t>(feature)).point != id) {
-      faults.push_back(name_of(id) + " claims to be seen by " + name_of(keyframe_id) + ", which does not see it");
+      faults.push_back(name_of(id) + " lists an observation by " + name_of(keyframe_id) + ", which does not see it");
     }
   }
 }
@@ -81,13 +82,13 @@ void check_foreign_views(const Map& map, PointId id, Faults& faults) {
     return a.observation.keyframe >= b.observation.keyframe;
   };
   if (std::ranges::adjacent_find(views, by_keyframe) != views.end()) {
-    faults.push_back(name_of(id) + " has foreign views out of order or two by one keyframe");
+    faults.push_back(name_of(id) + " has unsorted or duplicate foreign views");
   }
   for (const auto& [observation, sighting] : views) {
     const std::string view = name_of(id) + "'s view by " + name_of(observation.keyframe);
     if (observation.keyframe.origin == map.origin()) faults.push_back(view + " is not foreign");
     if (sighting.point != id || map.point_of_foreign_view(observation) != id) {
-      faults.push_back(view + " is also one of another point");
+      faults.push_back(view + " also belongs to another point");
     }
     if (const auto fault = fault_in(sighting); !fault.empty()) faults.push_back(view + " " + std::string(fault));
   }
@@ -95,12 +96,14 @@ void check_foreign_views(const Map& map, PointId id, Faults& faults) {
 
 void check_point(const Map& map, PointId id, Faults& faults) {
   const MapPoint& point = *map.find_point(id);
-  if (map.observations(id).empty()) faults.push_back(name_of(id) + " is seen by no keyframe");
-  if (!is_observed(map, id, point.reference)) faults.push_back(name_of(id) + " has a reference that does not see it");
+  if (map.observations(id).empty()) faults.push_back(name_of(id) + " is not observed by any keyframe");
+  if (!is_observed(map, id, point.reference))
+    faults.push_back(name_of(id) + " has a reference keyframe that does not observe it");
   if (!point.position_in_world.allFinite()) faults.push_back(name_of(id) + " has no finite position");
-  if (!is_unit(point.mean_viewing_direction)) faults.push_back(name_of(id) + " has no unit viewing direction");
+  if (!is_unit(point.mean_viewing_direction))
+    faults.push_back(name_of(id) + " has a viewing direction that is not of unit length");
   if (!(point.min_distance >= 0.0f && point.min_distance <= point.max_distance)) {
-    faults.push_back(name_of(id) + " has no proper range of distances");
+    faults.push_back(name_of(id) + " has an invalid distance range");
   }
   check_observations(map, id, faults);
   check_foreign_views(map, id, faults);
@@ -124,7 +127,7 @@ void check_covisibility(const Map& map, KeyframeId id, Faults& faults) {
   for (const auto& [keyframe, shared] : map.covisible_keyframes(id, std::numeric_limits<int>::max())) {
     maintained.emplace(keyframe, shared);
   }
-  if (counted != maintained) faults.push_back(name_of(id) + " counts its covisible keyframes wrong");
+  if (counted != maintained) faults.push_back(name_of(id) + " has wrong counts of covisible keyframes");
 }
 
 std::set<PointId> foreign_points(const Map& map) {

@@ -55,10 +55,10 @@ TEST(FindFaults, NamesAKeyframeWithoutRig) {
 TEST(FindFaults, NamesAKeyframeWithoutProperPose) {
   Keyframe stretched = sound_keyframe();
   stretched.camera_from_world.rotation.coeffs() *= 2.0;
-  EXPECT_THAT(faults_of(stretched), ElementsAre(HasSubstr("no proper pose")));
+  EXPECT_THAT(faults_of(stretched), ElementsAre(HasSubstr("an invalid pose")));
   Keyframe nowhere = sound_keyframe();
   nowhere.camera_from_world.translation.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(faults_of(nowhere), ElementsAre(HasSubstr("no proper pose")));
+  EXPECT_THAT(faults_of(nowhere), ElementsAre(HasSubstr("an invalid pose")));
 }
 
 TEST(FindFaults, NamesAKeyframeWithMoreSightingsThanFeatures) {
@@ -70,7 +70,7 @@ TEST(FindFaults, NamesAKeyframeWithMoreSightingsThanFeatures) {
 TEST(FindFaults, NamesAPointThatNobodySees) {
   Map map(Origin::offline);
   map.add_point({});
-  EXPECT_THAT(find_faults(map), Contains("point offline 0 is seen by no keyframe"));
+  EXPECT_THAT(find_faults(map), Contains("point offline 0 is not observed by any keyframe"));
 }
 
 TEST(FindFaults, NamesAPointWithSpoiltValues) {
@@ -78,11 +78,11 @@ TEST(FindFaults, NamesAPointWithSpoiltValues) {
       faults_of_point([](MapPoint& point) { point.position_in_world.y() = std::numeric_limits<double>::infinity(); }),
       ElementsAre(HasSubstr("no finite position")));
   EXPECT_THAT(faults_of_point([](MapPoint& point) { point.mean_viewing_direction.setZero(); }),
-              ElementsAre(HasSubstr("no unit viewing direction")));
+              ElementsAre(HasSubstr("a viewing direction that is not of unit length")));
   EXPECT_THAT(faults_of_point([](MapPoint& point) { point.min_distance = 2.0f; }),
-              ElementsAre(HasSubstr("no proper range of distances")));
+              ElementsAre(HasSubstr("an invalid distance range")));
   EXPECT_THAT(faults_of_point([](MapPoint& point) { point.reference.feature = 5; }),
-              ElementsAre(HasSubstr("a reference that does not see it")));
+              ElementsAre(HasSubstr("a reference keyframe that does not observe it")));
 }
 
 }  // namespace

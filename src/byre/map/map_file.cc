@@ -200,12 +200,12 @@ struct SectionTable {
 
 std::uint32_t read_format(ByteReader& header, const std::string& name) {
   const auto format = header.read<std::uint32_t>();
-  if (format == 0) header.fail("has the format 0, which never was");
+  if (format == 0) header.fail("has the invalid format 0");
   if (format > kFormat) {
     throw InputError(
         name + ": header",
-        "has format " + std::to_string(format) + ", this program knows formats up to " + std::to_string(kFormat),
-        "use the version of byre that wrote it, or a newer one");
+        "has format " + std::to_string(format) + "; this program reads formats up to " + std::to_string(kFormat),
+        "use the version of byre that wrote the map, or a newer one");
   }
   return format;
 }
@@ -216,13 +216,14 @@ SectionPlace read_place(ByteReader& header, std::string_view expected_name, std:
   std::ranges::copy(expected_name, padded.begin());
   std::array<char, kNameBytes> found;
   header.read_all<char>(found);
-  if (found != padded) header.fail("does not list the section " + std::string(expected_name) + " in its place");
+  if (found != padded)
+    header.fail("does not list the section " + std::string(expected_name) + " at the expected position");
   SectionPlace place;
   place.offset = header.read<std::uint64_t>();
   place.size = header.read<std::uint64_t>();
   place.checksum = header.read<std::uint64_t>();
   if (place.offset != expected_offset || place.size > file_size - place.offset) {
-    header.fail("places the section " + std::string(expected_name) + " wrong");
+    header.fail("has a wrong offset of the section " + std::string(expected_name));
   }
   return place;
 }
@@ -231,7 +232,7 @@ SectionPlace read_place(ByteReader& header, std::string_view expected_name, std:
 SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& name) {
   if (bytes.size() < kSignature.size() ||
       !std::ranges::equal(bytes.first(kSignature.size()), std::as_bytes(std::span(kSignature)))) {
-    throw InputError(name, "is no map of byre: it does not begin as one", "name a file that byre has saved a map in");
+    throw InputError(name, "is not a map of byre: the signature is missing", "give a map file saved by byre");
   }
   ByteReader header(bytes, name + ": header", 0);
   header.take(kSignature.size());
@@ -239,9 +240,9 @@ SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& n
   table.format = read_format(header, name);
   const std::size_t sections = section_count(table.format);
   const std::size_t header_size = header_bytes(sections);
-  if (header.read<std::uint32_t>() != sections) header.fail("has not the sections of its format");
+  if (header.read<std::uint32_t>() != sections) header.fail("has a wrong number of sections for its format");
   if (header.read<std::uint64_t>() != file_size) {
-    header.fail("is of a file of another length than its " + std::to_string(file_size) + " bytes");
+    header.fail("has a file size other than the actual " + std::to_string(file_size) + " bytes");
   }
   std::size_t offset = header_size;
   for (std::size_t i = 0; i < sections; ++i) {
@@ -250,7 +251,7 @@ SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& n
   }
   const std::uint64_t expected = checksum(bytes.first(header_size - sizeof(std::uint64_t)));
   if (header.read<std::uint64_t>() != expected) header.fail("has a wrong checksum");
-  if (offset != file_size) header.fail("leaves bytes to no section");
+  if (offset != file_size) header.fail("leaves bytes outside of all sections");
   return table;
 }
 
@@ -342,7 +343,7 @@ void require_points(const Bring& bring, const SectionPlace& section, const MapSu
                     const std::string& name) {
   const std::size_t size = std::min(sizeof(std::uint32_t), section.size);
   ByteReader reader(bring(section.offset, size), name + ": section points", section.offset);
-  if (reader.read<std::uint32_t>() != summary.points) reader.fail("has not as many points as the summary tells");
+  if (reader.read<std::uint32_t>() != summary.points) reader.fail("has a number of points other than in the summary");
 }
 
 // Reads no more of the section; it is checked when it is read as a whole.
@@ -405,7 +406,7 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   read_rest(open, stored);
 
   ByteReader summary = open(kSummary);
-  if (read_summary(summary) != summarise(stored.map)) summary.fail("does not tell what the other sections hold");
+  if (read_summary(summary) != summarise(stored.map)) summary.fail("does not match the other sections");
   if (open.has_lookup()) {
     const PartSections sections = part_sections([&open](Section section) { return open.bytes_of(section); });
     require_lookup(stored.map, sizes, sections, open(kObservers), open(kLookup));
@@ -425,7 +426,7 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
   MapParts parts = read_about(open, stored);
   const MapSummary summary = read_summary(open(kSummary));
   if (summary.keyframes != parts.keyframes.size() || summary.points > std::numeric_limits<int>::max()) {
-    open(kSummary).fail("does not tell what the other sections hold");
+    open(kSummary).fail("does not match the other sections");
   }
   require_points(bring, open.place_of(kPoints), summary, name);
   const WordsHead head = words_head(bring, open.place_of(kWords), name);
@@ -473,7 +474,7 @@ StoredMap reread(std::span<const std::byte> bytes, const std::filesystem::path& 
   try {
     return read_map(bytes, path.string());
   } catch (const InputError& error) {
-    throw InputError(path.string(), "is not written: the map is unsound: " + error.reason(), "");
+    throw InputError(path.string(), "is not written: the map is invalid: " + error.reason(), "");
   }
 }
 

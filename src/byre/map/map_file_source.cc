@@ -103,7 +103,7 @@ void MapFileSource::read_parts(std::span<const Part> parts, std::uint64_t expect
   }
   if (checksum(bytes) == expected) return;
   ByteReader({}, place_of(parts.front().name), parts.front().section + parts.front().place.begin)
-      .fail("has a part with a wrong checksum, here or where the sections that follow have theirs");
+      .fail("has a part with a wrong checksum, here or in the matching part of a later section");
 }
 
 Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare) const {
@@ -126,7 +126,7 @@ Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare
       number, file_.rigs[static_cast<std::size_t>(bare.rig)], file_.point_count,
       [this](std::uint32_t point_number) -> const ObservedPoint& { return point(point_number); }, keyframe);
   if (keyframe.sightings.size() != known.features) {
-    readers[kFeaturesOfView].fail("has not as many features as the section lookup tells");
+    readers[kFeaturesOfView].fail("has a number of features other than in the section lookup");
   }
   keyframe.words = read_narrow_words_of(readers[kWordsOfView], file_.words, known.features);
   readers[kWordsOfView].require_end();
@@ -149,7 +149,7 @@ MapFileSource::Block MapFileSource::read_block(std::uint32_t number) const {
     const std::uint32_t reference = read_rounded_point(points, first + i, point);
     observations = read_observers(observers, lookup_.keyframes);
     if (reference >= observations.size()) {
-      require_no_fault(points, "has a reference that does not see it", "point", first + i);
+      require_no_fault(points, "has a reference keyframe that does not observe it", "point", first + i);
     }
     point.reference = observations[reference];
   }

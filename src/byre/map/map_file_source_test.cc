@@ -242,9 +242,9 @@ TEST(MapFileSource, RefusesObserversThatAreNone) {
   };
   EXPECT_THAT(fault_with(0, 0), HasSubstr("section observers"));
   EXPECT_THAT(fault_with(0, 127), HasSubstr("section observers"));
-  EXPECT_THAT(fault_with(1, 100), HasSubstr("names a keyframe beyond the last of 6"));
-  EXPECT_THAT(fault_with(2, 100), HasSubstr("names a feature that its keyframe does not have"));
-  EXPECT_THAT(fault_with(2, 5), HasSubstr("point 0 does not know of a keyframe that sees it"));
+  EXPECT_THAT(fault_with(1, 100), HasSubstr("refers to a keyframe beyond the last of 6"));
+  EXPECT_THAT(fault_with(2, 100), HasSubstr("refers to a feature that its keyframe does not have"));
+  EXPECT_THAT(fault_with(2, 5), HasSubstr("point 0 does not list a keyframe that observes it"));
 }
 
 TEST(MapFileSource, GivesAllThreadsTheSame) {
@@ -301,7 +301,7 @@ TEST(MapFileSource, OutlivesItsNameAndTellsThatTheFileHasBecomeShorter) {
   fs::resize_file(path, bytes.size() / 3);
   EXPECT_THROW(look_at_all(cut.map), InputError) << "of words";
   ASSERT_NE(cut.map.damage(), nullptr);
-  EXPECT_THAT(cut.map.damage()->what(), HasSubstr("has become shorter since it was opened"));
+  EXPECT_THAT(cut.map.damage()->what(), HasSubstr("was truncated after it was opened"));
   EXPECT_THROW(write_map(cut), InputError) << "a damaged map is not saved as a whole one";
   EXPECT_EQ(untouched.map.damage(), nullptr);
   EXPECT_EQ(write_map(untouched), bytes) << "another file of that name";

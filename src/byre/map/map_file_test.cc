@@ -201,13 +201,13 @@ TEST(MapFile, RefusesAReadoutTimeThatIsToldTwice) {
   MapBytes bytes = scene_bytes();
   put_at(bytes, section_of(bytes, "shutters").offset + 8, 0.01);
   refresh_checksums(bytes);
-  EXPECT_THAT(refusal_of(bytes), HasSubstr("has another readout time than the calibration that was given"));
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("has a readout time other than the given calibration"));
 }
 
 TEST(MapFile, RefusesAReadoutTimeThatIsNone) {
   StoredMap stored = StoredMapScene().stored();
   stored.recordings.front().calibration.readout_time = 5.0;
-  EXPECT_THAT(refusal_of(write_map(stored)), HasSubstr("has no proper readout time"));
+  EXPECT_THAT(refusal_of(write_map(stored)), HasSubstr("has an invalid readout time"));
 }
 
 TEST(MapFile, RefusesARefinedCalibrationThatIsNone) {
@@ -220,7 +220,7 @@ TEST(MapFile, RefusesAPlanInAFileOfTheFirstFormat) {
   MapBytes bytes = write_map(StoredMapScene().stored_with_plan());
   put_at(bytes, kFormatAt, std::uint32_t{1});
   refresh_checksums(bytes);
-  EXPECT_THAT(refusal_of(bytes), HasSubstr("has not the sections of its format"));
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("has a wrong number of sections for its format"));
 }
 
 TEST(MapFile, KeepsAnEmptyMap) {
@@ -254,7 +254,7 @@ TEST(MapFile, TellsTheSizesOfItsSections) {
 }
 
 TEST(MapFile, RefusesWhatIsNoMap) {
-  const std::string message = "barn.byre: is no map of byre: it does not begin as one (name a file that byre has ";
+  const std::string message = "barn.byre: is not a map of byre: the signature is missing (give a map file saved by ";
   EXPECT_THAT(refusal_of({}), StartsWith(message));
   EXPECT_THAT(refusal_of(MapBytes(1000)), StartsWith(message));
 }
@@ -264,15 +264,15 @@ TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
   put_at(bytes, kFormatAt, std::uint32_t{8});
   refresh_checksums(bytes);
   EXPECT_EQ(refusal_of(bytes),
-            "barn.byre: header: has format 8, this program knows formats up to 7 "
-            "(use the version of byre that wrote it, or a newer one)");
+            "barn.byre: header: has format 8; this program reads formats up to 7 "
+            "(use the version of byre that wrote the map, or a newer one)");
 }
 
 TEST(MapFile, RefusesAFormatThatNeverWas) {
   MapBytes bytes = scene_bytes();
   put_at(bytes, kFormatAt, std::uint32_t{0});
   refresh_checksums(bytes);
-  EXPECT_THAT(refusal_of(bytes), StartsWith("barn.byre: header at byte 12: has the format 0, which never was"));
+  EXPECT_THAT(refusal_of(bytes), StartsWith("barn.byre: header at byte 12: has the invalid format 0"));
 }
 
 TEST(MapFile, RefusesEveryShorterFile) {
@@ -313,12 +313,14 @@ TEST(MapFile, RefusesAHeaderThatDoesNotFitTheFile) {
     refresh_checksums(bytes);
     return refusal_of(bytes);
   };
-  EXPECT_THAT(refusal_with(kSectionCountAt, std::uint32_t{9}), HasSubstr("has not the sections of its format"));
-  EXPECT_THAT(refusal_with(kFileSizeAt, std::uint64_t{5}), HasSubstr("is of a file of another length"));
-  EXPECT_THAT(refusal_with(kTableAt, 'S'), HasSubstr("does not list the section summary in its place"));
-  EXPECT_THAT(refusal_with(kTableAt + 15, 'S'), HasSubstr("does not list the section summary in its place"));
-  EXPECT_THAT(refusal_with(kTableAt + 16, std::uint64_t{0}), HasSubstr("places the section summary wrong"));
-  EXPECT_THAT(refusal_with(kTableAt + 24, ~std::uint64_t{0}), HasSubstr("places the section summary wrong"));
+  EXPECT_THAT(refusal_with(kSectionCountAt, std::uint32_t{9}),
+              HasSubstr("has a wrong number of sections for its format"));
+  EXPECT_THAT(refusal_with(kFileSizeAt, std::uint64_t{5}), HasSubstr("has a file size other than the actual"));
+  EXPECT_THAT(refusal_with(kTableAt, 'S'), HasSubstr("does not list the section summary at the expected position"));
+  EXPECT_THAT(refusal_with(kTableAt + 15, 'S'),
+              HasSubstr("does not list the section summary at the expected position"));
+  EXPECT_THAT(refusal_with(kTableAt + 16, std::uint64_t{0}), HasSubstr("has a wrong offset of the section summary"));
+  EXPECT_THAT(refusal_with(kTableAt + 24, ~std::uint64_t{0}), HasSubstr("has a wrong offset of the section summary"));
   MapBytes bytes = sound;
   bytes[header_checksum_at(bytes)] ^= std::byte{1};
   EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 672: has a wrong checksum"));
@@ -329,7 +331,7 @@ TEST(MapFile, RefusesBytesThatBelongToNoSection) {
   bytes.push_back({});
   put_at(bytes, kFileSizeAt, std::uint64_t{bytes.size()});
   refresh_checksums(bytes);
-  EXPECT_THAT(refusal_of(bytes), HasSubstr("leaves bytes to no section"));
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("leaves bytes outside of all sections"));
 }
 
 class MapFileOnDisk : public testing::Test {
@@ -375,7 +377,7 @@ TEST_F(MapFileOnDisk, IsNotReplacedByAnUnsoundMap) {
     save_map(unsound, folder_ / "barn.byre");
     FAIL() << "an unsound map was saved";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("is not written: the map is unsound: names recording 0 of 0"));
+    EXPECT_THAT(error.what(), HasSubstr("is not written: the map is invalid: refers to recording 0 of 0"));
   }
   EXPECT_EQ(read_file(folder_ / "barn.byre"), scene_bytes());
 }

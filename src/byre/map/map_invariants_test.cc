@@ -82,45 +82,46 @@ std::shared_ptr<const Features> with_patch_at(const Features& features, const Ei
 
 const std::vector<BrokenInvariant>& broken_invariants() {
   static const std::vector<BrokenInvariant> all = {
-      {"CameraSize", "provenance", "recording 0 has no proper image size", with_camera([](Camera& c) { c.width = 0; })},
-      {"HugeCamera", "provenance", "no proper image size", with_camera([](Camera& c) { c.height = 16385; })},
-      {"CameraFocal", "provenance", "recording 0 has no proper camera", with_camera([](Camera& c) { c.fx = 0.0; })},
-      {"CameraFocalNan", "provenance", "no proper camera", with_camera([](Camera& c) { c.fy = kNan; })},
-      {"CameraCentre", "provenance", "no proper camera", with_camera([](Camera& c) { c.cx = kInfinity; })},
-      {"Distortion", "provenance", "no proper camera", with_camera([](Camera& c) { c.distortion[4] = kNan; })},
-      {"RightCamera", "provenance", "no proper camera",
+      {"CameraSize", "provenance", "recording 0 has an invalid image size",
+       with_camera([](Camera& c) { c.width = 0; })},
+      {"HugeCamera", "provenance", "an invalid image size", with_camera([](Camera& c) { c.height = 16385; })},
+      {"CameraFocal", "provenance", "recording 0 has an invalid camera", with_camera([](Camera& c) { c.fx = 0.0; })},
+      {"CameraFocalNan", "provenance", "an invalid camera", with_camera([](Camera& c) { c.fy = kNan; })},
+      {"CameraCentre", "provenance", "an invalid camera", with_camera([](Camera& c) { c.cx = kInfinity; })},
+      {"Distortion", "provenance", "an invalid camera", with_camera([](Camera& c) { c.distortion[4] = kNan; })},
+      {"RightCamera", "provenance", "an invalid camera",
        with_recording([](SourceRecording& r) { r.calibration.right->camera.fx = -1.0; })},
-      {"RightPose", "provenance", "recording 0 has no proper pose",
+      {"RightPose", "provenance", "recording 0 has an invalid pose",
        with_recording([](SourceRecording& r) { r.calibration.right->right_from_left.translation.x() = kNan; })},
-      {"BodyPose", "provenance", "recording 0 has no proper pose",
+      {"BodyPose", "provenance", "recording 0 has an invalid pose",
        with_recording([](SourceRecording& r) { r.calibration.body_from_left.rotation.coeffs().setZero(); })},
       {"Times", "provenance", "recording 0 ends before it begins",
        with_recording([](SourceRecording& r) { r.first_time = r.last_time + Timestamp(1); })},
-      {"RigSize", "rigs", "rig 0 has no proper image size", with_rig([](Rig& rig) { rig.height = -1; })},
-      {"RigFocal", "rigs", "rig 0 has no proper camera", with_rig([](Rig& rig) { rig.focal = 0.0; })},
-      {"RigCentre", "rigs", "rig 0 has no proper camera", with_rig([](Rig& rig) { rig.cy = kNan; })},
-      {"RigBaseline", "rigs", "rig 0 has no proper camera", with_rig([](Rig& rig) { rig.baseline = -0.1; })},
-      {"RigPose", "rigs", "rig 0 has no proper pose",
+      {"RigSize", "rigs", "rig 0 has an invalid image size", with_rig([](Rig& rig) { rig.height = -1; })},
+      {"RigFocal", "rigs", "rig 0 has an invalid camera", with_rig([](Rig& rig) { rig.focal = 0.0; })},
+      {"RigCentre", "rigs", "rig 0 has an invalid camera", with_rig([](Rig& rig) { rig.cy = kNan; })},
+      {"RigBaseline", "rigs", "rig 0 has an invalid camera", with_rig([](Rig& rig) { rig.baseline = -0.1; })},
+      {"RigPose", "rigs", "rig 0 has an invalid pose",
        with_rig([](Rig& rig) { rig.body_from_camera.rotation.coeffs() *= 1.1; })},
-      {"NoRecording", "keyframes", "keyframe 2 is of a recording that is not listed",
+      {"NoRecording", "keyframes", "keyframe 2 belongs to a recording that is not listed",
        with_keyframe([](Keyframe& k) { k.recording = 2; })},
-      {"KeyframePose", "keyframes", "keyframe offline 2 has no proper pose",
+      {"KeyframePose", "keyframes", "keyframe offline 2 has an invalid pose",
        with_keyframe([](Keyframe& k) { k.camera_from_world.translation.y() = kInfinity; })},
-      {"KeyframeRotation", "keyframes", "keyframe offline 2 has no proper pose",
+      {"KeyframeRotation", "keyframes", "keyframe offline 2 has an invalid pose",
        with_keyframe([](Keyframe& k) { k.camera_from_world.rotation.w() += 0.01; })},
-      {"KeyframeCovariance", "keyframes", "keyframe 2 has no finite covariance",
+      {"KeyframeCovariance", "keyframes", "keyframe 2 has a covariance that is not finite",
        with_keyframe([](Keyframe& k) { k.covariance(1, 2) = k.covariance(2, 1) = kNan; })},
-      {"OwnParent", "keyframes", "keyframe offline 2 has no living, older parent",
+      {"OwnParent", "keyframes", "keyframe offline 2 has a removed or younger parent",
        with_keyframe([](Keyframe& k) { k.parent->number = 2; })},
-      {"YoungerParent", "keyframes", "keyframe offline 2 has no living, older parent",
+      {"YoungerParent", "keyframes", "keyframe offline 2 has a removed or younger parent",
        with_keyframe([](Keyframe& k) { k.parent->number = 4; })},
       {"KeypointOutside", "features", "keyframe 0 has a keypoint outside its image",
        with_keypoint([](Keypoint& k) { k.pixel.x() = 320.0f; })},
       {"KeypointOctave", "features", "keyframe 0 has a keypoint in an octave that does not exist",
        with_keypoint([](Keypoint& k) { k.octave = kOctaves; })},
-      {"KeypointDisparity", "features", "keypoint without proper values",
+      {"KeypointDisparity", "features", "keypoint with invalid values",
        with_keypoint([](Keypoint& k) { k.disparity = std::numeric_limits<float>::infinity(); })},
-      {"KeypointDisparitySigma", "features", "keypoint without proper values", with_keypoint([](Keypoint& k) {
+      {"KeypointDisparitySigma", "features", "keypoint with invalid values", with_keypoint([](Keypoint& k) {
          k.disparity = 3.0f;
          k.disparity_sigma = 0.0f;
        })},
@@ -134,27 +135,27 @@ const std::vector<BrokenInvariant>& broken_invariants() {
        }},
       {"PointPosition", "points", "has no finite position",
        with_point([](MapPoint& p) { p.position_in_world.z() = kNan; })},
-      {"PointCovariance", "points", "point 3 has no finite covariance",
+      {"PointCovariance", "points", "point 3 has a covariance that is not finite",
        with_point([](MapPoint& p) { p.covariance(0, 0) = kInfinity; })},
-      {"PointDirection", "points", "no unit viewing direction",
+      {"PointDirection", "points", "a viewing direction that is not of unit length",
        with_point([](MapPoint& p) { p.mean_viewing_direction *= 1.1f; })},
-      {"PointDistance", "points", "no proper range of distances",
+      {"PointDistance", "points", "an invalid distance range",
        with_point([](MapPoint& p) { p.min_distance = p.max_distance * 1.1f; })},
-      {"PointDistanceInfinite", "points", "no proper range of distances",
+      {"PointDistanceInfinite", "points", "an invalid distance range",
        with_point([](MapPoint& p) { p.max_distance = std::numeric_limits<float>::infinity(); })},
-      {"PointReference", "observations", "has a reference that does not see it",
+      {"PointReference", "observations", "has a reference keyframe that does not observe it",
        with_point([](MapPoint& p) { ++p.reference.feature; })},
-      {"PointReferenceKeyframe", "observations", "has a reference that does not see it",
+      {"PointReferenceKeyframe", "observations", "has a reference keyframe that does not observe it",
        with_point([](MapPoint& p) { p.reference.keyframe.number = 1000; })},
-      {"PointUnseen", "observations", "is seen by no keyframe",
+      {"PointUnseen", "observations", "is not observed by any keyframe",
        [](StoredMap&, MapParts& parts) { parts.points.push_back(parts.points.back()); }},
-      {"SightingPixel", "observations", "keyframe 2 has a sighting without proper values",
+      {"SightingPixel", "observations", "keyframe 2 has a sighting with invalid values",
        with_keyframe([](Keyframe& k) { k.sightings[1].pixel.x() = kNan; })},
-      {"SightingSigma", "observations", "keyframe 2 has a sighting without proper values",
+      {"SightingSigma", "observations", "keyframe 2 has a sighting with invalid values",
        with_keyframe([](Keyframe& k) { k.sightings[1].pixel_sigma = 0.0f; })},
-      {"WordsOfNoVocabulary", "words", "has words of no vocabulary",
+      {"WordsOfNoVocabulary", "words", "has words without a vocabulary",
        [](StoredMap& stored, MapParts&) { stored.vocabulary_checksum = 0; }},
-      {"TooFewWords", "words", "keyframe 2 has not one word per feature",
+      {"TooFewWords", "words", "keyframe 2 does not have one word per feature",
        with_keyframe([](Keyframe& k) { k.words.pop_back(); })},
   };
   return all;
@@ -181,8 +182,8 @@ TEST(StoredMapFaults, NameWhatAFileCannotEvenHold) {
   parts.keyframes[2].covariance(0, 1) = 1.0;
   parts.points[3].covariance(0, 1) = 1.0;
   stored.map = Map(Origin::offline, parts);
-  EXPECT_THAT(find_faults(stored), AllOf(Contains("keyframe 2 has an unsymmetric covariance"),
-                                         Contains("point 3 has an unsymmetric covariance")));
+  EXPECT_THAT(find_faults(stored), AllOf(Contains("keyframe 2 has an asymmetric covariance"),
+                                         Contains("point 3 has an asymmetric covariance")));
   stored.map = Map(Origin::online);
   EXPECT_THAT(find_faults(stored), Contains("the map is not offline"));
   stored = scene.stored();
@@ -217,15 +218,15 @@ constexpr std::uint32_t kHuge = 0xfffffff0;
 // Offsets follow docs/reference/map_format.md; the scene's keyframes have 9 features each, 8 of them with a point.
 const std::vector<BrokenValue>& broken_values() {
   static const std::vector<BrokenValue> all = {
-      {"Summary", "summary", "does not tell what the other sections hold", 8, bytes_of(std::uint64_t{1})},
+      {"Summary", "summary", "does not match the other sections", 8, bytes_of(std::uint64_t{1})},
       {"NoteCount", "notes", "claims 4294967280 entries", 0, bytes_of(kHuge)},
       {"NoteLength", "notes", "claims 4294967280 entries", 4, bytes_of(kHuge)},
-      {"NoteOrder", "notes", "has notes out of order", 8, bytes_of('z')},
-      {"Scale", "provenance", "knows no value 2 here", 0, bytes_of(std::uint8_t{2})},
-      {"PoseSource", "provenance", "knows no value 3 here", 1, bytes_of(std::uint8_t{3})},
+      {"NoteOrder", "notes", "has unsorted notes", 8, bytes_of('z')},
+      {"Scale", "provenance", "has the invalid value 2", 0, bytes_of(std::uint8_t{2})},
+      {"PoseSource", "provenance", "has the invalid value 3", 1, bytes_of(std::uint8_t{3})},
       {"RecordingCount", "provenance", "claims 4294967280 entries", 2, bytes_of(kHuge)},
-      {"CameraModel", "provenance", "knows no value 3 here", 22, bytes_of(std::uint8_t{3})},
-      {"HasRight", "provenance", "knows no value 2 here", 22 + 81, bytes_of(std::uint8_t{2})},
+      {"CameraModel", "provenance", "has the invalid value 3", 22, bytes_of(std::uint8_t{3})},
+      {"HasRight", "provenance", "has the invalid value 2", 22 + 81, bytes_of(std::uint8_t{2})},
       {"RigCount", "rigs", "claims 4294967280 entries", 0, bytes_of(kHuge)},
       {"FewerRigs", "rigs", "bytes are left over", 0, bytes_of(std::uint32_t{1})},
       {"KeyframeCount", "keyframes", "claims 4294967280 entries", 0, bytes_of(kHuge)},
@@ -234,17 +235,17 @@ const std::vector<BrokenValue>& broken_values() {
       {"FeatureCount", "features", "claims 4294967280 entries", 0, bytes_of(kHuge)},
       {"KeypointKind", "features", "has a keypoint of an unknown kind", 4, bytes_of(std::uint8_t{0x80})},
       {"KeypointPlace", "features", "has a keypoint outside its image", 5, bytes_of(std::uint16_t{320 * 64})},
-      {"PatchGrey", "patches", "keyframe 0 has a patch that is none", 0, bytes_of(std::uint16_t{0x00ff})},
+      {"PatchGrey", "patches", "keyframe 0 has an invalid patch", 0, bytes_of(std::uint16_t{0x00ff})},
       {"PatchPlace", "patches", "keyframe 0 has a patch without its centre", 2, bytes_of(std::uint16_t{0xffff})},
       {"PointCount", "points", "claims 4294967280 entries", 0, bytes_of(kHuge)},
       {"FewerPoints", "points", "bytes are left over", 0, bytes_of(std::uint32_t{1})},
-      {"PointCovariance", "points", "point 0 has a covariance that is none", 4 + 18, bytes_of(std::int16_t{-1})},
-      {"ObservationPoint", "observations", "names point 255 of 16", 0, bytes_of(std::uint8_t{255})},
-      {"ObservationTwice", "observations", "point 0 is seen twice by a keyframe", 4, bytes_of(std::uint8_t{0})},
-      {"ObservationSigma", "observations", "keyframe 0 has a sighting without proper values", 3,
+      {"PointCovariance", "points", "point 0 has an invalid covariance", 4 + 18, bytes_of(std::int16_t{-1})},
+      {"ObservationPoint", "observations", "refers to point 255 of 16", 0, bytes_of(std::uint8_t{255})},
+      {"ObservationTwice", "observations", "point 0 is observed twice by a keyframe", 4, bytes_of(std::uint8_t{0})},
+      {"ObservationSigma", "observations", "keyframe 0 has a sighting with invalid values", 3,
        bytes_of(std::uint8_t{0})},
       {"WordBytes", "words", "has words of 5 bytes", 8, bytes_of(std::uint8_t{5})},
-      {"HasWords", "words", "knows no value 2 here", 9, bytes_of(std::uint8_t{2})},
+      {"HasWords", "words", "has the invalid value 2", 9, bytes_of(std::uint8_t{2})},
   };
   return all;
 }
@@ -269,7 +270,7 @@ TEST(BrokenSections, AreRefusedWhenKeypointsAreNotInGridOrder) {
   put_at(bytes, first + 1, std::uint16_t{319 * 64});  // moves the first keypoint to the opposite corner
   put_at(bytes, first + 3, std::uint16_t{239 * 64});
   refresh_checksums(bytes);
-  EXPECT_THAT(refusal_of(bytes), HasSubstr("keyframe 0 has keypoints that are not sorted by the cells of their grid"));
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("keyframe 0 has keypoints that are not sorted by grid cell"));
 }
 
 TEST(BrokenSections, AreRefusedWhenAKeyframeWithoutFeaturesHasWords) {
@@ -277,7 +278,7 @@ TEST(BrokenSections, AreRefusedWhenAKeyframeWithoutFeaturesHasWords) {
   const TableEntry words = section_of(bytes, "words");
   bytes[words.offset + words.size - 1] = std::byte{1};
   refresh_checksums(bytes);
-  EXPECT_THAT(refusal_of(bytes), HasSubstr("has words of a keyframe without features"));
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("has words for a keyframe without features"));
 }
 
 TEST(BrokenSections, AreRefusedWhenTheyAreTooShortOrTooLong) {
@@ -312,20 +313,23 @@ TEST_P(DefectivePlan, AreFoundAndNotRead) {
   EXPECT_THAT(refusal_of(write_map(stored)), AllOf(StartsWith("barn.byre: section plan at byte "), HasSubstr(fault)));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Values, DefectivePlan,
-    testing::Values(
-        PlanDefect{"Scale", "has no positive scale", [](auto& plan) { plan.plan_from_map.scale = 0.0; }},
-        PlanDefect{"Pose", "has no proper pose",
-                   [](auto& plan) { plan.plan_from_map.target_from_source.rotation.coeffs() *= 2.0; }},
-        PlanDefect{"Covariance", "has no finite covariance", [](auto& plan) { plan.covariance.setConstant(kNan); }},
-        PlanDefect{"Variance", "has a negative variance", [](auto& plan) { plan.covariance(2, 2) = -1.0; }}),
-    [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(Values, DefectivePlan,
+                         testing::Values(PlanDefect{"Scale", "has a scale that is not positive",
+                                                    [](auto& plan) { plan.plan_from_map.scale = 0.0; }},
+                                         PlanDefect{"Pose", "has an invalid pose",
+                                                    [](auto& plan) {
+                                                      plan.plan_from_map.target_from_source.rotation.coeffs() *= 2.0;
+                                                    }},
+                                         PlanDefect{"Covariance", "has a covariance that is not finite",
+                                                    [](auto& plan) { plan.covariance.setConstant(kNan); }},
+                                         PlanDefect{"Variance", "has a negative variance",
+                                                    [](auto& plan) { plan.covariance(2, 2) = -1.0; }}),
+                         [](const auto& test) { return test.param.name; });
 
 TEST(DefectivePlans, AreFoundByAnUnsymmetricCovariance) {
   StoredMap stored = StoredMapScene().stored_with_plan();
   stored.plan->covariance(0, 6) += 1e-3;
-  EXPECT_THAT(find_faults(stored), ElementsAre("the plan has an unsymmetric covariance"));
+  EXPECT_THAT(find_faults(stored), ElementsAre("the plan has an asymmetric covariance"));
 }
 
 // Every keyframe observes the same point with its only feature: a small file, but a large map.
@@ -345,8 +349,7 @@ StoredMap crowd(std::uint32_t keyframes) {
 
 TEST(BrokenSections, AreRefusedWhenKeyframesThatShareAPointOutgrowTheFile) {
   EXPECT_EQ(refusal_of(write_map(crowd(700))), "");
-  EXPECT_THAT(refusal_of(write_map(crowd(1000))),
-              HasSubstr("has more keyframes that share points than a file of this"));
+  EXPECT_THAT(refusal_of(write_map(crowd(1000))), HasSubstr("has more covisible keyframes than a file of this"));
 }
 
 }  // namespace

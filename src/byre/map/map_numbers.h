@@ -60,7 +60,7 @@ inline constexpr std::size_t kSymmetricBytes = Size*(Size + 1) / 2 * sizeof(doub
 template <typename Enum>
 Enum read_enum(ByteReader& reader, int count) {
   const auto value = reader.read<std::uint8_t>();
-  if (value >= count) reader.fail("knows no value " + std::to_string(value) + " here");
+  if (value >= count) reader.fail("has the invalid value " + std::to_string(value));
   return static_cast<Enum>(value);
 }
 inline bool read_bool(ByteReader& reader) {
@@ -70,7 +70,7 @@ inline bool read_bool(ByteReader& reader) {
 inline std::uint32_t read_index(ByteReader& reader, std::size_t size, std::string_view what) {
   const auto index = reader.read<std::uint32_t>();
   if (index >= size) {
-    reader.fail("names " + std::string(what) + " " + std::to_string(index) + " of " + std::to_string(size));
+    reader.fail("refers to " + std::string(what) + " " + std::to_string(index) + " of " + std::to_string(size));
   }
   return index;
 }

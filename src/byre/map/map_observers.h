@@ -19,13 +19,13 @@ class PointObservers {
 
   // Precondition: point < point_count().
   void add(const ByteReader& reader, std::uint32_t point, std::uint32_t keyframe) {
-    if (last_observer_[point] == keyframe) require_no_fault(reader, "is seen twice by a keyframe", "point", point);
+    if (last_observer_[point] == keyframe) require_no_fault(reader, "is observed twice by a keyframe", "point", point);
     last_observer_[point] = keyframe;
   }
 
   void require_that_all_are_seen(const ByteReader& reader) const {
     for (std::size_t point = 0; point < last_observer_.size(); ++point) {
-      if (last_observer_[point] == kNobody) require_no_fault(reader, "is seen by no keyframe", "point", point);
+      if (last_observer_[point] == kNobody) require_no_fault(reader, "is not observed by any keyframe", "point", point);
     }
   }
 

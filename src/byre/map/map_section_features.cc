@@ -58,7 +58,7 @@ KeptPatches read_kept_patches(ByteReader& reader, std::size_t feature_count, std
   std::size_t first_free_feature = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::size_t feature = read_index(reader, feature_count, "feature");
-    if (feature < first_free_feature) reader.fail("has features out of order");
+    if (feature < first_free_feature) reader.fail("has unsorted features");
     first_free_feature = feature + 1;
     kept.patch_of_keypoint[feature] = static_cast<int>(i);
     reader.read_all<std::uint8_t>(kept.patches[i].pixels);
@@ -77,7 +77,7 @@ std::shared_ptr<const Features> read_features_of(std::size_t keyframe, ByteReade
   auto features = std::make_shared<const Features>(rig.width, rig.height, keypoints, std::move(descriptors),
                                                    std::move(kept.patches), std::move(kept.patch_of_keypoint));
   if (!std::ranges::equal(features->keypoints(), keypoints, {}, &Keypoint::pixel, &Keypoint::pixel)) {
-    require_no_fault(reader, "has keypoints that are not sorted by the cells of their grid", "keyframe", keyframe);
+    require_no_fault(reader, "has keypoints that are not sorted by grid cell", "keyframe", keyframe);
   }
   return features;
 }

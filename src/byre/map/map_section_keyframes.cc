@@ -42,13 +42,14 @@ Keyframe read_keyframe(ByteReader& reader, std::uint32_t number, std::size_t rig
   keyframe.camera_from_world = read_pose(reader);
   keyframe.covariance = read_symmetric<6>(reader);
   require_no_fault(reader, fault_in(keyframe.camera_from_world), "keyframe", number);
-  if (!keyframe.covariance.allFinite()) require_no_fault(reader, "has no finite covariance", "keyframe", number);
+  if (!keyframe.covariance.allFinite())
+    require_no_fault(reader, "has a covariance that is not finite", "keyframe", number);
   return keyframe;
 }
 
 void require_that_words_may_follow(const ByteReader& reader, std::size_t features, std::uint64_t vocabulary_checksum) {
-  if (features == 0) reader.fail("has words of a keyframe without features");
-  if (vocabulary_checksum == 0) reader.fail("has words of no vocabulary");
+  if (features == 0) reader.fail("has words for a keyframe without features");
+  if (vocabulary_checksum == 0) reader.fail("has words without a vocabulary");
 }
 
 std::size_t bytes_for_word(Word greatest) {
@@ -119,7 +120,7 @@ std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyfra
     for (const Word word : keyframes[i].words) greatest = std::max(greatest, word);
     sizes.views[i][kWordsOfView] = static_cast<std::uint32_t>(before - reader.remaining());
   }
-  if (bytes_for_word(greatest) != head.bytes_each) reader.fail("has words of more bytes than they need");
+  if (bytes_for_word(greatest) != head.bytes_each) reader.fail("has words with more bytes than necessary");
   reader.require_end();
   return head.vocabulary_checksum;
 }

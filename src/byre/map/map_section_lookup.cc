@@ -45,7 +45,7 @@ class AscendingReader {
   std::uint32_t read() {
     const std::uint32_t skipped = reader_.read_varint();
     if (skipped >= count_ - next_) {
-      reader_.fail("names a keyframe beyond the last of " + std::to_string(count_));
+      reader_.fail("refers to a keyframe beyond the last of " + std::to_string(count_));
     }
     const std::size_t number = next_ + skipped;
     next_ = number + 1;
@@ -156,14 +156,14 @@ void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& 
                     ByteReader lookup) {
   ByteWriter expected_observers, expected_lookup;
   write_lookup(map, sizes, sections, expected_observers, expected_lookup);
-  require_bytes(std::move(observers), expected_observers.bytes(), "does not tell who sees the points");
-  require_bytes(std::move(lookup), expected_lookup.bytes(), "does not tell where other sections have their parts");
+  require_bytes(std::move(observers), expected_observers.bytes(), "does not match the observations of the points");
+  require_bytes(std::move(lookup), expected_lookup.bytes(), "does not match the layout of other sections");
 }
 
 Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSectionSizes& sizes) {
   const std::size_t blocks = block_count(summary.points);
   if (summary.keyframes > reader.remaining() / kKeyframePartsBytes || blocks > reader.remaining() / kPointBlockBytes) {
-    reader.fail("has not a place for each keyframe and point");
+    reader.fail("does not have one entry for each keyframe and point");
   }
   Lookup lookup;
   lookup.keyframes.resize(summary.keyframes);
@@ -186,7 +186,7 @@ Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSecti
   }
   const bool is_used_up = ends.views == sizes.views && ends.points == sizes.points && ends.observers == sizes.observers;
   if (!is_used_up || features != summary.features || end_of_covisible != reader.remaining()) {
-    reader.fail("does not tell where other sections have their parts");
+    reader.fail("does not match the layout of other sections");
   }
   lookup.first_byte_of_covisible = kKeyframePartsBytes * summary.keyframes + kPointBlockBytes * blocks;
   lookup.covisible.assign(reader.rest().begin(), reader.rest().end());
@@ -203,7 +203,7 @@ ReusedVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe
     const std::uint32_t number = numbers.read();
     const std::uint32_t shared = reader.read_varint();
     if (number == keyframe || shared == 0 || shared > std::numeric_limits<int>::max()) {
-      require_no_fault(reader, "shares points with what it cannot", "keyframe", keyframe);
+      require_no_fault(reader, "has an invalid covisible keyframe", "keyframe", keyframe);
     }
     all.push_back({{Origin::offline, number}, static_cast<int>(shared)});
   }
@@ -213,14 +213,14 @@ ReusedVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe
 
 std::vector<Observation> read_observers(ByteReader& reader, const std::vector<KeyframeParts>& keyframes) {
   const std::uint32_t count = reader.read_varint();
-  if (count == 0 || count > reader.remaining()) reader.fail("has a point that is seen by no keyframe, or by too many");
+  if (count == 0 || count > reader.remaining()) reader.fail("has a point with no or too many observations");
   std::vector<Observation> observations;
   observations.reserve(count);
   AscendingReader numbers(reader, keyframes.size());
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t number = numbers.read();
     const std::uint32_t feature = reader.read_varint();
-    if (feature >= keyframes[number].features) reader.fail("names a feature that its keyframe does not have");
+    if (feature >= keyframes[number].features) reader.fail("refers to a feature that its keyframe does not have");
     observations.push_back({{Origin::offline, number}, static_cast<int>(feature)});
   }
   return observations;

@@ -29,7 +29,7 @@ void read_sightings(ByteReader& reader, std::uint32_t number, PointObservers& ob
   std::size_t first_free_feature = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::size_t feature = read_index(reader, keyframe.sightings.size(), "feature");
-    if (feature < first_free_feature) reader.fail("has features out of order");
+    if (feature < first_free_feature) reader.fail("has unsorted features");
     first_free_feature = feature + 1;
     keyframe.sightings[feature] = read_sighting(reader, number, observers);
   }
@@ -120,10 +120,10 @@ void read_observations(ByteReader reader, const std::vector<MapPoint>& points, s
   observers.require_that_all_are_seen(reader);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (observes(keyframes, points[i].reference, i)) continue;
-    require_no_fault(reader, "has a reference that does not see it", "point", i);
+    require_no_fault(reader, "has a reference keyframe that does not observe it", "point", i);
   }
   if (has_too_many_covisible_keyframes(keyframes, points.size(), section_bytes)) {
-    reader.fail("has more keyframes that share points than a file of this size can hold");
+    reader.fail("has more covisible keyframes than a file of this size can hold");
   }
 }
 

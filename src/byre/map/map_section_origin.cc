@@ -128,7 +128,7 @@ std::map<std::string, std::string> read_notes(ByteReader reader) {
   const std::uint32_t count = reader.read_count(2 * sizeof(std::uint32_t));
   for (std::uint32_t i = 0; i < count; ++i) {
     std::string key = reader.read_text();
-    if (!notes.empty() && key <= notes.rbegin()->first) reader.fail("has notes out of order");
+    if (!notes.empty() && key <= notes.rbegin()->first) reader.fail("has unsorted notes");
     notes.emplace_hint(notes.end(), std::move(key), reader.read_text());
   }
   reader.require_end();
@@ -192,7 +192,7 @@ void read_refined_calibrations(ByteReader reader, std::vector<SourceRecording>& 
   }
   if (std::ranges::none_of(recordings,
                            [](const SourceRecording& recording) { return recording.refined.has_value(); })) {
-    reader.fail("holds no calibration");
+    reader.fail("contains no calibration");
   }
   reader.require_end();
 }
@@ -212,7 +212,7 @@ void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordi
       recordings[i].refined->calibration.readout_time = refined;
     } else if (std::bit_cast<std::uint64_t>(refined) !=
                std::bit_cast<std::uint64_t>(recordings[i].calibration.readout_time)) {
-      reader.fail("has another readout time than the calibration that was given");
+      reader.fail("has a readout time other than the given calibration");
     }
     require_no_fault(reader, fault_in(recordings[i]), "recording", i);
   }

@@ -39,13 +39,13 @@ MapPoint read_point(ByteReader& reader, std::uint32_t number) {
   reader.read_all<std::int16_t>(covariance.factor);
   covariance.exponent = reader.read<std::int8_t>();
   const std::optional<Eigen::Matrix3d> read = covariance_of(covariance);
-  if (!read) require_no_fault(reader, "has a covariance that is none", "point", number);
+  if (!read) require_no_fault(reader, "has an invalid covariance", "point", number);
   point.covariance = *read;
   DirectionCode direction;
   reader.read_all<std::int16_t>(direction);
   point.mean_viewing_direction = direction_of(direction);
   if (direction_code(point.mean_viewing_direction) != direction) {
-    require_no_fault(reader, "has no unit viewing direction", "point", number);
+    require_no_fault(reader, "has a viewing direction that is not of unit length", "point", number);
   }
   reader.read_all<std::uint64_t>(point.descriptor);
   point.min_distance = float_of_16(reader.read<std::uint16_t>());

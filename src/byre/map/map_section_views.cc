@@ -27,7 +27,7 @@ float read_coordinate(ByteReader& reader, int size) {
 void read_disparity(ByteReader& reader, Keypoint& keypoint) {
   keypoint.disparity = float_of_24(static_cast<std::uint32_t>(reader.read_low_bytes(kDisparityBytes)));
   keypoint.disparity_sigma = sigma_of_code(reader.read<std::uint8_t>());
-  if (!(keypoint.disparity > 0.0f)) reader.fail("has a disparity that is none");
+  if (!(keypoint.disparity > 0.0f)) reader.fail("has a disparity that is not positive");
 }
 
 // Keypoints of one keyframe, with the first byte of each.
@@ -61,7 +61,7 @@ float read_offset(ByteReader& reader) {
 Sighting read_sighting(ByteReader& reader, const Keypoint& keypoint, std::uint32_t keyframe, std::size_t point_count) {
   const auto point = static_cast<std::uint32_t>(reader.read_low_bytes(bytes_for(point_count)));
   if (point >= point_count) {
-    reader.fail("names point " + std::to_string(point) + " of " + std::to_string(point_count));
+    reader.fail("refers to point " + std::to_string(point) + " of " + std::to_string(point_count));
   }
   const float u = read_offset(reader);
   const float v = read_offset(reader);
@@ -111,7 +111,7 @@ Patch read_patch(ByteReader& reader, bool is_packed, std::size_t keyframe) {
     reader.read_all<std::uint8_t>(code.steps);
   }
   const std::optional<Patch> patch = patch_of(code);
-  require_no_fault(reader, patch ? fault_in(*patch) : "has a patch that is none", "keyframe", keyframe);
+  require_no_fault(reader, patch ? fault_in(*patch) : "has an invalid patch", "keyframe", keyframe);
   return *patch;
 }
 
@@ -148,7 +148,7 @@ std::shared_ptr<const Features> features_of_view(const ByteReader& reader, PartO
       std::make_shared<const Features>(rig.width, rig.height, keypoints, std::move(descriptors),
                                        std::move(part.patches.patches), std::move(part.patches.patch_of_keypoint));
   if (!std::ranges::equal(features->keypoints(), keypoints, {}, &Keypoint::pixel, &Keypoint::pixel)) {
-    require_no_fault(reader, "has keypoints that are not sorted by the cells of their grid", "keyframe", keyframe);
+    require_no_fault(reader, "has keypoints that are not sorted by grid cell", "keyframe", keyframe);
   }
   return features;
 }
@@ -306,7 +306,7 @@ class ViewsReader {
         } else if (*point < points_.size()) {
           descriptors.push_back(read_difference(reader, points_[*point].descriptor));
         } else {
-          reader.fail("is of a point that is none");
+          reader.fail("belongs to an invalid point");
         }
       });
       sizes_[i][kDescriptorsOfView] = static_cast<std::uint32_t>(before - reader.remaining());
@@ -372,7 +372,7 @@ void set_references(const ByteReader& reader, const std::vector<Keyframe>& keyfr
     }
   }
   for (std::size_t point = 0; point < is_set.size(); ++point) {
-    if (!is_set[point]) require_no_fault(reader, "has a reference that does not see it", "point", point);
+    if (!is_set[point]) require_no_fault(reader, "has a reference keyframe that does not observe it", "point", point);
   }
 }
 
@@ -389,7 +389,7 @@ void read_views(const ViewSections& sections, RoundedPoints& points, const std::
   }
   set_references(observations, keyframes, points);
   if (has_too_many_covisible_keyframes(keyframes, points.points.size(), observations.remaining())) {
-    observations.fail("has more keyframes that share points than a file of this size can hold");
+    observations.fail("has more covisible keyframes than a file of this size can hold");
   }
 }
 
@@ -399,7 +399,7 @@ void read_view(ViewSections parts, std::uint32_t number, const Rig& rig, std::si
   const auto require_seen = [&](std::uint32_t point, int feature) {
     const Observation seen{{Origin::offline, number}, feature};
     if (std::ranges::binary_search(find_point(point).observations, seen)) return;
-    require_no_fault(parts.observations, "does not know of a keyframe that sees it", "point", point);
+    require_no_fault(parts.observations, "does not list a keyframe that observes it", "point", point);
   };
   keyframe.sightings = read_sightings(parts.observations, part.keypoints, number, point_count, require_seen);
   std::vector<Descriptor> descriptors =

@@ -42,21 +42,21 @@ bool is_unit(const Eigen::Vector3f& direction) {
 std::string_view fault_in(const Pose& pose) {
   constexpr double kTolerance = 1e-6;
   const bool is_rotation = std::abs(pose.rotation.norm() - 1.0) < kTolerance;
-  return is_rotation && pose.translation.allFinite() ? "" : "has no proper pose";
+  return is_rotation && pose.translation.allFinite() ? "" : "has an invalid pose";
 }
 
 std::string_view fault_in(const Camera& camera) {
-  if (!is_image_size(camera.width, camera.height)) return "has no proper image size";
+  if (!is_image_size(camera.width, camera.height)) return "has an invalid image size";
   const bool is_sound = is_positive(camera.fx) && is_positive(camera.fy) && are_finite({camera.cx, camera.cy}) &&
                         std::ranges::all_of(camera.distortion, [](double value) { return std::isfinite(value); });
-  return is_sound ? "" : "has no proper camera";
+  return is_sound ? "" : "has an invalid camera";
 }
 
 std::string_view fault_in(const Calibration& calibration) {
   if (const auto fault = fault_in(calibration.left); !fault.empty()) return fault;
   if (const auto fault = fault_in(calibration.body_from_left); !fault.empty()) return fault;
   constexpr double kLongestReadout = 1.0;  // seconds; the comparison is false for NaN
-  if (!(std::abs(calibration.readout_time) <= kLongestReadout)) return "has no proper readout time";
+  if (!(std::abs(calibration.readout_time) <= kLongestReadout)) return "has an invalid readout time";
   return calibration.right ? fault_in(*calibration.right) : "";
 }
 
@@ -66,7 +66,7 @@ std::string_view fault_in(const RefinedCalibration& refined) {
                         (refined.sigma_after.array() >= 0.0).all() && refined.sigma_before.allFinite() &&
                         refined.sigma_after.allFinite() && refined.keyframes >= 0 && refined.observations >= 0 &&
                         std::isfinite(refined.shift) && refined.shift >= 0.0;
-  return is_sound ? "" : "has no proper refined calibration";
+  return is_sound ? "" : "has an invalid refined calibration";
 }
 
 std::string_view fault_in(const SourceRecording& recording) {
@@ -81,9 +81,9 @@ std::string_view fault_in(const SourceRecording& recording) {
 }
 
 std::string_view fault_in(const Rig& rig) {
-  if (!is_image_size(rig.width, rig.height)) return "has no proper image size";
+  if (!is_image_size(rig.width, rig.height)) return "has an invalid image size";
   const bool is_sound = is_positive(rig.focal) && are_finite({rig.cx, rig.cy, rig.baseline}) && rig.baseline >= 0.0;
-  return is_sound ? fault_in(rig.body_from_camera) : "has no proper camera";
+  return is_sound ? fault_in(rig.body_from_camera) : "has an invalid camera";
 }
 
 std::string_view fault_in(const Keypoint& keypoint, const Rig& rig) {
@@ -91,7 +91,7 @@ std::string_view fault_in(const Keypoint& keypoint, const Rig& rig) {
   if (keypoint.octave >= kOctaves) return "has a keypoint in an octave that does not exist";
   const bool is_finite = are_finite({keypoint.disparity, keypoint.disparity_sigma, keypoint.angle, keypoint.response});
   const bool is_sound = is_finite && (!keypoint.has_disparity() || keypoint.disparity_sigma > 0.0f);
-  return is_sound ? "" : "has a keypoint without proper values";
+  return is_sound ? "" : "has a keypoint with invalid values";
 }
 
 std::string_view fault_in(const Patch& patch) {
@@ -100,20 +100,20 @@ std::string_view fault_in(const Patch& patch) {
 }
 
 std::string_view fault_in(const Sighting& sighting) {
-  return sighting.pixel.allFinite() && is_positive(sighting.pixel_sigma) ? "" : "has a sighting without proper values";
+  return sighting.pixel.allFinite() && is_positive(sighting.pixel_sigma) ? "" : "has a sighting with invalid values";
 }
 
 std::string_view fault_in(const MapPoint& point) {
-  if (!point.position_in_world.allFinite()) return "has no finite position";
-  if (!point.covariance.allFinite()) return "has no finite covariance";
-  if (!is_unit(point.mean_viewing_direction)) return "has no unit viewing direction";
+  if (!point.position_in_world.allFinite()) return "has a position that is not finite";
+  if (!point.covariance.allFinite()) return "has a covariance that is not finite";
+  if (!is_unit(point.mean_viewing_direction)) return "has a viewing direction that is not of unit length";
   const bool is_range = point.min_distance >= 0.0f && point.min_distance <= point.max_distance;
-  return is_range && std::isfinite(point.max_distance) ? "" : "has no proper range of distances";
+  return is_range && std::isfinite(point.max_distance) ? "" : "has an invalid distance range";
 }
 
 std::string_view fault_in(const PlanRegistration& registration) {
-  if (!is_positive(registration.plan_from_map.scale)) return "has no positive scale";
-  if (!registration.covariance.allFinite()) return "has no finite covariance";
+  if (!is_positive(registration.plan_from_map.scale)) return "has a scale that is not positive";
+  if (!registration.covariance.allFinite()) return "has a covariance that is not finite";
   if ((registration.covariance.diagonal().array() < 0.0).any()) return "has a negative variance";
   return fault_in(registration.plan_from_map.target_from_source);
 }

@@ -8,7 +8,7 @@ namespace byre {
 
 inline constexpr int kMaxImageSize = 16384;  // pixels, width and height
 
-// Fault of a value to be stored, such as "has no proper pose"; empty if valid. For map files and find_faults().
+// Fault of a value to be stored, such as "has an invalid pose"; empty if valid. For map files and find_faults().
 std::string_view fault_in(const Pose& pose);
 std::string_view fault_in(const Camera& camera);
 std::string_view fault_in(const Calibration& calibration);

@@ -125,15 +125,15 @@ void add_counted(std::span<const std::byte> bytes, unsigned low_bits, const Byte
       next = one + 1;
       ++pixel;
     }
-    if (rest != 0) reader.fail("has a patch of too many pixels");
+    if (rest != 0) reader.fail("has a patch with too many pixels");
   }
-  if (pixel < kPixels || largest > kLargest >> low_bits) reader.fail("has a patch that is none");
+  if (pixel < kPixels || largest > kLargest >> low_bits) reader.fail("has an invalid patch");
 }
 
 PatchSteps unpacked(std::span<const std::byte> packed, const ByteReader& reader) {
   const unsigned planes = packed.empty() ? kPackings : std::to_integer<unsigned>(packed[0]);
   const std::size_t counted_from = 1 + planes * kPlaneBytes;
-  if (planes >= kPackings || packed.size() <= counted_from) reader.fail("has a patch that is none");
+  if (planes >= kPackings || packed.size() <= counted_from) reader.fail("has an invalid patch");
   Pixels numbers{};
   for (unsigned bit = 0; bit < planes; ++bit) {
     Plane plane;
@@ -142,7 +142,7 @@ PatchSteps unpacked(std::span<const std::byte> packed, const ByteReader& reader)
   }
   add_counted(packed.subspan(counted_from), planes, reader, numbers);
   if (best_packing(numbers).planes != planes || packed.back() == std::byte{0}) {
-    reader.fail("has a patch that is not told as it is");
+    reader.fail("has a patch that is not in canonical encoding");
   }
   return steps_of(numbers);
 }
@@ -176,12 +176,12 @@ void write_packed_steps(const PatchSteps& steps, ByteWriter& writer) {
 
 PatchSteps read_packed_steps(ByteReader& reader) {
   const auto bytes = std::size_t{reader.read<std::uint8_t>()};
-  if (bytes > kWholeBytes) reader.fail("has a patch of more bytes than its steps have");
+  if (bytes > kWholeBytes) reader.fail("has a patch with more bytes than its steps");
   const std::span<const std::byte> packed = reader.take(bytes);
   if (bytes < kWholeBytes) return unpacked(packed, reader);
   PatchSteps steps;
   std::memcpy(steps.data(), packed.data(), kWholeBytes);
-  if (best_packing(numbers_of(steps)).gains()) reader.fail("has a patch that is not told as it is");
+  if (best_packing(numbers_of(steps)).gains()) reader.fail("has a patch that is not in canonical encoding");
   return steps;
 }
 

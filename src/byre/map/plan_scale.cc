@@ -24,13 +24,13 @@ std::optional<PlanScaleDoubt> doubt_about(const PlanFit& fit, const PlanScale& s
 std::string_view to_string(PlanScaleDoubt doubt) {
   switch (doubt) {
     case PlanScaleDoubt::few_points:
-      return "fewer than four correspondences took part, so one that is wrong would not show: pick more";
+      return "fewer than four correspondences are used, so a wrong one cannot be detected: pick more";
     case PlanScaleDoubt::small_spread:
-      return "the correspondences leave the scale open by more than 1 %: pick more, farther apart";
+      return "the uncertainty of the scale exceeds 1 %: pick more correspondences, farther apart";
     case PlanScaleDoubt::disagreement:
-      return "the correspondences do not agree: check them";
+      return "the correspondences are inconsistent: check them";
     case PlanScaleDoubt::implausible:
-      return "map and plan differ by more than 10 %, which is no fault of a baseline: check the plan's resolution";
+      return "map and plan differ by more than 10 %, too much for a baseline error: check the resolution of the plan";
   }
   return "";
 }

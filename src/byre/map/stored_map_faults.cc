@@ -19,10 +19,10 @@ void add_fault(std::string_view fault, std::string_view thing, std::size_t numbe
 template <typename Matrix>
 std::string_view covariance_fault(const Matrix& covariance) {
   constexpr double kTolerance = 1e-9;
-  if (!covariance.allFinite()) return "has no finite covariance";
+  if (!covariance.allFinite()) return "has a covariance that is not finite";
   const double largest = covariance.cwiseAbs().maxCoeff();
   const double asymmetry = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
-  return asymmetry <= kTolerance * largest ? "" : "has an unsymmetric covariance";
+  return asymmetry <= kTolerance * largest ? "" : "has an asymmetric covariance";
 }
 
 template <typename Id>
@@ -36,19 +36,19 @@ bool are_in_grid_order(const Features& features, const Rig& rig) {
 }
 
 std::string_view feature_fault(const Features& features, const Rig& rig) {
-  if (const auto fault = fault_in(rig); !fault.empty()) return "has an unsound rig";
+  if (const auto fault = fault_in(rig); !fault.empty()) return "has an invalid rig";
   for (int i = 0; i < features.size(); ++i) {
     if (const auto fault = fault_in(features.keypoint(i), rig); !fault.empty()) return fault;
     const Patch* const patch = features.find_patch(i);
     if (patch && !fault_in(*patch).empty()) return fault_in(*patch);
   }
-  return are_in_grid_order(features, rig) ? "" : "has keypoints that are not sorted by the cells of their grid";
+  return are_in_grid_order(features, rig) ? "" : "has keypoints that are not sorted by grid cell";
 }
 
 std::string_view sighting_fault(const Keyframe& keyframe) {
   for (const Sighting& sighting : keyframe.sightings) {
     if (!sighting.point) continue;
-    if (sighting.point->origin != Origin::offline) return "sees an online point";
+    if (sighting.point->origin != Origin::offline) return "observes an online point";
     if (const auto fault = fault_in(sighting); !fault.empty()) return fault;
   }
   return "";
@@ -56,15 +56,15 @@ std::string_view sighting_fault(const Keyframe& keyframe) {
 
 std::string_view word_fault(const Keyframe& keyframe, std::uint64_t vocabulary_checksum) {
   if (keyframe.words.empty()) return "";
-  if (keyframe.words.size() != keyframe.sightings.size()) return "has not one word per feature";
-  return vocabulary_checksum != 0 ? "" : "has words of no vocabulary";
+  if (keyframe.words.size() != keyframe.sightings.size()) return "does not have one word per feature";
+  return vocabulary_checksum != 0 ? "" : "has words without a vocabulary";
 }
 
 void check_keyframe(const StoredMap& stored, KeyframeId id, Faults& faults) {
   const Keyframe& keyframe = *stored.map.find_keyframe(id);
   const auto add = [&](std::string_view fault) { add_fault(fault, "keyframe", id.number, faults); };
   const bool has_recording = keyframe.recording >= 0 && std::cmp_less(keyframe.recording, stored.recordings.size());
-  if (!has_recording) add("is of a recording that is not listed");
+  if (!has_recording) add("belongs to a recording that is not listed");
   add(covariance_fault(keyframe.covariance));
   const bool has_rig = keyframe.rig >= 0 && std::cmp_less(keyframe.rig, stored.map.rigs().size());
   if (has_rig && keyframe.frame.features) {

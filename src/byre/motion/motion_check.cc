@@ -62,8 +62,8 @@ void MotionCheck::warn_once(MotionSensor sensor, Fault fault, Timestamp time, co
 StampCheck::Order MotionCheck::ordered(StampCheck& stamps, MotionSensor sensor, Timestamp time) {
   const StampCheck::Order order = stamps.check(time);
   if (order == StampCheck::Order::restarted) {
-    warn_once(sensor, Fault::clock, time, "the clock was set back; samples before are forgotten",
-              "keep the clock of the driver steady while it runs");
+    warn_once(sensor, Fault::clock, time, "the clock was set back; earlier samples are discarded",
+              "do not set the clock while the driver runs");
   }
   return order;
 }
@@ -178,7 +178,7 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
   if (are_wheels_ignored()) return {};
   if (is_frozen_) {
     warn_once(kWheels, Fault::frozen, sample.time,
-              fmt::format("the pose stays the same to the last bit right after {:.2f} m/s; such poses are not used",
+              fmt::format("the pose stays the same to the last bit right after {:.2f} m/s; such poses are ignored",
                           speed_before_same_),
               "check that the base driver is running");
     return result;
@@ -201,7 +201,7 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
   if (confirms) {
     const StampedPose &before = *last_, &after = *suspected_;
     warn_once(kWheels, Fault::jump, after.time,
-              fmt::format("the pose jumps by {:.3g} m and {:.0f} degrees in {:.3f} s; motion across a jump is not used",
+              fmt::format("the pose jumps by {:.3g} m and {:.0f} degrees in {:.3f} s; motion across a jump is ignored",
                           distance(before, after), turn(before, after) * kDegreesPerRadian,
                           to_seconds(after.time - before.time)),
               "check whether the base driver restarts, or two nodes publish the topic");
@@ -212,7 +212,7 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
   } else if (suspected_) {
     warn_once(
         kWheels, Fault::spike, suspected_->time,
-        fmt::format("a single pose lies {:.3g} m off the path; such poses are dropped", distance(*last_, *suspected_)),
+        fmt::format("a single pose is {:.3g} m off the path; such poses are dropped", distance(*last_, *suspected_)),
         "check the encoder wiring for noise, and the topic for a second publisher");
   }
   accept(sample);
@@ -323,14 +323,15 @@ bool MotionCheck::note(const Turn& turn) {
   const double ratio = measured_change_ / std::max(reference_change_, 1e-9);
   const bool is_in_degrees = ratio > 0.5 * kDegreesPerRadian && ratio < 2.0 * kDegreesPerRadian;
   if (is_in_degrees && changes_ >= kFewChanges && reference_change_ >= kEnoughDegrees) {
-    return ignore_gyroscope(Fault::unit, turn.time, fmt::format("rates are {:.0f} times the turns of the robot", ratio),
+    return ignore_gyroscope(Fault::unit, turn.time,
+                            fmt::format("rates are {:.0f} times the rotation of the robot", ratio),
                             "give radians per second: these are degrees per second");
   }
   const bool is_enough =
       turn.is_seen && changes_ >= kManyChanges && std::max(measured_change_, reference_change_) >= kEnough;
   if (is_enough && (ratio > 3.0 || ratio < 1.0 / 3.0)) {
     return ignore_gyroscope(
-        Fault::unit, turn.time, fmt::format("rates are {:.3g} times the turns of the camera", ratio),
+        Fault::unit, turn.time, fmt::format("rates are {:.3g} times the rotation of the camera", ratio),
         is_in_degrees ? "give radians per second: these are degrees per second"
                       : "give radians per second, and check that the sensor is fixed to the cameras");
   }
@@ -357,7 +358,7 @@ void MotionCheck::note_unit_of_acceleration(const Acceleration& acceleration) {
       MotionSensor::accelerometer, Fault::unit, acceleration.time,
       fmt::format("accelerations have a mean length of {:.3g}, but gravity is 9.81 m/s^2; the accelerometer is ignored",
                   mean),
-      is_in_g ? "give m/s^2: these are multiples of g" : "give m/s^2 with gravity in it");
+      is_in_g ? "give m/s^2: these are multiples of g" : "give m/s^2 including gravity");
 }
 
 StampCheck::Order MotionCheck::check(const Acceleration& acceleration) {
@@ -388,14 +389,14 @@ std::optional<BodyMotion> MotionCheck::check(const BodyMotion& motion, Timestamp
   constexpr double kSlack = 0.5;  // metres and radians
   if (!is_sound(motion)) {
     warn_once(MotionSensor::body_motion, Fault::not_finite, time,
-              "the motion or its covariance is not finite, or its quaternion is not of length 1; it is left out",
+              "the motion or its covariance is not finite, or its quaternion is not of length 1; it is ignored",
               "give a rotation of length 1 and a positive covariance");
     return {};
   }
   const double way = motion.last_from_body.translation.norm();
   if (way > kSlack + limits_.max_speed * std::max(0.0, seconds)) {
     warn_once(MotionSensor::body_motion, Fault::too_large, time,
-              fmt::format("{:.3g} m in {:.3f} s is above motion.max_speed_m_per_s ({:.3g}); such motions are left out",
+              fmt::format("{:.3g} m in {:.3f} s is above motion.max_speed_m_per_s ({:.3g}); such motions are ignored",
                           way, seconds, limits_.max_speed),
               "give the motion since the last frame in metres, or raise the limit");
     return {};

@@ -177,7 +177,7 @@ TEST(MotionCheck, RestartsWhereTheClockIsSetBack) {
   EXPECT_EQ(checked.used, 500 - 9);
   ASSERT_THAT(checked.warnings, SizeIs(1));
   EXPECT_THAT(checked.warnings.front().what, HasSubstr("set back"));
-  EXPECT_FALSE(checked.track.pose_at(from_seconds(1.0))) << "samples before are forgotten";
+  EXPECT_FALSE(checked.track.pose_at(from_seconds(1.0))) << "earlier samples are discarded";
   EXPECT_TRUE(checked.track.pose_at(from_seconds(-3600.0 + 5.0)));
 }
 
@@ -252,7 +252,7 @@ TEST(MotionCheck, ReportsTheUnitOfAccelerations) {
   };
   EXPECT_EQ(warning_of(9.81), "");
   EXPECT_THAT(warning_of(1.0), HasSubstr("multiples of g"));
-  EXPECT_THAT(warning_of(0.1), HasSubstr("with gravity in it"));
+  EXPECT_THAT(warning_of(0.1), HasSubstr("including gravity"));
   EXPECT_THAT(warning_of(981.0), HasSubstr("above motion.max_acceleration_m_per_s2"));
 }
 

@@ -94,7 +94,7 @@ void MotionPrior::presume_gyroscope(const Eigen::Quaterniond& body_from_gyroscop
   if (!(std::abs(body_from_gyroscope.norm() - 1.0) < kMostOff)) {
     return warn({MotionSensor::gyroscope,
                  {},
-                 "the rotation of its mounting is not finite or not of length 1; it is not used",
+                 "the rotation of the mounting is not finite or not of length 1; it is ignored",
                  "give a unit quaternion"});
   }
   presumed_gyroscope_ = GyroscopeMounting{.body_from_gyroscope = body_from_gyroscope.normalized(),

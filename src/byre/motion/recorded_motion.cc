@@ -18,9 +18,9 @@ std::vector<MotionWarning> clock_warnings(const MotionSamples& samples, Timestam
     warnings.push_back(
         {sensor,
          {},
-         fmt::format("samples are from {:.3f} to {:.3f} s, but images from {:.3f} to {:.3f} s; no sample is used",
+         fmt::format("samples range from {:.3f} to {:.3f} s, but images from {:.3f} to {:.3f} s; no sample is used",
                      to_seconds(first), to_seconds(last), to_seconds(first_frame), to_seconds(last_frame)),
-         "stamp both by one clock, or shift the times of one"});
+         "stamp both with one clock, or shift the times of one"});
   };
   if (!samples.wheels.empty()) compare(MotionSensor::wheels, samples.wheels.front().time, samples.wheels.back().time);
   if (!samples.velocities.empty()) {

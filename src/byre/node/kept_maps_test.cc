@@ -101,12 +101,13 @@ TEST_F(KeptMaps, AreRefusedForInputsOfTheNodeAndFilesOfOtherKinds) {
     return refusal_of(config);
   };
   for (const char* const read : {"robot.yaml", "calibration.yaml", "plan.yaml", "plan.png", "barn.byre", "same.byre"}) {
-    EXPECT_THAT(with(read), HasSubstr("so it may not be written: name another file")) << read;
+    EXPECT_THAT(with(read), HasSubstr("cannot be overwritten: choose another file")) << read;
   }
-  EXPECT_THAT(with("photo.png"), HasSubstr("is there and is no map"));
+  EXPECT_THAT(with("photo.png"), HasSubstr("exists and is not the expected kind of file (map)"));
   EXPECT_EQ(with("today.byre"), "");
   config.map = folder_ / "today.previous.byre";
-  EXPECT_THAT(with("today.byre"), HasSubstr("today.previous.byre is read, for slam.map")) << "a save would replace it";
+  EXPECT_THAT(with("today.byre"), HasSubstr("today.previous.byre is also an input (slam.map)"))
+      << "a save would replace it";
   config.map = folder_ / "barn.byre";
   config.task = NodeTask::extend;
   EXPECT_EQ(with("barn.byre"), "") << "a map may be extended in place";

@@ -113,11 +113,10 @@ void require_consistent(const Dbow2Tree& tree, const Dbow2Header& header, const 
     const std::uint32_t child_count = tree.first_child[node + 1] - tree.first_child[node];
     const std::string name = "node " + std::to_string(node);
     if (node > 0) level[node] = level[tree.nodes[node].parent] + 1;
-    if (level[node] > header.depth) line.fail(name + " lies deeper than L says");
-    if (child_count > header.branching) line.fail(name + " has more children than k says");
-    if (tree.nodes[node].is_leaf && child_count > 0) line.fail(name + " is said to be a leaf but has children");
-    if (!tree.nodes[node].is_leaf && child_count == 0)
-      line.fail(name + " has no children but is not said to be a leaf");
+    if (level[node] > header.depth) line.fail(name + " is deeper than L");
+    if (child_count > header.branching) line.fail(name + " has more than k children");
+    if (tree.nodes[node].is_leaf && child_count > 0) line.fail(name + " is marked as a leaf but has children");
+    if (!tree.nodes[node].is_leaf && child_count == 0) line.fail(name + " has no children but is not marked as a leaf");
   }
 }
 

@@ -114,13 +114,13 @@ TEST_F(Dbow2File, NamesTheLineOfAMalformedNode) {
 
 TEST_F(Dbow2File, NamesTheLineOfANodeThatContradictsOthers) {
   EXPECT_THAT(refusal_of("3 2 0 0\n" + node(0, 1, 1, "1") + node(1, 1, 2, "1")),
-              HasSubstr(":2: node 1 is said to be a leaf but has children"));
+              HasSubstr(":2: node 1 is marked as a leaf but has children"));
   EXPECT_THAT(refusal_of("3 2 0 0\n" + node(0, 1, 1, "1") + node(0, 0, 2, "1")),
-              HasSubstr(":3: node 2 has no children but is not said to be a leaf"));
+              HasSubstr(":3: node 2 has no children but is not marked as a leaf"));
   EXPECT_THAT(refusal_of("3 1 0 0\n" + node(0, 0, 1, "1") + node(1, 1, 2, "1")),
-              HasSubstr(":3: node 2 lies deeper than L says"));
+              HasSubstr(":3: node 2 is deeper than L"));
   EXPECT_THAT(refusal_of("2 1 0 0\n" + node(0, 1, 1, "1") + node(0, 1, 2, "1") + node(0, 1, 3, "1")),
-              HasSubstr(":1: node 0 has more children than k says"));
+              HasSubstr(":1: node 0 has more than k children"));
 }
 
 TEST_F(Dbow2File, IsNamedWhenItCannotBeRead) {

@@ -20,9 +20,9 @@ fs::path default_vocabulary_path() {
   if (const char* const chosen = std::getenv(kVariable); chosen != nullptr && *chosen != '\0') {
     std::error_code ignored;
     if (fs::is_regular_file(chosen, ignored)) return chosen;
-    throw InputError(chosen, "is no file", std::string("correct or unset $") + kVariable);
+    throw InputError(chosen, "is not a file", std::string("correct or unset $") + kVariable);
   }
-  return find_data_file(kFileName, std::string("install byre, or name a vocabulary by $") + kVariable);
+  return find_data_file(kFileName, std::string("install byre, or give a vocabulary by $") + kVariable);
 }
 
 }  // namespace byre

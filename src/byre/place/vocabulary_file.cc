@@ -50,13 +50,13 @@ class Section {
   }
 
   void require_checksum(std::uint64_t expected) const {
-    if (checksum(bytes_) != expected) fail(0, "does not have the checksum that the header says");
+    if (checksum(bytes_) != expected) fail(0, "does not have the checksum given in the header");
   }
 
   // offset: bytes from the start of the section.
   [[noreturn]] void fail(std::size_t offset, const std::string& reason) const {
     throw InputError(place_ + " at byte " + std::to_string(begin_ + offset), reason,
-                     "the file is damaged; use a copy, or make it again");
+                     "the file is damaged; use a copy, or create it again");
   }
 
  private:
@@ -68,16 +68,15 @@ class Section {
 void require_own_format(std::span<const std::byte> file, const std::string& name) {
   const std::string_view start(reinterpret_cast<const char*>(file.data()), std::min(file.size(), kMagic.size()));
   if (start == kMagic) return;
-  throw InputError(name + ": section header at byte 0", "is no vocabulary of byre",
-                   "\"byre vocabulary import\" turns a text file of DBoW2 into one");
+  throw InputError(name + ": section header at byte 0", "is not a vocabulary of byre",
+                   "convert text files of DBoW2 with \"byre vocabulary import\"");
 }
 
 void require_known_version(std::uint32_t version, const std::string& name) {
   if (version == kVersion) return;
-  throw InputError(
-      name + ": section header at byte 8",
-      "is of format " + std::to_string(version) + ", this program reads format " + std::to_string(kVersion),
-      "use the byre that made it, or train the vocabulary again");
+  throw InputError(name + ": section header at byte 8",
+                   "has format " + std::to_string(version) + "; this program reads format " + std::to_string(kVersion),
+                   "use the version of byre that wrote the vocabulary, or train it again");
 }
 
 Header read_header(std::span<const std::byte> file, const std::string& name) {
@@ -95,22 +94,21 @@ Header read_header(std::span<const std::byte> file, const std::string& name) {
   header.weights_checksum = reader.read<std::uint64_t>();
   reader.take(sizeof(std::uint64_t));
   header.checksum = reader.read<std::uint64_t>();
-  if (checksum(file.first(kHeaderChecksumAt)) != header.checksum) section.fail(0, "does not have its own checksum");
+  if (checksum(file.first(kHeaderChecksumAt)) != header.checksum) section.fail(0, "has a wrong checksum");
   return header;
 }
 
 // Requires that every node except the root is the child of exactly one earlier node.
 void require_tree(const Section& section, std::span<const std::uint32_t> first_child) {
   const auto node_count = static_cast<std::uint32_t>(first_child.size() - 1);
-  if (first_child.front() != 1) section.fail(0, "the root's children do not begin with node 1");
+  if (first_child.front() != 1) section.fail(0, "the children of the root do not begin with node 1");
   for (std::uint32_t node = 0; node < node_count; ++node) {
     const std::uint32_t begin = first_child[node], end = first_child[node + 1];
     if (begin > end || end - begin > kMaxBranching || (begin < end && begin <= node)) {
-      section.fail(node * sizeof(std::uint32_t),
-                   "gives node " + std::to_string(node) + " children that it cannot have");
+      section.fail(node * sizeof(std::uint32_t), "has invalid children of node " + std::to_string(node));
     }
   }
-  if (first_child.back() != node_count) section.fail(node_count * sizeof(std::uint32_t), "leaves nodes without parent");
+  if (first_child.back() != node_count) section.fail(node_count * sizeof(std::uint32_t), "has nodes without parent");
 }
 
 void require_weights(const Section& section, std::span<const float> weights) {
@@ -192,16 +190,17 @@ VocabularyView read_vocabulary(std::span<const std::byte> bytes, const std::stri
   const Section centres(bytes, name, "centres", kHeaderSize, node_count * sizeof(Descriptor));
   const Section children(bytes, name, "children", centres.end(), (node_count + 1) * sizeof(std::uint32_t));
   const Section weights(bytes, name, "weights", children.end(), header.word_count * sizeof(float));
-  if (weights.end() != bytes.size()) weights.fail(weights.end() - children.end(), "is not the end of the file");
+  if (weights.end() != bytes.size()) weights.fail(weights.end() - children.end(), "is not at the end of the file");
   centres.require_checksum(header.centres_checksum);
   children.require_checksum(header.children_checksum);
   weights.require_checksum(header.weights_checksum);
 
   VocabularyView view{centres.as<Descriptor>(), children.as<std::uint32_t>(), weights.as<float>(), {}, 0, 0, 0};
-  if (node_count < 2) children.fail(0, "there is no word in it");
+  if (node_count < 2) children.fail(0, "has no word");
   require_tree(children, view.first_child);
   require_weights(weights, view.weights);
-  if (leaf_count(view.first_child) != view.weights.size()) weights.fail(0, "are not as many as the words");
+  if (leaf_count(view.first_child) != view.weights.size())
+    weights.fail(0, "has a number of weights other than the number of words");
   view.first_word = first_words(view.first_child);
   view.branching = branching_of(view.first_child);
   view.depth = depth_of(view.first_child);

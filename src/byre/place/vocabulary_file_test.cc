@@ -99,7 +99,7 @@ TEST(VocabularyFile, NoticesEveryLengthButItsOwn) {
     EXPECT_THAT(damage_in(std::span(bytes).first(size)), StartsWith("some.vocabulary: section ")) << size;
   }
   bytes.emplace_back();
-  EXPECT_THAT(damage_in(bytes), HasSubstr("section weights at byte 300: is not the end of the file"));
+  EXPECT_THAT(damage_in(bytes), HasSubstr("section weights at byte 300: is not at the end of the file"));
 }
 
 TEST(VocabularyFile, NamesSectionAndByte) {
@@ -114,24 +114,24 @@ TEST(VocabularyFile, NamesSectionAndByte) {
 TEST(VocabularyFile, TellsOtherFormatsFromDamage) {
   std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   put(bytes, 8, 2);
-  EXPECT_THAT(damage_in(bytes), HasSubstr("is of format 2, this program reads format 1"));
+  EXPECT_THAT(damage_in(bytes), HasSubstr("has format 2; this program reads format 1"));
   const std::string text = "10 6 0 0\n0 1 17";
-  EXPECT_THAT(damage_in(std::as_bytes(std::span(text))), HasSubstr("byre vocabulary import"));
+  EXPECT_THAT(damage_in(std::as_bytes(std::span(text))), HasSubstr("\"byre vocabulary import\""));
 }
 
 // A file with correct checksums may still be invalid.
 TEST(VocabularyFile, RefusesTreesThatAreNone) {
   VocabularyTree tree = tree_of_two_levels();
   tree.first_child = {1, 4, 4, 6, 5, 6, 6};  // descending
-  EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 268: gives node 3 children that it cannot have"));
+  EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 268: has invalid children of node 3"));
   tree.first_child = {1, 1, 1, 1, 1, 1, 6};  // node 5 is its own child
-  EXPECT_THAT(damage_in(tree), HasSubstr("gives node 5 children that it cannot have"));
+  EXPECT_THAT(damage_in(tree), HasSubstr("has invalid children of node 5"));
   tree.first_child = {0, 4, 4, 6, 6, 6, 6};
-  EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 256: the root's children"));
+  EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 256: the children of the root"));
   tree.first_child = {1, 4, 4, 5, 5, 5, 5};
-  EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 280: leaves nodes without parent"));
+  EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 280: has nodes without parent"));
   tree.first_child = {1, 4, 4, 4000, 4000, 4000, 4000};
-  EXPECT_THAT(damage_in(tree), HasSubstr("gives node 2 children that it cannot have"));
+  EXPECT_THAT(damage_in(tree), HasSubstr("has invalid children of node 2"));
 }
 
 TEST(VocabularyFile, RefusesWeightsThatAreNone) {
@@ -142,12 +142,12 @@ TEST(VocabularyFile, RefusesWeightsThatAreNone) {
   }
   VocabularyTree tree = tree_of_two_levels();
   tree.weights.push_back(1.0f);
-  EXPECT_THAT(damage_in(tree), HasSubstr("are not as many as the words"));
+  EXPECT_THAT(damage_in(tree), HasSubstr("has a number of weights other than the number of words"));
 }
 
 TEST(VocabularyFile, RefusesAVocabularyWithoutWords) {
-  EXPECT_THAT(damage_in(VocabularyTree{{{}}, {1, 1}, {1.0f}}), HasSubstr("there is no word in it"));
-  EXPECT_THAT(damage_in(VocabularyTree{{}, {1}, {}}), HasSubstr("there is no word in it"));
+  EXPECT_THAT(damage_in(VocabularyTree{{{}}, {1, 1}, {1.0f}}), HasSubstr("has no word"));
+  EXPECT_THAT(damage_in(VocabularyTree{{}, {1}, {}}), HasSubstr("has no word"));
 }
 
 TEST(VocabularyFile, SurvivesBeingSavedAndLoaded) {

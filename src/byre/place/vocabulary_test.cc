@@ -176,8 +176,8 @@ TEST(Training, MakesShallowLeavesWhereThereIsNothingToSplit) {
 
 TEST(Training, RefusesTooLittleToLearnFrom) {
   const std::vector<Descriptor> some = random_descriptors(10, 7);
-  EXPECT_THAT(refusal({}, {}), HasSubstr("fewer than two images"));
-  EXPECT_THAT(refusal({some}, {}), HasSubstr("fewer than two images"));
+  EXPECT_THAT(refusal({}, {}), HasSubstr("fewer than two training images"));
+  EXPECT_THAT(refusal({some}, {}), HasSubstr("fewer than two training images"));
   EXPECT_THAT(refusal({{}, {}}, {}), HasSubstr("fewer than two different descriptors"));
   EXPECT_THAT(refusal({{some[0], some[0]}, {some[0]}}, {}), HasSubstr("fewer than two different descriptors"));
 }

@@ -147,12 +147,12 @@ VocabularyTree train_tree(std::span<const std::vector<Descriptor>> descriptors_o
   require_range("depth", options.depth, 1, kMaxDepth);
   require_range("rounds", options.rounds, 1, 1000);
   if (descriptors_of_images.size() < 2) {
-    throw InputError("vocabulary", "there are fewer than two images to learn from", "give more images");
+    throw InputError("vocabulary", "fewer than two training images are given", "give more images");
   }
   TreeGrowth growth(gather(descriptors_of_images), options, progress);
   VocabularyTree tree = growth.run(descriptors_of_images.size());
   if (tree.weights.size() < 2) {
-    throw InputError("vocabulary", "there are fewer than two different descriptors to learn from",
+    throw InputError("vocabulary", "the training images have fewer than two different descriptors",
                      "give images with more texture");
   }
   return tree;

@@ -7,29 +7,29 @@ std::string_view to_string(InputFault fault) {
     case InputFault::none:
       return "none";
     case InputFault::after_gap:
-      return "comes after a gap";
+      return "frame after a gap";
     case InputFault::missing_right:
       return "right image is missing";
     case InputFault::late_right:
-      return "right image is of another time";
+      return "right image has another time stamp";
     case InputFault::missing_depth:
       return "depth image is missing";
     case InputFault::late_depth:
-      return "depth image is of another time";
+      return "depth image has another time stamp";
     case InputFault::no_image:
       return "no image";
     case InputFault::wrong_size:
-      return "image is not of the calibrated size";
+      return "image does not have the calibrated size";
     case InputFault::wrong_format:
-      return "image is of a format that does not fit";
+      return "image has the wrong format";
     case InputFault::wrong_features:
-      return "features that no camera sees";
+      return "features are invalid";
     case InputFault::repeated_time:
-      return "time of the frame before";
+      return "time stamp repeats the previous frame";
     case InputFault::out_of_order:
-      return "earlier than the frame before";
+      return "time stamp is before the previous frame";
     case InputFault::after_finishing:
-      return "comes after the map was finished";
+      return "frame after finishing the map";
   }
   return "";
 }

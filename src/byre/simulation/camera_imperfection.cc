@@ -58,14 +58,15 @@ void require_sensible(const CameraImperfection& imperfection) {
     if (!holds) throw InputError("simulated camera", reason);
   };
   const auto is_within = [](double value, double least, double most) { return value >= least && value <= most; };
-  require(is_within(imperfection.calibration_level, 0.0, 10.0), "the calibration's level must be from 0 to 10");
-  require(is_within(imperfection.rolling_shutter_s, 0.0, 0.1), "rows must be read within 0 to 100 milliseconds");
+  require(is_within(imperfection.calibration_level, 0.0, 10.0), "the calibration level must be from 0 to 10");
+  require(is_within(imperfection.rolling_shutter_s, 0.0, 0.1), "the readout time must be from 0 to 100 milliseconds");
   require(is_within(imperfection.time_offset_s, -0.1, 0.1), "the time offset must be from -100 to 100 milliseconds");
-  require(is_within(imperfection.lens_blur, 0.0, 5.0), "the blur of the lens must be from 0 to 5 pixels");
+  require(is_within(imperfection.lens_blur, 0.0, 5.0), "the lens blur must be from 0 to 5 pixels");
   require(is_within(imperfection.gain, 0.25, 4.0), "the gain must be from 0.25 to 4");
   require(is_within(imperfection.offset, -50.0, 50.0), "the offset must be from -50 to 50 grey values");
   require(is_within(imperfection.vignetting, 0.0, 0.9), "vignetting must be from 0 to 0.9");
-  require(is_within(imperfection.jpeg_quality, 0.0, 100.0), "the quality of JPEG must be from 1 to 100, or 0 for none");
+  require(is_within(imperfection.jpeg_quality, 0.0, 100.0),
+          "the JPEG quality must be from 1 to 100, or 0 for no compression");
 }
 
 LensBlurOptions lens_blur_of(const CameraImperfection& imperfection, StereoSide side) {

@@ -10,8 +10,8 @@ void check(const CowshedOptions& options) {
   const auto require = [](bool holds, const char* reason) {
     if (!holds) throw InputError("simulated cowshed", reason);
   };
-  require(options.mission >= 1, "missions are counted from 1");
-  require(options.change >= 0.0 && options.change <= 1.0, "the share that changes must be from 0 to 1");
+  require(options.mission >= 1, "the mission number must be at least 1");
+  require(options.change >= 0.0 && options.change <= 1.0, "the share of change must be from 0 to 1");
   require(options.dust >= 0.0 && options.dust <= 4.0, "dust must be from 0 to 4");
   require(options.cows.value_or(0) >= 0 && options.cows.value_or(0) <= 40, "the number of cows must be from 0 to 40");
 }

@@ -24,7 +24,7 @@ const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
   };
   require(options.duration_s > 0.0 && options.duration_s <= 36000.0, "the duration must be from 0 to 36000 seconds");
   require(options.frame_rate_hz >= 1.0 && options.frame_rate_hz <= 200.0, "the frame rate must be from 1 to 200 Hz");
-  require(options.image_divisor >= 1 && options.image_divisor <= 16, "images can be divided by 1 to 16");
+  require(options.image_divisor >= 1 && options.image_divisor <= 16, "the image divisor must be from 1 to 16");
   require(!options.image_size || std::ranges::all_of(*options.image_size, [](int n) { return n >= 32 && n <= 4096; }),
           "images must be from 32 to 4096 pixels wide and high");
   require(options.dirt >= 0.0 && options.dirt <= 4.0, "dirt must be from 0 to 4");

@@ -16,7 +16,8 @@ double seconds_since(Clock::time_point begin) {
 
 void require_no_recording(const fs::path& folder) {
   if (!fs::exists(folder / "mav0")) return;
-  throw InputError(folder.string(), "already holds a recording", "name another folder, or remove that one first");
+  throw InputError(folder.string(), "already contains a recording",
+                   "choose another folder, or remove the existing one first");
 }
 
 // Removes an incomplete recording.

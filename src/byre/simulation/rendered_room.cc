@@ -16,7 +16,7 @@ constexpr int kSamplesPerSide = 2;  // samples per pixel side, for antialiasing
 
 void check(const RenderedRoomOptions& options) {
   const bool has_size = options.room_size.allFinite() && options.room_size.minCoeff() > 0.0;
-  if (!has_size) throw InputError("rendered room", "its size must be positive in all three directions");
+  if (!has_size) throw InputError("rendered room", "the size must be positive in all three directions");
   if (options.boxes < 0) throw InputError("rendered room", "the number of boxes must not be negative");
   if (!(options.noise_sigma >= 0.0)) throw InputError("rendered room", "the noise must not be negative");
 }

@@ -142,17 +142,18 @@ std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& place
 FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptions& options, const FinishHooks& hooks) {
   FinishReport report;
   report.before = quality_of(online);
-  announce(hooks, "looking for loops");
+  announce(hooks, "searching for loops");
   std::vector<LoopEdge> edges;
   for (const LoopHypothesis& loop : search_loops(online, places, options, hooks)) {
     report.loop_drifts.push_back(apparent_drift(loop, online));
     edges.push_back(*edge_of(loop, online));
   }
   report.loops = static_cast<int>(edges.size());
-  announce(hooks, options.first_new == 0 ? "adjusting the whole map" : "adjusting what came and lies around it");
+  announce(hooks,
+           options.first_new == 0 ? "adjusting the whole map" : "adjusting new keyframes and their surroundings");
   std::uint32_t first_new = options.first_new;
   if (!stopped(hooks)) first_new = correct_around(online, edges, options, hooks, report);
-  announce(hooks, "removing what adds nothing");
+  announce(hooks, "removing redundant keyframes");
   if (!stopped(hooks)) thin_out(online, first_new, options);
   for (const LoopEdge& edge : edges) {
     report.loop_residuals.push_back(disagreement(online, in_new_lengths(edge, report.length_changes)));

@@ -43,7 +43,7 @@ struct FinishReport {
 
 struct FinishHooks {
   std::function<bool()> should_stop;                  // polled; true keeps the present result
-  std::function<void(const char* step)> before_step;  // "looking for loops", ...
+  std::function<void(const char* step)> before_step;  // "searching for loops", ...
 };
 
 MapQuality quality_of(const Map& map);

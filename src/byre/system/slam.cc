@@ -33,7 +33,7 @@ void require_sense(const Calibration& calibration, const SlamOptions& options) {
     const DepthCamera& depth = *calibration.depth;
     const bool is_sound = depth.units_per_metre > 0.0 && depth.sigma_at_one_metre > 0.0 && depth.baseline > 0.0 &&
                           (!depth.camera || fault_in(*depth.camera).empty());
-    if (!is_sound) refuse("has no proper depth camera");
+    if (!is_sound) refuse("has an invalid depth camera");
   }
   if (options.max_features < 1) throw InputError("SlamOptions::max_features", "is less than one");
   if (options.image_threads < 1) throw InputError("SlamOptions::image_threads", "is less than one");

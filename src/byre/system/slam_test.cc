@@ -166,7 +166,7 @@ TEST_F(SlamWithAFile, DoesNotReplaceTheMapOfAMission) {
   EXPECT_EQ(fs::last_write_time(map_), time);
   const fs::path letter = map_.string() + ".txt";
   std::ofstream(letter) << "Dear reader";
-  EXPECT_THAT(error_by([&] { slam.save(letter); }), HasSubstr("is there and is no map"));
+  EXPECT_THAT(error_by([&] { slam.save(letter); }), HasSubstr("exists and is not the expected kind of file (map)"));
   fs::remove(letter);
 }
 
@@ -244,14 +244,14 @@ TEST(Slam, NeedsACalibrationThatMakesSense) {
   const auto error_with = [](const Calibration& calibration) { return error_by([&] { Slam::mapping(calibration); }); };
   Calibration unknown = sound;
   unknown.left.fx = unknown.left.fy = 0.0;
-  EXPECT_THAT(error_with(unknown), HasSubstr("has no proper camera"));
+  EXPECT_THAT(error_with(unknown), HasSubstr("has an invalid camera"));
   Calibration both = sound;
   both.depth = DepthCamera{};
   EXPECT_THAT(error_with(both), HasSubstr("has both a right and a depth camera"));
   Calibration unitless = both;
   unitless.right.reset();
   unitless.depth->units_per_metre = 0.0;
-  EXPECT_THAT(error_with(unitless), HasSubstr("has no proper depth camera"));
+  EXPECT_THAT(error_with(unitless), HasSubstr("has an invalid depth camera"));
 }
 
 TEST(Slam, NeedsAMapThatCanBeLoaded) {

@@ -48,7 +48,7 @@ TEST_F(BagProgram, TellsOfDamageByItsExitCodeToo) {
   write_scene("cut.mcap", 200);
   const Outcome outcome = run("bag info cut.mcap");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.output, HasSubstr("DAMAGE       cut.mcap: is cut or damaged from byte"));
+  EXPECT_THAT(outcome.output, HasSubstr("DAMAGE       cut.mcap: is truncated or damaged from byte"));
   EXPECT_EQ(run("bag info absent.mcap").exit_code, 3);
   EXPECT_EQ(run("bag").exit_code, 2);
 }
@@ -57,8 +57,7 @@ TEST_F(BagProgram, ListsTopicsWhereANameIsWrong) {
   write_scene("walk.mcap");
   const Outcome outcome = run("check walk.mcap --left /front");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.errors,
-              HasSubstr("has no images of the topic /front; its topics of images: /left/image_raw (6)"));
+  EXPECT_THAT(outcome.errors, HasSubstr("has no images on topic /front; available image topics: /left/image_raw (6)"));
 }
 
 TEST_F(BagProgram, ReadsWhatMappingRecordedAndMapsItAgain) {
@@ -74,7 +73,7 @@ TEST_F(BagProgram, ReadsWhatMappingRecordedAndMapsItAgain) {
 
 TEST_F(BagProgram, DoesNotRecordOverWhatIsReadOrOfAnotherKind) {
   write_scene("walk.mcap");
-  EXPECT_THAT(run("map walk.mcap -o walk.byre --record walk.mcap").errors, HasSubstr("is read, for RECORDING"));
+  EXPECT_THAT(run("map walk.mcap -o walk.byre --record walk.mcap").errors, HasSubstr("is also an input (RECORDING)"));
   write("notes.txt", "bring hay\n");
   EXPECT_THAT(run("map walk.mcap -o walk.byre --record notes.txt").errors, HasSubstr("is no MCAP file"));
   EXPECT_EQ(run("map walk.mcap -o walk.byre --record-images").exit_code, 2);

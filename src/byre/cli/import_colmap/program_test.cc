@@ -47,7 +47,7 @@ TEST_F(ColmapCommands, TakeAMapToAModelAndBack) {
 TEST_F(ColmapCommands, ReportBadInputWithItsOwnExitCode) {
   const Outcome no_model = run("import-colmap nowhere " + images() + " -o back.byre");
   EXPECT_EQ(no_model.exit_code, 3);
-  EXPECT_THAT(no_model.errors, HasSubstr("nowhere: holds no COLMAP model"));
+  EXPECT_THAT(no_model.errors, HasSubstr("nowhere: contains no COLMAP model"));
   run("export-colmap room.byre -o model");
   const Outcome no_images = run("import-colmap model . -o back.byre --quiet");
   EXPECT_EQ(no_images.exit_code, 3);

@@ -67,7 +67,7 @@ TEST_F(LocaliseProgram, FindsImagesOfAFolderByTheTimesOfTheirNames) {
   const json report = json::parse(outcome.output);
   EXPECT_EQ(report.at("frames_found"), 4);
   EXPECT_LT(report.at("errors").at("position_m").at("max"), 0.05);
-  EXPECT_THAT(localise(images).errors, HasSubstr("holds no calibration of the camera"));
+  EXPECT_THAT(localise(images).errors, HasSubstr("contains no camera calibration"));
   EXPECT_THAT(localise(images + calibration + " --fps 20 --camera stereo").errors,
               HasSubstr("has images of one camera only"));
 }
@@ -79,7 +79,7 @@ TEST_F(LocaliseProgram, WarnsOfAnAssumedFrameRate) {
     std::filesystem::copy(RenderedFixture::shared().image("cam0", i), folder / fmt::format("frame{}.png", i));
   }
   const std::string sensor = quoted(RenderedFixture::shared().folder() / "mav0/cam0/sensor.yaml");
-  EXPECT_THAT(localise("frames --calibration " + sensor).errors, HasSubstr("30 frames a second are assumed"));
+  EXPECT_THAT(localise("frames --calibration " + sensor).errors, HasSubstr("30 frames per second are assumed"));
   const Outcome quiet = localise("frames --fps 20 --quiet --calibration " + sensor);
   EXPECT_THAT(quiet.errors, IsEmpty());
   EXPECT_THAT(quiet.output, HasSubstr("found        2 of 2 frames"));

@@ -51,7 +51,7 @@ TEST_F(MapProgram, WritesWhatItWasAskedFor) {
   EXPECT_THAT(outcome.output, HasSubstr("poses        24 of 24 frames (100.0 %)\n"));
   EXPECT_THAT(outcome.output, HasSubstr("written      final.txt, causal.txt, stats.json\n"));
   EXPECT_THAT(outcome.errors, HasSubstr("24 of 24 frames, "));
-  EXPECT_THAT(outcome.errors, HasSubstr("finishing: looking for loops\n"));
+  EXPECT_THAT(outcome.errors, HasSubstr("finishing: searching for loops\n"));
   EXPECT_THAT(outcome.output, HasSubstr("faults       none\n"));
   EXPECT_EQ(json::parse(read("stats.json")).at("finishing").at("cut_short"), false);
   EXPECT_EQ(files_left(), 5) << "three results and the two streams";
@@ -155,10 +155,10 @@ TEST_F(MapProgram, RefusesWrongUsage) {
 
 TEST_F(MapProgram, NamesBadInput) {
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"absent --trajectory out.txt", "byre: error: absent: is no folder"},
-      {". --trajectory out.txt", "byre: error: .: holds no recording that byre knows"},
+      {"absent --trajectory out.txt", "byre: error: absent: is not a folder"},
+      {". --trajectory out.txt", "byre: error: .: contains no recording in a supported format"},
       {"absent --trajectory nowhere/out.txt",
-       "byre: error: nowhere/out.txt: cannot be written: its folder does not exist"},
+       "byre: error: nowhere/out.txt: cannot be written: the folder does not exist"},
       {"absent --trajectory out.txt --stats .", "byre: error: .: is a folder"},
       {quoted(RenderedFixture::shared().folder()) + " --trajectory out.txt --frames 100:", "byre: error: "},
   };

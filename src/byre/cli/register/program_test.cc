@@ -144,7 +144,7 @@ TEST_F(RegisterProgram, TellsDoubtsOfTooFewPicks) {
   write("picks.csv", picks_csv(scene_.correspondences(2)));
   const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_THAT(outcome.output, HasSubstr("doubt        fewer than three correspondences took part"));
+  EXPECT_THAT(outcome.output, HasSubstr("doubt        fewer than three correspondences are used"));
 }
 
 TEST_F(RegisterProgram, RefusesBadInput) {

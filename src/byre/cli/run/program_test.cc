@@ -117,7 +117,7 @@ TEST_F(RunProgram, RefusesWrongUsage) {
 TEST_F(RunProgram, NamesBadInput) {
   write("torn.byre", "BYRE");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"absent", "byre: error: absent: is no folder"},
+      {"absent", "byre: error: absent: is not a folder"},
       {rendered_room() + " --map absent.byre", "byre: error: absent.byre: "},
       {rendered_room() + " --map torn.byre", "byre: error: torn.byre: "},
       {rendered_room() + " --truth absent.txt", "byre: error: absent.txt: "},

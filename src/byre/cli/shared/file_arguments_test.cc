@@ -247,7 +247,7 @@ TEST_F(FileArguments, AreRefusedWhereAnOutputIsAnInputByAnyName) {
         for (std::size_t i = 0; i < read.files.size(); ++i) {
           const std::string written = alias(read.files[i], *output_of(*output), "written" + std::to_string(i));
           const auto line = words(names, command, {{output, written}, {input, read.argument}});
-          EXPECT_THAT(CommandLine().fault_of(line), HasSubstr("so it may not be written")) << joined(line);
+          EXPECT_THAT(CommandLine().fault_of(line), HasSubstr("cannot be overwritten")) << joined(line);
           ++pairs;
         }
       }
@@ -255,7 +255,7 @@ TEST_F(FileArguments, AreRefusedWhereAnOutputIsAnInputByAnyName) {
   }
   EXPECT_GT(pairs, 200);
   EXPECT_THAT(CommandLine().fault_of({"map", "rec", "--extend", "none.byre", "-o", "./none.byre"}),
-              HasSubstr("so it may not be written"));  // detected although no such file exists
+              HasSubstr("cannot be overwritten"));  // detected although no such file exists
 }
 
 TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {
@@ -314,12 +314,14 @@ TEST_F(FileArguments, ReplaceNothingOfAnotherKindAndNothingAtAllWhereAsked) {
             "BYRE\r\n is how a map begins");
       const bool is_map = output->get_type_name() == "MAP" || names == std::vector<std::string>{"import-colmap"};
       if (is_map) write(file, "\x89PNG\r\n is how an image begins");
-      EXPECT_THAT(CommandLine().fault_of(keeping), HasSubstr("--no-overwrite keeps what is")) << joined(line);
+      EXPECT_THAT(CommandLine().fault_of(keeping), HasSubstr("is not replaced because of --no-overwrite"))
+          << joined(line);
       if (is_folder) continue;  // its contents belong to the command
       if (output_of(*output) == Output::colmap_model) continue;
-      EXPECT_THAT(CommandLine().fault_of(line), HasSubstr("is there and is no ")) << joined(line);
+      EXPECT_THAT(CommandLine().fault_of(line), HasSubstr("exists and is not the expected kind of file"))
+          << joined(line);
       write(file, "");
-      EXPECT_THAT(CommandLine().fault_of(line), testing::Not(HasSubstr("is there"))) << joined(line);
+      EXPECT_THAT(CommandLine().fault_of(line), testing::Not(HasSubstr("exists and"))) << joined(line);
     }
   }
 }
@@ -331,7 +333,7 @@ TEST_F(FileArguments, AreRefusedAsTwoOutputsOfOneName) {
     // Neither file exists, nor does the recording.
     const Outcome outcome = run("map absent -o out.txt --trajectory '" + std::string(other) + "'");
     EXPECT_EQ(outcome.exit_code, 2) << other;
-    EXPECT_THAT(outcome.errors, HasSubstr("is named for two outputs")) << other;
+    EXPECT_THAT(outcome.errors, HasSubstr("is given for two outputs")) << other;
   }
 }
 
@@ -349,7 +351,7 @@ TEST_F(FileArguments, KeepTheMapThatIsRefinedInPlaceWhereAsked) {
   const std::string map = (folder_ / "barn.byre").string();
   EXPECT_THAT(CommandLine().fault_of({"refine", map}), IsEmpty());
   EXPECT_THAT(CommandLine().fault_of({"refine", map, "-o", map}), IsEmpty());
-  EXPECT_THAT(CommandLine().fault_of({"refine", map, "--no-overwrite"}), HasSubstr("keeps what is"));
+  EXPECT_THAT(CommandLine().fault_of({"refine", map, "--no-overwrite"}), HasSubstr("because of --no-overwrite"));
 }
 
 TEST_F(FileArguments, AreBadInputWhereTheyArePipesOrLinksInACircle) {

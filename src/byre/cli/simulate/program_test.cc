@@ -95,7 +95,7 @@ TEST_F(SimulateProgram, LeavesARecordingThatIsThereAlone) {
   fs::create_directories(folder_ / "barn" / "mav0");
   const Outcome outcome = run(kSmall + "-o barn");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.errors, StartsWith("byre: error: barn: already holds a recording"));
+  EXPECT_THAT(outcome.errors, StartsWith("byre: error: barn: already contains a recording"));
 }
 
 TEST_F(SimulateProgram, LeavesNothingBehindAtCtrlC) {

@@ -99,11 +99,11 @@ TEST_F(VocabularyProgram, NamesBadInput) {
   write("broken.txt", "10 6 0 0\n0 1 2\n");
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"train absent -o out", "byre: error: absent: does not exist"},
-      {"train empty -o out", "byre: error: empty: holds no images"},
+      {"train empty -o out", "byre: error: empty: contains no images"},
       {"train images -o absent/out", "byre: error: absent/out: cannot be written"},
-      {"train images/a.PGM --quiet -o out", "byre: error: vocabulary: there are fewer than two images"},
+      {"train images/a.PGM --quiet -o out", "byre: error: vocabulary: fewer than two training images"},
       {"import broken.txt -o out", "byre: error: broken.txt:2: has 3 fields"},
-      {"show broken.txt", "byre: error: broken.txt: section header at byte 0: is no vocabulary of byre"},
+      {"show broken.txt", "byre: error: broken.txt: section header at byte 0: is not a vocabulary of byre"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = run("vocabulary " + arguments);
