@@ -75,7 +75,7 @@ BagBytes mutant_of(BagBytes bytes, std::mt19937& random) {
   return bytes;
 }
 
-TEST(DamagedBag, IsReadAsFarAsItIsThereWhenItIsCut) {
+TEST(DamagedBag, ReadsATruncatedBagUpToTheCut) {
   for (const Kind& kind : kinds()) {
     std::size_t before = 0;
     for (std::size_t size = 16; size <= kind.bytes.size(); ++size) {
@@ -89,14 +89,14 @@ TEST(DamagedBag, IsReadAsFarAsItIsThereWhenItIsCut) {
   }
 }
 
-TEST(DamagedBag, GivesWhatItHeldBeforeTheCut) {
+TEST(DamagedBag, ReturnsTheMessagesBeforeTheCut) {
   // Without compression each message is readable once its last byte is present.
   const BagBytes bytes = mcap_bytes(scene_messages(), "-");
   EXPECT_EQ(read_all(open_mcap, {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() * 3 / 4)}),
             std::optional<std::size_t>(12));
 }
 
-TEST(DamagedBag, NeverDoesHarm) {
+TEST(DamagedBag, ReadsOrRejectsRandomDamageSafely) {
   std::mt19937 random(7);
   std::size_t read = 0, refused = 0;
   for (const Kind& kind : kinds()) {
@@ -108,7 +108,7 @@ TEST(DamagedBag, NeverDoesHarm) {
 
 class DamagedDatabase : public BagFolderTest {};
 
-TEST_F(DamagedDatabase, NeverDoesHarm) {
+TEST_F(DamagedDatabase, ReadsOrRejectsRandomDamageSafely) {
   write_db3(folder_ / "scene.db3", scene_messages());
   std::ifstream file(folder_ / "scene.db3", std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(file)), {});
@@ -121,7 +121,7 @@ TEST_F(DamagedDatabase, NeverDoesHarm) {
   EXPECT_LT(read, 250u);
 }
 
-TEST_F(DamagedDatabase, IsToldWhenItIsCut) {
+TEST_F(DamagedDatabase, ReportsTruncation) {
   std::vector<SceneMessage> messages;
   for (int i = 0; i < 60; ++i) {
     for (SceneMessage& message : scene_messages()) messages.push_back(std::move(message));

@@ -67,7 +67,7 @@ class BagFiles : public BagFolderTest {
   }
 };
 
-TEST_F(BagFiles, OfMcapAreReadInChunksOfEachKindAndWithoutChunks) {
+TEST_F(BagFiles, ReadMcapWithAndWithoutChunksOfEachCompression) {
   for (const char* const compression : {"-", "", "lz4", "zstd"}) {
     const fs::path path = write("scene.mcap", mcap_bytes(scene_messages(), compression));
     expect_scene(path, ros::Encoding::cdr, "mcap");
@@ -75,14 +75,14 @@ TEST_F(BagFiles, OfMcapAreReadInChunksOfEachKindAndWithoutChunks) {
   }
 }
 
-TEST_F(BagFiles, OfMcapAreReadAsTheWriterWritesThem) {
+TEST_F(BagFiles, ReadMcapOfTheWriter) {
   const fs::path path = write_by_writer("scene.mcap");
   expect_scene(path, ros::Encoding::cdr, "mcap");
   EXPECT_THAT(damage_of(path), IsEmpty());
   EXPECT_THAT(open_bag(path, every_type)->content().compression, ElementsAre("zstd"));
 }
 
-TEST_F(BagFiles, OfMcapThatWereNotClosedAreReadToTheirEnd) {
+TEST_F(BagFiles, ReadUnclosedMcapToItsEnd) {
   BagBytes bytes = mcap_bytes(scene_messages(), "zstd");
   bytes.resize(bytes.size() - kMcapMagic.size() - kMcapRecordHead - 4);
   const fs::path path = write("scene.mcap", bytes);
@@ -90,7 +90,7 @@ TEST_F(BagFiles, OfMcapThatWereNotClosedAreReadToTheirEnd) {
   EXPECT_THAT(damage_of(path), ElementsAre(HasSubstr("was not closed")));
 }
 
-TEST_F(BagFiles, OfRos1AreReadWithoutAnIndex) {
+TEST_F(BagFiles, ReadRos1WithoutIndex) {
   for (const char* const compression : {"none", "lz4"}) {
     const fs::path path = write("scene.bag", ros1_bytes(scene_messages(), compression));
     expect_scene(path, ros::Encoding::ros1, "rosbag 2.0");
@@ -98,13 +98,13 @@ TEST_F(BagFiles, OfRos1AreReadWithoutAnIndex) {
   }
 }
 
-TEST_F(BagFiles, OfSqliteAreRead) {
+TEST_F(BagFiles, ReadSqlite) {
   write_db3(folder_ / "scene.db3", scene_messages());
   expect_scene(folder_ / "scene.db3", ros::Encoding::cdr, "sqlite3");
   EXPECT_THAT(damage_of(folder_ / "scene.db3"), IsEmpty());
 }
 
-TEST_F(BagFiles, MayBeCompressedMessageByMessage) {
+TEST_F(BagFiles, ReadCompressedMessages) {
   write_db3(folder_ / "scene.db3", scene_messages(), [](const BagBytes& bytes) { return compress_zstd(bytes); });
   expect_scene(folder_ / "scene.db3", ros::Encoding::cdr, "sqlite3");
   const auto bag = open_bag(folder_ / "scene.db3", every_type);
@@ -113,7 +113,7 @@ TEST_F(BagFiles, MayBeCompressedMessageByMessage) {
   EXPECT_TRUE(std::equal(first.begin(), first.begin() + 16, bag->content().messages[0].head.begin()));
 }
 
-TEST_F(BagFiles, LeaveOutMessagesThatCannotBeDecompressed) {
+TEST_F(BagFiles, SkipMessagesThatFailToDecompress) {
   int count = 0;
   write_db3(folder_ / "scene.db3", scene_messages(), [&count](const BagBytes& bytes) {
     BagBytes packed = compress_zstd(bytes);
@@ -125,7 +125,7 @@ TEST_F(BagFiles, LeaveOutMessagesThatCannotBeDecompressed) {
   EXPECT_THAT(bag->content().damage, ElementsAre(HasSubstr("scene.db3: 1 messages are damaged")));
 }
 
-TEST_F(BagFiles, MayBeCompressedAsAWhole) {
+TEST_F(BagFiles, ReadCompressedFiles) {
   const fs::path whole = write("scene.mcap.zstd", compress_zstd(mcap_bytes(scene_messages(), "-")));
   expect_scene(whole, ros::Encoding::cdr, "mcap");
   write_db3(folder_ / "scene.db3", scene_messages());
@@ -141,7 +141,7 @@ TEST_F(BagFiles, MayBeCompressedAsAWhole) {
               testing::Contains(HasSubstr("cut.mcap.zstd: is truncated or damaged")));
 }
 
-TEST_F(BagFiles, AreNamedIfTheyCannotBeDecompressed) {
+TEST_F(BagFiles, ReportFilesThatFailToDecompress) {
   const fs::path whole = write("scene.mcap.zstd", compress_zstd(mcap_bytes(scene_messages(), "-")));
   const auto refusal = [&whole](const std::string& folder) -> std::string {
     const char* const set = std::getenv("TMPDIR");
@@ -162,7 +162,7 @@ TEST_F(BagFiles, AreNamedIfTheyCannotBeDecompressed) {
   EXPECT_EQ(refusal(folder_), "");
 }
 
-TEST_F(BagFiles, OfRosbag2FormOneBag) {
+TEST_F(BagFiles, JoinTheFilesOfARosbag2Folder) {
   const std::vector<SceneMessage> all = scene_messages();
   write("bag/bag_0.mcap", mcap_bytes({all.begin(), all.begin() + 9}, "zstd"));
   write("bag/bag_1.mcap", mcap_bytes({all.begin() + 9, all.end()}, "zstd"));
@@ -177,7 +177,7 @@ TEST_F(BagFiles, OfRosbag2FormOneBag) {
   EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: is missing")));
 }
 
-TEST_F(BagFiles, RepeatedInMetadataAreReadOnce) {
+TEST_F(BagFiles, ReadDuplicateFilesOfMetadataOnce) {
   write("bag/bag_0.mcap", mcap_bytes(scene_messages(), "zstd"));
   fs::create_symlink("bag_0.mcap", folder_ / "bag/link.mcap");
   write("bag/metadata.yaml",
@@ -186,7 +186,7 @@ TEST_F(BagFiles, RepeatedInMetadataAreReadOnce) {
   EXPECT_THAT(damage_of(folder_ / "bag"), ElementsAre(HasSubstr("metadata.yaml: has 3 duplicate file names")));
 }
 
-TEST_F(BagFiles, AreNotDecompressedBeyondTheirBound) {
+TEST_F(BagFiles, LimitTheDecompressedSize) {
   const std::vector<fs::path> chunked = {write("chunk.mcap", mcap_bytes(scene_messages(), "zstd")),
                                          write("chunk.bag", ros1_bytes(scene_messages(), "lz4"))};
   for (const fs::path& path : chunked) {
@@ -200,7 +200,7 @@ TEST_F(BagFiles, AreNotDecompressedBeyondTheirBound) {
   EXPECT_EQ(open_bag(whole, every_type)->content().message_count, 18u);
 }
 
-TEST_F(BagFiles, OfRosbag2ThatAreMissingAreTold) {
+TEST_F(BagFiles, ReportMissingFilesOfARosbag2Folder) {
   const std::vector<SceneMessage> all = scene_messages();
   write("bag/bag_1.mcap", mcap_bytes({all.begin() + 9, all.end()}, "zstd"));
   write("bag/metadata.yaml", "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.mcap, bag_1.mcap]\n");
@@ -209,14 +209,14 @@ TEST_F(BagFiles, OfRosbag2ThatAreMissingAreTold) {
   EXPECT_THAT(bag->content().damage, ElementsAre(HasSubstr("bag_0.mcap: cannot be opened")));
 }
 
-TEST_F(BagFiles, AreListedByTheTypesAskedFor) {
+TEST_F(BagFiles, ListTopicsOfTheSelectedTypesOnly) {
   const fs::path path = write("scene.mcap", mcap_bytes(scene_messages(), "zstd"));
   const auto bag = open_bag(path, [](std::string_view type) { return type == "std_msgs/msg/String"; });
   EXPECT_EQ(bag->content().messages.size(), 6u);
   EXPECT_EQ(bag->content().message_count, 18u);
 }
 
-TEST_F(BagFiles, AreToldFromOtherFiles) {
+TEST_F(BagFiles, RecogniseBagsByContent) {
   EXPECT_TRUE(is_bag(write("a", mcap_bytes({}, "-"))));
   EXPECT_TRUE(is_bag(write("b", ros1_bytes({}))));
   EXPECT_TRUE(is_bag(write("empty.bag", std::string())));
@@ -229,7 +229,7 @@ TEST_F(BagFiles, AreToldFromOtherFiles) {
   EXPECT_FALSE(is_bag(folder_ / "e"));
 }
 
-TEST_F(BagFiles, ThatAreNoneAreRefusedByName) {
+TEST_F(BagFiles, RejectOtherFilesByName) {
   for (const char* const name : {"text.bag", "text.mcap", "text.db3"}) {
     try {
       open_bag(write(name, std::string("hello, this is text")), every_type);
@@ -242,7 +242,7 @@ TEST_F(BagFiles, ThatAreNoneAreRefusedByName) {
   EXPECT_THROW(open_bag(write("db.db3", std::string("SQLite format 3\0rest of it", 26)), every_type), InputError);
 }
 
-TEST_F(BagFiles, GoOnBehindAChunkThatIsDamaged) {
+TEST_F(BagFiles, ContinueAfterADamagedChunk) {
   const fs::path path = write_by_writer("scene.mcap");
   BagBytes bytes = read_file(path);
   std::size_t third = 0;  // start of the third chunk's zstd frame

@@ -37,7 +37,7 @@ std::vector<Packed> packed(const BagBytes& bytes) {
           {Compression::bz2, bz2_of(bytes)}};
 }
 
-TEST(Compression, IsUndone) {
+TEST(Compression, DecompressesWhatWasCompressed) {
   for (const std::size_t size : {0u, 1u, 1000u, 300'000u}) {
     const BagBytes bytes = pattern(size);
     for (const auto& [compression, packed_bytes] : packed(bytes)) {
@@ -48,7 +48,7 @@ TEST(Compression, IsUndone) {
   }
 }
 
-TEST(Compression, GivesNoMoreThanIsAskedFor) {
+TEST(Compression, ReturnsAtMostTheRequestedBytes) {
   const BagBytes bytes = pattern(100'000);
   for (const auto& [compression, packed_bytes] : packed(bytes)) {
     const Decompressed result = decompress(compression, packed_bytes, 1000);
@@ -57,7 +57,7 @@ TEST(Compression, GivesNoMoreThanIsAskedFor) {
   }
 }
 
-TEST(Compression, TellsWhatIsCutFromWhatIsWhole) {
+TEST(Compression, DistinguishesTruncatedFromCompleteData) {
   const BagBytes bytes = pattern(300'000);
   for (const auto& [compression, packed_bytes] : packed(bytes)) {
     if (compression == Compression::none) continue;
@@ -68,7 +68,7 @@ TEST(Compression, TellsWhatIsCutFromWhatIsWhole) {
   }
 }
 
-TEST(Compression, HasTheNamesThatBagsUse) {
+TEST(Compression, UsesTheCompressionNamesOfBags) {
   EXPECT_EQ(parse_compression(""), Compression::none);
   EXPECT_EQ(parse_compression("none"), Compression::none);
   EXPECT_EQ(parse_compression("bz2"), Compression::bz2);
@@ -77,7 +77,7 @@ TEST(Compression, HasTheNamesThatBagsUse) {
 
 class CompressedFile : public BagFolderTest {};
 
-TEST_F(CompressedFile, IsDecompressedIntoAnother) {
+TEST_F(CompressedFile, DecompressesIntoAnotherFile) {
   const BagBytes bytes = pattern(5'000'000);
   BagBytes packed_bytes = compress_zstd(bytes);
   EXPECT_TRUE(decompress_zstd_file(write("file.zstd", packed_bytes), folder_ / "file", bytes.size()));
@@ -88,7 +88,7 @@ TEST_F(CompressedFile, IsDecompressedIntoAnother) {
   EXPECT_THROW(decompress_zstd_file(folder_ / "file.zstd", folder_ / "absent" / "file", bytes.size()), InputError);
 }
 
-TEST_F(CompressedFile, IsRefusedBeyondTheBound) {
+TEST_F(CompressedFile, RejectsContentBeyondTheLimit) {
   const BagBytes bytes(5'000'000);  // compressed to some hundred bytes
   const std::filesystem::path packed = write("file.zstd", compress_zstd(bytes));
   try {

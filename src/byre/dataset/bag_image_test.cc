@@ -20,12 +20,12 @@ std::vector<std::uint8_t> pixels_of(const ros::Image& message) {
   return read.image ? read.image->pixels : std::vector<std::uint8_t>();
 }
 
-TEST(BagImage, OfGreyIsTakenAsItIsWithoutThePaddingOfRows) {
+TEST(BagImage, KeepsGreyPixelsWithoutRowPadding) {
   EXPECT_THAT(pixels_of(image("mono8", 2, 2, {1, 2, 99, 3, 4, 99}, 3)), ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(pixels_of(image("8UC1", 2, 2, {1, 2, 99, 3, 4}, 3)), ElementsAre(1, 2, 3, 4));
 }
 
-TEST(BagImage, OfColourBecomesGrey) {
+TEST(BagImage, ConvertsColourToGrey) {
   // 0.299 red + 0.587 green + 0.114 blue.
   EXPECT_THAT(pixels_of(image("rgb8", 1, 1, {200, 100, 50}, 3)), ElementsAre(124));
   EXPECT_THAT(pixels_of(image("bgr8", 1, 1, {50, 100, 200}, 3)), ElementsAre(124));
@@ -33,7 +33,7 @@ TEST(BagImage, OfColourBecomesGrey) {
   EXPECT_THAT(pixels_of(image("bgra8", 1, 1, {50, 100, 200, 7}, 4)), ElementsAre(124));
 }
 
-TEST(BagImage, OfLuminanceAndColourGivesItsLuminance) {
+TEST(BagImage, ReturnsTheLuminanceOfYuv) {
   for (const char* const name : {"yuyv", "yuv422_yuy2"}) {
     EXPECT_THAT(pixels_of(image(name, 2, 1, {10, 128, 20, 128}, 4)), ElementsAre(10, 20)) << name;
   }
@@ -43,7 +43,7 @@ TEST(BagImage, OfLuminanceAndColourGivesItsLuminance) {
   EXPECT_THAT(pixels_of(image("nv12", 2, 2, {1, 2, 3, 4, 128, 128}, 2)), ElementsAre(1, 2, 3, 4));
 }
 
-TEST(BagImage, OfSixteenBitsIsReadInEitherOrder) {
+TEST(BagImage, ReadsSixteenBitsInBothByteOrders) {
   ros::Image message = image("mono16", 2, 1, {0x00, 0x80, 0xFF, 0xFF}, 4);
   EXPECT_THAT(pixels_of(message), ElementsAre(128, 255));
   message.is_bigendian = 1;
@@ -51,7 +51,7 @@ TEST(BagImage, OfSixteenBitsIsReadInEitherOrder) {
   EXPECT_THAT(pixels_of(message), ElementsAre(128, 255));
 }
 
-TEST(BagImage, OfABayerPatternIsReadByTheRightPattern) {
+TEST(BagImage, AppliesTheBayerPattern) {
   // A red image: only red cells are bright, so grey is 0.299 of them if the pattern is read correctly.
   const std::vector<std::pair<std::string, std::vector<std::uint8_t>>> red = {{"bayer_rggb8", {200, 0, 0, 0}},
                                                                               {"bayer_bggr8", {0, 0, 0, 200}},
@@ -68,7 +68,7 @@ TEST(BagImage, OfABayerPatternIsReadByTheRightPattern) {
   }
 }
 
-TEST(BagImage, ThatMakesNoSenseIsRefusedWithAReason) {
+TEST(BagImage, RejectsInvalidMessagesWithAReason) {
   EXPECT_THAT(grey_of(image("jpeg2000", 2, 1, {1, 2}, 2)).failure, HasSubstr("encoded as \"jpeg2000\""));
   EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3}, 2)).failure, "is not a whole image");
   EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3, 4}, 1)).failure, "is not a whole image");
@@ -76,7 +76,7 @@ TEST(BagImage, ThatMakesNoSenseIsRefusedWithAReason) {
   EXPECT_EQ(grey_of(image("mono8", 0xFFFFFFFF, 0xFFFFFFFF, {1}, 0xFFFFFFFF)).failure, "has an invalid size");
 }
 
-TEST(BagImage, ThatOpencvRefusesIsUnreadableWithItsReason) {
+TEST(BagImage, ReportsTheReasonOfOpencvFailures) {
   EXPECT_THAT(grey_of(image("mono16", 2, 2, std::vector<std::uint8_t>(10), 5)).failure,
               HasSubstr("rows of 5 bytes, not a multiple"));
   for (const auto& [encoding, width] : {std::pair("yuyv", 3u), std::pair("uyvy", 1u)}) {

@@ -48,7 +48,7 @@ class BagMotions : public BagFolderTest {
   }
 };
 
-TEST_F(BagMotions, GiveWheelsAndRatesAtTheTimesOfTheirHeaders) {
+TEST_F(BagMotions, ReturnWheelsAndRatesAtHeaderTimes) {
   const BagMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2),
                                  imu(kImuData, 1010, 0.25), odometry(kOdometry, 1020, 1023, 0.6)},
                                 {.wheels_topic = kOdometry, .imu_topic = kImuData});
@@ -69,7 +69,7 @@ SceneMessage twist(const std::string& topic, int stamp_ms, double ahead, double 
   return scene_message(topic, at_ms(stamp_ms + 2), message);
 }
 
-TEST_F(BagMotions, GiveVelocitiesOfWheelsThatTellNothingElse) {
+TEST_F(BagMotions, ReadVelocitiesOfTwistTopics) {
   const BagMotion motion = read({twist("/wheel/twist", 1000, 0.5, 0.2), twist("/wheel/twist", 1020, 0.6, 0.3),
                                  odometry(kOdometry, 1010, 1013, 0.5)},
                                 {.wheels_topic = "/wheel/twist"});
@@ -81,7 +81,7 @@ TEST_F(BagMotions, GiveVelocitiesOfWheelsThatTellNothingElse) {
 }
 
 // A driver with constant default poses, and one that marks them as invalid by their covariance.
-TEST_F(BagMotions, GiveVelocitiesOfOdometryWithoutPoses) {
+TEST_F(BagMotions, ReadVelocitiesOfOdometryWithoutPoses) {
   std::vector<SceneMessage> messages;
   for (int i = 0; i < 20; ++i) {
     ros::Odometry message{.header = {ros::to_time(at_ms(1000 + 20 * i)), "odom"}, .child_frame_id = "base_link"};
@@ -100,13 +100,13 @@ TEST_F(BagMotions, GiveVelocitiesOfOdometryWithoutPoses) {
   }
 }
 
-TEST_F(BagMotions, AreNotReadUnasked) {
+TEST_F(BagMotions, AreReadOnRequestOnly) {
   const BagMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2)}, {});
   EXPECT_THAT(motion.samples.wheels, IsEmpty());
   EXPECT_THAT(motion.samples.rates, IsEmpty());
 }
 
-TEST_F(BagMotions, GiveAccelerationsWhereTheMessageHasSome) {
+TEST_F(BagMotions, ReadAccelerationsIfPresent) {
   std::vector<SceneMessage> messages;
   for (int i = 0; i < 3; ++i) {
     ros::Imu message{.header = {ros::to_time(at_ms(1000 + i)), "imu"}};
@@ -121,7 +121,7 @@ TEST_F(BagMotions, GiveAccelerationsWhereTheMessageHasSome) {
   EXPECT_EQ(motion.samples.accelerations[0].acceleration, Eigen::Vector3d(0.1, -0.2, 9.8));
 }
 
-TEST_F(BagMotions, LeaveOutRatesThatAreMarkedAsNotMeasured) {
+TEST_F(BagMotions, SkipRatesMarkedAsNotMeasured) {
   std::vector<SceneMessage> messages;
   for (int i = 0; i < 3; ++i) {
     ros::Imu message{.header = {ros::to_time(at_ms(1000 + i)), "imu"}};
@@ -136,7 +136,7 @@ TEST_F(BagMotions, LeaveOutRatesThatAreMarkedAsNotMeasured) {
   EXPECT_THAT(motion.warnings.front(), AllOf(HasSubstr("walk.mcap: /imu/data: 3 messages"), HasSubstr("not measured")));
 }
 
-TEST_F(BagMotions, TakeTheOnlyGyroscopeButNoneOfTwo) {
+TEST_F(BagMotions, SelectTheOnlyGyroscopeButRejectTwo) {
   const OpenOptions options{.use_gyroscope = true};
   EXPECT_THAT(read({imu(kImuData, 1005, 0.2)}, options).samples.rates, SizeIs(1));
   const std::string error = read_error({imu(kImuData, 1005, 0.2), imu("/camera/imu", 1006, 0.2)}, options);
@@ -144,14 +144,14 @@ TEST_F(BagMotions, TakeTheOnlyGyroscopeButNoneOfTwo) {
   EXPECT_THAT(error, HasSubstr("--imu-topic TOPIC"));
 }
 
-TEST_F(BagMotions, SayWhichTopicsThereAre) {
+TEST_F(BagMotions, ReportTheAvailableTopics) {
   EXPECT_THAT(read_error({odometry(kOdometry, 1000, 1003, 0.5)}, {.wheels_topic = "/odom"}),
               AllOf(HasSubstr("has no nav_msgs/msg/Odometry or geometry_msgs/msg/TwistStamped or "),
                     HasSubstr(" messages on topic /odom; available topics of this type: /wheel/odometry")));
   EXPECT_THAT(read_error({imu(kImuData, 1005, 0.2)}, {.wheels_topic = "/odom"}), HasSubstr("of this type: none"));
 }
 
-TEST_F(BagMotions, AreInOrderWhateverWasRecorded) {
+TEST_F(BagMotions, SortSamplesByTime) {
   const BagMotion motion = read(
       {odometry(kOdometry, 1000, 1003, 0.5), odometry(kOdometry, 1040, 1043, 0.7), odometry(kOdometry, 1020, 1050, 0.6),
        odometry(kOdometry, 1020, 1060, 0.6), odometry(kOdometry, 1060, 1070, std::numeric_limits<double>::quiet_NaN())},
@@ -163,7 +163,7 @@ TEST_F(BagMotions, AreInOrderWhateverWasRecorded) {
                                            HasSubstr("1 messages are damaged")));
 }
 
-TEST_F(BagMotions, HaveTheTimesOfTheRecorderWhereHeadersHaveNone) {
+TEST_F(BagMotions, UseReceiveTimesWithoutHeaderTimes) {
   const BagMotion motion =
       read({odometry(kOdometry, 0, 1003, 0.5), odometry(kOdometry, 0, 1023, 0.6)}, {.wheels_topic = kOdometry});
   ASSERT_THAT(motion.samples.wheels, SizeIs(2));

@@ -54,7 +54,7 @@ class BagRecordings : public BagFolderTest {
   }
 };
 
-TEST_F(BagRecordings, GiveTheirImagesAtTheTimesOfTheirHeaders) {
+TEST_F(BagRecordings, ReturnImagesAtHeaderTimes) {
   const auto recording = open(with_infos(scene_messages()));
   EXPECT_THAT(recording->warnings(), IsEmpty());
   EXPECT_THAT(recording->times(), ElementsAre(ms(1000), ms(1050), ms(1100), ms(1150), ms(1200), ms(1250)));
@@ -69,7 +69,7 @@ TEST_F(BagRecordings, GiveTheirImagesAtTheTimesOfTheirHeaders) {
   }
 }
 
-TEST_F(BagRecordings, AreTheSameInEveryFormat) {
+TEST_F(BagRecordings, AreEqualInEveryBagFormat) {
   const std::vector<SceneMessage> messages = with_infos(scene_messages());
   write_db3(folder_ / "walk.db3", messages);
   for (const fs::path& path :
@@ -83,12 +83,12 @@ TEST_F(BagRecordings, AreTheSameInEveryFormat) {
   }
 }
 
-TEST_F(BagRecordings, KeepToTheRangeAskedFor) {
+TEST_F(BagRecordings, KeepTheSelectedRange) {
   EXPECT_THAT(open(with_infos(scene_messages()), {}, {.first = 1, .last = 4, .stride = 2})->times(),
               ElementsAre(ms(1050), ms(1150)));
 }
 
-TEST_F(BagRecordings, PairImagesThatAreTwoMillisecondsApartAtMost) {
+TEST_F(BagRecordings, PairImagesWithinTwoMilliseconds) {
   const auto recording =
       open(with_infos({image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kRight, 2, ms(1002), ms(1002)),
                        image_of_bag(kLeft, 3, ms(1050), ms(1051)), image_of_bag(kRight, 4, ms(1053), ms(1053)),
@@ -102,14 +102,14 @@ TEST_F(BagRecordings, PairImagesThatAreTwoMillisecondsApartAtMost) {
   EXPECT_EQ(recording->read(2)->right->pixels, scene_image(7, {}).data);
 }
 
-TEST_F(BagRecordings, AreRefusedWhereNoImagesBelongTogether) {
+TEST_F(BagRecordings, RejectImagesWithoutPairs) {
   EXPECT_THAT(
       open_error(with_infos({image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kRight, 2, ms(1025), ms(1026)),
                              image_of_bag(kLeft, 3, ms(1050), ms(1051))})),
       HasSubstr("no right image is within 2 ms of a left image; the median difference is 25.000 ms"));
 }
 
-TEST_F(BagRecordings, AreInTheOrderOfTheirHeadersAndSayWhatIsNot) {
+TEST_F(BagRecordings, SortImagesByHeaderTimeAndReportIt) {
   const auto recording = open({image_of_bag(kLeft, 1, ms(1050), ms(1001)), image_of_bag(kLeft, 2, ms(1000), ms(1002)),
                                image_of_bag(kLeft, 3, ms(1050), ms(1003)), infos()[0]});
   EXPECT_THAT(recording->times(), ElementsAre(ms(1000), ms(1050)));
@@ -118,7 +118,7 @@ TEST_F(BagRecordings, AreInTheOrderOfTheirHeadersAndSayWhatIsNot) {
                                                  HasSubstr("1 images have the time stamp of another one")));
 }
 
-TEST_F(BagRecordings, WithoutTimesInTheirHeadersHaveThoseOfTheRecorder) {
+TEST_F(BagRecordings, UseReceiveTimesWithoutHeaderTimes) {
   const auto recording =
       open({image_of_bag(kLeft, 1, ms(0), ms(1001)), image_of_bag(kLeft, 2, ms(0), ms(1051)), infos()[0]});
   EXPECT_THAT(recording->times(), ElementsAre(ms(1001), ms(1051)));
@@ -157,7 +157,7 @@ Timestamp set_back(Timestamp time) {
   return time - (time >= ms(1'001'500) ? ms(620) : ms(0));
 }
 
-TEST_F(BagRecordings, ContinueIfTheClockOfTheCamerasWasSetBack) {
+TEST_F(BagRecordings, ContinueAfterTheCameraClockIsSetBack) {
   const auto recording = open(pairs_stamped(60, set_back, as_it_is));
   expect_steady_pairs(*recording, 60, ms(0));
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("/left/image_raw: clock set back by 0.620 s at frame 30"),
@@ -166,7 +166,7 @@ TEST_F(BagRecordings, ContinueIfTheClockOfTheCamerasWasSetBack) {
   EXPECT_EQ(recording->time_corrections().clock_steps[0].by, ms(-620));
 }
 
-TEST_F(BagRecordings, ContinueIfTheClockOfTheRecorderWasSetBackToo) {
+TEST_F(BagRecordings, ContinueAfterTheRecorderClockIsSetBackToo) {
   const std::vector<SceneMessage> messages = pairs_stamped(60, set_back, set_back);
   expect_steady_pairs(*open(messages), 60, ms(0));
   write_db3(folder_ / "walk.db3", messages);
@@ -175,27 +175,27 @@ TEST_F(BagRecordings, ContinueIfTheClockOfTheRecorderWasSetBackToo) {
   }
 }
 
-TEST_F(BagRecordings, KeepStampsIfOnlyTheClockOfTheRecorderWasSetBack) {
+TEST_F(BagRecordings, KeepStampsIfOnlyTheRecorderClockIsSetBack) {
   const auto recording = open(pairs_stamped(60, as_it_is, set_back));
   expect_steady_pairs(*recording, 60, ms(0));
   EXPECT_FALSE(recording->time_corrections().any());
 }
 
-TEST_F(BagRecordings, ContinueIfTheyWerePlayedInALoop) {
+TEST_F(BagRecordings, ContinueIfPlayedInALoop) {
   const auto recording = open(pairs_stamped(
       60, [](Timestamp time) { return ms(1'000'000) + time % ms(1'000); }, as_it_is));
   expect_steady_pairs(*recording, 60, ms(0));
   EXPECT_EQ(recording->time_corrections().clock_steps.size(), 2u);
 }
 
-TEST_F(BagRecordings, HaveReceiveTimesIfStampsAreWholeSeconds) {
+TEST_F(BagRecordings, UseReceiveTimesForStampsInWholeSeconds) {
   const auto recording = open(pairs_stamped(
       60, [](Timestamp time) { return time - time % std::chrono::seconds(1); }, as_it_is));
   expect_steady_pairs(*recording, 60, ms(5));
   EXPECT_EQ(recording->time_corrections().source, TimeSource::receive_times);
 }
 
-TEST_F(BagRecordings, TimeThreeZeroStampsByTheirNeighbours) {
+TEST_F(BagRecordings, InterpolateThreeZeroStamps) {
   for (const int first : {0, 20}) {
     const auto is_zero = [&](Timestamp time) {
       return time >= ms(1'000'000 + 50 * first) && time < ms(1'000'000 + 50 * (first + 3));
@@ -207,7 +207,7 @@ TEST_F(BagRecordings, TimeThreeZeroStampsByTheirNeighbours) {
   }
 }
 
-TEST_F(BagRecordings, MayBeOfOneCameraOfAPair) {
+TEST_F(BagRecordings, SelectOneCameraOfAPair) {
   const std::vector<SceneMessage> messages = with_infos(scene_messages());
   const auto left = open(messages, {.camera = CameraChoice::left});
   EXPECT_FALSE(left->calibration().right.has_value());
@@ -218,7 +218,7 @@ TEST_F(BagRecordings, MayBeOfOneCameraOfAPair) {
   EXPECT_THAT(open_error(messages, {.camera = CameraChoice::rgbd}), HasSubstr("has no depth images"));
 }
 
-TEST_F(BagRecordings, TakeTheCalibrationNamedOrOneBesideThem) {
+TEST_F(BagRecordings, PreferTheGivenCalibrationToTheOneInTheFolder) {
   const std::string camera =
       "camera_matrix: {rows: 3, cols: 3, data: [4.0, 0, 2.5, 0, 4.0, 1.5, 0, 0, 1]}\nimage_width: 6\nimage_height: 4\n"
       "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\ndistortion_model: plumb_bob\n";
@@ -231,7 +231,7 @@ TEST_F(BagRecordings, TakeTheCalibrationNamedOrOneBesideThem) {
   EXPECT_EQ(open(with_info, {.calibration = folder_ / "calibration.yaml"})->calibration().left.fx, 4.0);
 }
 
-TEST_F(BagRecordings, NameTheCameraInfoThatIsMissingOrOfAnotherSize) {
+TEST_F(BagRecordings, ReportCameraInfoThatIsMissingOrOfAnotherSize) {
   EXPECT_THAT(
       open_error({image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kRight, 2, ms(1000), ms(1001)), infos()[0]}),
       HasSubstr("has no camera info for /right/image_raw"));
@@ -242,14 +242,14 @@ TEST_F(BagRecordings, NameTheCameraInfoThatIsMissingOrOfAnotherSize) {
       HasSubstr("/left/camera_info: is 640x4, but the images are 6x4"));
 }
 
-TEST_F(BagRecordings, PlaceTheCameraInTheRobotByTheFramesThatDoNotMove) {
+TEST_F(BagRecordings, UseStaticFramesForTheCameraPose) {
   ros::TransformStamped mount{{.frame_id = "base_link"}, "left", {{0.3, 0.1, 0.5}, {0.0, 0.0, 0.0, 1.0}}};
   std::vector<SceneMessage> messages = with_infos(scene_messages());
   messages.push_back(scene_message("/tf_static", ms(900), ros::TFMessage{{mount}}));
   EXPECT_EQ(open(messages)->calibration().body_from_left.translation, Eigen::Vector3d(0.3, 0.1, 0.5));
 }
 
-TEST_F(BagRecordings, SayWhichImagesCannotBeRead) {
+TEST_F(BagRecordings, ReportUnreadableImages) {
   std::vector<SceneMessage> messages = {image_of_bag(kLeft, 1, ms(1000), ms(1001)), infos()[0]};
   ros::Image strange = scene_image(2, ms(1050));
   strange.encoding = "jpeg2000";
@@ -260,7 +260,7 @@ TEST_F(BagRecordings, SayWhichImagesCannotBeRead) {
               ElementsAre(HasSubstr("/left/image_raw at 1050000000: has the unsupported encoding")));
 }
 
-TEST_F(BagRecordings, SayWhatOfTheBagIsDamaged) {
+TEST_F(BagRecordings, ReportDamageOfTheBag) {
   std::vector<SceneMessage> messages = infos();
   for (SceneMessage& each : scene_messages()) messages.push_back(std::move(each));
   BagBytes bytes = mcap_bytes(messages, "-");
@@ -269,7 +269,7 @@ TEST_F(BagRecordings, SayWhatOfTheBagIsDamaged) {
   EXPECT_THAT(recording->warnings(), testing::Contains(HasSubstr("cut.mcap: is truncated or damaged from byte")));
 }
 
-TEST_F(BagRecordings, AloneHaveTopics) {
+TEST_F(BagRecordings, AcceptTopicsUnlikeOtherRecordings) {
   write("images/a.png", std::string("no image"));
   EXPECT_THAT(error_of([&] { open_recording(folder_ / "images", {}, {.left_topic = kLeft}); }),
               HasSubstr("is not a bag and has no topics"));

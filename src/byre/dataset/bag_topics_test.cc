@@ -32,7 +32,7 @@ std::string chosen(const std::vector<std::string>& images, const OpenOptions& op
   return names.empty() ? error : names;
 }
 
-TEST(BagTopics, AreThePairOfLeftAndRight) {
+TEST(BagTopics, SelectALeftAndRightPair) {
   EXPECT_EQ(chosen({"/right/image_raw", "/left/image_raw"}), "/left/image_raw /right/image_raw");
   EXPECT_EQ(chosen({"/cam0/image_raw", "/cam1/image_raw"}), "/cam0/image_raw /cam1/image_raw");
   EXPECT_EQ(chosen({"/d435/infra1/image_rect_raw", "/d435/infra2/image_rect_raw", "/d435/depth/image_rect_raw"}),
@@ -41,7 +41,7 @@ TEST(BagTopics, AreThePairOfLeftAndRight) {
             "/stereo/left/image /stereo/right/image");
 }
 
-TEST(BagTopics, AreRawAndAsTheCameraGaveThemWhereThereIsAChoice) {
+TEST(BagTopics, PreferRawAndUnrectifiedImages) {
   EXPECT_EQ(
       chosen({"/left/image_raw/compressed", "/right/image_raw/compressed", "/left/image_raw", "/right/image_raw"}),
       "/left/image_raw /right/image_raw");
@@ -50,16 +50,16 @@ TEST(BagTopics, AreRawAndAsTheCameraGaveThemWhereThereIsAChoice) {
   EXPECT_EQ(chosen({"/camera/image_color", "/camera/image_raw"}), "/camera/image_raw");
 }
 
-TEST(BagTopics, MayBeCompressedAlone) {
+TEST(BagTopics, AcceptCompressedImagesAlone) {
   EXPECT_EQ(chosen({"/left/image_raw/compressed", "/right/image_raw/compressed"}),
             "/left/image_raw/compressed /right/image_raw/compressed");
 }
 
-TEST(BagTopics, AreThoseOfTheOnlyCamera) {
+TEST(BagTopics, SelectTheOnlyCamera) {
   EXPECT_EQ(chosen({"/camera/image_raw"}), "/camera/image_raw");
 }
 
-TEST(BagTopics, AreAskedForWhereSeveralCamerasCouldBeMeant) {
+TEST(BagTopics, RequireAChoiceAmongSeveralCameras) {
   const std::string front_and_rear = chosen({"/front/image", "/rear/image"});
   EXPECT_THAT(front_and_rear, HasSubstr("walk.bag: contains images of several cameras"));
   EXPECT_THAT(front_and_rear, HasSubstr("/front/image (7), /rear/image (7)"));
@@ -69,7 +69,7 @@ TEST(BagTopics, AreAskedForWhereSeveralCamerasCouldBeMeant) {
   EXPECT_THAT(chosen({}), HasSubstr("contains no images of a supported type; available image topics: none"));
 }
 
-TEST(BagTopics, AreThoseThatAreNamed) {
+TEST(BagTopics, SelectTheGivenTopics) {
   const std::vector<std::string> images = {"/front/image", "/rear/image", "/rig/left/image", "/rig/right/image"};
   EXPECT_EQ(chosen(images, {.left_topic = "/rear/image"}), "/rear/image");
   EXPECT_EQ(chosen(images, {.left_topic = "front/image", .right_topic = "/rear/image"}), "/front/image /rear/image");
@@ -78,13 +78,13 @@ TEST(BagTopics, AreThoseThatAreNamed) {
   EXPECT_THAT(chosen(images, {.right_topic = "/rear/image"}), HasSubstr("without that of the left camera"));
 }
 
-TEST(BagTopics, LieBesideTheirCameraInfo) {
+TEST(BagTopics, FindTheirCameraInfo) {
   EXPECT_EQ(camera_info_topic("/cam0/image_raw"), "/cam0/camera_info");
   EXPECT_EQ(camera_info_topic("/cam0/image_raw/compressed"), "/cam0/camera_info");
   EXPECT_EQ(camera_info_topic("image"), "/camera_info");
 }
 
-TEST(BagTopics, TellWhetherImagesAreRectified) {
+TEST(BagTopics, DetectRectifiedImages) {
   EXPECT_TRUE(is_rectified({"/left/image_rect", "", ""}));
   EXPECT_TRUE(is_rectified({"/left/image_rect_color/compressed", "", ""}));
   EXPECT_FALSE(is_rectified({"/direct/image_raw", "", ""}));

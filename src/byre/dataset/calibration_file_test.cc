@@ -90,7 +90,7 @@ class CalibrationFile : public TestFolder {
   }
 };
 
-TEST_F(CalibrationFile, OfOpenCvGivesItsCamera) {
+TEST_F(CalibrationFile, ReadsOpencvCameras) {
   const Calibration calibration = read(kOpenCv);
   const Camera& camera = calibration.left;
   EXPECT_EQ(camera.model, CameraModel::radial_tangential);
@@ -105,7 +105,7 @@ TEST_F(CalibrationFile, OfOpenCvGivesItsCamera) {
   EXPECT_THAT(calibration.body_from_left, PoseNear(Pose{}, 0.0, 0.0));
 }
 
-TEST_F(CalibrationFile, OfOpenCvMayBeAFisheye) {
+TEST_F(CalibrationFile, ReadsOpencvFisheyes) {
   const std::string four = "[ -2.8e-01, 7.0e-02, 1.0e-04, 2.0e-04 ]";
   std::string fisheye = kOpenCv;
   fisheye.replace(fisheye.find("[ -2.8e-01"), four.size() + std::string(", 3.0e-02").size(), four);
@@ -116,7 +116,7 @@ TEST_F(CalibrationFile, OfOpenCvMayBeAFisheye) {
               HasSubstr("distortion_coefficients: has 5 numbers instead of 4"));
 }
 
-TEST_F(CalibrationFile, OfRosGivesItsCamera) {
+TEST_F(CalibrationFile, ReadsRosCameras) {
   const Camera camera = read(kRos).left;
   EXPECT_EQ(camera.model, CameraModel::radial_tangential);
   EXPECT_EQ(camera.fy, 531.0);
@@ -124,13 +124,13 @@ TEST_F(CalibrationFile, OfRosGivesItsCamera) {
   EXPECT_EQ(read(kRos, "[-0.28, 0.07, 0.0001, 0.0002, 0.0]", "[0, 0, 0, 0, 0]").left.model, CameraModel::pinhole);
 }
 
-TEST_F(CalibrationFile, OfOpenCvMayHaveMoreCoefficientsThatAreZero) {
+TEST_F(CalibrationFile, AcceptsExtraZeroCoefficientsOfOpencv) {
   EXPECT_EQ(read(kRos, "0.0002, 0.0]", "0.0002, 0.03, 0, 0, 0]").left.distortion[4], 0.03);
   EXPECT_THAT(error(kRos, "0.0002, 0.0]", "0.0002, 0.03, 0.1, 0, 0]"),
               AllOf(HasSubstr("camera.yaml: distortion_coefficients: has more than"), HasSubstr("rational")));
 }
 
-TEST_F(CalibrationFile, OfKalibrGivesThePairAndItsPlaceInTheBody) {
+TEST_F(CalibrationFile, ReadsPairAndBodyPoseOfKalibr) {
   const Calibration calibration = read(kKalibr);
   EXPECT_EQ(calibration.left.model, CameraModel::radial_tangential);
   EXPECT_EQ(calibration.left.cx, 362.680);
@@ -142,19 +142,19 @@ TEST_F(CalibrationFile, OfKalibrGivesThePairAndItsPlaceInTheBody) {
   EXPECT_THAT(point_in_left, PointNear(Eigen::Vector3d(0.1, 1.2, 0.3), 1e-12));
 }
 
-TEST_F(CalibrationFile, OfKalibrMayBeOfOneCameraWithoutABody) {
+TEST_F(CalibrationFile, ReadsOneKalibrCameraWithoutABody) {
   const Calibration calibration = read(kKalibr.substr(0, kKalibr.find("cam1:")), "T_cam_imu", "T_cam_x");
   EXPECT_FALSE(calibration.right);
   EXPECT_THAT(calibration.body_from_left, PoseNear(Pose{}, 0.0, 0.0));
 }
 
-TEST_F(CalibrationFile, OfEurocMayLackTheBody) {
+TEST_F(CalibrationFile, ReadsEurocWithoutABody) {
   EXPECT_EQ(read(kSensor).left.fx, 458.0);
   const std::string body = "T_BS: {data: [1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}\n";
   EXPECT_EQ(read(kSensor + body).body_from_left.translation.x(), 0.5);
 }
 
-TEST_F(CalibrationFile, TellsHowLongARollingShutterTakes) {
+TEST_F(CalibrationFile, ReadsTheReadoutTime) {
   EXPECT_EQ(read(kSensor).readout_time, 0.0);
   EXPECT_EQ(read(kSensor + "readout_time: 0.015\n").readout_time, 0.015);
   EXPECT_NEAR(read(kKalibr, "cam_overlaps: [1]", "line_delay: 2.5e-5").readout_time, 480 * 2.5e-5, 1e-12);
@@ -164,7 +164,7 @@ TEST_F(CalibrationFile, TellsHowLongARollingShutterTakes) {
   EXPECT_THAT(error(kSensor + "readout_time: nan\n", "", ""), HasSubstr("readout_time"));
 }
 
-TEST_F(CalibrationFile, NamesTheModelThatIsNotSupportedAndThoseThatAre) {
+TEST_F(CalibrationFile, ReportsUnsupportedAndSupportedModels) {
   for (const char* const model : {"omni", "eucm", "ds"}) {
     EXPECT_THAT(error(kKalibr, "camera_model: pinhole", std::string("camera_model: ") + model),
                 AllOf(HasSubstr(std::string("cam0.camera_model: \"") + model + "\" is not supported"),
@@ -174,7 +174,7 @@ TEST_F(CalibrationFile, NamesTheModelThatIsNotSupportedAndThoseThatAre) {
   EXPECT_THAT(error(kRos, "plumb_bob", "thin_prism"), HasSubstr("distortion_model: \"thin_prism\" is not supported"));
 }
 
-TEST_F(CalibrationFile, NamesTheFieldThatMakesNoSense) {
+TEST_F(CalibrationFile, ReportsTheInvalidField) {
   struct Case {
     std::string text, old_text, new_text, message;
   };
@@ -208,7 +208,7 @@ TEST_F(CalibrationFile, NamesTheFieldThatMakesNoSense) {
   EXPECT_THAT(error_of([&] { read_calibration(folder_ / "absent.yaml"); }), HasSubstr("absent.yaml: cannot be opened"));
 }
 
-TEST_F(CalibrationFile, IsFoundInAFolderByItsName) {
+TEST_F(CalibrationFile, IsFoundInAFolderByName) {
   EXPECT_FALSE(find_calibration(folder_));
   write("sensor.yaml", kSensor);
   EXPECT_EQ(find_calibration(folder_), folder_ / "sensor.yaml");
@@ -216,7 +216,7 @@ TEST_F(CalibrationFile, IsFoundInAFolderByItsName) {
   EXPECT_EQ(find_calibration(folder_), folder_ / "calibration.yaml");
 }
 
-TEST_F(CalibrationFile, IsReadAsItWasWritten) {
+TEST_F(CalibrationFile, ReadsBackWhatItWrites) {
   Calibration calibration;
   calibration.left = {CameraModel::radial_tangential, 752, 480, 458.654321, 457.3, 367.2, 248.4,
                       {-0.28, 0.07, 1e-4, 2e-5, 0.01}};

@@ -33,7 +33,7 @@ ros::TransformStamped transform(const std::string& parent, const std::string& ch
   return {{.frame_id = parent}, child, {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-TEST(CameraInfo, IsOfTheModelThatTheInfoNames) {
+TEST(CameraInfo, SelectsTheModelByName) {
   const Camera camera = camera_of(placed_info("left"));
   EXPECT_EQ(camera.model, CameraModel::radial_tangential);
   EXPECT_EQ(camera, (Camera{CameraModel::radial_tangential,
@@ -55,14 +55,14 @@ TEST(CameraInfo, IsOfTheModelThatTheInfoNames) {
   EXPECT_EQ(camera_of(rational), camera);
 }
 
-TEST(CameraInfo, OfRectifiedImagesIsInTheirProjection) {
+TEST(CameraInfo, UsesTheProjectionOfRectifiedImages) {
   PlacedCameraInfo placed = placed_info("left");
   placed.is_rectified = true;
   placed.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 431.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   EXPECT_EQ(camera_of(placed), (Camera{CameraModel::pinhole, 752, 480, 430.0, 431.0, 360.0, 240.0, {}}));
 }
 
-TEST(CameraInfo, IsRefusedWhereByreDoesNotKnowTheLens) {
+TEST(CameraInfo, RejectsUnsupportedLensModels) {
   PlacedCameraInfo rational = placed_info("left");
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d = {0.1, 0.1, 0.0, 0.0, 0.1, 0.2, 0.2, 0.1};
@@ -80,7 +80,7 @@ TEST(CameraInfo, IsRefusedWhereByreDoesNotKnowTheLens) {
   EXPECT_THAT(error_of([&] { camera_of(cut); }), HasSubstr("region of interest"));
 }
 
-TEST(CameraInfo, HasTheBaselineOfTheProjectionOfRectifiedImages) {
+TEST(CameraInfo, ReadsTheBaselineOfRectifiedProjections) {
   PlacedCameraInfo left = placed_info("left"), right = placed_info("left");
   left.is_rectified = right.is_rectified = true;
   left.info.p = right.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
@@ -90,7 +90,7 @@ TEST(CameraInfo, HasTheBaselineOfTheProjectionOfRectifiedImages) {
   EXPECT_THAT(right_from_left, PoseNear(Pose{Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.0}}, 1e-12, 1e-12));
 }
 
-TEST(CameraInfo, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
+TEST(CameraInfo, RotatesRawImagesIntoTheRectifiedFrames) {
   // Rectified frames of a stereo calibration: parallel, and offset along x.
   const Pose left_turn{rotation_exp({0.003, -0.01, 0.02}), Eigen::Vector3d::Zero()};
   const Pose right_turn{rotation_exp({-0.004, 0.02, 0.01}), Eigen::Vector3d::Zero()};
@@ -103,7 +103,7 @@ TEST(CameraInfo, TurnsRawImagesIntoTheRectifiedFramesAndBack) {
   EXPECT_THAT(partner_of(left, right, {}).right_from_left, PoseNear(expected, 1e-9, 1e-9));
 }
 
-TEST(CameraInfo, HasThePairOfTheFramesWhereTheProjectionTellsNone) {
+TEST(CameraInfo, UsesFramesForThePairWithoutABaselineInP) {
   StaticFrames frames;
   const Pose base_from_left{rotation_exp({-1.2, 1.2, -1.2}), {0.3, 0.05, 0.4}};
   frames.take({{transform("/base_link", "left", base_from_left), transform("left", "right", inverse(kRightFromLeft))}});
@@ -113,7 +113,7 @@ TEST(CameraInfo, HasThePairOfTheFramesWhereTheProjectionTellsNone) {
   EXPECT_THAT(body_from_camera("right", frames), PoseNear(base_from_left * inverse(kRightFromLeft), 1e-9, 1e-9));
 }
 
-TEST(CameraInfo, IsRefusedWhereNothingTellsTheBaseline) {
+TEST(CameraInfo, RejectsAPairWithoutABaseline) {
   EXPECT_THAT(error_of([] { partner_of(placed_info("left"), placed_info("right"), {}); }),
               HasSubstr("does not connect the frame \"left\" to \"right\" (give a calibration"));
   EXPECT_THAT(error_of([] { partner_of(placed_info("left"), placed_info("left"), {}); }),
@@ -121,7 +121,7 @@ TEST(CameraInfo, IsRefusedWhereNothingTellsTheBaseline) {
   EXPECT_THAT(body_from_camera("left", {}), PoseNear(Pose(), 1e-15, 1e-15));
 }
 
-TEST(CameraInfo, IsRefusedIfRIsNotARotation) {
+TEST(CameraInfo, RejectsAnInvalidRotation) {
   PlacedCameraInfo left = placed_info("left"), right = placed_info("right");
   right.info.p = {430.0, 0.0, 360.0, -43.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   right.info.r[4] = 2.0;
@@ -134,7 +134,7 @@ TEST(CameraInfo, IsRefusedIfRIsNotARotation) {
   EXPECT_NO_THROW(partner_of(left, right, {}));
 }
 
-TEST(CameraInfo, IsRefusedWhereItMakesNoSense) {
+TEST(CameraInfo, RejectsInvalidValues) {
   PlacedCameraInfo left = placed_info("left");
   left.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   const auto is_refused = [&left](const std::function<void(ros::CameraInfo&)>& change) {

@@ -30,7 +30,7 @@ void expect_near(const Eigen::Vector2d& pixel, const Eigen::Vector2d& expected) 
   EXPECT_NEAR(pixel.y(), expected.y(), 1e-9);
 }
 
-TEST(CameraOf, ProjectsAsColmapDefinesItsModels) {
+TEST(CameraOf, ProjectsLikeColmap) {
   expect_near(pixel_in("SIMPLE_PINHOLE", {kFocal, 320, 240}), scaled(1.0));
   expect_near(pixel_in("PINHOLE", {kFocal, kFocal, 320, 240}), scaled(1.0));
   const double first = 1.0 + 0.1 * kSquaredRadius;
@@ -46,7 +46,7 @@ TEST(CameraOf, ProjectsAsColmapDefinesItsModels) {
               scaled((theta + 0.1 * std::pow(theta, 3) - 0.05 * std::pow(theta, 5)) / radius));
 }
 
-TEST(CameraOf, RefusesWhatByreCannotProject) {
+TEST(CameraOf, RejectsUnsupportedModels) {
   const auto error = [](const std::string& model, const std::vector<double>& parameters) {
     return error_of([&] { camera_of({model, 640, 480, parameters}, "camera 3"); });
   };
@@ -61,7 +61,7 @@ TEST(CameraOf, RefusesWhatByreCannotProject) {
               HasSubstr("width and height"));
 }
 
-TEST(ColmapCamera, BecomesTheSameCameraAgain) {
+TEST(ColmapCamera, ConvertsBackToTheSameCamera) {
   const Camera pinhole{CameraModel::pinhole, 640, 480, 400.5, 399.5, 320.25, 239.75, {}};
   Camera lens = pinhole, long_lens = pinhole, fisheye = pinhole;
   lens.model = long_lens.model = CameraModel::radial_tangential;

@@ -67,7 +67,7 @@ class ColmapModelFiles : public TestFolder {
   }
 };
 
-TEST_F(ColmapModelFiles, AreReadAsTheyWereWrittenInBothFormats) {
+TEST_F(ColmapModelFiles, AreReadBackInBothFormats) {
   for (const ColmapFormat format : {ColmapFormat::text, ColmapFormat::binary}) {
     write_colmap_model(small_colmap_model(), folder_, format);
     expect_equal(read_colmap_model(folder_), small_colmap_model());
@@ -75,7 +75,7 @@ TEST_F(ColmapModelFiles, AreReadAsTheyWereWrittenInBothFormats) {
   }
 }
 
-TEST_F(ColmapModelFiles, AreReadInBinaryWhereBothFormatsLie) {
+TEST_F(ColmapModelFiles, ArePreferredInBinary) {
   ColmapModel other = small_colmap_model();
   other.points.at(9).position_in_world.x() = 7.0;
   write_colmap_model(small_colmap_model(), folder_, ColmapFormat::text);
@@ -83,12 +83,12 @@ TEST_F(ColmapModelFiles, AreReadInBinaryWhereBothFormatsLie) {
   EXPECT_EQ(read_colmap_model(folder_).points.at(9).position_in_world.x(), 7.0);
 }
 
-TEST_F(ColmapModelFiles, MayHoldNothing) {
+TEST_F(ColmapModelFiles, AcceptAnEmptyModel) {
   write_colmap_model({}, folder_, ColmapFormat::binary);
   EXPECT_TRUE(read_colmap_model(folder_).points.empty());
 }
 
-TEST_F(ColmapModelFiles, AreReadAsColmapWritesText) {
+TEST_F(ColmapModelFiles, AreReadFromTextOfColmap) {
   write("cameras.txt", "# Camera list\n# Number of cameras: 1\n1 SIMPLE_PINHOLE 640 480 500 320 240\r\n");
   write("images.txt",
         "# Image list\n1 1 0 0 0 0.5 0 0 1 left,1.jpg\n320.5 240.25 3 1 2 -1\n2 1 0 0 0 1 0 0 1 right.jpg\n\n"
@@ -103,7 +103,7 @@ TEST_F(ColmapModelFiles, AreReadAsColmapWritesText) {
   EXPECT_EQ(model.points.at(3).colour[2], 30);
 }
 
-TEST_F(ColmapModelFiles, NameFileAndLineOfWhatIsWrong) {
+TEST_F(ColmapModelFiles, ReportFileAndLineOfErrors) {
   EXPECT_THAT(error_with("cameras.txt", "1 SPHERE 640 480 500\n"), HasSubstr("cameras.txt:1: \"SPHERE\""));
   EXPECT_THAT(error_with("cameras.txt", "\n1 PINHOLE 640 480 500\n"), HasSubstr("cameras.txt:2: ends before"));
   EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 480 5 5 5 5 5\n"), HasSubstr("cameras.txt:1: goes on"));
@@ -116,7 +116,7 @@ TEST_F(ColmapModelFiles, NameFileAndLineOfWhatIsWrong) {
   EXPECT_THAT(error_with("points3D.txt", "5 0 0 1 0 0 0 1 2\n"), HasSubstr("points3D.txt:1: ends before"));
 }
 
-TEST_F(ColmapModelFiles, MustAgreeWithEachOther) {
+TEST_F(ColmapModelFiles, RejectInconsistentReferences) {
   EXPECT_THAT(error_after([](ColmapModel& model) { model.cameras.erase(7); }), HasSubstr("camera 7"));
   EXPECT_THAT(error_after([](ColmapModel& model) { model.points.erase(5); }), HasSubstr("refers to point 5"));
   EXPECT_THAT(error_after([](ColmapModel& model) { model.points.at(5).track[0].image_id = 99; }),
@@ -127,7 +127,7 @@ TEST_F(ColmapModelFiles, MustAgreeWithEachOther) {
               HasSubstr("keypoint 2 of image 2"));
 }
 
-TEST_F(ColmapModelFiles, ThatAreNotThereAreAsked) {
+TEST_F(ColmapModelFiles, ReportAMissingModel) {
   EXPECT_THAT(error_of([this] { read_colmap_model(folder_); }), HasSubstr("contains no COLMAP model"));
 }
 
@@ -144,7 +144,7 @@ class DamagedBinaryFile : public TestFolder, public testing::WithParamInterface<
   DamagedBinaryFile() { write_colmap_model(small_colmap_model(), folder_, ColmapFormat::binary); }
 };
 
-TEST_P(DamagedBinaryFile, IsRefusedWhereverItIsCut) {
+TEST_P(DamagedBinaryFile, IsRejectedAtEveryTruncation) {
   const auto path = folder_ / GetParam();
   for (std::uintmax_t size = std::filesystem::file_size(path); size-- > 0;) {
     std::filesystem::resize_file(path, size);
@@ -152,7 +152,7 @@ TEST_P(DamagedBinaryFile, IsRefusedWhereverItIsCut) {
   }
 }
 
-TEST_P(DamagedBinaryFile, IsReadOrRefusedWhateverByteIsWrong) {
+TEST_P(DamagedBinaryFile, IsReadOrRejectedForEveryWrongByte) {
   const auto path = folder_ / GetParam();
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path));
@@ -170,7 +170,7 @@ TEST_P(DamagedBinaryFile, IsReadOrRefusedWhateverByteIsWrong) {
 INSTANTIATE_TEST_SUITE_P(Each, DamagedBinaryFile, testing::Values("cameras.bin", "images.bin", "points3D.bin"),
                          [](const auto& file) { return std::string(file.param, std::string(file.param).find('.')); });
 
-TEST_F(ColmapModelFiles, AreRefusedWhereAnImageIsNamedOutsideOfTheFolder) {
+TEST_F(ColmapModelFiles, RejectImageNamesOutsideTheFolder) {
   for (const char* const name : {"/etc/passwd", "../1.png", "a/../../1.png", "a/..", ".."}) {
     const auto rename = [name](ColmapModel& model) { model.images.at(3).name = name; };
     EXPECT_THAT(error_after(rename), HasSubstr("images: image 3: has the name \"" + std::string(name) +

@@ -55,7 +55,7 @@ std::vector<int> units_of(Recording& recording) {
   return units;
 }
 
-TEST_F(DepthRecording, GivesEachFrameTheDepthImageTakenWithIt) {
+TEST_F(DepthRecording, PairsFramesWithDepthImages) {
   for (const OpenOptions& options : {OpenOptions{}, OpenOptions{.camera = CameraChoice::rgbd}}) {
     const auto recording = open(options);
     EXPECT_EQ(recording->size(), 5) << "frames without depth are frames all the same";
@@ -68,14 +68,14 @@ TEST_F(DepthRecording, GivesEachFrameTheDepthImageTakenWithIt) {
   EXPECT_THAT(units_of(*open({}, {.first = 2, .last = 4})), ElementsAre(1002, 1003));
 }
 
-TEST_F(DepthRecording, IsTakenAsTumRegistersAndScalesItUnlessTold) {
+TEST_F(DepthRecording, UsesTheTumRegistrationAndScaleByDefault) {
   const DepthCamera depth = open()->calibration().depth.value();
   EXPECT_FALSE(depth.camera);
   EXPECT_EQ(depth.units_per_metre, 5000.0);
   EXPECT_THAT(depth.left_from_depth, PoseNear(Pose{}, 1e-12, 1e-12));
 }
 
-TEST_F(DepthRecording, MayBeTakenForOneCameraAlone) {
+TEST_F(DepthRecording, OpensAsOneCamera) {
   const OpenOptions left{.camera = CameraChoice::left};
   const auto recording = open(left);
   EXPECT_FALSE(recording->calibration().depth);
@@ -83,7 +83,7 @@ TEST_F(DepthRecording, MayBeTakenForOneCameraAlone) {
   EXPECT_THAT(units_of(*recording), ElementsAre(-1, -1, -1, -1, -1));
 }
 
-TEST_F(DepthRecording, SaysWhenItsDepthImagesWereLeftOutOfTheCopy) {
+TEST_F(DepthRecording, WarnsIfAllDepthImagesAreMissing) {
   fs::remove_all(folder_ / "depth");
   const auto recording = open();
   EXPECT_FALSE(recording->calibration().depth);
@@ -94,7 +94,7 @@ TEST_F(DepthRecording, SaysWhenItsDepthImagesWereLeftOutOfTheCopy) {
   EXPECT_THAT(open_error({.camera = CameraChoice::rgbd}), HasSubstr("has no depth images"));
 }
 
-TEST_F(DepthRecording, LeavesOutDepthImagesThatCannotBeUsed) {
+TEST_F(DepthRecording, SkipsUnusableDepthImages) {
   fs::remove(folder_ / "depth/0.png");
   write_depth("3", 1003, 16, 12);
   const auto recording = open();
@@ -103,7 +103,7 @@ TEST_F(DepthRecording, LeavesOutDepthImagesThatCannotBeUsed) {
                                                  HasSubstr("depth/3.png: is 16x12 instead of 32x24")));
 }
 
-TEST_F(DepthRecording, RefusesImagesThatAreNoDepths) {
+TEST_F(DepthRecording, RejectsImagesWithoutDepths) {
   for (const int i : {0, 2, 3}) write_image("depth/" + std::to_string(i) + ".png", 32, 24, 10);
   EXPECT_THAT(open_error(), HasSubstr("depth/0.png: is not a complete 16-bit image"));
   for (const int i : {0, 2, 3}) write_depth(std::to_string(i), 1000, 16, 12);
@@ -112,7 +112,7 @@ TEST_F(DepthRecording, RefusesImagesThatAreNoDepths) {
   EXPECT_THAT(open_error(), HasSubstr("depth.txt:1: has no name of an image file"));
 }
 
-TEST_F(DepthRecording, TakesScaleNoiseAndPlaceOfTheDepthCameraFromTheCalibration) {
+TEST_F(DepthRecording, ReadsScaleNoiseAndPoseOfTheDepthCamera) {
   const std::string own =
       "depth_camera:\n  resolution: [16, 12]\n  camera_model: pinhole\n  distortion_model: none\n"
       "  intrinsics: [10, 10, 7.5, 5.5]\n"
@@ -129,14 +129,14 @@ TEST_F(DepthRecording, TakesScaleNoiseAndPlaceOfTheDepthCameraFromTheCalibration
   EXPECT_THAT(units_of(*recording), ElementsAre(1000, -1, 1002, 1003, -1));
 }
 
-TEST_F(DepthRecording, LooksForThemBesideACalibrationThatHasNone) {
+TEST_F(DepthRecording, UsesDepthYamlIfTheCalibrationHasNoDepth) {
   write("depth.yaml", "depth_scale: 1000\n");
   EXPECT_EQ(open()->calibration().depth->units_per_metre, 1000.0);
   write("given.yaml", kCamera + "depth_scale: 2000\n");
   EXPECT_EQ(open({.calibration = folder_ / "given.yaml"})->calibration().depth->units_per_metre, 2000.0);
 }
 
-TEST_F(DepthRecording, NamesTheFieldThatMakesNoSense) {
+TEST_F(DepthRecording, ReportsTheInvalidField) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"depth_scale: 0", "depth.yaml: depth_scale: is not a positive number"},
       {"depth_scale: many", "depth.yaml: depth_scale: is not a positive number"},

@@ -38,7 +38,7 @@ class EurocSensorFile : public TestFolder {
   }
 };
 
-TEST_F(EurocSensorFile, GivesTheCameraAndItsPlaceInTheBody) {
+TEST_F(EurocSensorFile, ReadsCameraAndBodyPose) {
   const EurocSensor sensor = read();
   EXPECT_EQ(sensor.camera.model, CameraModel::radial_tangential);
   EXPECT_EQ(sensor.camera.width, 752);
@@ -50,7 +50,7 @@ TEST_F(EurocSensorFile, GivesTheCameraAndItsPlaceInTheBody) {
   EXPECT_LT((point_in_body - Eigen::Vector3d(0.5, 0.75, 2.0)).norm(), 1e-12);
 }
 
-TEST_F(EurocSensorFile, IsReadAgainAsItWasWritten) {
+TEST_F(EurocSensorFile, ReadsBackWhatItWrites) {
   EurocSensor sensor = read("radial-tangential", "equidistant");
   sensor.readout_time = 0.0125;
   write("written.yaml", write_euroc_sensor(sensor, 20.0, "recorded"));
@@ -61,18 +61,18 @@ TEST_F(EurocSensorFile, IsReadAgainAsItWasWritten) {
   EXPECT_LT(again.body_from_camera.rotation.angularDistance(sensor.body_from_camera.rotation), 1e-12);
 }
 
-TEST_F(EurocSensorFile, MayBeginWithTheDirectiveOfOpenCv) {
+TEST_F(EurocSensorFile, AcceptsTheYamlDirectiveOfOpencv) {
   EXPECT_EQ(read("# General sensor definitions.", "%YAML:1.0").camera.width, 752);
   EXPECT_EQ(read("# General sensor definitions.", "%YAML:1.0\r\n---").camera.width, 752);
 }
 
-TEST_F(EurocSensorFile, KnowsTheOtherLensModels) {
+TEST_F(EurocSensorFile, ReadsOtherLensModels) {
   EXPECT_EQ(read("radial-tangential", "equidistant").camera.model, CameraModel::equidistant);
   EXPECT_EQ(read("radial-tangential", "none").camera.model, CameraModel::pinhole);
   EXPECT_EQ(read("1.76187114e-05]", "1e-05, 0.5]").camera.distortion[4], 0.5);
 }
 
-TEST_F(EurocSensorFile, NamesTheFieldThatMakesNoSense) {
+TEST_F(EurocSensorFile, ReportsTheInvalidField) {
   struct Case {
     std::string old_text, new_text, message;
   };
@@ -103,7 +103,7 @@ TEST_F(EurocSensorFile, NamesTheFieldThatMakesNoSense) {
   }
 }
 
-TEST_F(EurocSensorFile, ThatIsAbsentIsAnError) {
+TEST_F(EurocSensorFile, ReportsAMissingFile) {
   EXPECT_THAT(error_of([&] { read_euroc_sensor(folder_ / "none.yaml"); }), HasSubstr("none.yaml: cannot be opened"));
 }
 

@@ -23,7 +23,7 @@ class FilesRead : public TestFolder {
   }
 };
 
-TEST_F(FilesRead, AreAllOfEurocsSensorsButNotWhatLiesBeside) {
+TEST_F(FilesRead, IncludeEurocSensorsOnly) {
   for (const char* const name : {"mav0/cam0/data.csv", "mav0/cam0/sensor.yaml", "mav0/cam0/data/1.png",
                                  "mav0/imu0/data.csv", "mav0/state_groundtruth_estimate0/data.csv"}) {
     write(name, "x");
@@ -39,7 +39,7 @@ TEST_F(FilesRead, AreAllOfEurocsSensorsButNotWhatLiesBeside) {
   EXPECT_THAT(files, Not(Contains("mav0/out.txt")));
 }
 
-TEST_F(FilesRead, AreListsAndImagesOfTheOtherFormats) {
+TEST_F(FilesRead, IncludeListsAndImagesOfOtherFormats) {
   write("kitti/sequences/00/calib.txt", "x");
   write("kitti/sequences/00/times.txt", "x");
   write("kitti/sequences/00/image_0/000000.png", "x");
@@ -62,7 +62,7 @@ TEST_F(FilesRead, AreListsAndImagesOfTheOtherFormats) {
   EXPECT_THAT(names(files_of_recording(folder_ / "walk.mp4")), UnorderedElementsAre("walk.mp4", "calibration.yaml"));
 }
 
-TEST_F(FilesRead, FollowLinksThatMayGoRoundInCircles) {
+TEST_F(FilesRead, FollowCircularLinksSafely) {
   write("elsewhere/1.png", "x");
   write("rec/mav0/cam0/data.csv", "x");
   fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "rec/mav0/cam0/data");
@@ -71,7 +71,7 @@ TEST_F(FilesRead, FollowLinksThatMayGoRoundInCircles) {
   EXPECT_THAT(names(files_of_recording(folder_ / "rec")), Contains("rec/mav0/cam0/data/1.png"));
 }
 
-TEST_F(FilesRead, AreAPlansImageAndWorldFile) {
+TEST_F(FilesRead, IncludeImageAndWorldFileOfAPlan) {
   write("plan.yaml", "image: drawings/floor.png\n");
   write("drawings/floor.png", "x");
   EXPECT_THAT(names(files_of_floor_plan(folder_ / "plan.yaml")),
@@ -83,7 +83,7 @@ TEST_F(FilesRead, AreAPlansImageAndWorldFile) {
   EXPECT_THAT(names(files_of_floor_plan(folder_ / "broken.yaml")), UnorderedElementsAre("broken.yaml"));
 }
 
-TEST_F(FilesRead, AreAModelsFilesAndTheImagesBelowAFolder) {
+TEST_F(FilesRead, IncludeFilesOfAModelAndImagesBelowAFolder) {
   write("model/cameras.bin", "x");
   write("model/points3D.txt", "x");
   write("model/project.ini", "x");
@@ -94,7 +94,7 @@ TEST_F(FilesRead, AreAModelsFilesAndTheImagesBelowAFolder) {
   EXPECT_THAT(names(images_below(folder_ / "photos")), UnorderedElementsAre("photos/a/b/1.jpg"));
 }
 
-TEST_F(FilesRead, AreNoneWhereNothingIs) {
+TEST_F(FilesRead, AreEmptyForMissingPaths) {
   EXPECT_THAT(names(files_of_colmap_model(folder_ / "absent")), IsEmpty());
   EXPECT_THAT(names(files_of_recording(folder_)), IsEmpty());
 }

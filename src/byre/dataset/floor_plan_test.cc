@@ -33,7 +33,7 @@ class FloorPlans : public TestFolder {
   }
 };
 
-TEST_F(FloorPlans, LieAsMapServerSaysWithTheOriginAtTheLowerLeftCorner) {
+TEST_F(FloorPlans, PlaceTheOriginOfMapServerAtTheLowerLeftCorner) {
   const FloorPlan plan = from_yaml("image: plan.png\nresolution: 0.05\norigin: [-1.0, -2.0, 0.0]\nnegate: 0\n");
   EXPECT_EQ(plan.name, "plan.yaml");
   EXPECT_EQ(plan.width, 200);
@@ -43,7 +43,7 @@ TEST_F(FloorPlans, LieAsMapServerSaysWithTheOriginAtTheLowerLeftCorner) {
   EXPECT_THAT(plan.pixel_at({-0.975, -1.975}), PointNear(Eigen::Vector2d(0.0, 99.0), kExact));
 }
 
-TEST_F(FloorPlans, HaveWallsWhereTheirYamlSaysHowDarkTheseAre) {
+TEST_F(FloorPlans, ApplyTheThresholdsOfTheYaml) {
   const std::string lies = "image: plan.png\nresolution: 0.05\norigin: [0, 0, 0]\n";
   EXPECT_FALSE(from_yaml(lies).occupied_threshold);
   EXPECT_EQ(from_yaml(lies + "occupied_thresh: 0.65\n").occupied_threshold, 0.65);
@@ -53,14 +53,14 @@ TEST_F(FloorPlans, HaveWallsWhereTheirYamlSaysHowDarkTheseAre) {
   EXPECT_FALSE(from_world_file("0.05\n0\n0\n-0.05\n0\n0\n").occupied_threshold);
 }
 
-TEST_F(FloorPlans, AreTurnedAboutTheirLowerLeftCorner) {
+TEST_F(FloorPlans, RotateAboutTheLowerLeftCorner) {
   const FloorPlan plan = from_yaml("image: plan.png\nresolution: 0.05\norigin: [3, 4, 1.5707963267948966]\n");
   EXPECT_THAT(plan.point_at({-0.5, 99.5}), PointNear(Eigen::Vector2d(3.0, 4.0), kExact));
   EXPECT_THAT(plan.point_at({199.5, 99.5}), PointNear(Eigen::Vector2d(3.0, 14.0), kExact));
   EXPECT_THAT(plan.point_at({-0.5, -0.5}), PointNear(Eigen::Vector2d(-2.0, 4.0), kExact));
 }
 
-TEST_F(FloorPlans, LieAsTheirWorldFileSays) {
+TEST_F(FloorPlans, ApplyTheWorldFile) {
   const FloorPlan plan = from_world_file("0.05\n0\n0\n-0.05\n500000.025\n5400000.975\n");
   EXPECT_EQ(plan.name, "plan.png");
   EXPECT_THAT(plan.point_at({0.0, 0.0}), PointNear(Eigen::Vector2d(500000.025, 5400000.975), kExact));
@@ -69,13 +69,13 @@ TEST_F(FloorPlans, LieAsTheirWorldFileSays) {
   EXPECT_THAT(plan.pixel_at(plan.point_at(pixel)), PointNear(pixel, 1e-6));
 }
 
-TEST_F(FloorPlans, MayBeTurnedByTheirWorldFile) {
+TEST_F(FloorPlans, ApplyARotatedWorldFile) {
   const FloorPlan plan = from_world_file("0\n0.1\n0.1\n0\n10\n20\n");
   EXPECT_THAT(plan.point_at({5.0, 0.0}), PointNear(Eigen::Vector2d(10.0, 20.5), kExact));
   EXPECT_THAT(plan.point_at({0.0, 5.0}), PointNear(Eigen::Vector2d(10.5, 20.0), kExact));
 }
 
-TEST_F(FloorPlans, AreFoundByEveryUsualNameOfAWorldFile) {
+TEST_F(FloorPlans, FindAllUsualNamesOfWorldFiles) {
   for (const char* const name : {"plan.pgw", "plan.pngw", "plan.wld"}) {
     write(name, "1\n0\n0\n-1\n7\n8\n");
     EXPECT_THAT(read_floor_plan(folder_ / "plan.png").top_left_in_plan, PointNear(Eigen::Vector2d(7.0, 8.0), kExact));
@@ -83,7 +83,7 @@ TEST_F(FloorPlans, AreFoundByEveryUsualNameOfAWorldFile) {
   }
 }
 
-TEST_F(FloorPlans, AreRefusedWithTheFieldThatIsWrong) {
+TEST_F(FloorPlans, ReportTheInvalidField) {
   EXPECT_THAT(error_of([&] { read_floor_plan(folder_ / "absent.yaml"); }), HasSubstr("absent.yaml: cannot be opened"));
   EXPECT_THAT(fault_in_yaml("image: [\n"), HasSubstr("correct the YAML"));
   EXPECT_THAT(fault_in_yaml("3\n"), HasSubstr("is not a YAML file of named fields"));
@@ -110,7 +110,7 @@ TEST_F(FloorPlans, AreRefusedWithTheFieldThatIsWrong) {
   EXPECT_THAT(fault_in_yaml("image: no.png\nresolution: 1\norigin: [0, 0, 0]\n"), HasSubstr("no.png: cannot be read"));
 }
 
-TEST_F(FloorPlans, AreRefusedWithAWorldFileThatMakesNoSense) {
+TEST_F(FloorPlans, RejectInvalidWorldFiles) {
   EXPECT_THAT(error_of([&] { read_floor_plan(folder_ / "plan.png"); }), HasSubstr("has no world file in its folder"));
   EXPECT_THAT(fault_in_world_file("1\n0\n0\n-1\n7\n"), HasSubstr("plan.pgw: has 5 lines instead of six"));
   EXPECT_THAT(fault_in_world_file("1\n0\n0\nx\n7\n8\n"), HasSubstr("plan.pgw:4: is not a number"));
@@ -119,7 +119,7 @@ TEST_F(FloorPlans, AreRefusedWithAWorldFileThatMakesNoSense) {
   EXPECT_THAT(fault_in_world_file("1e-6\n0\n0\n-1e-6\n11.2\n48.1\n"), AllOf(HasSubstr("degrees"), HasSubstr("UTM")));
 }
 
-TEST_F(FloorPlans, OfMoreThanAHundredMillionPixelsAreNotDecoded) {
+TEST_F(FloorPlans, RejectMoreThanAHundredMillionPixelsUndecoded) {
   write("plan.pgm", "P5\n30000 30000\n255\n");
   EXPECT_THAT(fault_in_yaml("image: plan.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n"),
               HasSubstr("plan.pgm: has 30000 x 30000 pixels; the limit for floor plans is 100 million"));

@@ -49,7 +49,7 @@ Bytes values_of(const cv::Mat& image) {
 
 class GreyPngOf : public testing::TestWithParam<std::pair<int, int>> {};  // type and strategy of OpenCV
 
-TEST_P(GreyPngOf, HasTheValuesThatWereWritten) {
+TEST_P(GreyPngOf, DecodesTheWrittenValues) {
   const auto [type, strategy] = GetParam();
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 9), std::pair(131, 77)}) {
     const cv::Mat written = picture(type, width, height);
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, GreyPngOf,
                                          std::pair<int, int>(CV_8U, cv::IMWRITE_PNG_STRATEGY_FILTERED),
                                          std::pair<int, int>(CV_16U, cv::IMWRITE_PNG_STRATEGY_FILTERED)));
 
-TEST(GreyPng, LeavesOtherKindsAlone) {
+TEST(GreyPng, IgnoresOtherKindsOfPng) {
   const Bytes colours = png_of(cv::Mat(8, 9, CV_8UC3, cv::Scalar(1, 2, 3)), cv::IMWRITE_PNG_STRATEGY_DEFAULT);
   EXPECT_FALSE(decode_grey_png(*png_chunks(colours)));
   Bytes one_bit;
@@ -75,7 +75,7 @@ TEST(GreyPng, LeavesOtherKindsAlone) {
   EXPECT_FALSE(decode_grey_png(*png_chunks(one_bit)));
 }
 
-TEST(GreyPng, IsNoneOfWhatIsDamaged) {
+TEST(GreyPng, RejectsDamagedFiles) {
   const Bytes whole = png_of(picture(CV_8U, 40, 30), cv::IMWRITE_PNG_STRATEGY_FILTERED);
   auto without_pixels = *png_chunks(whole);
   std::erase_if(without_pixels, [](const PngChunk& chunk) { return chunk.type() == "IDAT"; });

@@ -37,7 +37,7 @@ TEST_F(ReadImage, KeepsThePixelsOfAPng) {
   EXPECT_EQ(image->pixels[14], 77);
 }
 
-TEST_F(ReadImage, ReadsJpegAndTurnsColourIntoGrey) {
+TEST_F(ReadImage, ReadsJpegAndConvertsColourToGrey) {
   write_image("a.jpg", 64, 48, 120);
   cv::imwrite((folder_ / "b.png").string(), cv::Mat(2, 2, CV_8UC3, cv::Scalar(50, 50, 50)));
   const std::optional<Image> jpeg = read_image(folder_ / "a.jpg");
@@ -47,7 +47,7 @@ TEST_F(ReadImage, ReadsJpegAndTurnsColourIntoGrey) {
   EXPECT_EQ(colour->pixels, std::vector<std::uint8_t>(4, 50));
 }
 
-TEST_F(ReadImage, TakesTheUpperByteOfSixteenBitsAndLeavesTransparencyOut) {
+TEST_F(ReadImage, KeepsTheUpperByteOfSixteenBitsAndIgnoresAlpha) {
   cv::imwrite((folder_ / "deep.png").string(), cv::Mat(2, 3, CV_16U, cv::Scalar(0x50A0)));
   cv::imwrite((folder_ / "clear.png").string(), cv::Mat(2, 3, CV_8UC4, cv::Scalar(90, 90, 90, 10)));
   const std::optional<Image> deep = read_image(folder_ / "deep.png");
@@ -58,7 +58,7 @@ TEST_F(ReadImage, TakesTheUpperByteOfSixteenBitsAndLeavesTransparencyOut) {
 }
 
 // The decoder itself would print a warning.
-TEST_F(ReadImage, SaysNothingOnTheErrorStreamOfAFileThatIsDamaged) {
+TEST_F(ReadImage, PrintsNothingForADamagedFile) {
   cv::imwrite((folder_ / "cut.png").string(), cv::Mat(480, 640, CV_8U, cv::Scalar(77)));
   cut_in_half("cut.png");
   testing::internal::CaptureStderr();
@@ -80,7 +80,7 @@ TEST_F(ReadDepthImage, KeepsAllSixteenBits) {
   EXPECT_EQ(image->units, (std::vector<std::uint16_t>{0, 0, 5001, 65535, 0, 0}));
 }
 
-TEST_F(ReadDepthImage, IsEmptyForWhatIsNoWholeImageOfDepths) {
+TEST_F(ReadDepthImage, IsEmptyForOtherThanCompleteDepthImages) {
   write_image("grey.png", 4, 3, 90);
   cv::imwrite((folder_ / "colour.png").string(), cv::Mat(2, 2, CV_16UC3, cv::Scalar(1, 2, 3)));
   cv::imwrite((folder_ / "cut.png").string(), cv::Mat(480, 640, CV_16U, cv::Scalar(777)));
@@ -91,7 +91,7 @@ TEST_F(ReadDepthImage, IsEmptyForWhatIsNoWholeImageOfDepths) {
   }
 }
 
-TEST_F(ReadImage, IsEmptyForWhatIsNoWholeImage) {
+TEST_F(ReadImage, IsEmptyForIncompleteImages) {
   write_image("cut.png", 640, 480, 90);
   write_image("cut.jpg", 640, 480, 90);
   cut_in_half("cut.png");
@@ -104,7 +104,7 @@ TEST_F(ReadImage, IsEmptyForWhatIsNoWholeImage) {
   EXPECT_FALSE(read_image(folder_).has_value());
 }
 
-TEST_F(ReadImage, TellsAFileThatIsNotToBeHadFromOneThatIsMissingOrBroken) {
+TEST_F(ReadImage, DistinguishesUnreadableMissingAndBrokenFiles) {
   write_image("whole.png", 5, 3, 77);
   write("text.png", "no image");
   EXPECT_EQ(try_image(folder_ / "text.png").failure, "is not a whole image");

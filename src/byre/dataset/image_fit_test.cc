@@ -18,7 +18,7 @@ TEST(Fit, KeepsAnImageThatFits) {
   EXPECT_EQ(fit(ramp(40, 30), 40, 30).pixels, ramp(40, 30).pixels);
 }
 
-TEST(Fit, CutsToTheMiddle) {
+TEST(Fit, CropsToTheCentre) {
   const Image middle = fit(ramp(60, 20), 20, 20);
   EXPECT_EQ(middle.width, 20);
   EXPECT_EQ(middle.height, 20);

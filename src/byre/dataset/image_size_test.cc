@@ -18,7 +18,7 @@ class StatedSize : public TestFolder {
   }
 };
 
-TEST_F(StatedSize, IsThatOfTheImageInEveryFormat) {
+TEST_F(StatedSize, MatchesTheImageInEveryFormat) {
   for (const char* const name : {"a.png", "a.jpg", "a.bmp", "a.tif", "a.pgm"}) {
     write_image(name, 37, 21, 100);
     const std::optional<ImageSize> size = stated_size(folder_ / name);
@@ -28,7 +28,7 @@ TEST_F(StatedSize, IsThatOfTheImageInEveryFormat) {
   }
 }
 
-TEST_F(StatedSize, IsEmptyForWhatIsNoImage) {
+TEST_F(StatedSize, IsEmptyForOtherFiles) {
   write("text.txt", "Perhaps");
   write("nothing.png", "");
   EXPECT_FALSE(stated_size(folder_ / "text.txt"));
@@ -36,7 +36,7 @@ TEST_F(StatedSize, IsEmptyForWhatIsNoImage) {
   EXPECT_FALSE(stated_size(folder_ / "absent.png"));
 }
 
-TEST_F(StatedSize, IsReadFromAnyBeginningWithoutHarm) {
+TEST_F(StatedSize, IsReadSafelyFromAnyPrefix) {
   for (const char* const name : {"a.png", "a.jpg", "a.bmp", "a.tif", "a.pgm"}) {
     write_image(name, 37, 21, 100);
     const std::vector<std::uint8_t> bytes = bytes_of(name);
@@ -46,7 +46,7 @@ TEST_F(StatedSize, IsReadFromAnyBeginningWithoutHarm) {
   }
 }
 
-TEST_F(StatedSize, KeepsAnImageThatStatesTooMuchFromBeingDecoded) {
+TEST_F(StatedSize, PreventsDecodingOversizedImages) {
   write("huge.pgm", "P5\n30000 30000\n255\n");
   write("wide.pgm", "P5\n# a comment of 7 words with 2 numbers\n4294967295 2\n255\n");
   EXPECT_FALSE(read_image(folder_ / "huge.pgm"));

@@ -14,13 +14,13 @@ constexpr const char* kWheels = "1.0 0 0 0 0 0 0 1\n1.5 0.25 0 0 0 0 0 1\n";
 
 using MotionFiles = TestFolder;
 
-TEST_F(MotionFiles, AreNoneWhereNothingWasRecorded) {
+TEST_F(MotionFiles, AreEmptyWithoutSamples) {
   const MotionSamples samples = read_motion(folder_, {}).samples;
   EXPECT_TRUE(samples.wheels.empty());
   EXPECT_TRUE(samples.rates.empty());
 }
 
-TEST_F(MotionFiles, HoldWheelsWhichMayBeLeftOut) {
+TEST_F(MotionFiles, ReadWheelsUnlessOmitted) {
   write("wheel.txt", kWheels);
   const MotionSamples samples = read_motion(folder_, {}).samples;
   ASSERT_EQ(samples.wheels.size(), 2u);
@@ -29,13 +29,13 @@ TEST_F(MotionFiles, HoldWheelsWhichMayBeLeftOut) {
   EXPECT_TRUE(read_motion(folder_, {.use_wheels = false}).samples.wheels.empty());
 }
 
-TEST_F(MotionFiles, MayLieElsewhere) {
+TEST_F(MotionFiles, ReadFromAnotherFolder) {
   write("other/odometry.txt", kWheels);
   EXPECT_EQ(read_motion(folder_, {.wheels = folder_ / "other/odometry.txt"}).samples.wheels.size(), 2u);
   EXPECT_THROW(read_motion(folder_, {.wheels = folder_ / "none.txt"}), InputError);
 }
 
-TEST_F(MotionFiles, HoldAGyroscopeForWhoAsks) {
+TEST_F(MotionFiles, ReadTheGyroscopeOnRequest) {
   write("mav0/cam0/data.csv", "");
   write("mav0/imu0/data.csv",
         "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n100,0.1,0.2,0.3,0,0,9.8\n200,0.4,0.5,0.6,0,0,9.8\n");
@@ -46,7 +46,7 @@ TEST_F(MotionFiles, HoldAGyroscopeForWhoAsks) {
   EXPECT_EQ(samples.rates.back().rate, Eigen::Vector3d(0.4, 0.5, 0.6));
 }
 
-TEST_F(MotionFiles, HoldAnAccelerometerBesideTheGyroscope) {
+TEST_F(MotionFiles, ReadTheAccelerometerWithTheGyroscope) {
   write("mav0/cam0/data.csv", "");
   write("mav0/imu0/data.csv", "100,0.1,0.2,0.3\n200,0.4,0.5,0.6,1.5,0,9.8\n300,0.4,0.5,0.6,0,0,0\n");
   const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true}).samples;
@@ -74,7 +74,7 @@ TEST_F(MotionFiles, CountLateAndRepeatedLines) {
                                                     HasSubstr("1 lines have the time stamp of another one")));
 }
 
-TEST_F(MotionFiles, SayWhatIsWrongWithAGyroscope) {
+TEST_F(MotionFiles, ReportInvalidGyroscopeFiles) {
   const auto failure = [&](const std::string& text) {
     write("mav0/cam0/data.csv", "");
     if (!text.empty()) write("mav0/imu0/data.csv", text);

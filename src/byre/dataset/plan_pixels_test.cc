@@ -25,7 +25,7 @@ int grey(double value, const FloorPlan& plan) {
   return occupancy_of({value}, plan);
 }
 
-TEST(PlanPixels, AreOccupiedFreeOrUnknownByTheThresholds) {
+TEST(PlanPixels, AreOccupiedFreeOrUnknownByThresholds) {
   const FloorPlan plan = plan_of(PlanMode::trinary), negated = plan_of(PlanMode::trinary, true);
   const std::vector<std::array<int, 3>> table = {// grey value, occupancy, occupancy with negate: 1
                                                  {0, 100, 0},   {49, 100, 0},  {50, 100, -1},  {89, 100, -1},
@@ -37,7 +37,7 @@ TEST(PlanPixels, AreOccupiedFreeOrUnknownByTheThresholds) {
   }
 }
 
-TEST(PlanPixels, FollowThePlansOwnThresholds) {
+TEST(PlanPixels, ApplyTheThresholdsOfThePlan) {
   FloorPlan plan = plan_of(PlanMode::trinary);
   plan.occupied_threshold = 0.15;
   plan.free_threshold = 0.1;
@@ -99,7 +99,7 @@ class PlanImages : public TestFolder {
   }
 };
 
-TEST_F(PlanImages, HaveRowsFromTheTop) {
+TEST_F(PlanImages, StartWithTheTopRow) {
   const cv::Mat image = (cv::Mat_<std::uint8_t>(2, 3) << 0, 254, 205, 254, 0, 254);
   EXPECT_THAT(read(image).occupancy, ElementsAre(100, 0, -1, 0, 100, 0));
   EXPECT_THAT(read(image).image.pixels, ElementsAre(0, 254, 205, 254, 0, 254));
@@ -107,12 +107,12 @@ TEST_F(PlanImages, HaveRowsFromTheTop) {
   EXPECT_THAT(read(255 - image, "negate: 1\n").image.pixels, ElementsAre(0, 254, 205, 254, 0, 254)) << "as it is shown";
 }
 
-TEST_F(PlanImages, MayHaveSixteenBits) {
+TEST_F(PlanImages, AcceptSixteenBits) {
   const cv::Mat image = (cv::Mat_<std::uint16_t>(1, 4) << 0, 65535, 22938, 22937);
   EXPECT_THAT(read(image).occupancy, ElementsAre(100, 0, -1, 100));
 }
 
-TEST_F(PlanImages, HaveTheMeanOfTheirColours) {
+TEST_F(PlanImages, AverageColours) {
   // Channels are blue, green, red. A grey image by luminance would make the green pixel bright.
   const cv::Mat image =
       (cv::Mat_<cv::Vec3b>(1, 3) << cv::Vec3b(255, 255, 255), cv::Vec3b(0, 255, 0), cv::Vec3b(0, 0, 255));
@@ -136,14 +136,14 @@ TEST_F(PlanImages, AreNegatedByEverySpellingOfTrue) {
   }
 }
 
-TEST_F(PlanImages, AreReadInTheirMode) {
+TEST_F(PlanImages, ApplyTheirMode) {
   const cv::Mat image = (cv::Mat_<std::uint8_t>(1, 3) << 0, 60, 254);
   EXPECT_THAT(read(image, "mode: raw\n").occupancy, ElementsAre(0, 60, -1));
   EXPECT_THAT(read(image, "mode: Scale\nfree_thresh: 0.0\n").occupancy, ElementsAre(100, 100, 1));
   EXPECT_THAT(read(image, "mode: trinary\n").occupancy, ElementsAre(100, 100, 0));
 }
 
-TEST_F(PlanImages, AreRefusedWithAnInvalidField) {
+TEST_F(PlanImages, RejectAnInvalidField) {
   const cv::Mat image = (cv::Mat_<std::uint8_t>(1, 1) << 0);
   const auto fault = [&](const std::string& fields) { return error_of([&] { read(image, fields); }); };
   EXPECT_THAT(fault("negate: perhaps\n"), HasSubstr("plan.yaml: negate: is not 0, 1, true or false"));

@@ -34,13 +34,13 @@ Bytes chunk(const std::string& type, const std::string& data) {
   return bytes;
 }
 
-TEST(PngChunks, AreAllKeptWhereAllAreOfPixels) {
+TEST(PngChunks, AreKeptIfAllContainPixels) {
   const Bytes png = some_png();
   ASSERT_TRUE(is_png(png));
   EXPECT_EQ(png_of_pixels(*png_chunks(png)), png);
 }
 
-TEST(PngChunks, AreLeftOutWhereTheyTellOfOtherThings) {
+TEST(PngChunks, AreRemovedIfAncillary) {
   const Bytes png = some_png();
   constexpr std::ptrdiff_t kAfterHeader = 8 + 25;
   Bytes with_profile = png;
@@ -49,14 +49,14 @@ TEST(PngChunks, AreLeftOutWhereTheyTellOfOtherThings) {
   EXPECT_EQ(png_of_pixels(*png_chunks(with_profile)), png);
 }
 
-TEST(PngChunks, AreMissingInAFileThatIsCutOff) {
+TEST(PngChunks, AreEmptyInATruncatedFile) {
   const Bytes png = some_png();
   for (std::size_t size = 8; size < png.size(); ++size) {
     EXPECT_FALSE(png_chunks(std::span(png).first(size))) << size;
   }
 }
 
-TEST(PngChunks, ShowDamageOfAnyByte) {
+TEST(PngChunks, RevealDamageOfAnyByte) {
   const Bytes png = some_png();
   for (std::size_t i = 8; i < png.size(); ++i) {
     Bytes damaged = png;
@@ -65,14 +65,14 @@ TEST(PngChunks, ShowDamageOfAnyByte) {
   }
 }
 
-TEST(PngChunks, EndWithTheLastOne) {
+TEST(PngChunks, EndWithTheLastChunk) {
   Bytes followed = some_png();
   const Bytes png = followed;
   followed.insert(followed.end(), {1, 2, 3});
   EXPECT_EQ(png_of_pixels(*png_chunks(followed)), png);
 }
 
-TEST(PngChunks, AreToldOneByOne) {
+TEST(PngChunks, AreIteratedInOrder) {
   const Bytes png = some_png();
   const auto chunks = png_chunks(png);
   ASSERT_TRUE(chunks);
@@ -82,7 +82,7 @@ TEST(PngChunks, AreToldOneByOne) {
   EXPECT_EQ(chunks->back().type(), "IEND");
 }
 
-TEST(PngChunks, AreThoseOfPngFilesOnly) {
+TEST(PngChunks, AreFoundInPngFilesOnly) {
   EXPECT_FALSE(is_png({}));
   EXPECT_FALSE(is_png(Bytes{0xFF, 0xD8, 0, 0, 0, 0, 0, 0, 0}));
 }

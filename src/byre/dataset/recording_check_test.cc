@@ -78,7 +78,7 @@ std::string grave_findings(const RecordingCheck& check) {
   return text;
 }
 
-TEST(RecordingCheck, OfASoundPairMeasuresWhatItIs) {
+TEST(RecordingCheck, MeasuresASoundPair) {
   const RecordingCheck check = check_of();
   EXPECT_EQ(check.frames, 40);
   EXPECT_NEAR(check.rate_hz, 10.0, 1e-6);
@@ -94,18 +94,18 @@ TEST(RecordingCheck, OfASoundPairMeasuresWhatItIs) {
   EXPECT_THAT(grave_findings(check), IsEmpty());
 }
 
-TEST(RecordingCheck, FindsACameraThatRepeatsItsImage) {
+TEST(RecordingCheck, DetectsRepeatedImages) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) { images.left = texture(0, 0); });
   EXPECT_EQ(check.repeated, 5);
   EXPECT_THAT(grave_findings(check), HasSubstr("identical to the previous one"));
 }
 
-TEST(RecordingCheck, FindsSwappedCameras) {
+TEST(RecordingCheck, DetectsSwappedCameras) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) { std::swap(images.left, *images.right); });
   EXPECT_THAT(grave_findings(check), HasSubstr("found in the right image"));
 }
 
-TEST(RecordingCheck, FindsACameraThatWasMovedByItsRows) {
+TEST(RecordingCheck, DetectsAMovedCameraByRows) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) {
     std::vector<std::uint8_t>& pixels = images.right->pixels;
     std::shift_right(pixels.begin(), pixels.end(), kWidth);  // shifts by a row
@@ -115,14 +115,14 @@ TEST(RecordingCheck, FindsACameraThatWasMovedByItsRows) {
   EXPECT_THAT(grave_findings(check), HasSubstr("off their row"));
 }
 
-TEST(RecordingCheck, FindsADarkCameraAndDoesNotBlameThePairForIt) {
+TEST(RecordingCheck, DetectsADarkCameraWithoutBlamingThePair) {
   const RecordingCheck check =
       check_of([](ImageFrame& images, int) { images.right->pixels.assign(images.right->pixels.size(), 0); });
   EXPECT_THAT(grave_findings(check), HasSubstr("right images are dark"));
   EXPECT_THAT(grave_findings(check), Not(HasSubstr("found in the right image")));
 }
 
-TEST(RecordingCheck, TellsOfFramesWithoutARightImageAndOfFramesThatCannotBeRead) {
+TEST(RecordingCheck, ReportsMissingRightImagesAndUnreadableFrames) {
   const RecordingCheck check = check_of([](ImageFrame& images, int index) {
     if (index % 2 == 1) images.right.reset();
   });
@@ -216,11 +216,11 @@ INSTANTIATE_TEST_SUITE_P(
                     "a field of view of 3 degrees"},
         FindingCase{[](RecordingCheck& check) { check.features = 20.4; }, false, "only 20 features per image"}));
 
-TEST(RecordingCheck, HasNoFindingWithoutProblems) {
+TEST(RecordingCheck, HasNoFindingsForSoundRecordings) {
   EXPECT_TRUE(findings_of(sound_check()).empty());
 }
 
-TEST(RecordingCheck, ListsGraveFindingsFirst) {
+TEST(RecordingCheck, ListsSevereFindingsFirst) {
   RecordingCheck check = sound_check();
   check.rate_hz = 2.0;
   check.repeated = 50;
@@ -230,7 +230,7 @@ TEST(RecordingCheck, ListsGraveFindingsFirst) {
   EXPECT_FALSE(findings[1].is_grave);
 }
 
-TEST(RecordingCheck, NamesCorrectionsOfTimesAndARemedy) {
+TEST(RecordingCheck, ReportsTimeCorrectionsWithARemedy) {
   RecordingCheck check = check_of();
   const auto findings_with = [&](const TimeCorrections& times) {
     check.times = times;
@@ -248,7 +248,7 @@ TEST(RecordingCheck, NamesCorrectionsOfTimesAndARemedy) {
   EXPECT_THAT(findings_with({.repeated = 4}), HasSubstr("4 images have the time stamp of another one"));
 }
 
-TEST(MotionFindings, NameFileFaultAndRemedy) {
+TEST(MotionFindings, ReportFileFaultAndRemedy) {
   MadeUpRecording recording;
   const auto source_of = [](MotionSensor sensor) {
     return sensor == MotionSensor::wheels ? "walk/wheel.txt" : "walk/imu.csv";

@@ -50,7 +50,7 @@ class EurocRecording : public TestFolder {
       "#timestamp [ns],filename\r\n100000000,1.png\r\n200000000, 2.png\r\n300000000 ,3.png\r\n400000000,4.png \r\n";
 };
 
-TEST_F(EurocRecording, GivesPairsWithTheirTimes) {
+TEST_F(EurocRecording, ReturnsTimedPairs) {
   const std::unique_ptr<Recording> recording = open();
   EXPECT_THAT(recording->times(),
               ElementsAre(milliseconds(100), milliseconds(200), milliseconds(300), milliseconds(400)));
@@ -63,19 +63,19 @@ TEST_F(EurocRecording, GivesPairsWithTheirTimes) {
   EXPECT_THAT(recording->warnings(), IsEmpty());
 }
 
-TEST_F(EurocRecording, PutsTheRightCameraBesideTheLeft) {
+TEST_F(EurocRecording, PlacesTheRightCamera) {
   const Calibration calibration = open()->calibration();
   ASSERT_TRUE(calibration.right.has_value());
   EXPECT_NEAR(calibration.right->right_from_left.translation.x(), -0.2, 1e-12);
   EXPECT_NEAR(calibration.body_from_left.translation.x(), 0.1, 1e-12);
 }
 
-TEST_F(EurocRecording, OpensFromTheInnerFolderToo) {
+TEST_F(EurocRecording, OpensTheInnerFolder) {
   EXPECT_EQ(open_recording(folder_ / "mav0", {})->size(), 4);
   EXPECT_EQ(guess_format(folder_ / "mav0"), RecordingFormat::euroc);
 }
 
-TEST_F(EurocRecording, WithoutTheSecondCameraIsMonocular) {
+TEST_F(EurocRecording, IsMonocularWithoutTheSecondCamera) {
   fs::remove_all(folder_ / "mav0/cam1");
   const std::unique_ptr<Recording> recording = open();
   EXPECT_FALSE(recording->calibration().right.has_value());
@@ -85,7 +85,7 @@ TEST_F(EurocRecording, WithoutTheSecondCameraIsMonocular) {
   EXPECT_THAT(recording->warnings(), IsEmpty());
 }
 
-TEST_F(EurocRecording, PairsImagesByTimeAndNotByTheirNumber) {
+TEST_F(EurocRecording, PairsImagesByTime) {
   write("mav0/cam1/data.csv", "201900000,2.png\n297000000,3.png\n400000000,4.png\n");
   const std::unique_ptr<Recording> recording = open();
   ASSERT_EQ(recording->size(), 4);
@@ -96,7 +96,7 @@ TEST_F(EurocRecording, PairsImagesByTimeAndNotByTheirNumber) {
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1.png: has no right image"), HasSubstr("3.png: has no")));
 }
 
-TEST_F(EurocRecording, GoesOnAfterABadImage) {
+TEST_F(EurocRecording, ContinuesAfterABadImage) {
   write("mav0/cam0/data/1.png", "broken");
   fs::remove(folder_ / "mav0/cam1/data/2.png");
   write_image("mav0/cam0/data/3.png", kSmallWidth, kSmallHeight + 1, 30);
@@ -118,21 +118,21 @@ TEST_F(EurocRecording, SelectsARangeOfFrames) {
   EXPECT_EQ(open({.first = 2})->read(0)->left.pixels.back(), 30);
 }
 
-TEST_F(EurocRecording, RefusesAnEmptyRange) {
+TEST_F(EurocRecording, RejectsAnEmptyRange) {
   EXPECT_THAT(open_error({.first = 4}),
               HasSubstr("the selected range contains no frame (the recording has 4 frames in 0.3"));
   EXPECT_THAT(open_error({.start_s = 0.2, .end_s = 0.2}), HasSubstr("the selected range contains no frame"));
   EXPECT_THAT(open_error({.stride = 0}), HasSubstr("stride"));
 }
 
-TEST_F(EurocRecording, NamesTheFileThatIsAbsent) {
+TEST_F(EurocRecording, ReportsTheMissingFile) {
   fs::remove(folder_ / "mav0/cam1/data.csv");
   EXPECT_THAT(open_error(), HasSubstr("cam1/data.csv: cannot be opened"));
   fs::remove(folder_ / "mav0/cam0/sensor.yaml");
   EXPECT_THAT(open_error(), HasSubstr("cam0/sensor.yaml: cannot be opened"));
 }
 
-TEST_F(EurocRecording, NamesTheLineOfAListThatIsWrong) {
+TEST_F(EurocRecording, ReportsTheInvalidLineOfAList) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"100,1.png\n100,2.png\n", "data.csv: all of its 2 images have the same time stamp"},
       {"100,1.png\n0.2,2.png\n", "data.csv:2: \"0.2\" is not a time in nanoseconds"},
@@ -178,7 +178,7 @@ class EurocOfAClockSetBack : public EurocRecording {
   }
 };
 
-TEST_F(EurocOfAClockSetBack, ContinuesWithWheelsAndGyroscopeInStep) {
+TEST_F(EurocOfAClockSetBack, ContinuesWithSynchronisedWheelsAndGyroscope) {
   const auto recording = open_recording(folder_, {}, {.use_gyroscope = true});
   ASSERT_EQ(recording->size(), 12);
   ASSERT_THAT(recording->time_corrections().clock_steps, SizeIs(1));
@@ -210,27 +210,27 @@ TEST_F(EurocRecording, PairsImagesWithinTheTolerance) {
   EXPECT_TRUE(open_recording(folder_, {}, {.pair_tolerance_s = 0.009})->read(0)->right.has_value());
 }
 
-TEST_F(EurocRecording, RefusesACalibrationForImagesOfAnotherSize) {
+TEST_F(EurocRecording, RejectsACalibrationForAnotherImageSize) {
   for (int i = 1; i <= 4; ++i) write_image("mav0/cam1/data/" + std::to_string(i) + ".png", 16, 12, 50);
   EXPECT_THAT(open_error(), HasSubstr("cam1/sensor.yaml: resolution: is 32x24, but the images are 16x12"));
 }
 
-TEST_F(EurocRecording, RefusesCamerasInOnePlace) {
+TEST_F(EurocRecording, RejectsCamerasAtTheSamePosition) {
   write("mav0/cam1/sensor.yaml", sensor_yaml(0.1));
   EXPECT_THAT(open_error(), HasSubstr("cam1/sensor.yaml: T_BS: places both cameras at the same position"));
 }
 
-TEST_F(EurocRecording, RefusesCamerasOnDifferentClocks) {
+TEST_F(EurocRecording, RejectsCamerasOnDifferentClocks) {
   write("mav0/cam1/data.csv", "1100000000,1.png\n1200000000,2.png\n");
   EXPECT_THAT(open_error(), HasSubstr("cam1/data.csv: no right image is within 2 ms"));
 }
 
-TEST_F(EurocRecording, RefusesAFolderWithoutAnyReadableImage) {
+TEST_F(EurocRecording, RejectsAFolderWithoutReadableImages) {
   fs::remove_all(folder_ / "mav0/cam0/data");
   EXPECT_THAT(open_error(), HasSubstr("cam0/data: no listed image can be read: 1.png "));
 }
 
-TEST_F(EurocRecording, OpensAtARangeWithoutAnyReadableImage) {
+TEST_F(EurocRecording, OpensAtARangeWithoutReadableImages) {
   fs::remove(folder_ / "mav0/cam0/data/1.png");
   fs::remove(folder_ / "mav0/cam1/data/2.png");
   const std::unique_ptr<Recording> recording = open({.last = 2});
@@ -240,7 +240,7 @@ TEST_F(EurocRecording, OpensAtARangeWithoutAnyReadableImage) {
   EXPECT_FALSE(open({.first = 1, .last = 2})->read(0)->right.has_value());
 }
 
-TEST_F(EurocRecording, MayHoldItsGroundTruth) {
+TEST_F(EurocRecording, FindsItsGroundTruth) {
   EXPECT_FALSE(find_ground_truth(folder_).has_value());
   write("mav0/state_groundtruth_estimate0/data.csv", "");
   EXPECT_EQ(find_ground_truth(folder_), folder_ / "mav0/state_groundtruth_estimate0/data.csv");
@@ -249,7 +249,7 @@ TEST_F(EurocRecording, MayHoldItsGroundTruth) {
 constexpr const char* kCalib =
     "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\nP1: 20 0 15.5 -10 0 20 11.5 0 0 0 1 0\nTr: 1 0 0 0 0 1 0 0 0 0 1 0\n";
 
-TEST_F(EurocRecording, RefusesABaselineInCentimetresUnlessItIsCorrectedOrConfirmed) {
+TEST_F(EurocRecording, RejectsABaselineInCentimetresUnlessCorrectedOrConfirmed) {
   write("mav0/cam1/sensor.yaml", sensor_yaml(7.6));
   EXPECT_THAT(open_error(), testing::AllOf(HasSubstr(folder_.string()), HasSubstr("baseline of 7.5 m"),
                                            HasSubstr("--baseline 0.075")));
@@ -284,7 +284,7 @@ class KittiRecording : public TestFolder {
   fs::path sequence_ = folder_ / "sequences" / "07";
 };
 
-TEST_F(KittiRecording, GivesRectifiedPairsInTheFrameOfTheLeftCamera) {
+TEST_F(KittiRecording, ReturnsRectifiedPairsInTheLeftCameraFrame) {
   const std::unique_ptr<Recording> recording = open();
   const Calibration& calibration = recording->calibration();
   EXPECT_EQ(calibration.left.model, CameraModel::pinhole);
@@ -301,13 +301,13 @@ TEST_F(KittiRecording, GivesRectifiedPairsInTheFrameOfTheLeftCamera) {
   EXPECT_EQ(frame->right->pixels.back(), 35);
 }
 
-TEST_F(KittiRecording, WithoutTheSecondCameraIsMonocular) {
+TEST_F(KittiRecording, IsMonocularWithoutTheSecondCamera) {
   fs::remove_all(sequence_ / "image_1");
   write("sequences/07/calib.txt", "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\n");
   EXPECT_FALSE(open()->calibration().right.has_value());
 }
 
-TEST_F(KittiRecording, NamesTheCalibrationThatMakesNoSense) {
+TEST_F(KittiRecording, ReportsInvalidCalibrations) {
   const std::string p0 = "P0: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\n";
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"P1: 20 0 15.5 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: is missing"},
@@ -325,14 +325,14 @@ TEST_F(KittiRecording, NamesTheCalibrationThatMakesNoSense) {
   }
 }
 
-TEST_F(KittiRecording, NamesWhatIsAbsentOrOutOfOrder) {
+TEST_F(KittiRecording, ReportsMissingFilesAndUnsortedTimes) {
   write("sequences/07/times.txt", "0\n0.1\nsoon\n");
   EXPECT_THAT(open_error(), HasSubstr("times.txt:3: \"soon\" is not a time in seconds"));
   fs::remove(sequence_ / "times.txt");
   EXPECT_THAT(open_error(), HasSubstr("times.txt: cannot be opened"));
 }
 
-TEST_F(KittiRecording, KeepsTheOrderOfItsImages) {
+TEST_F(KittiRecording, KeepsTheImageOrder) {
   write("sequences/07/times.txt", "0\n0.2\n0.1\n");
   const auto recording = open();
   EXPECT_THAT(recording->times(), ElementsAre(milliseconds(0), milliseconds(200), milliseconds(400)));
@@ -340,12 +340,12 @@ TEST_F(KittiRecording, KeepsTheOrderOfItsImages) {
   EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("1 images have a zero or wrong time stamp")));
 }
 
-TEST_F(KittiRecording, CountsImagesWithoutATime) {
+TEST_F(KittiRecording, CountsImagesWithoutTimes) {
   write("sequences/07/times.txt", "0\n0.1\n");
   EXPECT_THAT(open()->warnings(), ElementsAre(HasSubstr("has 2 times for 3 images: the last 1 are ignored")));
 }
 
-TEST_F(KittiRecording, HasItsGroundTruthBesideTheSequences) {
+TEST_F(KittiRecording, FindsItsGroundTruth) {
   EXPECT_FALSE(find_ground_truth(sequence_).has_value());
   write("poses/07.txt", "");
   ASSERT_TRUE(find_ground_truth(sequence_).has_value());
@@ -354,7 +354,7 @@ TEST_F(KittiRecording, HasItsGroundTruthBesideTheSequences) {
 
 using GuessFormat = TestFolder;
 
-TEST_F(GuessFormat, SaysWhatItLookedFor) {
+TEST_F(GuessFormat, ReportsTheSupportedFormats) {
   EXPECT_THAT(error_of([&] { guess_format(folder_); }), HasSubstr("supported: mav0/cam0"));
   EXPECT_THAT(error_of([&] { guess_format(folder_ / "absent"); }), HasSubstr("absent: is not a folder"));
 }
@@ -367,7 +367,7 @@ class RealRecording : public testing::Test {
   }
 };
 
-TEST_F(RealRecording, OfEurocIsRead) {
+TEST_F(RealRecording, ReadsEuroc) {
   const fs::path folder = data() / "euroc" / "MH_01_easy";
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set BYRE_DATA";
   const std::unique_ptr<Recording> recording = open_recording(folder, {});
@@ -380,7 +380,7 @@ TEST_F(RealRecording, OfEurocIsRead) {
   EXPECT_TRUE(find_ground_truth(folder).has_value());
 }
 
-TEST_F(RealRecording, OfEurocInJpegIsRead) {
+TEST_F(RealRecording, ReadsEurocInJpeg) {
   const fs::path folder = data() / "euroc" / "V1_01_easy_sparse";
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set BYRE_DATA";
   const std::unique_ptr<Recording> recording = open_recording(folder, {});
@@ -389,7 +389,7 @@ TEST_F(RealRecording, OfEurocInJpegIsRead) {
   EXPECT_THAT(recording->warnings(), IsEmpty());
 }
 
-TEST_F(RealRecording, OfKittiIsRead) {
+TEST_F(RealRecording, ReadsKitti) {
   const fs::path folder = data() / "kitti" / "sequences" / "00";
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set BYRE_DATA";
   const std::unique_ptr<Recording> recording = open_recording(folder, {});
@@ -399,7 +399,7 @@ TEST_F(RealRecording, OfKittiIsRead) {
   EXPECT_TRUE(find_ground_truth(folder).has_value());
 }
 
-TEST_F(EurocRecording, DoesNotWaitForPipesInItsFolders) {
+TEST_F(EurocRecording, DoesNotBlockOnPipesInItsFolders) {
   for (const char* const name : {"mav0/cam0/data.csv", "mav0/cam0/sensor.yaml"}) {
     fs::rename(folder_ / name, folder_ / "kept");
     ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);

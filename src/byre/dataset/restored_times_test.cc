@@ -68,7 +68,7 @@ void expect_restored(const RestoredTimes& restored, const Times& taken, Timestam
   for (std::size_t i = 1; i < taken.size(); ++i) EXPECT_GT(restored.times[i], restored.times[i - 1]) << i;
 }
 
-TEST(RestoredTimes, AreTheStampsIfTheseAscend) {
+TEST(RestoredTimes, KeepAscendingStamps) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> interval(1, 200'000);  // microseconds
   Times stamps = {kStart};
@@ -82,7 +82,7 @@ TEST(RestoredTimes, AreTheStampsIfTheseAscend) {
   }
 }
 
-TEST(RestoredTimes, MayStartAtZero) {
+TEST(RestoredTimes, AcceptAStartAtZero) {
   const RestoredTimes restored = restore_times({{0ms, 103ms, 207ms, 310ms, 415ms}});
   EXPECT_THAT(restored.times, ElementsAre(0ms, 103ms, 207ms, 310ms, 415ms));
   EXPECT_FALSE(restored.corrections.any());
@@ -94,7 +94,7 @@ TEST(RestoredTimes, AreEmptyWithoutItems) {
 
 class ClockSetBack : public testing::TestWithParam<Timestamp> {};
 
-TEST_P(ClockSetBack, ContinuesByTheOrderOfRecordingAlone) {
+TEST_P(ClockSetBack, ContinuesByTheRecordingOrderAlone) {
   const Times taken = steady(140);
   const RestoredTimes restored = restore_times({with_step(taken, 70, -GetParam())});
   expect_restored(restored, taken, 1us);
@@ -104,7 +104,7 @@ TEST_P(ClockSetBack, ContinuesByTheOrderOfRecordingAlone) {
   EXPECT_EQ(restored.corrections.late + restored.corrections.repeated, 0);
 }
 
-TEST_P(ClockSetBack, ContinuesOverAnItemThatWasLostMeanwhileByReception) {
+TEST_P(ClockSetBack, ContinuesAcrossALostItemByReceiveTimes) {
   Times taken = steady(140), received = received_of(taken);
   taken.erase(taken.begin() + 70);
   received.erase(received.begin() + 70);
@@ -116,13 +116,13 @@ TEST_P(ClockSetBack, ContinuesOverAnItemThatWasLostMeanwhileByReception) {
 INSTANTIATE_TEST_SUITE_P(Steps, ClockSetBack,
                          testing::Values(110ms, 173ms, 250ms, 400ms, 620ms, 1s, 3s, 3s + 17ms, 3600s, 1'700'000s));
 
-TEST(RestoredTimes, ContinueOverAShortStepThatReceptionShows) {
+TEST(RestoredTimes, ContinueAcrossAShortStepSeenInReceiveTimes) {
   const Times taken = steady(140);
   const RestoredTimes restored = restore_times({with_step(taken, 70, -62ms), received_of(taken)});
   expect_restored(restored, taken, 1us);
 }
 
-TEST(RestoredTimes, ContinueWhereStampsAreJittery) {
+TEST(RestoredTimes, ContinueWithJitteryStamps) {
   std::mt19937 random(3);
   std::uniform_int_distribution<int> jitter(-6000, 6000);
   Times taken = steady(140);
@@ -131,7 +131,7 @@ TEST(RestoredTimes, ContinueWhereStampsAreJittery) {
   expect_restored(restore_times({with_step(taken, 70, -620ms), received_of(taken)}), taken, 13ms);
 }
 
-TEST(RestoredTimes, ContinueOverManySteps) {
+TEST(RestoredTimes, ContinueAcrossManySteps) {
   const Times taken = steady(200);
   const Times stamps = with_step(with_step(with_step(taken, 50, -620ms), 100, -2s), 150, -300ms);
   const RestoredTimes restored = restore_times({stamps});
@@ -139,7 +139,7 @@ TEST(RestoredTimes, ContinueOverManySteps) {
   EXPECT_THAT(restored.corrections.clock_steps, SizeIs(3));
 }
 
-TEST(RestoredTimes, ContinueInARecordingOfALoop) {
+TEST(RestoredTimes, ContinueARecordingOfALoop) {
   const Times taken = steady(180);
   Times stamps;
   for (std::size_t i = 0; i < taken.size(); ++i) stamps.push_back(taken[i % 60]);
@@ -149,7 +149,7 @@ TEST(RestoredTimes, ContinueInARecordingOfALoop) {
   expect_restored(restore_times({stamps}), taken, 1us);
 }
 
-TEST(RestoredTimes, ContinueOverAClockSetForwardByReceiveTimes) {
+TEST(RestoredTimes, ContinueAcrossAForwardStepByReceiveTimes) {
   const Times taken = steady(140);
   const Times stamps = with_step(taken, 70, 5s);
   const RestoredTimes restored = restore_times({stamps, received_of(taken)});
@@ -160,7 +160,7 @@ TEST(RestoredTimes, ContinueOverAClockSetForwardByReceiveTimes) {
   EXPECT_EQ(restore_times({stamps}).times, stamps) << "perhaps a pause";
 }
 
-TEST(RestoredTimes, AreUnchangedByABurstAfterAStall) {
+TEST(RestoredTimes, KeepABurstAfterAStall) {
   Times stamps = steady(200);
   stamps.erase(stamps.begin() + 110, stamps.begin() + 150);  // lost during the stall
   Times received = received_of(stamps);
@@ -170,7 +170,7 @@ TEST(RestoredTimes, AreUnchangedByABurstAfterAStall) {
   EXPECT_FALSE(restored.corrections.any());
 }
 
-TEST(RestoredTimes, PutLateItemsInOrder) {
+TEST(RestoredTimes, SortLateItems) {
   const Times taken = steady(60);
   for (const bool has_reception : {false, true}) {
     Times stamps = taken;
@@ -185,7 +185,7 @@ TEST(RestoredTimes, PutLateItemsInOrder) {
   }
 }
 
-TEST(RestoredTimes, PutPiecesInOrder) {
+TEST(RestoredTimes, SortPieces) {
   const Times taken = steady(90);
   Times stamps = taken;
   std::rotate(stamps.begin(), stamps.begin() + 30, stamps.begin() + 60);
@@ -203,7 +203,7 @@ TEST(RestoredTimes, SortAnUnorderedList) {
   EXPECT_EQ(restore_times({stamps}).times, steady(100));
 }
 
-TEST(RestoredTimes, ReplaceZeroAndWrongStampsByEvenSpacing) {
+TEST(RestoredTimes, InterpolateZeroAndWrongStamps) {
   const Times taken = steady(60);
   for (const Timestamp wrong : {Timestamp(0ms), Timestamp(3s), kStart + 5000s, kStart - 100s, Timestamp::max()}) {
     for (const std::size_t first : {0u, 25u, 57u}) {
@@ -220,7 +220,7 @@ TEST(RestoredTimes, ReplaceZeroAndWrongStampsByEvenSpacing) {
   }
 }
 
-TEST(RestoredTimes, FollowTheOrderThatIsCertain) {
+TEST(RestoredTimes, FollowTheCertainOrder) {
   Times stamps = steady(40);
   stamps[20] = stamps[10] + 20ms;
   const RestoredTimes restored = restore_times({.stamps = stamps, .is_order_certain = true});
@@ -233,7 +233,7 @@ Times of_whole_seconds(Times stamps) {
   return stamps;
 }
 
-TEST(RestoredTimes, AreReceiveTimesIfStampsAreWholeSeconds) {
+TEST(RestoredTimes, UseReceiveTimesForStampsInWholeSeconds) {
   const Times taken = steady(60), received = received_of(taken);
   const RestoredTimes restored = restore_times({of_whole_seconds(taken), received});
   EXPECT_EQ(restored.times, received);
@@ -241,7 +241,7 @@ TEST(RestoredTimes, AreReceiveTimesIfStampsAreWholeSeconds) {
   EXPECT_EQ(restored.corrections.repeated, 0);
 }
 
-TEST(RestoredTimes, AreSpreadEvenlyOverWholeSecondsWithoutReceiveTimes) {
+TEST(RestoredTimes, SpreadItemsEvenlyWithoutReceiveTimes) {
   Times taken = steady(67);
   for (Timestamp& time : taken) time += 350ms;  // begins and ends within a second
   for (const Times& received : {Times(), of_whole_seconds(taken)}) {
@@ -280,7 +280,7 @@ class TwoSensors : public testing::Test {
   static constexpr Timestamp kSet = kStart + 3487ms, kBy = -620ms;
 };
 
-TEST_F(TwoSensors, StayInStepIfTheyShareAClock) {
+TEST_F(TwoSensors, StaySynchronisedOnASharedClock) {
   Times images = steady(140), wheels = steady(700, 10ms);
   for (const bool has_reception : {false, true}) {
     if (has_reception) images.erase(images.begin() + 70);  // lost just after the step
@@ -292,13 +292,13 @@ TEST_F(TwoSensors, StayInStepIfTheyShareAClock) {
   }
 }
 
-TEST_F(TwoSensors, AreUnchangedIfTheirClocksDiffer) {
+TEST_F(TwoSensors, AreUnchangedOnDifferentClocks) {
   const Times images = steady(140), wheels = steady(700, 10ms);
   const RestoredTimes of_images = restore_times({stepped(images), received_of(images)});
   EXPECT_EQ(restore_times({wheels, received_of(wheels)}, of_images.clock).times, wheels);
 }
 
-TEST_F(TwoSensors, StayInStepIfTheStepIsShorterThanAnInterval) {
+TEST_F(TwoSensors, StaySynchronisedAcrossAStepShorterThanAnInterval) {
   const Times images = steady(140), slow = steady(20, 350ms);
   Times stamps = slow;
   for (Timestamp& stamp : stamps) stamp += stamp >= kSet ? -173ms : Timestamp{};

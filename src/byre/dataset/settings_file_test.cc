@@ -22,7 +22,7 @@ class SettingsFile : public TestFolder {
   }
 };
 
-TEST_F(SettingsFile, NamesEachWordWithItsGroupsAndTellsItsLine) {
+TEST_F(SettingsFile, ReturnsNamesWithGroupsAndLines) {
   std::vector<std::string> read_as;
   for (const Setting& setting :
        read("pace: live  # as fast\n\ntracking:\n  near:\n    radius: 1.5\n  points: '7'\nempty:\n")) {
@@ -31,12 +31,12 @@ TEST_F(SettingsFile, NamesEachWordWithItsGroupsAndTellsItsLine) {
   EXPECT_THAT(read_as, ElementsAre("1 pace=live", "5 tracking.near.radius=1.5", "6 tracking.points=7", "7 empty="));
 }
 
-TEST_F(SettingsFile, MayHoldNothing) {
+TEST_F(SettingsFile, AcceptsAnEmptyFile) {
   EXPECT_THAT(read(""), IsEmpty());
   EXPECT_THAT(read("# pace: live\n"), IsEmpty());
 }
 
-TEST_F(SettingsFile, SaysWhatIsWrongAndInWhichLine) {
+TEST_F(SettingsFile, ReportsErrorsWithTheirLine) {
   EXPECT_THAT(error("a: 1\nb: [1, 2]\n"), HasSubstr("options.yaml:2: b is a list (give one value)"));
   EXPECT_THAT(error("a:\n  b: 1\n  b: 2\n"), HasSubstr("options.yaml:3: a.b is given twice"));
   EXPECT_THAT(error("a.b: 1\na:\n  b: 2\n"), HasSubstr("options.yaml:3: a.b is given twice"));

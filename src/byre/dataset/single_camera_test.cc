@@ -68,7 +68,7 @@ class OneOfAPair : public SingleCamera {
   OpenOptions options(std::optional<CameraChoice> camera) const { return {camera, calibration(kPair)}; }
 };
 
-TEST_F(OneOfAPair, IsBothUnlessAskedFor) {
+TEST_F(OneOfAPair, OpensBothByDefault) {
   const OpenOptions both = options({});
   const auto recording = open(both);
   EXPECT_TRUE(recording->calibration().right);
@@ -77,7 +77,7 @@ TEST_F(OneOfAPair, IsBothUnlessAskedFor) {
   EXPECT_TRUE(open(options(CameraChoice::stereo))->calibration().right);
 }
 
-TEST_F(OneOfAPair, MayBeTheLeftAlone) {
+TEST_F(OneOfAPair, OpensTheLeftAlone) {
   fs::remove_all(folder_ / "mav0/cam1/data");
   const auto recording = open(options(CameraChoice::left));
   EXPECT_FALSE(recording->calibration().right);
@@ -88,7 +88,7 @@ TEST_F(OneOfAPair, MayBeTheLeftAlone) {
   EXPECT_THAT(recording->warnings(), IsEmpty());
 }
 
-TEST_F(OneOfAPair, MayBeTheRightAloneWithItsOwnPlaceInTheBody) {
+TEST_F(OneOfAPair, OpensTheRightAloneWithItsBodyPose) {
   const OpenOptions right = options(CameraChoice::right);
   const auto recording = open(right);
   EXPECT_EQ(camera_of(*recording, right), CameraChoice::right);
@@ -100,7 +100,7 @@ TEST_F(OneOfAPair, MayBeTheRightAloneWithItsOwnPlaceInTheBody) {
   EXPECT_FALSE(recording->read(0)->right);
 }
 
-TEST_F(OneOfAPair, KeepsTheReadoutTimeThatItWasTold) {
+TEST_F(OneOfAPair, KeepsTheGivenReadoutTime) {
   for (const CameraChoice camera : {CameraChoice::left, CameraChoice::right}) {
     const OpenOptions options{
         camera, calibration(camera_yaml("cam0", "  readout_time: 0.015\n") + kPair.substr(kPair.find("cam1")))};
@@ -108,7 +108,7 @@ TEST_F(OneOfAPair, KeepsTheReadoutTimeThatItWasTold) {
   }
 }
 
-TEST_F(OneOfAPair, CountsFramesTheSameWhicheverIsTaken) {
+TEST_F(OneOfAPair, CountsFramesEquallyForBothCameras) {
   EXPECT_THAT(open(options(CameraChoice::right), {.first = 2})->times(), ElementsAre(milliseconds(300)));
   EXPECT_THAT(open_error(options(CameraChoice::right), {.first = 1, .last = 2}),
               HasSubstr("no frame in the selected range has a right image"));
@@ -125,13 +125,13 @@ TEST_F(OneOfAPair, NeedsNoCalibrationOfTheOther) {
               HasSubstr("has a calibration without right camera"));
 }
 
-TEST_F(OneOfAPair, HasTheSizeThatItsOwnCalibrationSays) {
+TEST_F(OneOfAPair, HasTheSizeOfItsOwnCalibration) {
   for (int i = 1; i <= 3; ++i) write_image("mav0/cam1/data/" + std::to_string(i) + ".png", 16, 12, 5);
   EXPECT_EQ(open(options(CameraChoice::left))->size(), 3);
   EXPECT_THAT(open_error(options(CameraChoice::right)), HasSubstr("cameras.yaml: is 32x24, but the images are 16x12"));
 }
 
-TEST_F(OneOfAPair, RefusesAFrameRateBesideTimeStamps) {
+TEST_F(OneOfAPair, RejectsAFrameRateForStampedImages) {
   OpenOptions timed = options({});
   timed.frame_rate_hz = 20.0;
   EXPECT_THAT(open_error(timed), HasSubstr("has time stamps; a frame rate is not accepted"));
@@ -148,7 +148,7 @@ class TumRecording : public SingleCamera {
   }
 };
 
-TEST_F(TumRecording, GivesItsColourImagesOfOneCamera) {
+TEST_F(TumRecording, ReadsColourImagesOfOneCamera) {
   const auto recording = open();
   EXPECT_EQ(guess_format(folder_), RecordingFormat::tum);
   EXPECT_THAT(recording->times(), ElementsAre(Timestamp(1305031102175304000), Timestamp(1305031102211214000)));
@@ -158,25 +158,25 @@ TEST_F(TumRecording, GivesItsColourImagesOfOneCamera) {
   EXPECT_EQ(open({}, {.first = 1})->size(), 1);
 }
 
-TEST_F(TumRecording, MayHoldItsGroundTruth) {
+TEST_F(TumRecording, FindsItsGroundTruth) {
   EXPECT_FALSE(find_ground_truth(folder_));
   write("groundtruth.txt", "");
   EXPECT_EQ(find_ground_truth(folder_), folder_ / "groundtruth.txt");
 }
 
-TEST_F(TumRecording, TakesTheCalibrationNamedBeforeTheOneInTheFolder) {
+TEST_F(TumRecording, PrefersTheGivenCalibration) {
   EXPECT_NEAR(open({.calibration = calibration(kPair)})->calibration().body_from_left.translation.x(), 0.1, 1e-12);
   EXPECT_EQ(open({CameraChoice::right, calibration(kPair)})->calibration().left.cx, 16.5);
   EXPECT_THAT(open_error({CameraChoice::stereo, calibration(kPair)}), HasSubstr("has images of one camera only"));
 }
 
-TEST_F(TumRecording, SaysWhichCalibrationIsMissing) {
+TEST_F(TumRecording, ReportsAMissingCalibration) {
   fs::remove(folder_ / "camera.yaml");
   EXPECT_THAT(open_error(), HasSubstr("contains no camera calibration (give one with --calibration FILE, or add it"));
   EXPECT_THAT(open_error({.calibration = folder_ / "absent.yaml"}), HasSubstr("absent.yaml: cannot be opened"));
 }
 
-TEST_F(TumRecording, NamesTheLineOfTheListThatIsWrong) {
+TEST_F(TumRecording, ReportsTheInvalidLineOfTheList) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"#\n2.0 rgb/a.png\n2.0 rgb/b.png\n", "rgb.txt: all of its 2 images have the same time stamp"},
       {"noon rgb/a.png\n", "rgb.txt:1: \"noon\" is not a time in seconds"},
@@ -194,7 +194,7 @@ class ImageFolder : public SingleCamera {
   ImageFolder() { write("calibration.yaml", kOne); }
 };
 
-TEST_F(ImageFolder, HasTheTimesOfItsNames) {
+TEST_F(ImageFolder, ReadsTimesFromNames) {
   write_frame("1403636579813555456.png", 20);
   write_frame("1403636579763555584.png", 10);
   const auto recording = open();
@@ -204,7 +204,7 @@ TEST_F(ImageFolder, HasTheTimesOfItsNames) {
   EXPECT_THAT(recording->warnings(), IsEmpty());
 }
 
-TEST_F(ImageFolder, IsInTheOrderOfTimeThoughNamesAreShort) {
+TEST_F(ImageFolder, SortsShortNamesByTime) {
   write_frame("12.25.png", 10);
   write_frame("12.5.png", 20);
   EXPECT_THAT(open()->times(), ElementsAre(milliseconds(12250), milliseconds(12500)));
@@ -212,7 +212,7 @@ TEST_F(ImageFolder, IsInTheOrderOfTimeThoughNamesAreShort) {
   EXPECT_THAT(open_error(), HasSubstr("has the same time stamp as 12.5"));
 }
 
-TEST_F(ImageFolder, IsTakenAtTheRateGivenOrAtThirtyWithAWarning) {
+TEST_F(ImageFolder, UsesTheGivenRateOrWarnsOfThirtyHertz) {
   for (const int i : {1, 9, 10}) write_frame("frame" + std::to_string(i) + ".png", 10 * i);
   const auto steady = open({.frame_rate_hz = 20.0});
   EXPECT_THAT(steady->times(), ElementsAre(milliseconds(0), milliseconds(50), milliseconds(100)));
@@ -223,7 +223,7 @@ TEST_F(ImageFolder, IsTakenAtTheRateGivenOrAtThirtyWithAWarning) {
   EXPECT_THAT(assumed->warnings(), ElementsAre(HasSubstr("30 frames per second are assumed")));
 }
 
-TEST_F(ImageFolder, MayHoldAPairInFoldersLeftAndRight) {
+TEST_F(ImageFolder, ReadsAPairFromLeftAndRightFolders) {
   write("calibration.yaml", kPair);
   for (const int i : {1, 2}) {
     write_frame("left/" + std::to_string(i) + ".png", 10 * i);
@@ -251,7 +251,7 @@ TEST_F(ImageFolder, PairsImagesByTheTimesOfTheirNames) {
   EXPECT_TRUE(recording->read(2)->right);
 }
 
-TEST_F(ImageFolder, RefusesWhatDoesNotBelongTogether) {
+TEST_F(ImageFolder, RejectsUnpairedImages) {
   write_image("1.png", 16, 12, 10);
   EXPECT_THAT(open_error(), HasSubstr("calibration.yaml: is 32x24, but the images are 16x12"));
   fs::remove(folder_ / "1.png");
@@ -278,7 +278,7 @@ class VideoFile : public SingleCamera {
   const fs::path file_ = folder_ / "film.avi";
 };
 
-TEST_F(VideoFile, GivesItsFramesAtItsOwnRate) {
+TEST_F(VideoFile, ReturnsFramesAtItsRate) {
   const auto recording = open_film();
   EXPECT_EQ(guess_format(file_), RecordingFormat::video);
   EXPECT_THAT(recording->times(),
@@ -293,7 +293,7 @@ TEST_F(VideoFile, GivesItsFramesAtItsOwnRate) {
   EXPECT_EQ(open_film({.frame_rate_hz = 10.0})->times()[1], milliseconds(100));
 }
 
-TEST_F(VideoFile, GivesTheVeryFrameAskedForInAnyOrder) {
+TEST_F(VideoFile, ReturnsExactFramesInAnyOrder) {
   const auto recording = open_film({}, {.first = 1, .stride = 2});
   EXPECT_THAT(recording->times(), ElementsAre(milliseconds(50), milliseconds(150)));
   EXPECT_NEAR(recording->read(1)->left.pixels.back(), 160, 4);
@@ -301,7 +301,7 @@ TEST_F(VideoFile, GivesTheVeryFrameAskedForInAnyOrder) {
   EXPECT_NEAR(recording->read(1)->left.pixels.back(), 160, 4);
 }
 
-TEST_F(VideoFile, SaysWhatIsWrongWithIt) {
+TEST_F(VideoFile, ReportsErrors) {
   EXPECT_THAT(film_error({.camera = CameraChoice::stereo}), HasSubstr("film.avi: has images of one camera only"));
   write("calibration.yaml", "cam0:\n  camera_model: ds\n");
   EXPECT_THAT(film_error(), HasSubstr("calibration.yaml: cam0.camera_model: \"ds\" is not supported"));
@@ -311,7 +311,7 @@ TEST_F(VideoFile, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(film_error({.calibration = calibration(kOne)}), HasSubstr("film.avi: cannot be opened as a video"));
 }
 
-TEST_F(VideoFile, OfAnotherSizeThanCalibratedIsRefused) {
+TEST_F(VideoFile, RejectsAnotherSizeThanCalibrated) {
   std::string large = kOne;
   large.replace(large.find("[32, 24]"), 8, "[64, 48]");
   EXPECT_THAT(film_error({.calibration = calibration(large)}),

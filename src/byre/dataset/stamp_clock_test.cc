@@ -8,7 +8,7 @@ namespace {
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
 
-TEST(StampClock, KeepsStampsThatContinue) {
+TEST(StampClock, KeepsContinuousStamps) {
   StampClock clock;
   for (int i = 0; i < 5; ++i) {
     const auto reading = clock.read(Timestamp(100s + i * 50ms), Timestamp(i * 900ms));

@@ -20,7 +20,7 @@ ros::TFMessage fixed(const std::string& parent, const std::string& child, const 
   return {{{{.frame_id = parent}, child, {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}}}}};
 }
 
-TEST(StaticFrames, LeadUpAndDownTheTree) {
+TEST(StaticFrames, ComposeTransformsAlongTheTree) {
   StaticFrames frames;
   frames.take(fixed("base_link", "mast", some_pose(1)));
   frames.take(fixed("/mast", "camera", some_pose(2)));
@@ -32,7 +32,7 @@ TEST(StaticFrames, LeadUpAndDownTheTree) {
   EXPECT_FALSE(frames.between("base_link", "wheel"));
 }
 
-TEST(StaticFrames, SurviveWhatMakesNoSense) {
+TEST(StaticFrames, IgnoreInvalidTransforms) {
   StaticFrames frames;
   frames.take(fixed("a", "b", some_pose(1)));
   frames.take(fixed("b", "a", some_pose(2)));  // circular

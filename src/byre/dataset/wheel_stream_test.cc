@@ -38,7 +38,7 @@ Counted told(bool has_pose, bool has_velocity, int steps = 60) {
   return counted;
 }
 
-TEST(WheelStream, TellsPosesWhereTheyAreFilledIn) {
+TEST(WheelStream, SelectsPosesIfPresent) {
   const Counted both = told(true, true);
   EXPECT_EQ(both.kind, Kind::poses);
   EXPECT_EQ(both.poses, 60);
@@ -46,14 +46,14 @@ TEST(WheelStream, TellsPosesWhereTheyAreFilledIn) {
   EXPECT_EQ(told(true, false).poses, 60) << "a driver that fills in poses alone";
 }
 
-TEST(WheelStream, TellsVelocitiesWherePosesNeverChange) {
+TEST(WheelStream, SelectsVelocitiesIfPosesNeverChange) {
   const Counted counted = told(false, true);
   EXPECT_EQ(counted.kind, Kind::velocities);
   EXPECT_EQ(counted.poses, 21) << "all of the second at rest";
   EXPECT_EQ(counted.velocities, 39) << "all since, with what was held back";
 }
 
-TEST(WheelStream, StaysOpenAtRest) {
+TEST(WheelStream, StaysUndecidedAtRest) {
   EXPECT_EQ(told(false, true, 15).kind, Kind::open);
   EXPECT_EQ(told(false, true, 15).poses, 15);
   WheelStream stream;
@@ -66,7 +66,7 @@ TEST(WheelStream, StaysOpenAtRest) {
   EXPECT_NE(stream.kind(), Kind::velocities) << "noise is no motion";
 }
 
-TEST(WheelStream, GoesOverToPosesThatChangeAfterAll) {
+TEST(WheelStream, SwitchesToPosesThatStartToChange) {
   WheelStream stream;
   for (int i = 0; i < 40; ++i) stream.add(sample_at(i, false, true));
   ASSERT_EQ(stream.kind(), Kind::velocities);
@@ -74,7 +74,7 @@ TEST(WheelStream, GoesOverToPosesThatChangeAfterAll) {
   EXPECT_EQ(stream.kind(), Kind::poses);
 }
 
-TEST(WheelStream, HoldsNothingBackOfVelocitiesAlone) {
+TEST(WheelStream, DelaysNoVelocitiesWithoutPoses) {
   WheelStream stream;
   WheelSample sample = sample_at(0, false, true);
   sample.pose.reset();

@@ -49,7 +49,7 @@ struct Square {
 
 class AlignSumsOf : public testing::TestWithParam<int> {};
 
-TEST_P(AlignSumsOf, AreThoseOfTheDefinition) {
+TEST_P(AlignSumsOf, MatchTheDefinition) {
   const Square square(GetParam());
   const int stride = square.size + 2;
   std::vector<double> grey, x, y, expected, residual;
@@ -81,7 +81,7 @@ TEST_P(AlignSumsOf, AreThoseOfTheDefinition) {
   EXPECT_NEAR(sums.residual_squares, dot(residual, residual), tolerance);
 }
 
-TEST_P(AlignSumsOf, AreTheSameToTheLastBitWithEveryInstructionSet) {
+TEST_P(AlignSumsOf, AreBitIdenticalForEveryInstructionSet) {
   const Square square(GetParam());
   const AlignSums usual = square.sums();
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {
@@ -95,7 +95,7 @@ TEST_P(AlignSumsOf, AreTheSameToTheLastBitWithEveryInstructionSet) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
-TEST_P(AlignSumsOf, AreOfATemplateWithoutItsMean) {
+TEST_P(AlignSumsOf, SubtractTheMeanOfTheTemplate) {
   const int count = GetParam() * GetParam();
   const std::vector<float> drawn = drawn_greys(count);
   std::vector<float> values = drawn;
@@ -124,7 +124,7 @@ double value_between(const std::vector<std::uint8_t>& pixels, int stride, double
   return (1.0 - below) * upper + below * ((1.0 - right) * at(column, row + 1) + right * at(column + 1, row + 1));
 }
 
-TEST(WarpedSquare, LiesBetweenThePixels) {
+TEST(WarpedSquare, InterpolatesBetweenPixels) {
   constexpr int kSide = 16;
   std::vector<std::uint8_t> pixels(kSide * kSide);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * i % 251);
@@ -149,7 +149,7 @@ TEST(WarpedSquare, LiesBetweenThePixels) {
   }
 }
 
-TEST(InterpolatedSquare, LiesBetweenThePixels) {
+TEST(InterpolatedSquare, InterpolatesBetweenPixels) {
   constexpr int kStride = 20;
   std::vector<std::uint8_t> pixels(kStride * kStride);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * i % 251);

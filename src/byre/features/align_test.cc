@@ -126,7 +126,7 @@ TEST(AlignPatches, RecoversShiftsUnderRotationAndScale) {
   EXPECT_LE(score.quantile(0.95), 0.05);
 }
 
-TEST(AlignPatches, TakesOutGainAndOffsetOfTheLight) {
+TEST(AlignPatches, CompensatesGainAndOffset) {
   const Score score = align_corners(3, [](Change& change, std::mt19937& random) {
     std::uniform_real_distribution<double> gain(0.5, 1.3);
     change.gain = gain(random);
@@ -138,7 +138,7 @@ TEST(AlignPatches, TakesOutGainAndOffsetOfTheLight) {
 }
 
 // Under strong noise sigma is too small by about half: interpolation blurs the noise from which it is estimated.
-TEST(AlignPatches, IsExactToItsSigmaUnderNoise) {
+TEST(AlignPatches, ErrsWithinItsSigmaUnderNoise) {
   const auto with_noise = [](double noise) {
     return align_corners(4, [=](Change& change, std::mt19937&) { change.noise = noise; });
   };
@@ -150,7 +150,7 @@ TEST(AlignPatches, IsExactToItsSigmaUnderNoise) {
   EXPECT_LE(strong.quantile(0.5), 0.12);
 }
 
-TEST(AlignPatches, SaysASmallerSigmaOfClearerPatches) {
+TEST(AlignPatches, EstimatesASmallerSigmaForHigherContrast) {
   const Texture texture(5, 0.7);
   std::mt19937 random(5);
   double sum_clear = 0.0, sum_noisy = 0.0;
@@ -168,7 +168,7 @@ TEST(AlignPatches, SaysASmallerSigmaOfClearerPatches) {
   EXPECT_GT(sum_noisy, 1.5 * sum_clear);
 }
 
-TEST(AlignPatches, GivesFullSimilarityToEqualPatches) {
+TEST(AlignPatches, ReturnsFullSimilarityForEqualPatches) {
   std::mt19937 random(6);
   const TwoViews views = two_views(Texture(6), {0.0, 0.0}, {}, random);
   const auto aligned = align(views, Eigen::Matrix2f::Identity());
@@ -177,7 +177,7 @@ TEST(AlignPatches, GivesFullSimilarityToEqualPatches) {
   EXPECT_THAT(aligned->pixel, PointNear(kCentre, 1e-3));
 }
 
-TEST(AlignPatches, RefusesPatchesOfDifferentThings) {
+TEST(AlignPatches, RejectsDifferentPatches) {
   const Texture texture(7), other(8);
   std::mt19937 random(7);
   int tried = 0, accepted = 0;
@@ -191,7 +191,7 @@ TEST(AlignPatches, RefusesPatchesOfDifferentThings) {
   EXPECT_LE(accepted, tried / 8) << "few are alike by chance, within the shift allowed";
 }
 
-TEST(AlignPatches, RefusesANegative) {
+TEST(AlignPatches, RejectsANegative) {
   std::mt19937 random(9);
   Change change;
   change.gain = -1.0;
@@ -199,7 +199,7 @@ TEST(AlignPatches, RefusesANegative) {
   EXPECT_THAT(align(two_views(Texture(9), {0.0, 0.0}, change, random), Eigen::Matrix2f::Identity()), Eq(std::nullopt));
 }
 
-TEST(AlignPatches, RefusesAShiftBeyondWhatIsAllowed) {
+TEST(AlignPatches, RejectsShiftsBeyondTheLimit) {
   std::mt19937 random(10);
   const TwoViews views = two_views(Texture(10), {0.0, 0.0}, {{1.0, 0.5}}, random);
   AlignOptions options;
@@ -211,7 +211,7 @@ TEST(AlignPatches, RefusesAShiftBeyondWhatIsAllowed) {
   EXPECT_FALSE(align_within(0.5f));
 }
 
-TEST(AlignPatches, RefusesBlankPatches) {
+TEST(AlignPatches, RejectsBlankPatches) {
   const Patch blank = render_patch([](double, double) { return 80.0; });
   const Patch textured = render_patch(Texture(11));
   const Eigen::Matrix2f same = Eigen::Matrix2f::Identity();
@@ -220,12 +220,12 @@ TEST(AlignPatches, RefusesBlankPatches) {
   EXPECT_FALSE(align_patches(blank, kCentre, blank, same, kCentre, {}));
 }
 
-TEST(AlignPatches, RefusesAnEdgeWhichMayHaveSlidAlongItself) {
+TEST(AlignPatches, RejectsAnEdgeThatMaySlideAlongItself) {
   const Patch edge = render_patch([](double x, double) { return 128.0 + 100.0 * std::tanh(0.7 * x); });
   EXPECT_FALSE(align_patches(edge, kCentre, edge, Eigen::Matrix2f::Identity(), kCentre, {}));
 }
 
-TEST(AlignPatches, RefusesATemplateThatLeavesItsPatch) {
+TEST(AlignPatches, RejectsATemplateOutsideItsPatch) {
   std::mt19937 random(12);
   const TwoViews views = two_views(Texture(12), {0.0, 0.0}, {}, random);
   EXPECT_FALSE(align(views, turned_and_scaled(0.0, 2.1).cast<float>())) << "half of 7 pixels, doubled, is 7 and more";
@@ -239,7 +239,7 @@ TEST(AlignPatches, RefusesATemplateThatLeavesItsPatch) {
   EXPECT_FALSE(align_at(kCentre, {8.0f, 11.0f}));
 }
 
-TEST(AlignPatches, RefusesWarpsAndPixelsOutOfAllBounds) {
+TEST(AlignPatches, RejectsInvalidWarpsAndPixels) {
   std::mt19937 random(13);
   const TwoViews views = two_views(Texture(13), {0.0, 0.0}, {}, random);
   const Eigen::Matrix2f same = Eigen::Matrix2f::Identity();

@@ -28,7 +28,7 @@ int differences_one_by_one(const std::uint8_t* block, const std::uint8_t* candid
   return sum;
 }
 
-TEST(BlockDifferences, AreThoseOfEachCandidate) {
+TEST(BlockDifferences, MatchEachCandidate) {
   const std::vector<std::uint8_t> first = noise(1);
   const std::vector<std::uint8_t> second = noise(2);
   const auto sums = block_differences(first.data() + 5, kStride, second.data() + 3, kStride);
@@ -37,7 +37,7 @@ TEST(BlockDifferences, AreThoseOfEachCandidate) {
   }
 }
 
-TEST(BlockDifferences, OfBlackAndWhiteDoNotOverflow) {
+TEST(BlockDifferences, DoNotOverflowForBlackAndWhite) {
   const std::vector<std::uint8_t> black(static_cast<std::size_t>(kStride) * kBlockRows, 0);
   const std::vector<std::uint8_t> white(black.size(), 255);
   EXPECT_THAT(block_differences(black.data(), kStride, white.data(), kStride),

@@ -75,7 +75,7 @@ double depth_of(const DepthReading& reading, const Calibration& calibration) {
   return rig.focal * rig.baseline / reading.disparity;
 }
 
-TEST(DepthReader, TellsADepthAsTheDisparityOfAPair) {
+TEST(DepthReader, ReturnsDepthsAsDisparities) {
   const Calibration calibration = with_depth(colour_lens());
   const auto reading = read_at(calibration, even_image(colour_lens(), 7500), {50.0, 40.0});
   ASSERT_TRUE(reading);
@@ -83,7 +83,7 @@ TEST(DepthReader, TellsADepthAsTheDisparityOfAPair) {
   EXPECT_NEAR(rig_of(calibration).triangulate({50.0, 40.0, reading->disparity}).z(), 1.5, 1e-5);
 }
 
-TEST(DepthReader, TakesTheUnitsAndTheNoiseOfTheCamera) {
+TEST(DepthReader, AppliesUnitAndNoiseOfTheCamera) {
   Calibration calibration = with_depth(colour_lens());
   calibration.depth->units_per_metre = 1000.0;
   calibration.depth->sigma_at_one_metre = 0.004;
@@ -97,7 +97,7 @@ TEST(DepthReader, TakesTheUnitsAndTheNoiseOfTheCamera) {
   }
 }
 
-TEST(DepthReader, LooksWhereTheLensPutsTheRectifiedPixel) {
+TEST(DepthReader, ReadsTheDistortedPixel) {
   Camera lens = colour_lens();
   lens.model = CameraModel::radial_tangential;
   lens.distortion = {-0.28, 0.07, 0.0002, 0.00002, 0.0};
@@ -112,7 +112,7 @@ TEST(DepthReader, LooksWhereTheLensPutsTheRectifiedPixel) {
   }
 }
 
-TEST(DepthReader, KnowsASlantedSurfaceLess) {
+TEST(DepthReader, EstimatesALargerSigmaOnASlantedSurface) {
   const Calibration calibration = with_depth(colour_lens());
   const Plane slanted{{0.0, 0.0, 2.0}, Eigen::Vector3d(2.0, 0.0, -1.0).normalized()};
   const auto upright = read_at(calibration, registered_image(calibration, {}), {79.5, 59.5});
@@ -123,7 +123,7 @@ TEST(DepthReader, KnowsASlantedSurfaceLess) {
   EXPECT_NEAR(reading->sigma, std::hypot(upright->sigma, slope), 2e-3);
 }
 
-TEST(DepthReader, NeverMixesTheSurfacesAtAnEdge) {
+TEST(DepthReader, DoesNotMixSurfacesAtAnEdge) {
   const Calibration calibration = with_depth(colour_lens());
   DepthImage image = even_image(colour_lens(), 15000);
   for (int v = 0; v < image.height; ++v) {
@@ -143,7 +143,7 @@ TEST(DepthReader, NeverMixesTheSurfacesAtAnEdge) {
   }
 }
 
-TEST(DepthReader, IsEmptyWhereThereIsNoDepth) {
+TEST(DepthReader, IsEmptyWithoutDepth) {
   const Calibration calibration = with_depth(colour_lens());
   DepthImage image = even_image(colour_lens(), 0);
   EXPECT_FALSE(read_at(calibration, image, {50.0, 40.0}));
@@ -155,7 +155,7 @@ TEST(DepthReader, IsEmptyWhereThereIsNoDepth) {
   EXPECT_TRUE(read_at(calibration, even_image(colour_lens(), 65535), {50.0, 40.0}, {.max_depth = 14.0}));
 }
 
-TEST(DepthReader, LeavesOutAPixelThatFliesBeforeItsSurroundings) {
+TEST(DepthReader, RejectsFlyingPixels) {
   const Calibration calibration = with_depth(colour_lens());
   DepthImage image = even_image(colour_lens(), 10000);
   at(image, 51, 41) = 3000;
@@ -180,7 +180,7 @@ class DepthBesideColour : public testing::Test {
   Calibration calibration_;
 };
 
-TEST_F(DepthBesideColour, IsMovedToWhereTheColourCameraSeesIt) {
+TEST_F(DepthBesideColour, IsRegisteredToTheColourCamera) {
   const Plane slanted{{0.0, 0.0, 1.5}, Eigen::Vector3d(0.5, -0.4, -1.0).normalized()};
   const DepthImage image = seen([&](const auto& from, const auto& along) { return slanted.range(from, along); });
   const Rig rig = rig_of(calibration_);
@@ -192,7 +192,7 @@ TEST_F(DepthBesideColour, IsMovedToWhereTheColourCameraSeesIt) {
   }
 }
 
-TEST_F(DepthBesideColour, IsTheNearestWhereTheColourCameraSeesOneSurfaceBeforeAnother) {
+TEST_F(DepthBesideColour, KeepsTheNearestOfTwoSurfaces) {
   const auto range = [](const Eigen::Vector3d& from, const Eigen::Vector3d& along) {
     const double to_near = Plane{{0.0, 0.0, 0.8}}.range(from, along);
     const bool is_near = (from + to_near * along).x() > 0.0;

@@ -94,7 +94,7 @@ Descriptor described_plainly(const std::uint8_t* blurred_centre, std::ptrdiff_t 
   return descriptor;
 }
 
-TEST(Describe, IsToTheLastBitWhatPlainCodeGives) {
+TEST(Describe, MatchesTheReferenceBitForBit) {
   const cv::Mat image = white_noise({61, 47}, 3);
   for (float angle = -3.2f; angle < 3.2f; angle += 0.01f) {
     EXPECT_EQ(describe(at(image, {30, 23}), stride(image), angle),
@@ -137,7 +137,7 @@ TEST(Describe, StaysNearOrbAtItsOwnAngle) {
   EXPECT_LE(sum / static_cast<double>(orb.keypoints.size()), 2.0);
 }
 
-TEST(Describe, OfATurnedImageIsNearlyTheSame) {
+TEST(Describe, IsNearlyInvariantToRotation) {
   const Texture texture(12);
   double sum = 0.0, sum_unlike = 0.0;
   constexpr int kPlaces = 50;

@@ -39,7 +39,7 @@ std::vector<int> count_by_square(const std::vector<Corner>& corners, const cv::S
   return counts;
 }
 
-TEST(DetectCorners, LeavesNoPartOfATexturedImageEmpty) {
+TEST(DetectCorners, CoversAllPartsOfATexturedImage) {
   const cv::Mat image = image_of_texture();
   const DetectOptions options;
   const auto corners = detect_corners(image, 500, options);
@@ -47,7 +47,7 @@ TEST(DetectCorners, LeavesNoPartOfATexturedImageEmpty) {
   EXPECT_GE(*std::min_element(counts.begin(), counts.end()), 1);
 }
 
-TEST(DetectCorners, SpreadsEvenlyWhereOneHalfHasFarStrongerCorners) {
+TEST(DetectCorners, SpreadsEvenlyDespiteUnequalContrast) {
   const Texture strong(22, 1.0), weak(23, 0.45);
   const cv::Mat image = render(400, 304, [&](double x, double y) { return x < 200.0 ? strong(x, y) : weak(x, y); });
   const auto corners = detect_corners(image, 200, {});
@@ -57,13 +57,13 @@ TEST(DetectCorners, SpreadsEvenlyWhereOneHalfHasFarStrongerCorners) {
   EXPECT_LE(left, 130);
 }
 
-TEST(DetectCorners, GivesNoMoreThanWanted) {
+TEST(DetectCorners, ReturnsAtMostTheWantedNumber) {
   const cv::Mat image = image_of_texture();
   for (const int wanted : {0, 1, 37, 250}) EXPECT_THAT(detect_corners(image, wanted, {}), SizeIs(wanted));
   EXPECT_GT(detect_corners(image, kPlenty, {}).size(), 250u);
 }
 
-TEST(DetectCorners, GivesTheStrongestOfASquareFirst) {
+TEST(DetectCorners, ReturnsTheStrongestOfASquareFirst) {
   const cv::Mat image = image_of_texture();
   const auto all = detect_corners(image, kPlenty, {});
   const auto one = detect_corners(image, 1, {});
@@ -72,14 +72,14 @@ TEST(DetectCorners, GivesTheStrongestOfASquareFirst) {
   EXPECT_EQ(one.at(0).response, strongest->response);
 }
 
-TEST(DetectCorners, NamesNoPixelTwice) {
+TEST(DetectCorners, ReturnsNoPixelTwice) {
   const auto corners = detect_corners(image_of_texture(), kPlenty, {});
   std::set<std::pair<int, int>> pixels;
   for (const Corner& corner : corners) pixels.insert({corner.x, corner.y});
   EXPECT_EQ(pixels.size(), corners.size());
 }
 
-TEST(DetectCorners, KeepsTheBorderFreeAndReachesUpToIt) {
+TEST(DetectCorners, ExcludesExactlyTheBorder) {
   const cv::Mat image = image_of_texture();
   for (const int border : {3, 19, 30}) {
     DetectOptions options;
@@ -95,7 +95,7 @@ TEST(DetectCorners, KeepsTheBorderFreeAndReachesUpToIt) {
   }
 }
 
-TEST(DetectCorners, LooksAgainWithTheLowThresholdWhereTheImageIsDull) {
+TEST(DetectCorners, UsesTheLowThresholdInDullImages) {
   const cv::Mat dull = render(400, 304, Texture(24, 0.25));
   DetectOptions strict;
   strict.min_fast_threshold = strict.fast_threshold;
@@ -106,7 +106,7 @@ TEST(DetectCorners, LooksAgainWithTheLowThresholdWhereTheImageIsDull) {
   EXPECT_GE(*std::min_element(counts.begin(), counts.end()), 1);
 }
 
-TEST(DetectCorners, KeepsTheHighThresholdWhereACellGivesItsShare) {
+TEST(DetectCorners, KeepsTheHighThresholdInFullCells) {
   // Cells of 32 pixels with a bright spot and a faint one; cells of the first row have no bright one.
   const cv::Mat image = render(230, 230, [](double x, double y) {
     const double u = std::fmod(x - 19.0 + 32.0, 32.0), v = std::fmod(y - 19.0 + 32.0, 32.0);
@@ -126,18 +126,18 @@ TEST(DetectCorners, KeepsTheHighThresholdWhereACellGivesItsShare) {
   EXPECT_EQ(bright, 30);
 }
 
-TEST(DetectCorners, GivesTheSameCornersForTheSameImage) {
+TEST(DetectCorners, IsDeterministic) {
   const cv::Mat image = image_of_texture();
   const auto first = detect_corners(image, 200, {});
   const auto second = detect_corners(image.clone(), 200, {});
   EXPECT_TRUE(std::equal(first.begin(), first.end(), second.begin(), second.end(), same_corner));
 }
 
-TEST(DetectCorners, FindsNothingInABlankImage) {
+TEST(DetectCorners, ReturnsNothingForABlankImage) {
   EXPECT_THAT(detect_corners(cv::Mat(200, 200, CV_8U, cv::Scalar(90)), 100, {}), IsEmpty());
 }
 
-TEST(DetectCorners, FindsNothingInAnImageThatIsAllBorder) {
+TEST(DetectCorners, ReturnsNothingIfAllIsBorder) {
   const Texture texture(25);
   for (const int side : {1, 20, 38}) EXPECT_THAT(detect_corners(render(side, side, texture), 100, {}), IsEmpty());
   EXPECT_THAT(detect_corners(render(38, 300, texture), 100, {}), IsEmpty());

@@ -24,15 +24,15 @@ cv::Mat noisy(const cv::Mat& image, double sigma) {
   return with_noise;
 }
 
-TEST(Development, LeavesWhatWasTakenInGoodLight) {
+TEST(Development, LeavesWellLitImages) {
   EXPECT_FALSE(development_for({.brightness = 100.0f, .contrast = 20.0f, .noise = 3.4f}).changes_anything());
 }
 
-TEST(Development, LeavesWhatShowsNothing) {
+TEST(Development, LeavesBlankImages) {
   EXPECT_FALSE(development_for({.brightness = 1.0f, .contrast = 0.2f, .noise = 5.0f}).changes_anything());
 }
 
-TEST(Development, SmoothsAwayWhatNoiseIsTooMuch) {
+TEST(Development, SmoothsExcessNoise) {
   const cv::Mat image = noisy(steps(60.0), 8.0);
   const Development development = development_for(measure_condition(to_image(image)));
   EXPECT_EQ(development.gain, 1.0f);
@@ -44,7 +44,7 @@ TEST(Development, SmoothsAwayWhatNoiseIsTooMuch) {
   EXPECT_NEAR(deviation[0], 2.5, 0.8);
 }
 
-TEST(Development, BringsOutWhatIsDarkBesideWindows) {
+TEST(Development, BrightensDarkPartsBesideWindows) {
   cv::Mat image = steps(6.0) - 22.0;  // grey values of 8 and 14
   image(cv::Rect(0, 0, 188, 8)).setTo(255);
   const ImageCondition condition = measure_condition(to_image(noisy(image, 1.0)));
@@ -58,7 +58,7 @@ TEST(Development, BringsOutWhatIsDarkBesideWindows) {
   EXPECT_LT(dark, 40) << "black stays black";
 }
 
-TEST(Development, SmoothsWhatIsDarkAsMuchAsItAmplifiesIt) {
+TEST(Development, SmoothsInProportionToAmplification) {
   const Development development = development_for({.brightness = 10.0f, .contrast = 9.0f, .noise = 4.7f});
   EXPECT_TRUE(development.is_curved);
   EXPECT_EQ(development.gain, 2.0f);
@@ -79,11 +79,11 @@ Development expect_foretold(const cv::Mat& image) {
   return development;
 }
 
-TEST(Development, ForetellsWhatTheDarkBecomes) {
+TEST(Development, PredictsTheDarkResponse) {
   EXPECT_TRUE(expect_foretold(noisy(steps(5.0) - 22.0, 1.0)).is_curved);
 }
 
-TEST(Development, BringsOutWhatIsDull) {
+TEST(Development, StretchesDullImages) {
   EXPECT_GT(expect_foretold(noisy(steps(5.0), 1.0)).gain, 3.0f);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 class DownscaleOf : public testing::TestWithParam<std::tuple<int, int, double>> {};  // width, height, factor
 
-TEST_P(DownscaleOf, GivesTheValuesOfOpenCv) {
+TEST_P(DownscaleOf, MatchesOpencv) {
   const auto [width, height, factor] = GetParam();
   const cv::Mat image = white_noise({width, height}, 11);
   const Downscale downscale(image.size(), factor);

@@ -63,7 +63,7 @@ double share_with_disparity(const Features& features) {
   return static_cast<double>(count) / features.size();
 }
 
-TEST(Extractor, GivesEachKeypointADescriptorAndAPatch) {
+TEST(Extractor, ReturnsADescriptorAndAPatchPerKeypoint) {
   Extractor extractor(ideal_pair(), {});
   const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
   const Features& features = *extraction.frame.features;
@@ -74,7 +74,7 @@ TEST(Extractor, GivesEachKeypointADescriptorAndAPatch) {
   for (int i = 0; i < features.size(); ++i) EXPECT_NE(features.find_patch(i), nullptr);
 }
 
-TEST(Extractor, TellsWhenTheRowOfAKeypointWasRead) {
+TEST(Extractor, ReturnsTheReadoutTimeOfKeypointRows) {
   Extractor extractor(ideal_pair(), {});
   const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
   const auto height = static_cast<float>(ideal_pair().left.height);
@@ -83,7 +83,7 @@ TEST(Extractor, TellsWhenTheRowOfAKeypointWasRead) {
   }
 }
 
-TEST(Extractor, TellsTheConditionOfTheLeftImage) {
+TEST(Extractor, MeasuresTheConditionOfTheLeftImage) {
   ImageFrame images = wall().seen_by(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   const std::optional<ImageCondition> seen = extractor.extract(images).frame.condition;
@@ -94,7 +94,7 @@ TEST(Extractor, TellsTheConditionOfTheLeftImage) {
   EXPECT_EQ(fault_of(*extractor.extract(images).frame.condition, {}), ImageFault::dark);
 }
 
-TEST(Extractor, FillsTheQuotaWhereTheImageAllows) {
+TEST(Extractor, FillsTheQuotaIfPossible) {
   for (const int wanted : {1, 100, 300}) {
     Extractor extractor(ideal_pair(), {wanted});
     EXPECT_EQ(extractor.extract(wall().seen_by(ideal_pair())).frame.features->size(), wanted);
@@ -157,7 +157,7 @@ TEST(Extractor, MeasuresInTheRigOfADistortedPair) {
   EXPECT_GE(static_cast<double>(on_wall), 0.95 * measured);
 }
 
-TEST(Extractor, GivesTheSameBytesTwice) {
+TEST(Extractor, IsDeterministic) {
   const ImageFrame images = wall().seen_by(ideal_pair());
   Extractor used(ideal_pair(), {});
   used.extract(Wall{Texture(52)}.seen_by(ideal_pair()));  // leaves other images in the working memory
@@ -176,7 +176,7 @@ TEST(Extractor, GivesTheSameBytesTwice) {
   }
 }
 
-TEST(Extractor, GivesTheSameAfterARest) {
+TEST(Extractor, IsDeterministicAfterAPause) {
   Extractor extractor(ideal_pair(), {});
   const ImageFrame images = wall().seen_by(ideal_pair());
   const Extraction before = extractor.extract(images);
@@ -186,7 +186,7 @@ TEST(Extractor, GivesTheSameAfterARest) {
   EXPECT_EQ(share_with_disparity(*after.frame.features), share_with_disparity(*before.frame.features));
 }
 
-TEST(Extractor, KeepsThePatchAboutEachKeypoint) {
+TEST(Extractor, CutsThePatchAroundEachKeypoint) {
   const ImageFrame images = wall().seen_by(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   const auto features = extractor.extract(images).frame.features;
@@ -203,7 +203,7 @@ TEST(Extractor, KeepsThePatchAboutEachKeypoint) {
   }
 }
 
-TEST(Extractor, RefinesOnlyWhatItIsAskedTo) {
+TEST(Extractor, RefinesOnlyRequestedDisparities) {
   const ImageFrame images = wall().seen_by(ideal_pair());
   const auto median_disparity_error = [&](Refinement refinement) {
     ExtractOptions options;
@@ -224,7 +224,7 @@ TEST(Extractor, RefinesOnlyWhatItIsAskedTo) {
   EXPECT_EQ(median_disparity_error(Refinement::all), median_disparity_error(Refinement::stereo));
 }
 
-TEST(Extractor, FindsNoDisparitiesWithoutARightImage) {
+TEST(Extractor, ReturnsNoDisparitiesWithoutARightImage) {
   ImageFrame images = wall().seen_by(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   const auto with_right = extractor.extract(images).frame.features;
@@ -235,7 +235,7 @@ TEST(Extractor, FindsNoDisparitiesWithoutARightImage) {
       << "the left image alone decides what is found";
 }
 
-TEST(Extractor, LeavesTheRightImageAloneWhereItIsToldTo) {
+TEST(Extractor, SkipsTheRightImageOnRequest) {
   const ImageFrame images = wall().seen_by(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   ImageFrame left = images;
@@ -263,7 +263,7 @@ DepthImage even_depth(double metres) {
   return {kWidth, kHeight, std::vector<std::uint16_t>(static_cast<std::size_t>(kWidth * kHeight), units)};
 }
 
-TEST(Extractor, TurnsDepthsIntoDisparities) {
+TEST(Extractor, ConvertsDepthsToDisparities) {
   ImageFrame images = wall().seen_by(with_registered_depth());
   images.depth = even_depth(2.0);
   Extractor extractor(with_registered_depth(), {});
@@ -278,14 +278,14 @@ TEST(Extractor, TurnsDepthsIntoDisparities) {
   }
 }
 
-TEST(Extractor, FindsNoDisparitiesInAFrameWithoutItsDepthImage) {
+TEST(Extractor, ReturnsNoDisparitiesWithoutADepthImage) {
   Extractor extractor(with_registered_depth(), {});
   const auto features = extractor.extract(wall().seen_by(with_registered_depth())).frame.features;
   EXPECT_GE(features->size(), 500);
   EXPECT_EQ(share_with_disparity(*features), 0.0);
 }
 
-TEST(Extractor, RefusesDepthImagesOfAnotherSize) {
+TEST(Extractor, RejectsDepthImagesOfAnotherSize) {
   ImageFrame images = wall().seen_by(with_registered_depth());
   images.depth = DepthImage{2, 1, {1000, 1000}};
   Extractor extractor(with_registered_depth(), {});
@@ -295,14 +295,14 @@ TEST(Extractor, RefusesDepthImagesOfAnotherSize) {
   EXPECT_THROW(extractor.extract(images), InputError);
 }
 
-TEST(Extractor, FindsNothingInABlankImage) {
+TEST(Extractor, ReturnsNothingForABlankImage) {
   ImageFrame images{Timestamp{}, {kWidth, kHeight, std::vector<std::uint8_t>(kWidth * kHeight, 90)}, std::nullopt};
   images.right = images.left;
   Extractor extractor(ideal_pair(), {});
   EXPECT_EQ(extractor.extract(images).frame.features->size(), 0);
 }
 
-TEST(Extractor, WorksOnImagesTooSmallForMostOctaves) {
+TEST(Extractor, AcceptsImagesTooSmallForMostOctaves) {
   for (const int side : {16, 38, 40, 47, 60, 75}) {
     Camera small = ideal_camera();
     small.width = small.height = side;
@@ -317,14 +317,14 @@ TEST(Extractor, WorksOnImagesTooSmallForMostOctaves) {
   }
 }
 
-TEST(Extractor, CanBeMoved) {
+TEST(Extractor, IsMovable) {
   Extractor first(ideal_pair(), {100});
   Extractor second = std::move(first);
   EXPECT_EQ(second.rig().width, kWidth);
   EXPECT_GT(second.extract(wall().seen_by(ideal_pair())).frame.features->size(), 50);
 }
 
-TEST(Extractor, RefusesImagesOfAnotherSize) {
+TEST(Extractor, RejectsImagesOfAnotherSize) {
   Extractor extractor(ideal_pair(), {});
   const ImageFrame images = wall().seen_by(ideal_pair());
   ImageFrame wrong = images;
@@ -337,14 +337,14 @@ TEST(Extractor, RefusesImagesOfAnotherSize) {
   EXPECT_NO_THROW(extractor.extract(images)) << "and goes on with the next";
 }
 
-TEST(Extractor, RefusesImagesThatLackPixels) {
+TEST(Extractor, RejectsImagesWithMissingPixels) {
   Extractor extractor(ideal_pair(), {});
   ImageFrame images = wall().seen_by(ideal_pair());
   images.left.pixels.pop_back();
   EXPECT_THROW(extractor.extract(images), InputError);
 }
 
-TEST(Extractor, TakesEachImageInTheSizeOfItsOwnCamera) {
+TEST(Extractor, AcceptsCamerasOfDifferentSizes) {
   Calibration calibration = ideal_pair();
   calibration.right->camera.width += 40;
   calibration.right->camera.height += 20;
@@ -354,7 +354,7 @@ TEST(Extractor, TakesEachImageInTheSizeOfItsOwnCamera) {
   EXPECT_GE(share_with_disparity(*features), 0.9);
 }
 
-TEST(Extractor, RefusesACalibrationThatCannotBeRectified) {
+TEST(Extractor, RejectsACalibrationThatCannotBeRectified) {
   Calibration calibration = ideal_pair();
   calibration.right->right_from_left.translation = {kBaseline, 0.0, 0.0};
   EXPECT_THROW(Extractor(calibration, {}), InputError);

@@ -34,7 +34,7 @@ cv::Mat expected_strengths(const cv::Mat& image, const cv::Rect& area, int thres
 
 class FastStrength : public testing::TestWithParam<int> {};  // width of the area, pixels
 
-TEST_P(FastStrength, IsThatOfTheDetectorOfOpenCv) {
+TEST_P(FastStrength, MatchesOpencv) {
   for (const double blur : {0.0, 0.8}) {
     for (const int threshold : {7, 20}) {
       const cv::Mat image = noise_to_search(GetParam() + 9, 40, blur);
@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Widths, FastStrength, testing::Values(9, 32, 33, 95));
 
 class FastPeaks : public testing::TestWithParam<int> {};  // width of the area, pixels
 
-TEST_P(FastPeaks, AreTheCornersOfOpenCv) {
+TEST_P(FastPeaks, MatchOpencv) {
   for (const int threshold : {7, 20}) {
     const cv::Mat image = noise_to_search(GetParam() + 9, 60, 0.8);
     const cv::Rect area(4, 3, GetParam(), 54);
@@ -77,7 +77,7 @@ TEST_P(FastPeaks, AreTheCornersOfOpenCv) {
 
 INSTANTIATE_TEST_SUITE_P(Widths, FastPeaks, testing::Values(20, 32, 33, 95));
 
-TEST(FastStrength, IsNoneOfAnEvenImage) {
+TEST(FastStrength, IsZeroInAUniformImage) {
   cv::Mat strengths;
   measure_fast_strengths(cv::Mat(20, 60, CV_8U, cv::Scalar(200)), {3, 3, 54, 14}, 7, strengths);
   EXPECT_EQ(cv::countNonZero(strengths), 0);

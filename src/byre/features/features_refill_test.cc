@@ -59,7 +59,7 @@ Features made_of(Parts parts) {
   return {320, 240, std::move(parts.keypoints), std::move(parts.descriptors), std::move(parts.patches)};
 }
 
-TEST(RefilledFeatures, GivesWhatTheConstructorMakes) {
+TEST(RefilledFeatures, EqualsTheConstructor) {
   Pools pool;
   for (const int count : {50, 0, 90, 20, 1})
     expect_same(*pool.refilled(parts_of(count, 3)), made_of(parts_of(count, 3)));
@@ -68,7 +68,7 @@ TEST(RefilledFeatures, GivesWhatTheConstructorMakes) {
   expect_same(*pool.refilled(without), made_of(without));
 }
 
-TEST(RefilledFeatures, UsesTheMemoryOfThoseThatNobodyHolds) {
+TEST(RefilledFeatures, ReusesUnreferencedMemory) {
   Pools pool;
   const Features* const first = pool.refilled(parts_of(40, 1)).get();
   const Keypoint* const keypoints = first->keypoints().data();
@@ -77,14 +77,14 @@ TEST(RefilledFeatures, UsesTheMemoryOfThoseThatNobodyHolds) {
   EXPECT_EQ(second->keypoints().data(), keypoints);
 }
 
-TEST(RefilledFeatures, TakesTurnsAmongPatches) {
+TEST(RefilledFeatures, AlternatesBetweenPatches) {
   Pools pool;
   std::set<const Patch*> seen;
   for (int seed = 0; seed < 10; ++seed) seen.insert(pool.refilled(parts_of(40, seed))->find_patch(0));
   EXPECT_LE(seen.size(), 3u) << "features hold the patches of a frame until the next one";
 }
 
-TEST(RefilledFeatures, LeavesThoseAloneThatSomebodyHolds) {
+TEST(RefilledFeatures, LeavesReferencedFeatures) {
   Pools pool;
   std::vector<std::shared_ptr<const Features>> held;
   for (int seed = 0; seed < 10; ++seed) held.push_back(pool.refilled(parts_of(40, seed)));
@@ -93,14 +93,14 @@ TEST(RefilledFeatures, LeavesThoseAloneThatSomebodyHolds) {
   }
 }
 
-TEST(RefilledFeatures, LeavesPatchesAloneThatCopiesShare) {
+TEST(RefilledFeatures, LeavesPatchesSharedByCopies) {
   Pools pool;
   const Features copy = pool.refilled(parts_of(40, 1))->moved(to_vector(made_of(parts_of(40, 1)).keypoints()));
   pool.refilled(parts_of(40, 2));
   expect_same(copy, made_of(parts_of(40, 1)));
 }
 
-TEST(RefilledFeatures, MovesFeaturesInTheMemoryThatThereIs) {
+TEST(RefilledFeatures, MovesFeaturesIntoExistingMemory) {
   Pools pool;
   const Features features = made_of(parts_of(40, 1));
   std::vector<Keypoint> keypoints = to_vector(features.keypoints());

@@ -59,7 +59,7 @@ std::vector<int> looked_for_one_by_one(const Features& features, const Eigen::Ve
   return indices;
 }
 
-TEST(FeaturesVisitArea, FindsWhatALookAtEveryKeypointFinds) {
+TEST(FeaturesVisitArea, EqualsExhaustiveSearch) {
   const Features features = make_features(random_keypoints(600, 1));
   std::mt19937 random(2);
   std::uniform_real_distribution<float> u(-60.0f, kOddWidth + 60.0f), v(-60.0f, kOddHeight + 60.0f), size(0.0f, 70.0f);
@@ -82,19 +82,19 @@ TEST(FeaturesVisitArea, ReachesKeypointsOnTheLastRowAndColumn) {
   EXPECT_THAT(visited(make_features({corner}), corner.pixel, 0.0f, 0, 0), ElementsAre(0));
 }
 
-TEST(FeaturesVisitArea, FindsNothingAmongNoFeatures) {
+TEST(FeaturesVisitArea, VisitsNothingWithoutFeatures) {
   EXPECT_THAT(visited(Features(), {10.0f, 10.0f}, 100.0f, 0, kOctaves - 1), IsEmpty());
   EXPECT_THAT(visited(make_features({}), {10.0f, 10.0f}, 100.0f, 0, kOctaves - 1), IsEmpty());
 }
 
-TEST(FeaturesVisitArea, FindsNothingFarOutsideTheImage) {
+TEST(FeaturesVisitArea, VisitsNothingFarOutsideTheImage) {
   const Features features = make_features(random_keypoints(200, 3));
   EXPECT_THAT(visited(features, {1e20f, -1e20f}, 50.0f, 0, kOctaves - 1), IsEmpty());
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT(visited(features, {-500.0f, nan}, 50.0f, 0, kOctaves - 1), IsEmpty());
 }
 
-TEST(Features, KeepDescriptorAndPatchWithTheirKeypoint) {
+TEST(Features, KeepDescriptorAndPatchWithTheKeypoint) {
   const Features features = make_features(random_keypoints(300, 4));
   ASSERT_EQ(features.size(), 300);
   std::vector<float> names;
@@ -107,7 +107,7 @@ TEST(Features, KeepDescriptorAndPatchWithTheirKeypoint) {
   EXPECT_TRUE(std::adjacent_find(names.begin(), names.end()) == names.end()) << "each is there once";
 }
 
-TEST(Features, KeepTheOrderGivenWithinACell) {
+TEST(Features, KeepTheGivenOrderWithinACell) {
   std::vector<Keypoint> keypoints(3);
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     keypoints[i].pixel = {40.0f - static_cast<float>(i), 20.0f};  // from right to left, one cell
@@ -117,13 +117,13 @@ TEST(Features, KeepTheOrderGivenWithinACell) {
   EXPECT_THAT(features.descriptors(), ElementsAre(Descriptor{0}, Descriptor{1}, Descriptor{2}));
 }
 
-TEST(Features, AreUnchangedWhenOrderedAgain) {
+TEST(Features, AreUnchangedWhenSortedAgain) {
   const Features once = make_features(random_keypoints(300, 5));
   const Features twice(kOddWidth, kOddHeight, to_vector(once.keypoints()), to_vector(once.descriptors()), {});
   EXPECT_TRUE(std::ranges::equal(once.descriptors(), twice.descriptors()));
 }
 
-TEST(Features, MayComeWithoutPatches) {
+TEST(Features, MayHaveNoPatches) {
   const Features features(kOddWidth, kOddHeight, random_keypoints(5, 6), std::vector<Descriptor>(5), {});
   EXPECT_EQ(features.size(), 5);
   EXPECT_EQ(features.find_patch(0), nullptr);
@@ -143,7 +143,7 @@ TEST(Features, KeepSomePatchesOnly) {
   }
 }
 
-TEST(Features, KeepThePatchesAskedForAndAllElse) {
+TEST(Features, KeepTheRequestedPatchesAndAllElse) {
   const Features all = make_features(random_keypoints(6, 8));
   const std::vector<int> kept = {1, 4};
   const Features some = all.with_patches_of(kept);
@@ -161,7 +161,7 @@ TEST(Features, KeepThePatchesAskedForAndAllElse) {
   EXPECT_NE(some.with_patches_of(fewer).find_patch(4), nullptr);
 }
 
-TEST(Features, AreFoundInAnImageMuchLargerThanTheyAreMany) {
+TEST(Features, AreFoundInALargeSparseImage) {
   Keypoint keypoint;
   keypoint.pixel = {15000.0f, 9000.0f};
   const Features features(16000, 16000, {keypoint}, {{}}, {});

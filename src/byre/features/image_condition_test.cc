@@ -47,23 +47,23 @@ cv::Mat motion_blurred(const cv::Mat& image, double pixels, double angle) {
   return blurred;
 }
 
-TEST(ImageCondition, FindsNoFaultInATexturedImage) {
+TEST(ImageCondition, HasNoFaultInATexturedImage) {
   EXPECT_EQ(fault_in(wall_image()), ImageFault::none);
 }
 
-TEST(ImageCondition, FindsNoFaultInADimNoisyImage) {
+TEST(ImageCondition, HasNoFaultInADimNoisyImage) {
   std::mt19937 random(1);
   cv::Mat dim = wall_image() / 6.0;
   add_noise(dim, 2.0, random);
   EXPECT_EQ(fault_in(dim), ImageFault::none);
 }
 
-TEST(ImageCondition, FindsNoFaultInASlightlyBlurredImage) {
+TEST(ImageCondition, HasNoFaultInASlightlyBlurredImage) {
   for (const double angle : {0.0, 0.8, 1.6})
     EXPECT_EQ(fault_in(motion_blurred(wall_image(), 5.0, angle)), ImageFault::none);
 }
 
-TEST(ImageCondition, CallsAnImageWithoutLightDark) {
+TEST(ImageCondition, IsDarkWithoutLight) {
   std::mt19937 random(2);
   cv::Mat black(kWallHeight, kWallWidth, CV_8U, cv::Scalar(2));
   EXPECT_EQ(fault_in(black), ImageFault::dark);
@@ -71,11 +71,11 @@ TEST(ImageCondition, CallsAnImageWithoutLightDark) {
   EXPECT_EQ(fault_in(black), ImageFault::dark);
 }
 
-TEST(ImageCondition, CallsAWhiteImageOverexposed) {
+TEST(ImageCondition, IsOverexposedIfWhite) {
   EXPECT_EQ(fault_in(cv::Mat(kWallHeight, kWallWidth, CV_8U, cv::Scalar(255))), ImageFault::overexposed);
 }
 
-TEST(ImageCondition, CallsAShadedSurfaceWithoutTextureFlat) {
+TEST(ImageCondition, IsFlatOnAShadedSurfaceWithoutTexture) {
   std::mt19937 random(3);
   cv::Mat surface = render(kWallWidth, kWallHeight, [](double x, double y) { return 90.0 + 0.15 * x - 0.1 * y; });
   EXPECT_EQ(fault_in(surface), ImageFault::flat);
@@ -83,13 +83,13 @@ TEST(ImageCondition, CallsAShadedSurfaceWithoutTextureFlat) {
   EXPECT_EQ(fault_in(surface), ImageFault::flat);
 }
 
-TEST(ImageCondition, CallsAnImageBlurredByMotionBlurredWhateverTheDirection) {
+TEST(ImageCondition, IsBlurredByMotionInAnyDirection) {
   for (double angle = 0.0; angle < 3.1; angle += 0.4) {
     EXPECT_EQ(fault_in(motion_blurred(wall_image(), 20.0, angle)), ImageFault::blurred) << angle;
   }
 }
 
-TEST(ImageCondition, SharpnessFallsWithBlurAndNotWithLight) {
+TEST(ImageCondition, SharpnessFallsWithBlurButNotWithLight) {
   const float sharp = condition_of(wall_image()).sharpness;
   EXPECT_NEAR(condition_of(wall_image(0.2)).sharpness, sharp, 0.05 * sharp);
   EXPECT_NEAR(condition_of(wall_image() * 0.5).sharpness, sharp, 0.05 * sharp);
@@ -108,7 +108,7 @@ TEST(ImageCondition, SharpEdgesHaveSharpnessOne) {
   EXPECT_NEAR(condition_of(board).sharpness, 1.0, 0.15);
 }
 
-TEST(ImageCondition, ContrastGrowsWithLightAndNotWithNoise) {
+TEST(ImageCondition, ContrastGrowsWithLightButNotWithNoise) {
   std::mt19937 random(4);
   const float clean = condition_of(wall_image(0.5)).contrast;
   EXPECT_NEAR(condition_of(wall_image(0.25)).contrast, 0.5 * clean, 0.05 * clean);
@@ -117,7 +117,7 @@ TEST(ImageCondition, ContrastGrowsWithLightAndNotWithNoise) {
   EXPECT_NEAR(condition_of(noisy).contrast, clean, 0.05 * clean);
 }
 
-TEST(ImageCondition, TellsBrightnessAndTheShareOfClippedPixels) {
+TEST(ImageCondition, MeasuresBrightnessAndClippedShare) {
   cv::Mat image(kWallHeight, kWallWidth, CV_8U, cv::Scalar(100));
   image.colRange(0, kWallWidth / 4) = 255;
   image.colRange(kWallWidth / 4, kWallWidth / 2) = 0;
@@ -125,14 +125,14 @@ TEST(ImageCondition, TellsBrightnessAndTheShareOfClippedPixels) {
   EXPECT_FLOAT_EQ(condition_of(image).brightness, (255.0f + 0.0f + 200.0f) / 4.0f);
 }
 
-TEST(ImageCondition, KnowsOnlyTheLightOfATinyImage) {
+TEST(ImageCondition, MeasuresOnlyBrightnessOfATinyImage) {
   const ImageCondition tiny = condition_of(wall_image()(cv::Rect(0, 0, 32, 16)));
   EXPECT_GT(tiny.brightness, 50.0f);
   EXPECT_EQ(tiny.sharpness, 0.0f);
   EXPECT_EQ(measure_condition(Image{}).brightness, 0.0f);
 }
 
-TEST(ImageCondition, NamesTheFirstFault) {
+TEST(ImageCondition, ReportsTheFirstFault) {
   ImageCondition condition{100.0f, 0.0f, 0.0f, 0.0f};
   EXPECT_EQ(fault_of(condition, {}), ImageFault::flat);
   condition.brightness = 0.0f;
@@ -143,7 +143,7 @@ TEST(ImageCondition, NamesTheFirstFault) {
   EXPECT_EQ(to_string(ImageFault::none), "none");
 }
 
-TEST(ImageCondition, TellsNoiseApartFromTexture) {
+TEST(ImageCondition, DistinguishesNoiseFromTexture) {
   for (const double sigma : {0.0, 2.0, 6.0}) {
     std::mt19937 random(3);
     cv::Mat image = wall_image();

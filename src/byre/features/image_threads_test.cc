@@ -6,7 +6,7 @@
 namespace byre {
 namespace {
 
-TEST(LimitImageThreads, HoldsForAllOfOpenCv) {
+TEST(LimitImageThreads, AppliesToAllOfOpencv) {
   const int before = cv::getNumThreads();
   limit_image_threads(1);
   EXPECT_EQ(cv::getNumThreads(), 1);

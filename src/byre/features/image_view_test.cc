@@ -30,12 +30,12 @@ std::vector<std::uint16_t> depths(const ImageView& view, double units_per_metre)
   return image.units;
 }
 
-TEST(ImageView, GivesGreyValuesAsTheyAre) {
+TEST(ImageView, KeepsGreyValues) {
   const std::vector<std::uint8_t> pixels = {1, 2, 3, 4, 5, 6};
   EXPECT_THAT(grey(view(pixels, 3, 2, PixelFormat::grey8)), ElementsAre(1, 2, 3, 4, 5, 6));
 }
 
-TEST(ImageView, LeavesOutWhatPadsARow) {
+TEST(ImageView, IgnoresRowPadding) {
   const std::vector<std::uint8_t> pixels = {1, 2, 99, 99, 3, 4, 99, 99};
   EXPECT_THAT(grey(view(pixels, 2, 2, PixelFormat::grey8, 4)), ElementsAre(1, 2, 3, 4));
 }
@@ -49,27 +49,27 @@ TEST(ImageView, ScalesSixteenBitsToTheirRange) {
   EXPECT_THAT(grey(view(all, 3, 1, PixelFormat::grey16)), ElementsAre(0, 255, 1));
 }
 
-TEST(ImageView, WeighsColoursAsTheEyeDoes) {
+TEST(ImageView, WeightsColoursByLuminance) {
   const std::vector<std::uint8_t> red_and_blue = {255, 0, 0, 0, 0, 255};
   EXPECT_THAT(grey(view(red_and_blue, 2, 1, PixelFormat::rgb8)), ElementsAre(76, 29));
   EXPECT_THAT(grey(view(red_and_blue, 2, 1, PixelFormat::bgr8)), ElementsAre(29, 76));
 }
 
-TEST(ImageView, TakesTheBrightnessOfYuv) {
+TEST(ImageView, ReadsTheLuminanceOfYuv) {
   const std::vector<std::uint8_t> yuyv = {10, 128, 20, 128};
   EXPECT_THAT(grey(view(yuyv, 2, 1, PixelFormat::yuyv)), ElementsAre(10, 20));
   const std::vector<std::uint8_t> nv12 = {10, 20, 30, 40, 128, 128};
   EXPECT_THAT(grey(view(nv12, 2, 2, PixelFormat::nv12)), ElementsAre(10, 20, 30, 40));
 }
 
-TEST(ImageView, GivesDepthsInTheUnitsOfTheCamera) {
+TEST(ImageView, ReturnsDepthsInCameraUnits) {
   const std::vector<std::uint16_t> millimetres = {0, 1500};
   EXPECT_THAT(depths(view(millimetres, 2, 1, PixelFormat::depth16), 1000.0), ElementsAre(0, 1500));
   const std::vector<float> metres = {1.5f, 0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), 1e9f};
   EXPECT_THAT(depths(view(metres, 5, 1, PixelFormat::depth_metres), 1000.0), ElementsAre(1500, 0, 0, 0, 0));
 }
 
-TEST(ImageView, KnowsRowsThatAreTooShortAndSizesThatTheFormatHasNot) {
+TEST(ImageView, RejectsShortRowsAndInvalidSizes) {
   const std::vector<std::uint8_t> bytes(100);
   EXPECT_TRUE(is_sound(view(bytes, 4, 2, PixelFormat::rgb8, 12)));
   EXPECT_FALSE(is_sound(view(bytes, 4, 2, PixelFormat::rgb8, 11)));

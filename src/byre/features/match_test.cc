@@ -40,7 +40,7 @@ Descriptor with_flipped_bits(Descriptor descriptor, int count, std::mt19937_64& 
   return descriptor;
 }
 
-TEST(MatchFeatures, FindsEachDisturbedDescriptorAgain) {
+TEST(MatchFeatures, FindsEachDisturbedDescriptor) {
   const auto first = random_descriptors(60, 1);
   std::vector<Descriptor> second = random_descriptors(20, 2);  // unrelated descriptors
   std::mt19937_64 random(3);
@@ -54,7 +54,7 @@ TEST(MatchFeatures, FindsEachDisturbedDescriptorAgain) {
   }
 }
 
-TEST(MatchFeatures, KeepsOnlyPairsThatAreEachOthersBest) {
+TEST(MatchFeatures, KeepsMutualBestPairsOnly) {
   // Both features of first are nearest to the only one of second, which is nearest to the latter.
   const auto matches = match_features(features_of({with_bits(0), with_bits(15)}), features_of({with_bits(20)}), {});
   ASSERT_EQ(matches.size(), 1u);
@@ -62,7 +62,7 @@ TEST(MatchFeatures, KeepsOnlyPairsThatAreEachOthersBest) {
   EXPECT_EQ(matches[0].distance, 5);
 }
 
-TEST(MatchFeatures, RejectsAPairWhoseSecondBestIsNearlyAsGood) {
+TEST(MatchFeatures, RejectsAPairWithASimilarSecondBest) {
   const Features first = features_of({with_bits(0)});
   MatchOptions options;
   options.max_ratio = 0.8f;
@@ -70,18 +70,18 @@ TEST(MatchFeatures, RejectsAPairWhoseSecondBestIsNearlyAsGood) {
   EXPECT_EQ(match_features(first, features_of({with_bits(20), with_bits(26)}), options).size(), 1u);
 }
 
-TEST(MatchFeatures, RejectsAPairWhoseSecondBestIsEquallyPerfect) {
+TEST(MatchFeatures, RejectsAPairWithAnEqualSecondBest) {
   EXPECT_THAT(match_features(features_of({with_bits(9)}), features_of({with_bits(9), with_bits(9)}), {}), IsEmpty());
 }
 
-TEST(MatchFeatures, RejectsAPairThatIsTooFarApart) {
+TEST(MatchFeatures, RejectsAPairWithALargeDistance) {
   MatchOptions options;
   options.max_distance = 60;
   EXPECT_EQ(match_features(features_of({with_bits(0)}), features_of({with_bits(60)}), options).size(), 1u);
   EXPECT_THAT(match_features(features_of({with_bits(0)}), features_of({with_bits(61)}), options), IsEmpty());
 }
 
-TEST(MatchFeatures, FindsNothingAmongNoFeatures) {
+TEST(MatchFeatures, ReturnsNothingWithoutFeatures) {
   const Features some = features_of(random_descriptors(3, 4));
   EXPECT_THAT(match_features(Features(), some, {}), IsEmpty());
   EXPECT_THAT(match_features(some, Features(), {}), IsEmpty());

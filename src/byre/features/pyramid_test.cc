@@ -29,7 +29,7 @@ Eigen::Vector2f centroid(const cv::Mat& level) {
   return (sum / weight).cast<float>();
 }
 
-TEST(BuildPyramid, ShowsABlobAtTheSameFullResolutionPlaceInEveryOctave) {
+TEST(BuildPyramid, KeepsTheFullResolutionPositionInEveryOctave) {
   const Eigen::Vector2d centre(143.3, 118.7);
   for (const cv::Size size : {cv::Size(320, 240), cv::Size(333, 251), cv::Size(376, 240)}) {
     Pyramid pyramid;
@@ -52,14 +52,14 @@ TEST(BuildPyramid, ShrinksEachOctaveByTheScale) {
   }
 }
 
-TEST(BuildPyramid, TakesTheImageItselfAsOctaveZero) {
+TEST(BuildPyramid, UsesTheImageAsOctaveZero) {
   const cv::Mat image(120, 160, CV_8U, cv::Scalar(50));
   Pyramid pyramid;
   build_pyramid(image, pyramid);
   EXPECT_EQ(pyramid.levels[0].data, image.data);
 }
 
-TEST(BuildPyramid, LeavesOctavesEmptyThatTheImageIsTooSmallFor) {
+TEST(BuildPyramid, LeavesOctavesEmptyForASmallImage) {
   Pyramid pyramid;
   build_pyramid(cv::Mat(480, 752, CV_8U, cv::Scalar(7)), pyramid);
   build_pyramid(cv::Mat(70, 90, CV_8U, cv::Scalar(7)), pyramid);  // reuses the pyramid: no old octave may remain
@@ -67,14 +67,14 @@ TEST(BuildPyramid, LeavesOctavesEmptyThatTheImageIsTooSmallFor) {
   for (std::size_t octave = 3; octave < kOctaves; ++octave) EXPECT_TRUE(pyramid.levels[octave].empty()) << octave;
 }
 
-TEST(FullFromOctave, IsUndoneByOctaveFromFull) {
+TEST(FullFromOctave, InvertsOctaveFromFull) {
   const Eigen::Vector2f pixel(123.4f, -5.6f);
   for (int octave = 0; octave < kOctaves; ++octave) {
     EXPECT_THAT(octave_from_full(full_from_octave(pixel, octave), octave), PointNear(pixel, 1e-4)) << octave;
   }
 }
 
-TEST(FullFromOctave, KeepsTheImagesCornerInPlace) {
+TEST(FullFromOctave, KeepsTheCornerOfTheImage) {
   const Eigen::Vector2f corner(-0.5f, -0.5f);  // corner of the top-left pixel, in every octave
   for (int octave = 0; octave < kOctaves; ++octave) {
     EXPECT_THAT(full_from_octave(corner, octave), PointNear(corner, 1e-6)) << octave;

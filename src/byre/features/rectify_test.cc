@@ -147,7 +147,7 @@ std::vector<Eigen::Vector3d> random_points_in_body(const Rig& rig, unsigned seed
 // Maps are quantised to 1/32 pixel, and measured here by interpolation of whole grey values.
 constexpr double kMapPrecision = 0.06;
 
-TEST_P(RectifyDistorted, ShowsPointsWhereTheRigProjectsThem) {
+TEST_P(RectifyDistorted, ShowsPointsAtTheirProjection) {
   const Calibration calibration = GetParam().calibration;
   const Rectifier rectifier(calibration);
   const Rig& rig = rectifier.rig();
@@ -160,7 +160,7 @@ TEST_P(RectifyDistorted, ShowsPointsWhereTheRigProjectsThem) {
   }
 }
 
-TEST_P(RectifyDistorted, AlignsRowsOfTheRightImageAndShiftsItByTheDisparity) {
+TEST_P(RectifyDistorted, AlignsRowsAndShiftsByTheDisparity) {
   const Calibration calibration = GetParam().calibration;
   if (!calibration.right) return;  // one camera has no rows to align
   const Rectifier rectifier(calibration);
@@ -177,7 +177,7 @@ TEST_P(RectifyDistorted, AlignsRowsOfTheRightImageAndShiftsItByTheDisparity) {
   }
 }
 
-TEST_P(RectifyDistorted, HasAnOriginalPixelForEachOfTheRig) {
+TEST_P(RectifyDistorted, MapsEachPixelToAnOriginalPixel) {
   const Calibration calibration = GetParam().calibration;
   const Rig rig = Rectifier(calibration).rig();
   const Pose left_from_rectified = inverse(calibration.body_from_left) * rig.body_from_camera;
@@ -198,7 +198,7 @@ TEST_P(RectifyDistorted, HasAnOriginalPixelForEachOfTheRig) {
   }
 }
 
-TEST_P(RectifyDistorted, TellsTheRowThatAPixelComesFrom) {
+TEST_P(RectifyDistorted, ReturnsTheOriginalRowOfAPixel) {
   const Calibration calibration = GetParam().calibration;
   const Rectifier rectifier(calibration);
   const Rig& rig = rectifier.rig();
@@ -212,7 +212,7 @@ TEST_P(RectifyDistorted, TellsTheRowThatAPixelComesFrom) {
   }
 }
 
-TEST_P(RectifyDistorted, KeepsTheSizeTheLeftCentreAndTheBaseline) {
+TEST_P(RectifyDistorted, KeepsSizeLeftCentreAndBaseline) {
   const Calibration calibration = GetParam().calibration;
   const Rig rig = Rectifier(calibration).rig();
   EXPECT_EQ(rig.width, calibration.left.width);
@@ -222,7 +222,7 @@ TEST_P(RectifyDistorted, KeepsTheSizeTheLeftCentreAndTheBaseline) {
   EXPECT_NEAR(rig.baseline, calibration.right ? kRightInLeft.norm() : 0.0, 1e-12);
 }
 
-TEST(Rectifier, HandsOnARectifiedPairWithoutACopy) {
+TEST(Rectifier, ReturnsARectifiedPairWithoutACopy) {
   const Calibration calibration{pinhole(), StereoPartner{pinhole(), right_from_left({0.2, 0.0, 0.0})},
                                 Pose{rotation_exp({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}}};
   const Rectifier rectifier(calibration);
@@ -237,14 +237,14 @@ TEST(Rectifier, HandsOnARectifiedPairWithoutACopy) {
   EXPECT_THAT(rig.body_from_camera, PoseNear(calibration.body_from_left, 0.0, 1e-12));
 }
 
-TEST(Rectifier, HandsOnTheImageOfAnIdealSingleCamera) {
+TEST(Rectifier, ReturnsTheImageOfAnIdealCamera) {
   const Rectifier rectifier({pinhole(), std::nullopt, Pose{}});
   const cv::Mat image(240, 320, CV_8U, cv::Scalar(1));
   EXPECT_EQ(rectifier.left(image).data, image.data);
   EXPECT_FALSE(rectifier.rig().is_stereo());
 }
 
-TEST(Rectifier, DoesNotTakeAPairOfUnequalSizesForRectified) {
+TEST(Rectifier, RectifiesAPairOfUnequalSizes) {
   Camera right = pinhole();
   right.width = 300;
   right.height = 200;
@@ -252,14 +252,14 @@ TEST(Rectifier, DoesNotTakeAPairOfUnequalSizesForRectified) {
   EXPECT_EQ(rectifier.right(cv::Mat(200, 300, CV_8U, cv::Scalar(1))).size(), cv::Size(320, 240));
 }
 
-TEST(Rectifier, KeepsAWideFieldAboutTheAxisWhereItIsCropped) {
+TEST(Rectifier, KeepsAWideFieldAroundTheAxis) {
   const Pose pose = right_from_left(kRightInLeft, kTurn);
   const Rig rig = Rectifier({equidistant(), StereoPartner{equidistant(), pose}, Pose{}}).rig();
   EXPECT_NEAR(rig.cx, 0.5 * (rig.width - 1), 1.0);
   EXPECT_NEAR(rig.cy, 0.5 * (rig.height - 1), 1.0);
 }
 
-TEST(Rectifier, GivesAWideLensAFocalLengthThatNeitherBlursNorCropsTooMuch) {
+TEST(Rectifier, ChoosesAFocalLengthBetweenBlurAndCropping) {
   for (const Camera& camera : {equidistant(), beyond_half_space()}) {
     const Rig rig = Rectifier({camera, std::nullopt, Pose{}}).rig();
     EXPECT_GE(rig.focal, 0.5 * camera.fx) << "the centre would be coarser than half";
@@ -295,7 +295,7 @@ std::optional<double> crossing(const cv::Mat& image, int row) {
   return std::nullopt;
 }
 
-TEST(Rectifier, ShowsStraightLinesOfAFisheyeStraight) {
+TEST(Rectifier, StraightensLinesOfAFisheye) {
   const Camera camera = equidistant();
   const Rectifier rectifier({camera, std::nullopt, Pose{}});
   const Rig& rig = rectifier.rig();
@@ -315,7 +315,7 @@ TEST(Rectifier, ShowsStraightLinesOfAFisheyeStraight) {
   }
 }
 
-TEST(Rectifier, DoesNotTouchTheImageItIsGiven) {
+TEST(Rectifier, LeavesTheInputImage) {
   const Rectifier rectifier({radial_tangential_left(), std::nullopt, Pose{}});
   const cv::Mat image = render(376, 240, Texture(3));
   const cv::Mat before = image.clone();
@@ -332,18 +332,18 @@ std::string refusal(const Camera& camera, const Pose& pose) {
   return "accepted";
 }
 
-TEST(Rectifier, RefusesSwappedCameras) {
+TEST(Rectifier, RejectsSwappedCameras) {
   EXPECT_THAT(refusal(pinhole(), right_from_left({-0.11, 0.0, 0.0})), HasSubstr("not to the right"));
   EXPECT_THAT(refusal(equidistant(), right_from_left(-kRightInLeft, kTurn)), HasSubstr("not to the right"));
 }
 
-TEST(Rectifier, RefusesCamerasThatAreNotBesideEachOther) {
+TEST(Rectifier, RejectsCamerasThatAreNotSideBySide) {
   EXPECT_THAT(refusal(pinhole(), Pose{}), HasSubstr("not to the right")) << "at the same place";
   EXPECT_THAT(refusal(pinhole(), right_from_left({0.0, 0.1, 0.0})), HasSubstr("not to the right")) << "above";
   EXPECT_THAT(refusal(pinhole(), right_from_left({0.0, 0.0, 0.1})), HasSubstr("not to the right")) << "behind";
 }
 
-TEST(Rectifier, RefusesCamerasThatLookInOppositeDirections) {
+TEST(Rectifier, RejectsOppositeCameras) {
   for (const Camera& camera : {pinhole(), radial_tangential_left(), equidistant()}) {
     for (const double off : {0.0, 1e-9, 0.05}) {
       for (const Eigen::Vector3d axis : {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()}) {
@@ -356,18 +356,18 @@ TEST(Rectifier, RefusesCamerasThatLookInOppositeDirections) {
   EXPECT_THROW(Rectifier({pinhole(), StereoPartner{pinhole(), half_turn}, Pose{}}), InputError);
 }
 
-TEST(Rectifier, RefusesABaselineThatMustBeInAnotherUnit) {
+TEST(Rectifier, RejectsABaselineInAnotherUnit) {
   Pose in_millimetres;
   in_millimetres.translation.x() = -110.0;
   EXPECT_THROW(Rectifier({pinhole(), StereoPartner{pinhole(), in_millimetres}, Pose{}}), InputError);
 }
 
-TEST(Rectifier, RefusesCamerasWhoseFieldsDoNotOverlap) {
+TEST(Rectifier, RejectsCamerasWithoutOverlap) {
   // Each has a horizontal field of view of 65 degrees; the viewing directions differ by 80.
   EXPECT_NE(refusal(pinhole(), right_from_left({0.1, 0.0, 0.0}, {0.0, 1.4, 0.0})), "accepted");
 }
 
-TEST(Rectifier, RefusesACalibrationThatIsNotANumber) {
+TEST(Rectifier, RejectsANonFiniteCalibration) {
   const Pose pose = right_from_left({0.1, 0.0, 0.0}, {0.0, std::nan(""), 0.0});
   EXPECT_THROW(Rectifier({pinhole(), StereoPartner{pinhole(), pose}, Pose{}}), InputError);
 }

@@ -31,7 +31,7 @@ Places turned(cv::Size size, cv::Size source, float turn = 0.06f) {
   return places;
 }
 
-TEST(Remap, GivesTheValuesOfOpenCv) {
+TEST(Remap, MatchesOpencv) {
   for (const cv::Size source :
        {cv::Size(160, 120), cv::Size(24, 300), cv::Size(33, 7), cv::Size(2, 2), cv::Size(3, 2)}) {
     for (const cv::Size size : {source, cv::Size(101, 57)}) {
@@ -49,7 +49,7 @@ TEST(Remap, GivesTheValuesOfOpenCv) {
   }
 }
 
-TEST(Remap, TellsTheRowThatAPixelComesFrom) {
+TEST(Remap, ReturnsTheSourceRowOfAPixel) {
   const cv::Size size(80, 60);
   for (const float turn : {0.06f, 0.4f, 2.0f}) {
     const Places places = turned(size, size, turn);

@@ -37,7 +37,7 @@ Keypoint at_once(const Keypoint& keypoint, const CameraMotion& motion, double re
   return seen_at_once(features, rig, motion, readout_time).keypoint(0);
 }
 
-TEST(SeenAtOnce, PutsACornerWhereTheMiddleRowsTimeShowsIt) {
+TEST(SeenAtOnce, MovesACornerToTheTimeOfTheMiddleRow) {
   const StereoPixel expected = rig_of_camera().project(kPoint);
   const Keypoint seen = rolled(true), moved = at_once(seen, motion(), kReadoutTime);
   EXPECT_GT((seen.pixel - expected.head<2>().cast<float>()).norm(), 3.0f);
@@ -47,7 +47,7 @@ TEST(SeenAtOnce, PutsACornerWhereTheMiddleRowsTimeShowsIt) {
   EXPECT_EQ(moved.row_time, seen.row_time);
 }
 
-TEST(SeenAtOnce, TakesTheScenesDepthForACornerWithoutOne) {
+TEST(SeenAtOnce, UsesTheSceneDepthForACornerWithoutDepth) {
   const StereoPixel expected = rig_of_camera().project(kPoint);
   const Keypoint moved = at_once(rolled(false), motion(), kReadoutTime);
   EXPECT_NEAR(moved.pixel.x(), expected.x(), 0.2);
@@ -55,13 +55,13 @@ TEST(SeenAtOnce, TakesTheScenesDepthForACornerWithoutOne) {
   EXPECT_FALSE(moved.has_disparity());
 }
 
-TEST(SeenAtOnce, LeavesCornersOfACameraThatRestsOrReadsAllRowsAtOnce) {
+TEST(SeenAtOnce, LeavesCornersAtRestAndWithAGlobalShutter) {
   const Keypoint seen = rolled(true);
   EXPECT_LT((at_once(seen, {}, kReadoutTime).pixel - seen.pixel).norm(), 1e-3f);
   EXPECT_LT((at_once(seen, motion(), 0.0).pixel - seen.pixel).norm(), 1e-3f);
 }
 
-TEST(SeenAtOnce, KeepsCornersInTheImage) {
+TEST(SeenAtOnce, KeepsCornersInsideTheImage) {
   Keypoint corner = rolled(true);
   corner.pixel = {0.0f, 0.0f};
   CameraMotion fast = motion();

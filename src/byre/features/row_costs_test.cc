@@ -34,7 +34,7 @@ LeastCosts found_plainly(const std::vector<int>& costs) {
   return least;
 }
 
-TEST(LeastCosts, AreThoseOfPlainCode) {
+TEST(LeastCosts, MatchTheReference) {
   std::mt19937 random(3);
   for (int count = 1; count < 80; ++count) {
     for (const int largest : {0, 1, 5, 57000}) {
@@ -49,7 +49,7 @@ TEST(LeastCosts, AreThoseOfPlainCode) {
   }
 }
 
-TEST(LeastCosts, OfAMinimumLieBetweenTheColumns) {
+TEST(LeastCosts, InterpolateMinimaBetweenColumns) {
   std::vector<std::uint16_t> padded = padded_costs({90, 50, 10, 30, 70, 90});
   const LeastCosts found = least_costs(padded.data() + 1, 6);
   EXPECT_EQ(found.best, 2);

@@ -29,24 +29,24 @@ Features found_left_of(float column) {
   return {800, 600, std::move(keypoints), descriptors, {}};
 }
 
-TEST(StereoFit, OfImagesThatShareEnoughOnTheirRowsIsGood) {
+TEST(StereoFit, IsGoodForImagesWithEnoughCommonRows) {
   EXPECT_TRUE(images_fit({.matched = 0.4, .matched_at_best = 0.8, .row_error = 0.7}));
   EXPECT_FALSE(images_fit({.matched = 0.4, .matched_at_best = 0.8, .row_error = 0.9}));
   EXPECT_FALSE(images_fit({.matched = 0.1, .matched_at_best = 0.1, .row_error = 0.2}));
 }
 
-TEST(StereoFit, OfSoiledLensesIsGoodWhereBothSee) {
+TEST(StereoFit, IsGoodForSoiledLensesInTheCleanParts) {
   constexpr StereoFit kSoiled{.matched = 0.08, .matched_at_best = 0.4, .row_error = 0.3};
   EXPECT_TRUE(images_fit(kSoiled));
   EXPECT_TRUE(is_partly_hidden(kSoiled));
   EXPECT_FALSE(is_partly_hidden({.matched = 0.4, .matched_at_best = 0.8, .row_error = 0.3}));
 }
 
-TEST(StereoFit, OfATurnedCameraIsBadThoughSomePartsMatch) {
+TEST(StereoFit, IsBadForARotatedCameraDespiteSomeMatches) {
   EXPECT_FALSE(images_fit({.matched = 0.08, .matched_at_best = 0.4, .row_error = 0.7}));
 }
 
-TEST(MatchedByPart, IsTheShareWhereItIsLargest) {
+TEST(MatchedByPart, IsTheLargestShareOfAPart) {
   const Rig rig = image_of(800, 600);
   MatchedByPart matched(1.0);
   EXPECT_EQ(matched.at_best(), 0.0);
@@ -57,7 +57,7 @@ TEST(MatchedByPart, IsTheShareWhereItIsLargest) {
   EXPECT_EQ(nothing.at_best(), 0.0);
 }
 
-TEST(MatchedByPart, ForgetsWhatWasBefore) {
+TEST(MatchedByPart, ForgetsEarlierFrames) {
   const Rig rig = image_of(800, 600);
   MatchedByPart remembers(1.0), forgets(0.5);
   for (MatchedByPart* matched : {&remembers, &forgets}) {

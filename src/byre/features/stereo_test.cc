@@ -116,14 +116,14 @@ StereoScore match_textures(double noise, double vertical_error = 0.0) {
   return score;
 }
 
-TEST(MatchStereo, FindsSubPixelDisparitiesInAllOctaves) {
+TEST(MatchStereo, MeasuresSubPixelDisparitiesInAllOctaves) {
   const StereoScore score = match_textures(0.0);
   EXPECT_GE(score.share_matched(), 0.95);
   EXPECT_LE(score.median_error(), 0.02);
   EXPECT_EQ(score.gross, 0);
 }
 
-TEST(MatchStereo, IsExactToItsSigmaUnderNoise) {
+TEST(MatchStereo, ErrsWithinItsSigmaUnderNoise) {
   const StereoScore slight = match_textures(2.0);
   EXPECT_GE(slight.share_matched(), 0.85);
   EXPECT_LE(slight.median_error(), 0.05);
@@ -133,14 +133,14 @@ TEST(MatchStereo, IsExactToItsSigmaUnderNoise) {
   EXPECT_LE(strong.share_within(1.0), 0.97) << "sigma is not a mere upper bound";
 }
 
-TEST(MatchStereo, ToleratesRowsThatAreHalfAPixelOff) {
+TEST(MatchStereo, ToleratesRowErrorsOfHalfAPixel) {
   const StereoScore score = match_textures(1.0, 0.5);
   EXPECT_GE(score.share_matched(), 0.9);
   EXPECT_LE(score.median_error(), 0.05);
   EXPECT_GE(score.share_within(2.0), 0.95);
 }
 
-TEST(MatchStereo, RefusesRowsThatAreFarOff) {
+TEST(MatchStereo, RejectsLargeRowErrors) {
   Scene scene{Texture(41, 0.7), 12.3, 4.0};
   const Pair pair = render_pair(scene);
   const auto keypoints = keypoints_of({{pair.left.levels[0]}}, 200);
@@ -177,7 +177,7 @@ TEST(MatchStereo, RejectsARepetitivePattern) {
   }
 }
 
-TEST(MatchStereo, FindsDullTextures) {
+TEST(MatchStereo, MatchesDullTextures) {
   StereoScore score;
   add_scene({Texture(48, 0.2), 12.45, 0.0, 1.0}, score);
   EXPECT_GT(score.tried, 300);
@@ -185,7 +185,7 @@ TEST(MatchStereo, FindsDullTextures) {
   EXPECT_EQ(score.gross, 0);
 }
 
-TEST(MatchStereo, FindsNothingBeyondTheLargestDisparity) {
+TEST(MatchStereo, ReturnsNothingBeyondTheLargestDisparity) {
   StereoOptions near;
   near.min_depth = 1.0;  // 22 pixels
   const Scene beyond{Texture(42, 0.7), 40.0};
@@ -193,24 +193,24 @@ TEST(MatchStereo, FindsNothingBeyondTheLargestDisparity) {
   EXPECT_GT(count_matches(beyond), 250u) << "which are there to be found";
 }
 
-TEST(MatchStereo, FindsNothingBehindInfinity) {
+TEST(MatchStereo, ReturnsNothingBehindInfinity) {
   EXPECT_LE(count_matches({Texture(43, 0.7), -15.0}), 15u);
 }
 
-TEST(MatchStereo, FindsNothingInABlankRightImage) {
+TEST(MatchStereo, ReturnsNothingForABlankRightImage) {
   Pair pair = render_pair({Texture(44, 0.7), 10.0});
   build_pyramid(cv::Mat(kRigHeight, kRigWidth, CV_8U, cv::Scalar(120)), pair.right);
   const auto keypoints = keypoints_of(pair.left, 60);
   for (const auto& match : match_stereo(pair.left, pair.right, stereo_rig(), keypoints, {})) EXPECT_FALSE(match);
 }
 
-TEST(MatchStereo, FindsNothingInBlankImages) {
+TEST(MatchStereo, ReturnsNothingForBlankImages) {
   const Pair blank = render_pair({[](double, double) { return 120.0; }});
   const auto keypoints = keypoints_of(render_pair({Texture(45), 0.0}).left, 60);
   for (const auto& match : match_stereo(blank.left, blank.right, stereo_rig(), keypoints, {})) EXPECT_FALSE(match);
 }
 
-TEST(MatchStereo, StaysInsideTheImagesWhereverKeypointsLie) {
+TEST(MatchStereo, StaysInsideTheImagesForAllKeypoints) {
   const Pair pair = render_pair({Texture(46, 0.7), 7.3});
   std::vector<Keypoint> keypoints;
   for (int octave = 0; octave < kOctaves; octave += kOctaves - 1) {
@@ -231,7 +231,7 @@ TEST(MatchStereo, StaysInsideTheImagesWhereverKeypointsLie) {
   }
 }
 
-TEST(MatchStereo, FindsNothingInOctavesThatASmallImageHasNot) {
+TEST(MatchStereo, ReturnsNothingInMissingOctavesOfASmallImage) {
   const Texture texture(47);
   Pair pair;
   build_pyramid(render(60, 50, texture), pair.left);

@@ -35,25 +35,25 @@ class BinaryFile : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(BinaryFile, ReadsWhatWasWritten) {
+TEST_F(BinaryFile, ReadsWrittenBytes) {
   write_whole(folder_ / "file", bytes_of("a\0b"));
   EXPECT_EQ(text_of(read_file(folder_ / "file")), text_of(bytes_of("a\0b")));
 }
 
-TEST_F(BinaryFile, ThrowsIfItCannotBeRead) {
+TEST_F(BinaryFile, ThrowsIfUnreadable) {
   EXPECT_THROW(read_file(folder_ / "absent"), InputError);
   EXPECT_THROW(read_file(folder_), InputError);
   EXPECT_THROW(MappedFile(folder_ / "absent"), InputError);
 }
 
-TEST_F(BinaryFile, IsMappedAsItIs) {
+TEST_F(BinaryFile, MapsTheBytesOfTheFile) {
   write_whole(folder_ / "file", bytes_of("mapped"));
   EXPECT_EQ(text_of(MappedFile(folder_ / "file").bytes()), "mapped");
   write_whole(folder_ / "empty", "");
   EXPECT_TRUE(MappedFile(folder_ / "empty").bytes().empty());
 }
 
-TEST_F(BinaryFile, IsReadByPieces) {
+TEST_F(BinaryFile, ReadsPieces) {
   write_whole(folder_ / "file", bytes_of("one two three"));
   const PiecewiseFile file(folder_ / "file");
   EXPECT_EQ(file.size(), 13u);
@@ -68,7 +68,7 @@ TEST_F(BinaryFile, IsReadByPieces) {
   EXPECT_THROW(PiecewiseFile{folder_}, InputError);
 }
 
-TEST_F(BinaryFile, SaysThatItHasBecomeShorter) {
+TEST_F(BinaryFile, ReportsTruncationAfterOpening) {
   write_whole(folder_ / "file", bytes_of("one two three"));
   const PiecewiseFile file(folder_ / "file");
   fs::resize_file(folder_ / "file", 5);
@@ -81,7 +81,7 @@ TEST_F(BinaryFile, SaysThatItHasBecomeShorter) {
   }
 }
 
-TEST_F(BinaryFile, IsNeverAPipeOrALinkInACircle) {
+TEST_F(BinaryFile, RejectsPipesAndCircularLinks) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   fs::create_symlink("circle", folder_ / "circle");
   EXPECT_THROW(read_file(folder_ / "pipe"), InputError);

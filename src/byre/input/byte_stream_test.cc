@@ -30,13 +30,13 @@ TEST(ByteStream, ReadsBackWhatWasWritten) {
   EXPECT_NO_THROW(reader.require_end());
 }
 
-TEST(ByteStream, LiesInAFileWithTheLowestByteFirst) {
+TEST(ByteStream, UsesLittleEndianOrder) {
   ByteWriter writer;
   writer.write(std::uint32_t{0x01020304});
   EXPECT_THAT(writer.bytes(), testing::ElementsAre(std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}));
 }
 
-TEST(ByteStream, ReadsBackNumbersOfFewBytes) {
+TEST(ByteStream, ReadsBackShortNumbers) {
   for (const std::uint32_t number : {0u, 1u, 127u, 128u, 16383u, 16384u, 0xffffffffu}) {
     ByteWriter writer;
     writer.write_varint(number);
@@ -52,7 +52,7 @@ TEST(ByteStream, ReadsBackNumbersOfFewBytes) {
   EXPECT_EQ(reader_of(writer).read_low_bytes(3), 0x010203u);
 }
 
-TEST(ByteStream, RefusesANumberThatTakesMoreBytesThanItNeeds) {
+TEST(ByteStream, RejectsNumbersThatAreNotInShortestForm) {
   const auto refuses = [](std::initializer_list<std::uint8_t> bytes) {
     ByteWriter writer;
     writer.write_all(std::span<const std::uint8_t>(bytes));
@@ -63,7 +63,7 @@ TEST(ByteStream, RefusesANumberThatTakesMoreBytesThanItNeeds) {
   refuses({0x80, 0x80, 0x80, 0x80, 0x80, 0x01});
 }
 
-TEST(ByteStream, NamesThePlaceWhereItEndsTooEarly) {
+TEST(ByteStream, ReportsThePositionOfATruncation) {
   ByteWriter writer;
   writer.write(std::uint32_t{1});
   ByteReader reader = reader_of(writer);
@@ -76,7 +76,7 @@ TEST(ByteStream, NamesThePlaceWhereItEndsTooEarly) {
   }
 }
 
-TEST(ByteStream, RefusesACountThatItsBytesCannotHold) {
+TEST(ByteStream, RejectsCountsBeyondTheRemainingBytes) {
   ByteWriter writer;
   writer.write(std::uint32_t{3});
   writer.write(std::uint64_t{0});
@@ -84,19 +84,19 @@ TEST(ByteStream, RefusesACountThatItsBytesCannotHold) {
   EXPECT_THROW(reader_of(writer).read_count(4), InputError);
 }
 
-TEST(ByteStream, RefusesTextLongerThanItsBytes) {
+TEST(ByteStream, RejectsTextBeyondTheRemainingBytes) {
   ByteWriter writer;
   writer.write(std::uint32_t{1000000});
   EXPECT_THROW(reader_of(writer).read_text(), InputError);
 }
 
-TEST(ByteStream, RefusesBytesLeftOver) {
+TEST(ByteStream, RejectsTrailingBytes) {
   ByteWriter writer;
   writer.write(std::uint8_t{1});
   EXPECT_THROW(reader_of(writer).require_end(), InputError);
 }
 
-TEST(Checksum, DiffersByOneBit) {
+TEST(Checksum, ChangesWithEveryBit) {
   EXPECT_NE(checksum(std::as_bytes(std::span("byre"))), checksum(std::as_bytes(std::span("byrd"))));
 }
 

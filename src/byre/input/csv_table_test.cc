@@ -36,7 +36,7 @@ class CsvTables : public testing::Test {
       std::filesystem::path(testing::TempDir()) / ("csv_table_" + std::to_string(getpid()) + ".csv");
 };
 
-TEST_F(CsvTables, GiveTheCellsOfNamedColumns) {
+TEST_F(CsvTables, ReturnCellsByColumnName) {
   const CsvTable table = read("x,name\n1.5,north gate\n-2,\n");
   ASSERT_THAT(table.rows, SizeIs(2));
   EXPECT_EQ(table.find(table.rows[0], "x"), "1.5");
@@ -46,7 +46,7 @@ TEST_F(CsvTables, GiveTheCellsOfNamedColumns) {
   EXPECT_EQ(table.place_of(table.rows[1]), path_.string() + ":3");
 }
 
-TEST_F(CsvTables, AreReadAsSpreadsheetsAndProgramsWriteThem) {
+TEST_F(CsvTables, AcceptSpreadsheetFormats) {
   const CsvTable table = read("\xef\xbb\xbf# x, y\r\n\r\n# the first two\r\n1, 2\r\n3,4\r\n");
   EXPECT_THAT(table.columns, ElementsAre("x", "y"));
   ASSERT_THAT(table.rows, SizeIs(2));
@@ -54,7 +54,7 @@ TEST_F(CsvTables, AreReadAsSpreadsheetsAndProgramsWriteThem) {
   EXPECT_THAT(table.rows[1].cells, ElementsAre("3", "4"));
 }
 
-TEST_F(CsvTables, AreRefusedWithThePlaceAndWhatToDo) {
+TEST_F(CsvTables, ReportPlaceAndRemedyOfErrors) {
   EXPECT_THAT(refusal_of(""), HasSubstr("is empty (write the column names in the first line)"));
   EXPECT_THAT(refusal_of("x,z\n"), HasSubstr(":1: contains the unknown column \"z\" (the columns are name, x, y)"));
   EXPECT_THAT(refusal_of("x,x\n"), HasSubstr(":1: contains the column x twice"));

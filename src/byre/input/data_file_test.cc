@@ -19,7 +19,7 @@ TEST(DataFile, IsFoundInTheSourceTree) {
   EXPECT_TRUE(std::filesystem::is_regular_file(find_data_file("protocols/euroc.yaml", "")));
 }
 
-TEST(DataFile, IsFirstLookedForWhereTheEnvironmentSays) {
+TEST(DataFile, IsSearchedInTheEnvironmentVariableFirst) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("byre_data." + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
@@ -31,7 +31,7 @@ TEST(DataFile, IsFirstLookedForWhereTheEnvironmentSays) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(DataFile, SaysWhatToDoWithoutIt) {
+TEST(DataFile, ReportsARemedyIfMissing) {
   try {
     find_data_file("protocols/absent.yaml", "name a protocol that is there");
     FAIL() << "no InputError";

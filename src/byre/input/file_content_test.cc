@@ -18,7 +18,7 @@ std::optional<FileContent> content_of_bytes(const std::string& bytes) {
   return content;
 }
 
-TEST(ContentOf, RecognisesFilesOfByre) {
+TEST(ContentOf, RecognisesByreFiles) {
   EXPECT_EQ(content_of_bytes("\x89"
                              "BYRE\r\n\x1a"),
             FileContent::map);
@@ -45,7 +45,7 @@ TEST(ContentOf, RecognisesOtherText) {
   EXPECT_EQ(content_of_bytes(std::string("\0\1\2", 3)), FileContent::other);
 }
 
-TEST(ContentOf, RecognisesPartsOfColmapModelsAndPages) {
+TEST(ContentOf, RecognisesColmapFilesAndPages) {
   const auto content = [](std::string_view bytes, const char* name) {
     return content_of(std::as_bytes(std::span(bytes)), name);
   };
@@ -65,7 +65,7 @@ TEST(ContentOf, RecognisesPartsOfColmapModelsAndPages) {
   EXPECT_EQ(content("# Title\nname: text, more\n", "report.md"), FileContent::page);
 }
 
-TEST(MayReplace, NeedsTheSameKindOrAnEmptyFile) {
+TEST(MayReplace, RequiresTheSameKindOrAnEmptyFile) {
   EXPECT_TRUE(may_replace(FileContent::map, FileContent::map));
   EXPECT_TRUE(may_replace(FileContent::nothing, FileContent::map));
   EXPECT_FALSE(may_replace(FileContent::text, FileContent::map));
@@ -73,7 +73,7 @@ TEST(MayReplace, NeedsTheSameKindOrAnEmptyFile) {
   EXPECT_FALSE(may_replace(FileContent::other, FileContent::other));
 }
 
-TEST(ContentOf, IsEmptyWithoutARegularFile) {
+TEST(ContentOf, IsEmptyForOtherThanRegularFiles) {
   EXPECT_FALSE(content_of(testing::TempDir()));
   EXPECT_FALSE(content_of("/dev/null"));
   EXPECT_FALSE(content_of("absent"));

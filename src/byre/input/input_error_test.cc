@@ -6,12 +6,12 @@
 namespace byre {
 namespace {
 
-TEST(InputError, ReadsPlaceReasonAndRemedy) {
+TEST(InputError, JoinsPlaceReasonAndRemedy) {
   const InputError error("sensor.yaml:12", "no focal length", "add 'intrinsics'");
   EXPECT_STREQ(error.what(), "sensor.yaml:12: no focal length (add 'intrinsics')");
 }
 
-TEST(InputError, LeavesOutAnEmptyRemedy) {
+TEST(InputError, OmitsAnEmptyRemedy) {
   EXPECT_STREQ(InputError("mission.map", "not a map file").what(), "mission.map: not a map file");
 }
 

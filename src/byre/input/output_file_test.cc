@@ -56,7 +56,7 @@ class OutputFileTest : public testing::Test {
   const fs::path folder_ = fs::weakly_canonical(testing::TempDir()) / ("byre_output_file." + std::to_string(getpid()));
 };
 
-TEST_F(OutputFileTest, IsOldOrNewAndLeavesNothingBeside) {
+TEST_F(OutputFileTest, ReplacesAtomicallyWithoutLeftovers) {
   put("barn.byre", kMap);
   {
     OutputFile file(folder_ / "barn.byre", FileContent::map);
@@ -69,14 +69,14 @@ TEST_F(OutputFileTest, IsOldOrNewAndLeavesNothingBeside) {
   EXPECT_EQ(entries(), 1);
 }
 
-TEST_F(OutputFileTest, KeepsTheOldOneIfItIsNotPublished) {
+TEST_F(OutputFileTest, KeepsTheOldFileUnlessPublished) {
   put("barn.byre", kMap);
   { OutputFile(folder_ / "barn.byre", FileContent::map).append("half"); }
   EXPECT_EQ(read("barn.byre"), kMap);
   EXPECT_EQ(entries(), 1);
 }
 
-TEST_F(OutputFileTest, GrowsUnderItsNameOncePublished) {
+TEST_F(OutputFileTest, GrowsUnderItsNameAfterPublishing) {
   OutputFile file(folder_ / "events.json", FileContent::json);
   file.publish();
   file.append("{}\n");
@@ -85,7 +85,7 @@ TEST_F(OutputFileTest, GrowsUnderItsNameOncePublished) {
   EXPECT_EQ(read("events.json"), "{}\n{}\n");
 }
 
-TEST_F(OutputFileTest, ReplacesFilesOfOneKindAndEmptyOnesOnly) {
+TEST_F(OutputFileTest, ReplacesOnlyFilesOfTheSameKindAndEmptyOnes) {
   const std::vector<std::pair<std::string, std::string>> others = {
       {"text.txt", "Dear reader\n"},  {"robot.yaml", "slam:\n  map: a\n"}, {"image.png", kPng},
       {"walk.mcap", "\x89MCAP0\r\n"}, {"photo.jpg", "\xff\xd8\xff\xe0"},   {"stats.json", "{}"}};
@@ -105,7 +105,7 @@ TEST_F(OutputFileTest, ReplacesFilesOfOneKindAndEmptyOnesOnly) {
   EXPECT_EQ(entries(), static_cast<long>(others.size()) + 2);
 }
 
-TEST_F(OutputFileTest, DoesNotFollowLinksPlantedBesideIt) {
+TEST_F(OutputFileTest, DoesNotFollowPlantedLinks) {
   put("letter.txt", "Dear reader\n");
   for (const char* const name : {"barn.byre.unfinished", "barn.byre.00000000.unfinished"}) {
     fs::create_symlink("letter.txt", folder_ / name);
@@ -115,7 +115,7 @@ TEST_F(OutputFileTest, DoesNotFollowLinksPlantedBesideIt) {
   EXPECT_EQ(read("letter.txt"), "Dear reader\n");
 }
 
-TEST_F(OutputFileTest, IsWrittenThroughALinkUnderTheSameRules) {
+TEST_F(OutputFileTest, WritesThroughALinkUnderTheSameRules) {
   fs::create_directory(folder_ / "maps");
   put("maps/real.byre", kMap);
   fs::create_symlink("maps/real.byre", folder_ / "link.byre");
@@ -136,7 +136,7 @@ TEST_F(OutputFileTest, IsWrittenThroughALinkUnderTheSameRules) {
   EXPECT_THAT(refusal("device", kNewMap), HasSubstr("a link to a device"));
 }
 
-TEST_F(OutputFileTest, WritesToDevicesAndPipesDirectlyAndCreatesNothingInSystemFolders) {
+TEST_F(OutputFileTest, WritesToDevicesDirectlyButNotIntoSystemFolders) {
   EXPECT_EQ(refusal(fs::path("/dev/null"), kNewMap), "");
   EXPECT_THAT(refusal(fs::path("/dev/byre_null.previous"), kNewMap), HasSubstr("is in a system folder"));
   EXPECT_THAT(refusal(fs::path("/proc/byre"), kNewMap), HasSubstr("is in a system folder"));
@@ -160,7 +160,7 @@ TEST_F(OutputFileTest, ContinuesAFileThatOutputIsRedirectedTo) {
   EXPECT_EQ(read("log"), "before\nin between\nafter\n");
 }
 
-TEST_F(OutputFileTest, NamesReasonAndRemedy) {
+TEST_F(OutputFileTest, ReportsReasonAndRemedy) {
   EXPECT_THAT(refusal("absent/out.byre", kNewMap), HasSubstr("the folder does not exist (create the folder"));
   EXPECT_THAT(refusal(folder_, kNewMap), HasSubstr("is a folder (name a file in it)"));
   EXPECT_THAT(refusal(fs::path(""), kNewMap), HasSubstr("is a folder"));
@@ -177,7 +177,7 @@ TEST_F(OutputFileTest, NamesReasonAndRemedy) {
   EXPECT_EQ(entries(), 1) << "nothing was written";
 }
 
-TEST_F(OutputFileTest, KeepsThePermissionsOfTheFileItReplaces) {
+TEST_F(OutputFileTest, KeepsThePermissionsOfTheReplacedFile) {
   put("barn.byre", kMap);
   fs::permissions(folder_ / "barn.byre", fs::perms(0640));
   EXPECT_EQ(refusal("barn.byre", kNewMap), "");
@@ -203,7 +203,7 @@ TEST_F(OutputFileTest, RemovesOnlyTemporaryFilesOfKilledProcesses) {
   EXPECT_EQ(read("letter.txt"), "Dear reader\n");
 }
 
-TEST_F(OutputFileTest, IsRemovedByASignalThatEndsTheProgram) {
+TEST_F(OutputFileTest, RemovesTemporaryFilesOnATerminatingSignal) {
   const pid_t process = fork();
   if (process == 0) {
     OutputFile file(folder_ / "barn.byre", FileContent::map);
@@ -219,7 +219,7 @@ TEST_F(OutputFileTest, IsRemovedByASignalThatEndsTheProgram) {
   EXPECT_EQ(entries(), 1);
 }
 
-TEST_F(OutputFileTest, MayHaveALongName) {
+TEST_F(OutputFileTest, AcceptsLongNames) {
   const std::string longest(250, 'n');
   EXPECT_EQ(refusal(longest, "text"), "");
   EXPECT_EQ(read(longest), "text");

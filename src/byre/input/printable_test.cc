@@ -75,11 +75,11 @@ TEST(Printable, EscapesAllC1Controls) {
   }
 }
 
-TEST(PrintableLines, KeepsLineFeedsOnly) {
+TEST(PrintableLines, KeepsOnlyLineFeeds) {
   EXPECT_EQ(printable_lines("# Speed of Kühe\n\n\x1b[2J\r\xff\n"), "# Speed of Kühe\n\n\\x1b[2J\\r\\xff\n");
 }
 
-TEST(PrintableJson, EscapesAsJsonDoes) {
+TEST(PrintableJson, EscapesLikeJson) {
   const std::string json = "{\n  \"topic\": \"/Kühe/牛 🐄 \\u001b\"\n}\n";
   EXPECT_EQ(printable_json(json), json);
   EXPECT_EQ(printable_json("[\"\x7f\xe2\x80\xae\xe2\x80\xa8\xef\xbb\xbf\"]"), R"(["\u007f\u202e\u2028\ufeff"])");

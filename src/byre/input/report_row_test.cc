@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-TEST(FormatDuration, CountsHoursOnlyWhereThereAreSome) {
+TEST(FormatDuration, OmitsZeroHours) {
   EXPECT_EQ(format_duration(0.0), "0:00");
   EXPECT_EQ(format_duration(6.2), "0:07");
   EXPECT_EQ(format_duration(754.0), "12:34");

@@ -19,12 +19,12 @@ std::filesystem::path written(const std::string& name, const std::string& conten
   return path;
 }
 
-TEST(ParseSeconds, KeepsEveryNanosecondOfAnEpochTime) {
+TEST(ParseSeconds, KeepsNanosecondsOfEpochTimes) {
   EXPECT_EQ(parse_seconds("1403636584.763555584"), nanoseconds(1403636584763555584));
   EXPECT_EQ(parse_seconds("1.403636584763555584e+09"), nanoseconds(1403636584763555584));
 }
 
-TEST(ParseSeconds, ReadsShortAndScientificForms) {
+TEST(ParseSeconds, AcceptsShortAndScientificNotation) {
   EXPECT_EQ(parse_seconds("2"), nanoseconds(2'000'000'000));
   EXPECT_EQ(parse_seconds("2."), nanoseconds(2'000'000'000));
   EXPECT_EQ(parse_seconds(".5"), nanoseconds(500'000'000));
@@ -33,28 +33,28 @@ TEST(ParseSeconds, ReadsShortAndScientificForms) {
   EXPECT_EQ(parse_seconds("0.000000e+00"), nanoseconds(0));
 }
 
-TEST(ParseSeconds, RoundsBelowTheNanosecond) {
+TEST(ParseSeconds, RoundsToTheNanosecond) {
   EXPECT_EQ(parse_seconds("0.0000000014"), nanoseconds(1));
   EXPECT_EQ(parse_seconds("0.0000000015"), nanoseconds(2));
   EXPECT_EQ(parse_seconds("-0.0000000015"), nanoseconds(-2));
   EXPECT_EQ(parse_seconds("1e-20"), nanoseconds(0));
 }
 
-TEST(ParseSeconds, RefusesWhatIsNoTime) {
+TEST(ParseSeconds, RejectsInvalidTimes) {
   for (const char* const text :
        {"", "-", ".", "1.2.3", "abc", "1e", "1e99", "nan", "inf", "99999999999", "1 2", "--1"}) {
     EXPECT_FALSE(parse_seconds(text).has_value()) << text;
   }
 }
 
-TEST(ParseNumber, RefusesTrailingTextAndNumbersThatAreNotFinite) {
+TEST(ParseNumber, RejectsTrailingTextAndNonFiniteNumbers) {
   EXPECT_EQ(parse_number("+1.5e-3"), 1.5e-3);
   for (const char* const text : {"", "1.5m", "nan", "inf", "1e999", "+-1", "0x10"}) {
     EXPECT_FALSE(parse_number(text).has_value()) << text;
   }
 }
 
-TEST(SplitFields, TakesCommasOrWhiteSpace) {
+TEST(SplitFields, SplitsAtCommasOrWhiteSpace) {
   EXPECT_THAT(split_fields("1, 2 ,3"), ElementsAre("1", "2", "3"));
   EXPECT_THAT(split_fields("1  2\t3"), ElementsAre("1", "2", "3"));
   EXPECT_THAT(split_fields("1,,3"), ElementsAre("1", "", "3"));
@@ -69,7 +69,7 @@ TEST(ReadLines, SkipsCommentsAndBlankLinesButCountsThem) {
   EXPECT_EQ(lines[1].text, "3");
 }
 
-TEST(ReadLines, SkipsAByteOrderMark) {
+TEST(ReadLines, SkipsTheByteOrderMark) {
   EXPECT_EQ(read_lines(written("marked.txt",
                                "\xEF\xBB\xBF"
                                "1 2\n3\n"))
@@ -79,7 +79,7 @@ TEST(ReadLines, SkipsAByteOrderMark) {
   EXPECT_EQ(read_lines(written("marked.txt", "\xEF\xBB\xBF# head\n3\n")).front().text, "3");
 }
 
-TEST(ReadLines, NamesAFileThatIsNotThere) {
+TEST(ReadLines, ReportsAMissingFile) {
   try {
     read_lines("/nowhere/poses.txt");
     FAIL() << "no InputError";
