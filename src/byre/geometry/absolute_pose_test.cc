@@ -68,14 +68,14 @@ TEST(EstimateAbsolutePose, FindsThePoseFromFourSightings) {
   EXPECT_THAT(found->camera_from_world, PoseNear(kCameraFromWorld, 1e-8, 1e-8));
 }
 
-TEST(EstimateAbsolutePose, AveragesNoiseOut) {
+TEST(EstimateAbsolutePose, AveragesNoise) {
   const auto found = estimate_absolute_pose(seen(200, 0, 1.0, 3), kRig, {});
   ASSERT_TRUE(found.has_value());
   EXPECT_THAT(found->camera_from_world, PoseNear(kCameraFromWorld, 0.005, 0.002));
   EXPECT_GT(found->inlier_count, 195);
 }
 
-TEST(EstimateAbsolutePose, WithstandsHalfTheSightingsBeingWrong) {
+TEST(EstimateAbsolutePose, IsRobustToHalfOutliers) {
   for (std::uint32_t seed = 10; seed < 30; ++seed) {
     const auto found = estimate_absolute_pose(seen(200, 100, 1.0, seed), kRig, {});
     ASSERT_TRUE(found.has_value());
@@ -85,13 +85,13 @@ TEST(EstimateAbsolutePose, WithstandsHalfTheSightingsBeingWrong) {
   }
 }
 
-TEST(EstimateAbsolutePose, WithstandsFourInFiveBeingWrong) {
+TEST(EstimateAbsolutePose, IsRobustToFourInFiveOutliers) {
   const auto found = estimate_absolute_pose(seen(200, 160, 0.5, 40), kRig, {});
   ASSERT_TRUE(found.has_value());
   EXPECT_THAT(found->camera_from_world, PoseNear(kCameraFromWorld, 0.02, 0.006));
 }
 
-TEST(EstimateAbsolutePose, TakesNobodyForAnInlierWhoseDisparityDisagrees) {
+TEST(EstimateAbsolutePose, RejectsInconsistentDisparities) {
   Sightings sightings = seen(60, 0, 0.0, 7);
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const double disparity = kRig.project(kCameraFromWorld * sightings[i].point_in_world).z();
@@ -124,7 +124,7 @@ TEST(EstimateAbsolutePose, MinimisesTheErrorOfItsInliers) {
   }
 }
 
-TEST(EstimateAbsolutePose, GivesTheSameAnswerForTheSameSeed) {
+TEST(EstimateAbsolutePose, IsDeterministicForASeed) {
   const Sightings sightings = seen(100, 60, 1.0, 6);
   const auto first = estimate_absolute_pose(sightings, kRig, {.seed = 3});
   const auto second = estimate_absolute_pose(sightings, kRig, {.seed = 3});
@@ -134,7 +134,7 @@ TEST(EstimateAbsolutePose, GivesTheSameAnswerForTheSameSeed) {
   EXPECT_EQ(first->inliers, second->inliers);
 }
 
-TEST(EstimateAbsolutePose, WorksOnPointsInAPlane) {
+TEST(EstimateAbsolutePose, AcceptsPlanarPoints) {
   std::mt19937 random(7);
   std::vector<Eigen::Vector3d> wall;
   for (int i = 0; i < 30; ++i) {
@@ -160,17 +160,17 @@ TEST(EstimateAbsolutePose, IsEmptyWithFewerThanFourSightings) {
   EXPECT_FALSE(estimate_absolute_pose({}, kRig, {}).has_value());
 }
 
-TEST(EstimateAbsolutePose, IsEmptyWhenNoFourAgree) {
+TEST(EstimateAbsolutePose, IsEmptyWithoutFourConsistentSightings) {
   EXPECT_FALSE(estimate_absolute_pose(seen(6, 6, 0.0, 50), kRig, {.max_error = 0.01}).has_value());
 }
 
-TEST(EstimateAbsolutePose, IsEmptyForPointsOnALine) {
+TEST(EstimateAbsolutePose, IsEmptyForCollinearPoints) {
   std::vector<Eigen::Vector3d> edge;
   for (int i = 0; i < 20; ++i) edge.emplace_back(-1.0 + 0.1 * i, 0.3, 3.0 + 0.05 * i);
   EXPECT_FALSE(estimate_absolute_pose(seen_exactly(edge), kRig, {}).has_value());
 }
 
-TEST(EstimateAbsolutePose, IsEmptyForPointsAlmostOnALine) {
+TEST(EstimateAbsolutePose, IsEmptyForNearlyCollinearPoints) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> off(-2e-4, 2e-4);
   std::vector<Eigen::Vector3d> edge;
@@ -178,7 +178,7 @@ TEST(EstimateAbsolutePose, IsEmptyForPointsAlmostOnALine) {
   EXPECT_FALSE(estimate_absolute_pose(seen_exactly(edge), kRig, {}).has_value());
 }
 
-TEST(EstimateAbsolutePose, IsEmptyWhenAllPointsAreTheSame) {
+TEST(EstimateAbsolutePose, IsEmptyForCoincidentPoints) {
   const std::vector<Eigen::Vector3d> same(10, Eigen::Vector3d(0.1, 0.2, 3.0));
   EXPECT_FALSE(estimate_absolute_pose(seen_exactly(same), kRig, {}).has_value());
 }

@@ -51,7 +51,7 @@ TEST(Align, IsExactOnCleanPoints) {
   EXPECT_THAT(found->target_from_source, PoseNear(truth(1.0).target_from_source, 1e-12, 1e-13));
 }
 
-TEST(Align, FindsTheScaleWhenFree) {
+TEST(Align, EstimatesTheScaleIfFree) {
   const Points source = scattered(20, 2);
   const auto found = align(source, mapped(truth(0.37), source), Scale::free);
   ASSERT_TRUE(found.has_value());
@@ -66,7 +66,7 @@ TEST(Align, NeedsOnlyThreePoints) {
   EXPECT_THAT(found->target_from_source, PoseNear(truth(2.0).target_from_source, 1e-11, 1e-12));
 }
 
-TEST(Align, GivesARotationWhereAReflectionWouldFitBetter) {
+TEST(Align, ReturnsARotationInsteadOfAReflection) {
   const Points source = scattered(20, 4);
   Points mirrored = source;
   for (Eigen::Vector3d& point : mirrored) point.z() = -point.z();
@@ -75,7 +75,7 @@ TEST(Align, GivesARotationWhereAReflectionWouldFitBetter) {
   EXPECT_NEAR(found->target_from_source.rotation.toRotationMatrix().determinant(), 1.0, 1e-12);
 }
 
-TEST(Align, AveragesNoiseOut) {
+TEST(Align, AveragesNoise) {
   const Points source = scattered(1000, 5);
   const auto found = align(source, mapped(truth(1.5), source, 0.05), Scale::free);
   ASSERT_TRUE(found.has_value());
@@ -104,19 +104,19 @@ TEST(Align, IsTheLeastSquaresMinimum) {
   }
 }
 
-TEST(Align, DeterminesARotationFromPointsInAPlane) {
+TEST(Align, DeterminesARotationFromPlanarPoints) {
   const Points source = scattered(20, 7, {5.0, 4.0, 0.0});
   const auto found = align(source, mapped(truth(1.0), source), Scale::fixed);
   ASSERT_TRUE(found.has_value());
   EXPECT_THAT(found->target_from_source, PoseNear(truth(1.0).target_from_source, 1e-12, 1e-13));
 }
 
-TEST(Align, IsEmptyOnALine) {
+TEST(Align, IsEmptyForCollinearPoints) {
   const Points source = scattered(20, 8, {5.0, 0.0, 0.0});
   EXPECT_FALSE(align(source, mapped(truth(1.0), source), Scale::fixed).has_value());
 }
 
-TEST(Align, IsEmptyWhenAllPointsAreTheSame) {
+TEST(Align, IsEmptyForCoincidentPoints) {
   const Points source(10, Eigen::Vector3d(1.0, 2.0, 3.0));
   EXPECT_FALSE(align(source, source, Scale::free).has_value());
 }
@@ -137,7 +137,7 @@ TEST(MoveCamera, KeepsTheImageAndScalesDepths) {
   }
 }
 
-TEST(ScaleLengths, OfACovarianceLeavesRotationsAlone) {
+TEST(ScaleLengths, KeepsRotationsOfACovariance) {
   Vector6 sigmas;
   sigmas << 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
   const Matrix6 covariance = sigmas * sigmas.transpose();

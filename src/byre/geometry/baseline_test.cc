@@ -27,19 +27,19 @@ std::string refusal(const Calibration& calibration, const std::optional<double>&
   return "";
 }
 
-TEST(Baseline, OfRobotsAndCarsIsAccepted) {
+TEST(Baseline, IsAcceptedForRobotsAndCars) {
   for (const double metres : {0.005, 0.06, 0.11, 0.54, 1.0}) {
     const Calibration given = pair_with_baseline(metres);
     EXPECT_EQ(with_checked_baseline(given, {}, "", ""), given) << metres;
   }
 }
 
-TEST(Baseline, OfOneCameraIsNotChecked) {
+TEST(Baseline, IsNotCheckedForOneCamera) {
   EXPECT_EQ(with_checked_baseline({}, {}, "", ""), Calibration{});
   EXPECT_THAT(refusal({}, 0.1), HasSubstr("one camera"));
 }
 
-TEST(Baseline, InCentimetresOrMillimetresIsRefusedWithTheLikelyOne) {
+TEST(Baseline, InCentimetresOrMillimetresIsRejectedWithACorrection) {
   EXPECT_THAT(refusal(pair_with_baseline(7.5)),
               ::testing::AllOf(HasSubstr("camchain.yaml"), HasSubstr("7.5 m"), HasSubstr("--baseline 0.075"),
                                HasSubstr("--baseline 7.5")));
@@ -51,7 +51,7 @@ TEST(Baseline, OfTensOfMetresOrMicrometresCannotBeConfirmed) {
   EXPECT_THAT(refusal(pair_with_baseline(7.5e-5)), ::testing::Not(HasSubstr("confirm")));
 }
 
-TEST(Baseline, ThatIsConfirmedReplacesTheLengthAndKeepsTheDirection) {
+TEST(Baseline, ReplacesTheLengthAndKeepsTheDirectionIfConfirmed) {
   const Calibration corrected = with_checked_baseline(pair_with_baseline(7.5), 0.075, "", "");
   EXPECT_LT(
       (corrected.right->right_from_left.translation - pair_with_baseline(0.075).right->right_from_left.translation)
@@ -60,7 +60,7 @@ TEST(Baseline, ThatIsConfirmedReplacesTheLengthAndKeepsTheDirection) {
   EXPECT_NEAR(baseline_of(with_checked_baseline(pair_with_baseline(7.5), 7.5, "", "")), 7.5, 1e-12);
 }
 
-TEST(Baseline, ThatIsNoLengthIsRefused) {
+TEST(Baseline, IsRejectedIfNotPositive) {
   EXPECT_THAT(refusal(pair_with_baseline(0.1), 0.0), HasSubstr("positive"));
   EXPECT_THAT(refusal(pair_with_baseline(0.0), 0.1), HasSubstr("direction"));
 }

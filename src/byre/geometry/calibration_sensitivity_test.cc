@@ -19,7 +19,7 @@ std::vector<Eigen::Vector3d> points_in_view(const Rig& rig) {
   return points;
 }
 
-TEST(CalibrationSensitivity, TellsWhereAnErrorOfTheCalibrationPutsAPoint) {
+TEST(CalibrationSensitivity, PredictsTheEffectOfACalibrationErrorOnAPoint) {
   const Calibration given = scene_calibration();
   const Rectification rectification = rectification_of(given);
   const CalibrationSensitivity sensitivity(given);
@@ -37,7 +37,7 @@ TEST(CalibrationSensitivity, TellsWhereAnErrorOfTheCalibrationPutsAPoint) {
   }
 }
 
-TEST(CalibrationSensitivity, OfOneCameraSaysNothingOfAnother) {
+TEST(CalibrationSensitivity, IsZeroForOtherCameras) {
   Calibration given = scene_calibration();
   given.right.reset();
   const auto jacobian = CalibrationSensitivity(given).at({100.0, 100.0, -1.0});
@@ -52,14 +52,14 @@ TEST(Changed, KeepsTheLengthOfTheBaseline) {
               inverse(given.right->right_from_left).translation.norm(), 1e-12);
 }
 
-TEST(Changed, ByNothingIsTheSameCamera) {
+TEST(Changed, EqualsTheCalibrationWithoutChange) {
   const Calibration given = scene_calibration();
   const Calibration same = changed(given, CalibrationVector::Zero());
   EXPECT_EQ(same.left, given.left);
   EXPECT_EQ(same.right->camera, given.right->camera);
 }
 
-TEST(RectifiedChange, MovesCornersToWhereTheTrueCalibrationHasThem) {
+TEST(RectifiedChange, MovesCornersToTheTrueCalibration) {
   const Calibration given = scene_calibration();
   const Calibration truth = changed(given, draw_error(7));
   const Rectification rectified_by_given = rectification_of(given), rectified_by_truth = rectification_of(truth);
@@ -74,7 +74,7 @@ TEST(RectifiedChange, MovesCornersToWhereTheTrueCalibrationHasThem) {
   }
 }
 
-TEST(RectifiedChange, TurnsTheRectifiedCameraAboutItsCentre) {
+TEST(RectifiedChange, RotatesTheRectifiedCameraAboutItsCentre) {
   const Calibration given = scene_calibration();
   const Calibration truth = changed(given, draw_error(7));
   const RectifiedChange change(given, truth);

@@ -64,7 +64,7 @@ void PrintTo(const Lens& lens, std::ostream* out) {
 
 class EveryCamera : public testing::TestWithParam<Lens> {};
 
-TEST_P(EveryCamera, ProjectsTheBearingOfAPixelBackOnToIt) {
+TEST_P(EveryCamera, InvertsTheProjection) {
   const Camera& camera = GetParam().camera;
   int tried = 0;
   for (double v = 0.5; v < camera.height; v += 23.0) {
@@ -80,7 +80,7 @@ TEST_P(EveryCamera, ProjectsTheBearingOfAPixelBackOnToIt) {
   EXPECT_GT(tried, 200);
 }
 
-TEST_P(EveryCamera, SeesTheSameDirectionAtEveryDepth) {
+TEST_P(EveryCamera, ProjectsADirectionToOnePixelAtEveryDepth) {
   const Camera& camera = GetParam().camera;
   const Eigen::Vector3d direction(0.3, -0.2, 1.0);
   ASSERT_TRUE(camera.project(direction).has_value());
@@ -88,13 +88,13 @@ TEST_P(EveryCamera, SeesTheSameDirectionAtEveryDepth) {
   EXPECT_THAT(camera.project(1e6 * direction), Optional(PointNear(*camera.project(direction), 1e-9)));
 }
 
-TEST_P(EveryCamera, SeesThePrincipalPointOnItsAxis) {
+TEST_P(EveryCamera, ProjectsItsAxisToThePrincipalPoint) {
   const Camera& camera = GetParam().camera;
   EXPECT_THAT(camera.project({0.0, 0.0, 2.0}), Optional(PointNear(Eigen::Vector2d(camera.cx, camera.cy), 1e-12)));
   EXPECT_THAT(camera.bearing({camera.cx, camera.cy}), Optional(PointNear(Eigen::Vector3d(0.0, 0.0, 1.0), 1e-12)));
 }
 
-TEST_P(EveryCamera, SeesNothingBehindOrBeside) {
+TEST_P(EveryCamera, RejectsPointsBehindAndBeside) {
   EXPECT_THAT(GetParam().camera.project({0.1, 0.1, -1.0}), Eq(std::nullopt));
   EXPECT_THAT(GetParam().camera.project({1.0, 0.0, 0.0}), Eq(std::nullopt));
   EXPECT_THAT(GetParam().camera.project({0.0, 0.0, std::nan("")}), Eq(std::nullopt));
@@ -111,7 +111,7 @@ TEST(PinholeCamera, DividesByDepth) {
 }
 
 // Expected pixels: the formulas of the models, written out.
-TEST(RadialTangentialCamera, FollowsBrownAndConrady) {
+TEST(RadialTangentialCamera, FollowsBrownConrady) {
   Camera camera{CameraModel::radial_tangential, 640, 480, 100.0, 100.0, 0.0, 0.0, {0.1, 0.01, 0.002, 0.003, 0.001}};
   const double x = 0.5, y = 0.4, s = 0.41;
   const double factor = 1.0 + 0.1 * s + 0.01 * s * s + 0.001 * s * s * s;
@@ -137,13 +137,13 @@ TEST(EquidistantCamera, AddsOddPowersOfTheAngle) {
               Optional(PointNear(Eigen::Vector2d(100.0 * bent, 0.0), 1e-12)));
 }
 
-TEST(CameraField, EndsWhereTheLensFoldsBack) {
+TEST(CameraField, EndsAtTheFoldOfTheLens) {
   const Camera camera = folding_at_radius_one();
   EXPECT_TRUE(camera.project({0.999, 0.0, 1.0}).has_value());
   EXPECT_FALSE(camera.project({1.001, 0.0, 1.0}).has_value());
 }
 
-TEST(CameraField, StaysClosedWhereTheLensGrowsAgainBeyondTheFold) {
+TEST(CameraField, StaysClosedBeyondTheFold) {
   Camera camera = folding_at_radius_one();
   // The slope 1 - 2.5 s + s^2 is negative only for s in (0.5, 2).
   camera.distortion = {-2.5 / 3.0, 1.0 / 5.0, 0.0, 0.0, 0.0};
@@ -152,14 +152,14 @@ TEST(CameraField, StaysClosedWhereTheLensGrowsAgainBeyondTheFold) {
   EXPECT_FALSE(camera.project({std::sqrt(2.1), 0.0, 1.0}).has_value());
 }
 
-TEST(CameraField, StaysOpenWhereTheLensOnlyFlattens) {
+TEST(CameraField, StaysOpenForALensThatOnlyFlattens) {
   Camera camera = folding_at_radius_one();
   // The slope 1 - 1.99 s + s^2 has its minimum of 0.01 near s = 1.
   camera.distortion = {-1.99 / 3.0, 1.0 / 5.0, 0.0, 0.0, 0.0};
   EXPECT_TRUE(camera.project({2.0, 0.0, 1.0}).has_value());
 }
 
-TEST(CameraField, HasNoBearingForPixelsThatNoDirectionReaches) {
+TEST(CameraField, IsEmptyForUnreachablePixels) {
   const Camera camera = folding_at_radius_one();  // the farthest pixel is 300 * 2 / 3 from the centre
   EXPECT_THAT(camera.bearing({camera.cx + 199.9, camera.cy}), Optional(testing::_));
   EXPECT_THAT(camera.bearing({camera.cx + 200.1, camera.cy}), Eq(std::nullopt));
@@ -173,7 +173,7 @@ TEST(Camera, ContainsItsBorderPixels) {
   EXPECT_FALSE(pinhole().contains({100.0, -0.5}));
 }
 
-TEST(CameraModel, HasAName) {
+TEST(CameraModel, HasNames) {
   EXPECT_EQ(to_string(CameraModel::pinhole), "pinhole");
   EXPECT_EQ(to_string(CameraModel::radial_tangential), "radial_tangential");
   EXPECT_EQ(to_string(CameraModel::equidistant), "equidistant");

@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-TEST(Decompositions, MakeUpTheMatrixAgain) {
+TEST(Decompositions, ReproduceTheMatrix) {
   const Eigen::Matrix3d any{{1.0, 2.0, -3.0}, {0.5, -1.0, 4.0}, {2.0, 0.0, 1.0}};
   const SingularValues singular = singular_values(any);
   EXPECT_TRUE((singular.left * singular.values.asDiagonal() * singular.right.transpose()).isApprox(any, 1e-12));
@@ -27,7 +27,7 @@ TEST(Decompositions, ReadTheLowerTriangleOfSymmetricMatrices) {
   EXPECT_TRUE(symmetric_eigenvalues(Eigen::Matrix2d{{2.0, 99.0}, {0.0, 1.0}}).isApprox(Eigen::Vector2d(1.0, 2.0)));
 }
 
-TEST(Decompositions, TellTheNearestRotationAndNeverAReflection) {
+TEST(Decompositions, ReturnTheNearestRotationWithoutReflection) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()));
   const Eigen::Matrix3d stretched = turn * Eigen::Vector3d(3.0, 2.0, 0.5).asDiagonal();
   EXPECT_TRUE(nearest_rotation(stretched).isApprox(turn, 1e-12));
@@ -35,7 +35,7 @@ TEST(Decompositions, TellTheNearestRotationAndNeverAReflection) {
   EXPECT_TRUE(nearest_rotation(reflected).isApprox(turn, 1e-12));
 }
 
-TEST(Decompositions, TurnOneDirectionIntoTheOtherEvenTheOpposite) {
+TEST(Decompositions, RotateBetweenTwoDirectionsIncludingOpposites) {
   const Eigen::Vector3d from(1.0, 2.0, 3.0);
   for (const Eigen::Vector3d& to : {Eigen::Vector3d(-2.0, 0.1, 1.0), from, Eigen::Vector3d(-from)}) {
     EXPECT_TRUE((rotation_between(from, to) * from.normalized()).isApprox(to.normalized(), 1e-12)) << to.transpose();

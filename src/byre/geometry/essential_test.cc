@@ -34,7 +34,7 @@ double distance_to_nearest(const std::vector<Eigen::Matrix3d>& candidates, const
   return nearest;
 }
 
-TEST(FivePointEssentials, HoldTheTrueMatrix) {
+TEST(FivePointEssentials, IncludeTheTrueMatrix) {
   for (std::uint32_t seed = 1; seed <= 50; ++seed) {
     const Pose motion = sideways_motion(0.4);
     const auto essentials = five_point_essentials(five_matches(motion, room_depth, seed));
@@ -42,7 +42,7 @@ TEST(FivePointEssentials, HoldTheTrueMatrix) {
   }
 }
 
-TEST(FivePointEssentials, HoldTheTrueMatrixForAForwardMotion) {
+TEST(FivePointEssentials, IncludeTheTrueMatrixForAForwardMotion) {
   const Pose motion{rotation_exp({0.01, 0.02, 0.0}), {0.02, 0.0, -1.0}};
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const auto essentials = five_point_essentials(five_matches(motion, room_depth, seed));
@@ -50,7 +50,7 @@ TEST(FivePointEssentials, HoldTheTrueMatrixForAForwardMotion) {
   }
 }
 
-TEST(FivePointEssentials, HoldTheTrueMatrixForAPlane) {
+TEST(FivePointEssentials, IncludeTheTrueMatrixForAPlane) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose motion = sideways_motion(0.4);
     const auto essentials = five_point_essentials(five_matches(motion, wall_depth, seed));
@@ -58,7 +58,7 @@ TEST(FivePointEssentials, HoldTheTrueMatrixForAPlane) {
   }
 }
 
-TEST(FivePointEssentials, AreEssentialAndExplainTheirMatches) {
+TEST(FivePointEssentials, AreEssentialAndFitTheirMatches) {
   const auto matches = five_matches(sideways_motion(0.4), room_depth, 7);
   const auto essentials = five_point_essentials(matches);
   ASSERT_FALSE(essentials.empty());
@@ -73,7 +73,7 @@ TEST(FivePointEssentials, AreEssentialAndExplainTheirMatches) {
   }
 }
 
-TEST(FivePointEssentials, AreFiniteWhenAllMatchesAreTheSame) {
+TEST(FivePointEssentials, AreFiniteForCoincidentMatches) {
   std::array<TwoViewMatch, 5> same;
   same.fill({{0.1, 0.2, 1.0}, {0.15, 0.2, 1.0}, 1e-3});
   for (const Eigen::Matrix3d& essential : five_point_essentials(same)) EXPECT_TRUE(essential.allFinite());
@@ -86,13 +86,13 @@ TEST(EssentialOf, VanishesOnMatchesOfTheMotion) {
   }
 }
 
-TEST(MotionsFromEssential, HoldTheMotionItWasMadeOf) {
+TEST(MotionsFromEssential, IncludeTheTrueMotion) {
   Pose motion = sideways_motion(1.0);
   const auto motions = motions_from_essential(essential_of(motion));
   EXPECT_THAT(motions, Contains(PoseNear(motion, 1e-9, 1e-7)));
 }
 
-TEST(MotionsFromEssential, HaveThatEssentialMatrixAndAreRigid) {
+TEST(MotionsFromEssential, AreRigidAndReproduceTheMatrix) {
   const Eigen::Matrix3d essential = essential_of(sideways_motion(1.0));
   for (const Pose& motion : motions_from_essential(essential)) {
     EXPECT_LT(distance_between(essential_of(motion), essential), 1e-9);

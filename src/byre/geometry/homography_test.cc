@@ -35,21 +35,21 @@ TEST(FitHomography, IsExactForAPlane) {
   EXPECT_LT(largest_transfer_error(*homography, matches), 1e-9);
 }
 
-TEST(FitHomography, NeedsNoMoreThanFourMatches) {
+TEST(FitHomography, NeedsOnlyFourMatches) {
   const auto matches = matches_of(sideways_motion(0.5), wall_depth, {.count = 40});
   const auto homography = fit_homography(std::span(matches).first(4));
   ASSERT_TRUE(homography);
   EXPECT_LT(largest_transfer_error(*homography, matches), 1e-7);
 }
 
-TEST(FitHomography, OfATurnOnTheSpotIsTheRotation) {
+TEST(FitHomography, IsTheRotationOfATurnOnTheSpot) {
   const Pose turn{rotation_exp({0.05, -0.1, 0.2}), Eigen::Vector3d::Zero()};
   const auto homography = fit_homography(matches_of(turn, room_depth, {.count = 20}));
   ASSERT_TRUE(homography);
   EXPECT_LT((*homography - turn.rotation.toRotationMatrix()).norm(), 1e-9);
 }
 
-TEST(FitHomography, AveragesNoiseOut) {
+TEST(FitHomography, AveragesNoise) {
   const auto noisy = matches_of(sideways_motion(0.5), wall_depth, {.count = 300, .pixel_sigma = 0.5});
   const auto exact = matches_of(sideways_motion(0.5), wall_depth, {.count = 300, .seed = 2});
   const auto homography = fit_homography(noisy);
@@ -63,7 +63,7 @@ TEST(FitHomography, IsEmptyWithFewerThanFourMatches) {
   EXPECT_FALSE(fit_homography({}));
 }
 
-TEST(FitHomography, IsEmptyForPointsOnALine) {
+TEST(FitHomography, IsEmptyForCollinearPoints) {
   const auto on_a_line = [](double at) {
     return TwoViewMatch{{at, 0.5 * at, 1.0}, {0.9 * at + 0.1, 0.45 * at, 1.0}, 1e-3};
   };
@@ -72,7 +72,7 @@ TEST(FitHomography, IsEmptyForPointsOnALine) {
   EXPECT_FALSE(fit_homography(std::vector<TwoViewMatch>(6, line.front())));
 }
 
-TEST(MotionsFromHomography, HoldTheTrueMotion) {
+TEST(MotionsFromHomography, IncludeTheTrueMotion) {
   for (const double metres : {0.1, 0.5, 1.0}) {
     const Pose motion = sideways_motion(metres);
     const auto homography = fit_homography(matches_of(motion, wall_depth, {.count = 50}));
@@ -83,7 +83,7 @@ TEST(MotionsFromHomography, HoldTheTrueMotion) {
   }
 }
 
-TEST(MotionsFromHomography, HoldTheTrueMotionTowardsAWall) {
+TEST(MotionsFromHomography, IncludeTheTrueMotionTowardsAWall) {
   const Pose motion{Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0}};
   const auto frontal = [](const Eigen::Vector3d&, double) { return 4.0; };
   const auto homography = fit_homography(matches_of(motion, frontal, {.count = 50}));
@@ -91,7 +91,7 @@ TEST(MotionsFromHomography, HoldTheTrueMotionTowardsAWall) {
   EXPECT_THAT(motions_from_homography(*homography), Contains(PoseNear(motion, 1e-6, 1e-6)));
 }
 
-TEST(MotionsFromHomography, AreNoneOfARotation) {
+TEST(MotionsFromHomography, AreEmptyForARotation) {
   EXPECT_THAT(motions_from_homography(rotation_exp({0.1, 0.2, -0.1}).toRotationMatrix()), IsEmpty());
 }
 

@@ -40,7 +40,7 @@ Scene random_scene(std::mt19937& random) {
   return seen_from({rotation_exp(rotation_vector), 10.0 * vector()}, points_in_camera);
 }
 
-TEST(PerspectiveThreePoint, FindsTheTruePoseAmongAtMostFour) {
+TEST(PerspectiveThreePoint, ReturnsAtMostFourPosesWithTheTrueOne) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
     const Scene scene = random_scene(random);
@@ -50,7 +50,7 @@ TEST(PerspectiveThreePoint, FindsTheTruePoseAmongAtMostFour) {
   }
 }
 
-TEST(PerspectiveThreePoint, EveryPoseExplainsTheBearings) {
+TEST(PerspectiveThreePoint, FitsTheBearingsInEveryPose) {
   std::mt19937 random(2);
   int ambiguous = 0;
   for (int i = 0; i < 500; ++i) {
@@ -66,7 +66,7 @@ TEST(PerspectiveThreePoint, EveryPoseExplainsTheBearings) {
   EXPECT_GT(ambiguous, 50);
 }
 
-TEST(PerspectiveThreePoint, FindsAllFourPosesOfASymmetricPyramid) {
+TEST(PerspectiveThreePoint, ReturnsAllFourPosesOfASymmetricPyramid) {
   // Equal sides and equal angles: one upright and three tilted poses.
   const Scene scene = seen_from(
       {}, {Eigen::Vector3d(1.0, 0.0, 2.0), Eigen::Vector3d(-0.5, 0.75, 2.0), Eigen::Vector3d(-0.5, -0.75, 2.0)});
@@ -75,7 +75,7 @@ TEST(PerspectiveThreePoint, FindsAllFourPosesOfASymmetricPyramid) {
   EXPECT_THAT(poses, Contains(PoseNear(Pose{}, 1e-9, 1e-9)));
 }
 
-TEST(PerspectiveThreePoint, IsIndifferentToTheScaleOfTheWorld) {
+TEST(PerspectiveThreePoint, IsIndependentOfTheScaleOfTheWorld) {
   for (const double scale : {1e-3, 1e3}) {
     const Scene scene = seen_from({rotation_exp({0.1, 0.2, 0.3}), scale * Eigen::Vector3d(1.0, 2.0, 3.0)},
                                   {scale * Eigen::Vector3d(1.0, 0.2, 3.0), scale * Eigen::Vector3d(-0.4, 0.7, 2.0),
@@ -85,19 +85,19 @@ TEST(PerspectiveThreePoint, IsIndifferentToTheScaleOfTheWorld) {
   }
 }
 
-TEST(PerspectiveThreePoint, HasNoPoseForPointsOnALine) {
+TEST(PerspectiveThreePoint, IsEmptyForCollinearPoints) {
   const Scene scene =
       seen_from({}, {Eigen::Vector3d(-1.0, 0.5, 3.0), Eigen::Vector3d(0.0, 0.5, 3.0), Eigen::Vector3d(2.0, 0.5, 3.0)});
   EXPECT_THAT(perspective_three_point(scene.points_in_world, scene.bearings), IsEmpty());
 }
 
-TEST(PerspectiveThreePoint, HasNoPoseForTheSamePointThrice) {
+TEST(PerspectiveThreePoint, IsEmptyForCoincidentPoints) {
   const Scene scene =
       seen_from({}, {Eigen::Vector3d(0.1, 0.5, 3.0), Eigen::Vector3d(0.1, 0.5, 3.0), Eigen::Vector3d(0.1, 0.5, 3.0)});
   EXPECT_THAT(perspective_three_point(scene.points_in_world, scene.bearings), IsEmpty());
 }
 
-TEST(PerspectiveThreePoint, HasNoPoseForBearingsThatNoPlacingExplains) {
+TEST(PerspectiveThreePoint, IsEmptyForInconsistentBearings) {
   // One ray for two different points, and the third at a right angle: the depths would be negative.
   const Triple points = {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(1.0, 0.0, 0.0),
                          Eigen::Vector3d(0.0, 0.1, 0.0)};

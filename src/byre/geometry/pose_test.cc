@@ -63,7 +63,7 @@ TEST_F(PoseLaws, LongChainsStayRotations) {
   EXPECT_NEAR(chain.rotation.norm(), 1.0, 1e-12);
 }
 
-TEST(RotationExp, TurnsRightHandedAboutItsAxis) {
+TEST(RotationExp, IsRightHanded) {
   const Eigen::Quaterniond quarter_about_z = rotation_exp({0.0, 0.0, kPi / 2.0});
   EXPECT_THAT(quarter_about_z * Eigen::Vector3d::UnitX(), PointNear(Eigen::Vector3d::UnitY(), 1e-15));
 }
@@ -78,7 +78,7 @@ TEST_P(RotationLogOfAngle, InvertsTheExponential) {
 INSTANTIATE_TEST_SUITE_P(FromNoneToAlmostAHalfTurn, RotationLogOfAngle,
                          testing::Values(0.0, 1e-12, 1e-9, 0.99e-4, 1.01e-4, 0.1, 1.0, 3.0, kPi - 1e-6));
 
-TEST(RotationLog, TakesTheShortWayRound) {
+TEST(RotationLog, ReturnsTheShortestRotation) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 1.0, 0.0).normalized();
   EXPECT_THAT(rotation_log(rotation_exp(1.5 * kPi * axis)), PointNear((-0.5 * kPi * axis).eval(), 1e-14));
 }
@@ -108,7 +108,7 @@ TEST(ExpPose, KeepsTranslationAndRotationApart) {
   EXPECT_THAT(exp_pose(motion).translation, PointNear(Eigen::Vector3d(1.0, 2.0, 3.0), 0.0));
 }
 
-TEST(Adjoint, MovesASmallMotionToTheOtherFrameToFirstOrder) {
+TEST(Adjoint, TransformsASmallMotionToFirstOrder) {
   std::mt19937 random(3);
   for (int i = 0; i < 20; ++i) {
     const Pose a_from_b = random_pose(random);
@@ -125,21 +125,21 @@ TEST(Adjoint, OfAProductIsTheProductOfAdjoints) {
   EXPECT_LT(difference.norm(), 1e-12);
 }
 
-TEST(AngleBetween, IsTheTurnFromOneToTheOther) {
+TEST(AngleBetween, IsTheRotationBetweenTwoPoses) {
   const Eigen::Quaterniond first = rotation_exp({0.7, 0.1, -0.3});
   const Eigen::Quaterniond second = first * rotation_exp({0.0, 0.25, 0.0});
   EXPECT_NEAR(angle_between(first, second), 0.25, 1e-14);
   EXPECT_NEAR(angle_between(second, first), 0.25, 1e-14);
 }
 
-TEST(Interpolate, MeetsItsEnds) {
+TEST(Interpolate, ReturnsTheEndpoints) {
   std::mt19937 random(5);
   const Pose first = random_pose(random), second = random_pose(random);
   EXPECT_THAT(interpolate(first, second, 0.0), PoseNear(first, 1e-14, 1e-14));
   EXPECT_THAT(interpolate(first, second, 1.0), PoseNear(second, 1e-14, 1e-14));
 }
 
-TEST(Interpolate, TurnsEvenlyAndExtrapolates) {
+TEST(Interpolate, RotatesUniformlyAndExtrapolates) {
   const Pose first{rotation_exp({0.0, 0.0, 0.2}), {1.0, 0.0, 0.0}};
   const Pose second{rotation_exp({0.0, 0.0, 0.6}), {3.0, 0.0, 4.0}};
   EXPECT_THAT(interpolate(first, second, 0.25),
@@ -148,7 +148,7 @@ TEST(Interpolate, TurnsEvenlyAndExtrapolates) {
               PoseNear(Pose{rotation_exp({0.0, 0.0, 1.0}), {5.0, 0.0, 8.0}}, 1e-14, 1e-14));
 }
 
-TEST(RotationFromMatrix, AcceptsARoundedRotationAndNothingElse) {
+TEST(RotationFromMatrix, AcceptsOnlyRoundedRotations) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
   const Eigen::Matrix3d rounded = (turn * 1e4).array().round() / 1e4;
   ASSERT_TRUE(rotation_from_matrix(rounded).has_value());

@@ -12,12 +12,12 @@ Rig stereo_rig() {
       .width = 752, .height = 480, .focal = 435.0, .cx = 367.5, .cy = 252.25, .baseline = 0.11, .body_from_camera = {}};
 }
 
-TEST(Rig, PutsThePrincipalPointOnTheAxis) {
+TEST(Rig, PlacesThePrincipalPointOnTheAxis) {
   const StereoPixel pixel = stereo_rig().project({0.0, 0.0, 4.35});
   EXPECT_THAT(pixel, PointNear(StereoPixel(367.5, 252.25, 11.0), 1e-12));
 }
 
-TEST(Rig, DisparityIsTheColumnLostInTheRightCamera) {
+TEST(Rig, DisparityIsTheColumnDifferenceToTheRightCamera) {
   const Rig rig = stereo_rig();
   const Eigen::Vector3d point_in_left(0.7, -0.2, 2.5);
   const Eigen::Vector3d point_in_right = point_in_left - Eigen::Vector3d(rig.baseline, 0.0, 0.0);
@@ -25,7 +25,7 @@ TEST(Rig, DisparityIsTheColumnLostInTheRightCamera) {
   EXPECT_NEAR(pixel.z(), pixel.x() - rig.project(point_in_right).x(), 1e-12);
 }
 
-TEST(Rig, TriangulatesWhatItProjects) {
+TEST(Rig, TriangulatesItsProjections) {
   const Eigen::Vector3d point_in_camera(0.7, -0.2, 2.5);
   EXPECT_THAT(stereo_rig().triangulate(stereo_rig().project(point_in_camera)), PointNear(point_in_camera, 1e-13));
 }
@@ -48,7 +48,7 @@ TEST(Rig, JacobianAgreesWithFiniteDifferences) {
   EXPECT_LT((rig.projection_jacobian(point_in_camera) - numeric).norm(), 1e-6);
 }
 
-TEST(Rig, WithoutABaselineIsMonocular) {
+TEST(Rig, IsMonocularWithoutABaseline) {
   Rig rig = stereo_rig();
   EXPECT_TRUE(rig.is_stereo());
   rig.baseline = 0.0;

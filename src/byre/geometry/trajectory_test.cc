@@ -30,7 +30,7 @@ TEST(ToSeconds, InvertsFromSeconds) {
   EXPECT_DOUBLE_EQ(to_seconds(from_seconds(1234.5678)), 1234.5678);
 }
 
-TEST(PoseAt, GivesASampleAtItsOwnTime) {
+TEST(PoseAt, ReturnsASampleAtItsOwnTime) {
   EXPECT_THAT(pose_at(with_a_gap(), milliseconds(1100), milliseconds(0)), Optional(PoseNear(at_x(1.0, 0.4), 0.0, 0.0)));
 }
 

@@ -28,14 +28,14 @@ TEST(Triangulate, IsExactOnCleanRays) {
   }
 }
 
-TEST(Triangulate, TakesBearingsOfAnyLength) {
+TEST(Triangulate, AcceptsBearingsOfAnyLength) {
   const Eigen::Vector3d point_in_first(0.4, -0.3, 3.0);
   const Eigen::Vector3d point_in_second = kSecondFromFirst * point_in_first;
   EXPECT_THAT(triangulate(0.01 * point_in_first, 70.0 * point_in_second, kSecondFromFirst, kMinAngle),
               Optional(PointNear(point_in_first, 1e-12)));
 }
 
-TEST(Triangulate, DoesNotDependOnWhichCameraIsFirst) {
+TEST(Triangulate, IsIndependentOfTheOrderOfCameras) {
   const Eigen::Vector3d point_in_first(0.4, -0.3, 3.0);
   const Eigen::Vector3d noisy_in_second = kSecondFromFirst * point_in_first + Eigen::Vector3d(0.004, 0.01, 0.0);
   const auto point = triangulate(point_in_first, noisy_in_second, kSecondFromFirst, kMinAngle);
@@ -61,7 +61,7 @@ TEST(Triangulate, StaysWithinAFewSigmasOfTheTruth) {
   }
 }
 
-TEST(Triangulate, LeansTowardsTheRayOfTheNearerCamera) {
+TEST(Triangulate, WeightsTheNearerCameraMore) {
   // The rays pass each other 0.1 m apart in y; the second camera is four times nearer.
   const Pose second_from_first{Eigen::Quaterniond::Identity(), {-3.0, -0.1, -3.0}};
   const Eigen::Vector3d along_first(0.75, 0.0, 1.0), along_second(0.0, 0.0, 1.0);

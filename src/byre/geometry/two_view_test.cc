@@ -30,7 +30,7 @@ TEST(EstimateTwoViewMotion, IsExactOnCleanMatches) {
   EXPECT_FALSE(found->is_planar);
 }
 
-TEST(EstimateTwoViewMotion, PutsPointsAtTheirDepthsInUnitsOfTheTranslation) {
+TEST(EstimateTwoViewMotion, ReturnsDepthsInUnitsOfTheTranslation) {
   const auto constant = [](const Eigen::Vector3d&, double random) { return random < 0.5 ? 3.0 : 6.0; };
   const auto matches = matches_of(sideways_motion(0.4), constant, {});
   const auto found = estimate_two_view_motion(matches).motion;
@@ -42,7 +42,7 @@ TEST(EstimateTwoViewMotion, PutsPointsAtTheirDepthsInUnitsOfTheTranslation) {
   }
 }
 
-TEST(EstimateTwoViewMotion, WithstandsNoiseAndOutliers) {
+TEST(EstimateTwoViewMotion, IsRobustToNoiseAndOutliers) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose truth = sideways_motion(0.5);
     const auto matches =
@@ -54,7 +54,7 @@ TEST(EstimateTwoViewMotion, WithstandsNoiseAndOutliers) {
   }
 }
 
-TEST(EstimateTwoViewMotion, FollowsAForwardMotion) {
+TEST(EstimateTwoViewMotion, EstimatesAForwardMotion) {
   const Pose truth{rotation_exp({0.01, 0.02, 0.0}), {0.05, 0.0, -1.0}};
   const auto matches = matches_of(truth, room_depth, {.count = 400, .pixel_sigma = 0.5, .outlier_ratio = 0.2});
   const auto found = estimate_two_view_motion(matches).motion;
@@ -62,7 +62,7 @@ TEST(EstimateTwoViewMotion, FollowsAForwardMotion) {
   EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1.0 * kDegree);
 }
 
-TEST(EstimateTwoViewMotion, RefusesATurnOnTheSpotAsSuch) {
+TEST(EstimateTwoViewMotion, RejectsATurnOnTheSpotAsRotation) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose turn{rotation_exp({0.02, 0.2, -0.05}), Eigen::Vector3d::Zero()};
     const TwoViewSceneOptions scene{.count = 300, .pixel_sigma = 0.7, .outlier_ratio = 0.3, .seed = seed};
@@ -70,23 +70,23 @@ TEST(EstimateTwoViewMotion, RefusesATurnOnTheSpotAsSuch) {
   }
 }
 
-TEST(EstimateTwoViewMotion, RefusesAStandingCameraAsATurn) {
+TEST(EstimateTwoViewMotion, RejectsAStandingCameraAsRotation) {
   EXPECT_EQ(failure_of(matches_of({}, room_depth, {.pixel_sigma = 0.5})), TwoViewFailure::rotation_only);
 }
 
-TEST(EstimateTwoViewMotion, RefusesAMotionTooSmallForDepths) {
+TEST(EstimateTwoViewMotion, RejectsAMotionTooSmallForDepths) {
   for (const double metres : {0.01, 0.03, 0.05}) {
     const auto failure = failure_of(matches_of(sideways_motion(metres), room_depth, {.pixel_sigma = 0.3}));
     EXPECT_THAT(failure, testing::AnyOf(TwoViewFailure::rotation_only, TwoViewFailure::small_parallax)) << metres;
   }
 }
 
-TEST(EstimateTwoViewMotion, SaysThatTheParallaxIsTooSmall) {
+TEST(EstimateTwoViewMotion, ReportsSmallParallax) {
   EXPECT_EQ(failure_of(matches_of(sideways_motion(0.05), room_depth, {})), TwoViewFailure::small_parallax);
 }
 
 // The other motion with the same homography has half of the wall behind the cameras.
-TEST(EstimateTwoViewMotion, TellsAMotionAlongAWall) {
+TEST(EstimateTwoViewMotion, EstimatesAMotionAlongAWall) {
   const auto wall_in_front = [](const Eigen::Vector3d&, double) { return 4.0; };
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {0.6, 0.0, 0.0}};
@@ -98,7 +98,7 @@ TEST(EstimateTwoViewMotion, TellsAMotionAlongAWall) {
   }
 }
 
-TEST(EstimateTwoViewMotion, SaysThatAMotionTowardsAPlaneIsAmbiguous) {
+TEST(EstimateTwoViewMotion, ReportsPlanarAmbiguity) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {-0.4, 0.0, -0.4}};
     const TwoViewSceneOptions scene{.count = 300, .pixel_sigma = 0.5, .seed = seed};
@@ -106,7 +106,7 @@ TEST(EstimateTwoViewMotion, SaysThatAMotionTowardsAPlaneIsAmbiguous) {
   }
 }
 
-TEST(EstimateTwoViewMotion, TellsAMotionTowardsAPlaneByWhatStandsInFrontOfIt) {
+TEST(EstimateTwoViewMotion, ResolvesAPlaneByPointsInFrontOfIt) {
   const auto furnished = [](const Eigen::Vector3d& ray, double random) {
     return wall_depth(ray, random) * (random < 0.25 ? 0.5 + random : 1.0);
   };
@@ -119,18 +119,18 @@ TEST(EstimateTwoViewMotion, TellsAMotionTowardsAPlaneByWhatStandsInFrontOfIt) {
   }
 }
 
-TEST(EstimateTwoViewMotion, RefusesTooFewMatches) {
+TEST(EstimateTwoViewMotion, RejectsTooFewMatches) {
   const auto matches = matches_of(sideways_motion(0.4), room_depth, {.count = 99});
   EXPECT_EQ(failure_of(matches), TwoViewFailure::too_few_matches);
   EXPECT_EQ(failure_of({}), TwoViewFailure::too_few_matches);
 }
 
-TEST(EstimateTwoViewMotion, RefusesMatchesThatHaveNoMotionInCommon) {
+TEST(EstimateTwoViewMotion, RejectsInconsistentMatches) {
   const auto matches = matches_of(sideways_motion(0.4), room_depth, {.count = 150, .outlier_ratio = 1.0});
   EXPECT_EQ(failure_of(matches), TwoViewFailure::no_common_motion);
 }
 
-TEST(EstimateTwoViewMotion, GivesTheSameAnswerForTheSameSeed) {
+TEST(EstimateTwoViewMotion, IsDeterministicForASeed) {
   const auto matches = matches_of(sideways_motion(0.4), room_depth, {.pixel_sigma = 0.5, .outlier_ratio = 0.3});
   const auto first = estimate_two_view_motion(matches).motion;
   const auto second = estimate_two_view_motion(matches).motion;
@@ -140,7 +140,7 @@ TEST(EstimateTwoViewMotion, GivesTheSameAnswerForTheSameSeed) {
   EXPECT_EQ(first->points_in_first, second->points_in_first);
 }
 
-TEST(RefineMotion, FindsTheLeastOfTheErrors) {
+TEST(RefineMotion, MinimisesTheErrors) {
   const auto matches = matches_of(sideways_motion(0.4), room_depth, {.pixel_sigma = 0.5});
   const auto cost_of = [&](const Pose& motion) {
     double cost = 0.0;
@@ -163,7 +163,7 @@ TEST(RefineMotion, FindsTheLeastOfTheErrors) {
   }
 }
 
-TEST(DirectionSigma, TellsHowFarTheDirectionIsOff) {
+TEST(DirectionSigma, EstimatesTheErrorOfTheDirection) {
   double squared_sum = 0.0;
   constexpr int kTrials = 30;
   for (std::uint32_t seed = 1; seed <= kTrials; ++seed) {
@@ -176,7 +176,7 @@ TEST(DirectionSigma, TellsHowFarTheDirectionIsOff) {
   EXPECT_LT(squared_sum / kTrials, 2.0);
 }
 
-TEST(DirectionSigma, IsLargerWhereTheCameraHasMovedLess) {
+TEST(DirectionSigma, IsLargerForASmallerMotion) {
   const auto sigma_after = [](double metres) {
     const Pose motion = sideways_motion(metres);
     return direction_sigma(motion, matches_of(motion, room_depth, {.pixel_sigma = 0.5}));
@@ -184,7 +184,7 @@ TEST(DirectionSigma, IsLargerWhereTheCameraHasMovedLess) {
   EXPECT_GT(sigma_after(0.1), 2.0 * sigma_after(0.4));
 }
 
-TEST(DirectionSigma, IsInfiniteWhereNothingTellsTheDirection) {
+TEST(DirectionSigma, IsInfiniteForAnUnconstrainedDirection) {
   const Pose motion = sideways_motion(0.4);
   EXPECT_FALSE(std::isfinite(direction_sigma(motion, {})));
   EXPECT_FALSE(std::isfinite(direction_sigma(motion, matches_of(motion, room_depth, {.count = 4}))));

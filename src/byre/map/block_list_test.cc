@@ -13,20 +13,20 @@ BlockList<int> counted() {
   return list;
 }
 
-TEST(BlockList, HoldsWhatIsPutIntoIt) {
+TEST(BlockList, ReturnsAddedElements) {
   const BlockList<int> list = counted();
   ASSERT_EQ(list.size(), static_cast<std::size_t>(kMany));
   for (int i = 0; i < kMany; ++i) EXPECT_EQ(list[static_cast<std::size_t>(i)], i);
 }
 
-TEST(BlockList, MovesNothingWhenItGrows) {
+TEST(BlockList, KeepsAddressesWhenItGrows) {
   BlockList<int> list;
   const int* const first = &list.emplace_back();
   for (int i = 0; i < kMany; ++i) list.emplace_back();
   EXPECT_EQ(&list[0], first);
 }
 
-TEST(BlockList, IsCopied) {
+TEST(BlockList, IsCopyable) {
   const BlockList<int> list = counted();
   BlockList<int> copy = list;
   copy.emplace_back() = -1;
@@ -37,7 +37,7 @@ TEST(BlockList, IsCopied) {
   EXPECT_EQ(copy[kMany - 1], kMany - 1);
 }
 
-TEST(BlockList, BeginsWithSoMany) {
+TEST(BlockList, StartsWithTheGivenSize) {
   EXPECT_EQ(BlockList<int>(0).size(), 0u);
   const BlockList<int> list(300);
   EXPECT_EQ(list.size(), 300u);

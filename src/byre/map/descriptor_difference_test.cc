@@ -28,7 +28,7 @@ Descriptor read_back(const std::vector<std::byte>& bytes, const Descriptor& from
   return read;
 }
 
-TEST(DescriptorDifference, GivesBackEveryDescriptor) {
+TEST(DescriptorDifference, ReadsBackEveryDescriptor) {
   std::mt19937_64 random(1);
   for (const int flipped : {0, 1, 2, 10, 30, 60, 120, 256}) {
     const Descriptor from = random_descriptor(random);
@@ -41,7 +41,7 @@ TEST(DescriptorDifference, GivesBackEveryDescriptor) {
   }
 }
 
-TEST(DescriptorDifference, TakesAByteForTheSameDescriptorAndHalfAByteForABit) {
+TEST(DescriptorDifference, UsesOneByteForEqualityAndHalfAByteForABit) {
   std::mt19937_64 random(2);
   const Descriptor from = random_descriptor(random);
   ByteWriter writer;
@@ -55,7 +55,7 @@ TEST(DescriptorDifference, TakesAByteForTheSameDescriptorAndHalfAByteForABit) {
   EXPECT_EQ(read_back(other.bytes(), from), descriptor);
 }
 
-TEST(DescriptorDifference, IsRefusedWhereItIsNotWrittenAsItWouldBe) {
+TEST(DescriptorDifference, IsRejectedIfNotCanonical) {
   const Descriptor from{};
   const auto bytes = [](std::initializer_list<int> values) {
     std::vector<std::byte> result;

@@ -29,7 +29,7 @@ DrivenGround::Stand stand(const DrivenGround& ground, const Pose& level_from_bod
   return ground.stand_of(kMapFromLevel * level_from_body);
 }
 
-TEST(DrivenGround, TellsHeightAndTiltOnALevelFloor) {
+TEST(DrivenGround, MeasuresHeightAndTiltOnALevelFloor) {
   const auto ground = DrivenGround::under(map_of(driven()));
   ASSERT_TRUE(ground);
   EXPECT_LT(ground->tilt_spread(), 0.5 * kDegree);
@@ -43,14 +43,14 @@ TEST(DrivenGround, TellsHeightAndTiltOnALevelFloor) {
   EXPECT_LT(stand(*ground, body).height_sigma, 0.03);
 }
 
-TEST(DrivenGround, KnowsLessOfHeightFarFromThePath) {
+TEST(DrivenGround, IsLessCertainInHeightFarFromThePath) {
   const auto ground = DrivenGround::under(map_of(driven()));
   ASSERT_TRUE(ground);
   EXPECT_GT(stand(*ground, on_floor(14.0, 12.0, 0.0)).height_sigma,
             stand(*ground, on_floor(14.0, 3.0, 0.0)).height_sigma);
 }
 
-TEST(DrivenGround, FindsTheNearestPlaceOfThePathNearAndFar) {
+TEST(DrivenGround, FindsTheNearestPathPositionAtAnyDistance) {
   const std::vector<Pose> path = driven();
   const auto ground = DrivenGround::under(map_of(path));
   ASSERT_TRUE(ground);
@@ -77,11 +77,11 @@ TEST(DrivenGround, FollowsRamps) {
   EXPECT_LT(stand(*ground, on_floor(20.0, 1.0, 0.0)).height, -0.8) << "under the upper floor";
 }
 
-TEST(DrivenGround, LiesUnderMapsWhoseWheelsShookALittle) {
+TEST(DrivenGround, IsFoundForMapsOfSlightlyShakingWheels) {
   EXPECT_TRUE(DrivenGround::under(map_of(shaken(0.01, 0.01))));
 }
 
-TEST(DrivenGround, LiesNotUnderMapsOfACameraThatWasCarriedOrFlown) {
+TEST(DrivenGround, IsNotFoundForHandheldOrFlownMaps) {
   EXPECT_FALSE(DrivenGround::under(map_of(shaken(0.02, 0.05)))) << "tilted in the hand";
   EXPECT_FALSE(DrivenGround::under(map_of(shaken(0.1, 0.01)))) << "held up and down";
   std::vector<Pose> flown = driven();
@@ -90,7 +90,7 @@ TEST(DrivenGround, LiesNotUnderMapsOfACameraThatWasCarriedOrFlown) {
   EXPECT_FALSE(DrivenGround::under(map_of(flown)));
 }
 
-TEST(DrivenGround, LiesNotUnderMapsThatAreTooShortToTell) {
+TEST(DrivenGround, IsNotFoundForShortMaps) {
   std::vector<Pose> path = driven();
   path.resize(10);
   EXPECT_FALSE(DrivenGround::under(map_of(path)));

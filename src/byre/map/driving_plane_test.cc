@@ -20,7 +20,7 @@ double tilt_sigma(const DrivingPlane& plane, const Eigen::Vector3d& direction_in
   return std::sqrt(direction_in_map.dot(plane.up_information.inverse() * direction_in_map));
 }
 
-TEST(DrivingPlane, IsThatOfThePathHoweverTheCameraIsHeld) {
+TEST(DrivingPlane, IsThatOfThePathForAnyCameraOrientation) {
   FloorPlanScene scene;
   for (const double pitch : {-10.0, 0.0, 30.0, 60.0}) {
     const DrivingPlane plane =
@@ -37,7 +37,7 @@ TEST(DrivingPlane, IsFoundOnAnUnevenFloor) {
   EXPECT_NEAR(plane.thickness, 0.02, 0.005);
 }
 
-TEST(DrivingPlane, TakesTheTurnAboutAStraightPathFromTheCamera) {
+TEST(DrivingPlane, TakesTheRollAboutAStraightPathFromTheCamera) {
   FloorPlanScene scene;
   const DrivingPlane level = fit_driving_plane(scene.path_in_map(0.0), scene.up_of_rig_in_map(0.0, 20.0 * kDegree));
   EXPECT_LT(tilt_error(level, scene), 0.1 * kDegree);
@@ -45,7 +45,7 @@ TEST(DrivingPlane, TakesTheTurnAboutAStraightPathFromTheCamera) {
   EXPECT_NEAR(tilt_error(rolled, scene), 2.0 * kDegree, 0.1 * kDegree);
 }
 
-TEST(DrivingPlane, KnowsHowFarItMayBeTilted) {
+TEST(DrivingPlane, EstimatesItsTiltSigma) {
   FloorPlanScene scene;
   const DrivingPlane plane = fit_driving_plane(scene.path_in_map(0.0), scene.up_of_rig_in_map());
   const Eigen::Vector3d along = (plane.path_in_map[30] - plane.path_in_map[0]).normalized();
@@ -53,14 +53,14 @@ TEST(DrivingPlane, KnowsHowFarItMayBeTilted) {
   EXPECT_GT(tilt_sigma(plane, along.cross(plane.up_in_map)), 2.0 * kDegree);
 }
 
-TEST(DrivingPlane, IsWhatTheCameraSaysWhereNothingMoved) {
+TEST(DrivingPlane, IsTakenFromTheCameraWithoutMotion) {
   const FloorPlanScene scene;
   const DrivingPlane plane = fit_driving_plane({Eigen::Vector3d(1.0, 2.0, 3.0)}, scene.up_of_rig_in_map());
   EXPECT_LT(tilt_error(plane, scene), 1e-9);
   EXPECT_EQ(plane.point_in_map, Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST(DrivingPlane, OfAMapIsThatOfItsBody) {
+TEST(DrivingPlane, UsesTheBodyOfAMap) {
   FloorPlanScene scene;
   const std::vector<Eigen::Vector3d> path = scene.path_in_map(0.0);
   const std::optional<DrivingPlane> plane = fit_driving_plane(scene.driven_map(path));
@@ -70,7 +70,7 @@ TEST(DrivingPlane, OfAMapIsThatOfItsBody) {
   EXPECT_LT((plane->path_in_map.back() - path.back()).norm(), 1e-9);
 }
 
-TEST(DrivingPlane, IsNotThereWithoutKeyframesOrAnUp) {
+TEST(DrivingPlane, IsEmptyWithoutKeyframesOrUpDirection) {
   EXPECT_FALSE(fit_driving_plane(Map(Origin::offline)).has_value());
   Map map(Origin::offline);
   map.add_rig({});

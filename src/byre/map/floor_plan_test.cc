@@ -31,7 +31,7 @@ std::vector<PlanDoubt> doubts_of(FloorPlanScene& scene, const std::vector<PlanCo
   return register_on_plan(correspondences, scene.plane(), Scale::fixed)->doubts;
 }
 
-TEST(FloorPlan, IsFoundExactlyFromSixExactPicks) {
+TEST(FloorPlan, IsRegisteredExactlyFromSixExactPicks) {
   FloorPlanScene scene;
   const auto fit = register_on_plan(scene.correspondences(6), scene.plane(), Scale::fixed);
   ASSERT_TRUE(fit.has_value());
@@ -55,7 +55,7 @@ class Worst {
 };
 
 // With the path noise of SLAM and a slightly tilted camera.
-TEST(FloorPlan, IsWithinACentimetreAndATenthOfADegreeFromSixExactPicksAndARealPath) {
+TEST(FloorPlan, ErrsByLessThanACentimetreWithExactPicksOnARealPath) {
   Worst metres("worst_position_error_m");
   Worst degrees("worst_rotation_error_deg");
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
@@ -74,7 +74,7 @@ TEST(FloorPlan, IsWithinACentimetreAndATenthOfADegreeFromSixExactPicksAndARealPa
   }
 }
 
-TEST(FloorPlan, IsWithinFiveCentimetresFromPicksWithThreeCentimetresOfNoise) {
+TEST(FloorPlan, ErrsByLessThanFiveCentimetresWithNoisyPicks) {
   Worst on_path("worst_path_error_m");
   Worst in_corner("worst_corner_error_m");
   double sum_in_corners = 0.0;
@@ -93,7 +93,7 @@ TEST(FloorPlan, IsWithinFiveCentimetresFromPicksWithThreeCentimetresOfNoise) {
   EXPECT_LT(sum_in_corners / kTrials, 0.04) << "metres, in the worst corner of the barn";
 }
 
-TEST(FloorPlan, NamesTheOneOfEightPicksThatIsWrong) {
+TEST(FloorPlan, ReportsOneWrongPickOfEight) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     FloorPlanScene scene(seed);
     auto correspondences = scene.correspondences(8, kPickNoise);
@@ -109,7 +109,7 @@ TEST(FloorPlan, NamesTheOneOfEightPicksThatIsWrong) {
   }
 }
 
-TEST(FloorPlan, IsFoundAmongThreePicksOfEightThatAreSwapped) {
+TEST(FloorPlan, IsRegisteredDespiteThreeSwappedPicksOfEight) {
   FloorPlanScene scene;
   auto correspondences = scene.correspondences(8, kPickNoise);
   std::swap(correspondences[1].point_in_plan, correspondences[5].point_in_plan);
@@ -121,7 +121,7 @@ TEST(FloorPlan, IsFoundAmongThreePicksOfEightThatAreSwapped) {
   EXPECT_THAT(fit->doubts, ElementsAre(PlanDoubt::disagreement)) << "three of eight are too many to be mistakes";
 }
 
-TEST(FloorPlan, GivesTheScaleToAMapThatHasNone) {
+TEST(FloorPlan, ProvidesTheScaleOfANonMetricMap) {
   FloorPlanScene scene(1, 3.7);
   const auto exact = register_on_plan(scene.correspondences(6), scene.plane(), Scale::free);
   ASSERT_TRUE(exact.has_value());
@@ -137,7 +137,7 @@ TEST(FloorPlan, GivesTheScaleToAMapThatHasNone) {
   EXPECT_GT(fit->registration.covariance(6, 6), 0.0);
 }
 
-TEST(FloorPlan, KeepsItsPrecisionInAProjectedCoordinateSystem) {
+TEST(FloorPlan, KeepsPrecisionInAProjectedCoordinateSystem) {
   FloorPlanScene scene;
   auto correspondences = scene.correspondences(6);
   const Eigen::Vector2d offset(500000.0, 5400000.0);
@@ -151,7 +151,7 @@ TEST(FloorPlan, KeepsItsPrecisionInAProjectedCoordinateSystem) {
   EXPECT_TRUE(far->registration.covariance.isApprox(near->registration.covariance, 1e-6));
 }
 
-TEST(FloorPlan, IsHigherByTheHeightOfTheBody) {
+TEST(FloorPlan, IsRaisedByTheHeightOfTheBody) {
   FloorPlanScene scene;
   PlanRegistrationOptions options;
   options.body_height = 0.4;
@@ -160,7 +160,7 @@ TEST(FloorPlan, IsHigherByTheHeightOfTheBody) {
   EXPECT_NEAR((fit->registration.plan_from_map * scene.path_in_map()[5]).z(), 0.4, 1e-6);
 }
 
-TEST(FloorPlan, TakesTheTiltThatAStraightPathLeavesOpenFromPicksOfManyHeights) {
+TEST(FloorPlan, TakesTheTiltOfAStraightPathFromPicksOfManyHeights) {
   FloorPlanScene scene;
   auto correspondences = scene.correspondences(12);
   const DrivingPlane plane = fit_driving_plane(scene.path_in_map(0.0), scene.up_of_rig_in_map(3.0 * kDegree));
@@ -172,7 +172,7 @@ TEST(FloorPlan, TakesTheTiltThatAStraightPathLeavesOpenFromPicksOfManyHeights) {
 }
 
 // Mean squared normalised error of a corner; two coordinates.
-TEST(FloorPlan, KnowsHowWellItIsKnown) {
+TEST(FloorPlan, EstimatesAConsistentCovariance) {
   constexpr int kTrials = 300;
   const Eigen::Vector3d corner(40.0, 6.0, 0.0);
   double sum = 0.0;
@@ -188,7 +188,7 @@ TEST(FloorPlan, KnowsHowWellItIsKnown) {
   EXPECT_LT(sum / kTrials, 2.8);
 }
 
-TEST(FloorPlan, IsKnownWorseWhereResidualsAreLarger) {
+TEST(FloorPlan, IsLessCertainWithLargerResiduals) {
   FloorPlanScene scene;
   const auto good = register_on_plan(scene.correspondences(12, 0.03), scene.plane(), Scale::fixed);
   const auto poor = register_on_plan(scene.correspondences(12, 0.3), scene.plane(), Scale::fixed);
@@ -198,7 +198,7 @@ TEST(FloorPlan, IsKnownWorseWhereResidualsAreLarger) {
             20.0 * plan_covariance_at(good->registration, centre_in_map).trace());
 }
 
-TEST(FloorPlan, IsNotFoundFromLessThanTwoPlaces) {
+TEST(FloorPlan, IsEmptyForLessThanTwoPositions) {
   FloorPlanScene scene;
   EXPECT_FALSE(register_on_plan({}, scene.plane(), Scale::fixed).has_value());
   EXPECT_FALSE(register_on_plan(scene.correspondences(1), scene.plane(), Scale::fixed).has_value());
@@ -212,7 +212,7 @@ TEST(FloorPlan, IsDoubtedForTwoPicks) {
   EXPECT_THAT(doubts_of(scene, scene.correspondences(2)), ElementsAre(PlanDoubt::few_points));
 }
 
-TEST(FloorPlan, IsDoubtedForPicksInALine) {
+TEST(FloorPlan, IsDoubtedForCollinearPicks) {
   FloorPlanScene scene;
   auto correspondences = scene.correspondences(6);
   for (std::size_t i = 0; i < correspondences.size(); ++i) {
@@ -235,21 +235,21 @@ TEST(FloorPlan, IsDoubtedForPicksInACorner) {
   EXPECT_THAT(doubts_of(scene, correspondences), ElementsAre(PlanDoubt::in_a_corner));
 }
 
-TEST(FloorPlan, IsDoubtedWhenPicksDoNotAgree) {
+TEST(FloorPlan, IsDoubtedForInconsistentPicks) {
   FloorPlanScene scene;
   EXPECT_THAT(doubts_of(scene, scene.correspondences(8, 2.0)), Contains(PlanDoubt::disagreement));
   FloorPlanScene of_other_scale(1, 1.2);
   EXPECT_THAT(doubts_of(of_other_scale, of_other_scale.correspondences(8)), Contains(PlanDoubt::disagreement));
 }
 
-TEST(FloorPlan, IsDoubtedForAPathThatLiesInNoPlane) {
+TEST(FloorPlan, IsDoubtedForANonPlanarPath) {
   FloorPlanScene scene;
   const auto correspondences = scene.correspondences(6);
   const DrivingPlane flight = fit_driving_plane(scene.path_in_map(10.0, 2.0), scene.up_of_rig_in_map());
   EXPECT_THAT(register_on_plan(correspondences, flight, Scale::fixed)->doubts, ElementsAre(PlanDoubt::uneven_path));
 }
 
-TEST(FloorPlan, SaysOfEveryDoubtWhatToDo) {
+TEST(FloorPlan, ReportsARemedyForEachDoubt) {
   for (const PlanDoubt doubt : {PlanDoubt::few_points, PlanDoubt::in_line, PlanDoubt::in_a_corner,
                                 PlanDoubt::disagreement, PlanDoubt::uneven_path}) {
     EXPECT_THAT(std::string(to_string(doubt)), Not(IsEmpty()));
@@ -264,7 +264,7 @@ PlanFit fit_with(int inliers, int outliers) {
   return fit;
 }
 
-TEST(ResidualOf, CountsOutliersWhereTheyMayBeTheRightOnes) {
+TEST(ResidualOf, IncludesOutliersIfTheyMayBeRight) {
   EXPECT_EQ(residual_of(fit_with(6, 0)), 0.05);
   EXPECT_EQ(residual_of(fit_with(6, 2)), 0.05) << "two of eight are told apart";
   EXPECT_FALSE(is_far_off(fit_with(6, 2)));

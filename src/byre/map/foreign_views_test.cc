@@ -52,7 +52,7 @@ class ForeignViews : public ::testing::Test {
   PointId first, second;
 };
 
-TEST_F(ForeignViews, AreKeptApartFromObservations) {
+TEST_F(ForeignViews, AreSeparateFromObservations) {
   EXPECT_TRUE(add(kOld, 2, first));
   EXPECT_TRUE(add(kOlder, 1, first));
   EXPECT_TRUE(add(kOld, 0, second));
@@ -63,14 +63,14 @@ TEST_F(ForeignViews, AreKeptApartFromObservations) {
   EXPECT_THAT(online.covisible_keyframes(keyframe, 10), IsEmpty());
 }
 
-TEST_F(ForeignViews, AreVisitedBesideObservations) {
+TEST_F(ForeignViews, AreVisitedAfterObservations) {
   add(kOld, 2, first);
   std::vector<Observation> visited;
   MapView(online).visit_views(first, [&](const Observation& observation) { visited.push_back(observation); });
   EXPECT_THAT(visited, ElementsAre(Observation{keyframe, 0}, Observation{kOld, 2}));
 }
 
-TEST_F(ForeignViews, RefuseWhatContradictsThem) {
+TEST_F(ForeignViews, RejectContradictions) {
   add(kOld, 2, first);
   EXPECT_FALSE(add(kOld, 2, second)) << "the feature sees another point";
   EXPECT_FALSE(add(kOld, 3, first)) << "the keyframe sees the point with another feature";
@@ -79,13 +79,13 @@ TEST_F(ForeignViews, RefuseWhatContradictsThem) {
   EXPECT_THAT(online.foreign_views(first), SizeIs(1));
 }
 
-TEST_F(ForeignViews, AreNotForAnOfflineMap) {
+TEST_F(ForeignViews, AreRejectedByAnOfflineMap) {
   Map offline(Origin::offline);
   const PointId point = add_sighted_point(offline, {offline.add_keyframe(keyframe_with_features()), 0});
   EXPECT_FALSE(offline.add_foreign_view({{{Origin::online, 0}, 0}, {point}}));
 }
 
-TEST_F(ForeignViews, GoWithTheirPoint) {
+TEST_F(ForeignViews, AreRemovedWithTheirPoint) {
   add(kOld, 2, first);
   online.remove_observation({keyframe, 0});  // its last observation; foreign views do not keep a point
   EXPECT_EQ(online.find_point(first), nullptr);
@@ -93,7 +93,7 @@ TEST_F(ForeignViews, GoWithTheirPoint) {
   EXPECT_TRUE(add(kOld, 2, second));
 }
 
-TEST_F(ForeignViews, CanBeTakenAway) {
+TEST_F(ForeignViews, AreRemovable) {
   add(kOld, 2, first);
   add(kOlder, 2, first);
   online.remove_foreign_view({kOld, 2});
@@ -102,7 +102,7 @@ TEST_F(ForeignViews, CanBeTakenAway) {
   EXPECT_EQ(online.point_of_foreign_view({kOld, 2}), std::nullopt);
 }
 
-TEST(FindFaults, NamesAForeignViewWithSpoiltValues) {
+TEST(FindFaults, ReportsAForeignViewWithInvalidValues) {
   Map map(Origin::online);
   map.add_rig({});
   const PointId point = add_sighted_point(map, {map.add_keyframe(keyframe_with_features()), 0});
@@ -131,7 +131,7 @@ class StandaloneCopy : public ForeignViews {
   KeyframeId other;
 };
 
-TEST_F(StandaloneCopy, MakesItsOwnOfTheOfflinePointsItSees) {
+TEST_F(StandaloneCopy, CopiesTheObservedOfflinePoints) {
   const Map copy = standalone_copy({&offline, online});
   ASSERT_EQ(copy.point_count(), 3);
   const PointId adopted = *copy.find_keyframe(other)->sightings[3].point;
@@ -145,7 +145,7 @@ TEST_F(StandaloneCopy, MakesItsOwnOfTheOfflinePointsItSees) {
   EXPECT_THAT(copy.covisible_keyframes(other, 10), SizeIs(1));
 }
 
-TEST_F(StandaloneCopy, KnowsNothingOfTheOtherMap) {
+TEST_F(StandaloneCopy, HasNoReferencesToTheOtherMap) {
   const Map copy = standalone_copy({&offline, online});
   EXPECT_THAT(find_faults(copy), IsEmpty());
   EXPECT_THAT(copy.observations(seen), IsEmpty());
@@ -153,7 +153,7 @@ TEST_F(StandaloneCopy, KnowsNothingOfTheOtherMap) {
   EXPECT_THAT(copy.foreign_observations({Origin::offline, 0}), IsEmpty());
 }
 
-TEST_F(StandaloneCopy, LeavesBothMapsAsTheyAre) {
+TEST_F(StandaloneCopy, LeavesBothMaps) {
   standalone_copy({&offline, online});
   EXPECT_THAT(online.observations(seen), SizeIs(2));
   EXPECT_THAT(online.foreign_views(first), SizeIs(1));

@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-TEST(KeyframePath, IsOfTheBodyInOrderOfTime) {
+TEST(KeyframePath, ReturnsBodyPositionsInOrderOfTime) {
   const Pose body_from_camera{rotation_exp({0.1, 0.2, 0.3}), {0.4, 0.5, 0.6}};
   const Pose world_from_camera{rotation_exp({0.0, 0.0, 1.0}), {1.0, 2.0, 3.0}};
   Map map(Origin::offline);

@@ -33,7 +33,7 @@ MapBytes with_other_byte(MapBytes bytes, std::size_t place, std::mt19937_64& ran
   return bytes;
 }
 
-TEST(LargeMapFile, IsTheSameAfterASecondSave) {
+TEST(LargeMapFile, IsUnchangedByASecondSave) {
   for (const std::uint64_t seed : {1, 2}) {
     const StoredMap stored = StoredMapScene(kManyKeyframes, kFeaturesEach, seed).stored();
     const MapBytes bytes = write_map(stored);
@@ -44,7 +44,7 @@ TEST(LargeMapFile, IsTheSameAfterASecondSave) {
   }
 }
 
-TEST(LargeMapFile, IsRefusedOrKeptAsItIsWhereItIsDamaged) {
+TEST(LargeMapFile, IsRejectedOrPreservedIfDamaged) {
   const MapBytes sound = write_map(StoredMapScene(kManyKeyframes, kFeaturesEach).stored());
   std::mt19937_64 random(1);
   int refused = 0;
@@ -71,7 +71,7 @@ std::size_t place_in(const std::string& fault) {
 }
 
 // Faults that only a whole section shows are excluded; they are reported at its beginning.
-TEST(LargeMapFile, TellsTheFirstOfTwoFaults) {
+TEST(LargeMapFile, ReportsTheFirstOfTwoFaults) {
   const MapBytes sound = write_map(StoredMapScene(kManyKeyframes, kFeaturesEach).stored());
   std::mt19937_64 random(2);
   for (const char* const name : {"features", "observations", "descriptors"}) {

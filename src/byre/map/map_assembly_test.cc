@@ -31,7 +31,7 @@ StoredMap with_map(StoredMap stored, Map map) {
   return stored;
 }
 
-TEST(MapFromParts, EqualsTheMapThatGrew) {
+TEST(MapFromParts, EqualsTheIncrementalMap) {
   const StoredMapScene scene(12, 30);
   const Map map(Origin::offline, scene.parts());
   const Map expected = grown(scene.parts());
@@ -41,7 +41,7 @@ TEST(MapFromParts, EqualsTheMapThatGrew) {
   for (const KeyframeId id : expected.keyframe_ids()) EXPECT_EQ(covisible(map, id), covisible(expected, id));
 }
 
-TEST(MapFromParts, KnowsTheChildrenOfItsKeyframes) {
+TEST(MapFromParts, RestoresTheChildrenOfKeyframes) {
   const StoredMapScene scene;
   Map map(Origin::offline, scene.parts());
   ASSERT_EQ(map.find_keyframe({Origin::offline, 2})->parent->number, 1u);

@@ -40,19 +40,19 @@ std::vector<std::string> faults_of_point(const std::function<void(MapPoint&)>& s
   return find_faults(map);
 }
 
-TEST(FindFaults, FindsNoneInASoundMap) {
+TEST(FindFaults, AcceptsASoundMap) {
   EXPECT_THAT(find_faults(Map(Origin::online)), IsEmpty());
   EXPECT_THAT(faults_of(sound_keyframe()), IsEmpty());
   EXPECT_THAT(faults_of_point([](MapPoint&) {}), IsEmpty());
 }
 
-TEST(FindFaults, NamesAKeyframeWithoutRig) {
+TEST(FindFaults, ReportsAKeyframeWithoutRig) {
   Keyframe keyframe = sound_keyframe();
   keyframe.rig = 1;
   EXPECT_THAT(faults_of(keyframe), ElementsAre("keyframe online 0 has no rig"));
 }
 
-TEST(FindFaults, NamesAKeyframeWithoutProperPose) {
+TEST(FindFaults, ReportsAnInvalidKeyframePose) {
   Keyframe stretched = sound_keyframe();
   stretched.camera_from_world.rotation.coeffs() *= 2.0;
   EXPECT_THAT(faults_of(stretched), ElementsAre(HasSubstr("an invalid pose")));
@@ -61,19 +61,19 @@ TEST(FindFaults, NamesAKeyframeWithoutProperPose) {
   EXPECT_THAT(faults_of(nowhere), ElementsAre(HasSubstr("an invalid pose")));
 }
 
-TEST(FindFaults, NamesAKeyframeWithMoreSightingsThanFeatures) {
+TEST(FindFaults, ReportsMoreSightingsThanFeatures) {
   Keyframe keyframe = sound_keyframe();
   keyframe.sightings.resize(2);
   EXPECT_THAT(faults_of(keyframe), ElementsAre(HasSubstr("one sighting per feature")));
 }
 
-TEST(FindFaults, NamesAPointThatNobodySees) {
+TEST(FindFaults, ReportsAnUnobservedPoint) {
   Map map(Origin::offline);
   map.add_point({});
   EXPECT_THAT(find_faults(map), Contains("point offline 0 is not observed by any keyframe"));
 }
 
-TEST(FindFaults, NamesAPointWithSpoiltValues) {
+TEST(FindFaults, ReportsAPointWithInvalidValues) {
   EXPECT_THAT(
       faults_of_point([](MapPoint& point) { point.position_in_world.y() = std::numeric_limits<double>::infinity(); }),
       ElementsAre(HasSubstr("no finite position")));

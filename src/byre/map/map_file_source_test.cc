@@ -83,7 +83,7 @@ std::string fault_when_looked_at(MapBytes bytes) {
   }
 }
 
-TEST(MapFileSource, GivesWhatReadingAllGives) {
+TEST(MapFileSource, EqualsReadingTheWholeMap) {
   for (const int keyframes : {1, 7, kHundreds}) {
     WatchedFile file(scene_of_size(keyframes));
     const StoredMap opened = file.open();
@@ -93,7 +93,7 @@ TEST(MapFileSource, GivesWhatReadingAllGives) {
   }
 }
 
-TEST(MapFileSource, GivesTheSameWords) {
+TEST(MapFileSource, ReturnsTheSameWords) {
   WatchedFile file(scene_of_size(7));
   const StoredMap opened = file.open();
   std::size_t visited = 0;
@@ -109,7 +109,7 @@ TEST(MapFileSource, OpensAnEmptyMap) {
   EXPECT_THAT(find_faults(file.open()), IsEmpty());
 }
 
-TEST(MapFileSource, ReadsOnlyWhatIsLookedAtAndThatOnce) {
+TEST(MapFileSource, ReadsOnlyAccessedPartsAndOnlyOnce) {
   WatchedFile file(scene_of_size(kHundreds, 100));
   const StoredMap opened = file.open();
   EXPECT_LT(file.read, file.bytes.size() / 5);
@@ -126,7 +126,7 @@ TEST(MapFileSource, ReadsOnlyWhatIsLookedAtAndThatOnce) {
   EXPECT_EQ(file.read, after);
 }
 
-TEST(MapFileSource, KnowsWhereKeyframesAreWithoutReadingThem) {
+TEST(MapFileSource, ReturnsKeyframePosesWithoutReadingThem) {
   WatchedFile file(scene_of_size(7));
   const StoredMap opened = file.open();
   const std::size_t before = file.read;
@@ -142,7 +142,7 @@ TEST(MapFileSource, KnowsWhereKeyframesAreWithoutReadingThem) {
   EXPECT_EQ(opened.map.find_point({Origin::online, 0}), nullptr);
 }
 
-TEST(MapFileSource, IsReadAsAWholeByTheFirstChange) {
+TEST(MapFileSource, IsReadCompletelyByTheFirstChange) {
   WatchedFile file(scene_of_size(7));
   const auto change = [](StoredMap& stored) {
     stored.map.remove_point({Origin::offline, 3});
@@ -160,7 +160,7 @@ TEST(MapFileSource, IsReadAsAWholeByTheFirstChange) {
   EXPECT_EQ(write_map(opened), file.bytes) << "the one that was copied";
 }
 
-TEST(MapFileSource, FindsEveryFlippedBitWhenItIsLookedAt) {
+TEST(MapFileSource, DetectsEveryFlippedBitOnAccess) {
   MapBytes bytes = scene_of_size(5);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const std::byte bit{static_cast<unsigned char>(1u << (i % 8))};
@@ -170,7 +170,7 @@ TEST(MapFileSource, FindsEveryFlippedBitWhenItIsLookedAt) {
   }
 }
 
-TEST(MapFileSource, TellsWhereADamagedPartLies) {
+TEST(MapFileSource, ReportsThePositionOfADamagedPart) {
   MapBytes bytes = scene_of_size(5);
   const TableEntry section = section_of(bytes, "patches");
   bytes[section.offset + section.size - 1] ^= std::byte{1};
@@ -181,7 +181,7 @@ TEST(MapFileSource, TellsWhereADamagedPartLies) {
               AllOf(StartsWith("barn.byre: section features at byte "), HasSubstr("wrong checksum")));
 }
 
-TEST(MapFileSource, ReplacesADamagedKeyframeByOneThatSeesNothing) {
+TEST(MapFileSource, ReplacesADamagedKeyframeByAnEmptyOne) {
   MapBytes bytes = scene_of_size(5);
   const StoredMap sound = read_map(bytes, "");
   const TableEntry section = section_of(bytes, "patches");
@@ -204,7 +204,7 @@ TEST(MapFileSource, ReplacesADamagedKeyframeByOneThatSeesNothing) {
   EXPECT_THROW(changed.remove_keyframe(opened.map.keyframe_ids().back()), InputError) << "a change reads all of it";
 }
 
-TEST(MapFileSource, RefusesEveryShorterFile) {
+TEST(MapFileSource, RejectsEveryTruncatedFile) {
   const MapBytes bytes = scene_of_size(3);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(size);
@@ -213,7 +213,7 @@ TEST(MapFileSource, RefusesEveryShorterFile) {
 }
 
 // Arbitrary values with correct checksums cause either no error or one that names the location.
-TEST(MapFileSource, WithstandsValuesThatNoMapHas) {
+TEST(MapFileSource, SurvivesInvalidValues) {
   const MapBytes sound = scene_of_size(12);
   std::mt19937_64 random(1);
   int refused = 0;
@@ -233,7 +233,7 @@ TEST(MapFileSource, WithstandsValuesThatNoMapHas) {
 }
 
 // Bytes of section observers: number of observations of the first point, then keyframe and feature of each.
-TEST(MapFileSource, RefusesObserversThatAreNone) {
+TEST(MapFileSource, RejectsInvalidObservers) {
   const auto fault_with = [](std::size_t place, int value) {
     MapBytes bytes = scene_of_size(5);
     bytes[section_of(bytes, "observers").offset + place] = static_cast<std::byte>(value);
@@ -247,7 +247,7 @@ TEST(MapFileSource, RefusesObserversThatAreNone) {
   EXPECT_THAT(fault_with(2, 5), HasSubstr("point 0 does not list a keyframe that observes it"));
 }
 
-TEST(MapFileSource, GivesAllThreadsTheSame) {
+TEST(MapFileSource, ReturnsTheSameToAllThreads) {
   WatchedFile file(scene_of_size(kHundreds));
   const StoredMap opened = file.open();
   constexpr std::size_t kThreads = 4;
@@ -267,7 +267,7 @@ TEST(MapFileSource, GivesAllThreadsTheSame) {
   EXPECT_THAT(sums, Each(look_at_all(read_map(file.bytes, "").map)));
 }
 
-TEST(MapFileSource, RefusesASmallFileAtOnceThatIsDamagedWhereMissionsMayNotCome) {
+TEST(MapFileSource, RejectsADamagedSmallFileOnOpening) {
   const fs::path path = fs::path(testing::TempDir()) / ("damaged_source_" + std::to_string(getpid()) + ".byre");
   MapBytes bytes = scene_of_size(7);
   const std::vector<SectionSize> sizes = section_sizes(bytes, "");
@@ -288,7 +288,7 @@ TEST(MapFileSource, RefusesASmallFileAtOnceThatIsDamagedWhereMissionsMayNotCome)
   fs::remove(path);
 }
 
-TEST(MapFileSource, OutlivesItsNameAndTellsThatTheFileHasBecomeShorter) {
+TEST(MapFileSource, OutlivesItsNameAndReportsTruncation) {
   const fs::path path = fs::path(testing::TempDir()) / ("map_source_" + std::to_string(getpid()) + ".byre");
   const MapBytes bytes = scene_of_size(7);
   std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));

@@ -32,7 +32,7 @@ int largest_difference(const Patch& a, const Patch& b) {
   return largest;
 }
 
-TEST(MapFile, GivesBackWhatTheSceneHolds) {
+TEST(MapFile, ReadsBackTheScene) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
   EXPECT_THAT(find_faults(scene.stored()), IsEmpty());
@@ -50,7 +50,7 @@ TEST(MapFile, GivesBackWhatTheSceneHolds) {
   EXPECT_EQ(read.recordings.at(1).calibration.left.distortion[1], -0.002);
 }
 
-TEST(MapFile, GivesBackEveryKeyframeWithItsSightingsRounded) {
+TEST(MapFile, ReadsBackKeyframesWithRoundedSightings) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
   ASSERT_EQ(read.map.keyframe_ids(), scene.stored().map.keyframe_ids());
@@ -74,7 +74,7 @@ TEST(MapFile, GivesBackEveryKeyframeWithItsSightingsRounded) {
   }
 }
 
-TEST(MapFile, GivesBackEveryFeatureRoundedButItsDescriptor) {
+TEST(MapFile, ReadsBackRoundedFeaturesWithExactDescriptors) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
   for (const KeyframeId id : read.map.keyframe_ids()) {
@@ -95,7 +95,7 @@ TEST(MapFile, GivesBackEveryFeatureRoundedButItsDescriptor) {
   }
 }
 
-TEST(MapFile, GivesBackEveryPointRounded) {
+TEST(MapFile, ReadsBackRoundedPoints) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");
   ASSERT_EQ(read.map.point_ids(), scene.stored().map.point_ids());
@@ -113,7 +113,7 @@ TEST(MapFile, GivesBackEveryPointRounded) {
   }
 }
 
-TEST(MapFile, TakesAFewBytesForWhatIsSeenOfAPoint) {
+TEST(MapFile, UsesFewBytesPerObservation) {
   const StoredMapScene scene(12, 400, 1);  // each point has three observations
   const MapBytes bytes = write_map(scene.stored());
   const auto observations = static_cast<std::size_t>(12 * 399);
@@ -122,14 +122,14 @@ TEST(MapFile, TakesAFewBytesForWhatIsSeenOfAPoint) {
   EXPECT_LE(section_of(bytes, "patches").size, 113u * 12 * 200);  // half of the patches are noise
 }
 
-TEST(MapFile, IsTheSameAfterASecondSave) {
+TEST(MapFile, IsUnchangedByASecondSave) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     const MapBytes bytes = write_map(StoredMapScene(7, 40, seed).stored());
     EXPECT_EQ(write_map(read_map(bytes, "file")), bytes);
   }
 }
 
-TEST(MapFile, KeepsWhereTheMapLiesOnAPlan) {
+TEST(MapFile, KeepsThePlanRegistration) {
   const StoredMapScene scene;
   const MapBytes bytes = write_map(scene.stored_with_plan());
   const StoredMap read = read_map(bytes, "file");
@@ -144,7 +144,7 @@ TEST(MapFile, KeepsWhereTheMapLiesOnAPlan) {
   EXPECT_EQ(write_map(read), bytes);
 }
 
-TEST(MapFile, IsOfTheNewestFormatWithAPlanAndWithout) {
+TEST(MapFile, UsesTheNewestFormatWithAndWithoutAPlan) {
   EXPECT_EQ(value_at<std::uint32_t>(scene_bytes(), kFormatAt), 7u);
   EXPECT_EQ(value_at<std::uint32_t>(write_map(StoredMapScene().stored_with_plan()), kFormatAt), 7u);
   EXPECT_FALSE(read_map(scene_bytes(), "file").plan.has_value());
@@ -197,26 +197,26 @@ TEST(MapFile, KeepsTheReadoutTimesOfRollingShutters) {
   }
 }
 
-TEST(MapFile, RefusesAReadoutTimeThatIsToldTwice) {
+TEST(MapFile, RejectsARedundantReadoutTime) {
   MapBytes bytes = scene_bytes();
   put_at(bytes, section_of(bytes, "shutters").offset + 8, 0.01);
   refresh_checksums(bytes);
   EXPECT_THAT(refusal_of(bytes), HasSubstr("has a readout time other than the given calibration"));
 }
 
-TEST(MapFile, RefusesAReadoutTimeThatIsNone) {
+TEST(MapFile, RejectsAnInvalidReadoutTime) {
   StoredMap stored = StoredMapScene().stored();
   stored.recordings.front().calibration.readout_time = 5.0;
   EXPECT_THAT(refusal_of(write_map(stored)), HasSubstr("has an invalid readout time"));
 }
 
-TEST(MapFile, RefusesARefinedCalibrationThatIsNone) {
+TEST(MapFile, RejectsAnInvalidRefinedCalibration) {
   StoredMap stored = with_refined_calibration(StoredMapScene().stored());
   stored.recordings.front().refined->calibration.left.fx = -1.0;
   EXPECT_THROW(read_map(write_map(stored), "file"), InputError);
 }
 
-TEST(MapFile, RefusesAPlanInAFileOfTheFirstFormat) {
+TEST(MapFile, RejectsAPlanInAFileOfTheFirstFormat) {
   MapBytes bytes = write_map(StoredMapScene().stored_with_plan());
   put_at(bytes, kFormatAt, std::uint32_t{1});
   refresh_checksums(bytes);
@@ -230,7 +230,7 @@ TEST(MapFile, KeepsAnEmptyMap) {
   EXPECT_THAT(find_faults(read), IsEmpty());
 }
 
-TEST(MapFile, WritesAKeyframeWithoutFeaturesAsOneWithNone) {
+TEST(MapFile, WritesANullFeatureSetAsAnEmptyOne) {
   const StoredMapScene scene;
   MapParts parts = scene.parts();
   parts.keyframes.back().frame.features.reset();
@@ -239,7 +239,7 @@ TEST(MapFile, WritesAKeyframeWithoutFeaturesAsOneWithNone) {
   EXPECT_EQ(write_map(stored), scene_bytes());
 }
 
-TEST(MapFile, TellsTheSizesOfItsSections) {
+TEST(MapFile, ReportsTheSizesOfItsSections) {
   const MapBytes bytes = scene_bytes();
   std::size_t sum = 0;
   std::vector<std::string> names;
@@ -253,13 +253,13 @@ TEST(MapFile, TellsTheSizesOfItsSections) {
                                  "observers", "lookup"));
 }
 
-TEST(MapFile, RefusesWhatIsNoMap) {
+TEST(MapFile, RejectsOtherFiles) {
   const std::string message = "barn.byre: is not a map of byre: the signature is missing (give a map file saved by ";
   EXPECT_THAT(refusal_of({}), StartsWith(message));
   EXPECT_THAT(refusal_of(MapBytes(1000)), StartsWith(message));
 }
 
-TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
+TEST(MapFile, RejectsANewerFormatWithARemedy) {
   MapBytes bytes = scene_bytes();
   put_at(bytes, kFormatAt, std::uint32_t{8});
   refresh_checksums(bytes);
@@ -268,14 +268,14 @@ TEST(MapFile, RefusesANewerFormatAndSaysWhatToDo) {
             "(use the version of byre that wrote the map, or a newer one)");
 }
 
-TEST(MapFile, RefusesAFormatThatNeverWas) {
+TEST(MapFile, RejectsAnInvalidFormat) {
   MapBytes bytes = scene_bytes();
   put_at(bytes, kFormatAt, std::uint32_t{0});
   refresh_checksums(bytes);
   EXPECT_THAT(refusal_of(bytes), StartsWith("barn.byre: header at byte 12: has the invalid format 0"));
 }
 
-TEST(MapFile, RefusesEveryShorterFile) {
+TEST(MapFile, RejectsEveryTruncatedFile) {
   const MapBytes bytes = scene_bytes();
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(size);
@@ -283,7 +283,7 @@ TEST(MapFile, RefusesEveryShorterFile) {
   }
 }
 
-TEST(MapFile, RefusesEveryFlippedBit) {
+TEST(MapFile, RejectsEveryFlippedBit) {
   MapBytes bytes = scene_bytes();
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const std::byte bit{static_cast<unsigned char>(1u << (i % 8))};
@@ -293,7 +293,7 @@ TEST(MapFile, RefusesEveryFlippedBit) {
   }
 }
 
-TEST(MapFile, NamesTheSectionWhoseChecksumIsWrong) {
+TEST(MapFile, ReportsTheSectionWithAWrongChecksum) {
   const MapBytes sound = write_map(StoredMapScene().stored_with_plan());
   for (std::size_t i = 0; i < section_count(sound); ++i) {
     MapBytes bytes = sound;
@@ -305,7 +305,7 @@ TEST(MapFile, NamesTheSectionWhoseChecksumIsWrong) {
   }
 }
 
-TEST(MapFile, RefusesAHeaderThatDoesNotFitTheFile) {
+TEST(MapFile, RejectsAnInconsistentHeader) {
   const MapBytes sound = scene_bytes();
   const auto refusal_with = [&sound](std::size_t place, auto value) {
     MapBytes bytes = sound;
@@ -326,7 +326,7 @@ TEST(MapFile, RefusesAHeaderThatDoesNotFitTheFile) {
   EXPECT_THAT(refusal_of(bytes), HasSubstr("header at byte 672: has a wrong checksum"));
 }
 
-TEST(MapFile, RefusesBytesThatBelongToNoSection) {
+TEST(MapFile, RejectsBytesOutsideOfAllSections) {
   MapBytes bytes = scene_bytes();
   bytes.push_back({});
   put_at(bytes, kFileSizeAt, std::uint64_t{bytes.size()});
@@ -345,14 +345,14 @@ class MapFileOnDisk : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(MapFileOnDisk, HoldsTheMap) {
+TEST_F(MapFileOnDisk, ContainsTheMap) {
   const StoredMapScene scene;
   save_map(scene.stored(), folder_ / "barn.byre");
   EXPECT_EQ(read_file(folder_ / "barn.byre"), scene_bytes());
   EXPECT_EQ(write_map(load_map(folder_ / "barn.byre")), scene_bytes());
 }
 
-TEST_F(MapFileOnDisk, GivesTheMapBackThatWasWritten) {
+TEST_F(MapFileOnDisk, ReadsBackTheWrittenMap) {
   StoredMap stored = StoredMapScene().stored();
   save_and_reread(stored, folder_ / "barn.byre");
   EXPECT_EQ(read_file(folder_ / "barn.byre"), scene_bytes());
@@ -361,14 +361,14 @@ TEST_F(MapFileOnDisk, GivesTheMapBackThatWasWritten) {
   EXPECT_EQ(write_map(stored), scene_bytes()) << "a map that could not be written is lost";
 }
 
-TEST_F(MapFileOnDisk, TellsOfAPlanWithoutReadingTheMap) {
+TEST_F(MapFileOnDisk, ReportsAPlanWithoutReadingTheMap) {
   save_map(StoredMapScene().stored(), folder_ / "barn.byre");
   EXPECT_FALSE(load_plan_registration(folder_ / "barn.byre").has_value());
   save_map(StoredMapScene().stored_with_plan(), folder_ / "barn.byre");
   EXPECT_EQ(load_plan_registration(folder_ / "barn.byre").value().plan, "barn 3, ground floor");
 }
 
-TEST_F(MapFileOnDisk, IsNotReplacedByAnUnsoundMap) {
+TEST_F(MapFileOnDisk, IsNotReplacedByAnInvalidMap) {
   const StoredMapScene scene;
   save_map(scene.stored(), folder_ / "barn.byre");
   StoredMap unsound = scene.stored();

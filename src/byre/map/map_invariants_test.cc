@@ -163,11 +163,11 @@ const std::vector<BrokenInvariant>& broken_invariants() {
 
 class BrokenMap : public testing::TestWithParam<BrokenInvariant> {};
 
-TEST_P(BrokenMap, HasAFaultInWords) {
+TEST_P(BrokenMap, IsReportedByFindFaults) {
   EXPECT_THAT(find_faults(broken_map(GetParam())), Contains(HasSubstr(GetParam().fault)));
 }
 
-TEST_P(BrokenMap, IsRefusedByItsSection) {
+TEST_P(BrokenMap, IsRejectedWithItsSection) {
   EXPECT_THAT(refusal_of(write_map(broken_map(GetParam()))),
               StartsWith("barn.byre: section " + std::string(GetParam().section) + " at byte "));
 }
@@ -175,7 +175,7 @@ TEST_P(BrokenMap, IsRefusedByItsSection) {
 INSTANTIATE_TEST_SUITE_P(Invariants, BrokenMap, testing::ValuesIn(broken_invariants()),
                          [](const auto& test) { return test.param.name; });
 
-TEST(StoredMapFaults, NameWhatAFileCannotEvenHold) {
+TEST(StoredMapFaults, ReportInvariantsThatAFileCannotViolate) {
   const StoredMapScene scene;
   StoredMap stored = scene.stored();
   MapParts parts = scene.parts();
@@ -252,7 +252,7 @@ const std::vector<BrokenValue>& broken_values() {
 
 class BrokenSection : public testing::TestWithParam<BrokenValue> {};
 
-TEST_P(BrokenSection, IsRefused) {
+TEST_P(BrokenSection, IsRejected) {
   const auto& [name, section, refusal, place, value] = GetParam();
   MapBytes bytes = write_map(StoredMapScene().stored());
   std::ranges::copy(value, bytes.begin() + static_cast<std::ptrdiff_t>(section_of(bytes, section).offset + place));
@@ -264,7 +264,7 @@ TEST_P(BrokenSection, IsRefused) {
 INSTANTIATE_TEST_SUITE_P(Values, BrokenSection, testing::ValuesIn(broken_values()),
                          [](const auto& test) { return test.param.name; });
 
-TEST(BrokenSections, AreRefusedWhenKeypointsAreNotInGridOrder) {
+TEST(BrokenSections, AreRejectedIfKeypointsAreNotInGridOrder) {
   MapBytes bytes = write_map(StoredMapScene().stored());
   const std::size_t first = section_of(bytes, "features").offset + 4;
   put_at(bytes, first + 1, std::uint16_t{319 * 64});  // moves the first keypoint to the opposite corner
@@ -273,7 +273,7 @@ TEST(BrokenSections, AreRefusedWhenKeypointsAreNotInGridOrder) {
   EXPECT_THAT(refusal_of(bytes), HasSubstr("keyframe 0 has keypoints that are not sorted by grid cell"));
 }
 
-TEST(BrokenSections, AreRefusedWhenAKeyframeWithoutFeaturesHasWords) {
+TEST(BrokenSections, AreRejectedIfAKeyframeWithoutFeaturesHasWords) {
   MapBytes bytes = write_map(StoredMapScene().stored());
   const TableEntry words = section_of(bytes, "words");
   bytes[words.offset + words.size - 1] = std::byte{1};
@@ -281,7 +281,7 @@ TEST(BrokenSections, AreRefusedWhenAKeyframeWithoutFeaturesHasWords) {
   EXPECT_THAT(refusal_of(bytes), HasSubstr("has words for a keyframe without features"));
 }
 
-TEST(BrokenSections, AreRefusedWhenTheyAreTooShortOrTooLong) {
+TEST(BrokenSections, AreRejectedIfTooShortOrTooLong) {
   const MapBytes sound = write_map(StoredMapScene().stored_with_plan());
   for (std::size_t i = 0; i < section_count(sound); ++i) {
     const TableEntry section = table_entry(sound, i);
@@ -305,7 +305,7 @@ struct PlanDefect {
 
 class DefectivePlan : public testing::TestWithParam<PlanDefect> {};
 
-TEST_P(DefectivePlan, AreFoundAndNotRead) {
+TEST_P(DefectivePlan, IsReportedAndRejected) {
   StoredMap stored = StoredMapScene().stored_with_plan();
   GetParam().breaks(*stored.plan);
   const std::string fault = std::string("the plan ") + GetParam().fault;
@@ -326,7 +326,7 @@ INSTANTIATE_TEST_SUITE_P(Values, DefectivePlan,
                                                     [](auto& plan) { plan.covariance(2, 2) = -1.0; }}),
                          [](const auto& test) { return test.param.name; });
 
-TEST(DefectivePlans, AreFoundByAnUnsymmetricCovariance) {
+TEST(DefectivePlans, AreReportedForAnAsymmetricCovariance) {
   StoredMap stored = StoredMapScene().stored_with_plan();
   stored.plan->covariance(0, 6) += 1e-3;
   EXPECT_THAT(find_faults(stored), ElementsAre("the plan has an asymmetric covariance"));
@@ -347,7 +347,7 @@ StoredMap crowd(std::uint32_t keyframes) {
   return stored;
 }
 
-TEST(BrokenSections, AreRefusedWhenKeyframesThatShareAPointOutgrowTheFile) {
+TEST(BrokenSections, AreRejectedIfCovisibleKeyframesExceedTheFile) {
   EXPECT_EQ(refusal_of(write_map(crowd(700))), "");
   EXPECT_THAT(refusal_of(write_map(crowd(1000))), HasSubstr("has more covisible keyframes than a file of this"));
 }

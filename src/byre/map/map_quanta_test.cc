@@ -14,7 +14,7 @@ float between(std::mt19937_64& random, float low, float high) {
   return std::uniform_real_distribution<float>(low, high)(random);
 }
 
-TEST(MapQuanta, KeepPixelsToAHundredAndTwentyEighth) {
+TEST(MapQuanta, RoundPixelsToOne128th) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 10000; ++i) {
     const float coordinate = between(random, -0.5f, 751.5f);
@@ -25,7 +25,7 @@ TEST(MapQuanta, KeepPixelsToAHundredAndTwentyEighth) {
   }
 }
 
-TEST(MapQuanta, LeavePixelsInTheirCellOfAGrid) {
+TEST(MapQuanta, KeepPixelsInTheirGridCell) {
   for (const float edge : {16.0f, 32.0f, 700.0f, 1232.0f}) {
     const float before = std::nextafter(edge, 0.0f);
     EXPECT_LT(coordinate_of(pixel_code(before, 1241)), edge);
@@ -33,13 +33,13 @@ TEST(MapQuanta, LeavePixelsInTheirCellOfAGrid) {
   }
 }
 
-TEST(MapQuanta, LeavePixelsInTheirImage) {
+TEST(MapQuanta, KeepPixelsInTheImage) {
   EXPECT_GE(coordinate_of(pixel_code(-0.5f, 640)), -0.5f);
   EXPECT_LE(coordinate_of(pixel_code(639.5f, 640)), 639.5f);
   EXPECT_LE(coordinate_of(pixel_code(16383.5f, 16384)), 16383.5f);
 }
 
-TEST(MapQuanta, KeepOffsetsToATwoHundredAndFiftySixth) {
+TEST(MapQuanta, RoundOffsetsToOne256th) {
   std::mt19937_64 random(2);
   for (int i = 0; i < 10000; ++i) {
     const float offset = between(random, -40.0f, 40.0f);
@@ -55,7 +55,7 @@ TEST(MapQuanta, KeepOffsetsToATwoHundredAndFiftySixth) {
   }
 }
 
-TEST(MapQuanta, GiveEverySigmaItsCodeAgain) {
+TEST(MapQuanta, ReproduceTheCodeOfEverySigma) {
   for (int code = 1; code < 256; ++code) {
     EXPECT_EQ(sigma_code(sigma_of_code(static_cast<std::uint8_t>(code))), code);
   }
@@ -64,7 +64,7 @@ TEST(MapQuanta, GiveEverySigmaItsCodeAgain) {
   EXPECT_GT(sigma_of_code(sigma_code(1e30f)), 200.0f);
 }
 
-TEST(MapQuanta, KeepNumbersWithFewerDigits) {
+TEST(MapQuanta, RoundNumbersToFewerDigits) {
   std::mt19937_64 random(3);
   for (int i = 0; i < 10000; ++i) {
     const float value = std::exp(between(random, -20.0f, 20.0f));
@@ -79,7 +79,7 @@ TEST(MapQuanta, KeepNumbersWithFewerDigits) {
   EXPECT_TRUE(std::isfinite(double_of_48(double48_code(std::numeric_limits<double>::max()))));
 }
 
-TEST(MapQuanta, KeepDirectionsAtUnitLength) {
+TEST(MapQuanta, KeepDirectionsOfUnitLength) {
   std::mt19937_64 random(4);
   for (int i = 0; i < 10000; ++i) {
     const Eigen::Vector3f direction =
@@ -101,7 +101,7 @@ Eigen::Matrix3d elongated(std::mt19937_64& random, double long_sigma, double sho
          long_sigma * long_sigma * direction * direction.transpose();
 }
 
-TEST(MapQuanta, KeepCovariancesPositiveDefiniteAndExactlyOnceRounded) {
+TEST(MapQuanta, KeepCovariancesPositiveDefiniteAndRoundOnce) {
   std::mt19937_64 random(5);
   for (int i = 0; i < 10000; ++i) {
     const double ratio = std::pow(10.0, between(random, 0.0f, 3.0f));
@@ -115,7 +115,7 @@ TEST(MapQuanta, KeepCovariancesPositiveDefiniteAndExactlyOnceRounded) {
   }
 }
 
-TEST(MapQuanta, KeepCovariancesThatAreNone) {
+TEST(MapQuanta, AcceptDegenerateCovariances) {
   for (const Eigen::Matrix3d& covariance :
        {Eigen::Matrix3d(Eigen::Matrix3d::Zero()), Eigen::Matrix3d(-Eigen::Matrix3d::Identity()),
         Eigen::Matrix3d(Eigen::Matrix3d::Constant(1.0)), Eigen::Matrix3d(Eigen::Matrix3d::Constant(1e308)),
@@ -128,7 +128,7 @@ TEST(MapQuanta, KeepCovariancesThatAreNone) {
   }
 }
 
-TEST(MapQuanta, RefuseCodesThatNoCovarianceHas) {
+TEST(MapQuanta, RejectInvalidCovarianceCodes) {
   EXPECT_FALSE(covariance_of({{-20000, 0, 1, 0, 0, 1}, 0}));  // a negative pivot
   EXPECT_FALSE(covariance_of({{0, 20000, 1, 0, 0, 1}, 0}));   // a non-zero entry below a zero pivot
   EXPECT_FALSE(covariance_of({{1, 0, 1, 0, 0, 1}, 0}));       // not the smallest exponent
@@ -145,7 +145,7 @@ Patch random_patch(std::mt19937_64& random, int darkest, int range) {
   return patch;
 }
 
-TEST(MapQuanta, HaveCodesOfTheirOwnForWhatNoMapHolds) {
+TEST(MapQuanta, ReserveCodesForInvalidValues) {
   constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
   for (const float outside : {kNoNumber, -0.6f, 639.6f, 1e30f, -1e30f})
     EXPECT_EQ(pixel_code(outside, 640), pixel_codes(640));
@@ -160,7 +160,7 @@ TEST(MapQuanta, HaveCodesOfTheirOwnForWhatNoMapHolds) {
   EXPECT_FALSE(covariance_of(covariance_code(Eigen::Matrix3d::Constant(kNoNumber))));
 }
 
-TEST(MapQuanta, KeepPatchesToAThirtiethOfTheirContrast) {
+TEST(MapQuanta, RoundPatchesToAThirtiethOfTheirContrast) {
   std::mt19937_64 random(6);
   for (const int range : {0, 1, 2, 7, 14, 15, 16, 30, 100, 254}) {
     const Patch patch = random_patch(random, 1, range);
@@ -176,7 +176,7 @@ TEST(MapQuanta, KeepPatchesToAThirtiethOfTheirContrast) {
   }
 }
 
-TEST(MapQuanta, RefuseCodesThatNoPatchHas) {
+TEST(MapQuanta, RejectInvalidPatchCodes) {
   std::mt19937_64 random(7);
   const PatchCode sound = patch_code(random_patch(random, 20, 100));
   PatchCode code = sound;

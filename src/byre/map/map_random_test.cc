@@ -215,7 +215,7 @@ void expect_same_covisibility(const Map& map, const Model& model) {
 
 class MapUnderRandomOperations : public ::testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(MapUnderRandomOperations, EqualsItsModelAndStaysSound) {
+TEST_P(MapUnderRandomOperations, EqualsTheReferenceModelAndStaysValid) {
   RandomOperations operations(GetParam());
   for (int i = 0; i < 1000 && !HasFailure(); ++i) {
     SCOPED_TRACE("step " + std::to_string(i));

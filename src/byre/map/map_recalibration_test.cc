@@ -41,7 +41,7 @@ class RecalibratedKeyframes : public ::testing::Test {
   int rig_ = 0;
 };
 
-TEST_F(RecalibratedKeyframes, HaveTheFeaturesThatWereMadeOfTheirs) {
+TEST_F(RecalibratedKeyframes, UseThePreparedFeatures) {
   const std::shared_ptr<const Features> seen = corner_at(520.0f, 240.0f);
   const KeyframeId id = add(seen);
   const auto made = std::make_shared<const Features>(recalibrated(*seen, change_));
@@ -51,7 +51,7 @@ TEST_F(RecalibratedKeyframes, HaveTheFeaturesThatWereMadeOfTheirs) {
   EXPECT_FLOAT_EQ(column_of(id), moved(520.0f));
 }
 
-TEST_F(RecalibratedKeyframes, AreMadeAnewWhereThatWasMadeOfOthers) {
+TEST_F(RecalibratedKeyframes, AreRecomputedIfTheirFeaturesHaveChanged) {
   const std::shared_ptr<const Features> seen = corner_at(520.0f, 240.0f), older = corner_at(420.0f, 240.0f);
   const KeyframeId changed = add(seen), added = add(corner_at(120.0f, 240.0f));
   map_.recalibrate(rig_, change_, std::array{RecalibratedFeatures{changed, older, corner_at(421.0f, 240.0f)}});

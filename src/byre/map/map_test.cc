@@ -75,7 +75,7 @@ class SmallMap : public ::testing::Test {
   PointId shared, lonely;
 };
 
-TEST(OptionalPoint, IsWhatItStandsFor) {
+TEST(OptionalPoint, ConvertsToAndFromPointIds) {
   EXPECT_EQ(sizeof(OptionalPoint), 4u);
   for (const Origin origin : {Origin::offline, Origin::online}) {
     for (const std::uint32_t number : {0u, 1u, 12345678u, 0x7FFFFFFDu}) {
@@ -95,7 +95,7 @@ TEST(OptionalPoint, IsWhatItStandsFor) {
   }
 }
 
-TEST(OptionalPoint, MayBeNone) {
+TEST(OptionalPoint, MayBeEmpty) {
   const std::optional<PointId> none;
   const OptionalPoint point = none;
   EXPECT_FALSE(point.has_value());
@@ -112,7 +112,7 @@ TEST_F(SmallMap, KeepsBothEndsOfAnObservation) {
   EXPECT_EQ(seen_by(third, 1), lonely);
 }
 
-TEST_F(SmallMap, KeepsWhatASightingMeasured) {
+TEST_F(SmallMap, KeepsTheMeasurementOfASighting) {
   EXPECT_TRUE(map.add_observation({first, 2}, {lonely, {3.5f, 4.5f}, 0.7f}));
   EXPECT_EQ(map.find_keyframe(first)->sightings[2].pixel, Eigen::Vector2f(3.5f, 4.5f));
   EXPECT_EQ(map.find_keyframe(first)->sightings[2].pixel_sigma, 0.7f);
@@ -130,20 +130,20 @@ TEST_F(SmallMap, MovesSightingsWithTheirFeatures) {
   EXPECT_EQ(map.find_keyframe(first)->sightings[2].pixel_sigma, 0.7f);
 }
 
-TEST_F(SmallMap, KeepsWhereAFeatureIsWhenItLosesItsPoint) {
+TEST_F(SmallMap, KeepsThePositionOfAFeatureThatLosesItsPoint) {
   map.add_observation({first, 2}, {lonely, {3.5f, 4.5f}, 0.7f});
   map.remove_observation({first, 2});
   EXPECT_EQ(seen_by(first, 2), std::nullopt);
   EXPECT_EQ(map.find_keyframe(first)->sightings[2].pixel, Eigen::Vector2f(3.5f, 4.5f));
 }
 
-TEST_F(SmallMap, RefusesAnObservationThatContradictsAnother) {
+TEST_F(SmallMap, RejectsAContradictoryObservation) {
   EXPECT_FALSE(map.add_observation({third, 1}, {shared})) << "the feature sees another point";
   EXPECT_FALSE(map.add_observation({third, 2}, {shared})) << "the keyframe sees the point with another feature";
   EXPECT_THAT(map.observations(shared), SizeIs(3));
 }
 
-TEST_F(SmallMap, RefusesAnObservationOfOrByWhatIsGone) {
+TEST_F(SmallMap, RejectsObservationsOfOrByRemovedElements) {
   map.remove_point(lonely);
   map.remove_keyframe(second);
   EXPECT_FALSE(map.add_observation({first, 1}, {lonely}));
@@ -157,12 +157,12 @@ TEST_F(SmallMap, DropsAPointWithItsLastObservation) {
   EXPECT_THAT(map.point_ids(), ElementsAre(shared));
 }
 
-TEST_F(SmallMap, GivesAPointAnotherReferenceWhenItsKeyframeGoes) {
+TEST_F(SmallMap, ReplacesAReferenceWithItsKeyframe) {
   map.remove_keyframe(second);
   EXPECT_EQ(map.find_point(shared)->reference, (Observation{first, 0}));
 }
 
-TEST_F(SmallMap, RepairsTheReferenceOfAnUpdateMadeForAnOlderMap) {
+TEST_F(SmallMap, RepairsTheReferenceOfAnUpdateForAnOlderMap) {
   MapPoint moved = *map.find_point(shared);
   moved.position_in_world = {1.0, 2.0, 3.0};
   map.remove_keyframe(second);
@@ -171,7 +171,7 @@ TEST_F(SmallMap, RepairsTheReferenceOfAnUpdateMadeForAnOlderMap) {
   EXPECT_EQ(map.find_point(shared)->reference, (Observation{first, 0}));
 }
 
-TEST_F(SmallMap, RemovesPointsThatOnlyARemovedKeyframeSaw) {
+TEST_F(SmallMap, RemovesPointsSeenOnlyByARemovedKeyframe) {
   map.remove_keyframe(third);
   EXPECT_EQ(map.find_point(lonely), nullptr);
   EXPECT_THAT(map.observations(shared), ElementsAre(Observation{first, 0}, Observation{second, 0}));
@@ -184,7 +184,7 @@ TEST_F(SmallMap, ClearsTheSightingsOfARemovedPoint) {
   EXPECT_THAT(map.covisible_keyframes(first, kAll), IsEmpty());
 }
 
-TEST_F(SmallMap, CountsCovisibleKeyframesMostSharedFirst) {
+TEST_F(SmallMap, SortsCovisibleKeyframesBySharedPoints) {
   map.add_observation({first, 1}, {lonely});
   EXPECT_THAT(map.covisible_keyframes(first, kAll), ElementsAre(SharesPoints(third, 2), SharesPoints(second, 1)));
   EXPECT_THAT(map.covisible_keyframes(second, kAll), ElementsAre(SharesPoints(first, 1), SharesPoints(third, 1)));
@@ -192,39 +192,39 @@ TEST_F(SmallMap, CountsCovisibleKeyframesMostSharedFirst) {
   EXPECT_THAT(map.covisible_keyframes(first, 0), IsEmpty());
 }
 
-TEST_F(SmallMap, ForgetsARemovedKeyframeInCovisibility) {
+TEST_F(SmallMap, RemovesAKeyframeFromCovisibility) {
   map.remove_keyframe(second);
   EXPECT_THAT(map.covisible_keyframes(first, kAll), ElementsAre(SharesPoints(third, 1)));
   EXPECT_THAT(map.covisible_keyframes(second, kAll), IsEmpty());
 }
 
-TEST_F(SmallMap, HandsChildrenToTheParentOfARemovedKeyframe) {
+TEST_F(SmallMap, PassesChildrenToTheParentOfARemovedKeyframe) {
   map.remove_keyframe(second);
   EXPECT_EQ(map.find_keyframe(second), nullptr);
   EXPECT_EQ(map.find_keyframe(third)->parent, first);
   EXPECT_THAT(map.keyframe_ids(), ElementsAre(first, third));
 }
 
-TEST_F(SmallMap, KeepsAKeyframeWithoutParent) {
+TEST_F(SmallMap, AcceptsAKeyframeWithoutParent) {
   map.remove_keyframe(first);
   EXPECT_NE(map.find_keyframe(first), nullptr);
 }
 
-TEST_F(SmallMap, ReplacesTheParentOfANewKeyframeWhenThatWasRemoved) {
+TEST_F(SmallMap, ReplacesTheRemovedParentOfANewKeyframe) {
   map.remove_keyframe(third);
   map.remove_keyframe(second);
   const KeyframeId added = map.add_keyframe(keyframe_with(0, third));
   EXPECT_EQ(map.find_keyframe(added)->parent, first);
 }
 
-TEST_F(SmallMap, DropsAParentThatIsNotInTheMap) {
+TEST_F(SmallMap, DropsAParentOutsideTheMap) {
   const KeyframeId unknown = map.add_keyframe(keyframe_with(0, KeyframeId{Origin::online, 99}));
   const KeyframeId foreign = map.add_keyframe(keyframe_with(0, KeyframeId{Origin::offline, 0}));
   EXPECT_EQ(map.find_keyframe(unknown)->parent, std::nullopt);
   EXPECT_EQ(map.find_keyframe(foreign)->parent, std::nullopt);
 }
 
-TEST_F(SmallMap, NeverUsesANumberTwice) {
+TEST_F(SmallMap, NeverReusesANumber) {
   map.remove_keyframe(third);
   map.remove_point(shared);
   const KeyframeId keyframe = map.add_keyframe(keyframe_with(1, second));
@@ -232,7 +232,7 @@ TEST_F(SmallMap, NeverUsesANumberTwice) {
   EXPECT_GT(add_seen_point(map, {keyframe, 0}), lonely);
 }
 
-TEST_F(SmallMap, KnowsNothingOfARemovedPointOnceOthersCame) {
+TEST_F(SmallMap, DoesNotFindARemovedPointAfterNewOnes) {
   map.remove_point(shared);
   const PointId next = add_seen_point(map, {first, 2});
   EXPECT_EQ(map.find_point(shared), nullptr);
@@ -242,7 +242,7 @@ TEST_F(SmallMap, KnowsNothingOfARemovedPointOnceOthersCame) {
   EXPECT_THAT(map.point_ids(), ElementsAre(lonely, next));
 }
 
-TEST_F(SmallMap, KeepsThePatchesAskedForAlone) {
+TEST_F(SmallMap, KeepsTheRequestedPatchesOnly) {
   Keyframe keyframe = keyframe_with(3, third);
   keyframe.frame.features = std::make_shared<Features>(640, 480, std::vector<Keypoint>(3, Keypoint{{1.0f, 1.0f}}),
                                                        std::vector<Descriptor>(3), std::vector<Patch>(3));
@@ -255,7 +255,7 @@ TEST_F(SmallMap, KeepsThePatchesAskedForAlone) {
   EXPECT_NE(keyframe.frame.features->find_patch(0), nullptr) << "others may look at it still";
 }
 
-TEST_F(SmallMap, AddsTheObservationsANewKeyframeNames) {
+TEST_F(SmallMap, AddsTheObservationsOfANewKeyframe) {
   Keyframe keyframe = keyframe_with(5, third);
   keyframe.sightings = {{shared}, {PointId{Origin::online, 99}}, {shared}, {lonely}};
   const KeyframeId added = map.add_keyframe(keyframe);
@@ -280,7 +280,7 @@ TEST_F(SmallMap, KeepsObservationsOfOfflinePoints) {
   EXPECT_THAT(map.observations(offline), IsEmpty());
 }
 
-TEST_F(SmallMap, IgnoresChangesToWhatIsGone) {
+TEST_F(SmallMap, IgnoresChangesToRemovedElements) {
   map.remove_keyframe(second);
   map.remove_point(lonely);
   map.remove_keyframe(second);
@@ -292,7 +292,7 @@ TEST_F(SmallMap, IgnoresChangesToWhatIsGone) {
   EXPECT_EQ(map.point_count(), 1);
 }
 
-TEST_F(SmallMap, IsAValueWhoseCopyCanChangeAlone) {
+TEST_F(SmallMap, CopiesAreIndependent) {
   Map copy = map;
   copy.remove_keyframe(second);
   copy.remove_point(lonely);
@@ -321,7 +321,7 @@ TEST(CameraFromWorld, FollowsRemovedKeyframesToTheirMovedAncestor) {
   EXPECT_THAT(map.camera_from_world(middle), PoseNear(middle_from_root * corrected, 1e-9, 1e-8));
 }
 
-TEST(ScaleRemovedKeyframe, ChangesLengthsFromItsParentAlone) {
+TEST(ScaleRemovedKeyframe, ScalesOnlyTheDistanceToItsParent) {
   Map map(Origin::online);
   const KeyframeId root = map.add_keyframe(keyframe_at(motion(0.0, 0.0)));
   const KeyframeId removed = map.add_keyframe(keyframe_at(motion(1.0, 0.3), root));
@@ -351,7 +351,7 @@ TEST(AddRig, StoresEqualRigsOnce) {
   EXPECT_THAT(map.rigs(), SizeIs(3));
 }
 
-TEST(OfflineMap, KnowsNoOnlinePoints) {
+TEST(OfflineMap, ContainsNoOnlinePoints) {
   Map map(Origin::offline);
   map.add_rig({});
   const KeyframeId keyframe = map.add_keyframe(keyframe_with(1));
@@ -360,7 +360,7 @@ TEST(OfflineMap, KnowsNoOnlinePoints) {
   EXPECT_THAT(find_faults(map), IsEmpty());
 }
 
-TEST(MapView, ReadsBothMapsAsOne) {
+TEST(MapView, ReadsBothMaps) {
   Map offline(Origin::offline);
   Map online(Origin::online);
   offline.add_rig(rig_of_width(111));
@@ -378,7 +378,7 @@ TEST(MapView, ReadsBothMapsAsOne) {
   EXPECT_EQ(view.rig_of(*view.find_keyframe(new_keyframe), new_keyframe).width, 222);
 }
 
-TEST(MapView, VisitsTheObservationsOfAnOfflinePointInBothMaps) {
+TEST(MapView, VisitsObservationsOfAnOfflinePointInBothMaps) {
   Map offline(Origin::offline);
   Map online(Origin::online);
   const KeyframeId old_keyframe = offline.add_keyframe(keyframe_with(1));
@@ -392,7 +392,7 @@ TEST(MapView, VisitsTheObservationsOfAnOfflinePointInBothMaps) {
   EXPECT_THAT(visited, ElementsAre(Observation{old_keyframe, 0}, Observation{new_keyframe, 1}));
 }
 
-TEST(MapView, FindsNothingInAnAbsentOfflineMap) {
+TEST(MapView, FindsNothingWithoutAnOfflineMap) {
   const Map online(Origin::online);
   const MapView view(nullptr, online);
   EXPECT_EQ(view.find_point({Origin::offline, 0}), nullptr);

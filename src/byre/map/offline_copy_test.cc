@@ -43,7 +43,7 @@ class OfflineCopy : public testing::Test {
   Map online_{Origin::online};
 };
 
-TEST_F(OfflineCopy, OfAMapWithoutGapsHasTheSameNumbers) {
+TEST_F(OfflineCopy, KeepsNumbersOfAMapWithoutGaps) {
   const Map copy = offline_copy(online_);
   EXPECT_EQ(copy.origin(), Origin::offline);
   EXPECT_EQ(copy.keyframe_ids(), scene_.stored().map.keyframe_ids());
@@ -54,7 +54,7 @@ TEST_F(OfflineCopy, OfAMapWithoutGapsHasTheSameNumbers) {
   }
 }
 
-TEST_F(OfflineCopy, OfAMapThatIsUsedUpIsTheSame) {
+TEST_F(OfflineCopy, OfAConsumedMapIsTheSame) {
   online_.remove_keyframe(online_id(1));
   StoredMap copied = scene_.stored(), taken = scene_.stored();
   copied.map = offline_copy(online_);
@@ -79,7 +79,7 @@ TEST_F(OfflineCopy, ClosesGaps) {
   EXPECT_EQ(copy.find_keyframe(keyframe_id(1))->parent, keyframe_id(0)) << "the parent of its removed parent";
 }
 
-TEST_F(OfflineCopy, KeepsFeaturesThatSeeAPointAndPatchesThatDefineOne) {
+TEST_F(OfflineCopy, KeepsFeaturesOfPointsAndPatchesOfReferences) {
   const Map copy = offline_copy(online_);
   int patches = 0;
   for (const KeyframeId id : copy.keyframe_ids()) {
@@ -101,7 +101,7 @@ TEST_F(OfflineCopy, KeepsFeaturesThatSeeAPointAndPatchesThatDefineOne) {
   EXPECT_GT(patches, 0);
 }
 
-TEST_F(OfflineCopy, KeepsThePatchOfEveryReferenceThatHasOne) {
+TEST_F(OfflineCopy, KeepsThePatchOfEveryReference) {
   const Map copy = offline_copy(online_);
   for (const PointId id : copy.point_ids()) {
     const auto& [keyframe, feature] = copy.find_point(id)->reference;
@@ -114,7 +114,7 @@ TEST_F(OfflineCopy, KeepsThePatchOfEveryReferenceThatHasOne) {
   }
 }
 
-TEST_F(OfflineCopy, ForgetsWhatWasSeenOfAnotherMap) {
+TEST_F(OfflineCopy, DropsSightingsOfAnotherMap) {
   const KeyframeId watcher = online_id(static_cast<std::uint32_t>(online_.keyframe_count()) - 2);
   const auto free_feature = static_cast<int>(online_.find_keyframe(watcher)->sightings.size()) - 1;
   ASSERT_TRUE(online_.add_observation({watcher, free_feature}, {PointId{Origin::offline, 7}, {1.0f, 2.0f}}));
@@ -133,7 +133,7 @@ TEST_F(OfflineCopy, MakesCovariancesSymmetric) {
   EXPECT_EQ(copied(0, 1), 0.1);
 }
 
-TEST_F(OfflineCopy, OfACopyIsTheCopy) {
+TEST_F(OfflineCopy, IsIdempotent) {
   StoredMap once = scene_.stored();
   once.map = offline_copy(online_);
   StoredMap twice = once;

@@ -50,7 +50,7 @@ void expect_to_be_skipped(const std::vector<std::byte>& bytes) {
   reader.require_end();
 }
 
-TEST(PackedSteps, GiveBackEveryPatch) {
+TEST(PackedSteps, ReadBackEveryPatch) {
   for (const int amplitude : {0, 1, 2, 3, 5, 8, 15}) {
     for (unsigned seed = 0; seed < 20; ++seed) {
       const PatchSteps steps = noise(amplitude, seed);
@@ -61,13 +61,13 @@ TEST(PackedSteps, GiveBackEveryPatch) {
   }
 }
 
-TEST(PackedSteps, TakeABitForAPixelThatIsAsExpected) {
+TEST(PackedSteps, UseOneBitForAPredictedPixel) {
   EXPECT_EQ(packed(steps_by([](int, int) { return 8; })).size(), 2u + 256 / 8);
   const auto is_edge = [](int, int column) { return column < 7 ? 8 : 15; };
   EXPECT_EQ(packed(steps_by(is_edge)).size(), 2u + (256 + 14 + 7) / 8);  // an edge adds 14 bits where it begins
 }
 
-TEST(PackedSteps, AreTakenAsTheyAreWhereThatIsShorter) {
+TEST(PackedSteps, AreStoredUncompressedIfShorter) {
   EXPECT_EQ(packed(noise(15, 1)).size(), kWhole + 1);
 }
 
@@ -80,7 +80,7 @@ std::vector<std::byte> flat_by(std::size_t planes) {
   return bytes;
 }
 
-TEST(PackedSteps, AreRefusedWhereTheyAreNotWrittenAsTheyWouldBe) {
+TEST(PackedSteps, AreRejectedIfNotCanonical) {
   EXPECT_NO_THROW(unpacked_from(flat_by(0)));
   EXPECT_THROW(unpacked_from(flat_by(1)), InputError);  // a useless plane
   EXPECT_THROW(unpacked_from(flat_by(2)), InputError);
@@ -96,7 +96,7 @@ TEST(PackedSteps, AreRefusedWhereTheyAreNotWrittenAsTheyWouldBe) {
   EXPECT_THROW(unpacked_from(bytes), InputError);  // an extra pixel
 }
 
-TEST(PackedSteps, AreRefusedWhereTheyAreNone) {
+TEST(PackedSteps, AreRejectedIfInvalid) {
   std::vector<std::byte> bytes = flat_by(0);
   bytes.pop_back();
   EXPECT_THROW(unpacked_from(bytes), InputError);  // fewer bytes than announced

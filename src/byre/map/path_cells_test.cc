@@ -13,7 +13,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(PathCells, TellAllThatIsNear) {
+TEST(PathCells, FindAllNearbyPositions) {
   constexpr double kReach = 2.0;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> anywhere(-10.0, 10.0);
@@ -33,7 +33,7 @@ TEST(PathCells, TellAllThatIsNear) {
   }
 }
 
-TEST(PathCells, FindPlacesOnTheEdgeOfACell) {
+TEST(PathCells, FindPositionsOnTheEdgeOfACell) {
   const PathCells cells({{0.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}, 1.0);
   EXPECT_THAT(cells.near({0.0, 0.0, 0.0}), ElementsAre(0u, 1u, 2u));
   EXPECT_THAT(cells.near({-1.0, 0.0, 0.0}), ElementsAre(0u, 1u));

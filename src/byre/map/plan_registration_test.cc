@@ -14,7 +14,7 @@ PlanRegistration any_registration() {
   return registration;
 }
 
-TEST(PlanRegistration, TakesPosesToThePlanAsItTakesPoints) {
+TEST(PlanRegistration, TransformsPosesLikePoints) {
   const PlanRegistration registration = any_registration();
   const Pose map_from_body{rotation_exp({0.4, 0.5, -0.6}), {1.0, 2.0, 3.0}};
   const Pose pose = plan_from_body(registration, map_from_body);
@@ -23,7 +23,7 @@ TEST(PlanRegistration, TakesPosesToThePlanAsItTakesPoints) {
   EXPECT_THAT(pose * Eigen::Vector3d(0.5, 0.0, 0.0), PointNear(registration.plan_from_map * tip_in_map, 1e-12));
 }
 
-TEST(PlanRegistration, HasTheJacobianOfItsSmallMotions) {
+TEST(PlanRegistration, HasTheJacobianOfSmallMotions) {
   const PlanRegistration registration = any_registration();
   const Eigen::Vector3d point_in_map(3.0, -1.0, 2.0);
   const PlanJacobian jacobian = plan_jacobian(registration.plan_from_map, point_in_map);
@@ -40,7 +40,7 @@ TEST(PlanRegistration, HasTheJacobianOfItsSmallMotions) {
 }
 
 // Checked by finite differences of all inputs of a pose on the plan.
-TEST(PlanRegistration, AddsWhatItLeavesOpenToTheCovarianceOfAPose) {
+TEST(PlanRegistration, AddsItsCovarianceToThatOfAPose) {
   PlanRegistration registration = any_registration();
   const Eigen::Matrix<double, 7, 1> sigmas{0.02, 0.03, 0.01, 0.002, 0.001, 0.004, 0.005};
   registration.covariance =
@@ -64,7 +64,7 @@ TEST(PlanRegistration, AddsWhatItLeavesOpenToTheCovarianceOfAPose) {
   EXPECT_LT((covariance_on_plan(registration, map_from_body, in_map) - expected).norm(), 1e-4 * expected.norm());
 }
 
-TEST(PlanRegistration, IsKnownWorseFarFromWhereItsYawIsUncertain) {
+TEST(PlanRegistration, IsLessCertainFarFromItsYawCentre) {
   PlanRegistration registration;
   registration.covariance(0, 0) = registration.covariance(1, 1) = 1e-4;
   registration.covariance(5, 5) = 1e-6;

@@ -24,7 +24,7 @@ std::optional<PlanScaleDoubt> doubt_of(FloorPlanScene& scene, const std::vector<
   return measure_scale(correspondences, scene.plane()).value().doubt;
 }
 
-TEST(PlanScale, IsMeasuredExactlyFromExactPicks) {
+TEST(PlanScale, IsExactForExactPicks) {
   FloorPlanScene scene(1, 1.0 / kTooLarge);
   const PlanScale scale = measure_scale(scene.correspondences(8), scene.plane()).value();
   EXPECT_NEAR(scale.plan_from_map * kTooLarge, 1.0, 1e-7);
@@ -33,7 +33,7 @@ TEST(PlanScale, IsMeasuredExactlyFromExactPicks) {
   EXPECT_TRUE(scale.differs_from_one());
 }
 
-TEST(PlanScale, IsWithinThreeSigmasFromEightPicksWithThreeCentimetresOfNoise) {
+TEST(PlanScale, IsWithinThreeSigmasForEightNoisyPicks) {
   for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
     FloorPlanScene scene(seed, 1.0 / kTooLarge);
     const PlanScale scale = measure_scale(scene.correspondences(8, kPickNoise), scene.plane()).value();
@@ -44,7 +44,7 @@ TEST(PlanScale, IsWithinThreeSigmasFromEightPicksWithThreeCentimetresOfNoise) {
 }
 
 // Mean squared normalised error.
-TEST(PlanScale, KnowsHowWellItIsKnown) {
+TEST(PlanScale, EstimatesAConsistentSigma) {
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 30 * kTrials; ++seed) {
     FloorPlanScene scene(seed, 1.0 / kTooLarge);
@@ -56,7 +56,7 @@ TEST(PlanScale, KnowsHowWellItIsKnown) {
   EXPECT_THAT(sum / (30 * kTrials), Lt(1.3));
 }
 
-TEST(PlanScale, DiffersFromOneForHardlyAnyMapOfTheRightSize) {
+TEST(PlanScale, RarelyDiffersFromOneForACorrectMap) {
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
     FloorPlanScene scene(seed);
@@ -66,7 +66,7 @@ TEST(PlanScale, DiffersFromOneForHardlyAnyMapOfTheRightSize) {
   EXPECT_THAT(alarms, Lt(2));
 }
 
-TEST(PlanScale, IsNotMisledByAWrongPick) {
+TEST(PlanScale, IsRobustToAWrongPick) {
   for (std::uint64_t seed = 1; seed <= kTrials; ++seed) {
     FloorPlanScene scene(seed, 1.0 / kTooLarge);
     auto correspondences = scene.correspondences(8, kPickNoise);
@@ -83,7 +83,7 @@ TEST(PlanScale, IsDoubtedForFewerThanFourPicks) {
   EXPECT_THAT(doubt_of(scene, scene.correspondences(4)), Eq(std::nullopt));
 }
 
-TEST(PlanScale, IsDoubtedForPicksTooCloseTogether) {
+TEST(PlanScale, IsDoubtedForASmallSpread) {
   FloorPlanScene scene(1, 1.0 / kTooLarge);
   auto correspondences = scene.correspondences(6);
   for (std::size_t i = 0; i < correspondences.size(); ++i) {
@@ -95,30 +95,30 @@ TEST(PlanScale, IsDoubtedForPicksTooCloseTogether) {
   EXPECT_THAT(doubt_of(scene, correspondences), Optional(PlanScaleDoubt::small_spread));
 }
 
-TEST(PlanScale, IsDoubtedWhenPicksDoNotAgree) {
+TEST(PlanScale, IsDoubtedForInconsistentPicks) {
   FloorPlanScene scene;
   EXPECT_THAT(doubt_of(scene, scene.correspondences(8, 2.0)), Optional(PlanScaleDoubt::disagreement));
 }
 
-TEST(PlanScale, IsDoubtedWhereNoBaselineCouldBeSoWrong) {
+TEST(PlanScale, IsDoubtedForAnImplausibleBaseline) {
   FloorPlanScene scene(1, 1.3);
   EXPECT_THAT(doubt_of(scene, scene.correspondences(8, kPickNoise)), Optional(PlanScaleDoubt::implausible));
 }
 
-TEST(PlanScale, OfDoubtIsNoDifference) {
+TEST(PlanScale, DoesNotDifferFromOneIfDoubted) {
   EXPECT_TRUE((PlanScale{0.98, 0.001, std::nullopt}.differs_from_one()));
   EXPECT_FALSE((PlanScale{0.98, 0.01, std::nullopt}.differs_from_one()));
   EXPECT_FALSE((PlanScale{0.98, 0.001, PlanScaleDoubt::disagreement}.differs_from_one()));
 }
 
-TEST(PlanScale, SaysOfEveryDoubtWhatToDo) {
+TEST(PlanScale, ReportsARemedyForEachDoubt) {
   for (const PlanScaleDoubt doubt : {PlanScaleDoubt::few_points, PlanScaleDoubt::small_spread,
                                      PlanScaleDoubt::disagreement, PlanScaleDoubt::implausible}) {
     EXPECT_THAT(std::string(to_string(doubt)), Not(IsEmpty()));
   }
 }
 
-TEST(PlanScale, IsNotFoundFromLessThanTwoPlaces) {
+TEST(PlanScale, IsEmptyForLessThanTwoPositions) {
   FloorPlanScene scene;
   EXPECT_FALSE(measure_scale(scene.correspondences(1), scene.plane()).has_value());
 }

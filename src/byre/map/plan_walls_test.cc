@@ -44,21 +44,21 @@ class PlanOfRooms {
 
 const Eigen::Vector2d kWest(3.0, 3.0), kEast(7.0, 3.0);
 
-TEST(PlanWalls, LeaveAStraightWayWhereNoneIsBetween) {
+TEST(PlanWalls, LeaveAStraightPathBetweenUnobstructedPositions) {
   PlanOfRooms rooms;
   const auto way = rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
   ASSERT_TRUE(way);
   EXPECT_NEAR(*way, 4.0, 0.2);
 }
 
-TEST(PlanWalls, LeaveNoWayIntoAClosedRoom) {
+TEST(PlanWalls, LeaveNoPathIntoAClosedRoom) {
   PlanOfRooms rooms;
   rooms.draw_two_rooms();
   EXPECT_FALSE(rooms.walls().way_between({kWest, 0.5}, {kEast, 0.5}, 30.0));
   EXPECT_TRUE(rooms.walls().way_between({kWest, 2.3}, {kEast, 2.3}, 30.0)) << "when either place may be behind it";
 }
 
-TEST(PlanWalls, LeaveAWayThroughADoorThatIsAsLongAsItIs) {
+TEST(PlanWalls, LeaveAPathThroughADoor) {
   PlanOfRooms rooms;
   rooms.draw_two_rooms();
   rooms.draw_door();
@@ -68,7 +68,7 @@ TEST(PlanWalls, LeaveAWayThroughADoorThatIsAsLongAsItIs) {
   EXPECT_FALSE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 4.1)) << "there is no time for it";
 }
 
-TEST(PlanWalls, DoNotLeakWhereTheyAreThinAndSlanting) {
+TEST(PlanWalls, DoNotLeakIfThinAndSlanting) {
   PlanOfRooms rooms;
   for (double y = 0.0; y < 6.0; y += 0.5 * kPixel) {
     const double x = 3.0 + 0.7 * y;
@@ -78,7 +78,7 @@ TEST(PlanWalls, DoNotLeakWhereTheyAreThinAndSlanting) {
   EXPECT_FALSE(walls.way_between({{2.0, 3.0}, 0.0}, {{8.0, 3.0}, 0.0}, 6.2));
 }
 
-TEST(PlanWalls, TellWhatIsDeepInThem) {
+TEST(PlanWalls, DetectPositionsDeepInside) {
   PlanOfRooms rooms;
   rooms.draw(2.0, 2.0, 6.0, 5.0);
   const PlanWalls walls = rooms.walls();
@@ -87,7 +87,7 @@ TEST(PlanWalls, TellWhatIsDeepInThem) {
   EXPECT_TRUE(walls.has_free_place({{40.0, -30.0}, 0.1})) << "off the plan";
 }
 
-TEST(PlanWalls, TellWhatCannotBeDrivenToFromAWay) {
+TEST(PlanWalls, DetectUnreachablePositions) {
   PlanOfRooms rooms;
   rooms.draw_two_rooms();
   PlanWalls walls = rooms.walls();
@@ -99,7 +99,7 @@ TEST(PlanWalls, TellWhatCannotBeDrivenToFromAWay) {
   EXPECT_FALSE(walls.has_place_to_drive_to({{-20.0, 3.0}, 0.3})) << "off the plan";
 }
 
-TEST(PlanWalls, OpenWhereSomebodyDroveThrough) {
+TEST(PlanWalls, OpenAlongDrivenPaths) {
   PlanOfRooms rooms;
   rooms.draw_two_rooms();
   PlanWalls walls = rooms.walls();
@@ -111,7 +111,7 @@ TEST(PlanWalls, OpenWhereSomebodyDroveThrough) {
   EXPECT_NEAR(*way, 4.0, 0.3);
 }
 
-TEST(PlanWalls, AreOnlyOccupiedPixels) {
+TEST(PlanWalls, ConsistOfOccupiedPixelsOnly) {
   PlanOfRooms rooms;
   rooms.draw(4.9, 0.0, 5.0, 6.0, kUnknownPixel);
   rooms.draw(5.0, 0.0, 5.1, 6.0, 99);

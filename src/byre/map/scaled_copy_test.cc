@@ -21,7 +21,7 @@ StoredMap consistent_map() {
   return stored;
 }
 
-TEST(ScaledCopy, LeavesEveryPointWhereEachImageHasItDisparityIncluded) {
+TEST(ScaledCopy, KeepsAllProjections) {
   const StoredMap before = consistent_map();
   const StoredMap now = scaled_copy(before, kFactor);
   int compared = 0;
@@ -41,7 +41,7 @@ TEST(ScaledCopy, LeavesEveryPointWhereEachImageHasItDisparityIncluded) {
   EXPECT_GT(compared, 30);
 }
 
-TEST(ScaledCopy, ChangesWhatIsALengthAndNothingElse) {
+TEST(ScaledCopy, ScalesLengthsOnly) {
   const StoredMap before = consistent_map();
   const StoredMap now = scaled_copy(before, kFactor);
   EXPECT_DOUBLE_EQ(now.map.rigs()[0].baseline, kFactor * before.map.rigs()[0].baseline);
@@ -65,7 +65,7 @@ TEST(ScaledCopy, ChangesWhatIsALengthAndNothingElse) {
   EXPECT_THAT(find_faults(now), IsEmpty());
 }
 
-TEST(ScaledCopy, LeavesTheMapWhereItLiesOnItsPlan) {
+TEST(ScaledCopy, KeepsTheMapInPlaceOnItsPlan) {
   const StoredMap before = consistent_map();
   const StoredMap now = scaled_copy(before, kFactor);
   const PointId id{Origin::offline, 3};
@@ -73,7 +73,7 @@ TEST(ScaledCopy, LeavesTheMapWhereItLiesOnItsPlan) {
               PointNear(before.plan.value().plan_from_map * before.map.find_point(id)->position_in_world, 1e-9));
 }
 
-TEST(ScaledCopy, OfACopyIsThatByBothFactors) {
+TEST(ScaledCopy, ComposesFactors) {
   const StoredMap stored = consistent_map();
   const StoredMap back = scaled_copy(scaled_copy(stored, kFactor), 1.0 / kFactor);
   EXPECT_NEAR(baseline_factor(back, 0), 1.0, 1e-12);
@@ -82,7 +82,7 @@ TEST(ScaledCopy, OfACopyIsThatByBothFactors) {
   }
 }
 
-TEST(ScaledCalibration, HasAnotherBaselineAndIsElseTheSame) {
+TEST(ScaledCalibration, ScalesTheBaselineOnly) {
   const Calibration given = consistent_map().recordings[0].calibration;
   const Calibration longer = scaled(given, 1.02);
   EXPECT_TRUE(longer.right->right_from_left.translation.isApprox(1.02 * given.right->right_from_left.translation));
@@ -93,13 +93,13 @@ TEST(ScaledCalibration, HasAnotherBaselineAndIsElseTheSame) {
   EXPECT_EQ(scaled(one_camera, 1.02).body_from_left.translation, given.body_from_left.translation);
 }
 
-TEST(KnownCalibration, IsNoneWhileTheMapHasTheScaleOfItsBaseline) {
+TEST(KnownCalibration, IsEmptyWhileTheBaselineIsUnchanged) {
   const StoredMap stored = consistent_map();
   EXPECT_EQ(baseline_factor(stored, 0), 1.0);
   EXPECT_FALSE(known_calibration(stored.recordings, stored.recordings[0].calibration));
 }
 
-TEST(KnownCalibration, HasTheMapsBaselineOnceThatWasCorrected) {
+TEST(KnownCalibration, HasTheBaselineOfARescaledMap) {
   const StoredMap stored = scaled_copy(consistent_map(), kFactor);
   const Calibration given = consistent_map().recordings[0].calibration;
   EXPECT_NEAR(baseline_factor(stored, 0), kFactor, 1e-12);
@@ -109,7 +109,7 @@ TEST(KnownCalibration, HasTheMapsBaselineOnceThatWasCorrected) {
   EXPECT_NEAR(known->calibration.right->right_from_left.translation.norm(), stored.map.rigs()[0].baseline, 1e-12);
 }
 
-TEST(KnownCalibration, IsNoneForCamerasThatTheMapDoesNotKnow) {
+TEST(KnownCalibration, IsEmptyForOtherCameras) {
   const StoredMap stored = scaled_copy(consistent_map(), kFactor);
   Calibration other = consistent_map().recordings[0].calibration;
   other.right->right_from_left.translation.x() += 1e-6;
@@ -119,7 +119,7 @@ TEST(KnownCalibration, IsNoneForCamerasThatTheMapDoesNotKnow) {
   EXPECT_FALSE(known_calibration(stored.recordings, other));
 }
 
-TEST(KnownCalibration, OfAPairIsAlsoThatOfItsLeftCamera) {
+TEST(KnownCalibration, OfAPairAppliesToItsLeftCamera) {
   const StoredMap stored = scaled_copy(consistent_map(), kFactor);
   Calibration left = consistent_map().recordings[0].calibration;
   left.right.reset();
@@ -129,7 +129,7 @@ TEST(KnownCalibration, OfAPairIsAlsoThatOfItsLeftCamera) {
   EXPECT_FALSE(known->calibration.right);
 }
 
-TEST(KnownCalibration, IsOfTheSameCameraOnAnotherBody) {
+TEST(KnownCalibration, AppliesToTheSameCameraOnAnotherBody) {
   StoredMap stored = scaled_copy(consistent_map(), kFactor);
   Calibration given = consistent_map().recordings[0].calibration;
   const Pose map_body_from_body{rotation_exp({0.1, 0.2, 0.3}), {0.3, 0.2, 0.1}};
@@ -146,7 +146,7 @@ TEST(KnownCalibration, IsOfTheSameCameraOnAnotherBody) {
   EXPECT_FALSE(known_body_from_body(stored.recordings, given));
 }
 
-TEST(Stretch, ChangesLengthsAlsoFromKeyframesThatWereRemoved) {
+TEST(Stretch, ScalesDistancesToRemovedKeyframesToo) {
   Map map = consistent_map().map;
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   map.remove_keyframe(ids.back());

@@ -34,7 +34,7 @@ double lever_error(const WheelMounting& found, const Drive& drive) {
   return (found.base_from_body.translation - drive.base_from_body.translation).head<2>().norm();
 }
 
-TEST(KnownMounting, IsReadFromNotesAsItWasNoted) {
+TEST(KnownMounting, ReadsBackItsNotes) {
   const KnownMounting known = known_from_a_drive({.base_from_body = camera_on_base(), .noise = 0.001});
   ASSERT_TRUE(known.wheels);
   std::map<std::string, std::string> notes = {{"site", "barn 3"}};
@@ -55,7 +55,7 @@ TEST(KnownMounting, IsReadFromNotesAsItWasNoted) {
   EXPECT_EQ(read.gyroscope->bias, Eigen::Vector3d::Zero()) << "it is another one each day";
 }
 
-TEST(KnownMounting, IsNotReadFromNotesOfSomebodyElse) {
+TEST(KnownMounting, IgnoresInvalidNotes) {
   EXPECT_TRUE(mounting_in({}).is_empty());
   EXPECT_TRUE(mounting_in({{"wheels", "four, of rubber"}, {"gyroscope", "none"}}).is_empty());
   std::map<std::string, std::string> notes;
@@ -69,7 +69,7 @@ TEST(KnownMounting, IsNotReadFromNotesOfSomebodyElse) {
   EXPECT_FALSE(mounting_in(notes).wheels);
 }
 
-TEST(KnownMounting, FollowsALongerUnitOfTheMap) {
+TEST(KnownMounting, ScalesWithTheUnitOfTheMap) {
   const KnownMounting known = known_from_a_drive({.base_from_body = camera_on_base(), .noise = 0.001});
   const KnownMounting longer = scaled(known, 2.0);
   EXPECT_NEAR(longer.wheels->metres_per_unit, 0.5 * known.wheels->metres_per_unit, 1e-12);
@@ -77,7 +77,7 @@ TEST(KnownMounting, FollowsALongerUnitOfTheMap) {
   EXPECT_NEAR(longer.wheels->covariance(2, 2), known.wheels->covariance(2, 2), 1e-15);
 }
 
-TEST(KnownMounting, IsKeptThroughMotionsThatTellLittle) {
+TEST(KnownMounting, IsKeptWithUninformativeMotions) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.98, .noise = 0.001};
   const KnownMounting known = known_from_a_drive(drive);
   const auto motions = motions_of(drive, 100.0, 101.5);
@@ -88,7 +88,7 @@ TEST(KnownMounting, IsKeptThroughMotionsThatTellLittle) {
   EXPECT_LT(lever_error(*found, drive), 0.01);
 }
 
-TEST(KnownMounting, BecomesWhatALongDriveTells) {
+TEST(KnownMounting, IsUpdatedByALongDrive) {
   Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 1.0, .noise = 0.001};
   const KnownMounting known = known_from_a_drive(drive);
   drive.metres_per_unit = 1.01;  // higher tyre pressure
@@ -97,7 +97,7 @@ TEST(KnownMounting, BecomesWhatALongDriveTells) {
   EXPECT_NEAR(found->metres_per_unit, 1.01, 0.004);
 }
 
-TEST(KnownMounting, IsContradictedByAnotherOneOnly) {
+TEST(KnownMounting, IsContradictedByAnotherMountingOnly) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const WheelMounting known = *known_from_a_drive(drive).wheels;
   const auto found_on = [](const Drive& other) { return find_wheel_mounting(motions_of(other, 60.0, 100.0)).value(); };
@@ -116,7 +116,7 @@ TEST(KnownMounting, IsContradictedByAnotherOneOnly) {
   EXPECT_TRUE(is_contradicted(known, found_on(tilted)));
 }
 
-TEST(KnownMounting, IsThatOfAnotherPlaceOnTheBodyWhereItIsMovedThere) {
+TEST(KnownMounting, FollowsAChangeOfTheBodyFrame) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.5, .noise = 0.001};
   const KnownMounting before = known_from_a_drive(drive);
   const Pose before_from_after{rotation_exp({0.0, 0.3, 0.0}), {0.2, 0.0, 0.4}};  // in the map's lengths

@@ -81,7 +81,7 @@ TEST(MotionCheck, DropsSingleOutliersOfPoses) {
   }
 }
 
-TEST(MotionCheck, BeginsASegmentWhereThePoseJumps) {
+TEST(MotionCheck, StartsASegmentAtAJump) {
   for (const int reset : {10, 50, 100, 300, 400}) {
     const Pose origin_from_world = inverse(Drive::world_from_base(kPeriod * reset));
     const Checked checked = checked_drive([&](int i, StampedPose& sample) {
@@ -99,7 +99,7 @@ TEST(MotionCheck, BeginsASegmentWhereThePoseJumps) {
   }
 }
 
-TEST(MotionCheck, DropsPosesOfAStoppedDriver) {
+TEST(MotionCheck, DropsPosesOfAStalledDriver) {
   const Checked checked = checked_drive([](int i, StampedPose& sample) {
     if (i >= 200 && i < 350) sample.world_from_body = Drive::world_from_base(kPeriod * 200);
   });
@@ -111,14 +111,14 @@ TEST(MotionCheck, DropsPosesOfAStoppedDriver) {
   EXPECT_LT(way_error(checked.track, 7.1, 9.0), 1e-9);
 }
 
-TEST(MotionCheck, UsesRepeatedPoses) {
+TEST(MotionCheck, AcceptsRepeatedPoses) {
   const Checked checked = checked_drive(
       [](int i, StampedPose& sample) { sample.world_from_body = Drive::world_from_base(kPeriod * (i - i % 5)); });
   EXPECT_GT(checked.used, 495);
   EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9);
 }
 
-TEST(MotionCheck, UsesPosesOfABaseThatStops) {
+TEST(MotionCheck, AcceptsPosesOfABaseThatStops) {
   MotionCheck check;
   double speed = 0.8, x = 0.0;
   for (int i = 0; i < 300; ++i) {
@@ -130,7 +130,7 @@ TEST(MotionCheck, UsesPosesOfABaseThatStops) {
   EXPECT_THAT(check.warnings(), IsEmpty());
 }
 
-TEST(MotionCheck, IgnoresWheelsInAnotherUnit) {
+TEST(MotionCheck, RejectsWheelsInAnotherUnit) {
   struct Unit {
     double per_metre;
     const char* name;
@@ -148,7 +148,7 @@ TEST(MotionCheck, IgnoresWheelsInAnotherUnit) {
   EXPECT_EQ(checked_drive(in_centimetres, 500, limits).used, 500) << "the limit is an option";
 }
 
-TEST(MotionCheck, DropsPosesWithoutARotation) {
+TEST(MotionCheck, DropsPosesWithoutAValidRotation) {
   for (const Eigen::Quaterniond& rotation :
        {Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0), Eigen::Quaterniond(kNan, 0.0, 0.0, 0.0),
         Eigen::Quaterniond(5e-324, 0.0, 0.0, 0.0), Eigen::Quaterniond(kHuge, 0.0, 0.0, 0.0)}) {
@@ -170,7 +170,7 @@ TEST(MotionCheck, DropsStampsFarAhead) {
   EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9);
 }
 
-TEST(MotionCheck, RestartsWhereTheClockIsSetBack) {
+TEST(MotionCheck, RestartsAfterTheClockIsSetBack) {
   const Checked checked = checked_drive([](int i, StampedPose& sample) {
     if (i >= 200) sample.time -= std::chrono::hours(1);
   });
@@ -181,7 +181,7 @@ TEST(MotionCheck, RestartsWhereTheClockIsSetBack) {
   EXPECT_TRUE(checked.track.pose_at(from_seconds(-3600.0 + 5.0)));
 }
 
-TEST(MotionCheck, DropsVelocitiesThatNoBaseHas) {
+TEST(MotionCheck, DropsImpossibleVelocities) {
   MotionCheck check;
   const auto used = [&](double seconds, double ahead, double turning) {
     return check.check(BaseVelocity{from_seconds(seconds), ahead, 0.0, turning}) != StampCheck::Order::dropped;
@@ -211,7 +211,7 @@ MotionCheck checked_swing(double factor, const Eigen::Vector3d& bias = Eigen::Ve
   return check;
 }
 
-TEST(MotionCheck, IgnoresAGyroscopeInDegrees) {
+TEST(MotionCheck, RejectsAGyroscopeInDegrees) {
   EXPECT_THAT(checked_swing(1.0).warnings(), IsEmpty());
   const MotionCheck check = checked_swing(180.0 / std::numbers::pi);
   ASSERT_THAT(check.warnings(), testing::Not(IsEmpty()));
@@ -219,7 +219,7 @@ TEST(MotionCheck, IgnoresAGyroscopeInDegrees) {
   EXPECT_THAT(check.warnings().back().what, HasSubstr("ignored"));
 }
 
-TEST(MotionCheck, IgnoresZeroRatesOnceTheRobotTurns) {
+TEST(MotionCheck, RejectsZeroRatesDuringATurn) {
   MotionCheck check = checked_swing(0.0);
   ASSERT_THAT(check.warnings(), SizeIs(1));
   EXPECT_THAT(check.warnings().front().what, HasSubstr("all rates are zero"));
@@ -233,7 +233,7 @@ TEST(MotionCheck, IgnoresZeroRatesOnceTheRobotTurns) {
   EXPECT_EQ(at_rest.check(AngularRate{from_seconds(3.0), {0.0, 0.0, 0.1}}), StampCheck::Order::next);
 }
 
-TEST(MotionCheck, IgnoresEqualRatesOnceTheRobotTurns) {
+TEST(MotionCheck, RejectsEqualRatesDuringATurn) {
   MotionCheck check;
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d rate(0.0, 0.0, i < 100 ? 0.001 * i : 0.02);
@@ -256,7 +256,7 @@ TEST(MotionCheck, ReportsTheUnitOfAccelerations) {
   EXPECT_THAT(warning_of(981.0), HasSubstr("above motion.max_acceleration_m_per_s2"));
 }
 
-TEST(MotionCheck, RejectsFaultyMotionOfTheBody) {
+TEST(MotionCheck, RejectsInvalidBodyMotion) {
   MotionCheck check;
   const Pose step{Eigen::Quaterniond::Identity(), {0.05, 0.0, 0.0}};
   const auto is_used = [&](const BodyMotion& motion) { return check.check(motion, {}, 0.1).has_value(); };
@@ -293,7 +293,7 @@ MotionSamples samples_of_drive() {
   return samples;
 }
 
-TEST(CheckMotion, FindsRatesInDegreesByTheWheels) {
+TEST(CheckMotion, DetectsRatesInDegreesByWheels) {
   MotionSamples samples = samples_of_drive();
   EXPECT_THAT(check_motion(samples, {}, from_seconds(20.0)), IsEmpty());
   MotionLimits limits;
@@ -304,7 +304,7 @@ TEST(CheckMotion, FindsRatesInDegreesByTheWheels) {
   EXPECT_THAT(warnings.front().what, HasSubstr("57 times"));
 }
 
-TEST(CheckMotion, ComparesRatesWithWheelsAlsoAfterTheClockWasSetBack) {
+TEST(CheckMotion, ComparesRatesWithWheelsAfterTheClockIsSetBack) {
   MotionSamples samples = samples_of_drive();
   for (StampedPose& sample : samples.wheels) {
     if (sample.time >= from_seconds(2.0)) sample.time -= std::chrono::hours(1);
@@ -320,7 +320,7 @@ TEST(CheckMotion, ComparesRatesWithWheelsAlsoAfterTheClockWasSetBack) {
   EXPECT_THAT(warnings, Contains(Field(&MotionWarning::what, HasSubstr("57 times"))));
 }
 
-TEST(CheckMotion, FindsSamplesOfAnotherClock) {
+TEST(CheckMotion, DetectsSamplesOfAnotherClock) {
   MotionSamples samples;
   for (int i = 0; i < 100; ++i) samples.wheels.push_back({from_seconds(3600.0 + kPeriod * i), Pose{}});
   const std::vector<MotionWarning> warnings = check_motion(samples, from_seconds(1.0), from_seconds(20.0));

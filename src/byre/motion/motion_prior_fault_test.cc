@@ -10,7 +10,7 @@ namespace byre {
 namespace {
 
 // Wheels with a track width 3 % too large, and a right wheel that is larger.
-TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
+TEST(MotionPrior, CompensatesSystematicWheelErrors) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const DriveSensors wrong{.turn_scale = 0.97, .turn_per_metre = 0.004};
   const MotionPrior prior = followed(drive, wrong, 60.0, 72.0);
@@ -23,7 +23,7 @@ TEST(MotionPrior, MakesUpForWheelsThatTurnWronglyAllTheTime) {
   EXPECT_LT(error.head<3>().norm(), 0.05);  // metres, of 5
 }
 
-TEST(MotionPrior, KnowsTheWayLessWhereWheelsSpinInTheDark) {
+TEST(MotionPrior, IncreasesTheCovarianceWhileWheelsSlip) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const DriveSensors lifted{.wheels = true, .gyroscope = true, .slip_from = 62.0, .slip_to = 65.0, .slip_turn = 0.03};
   const BodyMotion measured = over(followed(drive, lifted, 60.0, 72.0), 60.0, 70.0);
@@ -36,14 +36,14 @@ TEST(MotionPrior, KnowsTheWayLessWhereWheelsSpinInTheDark) {
 }
 
 // A lifted wheel measures a false turn, which must not be taken for a delay.
-TEST(MotionPrior, FindsTheDelayThoughAWheelWasLifted) {
+TEST(MotionPrior, EstimatesTheDelayDespiteALiftedWheel) {
   const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.03, .noise = 0.001};
   const MotionPrior prior = followed(drive, {.slip_from = 40.0, .slip_to = 43.0, .slip_turn = 0.03}, 60.0, 60.0);
   EXPECT_NEAR(prior.time_offset(), 0.03, 0.01);
   EXPECT_FALSE(prior.are_wheels_slipping());
 }
 
-TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {
+TEST(MotionPrior, RejectsWheelsWhileTheySlip) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   EXPECT_TRUE(followed(drive, {.slip_from = 50.0, .slip_to = 100.0}, 55.0, 55.0).are_wheels_slipping());
   const MotionPrior after = followed(drive, {.slip_from = 50.0, .slip_to = 53.0}, 60.0, 60.0);
@@ -52,7 +52,7 @@ TEST(MotionPrior, LeavesWheelsOutWhileTheySpin) {
   EXPECT_NEAR(after.wheels()->metres_per_unit, 1.0, 0.01);
 }
 
-TEST(MotionPrior, KeepsAMountingThroughWheelsThatSlipAtFirst) {
+TEST(MotionPrior, KeepsAMountingDespiteEarlySlip) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const KnownMounting known = followed(drive, {}, 60.0, 60.0).to_keep();
   const MotionPrior prior = followed(drive, {.slip_from = 0.5, .slip_to = 3.5}, 12.0, 12.0, known);
@@ -77,7 +77,7 @@ MotionPrior followed_through_resets(const std::vector<double>& resets, double en
   return prior;
 }
 
-TEST(MotionPrior, BridgesAJumpOfTheWheelsByTheSpeedBefore) {
+TEST(MotionPrior, BridgesAJumpOfTheWheelsByTheEarlierVelocity) {
   const Drive drive{.base_from_body = camera_on_base()};
   const MotionPrior prior = followed_through_resets({20.0, 65.02}, 72.0);
   EXPECT_EQ(prior.slips(), 0) << "a jump is not a motion";
@@ -93,7 +93,7 @@ TEST(MotionPrior, BridgesAJumpOfTheWheelsByTheSpeedBefore) {
 }
 
 // Errors of measured steps stay within their covariance, whatever wheels report.
-TEST(MotionPrior, CoversEachStepOfFaultyWheelsByItsCovariance) {
+TEST(MotionPrior, CoversFaultyWheelSteps) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   std::mt19937 chance(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -137,7 +137,7 @@ TEST(MotionPrior, IgnoresAGyroscopeInDegreesPerSecond) {
   EXPECT_TRUE(prior.wheels());
 }
 
-TEST(MotionPrior, ReportsWheelsThatContradictKnownMetres) {
+TEST(MotionPrior, ReportsWheelsThatContradictAMetricScale) {
   struct Case {
     double metres_per_unit;
     bool is_reported;

@@ -50,7 +50,7 @@ MotionPrior followed_to_a_stop(const Drive& drive, const Stop& stop, double end)
   return prior;
 }
 
-TEST(MotionPrior, FindsTheGyroscopesBiasWhereItStandsInTheDark) {
+TEST(MotionPrior, EstimatesTheGyroscopeBiasAtStandstillInTheDark) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004}, 50.0);
   ASSERT_TRUE(prior.gyroscope());
@@ -61,14 +61,14 @@ TEST(MotionPrior, FindsTheGyroscopesBiasWhereItStandsInTheDark) {
   EXPECT_LT(std::sqrt(measured.covariance.topLeftCorner<3, 3>().trace()), 0.01);
 }
 
-TEST(MotionPrior, DoesNotStandWhereWheelsCreep) {
+TEST(MotionPrior, DetectsNoStandstillWhileWheelsCreep) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const MotionPrior prior = followed_to_a_stop(drive, {.drift = 0.004, .shows_stop = false}, 50.0);
   EXPECT_EQ(prior.standing().stops(), 0);
   EXPECT_FALSE(prior.tilt(from_seconds(49.9)));
 }
 
-TEST(MotionPrior, TellsTheTiltInTheDarkAfterAStopThatWasSeen) {
+TEST(MotionPrior, MeasuresTheTiltInTheDarkAfterAVisibleStop) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   EXPECT_FALSE(followed_to_a_stop(drive, {}, 50.0).tilt(from_seconds(49.9))) << "up in the map is not known";
   const MotionPrior prior = followed_to_a_stop(drive, {.dark = 44.0}, 50.0);

@@ -19,14 +19,14 @@ MotionPrior heard_until_now(const Drive& drive, double end) {
   return prior;
 }
 
-TEST(MotionPrior, TellsNothingBeforeItKnowsHowWheelsAreMounted) {
+TEST(MotionPrior, IsEmptyBeforeTheMountingIsEstimated) {
   const Drive drive{.base_from_body = camera_on_base()};
   const MotionPrior prior = followed(drive, {}, 1.0, 2.0);
   EXPECT_FALSE(prior.wheels());
   EXPECT_FALSE(prior.between(from_seconds(1.0), from_seconds(1.05)));
 }
 
-TEST(MotionPrior, FindsDelayAndScaleAndBridgesTheDark) {
+TEST(MotionPrior, EstimatesDelayAndScaleAndBridgesTheDark) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .wheel_delay = 0.07, .noise = 0.001};
   const MotionPrior prior = followed(drive, {}, 60.0, 72.0);
   ASSERT_TRUE(prior.wheels());
@@ -62,7 +62,7 @@ TEST(MotionPrior, BridgesTheDarkByVelocities) {
   EXPECT_TRUE(prior.between(from_seconds(69.2), from_seconds(69.25)));
 }
 
-TEST(MotionPrior, TellsWaysOfLongAgoByWhatItKnowsNow) {
+TEST(MotionPrior, AppliesThePresentMountingToEarlierMotions) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   const MotionPrior prior = followed(drive, {.gyroscope = true}, 60.0, 60.0);
   const auto measured = prior.way_between(from_seconds(2.0), from_seconds(3.0));
@@ -72,7 +72,7 @@ TEST(MotionPrior, TellsWaysOfLongAgoByWhatItKnowsNow) {
   EXPECT_LT(error.tail<3>().norm(), 0.01);
 }
 
-TEST(MotionPrior, ReachesNoFartherThanWheelsTurned) {
+TEST(MotionPrior, LimitsTheReachByWheels) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   const MotionPrior prior = followed(drive, {}, 30.0, 40.0);
   const auto reach = prior.reach(from_seconds(30.0), from_seconds(36.0), false);
@@ -82,7 +82,7 @@ TEST(MotionPrior, ReachesNoFartherThanWheelsTurned) {
   EXPECT_FALSE(prior.reach(from_seconds(36.0), from_seconds(50.0), false)) << "wheels were not heard";
 }
 
-TEST(MotionPrior, ReachesAsFarAsWheelsTurnedBeforeItKnowsThemWhereLengthsAreMetres) {
+TEST(MotionPrior, LimitsTheReachByWheelsOfUnknownMountingInAMetricMap) {
   const MotionPrior prior = followed({.base_from_body = camera_on_base()}, {}, 1.0, 2.0);
   ASSERT_FALSE(prior.wheels());
   EXPECT_FALSE(prior.reach(from_seconds(1.0), from_seconds(1.9), false));
@@ -93,7 +93,7 @@ TEST(MotionPrior, ReachesAsFarAsWheelsTurnedBeforeItKnowsThemWhereLengthsAreMetr
 }
 
 // An adjustment of the whole map may change the unit of a monocular map.
-TEST(MotionPrior, LooksAgainAtTheMapAsItIsInTheEnd) {
+TEST(MotionPrior, ReestimatesFromTheFinalMap) {
   Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
   MotionPrior prior = followed(drive, {}, 60.0, 60.0);
   drive.metres_per_unit = 0.38;
@@ -105,7 +105,7 @@ TEST(MotionPrior, LooksAgainAtTheMapAsItIsInTheEnd) {
 }
 
 // Poses computed from wheels are no evidence of their mounting.
-TEST(MotionPrior, LooksAgainAtWhatWasSeenAlone) {
+TEST(MotionPrior, ReestimatesFromTrackedPosesOnly) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   MotionPrior prior = followed(drive, {}, 40.0, 60.0);
   Drive moved_camera = drive;
@@ -133,7 +133,7 @@ TEST(MotionPrior, ContinuesTheLastMotionByWheels) {
 }
 
 // One camera begins its map late: frames are untracked for longer than samples are usually kept.
-TEST(MotionPrior, LeadsBackToFramesFromBeforeItKnewHowWheelsAreMounted) {
+TEST(MotionPrior, PropagatesBackToFramesBeforeTheMountingWasEstimated) {
   constexpr double kDark = 130.0, kEnd = 170.0, kFrame = 0.05;  // seconds
   const Drive drive{camera_on_base(), 3.0, 0.0, 0.0};
   MotionPrior prior;
@@ -154,7 +154,7 @@ TEST(MotionPrior, LeadsBackToFramesFromBeforeItKnewHowWheelsAreMounted) {
   }
 }
 
-TEST(MotionPrior, TurnsByTheGyroscope) {
+TEST(MotionPrior, RotatesByTheGyroscope) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const MotionPrior prior = followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0);
   ASSERT_TRUE(prior.gyroscope());
@@ -165,7 +165,7 @@ TEST(MotionPrior, TurnsByTheGyroscope) {
   EXPECT_LT(error.tail<3>().norm(), 0.03);
 }
 
-TEST(MotionPrior, GoesOnAsSeenForASecondByTheGyroscopeAlone) {
+TEST(MotionPrior, ContinuesForASecondByTheGyroscopeAlone) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.0005};
   const MotionPrior prior = followed(drive, {.wheels = false, .gyroscope = true}, 60.0, 72.0);
   ASSERT_TRUE(prior.between(from_seconds(60.0), from_seconds(60.05)));
@@ -175,7 +175,7 @@ TEST(MotionPrior, GoesOnAsSeenForASecondByTheGyroscopeAlone) {
   EXPECT_FALSE(prior.between(from_seconds(65.0), from_seconds(65.05)));
 }
 
-TEST(MotionPrior, BridgesTheDarkFromTheStartWhereTheMountingIsKnown) {
+TEST(MotionPrior, BridgesTheDarkFromTheStartWithAKnownMounting) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .wheel_delay = 0.07, .noise = 0.001};
   const DriveSensors sensors{.wheels = true, .gyroscope = true};
   const KnownMounting known = followed(drive, sensors, 60.0, 60.0).to_keep();
@@ -221,7 +221,7 @@ TEST(MotionPrior, BridgesTheDarkByAPresumedMounting) {
 }
 
 // Before the first tracked frame of a new map the length of the path is measured, its direction hardly.
-TEST(MotionPrior, TellsHowFarItWentBeforeAnythingIsSeenWhereAMapIsMade) {
+TEST(MotionPrior, MeasuresTheDistanceBeforeTheFirstFrameOfANewMap) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   for (const bool makes_map : {true, false}) {
     MotionPrior prior;
@@ -244,7 +244,7 @@ TEST(MotionPrior, TellsHowFarItWentBeforeAnythingIsSeenWhereAMapIsMade) {
   }
 }
 
-TEST(MotionPrior, TellsInTheLengthsOfAMapThatWasStretched) {
+TEST(MotionPrior, FollowsAScaledMap) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 2.0, .noise = 0.001};
   MotionPrior prior = followed(drive, {}, 40.0, 50.0);
   const auto before = prior.between(from_seconds(45.0), from_seconds(46.0));
@@ -255,7 +255,7 @@ TEST(MotionPrior, TellsInTheLengthsOfAMapThatWasStretched) {
   EXPECT_NEAR(prior.wheels()->metres_per_unit, 1.0, 0.02);
 }
 
-TEST(MotionPrior, KnowsTheMountingLessUntilMotionsBearItOut) {
+TEST(MotionPrior, IsLessCertainUntilMotionsConfirmTheMounting) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   const KnownMounting known = followed(drive, {}, 60.0, 60.0).to_keep();
   const auto variance = [&](double dark) {
@@ -267,7 +267,7 @@ TEST(MotionPrior, KnowsTheMountingLessUntilMotionsBearItOut) {
   EXPECT_GT(variance(0.0), 5.0 * variance(8.0));
 }
 
-TEST(MotionPrior, DropsAMountingThatIsAnotherOneByNow) {
+TEST(MotionPrior, DropsAChangedMounting) {
   const Drive before{.base_from_body = camera_on_base(), .noise = 0.001};
   const KnownMounting known = followed(before, {}, 60.0, 60.0).to_keep();
   Drive turned = before;  // rotated far: hardly any motion agrees

@@ -50,7 +50,7 @@ double error_of(const SteadyTrack::Steady& steady) {
   return (steady.up - kWorldFromSensor.conjugate() * Eigen::Vector3d::UnitZ()).norm();
 }
 
-TEST(SteadyTrack, TellsWhichWayIsUpAtRest) {
+TEST(SteadyTrack, MeasuresTheUpDirectionAtRest) {
   for (const double vibration : {0.0, 1.0}) {
     const auto steady = told_until_end({.vibration = vibration});
     ASSERT_TRUE(steady) << vibration;
@@ -60,14 +60,14 @@ TEST(SteadyTrack, TellsWhichWayIsUpAtRest) {
   }
 }
 
-TEST(SteadyTrack, TellsNothingWhereTheBodySwaysOrTurns) {
+TEST(SteadyTrack, IsEmptyWhileTheBodySwaysOrTurns) {
   EXPECT_FALSE(told_until_end({.sway = 0.3}));
   EXPECT_FALSE(told_until_end({.vibration = 5.0}));
   EXPECT_FALSE(told_until_end({.rate = {0.0, 0.3, 0.0}}));
   EXPECT_FALSE(told_until_end({.acceleration = {2.0, 0.0, 8.0}})) << "longer than gravity by far";
 }
 
-TEST(SteadyTrack, TellsNothingOfTooLittle) {
+TEST(SteadyTrack, IsEmptyForTooFewSamples) {
   EXPECT_FALSE(told_until_end({.until = 0.5}));
   SteadyTrack rates;
   for (int i = 0; i < 400; ++i) rates.add(AngularRate{from_seconds(0.005 * i), kStillRate});
@@ -75,7 +75,7 @@ TEST(SteadyTrack, TellsNothingOfTooLittle) {
   EXPECT_FALSE(rates.has_accelerations());
 }
 
-TEST(SteadyTrack, TellsNothingUntilAStopIsAsOldAsItsWindow) {
+TEST(SteadyTrack, IsEmptyUntilAStopFillsItsWindow) {
   SteadyTrack track;
   tell(track, {.until = 1.0, .acceleration = {-0.4, 0.0, 0.0}});
   tell(track, {.from = 1.005, .until = 3.0});
@@ -84,7 +84,7 @@ TEST(SteadyTrack, TellsNothingUntilAStopIsAsOldAsItsWindow) {
 }
 
 // Even braking is as steady as a stop: 0.3 m/s^2 equals a tilt of 1.7 degrees.
-TEST(Standing, IsNotTakenFromSlowBraking) {
+TEST(Standing, IsNotDetectedDuringSlowBraking) {
   const SensorMotion braking{.acceleration = {-0.3, 0.0, 0.0}};
   const auto steady = told_until_end(braking);
   ASSERT_TRUE(steady);
@@ -101,7 +101,7 @@ TEST(Standing, IsNotTakenFromSlowBraking) {
   EXPECT_TRUE(at({true, {}}));
 }
 
-TEST(Standing, IsNotTakenFromASlowTurn) {
+TEST(Standing, IsNotDetectedDuringASlowTurn) {
   Standing standing;
   tell(standing, {.rate = {0.0, 0.0, 0.06}});
   EXPECT_TRUE(standing.at(from_seconds(2.0), kWheelsStand, {})) << "it may be bias";
@@ -131,7 +131,7 @@ SteadyTrack::Steady up_at(const Eigen::Quaterniond& world_from_sensor) {
   return {world_from_sensor.conjugate() * Eigen::Vector3d::UnitZ(), 0.005, kStillRate};
 }
 
-TEST(UpInBody, IsKnownOfALevelBodyThoughTurnsWereAboutOneAxisAlone) {
+TEST(UpInBody, IsEstimatedForALevelBodyDespiteTurnsAboutOneAxis) {
   for (const double turn : {0.0, 2.0}) {  // rotation that the turns leave unconstrained
     const GyroscopeMounting mounting = known_about_one_axis(turn);
     const UpInBody level = up_in_body(up_at(kWorldFromSensor), mounting);
@@ -145,7 +145,7 @@ TEST(UpInBody, IsKnownOfALevelBodyThoughTurnsWereAboutOneAxisAlone) {
   }
 }
 
-TEST(Standing, TellsTheTiltByStopsAtKnownPlaces) {
+TEST(Standing, MeasuresTheTiltByStopsAtKnownPoses) {
   GyroscopeMounting mounting;
   mounting.covariance = 1e-5 * Eigen::Matrix3d::Identity();
   const Eigen::Quaterniond map_from_world = rotation_exp({0.7, 0.2, -0.5});

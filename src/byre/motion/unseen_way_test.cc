@@ -33,7 +33,7 @@ Pose as_it_is(const Pose& base) {
   return base;
 }
 
-TEST(UnseenWay, LeadsBackToFramesBeforeTheFirstPose) {
+TEST(UnseenWay, PropagatesBackToFramesBeforeTheFirstPose) {
   const Trajectory seen = {{frame(3), at(0.3)}, {frame(4), at(0.4)}};
   const Trajectory all = way({false, false, false, true, true}).completed(seen, as_it_is);
   ASSERT_THAT(all, SizeIs(5));
@@ -43,7 +43,7 @@ TEST(UnseenWay, LeadsBackToFramesBeforeTheFirstPose) {
   }
 }
 
-TEST(UnseenWay, SharesWhatWasToldWronglyBetweenTwoPoses) {
+TEST(UnseenWay, DistributesTheErrorBetweenTwoPoses) {
   const Trajectory seen = {{frame(0), at(0.0)}, {frame(4), at(0.4)}};
   const Trajectory all = way({true, false, false, false, true}, 1.2).completed(seen, as_it_is);
   ASSERT_THAT(all, SizeIs(5));
@@ -52,28 +52,28 @@ TEST(UnseenWay, SharesWhatWasToldWronglyBetweenTwoPoses) {
   }
 }
 
-TEST(UnseenWay, GoesOnAfterTheLastPoseInTheLengthsOfTheMap) {
+TEST(UnseenWay, ContinuesAfterTheLastPoseInMapUnits) {
   const auto in_map = [](const Pose& base) { return Pose{base.rotation, 0.5 * base.translation}; };
   const Trajectory all = way({true, false, false}).completed({{frame(0), at(1.0)}}, in_map);
   ASSERT_THAT(all, SizeIs(3));
   EXPECT_NEAR(all[2].world_from_body.translation.x(), 1.1, 1e-12);
 }
 
-TEST(UnseenWay, LeavesOutWhatNothingLeadsTo) {
+TEST(UnseenWay, OmitsFramesWithoutMeasuredMotion) {
   const Trajectory seen = {{frame(0), at(0.0)}};
   const Trajectory all = way({true, false, false, false}, 1.0, 1).completed(seen, as_it_is);
   ASSERT_THAT(all, SizeIs(2));
   EXPECT_EQ(all[1].time, frame(1));
 }
 
-TEST(UnseenWay, GivesNoSecondPoseToFramesThatHaveOne) {
+TEST(UnseenWay, KeepsExistingPoses) {
   const Trajectory seen = {{frame(0), at(0.0)}, {frame(1), at(0.7)}, {frame(2), at(0.2)}};
   const Trajectory all = way({true, false, true}).completed(seen, as_it_is);
   ASSERT_THAT(all, SizeIs(3));
   EXPECT_NEAR(all[1].world_from_body.translation.x(), 0.7, 1e-12);
 }
 
-TEST(UnseenWay, MakesPosesOfUnseenFramesAnewWhereItIsAskedTo) {
+TEST(UnseenWay, RecomputesUntrackedPosesOnRequest) {
   const Trajectory bridged = {{frame(0), at(0.0)}, {frame(1), at(0.7)}, {frame(2), at(0.2)}, {frame(3), at(0.9)}};
   const Trajectory all = way({true, false, true, false}).completed(bridged, as_it_is, UnseenWay::OldPoses::made_anew);
   ASSERT_THAT(all, SizeIs(4));
@@ -82,7 +82,7 @@ TEST(UnseenWay, MakesPosesOfUnseenFramesAnewWhereItIsAskedTo) {
   }
 }
 
-TEST(UnseenWay, KnowsWhereNothingWasSeen) {
+TEST(UnseenWay, ReportsUntrackedIntervals) {
   UnseenWay unseen = way({true, true, true, false, true, true, false, false, true, true});
   const auto expect_seen = [&] {
     EXPECT_TRUE(unseen.is_seen(frame(0), frame(2)));
@@ -98,7 +98,7 @@ TEST(UnseenWay, KnowsWhereNothingWasSeen) {
   EXPECT_FALSE(unseen.is_seen(frame(9), frame(10))) << "not told yet";
 }
 
-TEST(UnseenWay, KnowsFromWhenOnNothingWasTakenDown) {
+TEST(UnseenWay, ReportsTheFirstUnstoredInterval) {
   UnseenWay unseen;
   unseen.note(frame(0), true);
   unseen.note(frame(1), true);

@@ -25,7 +25,7 @@ void expect_near(const WheelMounting& mounting, const Drive& drive, double metre
   EXPECT_NEAR(mounting.metres_per_unit, drive.metres_per_unit, share * drive.metres_per_unit);
 }
 
-TEST(WheelMounting, IsFoundToTheLastDigitWithoutNoise) {
+TEST(WheelMounting, IsExactWithoutNoise) {
   for (const double metres_per_unit : {1.0, 0.37, 12.0}) {
     const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = metres_per_unit};
     const auto mounting = find_wheel_mounting(pairs_of(drive, 30.0));
@@ -34,7 +34,7 @@ TEST(WheelMounting, IsFoundToTheLastDigitWithoutNoise) {
   }
 }
 
-TEST(WheelMounting, IsFoundThroughNoiseAndSlip) {
+TEST(WheelMounting, IsRobustToNoiseAndSlip) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.002};
   std::vector<MotionPair> pairs = pairs_of(drive, 60.0);
   for (std::size_t i = 0; i < pairs.size(); i += 5) pairs[i].base.translation *= 3.0;
@@ -44,7 +44,7 @@ TEST(WheelMounting, IsFoundThroughNoiseAndSlip) {
   EXPECT_LT(mounting->scale_sigma, 0.01);
 }
 
-TEST(WheelMounting, TellsTheMotionOfTheBody) {
+TEST(WheelMounting, PredictsTheMotionOfTheBody) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37};
   const auto mounting = find_wheel_mounting(pairs_of(drive, 30.0));
   ASSERT_TRUE(mounting);
@@ -73,7 +73,7 @@ std::vector<MotionPair> pairs_of_omni(const Drive& drive, double seconds, double
   return pairs;
 }
 
-TEST(WheelMounting, IsFoundOfABaseThatDrivesToAllSides) {
+TEST(WheelMounting, IsEstimatedForAnOmnidirectionalBase) {
   const Drive drive{.base_from_body = camera_on_base()};
   for (const double ahead : {0.2, 0.0}) {
     const auto mounting = find_wheel_mounting(pairs_of_omni(drive, 60.0, 1.0, 0.2, ahead));
@@ -85,7 +85,7 @@ TEST(WheelMounting, IsFoundOfABaseThatDrivesToAllSides) {
   }
 }
 
-TEST(WheelMounting, SaysHowWronglyTheSideIsTold) {
+TEST(WheelMounting, EstimatesTheSidewaysError) {
   const Drive drive{.base_from_body = camera_on_base()};
   for (const double ahead : {0.2, 0.6}) {  // the faster it drives ahead, the smaller the effect of the sideways error
     const auto mounting = find_wheel_mounting(pairs_of_omni(drive, 60.0, 1.15, 0.2, ahead));
@@ -101,21 +101,21 @@ TEST(WheelMounting, SaysHowWronglyTheSideIsTold) {
   EXPECT_EQ(never_across->side_error, 0.2) << "nobody has seen it go across";
 }
 
-TEST(WheelMounting, StaysOpenWithoutTurning) {
+TEST(WheelMounting, IsEmptyWithoutTurning) {
   MotionPair ahead;
   ahead.base.translation.x() = ahead.body.translation.z() = 0.25;
   const std::vector<MotionPair> pairs(60, ahead);
   EXPECT_FALSE(find_wheel_mounting(pairs));
 }
 
-TEST(WheelMounting, StaysOpenWithoutDriving) {
+TEST(WheelMounting, IsEmptyWithoutDriving) {
   const Drive drive{.base_from_body = camera_on_base()};
   std::vector<MotionPair> pairs = pairs_of(drive, 30.0);
   for (MotionPair& pair : pairs) pair.base.translation.setZero();
   EXPECT_FALSE(find_wheel_mounting(pairs));
 }
 
-TEST(WheelMounting, IsPresumedByASecondOfWay) {
+TEST(WheelMounting, IsPresumedAfterASecondOfMotion) {
   for (const double metres_per_unit : {1.0, 0.37, 12.0}) {
     Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = metres_per_unit, .noise = 0.001};
     drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.3, 0.0, 0.0});  // looks down
@@ -130,7 +130,7 @@ TEST(WheelMounting, IsPresumedByASecondOfWay) {
 }
 
 // Turns determine the axis in the end, whatever was presumed.
-TEST(WheelMounting, IsPresumedAsItTurnsThoughItIsNotUpright) {
+TEST(WheelMounting, IsPresumedFromTurnsOfATiltedCamera) {
   Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.0, 0.0, 1.5});  // lies on its side
   const auto mounting = presume_wheel_mounting(pairs_of(drive, 8.0), -Eigen::Vector3d::UnitY());
@@ -138,7 +138,7 @@ TEST(WheelMounting, IsPresumedAsItTurnsThoughItIsNotUpright) {
   EXPECT_LT(angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation), 0.1);
 }
 
-TEST(WheelMounting, IsPresumedToLookAheadBeforeAnythingIsSeen) {
+TEST(WheelMounting, IsPresumedForwardBeforeTracking) {
   const Drive drive{.base_from_body = camera_on_base()};
   const auto mounting = presume_looking_ahead(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
   ASSERT_TRUE(mounting);
@@ -149,7 +149,7 @@ TEST(WheelMounting, IsPresumedToLookAheadBeforeAnythingIsSeen) {
 }
 
 // Before the first turn, only an accelerometer detects a camera that lies on its side.
-TEST(WheelMounting, IsPresumedByAMeasuredUpThoughTheCameraLiesOnItsSide) {
+TEST(WheelMounting, IsPresumedFromAMeasuredUpDirectionForASidewaysCamera) {
   Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
   drive.base_from_body.rotation = drive.base_from_body.rotation * rotation_exp({0.0, 0.0, 1.5});
   const std::vector<MotionPair> pairs = pairs_of(drive, 1.5);
@@ -162,7 +162,7 @@ TEST(WheelMounting, IsPresumedByAMeasuredUpThoughTheCameraLiesOnItsSide) {
   EXPECT_GT(error(-Eigen::Vector3d::UnitY(), UpSource::presumed), 0.5);
 }
 
-TEST(WheelMounting, IsNotPresumedByTurningOnTheSpot) {
+TEST(WheelMounting, IsNotPresumedFromTurningOnTheSpot) {
   const Drive drive{.base_from_body = camera_on_base()};
   std::vector<MotionPair> pairs = pairs_of(drive, 3.0);
   for (MotionPair& pair : pairs) pair.base.translation.setZero();

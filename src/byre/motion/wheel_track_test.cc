@@ -30,20 +30,20 @@ void expect_at(const Pose& pose, double x, double y, double yaw, double toleranc
   EXPECT_NEAR(rotation_log(pose.rotation).z(), yaw, tolerance);
 }
 
-TEST(WheelTrack, GoesAlongArcsOfVelocities) {
+TEST(WheelTrack, FollowsArcsOfVelocities) {
   WheelTrack track;  // a quarter of a circle in two seconds, sampled at 5 Hz
   add(track, 0.0, 2.0, 0.2, [](double) { return Eigen::Vector3d(0.25 * pi * 2.0, 0.0, 0.25 * pi); });
   expect_at(way(track, 0.0, 2.0), 2.0, 2.0, 0.5 * pi, 1e-9);
   expect_at(way(track, 0.0, 1.0), 2.0 * std::sin(0.25 * pi), 2.0 - 2.0 * std::cos(0.25 * pi), 0.25 * pi, 1e-9);
 }
 
-TEST(WheelTrack, TakesTheMeanOfVelocitiesThatChange) {
+TEST(WheelTrack, AveragesChangingVelocities) {
   WheelTrack track;  // half a metre per second squared
   add(track, 0.0, 2.0, 0.1, [](double t) { return Eigen::Vector3d(0.5 * t, 0.0, 0.0); });
   expect_at(way(track, 0.0, 2.0), 1.0, 0.0, 0.0, 1e-9);
 }
 
-TEST(WheelTrack, GoesSidewaysWhereABaseCan) {
+TEST(WheelTrack, MovesSidewaysForAnOmnidirectionalBase) {
   WheelTrack track;
   add(track, 0.0, 2.0, 0.05, [](double) { return Eigen::Vector3d(0.0, -0.3, 0.0); });
   expect_at(way(track, 0.0, 2.0), 0.0, -0.6, 0.0, 1e-9);
@@ -53,7 +53,7 @@ TEST(WheelTrack, GoesSidewaysWhereABaseCan) {
   EXPECT_NEAR(circling.distance(from_seconds(0.0), from_seconds(3.0))->metres, 0.5 * pi, 0.01);
 }
 
-TEST(WheelTrack, TellsNoMotionThroughAGapBetweenVelocities) {
+TEST(WheelTrack, IsEmptyAcrossAGapBetweenVelocities) {
   WheelTrack track;
   const auto fast = [](double) { return Eigen::Vector3d(1.0, 0.0, 0.0); };
   add(track, 0.0, 1.0, 0.05, fast);
@@ -65,7 +65,7 @@ TEST(WheelTrack, TellsNoMotionThroughAGapBetweenVelocities) {
   EXPECT_FALSE(track.distance(from_seconds(0.9), from_seconds(1.5)));
 }
 
-TEST(WheelTrack, IntegratesThroughASampleThatIsMissing) {
+TEST(WheelTrack, IntegratesAcrossAMissingSample) {
   WheelTrack track;
   const auto fast = [](double) { return Eigen::Vector3d(1.0, 0.0, 0.1); };
   add(track, 0.0, 1.0, 0.1, fast);
@@ -73,14 +73,14 @@ TEST(WheelTrack, IntegratesThroughASampleThatIsMissing) {
   EXPECT_NEAR(way(track, 0.0, 2.0).translation.x(), 10.0 * std::sin(0.2), 1e-9);
 }
 
-TEST(WheelTrack, GoesOnByTheLastVelocityForAQuarterOfASecond) {
+TEST(WheelTrack, ExtrapolatesTheLastVelocityForAQuarterOfASecond) {
   WheelTrack track;
   add(track, 0.0, 1.0, 0.1, [](double t) { return Eigen::Vector3d(t < 0.95 ? 0.0 : 1.0, 0.0, 0.0); });
   expect_at(way(track, 1.0, 1.2), 0.2, 0.0, 0.0, 1e-9);
   EXPECT_FALSE(track.between(from_seconds(1.0), from_seconds(1.3)));
 }
 
-TEST(WheelTrack, TellsNoMotionFromVelocitiesToPoses) {
+TEST(WheelTrack, IsEmptyFromVelocitiesToPoses) {
   WheelTrack track;
   add(track, 0.0, 1.0, 0.1, [](double) { return Eigen::Vector3d(1.0, 0.0, 0.0); });
   for (int i = 11; i < 20; ++i) {

@@ -55,7 +55,7 @@ class Dbow2File : public testing::Test {
   const fs::path path_ = fs::path(testing::TempDir()) / ("byre_dbow2_" + std::to_string(getpid()) + ".txt");
 };
 
-TEST_F(Dbow2File, IsReadIntoBreadthFirstOrder) {
+TEST_F(Dbow2File, IsReadInBreadthFirstOrder) {
   write("3 2 0 0\n" + kNodes);
   const VocabularyTree tree = read_dbow2(path_);
   EXPECT_THAT(tree.first_child, ElementsAre(1, 4, 4, 6, 8, 8, 8, 8, 8));
@@ -64,7 +64,7 @@ TEST_F(Dbow2File, IsReadIntoBreadthFirstOrder) {
   EXPECT_THAT(tree.weights, ElementsAre(0.5f, 1.0f, 2.0f, 4.0f, 8.25f));
 }
 
-TEST_F(Dbow2File, BecomesAVocabulary) {
+TEST_F(Dbow2File, ConvertsToAVocabulary) {
   write("3 2 0 0\r\n" + kNodes);
   const Vocabulary vocabulary = Vocabulary::import_dbow2(path_);
   EXPECT_EQ(vocabulary.word_count(), 5);
@@ -82,7 +82,7 @@ TEST_F(Dbow2File, BecomesAVocabulary) {
               ElementsAre(Pair(1u, FloatEq(2.0f / 10.25f)), Pair(4u, FloatEq(8.25f / 10.25f))));
 }
 
-TEST_F(Dbow2File, TakesSiblingsThatDoNotComeTogether) {
+TEST_F(Dbow2File, AcceptsScatteredSiblings) {
   write("2 2 0 0\n" + node(0, 0, 1, "0") + node(0, 0, 2, "0") + node(1, 1, 3, "1") + node(2, 1, 4, "2") +
         node(1, 1, 5, "3") + node(2, 1, 6, "4"));
   const VocabularyTree tree = read_dbow2(path_);
@@ -90,7 +90,7 @@ TEST_F(Dbow2File, TakesSiblingsThatDoNotComeTogether) {
   EXPECT_THAT(tree.first_child, ElementsAre(1, 3, 5, 7, 7, 7, 7, 7));
 }
 
-TEST_F(Dbow2File, NamesTheLineOfAMalformedHeader) {
+TEST_F(Dbow2File, ReportsTheLineOfAMalformedHeader) {
   EXPECT_THAT(refusal_of("10 6 0\n" + kNodes), HasSubstr(":1: has 3 fields instead of k, L, scoring, weighting"));
   EXPECT_THAT(refusal_of("1 6 0 0\n" + kNodes), HasSubstr(":1: the branching k is \"1\""));
   EXPECT_THAT(refusal_of("10 six 0 0\n" + kNodes), HasSubstr(":1: the depth L is \"six\""));
@@ -100,7 +100,7 @@ TEST_F(Dbow2File, NamesTheLineOfAMalformedHeader) {
   EXPECT_THAT(refusal_of(""), HasSubstr("has no nodes"));
 }
 
-TEST_F(Dbow2File, NamesTheLineOfAMalformedNode) {
+TEST_F(Dbow2File, ReportsTheLineOfAMalformedNode) {
   const std::string header = "3 2 0 0\n" + node(0, 1, 1, "1");
   EXPECT_THAT(refusal_of(header + "0 1 2 3\n"), HasSubstr(":3: has 4 fields instead of 35"));
   EXPECT_THAT(refusal_of(header + node(0, 1, 256, "1")), HasSubstr(":3: a byte of the descriptor is \"256\""));
@@ -112,7 +112,7 @@ TEST_F(Dbow2File, NamesTheLineOfAMalformedNode) {
   EXPECT_THAT(refusal_of(header + node(0, 1, 1, "1e300")), HasSubstr(":3: the weight is \"1e300\""));
 }
 
-TEST_F(Dbow2File, NamesTheLineOfANodeThatContradictsOthers) {
+TEST_F(Dbow2File, ReportsTheLineOfAnInconsistentNode) {
   EXPECT_THAT(refusal_of("3 2 0 0\n" + node(0, 1, 1, "1") + node(1, 1, 2, "1")),
               HasSubstr(":2: node 1 is marked as a leaf but has children"));
   EXPECT_THAT(refusal_of("3 2 0 0\n" + node(0, 1, 1, "1") + node(0, 0, 2, "1")),
@@ -123,7 +123,7 @@ TEST_F(Dbow2File, NamesTheLineOfANodeThatContradictsOthers) {
               HasSubstr(":1: node 0 has more than k children"));
 }
 
-TEST_F(Dbow2File, IsNamedWhenItCannotBeRead) {
+TEST_F(Dbow2File, IsReportedIfUnreadable) {
   EXPECT_THROW(read_dbow2("/absent/vocabulary.txt"), InputError);
 }
 

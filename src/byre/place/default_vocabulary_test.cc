@@ -26,13 +26,13 @@ class DefaultVocabulary : public testing::Test {
   std::optional<std::string> before_;
 };
 
-TEST_F(DefaultVocabulary, ComesWithByre) {
+TEST_F(DefaultVocabulary, IsInstalled) {
   const Vocabulary vocabulary = Vocabulary::load(default_vocabulary_path());
   EXPECT_GT(vocabulary.word_count(), 10'000);
   EXPECT_LE(std::filesystem::file_size(default_vocabulary_path()), 10'000'000u);
 }
 
-TEST_F(DefaultVocabulary, IsWhatTheEnvironmentNames) {
+TEST_F(DefaultVocabulary, IsReadFromTheEnvironmentVariable) {
   const std::string shipped = std::string(BYRE_SOURCE_DIR) + "/share/byre/default.vocabulary";
   const std::string chosen = std::string(BYRE_SOURCE_DIR) + "/share/../share/byre/default.vocabulary";
   setenv(kVariable, chosen.c_str(), 1);
@@ -42,7 +42,7 @@ TEST_F(DefaultVocabulary, IsWhatTheEnvironmentNames) {
   EXPECT_EQ(Vocabulary::load(shipped).checksum(), Vocabulary::load(chosen).checksum());
 }
 
-TEST_F(DefaultVocabulary, IsNotSoughtElsewhereWhenTheEnvironmentIsWrong) {
+TEST_F(DefaultVocabulary, HasNoFallbackForAWrongEnvironmentVariable) {
   setenv(kVariable, "/absent/my.vocabulary", 1);
   try {
     default_vocabulary_path();

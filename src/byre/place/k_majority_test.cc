@@ -16,7 +16,7 @@ using testing::SizeIs;
 
 constexpr int kRounds = 20;
 
-TEST(Nearest, PrefersTheFirstOfEquallyNearCentres) {
+TEST(Nearest, PrefersTheFirstOfEqualDistances) {
   const std::vector<Descriptor> centres = {{7}, {1}, {2}, {1}};
   EXPECT_EQ(nearest(centres, {3}), 0);
   EXPECT_EQ(nearest(centres, {0}), 1);
@@ -34,7 +34,7 @@ TEST(KMajority, RecoversCentresFromNoisyCopies) {
   }
 }
 
-TEST(KMajority, GivesEveryDescriptorItsNearestCentreAndLeavesNoClusterEmpty) {
+TEST(KMajority, AssignsNearestCentresWithoutEmptyClusters) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const std::vector<Descriptor> descriptors = random_descriptors(60, seed);
     std::mt19937_64 random(seed);
@@ -47,7 +47,7 @@ TEST(KMajority, GivesEveryDescriptorItsNearestCentreAndLeavesNoClusterEmpty) {
   }
 }
 
-TEST(KMajority, MakesNoMoreClustersThanThereAreDifferentDescriptors) {
+TEST(KMajority, ReturnsAtMostOneClusterPerDistinctDescriptor) {
   const std::vector<Descriptor> different = random_descriptors(3, 4);
   std::vector<Descriptor> descriptors;
   for (int i = 0; i < 30; ++i) descriptors.push_back(different[static_cast<std::size_t>(i % 3)]);
@@ -55,7 +55,7 @@ TEST(KMajority, MakesNoMoreClustersThanThereAreDifferentDescriptors) {
   EXPECT_THAT(k_majority(descriptors, 10, kRounds, random).centres, testing::UnorderedElementsAreArray(different));
 }
 
-TEST(KMajority, PutsEqualDescriptorsIntoOneCluster) {
+TEST(KMajority, AssignsEqualDescriptorsToOneCluster) {
   const std::vector<Descriptor> descriptors(20, random_descriptors(1, 6).front());
   std::mt19937_64 random(7);
   const Clusters clusters = k_majority(descriptors, 10, kRounds, random);
@@ -63,7 +63,7 @@ TEST(KMajority, PutsEqualDescriptorsIntoOneCluster) {
   EXPECT_THAT(clusters.cluster_of, Each(0));
 }
 
-TEST(KMajority, BringsDescriptorsNearerToTheirCentresThanSeedingDoes) {
+TEST(KMajority, ImprovesOnItsSeeds) {
   const std::vector<Descriptor> descriptors = noisy_images(random_descriptors(30, 8), 1, 20, 40, 9).front();
   const auto total_distance = [&descriptors](int rounds) {
     std::mt19937_64 random(10);

@@ -88,7 +88,7 @@ class RandomIndex : public testing::Test {
   std::map<KeyframeId, std::vector<Word>> words;
 };
 
-TEST_F(RandomIndex, ScoresAsComparingWithEachKeyframeDoes) {
+TEST_F(RandomIndex, ScoresLikeExhaustiveComparison) {
   for (int i = 0; i < 10; ++i) expect_like_each(vocabulary.bag_of(random_words(vocabulary, random)));
 }
 
@@ -98,7 +98,7 @@ TEST_F(RandomIndex, FindsAKeyframeByItsOwnWords) {
   }
 }
 
-TEST_F(RandomIndex, ForgetsRemovedKeyframesAndTakesThemBack) {
+TEST_F(RandomIndex, RemovesAndRestoresKeyframes) {
   const BagOfWords query = vocabulary.bag_of(random_words(vocabulary, random));
   for (std::uint32_t number = 0; number < kKeyframes; number += 3) {
     index.remove(offline(number));
@@ -120,7 +120,7 @@ TEST_F(RandomIndex, ReplacesTheWordsOfAKeyframe) {
   expect_like_each(vocabulary.bag_of(random_words(vocabulary, random)));
 }
 
-TEST_F(RandomIndex, DoesNotDependOnTheOrderKeyframesCameIn) {
+TEST_F(RandomIndex, IsIndependentOfTheOrderOfKeyframes) {
   PlaceIndex backwards(vocabulary);
   for (auto entry = words.rbegin(); entry != words.rend(); ++entry) backwards.add(entry->first, entry->second);
   const BagOfWords query = vocabulary.bag_of(random_words(vocabulary, random));
@@ -132,7 +132,7 @@ TEST_F(RandomIndex, DoesNotDependOnTheOrderKeyframesCameIn) {
   }
 }
 
-TEST_F(RandomIndex, OfAWholeMapIsTheSameToTheLastBit) {
+TEST_F(RandomIndex, IsBitIdenticalIfBuiltFromAWholeMap) {
   Map map(Origin::offline);
   map.add_rig({});
   for (const auto& [id, keyframe_words] : words) {
@@ -163,7 +163,7 @@ TEST_F(RandomIndex, OfAWholeMapIsTheSameToTheLastBit) {
   expect_equal();
 }
 
-TEST_F(RandomIndex, LeavesOutExcludedKeyframesBeforeItCounts) {
+TEST_F(RandomIndex, ExcludesKeyframesBeforeCounting) {
   const BagOfWords query = vocabulary.bag_of(random_words(vocabulary, random));
   const std::vector<PlaceMatch> all = index.query(query, 3);
   const auto matches = index.query(query, 2, [&all](KeyframeId id) { return id == all[0].keyframe; });
@@ -179,7 +179,7 @@ TEST(PlaceIndexTest, BreaksTiesByTheLowerId) {
   EXPECT_THAT(matches, ElementsAre(PlaceOf(offline(2), 1.0f), PlaceOf(offline(5), 1.0f), PlaceOf(offline(9), 1.0f)));
 }
 
-TEST(PlaceIndexTest, FindsNothingWithoutCommonWords) {
+TEST(PlaceIndexTest, ReturnsNothingWithoutCommonWords) {
   PlaceIndex index(plain_vocabulary(4));
   const BagOfWords query = index.vocabulary().bag_of(std::vector<Word>{2, 3});
   EXPECT_THAT(index.query(query, kAll), IsEmpty());
@@ -242,7 +242,7 @@ class TwoRooms : public testing::Test {
   std::vector<KeyframeId> keyframes;
 };
 
-TEST_F(TwoRooms, AreGroupsOfWhatIsCovisible) {
+TEST_F(TwoRooms, AreGroupedByCovisibility) {
   show(0, {0, 1, 2, 3});
   show(1, {0, 1, 4, 5});
   show(2, {0, 4, 5, 6});
@@ -255,7 +255,7 @@ TEST_F(TwoRooms, AreGroupsOfWhatIsCovisible) {
   EXPECT_THAT(found[0].group, ElementsAre(keyframes[0], keyframes[1], keyframes[2]));
 }
 
-TEST_F(TwoRooms, PreferThePlaceThatSeveralKeyframesConfirm) {
+TEST_F(TwoRooms, PreferAPlaceOfSeveralSimilarKeyframes) {
   show(0, {0, 1, 2, 3});
   show(3, {0, 1, 2, 7});
   show(5, {1, 2, 3, 7});
@@ -268,7 +268,7 @@ TEST_F(TwoRooms, PreferThePlaceThatSeveralKeyframesConfirm) {
   EXPECT_THAT(found[1].group, ElementsAre(keyframes[0]));
 }
 
-TEST_F(TwoRooms, CountNoMoreNeighboursThanAskedFor) {
+TEST_F(TwoRooms, CountAtMostTheGivenNeighbours) {
   for (int i = 0; i < 6; ++i) show(i, {0, 1});
   PlaceQueryOptions options;
   options.group_size = 1;
@@ -279,7 +279,7 @@ TEST_F(TwoRooms, CountNoMoreNeighboursThanAskedFor) {
                                  Field(&PlaceCandidate::group, ElementsAre(keyframes[5]))));
 }
 
-TEST_F(TwoRooms, AreAsManyAsAskedFor) {
+TEST_F(TwoRooms, AreLimitedInNumber) {
   for (int i = 0; i < 6; ++i) show(i, {0, 1});
   PlaceQueryOptions options;
   options.max_candidates = 1;
@@ -294,7 +294,7 @@ TEST_F(TwoRooms, AreFoundWithoutTheExcludedKeyframes) {
   EXPECT_THAT(found, ElementsAre(Field(&PlaceCandidate::group, ElementsAre(keyframes[4], keyframes[5]))));
 }
 
-TEST_F(TwoRooms, AreIndexedByTheirDescriptorsWhereTheyHaveNoWords) {
+TEST_F(TwoRooms, AreIndexedByDescriptorsWithoutWords) {
   for (const KeyframeId id : keyframes) map.set_words(id, {});
   const PlaceIndex index = index_of(map, vocabulary);
   EXPECT_EQ(index.size(), 6);
@@ -363,7 +363,7 @@ class Row : public testing::Test {
   Map map{Origin::offline};
 };
 
-TEST_F(Row, HasThePlacesThatLookingAtAllOfItFinds) {
+TEST_F(Row, ReturnsThePlacesOfAnExhaustiveSearch) {
   const PlaceIndex index = index_of(map, vocabulary);
   const Map online(Origin::online);
   const auto is_excluded = [](KeyframeId id) { return id.number % 7 == 3; };
@@ -388,7 +388,7 @@ TEST_F(Row, HasThePlacesThatLookingAtAllOfItFinds) {
   }
 }
 
-TEST_F(TwoRooms, AreNoPlaceForAnUnknownView) {
+TEST_F(TwoRooms, AreNotFoundForAnUnknownView) {
   show(0, {0, 1});
   EXPECT_THAT(places({6, 7}), IsEmpty());
   EXPECT_THAT(places({}), IsEmpty());

@@ -47,7 +47,7 @@ void put(std::vector<std::byte>& bytes, std::size_t at, std::uint32_t value) {
   std::memcpy(bytes.data() + at, &value, sizeof(value));
 }
 
-TEST(VocabularyFile, IsReadAsItWasWritten) {
+TEST(VocabularyFile, ReadsBackWhatItWrites) {
   const VocabularyTree tree = tree_of_two_levels();
   const std::vector<std::byte> bytes = write_vocabulary(tree);
   const VocabularyView view = read_vocabulary(bytes, "some.vocabulary");
@@ -62,7 +62,7 @@ TEST(VocabularyFile, NumbersWordsFromLeftToRight) {
   EXPECT_THAT(first_words(tree_of_two_levels().first_child), ElementsAre(0, 0, 1, 3, 1, 2));
 }
 
-TEST(VocabularyFile, HasTheLayoutThatIsDocumented) {
+TEST(VocabularyFile, HasTheDocumentedLayout) {
   const std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   ASSERT_EQ(bytes.size(), 64u + 6 * 32 + 7 * 4 + 4 * 4);
   EXPECT_EQ(std::memcmp(bytes.data(), "byrevoc\n\1\0\0\0\6\0\0\0\4\0\0\0\0\0\0\0", 24), 0);
@@ -70,7 +70,7 @@ TEST(VocabularyFile, HasTheLayoutThatIsDocumented) {
   EXPECT_EQ(std::memcmp(bytes.data() + 64 + 6 * 32, "\1\0\0\0\4\0\0\0\4\0\0\0", 12), 0);  // first children
 }
 
-TEST(VocabularyFile, ChecksumTellsVocabulariesApart) {
+TEST(VocabularyFile, HasADistinctChecksumPerVocabulary) {
   const auto checksum_of = [](const VocabularyTree& tree) {
     return read_vocabulary(write_vocabulary(tree), "").checksum;
   };
@@ -83,7 +83,7 @@ TEST(VocabularyFile, ChecksumTellsVocabulariesApart) {
   EXPECT_NE(checksum_of(other), checksum_of(tree_of_two_levels()));
 }
 
-TEST(VocabularyFile, NoticesEveryFlippedBit) {
+TEST(VocabularyFile, DetectsEveryFlippedBit) {
   std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   for (std::size_t i = 0; i < bytes.size() * 8; ++i) {
     const std::byte mask{static_cast<unsigned char>(1 << i % 8)};
@@ -93,7 +93,7 @@ TEST(VocabularyFile, NoticesEveryFlippedBit) {
   }
 }
 
-TEST(VocabularyFile, NoticesEveryLengthButItsOwn) {
+TEST(VocabularyFile, DetectsEveryWrongLength) {
   std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_THAT(damage_in(std::span(bytes).first(size)), StartsWith("some.vocabulary: section ")) << size;
@@ -102,7 +102,7 @@ TEST(VocabularyFile, NoticesEveryLengthButItsOwn) {
   EXPECT_THAT(damage_in(bytes), HasSubstr("section weights at byte 300: is not at the end of the file"));
 }
 
-TEST(VocabularyFile, NamesSectionAndByte) {
+TEST(VocabularyFile, ReportsSectionAndByte) {
   std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   bytes[70] ^= std::byte{1};
   EXPECT_THAT(damage_in(bytes), HasSubstr("section centres at byte 64: does not have the checksum"));
@@ -111,7 +111,7 @@ TEST(VocabularyFile, NamesSectionAndByte) {
   EXPECT_THAT(damage_in(std::span(bytes).first(20)), HasSubstr("section header at byte 20: ends too early"));
 }
 
-TEST(VocabularyFile, TellsOtherFormatsFromDamage) {
+TEST(VocabularyFile, DistinguishesOtherFormatsFromDamage) {
   std::vector<std::byte> bytes = write_vocabulary(tree_of_two_levels());
   put(bytes, 8, 2);
   EXPECT_THAT(damage_in(bytes), HasSubstr("has format 2; this program reads format 1"));
@@ -120,7 +120,7 @@ TEST(VocabularyFile, TellsOtherFormatsFromDamage) {
 }
 
 // A file with correct checksums may still be invalid.
-TEST(VocabularyFile, RefusesTreesThatAreNone) {
+TEST(VocabularyFile, RejectsInvalidTrees) {
   VocabularyTree tree = tree_of_two_levels();
   tree.first_child = {1, 4, 4, 6, 5, 6, 6};  // descending
   EXPECT_THAT(damage_in(tree), HasSubstr("section children at byte 268: has invalid children of node 3"));
@@ -134,7 +134,7 @@ TEST(VocabularyFile, RefusesTreesThatAreNone) {
   EXPECT_THAT(damage_in(tree), HasSubstr("has invalid children of node 2"));
 }
 
-TEST(VocabularyFile, RefusesWeightsThatAreNone) {
+TEST(VocabularyFile, RejectsInvalidWeights) {
   for (const float weight : {-1.0f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
     VocabularyTree tree = tree_of_two_levels();
     tree.weights[2] = weight;
@@ -145,12 +145,12 @@ TEST(VocabularyFile, RefusesWeightsThatAreNone) {
   EXPECT_THAT(damage_in(tree), HasSubstr("has a number of weights other than the number of words"));
 }
 
-TEST(VocabularyFile, RefusesAVocabularyWithoutWords) {
+TEST(VocabularyFile, RejectsAVocabularyWithoutWords) {
   EXPECT_THAT(damage_in(VocabularyTree{{{}}, {1, 1}, {1.0f}}), HasSubstr("has no word"));
   EXPECT_THAT(damage_in(VocabularyTree{{}, {1}, {}}), HasSubstr("has no word"));
 }
 
-TEST(VocabularyFile, SurvivesBeingSavedAndLoaded) {
+TEST(VocabularyFile, IsUnchangedBySavingAndLoading) {
   const fs::path path = fs::path(testing::TempDir()) / ("byre_saved_" + std::to_string(getpid()) + ".vocabulary");
   const std::vector<Descriptor> centres = random_descriptors(20, 1);
   const Vocabulary trained = Vocabulary::train(noisy_images(centres, 3, 4, 10, 2), {});
@@ -162,7 +162,7 @@ TEST(VocabularyFile, SurvivesBeingSavedAndLoaded) {
   for (const Descriptor& descriptor : centres) EXPECT_EQ(loaded.word_of(descriptor), trained.word_of(descriptor));
 }
 
-TEST(VocabularyFile, IsNamedWhenItCannotBeLoaded) {
+TEST(VocabularyFile, IsReportedIfUnreadable) {
   EXPECT_THROW(Vocabulary::load("/absent/some.vocabulary"), InputError);
   EXPECT_THROW(Vocabulary::load(testing::TempDir()), InputError);
 }

@@ -54,13 +54,13 @@ std::string refusal(const std::vector<std::vector<Descriptor>>& images, const Vo
   return "no InputError";
 }
 
-TEST_F(Trained, HasTheShapeAskedFor) {
+TEST_F(Trained, HasTheRequestedShape) {
   EXPECT_EQ(vocabulary.branching(), 4);
   EXPECT_EQ(vocabulary.depth(), 2);
   EXPECT_EQ(vocabulary.word_count(), kFamilies * kMembers);
 }
 
-TEST_F(Trained, GivesNoisyViewsOfTheSameThingTheSameWord) {
+TEST_F(Trained, AssignsOneWordToNoisyViews) {
   std::mt19937_64 random(3);
   for (const Descriptor& centre : centres) {
     const Word word = vocabulary.word_of(centre);
@@ -68,12 +68,12 @@ TEST_F(Trained, GivesNoisyViewsOfTheSameThingTheSameWord) {
   }
 }
 
-TEST_F(Trained, GivesDifferentThingsDifferentWords) {
+TEST_F(Trained, AssignsDifferentWordsToDifferentFeatures) {
   const std::vector<Word> words = words_of(vocabulary, centres);
   EXPECT_EQ(std::set<Word>(words.begin(), words.end()).size(), centres.size());
 }
 
-TEST_F(Trained, HasSimilarThingsBelowTheSameNode) {
+TEST_F(Trained, GroupsSimilarFeaturesBelowOneNode) {
   std::set<Word> nodes;
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const Word node = vocabulary.node_above(vocabulary.word_of(centres[i]), 1);
@@ -83,19 +83,19 @@ TEST_F(Trained, HasSimilarThingsBelowTheSameNode) {
   EXPECT_EQ(nodes.size(), static_cast<std::size_t>(kFamilies));
 }
 
-TEST_F(Trained, GivesAllFeaturesOfAnImageTheirWords) {
+TEST_F(Trained, AssignsWordsToAllFeaturesOfAnImage) {
   const Features features(640, 480, std::vector<Keypoint>(centres.size(), Keypoint{{1.0f, 1.0f}}), centres, {});
   EXPECT_EQ(vocabulary.words_of(features), words_of(vocabulary, to_vector(features.descriptors())));
 }
 
-TEST_F(Trained, IsTheSameForTheSameSeedOnly) {
+TEST_F(Trained, DependsOnTheSeed) {
   EXPECT_EQ(Vocabulary::train(images, small_tree()).checksum(), vocabulary.checksum());
   VocabularyOptions other = small_tree();
   other.seed = 2;
   EXPECT_NE(Vocabulary::train(images, other).checksum(), vocabulary.checksum());
 }
 
-TEST_F(Trained, TellsHowFarItIs) {
+TEST_F(Trained, ReportsProgress) {
   std::vector<double> shares;
   Vocabulary::train(images, small_tree(), [&shares](double share) { shares.push_back(share); });
   EXPECT_TRUE(std::ranges::is_sorted(shares));
@@ -103,7 +103,7 @@ TEST_F(Trained, TellsHowFarItIs) {
   EXPECT_DOUBLE_EQ(shares.back(), 1.0);
 }
 
-TEST_F(Trained, NamesTheNodesAboveAWord) {
+TEST_F(Trained, ReturnsTheNodesAboveAWord) {
   std::set<Word> nodes;
   Word before = 0;
   for (Word word = 0; word < static_cast<Word>(vocabulary.word_count()); ++word) {
@@ -119,7 +119,7 @@ TEST_F(Trained, NamesTheNodesAboveAWord) {
   EXPECT_EQ(nodes.size(), static_cast<std::size_t>(kFamilies));
 }
 
-TEST(Training, WeighsWordsByHowFewImagesHaveThem) {
+TEST(Training, WeightsWordsByInverseImageFrequency) {
   const std::vector<Descriptor> centres = random_descriptors(3, 4);
   const std::vector<std::vector<Descriptor>> images = {
       {centres[0], centres[1], centres[2], centres[2]}, {centres[0], centres[1]}, {centres[0], centres[0]}, {}};
@@ -137,7 +137,7 @@ TEST(Training, WeighsWordsByHowFewImagesHaveThem) {
   }
 }
 
-TEST(Training, CountsImagesAsTheFinishedTreeSortsTheirDescriptors) {
+TEST(Training, CountsImagesByTheFinishedTree) {
   std::vector<std::vector<Descriptor>> images;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) images.push_back(random_descriptors(80, seed));
   VocabularyOptions options;
@@ -165,7 +165,7 @@ TEST(Training, CountsImagesAsTheFinishedTreeSortsTheirDescriptors) {
   for (const auto& [word, weight] : vocabulary.bag_of(all)) EXPECT_NEAR(weight, weights[word] / sum, 1e-6);
 }
 
-TEST(Training, MakesShallowLeavesWhereThereIsNothingToSplit) {
+TEST(Training, MakesShallowLeavesOfIndivisibleNodes) {
   const std::vector<Descriptor> centres = random_descriptors(3, 5);
   VocabularyOptions options;
   options.depth = 6;
@@ -174,7 +174,7 @@ TEST(Training, MakesShallowLeavesWhereThereIsNothingToSplit) {
   EXPECT_EQ(vocabulary.depth(), 1);
 }
 
-TEST(Training, RefusesTooLittleToLearnFrom) {
+TEST(Training, RejectsInsufficientImages) {
   const std::vector<Descriptor> some = random_descriptors(10, 7);
   EXPECT_THAT(refusal({}, {}), HasSubstr("fewer than two training images"));
   EXPECT_THAT(refusal({some}, {}), HasSubstr("fewer than two training images"));
@@ -182,7 +182,7 @@ TEST(Training, RefusesTooLittleToLearnFrom) {
   EXPECT_THAT(refusal({{some[0], some[0]}, {some[0]}}, {}), HasSubstr("fewer than two different descriptors"));
 }
 
-TEST(Training, RefusesOptionsOutOfRange) {
+TEST(Training, RejectsOptionsOutOfRange) {
   const std::vector<std::vector<Descriptor>> images(2, random_descriptors(10, 8));
   VocabularyOptions options;
   options.branching = 256;
@@ -195,7 +195,7 @@ TEST(Training, RefusesOptionsOutOfRange) {
   EXPECT_THAT(refusal(images, options), HasSubstr("rounds: is 0"));
 }
 
-TEST_F(Trained, MakesBagsThatAreSortedAndSumToOne) {
+TEST_F(Trained, ReturnsSortedBagsThatSumToOne) {
   // Every word of this vocabulary is in every image and has zero weight, so the images get different words.
   std::vector<std::vector<Descriptor>> different(centres.size());
   for (std::size_t i = 0; i < centres.size(); ++i) different[i] = {centres[i], centres[(i + 1) % centres.size()]};
@@ -211,7 +211,7 @@ TEST_F(Trained, MakesBagsThatAreSortedAndSumToOne) {
   EXPECT_EQ(bag.size(), std::set<Word>(words.begin(), words.end()).size());
 }
 
-TEST_F(Trained, LeavesWordsOutThatAreInEveryImageOrUnknown) {
+TEST_F(Trained, OmitsUnknownAndUbiquitousWords) {
   const std::vector<Word> words = words_of(vocabulary, centres);
   EXPECT_THAT(vocabulary.bag_of(words), IsEmpty());
   const std::vector<Word> unknown = {static_cast<Word>(vocabulary.word_count()), 4'000'000'000u};
@@ -229,7 +229,7 @@ TEST(BagOfWordsTest, CountsRepeatedWords) {
   EXPECT_THAT(vocabulary.bag_of(words), ElementsAre(Pair(0u, FloatEq(0.25f)), Pair(1u, FloatEq(0.75f))));
 }
 
-TEST(Similarity, IsOneForEqualBagsAndZeroForForeignOnes) {
+TEST(Similarity, IsOneForEqualBagsAndZeroForDisjointOnes) {
   const BagOfWords a = {{1, 0.25f}, {5, 0.75f}};
   const BagOfWords b = {{2, 0.5f}, {9, 0.5f}};
   EXPECT_FLOAT_EQ(similarity(a, a), 1.0f);
