@@ -67,7 +67,7 @@ std::pair<int, double> farthest(const BundleProblem& problem) {
   return result;
 }
 
-TEST(BundleAdjust, HoldsTheScaleThatOneCameraCannotTell) {
+TEST(BundleAdjust, HoldsTheUnobservableScaleOfOneCamera) {
   BundleScene scene =
       make_scene(2, {.fixed_poses = 1, .mono_fraction = 1.0, .start_position = 0.01, .start_rotation = 0.005});
   const auto [held, distance] = farthest(scene.problem);
@@ -87,7 +87,7 @@ TEST(BundleAdjust, HoldsTheScaleThatOneCameraCannotTell) {
   EXPECT_TRUE(result.pose_covariance);
 }
 
-TEST(BundleAdjust, RecoversMorePosesThanTheDenseSolverTakes) {
+TEST(BundleAdjust, RecoversMorePosesThanTheDenseSolverAccepts) {
   const BundleScene scene = make_scene(3, {.moving_poses = 70, .points = 400});
   expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-6);
 }
@@ -102,7 +102,7 @@ TEST(BundleAdjust, RecoversPointsFromFixedPosesAlone) {
   expect_recovered(bundle_adjust(scene.problem, patient()), scene.truth, 1e-6);
 }
 
-TEST(BundleAdjust, AnswersNoiseWithSmallErrors) {
+TEST(BundleAdjust, HasSmallErrorsUnderNoise) {
   const BundleScene scene = make_scene(6, {.points = 300, .noise = 1.0});
   const BundleResult result = bundle_adjust(scene.problem, patient());
   ASSERT_TRUE(result.usable);
@@ -113,7 +113,7 @@ TEST(BundleAdjust, AnswersNoiseWithSmallErrors) {
   EXPECT_LT(median(result.squared_errors), 2.5);
 }
 
-TEST(BundleAdjust, ShowsOutliersInTheirErrorsAndResistsThem) {
+TEST(BundleAdjust, IsRobustToOutliersAndReportsTheirErrors) {
   BundleScene scene = make_scene(7, {.points = 200, .noise = 1.0});
   const std::vector<int> outliers = one_observation_of_well_seen_points(scene.problem);
   ASSERT_GT(outliers.size(), 30u);
@@ -127,7 +127,7 @@ TEST(BundleAdjust, ShowsOutliersInTheirErrorsAndResistsThem) {
   }
 }
 
-TEST(BundleAdjust, LeavesFixedThingsBitIdentical) {
+TEST(BundleAdjust, LeavesFixedElementsBitIdentical) {
   const BundleScene scene = make_scene(8, {.fixed_points = 40, .noise = 1.0});
   const BundleResult result = bundle_adjust(scene.problem, {});
   for (std::size_t i = 0; i < scene.problem.poses.size(); ++i) {
@@ -140,7 +140,7 @@ TEST(BundleAdjust, LeavesFixedThingsBitIdentical) {
   }
 }
 
-TEST(BundleAdjust, LeavesUnobservedThingsBitIdentical) {
+TEST(BundleAdjust, LeavesUnobservedElementsBitIdentical) {
   BundleScene scene = make_scene(9, {.noise = 1.0});
   scene.problem.poses.push_back({exp_pose(Vector6::Constant(0.3)), 0, false});
   scene.problem.points.push_back({Eigen::Vector3d(1.0, 2.0, 3.0), false});
@@ -149,7 +149,7 @@ TEST(BundleAdjust, LeavesUnobservedThingsBitIdentical) {
   EXPECT_EQ(result.points_in_world.back(), scene.problem.points.back().position_in_world);
 }
 
-TEST(BundleAdjust, HoldsTheFirstObservedPoseWhenNothingIsFixed) {
+TEST(BundleAdjust, HoldsTheFirstObservedPoseIfNothingIsFixed) {
   BundleScene scene = make_scene(10, {.fixed_poses = 0, .noise = 1.0});
   std::erase_if(scene.problem.observations, [](const BundleObservation& observation) { return observation.pose == 0; });
   const BundleResult result = bundle_adjust(scene.problem, {});
@@ -157,7 +157,7 @@ TEST(BundleAdjust, HoldsTheFirstObservedPoseWhenNothingIsFixed) {
   EXPECT_FALSE(identical(result.camera_from_world[2], scene.problem.poses[2].camera_from_world));
 }
 
-TEST(BundleAdjust, RepeatsBitForBit) {
+TEST(BundleAdjust, IsDeterministic) {
   const BundleScene scene = make_scene(11, {.fixed_points = 20, .noise = 1.0});
   BundleOptions options;
   options.covariance_of_pose = 5;
@@ -184,7 +184,7 @@ BundleOptions stopping_after(int iterations) {
   return options;
 }
 
-TEST(BundleAdjust, StopsWhenAskedWithTheBestSoFar) {
+TEST(BundleAdjust, ReturnsTheBestResultWhenStopped) {
   const BundleScene scene = make_scene(17, {.noise = 1.0});
   double previous = std::numeric_limits<double>::infinity();
   for (const int iterations : {0, 1, 2}) {
@@ -196,7 +196,7 @@ TEST(BundleAdjust, StopsWhenAskedWithTheBestSoFar) {
   }
 }
 
-TEST(BundleAdjust, StoppedIsWhereAsManyIterationsLead) {
+TEST(BundleAdjust, EqualsALimitOfIterationsWhenStopped) {
   const BundleScene scene = make_scene(18, {.noise = 1.0});
   BundleOptions two_iterations;
   two_iterations.max_iterations = 2;
@@ -206,14 +206,14 @@ TEST(BundleAdjust, StoppedIsWhereAsManyIterationsLead) {
   EXPECT_EQ(stopped.points_in_world, finished.points_in_world);
 }
 
-TEST(BundleAdjust, DoesNotCareWhetherItMayBeStopped) {
+TEST(BundleAdjust, IsUnaffectedByAStopFunction) {
   const BundleScene scene = make_scene(19, {.noise = 1.0});
   BundleOptions unstopped;
   unstopped.should_stop = [] { return false; };
   EXPECT_EQ(bundle_adjust(scene.problem, unstopped).points_in_world, bundle_adjust(scene.problem, {}).points_in_world);
 }
 
-TEST(BundleAdjust, FindsTheSameWhateverTheOrderOfObservations) {
+TEST(BundleAdjust, IsIndependentOfTheOrderOfObservations) {
   const BundleScene scene = make_scene(20, {.moving_poses = 70, .points = 400, .noise = 1.0});
   BundleProblem reversed = scene.problem;
   std::ranges::reverse(reversed.observations);
@@ -224,14 +224,14 @@ TEST(BundleAdjust, FindsTheSameWhateverTheOrderOfObservations) {
   }
 }
 
-TEST(BundleAdjust, TakesAnEmptyProblem) {
+TEST(BundleAdjust, AcceptsAnEmptyProblem) {
   const BundleResult result = bundle_adjust({}, {});
   EXPECT_TRUE(result.usable);
   EXPECT_TRUE(result.camera_from_world.empty());
   EXPECT_TRUE(result.squared_errors.empty());
 }
 
-TEST(BundleAdjust, OnlyMeasuresWhenNothingMoves) {
+TEST(BundleAdjust, OnlyEvaluatesAFixedProblem) {
   const BundleScene scene = make_scene(12, {.fixed_poses = 4, .moving_poses = 0, .points = 30, .fixed_points = 30});
   const BundleResult result = bundle_adjust(scene.problem, {});
   EXPECT_TRUE(result.usable);
@@ -240,7 +240,7 @@ TEST(BundleAdjust, OnlyMeasuresWhenNothingMoves) {
   EXPECT_THAT(result.squared_errors, Each(Lt(1e-12)));
 }
 
-TEST(BundleAdjust, GivesInfiniteErrorToAPointBehindTheCameraWhichHasNoSay) {
+TEST(BundleAdjust, IgnoresAPointBehindTheCameraWithInfiniteError) {
   BundleScene scene = make_scene(13, {});
   const int behind = static_cast<int>(scene.problem.points.size());
   const Pose world_from_camera = inverse(scene.truth.poses[3].camera_from_world);
@@ -253,7 +253,7 @@ TEST(BundleAdjust, GivesInfiniteErrorToAPointBehindTheCameraWhichHasNoSay) {
   EXPECT_THAT(result.camera_from_world[3], PoseNear(scene.truth.poses[3].camera_from_world, 1e-6, 1e-6));
 }
 
-TEST(BundleAdjust, SurvivesPointsThatStartCloseBeforeTheCamera) {
+TEST(BundleAdjust, SurvivesPointsThatStartCloseToTheCamera) {
   BundleScene scene = make_scene(14, {});
   for (int i = 0; i < 10; ++i) {
     const Pose& camera_from_world = scene.problem.poses[i % 6].camera_from_world;
@@ -266,7 +266,7 @@ TEST(BundleAdjust, SurvivesPointsThatStartCloseBeforeTheCamera) {
   EXPECT_LT(median(result.squared_errors), 1.0);
 }
 
-TEST(BundleAdjust, SurvivesPointsSeenOnceWithoutDisparity) {
+TEST(BundleAdjust, SurvivesPointsObservedOnceWithoutDisparity) {
   BundleScene scene = make_scene(15, {});
   const Eigen::Vector3d once_seen = inverse(scene.truth.poses[4].camera_from_world) * Eigen::Vector3d(0.1, 0.2, 2.0);
   scene.problem.points.push_back({once_seen, false});
@@ -279,7 +279,7 @@ TEST(BundleAdjust, SurvivesPointsSeenOnceWithoutDisparity) {
 }
 
 // Half of the observations of one pose come from a slightly displaced pose.
-TEST(BundleAdjust, FollowsTheObservationsThatWeighMore) {
+TEST(BundleAdjust, FollowsObservationsOfLargerWeight) {
   BundleSceneOptions options{.fixed_poses = 2, .moving_poses = 1, .points = 80, .fixed_points = 80};
   options.mono_fraction = 1.0;
   options.start_position = options.start_rotation = 0.0;
@@ -300,7 +300,7 @@ TEST(BundleAdjust, FollowsTheObservationsThatWeighMore) {
   EXPECT_NEAR(shift_towards_first_half(9.0), 0.9, 0.05);
 }
 
-TEST(BundleAdjust, TellsErrorsAndCovariancesWithoutWeights) {
+TEST(BundleAdjust, ReportsUnweightedErrorsAndCovariances) {
   const BundleScene scene = make_scene(18, {.noise = 1.0});
   BundleProblem weighted = scene.problem;
   for (BundleObservation& observation : weighted.observations) observation.weight = 4.0;
@@ -313,7 +313,7 @@ TEST(BundleAdjust, TellsErrorsAndCovariancesWithoutWeights) {
   EXPECT_LT((*result.pose_covariance - *plain.pose_covariance).norm(), 1e-3 * plain.pose_covariance->norm());
 }
 
-TEST(BundleAdjust, ReturnsWhatWasGivenWhenTheSolverFails) {
+TEST(BundleAdjust, ReturnsTheInputWhenTheSolverFails) {
   BundleScene scene = make_scene(16, {});
   scene.problem.observations.front().measured.x() = std::numeric_limits<double>::quiet_NaN();
   const BundleResult result = bundle_adjust(scene.problem, {});

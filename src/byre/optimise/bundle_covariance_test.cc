@@ -67,14 +67,14 @@ TEST(MarginalCovariance, IsTheBlockOfTheFullInverse) {
   }
 }
 
-TEST(MarginalCovariance, IsSymmetricAndPositive) {
+TEST(MarginalCovariance, IsSymmetricAndPositiveDefinite) {
   const auto covariance = marginal_covariance(make_scene(2, {.noise = 1.0}).truth, {}, 4, kHuberWidth);
   ASSERT_TRUE(covariance);
   EXPECT_LT((*covariance - covariance->transpose()).norm(), 1e-12 * covariance->norm());
   EXPECT_GT(covariance->determinant(), 0.0);
 }
 
-TEST(MarginalCovariance, GrowsWhenOutliersLoseTheirInfluence) {
+TEST(MarginalCovariance, GrowsWithTheWeightLossOfOutliers) {
   BundleProblem problem = make_scene(3, {}).truth;
   const auto clean = marginal_covariance(problem, {}, 4, kHuberWidth);
   for (std::size_t i = 0; i < problem.observations.size(); i += 4) problem.observations[i].measured.x() += 50.0;
@@ -83,7 +83,7 @@ TEST(MarginalCovariance, GrowsWhenOutliersLoseTheirInfluence) {
   EXPECT_GT(with_outliers->trace(), 1.1 * clean->trace());
 }
 
-TEST(MarginalCovariance, LearnsNothingFromAPointSeenOnceWithoutDisparity) {
+TEST(MarginalCovariance, IgnoresAPointObservedOnceWithoutDisparity) {
   BundleProblem problem = make_scene(4, {}).truth;
   const auto before = marginal_covariance(problem, {}, 4, kHuberWidth);
   const Eigen::Vector3d point_in_camera(0.1, 0.2, 2.0);
@@ -103,7 +103,7 @@ TEST(MarginalCovariance, IsEmptyForAFixedOrUnobservedPose) {
   EXPECT_FALSE(marginal_covariance(problem, {}, static_cast<int>(problem.poses.size()) - 1, kHuberWidth));
 }
 
-TEST(MarginalCovariance, IsEmptyWhenTheScaleIsFree) {
+TEST(MarginalCovariance, IsEmptyIfTheScaleIsFree) {
   const BundleProblem problem = make_scene(6, {.fixed_poses = 1, .mono_fraction = 1.0}).truth;
   EXPECT_FALSE(marginal_covariance(problem, {}, 2, kHuberWidth));
 }
@@ -116,12 +116,12 @@ TEST(MarginalCovariance, IsEmptyForTooFewObservations) {
   EXPECT_FALSE(marginal_covariance(problem, {}, 5, kHuberWidth));
 }
 
-TEST(BundleAdjust, GivesNoCovarianceUnlessAsked) {
+TEST(BundleAdjust, ReturnsACovarianceOnRequestOnly) {
   EXPECT_FALSE(bundle_adjust(make_scene(8, {}).problem, {}).pose_covariance);
 }
 
 // The covariances equal those of separate calls, in a large problem too.
-TEST(BundleAdjust, ReportsTheCovariancesOfSeveralPoses) {
+TEST(BundleAdjust, ReturnsCovariancesOfSeveralPoses) {
   const BundleScene scene =
       make_scene(2, {.moving_poses = 5, .points = 60, .fixed_points = 10, .noise = 1.0, .start_position = 0.02});
   BundleOptions options;
@@ -138,7 +138,7 @@ TEST(BundleAdjust, ReportsTheCovariancesOfSeveralPoses) {
 }
 
 // Squared normalised errors of repeated trials follow chi-square; the bounds hold with 99.9 %.
-TEST(BundleAdjust, ReportsACovarianceThatMatchesItsErrors) {
+TEST(BundleAdjust, ReturnsACovarianceThatMatchesItsErrors) {
   constexpr int kTrials = 200;
   constexpr double kDegrees = 6.0 * kTrials;
   BundleOptions options;

@@ -13,7 +13,7 @@ Pose moved(const Pose& pose, const Vector6& turn_and_translation) {
           pose.translation + turn_and_translation.tail<3>()};
 }
 
-TEST(MotionError, HasTheSlopesThatDifferencesHave) {
+TEST(MotionError, HasTheNumericJacobian) {
   constexpr double kStep = 1e-6;
   Draw draw(3);
   const Pose earlier = exp_pose(draw.motion(1.0, 1.0)), later = exp_pose(draw.motion(1.0, 1.0));
@@ -64,18 +64,18 @@ double worst_error(const BundleScene& scene) {
   return worst;
 }
 
-TEST(ToldMotions, GiveTheScaleThatOneCameraCannotTell) {
+TEST(MeasuredMotions, ConstrainTheScaleOfOneCamera) {
   EXPECT_LT(worst_error(scene_of_one_camera(4, 80)), 1e-5);
   EXPECT_LT(worst_error(scene_of_one_camera(70, 400)), 1e-3) << "with the sparse solver";
 }
 
-TEST(ToldMotions, AreLeftOutWhereOneIsFarOff) {
+TEST(MeasuredMotions, AreRejectedAsOutliers) {
   BundleScene scene = scene_of_one_camera(8, 120);
   scene.problem.motions[3].later_from_earlier.translation *= 4.0;
   EXPECT_LT(worst_error(scene), 0.01);
 }
 
-TEST(ToldMotions, PullOnNothingFromWhereNothingIsSeen) {
+TEST(MeasuredMotions, FromUnobservedPosesHaveNoEffect) {
   BundleScene scene = scene_of_one_camera(4, 80);
   Vector6 away = Vector6::Zero();
   away.x() = 0.3;
@@ -87,7 +87,7 @@ TEST(ToldMotions, PullOnNothingFromWhereNothingIsSeen) {
   EXPECT_LT(worst_error(scene), 1e-5);
 }
 
-TEST(ToldMotions, TellTheCovarianceOfAPose) {
+TEST(MeasuredMotions, ReduceTheCovarianceOfAPose) {
   BundleScene scene = scene_of_one_camera(4, 80);
   BundleOptions options;
   options.covariance_of_pose = 4;

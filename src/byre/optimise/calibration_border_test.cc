@@ -59,7 +59,7 @@ class CalibratedBundle : public testing::TestWithParam<int> {  // number of movi
   BundleScene scene_;
 };
 
-TEST_P(CalibratedBundle, FindsTheChangeThatExplainsAllWithPosesAndPoints) {
+TEST_P(CalibratedBundle, EstimatesTheChangeWithPosesAndPoints) {
   const BundleResult result = bundle_adjust(scene_.problem, patient());
   ASSERT_TRUE(result.usable);
   EXPECT_LT((result.calibration_change - some_change()).norm(), 1e-4);
@@ -93,7 +93,7 @@ class NoisyCalibratedBundle : public CalibratedBundle {
   }
 };
 
-TEST_P(NoisyCalibratedBundle, FindsTheChangeOfLeastCost) {
+TEST_P(NoisyCalibratedBundle, EstimatesTheChangeOfLeastCost) {
   const BundleOptions options = patient();
   const BundleResult result = bundle_adjust(scene_.problem, options);
   ASSERT_TRUE(result.usable);
@@ -105,7 +105,7 @@ TEST_P(NoisyCalibratedBundle, FindsTheChangeOfLeastCost) {
   }
 }
 
-TEST_P(NoisyCalibratedBundle, LeavesTheChangeAsExpectedWhereNothingIsSeenThroughThatRig) {
+TEST_P(NoisyCalibratedBundle, KeepsThePriorChangeOfAnUnusedRig) {
   scene_.problem.rigs.push_back(scene_.problem.rigs[0]);
   scene_.problem.calibration->rig = 1;
   const BundleResult result = bundle_adjust(scene_.problem, patient());

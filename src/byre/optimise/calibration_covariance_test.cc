@@ -36,7 +36,7 @@ BundleProblem drive_towards_far_points(std::uint64_t seed, const CalibrationSens
   return problem;
 }
 
-TEST(CalibrationInformation, IsKnownHoweverFarPointsAre) {
+TEST(CalibrationInformation, IsPositiveDefiniteForDistantPoints) {
   const CalibrationSensitivity sensitivity(scene_calibration());
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const auto information = calibration_information(drive_towards_far_points(seed, sensitivity), kRobustWidth);
@@ -47,7 +47,7 @@ TEST(CalibrationInformation, IsKnownHoweverFarPointsAre) {
   }
 }
 
-TEST(CalibrationInformation, IsWhatWasKnownWhereNothingIsSeen) {
+TEST(CalibrationInformation, IsThePriorWithoutObservations) {
   const CalibrationSensitivity sensitivity(scene_calibration());
   BundleProblem problem = drive_towards_far_points(1, sensitivity);
   problem.observations.clear();

@@ -69,7 +69,7 @@ TEST(ExpansionOfAPosesCost, IsTheSumOfItsPoints) {
   }
 }
 
-TEST(ExpansionOfAPosesCost, IsNothingWithoutPoints) {
+TEST(ExpansionOfAPosesCost, IsZeroWithoutPoints) {
   WeighedPoints points = side_by_side(some_points(9, kPose));
   points.clear();
   const PoseExpansion nothing = points.expand(stereo_rig(), kPose, kWidth);
@@ -78,7 +78,7 @@ TEST(ExpansionOfAPosesCost, IsNothingWithoutPoints) {
   EXPECT_EQ(nothing.descent, Vector6::Zero());
 }
 
-TEST(ExpansionOfAPosesCost, IsNotPulledByPointsBehindTheCamera) {
+TEST(ExpansionOfAPosesCost, IgnoresPointsBehindTheCamera) {
   std::vector<WeighedPoint> points = some_points(6, kPose);
   const PoseExpansion without = side_by_side(points).expand(stereo_rig(), kPose, kWidth);
   for (const double depth : {-1.0, 0.0}) {
@@ -91,7 +91,7 @@ TEST(ExpansionOfAPosesCost, IsNotPulledByPointsBehindTheCamera) {
   EXPECT_NEAR(with.cost - without.cost, 2.0 * points.front().weight * huber_cost(1e4, kWidth), 1e-6);
 }
 
-TEST(ExpansionOfAPosesCost, TakesWeightsSquared) {
+TEST(ExpansionOfAPosesCost, SquaresWeights) {
   std::vector<WeighedPoint> points = some_points(9, kPose);
   WeighedPoints squared = side_by_side(points);
   squared.square_weights();
@@ -99,7 +99,7 @@ TEST(ExpansionOfAPosesCost, TakesWeightsSquared) {
   expect_alike(squared.expand(stereo_rig(), kPose, kWidth), expand_one_by_one(points, kPose));
 }
 
-TEST(ExpansionOfAPosesCost, IsTheSameToTheLastBitWithEveryInstructionSet) {
+TEST(ExpansionOfAPosesCost, IsBitIdenticalForEveryInstructionSet) {
   const WeighedPoints points = side_by_side(some_points(102, kPose));
   const PoseExpansion usual = points.expand(stereo_rig(), kPose, kWidth);
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {

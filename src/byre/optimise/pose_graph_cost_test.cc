@@ -134,7 +134,7 @@ TEST_P(PoseGraphCostTest, HasTheNumericJacobian) {
 
 INSTANTIATE_TEST_SUITE_P(Turn, PoseGraphCostTest, testing::Values(0.0, 1e-5, 5e-4, 2e-3, 0.1, 1.0, 2.0, 3.0));
 
-TEST(PoseGraphCost, IsZeroWhereThePredictionIsTheMeasurement) {
+TEST(PoseGraphCost, IsZeroIfPredictionAndMeasurementAgree) {
   Draw draw(4);
   for (int i = 0; i < 20; ++i) {
     const Nodes nodes{random_node(draw), random_node(draw)};
@@ -142,7 +142,7 @@ TEST(PoseGraphCost, IsZeroWhereThePredictionIsTheMeasurement) {
   }
 }
 
-TEST(PoseGraphCost, IsTheMotionFromTheMeasuredToThePredicted) {
+TEST(PoseGraphCost, IsTheMotionFromMeasuredToPredicted) {
   Draw draw(5);
   Nodes nodes{random_node(draw), random_node(draw)};
   nodes.first.log_scale = nodes.second.log_scale = 0.0;
@@ -154,7 +154,7 @@ TEST(PoseGraphCost, IsTheMotionFromTheMeasuredToThePredicted) {
   EXPECT_EQ(error[6], 0.0);
 }
 
-TEST(PoseGraphCost, WeighsByTheInformation) {
+TEST(PoseGraphCost, IsWeightedByTheInformation) {
   Draw draw(6);
   const Nodes nodes{random_node(draw), random_node(draw)};
   PoseGraphEdge edge = predicted_edge(nodes);
@@ -165,7 +165,7 @@ TEST(PoseGraphCost, WeighsByTheInformation) {
   EXPECT_NEAR(error_at({edge, false}, nodes).squaredNorm(), expected, 1e-10 * expected);
 }
 
-TEST(PoseGraphCost, LeavesScalesOutInLengthsOfTheWorld) {
+TEST(PoseGraphCost, IgnoresScalesForEdgesInWorldUnits) {
   Draw draw(8);
   Nodes nodes{random_node(draw), random_node(draw)};
   PoseGraphEdge edge = predicted_edge(nodes);
@@ -174,7 +174,7 @@ TEST(PoseGraphCost, LeavesScalesOutInLengthsOfTheWorld) {
   EXPECT_LT(error_at({edge, true}, nodes).norm(), 1e-11);
 }
 
-TEST(PoseGraphCost, CountsTheScaleInSigmasOfItsLogarithm) {
+TEST(PoseGraphCost, WeightsTheScaleBySigmasOfItsLogarithm) {
   Draw draw(7);
   const Nodes nodes{random_node(draw), random_node(draw)};
   PoseGraphEdge edge = predicted_edge(nodes);

@@ -59,7 +59,7 @@ TEST_P(EveryLoss, ClosesCleanLoopsExactly) {
   EXPECT_LT(result.cost, 1e-6);
 }
 
-TEST_P(EveryLoss, LeavesAPerfectGraphWhereItIs) {
+TEST_P(EveryLoss, KeepsAConsistentGraph) {
   const PoseGraph clean = measured_graph(2, {.links = 2, .loops = 1});
   const PoseGraphResult result = optimise_pose_graph(clean, with_loss(GetParam()));
   expect_poses(result, clean, 1e-9);
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(OptimisePoseGraph, EveryLoss,
                          testing::Values(RobustLoss::none, RobustLoss::huber, RobustLoss::cauchy));
 
 // The remaining errors follow chi-square with six degrees of freedom per edge beyond a spanning tree; 99.9 %.
-TEST(OptimisePoseGraph, LeavesTheErrorsThatTheNoiseExplains) {
+TEST(OptimisePoseGraph, LeavesErrorsExplainedByNoise) {
   const PoseGraph measured = measured_graph(4, kNoisy);
   const PoseGraphResult result = optimise_pose_graph(with_odometry(measured), with_loss(RobustLoss::none));
   const double degrees = 6.0 * static_cast<double>(measured.edges.size() - measured.nodes.size() + 1);
@@ -86,7 +86,7 @@ TEST(OptimisePoseGraph, LeavesTheErrorsThatTheNoiseExplains) {
 }
 
 // Equal springs in a ring: each of n edges takes 1/n of the closing error.
-TEST(OptimisePoseGraph, SpreadsWhatDoesNotCloseEvenly) {
+TEST(OptimisePoseGraph, DistributesALoopErrorEvenly) {
   constexpr int kNodes = 10;
   constexpr double kGap = 0.5;  // metres
   PoseGraph ring;
@@ -105,7 +105,7 @@ TEST(OptimisePoseGraph, SpreadsWhatDoesNotCloseEvenly) {
   EXPECT_NEAR(result.camera_from_world[5].translation.z(), -5.0 - 5.0 * kGap / kNodes, 1e-6);
 }
 
-TEST(OptimisePoseGraph, MovesTogetherWithTheWorld) {
+TEST(OptimisePoseGraph, IsInvariantToTheWorldFrame) {
   const PoseGraph graph = with_odometry(measured_graph(5, kNoisy));
   const Pose world_from_other = exp_pose((Vector6() << 30.0, -20.0, 10.0, 0.5, -1.0, 2.0).finished());
   PoseGraph elsewhere = graph;
@@ -124,7 +124,7 @@ PoseGraph with_false_loop(PoseGraph graph) {
   return graph;
 }
 
-TEST(OptimisePoseGraph, ShrugsOffAFalseLoopWithCauchysLoss) {
+TEST(OptimisePoseGraph, IsRobustToAFalseLoopWithCauchyLoss) {
   const PoseGraph measured = measured_graph(6, kNoisy);
   const PoseGraph drifted = with_odometry(measured);
   const PoseGraphResult without = optimise_pose_graph(drifted, with_loss(RobustLoss::cauchy));
@@ -134,7 +134,7 @@ TEST(OptimisePoseGraph, ShrugsOffAFalseLoopWithCauchysLoss) {
   }
 }
 
-TEST(OptimisePoseGraph, ShowsAFalseLoopInItsError) {
+TEST(OptimisePoseGraph, ReportsAFalseLoopByItsError) {
   const PoseGraph graph = with_false_loop(with_odometry(measured_graph(7, kNoisy)));
   for (const RobustLoss loss : {RobustLoss::huber, RobustLoss::cauchy}) {
     std::vector<double> errors = optimise_pose_graph(graph, with_loss(loss)).squared_errors;
@@ -144,7 +144,7 @@ TEST(OptimisePoseGraph, ShowsAFalseLoopInItsError) {
   }
 }
 
-TEST(OptimisePoseGraph, IsBentByAFalseLoopMoreWithoutARobustLoss) {
+TEST(OptimisePoseGraph, IsDistortedMoreByAFalseLoopWithoutARobustLoss) {
   const PoseGraph truth = measured_graph(8, kNoisy);
   const PoseGraph graph = with_false_loop(with_odometry(truth));
   const auto error_with = [&](RobustLoss loss) {
@@ -172,7 +172,7 @@ PoseGraph as_odometry_thinks(PoseGraph truth) {
   return with_odometry(truth);
 }
 
-TEST(OptimisePoseGraph, RemovesScaleDriftWhenScalesAreFree) {
+TEST(OptimisePoseGraph, RemovesScaleDriftIfScalesAreFree) {
   const PoseGraph truth = with_scale_drift({.nodes = 80, .rounds = 1});
   PoseGraph drifted = as_odometry_thinks(truth);
   drifted.edges.push_back(true_edge(truth, 79, 0));
@@ -192,7 +192,7 @@ TEST(OptimisePoseGraph, RemovesScaleDriftWhenScalesAreFree) {
 }
 
 // Wheel odometry between successive nodes, in world lengths that differ from the first node's scale.
-TEST(OptimisePoseGraph, HoldsScalesToTheLengthsThatEdgesTell) {
+TEST(OptimisePoseGraph, HoldsScalesToMetricEdges) {
   PoseGraph truth = with_scale_drift({.nodes = 40, .rounds = 1});
   for (PoseGraphNode& node : truth.nodes) node.scale *= 1.1;
   PoseGraph drifted = as_odometry_thinks(truth);
@@ -212,7 +212,7 @@ TEST(OptimisePoseGraph, HoldsScalesToTheLengthsThatEdgesTell) {
   }
 }
 
-TEST(OptimisePoseGraph, FindsMeasuredScalesExactly) {
+TEST(OptimisePoseGraph, EstimatesMeasuredScalesExactly) {
   const PoseGraph truth = [] {
     PoseGraph graph = with_scale_drift({.nodes = 40});
     for (int i = 0; i < 39; ++i) graph.edges.push_back(true_edge(graph, i, i + 1));
@@ -237,7 +237,7 @@ TEST(OptimisePoseGraph, HoldsScalesUnlessTheyAreFree) {
   for (std::size_t i = 0; i < truth.nodes.size(); ++i) EXPECT_EQ(result.scales[i], truth.nodes[i].scale);
 }
 
-TEST(OptimisePoseGraph, HoldsTheScaleOfNodesThatKnowIt) {
+TEST(OptimisePoseGraph, HoldsTheScaleOfNodesWithKnownScale) {
   PoseGraph graph = displaced(measured_graph(17, {.nodes = 20, .rounds = 1}), 17, 0.1, 0.05);
   for (PoseGraphEdge& edge : graph.edges) edge.scale = 1.01;
   graph.nodes[10].scale_is_known = true;
@@ -247,7 +247,7 @@ TEST(OptimisePoseGraph, HoldsTheScaleOfNodesThatKnowIt) {
   EXPECT_GT(result.scales[15], 1.02) << "the others follow their edges";
 }
 
-TEST(OptimisePoseGraph, HoldsTheFirstNodeWithAnEdgeWhenNothingIsFixed) {
+TEST(OptimisePoseGraph, HoldsTheFirstConnectedNodeIfNothingIsFixed) {
   PoseGraph graph = with_odometry(measured_graph(11, kNoisy));
   graph.nodes.front().fixed = false;
   std::erase_if(graph.edges, [](const PoseGraphEdge& edge) { return edge.first == 0; });
@@ -271,7 +271,7 @@ TEST(OptimisePoseGraph, LeavesFixedAndDisconnectedNodesBitIdentical) {
   EXPECT_EQ(result.squared_errors.size(), graph.edges.size());
 }
 
-TEST(OptimisePoseGraph, RepeatsBitForBit) {
+TEST(OptimisePoseGraph, IsDeterministic) {
   const PoseGraph graph = with_odometry(measured_graph(13, kNoisy));
   const PoseGraphOptions options{.loss = RobustLoss::cauchy, .scale_is_free = true};
   const PoseGraphResult first = optimise_pose_graph(graph, options);
@@ -281,7 +281,7 @@ TEST(OptimisePoseGraph, RepeatsBitForBit) {
   EXPECT_EQ(first.squared_errors, second.squared_errors);
 }
 
-TEST(OptimisePoseGraph, TakesAnEmptyGraphAndOneWithoutEdges) {
+TEST(OptimisePoseGraph, AcceptsAnEmptyGraphAndOneWithoutEdges) {
   EXPECT_TRUE(optimise_pose_graph({}, {}).usable);
   const PoseGraph lonely = true_graph({.nodes = 3});
   const PoseGraphResult result = optimise_pose_graph(lonely, {});
@@ -290,7 +290,7 @@ TEST(OptimisePoseGraph, TakesAnEmptyGraphAndOneWithoutEdges) {
   EXPECT_TRUE(std::ranges::equal(result.camera_from_world, poses_of(lonely), same_to_the_bit));
 }
 
-TEST(OptimisePoseGraph, GivesAnEdgeFromANodeToItselfNoSay) {
+TEST(OptimisePoseGraph, IgnoresAnEdgeFromANodeToItself) {
   const PoseGraph graph = with_odometry(measured_graph(14, kNoisy));
   PoseGraph with_self = graph;
   with_self.edges.push_back({.first = 5, .second = 5, .second_from_first = exp_pose(Vector6::Constant(0.1))});
@@ -300,7 +300,7 @@ TEST(OptimisePoseGraph, GivesAnEdgeFromANodeToItselfNoSay) {
   EXPECT_NEAR(result.squared_errors.back(), 0.06, 1e-6);
 }
 
-TEST(OptimisePoseGraph, TakesEdgesThatKnowTheRotationAlone) {
+TEST(OptimisePoseGraph, AcceptsEdgesOfRotationOnly) {
   PoseGraph clean = measured_graph(15, {.loops = 1});
   for (PoseGraphEdge& edge : clean.edges) {
     if (edge.second == edge.first + 1) continue;
@@ -310,7 +310,7 @@ TEST(OptimisePoseGraph, TakesEdgesThatKnowTheRotationAlone) {
   expect_poses(optimise_pose_graph(displaced(clean, 15, 0.1, 0.05), {}), clean, 1e-6);
 }
 
-TEST(OptimisePoseGraph, ReturnsWhatWasGivenWhenTheSolverFails) {
+TEST(OptimisePoseGraph, ReturnsTheInputWhenTheSolverFails) {
   PoseGraph graph = with_odometry(measured_graph(16, kNoisy));
   graph.edges[7].second_from_first.translation.x() = std::numeric_limits<double>::quiet_NaN();
   const PoseGraphResult result = optimise_pose_graph(graph, {});

@@ -107,7 +107,7 @@ TEST(RefinePose, RecoversFromAPoorPrediction) {
   EXPECT_THAT(refined->camera_from_world, PoseNear(scene.true_camera_from_world, 1e-8, 1e-8));
 }
 
-TEST(RefinePose, AnswersNoiseWithSmallErrors) {
+TEST(RefinePose, HasSmallErrorsUnderNoise) {
   const Scene scene = make_scene(4, {.points = 300, .mono_fraction = 0.3, .noise = 1.0});
   const auto refined = scene.refine();
   ASSERT_TRUE(refined);
@@ -140,7 +140,7 @@ TEST(RefinePose, CountsPointsAtOrBehindTheCameraAsOutliers) {
   EXPECT_THAT(refined->camera_from_world, PoseNear(scene.true_camera_from_world, 1e-9, 1e-9));
 }
 
-TEST(RefinePose, RecoversThoughMostPointsAreBehindTheCamera) {
+TEST(RefinePose, RecoversWithMostPointsBehindTheCamera) {
   Scene scene = make_scene(19, {});
   for (int i = 0; i < 70; ++i) {
     scene.observations[i].point_in_world =
@@ -152,7 +152,7 @@ TEST(RefinePose, RecoversThoughMostPointsAreBehindTheCamera) {
   EXPECT_THAT(refined->camera_from_world, PoseNear(scene.true_camera_from_world, 1e-9, 1e-9));
 }
 
-TEST(RefinePose, CountsWhatIsNotANumberAsOutliers) {
+TEST(RefinePose, CountsNonFiniteObservationsAsOutliers) {
   Scene scene = make_scene(16, {});
   scene.observations[0].measured.x() = std::numeric_limits<double>::quiet_NaN();
   scene.observations[1].point_in_world.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -162,7 +162,7 @@ TEST(RefinePose, CountsWhatIsNotANumberAsOutliers) {
   EXPECT_THAT(refined->camera_from_world, PoseNear(scene.true_camera_from_world, 1e-9, 1e-9));
 }
 
-TEST(RefinePose, FindsThatErrorsAreLargerThanStated) {
+TEST(RefinePose, EstimatesTheVarianceFactor) {
   const auto as_stated = make_scene(17, {.points = 400, .noise = 1.0}).refine();
   const auto larger = make_scene(17, {.points = 400, .noise = 2.0}).refine();
   ASSERT_TRUE(as_stated && larger);
@@ -172,7 +172,7 @@ TEST(RefinePose, FindsThatErrorsAreLargerThanStated) {
   EXPECT_GT(larger->covariance.trace(), 3.0 * as_stated->covariance.trace());
 }
 
-TEST(RefinePose, BoundsTheVarianceFactorFromBothSides) {
+TEST(RefinePose, BoundsTheVarianceFactor) {
   const auto clean = make_scene(18, {}).refine();
   const auto noisy = make_scene(18, {.points = 400, .noise = 3.0}).refine({.max_variance_factor = 2.0});
   ASSERT_TRUE(clean && noisy);
@@ -180,7 +180,7 @@ TEST(RefinePose, BoundsTheVarianceFactorFromBothSides) {
   EXPECT_EQ(noisy->variance_factor, 2.0);
 }
 
-TEST(RefinePose, TrustsAnUncertainPointLess) {
+TEST(RefinePose, WeightsAnUncertainPointLess) {
   Scene scene = make_scene(7, {.points = 40});
   for (int i = 0; i < 10; ++i) {
     scene.observations[i].point_in_world += Eigen::Vector3d(0.1, 0.1, 0.0);
@@ -197,7 +197,7 @@ TEST(RefinePose, TrustsAnUncertainPointLess) {
   EXPECT_TRUE(aware->inliers[0]);
 }
 
-TEST(RefinePose, FollowsTheHeavierHalfWhenTheyDisagree) {
+TEST(RefinePose, FollowsTheHalfOfLargerWeight) {
   Scene scene = make_scene(8, {.points = 100});
   for (int i = 0; i < 50; ++i) scene.observations[i].measured.head<2>().array() += 0.8;
   const auto pull_of = [&](double weight) {
@@ -208,7 +208,7 @@ TEST(RefinePose, FollowsTheHeavierHalfWhenTheyDisagree) {
   EXPECT_GT(pull_of(8.0), 1.3 * pull_of(1.0));
 }
 
-TEST(RefinePose, DoesNotDependOnACommonWeight) {
+TEST(RefinePose, IsInvariantToACommonWeight) {
   Scene scene = make_scene(9, {.noise = 1.0});
   const auto once = scene.refine();
   for (PoseObservation& observation : scene.observations) observation.weight = 4.0;
@@ -230,7 +230,7 @@ TEST(RefinePose, IgnoresTheDisparityOfAMonocularSighting) {
   EXPECT_THAT(with_nan->camera_from_world, PoseNear(with_zero->camera_from_world, 0.0, 1e-15));
 }
 
-TEST(RefinePose, RepeatsBitForBit) {
+TEST(RefinePose, IsDeterministic) {
   const Scene scene = make_scene(11, {.mono_fraction = 0.5, .noise = 1.0});
   const auto first = scene.refine();
   const auto second = scene.refine();
@@ -246,13 +246,13 @@ TEST(RefinePose, IsEmptyForFewerThanFourObservations) {
   EXPECT_TRUE(make_scene(12, {.points = 4}).refine());
 }
 
-TEST(RefinePose, IsEmptyWhenAllPointsAreTheSame) {
+TEST(RefinePose, IsEmptyForCoincidentPoints) {
   Scene scene = make_scene(13, {});
   for (PoseObservation& observation : scene.observations) observation = scene.observations.front();
   EXPECT_FALSE(scene.refine());
 }
 
-TEST(RefinePose, IsEmptyWhenAllPointsLieOnOneLine) {
+TEST(RefinePose, IsEmptyForCollinearPoints) {
   Scene scene = make_scene(14, {.prediction_metres = 0.01, .prediction_radians = 0.01});
   for (std::size_t i = 0; i < scene.observations.size(); ++i) {
     const Eigen::Vector3d point_in_camera(-1.0 + 0.02 * static_cast<double>(i), 0.3, 3.0);
@@ -262,7 +262,7 @@ TEST(RefinePose, IsEmptyWhenAllPointsLieOnOneLine) {
   EXPECT_FALSE(scene.refine());
 }
 
-TEST(RefinePose, IsEmptyWhenNothingAgrees) {
+TEST(RefinePose, IsEmptyWithoutConsistentObservations) {
   Scene scene = make_scene(15, {.points = 30});
   Draw draw(15);
   for (PoseObservation& observation : scene.observations) {
@@ -273,7 +273,7 @@ TEST(RefinePose, IsEmptyWhenNothingAgrees) {
 }
 
 // Squared normalised errors of repeated trials follow chi-square; the bounds hold with 99.9 %.
-TEST(RefinePose, ReportsACovarianceThatMatchesItsErrors) {
+TEST(RefinePose, ReturnsACovarianceThatMatchesItsErrors) {
   constexpr int kTrials = 300;
   constexpr double kDegrees = 6.0 * kTrials;
   const double bound = 3.3 * std::sqrt(2.0 * kDegrees);
@@ -282,7 +282,7 @@ TEST(RefinePose, ReportsACovarianceThatMatchesItsErrors) {
   EXPECT_NEAR(normalised_errors(kTrials, {.noise = 1.0}, 4.0), kDegrees, bound);
 }
 
-TEST(RefinePose, ReportsACovarianceThatMatchesErrorsLargerThanStated) {
+TEST(RefinePose, ReturnsACovarianceThatMatchesErrorsLargerThanStated) {
   constexpr int kTrials = 300;
   constexpr double kDegrees = 6.0 * kTrials;
   EXPECT_NEAR(normalised_errors(kTrials, {.points = 200, .noise = 2.0}, 1.0), kDegrees,
@@ -290,7 +290,7 @@ TEST(RefinePose, ReportsACovarianceThatMatchesErrorsLargerThanStated) {
 }
 
 // In mono the gates make the variances about 15 % too small.
-TEST(RefinePose, ReportsAMonoCovarianceNotFarBelowItsErrors) {
+TEST(RefinePose, ReturnsAMonoCovarianceCloseToItsErrors) {
   constexpr int kTrials = 300;
   constexpr double kDegrees = 6.0 * kTrials;
   EXPECT_NEAR(normalised_errors(kTrials, {.mono_fraction = 1.0, .noise = 1.0}, 1.0), 1.15 * kDegrees,
@@ -317,7 +317,7 @@ Scene scene_with_systematic_errors(unsigned seed, double systematic_sigma) {
   return scene;
 }
 
-TEST(RefinePose, KeepsSharpPointsWhoseErrorIsSystematic) {
+TEST(RefinePose, KeepsPrecisePointsWithSystematicErrors) {
   int kept = 0, kept_by_noise = 0;
   for (unsigned seed = 30; seed < 40; ++seed) {
     const Scene scene = scene_with_systematic_errors(seed, 0.25);
@@ -330,7 +330,7 @@ TEST(RefinePose, KeepsSharpPointsWhoseErrorIsSystematic) {
   EXPECT_GT(kept, kept_by_noise);
 }
 
-TEST(RefinePose, ReportsACovarianceThatSystematicErrorsDoNotExceed) {
+TEST(RefinePose, ReturnsACovarianceThatCoversSystematicErrors) {
   constexpr int kTrials = 50;
   double known = 0.0, by_noise = 0.0;  // mean squared normalised errors, expected six
   for (unsigned trial = 0; trial < kTrials; ++trial) {
@@ -364,7 +364,7 @@ PosePrior prior_off(const Scene& scene, const Vector6& delta, double sigma) {
 
 const Vector6 kOff = (Vector6() << 0.02, -0.03, 0.04, 0.01, -0.02, 0.015).finished();
 
-TEST(RefinePoseWithPrior, IsHeldByAStrongOne) {
+TEST(RefinePoseWithPrior, IsHeldByAStrongPrior) {
   const Scene scene = make_scene(40, {.noise = 1.0});
   const PosePrior prior = prior_off(scene, 0.1 * kOff, 1e-6);
   const auto refined = scene.refine_with(prior);
@@ -373,7 +373,7 @@ TEST(RefinePoseWithPrior, IsHeldByAStrongOne) {
   EXPECT_GT(refined->inlier_count, 90) << "nor does a prior make outliers";
 }
 
-TEST(RefinePoseWithPrior, IsNotMovedByAWeakOne) {
+TEST(RefinePoseWithPrior, IsHardlyMovedByAWeakPrior) {
   const Scene scene = make_scene(41, {.noise = 1.0});
   const auto alone = scene.refine();
   const auto refined = scene.refine_with(prior_off(scene, kOff, 1e3));
@@ -383,7 +383,7 @@ TEST(RefinePoseWithPrior, IsNotMovedByAWeakOne) {
   EXPECT_EQ(refined->inliers, alone->inliers);
 }
 
-TEST(RefinePoseWithPrior, HasTheSameBytesWithoutOne) {
+TEST(RefinePoseWithPrior, IsBitIdenticalWithoutPrior) {
   const Scene scene = make_scene(42, {.mono_fraction = 0.5, .noise = 1.0});
   const auto alone = scene.refine();
   const auto refined = refine_pose(scene.predicted_camera_from_world, scene.rig, scene.observations, {}, std::nullopt);
@@ -405,7 +405,7 @@ double cost_of(const Scene& scene, const PosePrior& prior, const Pose& camera_fr
   return cost + off.dot(prior.covariance.inverse() * off);
 }
 
-TEST(RefinePoseWithPrior, FindsTheLeastOfBothCostsTogether) {
+TEST(RefinePoseWithPrior, MinimisesTheSumOfBothCosts) {
   Scene scene = make_scene(43, {.points = 30});
   for (PoseObservation& observation : scene.observations) observation.pixel_sigma = observation.disparity_sigma = 20.0;
   PosePrior prior = prior_off(scene, 3.0 * kOff, 0.03);
@@ -423,7 +423,7 @@ TEST(RefinePoseWithPrior, FindsTheLeastOfBothCostsTogether) {
   }
 }
 
-TEST(RefinePoseWithPrior, AddsItsInformationToThatOfTheObservations) {
+TEST(RefinePoseWithPrior, AddsTheInformationOfThePrior) {
   const Scene scene = make_scene(44, {});
   const auto alone = scene.refine(kNoiseAlone);
   ASSERT_TRUE(alone);
@@ -437,7 +437,7 @@ TEST(RefinePoseWithPrior, AddsItsInformationToThatOfTheObservations) {
   EXPECT_LT((as_the_prior->covariance - prior.covariance).norm(), 1e-5 * prior.covariance.norm());
 }
 
-TEST(RefinePoseWithPrior, DeterminesWhatPointsOnOneLineLeaveOpen) {
+TEST(RefinePoseWithPrior, ConstrainsTheFreeDirectionOfCollinearPoints) {
   Scene scene = make_scene(45, {.prediction_metres = 0.01, .prediction_radians = 0.01});
   for (std::size_t i = 0; i < scene.observations.size(); ++i) {
     const Eigen::Vector3d point_in_camera(-1.0 + 0.02 * static_cast<double>(i), 0.3, 3.0);

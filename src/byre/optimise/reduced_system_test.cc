@@ -45,7 +45,7 @@ Eigen::MatrixXd fill(ReducedSystem& system, int poses, double diagonal) {
 
 class ReducedSystemOf : public testing::TestWithParam<int> {};  // number of poses
 
-TEST_P(ReducedSystemOf, HasTheSolutionOfTheWholeMatrix) {
+TEST_P(ReducedSystemOf, HasTheSolutionOfTheFullMatrix) {
   ReducedSystem system(GetParam(), neighbours_of(GetParam()));
   const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(6 * GetParam(), -1.0, 2.0);
   for (const double diagonal : {2000.0, 700.0}) {  // the second solution reuses the pattern of the first
@@ -56,7 +56,7 @@ TEST_P(ReducedSystemOf, HasTheSolutionOfTheWholeMatrix) {
   }
 }
 
-TEST_P(ReducedSystemOf, HasTheSameSolutionsForSeveralRightSidesAtOnce) {
+TEST_P(ReducedSystemOf, SolvesForSeveralRightHandSides) {
   ReducedSystem system(GetParam(), neighbours_of(GetParam()));
   Eigen::MatrixXd right(6 * GetParam(), 2);
   right << Eigen::VectorXd::LinSpaced(6 * GetParam(), -1.0, 2.0), Eigen::VectorXd::Ones(6 * GetParam());
@@ -66,7 +66,7 @@ TEST_P(ReducedSystemOf, HasTheSameSolutionsForSeveralRightSidesAtOnce) {
   EXPECT_LT((whole * *solutions - right).norm(), 1e-9 * right.norm());
 }
 
-TEST_P(ReducedSystemOf, HasNoSolutionWhereItIsNotPositiveDefinite) {
+TEST_P(ReducedSystemOf, IsEmptyIfNotPositiveDefinite) {
   ReducedSystem system(GetParam(), neighbours_of(GetParam()));
   fill(system, GetParam(), 2000.0);
   system.at(0, 0) -= 1e6 * Matrix6::Identity();
@@ -75,7 +75,7 @@ TEST_P(ReducedSystemOf, HasNoSolutionWhereItIsNotPositiveDefinite) {
 
 INSTANTIATE_TEST_SUITE_P(DenseAndSparse, ReducedSystemOf, testing::Values(1, 20, ReducedSystem::kMaxDensePoses + 10));
 
-TEST(ReducedSystem, IsTheSameWhereMostPosesAreNeighbours) {
+TEST(ReducedSystem, HasTheSameSolutionForBandedPoses) {
   constexpr int kPoses = ReducedSystem::kMaxDensePoses + 4;
   std::vector<std::vector<int>> neighbours(kPoses);
   for (int row = 0; row < kPoses; ++row) {
@@ -91,7 +91,7 @@ TEST(ReducedSystem, IsTheSameWhereMostPosesAreNeighbours) {
   EXPECT_LT((*solution - *expected).norm(), 1e-9 * expected->norm());
 }
 
-TEST(ReducedSystem, OfNoPosesHasAnEmptySolution) {
+TEST(ReducedSystem, IsEmptyWithoutPoses) {
   const auto solution = ReducedSystem(0, {}).solve(Eigen::VectorXd());
   ASSERT_TRUE(solution);
   EXPECT_EQ(solution->size(), 0);

@@ -30,7 +30,7 @@ TEST(Reprojection, HasTheNumericJacobian) {
   }
 }
 
-TEST(Reprojection, IsTheErrorInSigmas) {
+TEST(Reprojection, IsMeasuredInSigmas) {
   const Rig rig = stereo_rig();
   const Eigen::Vector3d point_in_camera(0.5, -0.3, 2.0);
   const StereoPixel measured = rig.project(point_in_camera) - Eigen::Vector3d(1.0, -2.0, 0.5);
@@ -45,7 +45,7 @@ TEST(Reprojection, IgnoresTheDisparityOfAMonocularSighting) {
   EXPECT_EQ(reprojection.jacobian({0.5, -0.3, 2.0}).row(2).norm(), 0.0);
 }
 
-TEST(Reprojection, StaysFiniteAndGrowsAsThePointSlipsBehindTheCamera) {
+TEST(Reprojection, StaysFiniteAndGrowsForAPointThatMovesBehindTheCamera) {
   const Reprojection reprojection(stereo_rig(), {367.0, 252.0, 1.0}, 1.0, 0.3);
   double previous = 0.0;
   for (const double depth : {1.0, 0.1, 0.01, 1e-6, 0.0, -1e-6, -0.1, -10.0}) {

@@ -22,7 +22,7 @@ TEST(RotationManifold, MinusUndoesPlus) {
   }
 }
 
-TEST(RotationManifold, MovesOnTheLeft) {
+TEST(RotationManifold, AppliesPlusOnTheLeft) {
   const Eigen::Quaterniond x = rotation_exp({0.3, -0.2, 0.5});
   const Eigen::Vector3d delta(0.1, 0.2, -0.3);
   Eigen::Quaterniond y;

@@ -95,7 +95,7 @@ double disparity_error(const Calibration& calibration, const Calibration& truth)
   return std::sqrt(sum / count);
 }
 
-TEST(CalibrationOnMap, FindsTheErrorOfAGoodCalibration) {
+TEST(CalibrationOnMap, EstimatesTheErrorOfAGoodCalibration) {
   const Calibration given = scene_calibration();
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const CalibrationVector error = draw_error(seed);
@@ -110,7 +110,7 @@ TEST(CalibrationOnMap, FindsTheErrorOfAGoodCalibration) {
   }
 }
 
-TEST(CalibrationOnMap, StaysAsGivenWhileLittleIsSeen) {
+TEST(CalibrationOnMap, KeepsTheGivenCalibrationWithFewObservations) {
   const Calibration given = scene_calibration();
   const CalibrationOnMap calibration(given, SelfCalibrationOptions{}.prior_sigmas);
   const RefinedCalibration found = calibration.estimate();

@@ -173,7 +173,7 @@ void expect_same(const Map& map, const MapWindow& window) {
   }
 }
 
-TEST(Difference, OfAnUnchangedWindowIsNothing) {
+TEST(Difference, OfAnUnchangedWindowIsEmpty) {
   const Map map = make_map();
   const MapWindow window = cut_window(map, {kNewestKeyframe}, kWindow);
   const MapDelta delta = difference(window, window);
@@ -224,7 +224,7 @@ TEST_P(RandomDelta, MakesTheMapEqualToTheWindow) {
   EXPECT_THAT(find_faults(map_), IsEmpty());
 }
 
-TEST_P(RandomDelta, IsToldByTheMapAsByTheWindowBefore) {
+TEST_P(RandomDelta, IsEqualFromMapAndWindow) {
   Map by_window = map_;
   apply(difference(before_, after_), by_window);
   apply(difference(map_, after_), map_);
@@ -239,7 +239,7 @@ TEST_P(RandomDelta, IsToldByTheMapAsByTheWindowBefore) {
   }
 }
 
-TEST_P(RandomDelta, IsToldByTheOutlineAsByTheWindowBefore) {
+TEST_P(RandomDelta, IsEqualFromOutlineAndWindow) {
   const MapWindow outline = outline_of(before_);
   EXPECT_THAT(outline.keyframes.front().keyframe.sightings, IsEmpty());
   const MapDelta expected = difference(before_, after_), delta = difference(outline, after_);
@@ -251,7 +251,7 @@ TEST_P(RandomDelta, IsToldByTheOutlineAsByTheWindowBefore) {
   expect_same(map_, after_);
 }
 
-TEST_P(RandomDelta, SkipsWhatIsGone) {
+TEST_P(RandomDelta, SkipsRemovedElements) {
   const MapDelta delta = difference(before_, after_);
   change_meanwhile(map_, GetParam());
   apply(delta, map_);
@@ -269,7 +269,7 @@ TEST_P(RandomDelta, LeavesAnEmptyMapEmpty) {
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomDelta, ::testing::Range(std::uint64_t{1}, std::uint64_t{21}));
 
 // The point has a single observation, which moves to another keyframe.
-TEST(Apply, KeepsAPointThatChangesItsOnlyObservation) {
+TEST(Apply, KeepsAPointWhoseOnlyObservationChanges) {
   Map map = make_map();
   const PointId id = *map.find_keyframe(kNewestKeyframe)->sightings.front().point;
   const std::vector<Observation> seen_by = map.observations(id);
@@ -342,27 +342,27 @@ TEST_F(DeltaOfForeignViews, AddsThemToTheOnlineMap) {
   EXPECT_EQ(scene_.online.foreign_views(points_[0]).size(), 1u) << "as it was";
 }
 
-TEST_F(DeltaOfForeignViews, TakesThemFromTheOnlineMap) {
+TEST_F(DeltaOfForeignViews, RemovesThemFromTheOnlineMap) {
   remove_observation(after_, {1, free_feature(0)});
   apply_difference();
   EXPECT_THAT(scene_.online.foreign_views(points_[0]), IsEmpty());
   EXPECT_NE(scene_.online.find_point(points_[0]), nullptr);
 }
 
-TEST_F(DeltaOfForeignViews, HandsAFeatureToAnotherPoint) {
+TEST_F(DeltaOfForeignViews, ReassignsAFeatureToAnotherPoint) {
   remove_observation(after_, {1, free_feature(0)});
   add_observation(after_, index_of(points_[1]), {1, free_feature(0)}, {points_[1], {3.0f, 4.0f}, 0.7f});
   apply_difference();
   EXPECT_EQ(scene_.online.point_of_foreign_view({kOffline, free_feature(0)}), points_[1]);
 }
 
-TEST_F(DeltaOfForeignViews, GoWithTheirPoint) {
+TEST_F(DeltaOfForeignViews, RemovesThemWithTheirPoint) {
   remove_point(after_, index_of(points_[0]));
   apply_difference();
   EXPECT_EQ(scene_.online.point_of_foreign_view({kOffline, free_feature(0)}), std::nullopt);
 }
 
-TEST_F(DeltaOfForeignViews, ComeWithANewPoint) {
+TEST_F(DeltaOfForeignViews, AddsThemWithANewPoint) {
   const auto& features = after_.keyframes[0].point_of_feature;
   const int own =
       static_cast<int>(std::ranges::find_if(features, [](int point) { return point >= 0; }) - features.begin());
@@ -379,7 +379,7 @@ TEST_F(DeltaOfForeignViews, ComeWithANewPoint) {
   EXPECT_EQ(scene_.online.find_keyframe(kNewestKeyframe)->sightings[static_cast<std::size_t>(own)].point, point);
 }
 
-TEST_F(DeltaOfForeignViews, KeepAFeatureThatAnotherPointWasGivenMeanwhile) {
+TEST_F(DeltaOfForeignViews, KeepsAFeatureThatWasReassignedMeanwhile) {
   remove_observation(after_, {1, free_feature(0)});
   scene_.online.remove_foreign_view({kOffline, free_feature(0)});
   scene_.online.add_foreign_view(view_of(0, points_[2]));
@@ -387,7 +387,7 @@ TEST_F(DeltaOfForeignViews, KeepAFeatureThatAnotherPointWasGivenMeanwhile) {
   EXPECT_EQ(scene_.online.point_of_foreign_view({kOffline, free_feature(0)}), points_[2]);
 }
 
-TEST(Apply, DropsANewPointThatOnlyOneKeyframeCanStillSee) {
+TEST(Apply, DropsANewPointWithOneRemainingKeyframe) {
   Map map = make_map();
   const MapWindow before = cut_window(map, {kNewestKeyframe}, kWindow);
   MapWindow after = before;

@@ -20,7 +20,7 @@ RefinedCalibration plausible_part(const CalibrationVector& expected) {
   return found;
 }
 
-TEST(DeterminedCalibration, KeepsWhatImagesTellAndNothingElse) {
+TEST(DeterminedCalibration, KeepsObservableParametersOnly) {
   CalibrationVector expected = CalibrationVector::Zero();
   expected[kKnown] = 4.0;
   expected[kHardlyKnown] = 3.0;
@@ -29,14 +29,14 @@ TEST(DeterminedCalibration, KeepsWhatImagesTellAndNothingElse) {
   EXPECT_NEAR(found.change[kHardlyKnown], 0.0, 1e-9);
 }
 
-TEST(DeterminedCalibration, IsRefusedWhereItIsLargerThanCalibrationsErr) {
+TEST(DeterminedCalibration, IsRejectedForAnImplausibleChange) {
   CalibrationVector expected = CalibrationVector::Zero();
   expected[kKnown] = 11.0;
   EXPECT_TRUE(plausible_part(expected).change.isZero(0.0));
 }
 
 // Occurs with KITTI's pairs, which are rectified by another model than the estimated one.
-TEST(DeterminedCalibration, IsRefusedWhereTheRestOfItIsLargerThanCalibrationsErr) {
+TEST(DeterminedCalibration, IsRejectedForAnImplausibleRemainder) {
   CalibrationVector expected = CalibrationVector::Zero();
   expected[kKnown] = 4.0;
   expected[kHardlyKnown] = -11.0;

@@ -42,7 +42,7 @@ FocalCheck checked(double focal_factor, double noise_pixels, unsigned seed) {
   return check;
 }
 
-TEST(FocalCheck, LeavesARightFocalLengthAlone) {
+TEST(FocalCheck, AcceptsACorrectFocalLength) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const FocalCheck sound = checked(1.0, 0.4, seed), worn = checked(1.004, 0.4, seed),
                      blurred = checked(1.0, 3.0, seed);
@@ -52,7 +52,7 @@ TEST(FocalCheck, LeavesARightFocalLengthAlone) {
   }
 }
 
-TEST(FocalCheck, TellsThatItIsTooLongOrTooShort) {
+TEST(FocalCheck, MeasuresTooLongAndTooShortFocalLengths) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const FocalCheck too_long = checked(1.0 / 1.05, 0.4, seed), too_short = checked(1.0 / 0.95, 0.4, seed);
     EXPECT_GT(too_long.error(), 0.03);
@@ -61,7 +61,7 @@ TEST(FocalCheck, TellsThatItIsTooLongOrTooShort) {
   }
 }
 
-TEST(FocalCheck, SaysNothingBeforeAnythingWasSeenAndOfFewPoints) {
+TEST(FocalCheck, IsEmptyWithoutFramesAndForFewPoints) {
   FocalCheck check;
   EXPECT_EQ(check.error(), 0.0);
   check.note({100.0, 500.0, 900.0, 20.0});
@@ -71,7 +71,7 @@ TEST(FocalCheck, SaysNothingBeforeAnythingWasSeenAndOfFewPoints) {
   EXPECT_TRUE(check.is_off());
 }
 
-TEST(FocalCheck, HoldsAnErrorThatIsLargeForOneThatCouldBeChance) {
+TEST(FocalCheck, ReportsOnlySignificantErrors) {
   FocalCheck check;
   check.note({950.0, 900.0, 1050.0, 100.0});  // 9 square pixels per point: a blurred frame
   EXPECT_GT(std::abs(check.error()), 0.01);
@@ -80,7 +80,7 @@ TEST(FocalCheck, HoldsAnErrorThatIsLargeForOneThatCouldBeChance) {
 }
 
 // Error of 0.008 at four sigmas: below the bound, above half of it.
-TEST(FocalCheck, WhatIsOffStaysSoUntilItIsClearlyNot) {
+TEST(FocalCheck, KeepsAnErrorUntilItIsClearlyGone) {
   const FocalEvidence off{500.0, 100.0, 100.0, 100.0}, doubtful{364.0, 100.0, 236.0, 100.0};
   const FocalEvidence clear{300.0, 100.0, 299.0, 100.0};
   const auto note = [](FocalCheck& check, const FocalEvidence& evidence) {
@@ -95,7 +95,7 @@ TEST(FocalCheck, WhatIsOffStaysSoUntilItIsClearlyNot) {
   EXPECT_FALSE(note(check, doubtful));
 }
 
-TEST(FocalCheck, AsksTheFirstFramesThenNowAndThen) {
+TEST(FocalCheck, EvaluatesTheFirstFramesThenOccasionalOnes) {
   FocalCheckOptions options;
   options.asked_first = 2;
   options.asked_every = 10;
@@ -109,7 +109,7 @@ TEST(FocalCheck, AsksTheFirstFramesThenNowAndThen) {
   EXPECT_EQ(asked, 2 + 4);
 }
 
-TEST(FocalCheck, NeedsPointsEnoughForAPose) {
+TEST(FocalCheck, RequiresEnoughPointsForAPose) {
   const auto observations = seen_with(1.0, 0.0, 1);
   EXPECT_FALSE(weigh_focal_lengths({}, simulated_rig(), std::span(observations).first(2)));
 }

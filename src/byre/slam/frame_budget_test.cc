@@ -34,7 +34,7 @@ class FrameBudgetTest : public testing::Test {
   FrameBudget budget_{kDeadline, [this] { return now_; }};
 };
 
-TEST_F(FrameBudgetTest, LeavesNothingOutWhereFramesAreOnTime) {
+TEST_F(FrameBudgetTest, CutsNothingWhileFramesAreOnTime) {
   for (int i = 0; i < 100; ++i) {
     process({});
     EXPECT_FALSE(budget_.cuts().online_points);
@@ -43,33 +43,33 @@ TEST_F(FrameBudgetTest, LeavesNothingOutWhereFramesAreOnTime) {
   }
 }
 
-TEST_F(FrameBudgetTest, LeavesOnlinePointsOutFirst) {
+TEST_F(FrameBudgetTest, CutsOnlinePointsFirst) {
   for (int i = 0; i < 20; ++i) process({.images = 0.010, .tracking = 0.012, .rest = 0.001});
   EXPECT_TRUE(budget_.cuts().online_points);
   EXPECT_FALSE(budget_.cuts().right_image);
   EXPECT_FALSE(budget_.is_late());
 }
 
-TEST_F(FrameBudgetTest, LeavesTheRightImageOutWhereThatIsNotEnough) {
+TEST_F(FrameBudgetTest, CutsTheRightImageNext) {
   for (int i = 0; i < 20; ++i) process({.images = 0.018, .tracking = 0.008, .rest = 0.002});
   EXPECT_TRUE(budget_.cuts().online_points || budget_.cuts().right_image);
   EXPECT_TRUE(budget_.cuts().right_image);
   EXPECT_FALSE(budget_.is_late());
 }
 
-TEST_F(FrameBudgetTest, LeavesOnlinePointsOutOfAFrameWhoseImagesTookLong) {
+TEST_F(FrameBudgetTest, CutsOnlinePointsAfterSlowImageProcessing) {
   for (int i = 0; i < 20; ++i) process({});
   process({.images = 0.017, .tracking = 0.003, .rest = 0.001});
   EXPECT_TRUE(budget_.cuts().online_points);
   EXPECT_FALSE(budget_.is_late());
 }
 
-TEST_F(FrameBudgetTest, TellsOfFramesThatAreLateAllTheSame) {
+TEST_F(FrameBudgetTest, ReportsLateFramesDespiteCuts) {
   process({.images = 0.050, .tracking = 0.003, .rest = 0.001});
   EXPECT_TRUE(budget_.is_late());
 }
 
-TEST_F(FrameBudgetTest, TriesWholeFramesAgainOnceTheMachineIsFree) {
+TEST_F(FrameBudgetTest, RetriesWholeFramesOnceTheMachineIsFree) {
   for (int i = 0; i < 50; ++i) process({.images = 0.018, .tracking = 0.008, .rest = 0.002});
   int with_cuts = 0;
   for (int i = 0; i < 600; ++i) {
@@ -82,7 +82,7 @@ TEST_F(FrameBudgetTest, TriesWholeFramesAgainOnceTheMachineIsFree) {
   EXPECT_FALSE(budget_.cuts().right_image);
 }
 
-TEST_F(FrameBudgetTest, IsSeldomLateForTrying) {
+TEST_F(FrameBudgetTest, IsRarelyLateDueToRetries) {
   int late = 0;
   for (int i = 0; i < 1000; ++i) {
     process({.images = 0.010, .tracking = 0.015, .rest = 0.001});
@@ -91,7 +91,7 @@ TEST_F(FrameBudgetTest, IsSeldomLateForTrying) {
   EXPECT_LE(late, 10);
 }
 
-TEST_F(FrameBudgetTest, KeepsTheNextFrameWholeWhereThatIsNeeded) {
+TEST_F(FrameBudgetTest, KeepsTheNextFrameWholeOnRequest) {
   for (int i = 0; i < 20; ++i) process({.images = 0.018, .tracking = 0.008, .rest = 0.002});
   budget_.keep_next_whole();
   process({.images = 0.018, .tracking = 0.008, .rest = 0.002});
@@ -101,14 +101,14 @@ TEST_F(FrameBudgetTest, KeepsTheNextFrameWholeWhereThatIsNeeded) {
   EXPECT_TRUE(budget_.cuts().right_image);
 }
 
-TEST_F(FrameBudgetTest, LeavesSearchesFromNothingOutOfWhatTrackingTakes) {
+TEST_F(FrameBudgetTest, ExcludesGlobalSearchesFromTheTrackingTime) {
   for (int i = 0; i < 20; ++i) process({});
   for (int i = 0; i < 20; ++i) process({.images = 0.005, .tracking = 0.060, .rest = 0.001}, false);
   process({});
   EXPECT_FALSE(budget_.cuts().online_points);
 }
 
-TEST_F(FrameBudgetTest, LeavesNothingOutWithoutADeadline) {
+TEST_F(FrameBudgetTest, CutsNothingWithoutADeadline) {
   budget_ = FrameBudget(0.0, [this] { return now_; });
   for (int i = 0; i < 20; ++i) process({.images = 1.0, .tracking = 1.0, .rest = 1.0});
   EXPECT_FALSE(budget_.cuts().online_points);

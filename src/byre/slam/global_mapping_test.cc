@@ -58,7 +58,7 @@ LoopEdge true_loop(const Map& map, const SimulatedMission& mission) {
   return {last, first, truth(last) * inverse(truth(first)), 1e-8 * Matrix6::Identity()};
 }
 
-TEST(WholeMap, HoldsEverythingAndMovesAllButTheFirst) {
+TEST(WholeMap, ContainsEverythingAndMovesAllButTheFirst) {
   const SimulatedMission mission = lap();
   const Map map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
@@ -70,7 +70,7 @@ TEST(WholeMap, HoldsEverythingAndMovesAllButTheFirst) {
   for (const WindowPoint& point : whole.points) EXPECT_EQ(point.observations_elsewhere, 0);
 }
 
-TEST(AdjustMap, BringsADriftedMapWhereItSeesToBe) {
+TEST(AdjustMap, CorrectsADriftedMap) {
   const SimulatedMission mission = lap();
   Map map = drifted_map(mission);
   const double before = worst_position_error(map, mission);
@@ -82,7 +82,7 @@ TEST(AdjustMap, BringsADriftedMapWhereItSeesToBe) {
 }
 
 // Monocular scale drift, constrained by wheels between successive keyframes.
-TEST(AdjustMap, HoldsScaleToWhatIsTold) {
+TEST(AdjustMap, HoldsTheScaleToMeasuredMotions) {
   const auto error_with = [](bool is_told) {
     DriftedLap lap(monocular_rig(), {1.2, {}});
     MapWindow whole = whole_map(lap.map);
@@ -102,7 +102,7 @@ TEST(AdjustMap, HoldsScaleToWhatIsTold) {
   EXPECT_LT(error_with(true), 0.02);
 }
 
-TEST(AdjustMap, DoesTheSameAtOnce) {
+TEST(AdjustMap, GivesTheSameResultAtOnce) {
   const SimulatedMission mission = lap();
   Map in_two_steps = drifted_map(mission), at_once = in_two_steps;
   const MapWindow whole = whole_map(in_two_steps);
@@ -121,7 +121,7 @@ TEST(AdjustMap, DoesTheSameAtOnce) {
   }
 }
 
-TEST(AdjustMap, StopsWhenItIsAskedTo) {
+TEST(AdjustMap, StopsOnRequest) {
   const SimulatedMission mission = lap();
   const Map map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
@@ -129,7 +129,7 @@ TEST(AdjustMap, StopsWhenItIsAskedTo) {
   EXPECT_THAT(delta.moved_keyframes, testing::IsEmpty());
 }
 
-TEST(AdjustMap, GivesTheSameResultEachTime) {
+TEST(AdjustMap, IsDeterministic) {
   const SimulatedMission mission = lap();
   const Map map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
@@ -161,7 +161,7 @@ class ShiftedHalf : public testing::Test {
   MapDelta correction_;
 };
 
-TEST_F(ShiftedHalf, TakesKeyframesAlongThatCameLater) {
+TEST_F(ShiftedHalf, MovesLaterKeyframesAlong) {
   Keyframe later = *map_.find_keyframe({Origin::online, 15});
   for (Sighting& sighting : later.sightings) sighting.point.reset();
   later.parent = KeyframeId{Origin::online, 15};
@@ -172,7 +172,7 @@ TEST_F(ShiftedHalf, TakesKeyframesAlongThatCameLater) {
   EXPECT_THAT(find_faults(map_), testing::IsEmpty());
 }
 
-TEST_F(ShiftedHalf, LeavesAloneWhatTheCopyLeftOut) {
+TEST_F(ShiftedHalf, LeavesElementsOutsideOfTheCopy) {
   MapWindow part = window_of(map_, {{Origin::online, 10}, {Origin::online, 19}});
   MapWindow after = part;
   for (WindowKeyframe& keyframe : after.keyframes) {
@@ -189,7 +189,7 @@ TEST_F(ShiftedHalf, LeavesAloneWhatTheCopyLeftOut) {
             before.find_keyframe({Origin::online, 10})->camera_from_world.translation);
 }
 
-TEST_F(ShiftedHalf, KeepsTheMotionThatKeyframesHadMeanwhile) {
+TEST_F(ShiftedHalf, KeepsTheMotionOfKeyframesMeanwhile) {
   const KeyframeId id{Origin::online, 12};
   const Pose moved = exp_pose(Vector6::Constant(0.01)) * map_.find_keyframe(id)->camera_from_world;
   map_.move_keyframe(id, moved, Matrix6::Zero());
@@ -197,7 +197,7 @@ TEST_F(ShiftedHalf, KeepsTheMotionThatKeyframesHadMeanwhile) {
   EXPECT_THAT(map_.find_keyframe(id)->camera_from_world, PoseNear(moved * inverse(kShift), 1e-9, 1e-9));
 }
 
-TEST_F(ShiftedHalf, TakesPointsAlongWithTheKeyframeThatDefinesThem) {
+TEST_F(ShiftedHalf, MovesPointsWithTheirReferenceKeyframe) {
   PointId newer{}, older{};
   for (const PointId id : map_.point_ids()) {
     (map_.find_point(id)->reference.keyframe.number >= kFirstNew ? newer : older) = id;
@@ -209,14 +209,14 @@ TEST_F(ShiftedHalf, TakesPointsAlongWithTheKeyframeThatDefinesThem) {
   EXPECT_THAT(map_.find_point(older)->position_in_world, PointNear(older_before, 1e-9));
 }
 
-TEST_F(ShiftedHalf, ToleratesThingsThatAreGone) {
+TEST_F(ShiftedHalf, ToleratesRemovedElements) {
   map_.remove_keyframe({Origin::online, 14});
   map_.remove_point(map_.point_ids().front());
   apply_correction(correction_, before_, map_);
   EXPECT_THAT(find_faults(map_), testing::IsEmpty());
 }
 
-TEST(OnlineCopy, IsTheMapWithOnlineIds) {
+TEST(OnlineCopy, EqualsTheMapWithOnlineIds) {
   const SimulatedMission mission = lap();
   const Map offline = true_map(mission, kFramesPerKeyframe, Origin::offline);
   const Map online = online_copy(offline);

@@ -75,7 +75,7 @@ Features make_features(const std::vector<CornerShape>& corners) {
 constexpr SearchOptions kTenPixels{.radius = 10.0f};
 const Projection kAt100{{100.0, 100.0, 20.0}, 0};
 
-TEST(ProjectPoint, SaysWhereAndInWhichOctaveThePointIsSeen) {
+TEST(ProjectPoint, PredictsPixelAndOctave) {
   const Rig rig = simulated_rig();
   const auto projection = project_from_origin(point_ahead(4.0));
   ASSERT_TRUE(projection);
@@ -96,7 +96,7 @@ TEST(ProjectPoint, IsEmptyOutsideTheImage) {
   EXPECT_FALSE(project_from_origin(point));
 }
 
-TEST(ProjectPoint, IsEmptyWhereThePointLooksTooLargeOrTooSmall) {
+TEST(ProjectPoint, IsEmptyIfThePointAppearsTooLargeOrTooSmall) {
   MapPoint point = point_ahead(4.0);
   point.position_in_world.z() = 2.0 * point.max_distance;
   EXPECT_FALSE(project_from_origin(point));
@@ -104,13 +104,13 @@ TEST(ProjectPoint, IsEmptyWhereThePointLooksTooLargeOrTooSmall) {
   EXPECT_FALSE(project_from_origin(point));
 }
 
-TEST(ProjectPoint, IsEmptyWhereThePointWasNeverSeenFromThatSide) {
+TEST(ProjectPoint, IsEmptyFromUnseenDirections) {
   MapPoint point = point_ahead(4.0);
   point.mean_viewing_direction = Eigen::Vector3f::UnitX();
   EXPECT_FALSE(project_from_origin(point));
 }
 
-TEST(ExpectedOctave, GrowsByOneWithEveryStepOfScaleNearer) {
+TEST(ExpectedOctave, GrowsByOneForEachStepOfScale) {
   for (std::size_t octave = 0; octave < kOctaves; ++octave) {
     EXPECT_EQ(expected_octave(6.0f, 6.0f / kScaleOfOctave[octave]), static_cast<int>(octave));
   }
@@ -121,7 +121,7 @@ TEST(ExpectedOctave, StaysWithinThePyramid) {
   EXPECT_EQ(expected_octave(6.0f, 0.06f), kOctaves - 1);
 }
 
-TEST(FindFeature, TakesTheMostAlikeNearby) {
+TEST(FindFeature, SelectsTheMostSimilarFeatureNearby) {
   const Features features = make_features({{{95.0f, 102.0f}, differing(40)}, {{104.0f, 97.0f}, differing(10)}});
   const auto found = find_feature(features, kDescriptor, kAt100, kTenPixels);
   ASSERT_TRUE(found);
@@ -129,39 +129,39 @@ TEST(FindFeature, TakesTheMostAlikeNearby) {
   EXPECT_EQ(found->distance, 10);
 }
 
-TEST(FindFeature, SearchesFartherInHigherOctaves) {
+TEST(FindFeature, SearchesWiderInHigherOctaves) {
   const Features features = make_features({{{115.0f, 100.0f}, kDescriptor, 4}});
   constexpr SearchOptions kEightPixels{.radius = 8.0f};  // 13.8 in octave 3, 16.6 in octave 4
   EXPECT_FALSE(find_feature(features, kDescriptor, {kAt100.predicted, 3}, kEightPixels));
   EXPECT_TRUE(find_feature(features, kDescriptor, {kAt100.predicted, 4}, kEightPixels));
 }
 
-TEST(FindFeature, PassesOverCornersOfAnotherSize) {
+TEST(FindFeature, SkipsCornersOfAnotherSize) {
   const Features features = make_features({{{100.0f, 100.0f}, kDescriptor, 2}});
   EXPECT_FALSE(find_feature(features, kDescriptor, kAt100, kTenPixels));
 }
 
-TEST(FindFeature, PassesOverCornersAtAnotherDepth) {
+TEST(FindFeature, SkipsCornersAtAnotherDepth) {
   const Features features = make_features({{{100.0f, 100.0f}, kDescriptor, 0, 35.0f}});
   EXPECT_FALSE(find_feature(features, kDescriptor, kAt100, kTenPixels));
 }
 
-TEST(FindFeature, TakesCornersWithoutDisparity) {
+TEST(FindFeature, AcceptsCornersWithoutDisparity) {
   const Features features = make_features({{{100.0f, 100.0f}, kDescriptor, 0, -1.0f}});
   EXPECT_TRUE(find_feature(features, kDescriptor, kAt100, kTenPixels));
 }
 
-TEST(FindFeature, IsEmptyWhenNothingIsAlikeEnough) {
+TEST(FindFeature, IsEmptyWithoutASimilarFeature) {
   const Features features = make_features({{{100.0f, 100.0f}, differing(kTenPixels.max_distance + 1)}});
   EXPECT_FALSE(find_feature(features, kDescriptor, kAt100, kTenPixels));
 }
 
-TEST(FindFeature, IsEmptyWhenAnotherIsNearlyAsAlike) {
+TEST(FindFeature, IsEmptyIfAnotherFeatureIsNearlyAsSimilar) {
   const Features features = make_features({{{95.0f, 102.0f}, differing(40)}, {{104.0f, 97.0f}, differing(39)}});
   EXPECT_FALSE(find_feature(features, kDescriptor, kAt100, kTenPixels));
 }
 
-TEST(FindFeature, TakesOneCornerInTwoOctavesForOneCorner) {
+TEST(FindFeature, TreatsOneCornerInTwoOctavesAsOne) {
   const Features features = make_features({{{95.0f, 102.0f}, differing(40), 0}, {{95.0f, 102.0f}, differing(39), 1}});
   EXPECT_TRUE(find_feature(features, kDescriptor, kAt100, kTenPixels));
 }
@@ -170,7 +170,7 @@ TEST(FindFeature, IsEmptyWithoutFeatures) {
   EXPECT_FALSE(find_feature(Features(), kDescriptor, kAt100, kTenPixels));
 }
 
-TEST(MatchExpected, LeavesAFeatureToTheMoreSimilarPoint) {
+TEST(MatchExpected, AssignsAFeatureToTheMostSimilarPoint) {
   const Features features = make_features({{{100.0f, 100.0f}, kDescriptor}});
   Map map(Origin::online);
   MapPoint point;
@@ -183,7 +183,7 @@ TEST(MatchExpected, LeavesAFeatureToTheMoreSimilarPoint) {
   EXPECT_THAT(matches, ElementsAre(Field(&GuidedMatch::point, more_similar)));
 }
 
-TEST(MatchExpected, PassesOverPointsThatAreGone) {
+TEST(MatchExpected, SkipsRemovedPoints) {
   const Features features = make_features({{{100.0f, 100.0f}, kDescriptor}});
   Map map(Origin::online);
   MapPoint point;
@@ -204,12 +204,12 @@ class MatchingASimulatedFrame : public ::testing::Test {
   std::vector<ExpectedPoint> expected_ = expected_points(view_, true_camera_from_world(mission_, kFrame), mission_.rig);
 };
 
-TEST_F(MatchingASimulatedFrame, ExpectsPointsOnlyWithinTheImage) {
+TEST_F(MatchingASimulatedFrame, ExpectsPointsInsideTheImageOnly) {
   ASSERT_THAT(expected_, SizeIs(::testing::Gt(100u)));
   for (const ExpectedPoint& point : expected_) EXPECT_TRUE(mission_.rig.contains(point.projection.predicted.head<2>()));
 }
 
-TEST_F(MatchingASimulatedFrame, FindsNearlyAllAndNearlyAllOfThemRight) {
+TEST_F(MatchingASimulatedFrame, HasHighRecallAndPrecision) {
   const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
   const auto right = std::ranges::count_if(matches, [&](const GuidedMatch& match) {
     const int shown = mission_.landmark_of_feature[kFrame][static_cast<std::size_t>(match.feature)];
@@ -220,7 +220,7 @@ TEST_F(MatchingASimulatedFrame, FindsNearlyAllAndNearlyAllOfThemRight) {
   EXPECT_GT(static_cast<double>(matches.size()), 0.8 * static_cast<double>(mission_.frames[kFrame].features->size()));
 }
 
-TEST_F(MatchingASimulatedFrame, NamesEveryFeatureOnceInAscendingOrder) {
+TEST_F(MatchingASimulatedFrame, ReturnsEveryFeatureOnceInAscendingOrder) {
   const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
   EXPECT_EQ(std::ranges::adjacent_find(matches, std::greater_equal<>{}, &GuidedMatch::feature), matches.end());
 }

@@ -196,7 +196,7 @@ INSTANTIATE_TEST_SUITE_P(
                   Verdict::degraded,
                   Doubt::unconfirmed}));
 
-TEST(NoteOnDirt, TellsWhichLensesToClean) {
+TEST(NoteOnDirt, ReportsTheLensesToClean) {
   Health health;
   EXPECT_EQ(note_on_dirt(health), "");
   health.hidden_share = 0.1187;
@@ -227,7 +227,7 @@ bool is_frozen(const HealthEvidence& evidence) {
 
 constexpr HealthEvidence kInStep{.pose_found = true, .input = {.out_of_step = Sign::absent}};
 
-TEST(LastingDoubts, OfAPairThatDisagreedWhileItMovedEndOnlyWhereMotionShowsItInStep) {
+TEST(LastingDoubts, OfAPairDetectedInMotionEndOnlyInMotion) {
   LastingDoubts doubts;
   constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.cameras_disagree = true}};
   EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
@@ -237,7 +237,7 @@ TEST(LastingDoubts, OfAPairThatDisagreedWhileItMovedEndOnlyWhereMotionShowsItInS
   EXPECT_LE(raised, 25);
 }
 
-TEST(LastingDoubts, OfAPairThatDisagreedAtAStandstillEndThere) {
+TEST(LastingDoubts, OfAPairDetectedAtAStandstillEndThere) {
   LastingDoubts doubts;
   constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.is_still = true, .cameras_disagree = true}};
   EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
@@ -258,7 +258,7 @@ TEST(LastingDoubts, OfAFrozenImageDoNotEndAtAStandstill) {
   EXPECT_LE(raised_frames(doubts, 201, 200, kPose, is_frozen), 25);
 }
 
-TEST(LastingDoubts, OfTheCalibrationWaitForFramesWithAPose) {
+TEST(LastingDoubts, OfTheCalibrationNeedFramesWithAPose) {
   LastingDoubts doubts;
   const auto is_off = [](const HealthEvidence& evidence) { return evidence.is_miscalibrated; };
   EXPECT_EQ(raised_frames(doubts, 0, 1, {.pose_found = true, .is_miscalibrated = true}, is_off), 1);
@@ -273,7 +273,7 @@ TEST(LastingDoubts, KeepTheFaultOfTheRightCamera) {
   EXPECT_GE(raised_frames(doubts, 1, 100, kPose, fault), 10);
 }
 
-TEST(LastingDoubts, AreNoneForSoundFrames) {
+TEST(LastingDoubts, AreEmptyForSoundFrames) {
   LastingDoubts doubts;
   const HealthEvidence held = doubts.held(from_seconds(1.0), kInStep);
   EXPECT_EQ(judged(good(), held, {}).verdict, Verdict::trusted);

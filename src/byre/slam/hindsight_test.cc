@@ -43,13 +43,13 @@ class SeenInHindsight : public testing::Test {
   }
 };
 
-TEST_F(SeenInHindsight, AFrameLiesWhereTheSettledMapHasIt) {
+TEST_F(SeenInHindsight, EstimatesThePoseInTheSettledMap) {
   const auto pose = pose_of(remembered({}));
   ASSERT_TRUE(pose);
   EXPECT_LT((inverse(*pose).translation - inverse(true_pose_).translation).norm(), 1e-3);
 }
 
-TEST_F(SeenInHindsight, PointsThatAreGoneCountForNothing) {
+TEST_F(SeenInHindsight, IgnoresRemovedPoints) {
   const RememberedFrame frame = remembered({});
   const std::vector<PointId> points = seen_points();
   for (std::size_t i = 0; i < points.size(); i += 2) map_.remove_point(points[i]);
@@ -58,7 +58,7 @@ TEST_F(SeenInHindsight, PointsThatAreGoneCountForNothing) {
   EXPECT_LT((inverse(*pose).translation - inverse(true_pose_).translation).norm(), 1e-3);
 }
 
-TEST_F(SeenInHindsight, SaysNothingWhereTooFewAreLeftOrAgree) {
+TEST_F(SeenInHindsight, IsEmptyForFewOrInconsistentPoints) {
   const RememberedFrame frame = remembered({});
   RememberedFrame contradicting = frame;
   for (std::size_t i = 0; i < contradicting.points.size(); i += 2) contradicting.points[i].measured.x() += 30.0f;
@@ -68,7 +68,7 @@ TEST_F(SeenInHindsight, SaysNothingWhereTooFewAreLeftOrAgree) {
 }
 
 // The frame was measured with the former rig; the pose is that of the present rig.
-TEST_F(SeenInHindsight, AFrameOfARigThatWasRecalibratedIsLookedAtWithThatRig) {
+TEST_F(SeenInHindsight, UsesTheRigOfTheFrame) {
   Vector6 turn;
   turn << 0.0, 0.0, 0.0, 0.01, -0.02, 0.005;
   Hindsight hindsight({});
@@ -81,7 +81,7 @@ TEST_F(SeenInHindsight, AFrameOfARigThatWasRecalibratedIsLookedAtWithThatRig) {
   EXPECT_LT(log_pose(*pose * inverse(expected)).norm(), 1e-3);
 }
 
-TEST_F(SeenInHindsight, NoMoreFramesWaitThanAskedFor) {
+TEST_F(SeenInHindsight, KeepsAtMostTheGivenNumberOfFrames) {
   HindsightOptions options;
   options.frames = 2;
   Hindsight hindsight(options);
@@ -95,7 +95,7 @@ TEST_F(SeenInHindsight, NoMoreFramesWaitThanAskedFor) {
 }
 
 // Offline points do not move, so the pose would not change.
-TEST_F(SeenInHindsight, AFrameThatOfflinePointsHoldIsNotKept) {
+TEST_F(SeenInHindsight, DropsFramesHeldByOfflinePoints) {
   TrackedFrame held = tracked();
   for (TrackedFeature& seen : held.features) seen.point.origin = Origin::offline;
   Hindsight hindsight({});

@@ -58,7 +58,7 @@ std::vector<std::byte> bytes_of(const Map& offline) {
 // Displacement of an online map: 5 cm and 1 degree.
 const Pose kDisplacement{rotation_exp(kDegree * Eigen::Vector3d(0.6, 0.0, 0.8)), {0.03, -0.04, 0.0}};
 
-TEST(HybridMapping, PullsAnOnlineMapThatIsOffIntoTheOfflineFrame) {
+TEST(HybridMapping, PullsADisplacedOnlineMapIntoTheOfflineFrame) {
   HybridScene scene = true_hybrid_scene({});
   displace(scene.online, kDisplacement);
   const MeanError before = mean_error(scene);
@@ -71,7 +71,7 @@ TEST(HybridMapping, PullsAnOnlineMapThatIsOffIntoTheOfflineFrame) {
   EXPECT_THAT(find_faults(scene.online), IsEmpty());
 }
 
-TEST(HybridMapping, PullsOnlinePointsAlongExactlyOnCleanFeatures) {
+TEST(HybridMapping, MovesOnlinePointsExactlyOnCleanFeatures) {
   HybridScene scene = true_hybrid_scene(without_noise());
   displace(scene.online, kDisplacement);
   const double before = median_point_error(scene);
@@ -81,7 +81,7 @@ TEST(HybridMapping, PullsOnlinePointsAlongExactlyOnCleanFeatures) {
   EXPECT_THAT(mean_error(scene).position, Lt(0.001));
 }
 
-TEST(HybridMapping, ChangesNoBitOfTheOfflineMap) {
+TEST(HybridMapping, LeavesTheOfflineMapBitIdentical) {
   SimulationOptions options;
   options.outlier_ratio = 0.1;
   HybridScene scene = true_hybrid_scene(options);
@@ -181,7 +181,7 @@ HybridScene scene_with_duplicates() {
   return scene;
 }
 
-TEST(HybridMapping, FusesOnlinePointsIntoTheOfflinePointsTheyAre) {
+TEST(HybridMapping, FusesOnlinePointsWithEqualOfflinePoints) {
   HybridScene scene = scene_with_duplicates();
   const int duplicates = count_known_online(scene);
   const int sightings = count_sightings_of_offline_points(scene.online);
@@ -197,7 +197,7 @@ TEST(HybridMapping, FusesOnlinePointsIntoTheOfflinePointsTheyAre) {
 }
 
 // Online points that match features of offline keyframes with an offline point of the same landmark.
-TEST(HybridMapping, FusesWhatAnOfflineKeyframeSeesAsAnOfflinePoint) {
+TEST(HybridMapping, FusesPointsByObservationsOfOfflineKeyframes) {
   HybridScene scene = scene_with_duplicates();
   const MapWindow window = cut_window(scene.view(), {kLastKeyframe}, {});
   MapWindow fused = window;
@@ -212,7 +212,7 @@ TEST(HybridMapping, FusesWhatAnOfflineKeyframeSeesAsAnOfflinePoint) {
   }
 }
 
-TEST(HybridMapping, RemovesKeyframesThatSeeNextToNothingButOfflinePoints) {
+TEST(HybridMapping, RemovesKeyframesWithFewOnlinePoints) {
   HybridScene scene = true_hybrid_scene({});
   const MapWindow window = cut_window(scene.view(), {kLastKeyframe}, {});
   for (const PointId id : scene.online.point_ids()) scene.online.remove_point(id);
@@ -242,14 +242,14 @@ double error_beside_wrong_anchors(double offline_weight, double offline_sigma) {
   return off.translation.norm();
 }
 
-TEST(HybridMapping, FollowsOfflinePointsBesideWrongAnchors) {
+TEST(HybridMapping, FollowsOfflinePointsDespiteWrongAnchors) {
   constexpr double kAnchorSigma = 0.005;  // metres
   const double displacement = kDisplacement.translation.norm();
   EXPECT_THAT(error_beside_wrong_anchors(2.0, kAnchorSigma), Lt(0.2 * displacement));
   EXPECT_THAT(error_beside_wrong_anchors(8.0, kAnchorSigma), Lt(error_beside_wrong_anchors(0.125, kAnchorSigma)));
 }
 
-TEST(HybridMapping, TrustsOfflinePointsNoFurtherThanTheirCovariance) {
+TEST(HybridMapping, WeightsOfflinePointsByTheirCovariance) {
   EXPECT_THAT(error_beside_wrong_anchors(2.0, 1.0), Gt(0.5 * kDisplacement.translation.norm()));
 }
 

@@ -92,7 +92,7 @@ class TrackHybrid : public ::testing::Test {
   Map online_ = true_map(earlier_, 4, Origin::online);
 };
 
-TEST(AgreementOf, ComparesWhereTheCameraIsNotWhereTheWorldBegins) {
+TEST(AgreementOf, ComparesCameraPositions) {
   const Pose camera_from_world = inverse({Eigen::Quaterniond::Identity(), {50.0, 10.0, 0.0}});
   const Pose turned_on_the_spot = Pose{rotation_exp({0.0, 0.01, 0.0}), Eigen::Vector3d::Zero()} * camera_from_world;
   const Agreement agreement = agreement_of(camera_from_world, turned_on_the_spot);
@@ -102,7 +102,7 @@ TEST(AgreementOf, ComparesWhereTheCameraIsNotWhereTheWorldBegins) {
   EXPECT_FALSE(is_within(agreement, {.translation = 0.01, .rotation = 0.005}));
 }
 
-TEST_F(TrackHybrid, UsesThePointsOfBothMapsWhereTheyAgree) {
+TEST_F(TrackHybrid, UsesPointsOfBothMapsIfTheyAgree) {
   for (const OfflinePolicy policy : {OfflinePolicy::first, OfflinePolicy::together}) {
     const auto track = track_frame(policy);
     ASSERT_TRUE(track);
@@ -114,7 +114,7 @@ TEST_F(TrackHybrid, UsesThePointsOfBothMapsWhereTheyAgree) {
   }
 }
 
-TEST_F(TrackHybrid, FollowsTheOfflineMapHoweverFarTheOnlineMapIsOff) {
+TEST_F(TrackHybrid, FollowsTheOfflineMapDespiteADisplacedOnlineMap) {
   for (const double metres : {0.06, 0.2}) {
     Map online = online_;
     move(online_, shift_by(metres));
@@ -132,7 +132,7 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapHoweverFarTheOnlineMapIsOff) {
   }
 }
 
-TEST_F(TrackHybrid, StaysOnTheOnlineMapWhereOfflinePointsPutItFartherOffThanThatCanHaveDrifted) {
+TEST_F(TrackHybrid, StaysOnTheOnlineMapIfTheOffsetExceedsTheDrift) {
   move(online_, shift_by(0.4));
   const Pose predicted = truth_ * inverse(shift_by(0.4));
   const auto led_astray = track_frame(predicted, OfflinePolicy::first, {.drift = {0.5, 0.1}});
@@ -144,7 +144,7 @@ TEST_F(TrackHybrid, StaysOnTheOnlineMapWhereOfflinePointsPutItFartherOffThanThat
   EXPECT_FALSE(track->is_online_off());
 }
 
-TEST_F(TrackHybrid, IsLostWhereOfflinePointsAlonePutItFartherOffThanItCanHaveGone) {
+TEST_F(TrackHybrid, IsLostIfOfflinePointsImplyAnImpossibleMotion) {
   online_ = Map(Origin::online);
   const Pose predicted = truth_ * inverse(shift_by(0.4));
   EXPECT_TRUE(track_frame(predicted, OfflinePolicy::first, {.stray = 0.5}));
@@ -156,7 +156,7 @@ class TrackHybridAmongMuch : public TrackHybrid {
   TrackHybridAmongMuch() : TrackHybrid(16000) {}
 };
 
-TEST_F(TrackHybridAmongMuch, FollowsTheOnlineMapWhereFewOfTheOfflinePointsInViewAgree) {
+TEST_F(TrackHybridAmongMuch, FollowsTheOnlineMapIfFewOfflinePointsAgree) {
   hide_but_each(27);
   move(online_, shift_by(0.06));
   const Pose predicted = truth_ * inverse(shift_by(0.06));
@@ -169,7 +169,7 @@ TEST_F(TrackHybridAmongMuch, FollowsTheOnlineMapWhereFewOfTheOfflinePointsInView
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(predicted, 0.01, 0.2 * kDegree));
 }
 
-TEST_F(TrackHybrid, IsHardlyPulledByALargeThingThatWasMovedByAHandsBreadth) {
+TEST_F(TrackHybrid, IsHardlyBiasedByALargeObjectMovedByTenCentimetres) {
   move_left_part(0.25, {0.09, 0.0, 0.06});
   const auto track = track_frame();
   ASSERT_TRUE(track);
@@ -179,7 +179,7 @@ TEST_F(TrackHybrid, IsHardlyPulledByALargeThingThatWasMovedByAHandsBreadth) {
 }
 
 // The corners of both parts of the image fit a pose between them within a pixel.
-TEST_F(TrackHybrid, IsPulledByLessThanHalfAndDoubtsItWhereTwoFifthsWereMoved) {
+TEST_F(TrackHybrid, IsDoubtedIfTwoFifthsOfThePointsHaveMoved) {
   move_left_part(0.4, {0.09, 0.0, 0.06});
   const auto track = track_frame();
   ASSERT_TRUE(track);
@@ -188,7 +188,7 @@ TEST_F(TrackHybrid, IsPulledByLessThanHalfAndDoubtsItWhereTwoFifthsWereMoved) {
 }
 
 // A calibration error also causes a pixel or two, so points of both parts are used.
-TEST_F(TrackHybrid, IsPulledByLessThanHalfOfWhatALargeThingWasMovedByALittle) {
+TEST_F(TrackHybrid, IsBiasedByLessThanHalfOfASmallMotionOfALargeObject) {
   for (const double share_of_width : {0.25, 0.4, 0.5}) {
     const Map unchanged = offline_;
     move_left_part(share_of_width, {0.03, 0.0, 0.02});
@@ -199,7 +199,7 @@ TEST_F(TrackHybrid, IsPulledByLessThanHalfOfWhatALargeThingWasMovedByALittle) {
   }
 }
 
-TEST_F(TrackHybrid, LooksForPointsWithoutGivingThemASay) {
+TEST_F(TrackHybrid, MatchesZeroWeightPointsWithoutEffect) {
   const std::vector<PointId> all = offline_.point_ids();
   std::vector<PointId> shelf;
   for (std::size_t i = 0; i < all.size(); i += 5) shelf.push_back(all[i]);
@@ -219,7 +219,7 @@ TEST_F(TrackHybrid, LooksForPointsWithoutGivingThemASay) {
   EXPECT_LT(after.agreed.size(), before.agreed.size() / 2);
 }
 
-TEST_F(TrackHybrid, TellsWhichOfflinePointsAreNotInTheirPlace) {
+TEST_F(TrackHybrid, ReportsMovedOfflinePoints) {
   const std::vector<PointId> all = offline_.point_ids();
   std::vector<PointId> shelf;  // a fifth of the points, raised by 4 cm
   for (std::size_t i = 0; i < all.size(); i += 5) shelf.push_back(all[i]);
@@ -238,7 +238,7 @@ TEST_F(TrackHybrid, TellsWhichOfflinePointsAreNotInTheirPlace) {
   EXPECT_GT(count_shelf(track->offline_moved), 0.8 * static_cast<double>(track->offline_moved.size()));
 }
 
-TEST_F(TrackHybrid, TracksOnOnlinePointsAloneOffTheMap) {
+TEST_F(TrackHybrid, TracksOnlinePointsAloneOffTheMap) {
   offline_ = Map(Origin::offline);
   const auto track = track_frame();
   ASSERT_TRUE(track);
@@ -248,7 +248,7 @@ TEST_F(TrackHybrid, TracksOnOnlinePointsAloneOffTheMap) {
   EXPECT_GT(track->online_inliers(), 50);
 }
 
-TEST_F(TrackHybrid, TracksOnOfflinePointsAloneBeforeThereIsAnOnlineMap) {
+TEST_F(TrackHybrid, TracksOfflinePointsAloneWithoutAnOnlineMap) {
   online_ = Map(Origin::online);
   const auto track = track_frame();
   ASSERT_TRUE(track);
@@ -257,7 +257,7 @@ TEST_F(TrackHybrid, TracksOnOfflinePointsAloneBeforeThereIsAnOnlineMap) {
   EXPECT_EQ(track->online_reference, std::nullopt);
 }
 
-TEST_F(TrackHybrid, HoldsMoreToTheOfflineMapTheMoreThatWeighs) {
+TEST_F(TrackHybrid, FollowsTheOfflineMapInProportionToItsWeight) {
   move(online_, shift_by(0.005));  // too little to be detected as a disagreement
   // Half of the offline points, since features that match points of both maps are left to the offline one.
   std::vector<PointId> candidates = offline_.point_ids();
@@ -276,7 +276,7 @@ TEST_F(TrackHybrid, HoldsMoreToTheOfflineMapTheMoreThatWeighs) {
   EXPECT_LT(errors[2], errors[0]);
 }
 
-TEST_F(TrackHybrid, FindsNothingInAnotherRoom) {
+TEST_F(TrackHybrid, IsEmptyInAnotherRoom) {
   SimulationOptions another_room;
   another_room.seed = 99;
   const SimulatedMission elsewhere = quarter_circle(another_room);

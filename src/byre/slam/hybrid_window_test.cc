@@ -53,7 +53,7 @@ class HybridWindow : public ::testing::Test {
   HybridScene scene_ = true_hybrid_scene({});
 };
 
-TEST_F(HybridWindow, NeedsNoOnlineAnchorsWhereEnoughOfflinePointsHoldIt) {
+TEST_F(HybridWindow, NeedsNoOnlineAnchorsWithEnoughOfflinePoints) {
   WindowOptions options = kSmallHybrid;
   options.sightings_in_place_of_anchors = 50;
   const MapWindow window = cut_window(scene_.view(), {kNewestOnline}, options);
@@ -62,7 +62,7 @@ TEST_F(HybridWindow, NeedsNoOnlineAnchorsWhereEnoughOfflinePointsHoldIt) {
   EXPECT_EQ(count(window, true, false), kSmallHybrid.offline_anchors);
 }
 
-TEST_F(HybridWindow, HoldsAnchorsOfBothMaps) {
+TEST_F(HybridWindow, ContainsAnchorsOfBothMaps) {
   const MapWindow window = cut(kNewestOnline);
   EXPECT_EQ(count(window, false, true), kSmallHybrid.movable);
   EXPECT_EQ(count(window, false, false), kSmallHybrid.anchors);
@@ -74,7 +74,7 @@ TEST_F(HybridWindow, HoldsAnchorsOfBothMaps) {
   }
 }
 
-TEST_F(HybridWindow, TakesThoseOfflineKeyframesThatSeeMostPointsOfTheNewest) {
+TEST_F(HybridWindow, SelectsOfflineKeyframesByCommonPoints) {
   const MapWindow window = cut(kNewestOnline);
   std::set<PointId> seen;
   for (const Sighting& sighting : window.keyframes.front().keyframe.sightings) {
@@ -96,7 +96,7 @@ TEST_F(HybridWindow, TakesThoseOfflineKeyframesThatSeeMostPointsOfTheNewest) {
   }
 }
 
-TEST_F(HybridWindow, KnowsTheRigsOfBothMaps) {
+TEST_F(HybridWindow, ContainsTheRigsOfBothMaps) {
   Rig other = scene_.first.rig;
   other.baseline *= 2.0;
   Map offline(Origin::offline);
@@ -109,7 +109,7 @@ TEST_F(HybridWindow, KnowsTheRigsOfBothMaps) {
   }
 }
 
-TEST_F(HybridWindow, HoldsAllPointsOfMovableAndOfOfflineKeyframes) {
+TEST_F(HybridWindow, ContainsAllPointsOfMovableAndOfflineKeyframes) {
   const MapWindow window = cut(kNewestOnline);
   for (const WindowKeyframe& keyframe : window.keyframes) {
     if (keyframe.movable || is_offline(keyframe)) {
@@ -154,19 +154,19 @@ TEST_F(HybridWindow, LinksForeignViews) {
   EXPECT_EQ(std::ranges::find(alone.points, std::optional(point), &WindowPoint::id)->foreign_views_elsewhere, 1);
 }
 
-TEST_F(HybridWindow, LetsTheFirstKeyframeMoveWhereOfflinePointsHoldTheWorld) {
+TEST_F(HybridWindow, MovesTheFirstKeyframeIfOfflinePointsHoldTheFrame) {
   const MapWindow window = cut(kFirstOnline);
   EXPECT_EQ(window.keyframes.front().id, kFirstOnline);
   EXPECT_TRUE(window.keyframes.front().movable);
 }
 
-TEST_F(HybridWindow, HoldsTheFirstKeyframeWhereOfflinePointsAreTooFew) {
+TEST_F(HybridWindow, HoldsTheFirstKeyframeWithFewOfflinePoints) {
   WindowOptions demanding = kSmallHybrid;
   demanding.min_offline_sightings = 1'000'000;
   EXPECT_FALSE(cut(kFirstOnline, demanding).keyframes.front().movable);
 }
 
-TEST_F(HybridWindow, HoldsItsOldestKeyframeWhenNothingElseDoes) {
+TEST_F(HybridWindow, HoldsItsOldestKeyframeIfNothingElseIsHeld) {
   WindowOptions demanding = kSmallHybrid;
   demanding.min_offline_sightings = 1'000'000;
   demanding.anchors = 0;
@@ -183,7 +183,7 @@ TEST_F(HybridWindow, HoldsItsOldestKeyframeWhenNothingElseDoes) {
   }
 }
 
-TEST_F(HybridWindow, IsThatOfTheOnlineMapWhereTheOfflineOneIsFar) {
+TEST_F(HybridWindow, EqualsTheOnlineWindowFarFromTheOfflineMap) {
   for (const PointId id : scene_.offline.point_ids()) scene_.offline.remove_point(id);
   for (const KeyframeId id : scene_.online.keyframe_ids()) {  // no sightings of offline points
     const std::vector<Sighting> sightings = scene_.online.find_keyframe(id)->sightings;

@@ -117,7 +117,7 @@ double depth_error(const std::vector<double>& ratios) {
   return std::max(1.0 - ratios[ratios.size() / 20] / scale, ratios[ratios.size() * 19 / 20] / scale - 1.0);
 }
 
-TEST(MonocularInitialiser, FindsMotionAndDepthsWithoutNoise) {
+TEST(MonocularInitialiser, EstimatesMotionAndDepthsWithoutNoise) {
   SimulationOptions options = without_noise();
   options.landmarks = 5000;
   const SimulatedMission mission = sidestepping(options);
@@ -130,7 +130,7 @@ TEST(MonocularInitialiser, FindsMotionAndDepthsWithoutNoise) {
   EXPECT_LT(depth_error(depth_ratios(mission, start)), 0.005);
 }
 
-TEST(MonocularInitialiser, WithstandsNoiseAndOutliers) {
+TEST(MonocularInitialiser, IsRobustToNoiseAndOutliers) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SimulatedMission mission = sidestepping(noisy(seed, 0.3));
     const Started started = run(mission);
@@ -143,7 +143,7 @@ TEST(MonocularInitialiser, WithstandsNoiseAndOutliers) {
   }
 }
 
-TEST(MonocularInitialiser, GivesASoundMapOfTwoKeyframesThatSeeEveryPoint) {
+TEST(MonocularInitialiser, ReturnsAValidMapOfTwoKeyframes) {
   const SimulatedMission mission = sidestepping(noisy(1));
   const Started started = run(mission);
   ASSERT_NE(started.start(), nullptr);
@@ -158,7 +158,7 @@ TEST(MonocularInitialiser, GivesASoundMapOfTwoKeyframesThatSeeEveryPoint) {
   }
 }
 
-TEST(MonocularInitialiser, SetsTheMedianDepthAskedFor) {
+TEST(MonocularInitialiser, SetsTheRequestedMedianDepth) {
   const SimulatedMission mission = sidestepping(noisy(1));
   for (const double asked : {1.0, 5.0}) {
     MonocularStartOptions options;
@@ -178,7 +178,7 @@ TEST(MonocularInitialiser, SetsTheMedianDepthAskedFor) {
   }
 }
 
-TEST(MonocularInitialiser, TakesTheFirstBodyForTheWorld) {
+TEST(MonocularInitialiser, UsesTheFirstBodyFrameAsWorld) {
   Rig rig = one_camera();
   rig.body_from_camera.rotation = robot_from_camera().rotation;
   Trajectory truth = kSidesteps;
@@ -190,7 +190,7 @@ TEST(MonocularInitialiser, TakesTheFirstBodyForTheWorld) {
   EXPECT_THAT(inverse(rig.body_from_camera * first), PoseNear(Pose{}, 1e-12, 1e-7));
 }
 
-TEST(MonocularInitialiser, NeverTakesATurnOnTheSpotForAMotion) {
+TEST(MonocularInitialiser, RejectsATurnOnTheSpot) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const Started started = run(turning(noisy(seed, 0.1)));
     ASSERT_EQ(started.attempts.size(), 100u) << "seed " << seed;
@@ -201,7 +201,7 @@ TEST(MonocularInitialiser, NeverTakesATurnOnTheSpotForAMotion) {
   }
 }
 
-TEST(MonocularInitialiser, WaitsWhileTheCameraStands) {
+TEST(MonocularInitialiser, WaitsWhileTheCameraRests) {
   const Trajectory truth = straight_trajectory(40, 0.7, Eigen::Vector3d::Zero());
   const Started started = run(simulate_mission(one_camera(), truth, noisy(4)));
   EXPECT_EQ(started.start(), nullptr);
@@ -209,7 +209,7 @@ TEST(MonocularInitialiser, WaitsWhileTheCameraStands) {
   EXPECT_EQ(std::ranges::count(started.failures(), TwoViewFailure::rotation_only), 39);
 }
 
-TEST(MonocularInitialiser, BeforeAWallFindsTheMotionOrSaysThatItIsAmbiguous) {
+TEST(MonocularInitialiser, EstimatesTheMotionOrReportsAmbiguityBeforeAWall) {
   const SimulatedMission mission = approaching_a_wall(noisy(1));
   const Started started = run(mission);
   EXPECT_GT(std::ranges::count(started.failures(), TwoViewFailure::planar_ambiguity), 0);
@@ -218,7 +218,7 @@ TEST(MonocularInitialiser, BeforeAWallFindsTheMotionOrSaysThatItIsAmbiguous) {
   EXPECT_LT(angle_between_translations(second_from_first(*started.start()), truth), 2.0 * kDegree);
 }
 
-TEST(MonocularInitialiser, SaysWhenAFrameSharesTooLittleWithTheReference) {
+TEST(MonocularInitialiser, ReportsFewMatchesWithTheReference) {
   const SimulatedMission mission = sidestepping(noisy(1));
   SimulationOptions other_room = noisy(1);
   other_room.seed = 2;
@@ -230,7 +230,7 @@ TEST(MonocularInitialiser, SaysWhenAFrameSharesTooLittleWithTheReference) {
   EXPECT_LT(elsewhere.matches, 100);
 }
 
-TEST(MonocularInitialiser, TakesAnEmptyFrameForNothing) {
+TEST(MonocularInitialiser, IgnoresAnEmptyFrame) {
   const SimulatedMission mission = sidestepping(noisy(1));
   MonocularInitialiser initialiser(mission.rig, {});
   const Frame empty{mission.frames[0].time, std::make_shared<const Features>()};
@@ -239,7 +239,7 @@ TEST(MonocularInitialiser, TakesAnEmptyFrameForNothing) {
   }
 }
 
-TEST(MonocularInitialiser, BeginsAnewAfterAStart) {
+TEST(MonocularInitialiser, RestartsAfterAnInitialisation) {
   const SimulatedMission mission = sidestepping(noisy(1));
   MonocularInitialiser initialiser(mission.rig, {});
   std::size_t i = 0;
@@ -248,7 +248,7 @@ TEST(MonocularInitialiser, BeginsAnewAfterAStart) {
   EXPECT_EQ(initialiser.try_start(mission.frames[i + 1]).matches, 0);
 }
 
-TEST(MonocularInitialiser, GivesTheSameMapForTheSameFrames) {
+TEST(MonocularInitialiser, IsDeterministic) {
   const SimulatedMission mission = sidestepping(noisy(1, 0.3));
   const Started one = run(mission), other = run(mission);
   ASSERT_TRUE(one.start() != nullptr && other.start() != nullptr);

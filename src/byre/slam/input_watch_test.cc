@@ -45,7 +45,7 @@ bool disagree_after(int frames, const Frame& frame) {
   return disagree;
 }
 
-TEST(InputWatch, TellsForHowLongAnImageIsRepeated) {
+TEST(InputWatch, MeasuresTheDurationOfARepeatedImage) {
   InputWatch watch({});
   EXPECT_FALSE(watch.look_at(at(0.0, 7), kRig).is_repeated);
   EXPECT_FALSE(watch.look_at(at(0.1, 8), kRig).is_repeated);
@@ -58,23 +58,23 @@ TEST(InputWatch, TellsForHowLongAnImageIsRepeated) {
   EXPECT_EQ(moving.frozen_seconds, 0.0);
 }
 
-TEST(InputWatch, SimulatedFramesWithoutImagesAreNotTakenForRepeated) {
+TEST(InputWatch, IgnoresSimulatedFramesWithoutImages) {
   InputWatch watch({});
   watch.look_at(at(0.0, 0), kRig);
   EXPECT_FALSE(watch.look_at(at(0.1, 0), kRig).is_repeated);
 }
 
-TEST(InputWatch, PairsThatFitAreLeftAlone) {
+TEST(InputWatch, AcceptsMatchingPairs) {
   EXPECT_FALSE(disagree_after(10, pair_with(90, 0.3f)));
   EXPECT_FALSE(disagree_after(10, pair_with(80, 0.7f))) << "as a worn calibration has them";
 }
 
-TEST(InputWatch, PairsThatShareNothingOrLieOnOtherRowsDisagree) {
+TEST(InputWatch, DetectsPairsWithoutMatchesOrOnOtherRows) {
   EXPECT_TRUE(disagree_after(1, pair_with(4, 0.3f)));
   EXPECT_TRUE(disagree_after(1, pair_with(90, 1.0f)));
 }
 
-TEST(InputWatch, PairsOfWhichDirtHidesMuchAreLeftAlone) {
+TEST(InputWatch, IgnoresPairsHiddenByDirt) {
   Frame frame = pair_with(0, 0.0f);
   std::vector<Keypoint> keypoints = to_vector(frame.features->keypoints());
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
@@ -89,13 +89,13 @@ TEST(InputWatch, PairsOfWhichDirtHidesMuchAreLeftAlone) {
   EXPECT_FALSE(disagree_after(10, frame));
 }
 
-TEST(InputWatch, OneBadPairAmongGoodOnesIsForgiven) {
+TEST(InputWatch, ToleratesOneBadPairAmongGoodOnes) {
   InputWatch watch({});
   for (int i = 0; i < 5; ++i) watch.look_at(pair_with(120, 0.2f), kRig);
   EXPECT_FALSE(watch.look_at(pair_with(4, 0.2f), kRig).cameras_disagree);
 }
 
-TEST(InputWatch, ABlindRightCameraIsToldAsSuch) {
+TEST(InputWatch, DetectsABlindRightCamera) {
   InputWatch watch({});
   Frame frame = pair_with(0, 0.0f);
   frame.right_condition = kBlackImage;
@@ -104,7 +104,7 @@ TEST(InputWatch, ABlindRightCameraIsToldAsSuch) {
   EXPECT_FALSE(evidence.cameras_disagree);
 }
 
-TEST(InputWatch, WhereTheLeftImageIsOfNoUseTheRightOneIsNotBlamed) {
+TEST(InputWatch, DoesNotBlameTheRightImageForABlindLeftOne) {
   InputWatch watch({});
   Frame frame = pair_with(0, 0.0f);
   frame.condition = frame.right_condition = kBlackImage;
@@ -113,7 +113,7 @@ TEST(InputWatch, WhereTheLeftImageIsOfNoUseTheRightOneIsNotBlamed) {
   EXPECT_FALSE(evidence.cameras_disagree);
 }
 
-TEST(InputWatch, OneCameraAloneHasNoPairToJudge) {
+TEST(InputWatch, IgnoresSingleCameras) {
   InputWatch watch({});
   Frame frame = pair_with(0, 0.0f);
   frame.right_condition.reset();

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
                  calm_but([](auto& e) { e.pending = kMaxPendingWhenWeak; }), false}),
     [](const auto& tested) { return tested.param.name; });
 
-TEST(MedianDepth, IsThatOfTheTrackedPointsAlongTheOpticalAxis) {
+TEST(MedianDepth, IsTheDepthOfTrackedPointsAlongTheOpticalAxis) {
   Map map(Origin::online);
   TrackedFrame tracked;
   tracked.camera_from_world = {rotation_exp({0.0, 0.0, 0.3}), {0.0, 0.0, 1.0}};
@@ -92,12 +92,12 @@ TEST(MedianDepth, IsThatOfTheTrackedPointsAlongTheOpticalAxis) {
   EXPECT_DOUBLE_EQ(median_depth(tracked, MapView(nullptr, map)), 4.0);
 }
 
-TEST(MedianDepth, PassesOverPointsThatAreGone) {
+TEST(MedianDepth, SkipsRemovedPoints) {
   Map map(Origin::online);
   EXPECT_EQ(median_depth(tracked_on(3), MapView(nullptr, map)), 0.0);
 }
 
-TEST(MakeKeyframe, SeesWhatWasTrackedAsItWasMeasured) {
+TEST(MakeKeyframe, KeepsTrackedMeasurements) {
   const SimulatedMission mission = quarter_circle({});
   TrackedFrame tracked;
   tracked.camera_from_world = true_camera_from_world(mission, 5);
@@ -117,7 +117,7 @@ TEST(MakeKeyframe, SeesWhatWasTrackedAsItWasMeasured) {
   EXPECT_EQ(keyframe.sightings[5].pixel, mission.frames[5].features->keypoint(5).pixel);
 }
 
-TEST(InitialiseStereo, PutsEveryPointNearItsLandmark) {
+TEST(InitialiseStereo, PlacesEveryPointNearItsLandmark) {
   const SimulatedMission mission = quarter_circle(without_noise());
   const auto map = initialise_stereo(mission.frames[0], mission.rig, 50);
   ASSERT_TRUE(map);
@@ -131,7 +131,7 @@ TEST(InitialiseStereo, PutsEveryPointNearItsLandmark) {
   }
 }
 
-TEST(InitialiseStereo, TakesTheFirstBodyForTheWorld) {
+TEST(InitialiseStereo, UsesTheFirstBodyFrameAsWorld) {
   const Rig rig = simulated_rig(robot_from_camera());
   const SimulatedMission mission =
       simulate_mission(rig, circling_trajectory(2, 10.0, 2.0, 0.01, robot_from_camera()), {});
@@ -142,7 +142,7 @@ TEST(InitialiseStereo, TakesTheFirstBodyForTheWorld) {
   EXPECT_EQ(first.parent, std::nullopt);
 }
 
-TEST(InitialiseStereo, IsEmptyWithTooFewDisparities) {
+TEST(InitialiseStereo, IsEmptyForTooFewDisparities) {
   Rig mono = simulated_rig();
   mono.baseline = 0.0;
   const SimulatedMission mission = simulate_mission(mono, circling_trajectory(2, 10.0, 2.0, 0.01), {});
@@ -150,13 +150,13 @@ TEST(InitialiseStereo, IsEmptyWithTooFewDisparities) {
   EXPECT_FALSE(initialise_stereo({{}, std::make_shared<const Features>()}, mono, 1));
 }
 
-TEST(InitialiseStereo, MakesNoPointOfADisparityThatIsMostlyNoise) {
+TEST(InitialiseStereo, RejectsDisparitiesBelowTheirNoise) {
   SimulationOptions options;
   options.disparity_sigma = 20.0;
   EXPECT_FALSE(initialise_stereo(quarter_circle(options).frames[0], simulated_rig(), 20));
 }
 
-TEST(AddStereoPoints, LeavesFeaturesAloneThatSeeAPoint) {
+TEST(AddStereoPoints, SkipsFeaturesWithAPoint) {
   const SimulatedMission mission = quarter_circle({});
   auto map = initialise_stereo(mission.frames[0], mission.rig, 50);
   ASSERT_TRUE(map);
@@ -200,7 +200,7 @@ class ManyMeasurementsOfOnePoint : public ::testing::Test {
   Map map_{Origin::online};
 };
 
-TEST_F(ManyMeasurementsOfOnePoint, ScatterAsTheirCovarianceSays) {
+TEST_F(ManyMeasurementsOfOnePoint, ScatterByTheirCovariance) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d predicted = Eigen::Matrix3d::Zero();
   for (const PointId id : map_.point_ids()) {
@@ -217,7 +217,7 @@ TEST_F(ManyMeasurementsOfOnePoint, ScatterAsTheirCovarianceSays) {
   EXPECT_NEAR(scatter.determinant() / predicted.determinant(), 1.0, 0.2);  // checks the precise directions as well
 }
 
-TEST_F(ManyMeasurementsOfOnePoint, HoldOverDistancesWhereTheirOctaveIsInThePyramid) {
+TEST_F(ManyMeasurementsOfOnePoint, HaveTheDistanceRangeOfTheirOctaves) {
   const double distance = (camera_from_world_ * point_in_world_).norm();
   for (const PointId id : map_.point_ids()) {
     const MapPoint& point = *map_.find_point(id);

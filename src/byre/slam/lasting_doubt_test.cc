@@ -35,7 +35,7 @@ TEST_F(Doubted, IsRaisedByTheFirstSignAndLastsASecondLonger) {
   EXPECT_LE(frames, static_cast<int>(LastingDoubt::kLeastSeconds / kStep) + 1);
 }
 
-TEST_F(Doubted, NeedsFramesWhereTheyAreRare) {
+TEST_F(Doubted, RequiresFramesAtLowRates) {
   note(1, Sign::present, 1.0);
   EXPECT_EQ(note(20, Sign::absent, 1.0), LastingDoubt::kLeastFrames - 1);
 }
@@ -45,19 +45,19 @@ TEST_F(Doubted, LastsAsLongAsItsCauseDid) {
   EXPECT_NEAR(note(1000, Sign::absent) * kStep, 100 * kStep + LastingDoubt::kLeastSeconds, 3 * kStep);
 }
 
-TEST_F(Doubted, LastsNoLongerThanItsBound) {
+TEST_F(Doubted, LastsAtMostUntilItsBound) {
   note(10'000, Sign::present);
   EXPECT_NEAR(note(10'000, Sign::absent) * kStep, LastingDoubt::kMostSeconds, 3 * kStep);
 }
 
-TEST_F(Doubted, DoesNotFlickerWhereItsCauseShowsNowAndThen) {
+TEST_F(Doubted, DoesNotFlickerForAnIntermittentCause) {
   for (int i = 0; i < 50; ++i) {
     EXPECT_EQ(note(1, Sign::present), 1);
     EXPECT_EQ(note(9, Sign::absent), 9);
   }
 }
 
-TEST_F(Doubted, IsNotEndedByFramesThatCannotShowItsCause) {
+TEST_F(Doubted, IsNotEndedByUninformativeFrames) {
   note(1, Sign::present);
   EXPECT_EQ(note(1000, Sign::unclear), 1000);
 }

@@ -53,7 +53,7 @@ class TriedLens {
 
 constexpr std::size_t kCell = 37;
 
-TEST(LensMask, FindsNothingOnACleanLensHoweverLongItLooks) {
+TEST(LensMask, StaysEmptyOnACleanLens) {
   for (const double found : {0.2, 0.5, 0.9}) {
     LensMask mask;
     TriedLens camera(found);
@@ -64,7 +64,7 @@ TEST(LensMask, FindsNothingOnACleanLensHoweverLongItLooks) {
   }
 }
 
-TEST(LensMask, LeavesACellAloneThatShowsLessThanTheRest) {
+TEST(LensMask, KeepsACellWithFewerPointsThanTheRest) {
   LensMask mask;
   TriedLens camera(0.5);
   camera.soil(kCell, 0.3);
@@ -72,7 +72,7 @@ TEST(LensMask, LeavesACellAloneThatShowsLessThanTheRest) {
   EXPECT_FALSE(mask.hidden().any());
 }
 
-TEST(LensMask, FindsADirtyCellWithinSecondsAndNoOther) {
+TEST(LensMask, DetectsOnlyTheDirtyCellWithinSeconds) {
   LensMask mask;
   TriedLens camera(0.5);
   camera.soil(kCell);
@@ -83,7 +83,7 @@ TEST(LensMask, FindsADirtyCellWithinSecondsAndNoOther) {
   EXPECT_DOUBLE_EQ(mask.hidden().share(), 1.0 / HiddenCells::kCells);
 }
 
-TEST(LensMask, KeepsTheCellWhileItIsDirtyAndForgetsItOnceItIsWiped) {
+TEST(LensMask, KeepsTheCellUntilItIsClean) {
   LensMask mask;
   TriedLens camera(0.5);
   camera.soil(kCell, 0.02);
@@ -97,7 +97,7 @@ TEST(LensMask, KeepsTheCellWhileItIsDirtyAndForgetsItOnceItIsWiped) {
   EXPECT_FALSE(mask.hidden().any());
 }
 
-TEST(LensMask, GrowsSoonerFromACellThanItBegins) {
+TEST(LensMask, GrowsFasterThanItBegins) {
   LensMask mask;
   TriedLens camera(0.5);
   camera.soil(kCell);
@@ -109,13 +109,13 @@ TEST(LensMask, GrowsSoonerFromACellThanItBegins) {
   EXPECT_FALSE(mask.hidden().is_hidden(kCell + 5));
 }
 
-TEST(LensMask, LearnsNothingWhereTheWholeImageShowsNothing) {
+TEST(LensMask, LearnsNothingWithoutPointsInTheImage) {
   LensMask mask;
   TriedLens(0.0).take(200, mask);
   EXPECT_FALSE(mask.hidden().any());
 }
 
-TEST(LensMask, FindsHalfOfTheImageDirty) {
+TEST(LensMask, DetectsDirtOnHalfOfTheImage) {
   LensMask mask;
   TriedLens camera(0.5);
   for (std::size_t cell = 0; cell < HiddenCells::kCells / 2; ++cell) camera.soil(cell);
@@ -123,7 +123,7 @@ TEST(LensMask, FindsHalfOfTheImageDirty) {
   EXPECT_DOUBLE_EQ(mask.hidden().share(), 0.5);
 }
 
-TEST(LensMask, LetsTrialsOfOneFrameCountForLessThanThoseOfMany) {
+TEST(LensMask, WeightsTrialsOfOneFrameLessThanThoseOfMany) {
   const TriedLens camera(0.5);
   std::vector<LensTrial> trials;  // an object that briefly hides a cell with many points
   for (int i = 0; i < 100; ++i) trials.push_back({camera.middle_of(kCell), false});

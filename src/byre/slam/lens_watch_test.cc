@@ -46,7 +46,7 @@ class Drive {
   std::vector<SessionEvent> told_;
 };
 
-TEST(LensWatch, FindsNothingOnACleanLens) {
+TEST(LensWatch, StaysEmptyOnACleanLens) {
   Drive drive(1.0);
   LensWatch watch;
   drive.go(watch, 0, drive.frames(), false);
@@ -54,7 +54,7 @@ TEST(LensWatch, FindsNothingOnACleanLens) {
   EXPECT_TRUE(drive.told().empty());
 }
 
-TEST(LensWatch, FindsABlotWhereItIsAndThatItWasWipedOff) {
+TEST(LensWatch, LocatesABlotAndItsRemoval) {
   Drive drive(2.0);
   LensWatch watch;
   drive.go(watch, 0, drive.frames() / 2, true);
@@ -68,7 +68,7 @@ TEST(LensWatch, FindsABlotWhereItIsAndThatItWasWipedOff) {
   EXPECT_EQ(drive.told().back(), SessionEvent::dirt_gone);
 }
 
-TEST(LensWatch, LearnsNothingWhileTheRobotStands) {
+TEST(LensWatch, LearnsNothingAtAStandstill) {
   Drive drive(1.0);
   LensWatch watch;
   for (int i = 0; i < 100; ++i) drive.go(watch, 20, 21, true, i * std::chrono::seconds(1));

@@ -44,7 +44,7 @@ Frame chosen(const Frame& frame, const Rig& rig, const std::function<bool(int)>&
   return {frame.time, std::make_shared<Features>(rig.width, rig.height, keypoints, descriptors, std::vector<Patch>{})};
 }
 
-TEST(Localise, FindsEveryFrameOfAnotherVisit) {
+TEST(Localise, LocatesEveryFrameOfAnotherVisit) {
   const SimulatedMission later = lap(visit(2), 1.8);
   for (std::size_t i = 0; i < later.frames.size(); i += 3) {
     const Localisation found = localise_in(mapped(), later.frames[i], later.rig);
@@ -54,7 +54,7 @@ TEST(Localise, FindsEveryFrameOfAnotherVisit) {
   }
 }
 
-TEST(Localise, FindsFramesOfASingleCamera) {
+TEST(Localise, LocatesFramesOfASingleCamera) {
   Rig rig = simulated_rig();
   rig.baseline = 0.0;
   const SimulatedMission later = lap(visit(3), 2.1, rig);
@@ -65,7 +65,7 @@ TEST(Localise, FindsFramesOfASingleCamera) {
   }
 }
 
-TEST(Localise, StatesACovarianceThatCoversItsError) {
+TEST(Localise, ReturnsACovarianceThatCoversItsError) {
   const SimulatedMission later = lap(visit(4));
   int within = 0, found_count = 0;
   for (std::size_t i = 0; i < later.frames.size(); ++i) {
@@ -79,7 +79,7 @@ TEST(Localise, StatesACovarianceThatCoversItsError) {
   EXPECT_GE(within, 50);
 }
 
-TEST(Localise, RefusesAnotherRoom) {
+TEST(Localise, RejectsAnotherRoom) {
   SimulationOptions elsewhere = visit(1);
   elsewhere.seed = 77;
   const SimulatedMission other = lap(elsewhere);
@@ -90,13 +90,13 @@ TEST(Localise, RefusesAnotherRoom) {
   }
 }
 
-TEST(Localise, SaysThatAnImageShowsTooLittle) {
+TEST(Localise, ReportsTooFewFeatures) {
   const SimulatedMission later = lap(visit(5));
   const Frame nearly_blank = chosen(later.frames[0], later.rig, [](int i) { return i < 20; });
   EXPECT_EQ(localise_in(mapped(), nearly_blank, later.rig).failure, LocalisationFailure::too_few_features);
 }
 
-TEST(Localise, SaysThatTheMapHoldsNothingLikeIt) {
+TEST(Localise, ReportsNoSimilarKeyframe) {
   const SimulatedMission later = lap(visit(5));
   const PlaceIndex empty(mapped().index.vocabulary());
   const Localisation result = localise(later.frames[0], later.rig, mapped().view(), empty, {});
@@ -104,7 +104,7 @@ TEST(Localise, SaysThatTheMapHoldsNothingLikeIt) {
   EXPECT_EQ(result.places, 0);
 }
 
-TEST(Localise, DoubtsInliersThatCluster) {
+TEST(Localise, RejectsClusteredInliers) {
   const SimulatedMission later = lap(visit(6));
   const Frame corner = chosen(later.frames[0], later.rig, [&](int i) {
     const Keypoint& keypoint = later.frames[0].features->keypoint(i);
@@ -118,7 +118,7 @@ TEST(Localise, DoubtsInliersThatCluster) {
   EXPECT_GE(result.inliers, options.min_inliers);
 }
 
-TEST(Localise, DoubtsAPoseThatItsInliersLeaveOpen) {
+TEST(Localise, RejectsAnUncertainPose) {
   const SimulatedMission later = lap(visit(7));
   LocaliseOptions options;
   options.max_position_sigma = 1e-6;
@@ -126,7 +126,7 @@ TEST(Localise, DoubtsAPoseThatItsInliersLeaveOpen) {
   EXPECT_EQ(result.failure, LocalisationFailure::uncertain);
 }
 
-TEST(Localise, RefusesToChooseBetweenTwoPlacesThatFit) {
+TEST(Localise, ReportsTwoAmbiguousPlaces) {
   const MappedPlace place = twin_rooms(lap(visit(1)));
   ASSERT_THAT(find_faults(place.map), testing::IsEmpty());
   const SimulatedMission later = lap(visit(8));
@@ -138,7 +138,7 @@ TEST(Localise, RefusesToChooseBetweenTwoPlacesThatFit) {
   }
 }
 
-TEST(Localise, GivesTheSameAnswerEachTime) {
+TEST(Localise, IsDeterministic) {
   const SimulatedMission later = lap(visit(9));
   const Localisation first = localise_in(mapped(), later.frames[5], later.rig);
   const Localisation second = localise_in(mapped(), later.frames[5], later.rig);
@@ -147,7 +147,7 @@ TEST(Localise, GivesTheSameAnswerEachTime) {
   EXPECT_EQ(first.inliers, second.inliers);
 }
 
-TEST(MatchPlace, FindsTheTruePointsMostly) {
+TEST(MatchPlace, MatchesMostlyTruePoints) {
   const SimulatedMission mission = lap(visit(1)), later = lap(visit(2));
   const auto words = mapped().index.vocabulary().words_of(*later.frames[0].features);
   const std::vector<KeyframeId> keyframes = {{Origin::offline, 0}, {Origin::offline, 1}};
@@ -168,7 +168,7 @@ TEST(MatchPlace, FindsTheTruePointsMostly) {
   EXPECT_EQ(points.size(), matches.size());
 }
 
-TEST(MatchPlace, FindsAllTheMoreWhenItComparesAll) {
+TEST(MatchPlace, MatchesMorePointsWithoutWords) {
   const SimulatedMission later = lap(visit(2));
   const Vocabulary& vocabulary = mapped().index.vocabulary();
   const auto words = vocabulary.words_of(*later.frames[0].features);

@@ -86,7 +86,7 @@ TEST_F(LoopInAMap, IsFoundWithItsDrift) {
   EXPECT_GT(apparent_drift(*loop, map_), 3.0);
 }
 
-TEST_F(LoopInAMap, IsNotLookedForAmongNeighbours) {
+TEST_F(LoopInAMap, IsNotSearchedAmongNeighbours) {
   options_.min_gap = 1;
   const auto loop = find_loop(map_, index_, newest(), options_);
   ASSERT_TRUE(loop);
@@ -95,13 +95,13 @@ TEST_F(LoopInAMap, IsNotLookedForAmongNeighbours) {
   EXPECT_FALSE(find_loop(map_, index_, newest(), options_)) << "everything is near";
 }
 
-TEST_F(LoopInAMap, IsNotBelievedWhenThePathAllowsNoSuchDrift) {
+TEST_F(LoopInAMap, IsRejectedForAnImplausibleDrift) {
   options_.max_drift = 0.01;
   options_.max_drift_share = 0.001;
   EXPECT_FALSE(find_loop(map_, index_, newest(), options_));
 }
 
-TEST_F(LoopInAMap, IsConfirmedByFramesThatFindItToo) {
+TEST_F(LoopInAMap, IsConfirmedByLaterFrames) {
   const auto loop = find_loop(map_, index_, newest(), options_);
   ASSERT_TRUE(loop);
   EXPECT_FALSE(is_confirmed(*loop));
@@ -110,7 +110,7 @@ TEST_F(LoopInAMap, IsConfirmedByFramesThatFindItToo) {
   EXPECT_FALSE(is_refuted(checked(*loop, {66, 67, 68})));
 }
 
-TEST_F(LoopInAMap, IsConfirmedWhereAFrameIsCovered) {
+TEST_F(LoopInAMap, IsConfirmedDespiteACoveredFrame) {
   auto loop = find_loop(map_, index_, newest(), options_);
   ASSERT_TRUE(loop);
   loop = check_loop(*loop, Frame{{}, std::make_shared<const Features>()}, map_.camera_from_world(newest()),
@@ -119,7 +119,7 @@ TEST_F(LoopInAMap, IsConfirmedWhereAFrameIsCovered) {
   EXPECT_TRUE(is_confirmed(checked(*loop, {66, 67, 68})));
 }
 
-TEST_F(LoopInAMap, IsRefutedByFramesThatSayOtherwise) {
+TEST_F(LoopInAMap, IsRefutedByContradictingFrames) {
   auto loop = find_loop(map_, index_, newest(), options_);
   ASSERT_TRUE(loop);
   const Pose displaced{Eigen::Quaterniond::Identity(), {0.3, 0.0, 0.0}};

@@ -43,7 +43,7 @@ TEST_P(ScaleThatDrifts, IsMeasuredAtTheLoop) {
   EXPECT_LT(loop->scale_sigma, 0.005);
 }
 
-TEST_P(ScaleThatDrifts, IsBroughtBackByTheLoop) {
+TEST_P(ScaleThatDrifts, IsCorrectedByTheLoop) {
   Map map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
   EXPECT_GE(report.loops, 1);
@@ -52,7 +52,7 @@ TEST_P(ScaleThatDrifts, IsBroughtBackByTheLoop) {
   EXPECT_THAT(find_faults(map), IsEmpty());
 }
 
-TEST_P(ScaleThatDrifts, IsClosedBeforeFusionLooksForPoints) {
+TEST_P(ScaleThatDrifts, IsCorrectedBeforePointsAreFused) {
   const auto loop = find_loop(lap_.map, lap_.index, lap_.newest(), finish_options().loops);
   ASSERT_TRUE(loop);
   const LoopEdge edge = *edge_of(*loop, lap_.map);
@@ -64,7 +64,7 @@ TEST_P(ScaleThatDrifts, IsClosedBeforeFusionLooksForPoints) {
   EXPECT_LT(gap_at(in_new_lengths(edge, changes), map), 0.01);
 }
 
-TEST_P(ScaleThatDrifts, IsTheOneThatLengthsChangeBy) {
+TEST_P(ScaleThatDrifts, IsTheFactorOfLengths) {
   Map map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
   EXPECT_NEAR(report.length_changes.at(lap_.newest()) * lap_.drift_at(lap_.newest()).scale, 1.0, 0.035);
@@ -81,7 +81,7 @@ class GrownLap : public testing::Test {
   LoopOptions options_ = finish_options().loops;
 };
 
-TEST_F(GrownLap, IsConfirmedByFramesThatFindItToo) {
+TEST_F(GrownLap, IsConfirmedByLaterFrames) {
   auto loop = find();
   ASSERT_TRUE(loop);
   const Similarity drift = lap_.drift_at(lap_.newest());
@@ -92,22 +92,22 @@ TEST_F(GrownLap, IsConfirmedByFramesThatFindItToo) {
   EXPECT_TRUE(is_confirmed(*loop));
 }
 
-TEST_F(GrownLap, IsNotBelievedBeyondTheDriftOfScaleThatIsAllowed) {
+TEST_F(GrownLap, IsRejectedBeyondTheAllowedScaleDrift) {
   options_.max_scale_drift = 0.05;
   EXPECT_FALSE(find());
 }
 
-TEST_F(GrownLap, IsNotBelievedWhenTooFewPointsTellTheScale) {
+TEST_F(GrownLap, IsRejectedIfTooFewPointsMeasureTheScale) {
   options_.min_scale_points = 10000;
   EXPECT_FALSE(find());
 }
 
-TEST_F(GrownLap, IsNotBelievedWhenTheScaleIsUncertain) {
+TEST_F(GrownLap, IsRejectedForAnUncertainScale) {
   options_.max_scale_sigma = 1e-5;
   EXPECT_FALSE(find());
 }
 
-TEST_F(GrownLap, HasAnEdgeInTheLengthsOfBothSides) {
+TEST_F(GrownLap, HasAnEdgeInTheUnitsOfBothSides) {
   const auto loop = find();
   ASSERT_TRUE(loop);
   const auto edge = edge_of(*loop, lap_.map);
@@ -118,7 +118,7 @@ TEST_F(GrownLap, HasAnEdgeInTheLengthsOfBothSides) {
   EXPECT_THAT(edge->keyframe_from_place, PoseNear(scale_lengths(true_keyframe_from_place, drift.scale), 0.02, 0.01));
 }
 
-TEST_F(GrownLap, AppearsToDriftByItsScaleToo) {
+TEST_F(GrownLap, IncludesTheScaleInItsDrift) {
   auto loop = find();
   ASSERT_TRUE(loop);
   loop->old_from_new = Pose{};
@@ -134,7 +134,7 @@ TEST(LoopWithStereo, HasNoScale) {
   EXPECT_EQ(edge_of(*loop, lap.map)->scale, 1.0);
 }
 
-TEST(LoopWithStereo, ChangesNoLengths) {
+TEST(LoopWithStereo, KeepsLengths) {
   const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
   Map map = lap.map;
   const FinishReport report = finish_map(map, lap.index, finish_options(), {});
@@ -144,7 +144,7 @@ TEST(LoopWithStereo, ChangesNoLengths) {
 }
 
 // A loop of new keyframes shows the drift of earlier ones.
-TEST(LoopWithStereo, BendsWhatCameBeforeToo) {
+TEST(LoopWithStereo, BendsTheEarlierPathToo) {
   const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
   Map map = lap.map;
   FinishOptions options = finish_options();
@@ -170,14 +170,14 @@ class LongLap : public testing::Test {
   const MapWindow recent_ = recent_map(lap_.map, options_.first_new, {edge_});
 };
 
-TEST_F(LongLap, StillDisagreesOnceWhatLiesAroundTheLoopIsAdjusted) {
+TEST_F(LongLap, DisagreesAfterALocalAdjustment) {
   ASSERT_LT(2 * recent_.keyframes.size(), static_cast<std::size_t>(lap_.map.keyframe_count()));
   Map map = lap_.map;
   adjust_at_once(recent_, {edge_}, options_.global, map);
   EXPECT_GT(disagreement(map, edge_), kMaxLoopDisagreement);
 }
 
-TEST_F(LongLap, IsBentAsAWholeThen) {
+TEST_F(LongLap, IsAdjustedAsAWholeIfItDisagrees) {
   Map map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, options_, {});
   ASSERT_GE(report.loops, 1);
@@ -218,7 +218,7 @@ class GrowingHalf : public testing::Test {
   MapDelta correction_;
 };
 
-TEST_F(GrowingHalf, TakesKeyframesAlongThatCameLater) {
+TEST_F(GrowingHalf, MovesLaterKeyframesAlong) {
   Keyframe later = *map_.find_keyframe(kNew);
   for (Sighting& sighting : later.sightings) sighting.point.reset();
   later.parent = kNew;
@@ -229,7 +229,7 @@ TEST_F(GrowingHalf, TakesKeyframesAlongThatCameLater) {
   EXPECT_NEAR(changes.at(id), 1.2, 1e-6);
 }
 
-TEST_F(GrowingHalf, TakesPointsAlongThatCameLater) {
+TEST_F(GrowingHalf, MovesLaterPointsAlong) {
   MapPoint later = *map_.find_point(*std::ranges::find_if(map_.find_keyframe(kNew)->sightings, [](const Sighting& s) {
                                        return s.point.has_value();
                                      })->point);
@@ -244,13 +244,13 @@ TEST_F(GrowingHalf, TakesPointsAlongThatCameLater) {
   EXPECT_NEAR(map_.find_point(id)->max_distance, 1.2f * later.max_distance, 1e-3f);
 }
 
-TEST_F(GrowingHalf, LeavesTheOlderHalfAsItWas) {
+TEST_F(GrowingHalf, LeavesTheOlderHalf) {
   const LengthChanges changes = apply_correction(correction_, before_, map_);
   EXPECT_FALSE(changes.contains({Origin::online, kFirstNew - 1}));
   EXPECT_TRUE(changes.contains({Origin::online, kFirstNew + 1}));
 }
 
-TEST_F(GrowingHalf, ReachesKeyframesThatWereRemoved) {
+TEST_F(GrowingHalf, MovesRemovedKeyframes) {
   const KeyframeId parent = *map_.find_keyframe(kNew)->parent;
   map_.remove_keyframe(kNew);
   const Pose then = map_.camera_from_world(kNew) * inverse(map_.camera_from_world(parent));
@@ -260,7 +260,7 @@ TEST_F(GrowingHalf, ReachesKeyframesThatWereRemoved) {
   EXPECT_NEAR(changes.at(kNew), 1.2, 1e-6);
 }
 
-TEST_F(GrowingHalf, BringsLoopsToTheNewLengths) {
+TEST_F(GrowingHalf, ConvertsLoopsToTheNewLengths) {
   const LoopEdge old{
       kNew, {Origin::online, 0}, {Eigen::Quaterniond::Identity(), {0.5, 0.0, 0.0}}, Matrix6::Identity(), 0.8};
   const LoopEdge now = in_new_lengths(old, apply_correction(correction_, before_, map_));

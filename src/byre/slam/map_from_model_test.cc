@@ -76,7 +76,7 @@ class ModelOfACleanMission : public ModelOfAMission {
   ModelOfACleanMission() : ModelOfAMission(without_noise()) {}
 };
 
-TEST_F(ModelOfACleanMission, GivesEveryPointItsFeaturesAndLeavesItWhereItIs) {
+TEST_F(ModelOfACleanMission, AssignsFeaturesToPointsAndKeepsPositions) {
   const ModelMap made = map_from_model(model_, of_model_only());
   EXPECT_THAT(find_faults(made.map), IsEmpty());
   EXPECT_GT(made.model_points.size(), 0.9 * static_cast<double>(model_.points.size()));
@@ -99,13 +99,13 @@ TEST_F(ModelOfACleanMission, KeepsThePosesOfItsImages) {
   }
 }
 
-TEST_F(ModelOfACleanMission, LeavesOutPointsThatShowNoFeatureWhereTheyAre) {
+TEST_F(ModelOfACleanMission, OmitsPointsWithoutMatchingFeatures) {
   for (ModelPoint& point : model_.points) point.position_in_world *= 0.8;
   const ModelMap made = map_from_model(model_, of_model_only());
   EXPECT_LT(made.model_points.size(), 0.1 * static_cast<double>(model_.points.size()));
 }
 
-TEST_F(ModelOfACleanMission, GivesAFeatureToOnePointOnly) {
+TEST_F(ModelOfACleanMission, AssignsAFeatureToOnePointOnly) {
   const std::size_t count = model_.points.size();
   for (std::size_t i = 0; i < count; ++i) {
     ModelPoint beside = model_.points[i];
@@ -119,7 +119,7 @@ TEST_F(ModelOfACleanMission, GivesAFeatureToOnePointOnly) {
   EXPECT_LT(static_cast<double>(doubles), 0.1 * static_cast<double>(count));
 }
 
-TEST_F(ModelOfACleanMission, AddsPointsWhereTheModelHasNone) {
+TEST_F(ModelOfACleanMission, AddsPointsBetweenThoseOfTheModel) {
   const std::vector<ModelPoint> all = model_.points;
   std::set<int> known;
   model_.points.clear();
@@ -142,13 +142,13 @@ TEST_F(ModelOfACleanMission, AddsPointsWhereTheModelHasNone) {
   EXPECT_GT(right, 0.95 * own);
 }
 
-TEST_F(ModelOfAMission, FindsTheRightFeaturesAmongNoisyOnes) {
+TEST_F(ModelOfAMission, SelectsCorrectFeaturesUnderNoise) {
   const ModelMap made = map_from_model(model_, of_model_only());
   EXPECT_GT(made.model_points.size(), 0.8 * static_cast<double>(model_.points.size()));
   EXPECT_GT(right_share(made), 0.98);
 }
 
-TEST_F(ModelOfAMission, DistrustsImagesThatDoNotShowWhatTheModelSays) {
+TEST_F(ModelOfAMission, RejectsImagesThatContradictTheModel) {
   const int images = static_cast<int>(model_.images.size());
   for (ModelPoint& point : model_.points) {  // claims that all images see each point
     point.images.clear();
@@ -157,7 +157,7 @@ TEST_F(ModelOfAMission, DistrustsImagesThatDoNotShowWhatTheModelSays) {
   EXPECT_GT(right_share(map_from_model(model_, of_model_only())), 0.97);
 }
 
-TEST_F(ModelOfAMission, KnowsPointsTheBetterTheFinerItsMeasurementsWere) {
+TEST_F(ModelOfAMission, IsMoreCertainForPreciseMeasurements) {
   ModelMapOptions fine = of_model_only(), coarse = of_model_only();
   fine.model_sigma = 0.5;
   coarse.model_sigma = 2.0;
@@ -200,13 +200,13 @@ TEST_F(ModelOfACleanMission, HasTheCovarianceOfItsReprojections) {
   EXPECT_LT((information * covariance - Eigen::Matrix3d::Identity()).norm(), 1e-2);
 }
 
-TEST(MapFromModel, MakesNothingOfNothing) {
+TEST(MapFromModel, IsEmptyForAnEmptyModel) {
   const ModelMap made = map_from_model({}, {});
   EXPECT_EQ(made.map.keyframe_count(), 0);
   EXPECT_EQ(made.map.point_count(), 0);
 }
 
-TEST_F(ModelOfAMission, LeavesOutPointsThatOneImageCannotPlace) {
+TEST_F(ModelOfAMission, OmitsPointsOfASingleImage) {
   for (ModelPoint& point : model_.points) point.images = {point.images.front(), point.images.front()};
   EXPECT_TRUE(map_from_model(model_, of_model_only()).model_points.empty());
 }

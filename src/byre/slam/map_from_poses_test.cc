@@ -43,7 +43,7 @@ Placement placement(const Map& map, const SimulatedMission& mission) {
   return {right / map.point_count(), observations / map.point_count()};
 }
 
-TEST(MapFromPoses, HoldsThePosesItIsGiven) {
+TEST(MapFromPoses, KeepsTheGivenPoses) {
   const SimulatedMission mission = quarter_circle({});
   const std::vector<PosedFrame> frames = posed_frames(mission, 8);
   const Map map = map_from_poses({mission.rig}, frames, {});
@@ -58,7 +58,7 @@ TEST(MapFromPoses, HoldsThePosesItIsGiven) {
   }
 }
 
-TEST(MapFromPoses, PutsCleanPointsOnTheirLandmarksAndFindsThemAgainHalfAMetreOn) {
+TEST(MapFromPoses, PlacesCleanPointsOnLandmarksAndRematchesThem) {
   const SimulatedMission mission = quarter_circle(without_noise());
   const Map map = map_from_poses({mission.rig}, posed_frames(mission, 8), {});
   const Placement placed = placement(map, mission);
@@ -77,7 +77,7 @@ double squared_error(const Map& map, const SimulatedMission& mission, PointId id
   return error.dot(point.covariance.ldlt().solve(error));
 }
 
-TEST(MapFromPoses, KnowsHowFarItsPointsMayBeOffWithNoiseAndOutliers) {
+TEST(MapFromPoses, EstimatesPointCovariancesUnderNoiseAndOutliers) {
   SimulationOptions noisy;
   noisy.outlier_ratio = 0.1;
   const SimulatedMission mission = quarter_circle(noisy);
@@ -93,7 +93,7 @@ TEST(MapFromPoses, KnowsHowFarItsPointsMayBeOffWithNoiseAndOutliers) {
   EXPECT_GT(right, 0.95 * confirmed);
 }
 
-TEST(MapFromPoses, StandsPosesThatAreOffByPixels) {
+TEST(MapFromPoses, ToleratesPoseErrorsOfPixels) {
   const SimulatedMission mission = quarter_circle({});
   std::vector<PosedFrame> frames = posed_frames(mission, 4);
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -107,7 +107,7 @@ TEST(MapFromPoses, StandsPosesThatAreOffByPixels) {
   EXPECT_GT(placement(displaced, mission).mean_observations, 0.9 * with_truth);
 }
 
-TEST(MapFromPoses, TriangulatesWhatOneCameraSees) {
+TEST(MapFromPoses, TriangulatesPointsOfOneCamera) {
   Rig mono = simulated_rig();
   mono.baseline = 0.0;
   const SimulatedMission mission = simulate_mission(mono, circling_trajectory(40, 10.0, 2.0, 0.25), without_noise());
@@ -117,7 +117,7 @@ TEST(MapFromPoses, TriangulatesWhatOneCameraSees) {
   for (const PointId id : map.point_ids()) EXPECT_GE(map.observations(id).size(), 2u);
 }
 
-TEST(MapFromPoses, MakesAMapOfOneFrameAndOfNone) {
+TEST(MapFromPoses, AcceptsOneFrameAndNone) {
   const SimulatedMission mission = quarter_circle({});
   const Map one = map_from_poses({mission.rig}, {posed_frames(mission, 4).front()}, {});
   EXPECT_EQ(one.keyframe_count(), 1);
@@ -125,7 +125,7 @@ TEST(MapFromPoses, MakesAMapOfOneFrameAndOfNone) {
   EXPECT_EQ(map_from_poses({mission.rig}, {}, {}).keyframe_count(), 0);
 }
 
-TEST(OverlappingKeyframes, AreThoseThatSeeTheSameThoughTakenMuchLater) {
+TEST(OverlappingKeyframes, IncludeLaterVisits) {
   const SimulatedMission lap = simulate_mission(simulated_rig(), circling_trajectory(80, 10.0, 2.0, 2.0), {});
   const Map map = map_from_poses({lap.rig}, posed_frames(lap, 4), {});  // ten keyframes per lap, two laps
   const auto neighbours = overlapping_keyframes(map, {});

@@ -112,7 +112,7 @@ class MappingOnNoisyFeatures : public MappingOn {
   }
 };
 
-TEST_F(MappingOnCleanFeatures, ChangesNextToNothingThatIsRight) {
+TEST_F(MappingOnCleanFeatures, HardlyChangesACorrectMap) {
   const Map after = extended(map_);
   for (const KeyframeId id : after.keyframe_ids()) {
     EXPECT_THAT(after.camera_from_world(id), PoseNear(true_pose(id), 1e-3, 1e-3));
@@ -122,7 +122,7 @@ TEST_F(MappingOnCleanFeatures, ChangesNextToNothingThatIsRight) {
   }
 }
 
-TEST_F(MappingOnCleanFeatures, PutsNewPointsOnTheirLandmarks) {
+TEST_F(MappingOnCleanFeatures, PlacesNewPointsOnTheirLandmarks) {
   const std::vector<int> forgotten = forget_points();
   const std::uint32_t last = map_.point_ids().back().number;
   MappingOptions options;
@@ -139,7 +139,7 @@ TEST_F(MappingOnCleanFeatures, PutsNewPointsOnTheirLandmarks) {
   EXPECT_GT(static_cast<double>(landmarks.size()), 0.7 * static_cast<double>(forgotten.size()));
 }
 
-TEST_F(MappingOnCleanFeatures, MakesNoPointWhoseDepthIsAGuess) {
+TEST_F(MappingOnCleanFeatures, RejectsPointsOfUncertainDepth) {
   forget_points();
   MappingOptions options;
   options.max_relative_depth_sigma = 1e-3;
@@ -147,23 +147,23 @@ TEST_F(MappingOnCleanFeatures, MakesNoPointWhoseDepthIsAGuess) {
   EXPECT_LE(after.point_ids().back(), map_.point_ids().back());
 }
 
-TEST_F(MappingOnCleanFeatures, BringsADisplacedKeyframeBack) {
+TEST_F(MappingOnCleanFeatures, CorrectsADisplacedKeyframe) {
   displace(kNewest);
   EXPECT_THAT(extended(map_).camera_from_world(kNewest), PoseNear(true_pose(kNewest), 1e-3, 0.02 * kDegree));
 }
 
-TEST_F(MappingOnNoisyFeatures, BringsADisplacedKeyframeBack) {
+TEST_F(MappingOnNoisyFeatures, CorrectsADisplacedKeyframe) {
   displace(kNewest);
   EXPECT_THAT(extended(map_).camera_from_world(kNewest), PoseNear(true_pose(kNewest), 0.01, 0.15 * kDegree));
 }
 
-TEST_F(MappingOnNoisyFeatures, BringsADisplacedNeighbourBack) {
+TEST_F(MappingOnNoisyFeatures, CorrectsADisplacedNeighbour) {
   const KeyframeId neighbour{Origin::online, 17};
   displace(neighbour);
   EXPECT_THAT(extended(map_).camera_from_world(neighbour), PoseNear(true_pose(neighbour), 0.01, 0.15 * kDegree));
 }
 
-TEST_F(MappingOnNoisyFeatures, KeepsTheBitsOfWhatIsNotMovable) {
+TEST_F(MappingOnNoisyFeatures, LeavesFixedElementsBitIdentical) {
   displace(kNewest);
   const Map after = extended(map_);
   const MapWindow window = cut(map_);
@@ -179,7 +179,7 @@ TEST_F(MappingOnNoisyFeatures, KeepsTheBitsOfWhatIsNotMovable) {
   }
 }
 
-TEST_F(MappingOnNoisyFeatures, FusesPointsThatAreOne) {
+TEST_F(MappingOnNoisyFeatures, FusesDuplicatePoints) {
   for (const PointId id : map_.point_ids()) split(id);
   const int before = count_duplicates(map_);
   ASSERT_GT(before, 100);
@@ -188,7 +188,7 @@ TEST_F(MappingOnNoisyFeatures, FusesPointsThatAreOne) {
   EXPECT_THAT(find_faults(after), IsEmpty());
 }
 
-TEST_F(MappingOnNoisyFeatures, FusesNothingThatIsTwo) {
+TEST_F(MappingOnNoisyFeatures, KeepsDistinctPoints) {
   const Map after = extended(map_);
   int mixed = 0;
   for (const PointId id : after.point_ids()) {
@@ -201,7 +201,7 @@ TEST_F(MappingOnNoisyFeatures, FusesNothingThatIsTwo) {
   EXPECT_LT(mixed, 0.01 * after.point_count());
 }
 
-TEST_F(MappingOnNoisyFeatures, TakesOutObservationsThatDisagree) {
+TEST_F(MappingOnNoisyFeatures, RemovesOutlierObservations) {
   std::vector<std::pair<Observation, Sighting>> seen;
   const std::vector<Sighting> sightings = map_.find_keyframe(kNewest)->sightings;
   for (int feature = 0; feature < static_cast<int>(sightings.size()); feature += 10) {
@@ -222,7 +222,7 @@ TEST_F(MappingOnNoisyFeatures, TakesOutObservationsThatDisagree) {
   }
 }
 
-TEST_F(MappingOnNoisyFeatures, ForgetsOldPointsThatNoOtherKeyframeConfirmed) {
+TEST_F(MappingOnNoisyFeatures, RemovesOldUnconfirmedPoints) {
   const std::uint32_t next = map_.point_ids().back().number + 1;
   const int old_points = add_stereo_points(map_, {Origin::online, 14});
   const int new_points = add_stereo_points(map_, kNewest);
@@ -239,7 +239,7 @@ TEST_F(MappingOnNoisyFeatures, ForgetsOldPointsThatNoOtherKeyframeConfirmed) {
   EXPECT_GE(new_left, 0.9 * new_points);
 }
 
-TEST_F(MappingOnNoisyFeatures, WaitsForOldPointsThatDirtHidesInTheNewestKeyframe) {
+TEST_F(MappingOnNoisyFeatures, KeepsOldPointsHiddenByDirt) {
   const std::uint32_t next = map_.point_ids().back().number + 1;
   const int old_points = add_stereo_points(map_, {Origin::online, 14});
   MapWindow window = cut_window(MapView(nullptr, map_), {kNewest}, {});
@@ -262,7 +262,7 @@ TEST_F(MappingOnNoisyFeatures, WaitsForOldPointsThatDirtHidesInTheNewestKeyframe
   EXPECT_EQ(waiting, in_view);
 }
 
-TEST_F(MappingOnNoisyFeatures, RefreshesThePointsItSees) {
+TEST_F(MappingOnNoisyFeatures, UpdatesThePointsItObserves) {
   const Map after = extended(map_);
   for (const PointId id : after.point_ids()) {
     const MapPoint& point = *after.find_point(id);
@@ -272,7 +272,7 @@ TEST_F(MappingOnNoisyFeatures, RefreshesThePointsItSees) {
   }
 }
 
-TEST(ExtendMap, RemovesKeyframesThatAddNothing) {
+TEST(ExtendMap, RemovesRedundantKeyframes) {
   const Map map = true_map(quarter_circle({}), 1, Origin::online);  // a keyframe every 8 cm
   const KeyframeId newest = map.keyframe_ids().back();
   const KeyframeId before_it{Origin::online, newest.number - 1};
@@ -289,7 +289,7 @@ TEST(ExtendMap, RemovesKeyframesThatAddNothing) {
   }
 }
 
-TEST(ExtendMap, OfAMapOfOneKeyframeMovesNothing) {
+TEST(ExtendMap, KeepsAMapOfOneKeyframe) {
   const SimulatedMission mission = quarter_circle({});
   const auto map = initialise_stereo(mission.frames[0], mission.rig, 50);
   ASSERT_TRUE(map);
@@ -334,7 +334,7 @@ std::vector<double> flatten(const MapDelta& delta) {
   return numbers;
 }
 
-TEST_F(MappingOnNoisyFeatures, GivesTheSameDeltaForTheSameWindow) {
+TEST_F(MappingOnNoisyFeatures, IsDeterministic) {
   displace(kNewest);
   for (const PointId id : map_.point_ids()) split(id);
   const MapWindow window = cut(map_);

@@ -119,19 +119,19 @@ struct NamedPair {
 
 class MeasurePixel : public ::testing::TestWithParam<NamedPair> {};
 
-TEST_P(MeasurePixel, FindsWhatTheReferenceShows) {
+TEST_P(MeasurePixel, MatchesTheReferencePatch) {
   const PixelMeasurement measured = measure_pair(GetParam().pair, {kTexture}, {kTexture});
   EXPECT_TRUE(measured.aligned);
   EXPECT_THAT(measured.pixel.cast<double>(), PointNear(true_pixel(GetParam().pair).head<2>(), 0.1));
 }
 
-TEST_P(MeasurePixel, IsSurerThanOfTheCornerAlone) {
+TEST_P(MeasurePixel, IsMoreCertainThanTheCorner) {
   const Pair& pair = GetParam().pair;
   const PixelMeasurement measured = measure_pair(pair, {kTexture}, {kTexture});
   EXPECT_LT(measured.sigma, 0.5f * corner_measurement(keypoint_at({100.0, 100.0}, pair.octave)).sigma);
 }
 
-TEST_P(MeasurePixel, ErrsNoMoreThanItSaysOnNoisyImages) {
+TEST_P(MeasurePixel, ErrsWithinItsSigmaOnNoisyImages) {
   double squared_sigmas = 0.0;
   constexpr int kTrials = 200;
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
@@ -167,11 +167,11 @@ Keypoint corner_of(const Pair& pair) {
 
 const Pair kFromTheSide{{Eigen::Quaterniond::Identity(), {0.3, 0.1, 0.0}}};
 
-TEST(MeasurePixel, IsTheCornerWhenThePatchesShowDifferentThings) {
+TEST(MeasurePixel, IsTheCornerForDifferentPatches) {
   expect_corner(measure_pair(kFromTheSide, {kTexture}, {Texture(8)}), corner_of(kFromTheSide));
 }
 
-TEST(MeasurePixel, IsTheCornerWhenThePointIsSeenManyTimesLarger) {
+TEST(MeasurePixel, IsTheCornerForALargeChangeOfScale) {
   const Pair much_nearer{{Eigen::Quaterniond::Identity(), {0.0, 0.0, -2.0}}};
   expect_corner(measure_pair(much_nearer, {kTexture}, {kTexture}), corner_of(much_nearer));
 }
@@ -188,7 +188,7 @@ TEST(MeasurePixel, IsTheCornerWithoutPatches) {
   expect_corner(measure_pixel({reference, 0, reference_keypoint.pixel}, kPoint, current, 0), keypoint);
 }
 
-TEST(MeasurePixel, FollowsAReferencePixelThatIsNotItsCorner) {
+TEST(MeasurePixel, AcceptsAReferencePixelBesideItsCorner) {
   const Rig rig = simulated_rig();
   const Keypoint corner = keypoint_at(rig.project(kPoint).head<2>() + Eigen::Vector2d(1.0, 0.8), 1);
   const Keypoint keypoint = corner_of(kFromTheSide);
@@ -203,7 +203,7 @@ TEST(MeasurePixel, FollowsAReferencePixelThatIsNotItsCorner) {
   EXPECT_THAT(measured.pixel.cast<double>(), PointNear(true_pixel(kFromTheSide).head<2>(), 0.1));
 }
 
-TEST(CornerMeasurement, GrowsLessSureWithTheOctave) {
+TEST(CornerMeasurement, IsLessCertainInHigherOctaves) {
   for (std::uint8_t octave = 1; octave < kOctaves; ++octave) {
     const float ratio = corner_measurement(keypoint_at({9.0, 9.0}, octave)).sigma /
                         corner_measurement(keypoint_at({9.0, 9.0}, octave - 1)).sigma;

@@ -19,14 +19,14 @@ const Pose kLast = exp_pose((Vector6() << 1.0, -2.0, 0.5, 0.3, 0.1, -0.2).finish
 const Vector6 kVelocity = (Vector6() << 0.1, 0.0, 1.0, 0.0, 0.2, 0.0).finished();
 const Pose kAhead{rotation_exp({0.0, 0.0, 0.1}), {0.2, 0.0, 0.0}};  // last_from_body
 
-TEST(MotionModel, StandsStillWhereNothingIsKnown) {
+TEST(MotionModel, PredictsNoMotionAtFirst) {
   MotionModel motion;
   motion.tell({});
   EXPECT_EQ(motion.predict(kLast, robot_rig(), 0.1), kLast);
   EXPECT_FALSE(motion.told());
 }
 
-TEST(MotionModel, GoesOnAsItMovedBefore) {
+TEST(MotionModel, PredictsConstantVelocity) {
   const Pose before = exp_pose(-0.5 * kVelocity) * kLast;
   MotionModel motion;
   motion.reach(log_pose(kLast * inverse(before)) / 0.5);
@@ -35,7 +35,7 @@ TEST(MotionModel, GoesOnAsItMovedBefore) {
   EXPECT_THAT(predicted * inverse(kLast), PoseNear(kLast * inverse(before), 1e-9, 1e-9));
 }
 
-TEST(MotionModel, GoesAsTheBodyWasToldRatherThanAsItMovedBefore) {
+TEST(MotionModel, PrefersMeasuredMotionToConstantVelocity) {
   const Rig rig = robot_rig();
   MotionModel motion;
   motion.reach(kVelocity);
@@ -44,7 +44,7 @@ TEST(MotionModel, GoesAsTheBodyWasToldRatherThanAsItMovedBefore) {
   EXPECT_THAT(inverse(body_pose(rig, kLast)) * body_pose(rig, predicted), PoseNear(kAhead, 1e-12, 1e-12));
 }
 
-TEST(MotionModel, AddsUpWhatItIsToldUntilAPoseIsReached) {
+TEST(MotionModel, AccumulatesMeasuredMotionUntilAPose) {
   const Rig rig = robot_rig();
   MotionModel motion;
   motion.reach(kVelocity);
@@ -59,7 +59,7 @@ TEST(MotionModel, AddsUpWhatItIsToldUntilAPoseIsReached) {
               PoseNear(kAhead, 1e-12, 1e-12));
 }
 
-TEST(MotionModel, IsNotToldAfterAGapUntilAPoseIsReached) {
+TEST(MotionModel, IgnoresMeasuredMotionAfterAGapUntilAPose) {
   MotionModel motion;
   motion.reach(kVelocity);
   motion.tell({});
@@ -74,7 +74,7 @@ TEST(MotionModel, IsNotToldAfterAGapUntilAPoseIsReached) {
   EXPECT_TRUE(motion.told());
 }
 
-TEST(MotionModel, KnowsNoVelocityOnceThePoseIsLost) {
+TEST(MotionModel, HasNoVelocityAfterALoss) {
   MotionModel motion;
   motion.reach(kVelocity);
   EXPECT_EQ(motion.velocity(), kVelocity);
@@ -82,7 +82,7 @@ TEST(MotionModel, KnowsNoVelocityOnceThePoseIsLost) {
   EXPECT_EQ(motion.velocity(), Vector6(Vector6::Zero()));
 }
 
-TEST(MotionModel, FollowsATurnOfTheCamera) {
+TEST(MotionModel, FollowsARotationOfTheCameraFrame) {
   const Pose turn{rotation_exp({0.02, -0.01, 0.03}), Eigen::Vector3d::Zero()};
   MotionModel motion, turned;
   motion.reach(kVelocity);
@@ -94,7 +94,7 @@ TEST(MotionModel, FollowsATurnOfTheCamera) {
               PoseNear(turn * motion.predict(kLast, robot_rig(), 0.01), 1e-6, 1e-6));
 }
 
-TEST(MotionModel, FollowsAChangeOfLengths) {
+TEST(MotionModel, FollowsAChangeOfScale) {
   MotionModel motion;
   motion.reach(kVelocity);
   motion.scale_lengths(2.0);

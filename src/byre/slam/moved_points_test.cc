@@ -10,7 +10,7 @@ namespace {
 constexpr PointId kShelf{Origin::offline, 7};
 constexpr PointId kWall{Origin::offline, 3};
 
-TEST(MovedPoints, LeavesOutAPointThatIsElsewhereInEnoughFrames) {
+TEST(MovedPoints, SuspendsAPointThatIsElsewhereInEnoughFrames) {
   MovedPoints moved_points({.frames = 3});
   for (int frame = 0; frame < 2; ++frame) moved_points.note(std::vector{kWall}, std::vector{kShelf});
   EXPECT_FALSE(moved_points.is_suspended(kShelf));
@@ -20,7 +20,7 @@ TEST(MovedPoints, LeavesOutAPointThatIsElsewhereInEnoughFrames) {
   EXPECT_EQ(moved_points.count(), 1);
 }
 
-TEST(MovedPoints, ForgivesAPointThatIsFoundInItsPlaceAsOften) {
+TEST(MovedPoints, RestoresAPointThatIsInPlaceAsOften) {
   MovedPoints moved_points({.frames = 3});
   for (int frame = 0; frame < 20; ++frame) {
     moved_points.note({}, std::vector{kShelf});
@@ -29,7 +29,7 @@ TEST(MovedPoints, ForgivesAPointThatIsFoundInItsPlaceAsOften) {
   EXPECT_FALSE(moved_points.is_suspended(kShelf));
 }
 
-TEST(MovedPoints, LastsUntilThePointIsFoundInItsPlaceAFewTimesInARow) {
+TEST(MovedPoints, RequiresSeveralFramesInPlaceToRestoreAPoint) {
   MovedPoints moved_points({.frames = 1, .frames_to_return = 3});
   moved_points.note({}, std::vector{kShelf});
   for (int look = 0; look < 20; ++look) {
@@ -43,7 +43,7 @@ TEST(MovedPoints, LastsUntilThePointIsFoundInItsPlaceAFewTimesInARow) {
   EXPECT_EQ(moved_points.count(), 0);
 }
 
-TEST(MovedPoints, NeverConcernsOnlinePointsOfTheSameNumber) {
+TEST(MovedPoints, IgnoresOnlinePointsOfTheSameNumber) {
   MovedPoints moved_points({.frames = 1});
   moved_points.note({}, std::vector{kShelf});
   EXPECT_FALSE(moved_points.is_suspended({Origin::online, kShelf.number}));
@@ -60,7 +60,7 @@ Map row_of_points(int count) {
   return map;
 }
 
-TEST(MovedTogether, KeepsClustersAndNoPointThatDisagreesAlone) {
+TEST(MovedTogether, KeepsClustersAndDropsSinglePoints) {
   const Map map = row_of_points(30);
   std::vector<PointId> agreed, moved;
   for (const PointId id : map.point_ids()) {
@@ -73,7 +73,7 @@ TEST(MovedTogether, KeepsClustersAndNoPointThatDisagreesAlone) {
   EXPECT_THAT(together, testing::Each(testing::Field(&PointId::number, testing::Ge(20U))));
 }
 
-TEST(MovedTogether, FindsNoThingInOnePoint) {
+TEST(MovedTogether, IsEmptyForOnePoint) {
   const Map map = row_of_points(1);
   EXPECT_THAT(moved_together(map, {}, map.point_ids()), testing::IsEmpty());
 }

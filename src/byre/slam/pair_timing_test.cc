@@ -78,36 +78,36 @@ int count(const std::vector<Sign>& signs, Sign sign) {
   return static_cast<int>(std::ranges::count(signs, sign));
 }
 
-TEST(PairTiming, FindsPairsInStep) {
+TEST(PairTiming, AcceptsSynchronisedPairs) {
   LatePair pair;
   const std::vector<Sign> signs = pair.signs(0);
   EXPECT_EQ(count(signs, Sign::present), 0);
   EXPECT_GT(count(signs, Sign::absent), 60);
 }
 
-TEST(PairTiming, FindsRightImagesThatAreLate) {
+TEST(PairTiming, DetectsLateRightImages) {
   LatePair pair;
   EXPECT_GT(count(pair.signs(1), Sign::present), 60);
 }
 
-TEST(PairTiming, FindsLeftImagesThatAreLate) {
+TEST(PairTiming, DetectsLateLeftImages) {
   LatePair pair;
   EXPECT_GT(count(pair.signs(-1), Sign::present), 60);
 }
 
-TEST(PairTiming, FindsImagesThatAreLateByTwo) {
+TEST(PairTiming, DetectsADelayOfTwoImages) {
   LatePair pair;
   const std::vector<Sign> signs = pair.signs(2);
   EXPECT_EQ(count(signs, Sign::absent), 0);
   EXPECT_GT(count(signs, Sign::present), 30);
 }
 
-TEST(PairTiming, DoesNotReportCalibrationErrorsAsDelay) {
+TEST(PairTiming, DistinguishesCalibrationErrorsFromDelay) {
   LatePair pair;
   EXPECT_EQ(count(pair.signs(0, 0.7), Sign::present), 0);
 }
 
-TEST(PairTiming, IsUnclearWithoutMotion) {
+TEST(PairTiming, IsUncertainWithoutMotion) {
   LatePair pair(1e-4);
   EXPECT_EQ(count(pair.signs(0), Sign::unclear), kFrames - 6);
 }
@@ -125,7 +125,7 @@ SlopeSum values_with(double delay, bool does_motion_differ) {
   return sum;
 }
 
-TEST(SlopeSum, IsTheDelayDespiteCalibrationErrors) {
+TEST(SlopeSum, EstimatesTheDelayDespiteCalibrationErrors) {
   for (const double delay : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
     const auto slope = values_with(delay, true).slope(0.3);
     ASSERT_TRUE(slope) << delay;
@@ -134,7 +134,7 @@ TEST(SlopeSum, IsTheDelayDespiteCalibrationErrors) {
   }
 }
 
-TEST(SlopeSum, IsEmptyWhereCalibrationErrorsExplainTheMotion) {
+TEST(SlopeSum, IsEmptyIfCalibrationErrorsExplainTheMotion) {
   EXPECT_FALSE(values_with(1.0, false).slope(0.3));
   EXPECT_FALSE(values_with(1.0, true).slope(3.0)) << "too little motion";
 }

@@ -78,7 +78,7 @@ class TwoParts : public ::testing::Test {
   const Similarity wrong_{1.3, {rotation_exp({0.1, -0.4, 0.05}), {2.0, -1.0, 0.3}}};
 };
 
-TEST_F(TwoParts, ComeToLieAsIsTold) {
+TEST_F(TwoParts, ArePlacedByMeasuredMotion) {
   MapWindow window = moved(wrong_);
   tell(window);
   EXPECT_TRUE(place_parts(window));
@@ -86,7 +86,7 @@ TEST_F(TwoParts, ComeToLieAsIsTold) {
 }
 
 // Measured motions are 5 % too long.
-TEST_F(TwoParts, TakeTheLengthsOfTheFirst) {
+TEST_F(TwoParts, TakeTheScaleOfTheFirst) {
   MapWindow window = moved(wrong_);
   tell(window, 1.05);
   EXPECT_TRUE(place_parts(window));
@@ -95,7 +95,7 @@ TEST_F(TwoParts, TakeTheLengthsOfTheFirst) {
   EXPECT_LT((window.motions.front().motion.last_from_body.translation - motion.translation).norm(), 1e-6);
 }
 
-TEST_F(TwoParts, StayWhereNothingIsToldOfTheWayBetween) {
+TEST_F(TwoParts, StayWithoutMeasuredMotionBetweenThem) {
   MapWindow window = moved(wrong_);
   tell(window);
   std::erase_if(window.motions,
@@ -106,7 +106,7 @@ TEST_F(TwoParts, StayWhereNothingIsToldOfTheWayBetween) {
             before.keyframes.back().keyframe.camera_from_world.translation);
 }
 
-TEST_F(TwoParts, StayWhereTheyMayNotMove) {
+TEST_F(TwoParts, StayIfFixed) {
   MapWindow window = moved(wrong_);
   window.keyframes.back().movable = false;
   const Pose before = window.keyframes.back().keyframe.camera_from_world;

@@ -26,28 +26,28 @@ TEST(PlaceHypothesis, IsAcceptedByDefault) {
   EXPECT_TRUE(PlaceHypothesis().is_believed());
 }
 
-TEST(PlaceHypothesis, IsBelievedAfterItsFramesAreTracked) {
+TEST(PlaceHypothesis, IsAcceptedAfterItsFramesAreTracked) {
   PlaceHypothesis place(0.0, 2);
   place.observe(view_of_room(10, 0), false);
   EXPECT_FALSE(observed(place, view_of_room(10, 0), 1).is_believed());
   EXPECT_TRUE(observed(place, view_of_room(10, 0), 2).is_believed());
 }
 
-TEST(PlaceHypothesis, IsAcceptedWhereTheMapIsSeenAllAround) {
+TEST(PlaceHypothesis, IsAcceptedIfTheMapIsVisibleAllAround) {
   EXPECT_TRUE(observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 1).is_accepted());
 }
 
-TEST(PlaceHypothesis, IsAcceptedWhereHalfOfTheCellsHaveChanged) {
+TEST(PlaceHypothesis, IsAcceptedIfHalfOfTheCellsHaveChanged) {
   EXPECT_TRUE(observed(PlaceHypothesis(0.0, 0), view_of_room(10, 10), 1).is_accepted());
 }
 
-TEST(PlaceHypothesis, StaysOpenWhereHardlyAnythingIsSeenThatShouldBe) {
+TEST(PlaceHypothesis, StaysOpenIfFewExpectedPointsAreFound) {
   const PlaceHypothesis place = observed(PlaceHypothesis(0.0, 0), view_of_room(3, 17), 100);
   EXPECT_FALSE(place.is_accepted());
   EXPECT_LT(place.log_odds(), 0.0);
 }
 
-TEST(PlaceHypothesis, StaysOpenWhereAllThatAgreesMayBeOneMovedThing) {
+TEST(PlaceHypothesis, StaysOpenIfOneMovedObjectExplainsAllMatches) {
   EXPECT_FALSE(observed(PlaceHypothesis(0.0, 0), view_of_gate(), 100).is_accepted());
   PlaceView with_surroundings = view_of_gate();
   with_surroundings.cells.push_back(cell_in_view({9, 0, 0}, 20));
@@ -55,24 +55,24 @@ TEST(PlaceHypothesis, StaysOpenWhereAllThatAgreesMayBeOneMovedThing) {
   EXPECT_TRUE(observed(PlaceHypothesis(0.0, 0), with_surroundings, 1).is_accepted());
 }
 
-TEST(PlaceHypothesis, StaysOpenWhereSurroundingsContradictAThing) {
+TEST(PlaceHypothesis, StaysOpenIfSurroundingsContradictAnObject) {
   PlaceView view = view_of_gate();
   for (int x = 5; x < 9; ++x) view.cells.push_back(cell_in_view({x, 0, 0}, 0));
   EXPECT_LT(observed(PlaceHypothesis(0.0, 0), view, 1).log_odds(), 1.0);
 }
 
-TEST(PlaceHypothesis, CountsACellOnceHoweverManyFramesShowIt) {
+TEST(PlaceHypothesis, CountsACellOncePerMission) {
   const PlaceHypothesis once = observed(PlaceHypothesis(0.0, 0), view_of_room(4, 6), 1);
   EXPECT_DOUBLE_EQ(observed(once, view_of_room(4, 6), 100).log_odds(), once.log_odds());
 }
 
-TEST(PlaceHypothesis, NeedsMoreEvidenceForAPlaceOutOfReach) {
+TEST(PlaceHypothesis, RequiresMoreEvidenceForAnUnreachablePlace) {
   const double against = -10.0;
   EXPECT_FALSE(observed(PlaceHypothesis(against, 0), view_of_room(8, 0), 1).is_accepted());
   EXPECT_TRUE(observed(PlaceHypothesis(against, 0), view_of_room(16, 0), 1).is_accepted());
 }
 
-TEST(PlaceHypothesis, IsAcceptedOnlyOnceItsFramesAreTracked) {
+TEST(PlaceHypothesis, RequiresTrackedFrames) {
   PlaceHypothesis place(0.0, 2);
   place.observe(view_of_room(10, 0), false);
   EXPECT_FALSE(observed(place, view_of_room(10, 0), 1).is_accepted());
@@ -88,7 +88,7 @@ TEST(PlaceHypothesis, MustOutweighItsRivals) {
   EXPECT_TRUE(place.is_accepted());
 }
 
-TEST(PlaceHypothesis, OutweighsARivalOnlyByPointsThatTheRivalDoesNotHave) {
+TEST(PlaceHypothesis, IgnoresPointsSharedWithARival) {
   PlaceView view = view_of_room(10, 0);
   for (CellInView& cell : view.cells) cell.expected_alone = cell.seen_alone = 0;
   PlaceHypothesis with_rival(0.0, 0), without(0.0, 0);
@@ -98,13 +98,13 @@ TEST(PlaceHypothesis, OutweighsARivalOnlyByPointsThatTheRivalDoesNotHave) {
   EXPECT_TRUE(without.is_accepted());
 }
 
-TEST(PlaceHypothesis, StaysAcceptedWhereCellsThatOutweighedItsPriorAreForgotten) {
+TEST(PlaceHypothesis, StaysAcceptedAfterCellsAreForgotten) {
   PlaceHypothesis place = observed(PlaceHypothesis(-10.0, 0), view_of_room(16, 0), 1);
   ASSERT_TRUE(place.is_accepted());
   EXPECT_TRUE(observed(place, view_of_room(2, 0), 200).is_accepted());
 }
 
-TEST(PlaceHypothesis, IsRejectedOnceTheMapIsNoLongerSeen) {
+TEST(PlaceHypothesis, IsRejectedOnceTheMapIsNoLongerVisible) {
   PlaceHypothesis place = observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 5);
   ASSERT_TRUE(place.is_accepted());
   place = observed(place, view_of_room(0, 20), 5);
@@ -112,7 +112,7 @@ TEST(PlaceHypothesis, IsRejectedOnceTheMapIsNoLongerSeen) {
   EXPECT_FALSE(observed(place, view_of_room(0, 20), 100).is_accepted());
 }
 
-TEST(PlaceHypothesis, StaysAcceptedWhereWallsMayHideTheMap) {
+TEST(PlaceHypothesis, StaysAcceptedIfWallsMayHideTheMap) {
   PlaceHypothesis place = observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 5);
   PlaceView off_the_map = view_of_room(0, 40);
   off_the_map.is_near_keyframe = false;
@@ -125,7 +125,7 @@ TEST(PlaceHypothesis, IgnoresCellsWithFewPoints) {
   EXPECT_DOUBLE_EQ(observed(PlaceHypothesis(0.0, 0), view, 1).log_odds(), 0.0);
 }
 
-TEST(PlaceHypothesis, IsKeptWhereThePoseIsFoundAgain) {
+TEST(PlaceHypothesis, IsKeptIfThePoseIsFoundAgain) {
   PlaceHypothesis place = observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 5);
   place.find_again(3);
   EXPECT_FALSE(place.is_believed());

@@ -67,20 +67,20 @@ TEST_F(ViewOfAPlace, ExpectsTheCandidatesWithoutNearbyKeyframes) {
   EXPECT_EQ(counts_of(view).expected, counts_of(view_of_place(query(tracked))).expected);
 }
 
-TEST_F(ViewOfAPlace, SeesNothingOfAFrameThatMatchedNothing) {
+TEST_F(ViewOfAPlace, IsEmptyForAFrameWithoutMatches) {
   TrackedFrame tracked = tracked_at(pose_);
   tracked.features.clear();
   EXPECT_EQ(counts_of(view_of_place(query(tracked))).seen, 0);
 }
 
-TEST_F(ViewOfAPlace, LeavesOutPointsThatAreNeverExpected) {
+TEST_F(ViewOfAPlace, OmitsPointsThatAreNeverExpected) {
   const TrackedFrame tracked = tracked_at(pose_);
   PlaceViewQuery all_moved = query(tracked);
   all_moved.is_left_out = [](PointId) { return true; };
   EXPECT_TRUE(view_of_place(all_moved).cells.empty());
 }
 
-TEST_F(ViewOfAPlace, HasCellsByThePositionOfTheirPoints) {
+TEST_F(ViewOfAPlace, HasCellsByPointPosition) {
   const TrackedFrame tracked = tracked_at(pose_);
   for (const double metre : {1.0, 0.3}) {
     PlaceViewQuery scaled = query(tracked);

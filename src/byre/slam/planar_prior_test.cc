@@ -27,7 +27,7 @@ Said said_of(const PosePrior& prior, const Pose& level_from_body) {
           covariance.diagonal().cwiseSqrt()};
 }
 
-TEST(PlanarPrior, PutsTheBodyOnTheGroundAndLeavesPlaceAndHeadingOpen) {
+TEST(PlanarPrior, ConstrainsHeightAndTiltOnly) {
   const auto ground = DrivenGround::under(map_of(driven()));
   ASSERT_TRUE(ground);
   Pose body = on_floor(14.0, 1.2, 0.4);
@@ -46,7 +46,7 @@ TEST(PlanarPrior, PutsTheBodyOnTheGroundAndLeavesPlaceAndHeadingOpen) {
   EXPECT_GT(said.sigmas[5], 1.0);
 }
 
-TEST(PlanarPrior, SaysNothingWhereTheBodyStandsOtherwise) {
+TEST(PlanarPrior, IsEmptyForABodyInAnotherAttitude) {
   const auto ground = DrivenGround::under(map_of(driven()));
   ASSERT_TRUE(ground);
   Pose lifted = on_floor(14.0, 1.0, 0.0);
@@ -57,7 +57,7 @@ TEST(PlanarPrior, SaysNothingWhereTheBodyStandsOtherwise) {
   EXPECT_FALSE(planar_prior(*ground, looking_down(), camera_of(on_floor(14.0, 9.0, 0.0)))) << "far from the path";
 }
 
-TEST(PlanarPrior, TakenTogetherWithAPoseKeepsWhatEachKnows) {
+TEST(PlanarPrior, FusesWithAPose) {
   Matrix6 of_one = Matrix6::Identity(), of_other = Matrix6::Identity();
   of_one.diagonal() << 1e-4, 1e-4, 1.0, 1e-4, 1e-4, 1e-4;
   of_other.diagonal() << 100.0, 100.0, 1e-4, 9.0, 9.0, 9.0;

@@ -16,40 +16,40 @@ double after(ReadoutEstimator& estimator, double change, int frames) {
   return estimator.readout_time();
 }
 
-TEST(ReadoutEstimator, ComesToWhatFramesSay) {
+TEST(ReadoutEstimator, ConvergesToTheMeasuredTime) {
   ReadoutEstimator estimator(0.0);
   EXPECT_NEAR(after(estimator, 0.02, 32), 0.02, 1e-9);
 }
 
-TEST(ReadoutEstimator, WaitsForEnoughFrames) {
+TEST(ReadoutEstimator, RequiresEnoughFrames) {
   ReadoutEstimator estimator(0.0);
   EXPECT_EQ(after(estimator, 0.02, 31), 0.0);
 }
 
-TEST(ReadoutEstimator, TakesLittleForAnErrorOfTheCalibration) {
+TEST(ReadoutEstimator, IgnoresSmallTimesThatCalibrationErrorsExplain) {
   ReadoutEstimator estimator(0.0);
   EXPECT_EQ(after(estimator, 0.004, 400), 0.0);
 }
 
-TEST(ReadoutEstimator, BelievesNothingThatHardlyShows) {
+TEST(ReadoutEstimator, IgnoresWeakEvidence) {
   ReadoutEstimator estimator(0.0);
   constexpr int kManyPoints = 30000;
   for (int i = 0; i < 400; ++i) estimator.note({kInformation, kInformation * 0.02, kManyPoints});
   EXPECT_EQ(estimator.readout_time(), 0.0);
 }
 
-TEST(ReadoutEstimator, RefinesWhatItHasFound) {
+TEST(ReadoutEstimator, RefinesAnEarlierEstimate) {
   ReadoutEstimator estimator(0.02);
   EXPECT_EQ(after(estimator, 0.0005, 400), 0.02);
   EXPECT_GT(after(estimator, 0.004, 64 + 400), 0.021);
 }
 
-TEST(ReadoutEstimator, GivesUpWhatComesToNothing) {
+TEST(ReadoutEstimator, DropsAnEstimateNearZero) {
   ReadoutEstimator estimator(0.008);
   EXPECT_EQ(after(estimator, -0.0075, 32), 0.0);
 }
 
-TEST(ReadoutEstimator, BelievesNothingThatChangesWithTheMotion) {
+TEST(ReadoutEstimator, IgnoresMotionDependentErrors) {
   ReadoutEstimator estimator(0.0);
   for (int i = 0; i < 400; ++i) {
     const double change = i / 8 % 2 == 0 ? 0.1 : -0.08;  // 0.01 on average, due to another error
@@ -58,7 +58,7 @@ TEST(ReadoutEstimator, BelievesNothingThatChangesWithTheMotion) {
   EXPECT_EQ(estimator.readout_time(), 0.0);
 }
 
-TEST(ReadoutEstimator, BelievesNoCameraToBeThatSlow) {
+TEST(ReadoutEstimator, RejectsImplausiblyLongTimes) {
   ReadoutEstimator estimator(0.0);
   EXPECT_EQ(after(estimator, 0.2, 400), 0.0);
 }
@@ -76,7 +76,7 @@ double change_told_by(const SimulatedMission& mission) {
   return sum.right_side / sum.information;
 }
 
-TEST(ReadoutEvidence, TellsTheReadoutTime) {
+TEST(ReadoutEvidence, MeasuresTheReadoutTime) {
   SimulationOptions options;
   options.pixel_sigma = 0.2;
   const SimulatedMission mission =
@@ -85,7 +85,7 @@ TEST(ReadoutEvidence, TellsTheReadoutTime) {
   EXPECT_NEAR(change_told_by(rolling(mission, 0.005)), 0.005, 1e-3);
 }
 
-TEST(ReadoutEvidence, IsNoneOfACameraThatDoesNotTurn) {
+TEST(ReadoutEvidence, IsEmptyWithoutRotation) {
   const SimulatedMission mission =
       rolling(simulate_mission(simulated_rig(), figure_eight_trajectory(20, 20.0, 4.0, 0.1), {}), 0.005);
   const Map map = true_map(mission, 4, Origin::online);

@@ -55,7 +55,7 @@ class RecentMap : public testing::Test {
   Map map_ = true_map(mission_, 1, Origin::online);
 };
 
-TEST_F(RecentMap, MovesWhatCameAndWhatSharesManyPointsWithIt) {
+TEST_F(RecentMap, MovesNewKeyframesAndTheirNeighbours) {
   const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   std::set<KeyframeId> movable, all;
   for (const WindowKeyframe& keyframe : recent.keyframes) {
@@ -68,7 +68,7 @@ TEST_F(RecentMap, MovesWhatCameAndWhatSharesManyPointsWithIt) {
   for (std::uint32_t i = kFirstThatCame; i < kKeyframes; ++i) EXPECT_TRUE(movable.contains({Origin::online, i}));
 }
 
-TEST_F(RecentMap, HasAllThatSeesAPointOfWhatMoves) {
+TEST_F(RecentMap, ContainsAllObservationsOfMovingPoints) {
   const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   for (const WindowPoint& point : recent.points) {
     EXPECT_EQ(point.observations_elsewhere, 0);
@@ -79,26 +79,26 @@ TEST_F(RecentMap, HasAllThatSeesAPointOfWhatMoves) {
   }
 }
 
-TEST_F(RecentMap, BeginsWithAnchorsAndEndsWithTheNewest) {
+TEST_F(RecentMap, StartsWithAnchorsAndEndsWithTheNewest) {
   const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   EXPECT_FALSE(recent.keyframes.front().movable);
   EXPECT_EQ(recent.keyframes.back().id, map_.keyframe_ids().back());
   EXPECT_TRUE(std::ranges::is_partitioned(recent.keyframes, [](const auto& keyframe) { return !keyframe.movable; }));
 }
 
-TEST_F(RecentMap, IsTheWholeMapWhereMostOfItLiesAround) {
+TEST_F(RecentMap, IsTheWholeMapIfMostKeyframesAreNeighbours) {
   EXPECT_EQ(static_cast<int>(recent_map(map_, 0, {}).keyframes.size()), map_.keyframe_count());
   EXPECT_EQ(static_cast<int>(recent_map(map_, kKeyframes / 2, {}).keyframes.size()), map_.keyframe_count());
 }
 
-TEST_F(RecentMap, MovesWhereLoopsEnd) {
+TEST_F(RecentMap, ContainsTheEndsOfLoops) {
   const KeyframeId place{Origin::online, 5};
   const MapWindow recent = recent_map(map_, kFirstThatCame, {{map_.keyframe_ids().back(), place, {}}});
   const auto found = std::ranges::find(recent.keyframes, place, &WindowKeyframe::id);
   ASSERT_NE(found, recent.keyframes.end());
 }
 
-TEST_F(RecentMap, LeavesWhatIsFarAsItIs) {
+TEST_F(RecentMap, LeavesDistantKeyframes) {
   const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   std::set<KeyframeId> near;
   for (const WindowKeyframe& keyframe : recent.keyframes) near.insert(keyframe.id);
@@ -129,7 +129,7 @@ TEST_F(RecentMap, LeavesWhatIsFarAsItIs) {
   EXPECT_GT(far_points, 1000);
 }
 
-TEST_F(RecentMap, IsBroughtToWhereItSeesToBeAsByTheWholeMap) {
+TEST_F(RecentMap, IsCorrectedLikeTheWholeMap) {
   const auto worst_error = [&](const Map& map) {
     double worst = 0.0;
     for (const KeyframeId id : map.keyframe_ids()) {
@@ -148,7 +148,7 @@ TEST_F(RecentMap, IsBroughtToWhereItSeesToBeAsByTheWholeMap) {
   EXPECT_LT(worst_error(by_recent), 1.1 * worst_error(by_all));
 }
 
-TEST(Disagreement, IsWhatAMapLacksOfALoop) {
+TEST(Disagreement, MeasuresTheErrorOfALoop) {
   const Map map = true_map(long_way(), 1, Origin::online);
   const KeyframeId one{Origin::online, 3}, other{Origin::online, 30};
   LoopEdge loop{other, one, map.camera_from_world(other) * inverse(map.camera_from_world(one))};

@@ -22,7 +22,7 @@ class CorrectionOf : public ::testing::Test {
   const Map map_ = true_map(mission_, 4, Origin::online);
 };
 
-TEST_F(CorrectionOf, MovesAllThatHadNoPlaceBeforeAsAWhole) {
+TEST_F(CorrectionOf, MovesAnUnregisteredMapRigidly) {
   Map after = map_;
   apply(correction_of(map_, map_.keyframe_ids(), kOfflineFromOnline, CorrectionShape::rigid), after);
   for (const KeyframeId id : map_.keyframe_ids()) {
@@ -35,7 +35,7 @@ TEST_F(CorrectionOf, MovesAllThatHadNoPlaceBeforeAsAWhole) {
   EXPECT_THAT(find_faults(after), testing::IsEmpty());
 }
 
-TEST_F(CorrectionOf, BendsThePathFromNothingWhereMapsAgreedToAllAtItsEnd) {
+TEST_F(CorrectionOf, DistributesTheCorrectionAlongThePath) {
   Map after = map_;
   apply(correction_of(map_, map_.keyframe_ids(), kOfflineFromOnline, CorrectionShape::spread), after);
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
@@ -49,7 +49,7 @@ TEST_F(CorrectionOf, BendsThePathFromNothingWhereMapsAgreedToAllAtItsEnd) {
   EXPECT_THAT(world_motion_of(ids.back(), after), PoseNear(kOfflineFromOnline, 1e-9, 1e-9));
 }
 
-TEST_F(CorrectionOf, LeavesWhatIsNotOfThePathWhereItIs) {
+TEST_F(CorrectionOf, LeavesElementsOutsideOfThePath) {
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
   const std::vector<KeyframeId> path(ids.begin() + 4, ids.end() - 1);
   const MapDelta delta = correction_of(map_, path, kOfflineFromOnline, CorrectionShape::rigid);

@@ -48,7 +48,7 @@ double no_error(const Eigen::Vector2f&) {
 // The parameter that rows determine best: rotation of the right camera about its optical axis.
 constexpr int kTurn = kRightRotation + 2;
 
-TEST(RowEvidence, TellsHowTheCamerasAreTurnedAgainstEachOther) {
+TEST(RowEvidence, EstimatesTheRelativeRotationOfTheCameras) {
   CalibrationVector error = CalibrationVector::Zero();
   error[kTurn] = 3.0;
   const CalibrationKnowledge known = learn_from_rows(rows_of(error, no_error, 20000), kPrior);
@@ -74,7 +74,7 @@ CalibrationKnowledge learn_one_by_one(const std::vector<RowMeasurement>& rows) {
 }
 
 // Roof beams in front of a far wall stay in the upper half of the image all the way through an alley.
-TEST(RowEvidence, TakesNoSharedErrorsOfManyRowsForACalibrationThatErrs) {
+TEST(RowEvidence, IgnoresSharedRowErrors) {
   const OffsetAt leaning = [](const Eigen::Vector2f& pixel) {
     return pixel.y() > 240.0f ? 0.0 : 0.06 * (pixel.x() - 376.0f) / 376.0f;
   };
@@ -83,7 +83,7 @@ TEST(RowEvidence, TakesNoSharedErrorsOfManyRowsForACalibrationThatErrs) {
   EXPECT_LT(most_sigmas(learn_from_rows(rows, kPrior)), 6.0) << "the lean is smooth, so parts are not independent";
 }
 
-TEST(RowEvidence, IsSurerTheMoreRowsWhereTheyErrByThemselves) {
+TEST(RowEvidence, IsMoreCertainWithMoreRows) {
   const auto information_of = [](const OffsetAt& own_error, int count) {
     return learn_from_rows(rows_of(CalibrationVector::Zero(), own_error, count), kPrior).information(kTurn, kTurn);
   };
@@ -94,7 +94,7 @@ TEST(RowEvidence, IsSurerTheMoreRowsWhereTheyErrByThemselves) {
   EXPECT_LT(information_of(by_part, 80000), 1.5 * information_of(by_part, 20000));
 }
 
-TEST(RowEvidence, SaysNothingWithoutRows) {
+TEST(RowEvidence, IsEmptyWithoutRows) {
   const CalibrationKnowledge known = learn_from_rows({}, kPrior);
   EXPECT_TRUE(known.information.isApprox(kPrior.information));
   EXPECT_TRUE(known.expected.isZero());

@@ -29,7 +29,7 @@ TEST(EstimateScaleDrift, IsExactOnCleanDepths) {
   EXPECT_NEAR(drift->old_per_new, 1.0 / 1.08, 1e-12);
 }
 
-TEST(EstimateScaleDrift, KnowsHowUncertainItIs) {
+TEST(EstimateScaleDrift, EstimatesAConsistentSigma) {
   constexpr unsigned kTrials = 100;
   double sum = 0.0;  // squared errors, in sigmas: chi-square
   for (unsigned seed = 0; seed < kTrials; ++seed) {
@@ -41,7 +41,7 @@ TEST(EstimateScaleDrift, KnowsHowUncertainItIs) {
   EXPECT_NEAR(estimate_scale_drift(pairs_of(400, 0.9, 0.04), 15)->sigma, 0.04 / 20.0, 0.0005);
 }
 
-TEST(EstimateScaleDrift, LeavesOutFalseMatches) {
+TEST(EstimateScaleDrift, RejectsFalseMatches) {
   std::vector<DepthPair> pairs = pairs_of(60, 1.05, 0.01);
   for (std::size_t i = 0; i < pairs.size(); i += 4) pairs[i].newer *= 3.0;
   const auto drift = estimate_scale_drift(pairs, 15);
@@ -49,7 +49,7 @@ TEST(EstimateScaleDrift, LeavesOutFalseMatches) {
   EXPECT_NEAR(drift->old_per_new, 1.0 / 1.05, 0.006);
 }
 
-TEST(EstimateScaleDrift, ListensToNearPointsMoreThanToFarOnes) {
+TEST(EstimateScaleDrift, WeightsNearPointsMore) {
   std::vector<DepthPair> pairs = pairs_of(30, 1.0, 0.0);
   std::vector<DepthPair> uncertain = pairs_of(20, 1.3, 0.0);
   for (DepthPair& pair : uncertain) pair.sigma = 0.2;
@@ -59,7 +59,7 @@ TEST(EstimateScaleDrift, ListensToNearPointsMoreThanToFarOnes) {
   EXPECT_NEAR(drift->old_per_new, 1.0, 0.002);
 }
 
-TEST(EstimateScaleDrift, SaysNothingOfTooFewPoints) {
+TEST(EstimateScaleDrift, IsEmptyForTooFewPoints) {
   EXPECT_FALSE(estimate_scale_drift(pairs_of(14, 1.1, 0.0), 15));
   EXPECT_FALSE(estimate_scale_drift({}, 1));
 }
@@ -82,7 +82,7 @@ TrackedFrame in_older_part(const DriftedLap& lap) {
   return tracked;
 }
 
-TEST(DepthPairs, AreOfPointsThatTheKeyframeSeesInBothParts) {
+TEST(DepthPairs, AreThePointsOfBothParts) {
   const DriftedLap lap(monocular_rig(), {1.1, {}});
   const Keyframe& keyframe = *lap.map.find_keyframe(lap.newest());
   const TrackedFrame tracked = in_older_part(lap);

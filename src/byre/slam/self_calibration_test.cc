@@ -123,7 +123,7 @@ double remaining_shift(const Calibration& refined, const Calibration& truth) {
   return std::sqrt(sum / count);
 }
 
-TEST(SelfCalibration, FindsTheErrorOfAGoodCalibration) {
+TEST(SelfCalibration, EstimatesTheErrorOfAGoodCalibration) {
   const Calibration given = scene_calibration();
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const CalibrationVector error = draw_error(seed);
@@ -138,7 +138,7 @@ TEST(SelfCalibration, FindsTheErrorOfAGoodCalibration) {
   }
 }
 
-TEST(SelfCalibration, TakesNoNoiseForALongerFocalLength) {
+TEST(SelfCalibration, DoesNotMistakeNoiseForALongerFocalLength) {
   const Calibration given = scene_calibration();
   CalibrationVector error = draw_error(4);
   error[kLeftCamera] = error[kRightCamera] = 0.0;
@@ -152,7 +152,7 @@ TEST(SelfCalibration, TakesNoNoiseForALongerFocalLength) {
   }
 }
 
-TEST(SelfCalibration, LeavesACalibrationThatExplainsWhatWasSeenAsItWasGiven) {
+TEST(SelfCalibration, KeepsACalibrationThatExplainsTheObservations) {
   const Calibration given = scene_calibration();
   const MapOfErringCamera map(given, CalibrationVector::Zero(), about_the_room, 40);
   const auto found = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
@@ -161,7 +161,7 @@ TEST(SelfCalibration, LeavesACalibrationThatExplainsWhatWasSeenAsItWasGiven) {
   EXPECT_EQ(found->shift, 0.0);
 }
 
-TEST(SelfCalibration, RefusesWhatNoCalibrationErrsBy) {
+TEST(SelfCalibration, RejectsImplausibleErrors) {
   const Calibration given = scene_calibration();
   CalibrationVector error = draw_error(2, 3.0);
   const MapOfErringCamera worn(given, error, about_the_room, 40);
@@ -176,7 +176,7 @@ TEST(SelfCalibration, RefusesWhatNoCalibrationErrsBy) {
   EXPECT_GT(refused->shift, 0.5) << "pixels: it is told how far off";
 }
 
-TEST(SelfCalibration, GoesOnFromWhatIsKnownAsFromTheStart) {
+TEST(SelfCalibration, ContinuesFromAnEarlierEstimate) {
   const Calibration given = scene_calibration();
   const CalibrationVector error = draw_error(4);
   const MapOfErringCamera map(given, error, about_the_room, 40);
@@ -189,7 +189,7 @@ TEST(SelfCalibration, GoesOnFromWhatIsKnownAsFromTheStart) {
   EXPECT_LT(remaining_shift(in_two_steps->calibration, at_once->calibration), 0.01);
 }
 
-TEST(SelfCalibration, LeavesTheDepthsOfAnExactCalibrationWhereTheyAre) {
+TEST(SelfCalibration, KeepsTheDepthsOfAnExactCalibration) {
   const Calibration given = scene_calibration();
   const MapOfErringCamera map(given, CalibrationVector::Zero(), about_the_room, 40);
   const auto found = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
@@ -209,7 +209,7 @@ MapWindow without_disparities(MapWindow window) {
   return window;
 }
 
-TEST(SelfCalibration, MovesNothingOfOneCameraThatStandsStill) {
+TEST(SelfCalibration, KeepsTheCalibrationOfOneRestingCamera) {
   const Calibration given = scene_calibration();
   const MapOfErringCamera map(
       given, draw_error(2), [](int) { return Pose{}; }, 30);
@@ -219,7 +219,7 @@ TEST(SelfCalibration, MovesNothingOfOneCameraThatStandsStill) {
   }
 }
 
-TEST(SelfCalibration, MovesNoFocalLengthOfOneCameraThatGoesStraightAhead) {
+TEST(SelfCalibration, KeepsTheFocalLengthOfOneCameraMovingStraight) {
   const Calibration given = scene_calibration();
   const MapOfErringCamera map(
       given, draw_error(2),
@@ -233,7 +233,7 @@ TEST(SelfCalibration, MovesNoFocalLengthOfOneCameraThatGoesStraightAhead) {
   EXPECT_GT(found->sigma_after[kLeftCamera], 0.9 * found->sigma_before[kLeftCamera]);
 }
 
-TEST(SelfCalibration, FindsTheLensOfOneCameraThatLooksAbout) {
+TEST(SelfCalibration, EstimatesTheLensOfOneRotatingCamera) {
   const Calibration given = scene_calibration();
   const CalibrationVector error = draw_error(6);
   const MapOfErringCamera map(given, error, about_the_room, 60);
@@ -244,7 +244,7 @@ TEST(SelfCalibration, FindsTheLensOfOneCameraThatLooksAbout) {
   EXPECT_LT(found->sigma_after[kLeftCamera], 0.6 * found->sigma_before[kLeftCamera]);
 }
 
-TEST(SelfCalibration, NeedsSomeKeyframes) {
+TEST(SelfCalibration, RequiresEnoughKeyframes) {
   const Calibration given = scene_calibration();
   const MapOfErringCamera map(given, draw_error(1), about_the_room, 5);
   EXPECT_FALSE(self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {}));

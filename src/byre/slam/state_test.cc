@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Table, NextState,
                                            Transition{State::lost, kDoubtfulPose, State::lost},
                                            Transition{State::lost, kKeptPose, State::tracking}));
 
-TEST(ToString, TellsStatesApart) {
+TEST(ToString, DistinguishesStates) {
   EXPECT_EQ(to_string(State::initialising), "initialising");
   EXPECT_EQ(to_string(State::tracking), "tracking");
   EXPECT_EQ(to_string(State::relocalising), "relocalising");

@@ -72,7 +72,7 @@ TEST_F(StillImageOnADrive, DetectsARepeatedImageByWheels) {
   }
 }
 
-TEST_F(StillImageOnADrive, StaysFrozenWhileWheelsStandAfterwards) {
+TEST_F(StillImageOnADrive, StaysFrozenWhileWheelsStopAfterwards) {
   drive(true);
   for (int i = kFreeze + 1; i < 40; ++i) watch_.note(with_noise(kFreeze, i), mission_.rig, moved(i - 1, i), {});
   for (int i = 40; i < 80; ++i) {
@@ -80,7 +80,7 @@ TEST_F(StillImageOnADrive, StaysFrozenWhileWheelsStandAfterwards) {
   }
 }
 
-TEST_F(StillImageOnADrive, EndsOnceTheImageMovesAgain) {
+TEST_F(StillImageOnADrive, EndsOnceTheImageChanges) {
   drive(true);
   for (int i = kFreeze + 1; i < 30; ++i) watch_.note(with_noise(kFreeze, i), mission_.rig, moved(i - 1, i), {});
   for (int i = 30; i < 40; ++i) {
@@ -108,7 +108,7 @@ TEST_F(StillImageOnADrive, DetectsARepeatedImageByASuddenStopWithoutWheels) {
   }
 }
 
-TEST_F(StillImageOnADrive, IsNotFrozenWhereTheRobotBrakesWithoutWheels) {
+TEST_F(StillImageOnADrive, IsNotFrozenWhileTheRobotBrakesWithoutWheels) {
   drive(false);
   const Vector6 velocity_before = velocity(kFreeze - 2, kFreeze - 1).velocity;
   // The last frame before the stop moved by a quarter of the others.
@@ -122,7 +122,7 @@ TEST_F(StillImageOnADrive, IsNotFrozenWhereTheRobotBrakesWithoutWheels) {
   }
 }
 
-TEST_F(StillImageOnADrive, IsNotFrozenFromTheBeginning) {
+TEST_F(StillImageOnADrive, IsNotFrozenAtTheBeginning) {
   for (int i = 0; i < 100; ++i) {
     EXPECT_FALSE(watch_.note(with_noise(0, i), mission_.rig, {}, {}).is_frozen) << i;
   }

@@ -40,7 +40,7 @@ void expect_same(const Features& features, const Features& expected) {
   EXPECT_EQ(found, wanted);
 }
 
-TEST(StowedFeatures, AreTheSameInTheMap) {
+TEST(StowedFeatures, AreEqualInTheMap) {
   StoredMap stored = StoredMapScene(5, 20).stored();
   const auto bytes = write_map(stored);
   ScratchFile file;
@@ -52,7 +52,7 @@ TEST(StowedFeatures, AreTheSameInTheMap) {
   EXPECT_EQ(write_map(stored), bytes);
 }
 
-TEST(StowedFeatures, OutliveTheirFileAndTheFeaturesThatTheyWere) {
+TEST(StowedFeatures, OutliveTheirFileAndTheOriginals) {
   auto features = some_features();
   const Features kept = *features;
   std::shared_ptr<const Features> put;
@@ -65,7 +65,7 @@ TEST(StowedFeatures, OutliveTheirFileAndTheFeaturesThatTheyWere) {
   expect_same(*put, kept);
 }
 
-TEST(StowedFeatures, LieInTheFileOnce) {
+TEST(StowedFeatures, AreStoredOnce) {
   ScratchFile file;
   const auto once = stowed(some_features(), file);
   const std::size_t bytes = file.bytes_on_disk();
@@ -73,7 +73,7 @@ TEST(StowedFeatures, LieInTheFileOnce) {
   EXPECT_EQ(file.bytes_on_disk(), bytes);
 }
 
-TEST(StowedFeatures, HaveKeypointsOfTheirOwnOnceMovedUntilStowedAgain) {
+TEST(StowedFeatures, CopyMovedKeypointsUntilStoredAgain) {
   const auto features = some_features();
   ScratchFile file;
   const auto put = stowed(features, file);
@@ -92,7 +92,7 @@ TEST(StowedFeatures, HaveKeypointsOfTheirOwnOnceMovedUntilStowedAgain) {
   EXPECT_EQ(again->patches().data(), put->patches().data()) << "what lies there stays there";
 }
 
-TEST(StowedFeatures, AreRefilledInMemoryOfTheirOwn) {
+TEST(StowedFeatures, AreRefilledInTheirOwnMemory) {
   const auto features = some_features();
   ScratchFile file;
   Features refilled = *stowed(features, file);
@@ -102,7 +102,7 @@ TEST(StowedFeatures, AreRefilledInMemoryOfTheirOwn) {
   EXPECT_FALSE(is_stowed(std::as_bytes(refilled.descriptors()), file));
 }
 
-TEST(StowedFeatures, AreNoneWhereThereIsNothing) {
+TEST(StowedFeatures, AreEmptyWithoutFeatures) {
   ScratchFile file;
   EXPECT_EQ(stowed(nullptr, file), nullptr);
   const auto none = std::make_shared<const Features>();

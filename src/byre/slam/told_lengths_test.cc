@@ -13,7 +13,7 @@ BodyMotion told(double metres, double sigma) {
   return {ahead(metres), sigma * sigma * Matrix6::Identity()};
 }
 
-TEST(LengthRatio, WeighsWaysByWhatIsKnownOfThem) {
+TEST(LengthRatio, WeightsMotionsByTheirCovariance) {
   LengthRatio ratio;
   EXPECT_FALSE(ratio.value());
   ratio.add(told(1.0, 0.01), ahead(0.5));
@@ -22,13 +22,13 @@ TEST(LengthRatio, WeighsWaysByWhatIsKnownOfThem) {
   EXPECT_NEAR(ratio.value().value(), (4.0 * 0.5 + 1.0) / 5.0, 1e-12);
 }
 
-TEST(LengthRatio, IsNoneWhereWaysLeadBackwards) {
+TEST(LengthRatio, IsEmptyForOppositeMotions) {
   LengthRatio ratio;
   ratio.add(told(1.0, 0.01), ahead(-0.5));
   EXPECT_FALSE(ratio.value());
 }
 
-TEST(ScaleMotion, ScalesItsWayAndTheErrorOfThat) {
+TEST(ScaleMotion, ScalesTranslationAndItsError) {
   const BodyMotion scaled = scale_motion(told(1.0, 0.1), 3.0);
   EXPECT_NEAR(scaled.last_from_body.translation.x(), 3.0, 1e-12);
   EXPECT_NEAR(scaled.covariance(0, 0), 0.09, 1e-12);

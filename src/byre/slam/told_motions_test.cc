@@ -36,7 +36,7 @@ class MotionsOfATrueMap : public ::testing::Test {
   }
 };
 
-TEST_F(MotionsOfATrueMap, LeadFromEachKeyframeToTheNext) {
+TEST_F(MotionsOfATrueMap, ConnectConsecutiveKeyframes) {
   std::vector<KeyframeId> ids = map_.keyframe_ids();
   const std::size_t ways = ids.size() - 1;
   std::ranges::reverse(ids);
@@ -47,19 +47,19 @@ TEST_F(MotionsOfATrueMap, LeadFromEachKeyframeToTheNext) {
   EXPECT_THAT(told_motions(map_, ids, 0, {}), IsEmpty());
 }
 
-TEST_F(MotionsOfATrueMap, AreNotAskedForBesideAPair) {
+TEST_F(MotionsOfATrueMap, AreEmptyForAStereoRig) {
   const Map map = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
   EXPECT_THAT(told_motions(map, map.keyframe_ids(), 0, told()), IsEmpty());
 }
 
-TEST_F(MotionsOfATrueMap, LeaveOutWhatContradictsWhatWasSeen) {
+TEST_F(MotionsOfATrueMap, AreRejectedIfTheyContradictImages) {
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
   const Timestamp spinning = map_.find_keyframe(ids[ids.size() - 4])->frame.time;
   EXPECT_THAT(told_motions(map_, ids, 0, told(1.0, spinning)), SizeIs(ids.size() - 4));
 }
 
 // No image contradicts a motion between keyframes without common points.
-TEST_F(MotionsOfATrueMap, AreBelievedOfWaysThatWereNotSeen) {
+TEST_F(MotionsOfATrueMap, AreAcceptedBetweenKeyframesWithoutCommonPoints) {
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
   const std::vector<KeyframeId> ends = {ids.front(), ids.back()};
   const auto motions = told_motions(map_, ends, 0, told(3.0));
@@ -71,7 +71,7 @@ TEST_F(MotionsOfATrueMap, AreBelievedOfWaysThatWereNotSeen) {
 }
 
 // Few common points may have been triangulated across a gap, and contradict no motion.
-TEST_F(MotionsOfATrueMap, AreBelievedWhereHardlyAnythingWasSeenOfTheWay) {
+TEST_F(MotionsOfATrueMap, AreAcceptedBetweenKeyframesWithFewCommonPoints) {
   const KeyframeId earlier = map_.keyframe_ids()[3], later = map_.keyframe_ids()[4];
   const auto seen_by = [&](const Observation& seen, KeyframeId id) { return seen.keyframe == id; };
   int shared = 0;
@@ -89,7 +89,7 @@ TEST_F(MotionsOfATrueMap, AreBelievedWhereHardlyAnythingWasSeenOfTheWay) {
 }
 
 // After relocalisation at an old place, the points shared with the keyframe before are no evidence.
-TEST_F(MotionsOfATrueMap, AreBelievedWhereTheLaterKeyframeWasTrackedFromAnotherPlace) {
+TEST_F(MotionsOfATrueMap, AreAcceptedIfTheLaterKeyframeWasTrackedFromElsewhere) {
   const Map map =
       true_map(simulate_mission(one_camera(), circling_trajectory(120, 10.0, 2.0, 1.0), {}), 4, Origin::online);
   const std::vector<KeyframeId> ids = map.keyframe_ids();
@@ -106,7 +106,7 @@ TEST_F(MotionsOfATrueMap, AreBelievedWhereTheLaterKeyframeWasTrackedFromAnotherP
   EXPECT_THAT(told_motions(found_again, {ids[15], ids[16]}, 0, told_wrongly), SizeIs(1));
 }
 
-TEST_F(MotionsOfATrueMap, AreTakenToBeAsLongAsTheMapHasThemTogether) {
+TEST_F(MotionsOfATrueMap, AreScaledToTheMap) {
   const Map map = true_map(mission_, 1, Origin::online);
   const auto motions = in_lengths_of(map, told_motions(map, map.keyframe_ids(), 0, told(1.03)));
   const auto exact = told_motions(map, map.keyframe_ids(), 0, told());
@@ -117,7 +117,7 @@ TEST_F(MotionsOfATrueMap, AreTakenToBeAsLongAsTheMapHasThemTogether) {
   }
 }
 
-TEST_F(MotionsOfATrueMap, GoToAWindowThatHasBothKeyframes) {
+TEST_F(MotionsOfATrueMap, AreAddedToAWindowWithBothKeyframes) {
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
   MapWindow window = window_of(map_, {ids[2], ids[1], ids[5]});
   add_motions(window, told_motions(map_, ids, 0, told()));

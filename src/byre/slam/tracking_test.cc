@@ -53,7 +53,7 @@ class TrackingOnATrueMap : public ::testing::Test {
   Pose rough_ = displaced(truth_, {0.03, -0.02, 0.03}, {0.01, -0.015, 0.01});
 };
 
-TEST_F(TrackingOnATrueMap, FindsThePoseFromARoughPrediction) {
+TEST_F(TrackingOnATrueMap, EstimatesThePoseFromARoughPrediction) {
   const auto tracked = track_from(rough_, second_);
   ASSERT_TRUE(tracked);
   EXPECT_THAT(tracked->camera_from_world, PoseNear(truth_, 0.015, 0.2 * kDegree));
@@ -66,7 +66,7 @@ TEST_F(TrackingOnATrueMap, IsExactOnCleanFeatures) {
   EXPECT_THAT(tracked->camera_from_world, PoseNear(truth_, 1e-4, 1e-4));
 }
 
-TEST_F(TrackingOnATrueMap, SearchesWiderWhereThePredictionIsFarOff) {
+TEST_F(TrackingOnATrueMap, SearchesWiderForAWrongPrediction) {
   const Pose far_off = displaced(truth_, {0.0, 0.0, 0.0}, {0.0, 5.0 * kDegree, 0.0});
   TrackOptions narrow_only;
   narrow_only.wide_radius = narrow_only.search_radius;
@@ -76,7 +76,7 @@ TEST_F(TrackingOnATrueMap, SearchesWiderWhereThePredictionIsFarOff) {
   EXPECT_THAT(tracked->camera_from_world, PoseNear(truth_, 0.015, 0.2 * kDegree));
 }
 
-TEST_F(TrackingOnATrueMap, TellsOutliersFromInliers) {
+TEST_F(TrackingOnATrueMap, DistinguishesOutliersFromInliers) {
   const SimulatedMission disturbed = visit(3, 0.3);
   const auto tracked = track_from(rough_, disturbed);
   ASSERT_TRUE(tracked);
@@ -88,7 +88,7 @@ TEST_F(TrackingOnATrueMap, TellsOutliersFromInliers) {
   EXPECT_LE(static_cast<double>(wrong), 0.02 * static_cast<double>(tracked->features.size()));
 }
 
-TEST_F(TrackingOnATrueMap, CountsExpectedMatchedAndInliers) {
+TEST_F(TrackingOnATrueMap, CountsExpectedAndMatchedPointsAndInliers) {
   const auto tracked = track_from(rough_, second_);
   ASSERT_TRUE(tracked);
   EXPECT_GE(tracked->expected, tracked->matches);
@@ -96,7 +96,7 @@ TEST_F(TrackingOnATrueMap, CountsExpectedMatchedAndInliers) {
   EXPECT_GE(static_cast<int>(tracked->features.size()), TrackOptions{}.min_inliers);
 }
 
-TEST_F(TrackingOnATrueMap, ShowsInliersAndOutliersWithTheirPoints) {
+TEST_F(TrackingOnATrueMap, ReturnsInliersAndOutliersWithTheirPoints) {
   const SimulatedMission disturbed = visit(3, 0.3);
   const auto tracked = track_from(rough_, disturbed);
   ASSERT_TRUE(tracked);
@@ -111,14 +111,14 @@ TEST_F(TrackingOnATrueMap, ShowsInliersAndOutliersWithTheirPoints) {
   EXPECT_EQ(seen.back().pixel, tracked->outliers.back().pixel);
 }
 
-TEST_F(TrackingOnATrueMap, NamesFeaturesOnceAndAscending) {
+TEST_F(TrackingOnATrueMap, ReturnsFeaturesOnceInAscendingOrder) {
   const auto tracked = track_from(rough_, second_);
   ASSERT_TRUE(tracked);
   EXPECT_EQ(std::ranges::adjacent_find(tracked->features, std::greater_equal<>{}, &TrackedFeature::feature),
             tracked->features.end());
 }
 
-TEST_F(TrackingOnATrueMap, RefersToTheKeyframeThatSharesMostPoints) {
+TEST_F(TrackingOnATrueMap, SelectsTheKeyframeWithMostCommonPoints) {
   const auto tracked = track_from(rough_, second_);
   ASSERT_TRUE(tracked);
   std::map<KeyframeId, int> shared;
@@ -128,7 +128,7 @@ TEST_F(TrackingOnATrueMap, RefersToTheKeyframeThatSharesMostPoints) {
   for (const auto& [keyframe, count] : shared) EXPECT_LE(count, shared[tracked->reference]);
 }
 
-TEST_F(TrackingOnATrueMap, PassesOverCandidatesThatAreGone) {
+TEST_F(TrackingOnATrueMap, SkipsRemovedCandidates) {
   const std::vector<PointId> candidates = map_.point_ids();
   for (std::size_t i = 0; i < candidates.size(); i += 3) map_.remove_point(candidates[i]);
   const auto tracked = track(second_.frames[kFrame], rough_, second_.rig, view_, candidates, {});
@@ -151,12 +151,12 @@ TEST_F(TrackingOnATrueMap, IsEmptyWithoutCandidates) {
   EXPECT_FALSE(track(second_.frames[kFrame], truth_, second_.rig, view_, {}, {}));
 }
 
-TEST_F(TrackingOnATrueMap, IsEmptyWhereThePredictionLooksAway) {
+TEST_F(TrackingOnATrueMap, IsEmptyIfThePredictionFacesAway) {
   EXPECT_FALSE(track_from(displaced(truth_, {0.0, 0.0, 0.0}, {0.0, 90.0 * kDegree, 0.0}), second_));
 }
 
 // The squared normalised pose error is chi-square distributed with six degrees of freedom: 6 on average.
-TEST(Track, KnowsHowPreciseItIs) {
+TEST(Track, ReturnsAConsistentCovariance) {
   SimulationOptions options;
   options.pixel_sigma = corner_measurement(Keypoint{}).sigma;
   const SimulatedMission mission = quarter_circle(options);
@@ -173,7 +173,7 @@ TEST(Track, KnowsHowPreciseItIs) {
   EXPECT_THAT(mean, AllOf(Ge(4.0), Le(9.0)));
 }
 
-TEST_F(TrackingOnATrueMap, FindsThePoseFromAKeyframeWithoutPrediction) {
+TEST_F(TrackingOnATrueMap, EstimatesThePoseFromAKeyframeWithoutPrediction) {
   const KeyframeId keyframe{Origin::online, kFrame / 4};
   const auto pose = pose_from_keyframe(second_.frames[kFrame], second_.rig, view_, keyframe);
   ASSERT_TRUE(pose);
@@ -183,24 +183,24 @@ TEST_F(TrackingOnATrueMap, FindsThePoseFromAKeyframeWithoutPrediction) {
   EXPECT_THAT(tracked->camera_from_world, PoseNear(truth_, 0.015, 0.2 * kDegree));
 }
 
-TEST_F(TrackingOnATrueMap, FindsNoPoseFromAKeyframeOfAnotherRoom) {
+TEST_F(TrackingOnATrueMap, IsEmptyForAKeyframeOfAnotherRoom) {
   SimulationOptions options;
   options.seed = 99;
   const SimulatedMission elsewhere = quarter_circle(options);
   EXPECT_FALSE(pose_from_keyframe(elsewhere.frames[kFrame], elsewhere.rig, view_, {Origin::online, kFrame / 4}));
 }
 
-TEST_F(TrackingOnATrueMap, FindsNoPoseFromAKeyframeThatDoesNotExist) {
+TEST_F(TrackingOnATrueMap, IsEmptyForAMissingKeyframe) {
   EXPECT_FALSE(pose_from_keyframe(second_.frames[kFrame], second_.rig, view_, {Origin::online, 1000}));
   EXPECT_FALSE(pose_from_keyframe(second_.frames[kFrame], second_.rig, view_, {Origin::offline, 0}));
 }
 
-TEST_F(TrackingOnATrueMap, FindsNoPoseForAFrameWithoutFeatures) {
+TEST_F(TrackingOnATrueMap, IsEmptyForAFrameWithoutFeatures) {
   const Frame blinded{second_.frames[kFrame].time, std::make_shared<const Features>()};
   EXPECT_FALSE(pose_from_keyframe(blinded, second_.rig, view_, {Origin::online, kFrame / 4}));
 }
 
-TEST_F(TrackingOnATrueMap, LocalPointsAreThoseOfTheKeyframeAndItsMostCovisible) {
+TEST_F(TrackingOnATrueMap, LocalPointsIncludeTheMostCovisibleKeyframes) {
   const KeyframeId reference{Origin::online, 4};
   std::set<PointId> expected;
   const auto insert_points_of = [&](KeyframeId id) {
@@ -213,7 +213,7 @@ TEST_F(TrackingOnATrueMap, LocalPointsAreThoseOfTheKeyframeAndItsMostCovisible) 
   EXPECT_THAT(local_points(view_, reference, 3), ElementsAreArray(expected));
 }
 
-TEST_F(TrackingOnATrueMap, LocalPointsOfAnUnknownKeyframeAreNone) {
+TEST_F(TrackingOnATrueMap, LocalPointsOfAnUnknownKeyframeAreEmpty) {
   EXPECT_THAT(local_points(view_, {Origin::online, 1000}, 10), IsEmpty());
 }
 

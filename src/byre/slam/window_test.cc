@@ -55,14 +55,14 @@ class WindowOfATrueMap : public ::testing::Test {
   const KeyframeId newest_{Origin::online, 39};
 };
 
-TEST_F(WindowOfATrueMap, IsBoundedHoweverLargeTheMap) {
+TEST_F(WindowOfATrueMap, IsBoundedForAnyMapSize) {
   const MapWindow window = cut_window(map_, {newest_}, kSmall);
   EXPECT_THAT(window.keyframes, SizeIs(kSmall.movable + kSmall.anchors));
   const std::vector<KeyframeId> ids = ids_of(window);
   EXPECT_THAT(std::set<KeyframeId>(ids.begin(), ids.end()), SizeIs(ids.size()));
 }
 
-TEST_F(WindowOfATrueMap, BeginsWithTheNewestAndEndsWithTheAnchors) {
+TEST_F(WindowOfATrueMap, StartsWithTheNewestAndEndsWithTheAnchors) {
   const MapWindow window = cut_window(map_, {{Origin::online, 38}, newest_}, kSmall);
   EXPECT_EQ(window.keyframes[0].id, newest_);
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
@@ -77,7 +77,7 @@ TEST_F(WindowOfATrueMap, MovesTheKeyframesMostCovisibleWithTheNewest) {
   for (std::size_t i = 0; i < covisible.size(); ++i) EXPECT_EQ(window.keyframes[i + 1].id, covisible[i].keyframe);
 }
 
-TEST_F(WindowOfATrueMap, HoldsAllPointsOfItsMovableKeyframes) {
+TEST_F(WindowOfATrueMap, ContainsAllPointsOfItsMovableKeyframes) {
   const MapWindow window = cut_window(map_, {newest_}, kSmall);
   for (const WindowKeyframe& keyframe : window.keyframes) {
     if (!keyframe.movable) continue;
@@ -90,14 +90,14 @@ TEST_F(WindowOfATrueMap, HoldsAllPointsOfItsMovableKeyframes) {
   }
 }
 
-TEST_F(WindowOfATrueMap, HoldsOnlyKeyframesThatSeeItsPoints) {
+TEST_F(WindowOfATrueMap, ContainsOnlyKeyframesThatObserveItsPoints) {
   const MapWindow window = cut_window(map_, {newest_}, kSmall);
   for (const WindowKeyframe& keyframe : window.keyframes) {
     EXPECT_TRUE(std::ranges::any_of(keyframe.point_of_feature, [](int point) { return point >= 0; }));
   }
 }
 
-TEST_F(WindowOfATrueMap, CountsTheObservationsItLeavesOut) {
+TEST_F(WindowOfATrueMap, CountsOmittedObservations) {
   const MapWindow window = cut_window(map_, {newest_}, kSmall);
   int elsewhere = 0;
   for (const WindowPoint& point : window.points) {
@@ -117,7 +117,7 @@ TEST_F(WindowOfATrueMap, NeverMovesTheFirstKeyframe) {
   }
 }
 
-TEST_F(WindowOfATrueMap, LeavesOutNewKeyframesThatAreGone) {
+TEST_F(WindowOfATrueMap, OmitsRemovedNewKeyframes) {
   Map map = map_;
   map.remove_keyframe(newest_);
   const KeyframeId before{Origin::online, 38};
@@ -127,13 +127,13 @@ TEST_F(WindowOfATrueMap, LeavesOutNewKeyframesThatAreGone) {
   EXPECT_THAT(find_faults(window), IsEmpty());
 }
 
-TEST_F(WindowOfATrueMap, IsEmptyWhenNoNewKeyframeIsLeft) {
+TEST_F(WindowOfATrueMap, IsEmptyWithoutNewKeyframes) {
   Map map = map_;
   map.remove_keyframe(newest_);
   EXPECT_THAT(cut_window(map, {newest_}, kSmall).keyframes, IsEmpty());
 }
 
-TEST_F(WindowOfATrueMap, KeepsBothEndsOfAnObservationInStep) {
+TEST_F(WindowOfATrueMap, KeepsBothEndsOfAnObservationConsistent) {
   MapWindow window = cut_window(map_, {newest_}, kSmall);
   ASSERT_THAT(find_faults(window), IsEmpty());
   const WindowObservation seen = window.points[0].observations.front();

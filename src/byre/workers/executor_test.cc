@@ -42,13 +42,13 @@ class EveryExecutor : public ::testing::TestWithParam<NamedExecutor> {
   const std::unique_ptr<Executor> executor_ = GetParam().make();
 };
 
-TEST_P(EveryExecutor, HasNothingToGiveAtFirst) {
+TEST_P(EveryExecutor, HasNoResultAtFirst) {
   EXPECT_TRUE(executor_->idle());
   EXPECT_FALSE(executor_->collect());
   EXPECT_FALSE(executor_->finish());
 }
 
-TEST_P(EveryExecutor, HandsOverEveryJobOnceAndInTurn) {
+TEST_P(EveryExecutor, ReturnsEveryResultOnceAndInOrder) {
   for (int job = 0; job < 5; ++job) {
     executor_->submit([job] { return job; });
     EXPECT_FALSE(executor_->idle());
@@ -61,7 +61,7 @@ TEST_P(EveryExecutor, HandsOverEveryJobOnceAndInTurn) {
   }
 }
 
-TEST_P(EveryExecutor, FinishesTheJobInFlight) {
+TEST_P(EveryExecutor, FinishesTheRunningJob) {
   executor_->submit([] { return 7; });
   const auto finished = executor_->finish();
   ASSERT_TRUE(finished);
@@ -70,7 +70,7 @@ TEST_P(EveryExecutor, FinishesTheJobInFlight) {
   EXPECT_FALSE(executor_->finish());
 }
 
-TEST_P(EveryExecutor, ThrowsAJobsExceptionWhereItsResultWasDue) {
+TEST_P(EveryExecutor, ThrowsTheExceptionOfAJobInPlaceOfItsResult) {
   executor_->submit(break_off);
   EXPECT_THROW(collect_when_ready(*executor_), std::runtime_error);
   EXPECT_TRUE(executor_->idle());
@@ -79,14 +79,14 @@ TEST_P(EveryExecutor, ThrowsAJobsExceptionWhereItsResultWasDue) {
   EXPECT_TRUE(executor_->idle());
 }
 
-TEST_P(EveryExecutor, WorksOnAfterAnException) {
+TEST_P(EveryExecutor, ContinuesAfterAnException) {
   executor_->submit(break_off);
   EXPECT_THROW(executor_->finish(), std::runtime_error);
   executor_->submit([] { return 3; });
   EXPECT_EQ(number_of(executor_->finish()), 3);
 }
 
-TEST_P(EveryExecutor, LetsItsJobEndBeforeItIsDestroyed) {
+TEST_P(EveryExecutor, FinishesItsJobBeforeDestruction) {
   std::atomic<bool> done = false;
   auto executor = GetParam().make();
   executor->submit([&done] {
@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Of, EveryExecutor,
                                            NamedExecutor{"Live", [] { return make_live_executor(); }}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(InlineExecutor, RunsTheJobOnTheCallersThreadBeforeSubmitReturns) {
+TEST(InlineExecutor, RunsTheJobOnTheCallingThreadBeforeSubmitReturns) {
   const auto executor = make_inline_executor();
   std::thread::id ran_on;
   executor->submit([&ran_on] {
@@ -126,7 +126,7 @@ class PacedExecutor : public ::testing::TestWithParam<int> {
   }
 };
 
-TEST_P(PacedExecutor, HandsAQuickJobOverExactlyAfterItsLatency) {
+TEST_P(PacedExecutor, ReturnsAFastJobExactlyAfterItsLatency) {
   EXPECT_EQ(frames_until_handed_over([] { return std::any(); }), GetParam());
 }
 
@@ -140,7 +140,7 @@ TEST_P(PacedExecutor, WaitsForASlowJob) {
 
 INSTANTIATE_TEST_SUITE_P(Latencies, PacedExecutor, ::testing::Values(1, 2, 5));
 
-TEST_P(PacedExecutor, LetsGoOfWhatAJobOwnsBeforeItsResultIsTaken) {
+TEST_P(PacedExecutor, ReleasesTheResourcesOfAJobBeforeItsResultIsTaken) {
   const auto executor = make_paced_executor(1000);
   auto owned = std::make_shared<int>(7);
   const std::weak_ptr<int> seen = owned;
@@ -160,7 +160,7 @@ int niceness_of_a_job(Executor& executor) {
 }
 
 // The caller of a paced executor waits for the job, so its job must keep the usual priority.
-TEST(LiveExecutor, LetsItsCallerGoFirstAsNoOtherDoes) {
+TEST(LiveExecutor, RunsAtLowerPriorityThanItsCaller) {
   const int usual = niceness();
   EXPECT_GT(niceness_of_a_job(*make_live_executor()), usual);
   EXPECT_EQ(niceness_of_a_job(*make_paced_executor(1)), usual);
@@ -168,7 +168,7 @@ TEST(LiveExecutor, LetsItsCallerGoFirstAsNoOtherDoes) {
   EXPECT_EQ(niceness(), usual);
 }
 
-TEST(LiveExecutor, DoesNotWaitForAJobThatRuns) {
+TEST(LiveExecutor, DoesNotWaitForARunningJob) {
   const auto executor = make_live_executor();
   std::promise<void> may_end;
   executor->submit([end = may_end.get_future().share()] {

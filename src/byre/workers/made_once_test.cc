@@ -10,7 +10,7 @@
 namespace byre {
 namespace {
 
-TEST(MadeOnceTest, MakesAThingWhenItIsFirstAskedFor) {
+TEST(MadeOnceTest, IsCreatedOnFirstAccess) {
   int made = 0;
   const MadeOnce<std::string> things(3);
   const auto make = [&made] { return std::to_string(++made); };
@@ -20,13 +20,13 @@ TEST(MadeOnceTest, MakesAThingWhenItIsFirstAskedFor) {
   EXPECT_EQ(made, 2);
 }
 
-TEST(MadeOnceTest, MakesItAgainWhereItFailed) {
+TEST(MadeOnceTest, IsCreatedAgainAfterAFailure) {
   const MadeOnce<int> things(1);
   EXPECT_THROW(things.get(0, []() -> int { throw std::runtime_error("not now"); }), std::runtime_error);
   EXPECT_EQ(things.get(0, [] { return 7; }), 7);
 }
 
-TEST(MadeOnceTest, GivesAllThreadsTheSame) {
+TEST(MadeOnceTest, ReturnsTheSameToAllThreads) {
   constexpr std::size_t kThings = 1000;
   const MadeOnce<std::vector<std::size_t>> things(kThings);
   std::vector<std::vector<const std::vector<std::size_t>*>> seen(4);

@@ -21,7 +21,7 @@ TEST(NewestQueue, DropsTheOldest) {
   EXPECT_THAT(queue.take({}), Eq(std::nullopt));
 }
 
-TEST(NewestQueue, GivesWhatIsLeftBeforeItFails) {
+TEST(NewestQueue, ReturnsTheRemainingItemsBeforeFailing) {
   NewestQueue<int> queue(2);
   queue.put(1);
   queue.fail(std::make_exception_ptr(std::runtime_error("no more")));
@@ -30,7 +30,7 @@ TEST(NewestQueue, GivesWhatIsLeftBeforeItFails) {
   EXPECT_THROW(queue.take({}), std::runtime_error);
 }
 
-TEST(NewestQueue, HandsEverythingFromOneThreadToAnother) {
+TEST(NewestQueue, PassesAllItemsBetweenThreads) {
   constexpr int kItems = 1000;
   NewestQueue<int> queue(kItems);
   std::jthread filling([&] {

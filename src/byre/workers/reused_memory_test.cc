@@ -13,7 +13,7 @@ namespace {
 
 using testing::Each;
 
-TEST(ReusedMemory, IsHandedOutAgain) {
+TEST(ReusedMemory, IsReused) {
   void* const first = take_reused_memory(1000);
   give_reused_memory(first, 1000);
   EXPECT_EQ(take_reused_memory(900), first) << "blocks of about the same size take each other's place";
@@ -23,7 +23,7 @@ TEST(ReusedMemory, IsHandedOutAgain) {
   give_reused_memory(second, 1000);
 }
 
-TEST(ReusedMemory, IsNeverSmallerThanAskedFor) {
+TEST(ReusedMemory, HasAtLeastTheRequestedSize) {
   constexpr std::size_t kMost = 3 << 20;
   for (std::size_t bytes = 1; bytes < kMost; bytes = bytes * 3 + 1) {
     give_reused_memory(take_reused_memory(bytes), bytes);
@@ -32,7 +32,7 @@ TEST(ReusedMemory, IsNeverSmallerThanAskedFor) {
   }
 }
 
-TEST(ReusedMemory, HoldsListsThatGoFromThreadToThread) {
+TEST(ReusedMemory, BacksListsThatMoveBetweenThreads) {
   ReusedVector<int> made;
   std::thread([&] {
     ReusedVector<int> numbers(5000);
@@ -45,7 +45,7 @@ TEST(ReusedMemory, HoldsListsThatGoFromThreadToThread) {
   EXPECT_EQ(std::accumulate(copy.begin(), copy.end(), 0), 4999 * 5000 / 2);
 }
 
-TEST(ReusedMemory, HoldsListsThatOutliveItsStore) {
+TEST(ReusedMemory, BacksListsThatOutliveItsStore) {
   std::thread([] {
     thread_local ReusedVector<int> outlives;  // constructed before the store, hence destroyed after it
     outlives.assign(1000, 1);

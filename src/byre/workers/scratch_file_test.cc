@@ -51,7 +51,7 @@ constexpr bool kMemoryIsTold = false;
 constexpr bool kMemoryIsTold = true;
 #endif
 
-TEST(ScratchFile, HoldsWhatIsPutIntoIt) {
+TEST(ScratchFile, ReturnsStoredContent) {
   ScratchFile file;
   std::vector<std::shared_ptr<const std::byte>> pieces;
   for (unsigned i = 0; i < 400; ++i) pieces.push_back(file.put(pattern(200000 + i, i)));
@@ -63,7 +63,7 @@ TEST(ScratchFile, HoldsWhatIsPutIntoIt) {
   }
 }
 
-TEST(ScratchFile, TellsWhetherItHoldsAnAddress) {
+TEST(ScratchFile, ReportsWhetherItContainsAnAddress) {
   ScratchFile file;
   const auto piece = file.put(pattern(10, 1));
   EXPECT_TRUE(file.holds(piece.get()));
@@ -72,7 +72,7 @@ TEST(ScratchFile, TellsWhetherItHoldsAnAddress) {
   EXPECT_NE(file.put({}), nullptr);
 }
 
-TEST(ScratchFile, StaysAsLongAsAPieceIsHeld) {
+TEST(ScratchFile, LivesAsLongAsAnyPiece) {
   std::shared_ptr<const std::byte> piece;
   {
     ScratchFile file;
@@ -81,7 +81,7 @@ TEST(ScratchFile, StaysAsLongAsAPieceIsHeld) {
   EXPECT_TRUE(are(pattern(1000, 7), piece));
 }
 
-TEST(ScratchFile, TakesNoMemoryForWhatNobodyLooksAt) {
+TEST(ScratchFile, UsesNoMemoryForUnaccessedPieces) {
   if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
   ScratchFile file;
   std::vector<std::shared_ptr<const std::byte>> pieces;
@@ -96,7 +96,7 @@ TEST(ScratchFile, TakesNoMemoryForWhatNobodyLooksAt) {
 }
 
 // byre node locks its memory on request.
-TEST(ScratchFile, TakesNoMemoryEitherInAProgramThatLocksItsMemory) {
+TEST(ScratchFile, UsesNoMemoryInAProgramWithLockedMemory) {
   if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
   if (mlockall(MCL_FUTURE | MCL_ONFAULT) != 0) GTEST_SKIP() << "may not lock memory here";
   {
@@ -111,7 +111,7 @@ TEST(ScratchFile, TakesNoMemoryEitherInAProgramThatLocksItsMemory) {
   munlockall();
 }
 
-TEST(ScratchFile, TakesAPieceOfAnySize) {
+TEST(ScratchFile, AcceptsPiecesOfAnySize) {
   ScratchFile file;
   const std::vector<std::byte> small = pattern(100, 1), large = pattern(70000000, 2);
   const auto first = file.put(small), second = file.put(large), third = file.put(small);
@@ -123,7 +123,7 @@ TEST(ScratchFile, TakesAPieceOfAnySize) {
 }
 
 // Address space may be limited, and emulators keep a record of each page.
-TEST(ScratchFile, TakesNoMoreAddressesThanWhatIsHeldNeeds) {
+TEST(ScratchFile, UsesOnlyTheAddressSpaceOfLivePieces) {
   if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
   const double before = memory_now().addresses_mb;
   ScratchFile file;
@@ -132,7 +132,7 @@ TEST(ScratchFile, TakesNoMoreAddressesThanWhatIsHeldNeeds) {
   EXPECT_LT(memory_now().addresses_mb, before + 200.0);
 }
 
-TEST(ScratchFile, GivesTheRoomOfWhatNobodyHoldsBackToTheDisk) {
+TEST(ScratchFile, ReturnsDiskSpaceOfReleasedPieces) {
   ScratchFile file;
   const std::vector<std::byte> bytes = pattern(1000000, 5);
   auto kept = file.put(bytes), dropped = file.put(bytes);
@@ -142,7 +142,7 @@ TEST(ScratchFile, GivesTheRoomOfWhatNobodyHoldsBackToTheDisk) {
   EXPECT_TRUE(are(bytes, kept));
 }
 
-TEST(ScratchFile, IsLookedAtWhileMoreIsPutIntoIt) {
+TEST(ScratchFile, IsReadableDuringWrites) {
   ScratchFile file;
   const std::vector<std::byte> bytes = pattern(300000, 9);
   const auto piece = file.put(bytes);
@@ -179,7 +179,7 @@ class FullDisk {
   void (*handler_)(int) = nullptr;
 };
 
-TEST(ScratchFile, TakesNoMoreOnceTheDiskIsFull) {
+TEST(ScratchFile, RejectsPiecesOnceTheDiskIsFull) {
   ScratchFile file;
   const auto piece = file.put(pattern(100, 1));
   ASSERT_NE(piece, nullptr);
@@ -191,7 +191,7 @@ TEST(ScratchFile, TakesNoMoreOnceTheDiskIsFull) {
   EXPECT_TRUE(are(pattern(100, 1), piece));
 }
 
-TEST(ScratchFile, LiesWhereItCanWhenTheFolderThatIsToldIsNone) {
+TEST(ScratchFile, FallsBackToAnotherFolder) {
   const char* const told = std::getenv("TMPDIR");
   const std::optional<std::string> before = told ? std::optional<std::string>(told) : std::nullopt;
   setenv("TMPDIR", "/absent", 1);

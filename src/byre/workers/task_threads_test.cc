@@ -22,7 +22,7 @@ TEST_P(TaskThreadsOf, RunEachTaskOnce) {
   }
 }
 
-TEST_P(TaskThreadsOf, ThrowWhatATaskThrewAndGoOn) {
+TEST_P(TaskThreadsOf, ThrowTheExceptionOfATaskAndContinue) {
   TaskThreads threads(GetParam());
   EXPECT_THROW(threads.run(5,
                            [](int i) {
@@ -48,7 +48,7 @@ TEST_P(TaskThreadsOf, RunEachTaskOnceOnAShift) {
 
 INSTANTIATE_TEST_SUITE_P(Helpers, TaskThreadsOf, testing::Values(0, 1, 3));
 
-TEST(TaskThreads, WorkSideBySide) {
+TEST(TaskThreads, RunConcurrently) {
   TaskThreads threads(1);
   std::atomic<int> waiting = 0;
   // Each task ends once the other has started, which never happens on one thread.

@@ -31,13 +31,13 @@ class WorkerOnEveryExecutor : public ::testing::TestWithParam<WorkerExecutor> {
   Text worker_{GetParam().make()};
 };
 
-TEST_P(WorkerOnEveryExecutor, HasNothingToGiveAtFirst) {
+TEST_P(WorkerOnEveryExecutor, HasNoResultAtFirst) {
   EXPECT_TRUE(worker_.idle());
   EXPECT_FALSE(worker_.collect());
   EXPECT_FALSE(worker_.finish());
 }
 
-TEST_P(WorkerOnEveryExecutor, HandsOverEveryResultOnceAndInTurn) {
+TEST_P(WorkerOnEveryExecutor, ReturnsEveryResultOnceAndInOrder) {
   for (const std::string text : {"one", "two", "three"}) {
     worker_.start([text] { return text; });
     EXPECT_FALSE(worker_.idle());
@@ -50,7 +50,7 @@ TEST_P(WorkerOnEveryExecutor, HandsOverEveryResultOnceAndInTurn) {
   }
 }
 
-TEST_P(WorkerOnEveryExecutor, FinishesTheJobInFlight) {
+TEST_P(WorkerOnEveryExecutor, FinishesTheRunningJob) {
   worker_.start([] { return std::string("last"); });
   const auto finished = worker_.finish();
   ASSERT_TRUE(finished);
@@ -58,7 +58,7 @@ TEST_P(WorkerOnEveryExecutor, FinishesTheJobInFlight) {
   EXPECT_TRUE(worker_.idle());
 }
 
-TEST_P(WorkerOnEveryExecutor, WorksOnAfterAnException) {
+TEST_P(WorkerOnEveryExecutor, ContinuesAfterAnException) {
   worker_.start([]() -> std::string { throw std::runtime_error("broken job"); });
   EXPECT_THROW(collect_when_ready(worker_), std::runtime_error);
   worker_.start([] { return std::string("whole"); });
@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Of, WorkerOnEveryExecutor,
                                            WorkerExecutor{"Live", [] { return make_live_executor(); }}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(Worker, HandsAResultOverInTheFrameThatAPacedExecutorSays) {
+TEST(Worker, ReturnsAResultInTheFrameOfThePacedExecutor) {
   Worker<int> worker(make_paced_executor(3));
   worker.start([] { return 7; });
   EXPECT_FALSE(worker.collect());
@@ -83,7 +83,7 @@ TEST(Worker, HandsAResultOverInTheFrameThatAPacedExecutorSays) {
   EXPECT_EQ(finished->result, 7);
 }
 
-TEST(Worker, DoesNotWaitForALiveJobThatRuns) {
+TEST(Worker, DoesNotWaitForARunningLiveJob) {
   Worker<int> worker(make_live_executor());
   std::promise<void> may_end;
   worker.start([end = may_end.get_future().share()] {
@@ -97,7 +97,7 @@ TEST(Worker, DoesNotWaitForALiveJobThatRuns) {
 }
 
 // A result may itself be empty, such as that of an unsuccessful search.
-TEST(Worker, TellsAnEmptyResultFromNone) {
+TEST(Worker, DistinguishesAnEmptyResultFromNone) {
   Worker<std::optional<int>> worker(make_inline_executor());
   worker.start([] { return std::optional<int>(); });
   const auto finished = worker.collect();
