@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kRecording = "tum/freiburg1_rpy";
 
-TEST(DepthCameraInFreiburg1, FollowsEveryFrameInMetresThoughFewHaveDepth) {
+TEST(DepthCameraInFreiburg1, TracksEveryFrameInMetresWithSparseDepth) {
   const auto folder = find_recording(kRecording);
   if (!folder) GTEST_SKIP() << missing(kRecording);
   const MappedRecording mapped = map_recording(*folder, {}, make_paced_executor(4), {.camera = CameraChoice::rgbd});

@@ -131,7 +131,7 @@ class DeskMissions : public testing::Test {
   }
 };
 
-TEST_F(DeskMissions, FindOutTheShutterAndFollowATurnOnTheMap) {
+TEST_F(DeskMissions, EstimateTheShutterAndTrackATurnOnTheMap) {
   const double readout_time = desk().map->recordings().front().present_calibration().readout_time;
   EXPECT_GT(readout_time, 0.015);
   EXPECT_LT(readout_time, 0.035);
@@ -139,7 +139,7 @@ TEST_F(DeskMissions, FindOutTheShutterAndFollowATurnOnTheMap) {
   EXPECT_LT(error_in_map(hybrid().causal), 0.022);
 }
 
-TEST_F(DeskMissions, FollowATurnOnTheMapNoWorseThanByLocalisingAlone) {
+TEST_F(DeskMissions, TrackATurnNoWorseThanLocalisationAlone) {
   const Poses localised = fly(desk().map, false);
   const double by_hybrid = error_in_map(at_times_of(localised.causal, hybrid().causal));
   const double alone = error_in_map(at_times_of(hybrid().causal, localised.causal));
@@ -147,7 +147,7 @@ TEST_F(DeskMissions, FollowATurnOnTheMapNoWorseThanByLocalisingAlone) {
   EXPECT_LE(by_hybrid, kAsGood * alone) << "of " << localised.causal.size() << " poses";
 }
 
-TEST_F(DeskMissions, FollowATurnOnTheMapNoWorseThanWithoutOne) {
+TEST_F(DeskMissions, TrackATurnNoWorseThanWithoutAMap) {
   const Poses without = fly(nullptr, true);
   ASSERT_GT(without.final.size(), 100);
   const double by_hybrid = error_of_shape(at_times_of(without.final, hybrid().final));

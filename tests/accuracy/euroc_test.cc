@@ -46,23 +46,23 @@ TEST_F(EurocMh01, EveryFrameHasAPose) {
   EXPECT_EQ(frames_without_pose(inline_run()), 0);
 }
 
-TEST_F(EurocMh01, FinalTrajectoryIsTrueToMillimetres) {
+TEST_F(EurocMh01, FinalTrajectoryIsAccurateToMillimetres) {
   EXPECT_LE(final_error(inline_run()), 0.0046);
   EXPECT_LE(position_error(inline_run().final, truth_, corrected_clock()), 0.0033);
 }
 
-TEST_F(EurocMh01, CausalTrajectoryIsHardlyWorse) {
+TEST_F(EurocMh01, CausalTrajectoryIsNearlyAsAccurate) {
   EXPECT_EQ(inline_run().causal.size(), 300);
   EXPECT_LE(position_error(inline_run().causal, truth_), 0.006);
 }
 
-TEST_F(EurocMh01, InlineMappingGivesTheSameBytesAgain) {
+TEST_F(EurocMh01, InlineMappingIsDeterministic) {
   const MappedRecording again = map_all(make_inline_executor());
   EXPECT_TRUE(written(again.final) == written(inline_run().final));
   EXPECT_TRUE(written(again.causal) == written(inline_run().causal));
 }
 
-TEST_F(EurocMh01, PacedMappingGivesTheSameBytesAgainAndIsHardlyWorse) {
+TEST_F(EurocMh01, PacedMappingIsDeterministicAndNearlyAsAccurate) {
   const MappedRecording once = map_all(make_paced_executor(kLatency));
   const MappedRecording again = map_all(make_paced_executor(kLatency));
   EXPECT_TRUE(written(again.final) == written(once.final));
@@ -72,13 +72,13 @@ TEST_F(EurocMh01, PacedMappingGivesTheSameBytesAgainAndIsHardlyWorse) {
 }
 
 // Frames are fed without pause, faster than the camera's rate.
-TEST_F(EurocMh01, LiveMappingIsHardlyWorse) {
+TEST_F(EurocMh01, LiveMappingIsNearlyAsAccurate) {
   const MappedRecording live = map_all(make_live_executor());
   EXPECT_EQ(frames_without_pose(live), 0);
   EXPECT_LE(final_error(live), 1.5 * final_error(inline_run()));
 }
 
-TEST_F(EurocMh01, EveryThirdFrameIsEnough) {
+TEST_F(EurocMh01, EveryThirdFrameSuffices) {
   FrameRange range;
   range.stride = 3;
   const MappedRecording mapped = map_recording(*find_recording(kRecordingName), range, make_inline_executor());

@@ -34,7 +34,7 @@ TEST_F(Kitti00, EveryFrameHasAPose) {
 
 // Evaluates frames 17 to 38 only, where the truth is smooth. Its first 17 poses have a constant step of 0.859 m,
 // although the images show an acceleration from 0.68 m per frame, and it jumps at frames 39 to 45.
-TEST_F(Kitti00, FinalTrajectoryIsTrueToCentimetresWhereTheTruthIsSmooth) {
+TEST_F(Kitti00, FinalTrajectoryIsAccurateToCentimetresOnSmoothTruth) {
   ASSERT_EQ(frames_without_pose(inline_run()), 0);
   EXPECT_LE(position_error(part(inline_run().final, 17, 38), load_truth(*find_recording(kSequence))), 0.03);
 }

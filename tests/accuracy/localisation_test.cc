@@ -91,7 +91,7 @@ class LocalisationInV101 : public testing::Test {
   }
 };
 
-TEST_F(LocalisationInV101, FindsNineInTenOfTheFramesBetweenMappedOnesAndNoneFarOff) {
+TEST_F(LocalisationInV101, LocatesNineInTenFramesAndNoneFarOff) {
   for (const std::size_t mapped : {0u, 1u}) {
     const KnownPlace place(map_from_poses({all().rig}, half(mapped), {}));
     const std::vector<PosedFrame> wanted = half(1 - mapped);
@@ -108,7 +108,7 @@ TEST_F(LocalisationInV101, FindsNineInTenOfTheFramesBetweenMappedOnesAndNoneFarO
   }
 }
 
-TEST_F(LocalisationInV101, RefusesFramesOfTheHall) {
+TEST_F(LocalisationInV101, RejectsFramesOfTheHall) {
   if (!find_recording(kHall)) GTEST_SKIP() << missing(kHall);
   FrameRange range;
   range.stride = 5;
@@ -117,7 +117,7 @@ TEST_F(LocalisationInV101, RefusesFramesOfTheHall) {
   for (const PosedFrame& frame : hall.frames) EXPECT_FALSE(even_half().find(frame.frame, hall.rig).tracked);
 }
 
-TEST_F(LocalisationInV101, RefusesPicturesOfOtherPlaces) {
+TEST_F(LocalisationInV101, RejectsImagesOfOtherPlaces) {
   if (!find_recording(kElsewhere)) GTEST_SKIP() << missing(kElsewhere);
   Calibration camera = open_recording(*find_recording(kSparse), {})->calibration();
   camera.right.reset();
@@ -135,7 +135,7 @@ TEST_F(LocalisationInV101, RefusesPicturesOfOtherPlaces) {
   EXPECT_GT(looked_for, 100);
 }
 
-TEST(LocalisationInMh01, FindsTheSecondHalfOfAFlightInTheFirst) {
+TEST(LocalisationInMh01, LocatesTheSecondHalfOfAFlightInTheFirst) {
   if (!find_recording(kHall)) GTEST_SKIP() << missing(kHall);
   FrameRange first, second;
   first.last = 150;

@@ -39,7 +39,7 @@ std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
   return result;
 }
 
-TEST(OneCameraInMh01, BeginsWithinTwoSecondsAndFollowsEveryFrameToMillimetres) {
+TEST(OneCameraInMh01, StartsWithinTwoSecondsAndTracksEveryFrameToMillimetres) {
   const auto folder = find_recording("euroc/MH_01_easy");
   if (!folder) GTEST_SKIP() << missing("euroc/MH_01_easy");
   const auto recording = open_recording(*folder, {}, {.camera = CameraChoice::left});
@@ -90,14 +90,14 @@ class TurnOnTheSpot : public testing::Test {
   static inline const RenderedRoom kRoom{RenderedRoomOptions{}};
 };
 
-TEST_F(TurnOnTheSpot, BeginsNoMapAndSaysWhy) {
+TEST_F(TurnOnTheSpot, StartsNoMapAndReportsWhy) {
   Session session = session_of(rig_of(left_alone(kCalibration)));
   const auto reports = run(session, left_alone(kCalibration), turn(0.0));
   EXPECT_THAT(has_pose(reports), Each(false));
   EXPECT_GT(std::ranges::count(reports, TwoViewFailure::rotation_only, &FrameReport::start_failure), kTurnFrames / 2);
 }
 
-TEST_F(TurnOnTheSpot, IsFollowedFrameByFrameOnAStereoMap) {
+TEST_F(TurnOnTheSpot, IsTrackedFrameByFrameOnAStereoMap) {
   Session mapping = session_of(rig_of(kCalibration));
   run(mapping, kCalibration, turn(0.0));
   mapping.finish();

@@ -37,7 +37,7 @@ TEST_F(RenderedRoomRecording, EveryFrameHasAPose) {
   EXPECT_EQ(frames_without_pose(mapped_), 0);
 }
 
-TEST_F(RenderedRoomRecording, TrajectoriesAreTrueToMillimetres) {
+TEST_F(RenderedRoomRecording, TrajectoriesAreAccurateToMillimetres) {
   const Trajectory truth = load_truth(folder_);
   EXPECT_LE(position_error(mapped_.final, truth), 0.0035);
   EXPECT_LE(position_error(mapped_.causal, truth), 0.0035);

@@ -78,7 +78,7 @@ std::string times_that_it_says(const std::string& text, const std::string& what)
   return std::to_string(count);
 }
 
-TEST_F(LiveCamera, IsListedWithWhatItOffers) {
+TEST_F(LiveCamera, IsListedWithItsFormats) {
   plug_in(room(), {});
   const Outcome outcome = run("camera list " + kLeft);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -86,7 +86,7 @@ TEST_F(LiveCamera, IsListedWithWhatItOffers) {
                                     HasSubstr("of the start of exposure"), HasSubstr("H.264; byre does not read it")));
 }
 
-TEST_F(LiveCamera, ThatIsNoneIsRefused) {
+TEST_F(LiveCamera, RejectsAMissingCamera) {
   plug_in(room(), {});
   for (const std::string device : {"/dev/video-stand-in-none", "/dev/null", "/dev"}) {
     const Outcome outcome = run("camera show " + device);
@@ -98,7 +98,7 @@ TEST_F(LiveCamera, ThatIsNoneIsRefused) {
   EXPECT_THAT(run("camera show " + kLeft + " " + kLeft).errors, HasSubstr("end the other program"));
 }
 
-TEST_F(LiveCamera, IsLookedAt) {
+TEST_F(LiveCamera, IsShown) {
   plug_in(room(), {{"SPEED", "2"}});
   const Outcome outcome = run("camera show " + kLeft + " " + kRight + " --duration 0.8 -o still.png");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -134,7 +134,7 @@ TEST_F(LiveCamera, IsRecordedInFormatsOfOtherCameras) {
   }
 }
 
-TEST_F(LiveCamera, IsRecordedAsRealCamerasTookIt) {
+TEST_F(LiveCamera, IsRecordedFromRealCameraStreams) {
   const fs::path name = "euroc/MH_01_easy";
   const auto recording = find_recording(name);
   if (!recording) GTEST_SKIP() << missing(name);
@@ -145,7 +145,7 @@ TEST_F(LiveCamera, IsRecordedAsRealCamerasTookIt) {
   expect_same("walk", *recording, 100, 60);
 }
 
-TEST_F(LiveCamera, TellsWhatWasLostAndDamaged) {
+TEST_F(LiveCamera, ReportsLostAndDamagedFrames) {
   plug_in(room(), {{"SPEED", "0"}, {"LOSE", "left:5,left:6,right:20"}, {"DAMAGE", "left:30"}});
   const Outcome outcome =
       run("camera record " + kLeft + " " + kRight + " -o walk --frames 37 --calibration calibration.yaml");
@@ -156,7 +156,7 @@ TEST_F(LiveCamera, TellsWhatWasLostAndDamaged) {
   EXPECT_THAT(outcome.output, HasSubstr("36; 1 left images and 3 right ones alone"));
 }
 
-TEST_F(LiveCamera, PairsStampsWithinTheLimitAlone) {
+TEST_F(LiveCamera, PairsStampsWithinTheLimitOnly) {
   plug_in(room(), {{"SPEED", "0"}, {"SKEW", "right:4000"}});
   EXPECT_THAT(run("camera record " + kLeft + " " + kRight + " -o near --frames 30").output,
               HasSubstr("30, 30 of them pairs"));
@@ -165,7 +165,7 @@ TEST_F(LiveCamera, PairsStampsWithinTheLimitAlone) {
   EXPECT_THAT(far.errors, HasSubstr("left and right images are 4.0 ms apart"));
 }
 
-TEST_F(LiveCamera, GoesOnAfterItWasUnplugged) {
+TEST_F(LiveCamera, ContinuesAfterUnplugging) {
   plug_in(room(), {{"SPEED", "1"}, {"UNPLUG", "right:8:400"}});
   const Outcome outcome =
       run("camera record " + kLeft + " " + kRight + " -o walk --duration 1.9 --calibration calibration.yaml");
@@ -221,7 +221,7 @@ void expect_same_path(const Trajectory& live, const Trajectory& played, double t
   EXPECT_LT(worst, tolerance);
 }
 
-TEST_F(LiveCamera, IsTrackedOnAMapAsItsRecordingIs) {
+TEST_F(LiveCamera, IsTrackedLikeItsRecording) {
   const fs::path name = "euroc/MH_01_easy";
   const auto real = find_recording(name);
   const fs::path played = real ? *real : room();
@@ -253,7 +253,7 @@ TEST_F(LiveCamera, IsMappedUntilCtrlC) {
   EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    left out"));
 }
 
-TEST_F(LiveCamera, NeedsTheCalibrationOfItself) {
+TEST_F(LiveCamera, RequiresItsOwnCalibration) {
   plug_in(room(), {});
   EXPECT_EQ(run("run --live " + kLeft).exit_code, 2);
   EXPECT_EQ(run("run").exit_code, 2);

@@ -56,7 +56,7 @@ void expect_same_positions(const ColmapModel& model, const ColmapModel& original
   }
 }
 
-TEST_F(ColmapProgram, FindsInAnExportedModelWhatTheMapHolds) {
+TEST_F(ColmapProgram, ReadsTheContentOfTheMapFromAnExportedModel) {
   const Map map = load_map(folder_ / "room.byre").map;
   const std::vector<PointId> ids = map.point_ids();
   const auto points = std::ranges::count_if(ids, [&map](PointId id) { return map.observations(id).size() >= 2; });
@@ -68,7 +68,7 @@ TEST_F(ColmapProgram, FindsInAnExportedModelWhatTheMapHolds) {
   }
 }
 
-TEST_F(ColmapProgram, ConvertsAnExportedModelAndChangesNoPosition) {
+TEST_F(ColmapProgram, ConvertsAnExportedModelWithoutMovingPoints) {
   require(run("export-colmap room.byre -o binary"));
   require(run("export-colmap room.byre -o text --text"));
   make("to_text");
@@ -81,7 +81,7 @@ TEST_F(ColmapProgram, ConvertsAnExportedModelAndChangesNoPosition) {
 }
 
 // Poses and points survive the round trip. Points are matched by position because ids change.
-TEST_F(ColmapProgram, HandsBackAMapThatByreImportsWithTheSamePositions) {
+TEST_F(ColmapProgram, ReturnsAMapWithTheSamePositions) {
   require(run("export-colmap room.byre -o binary"));
   make("to_text");
   colmap("model_converter --input_path binary --output_path to_text --output_type TXT");
@@ -111,7 +111,7 @@ TEST_F(ColmapProgram, HandsBackAMapThatByreImportsWithTheSamePositions) {
 }
 
 // Bundle adjustment starts from poses and points consistent with the keypoints, so its initial cost is small.
-TEST_F(ColmapProgram, AgreesThatPointsProjectOntoTheirKeypoints) {
+TEST_F(ColmapProgram, ConfirmsThatPointsProjectOntoTheirKeypoints) {
   require(run("export-colmap room.byre -o binary"));
   make("adjusted");
   const std::string report = colmap(

@@ -40,7 +40,7 @@ double share_unchanged(const Image& before, const Image& after) {
   return static_cast<double>(same) / static_cast<double>(before.pixels.size());
 }
 
-TEST(Degradation, EveryKindGivesTheSameBytesAgainAndLeavesTheTimeAlone) {
+TEST(Degradation, EveryKindIsDeterministicAndKeepsTimes) {
   const std::vector<Degradation> all = {
       black_frames(), hand_over_the_lens(0.7), motion_blur(20.0), exposure_jumps(4, 5), blank_close_up(), haze(0.4),
       dirt(20),       contrast_loss(0.3)};
@@ -55,7 +55,7 @@ TEST(Degradation, EveryKindGivesTheSameBytesAgainAndLeavesTheTimeAlone) {
   }
 }
 
-TEST(Degradation, BlackFramesAndBlankWallsShowNothingInEitherCamera) {
+TEST(Degradation, BlackFramesAndBlankWallsAreEmptyInBothCameras) {
   const ImageFrame black = black_frames()(pair_of_images(), 0), blank = blank_close_up()(pair_of_images(), 0);
   for (const Image& image : {black.left, *black.right}) {
     EXPECT_EQ(fault_of(measure_condition(image), {}), ImageFault::dark);
@@ -93,7 +93,7 @@ TEST(Degradation, ExposureJumpsUpAndDownEveryFewSteps) {
   EXPECT_GT(measure_condition(jumps(images, 0).left).clipped, 0.3f);
 }
 
-TEST(Degradation, AHandCoversItsShareOfTheImageAndRestsThere) {
+TEST(Degradation, AHandCoversItsShareOfTheImageAndStaysThere) {
   const ImageFrame images = pair_of_images();
   const Degradation hand = hand_over_the_lens(0.7);
   const Image resting = hand(images, 10).left;
@@ -102,7 +102,7 @@ TEST(Degradation, AHandCoversItsShareOfTheImageAndRestsThere) {
   EXPECT_EQ(hand(images, 30).left.pixels, resting.pixels);
 }
 
-TEST(Degradation, AHandComesWithinAFewSteps) {
+TEST(Degradation, AHandAppearsWithinAFewSteps) {
   const ImageFrame images = pair_of_images();
   const Degradation hand = hand_over_the_lens(0.7);
   double before = 1.0;
@@ -114,7 +114,7 @@ TEST(Degradation, AHandComesWithinAFewSteps) {
   EXPECT_EQ(hand(images, 4).left.pixels, hand(images, 5).left.pixels);
 }
 
-TEST(Degradation, AHandHidesTheSceneAndLiesElsewhereInTheRightImage) {
+TEST(Degradation, AHandOccludesTheSceneAtAnotherPositionInTheRightImage) {
   ImageFrame images{{}, scene(71), scene(71)};
   const ImageFrame covered = hand_over_the_lens(0.7)(images, 10);
   ImageFrame other{{}, scene(75), scene(75)};
@@ -123,7 +123,7 @@ TEST(Degradation, AHandHidesTheSceneAndLiesElsewhereInTheRightImage) {
   EXPECT_GT(mean_difference(covered.left, *covered.right), 2.0);
 }
 
-TEST(Degradation, HazeAndLossOfContrastDrawGreyValuesTogether) {
+TEST(Degradation, HazeAndLowContrastCompressGreyValues) {
   const ImageFrame images = pair_of_images();
   const float contrast = measure_condition(images.left).contrast;
   EXPECT_NEAR(measure_condition(haze(0.4)(images, 0).left).contrast, 0.4f * contrast, 0.02f * contrast);
@@ -131,7 +131,7 @@ TEST(Degradation, HazeAndLossOfContrastDrawGreyValuesTogether) {
   EXPECT_GT(measure_condition(haze(0.4)(images, 0).left).brightness, 1.2f * measure_condition(images.left).brightness);
 }
 
-TEST(Degradation, DirtStaysWhereItIsAndDiffersBetweenTheLenses) {
+TEST(Degradation, DirtStaysInPlaceAndDiffersBetweenTheLenses) {
   const Image blank{kWidth, kHeight, std::vector<std::uint8_t>(kWidth * kHeight, 255)};
   const ImageFrame white{{}, blank, blank};
   const ImageFrame dirty = dirt(20)(white, 0);

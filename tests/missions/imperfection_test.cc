@@ -48,7 +48,7 @@ TEST(Imperfection, OfAnExactCameraChangesNothing) {
   EXPECT_EQ(told.right->right_from_left.translation, calibration.right->right_from_left.translation);
 }
 
-TEST(Imperfection, GivesTheSameBytesWhateverCameBefore) {
+TEST(Imperfection, IsIndependentOfEarlierFrames) {
   const ImageFrame images = two_textures();
   const Degradation first = imperfect_cameras(kWorn), second = imperfect_cameras(kWorn);
   first({images.time, *images.right, images.left}, 0);
@@ -59,7 +59,7 @@ TEST(Imperfection, GivesTheSameBytesWhateverCameBefore) {
   EXPECT_FALSE(first({images.time, images.left, std::nullopt}, 2).right) << "one camera stays one camera";
 }
 
-TEST(Imperfection, BlursTheCornersMoreThanTheMiddleAndMoreWhereWorn) {
+TEST(Imperfection, BlursTheCornersMoreThanTheCentreAndMoreIfWorn) {
   const ImageFrame images = two_textures();
   const auto kept = [&](const Imperfection& imperfection, double x, double y) {
     return detail(imperfect_cameras(imperfection)(images, 0).left, x, y) / detail(images.left, x, y);
@@ -69,13 +69,13 @@ TEST(Imperfection, BlursTheCornersMoreThanTheMiddleAndMoreWhereWorn) {
   EXPECT_LT(kept(kWorn, 0.0, 0.85), kept(kGood, 0.0, 0.85) - 0.05);
 }
 
-TEST(Imperfection, BrightensTheRightImageAlone) {
+TEST(Imperfection, BrightensTheRightImageOnly) {
   const ImageFrame images = two_textures(), seen = imperfect_cameras(kGood)(images, 0);
   EXPECT_NEAR(mean(seen.left), mean(images.left), 0.2);
   EXPECT_NEAR(mean(seen.right.value()), 1.02 * mean(images.right.value()) + 1.0, 0.3);
 }
 
-TEST(Imperfection, HasAnErrorOfItsOwnForEachSeedThatGrowsWithWear) {
+TEST(Imperfection, HasAnErrorPerSeedThatGrowsWithWear) {
   const Calibration calibration = euroc_like_calibration(1);
   const auto focal_error = [&](const Imperfection& imperfection) {
     return told_calibration(calibration, imperfection).left.fx - calibration.left.fx;
@@ -85,7 +85,7 @@ TEST(Imperfection, HasAnErrorOfItsOwnForEachSeedThatGrowsWithWear) {
   EXPECT_NEAR(focal_error(kWorn), 3.0 * focal_error(kGood), 1e-9);
 }
 
-TEST(Imperfection, HasADifferentNameWhereItDiffers) {
+TEST(Imperfection, HasDistinctNames) {
   EXPECT_EQ(name_of(kExact), name_of({CameraCondition::exact, 2}));
   EXPECT_EQ(name_of(kGood), "good_1");
   EXPECT_NE(name_of(kGood), name_of({CameraCondition::good, 2}));

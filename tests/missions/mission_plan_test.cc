@@ -38,7 +38,7 @@ TEST(MissionPlan, AsRecordedHasEveryFrameAtItsTime) {
   EXPECT_EQ(plan.undisturbed_from, frame_times().front());
 }
 
-TEST(MissionPlan, IsDegradedForTheSpanAlone) {
+TEST(MissionPlan, DegradesTheGivenSpanOnly) {
   const MissionPlan plan = degraded(frame_times(), {3.0, 5.0}, mark);
   EXPECT_THAT(disturbed_steps(plan), testing::SizeIs(20));
   EXPECT_EQ(disturbed_steps(plan).front(), 30);
@@ -48,11 +48,11 @@ TEST(MissionPlan, IsDegradedForTheSpanAlone) {
   EXPECT_EQ(plan.steps[49].disturb(images).left.pixels.front(), 19);
 }
 
-TEST(MissionPlan, ADegradationToTheEndIsNeverOver) {
+TEST(MissionPlan, ADegradationUntilTheEndNeverEnds) {
   EXPECT_FALSE(degraded(frame_times(), {8.0, 1000.0}, mark).undisturbed_from);
 }
 
-TEST(MissionPlan, AKidnappedRobotNoticesNothingInTheTimes) {
+TEST(MissionPlan, AKidnappingLeavesTimesContinuous) {
   const MissionPlan plan = kidnapped(frame_times(), {1.0, 3.0}, {7.0, 9.0}, 0.0);
   ASSERT_EQ(plan.steps.size(), 40);
   EXPECT_EQ(plan.steps[19].frame, 29);
@@ -64,7 +64,7 @@ TEST(MissionPlan, AKidnappedRobotNoticesNothingInTheTimes) {
   EXPECT_THAT(disturbed_steps(plan), testing::IsEmpty());
 }
 
-TEST(MissionPlan, AKidnappedRobotMayBeCarriedInTheDarkAndBack) {
+TEST(MissionPlan, AKidnappingMayBeDarkAndReturn) {
   const MissionPlan plan = kidnapped(frame_times(), {7.0, 9.0}, {1.0, 3.0}, 0.5);
   EXPECT_THAT(disturbed_steps(plan), testing::ElementsAre(15, 16, 17, 18, 19));
   EXPECT_EQ(plan.steps[20].frame, 10);

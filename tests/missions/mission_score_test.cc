@@ -40,7 +40,7 @@ MissionScore score_of(const std::vector<MissionFrame>& mission, std::optional<Ti
   return score(mission, truth_from_map(), undisturbed_from);
 }
 
-TEST(MissionScore, MeasuresInTheFrameOfTheMap) {
+TEST(MissionScore, MeasuresInTheMapFrame) {
   const MissionScore score = score_of(frames(10, Verdict::trusted, 0.03));
   EXPECT_EQ(score.frames, 10);
   EXPECT_NEAR(score.rmse, 0.03, 1e-9);
@@ -50,7 +50,7 @@ TEST(MissionScore, MeasuresInTheFrameOfTheMap) {
   EXPECT_EQ(score.longest_wrong_trust, 0.0);
 }
 
-TEST(MissionScore, TellsPosesFromTrustedOnes) {
+TEST(MissionScore, DistinguishesPosesFromTrustedPoses) {
   std::vector<MissionFrame> mission = frames(10, Verdict::degraded, 0.0);
   mission[0].report.health.verdict = Verdict::trusted;
   mission[1].report.map_from_body.reset();
@@ -58,14 +58,14 @@ TEST(MissionScore, TellsPosesFromTrustedOnes) {
   EXPECT_DOUBLE_EQ(score_of(mission).trusted, 0.1);
 }
 
-TEST(MissionScore, TimesTheLongestRowOfWrongTrust) {
+TEST(MissionScore, MeasuresTheLongestIntervalOfWrongTrust) {
   std::vector<MissionFrame> mission = frames(20, Verdict::trusted, 0.0);
   for (const int i : {3, 4, 10, 11, 12}) mission[static_cast<std::size_t>(i)] = frame(i, Verdict::trusted, 0.3);
   EXPECT_NEAR(score_of(mission).longest_wrong_trust, 0.3, 1e-9);
   EXPECT_NEAR(score_of(mission).worst_trusted_error, 0.3, 1e-9);
 }
 
-TEST(MissionScore, AWrongPoseThatIsNotTrustedDoesNoHarm) {
+TEST(MissionScore, IgnoresAWrongUntrustedPose) {
   for (const Verdict verdict : {Verdict::degraded, Verdict::untrusted}) {
     const MissionScore score = score_of(frames(10, verdict, 5.0));
     EXPECT_EQ(score.longest_wrong_trust, 0.0);
@@ -74,7 +74,7 @@ TEST(MissionScore, AWrongPoseThatIsNotTrustedDoesNoHarm) {
   }
 }
 
-TEST(MissionScore, TimesRecoveryFromWhenNothingDisturbsAnyMore) {
+TEST(MissionScore, MeasuresRecoveryFromTheEndOfTheDisturbance) {
   std::vector<MissionFrame> mission = frames(20, Verdict::untrusted, 0.0);
   for (const int i : {0, 1, 15}) mission[static_cast<std::size_t>(i)].report.health.verdict = Verdict::trusted;
   EXPECT_NEAR(score_of(mission, from_seconds(1.0)).recovery.value(), 0.5, 1e-9);
@@ -83,7 +83,7 @@ TEST(MissionScore, TimesRecoveryFromWhenNothingDisturbsAnyMore) {
   EXPECT_FALSE(score_of(mission).recovery);
 }
 
-TEST(MissionScore, NothingIsRightOnAMapOfAnotherPlace) {
+TEST(MissionScore, CountsNothingAsCorrectOnAMapOfAnotherPlace) {
   const MissionScore score = byre::score(frames(10, Verdict::trusted, 0.0), std::nullopt, std::nullopt);
   EXPECT_TRUE(std::isinf(score.worst_trusted_error));
   EXPECT_NEAR(score.longest_wrong_trust, 0.9, 1e-9);
@@ -96,7 +96,7 @@ TEST(MissionScore, CountsErrorsInsideTheBoundOfTheirCovariance) {
   EXPECT_NEAR(score_of(mission).within_bound, 8.0 / 9.0, 1e-9);
 }
 
-TEST(MissionScore, TheBoundIsThatOfTheBodysAxes) {
+TEST(MissionScore, BoundsErrorsAlongTheBodyAxes) {
   MissionFrame along = frame(5, Verdict::trusted, 0.5);
   along.report.covariance.diagonal() << 1.0, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4;
   MissionFrame across = along;
@@ -105,7 +105,7 @@ TEST(MissionScore, TheBoundIsThatOfTheBodysAxes) {
   EXPECT_EQ(score_of({across}).within_bound, 0.0);
 }
 
-TEST(MissionScore, LeavesOutWhereTheTruthIsNotKnown) {
+TEST(MissionScore, OmitsFramesWithoutTruth) {
   std::vector<MissionFrame> mission = frames(3, Verdict::trusted, 0.1);
   mission[1] = frame(1, Verdict::trusted, 9.0);
   mission[1].true_world_from_body.reset();

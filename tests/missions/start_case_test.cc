@@ -76,7 +76,7 @@ class Starts : public testing::TestWithParam<StartCase> {
   }
 };
 
-TEST_P(Starts, AreNeverTrustedAndWrongAndFindTheRobotSoon) {
+TEST_P(Starts, AreNeverWronglyTrustedAndLocaliseSoon) {
   const StartCase& start_case = GetParam();
   const KnownMap known = maps().get(start_case.map);
   const auto recording = open_recording(find(barn(start_case.mission)).value(), {}, start_case.open);

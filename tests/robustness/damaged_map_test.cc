@@ -102,7 +102,7 @@ void print(const Tally& tally, std::size_t count) {
               static_cast<double>(tally.most_allocated) / kMegabyte, 1e3 * tally.slowest);
 }
 
-TEST(DamagedMaps, AreReadAsSoundMapsOrRefused) {
+TEST(DamagedMaps, AreReadAsValidMapsOrRejected) {
   MapMutator mutator(originals(), 1);
   Tally tally;
   const std::size_t count = mutant_count();
@@ -122,7 +122,7 @@ TEST(DamagedMaps, AreReadAsSoundMapsOrRefused) {
   EXPECT_GT(tally.read_with_right_checksums, count / 100);
 }
 
-TEST(DamagedMaps, CountTheirAllocations) {
+TEST(DamagedMaps, AllocationsAreCounted) {
   const std::size_t before = allocations_so_far().bytes;
   const std::vector<int> memory(1000);
   EXPECT_GE(allocations_so_far().bytes - before, memory.size() * sizeof(int));

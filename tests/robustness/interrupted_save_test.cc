@@ -70,7 +70,7 @@ class InterruptedSave : public testing::Test {
   }
 };
 
-TEST_F(InterruptedSave, WritesSyncsRenamesAndSyncsTheFolderInThisOrder) {
+TEST_F(InterruptedSave, WritesSyncsRenamesAndSyncsTheFolderInOrder) {
   SystemCallTrace trace(folder_);
   save_map(new_map_, file_);
   EXPECT_THAT(trace.calls(),
@@ -78,7 +78,7 @@ TEST_F(InterruptedSave, WritesSyncsRenamesAndSyncsTheFolderInThisOrder) {
                                    IsCall("rename", file_), IsCall("open", folder_), IsCall("fsync", folder_)));
 }
 
-TEST_F(InterruptedSave, GoesOnWhenTheSystemWritesLessThanAsked) {
+TEST_F(InterruptedSave, ContinuesAfterShortWrites) {
   SystemCallTrace trace(folder_);
   trace.shorten_writes(10000);
   save_map(new_map_, file_);
@@ -86,7 +86,7 @@ TEST_F(InterruptedSave, GoesOnWhenTheSystemWritesLessThanAsked) {
   EXPECT_EQ(read_file(file_), new_bytes_);
 }
 
-TEST_F(InterruptedSave, LeavesTheOldMapWhenAnyStepFails) {
+TEST_F(InterruptedSave, KeepsTheOldMapIfAnyStepFails) {
   constexpr std::size_t kStepsBeforeTheNewMap = 4;  // open, write, fsync, rename
   for (std::size_t step = 0; step < kStepsBeforeTheNewMap; ++step) {
     SystemCallTrace trace(folder_);
@@ -97,7 +97,7 @@ TEST_F(InterruptedSave, LeavesTheOldMapWhenAnyStepFails) {
   }
 }
 
-TEST_F(InterruptedSave, LeavesTheNewMapWhenOnlyTheFolderCannotBeSynced) {
+TEST_F(InterruptedSave, KeepsTheNewMapIfOnlyTheFolderSyncFails) {
   for (const std::size_t step : {4, 5}) {
     save_map(old_map_, file_);
     SystemCallTrace trace(folder_);
@@ -107,7 +107,7 @@ TEST_F(InterruptedSave, LeavesTheNewMapWhenOnlyTheFolderCannotBeSynced) {
   }
 }
 
-TEST_F(InterruptedSave, LeavesTheOldMapWhenTheDiskFillsUpMidway) {
+TEST_F(InterruptedSave, KeepsTheOldMapIfTheDiskFillsUp) {
   SystemCallTrace trace(folder_);
   trace.shorten_writes(10000);
   for (const std::size_t writes_before : {1, 5, 9}) {
@@ -138,7 +138,7 @@ bool save_with_file_limit(const StoredMap& map, const fs::path& file, std::size_
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-TEST_F(InterruptedSave, LeavesTheOldMapWhenTheSystemAllowsNoLargerFile) {
+TEST_F(InterruptedSave, KeepsTheOldMapAtTheFileSizeLimit) {
   const std::size_t size = new_bytes_.size();
   for (const std::size_t limit : {std::size_t{0}, std::size_t{1}, size / 2, size - 1}) {
     EXPECT_FALSE(save_with_file_limit(new_map_, file_, limit));
@@ -184,7 +184,7 @@ void wait_until(const std::function<bool()>& holds) {
   }
 }
 
-TEST_F(InterruptedSave, LeavesAMapWhenItsProcessIsKilled) {
+TEST_F(InterruptedSave, LeavesAMapIfItsProcessIsKilled) {
   constexpr int kKills = 100;
   const auto start = std::chrono::steady_clock::now();
   save_map(old_map_, file_);

@@ -35,7 +35,7 @@ std::string refusal_with(const char* section_name, std::size_t place, std::uint3
 }
 
 // Offsets follow docs/reference/map_format.md.
-TEST(OldFormats, AreRefusedWithValuesThatNoMapHas) {
+TEST(OldFormats, RejectInvalidValues) {
   constexpr std::uint32_t kHuge = 0xfffffff0;
   EXPECT_THAT(refusal_with("patches", 0, kHuge), HasSubstr("claims 4294967280 entries"));
   EXPECT_THAT(refusal_with("patches", 4 + 268, 0), HasSubstr("has unsorted features"));
@@ -46,7 +46,7 @@ TEST(OldFormats, AreRefusedWithValuesThatNoMapHas) {
   EXPECT_THAT(refusal_with("features", 4 + 16, 0x7fc00000), HasSubstr("keypoint with invalid values"));
 }
 
-TEST(OldFormats, FirstIsReadAndWrittenInTheNewest) {
+TEST(OldFormats, ConvertTheFirst) {
   const StoredMap stored = load_map(kFormats / "format_1.byre");
   EXPECT_THAT(find_faults(stored), IsEmpty());
   EXPECT_EQ(stored.notes.at("site"), "barn 3");
@@ -56,7 +56,7 @@ TEST(OldFormats, FirstIsReadAndWrittenInTheNewest) {
   expect_to_be_written_in_the_newest(stored);
 }
 
-TEST(OldFormats, SecondIsReadAndWrittenInTheNewest) {
+TEST(OldFormats, ConvertTheSecond) {
   const StoredMap stored = load_map(kFormats / "format_2.byre");
   EXPECT_THAT(find_faults(stored), IsEmpty());
   EXPECT_EQ(stored.map.keyframe_count(), 5);
@@ -66,7 +66,7 @@ TEST(OldFormats, SecondIsReadAndWrittenInTheNewest) {
   expect_to_be_written_in_the_newest(stored);
 }
 
-TEST(OldFormats, ThirdIsReadAndWrittenInTheNewest) {
+TEST(OldFormats, ConvertTheThird) {
   const StoredMap stored = load_map(kFormats / "format_3.byre");
   EXPECT_THAT(find_faults(stored), IsEmpty());
   ASSERT_TRUE(stored.recordings.at(0).refined.has_value());
@@ -75,7 +75,7 @@ TEST(OldFormats, ThirdIsReadAndWrittenInTheNewest) {
   expect_to_be_written_in_the_newest(stored);
 }
 
-TEST(OldFormats, FourthIsReadAndWrittenInTheNewest) {
+TEST(OldFormats, ConvertTheFourth) {
   const StoredMap stored = load_map(kFormats / "format_4.byre");
   EXPECT_THAT(find_faults(stored), IsEmpty());
   EXPECT_EQ(stored.recordings.at(0).calibration.readout_time, 0.0);
@@ -90,25 +90,25 @@ void expect_the_barn(const StoredMap& stored) {
   EXPECT_EQ(stored.plan.value().plan, "barn 3, ground floor");
 }
 
-TEST(OldFormats, FifthIsReadAndWrittenInTheNewest) {
+TEST(OldFormats, ConvertTheFifth) {
   const StoredMap stored = load_map(kFormats / "format_5.byre");
   expect_the_barn(stored);
   expect_to_be_written_in_the_newest(stored);
 }
 
-TEST(OldFormats, SixthIsReadAndWrittenInTheNewest) {
+TEST(OldFormats, ConvertTheSixth) {
   const StoredMap stored = load_map(kFormats / "format_6.byre");
   expect_the_barn(stored);
   expect_to_be_written_in_the_newest(stored);
 }
 
-TEST(OldFormats, SeventhIsReadAndWrittenTheSame) {
+TEST(OldFormats, ReadAndWriteTheSeventhUnchanged) {
   const StoredMap stored = load_map(kFormats / "format_7.byre");
   expect_the_barn(stored);
   EXPECT_EQ(write_map(stored), read_file(kFormats / "format_7.byre"));
 }
 
-TEST(OldFormats, AreReadAsAWholeWhenTheyAreOpened) {
+TEST(OldFormats, AreReadCompletelyOnOpening) {
   for (const int format : {1, 2, 3, 4, 5, 6, 7}) {
     const auto file = kFormats / ("format_" + std::to_string(format) + ".byre");
     EXPECT_EQ(write_map(open_map(file)), write_map(load_map(file)));

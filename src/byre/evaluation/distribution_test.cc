@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-TEST(Distribution, TellsTheFiguresOfValuesInAnyOrder) {
+TEST(Distribution, SummarisesValuesInAnyOrder) {
   std::vector<double> values(101);
   std::iota(values.rbegin(), values.rend(), 0.0);
   const Distribution distribution = distribution_of(values);
@@ -19,7 +19,7 @@ TEST(Distribution, TellsTheFiguresOfValuesInAnyOrder) {
   EXPECT_DOUBLE_EQ(distribution.max, 100.0);
 }
 
-TEST(Distribution, IsZeroForNoValues) {
+TEST(Distribution, IsZeroWithoutValues) {
   const Distribution distribution = distribution_of({});
   EXPECT_EQ(distribution.count, 0);
   EXPECT_EQ(distribution.mean, 0.0);

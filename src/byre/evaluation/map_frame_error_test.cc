@@ -25,14 +25,14 @@ Trajectory true_path() {
   return result;
 }
 
-TEST(MapAlignment, RestsOnPosesOfTheMap) {
+TEST(MapAlignment, UsesPosesOfTheMap) {
   const MapAlignment alignment = align_to_truth(poses_of_map(4), Scale::fixed, true_path());
   EXPECT_EQ(alignment.poses, 4);
   EXPECT_NEAR(log_pose(inverse(alignment.truth_from_map.target_from_source) * kTurnedTruthFromMap).norm(), 0.0, 1e-9);
 }
 
 // Millimetres of noise across a straight path leave the rotation about it arbitrary.
-TEST(MapAlignment, TurnsAboutAStraightPathAsOrientationsDo) {
+TEST(MapAlignment, UsesOrientationsOnAStraightPath) {
   Trajectory truth, estimate;
   for (int i = 0; i < 20; ++i) {
     const Pose true_pose{rotation_exp({0.02, 0.01, 0.0}), {0.5 * i, 0.0, 0.0}};
@@ -46,12 +46,12 @@ TEST(MapAlignment, TurnsAboutAStraightPathAsOrientationsDo) {
   EXPECT_LT(rotation_log(error.rotation).norm(), 0.001);
 }
 
-TEST(MapAlignment, IsLeftOutWhereTheTruthCoversTooFewPoses) {
+TEST(MapAlignment, IsEmptyIfTheTruthCoversTooFewPoses) {
   EXPECT_EQ(align_to_truth(poses_of_map(2), Scale::fixed, true_path()).poses, 0);
   EXPECT_EQ(align_to_truth(poses_of_map(4), Scale::fixed, {}).poses, 0);
 }
 
-TEST(ErrorsInMap, AreMotionsOfTheBodyFromTheEstimateToTheTruth) {
+TEST(ErrorsInMap, AreBodyMotionsFromEstimateToTruth) {
   Vector6 delta;
   delta << 0.01, -0.02, 0.03, 0.1, 0.2, -0.1;
   const Trajectory estimate = {{from_seconds(0.5), pose_at_second(0.5)},
@@ -72,7 +72,7 @@ TEST(ErrorsInMap, AreMotionsOfTheBodyFromTheEstimateToTheTruth) {
 }
 
 // A map distorted in scale by 10 %, as by a wrong baseline, and a mission within centimetres of it.
-TEST(ErrorsBesideMap, LeaveOutWhatTheMapErrsByItself) {
+TEST(ErrorsBesideMap, ExcludeTheErrorOfTheMap) {
   Trajectory map_path, mission, path;
   for (int i = 0; i <= 20; ++i) {
     const double x = i;
@@ -92,7 +92,7 @@ TEST(ErrorsBesideMap, LeaveOutWhatTheMapErrsByItself) {
   EXPECT_NEAR(position_statistics(errors).max, 0.03, 1e-9);
 }
 
-TEST(ErrorsBesideMap, AreOfPlacesOfTheMapAlone) {
+TEST(ErrorsBesideMap, AreLimitedToPlacesOfTheMap) {
   const MapAlignment alignment = align_to_truth(poses_of_map(4), Scale::fixed, true_path());
   const Trajectory elsewhere = {{from_seconds(0.0), {Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}}}};
   EXPECT_EQ(errors_beside_map(elsewhere, elsewhere, alignment).size(), 0u);

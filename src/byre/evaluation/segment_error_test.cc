@@ -28,7 +28,7 @@ std::vector<PosePair> rounds(int count) {
 }
 
 // Reference values: a numpy transcription of KITTI's evaluate_odometry.cpp and numpy's SVD.
-TEST(SegmentErrors, AreThoseOfTheDevelopmentKit) {
+TEST(SegmentErrors, MatchTheDevelopmentKit) {
   const SegmentErrors errors = segment_errors(rounds(900), 1.0);
   EXPECT_EQ(errors.all.count, 447);
   EXPECT_NEAR(errors.all.translation, 0.016562838647187918, 1e-12);
@@ -53,14 +53,14 @@ TEST(SegmentErrors, ScaleTheEstimateFirst) {
   EXPECT_GT(segment_errors(pairs, 1.0).all.translation, 0.5);
 }
 
-TEST(SegmentErrors, AreNoneOfAShortPath) {
+TEST(SegmentErrors, AreEmptyForAShortPath) {
   const SegmentErrors errors = segment_errors(rounds(70), 1.0);
   EXPECT_EQ(errors.all.count, 0);
   EXPECT_THAT(errors.by_length, IsEmpty());
   EXPECT_EQ(segment_errors({}, 1.0).all.count, 0);
 }
 
-TEST(PrincipalSpread, IsThatOfTheSingularValues) {
+TEST(PrincipalSpread, MatchesTheSingularValues) {
   const Eigen::Vector3d spread = principal_spread(rounds(900));
   EXPECT_NEAR(spread[0], 109.50125165711464, 1e-9);
   EXPECT_NEAR(spread[1], 99.04686125541576, 1e-9);

@@ -46,7 +46,7 @@ std::vector<PosePair> pairs_of(const Trajectory& estimate, const Trajectory& tru
   return associate(estimate, truth, AssociationOptions{});
 }
 
-TEST(Summarise, GivesTheFiguresOfASmallSample) {
+TEST(Summarise, ReturnsStatisticsOfASmallSample) {
   const ErrorStatistics statistics = summarise({4.0, 1.0, 2.0, 3.0});
   EXPECT_DOUBLE_EQ(statistics.rmse, std::sqrt(7.5));
   EXPECT_DOUBLE_EQ(statistics.mean, 2.5);
@@ -56,12 +56,12 @@ TEST(Summarise, GivesTheFiguresOfASmallSample) {
   EXPECT_EQ(statistics.count, 4);
 }
 
-TEST(Summarise, IsZeroForNothing) {
+TEST(Summarise, IsZeroWithoutValues) {
   EXPECT_EQ(summarise({}).count, 0);
   EXPECT_EQ(summarise({}).rmse, 0.0);
 }
 
-TEST(Associate, InterpolatesTheTruthWithinASmallGap) {
+TEST(Associate, InterpolatesTheTruthInASmallGap) {
   Trajectory truth = straight_line(2, 1.0);
   truth[1].time = milliseconds(20);
   const Trajectory estimate = {{milliseconds(5), {}}};
@@ -71,7 +71,7 @@ TEST(Associate, InterpolatesTheTruthWithinASmallGap) {
   EXPECT_EQ(pairs[0].time, milliseconds(5));
 }
 
-TEST(Associate, TakesTheNearestSampleInALargeGapAndNoneWhereThatIsFar) {
+TEST(Associate, UsesTheNearestSampleInALargeGapIfClose) {
   const Trajectory truth = straight_line(2, 1.0);  // at 0 and 100 ms
   const Trajectory estimate = {{milliseconds(-3), {}}, {milliseconds(-2), {}}, {milliseconds(1), {}},
                                {milliseconds(50), {}}, {milliseconds(98), {}}, {milliseconds(103), {}}};
@@ -82,7 +82,7 @@ TEST(Associate, TakesTheNearestSampleInALargeGapAndNoneWhereThatIsFar) {
   EXPECT_EQ(pairs[2].true_world_from_body.translation.x(), 1.0);
 }
 
-TEST(Associate, InterpolatesAcrossTheGapAsked) {
+TEST(Associate, InterpolatesAcrossTheGapOnRequest) {
   const Trajectory truth = straight_line(2, 1.0);
   AssociationOptions options;
   options.max_gap = milliseconds(100);
@@ -101,12 +101,12 @@ TEST(Associate, AddsTheTimeOffsetToTheTruth) {
   EXPECT_LT(absolute_trajectory_error(pairs, Scale::fixed)->translation.max, 1e-9);
 }
 
-TEST(Associate, OfNothingIsNothing) {
+TEST(Associate, IsEmptyForEmptyTrajectories) {
   EXPECT_TRUE(pairs_of({}, helix(10)).empty());
   EXPECT_TRUE(pairs_of(helix(10), {}).empty());
 }
 
-TEST(AbsoluteTrajectoryError, IsZeroForAMovedCopy) {
+TEST(AbsoluteTrajectoryError, IsZeroForATransformedCopy) {
   const auto error = absolute_trajectory_error(pairs_of(moved(helix(200), kMotion, 1.0), helix(200)), Scale::fixed);
   ASSERT_TRUE(error.has_value());
   EXPECT_LT(error->translation.max, 1e-9);
@@ -114,7 +114,7 @@ TEST(AbsoluteTrajectoryError, IsZeroForAMovedCopy) {
   EXPECT_EQ(error->errors.size(), 200u);
 }
 
-TEST(AbsoluteTrajectoryError, IsZeroForAScaledCopyOnlyWhenScaleIsFree) {
+TEST(AbsoluteTrajectoryError, IsZeroForAScaledCopyIfTheScaleIsFree) {
   const std::vector<PosePair> pairs = pairs_of(moved(helix(200), kMotion, 0.5), helix(200));
   const auto free = absolute_trajectory_error(pairs, Scale::free);
   const auto fixed = absolute_trajectory_error(pairs, Scale::fixed);
@@ -124,7 +124,7 @@ TEST(AbsoluteTrajectoryError, IsZeroForAScaledCopyOnlyWhenScaleIsFree) {
   EXPECT_GT(fixed->translation.rmse, 0.5);
 }
 
-TEST(AbsoluteTrajectoryError, OfAShiftIsTheShiftWhenNothingIsAligned) {
+TEST(AbsoluteTrajectoryError, IsTheShiftWithoutAlignment) {
   const Pose shift{rotation_exp({10.0 * kDegree, 0.0, 0.0}), Eigen::Vector3d::Zero()};
   Trajectory estimate = straight_line(5, 1.0);
   for (StampedPose& sample : estimate) sample.world_from_body = sample.world_from_body * shift;
@@ -151,13 +151,13 @@ TEST(AbsoluteTrajectoryError, AgreesWithAHandComputedCase) {
   EXPECT_NEAR(error->translation.max, height, 1e-12);
 }
 
-TEST(AbsoluteTrajectoryError, IsEmptyWhereNoAlignmentIsDetermined) {
+TEST(AbsoluteTrajectoryError, IsEmptyWithoutADeterminedAlignment) {
   const Trajectory line = straight_line(10, 1.0);
   EXPECT_FALSE(absolute_trajectory_error(pairs_of(line, line), Scale::fixed).has_value());
   EXPECT_FALSE(absolute_trajectory_error({}, Scale::fixed).has_value());
 }
 
-TEST(RelativePoseError, DoesNotDependOnTheFrameOfTheEstimate) {
+TEST(RelativePoseError, IsIndependentOfTheFrameOfTheEstimate) {
   Trajectory estimate = helix(200);
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     estimate[i].world_from_body.translation.x() += 0.01 * std::sin(static_cast<double>(i));
@@ -170,7 +170,7 @@ TEST(RelativePoseError, DoesNotDependOnTheFrameOfTheEstimate) {
   EXPECT_NEAR(error.rotation.max, relative_pose_error_by_frame(elsewhere, 1.0).rotation.max, 1e-6);
 }
 
-TEST(RelativePoseError, SeesABodyFrameThatIsNotTheTruths) {
+TEST(RelativePoseError, DependsOnTheBodyFrame) {
   Trajectory estimate = helix(200);
   const Pose body_from_camera{rotation_exp({0.0, 0.0, 1.5}), {0.1, 0.0, 0.0}};
   for (StampedPose& sample : estimate) sample.world_from_body = sample.world_from_body * body_from_camera;
@@ -179,7 +179,7 @@ TEST(RelativePoseError, SeesABodyFrameThatIsNotTheTruths) {
   EXPECT_GT(error.rotation.rmse, 1.0);
 }
 
-TEST(RelativePoseError, OfAScaledCopyVanishesWithItsScale) {
+TEST(RelativePoseError, IsZeroForAScaledCopyWithItsScale) {
   const std::vector<PosePair> pairs = pairs_of(moved(helix(200), kMotion, 0.5), helix(200));
   EXPECT_LT(relative_pose_error_by_time(pairs, seconds(1), 2.0).translation.max, 1e-9);
   EXPECT_GT(relative_pose_error_by_time(pairs, seconds(1), 1.0).translation.rmse, 0.1);
@@ -200,7 +200,7 @@ TEST(RelativePoseError, AgreesWithAHandComputedCase) {
   EXPECT_NEAR(by_distance.rotation.max, 0.0, 1e-9);
 }
 
-TEST(RelativePoseError, GivesRotationInDegrees) {
+TEST(RelativePoseError, ReturnsRotationInDegrees) {
   Trajectory estimate = straight_line(11, 1.0);
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     estimate[i].world_from_body.rotation = rotation_exp({2.0 * kDegree * static_cast<double>(i), 0.0, 0.0});
@@ -210,7 +210,7 @@ TEST(RelativePoseError, GivesRotationInDegrees) {
   EXPECT_NEAR(relative_pose_error_by_time(pairs, milliseconds(500), 1.0).rotation.rmse, 10.0, 1e-9);
 }
 
-TEST(RelativePoseError, LeavesOutIntervalsThatNoPairSpans) {
+TEST(RelativePoseError, OmitsIntervalsWithoutAPair) {
   const std::vector<PosePair> pairs = pairs_of(straight_line(5, 0.86), straight_line(5, 0.86));
   EXPECT_EQ(relative_pose_error_by_distance(pairs, 1.0, 1.0).translation.count, 0);
   EXPECT_EQ(relative_pose_error_by_time(pairs, seconds(1), 1.0).translation.count, 0);
@@ -218,7 +218,7 @@ TEST(RelativePoseError, LeavesOutIntervalsThatNoPairSpans) {
   EXPECT_EQ(relative_pose_error_by_time({}, seconds(1), 1.0).translation.count, 0);
 }
 
-TEST(RelativePoseError, ByDistanceSurvivesAStop) {
+TEST(RelativePoseError, ByDistanceAcceptsAStop) {
   Trajectory truth;
   for (int i = 0; i < 30; ++i) {
     const double x = 0.1 * (i < 5 ? i : std::max(5, i - 10));
@@ -248,14 +248,14 @@ TEST(CoverageOfFrames, CountsFramesWithoutAPose) {
   EXPECT_DOUBLE_EQ(coverage.share(), 0.75);
 }
 
-TEST(CoverageOfFrames, IsNoneForAnotherClock) {
+TEST(CoverageOfFrames, IsEmptyForAnotherClock) {
   Trajectory estimate = helix(100);
   for (StampedPose& sample : estimate) sample.time += seconds(1000);
   EXPECT_EQ(coverage_of_frames(estimate, times_of(helix(100))).with_pose, 0);
   EXPECT_EQ(coverage_of_frames(estimate, {}).share(), 0.0);
 }
 
-TEST(CoverageOfSpan, SeesALateStartAndAGap) {
+TEST(CoverageOfSpan, CountsALateStartAndAGap) {
   Trajectory estimate = helix(101);
   estimate.erase(estimate.begin() + 50, estimate.begin() + 60);
   estimate.erase(estimate.begin(), estimate.begin() + 10);
@@ -265,7 +265,7 @@ TEST(CoverageOfSpan, SeesALateStartAndAGap) {
   EXPECT_EQ(coverage->with_pose, 81);
 }
 
-TEST(CoverageOfSpan, CountsNoPoseOutsideTheTruth) {
+TEST(CoverageOfSpan, IgnoresPosesOutsideTheTruth) {
   const Trajectory truth = helix(51);
   EXPECT_EQ(coverage_of_span(helix(101), truth, Timestamp(0))->share(), 1.0);
   EXPECT_EQ(coverage_of_span(helix(51), truth, milliseconds(1250))->with_pose, 26);

@@ -51,7 +51,7 @@ void expect_near(const Pose& actual, const Pose& expected, double tolerance) {
   EXPECT_LT(angle_between(actual.rotation, expected.rotation), tolerance);
 }
 
-TEST_F(TrajectoryFile, IsReadAsItWasWritten) {
+TEST_F(TrajectoryFile, ReadsBackWhatItWrites) {
   const Trajectory trajectory = {{Timestamp(-1'500'000'000), sample_pose(-3.0)},
                                  {Timestamp(7), sample_pose(0.5)},
                                  {Timestamp(1403636584763555584), sample_pose(2.0)}};
@@ -81,14 +81,14 @@ TEST_F(TrajectoryFile, IsWrittenInEachFormat) {
   }
 }
 
-TEST_F(TrajectoryFile, OfTumHasTheScalarOfTheQuaternionLast) {
+TEST_F(TrajectoryFile, HasTheQuaternionScalarLastInTum) {
   const Trajectory read = read_trajectory(write("tum.txt", "# time\n1.5 1 2 3 0 0 0.6 0.8\r\n"));
   ASSERT_EQ(read.size(), 1u);
   EXPECT_EQ(read[0].time, Timestamp(1'500'000'000));
   expect_near(read[0].world_from_body, {Eigen::Quaterniond(0.8, 0.0, 0.0, 0.6), {1.0, 2.0, 3.0}}, 1e-12);
 }
 
-TEST_F(TrajectoryFile, OfTumMayHaveNanosecondsAsOrbSlamWritesThem) {
+TEST_F(TrajectoryFile, AcceptsTumWithNanosecondsOfOrbSlam) {
   const fs::path path =
       write("orb.txt", "1403636579763555584.000000 1 2 3 0 0 0 1\n1403636579813555456 1 2 3 0 0 0 1\n");
   const Trajectory read = read_trajectory(path);
@@ -96,7 +96,7 @@ TEST_F(TrajectoryFile, OfTumMayHaveNanosecondsAsOrbSlamWritesThem) {
   EXPECT_EQ(read[1].time, Timestamp(1403636579813555456));
 }
 
-TEST_F(TrajectoryFile, OfEurocHasTheScalarOfTheQuaternionFirst) {
+TEST_F(TrajectoryFile, HasTheQuaternionScalarFirstInEuroc) {
   const fs::path path = write("data.csv", "#timestamp, p\n1500000000, 1, 2, 3, 0.8, 0, 0, 0.6, 9, 9, 9\r\n");
   const Trajectory read = read_trajectory(path);
   ASSERT_EQ(read.size(), 1u);
@@ -104,7 +104,7 @@ TEST_F(TrajectoryFile, OfEurocHasTheScalarOfTheQuaternionFirst) {
   expect_near(read[0].world_from_body, {Eigen::Quaterniond(0.8, 0.0, 0.0, 0.6), {1.0, 2.0, 3.0}}, 1e-12);
 }
 
-TEST_F(TrajectoryFile, OfKittiTakesItsTimesFromAnotherFile) {
+TEST_F(TrajectoryFile, ReadsTheTimesOfKittiFromAnotherFile) {
   const fs::path poses = write("00.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n");
   const Trajectory read = read_kitti_poses(poses, write("times.txt", "0.000000e+00\n1.037000e-01\n"));
   ASSERT_EQ(read.size(), 2u);
@@ -112,25 +112,25 @@ TEST_F(TrajectoryFile, OfKittiTakesItsTimesFromAnotherFile) {
   expect_near(read[1].world_from_body, {rotation_exp({0.0, 0.0, std::acos(0.0)}), {1.0, 2.0, 3.0}}, 1e-12);
 }
 
-TEST_F(TrajectoryFile, OfKittiWithoutTimesAsksForThem) {
+TEST_F(TrajectoryFile, RequiresTimesForKitti) {
   const fs::path poses = write("00.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
   EXPECT_THAT(error_of([&] { read_trajectory(poses); }), HasSubstr("no time stamps"));
   EXPECT_EQ(guess_trajectory_format(poses), TrajectoryFormat::kitti);
 }
 
-TEST_F(TrajectoryFile, OfKittiMustHaveATimeForEachPose) {
+TEST_F(TrajectoryFile, RequiresATimeForEachKittiPose) {
   const fs::path poses = write("00.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
   const fs::path times = write("times.txt", "0\n1\n");
   EXPECT_THAT(error_of([&] { read_kitti_poses(poses, times); }), HasSubstr("1 poses, but"));
 }
 
-TEST_F(TrajectoryFile, OfKittiMustHoldRotations) {
+TEST_F(TrajectoryFile, RequiresRotationsInKitti) {
   const fs::path poses = write("00.txt", "1 0 0 0 0 1 0 0 0 0 2 0\n");
   const fs::path times = write("times.txt", "0\n");
   EXPECT_THAT(error_of([&] { read_kitti_poses(poses, times); }), HasSubstr("00.txt:1: the left 3x3 part"));
 }
 
-TEST_F(TrajectoryFile, NamesTheLineOfWhatItCannotRead) {
+TEST_F(TrajectoryFile, ReportsTheLineOfAnError) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"1 0 0 0 0 0 0 1\n2 0 0 x 0 0 0 1\n", "bad.txt:2: \"x\" is not a number"},
       {"1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0\n", "bad.txt:2: has 7 columns instead of 8"},
@@ -158,12 +158,12 @@ TEST_F(TrajectoryFile, IsFoundInsideARecording) {
   EXPECT_THAT(error_of([&] { read_trajectory(folder_); }), HasSubstr("contains no ground truth"));
 }
 
-TEST_F(TrajectoryFile, ThatCannotBeWrittenIsAnError) {
+TEST_F(TrajectoryFile, ReportsAFileThatCannotBeWritten) {
   EXPECT_THAT(error_of([&] { write_trajectory({}, folder_ / "absent" / "poses.txt"); }),
               HasSubstr("cannot be written"));
 }
 
-TEST_F(TrajectoryFile, OfTimesMayBeSecondsOrNanosecondsWithCommas) {
+TEST_F(TrajectoryFile, AcceptsTimesInSecondsAndNanoseconds) {
   EXPECT_THAT(read_times(write("times.txt", "0.5\n1.5\n")),
               testing::ElementsAre(Timestamp(500'000'000), Timestamp(1'500'000'000)));
   EXPECT_THAT(read_times(write("data.csv", "#time,file\n7,7.png\n9,9.png\n")),

@@ -22,18 +22,18 @@ class RegistrationOfAnOnlineMap : public ::testing::Test {
   Mission mission_{offline_map_of(quarter_circle({})), {}};
 };
 
-TEST_F(RegistrationOfAnOnlineMap, EndsOnceThreeFramesAgree) {
+TEST_F(RegistrationOfAnOnlineMap, EndsAfterThreeConsistentFrames) {
   EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
   EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
   EXPECT_TRUE(is_registered_by(kOfflineFromOnline));
   EXPECT_FALSE(is_registered_by(kOfflineFromOnline)) << "a new test begins";
 }
 
-TEST_F(RegistrationOfAnOnlineMap, DoesNotEndWhereMostOfTheMapIsNotSeen) {
+TEST_F(RegistrationOfAnOnlineMap, DoesNotEndIfMostOfTheMapIsInvisible) {
   for (int frame = 0; frame < 20; ++frame) EXPECT_FALSE(is_registered_by(kOfflineFromOnline, view_of_room(2, 8)));
 }
 
-TEST_F(RegistrationOfAnOnlineMap, NeedsMoreEvidenceWhereMeasuredMotionContradicts) {
+TEST_F(RegistrationOfAnOnlineMap, RequiresMoreEvidenceAgainstMeasuredMotion) {
   const PlaceView three_cells = view_of_room(3, 0), ten_cells = view_of_room(10, 0);
   for (int frame = 0; frame < 5; ++frame) {
     EXPECT_FALSE(is_registered_by(kOfflineFromOnline, three_cells, {1.0, 2.0, 0.0}, kLogOddsOfCarried));
@@ -41,7 +41,7 @@ TEST_F(RegistrationOfAnOnlineMap, NeedsMoreEvidenceWhereMeasuredMotionContradict
   EXPECT_TRUE(is_registered_by(kOfflineFromOnline, ten_cells, {1.0, 2.0, 0.0}, kLogOddsOfCarried));
 }
 
-TEST_F(RegistrationOfAnOnlineMap, IsGivenUpAfterThreeFramesElsewhere) {
+TEST_F(RegistrationOfAnOnlineMap, RestartsAfterThreeFramesElsewhere) {
   is_registered_by(kOfflineFromOnline);
   is_registered_by(kOfflineFromOnline);
   for (int frame = 0; frame < 3; ++frame) EXPECT_FALSE(is_registered_by(Pose{}));
@@ -50,7 +50,7 @@ TEST_F(RegistrationOfAnOnlineMap, IsGivenUpAfterThreeFramesElsewhere) {
   EXPECT_TRUE(is_registered_by(kOfflineFromOnline));
 }
 
-TEST_F(RegistrationOfAnOnlineMap, ComparesPosesOfTheCameraAndNotOfTheOrigin) {
+TEST_F(RegistrationOfAnOnlineMap, ComparesCameraPositions) {
   const Eigen::Vector3d camera(50.0, 0.0, 0.0);
   const Eigen::Quaterniond turn = rotation_exp({0.0, 0.0, 0.005});
   const Pose about_the_camera{turn, camera - turn * camera};

@@ -24,7 +24,7 @@ Odometry started_at(const Pose& map_from_body) {
   return odometry;
 }
 
-TEST(Odometry, BeginsWhereTheBodyIs) {
+TEST(Odometry, StartsAtTheBodyPose) {
   Odometry odometry = started_at(at(5.0));
   EXPECT_THAT(odometry.odometry_from_body(), PoseNear(Pose{}, 1e-12, 1e-12));
   odometry.follow(at(6.0), {});
@@ -53,7 +53,7 @@ TEST(Odometry, FollowsTheBodyAfterACorrection) {
   EXPECT_THAT(odometry.odometry_from_body(), PoseNear(before * motion, 1e-12, 1e-12));
 }
 
-TEST(Odometry, CountsTheWayButNoCorrection) {
+TEST(Odometry, ExcludesCorrectionsFromThePathLength) {
   Odometry odometry = started_at(at(0.0));
   odometry.follow(at(1.0), {});
   odometry.correct(at(4.0));
@@ -61,7 +61,7 @@ TEST(Odometry, CountsTheWayButNoCorrection) {
   EXPECT_NEAR(odometry.travelled(), 1.5, 1e-12);
 }
 
-TEST(Odometry, GoesByWhatIsToldWhereverTheBodyIsTakenToBe) {
+TEST(Odometry, FollowsMeasuredMotionIndependentOfTheMapPose) {
   Odometry odometry = started_at(at(0.0));
   odometry.follow(at(1.0), {});
   odometry.go_by(at(0.2), at(7.0));
@@ -70,7 +70,7 @@ TEST(Odometry, GoesByWhatIsToldWhereverTheBodyIsTakenToBe) {
   EXPECT_NEAR(odometry.travelled(), 1.2, 1e-12);
 }
 
-TEST(Odometry, TakesOutWhatOfflinePointsDoToThePoseAtOnce) {
+TEST(Odometry, ExcludesStepsCausedByOfflinePoints) {
   Odometry odometry = started_at(at(0.0));
   odometry.follow(at(1.0), ahead_by(0.0));
   const Odometry::Step step = odometry.follow(at(1.5), ahead_by(0.3));  // 0.2 m by online points
@@ -81,13 +81,13 @@ TEST(Odometry, TakesOutWhatOfflinePointsDoToThePoseAtOnce) {
   EXPECT_NEAR(odometry.follow(at(1.6), ahead_by(0.3)).metres, 0.1, 1e-12);
 }
 
-TEST(Odometry, TakesASmallChangeOfOffsetForNoise) {
+TEST(Odometry, IgnoresASmallChangeOfTheOffset) {
   Odometry odometry = started_at(at(0.0));
   odometry.follow(at(1.0), ahead_by(0.0));
   EXPECT_NEAR(odometry.follow(at(1.005), ahead_by(0.005)).metres, 0.005, 1e-12);
 }
 
-TEST(Odometry, TakesWhatOnlinePointsDoNotTellForNoise) {
+TEST(Odometry, IgnoresTheOffsetOfUncertainOnlinePoints) {
   Odometry odometry = started_at(at(0.0));
   odometry.follow(at(1.0), ahead_by(0.0, 0.08));
   const Odometry::Step step = odometry.follow(at(1.1), ahead_by(-0.3, 0.08));  // few points, in the dark
@@ -95,7 +95,7 @@ TEST(Odometry, TakesWhatOnlinePointsDoNotTellForNoise) {
   EXPECT_THAT(step.smooth, PoseNear(at(1.1), 1e-12, 1e-12));
 }
 
-TEST(Odometry, ComparesNoOffsetsAcrossAGap) {
+TEST(Odometry, DoesNotCompareOffsetsAcrossAGap) {
   Odometry odometry = started_at(at(0.0));
   odometry.follow(at(1.0), ahead_by(0.0));
   odometry.remember_offset({});

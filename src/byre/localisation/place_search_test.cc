@@ -27,7 +27,7 @@ class SearchInTwinRooms : public ::testing::Test {
   const SimulatedMission mission_ = lap();
 };
 
-TEST_F(SearchInTwinRooms, ReturnsBothPlacesAndChoosesNone) {
+TEST_F(SearchInTwinRooms, ReturnsBothPlacesAndSelectsNone) {
   const PlaceSearch search = search_place(twins(), {mission_.frames[0], mission_.rig}, {});
   EXPECT_FALSE(search.found);
   EXPECT_THAT(search.places, SizeIs(2));

@@ -15,7 +15,7 @@ SimulatedMission around_a_room() {
   return simulate_mission(simulated_rig(), circling_trajectory(60, 10.0, 2.0, 1.0), {});
 }
 
-TEST(PlacesAlikeInTwinRooms, AreTheSamePlaceInTheOtherRoom) {
+TEST(PlacesAlikeInTwinRooms, IncludeTheOtherRoom) {
   const SimulatedMission mission = around_a_room();
   MappedPlace rooms = twin_rooms(mission);
   const std::size_t points_of_one_room = rooms.map.point_ids().size() / 2;
@@ -34,7 +34,7 @@ TEST(PlacesAlikeInTwinRooms, AreTheSamePlaceInTheOtherRoom) {
   EXPECT_THAT(alike[0].repeated, IsSupersetOf(seen)) << "points of the other room";
 }
 
-TEST(PlacesAlikeInOneRoom, AreNone) {
+TEST(PlacesAlikeInOneRoom, AreEmpty) {
   const SimulatedMission mission = around_a_room();
   EXPECT_THAT(places_alike(*offline_map_of(mission), true_camera_from_world(mission, 0)), IsEmpty());
 }

@@ -38,12 +38,12 @@ class RivalBeside : public ::testing::Test {
   RivalPlaces rivals_{RegistrationOptions{}};
 };
 
-TEST_F(RivalBeside, IsAsLikelyAsWhatFramesShowThere) {
+TEST_F(RivalBeside, HasTheLogOddsOfItsViews) {
   observe(0.0, shown_);
   EXPECT_NEAR(rivals_.log_odds(), open_place(shown_).log_odds(), 1e-9);
 }
 
-TEST_F(RivalBeside, IsTestedWhereTheRobotWouldBe) {
+TEST_F(RivalBeside, IsTestedAtThePredictedPose) {
   Pose tested_at;
   observe(0.0, shown_);
   rivals_.observe(camera_at(1.0), [&](const Pose& predicted) {
@@ -53,18 +53,18 @@ TEST_F(RivalBeside, IsTestedWhereTheRobotWouldBe) {
   EXPECT_NEAR(inverse(tested_at).translation.x(), 6.0, 1e-12);
 }
 
-TEST_F(RivalBeside, IsDroppedWhereItShowsNothingOfTheMap) {
+TEST_F(RivalBeside, IsDroppedIfItShowsNothingOfTheMap) {
   observe(0.0, shown_);
   for (int i = 0; i < 20; ++i) observe(0.1 * i, not_shown_);
   EXPECT_EQ(rivals_.log_odds(), kNoRivals);
 }
 
-TEST_F(RivalBeside, IsDroppedWhereItCannotBeTrackedAtFirst) {
+TEST_F(RivalBeside, IsDroppedIfTheFirstFrameIsNotTracked) {
   observe(0.0, not_shown_, false);
   EXPECT_EQ(rivals_.log_odds(), kNoRivals);
 }
 
-TEST_F(RivalBeside, IsKeptWhereNoKeyframeSawItFromNearby) {
+TEST_F(RivalBeside, IsKeptWithoutKeyframesNearby) {
   observe(0.0, shown_);
   const double before = rivals_.log_odds();
   PlaceView from_afar = not_shown_;
@@ -73,14 +73,14 @@ TEST_F(RivalBeside, IsKeptWhereNoKeyframeSawItFromNearby) {
   EXPECT_EQ(rivals_.log_odds(), before);
 }
 
-TEST_F(RivalBeside, IsOneWhereItIsProposedAgain) {
+TEST_F(RivalBeside, IsAddedOncePerPlace) {
   rivals_.propose(camera_at(0.0), camera_at(5.2), 0.0);
   rivals_.propose(camera_at(0.0), camera_at(0.2), 0.0);
   observe(0.0, shown_);
   EXPECT_NEAR(rivals_.log_odds(), open_place(shown_).log_odds(), 1e-9);
 }
 
-TEST_F(RivalBeside, RefutesAPlaceThatIsNotAcceptedByThreeFrames) {
+TEST_F(RivalBeside, RefutesAnUnacceptedPlaceAfterThreeFrames) {
   observe(0.0, shown_);
   observe(0.0, shown_);
   EXPECT_FALSE(rivals_.refute(open_place(), false));
@@ -89,7 +89,7 @@ TEST_F(RivalBeside, RefutesAPlaceThatIsNotAcceptedByThreeFrames) {
   EXPECT_FALSE(rivals_.refute(open_place(view_of_room(20, 0)), false));
 }
 
-TEST_F(RivalBeside, RefutesAnAcceptedPlaceOnlyAlongAWay) {
+TEST_F(RivalBeside, RefutesAnAcceptedPlaceOnlyAlongAPath) {
   const PlaceHypothesis accepted;
   for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
   EXPECT_FALSE(rivals_.refute(accepted, false)) << "from one spot";
@@ -97,14 +97,14 @@ TEST_F(RivalBeside, RefutesAnAcceptedPlaceOnlyAlongAWay) {
   EXPECT_TRUE(rivals_.refute(accepted, false));
 }
 
-TEST_F(RivalBeside, RefutesAPlaceFoundByAHintOnlyAlongAWay) {
+TEST_F(RivalBeside, RefutesAPlaceFoundByAHintOnlyAlongAPath) {
   for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
   EXPECT_FALSE(rivals_.refute(open_place(not_shown_), true)) << "from one spot";
   observe_along(0.5, 2.0, shown_);
   EXPECT_TRUE(rivals_.refute(open_place(not_shown_), true));
 }
 
-TEST_F(RivalBeside, KeepsTheThresholdOfTheOptionsAsTheRobotsPlace) {
+TEST_F(RivalBeside, KeepsTheThresholdWhenAdopted) {
   RegistrationOptions strict;
   strict.accept_log_odds = 100.0;
   RivalPlaces rivals(strict);
@@ -117,12 +117,12 @@ TEST_F(RivalBeside, KeepsTheThresholdOfTheOptionsAsTheRobotsPlace) {
   EXPECT_FALSE(place->is_accepted());
 }
 
-TEST_F(RivalBeside, RefutesNoPlaceWhereMuchHasChangedAtItAsWell) {
+TEST_F(RivalBeside, RefutesNoPlaceIfItHasChangedAsWell) {
   observe_along(0.0, 3.0, view_of_room(2, 4));
   EXPECT_FALSE(rivals_.refute(open_place(not_shown_), false));
 }
 
-TEST_F(RivalBeside, IsKnownWhereAFrameIsFoundThere) {
+TEST_F(RivalBeside, IsRecognisedAtALaterFrame) {
   observe(0.0, shown_);
   rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
   const Timestamp next = from_seconds(0.1);
@@ -134,14 +134,14 @@ TEST_F(RivalBeside, IsKnownWhereAFrameIsFoundThere) {
   EXPECT_EQ(rivals_.known_at(from_seconds(2.0), camera_at(5.1)), nullptr) << "too long ago";
 }
 
-TEST_F(RivalBeside, ChangesPlacesWithTheRobotsPlace) {
+TEST_F(RivalBeside, IsSwappedWithTheAdoptedPlace) {
   observe(0.0, shown_);
   rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
   rivals_.begin(from_seconds(0.1), camera_at(5.0));
   EXPECT_NEAR(rivals_.log_odds(), open_place().log_odds(), 1e-9);
 }
 
-TEST_F(RivalBeside, IsForgottenWhereAFrameIsFoundLongAfter) {
+TEST_F(RivalBeside, IsForgottenAfterALongTime) {
   observe(0.0, shown_);
   rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
   rivals_.begin(from_seconds(2.0), camera_at(5.0));

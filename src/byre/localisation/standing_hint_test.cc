@@ -13,7 +13,7 @@ PoseHint hint_at(double x) {
   return hint;
 }
 
-TEST(PoseHint, IsNearWhatLiesAndLooksAsItSays) {
+TEST(PoseHint, RequiresItsPositionAndDirection) {
   Pose pose;
   pose.translation = {4.0, 1.5, 0.0};
   EXPECT_TRUE(is_near(hint_at(5.0), pose));
@@ -22,7 +22,7 @@ TEST(PoseHint, IsNearWhatLiesAndLooksAsItSays) {
   EXPECT_FALSE(is_near(hint_at(5.0), pose)) << "the other way round";
 }
 
-TEST(StandingHint, CountsFromTheNextFrameForSoLong) {
+TEST(StandingHint, StartsWithTheNextFrameAndExpires) {
   constexpr Timestamp kSecond(1'000'000'000);
   StandingHint standing;
   standing.pass(Timestamp{});
@@ -36,7 +36,7 @@ TEST(StandingHint, CountsFromTheNextFrameForSoLong) {
   EXPECT_FALSE(standing.get());
 }
 
-TEST(StandingHint, GivesWayToAnother) {
+TEST(StandingHint, IsReplacedByAnother) {
   StandingHint standing;
   standing.give(hint_at(1.0));
   standing.give(hint_at(2.0));
@@ -44,7 +44,7 @@ TEST(StandingHint, GivesWayToAnother) {
   EXPECT_EQ(standing.get()->map_from_body.translation.x(), 2.0);
 }
 
-TEST(StandingHint, IsTakenBackByOneThatIsNotFinite) {
+TEST(StandingHint, IsWithdrawnByANonFiniteHint) {
   StandingHint standing;
   standing.give(hint_at(1.0));
   standing.give(hint_at(std::numeric_limits<double>::quiet_NaN()));

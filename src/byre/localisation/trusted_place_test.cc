@@ -5,7 +5,7 @@
 namespace byre {
 namespace {
 
-TEST(TrustedPlace, LeadsFromWhereTheRobotWasUntilThatIsForgotten) {
+TEST(TrustedPlace, ReturnsTheLastTrustedPoseUntilForgotten) {
   TrustedPlace place(2.0);
   EXPECT_FALSE(place.way_from_there());
   place.note({from_seconds(3.0), Pose{}});
@@ -16,7 +16,7 @@ TEST(TrustedPlace, LeadsFromWhereTheRobotWasUntilThatIsForgotten) {
   EXPECT_FALSE(place.way_from_there());
 }
 
-TEST(TrustedPlace, TellsEachReasonOnceUntilAPoseIsOfUse) {
+TEST(TrustedPlace, ReportsEachReasonOnceUntilATrustedPose) {
   TrustedPlace place(2.0);
   EXPECT_FALSE(place.is_news(Doubt::none, Verdict::untrusted));
   EXPECT_TRUE(place.is_news(Doubt::in_wall, Verdict::untrusted));

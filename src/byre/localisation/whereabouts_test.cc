@@ -39,7 +39,7 @@ class TrueWhereabouts : public ::testing::Test {
   const PlaceHypothesis& place() const { return whereabouts_.place(); }
 };
 
-TEST_F(TrueWhereabouts, BelievesAFindAfterTheFramesThatOptionsSay) {
+TEST_F(TrueWhereabouts, ConfirmAPoseAfterTheConfiguredFrames) {
   EXPECT_FALSE(whereabouts_.has_pose());
   note(0, true);
   EXPECT_TRUE(whereabouts_.has_pose());
@@ -52,7 +52,7 @@ TEST_F(TrueWhereabouts, BelievesAFindAfterTheFramesThatOptionsSay) {
   EXPECT_TRUE(note(static_cast<std::size_t>(frames) + 1).was_ever_believed);
 }
 
-TEST_F(TrueWhereabouts, ForgetsAFindThatIsLostBeforeItIsBelieved) {
+TEST_F(TrueWhereabouts, DropAPoseThatIsLostBeforeConfirmation) {
   note(0, true);
   note(1);
   whereabouts_.lose();
@@ -60,7 +60,7 @@ TEST_F(TrueWhereabouts, ForgetsAFindThatIsLostBeforeItIsBelieved) {
   EXPECT_TRUE(whereabouts_.trajectory().empty());
 }
 
-TEST_F(TrueWhereabouts, DoNotLetTheSmoothPoseJumpWhereAFirstFindIsForgotten) {
+TEST_F(TrueWhereabouts, KeepOdometryContinuousAfterADroppedPose) {
   note(0, true);
   note(1);
   const Pose smooth = whereabouts_.odometry().odometry_from_body();
@@ -69,14 +69,14 @@ TEST_F(TrueWhereabouts, DoNotLetTheSmoothPoseJumpWhereAFirstFindIsForgotten) {
   EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth, 1e-12, 1e-12));
 }
 
-TEST_F(TrueWhereabouts, KeepsWhatWasBelievedWhenThePoseIsLost) {
+TEST_F(TrueWhereabouts, KeepConfirmedFramesWhenThePoseIsLost) {
   find_and_believe(0);
   const std::size_t frames = whereabouts_.trajectory().size();
   whereabouts_.lose();
   EXPECT_EQ(whereabouts_.trajectory().size(), frames);
 }
 
-TEST_F(TrueWhereabouts, NeedNoProofAgainWhereThePoseWasProvenAMomentAgo) {
+TEST_F(TrueWhereabouts, NeedNoNewEvidenceShortlyAfterAnAcceptedPose) {
   find_and_believe(0);
   whereabouts_.lose();
   note(6, true);
@@ -84,7 +84,7 @@ TEST_F(TrueWhereabouts, NeedNoProofAgainWhereThePoseWasProvenAMomentAgo) {
   EXPECT_TRUE(place().is_accepted());
 }
 
-TEST_F(TrueWhereabouts, GoOnAsTheRobotMoved) {
+TEST_F(TrueWhereabouts, PredictConstantVelocity) {
   find_and_believe(0);
   const std::size_t last = whereabouts_.trajectory().size() - 1;
   whereabouts_.tell({});
@@ -94,7 +94,7 @@ TEST_F(TrueWhereabouts, GoOnAsTheRobotMoved) {
   EXPECT_THAT(predicted, PoseNear(true_camera_from_world(mission_, last + 1), 0.01, 0.01));
 }
 
-TEST_F(TrueWhereabouts, CountTheWayOfTrackedFramesButNotOfFinds) {
+TEST_F(TrueWhereabouts, ExcludeRelocalisationsFromThePathLength) {
   EXPECT_EQ(note(0, true).step, 0.0);
   const double step = note(1).step;
   EXPECT_NEAR(step,
@@ -105,7 +105,7 @@ TEST_F(TrueWhereabouts, CountTheWayOfTrackedFramesButNotOfFinds) {
   EXPECT_NEAR(whereabouts_.odometry().travelled(), step, 1e-12);
 }
 
-TEST_F(TrueWhereabouts, MoveWithTheMap) {
+TEST_F(TrueWhereabouts, FollowMapCorrections) {
   find_and_believe(0);
   const Pose before = whereabouts_.odometry().map_from_body();
   const Pose smooth = whereabouts_.odometry().odometry_from_body();
@@ -120,7 +120,7 @@ TEST_F(TrueWhereabouts, MoveWithTheMap) {
   EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth, 1e-9, 1e-9));
 }
 
-TEST_F(TrueWhereabouts, MayBeLedBackWhileTheMotionSinceIsKnown) {
+TEST_F(TrueWhereabouts, AllowPropagationWhileTheMotionIsCertain) {
   find_and_believe(0);
   whereabouts_.tell(Pose{});
   EXPECT_FALSE(whereabouts_.may_be_led_back()) << "it has its pose";
@@ -132,7 +132,7 @@ TEST_F(TrueWhereabouts, MayBeLedBackWhileTheMotionSinceIsKnown) {
   EXPECT_FALSE(whereabouts_.may_be_led_back()) << "nobody knows where a hundred metres of wheels end";
 }
 
-TEST_F(TrueWhereabouts, AreNotWhereWheelsCannotHaveLedTo) {
+TEST_F(TrueWhereabouts, RejectAPoseBeyondTheReachOfWheels) {
   Whereabouts mapping({}, {}, {}, false);
   const auto is_out_of_reach = [&](std::size_t frame, Timestamp later = {}) {
     Frame seen = mission_.frames[frame];
@@ -149,7 +149,7 @@ TEST_F(TrueWhereabouts, AreNotWhereWheelsCannotHaveLedTo) {
   EXPECT_TRUE(is_out_of_reach(39));
 }
 
-TEST_F(TrueWhereabouts, AreNotWhereWheelsHaveNotLedTo) {
+TEST_F(TrueWhereabouts, RejectAPoseThatContradictsWheels) {
   Whereabouts mapping({}, {}, {}, false);
   mapping.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
   mapping.note({mission_.frames[0], track_of(0), true, true, 0}, mission_.rig, map_);
@@ -174,7 +174,7 @@ TEST_F(TrueWhereabouts, AreNotWhereWheelsHaveNotLedTo) {
 }
 
 // A find that contradicts measured motion after a trusted pose.
-TEST_F(TrueWhereabouts, AreNotFoundElsewhereOnAMissionThanMeasuredMotionLeads) {
+TEST_F(TrueWhereabouts, RejectAPoseThatContradictsWheelsAfterATrustedPose) {
   whereabouts_.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
   find_and_believe(0);
   const std::size_t here = whereabouts_.trajectory().size() - 1;
@@ -201,7 +201,7 @@ TEST_F(TrueWhereabouts, AreNotFoundElsewhereOnAMissionThanMeasuredMotionLeads) {
   EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where wheels led to";
 }
 
-TEST_F(TrueWhereabouts, GoesOnByWhatIsToldUntilItIsNot) {
+TEST_F(TrueWhereabouts, PropagateMeasuredMotionUntilItEnds) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
   const Pose before = whereabouts_.odometry().map_from_body();
@@ -222,7 +222,7 @@ TEST_F(TrueWhereabouts, GoesOnByWhatIsToldUntilItIsNot) {
 }
 
 // A find that is lost before it is believed does not end the bridge before it.
-TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
+TEST_F(TrueWhereabouts, PropagateFromTheLastConfirmedPoseAfterAFalseOne) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
   const Pose before = whereabouts_.odometry().map_from_body();
@@ -242,7 +242,7 @@ TEST_F(TrueWhereabouts, GoesOnFromTheLastBelievedPoseAfterAFalseFind) {
       << "the smooth pose goes as the robot does, wherever it is taken to be";
 }
 
-TEST_F(TrueWhereabouts, ExpectASubmapToLieWhereTheBridgeLedToItsBeginning) {
+TEST_F(TrueWhereabouts, PredictTheRegistrationOfASubmapByTheBridge) {
   Pose far;
   far.translation.x() = 20.0;
   const auto begin_after = [&](std::size_t bridged_frames) {
@@ -275,7 +275,7 @@ TEST_F(TrueWhereabouts, ExpectASubmapToLieWhereTheBridgeLedToItsBeginning) {
   EXPECT_NEAR(bridged.place().log_odds(), hinted.place().log_odds() + kLogOddsOfCarried, 1e-9);
 }
 
-TEST_F(TrueWhereabouts, MeasureTheReachOfAFindFromTheLastBelievedPose) {
+TEST_F(TrueWhereabouts, MeasureTheReachFromTheLastConfirmedPose) {
   whereabouts_ = Whereabouts({.max_speed = 0.5}, {}, {}, true);
   find_and_believe(0);
   ASSERT_TRUE(place().is_accepted());
@@ -293,7 +293,7 @@ TEST_F(TrueWhereabouts, MeasureTheReachOfAFindFromTheLastBelievedPose) {
   EXPECT_EQ(place().log_odds(), kLogOddsOfCarried) << "near a find that was not believed";
 }
 
-TEST_F(TrueWhereabouts, DoubtAFindManySigmasFromWhereMeasuredMotionLed) {
+TEST_F(TrueWhereabouts, PenaliseAPoseManySigmasFromMeasuredMotion) {
   whereabouts_.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
   find_and_believe(0);
   whereabouts_.note_quality({1e-6 * Matrix6::Identity(), 1e-6 * Matrix6::Identity(), Verdict::trusted});
@@ -314,7 +314,7 @@ TEST_F(TrueWhereabouts, DoubtAFindManySigmasFromWhereMeasuredMotionLed) {
   EXPECT_EQ(log_odds_of_find(here, true), 0.0);
 }
 
-TEST_F(TrueWhereabouts, TestAPlaceAnewAfterTheLastOneWasRefuted) {
+TEST_F(TrueWhereabouts, TestAPlaceAgainAfterARefutation) {
   find_and_believe(0);
   ASSERT_TRUE(place().is_accepted());
   const std::size_t next = whereabouts_.trajectory().size();
@@ -329,7 +329,7 @@ TEST_F(TrueWhereabouts, TestAPlaceAnewAfterTheLastOneWasRefuted) {
   EXPECT_FALSE(place().is_accepted());
 }
 
-TEST_F(TrueWhereabouts, BelieveASubmapThatBeginsAtOnce) {
+TEST_F(TrueWhereabouts, ConfirmASubmapAtItsStart) {
   whereabouts_.begin({map_.keyframe_ids().front()}, 0, mission_.rig, map_);
   EXPECT_TRUE(whereabouts_.has_pose());
   EXPECT_TRUE(place().is_believed());

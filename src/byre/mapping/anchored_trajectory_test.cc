@@ -40,7 +40,7 @@ TEST_F(AnchoredFrames, MoveWithTheirKeyframes) {
 }
 
 // Odometry reports straight motion while the robot turns to the left.
-TEST_F(AnchoredFrames, TakeTheirShareOfAWayThatWasToldWrongly) {
+TEST_F(AnchoredFrames, ShareTheErrorOfMeasuredMotion) {
   AnchoredTrajectory trajectory{HindsightOptions{}};
   const Pose first = map_.camera_from_world(keyframes_[0]);
   const Timestamp step = std::chrono::milliseconds(100);
@@ -65,7 +65,7 @@ TEST_F(AnchoredFrames, TakeTheirShareOfAWayThatWasToldWrongly) {
   }
 }
 
-TEST_F(AnchoredFrames, AreToldWhereTheirSubmapLiesInTheMapFrameAlone) {
+TEST_F(AnchoredFrames, AreReturnedOnceTheirSubmapJoinsTheMapFrame) {
   submaps_.begin_in_own_frame(7);
   trajectory_.add({time_of(keyframes_[1]), keyframes_[1], Pose{}, 1});
   EXPECT_THAT(trajectory_.in_map_frame(map_, submaps_, mission_.rig), SizeIs(2));
@@ -73,7 +73,7 @@ TEST_F(AnchoredFrames, AreToldWhereTheirSubmapLiesInTheMapFrameAlone) {
   EXPECT_THAT(trajectory_.in_map_frame(map_, submaps_, mission_.rig), SizeIs(3));
 }
 
-TEST_F(AnchoredFrames, AreDroppedWhereTheyAreNotBelieved) {
+TEST_F(AnchoredFrames, AreDroppedIfUnconfirmed) {
   trajectory_.believe_all();
   trajectory_.add({time_of(keyframes_[1]), keyframes_[1], Pose{}, 0});
   EXPECT_TRUE(trajectory_.ends_in_doubt());
@@ -82,14 +82,14 @@ TEST_F(AnchoredFrames, AreDroppedWhereTheyAreNotBelieved) {
   EXPECT_FALSE(trajectory_.ends_in_doubt());
 }
 
-TEST_F(AnchoredFrames, FollowTheLengthsAroundTheirKeyframe) {
+TEST_F(AnchoredFrames, FollowTheScaleOfTheirKeyframe) {
   trajectory_.follow({{keyframes_[1], 2.0}});
   EXPECT_EQ(trajectory_[0].camera_from_keyframe, kAhead);
   EXPECT_THAT(trajectory_[1].camera_from_keyframe.translation, PointNear(2.0 * kAhead.translation, 1e-12));
   EXPECT_EQ(trajectory_[1].camera_from_keyframe.rotation.coeffs(), kAhead.rotation.coeffs());
 }
 
-TEST_F(AnchoredFrames, StayInTheirPlaceInATurnedCameraWhetherItsKeyframesTurnOrNot) {
+TEST_F(AnchoredFrames, KeepTheirPoseInARotatedCameraFrame) {
   const RigTurn turn{{rotation_exp({0.02, -0.01, 0.03}), Eigen::Vector3d::Zero()}, 0, mission_.rig};
   const Pose before = camera_from_world(map_, trajectory_[1]);
   AnchoredTrajectory together = trajectory_;
@@ -100,7 +100,7 @@ TEST_F(AnchoredFrames, StayInTheirPlaceInATurnedCameraWhetherItsKeyframesTurnOrN
   EXPECT_THAT(camera_from_world(map_, trajectory_[1]), PoseNear(turn.after_from_before * before, 1e-12, 1e-12));
 }
 
-TEST_F(AnchoredFrames, TellTheVelocityFromTheLastOfThem) {
+TEST_F(AnchoredFrames, YieldTheVelocityFromTheLastFrame) {
   const Vector6 velocity = (Vector6() << 0.1, 0.0, 1.0, 0.0, 0.2, 0.0).finished();
   const Timestamp later = trajectory_.back().time + std::chrono::milliseconds(100);
   const Pose camera_from_map = exp_pose(0.1 * velocity) * camera_from_world(map_, trajectory_.back());
@@ -108,7 +108,7 @@ TEST_F(AnchoredFrames, TellTheVelocityFromTheLastOfThem) {
   EXPECT_TRUE(trajectory_.velocity_to(trajectory_.back().time, camera_from_map, map_).isZero());
 }
 
-TEST_F(AnchoredFrames, AreThinnedOutEvenlyWhereThereAreTooManyAndNeverTheNewest) {
+TEST_F(AnchoredFrames, AreThinnedEvenlyExceptRecentOnes) {
   const TrajectoryOptions options{.max_poses = 40};
   AnchoredTrajectory trajectory({}, options);
   const Timestamp step = std::chrono::milliseconds(50);
@@ -131,7 +131,7 @@ TEST_F(AnchoredFrames, AreThinnedOutEvenlyWhereThereAreTooManyAndNeverTheNewest)
   }
 }
 
-TEST_F(AnchoredFrames, StayWhereSomebodyHoldsTheirIndexOrTheyAreNotBelieved) {
+TEST_F(AnchoredFrames, AreKeptWhileIndexedOrUnconfirmed) {
   AnchoredTrajectory trajectory({}, {.max_poses = 40});
   for (int i = 0; i < 100; ++i) trajectory.add({std::chrono::milliseconds(50 * i), keyframes_[0], kAhead, 0});
   EXPECT_EQ(trajectory.thin_out(trajectory.size()), 0u);
@@ -142,7 +142,7 @@ TEST_F(AnchoredFrames, StayWhereSomebodyHoldsTheirIndexOrTheyAreNotBelieved) {
   EXPECT_EQ(trajectory.thin_out(30 - left_out), 0u) << "all is done that may be";
 }
 
-TEST_F(AnchoredFrames, LieWhereTheKeyframeDoesThatTheyBecome) {
+TEST_F(AnchoredFrames, TakeThePoseOfTheKeyframeTheyBecome) {
   trajectory_.anchor_last_to(keyframes_[0]);
   EXPECT_EQ(trajectory_.back().keyframe, keyframes_[0]);
   EXPECT_EQ(trajectory_.back().camera_from_keyframe, Pose{});

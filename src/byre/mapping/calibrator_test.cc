@@ -23,7 +23,7 @@ class RefinedCalibrator : public ::testing::Test {
   Calibrator calibrator_{given(), {}};
 };
 
-TEST_F(RefinedCalibrator, IsOpenUntilTheFirstLook) {
+TEST_F(RefinedCalibrator, IsPendingUntilTheFirstEstimate) {
   calibrator_.note_images(false);
   EXPECT_TRUE(calibrator_.is_open());
   refine(7);
@@ -31,7 +31,7 @@ TEST_F(RefinedCalibrator, IsOpenUntilTheFirstLook) {
 }
 
 // Observed in a rendered room with a focal length 20 % too long: usual changes explain 7 and 10 keyframes, but not 13.
-TEST_F(RefinedCalibrator, IsOpenForManyKeyframesWhereImagesDidNotFitByTheOneGiven) {
+TEST_F(RefinedCalibrator, IsPendingLongerIfImagesContradictedTheGivenCalibration) {
   calibrator_.note_images(true);
   refine(7);
   calibrator_.note_images(false);

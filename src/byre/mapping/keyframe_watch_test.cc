@@ -24,7 +24,7 @@ class KeyframesWatched : public ::testing::Test {
   Frame without_disparities() const { return {mission_.frames[1].time, std::make_shared<const Features>()}; }
 };
 
-TEST_F(KeyframesWatched, CountsFramesSinceTheLastOne) {
+TEST_F(KeyframesWatched, CountsFramesSinceTheLastKeyframe) {
   for (int i = 0; i < 3; ++i) watch_.note_frame(mission_.frames[1], mission_.rig);
   EXPECT_EQ(evidence().frames_since_last, 3);
   watch_.restart();
@@ -32,7 +32,7 @@ TEST_F(KeyframesWatched, CountsFramesSinceTheLastOne) {
   EXPECT_EQ(evidence().pending, 2);
 }
 
-TEST_F(KeyframesWatched, CountsFramesWithoutDepthWithARigThatGivesDepthsOnly) {
+TEST_F(KeyframesWatched, CountsFramesWithoutDepthForRigsWithDepth) {
   watch_.note_frame(without_disparities(), mission_.rig);
   watch_.note_frame(without_disparities(), mission_.rig);
   EXPECT_EQ(evidence().without_depth, 2);
@@ -56,7 +56,7 @@ TEST_F(KeyframesWatched, KeepsTheInliersOfTheFirstFrameOfAReference) {
   EXPECT_EQ(evidence().fresh_inliers, 170);
 }
 
-TEST_F(KeyframesWatched, TellsTheTurnFromTheReference) {
+TEST_F(KeyframesWatched, MeasuresTheRotationFromTheReference) {
   EXPECT_NEAR(evidence(0.2).turn, 0.2, 1e-9);
   EXPECT_NEAR(evidence(0.2).shift_share, 0.0, 1e-9);
 }
@@ -80,7 +80,7 @@ KeyframeEvidence after_a_turn() {
   return evidence;
 }
 
-TEST(KeyframeOfACutFrame, IsNotMadeWithoutARightImageThatWasLeftOut) {
+TEST(KeyframeOfACutFrame, WaitsForTheRightImage) {
   KeyframeWatch watch;
   KeyframeEvidence evidence = after_a_turn();
   evidence.without_depth = 10 * kMaxWaitForDepth;  // as after many such frames
@@ -88,13 +88,13 @@ TEST(KeyframeOfACutFrame, IsNotMadeWithoutARightImageThatWasLeftOut) {
   EXPECT_TRUE(watch.is_short()) << "so that the next frame is seen whole";
 }
 
-TEST(KeyframeOfACutFrame, IsMadeWhereNothingWasLeftOut) {
+TEST(KeyframeOfACutFrame, IsAddedIfNothingWasCut) {
   KeyframeWatch watch;
   EXPECT_TRUE(watch.asks_for_keyframe(tracked_on(200), after_a_turn(), kNoCuts, {}));
   EXPECT_FALSE(watch.is_short());
 }
 
-TEST(KeyframeOfACutFrame, WaitsForDepthsWhereTheyWereMissing) {
+TEST(KeyframeOfACutFrame, WaitsForMissingDepths) {
   KeyframeWatch watch;
   KeyframeEvidence evidence = after_a_turn();
   evidence.without_depth = 1;
@@ -103,7 +103,7 @@ TEST(KeyframeOfACutFrame, WaitsForDepthsWhereTheyWereMissing) {
 }
 
 // The keyframe is the only link between the map from before the loss of tracking and this place.
-TEST(KeyframeOfAFoundFrame, IsMadeWhereTheWayThereWasTold) {
+TEST(KeyframeOfAFoundFrame, IsAddedAfterMeasuredMotion) {
   KeyframeEvidence nothing_new = after_a_turn();
   nothing_new.turn = 0.0;
   KeyframeWatch watch;
@@ -114,7 +114,7 @@ TEST(KeyframeOfAFoundFrame, IsMadeWhereTheWayThereWasTold) {
   EXPECT_FALSE(watch.asks_for_keyframe(tracked_on(180), nothing_new, kNoCuts, {}));
 }
 
-TEST(KeyframeOfACutFrame, IsNotAskedForByFewPointsWhereFewWereLookedFor) {
+TEST(KeyframeOfACutFrame, IsNotRequestedForFewPointsIfOnlinePointsWereCut) {
   KeyframeWatch watch;
   KeyframeEvidence evidence = after_a_turn();
   evidence.turn = 0.0;

@@ -33,7 +33,7 @@ class MapperOfAMission : public ::testing::Test {
   }
 };
 
-TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
+TEST_F(MapperOfAMission, StartsWithAStereoFrame) {
   Mapper mapper = this->mapper(make_inline_executor());
   EXPECT_FALSE(mapper.newest_keyframe());
   const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
@@ -43,7 +43,7 @@ TEST_F(MapperOfAMission, BeginsWithAStereoFrame) {
   EXPECT_GT(mapper.online().point_count(), 100);
 }
 
-TEST_F(MapperOfAMission, BeginsWithNothingThatShowsNothing) {
+TEST_F(MapperOfAMission, DoesNotStartWithAnEmptyFrame) {
   Mapper mapper = this->mapper(make_inline_executor());
   const Frame blank{mission_.frames[0].time, std::make_shared<const Features>()};
   EXPECT_THAT(mapper.begin(blank, mission_.rig, {}, AnchoredTrajectory({})).keyframes, IsEmpty());
@@ -51,7 +51,7 @@ TEST_F(MapperOfAMission, BeginsWithNothingThatShowsNothing) {
   EXPECT_EQ(mapper.revision(), 0);
 }
 
-TEST_F(MapperOfAMission, TellsByItsRevisionThatTheMapHasChanged) {
+TEST_F(MapperOfAMission, ChangesItsRevisionWithTheMap) {
   Mapper mapper = this->mapper(make_paced_executor(2));
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   const int begun = mapper.revision();
@@ -78,7 +78,7 @@ Frame with_patches(const Frame& frame, const Rig& rig) {
   return result;
 }
 
-TEST_F(MapperOfAMission, ForgetsPatchesThatNoPointNeedsOnceThirtyTwoKeyframesCame) {
+TEST_F(MapperOfAMission, DropsUnusedPatchesAfterThirtyTwoKeyframes) {
   Mapper mapper = this->mapper(make_paced_executor(1000));
   const KeyframeId first =
       mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, {}, AnchoredTrajectory({}))
@@ -102,7 +102,7 @@ TEST_F(MapperOfAMission, ForgetsPatchesThatNoPointNeedsOnceThirtyTwoKeyframesCam
   EXPECT_EQ(patches_without_point(), 0);
 }
 
-TEST_F(MapperOfAMission, PutsTheFeaturesOfOlderKeyframesIntoAFile) {
+TEST_F(MapperOfAMission, StoresTheFeaturesOfOlderKeyframesInAFile) {
   Mapper mapper = this->mapper(make_inline_executor());
   const KeyframeId first =
       mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, {}, AnchoredTrajectory({}))
@@ -124,7 +124,7 @@ TEST_F(MapperOfAMission, PutsTheFeaturesOfOlderKeyframesIntoAFile) {
   }
 }
 
-TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
+TEST_F(MapperOfAMission, KeepsKeyframesPendingWhileAJobRuns) {
   Mapper mapper = this->mapper(make_paced_executor(5));
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
@@ -134,7 +134,7 @@ TEST_F(MapperOfAMission, LeavesKeyframesPendingWhileAJobIsInFlight) {
   EXPECT_EQ(mapper.pending(), 0);
 }
 
-TEST_F(MapperOfAMission, KnowsTheWordsOfAKeyframeOnceAJobHasReadIt) {
+TEST_F(MapperOfAMission, HasTheWordsOfAKeyframeAfterAJob) {
   Mapper mapper(mission_.rig, {},
                 {make_paced_executor(1000), make_inline_executor(), /*reading=*/make_paced_executor(2)},
                 {simulated_vocabulary(), nullptr});
@@ -154,7 +154,7 @@ TEST_F(MapperOfAMission, KnowsTheWordsOfAKeyframeOnceAJobHasReadIt) {
   EXPECT_FALSE(mapper.is_read()) << "there is nothing to read for";
 }
 
-TEST_F(MapperOfAMission, ReadsAtTheEndWhatWasNotReadYet) {
+TEST_F(MapperOfAMission, ReadsRemainingKeyframesAtTheEnd) {
   Mapper mapper = this->mapper(make_inline_executor(), {simulated_vocabulary(), nullptr});
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
@@ -163,7 +163,7 @@ TEST_F(MapperOfAMission, ReadsAtTheEndWhatWasNotReadYet) {
   EXPECT_EQ(mapper.places()->size(), 2);
 }
 
-TEST_F(MapperOfAMission, CarriesACorrectionOutOnceNothingIsInFlight) {
+TEST_F(MapperOfAMission, AppliesACorrectionOnceNoJobRuns) {
   Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   EXPECT_FALSE(mapper.submaps().is_registered()) << "nobody knows yet where it lies";
@@ -190,7 +190,7 @@ SimulatedMission one_camera_circling(int frames, double laps) {
   return simulate_mission(rig, circling_trajectory(frames, 10.0, 2.0, laps), options);
 }
 
-TEST(MapperOfOneCamera, BeginsOneMap) {
+TEST(MapperOfOneCamera, StartsOneMap) {
   const SimulatedMission mission = one_camera_circling(120, 1.0);
   const Rig& rig = mission.rig;
   Mapper mapper(rig, {}, {.local = make_inline_executor()}, {});
@@ -207,7 +207,7 @@ TEST(MapperOfOneCamera, BeginsOneMap) {
 }
 
 // With odometry, a monocular map begins at the predicted pose and in the lengths of the odometry.
-TEST(MapperOfOneCamera, BeginsWhereItIsToldToBe) {
+TEST(MapperOfOneCamera, StartsAtTheGivenPose) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;
   const Pose world_from_truth{rotation_exp({0.0, 0.0, 2.0}), {1.0, 2.0, 3.0}};

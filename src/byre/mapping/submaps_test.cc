@@ -17,13 +17,13 @@ Submaps two_in_map_frame() {
   return submaps;
 }
 
-TEST(Submaps, ThatBeginInTheMapFrameShareIt) {
+TEST(Submaps, StartingInTheMapFrameShareIt) {
   const Submaps submaps = two_in_map_frame();
   EXPECT_EQ(submaps.frame(online(3)), Submaps::kMapFrame);
   EXPECT_EQ(submaps.frame(online(4)), Submaps::kMapFrame);
 }
 
-TEST(Submaps, OfTheirOwnHaveAFrameEach) {
+TEST(Submaps, StartingInTheirOwnFrameAreSeparate) {
   Submaps submaps;
   submaps.begin_in_own_frame(0);
   submaps.begin_in_own_frame(4);
@@ -31,7 +31,7 @@ TEST(Submaps, OfTheirOwnHaveAFrameEach) {
   EXPECT_EQ(submaps.frame(online(9)), submaps.frame());
 }
 
-TEST(Submaps, JoinTheMapFrameTogetherWithAllThatSharesTheirs) {
+TEST(Submaps, JoinTheMapFrameWithAllSubmapsOfTheirFrame) {
   Submaps submaps;
   submaps.begin_in_own_frame(0);
   submaps.begin_in_own_frame(4);
@@ -42,14 +42,14 @@ TEST(Submaps, JoinTheMapFrameTogetherWithAllThatSharesTheirs) {
   EXPECT_EQ(submaps.frame(online(8)), Submaps::kMapFrame);
 }
 
-TEST(Submaps, OfWhichThePresentOneLeavesTheMapFrameAlone) {
+TEST(Submaps, LeaveTheMapFrameSeparately) {
   Submaps submaps = two_in_map_frame();
   submaps.leave_map_frame();
   EXPECT_EQ(submaps.frame(online(3)), Submaps::kMapFrame);
   EXPECT_NE(submaps.frame(online(4)), Submaps::kMapFrame);
 }
 
-TEST(Submaps, ThatNeverGotAKeyframeHaveNone) {
+TEST(Submaps, WithoutKeyframeAreRemoved) {
   Submaps submaps;
   submaps.begin_in_own_frame(4);
   submaps.begin_in_map_frame(4);

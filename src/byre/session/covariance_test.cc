@@ -51,7 +51,7 @@ double share_within_bound(const std::vector<Judged>& judged) {
   return static_cast<double>(std::ranges::count_if(judged, &Judged::within_bound)) / static_cast<double>(judged.size());
 }
 
-TEST(ReportedCovariance, BoundsNineteenErrorsInTwenty) {
+TEST(ReportedCovariance, BoundsNinetyFivePercentOfErrors) {
   constexpr std::uint64_t kSeeds = 8;
   const std::vector<Trajectory> trajectories = {circling_trajectory(90, 15.0, 2.0, 0.75, robot_from_camera()),
                                                 turning_in_place_trajectory(75, 15.0, 0.75, robot_from_camera()),

@@ -99,7 +99,7 @@ int count_refusals(const std::vector<FrameReport>& reports) {
       reports, [](const FrameReport& report) { return report.has(SessionEvent::place_refused); }));
 }
 
-TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceBehindAWall) {
+TEST(PlaceBounds, RejectALookalikePlaceBehindAWall) {
   const SimulatedMission lap = lap_at(2);
   Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), false);
   const auto reports = reports_of(session, as_if_across(lap, 100));
@@ -111,14 +111,14 @@ TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceBehindAWall) {
   EXPECT_EQ(count_refusals(reports), 1) << "it is told once";
 }
 
-TEST(PlaceBounds, LetTheRobotBeFoundThereOnceItMayHaveBeenCarried) {
+TEST(PlaceBounds, AllowAPlaceBehindAWallAfterEnoughTime) {
   const SimulatedMission lap = lap_at(2);
   Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), false);
   const auto reports = reports_of(session, as_if_across(lap, 150));
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
 }
 
-TEST(PlaceBounds, LetTheRobotBeFoundWhereSomebodySaysThatItIs) {
+TEST(PlaceBounds, AllowAPlaceNearAHint) {
   const SimulatedMission lap = lap_at(2);
   Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), false);
   const std::vector<Frame> frames = as_if_across(lap, 60);
@@ -131,7 +131,7 @@ TEST(PlaceBounds, LetTheRobotBeFoundWhereSomebodySaysThatItIs) {
   }
 }
 
-TEST(PlaceBounds, LetTheRobotGoWhereADoorLeads) {
+TEST(PlaceBounds, AllowAPlaceBehindADoor) {
   const SimulatedMission lap = lap_at(2);
   Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across(1.2)), false);
   const auto reports = reports_of(session, as_if_across(lap, 60));
@@ -139,7 +139,7 @@ TEST(PlaceBounds, LetTheRobotGoWhereADoorLeads) {
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
 }
 
-TEST(PlaceBounds, KeepWhatIsMappedBesideOutOfAPlaceBehindAWall) {
+TEST(PlaceBounds, RejectRegistrationOfASubmapBehindAWall) {
   const SimulatedMission lap = lap_at(2);
   Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), true);
   const auto reports = reports_of(session, as_if_across(lap, 100));
@@ -149,7 +149,7 @@ TEST(PlaceBounds, KeepWhatIsMappedBesideOutOfAPlaceBehindAWall) {
   EXPECT_EQ(count_refusals(reports), 1);
 }
 
-TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceOffTheGround) {
+TEST(PlaceBounds, RejectALookalikePlaceOffTheGround) {
   const SimulatedMission lifted = lap_at(2, 0.6);
   Session session = session_within(map_with(lap_at(1)), false);
   const auto reports = reports_of(session, {lifted.frames.begin(), lifted.frames.begin() + 20});
@@ -160,7 +160,7 @@ TEST(PlaceBounds, RefuseWhatLooksLikeAPlaceOffTheGround) {
   EXPECT_EQ(count_refusals(reports), 1);
 }
 
-TEST(PlaceBounds, DoNotHoldACameraToTheGroundWhoseMapWasNotDriven) {
+TEST(PlaceBounds, ApplyNoGroundConstraintFromAFlownMap) {
   const SimulatedMission lifted = lap_at(2, 0.6);
   SimulationOptions options;
   const SimulatedMission flown =
@@ -171,7 +171,7 @@ TEST(PlaceBounds, DoNotHoldACameraToTheGroundWhoseMapWasNotDriven) {
   EXPECT_TRUE(std::ranges::any_of(reports, [](const FrameReport& report) { return report.map_from_body.has_value(); }));
 }
 
-TEST(PlaceBounds, DoNotHoldOtherCamerasToTheGround) {
+TEST(PlaceBounds, ApplyNoGroundConstraintToOtherCameras) {
   const SimulatedMission lifted = lap_at(2, 0.6);
   SessionOptions options;
   options.mission.bounds.is_on_ground_of_map = false;
@@ -209,7 +209,7 @@ Agreement worst_off_the_ground(bool is_planar) {
   return worst;
 }
 
-TEST(PlanarMotion, HoldsABodyToTheGroundWhereNothingIsSeen) {
+TEST(PlanarMotion, ConstrainsTheBodyToTheGroundWithoutFeatures) {
   const Agreement free = worst_off_the_ground(false), held = worst_off_the_ground(true);
   EXPECT_GT(free.translation, 0.1);
   EXPECT_GT(free.rotation, 0.05);
@@ -217,7 +217,7 @@ TEST(PlanarMotion, HoldsABodyToTheGroundWhereNothingIsSeen) {
   EXPECT_LT(held.rotation, 0.01);
 }
 
-TEST(PlanarMotion, LeavesWhatIsSeenAsItIs) {
+TEST(PlanarMotion, KeepsTrackedPoses) {
   const SimulatedMission mission = lap_at(2);
   SessionOptions options;
   options.is_planar = true;

@@ -110,7 +110,7 @@ double error_without_map(const SeenError& error) {
 
 class MissionWithCalibrationError : public ::testing::TestWithParam<SeenError> {};
 
-TEST_P(MissionWithCalibrationError, IsNoWorseForMappingBesideTheOfflineMap) {
+TEST_P(MissionWithCalibrationError, IsNoWorseWithOnlineMapping) {
   constexpr double kNoise = 0.002;  // metres, difference between two runs
   const CalibrationOutcome hybrid = mission_outcome(true, GetParam());
   const CalibrationOutcome localised = mission_outcome(false, GetParam());
@@ -136,7 +136,7 @@ Calibration calibration_of(const Rig& rig) {
   return calibration;
 }
 
-TEST(MappingWithACalibration, IsTrustedOnceThatHasBeenLookedAt) {
+TEST(MappingWithACalibration, IsTrustedOnceTheCalibrationIsChecked) {
   const SimulatedMission mission = visit(2);
   Session session(mission.rig, {}, Lanes(make_inline_executor()));
   session.refine_calibration(calibration_of(mission.rig), {});
@@ -151,7 +151,7 @@ TEST(MappingWithACalibration, IsTrustedOnceThatHasBeenLookedAt) {
 }
 
 // Jobs take several frames, in which keyframes are added.
-TEST(MappingWithACalibration, HasEveryKeyframeAsTheRefinedOneShowsIt) {
+TEST(MappingWithACalibration, RectifiesEveryKeyframeByTheRefinedCalibration) {
   const SimulatedMission mission = visit(2);
   const Calibration real = calibration_of(mission.rig);
   CalibrationVector error = CalibrationVector::Zero();

@@ -41,7 +41,7 @@ int count_pressed(const std::vector<FrameReport>& reports) {
       std::ranges::count_if(reports, [](const FrameReport& report) { return report.cuts.online_points; }));
 }
 
-TEST(Deadline, LeavesAMissionItsOfflinePoints) {
+TEST(Deadline, KeepsOfflinePointsInAMission) {
   const auto offline = offline_map_of(timed_lap(1));
   const SimulatedMission mission = timed_lap(2);
   Session session(simulated_rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
@@ -59,7 +59,7 @@ TEST(Deadline, LeavesAMissionItsOfflinePoints) {
   }
 }
 
-TEST(Deadline, LeavesMappingItsKeyframes) {
+TEST(Deadline, KeepsKeyframesInMapping) {
   const SimulatedMission mission = timed_lap(1);
   Session whole(mission.rig, {}, make_inline_executor());
   reports_of(whole, mission.frames);
@@ -75,7 +75,7 @@ TEST(Deadline, LeavesMappingItsKeyframes) {
   EXPECT_THAT(moved, PoseNear(inverse(start) * mission.truth.back().world_from_body, 0.05, 0.02));
 }
 
-TEST(Deadline, SeesAFrameWholeAfterOneThatWasLost) {
+TEST(Deadline, CutsNothingAfterALostFrame) {
   const SimulatedMission mission = timed_lap(1);
   Session session(mission.rig, {}, make_inline_executor());
   FrameBudget budget = budget_always_spent();

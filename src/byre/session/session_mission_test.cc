@@ -109,7 +109,7 @@ double worst_step(const std::vector<FrameReport>& reports, const Trajectory& tru
   return worst;
 }
 
-TEST(Mission, FindsItselfWithTheFirstFrameAndIsTrustedOnceThatIsConfirmed) {
+TEST(Mission, LocalisesInTheFirstFrameAndIsTrustedOnceConfirmed) {
   const SimulatedMission mission = circling(0.5, 2);
   Session session = session_on(mapped(1.0));
   const auto reports = reports_of(session, mission.frames);
@@ -122,7 +122,7 @@ TEST(Mission, FindsItselfWithTheFirstFrameAndIsTrustedOnceThatIsConfirmed) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, IsNotTrustedBeforeItSeesMuchOfTheMap) {
+TEST(Mission, IsNotTrustedBeforeEnoughEvidence) {
   const SimulatedMission mission = circling(0.5, 2);
   SessionOptions options;
   options.mission.registration.accept_log_odds = 8.0;
@@ -164,11 +164,11 @@ void expect_to_leave_the_wrong_place(bool map_online) {
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
 }
 
-TEST(Mission, LeavesAWrongPlaceThatWasNeverProvenForTheRightOne) {
+TEST(Mission, LeavesAWrongUnacceptedPlace) {
   expect_to_leave_the_wrong_place(true);
 }
 
-TEST(Mission, LeavesAWrongPlaceAlsoWhereItOnlyLocalises) {
+TEST(Mission, LeavesAWrongUnacceptedPlaceWithoutMapping) {
   expect_to_leave_the_wrong_place(false);
 }
 
@@ -181,7 +181,7 @@ std::vector<Frame> seen_as_the_other_side(const SimulatedMission& lap) {
   return frames;
 }
 
-TEST(Mission, FindsItselfNearAHintAlsoIfAnotherPlaceLooksMoreAlike) {
+TEST(Mission, LocalisesNearAHintDespiteAMoreSimilarPlace) {
   const SimulatedMission mission = circling(1.0, 2);
   const auto offline = mapped(1.0);
   const std::vector<Frame> frames = seen_as_the_other_side(mission);
@@ -199,7 +199,7 @@ TEST(Mission, FindsItselfNearAHintAlsoIfAnotherPlaceLooksMoreAlike) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, LooksEverywhereAgainWhereAHintLedNowhere) {
+TEST(Mission, SearchesTheWholeMapAfterAWrongHint) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(1.0));
   session.look_near(
@@ -210,7 +210,7 @@ TEST(Mission, LooksEverywhereAgainWhereAHintLedNowhere) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
+TEST(Mission, AdjustsItsOnlineMapAroundTheOfflineMapAtTheEnd) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(0.4));
   reports_of(session, mission.frames);
@@ -227,7 +227,7 @@ TEST(Mission, EndsWithAllThatItMappedAdjustedAroundTheOfflineMap) {
   EXPECT_GT(moved, kLapFrames / 4);
 }
 
-TEST(Mission, KeepsAsManyPosesAsItIsToldAndReportsTheSame) {
+TEST(Mission, LimitsStoredPosesWithoutChangingReports) {
   const SimulatedMission mission = circling(2.0, 2);
   SessionOptions options;
   options.trajectory.max_poses = 60;
@@ -247,7 +247,7 @@ TEST(Mission, KeepsAsManyPosesAsItIsToldAndReportsTheSame) {
   }
 }
 
-TEST(Mission, MakesHardlyAnyKeyframesInAKnownPlace) {
+TEST(Mission, AddsFewKeyframesInAMappedPlace) {
   const SimulatedMission mission = circling(1.0, 2);
   Session on_map = session_on(mapped(1.0));
   Session plain(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
@@ -258,7 +258,7 @@ TEST(Mission, MakesHardlyAnyKeyframesInAKnownPlace) {
             count_keyframes(reports_of(plain, mission.frames)));
 }
 
-TEST(Mission, MakesNoKeyframesWhenItOnlyLocalises) {
+TEST(Mission, AddsNoKeyframesWithoutMapping) {
   const SimulatedMission mission = circling(1.0, 2);
   SessionOptions options;
   options.map_online = false;
@@ -267,7 +267,7 @@ TEST(Mission, MakesNoKeyframesWhenItOnlyLocalises) {
   EXPECT_EQ(session.map().online().keyframe_count(), 0);
 }
 
-TEST(Mission, GoesOnOutsideTheMappedAreaAndIsHeldAgainWhenItComesBack) {
+TEST(Mission, ContinuesOutsideTheMappedAreaAndReturns) {
   const SimulatedMission mission = circling(2.0, 2);
   Session session = session_on(mapped(0.25));
   const auto reports = reports_of(session, mission.frames);
@@ -283,7 +283,7 @@ TEST(Mission, GoesOnOutsideTheMappedAreaAndIsHeldAgainWhenItComesBack) {
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
 }
 
-TEST(Mission, NeverTrustsTheWrongBuildingsMap) {
+TEST(Mission, NeverTrustsTheMapOfAnotherBuilding) {
   const SimulatedMission mission = circling(0.5, 2, 99);
   SessionOptions options;
   options.state.lost_after = 2.0;
@@ -298,7 +298,7 @@ TEST(Mission, NeverTrustsTheWrongBuildingsMap) {
   EXPECT_TRUE(session.final_trajectory().empty());
 }
 
-TEST(Mission, ThatStartsOutsideTheMapIsRegisteredWhenItComesIn) {
+TEST(Mission, RegistersOnEnteringTheMapFromOutside) {
   SimulatedMission mission = circling(0.6, 2);
   std::ranges::reverse(mission.truth);
   std::vector<Frame> frames;  // reversed: from outside the map to its first frame
@@ -320,7 +320,7 @@ TEST(Mission, ThatStartsOutsideTheMapIsRegisteredWhenItComesIn) {
   EXPECT_LT(worst_step(reports, mission.truth), 0.05);
 }
 
-TEST(Mission, IsTrustedAgainSoonAfterItWasBlinded) {
+TEST(Mission, IsTrustedAgainSoonAfterDarkness) {
   const SimulatedMission mission = circling(0.8, 2);
   Session session = session_on(mapped(1.0));
   std::vector<Frame> frames = mission.frames;
@@ -338,7 +338,7 @@ TEST(Mission, IsTrustedAgainSoonAfterItWasBlinded) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, FindsItselfWhereItWasCarried) {
+TEST(Mission, RelocalisesAfterAKidnapping) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(1.0));
   std::vector<Frame> frames;
@@ -372,7 +372,7 @@ std::vector<FrameReport> reports_of(Session& session, const BlindedDrive& drive)
   return reports;
 }
 
-TEST(Mission, FollowsWheelsWhereLittleSpeaksForAPlaceElsewhere) {
+TEST(Mission, FollowsWheelsAgainstWeakEvidenceForAnotherPlace) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(1.0));
   BlindedDrive drive{{}, {}};
@@ -388,7 +388,7 @@ TEST(Mission, FollowsWheelsWhereLittleSpeaksForAPlaceElsewhere) {
   }
 }
 
-TEST(Mission, FindsItselfWhereItWasCarriedThoughWheelsStoodStill) {
+TEST(Mission, RelocalisesAfterAKidnappingWithWheelsStandingStill) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(1.0));
   BlindedDrive drive{{}, {}};
@@ -404,7 +404,7 @@ TEST(Mission, FindsItselfWhereItWasCarriedThoughWheelsStoodStill) {
   EXPECT_LT(worst_trusted(reports, truth), 0.03);
 }
 
-TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
+TEST(Mission, SuspendsMovedObjectsAndStaysOnCourse) {
   const SimulatedMission mission = circling(1.0, 2);
   Map map = true_map(circling(1.0, 1), 4, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
@@ -422,7 +422,7 @@ TEST(Mission, LeavesThingsThatMovedOutAndStaysOnCourse) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, TellsOfDirtAndMissesNoPointsBehindItUntilItIsWipedOff) {
+TEST(Mission, DetectsDirtUntilItIsRemoved) {
   constexpr std::size_t kWiped = 2 * kLapFrames, kEnd = 3 * kLapFrames;
   const SimulatedMission mission = circling(3.0, 2);
   Session session = session_on(mapped(1.0));
@@ -444,13 +444,13 @@ TEST(Mission, TellsOfDirtAndMissesNoPointsBehindItUntilItIsWipedOff) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, FindsNoDirtOnACleanLens) {
+TEST(Mission, DetectsNoDirtOnACleanLens) {
   const SimulatedMission mission = circling(2.0, 2);
   Session session = session_on(mapped(1.0));
   for (const FrameReport& report : reports_of(session, mission.frames)) ASSERT_EQ(report.health.hidden_share, 0.0);
 }
 
-TEST(Mission, TellsANavigationErrorOnceAndGoesOnSearching) {
+TEST(Mission, ReportsANavigationErrorOnceAndContinuesSearching) {
   const SimulatedMission mission = circling(1.0, 2);
   SessionOptions options;
   options.state.lost_after = 1.0;

@@ -46,7 +46,7 @@ std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
   return result;
 }
 
-TEST(Monocular, BeginsAMapOnceTheCameraHasMovedAndTracksOnUpToScale) {
+TEST(Monocular, StartsAMapAfterMotionAndTracksUpToScale) {
   const SimulatedMission mission = circling(one_camera(), 1.0, 2);
   Session session = session_of(one_camera());
   const auto reports = reports_of(session, mission.frames);
@@ -61,14 +61,14 @@ TEST(Monocular, BeginsAMapOnceTheCameraHasMovedAndTracksOnUpToScale) {
   EXPECT_LT(error->translation.rmse, 0.02);
 }
 
-TEST(Monocular, RefusesToBeginWhileItTurnsOnTheSpotAndSaysWhy) {
+TEST(Monocular, DoesNotStartDuringATurnOnTheSpotAndReportsWhy) {
   Session session = session_of(one_camera());
   const auto reports = reports_of(session, turning_in_place(one_camera()).frames);
   EXPECT_THAT(has_pose(reports), Each(false));
   EXPECT_GT(std::ranges::count(reports, TwoViewFailure::rotation_only, &FrameReport::start_failure), 20);
 }
 
-TEST(Monocular, TurnsOnTheSpotInAMapWithoutLosingItself) {
+TEST(Monocular, TracksATurnOnTheSpotInAMap) {
   SimulatedMission mapping = turning_in_place(simulated_rig());
   Session session = session_of(one_camera(), offline_map_of(mapping));
   SimulationOptions options = noisy_visit(3);
@@ -76,7 +76,7 @@ TEST(Monocular, TurnsOnTheSpotInAMapWithoutLosingItself) {
   EXPECT_THAT(has_pose(reports_of(session, mission.frames)), Each(true));
 }
 
-TEST(Monocular, HasTheScaleOfTheMapItIsOn) {
+TEST(Monocular, HasTheScaleOfItsOfflineMap) {
   Session session = session_of(one_camera(), offline_map_of(circling(simulated_rig(), 1.0, 1)));
   const SimulatedMission mission = circling(one_camera(), 1.0, 2);
   const auto reports = reports_of(session, mission.frames);
@@ -87,7 +87,7 @@ TEST(Monocular, HasTheScaleOfTheMapItIsOn) {
   }
 }
 
-TEST(Monocular, WaitsForItsPlaceInAMapRatherThanBeginAnother) {
+TEST(Monocular, WaitsForRelocalisationInsteadOfASecondMap) {
   SimulationOptions another_room = noisy_visit(2);
   another_room.seed = 99;
   Session session = session_of(one_camera(), offline_map_of(circling(simulated_rig(), 1.0, 1)));
@@ -102,7 +102,7 @@ double error_of(const Session& session, const SimulatedMission& mission) {
       ->translation.rmse;
 }
 
-TEST(Monocular, ClosesItsLoopsAndTakesItsFramesAlong) {
+TEST(Monocular, ClosesItsLoopsAndMovesItsFramesAlong) {
   SimulationOptions options = noisy_visit(2);
   options.landmarks = 5000;
   const SimulatedMission mission = simulate_mission(one_camera(), circling_trajectory(160, 10.0, 2.0, 1.33), options);

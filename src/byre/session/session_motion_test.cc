@@ -55,7 +55,7 @@ double error_of(const FrameReport& report, const SimulatedMission& mission, std:
   return (report.map_from_body->translation - truth.translation).norm();
 }
 
-TEST(ToldMotion, LeadsBackToTheMapAfterTheDark) {
+TEST(MeasuredMotion, RelocalisesAfterTheDark) {
   const SimulatedMission mission = lap();
   for (const bool has_vocabulary : {true, false}) {
     const std::vector<FrameReport> told = reports_of(mission, true, has_vocabulary);
@@ -67,7 +67,7 @@ TEST(ToldMotion, LeadsBackToTheMapAfterTheDark) {
   }
 }
 
-TEST(ToldMotion, GoesOnInTheDarkWithACovarianceThatGrows) {
+TEST(MeasuredMotion, PropagatesInTheDarkWithGrowingCovariance) {
   const SimulatedMission mission = lap();
   const std::vector<FrameReport> told = reports_of(mission, true, true);
   const std::vector<FrameReport> untold = reports_of(mission, false, true);
@@ -83,7 +83,7 @@ TEST(ToldMotion, GoesOnInTheDarkWithACovarianceThatGrows) {
   }
 }
 
-TEST(ToldMotion, KeepsBridgedPosesInTheTrajectory) {
+TEST(MeasuredMotion, KeepsBridgedPosesInTheTrajectory) {
   const SimulatedMission mission = lap();
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
   fly(session, mission, true);
@@ -91,7 +91,7 @@ TEST(ToldMotion, KeepsBridgedPosesInTheTrajectory) {
   EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
 }
 
-TEST(ToldMotion, MayBridgeWhileTheTrajectoryIsThinnedOut) {
+TEST(MeasuredMotion, BridgesWhileTheTrajectoryIsThinned) {
   const SimulatedMission mission = lap();
   SessionOptions options;
   options.trajectory.max_poses = 16;
@@ -108,7 +108,7 @@ TEST(ToldMotion, MayBridgeWhileTheTrajectoryIsThinnedOut) {
   }
 }
 
-TEST(ToldMotion, EndsABridgeWhereItIsNotTold) {
+TEST(MeasuredMotion, EndsABridgeAtAGap) {
   const SimulatedMission mission = lap();
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
   for (std::size_t i = 0; i < kLight; ++i) {
@@ -123,7 +123,7 @@ TEST(ToldMotion, EndsABridgeWhereItIsNotTold) {
 }
 
 // The robot moves on, so that nothing of the map is recognised after the dark.
-TEST(ToldMotion, JoinsANewPieceOfTheMapToTheOldOne) {
+TEST(MeasuredMotion, JoinsANewSubmapToTheMap) {
   const SimulatedMission mission = lap();
   constexpr std::size_t kLongDark = 30;  // frames
   SessionOptions options;
@@ -144,7 +144,7 @@ TEST(ToldMotion, JoinsANewPieceOfTheMapToTheOldOne) {
   }
 }
 
-TEST(ToldMotion, RefusesAPlaceThatWheelsCannotHaveLedTo) {
+TEST(MeasuredMotion, RejectsAPlaceBeyondTheReachOfWheels) {
   const SimulatedMission mission = lap();
   for (const bool is_told : {true, false}) {
     Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
@@ -179,7 +179,7 @@ SimulatedMission one_camera_circling(int frames, double laps) {
 }
 
 // One camera that recognises nothing after the dark: the scale of its new submap is that of the measured motion.
-TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
+TEST(MeasuredMotion, StartsANewMonocularSubmap) {
   const SimulatedMission mission = one_camera_circling(120, 1.0);
   const Rig& rig = mission.rig;
   constexpr std::size_t kFirstDark = 60, kFirstLight = 80;
@@ -208,7 +208,7 @@ TEST(ToldMotion, LetsOneCameraBeginAgainBesideItsMap) {
 }
 
 // One camera begins its map after about a second; wheels have measured its motion since the first frame.
-TEST(ToldMotion, LeadsOneCameraUntilItsMapBegins) {
+TEST(MeasuredMotion, PropagatesOneCameraUntilItsMapStarts) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;
   for (const bool is_told : {true, false}) {
@@ -234,7 +234,7 @@ TEST(ToldMotion, LeadsOneCameraUntilItsMapBegins) {
 }
 
 // A gap in the measured motion makes the pose relative to the first frame unknown.
-TEST(ToldMotion, LeadsNobodyOnWhoWasNotToldOnce) {
+TEST(MeasuredMotion, DoesNotPropagateAcrossAGapBeforeTheMapStarts) {
   const SimulatedMission mission = lap();
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
   constexpr std::size_t kUntold = 5, kSeen = 8;
@@ -253,7 +253,7 @@ TEST(ToldMotion, LeadsNobodyOnWhoWasNotToldOnce) {
   }
 }
 
-TEST(ToldMotion, LetsAPairBeginWhereTheDarkHasLedIt) {
+TEST(MeasuredMotion, StartsAStereoMapAfterADarkStart) {
   const SimulatedMission mission = lap();
   Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
   constexpr std::size_t kSeen = 8;
@@ -271,7 +271,7 @@ TEST(ToldMotion, LetsAPairBeginWhereTheDarkHasLedIt) {
 }
 
 // A measured motion with an error of metres from frame 20 on, while points are visible.
-TEST(ToldMotion, DoesNotLoseATrackedPose) {
+TEST(MeasuredMotion, KeepsATrackedPoseDespiteWrongMotion) {
   const SimulatedMission mission = lap();
   for (const bool has_vocabulary : {true, false}) {
     for (const double metres : {-2.7, 1.0, 30.0}) {
@@ -295,7 +295,7 @@ TEST(ToldMotion, DoesNotLoseATrackedPose) {
 }
 
 // After a dark stretch the odometry keeps the uncertainty of the measured motion.
-TEST(ToldMotion, KeepsItsUncertaintyInTheOdometryAfterTheDark) {
+TEST(MeasuredMotion, KeepsItsUncertaintyInTheOdometryAfterTheDark) {
   const SimulatedMission mission = lap();
   const std::vector<FrameReport> told = reports_of(mission, true, true);
   const auto variance = [&](std::size_t i) { return told[i].odometry_covariance.topLeftCorner<3, 3>().trace(); };

@@ -53,14 +53,14 @@ ShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, bool is
   return outcome;
 }
 
-TEST(SessionShutter, FindsOutInAMissionHowLongTheRowsTake) {
+TEST(SessionShutter, EstimatesTheReadoutTimeInAMission) {
   const SimulatedMission mission = rolling(visit_by_rolling_shutter(2), kReadoutTime);
   const ShutterOutcome refined = outcome_of(mission, true, true), as_given = outcome_of(mission, true, false);
   EXPECT_NEAR(refined.readout_time, kReadoutTime, 2e-3);
   EXPECT_LT(refined.error, 0.5 * as_given.error);
 }
 
-TEST(SessionShutter, IsNoneWhereAllRowsAreSeenAtOnce) {
+TEST(SessionShutter, IsZeroForAGlobalShutter) {
   for (const bool has_map : {true, false}) {
     const ShutterOutcome refined = outcome_of(visit_by_rolling_shutter(2), has_map, true),
                          as_given = outcome_of(visit_by_rolling_shutter(2), has_map, false);

@@ -87,7 +87,7 @@ class EveryMission : public ::testing::TestWithParam<NamedMission> {
   const Outcome outcome_ = run(mission_);
 };
 
-TEST_P(EveryMission, GivesEveryFrameAPose) {
+TEST_P(EveryMission, HasAPoseForEveryFrame) {
   EXPECT_THAT(outcome_.reports, Each(Field(&FrameReport::state, State::tracking)));
   EXPECT_THAT(outcome_.causal, SizeIs(mission_.frames.size()));
   EXPECT_THAT(outcome_.final, SizeIs(mission_.frames.size()));
@@ -104,7 +104,7 @@ TEST_P(EveryMission, StaysNearTheTruth) {
   EXPECT_LT(final.rotation.rmse, 1.0);
 }
 
-TEST_P(EveryMission, LeavesASoundMap) {
+TEST_P(EveryMission, ReturnsAValidMap) {
   EXPECT_THAT(find_faults(outcome_.map), IsEmpty());
 }
 
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(On, EveryMission,
                                            NamedMission{"FigureEight", [] { return figure_eight(); }}),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(Session, TakesTheFirstBodyForTheWorld) {
+TEST(Session, UsesTheFirstBodyFrameAsWorld) {
   const SimulatedMission mission = circling_robot(2);
   Session session(mission.rig, {}, make_inline_executor());
   EXPECT_THAT(session.process(mission.frames[0]).map_from_body.value(), PoseNear(Pose{}, 1e-12, 1e-7));
@@ -151,18 +151,18 @@ void expect_identical(const Outcome& first, const Outcome& second) {
   }
 }
 
-TEST(Session, RepeatsItselfInline) {
+TEST(Session, IsDeterministicInline) {
   const SimulatedMission mission = circling_robot(60);
   expect_identical(run(mission), run(mission));
 }
 
-TEST(Session, RepeatsItselfPaced) {
+TEST(Session, IsDeterministicPaced) {
   const SimulatedMission mission = circling_robot(60);
   expect_identical(run(mission.rig, mission.frames, make_paced_executor(3)),
                    run(mission.rig, mission.frames, make_paced_executor(3)));
 }
 
-TEST(Session, StaysNearTheTruthWhileMappingRunsBeside) {
+TEST(Session, StaysNearTheTruthWithConcurrentMapping) {
   const SimulatedMission mission = circling_robot(60);
   for (const auto make : {+[] { return make_paced_executor(3); }, +[] { return make_live_executor(); }}) {
     const Outcome result = run(mission.rig, mission.frames, make());
@@ -223,7 +223,7 @@ class SessionWithScriptedMapping : public ::testing::Test {
   std::size_t processed_ = 0;
 };
 
-TEST_F(SessionWithScriptedMapping, TracksOnWhenMappingRemovesTheKeyframeItTracks) {
+TEST_F(SessionWithScriptedMapping, TracksOnWhenMappingRemovesItsReference) {
   for (std::size_t place = 0; place <= 16; ++place) process(place);
   ASSERT_THAT(map().keyframe_ids(), SizeIs(3));
   for (std::size_t place = 15; place >= 9; --place) process(place);  // back to the second keyframe
@@ -241,14 +241,14 @@ TEST_F(SessionWithScriptedMapping, TracksOnWhenMappingRemovesTheKeyframeItTracks
   EXPECT_THAT(map().keyframe_ids(), SizeIs(2));
 }
 
-TEST_F(SessionWithScriptedMapping, LetsAnExceptionOfMappingReachTheCaller) {
+TEST_F(SessionWithScriptedMapping, PassesAnExceptionOfMappingToTheCaller) {
   for (std::size_t place = 0; place <= 10; ++place) process(place);
   due_ = []() -> MapDelta { throw std::runtime_error("broken job"); };
   EXPECT_THROW(process(11), std::runtime_error);
 }
 
 // The delta of a loop closing: moves the whole map by far more than a frame's search radius.
-TEST_F(SessionWithScriptedMapping, MovesAlongWithTheMap) {
+TEST_F(SessionWithScriptedMapping, FollowsMapCorrections) {
   for (std::size_t place = 0; place <= 10; ++place) process(place);
   const Pose new_world_from_world{rotation_exp({0.0, 0.0, 0.3}), {1.0, 0.5, 0.0}};
   due_ = [&] {
@@ -284,7 +284,7 @@ class SessionOfACircle : public ::testing::Test {
   Session session_{mission_.rig, {}, make_inline_executor()};
 };
 
-TEST_F(SessionOfACircle, IsLostWithoutFeaturesAndFindsItselfAgain) {
+TEST_F(SessionOfACircle, IsLostWithoutFeaturesAndRelocalises) {
   for (std::size_t i = 0; i < 15; ++i) ASSERT_EQ(process(i), State::tracking);
   for (std::size_t i = 15; i < 20; ++i) {
     const FrameReport report = blind(i);
@@ -315,7 +315,7 @@ TEST_F(SessionOfACircle, NeverInitialisesWithoutDisparities) {
   EXPECT_THAT(session_.final_trajectory(), IsEmpty());
 }
 
-TEST_F(SessionOfACircle, ReportsNoPoseOnceTheCameraIsCarriedElsewhere) {
+TEST_F(SessionOfACircle, HasNoPoseAfterAKidnapping) {
   SimulationOptions another_room;
   another_room.seed = 99;
   const SimulatedMission elsewhere = circling_robot(40, another_room);
@@ -328,7 +328,7 @@ TEST_F(SessionOfACircle, ReportsNoPoseOnceTheCameraIsCarriedElsewhere) {
   EXPECT_THAT(session_.final_trajectory(), SizeIs(10));
 }
 
-TEST(Session, AddsNothingToItsMapWhileMappingIsPausedAndGoesOnAfterwards) {
+TEST(Session, AddsNothingWhileMappingIsPausedAndContinuesAfterwards) {
   const SimulatedMission mission = circling_robot();
   Session session(mission.rig, {}, make_inline_executor());
   std::vector<int> keyframes;
@@ -343,7 +343,7 @@ TEST(Session, AddsNothingToItsMapWhileMappingIsPausedAndGoesOnAfterwards) {
   EXPECT_GT(keyframes[51], keyframes[39]);
 }
 
-TEST(Session, BeginsNoMapWhileMappingIsPaused) {
+TEST(Session, StartsNoMapWhileMappingIsPaused) {
   const SimulatedMission mission = circling_robot(10);
   Session session(mission.rig, {}, make_inline_executor());
   session.pause_mapping(true);
@@ -358,7 +358,7 @@ TEST(Session, FinishesWithoutAnyFrame) {
   EXPECT_THAT(session.final_trajectory(), IsEmpty());
 }
 
-TEST(Session, TakesOverAllThatMappingHasLeftWhenItFinishes) {
+TEST(Session, AppliesRemainingMappingResultsAtTheEnd) {
   const SimulatedMission mission = circling_robot(30);
   Session session(mission.rig, {}, make_paced_executor(1000));  // longer than the mission
   for (const Frame& frame : mission.frames) session.process(frame);

@@ -33,7 +33,7 @@ class TrackerOnAMap : public ::testing::Test {
   }
 };
 
-TEST_F(TrackerOnAMap, FindsAFrameWhereTheMotionLeads) {
+TEST_F(TrackerOnAMap, TracksAFrameByThePredictedMotion) {
   const auto track = tracker_.track(mission_.frames[2], scene(), last(1), motion_to(1));
   ASSERT_TRUE(track);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));
@@ -41,7 +41,7 @@ TEST_F(TrackerOnAMap, FindsAFrameWhereTheMotionLeads) {
   EXPECT_FALSE(track->offline_reference);
 }
 
-TEST_F(TrackerOnAMap, ChangesNothingOfTheMap) {
+TEST_F(TrackerOnAMap, LeavesTheMap) {
   const int revision = mapper_.revision();
   const auto first = tracker_.track(mission_.frames[2], scene(), last(1), motion_to(1));
   const auto second = tracker_.track(mission_.frames[2], scene(), last(1), motion_to(1));
@@ -50,7 +50,7 @@ TEST_F(TrackerOnAMap, ChangesNothingOfTheMap) {
   EXPECT_EQ(mapper_.revision(), revision);
 }
 
-TEST_F(TrackerOnAMap, LooksWithoutAPredictionWhereOneLedAstray) {
+TEST_F(TrackerOnAMap, TracksWithoutPredictionAfterAWrongOne) {
   const auto before = tracker_.track(mission_.frames[1], scene(), last(0), {});
   ASSERT_TRUE(before);
   tracker_.note(*before);
@@ -61,7 +61,7 @@ TEST_F(TrackerOnAMap, LooksWithoutAPredictionWhereOneLedAstray) {
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));
 }
 
-TEST_F(TrackerOnAMap, FindsAFrameFromNothing) {
+TEST_F(TrackerOnAMap, RelocalisesAFrame) {
   const std::vector<HybridTrack> places = tracker_.find(mission_.frames[2], scene()).places;
   ASSERT_EQ(places.size(), 1u);
   const HybridTrack* const found = &places.front();
@@ -70,13 +70,13 @@ TEST_F(TrackerOnAMap, FindsAFrameFromNothing) {
   EXPECT_FALSE(tracker_.is_doubtful(*found, scene()));
 }
 
-TEST_F(TrackerOnAMap, FindsNothingInAnEmptyFrame) {
+TEST_F(TrackerOnAMap, IsEmptyForAnEmptyFrame) {
   const Frame blank{mission_.frames[1].time, std::make_shared<const Features>()};
   EXPECT_FALSE(tracker_.track(blank, scene(), last(0), {}));
   EXPECT_THAT(tracker_.find(blank, scene()).places, ::testing::IsEmpty());
 }
 
-TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
+TEST(TrackerOnAnOfflineMap, RelocalisesInTheOfflineMapFirst) {
   const SimulatedMission mission = quarter_circle({});
   const auto offline = offline_map_of(mission);
   const Mapper mapper(mission.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), offline});
@@ -90,7 +90,7 @@ TEST(TrackerOnAnOfflineMap, FindsAFrameInThatFirst) {
   EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_camera_from_world(mission, 6), 0.02, 0.01));
 }
 
-TEST(LikeAnotherPlace, IsWhereFewOfThePointsAreSeen) {
+TEST(LikeAnotherPlace, IsDetectedByFewVisiblePoints) {
   TrackedFrame found;
   found.expected = 1000;
   found.features.resize(46);

@@ -29,7 +29,7 @@ float light_on_floor(const QuadMesh& mesh, const std::vector<float>& light, cons
   return 0.0f;
 }
 
-TEST(BarnLight, FallsOffWithDistanceAndNotThroughWalls) {
+TEST(BarnLight, DecreasesWithDistanceAndDoesNotPassWalls) {
   const QuadMesh mesh = floor_with_wall();
   const std::vector<float> light = light_at_vertices(mesh, RayScene(mesh, 0), lamp_on_the_right(), 1);
   EXPECT_NEAR(light_on_floor(mesh, light, {1.0f, 0.0f, 0.0f}), 2.0f + 0.1f, 0.12f);  // 1 m under the lamp
@@ -43,7 +43,7 @@ TEST(BarnLight, IsWeakerInCorners) {
   EXPECT_LT(light_on_floor(mesh, light, {-0.5f, 0.0f, 0.0f}), light_on_floor(mesh, light, {-2.0f, 0.0f, 0.0f}));
 }
 
-TEST(BarnLight, ComesFromTheSideThatAWindowFaces) {
+TEST(BarnLight, ShinesOnlyFromTheFrontOfWindows) {
   QuadMesh mesh;
   add_panel(mesh, {-1.0f, -1.0f, 0.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 2.0f, 0.0f}, {});
   BarnLight light;
@@ -55,14 +55,14 @@ TEST(BarnLight, ComesFromTheSideThatAWindowFaces) {
   EXPECT_EQ(light_on_floor(mesh, light_at_vertices(mesh, rays, light, 1), Vector3f::Zero()), 0.0f);
 }
 
-TEST(BarnLight, IsTheSameWithAnyNumberOfThreads) {
+TEST(BarnLight, IsIndependentOfTheNumberOfThreads) {
   const QuadMesh mesh = floor_with_wall();
   const RayScene rays(mesh, 0);
   EXPECT_EQ(light_at_vertices(mesh, rays, lamp_on_the_right(), 1),
             light_at_vertices(mesh, rays, lamp_on_the_right(), 3));
 }
 
-TEST(LitMesh, KnowsHowItsPictureLiesOnEachFacet) {
+TEST(LitMesh, MapsItsPictureToEachFacet) {
   QuadMesh mesh;
   const Vector3f right = Vector3f(1.0f, 2.0f, 0.5f).normalized();
   const Vector3f up = right.cross(Vector3f(0.3f, -0.2f, 1.0f)).normalized();

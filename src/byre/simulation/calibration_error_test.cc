@@ -28,7 +28,7 @@ double sigma_of(double level, const std::function<double(const CalibrationError&
   return std::sqrt(sum / kSeeds);
 }
 
-TEST(CalibrationError, IsNoneAtLevelZero) {
+TEST(CalibrationError, IsZeroAtLevelZero) {
   const Calibration calibration = euroc_like_calibration(1);
   const Calibration told = perturbed(calibration, 0.0, 7);
   EXPECT_EQ(told.left.fx, calibration.left.fx);
@@ -51,7 +51,7 @@ TEST(CalibrationError, HasTheStandardDeviationsOfItsLevel) {
   expect_sigma(1e-4, [](const CalibrationError& error) { return error.right_moved.x(); });
 }
 
-TEST(CalibrationError, IsTheSameForTheSameSeedAndInProportionToItsLevel) {
+TEST(CalibrationError, IsDeterministicAndProportionalToItsLevel) {
   const CalibrationError good = draw_calibration_error(1.0, 5), again = draw_calibration_error(1.0, 5);
   const CalibrationError worn = draw_calibration_error(3.0, 5), other = draw_calibration_error(1.0, 6);
   EXPECT_EQ(good.left.focal, again.left.focal);
@@ -61,7 +61,7 @@ TEST(CalibrationError, IsTheSameForTheSameSeedAndInProportionToItsLevel) {
   EXPECT_THAT(worn.right_turned, PointNear(Eigen::Vector3d(3.0 * good.right_turned), 1e-15));
 }
 
-TEST(CalibrationError, OfARobotIsTheSameInAllItsRecordings) {
+TEST(CalibrationError, IsTheSameInAllRecordingsOfARobot) {
   const CalibrationError error = draw_calibration_error(1.0, 1);
   for (const Calibration& calibration : {euroc_like_calibration(1), feeding_robot_calibration(2)}) {
     const Calibration told = perturbed(calibration, 1.0, 1);
@@ -76,7 +76,7 @@ TEST(CalibrationError, OfARobotIsTheSameInAllItsRecordings) {
   }
 }
 
-TEST(CalibrationError, GivesAPinholeCameraALensAndLeavesOneCameraAlone) {
+TEST(CalibrationError, DistortsAPinholeCameraAndSkipsAMissingCamera) {
   Calibration calibration;
   calibration.left = {.width = 640, .height = 480, .fx = 500.0, .fy = 500.0, .cx = 319.5, .cy = 239.5};
   const Calibration told = perturbed(calibration, 1.0, 1);

@@ -30,7 +30,7 @@ TEST(CameraImperfection, HasConditionsWithNames) {
   EXPECT_FALSE(camera_condition_of("new"));
 }
 
-TEST(CameraImperfection, IsRefusedWhereItMakesNoSense) {
+TEST(CameraImperfection, RejectsInvalidValues) {
   const auto refused = [](const std::function<void(CameraImperfection&)>& change) {
     CameraImperfection imperfection;
     change(imperfection);
@@ -46,7 +46,7 @@ TEST(CameraImperfection, IsRefusedWhereItMakesNoSense) {
   refused([](CameraImperfection& camera) { camera.jpeg_quality = 101; });
 }
 
-TEST(CameraImperfection, BlursTheRightImageMoreAndElsewhere) {
+TEST(CameraImperfection, BlursTheRightImageMoreAndAtAnotherPosition) {
   CameraImperfection imperfection;
   imperfection.lens_blur = 0.8;
   const LensBlurOptions left = lens_blur_of(imperfection, StereoSide::left);
@@ -56,7 +56,7 @@ TEST(CameraImperfection, BlursTheRightImageMoreAndElsewhere) {
   EXPECT_GT((left.sharpest - right.sharpest).norm(), 0.05f);
 }
 
-TEST(JpegKept, LosesMoreAtALowerQuality) {
+TEST(JpegKept, DegradesWithLowerQuality) {
   Image image{64, 48, {}};
   for (int i = 0; i < 64 * 48; ++i) image.pixels.push_back(static_cast<std::uint8_t>((i * 37 + i / 64 * 91) % 200));
   const auto loss = [&](int quality) {

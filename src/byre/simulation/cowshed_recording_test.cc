@@ -75,7 +75,7 @@ class CowshedVisit : public ::testing::Test {
   const std::vector<ImageFrame>& frames = rendered().frames;
 };
 
-TEST_F(CowshedVisit, HasTheSameBytesWithOtherNumbersOfThreads) {
+TEST_F(CowshedVisit, HasTheSameBytesForAnyNumberOfThreads) {
   CowshedRecording again(small_visit(1, 3));
   for (const ImageFrame& frame : frames) {
     const ImageFrame repeated = again.render_next();
@@ -85,17 +85,17 @@ TEST_F(CowshedVisit, HasTheSameBytesWithOtherNumbersOfThreads) {
   }
 }
 
-TEST_F(CowshedVisit, LooksDifferentInAnotherMission) {
+TEST_F(CowshedVisit, DiffersBetweenMissions) {
   CowshedRecording later(small_visit(2, 0));
   EXPECT_NE(later.render_next().left.pixels, frames.front().left.pixels);
   EXPECT_GT(later.times().front(), recording.times().back());
 }
 
-TEST_F(CowshedVisit, IsWellExposedFromItsFirstFrameOn) {
+TEST_F(CowshedVisit, IsWellExposedFromTheFirstFrame) {
   for (const ImageFrame& frame : frames) EXPECT_NEAR(mean_grey(frame.left), ExposureLimits{}.wanted_grey, 12.0);
 }
 
-TEST(CowshedVisits, AreNoisierWithLessLightAndBlackWhileItIsOut) {
+TEST(CowshedVisits, AreNoisierInDimLightAndBlackInDarkness) {
   const auto first_two = [](const NightOptions& night) {
     CowshedRecordingOptions options = small_visit(1, 1);
     options.night = night;
@@ -114,7 +114,7 @@ TEST(CowshedVisits, AreNoisierWithLessLightAndBlackWhileItIsOut) {
   EXPECT_GT(mean_grey(first_two({.headlight = 10.0, .lights_out = 0.5, .lights_on = 2.0})[1].left), 5.0f);
 }
 
-TEST_F(CowshedVisit, ShowsInTheRightImageWhatDepthSaysOfTheLeft) {
+TEST_F(CowshedVisit, ShowsLeftPixelsInTheRightImageByDepth) {
   const Calibration& calibration = recording.calibration();
   const std::vector<float> depths = recording.left_depths(frames[1].time);
   const Image& left = frames[1].left;
@@ -141,7 +141,7 @@ TEST_F(CowshedVisit, ShowsInTheRightImageWhatDepthSaysOfTheLeft) {
   EXPECT_GT(best_where_predicted, 0.8 * looked_at);
 }
 
-TEST_F(CowshedVisit, SeesItsMarksAtTheirDepth) {
+TEST_F(CowshedVisit, ShowsItsMarksAtTheirDepth) {
   const std::vector<MarkSighting> sightings = recording.sightings();
   ASSERT_FALSE(sightings.empty());
   for (const MarkSighting& sighting : sightings) {
@@ -156,7 +156,7 @@ TEST_F(CowshedVisit, SeesItsMarksAtTheirDepth) {
   }
 }
 
-TEST_F(CowshedVisit, KnowsItsTruthAtEachFrameAndBetween) {
+TEST_F(CowshedVisit, ProvidesTheTruthAtAndBetweenFrames) {
   const Trajectory truth = recording.truth();
   EXPECT_THAT(truth, SizeIs(8 * 200 + 1));
   for (const Timestamp time : recording.times()) {
@@ -166,7 +166,7 @@ TEST_F(CowshedVisit, KnowsItsTruthAtEachFrameAndBetween) {
   }
 }
 
-TEST_F(CowshedVisit, GivesPicksInTheFrameOfAMapThatBeginsWithItsFirstFrame) {
+TEST_F(CowshedVisit, ProvidesPicksInTheFrameOfItsFirstPose) {
   const Pose world_from_first_body = recording.world_from_body(recording.times().front());
   const std::vector<MarkPick> picks = picks_of(recording.barn().marks, world_from_first_body);
   ASSERT_EQ(picks.size(), recording.barn().marks.size());
@@ -183,7 +183,7 @@ CowshedRecordingOptions erring_visit(const CameraImperfection& camera) {
   return options;
 }
 
-TEST_F(CowshedVisit, IsSeenByTheTrueCamerasWhateverTheirCalibrationSays) {
+TEST_F(CowshedVisit, IsRenderedByTheTrueCalibration) {
   CowshedRecording erring(erring_visit({.calibration_level = 1.0, .calibration_seed = 3}));
   EXPECT_EQ(erring.render_next().left.pixels, frames[0].left.pixels);
   EXPECT_EQ(erring.calibration().left.fx, recording.calibration().left.fx);
@@ -193,14 +193,14 @@ TEST_F(CowshedVisit, IsSeenByTheTrueCamerasWhateverTheirCalibrationSays) {
   EXPECT_FALSE(erring.is_calibration_exact());
 }
 
-TEST_F(CowshedVisit, IsSeenLaterByTheRightCameraWithATimeOffset) {
+TEST_F(CowshedVisit, IsRenderedLaterByTheRightCameraWithATimeOffset) {
   CowshedRecording late(erring_visit({.time_offset_s = 0.1}));
   const std::vector<ImageFrame> seen = first_frames(late, 2);
   EXPECT_EQ(seen[1].left.pixels, frames[1].left.pixels);
   EXPECT_NE(seen[1].right->pixels, frames[1].right->pixels);
 }
 
-TEST_F(CowshedVisit, IsBrighterSofterAndLossyAsTheCamerasAre) {
+TEST_F(CowshedVisit, IsBrighterBlurredAndCompressedByTheCameras) {
   CowshedRecording bright(erring_visit({.gain = 1.2, .offset = 5.0}));
   const ImageFrame seen = bright.render_next();
   EXPECT_EQ(seen.left.pixels, frames[0].left.pixels);
@@ -219,7 +219,7 @@ double difference_of_rows(const Image& a, const Image& b, int first, int last) {
   return sum / ((last - first) * a.width);
 }
 
-TEST(CowshedVisits, AreSeenByTheMiddleRowOfARollingShutterAtTheTimeOfTheFrame) {
+TEST(CowshedVisits, AreRenderedAtTheMiddleRowTimeOfARollingShutter) {
   CowshedRecordingOptions options = small_visit(1, 0);
   options.duration_s = 20.0;
   CowshedRecording at_once(options);
@@ -232,7 +232,7 @@ TEST(CowshedVisits, AreSeenByTheMiddleRowOfARollingShutterAtTheTimeOfTheFrame) {
   EXPECT_GT(in_the_middle, 0.0);
 }
 
-TEST(CowshedVisits, ShowMarksWhereARollingShutterSeesThem) {
+TEST(CowshedVisits, ShowMarksWithRollingShutterOffsets) {
   CowshedRecordingOptions options = small_visit(1, 0);
   const std::vector<MarkSighting> at_once = CowshedRecording(options).sightings();
   options.camera.rolling_shutter_s = 0.1;
@@ -263,7 +263,7 @@ bool is_clear(const RayScene& rays, const Pose& before, const Pose& after) {
   return true;
 }
 
-TEST(CowshedVisits, DriveThroughNothing) {
+TEST(CowshedVisits, DoNotDriveThroughObjects) {
   constexpr double kStep_s = 0.1;
   for (const int mission : {1, 2, 3}) {
     CowshedRecordingOptions options;
@@ -279,7 +279,7 @@ TEST(CowshedVisits, DriveThroughNothing) {
   }
 }
 
-TEST(CowshedVisits, LeadIntoTheFeedStoreWhereItsGateIsOpen) {
+TEST(CowshedVisits, EnterTheFeedStoreThroughTheOpenGate) {
   const auto farthest = [](BarnGate gate) {
     CowshedRecordingOptions options;
     options.barn.mission = 2;
@@ -296,7 +296,7 @@ TEST(CowshedVisits, LeadIntoTheFeedStoreWhereItsGateIsOpen) {
   EXPECT_GT(farthest(BarnGate::open), kCowshedSize.length + 5.0);
 }
 
-TEST(CowshedPlan, ShowsColumnsWhereTheyStandAndTheAlleyFree) {
+TEST(CowshedPlan, ShowsColumnsAndAFreeAlley) {
   const FloorPlanImage plan = draw_floor_plan(build_cowshed({}).outlines);
   const auto grey = [&](double x, double y) {
     const Vector2d cell = (Vector2d(x, y) - plan.origin) / plan.resolution;
@@ -327,7 +327,7 @@ class WrittenCowshed : public ::testing::Test {
   const fs::path folder = fs::path(::testing::TempDir()) / "byre_written_cowshed";
 };
 
-TEST_F(WrittenCowshed, IsReadAsARecordingWithTruthAndHasAFloorPlan) {
+TEST_F(WrittenCowshed, IsReadAsARecordingWithTruthAndFloorPlan) {
   CowshedRecordingOptions options = small_visit(1, 0);
   options.duration_s = 0.1;
   options.frame_rate_hz = 20.0;
@@ -357,7 +357,7 @@ TEST_F(WrittenCowshed, IsReadAsARecordingWithTruthAndHasAFloorPlan) {
   EXPECT_THAT(split_fields(picks.front().text), SizeIs(6));
 }
 
-TEST_F(WrittenCowshed, HasTheCalibrationThatErrsAndTheTrueOneBesideIt) {
+TEST_F(WrittenCowshed, HasTheErroneousAndTheTrueCalibration) {
   CowshedRecordingOptions options = small_visit(1, 0);
   options.duration_s = 0.1;
   options.image_divisor = 8;
@@ -374,7 +374,7 @@ TEST_F(WrittenCowshed, HasTheCalibrationThatErrsAndTheTrueOneBesideIt) {
   EXPECT_THAT(right.body_from_left, PoseNear(truth.body_from_left * inverse(truth.right->right_from_left), 1e-9, 1e-9));
 }
 
-TEST_F(WrittenCowshed, StopsWhenItIsTold) {
+TEST_F(WrittenCowshed, StopsOnRequest) {
   CowshedRecordingOptions options = small_visit(1, 0);
   options.image_divisor = 8;
   CowshedRecording recording(options);
@@ -386,7 +386,7 @@ TEST_F(WrittenCowshed, StopsWhenItIsTold) {
   EXPECT_EQ(images, 2);
 }
 
-TEST_F(WrittenCowshed, IsRefusedWhenItsOptionsMakeNoSense) {
+TEST_F(WrittenCowshed, RejectsInvalidOptions) {
   CowshedRecordingOptions options;
   options.duration_s = 0.0;
   EXPECT_THROW(CowshedRecording{options}, InputError);

@@ -23,14 +23,14 @@ int moved_things(const Cowshed& first, const Cowshed& second) {
   return moved;
 }
 
-TEST(Cowshed, IsTheSameForTheSameSeedAndMission) {
+TEST(Cowshed, IsDeterministicForSeedAndMission) {
   const Cowshed first = build_cowshed({.seed = 3, .mission = 2});
   const Cowshed second = build_cowshed({.seed = 3, .mission = 2});
   EXPECT_EQ(first.still.vertices, second.still.vertices);
   EXPECT_NE(first.still.vertices, build_cowshed({.seed = 4, .mission = 2}).still.vertices);
 }
 
-TEST(Cowshed, KeepsItsThingsInTheirPlacesButForTheShareThatChanges) {
+TEST(Cowshed, ChangesOnlyTheGivenShareOfItsObjects) {
   const Cowshed first = build_cowshed({.mission = 1, .change = 0.5});
   ASSERT_FALSE(first.things.empty());
   const int all = static_cast<int>(first.things.size());
@@ -40,11 +40,11 @@ TEST(Cowshed, KeepsItsThingsInTheirPlacesButForTheShareThatChanges) {
   EXPECT_EQ(moved_things(first, build_cowshed({.mission = 1, .change = 1.0})), 0);
 }
 
-TEST(Cowshed, ChangesOtherThingsInOtherMissions) {
+TEST(Cowshed, ChangesOtherObjectsInOtherMissions) {
   EXPECT_GT(moved_things(build_cowshed({.mission = 2}), build_cowshed({.mission = 3})), 0);
 }
 
-TEST(Cowshed, LeavesTheRobotItsWay) {
+TEST(Cowshed, KeepsThePathOfTheRobotFree) {
   constexpr float kFarthestLane = 1.25f;  // metres from the centre line of the alley, over all missions
   constexpr float kRobot = 0.35f;         // half of the robot's width, metres
   constexpr float kThing = 0.3f;          // half of a usual thing's width, metres
@@ -69,7 +69,7 @@ TEST(Cowshed, HasLampsAndLittleDaylightAtDusk) {
   EXPECT_TRUE(build_cowshed({.mission = 2, .time = BarnTime::day}).light.lamps.empty());
 }
 
-TEST(Cowshed, HasTheGateOfItsStoreClosedOnTheFirstVisitOnly) {
+TEST(Cowshed, HasAClosedGateOnTheFirstVisitOnly) {
   EXPECT_EQ(gate_of({.mission = 1}), BarnGate::closed);
   EXPECT_EQ(gate_of({.mission = 2}), BarnGate::open);
   EXPECT_EQ(gate_of({.mission = 3}), BarnGate::open);
@@ -101,7 +101,7 @@ TEST(Cowshed, HasWindowsThatShineInwards) {
   }
 }
 
-TEST(Cowshed, NamesEachOfItsMarksOnce) {
+TEST(Cowshed, HasUniqueNamesOfMarks) {
   std::vector<std::string> names;
   for (const NamedPoint& mark : build_cowshed({}).marks) names.push_back(mark.name);
   EXPECT_GE(names.size(), 8u);
@@ -109,7 +109,7 @@ TEST(Cowshed, NamesEachOfItsMarksOnce) {
   EXPECT_EQ(std::ranges::adjacent_find(names), names.end());
 }
 
-TEST(Cowshed, RefusesWhatMakesNoSense) {
+TEST(Cowshed, RejectsInvalidOptions) {
   EXPECT_THROW(build_cowshed({.mission = 0}), InputError);
   EXPECT_THROW(build_cowshed({.change = 1.5}), InputError);
   EXPECT_THROW(build_cowshed({.cows = -1}), InputError);
@@ -122,7 +122,7 @@ Vector2f middle_of(const QuadMesh& mesh) {
   return sum / static_cast<float>(mesh.vertices.size());
 }
 
-TEST(Cows, WalkAtTheirSpeedAndStayBehindTheFence) {
+TEST(Cows, WalkAtTheirSpeedBehindTheFence) {
   for (const Cow& cow : build_cowshed({.cows = 8}).cows) {
     if (!cow.walks) continue;
     for (float time_s = 0.0f; time_s < 120.0f; time_s += 0.5f) {
@@ -137,7 +137,7 @@ TEST(Cows, WalkAtTheirSpeedAndStayBehindTheFence) {
   }
 }
 
-TEST(Cows, StandWhereTheyEatAndMoveTheirHeads) {
+TEST(Cows, StandAtTheFeedAndMoveTheirHeads) {
   const std::vector<Cow> cows = build_cowshed({.cows = 2}).cows;
   ASSERT_FALSE(cows[1].walks);
   const QuadMesh before = cows_at({cows[1]}, 1.0);
@@ -146,7 +146,7 @@ TEST(Cows, StandWhereTheyEatAndMoveTheirHeads) {
   EXPECT_NE(before.vertices, after.vertices);
 }
 
-TEST(BarnPictures, AreTheSameWithAnyNumberOfThreadsAndOthersForAnotherSeed) {
+TEST(BarnPictures, DependOnTheSeedButNotOnTheNumberOfThreads) {
   const BarnPictures one = draw_barn_pictures(1, 1);
   const BarnPictures many = draw_barn_pictures(1, 4);
   const BarnPictures other = draw_barn_pictures(2, 4);

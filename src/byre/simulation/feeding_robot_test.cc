@@ -28,7 +28,7 @@ TEST(FeedingRobot, LooksForwardFromAboveTheFloor) {
   EXPECT_NEAR(inverse(calibration.right->right_from_left).translation.norm(), 0.15, 1e-4);
 }
 
-TEST(FeedingRobot, SeesTheSameWithSmallerImages) {
+TEST(FeedingRobot, HasTheSameViewWithSmallerImages) {
   const Camera whole = feeding_robot_calibration(1).left;
   const Camera small = feeding_robot_calibration(4).left;
   EXPECT_EQ(small.width, 188);
@@ -38,7 +38,7 @@ TEST(FeedingRobot, SeesTheSameWithSmallerImages) {
   EXPECT_LT((small.project(point).value() - expected).norm(), 1e-9);
 }
 
-TEST(FeedingRobot, SeesAsWideWithImagesOfAnotherShape) {
+TEST(FeedingRobot, HasTheSameViewWidthWithAnotherAspectRatio) {
   const Camera whole = feeding_robot_calibration(1).left;
   const Camera wide = resized_camera(whole, 1280, 720);
   EXPECT_EQ(wide.width, 1280);
@@ -50,7 +50,7 @@ TEST(FeedingRobot, SeesAsWideWithImagesOfAnotherShape) {
   EXPECT_EQ(resized_camera(whole, 752, 480).cy, whole.cy);
 }
 
-TEST(FeedingCourse, ReturnsToWhereItBeganAndAMetreFurther) {
+TEST(FeedingCourse, ReturnsToItsStartAndAMetreFurther) {
   for (const double duration_s : {40.0, 55.0, 150.0}) {
     const FeedingCourse course({.duration_s = duration_s});
     const Pose begin = course.world_from_body(0.0);
@@ -62,7 +62,7 @@ TEST(FeedingCourse, ReturnsToWhereItBeganAndAMetreFurther) {
   }
 }
 
-TEST(FeedingCourse, ComesBackOnTheOtherSideInTheOtherDirection) {
+TEST(FeedingCourse, ReturnsOnTheOtherSideInTheOppositeDirection) {
   const FeedingCourse course({.lane_distance = 2.3, .duration_s = 40.0});
   const Pose there = course.world_from_body(6.0);
   EXPECT_NEAR(there.translation.y(), -1.15, 1e-6);
@@ -77,7 +77,7 @@ TEST(FeedingCourse, ComesBackOnTheOtherSideInTheOtherDirection) {
   EXPECT_TRUE(came_back);
 }
 
-TEST(FeedingCourse, TurnsOnTheSpotAndComesBackOnTheSameLane) {
+TEST(FeedingCourse, TurnsOnTheSpotAndReturnsOnTheSameLane) {
   const FeedingCourse course({.turn = TurnKind::spot, .duration_s = 60.0});
   double fastest_spin = 0.0;  // radians per second
   double spun = 0.0;          // radians turned while nearly at rest
@@ -101,7 +101,7 @@ double farthest_x(const FeedingCourse& course, double duration_s) {
   return farthest;
 }
 
-TEST(FeedingCourse, TurnsAtItsFarEndWhenItIsLongEnough) {
+TEST(FeedingCourse, TurnsAtItsFarEndIfLongEnough) {
   constexpr double kTurn = 2.1;  // metres that the turn adds
   for (const double duration_s : {50.0, 70.0}) {
     const FeedingCourse course({.far_x = 24.0, .latest_near_x = 18.0, .duration_s = duration_s});
@@ -109,13 +109,13 @@ TEST(FeedingCourse, TurnsAtItsFarEndWhenItIsLongEnough) {
   }
 }
 
-TEST(FeedingCourse, BeginsInTimeWhenItIsShort) {
+TEST(FeedingCourse, StartsOnTimeIfShort) {
   const FeedingCourse course({.far_x = 24.0, .latest_near_x = 18.0, .duration_s = 10.0});
   EXPECT_LT(course.world_from_body(0.0).translation.x(), 18.1);
   EXPECT_LT(farthest_x(course, 10.0), 24.0);
 }
 
-TEST(FeedingCourse, DrivesGently) {
+TEST(FeedingCourse, HasSmallAccelerations) {
   constexpr double kStep_s = 0.05;
   const FeedingCourse course({.duration_s = 40.0});
   for (double time_s = kStep_s; time_s < 40.0 - kStep_s; time_s += kStep_s) {
@@ -130,7 +130,7 @@ TEST(FeedingCourse, DrivesGently) {
   }
 }
 
-TEST(FeedingCourse, ShakesWhileItDrivesButNotWhileItStands) {
+TEST(FeedingCourse, ShakesOnlyWhileDriving) {
   const FeedingCourse course({.duration_s = 40.0});
   const auto tilt = [&](double time_s) {
     const Vector3d up = course.world_from_body(time_s).rotation * Vector3d::UnitZ();
@@ -143,7 +143,7 @@ TEST(FeedingCourse, ShakesWhileItDrivesButNotWhileItStands) {
   EXPECT_LT(most, 0.02);
 }
 
-TEST(FeedingCourse, BeginsElsewhereOnTheSameLapWhenAsked) {
+TEST(FeedingCourse, StartsElsewhereOnTheLapOnRequest) {
   const FeedingCourse whole({.duration_s = 40.0});
   const FeedingCourse later({.duration_s = 40.0, .start = 0.1});
   const Vector3d way = later.world_from_body(0.0).translation - whole.world_from_body(0.0).translation;

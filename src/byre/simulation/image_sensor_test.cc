@@ -24,7 +24,7 @@ double sigma_of(const Image& image) {
   return std::sqrt(sum / static_cast<double>(image.pixels.size()));
 }
 
-TEST(ImageSensor, BrightensWithTimeAndGainAlike) {
+TEST(ImageSensor, BrightensEquallyWithTimeAndGain) {
   const ImageSensor sensor(kCamera, {.vignetting = 0.0f, .noise = 0.0f});
   const float grey = mean_grey(sensor.expose(even_light(0.5f), {0.002f, 1.0f}, 1, 1));
   EXPECT_NEAR(mean_grey(sensor.expose(even_light(0.5f), {0.004f, 1.0f}, 1, 1)), 2.0f * grey, 1.0f);
@@ -56,7 +56,7 @@ TEST(ImageSensor, LosesContrastBehindDirt) {
   EXPECT_LT(sigma_of(dirty.expose(stripes, exposure, 1, 1)), 0.97 * sigma_of(clean.expose(stripes, exposure, 1, 1)));
 }
 
-TEST(ImageSensor, AmplifiesAndIsOffsetAsItsOwn) {
+TEST(ImageSensor, AppliesItsOwnGainAndOffset) {
   const ImageSensor usual(kCamera, {.vignetting = 0.0f, .noise = 0.0f});
   const ImageSensor bright(kCamera, {.vignetting = 0.0f, .noise = 0.0f, .gain = 1.1f, .offset = 5.0f});
   const float grey = mean_grey(usual.expose(even_light(0.5f), {}, 1, 1));
@@ -64,7 +64,7 @@ TEST(ImageSensor, AmplifiesAndIsOffsetAsItsOwn) {
   EXPECT_NEAR(mean_grey(bright.expose(even_light(0.0f), {}, 1, 1)), 5.0f, 0.01f);
 }
 
-TEST(ImageSensor, IsSoftInTheCornersBehindALensThatBlurs) {
+TEST(ImageSensor, IsBlurredInTheCornersByTheLens) {
   const ImageSensor sensor(kCamera, {.vignetting = 0.0f, .noise = 0.0f, .blur = {1.0f}});
   std::vector<float> stripes = even_light(0.2f);
   for (std::size_t i = 0; i < stripes.size(); i += 2) stripes[i] = 0.8f;
@@ -76,14 +76,14 @@ TEST(ImageSensor, IsSoftInTheCornersBehindALensThatBlurs) {
   EXPECT_LT(contrast(2, 2), 20);
 }
 
-TEST(ImageSensor, GivesTheSameBytesWithAnyNumberOfThreads) {
+TEST(ImageSensor, IsIndependentOfTheNumberOfThreads) {
   const ImageSensor sensor(kCamera, {});
   const std::vector<float> light = even_light(0.7f);
   EXPECT_EQ(sensor.expose(light, {}, 5, 1).pixels, sensor.expose(light, {}, 5, 4).pixels);
   EXPECT_NE(sensor.expose(light, {}, 5, 1).pixels, sensor.expose(light, {}, 6, 1).pixels);
 }
 
-TEST(Exposure, SettlesAtTheWantedGrey) {
+TEST(Exposure, SettlesAtTheTargetBrightness) {
   const ImageSensor sensor(kCamera, {.vignetting = 0.0f});
   const ExposureLimits limits;
   for (const float radiance : {0.05f, 0.4f, 5.0f}) {
@@ -95,7 +95,7 @@ TEST(Exposure, SettlesAtTheWantedGrey) {
   }
 }
 
-TEST(Exposure, LengthensTimeBeforeItAmplifiesAndKeepsItsLimits) {
+TEST(Exposure, IncreasesTimeBeforeGainWithinItsLimits) {
   const ExposureLimits limits;
   Exposure exposure{0.004f, 1.0f};
   exposure = next_exposure(exposure, 0.5f * limits.wanted_grey, limits);

@@ -37,7 +37,7 @@ double variance_of_a_dot(const LensBlur& blur, int column, int row) {
   return squares / sum;
 }
 
-TEST(LensBlur, OfNothingLeavesTheImageAsItIs) {
+TEST(LensBlur, OfZeroLeavesTheImage) {
   const LensBlur blur(kWidth, kHeight, {});
   std::vector<float> image = even(0.0f);
   std::iota(image.begin(), image.end(), 0.0f);
@@ -55,7 +55,7 @@ TEST(LensBlur, SpreadsADotByItsSigma) {
   }
 }
 
-TEST(LensBlur, GrowsWithTheSquareOfTheDistanceFromTheSharpestPlace) {
+TEST(LensBlur, GrowsQuadraticallyFromTheSharpestPosition) {
   const LensBlur blur(kWidth, kHeight, {1.0f});
   EXPECT_NEAR(blur.sigma_at(0, 0), 1.0f, 0.03f);
   EXPECT_NEAR(blur.sigma_at(kWidth / 4, kHeight / 4), 0.25f, 0.02f);
@@ -65,11 +65,11 @@ TEST(LensBlur, GrowsWithTheSquareOfTheDistanceFromTheSharpestPlace) {
   EXPECT_GT(aside.sigma_at(0, kHeight - 1), 1.2f);
 }
 
-TEST(LensBlur, KeepsEvenLightEvenUpToTheRim) {
+TEST(LensBlur, KeepsUniformLightUpToTheBorder) {
   EXPECT_THAT(LensBlur(kWidth, kHeight, {2.0f}).blurred(even(0.7f), 1), Each(FloatNear(0.7f, 1e-5f)));
 }
 
-TEST(LensBlur, IsTheSameWithAnyNumberOfThreads) {
+TEST(LensBlur, IsIndependentOfTheNumberOfThreads) {
   const LensBlur blur(kWidth, kHeight, {1.5f});
   std::vector<float> image = even(0.0f);
   for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<float>(i * i % 251);

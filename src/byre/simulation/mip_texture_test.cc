@@ -20,7 +20,7 @@ MipTexture columns(int width) {
   return {kTextureSize, texels};
 }
 
-TEST(MipTexture, GivesItsTexelsAtTheirCentres) {
+TEST(MipTexture, ReturnsItsTexelsAtTheirCentres) {
   const MipTexture texture = columns(1);
   for (int i = 0; i < 4; ++i) {
     const Vector2f centre((static_cast<float>(i) + 0.5f) * kTexel, 0.5f * kTexel);
@@ -39,14 +39,14 @@ TEST(MipTexture, RepeatsInBothDirections) {
   }
 }
 
-TEST(MipTexture, AveragesOverWideFootprints) {
+TEST(MipTexture, AveragesWideFootprints) {
   const MipTexture texture = columns(1);
   for (const float x : {0.01f, 0.33f, 0.77f}) {
     EXPECT_THAT(texture.sample({x, 0.5f}, 8.0f * kTexel), FloatNear(0.5f, 2.0f * kStep));
   }
 }
 
-TEST(MipTexture, KeepsDetailAcrossNarrowFootprints) {
+TEST(MipTexture, KeepsDetailInNarrowFootprints) {
   const MipTexture texture = columns(4);
   const TextureFootprint along_columns{{kTexel, 0.0f}, {0.0f, 4.0f * kTexel}};
   EXPECT_THAT(texture.sample({2.0f * kTexel, 0.5f}, along_columns), FloatNear(0.0f, 0.05f));

@@ -24,7 +24,7 @@ Pose motion_between(const Trajectory& path, double from, double to) {
 }
 
 // An error-free accelerometer, integrated twice, reproduces the trajectory.
-TEST(MotionSensors, TellAccelerationsWithGravity) {
+TEST(MotionSensors, MeasureAccelerationsWithGravity) {
   const Trajectory truth = drive();
   const MotionSamples exact = simulated_motion(truth, {.acceleration_noise = 0.0, .acceleration_bias = 0.0});
   ASSERT_EQ(exact.accelerations.size(), exact.rates.size());
@@ -65,7 +65,7 @@ TEST(MotionSensors, AreExactWithoutErrors) {
   EXPECT_LT(angle_between(turn, whole.rotation), 1e-6);
 }
 
-TEST(MotionSensors, ErrAsTheyAreTold) {
+TEST(MotionSensors, HaveTheGivenErrors) {
   const Trajectory truth = drive();
   const MotionSamples told = simulated_motion(truth, {.radius_error = 0.05, .slip = 0.0});
   const double way = motion_between(truth, 2.0, 12.0).translation.norm();
@@ -73,7 +73,7 @@ TEST(MotionSensors, ErrAsTheyAreTold) {
   EXPECT_EQ(told.wheels.front().time, truth.front().time + std::chrono::milliseconds(30));
 }
 
-TEST(MotionSensors, TurnWhereAWheelIsLifted) {
+TEST(MotionSensors, MeasureATurnWhileAWheelIsLifted) {
   const Trajectory truth = drive();
   const MotionSamples told = simulated_motion(truth, {.lifted_from = 5.0, .lifted_to = 8.0});
   const double told_turn = rotation_log(motion_between(told.wheels, 5.03, 8.03).rotation).z();
@@ -81,7 +81,7 @@ TEST(MotionSensors, TurnWhereAWheelIsLifted) {
   EXPECT_GT(std::abs(told_turn - turn), 0.3);
 }
 
-TEST(MotionSensors, TellTheSameForTheSameSeed) {
+TEST(MotionSensors, AreDeterministicForASeed) {
   const Trajectory truth = drive();
   const MotionSamples once = simulated_motion(truth, {.seed = 4}), again = simulated_motion(truth, {.seed = 4});
   const MotionSamples other = simulated_motion(truth, {.seed = 5});

@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-TEST(PixelRays, PassThroughTheirPixelsDespiteTheDistortion) {
+TEST(PixelRays, ProjectToTheirPixelsDespiteDistortion) {
   const Camera camera = euroc_like_calibration(4).left;
   const PixelRays rays(camera);
   for (int row = 0; row < camera.height; row += 17) {
@@ -22,7 +22,7 @@ TEST(PixelRays, PassThroughTheirPixelsDespiteTheDistortion) {
   }
 }
 
-TEST(PixelRays, AreEmptyWhereTheLensLetsNoLightIn) {
+TEST(PixelRays, AreEmptyOutsideTheFieldOfView) {
   Camera camera{.width = 200, .height = 200, .fx = 40.0, .fy = 40.0, .cx = 99.5, .cy = 99.5, .distortion = {}};
   camera.model = CameraModel::equidistant;  // half sphere: radius 63 pixels around the centre
   const PixelRays rays(camera);

@@ -48,7 +48,7 @@ TEST(QuadMesh, ShowsTheOutsideOfAnEllipsoid) {
   expect_to_face_away_from(mesh, {0.0f, 1.0f, 0.0f});
 }
 
-TEST(QuadMesh, HasABarAsWideAsAskedFor) {
+TEST(QuadMesh, HasABarOfTheGivenWidth) {
   QuadMesh mesh;
   add_bar(mesh, {0.0f, 0.0f, 1.0f}, {2.0f, 0.0f, 1.0f}, 0.1f, kLook);
   for (const Vector3f& vertex : mesh.vertices) {
@@ -56,7 +56,7 @@ TEST(QuadMesh, HasABarAsWideAsAskedFor) {
   }
 }
 
-TEST(QuadMesh, LaysPicturesInTheirWidth) {
+TEST(QuadMesh, MapsPicturesToTheirWidth) {
   QuadMesh mesh;
   add_panel(mesh, Vector3f::Zero(), {2.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, kLook);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -65,7 +65,7 @@ TEST(QuadMesh, LaysPicturesInTheirWidth) {
   }
 }
 
-TEST(QuadMesh, HasNoFacetLargerThanAskedFor) {
+TEST(QuadMesh, LimitsTheSizeOfFacets) {
   QuadMesh mesh;
   add_panel(mesh, Vector3f::Zero(), {2.0f, 0.0f, 0.0f}, {0.0f, 0.9f, 0.0f}, kLook, 0.25f);
   EXPECT_EQ(mesh.quads.size(), 8u * 4u);

@@ -71,7 +71,7 @@ TEST_F(WrittenRecording, HasGroundTruthInTheColumnsOfEuroc) {
   EXPECT_THAT(lines[2], StartsWith("50000000,"));
 }
 
-TEST_F(WrittenRecording, ReadsBackAsTheTruth) {
+TEST_F(WrittenRecording, ReadsBackTheTruth) {
   const Trajectory read = read_trajectory(folder);
   ASSERT_THAT(read, SizeIs(kFrames));
   for (std::size_t i = 0; i < read.size(); ++i) {
@@ -80,7 +80,7 @@ TEST_F(WrittenRecording, ReadsBackAsTheTruth) {
   }
 }
 
-TEST_F(WrittenRecording, ReadsBackWithItsCalibration) {
+TEST_F(WrittenRecording, ReadsBackItsCalibration) {
   const Calibration read = open_recording(folder, {})->calibration();
   EXPECT_EQ(read.left.fx, calibration.left.fx);
   EXPECT_EQ(read.left.cy, calibration.left.cy);
@@ -91,7 +91,7 @@ TEST_F(WrittenRecording, ReadsBackWithItsCalibration) {
   EXPECT_THAT(read.right->right_from_left, PoseNear(calibration.right->right_from_left, 1e-12, 1e-7));
 }
 
-TEST_F(WrittenRecording, ReadsBackAsRendered) {
+TEST_F(WrittenRecording, ReadsBackTheRenderedImages) {
   const auto recording = open_recording(folder, {});
   ASSERT_EQ(recording->size(), kFrames);
   const std::optional<ImageFrame> read = recording->read(1);
@@ -101,11 +101,11 @@ TEST_F(WrittenRecording, ReadsBackAsRendered) {
   EXPECT_EQ(read->right->pixels, rendered.right->pixels);
 }
 
-TEST_F(WrittenRecording, TellsItsProgress) {
+TEST_F(WrittenRecording, ReportsItsProgress) {
   EXPECT_THAT(progress, ElementsAre(std::pair(1, 3), std::pair(2, 3), std::pair(3, 3)));
 }
 
-TEST_F(WrittenRecording, IsRefusedWhereAFileIsInTheWay) {
+TEST_F(WrittenRecording, RejectsAFileInItsPlace) {
   const fs::path occupied = folder / "occupied";
   std::ofstream(occupied) << "a file";
   try {

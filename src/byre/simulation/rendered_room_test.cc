@@ -98,7 +98,7 @@ class RenderedViews : public ::testing::Test {
   const Trajectory trajectory = circling_trajectory(60, 20.0, 1.2, 1.0, calibration.body_from_left);
 };
 
-TEST_F(RenderedViews, ShowTheSamePlacesInBothCameras) {
+TEST_F(RenderedViews, AreConsistentBetweenBothCameras) {
   const Pose& world_from_body = trajectory[10].world_from_body;
   const Difference difference =
       compare(room, left_view(room, calibration, world_from_body), right_view(room, calibration, world_from_body));
@@ -107,7 +107,7 @@ TEST_F(RenderedViews, ShowTheSamePlacesInBothCameras) {
   EXPECT_GT(difference.unwarped, 4.0 * difference.warped);
 }
 
-TEST_F(RenderedViews, ShowTheSamePlacesOverTime) {
+TEST_F(RenderedViews, AreConsistentOverTime) {
   const Difference difference = compare(room, left_view(room, calibration, trajectory[10].world_from_body),
                                         left_view(room, calibration, trajectory[12].world_from_body));
   EXPECT_GT(difference.count, 3000);
@@ -131,7 +131,7 @@ TEST_F(RenderedViews, HaveContrastEverywhere) {
   }
 }
 
-TEST(RenderedRoom, RendersTheSameBytesAgain) {
+TEST(RenderedRoom, IsDeterministic) {
   const Calibration calibration = euroc_like_calibration(4);
   const Pose pose = circling_trajectory(2, 1.0, 1.0, 0.3, calibration.body_from_left)[1].world_from_body;
   const Timestamp time = std::chrono::milliseconds(50);
@@ -168,7 +168,7 @@ double deviation(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-TEST(RenderedRoom, HasNoiseOfItsSigmaThatDiffersFromFrameToFrame) {
+TEST(RenderedRoom, HasNoiseOfItsSigmaIndependentBetweenFrames) {
   constexpr double kSigma = 3.0;
   Calibration calibration = euroc_like_calibration(8);
   const Pose pose = circling_trajectory(2, 1.0, 1.0, 0.3, calibration.body_from_left)[0].world_from_body;
@@ -180,7 +180,7 @@ TEST(RenderedRoom, HasNoiseOfItsSigmaThatDiffersFromFrameToFrame) {
   EXPECT_NEAR(deviation(differences(noisy, later)), kSigma * std::sqrt(2.0), 0.3);
 }
 
-TEST(RenderedRoom, HasItsWallsWhereItsSizeSays) {
+TEST(RenderedRoom, HasWallsAtItsSize) {
   RenderedRoomOptions options;
   options.room_size = {8.0, 6.0, 3.0};
   options.boxes = 0;
@@ -196,7 +196,7 @@ TEST(RenderedRoom, HasItsWallsWhereItsSizeSays) {
   EXPECT_FALSE(floor.is_upper);
 }
 
-TEST(RenderedRoom, HasBoxesOnlyInItsLowerThird) {
+TEST(RenderedRoom, HasBoxesInItsLowerThirdOnly) {
   RenderedRoomOptions options;
   options.boxes = 50;
   const RenderedRoom room(options);
@@ -211,7 +211,7 @@ TEST(RenderedRoom, HasBoxesOnlyInItsLowerThird) {
   EXPECT_GT(on_boxes, 100);
 }
 
-TEST(RenderedRoom, RefusesOptionsThatMakeNoSense) {
+TEST(RenderedRoom, RejectsInvalidOptions) {
   RenderedRoomOptions flat;
   flat.room_size.z() = 0.0;
   EXPECT_THROW(RenderedRoom{flat}, InputError);
@@ -233,7 +233,7 @@ TEST(EurocLikeCalibration, KeepsItsFieldOfViewWhenDivided) {
   EXPECT_THAT(half.left.bearing({375.5, 239.5}).value(), PointNear(full.left.bearing({751.5, 479.5}).value(), 1e-9));
 }
 
-TEST(EurocLikeCalibration, HasTheRightCameraElevenCentimetresToTheRight) {
+TEST(EurocLikeCalibration, HasABaselineOfElevenCentimetres) {
   const Pose right_from_left = euroc_like_calibration(1).right.value().right_from_left;
   EXPECT_THAT(right_from_left, PoseNear(Pose{Eigen::Quaterniond::Identity(), {-0.11, 0.0, 0.0}}, 0.002, 0.02));
 }

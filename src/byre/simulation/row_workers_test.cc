@@ -13,13 +13,13 @@ using ::testing::Eq;
 
 class RowWorkers : public ::testing::TestWithParam<int> {};
 
-TEST_P(RowWorkers, DoEachRowOnce) {
+TEST_P(RowWorkers, ProcessEachRowOnce) {
   std::vector<std::atomic<int>> done(37);
   for_each_row(37, GetParam(), [&](int row) { ++done[static_cast<std::size_t>(row)]; });
   EXPECT_THAT(done, Each(Eq(1)));
 }
 
-TEST_P(RowWorkers, DoNothingWithoutRows) {
+TEST_P(RowWorkers, ProcessNothingWithoutRows) {
   int calls = 0;
   for_each_row(0, GetParam(), [&](int) { ++calls; });
   EXPECT_EQ(calls, 0);

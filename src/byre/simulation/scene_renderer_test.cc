@@ -59,7 +59,7 @@ class RenderedMarker : public ::testing::Test {
   const LitMesh nothing = unlit({}, 1);
 };
 
-TEST_F(RenderedMarker, EndsWhereItsEdgesAreProjectedThroughTheLens) {
+TEST_F(RenderedMarker, EndsAtItsEdgesProjectedThroughTheLens) {
   const std::vector<float> radiance = render({});
   for (const double y : {-0.2, 0.05, 0.3}) {
     const std::optional<Vector2d> left = camera.project({-0.5, y, kMarkerDepth});
@@ -84,7 +84,7 @@ TEST_F(RenderedMarker, HasTheDepthAlongTheOpticalAxis) {
   EXPECT_NEAR(at({1.5, -0.7, kWallDepth}), kWallDepth, 1e-4);
 }
 
-TEST_F(RenderedMarker, IsTheSameWithAnyNumberOfThreads) {
+TEST_F(RenderedMarker, IsIndependentOfTheNumberOfThreads) {
   EXPECT_EQ(render({}, {}, 1), render({}, {}, 5));
 }
 
@@ -97,7 +97,7 @@ TEST_F(RenderedMarker, FadesInDust) {
               0.5f + clear * (kMarker - 0.5f), 1e-3f);
 }
 
-TEST_F(RenderedMarker, IsDarkerWhereThereIsLessLight) {
+TEST_F(RenderedMarker, IsDarkerInDimLight) {
   const SceneView half{pixels, {}, {.share = 0.5f}};
   const std::vector<float> radiance = SceneRenderer(still, pictures, {}, 1).radiance(half, nothing, {});
   const std::vector<float> full = render({});
@@ -105,7 +105,7 @@ TEST_F(RenderedMarker, IsDarkerWhereThereIsLessLight) {
 }
 
 // Radiance of a wall at a distance straight ahead.
-TEST_F(RenderedMarker, IsLitByAHeadlightAsTheInverseSquareOfItsDistance) {
+TEST_F(RenderedMarker, IsLitByAHeadlightWithInverseSquareFalloff) {
   const auto middle_of_wall = [this](float distance) {
     QuadMesh wall;
     add_panel(wall, {-20.0f, 20.0f, distance}, {40.0f, 0.0f, 0.0f}, {0.0f, -40.0f, 0.0f}, {}, 10.0f);
@@ -120,7 +120,7 @@ TEST_F(RenderedMarker, IsLitByAHeadlightAsTheInverseSquareOfItsDistance) {
   EXPECT_NEAR(middle_of_wall(4.0f), middle_of_wall(2.0f) / 4.0f, 1e-3f * middle_of_wall(2.0f));
 }
 
-TEST_F(RenderedMarker, IsHiddenByWhatMovesBeforeIt) {
+TEST_F(RenderedMarker, IsOccludedByMovingObjects) {
   QuadMesh curtain;
   add_panel(curtain, {-9.0f, 9.0f, 1.0f}, {18.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
   const LitMesh moving = unlit(curtain, 1);
@@ -128,7 +128,7 @@ TEST_F(RenderedMarker, IsHiddenByWhatMovesBeforeIt) {
 }
 
 // Row poses decide, not their times: the first row looks from the start of the motion, the last one from its end.
-TEST_F(RenderedMarker, IsSeenByEachRowFromWhereTheCameraIsThen) {
+TEST_F(RenderedMarker, IsRenderedPerRowFromTheMovingCamera) {
   const auto camera_at = [&](int row) {
     return Pose{Eigen::Quaterniond::Identity(), {0.4 * row / (camera.height - 1.0), 0.0, 0.0}};
   };
@@ -154,7 +154,7 @@ TEST_F(RenderedMarker, IsSeenByEachRowFromWhereTheCameraIsThen) {
   EXPECT_GT(above - below, 5.0);
 }
 
-TEST_F(RenderedMarker, LetsEachRowSeeWhatMovesWhereItIsThen) {
+TEST_F(RenderedMarker, ShowsMovingObjectsPerRow) {
   QuadMesh begin, end;
   add_panel(begin, {-2.0f, 9.0f, 1.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
   add_panel(end, {-1.5f, 9.0f, 1.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
@@ -174,7 +174,7 @@ TEST_F(RenderedMarker, LetsEachRowSeeWhatMovesWhereItIsThen) {
   }
 }
 
-TEST(RayScene, TellsWhetherAWallIsBetweenTwoPoints) {
+TEST(RayScene, DetectsAWallBetweenTwoPoints) {
   const RayScene rays(wall_and_marker(), 0);
   EXPECT_TRUE(rays.is_free({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.9f}));
   EXPECT_FALSE(rays.is_free({0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.1f}));

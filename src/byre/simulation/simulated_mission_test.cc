@@ -63,7 +63,7 @@ double root_mean_square(const std::vector<double>& values) {
                    static_cast<double>(values.size()));
 }
 
-TEST(SimulateMission, PutsFeaturesWhereTheTruthProjects) {
+TEST(SimulateMission, PlacesFeaturesAtTrueProjections) {
   const SimulatedMission mission = simulate(without_noise());
   for (const Seen& seen : all_features(mission)) {
     ASSERT_GE(seen.landmark, 0);
@@ -75,11 +75,11 @@ TEST(SimulateMission, PutsFeaturesWhereTheTruthProjects) {
   }
 }
 
-TEST(SimulateMission, SeesEnoughToTrackInEveryFrame) {
+TEST(SimulateMission, HasEnoughFeaturesInEveryFrame) {
   for (const Frame& frame : simulate({}).frames) EXPECT_GT(frame.features->size(), 80);
 }
 
-TEST(SimulateMission, KeepsTimesAndSizesInStep) {
+TEST(SimulateMission, HasConsistentTimesAndSizes) {
   const SimulatedMission mission = simulate({});
   ASSERT_EQ(mission.frames.size(), mission.truth.size());
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
@@ -88,7 +88,7 @@ TEST(SimulateMission, KeepsTimesAndSizesInStep) {
   }
 }
 
-TEST(SimulateMission, PutsLandmarksOnTheSurfacesOfTheRoom) {
+TEST(SimulateMission, PlacesLandmarksOnTheSurfacesOfTheRoom) {
   SimulationOptions options;
   options.room_size = {4.0, 6.0, 2.0};
   for (const Eigen::Vector3d& landmark : simulate(options).landmarks_in_world) {
@@ -97,7 +97,7 @@ TEST(SimulateMission, PutsLandmarksOnTheSurfacesOfTheRoom) {
   }
 }
 
-TEST(SimulateMission, GivesALandmarkItsDescriptorAndHigherOctavesWhenNearer) {
+TEST(SimulateMission, AssignsDescriptorsAndHigherOctavesToNearLandmarks) {
   const SimulatedMission mission = simulate(without_noise());
   std::map<int, std::vector<Seen>> views;
   for (const Seen& seen : all_features(mission)) views[seen.landmark].push_back(seen);
@@ -117,7 +117,7 @@ TEST(SimulateMission, UsesAllOctaves) {
   EXPECT_THAT(octaves, SizeIs(kOctaves));
 }
 
-TEST(SimulateMission, TurnsAnglesWithTheCamera) {
+TEST(SimulateMission, RotatesAnglesWithTheCamera) {
   const Rig rig = simulated_rig();
   Trajectory rolling = turning_in_place_trajectory(2, 1.0, 0.0);
   constexpr double kRoll = 0.3;
@@ -174,7 +174,7 @@ TEST(SimulateMission, MissesLandmarksByTheirRatio) {
   EXPECT_NEAR(static_cast<double>(all_features(simulate(options)).size()) / all, 0.75, 0.03);
 }
 
-TEST(SimulateMission, MarksOutliersAndPutsThemElsewhere) {
+TEST(SimulateMission, MarksAndDisplacesOutliers) {
   SimulationOptions options = without_noise();
   std::map<Descriptor, int> true_landmarks;
   for (const Seen& seen : all_features(simulate(options))) true_landmarks[seen.descriptor] = seen.landmark;
@@ -188,7 +188,7 @@ TEST(SimulateMission, MarksOutliersAndPutsThemElsewhere) {
   EXPECT_NEAR(outliers / static_cast<double>(features.size()), 0.2, 0.03);
 }
 
-TEST(SimulateMission, GivesNoDisparityToFarLandmarksNorWithoutBaseline) {
+TEST(SimulateMission, OmitsDisparitiesOfFarLandmarksAndWithoutBaseline) {
   SimulationOptions options = without_noise();
   options.min_disparity = 12.0;
   const SimulatedMission stereo = simulate(options);
@@ -224,7 +224,7 @@ bool are_equal(const SimulatedMission& first, const SimulatedMission& second) {
   });
 }
 
-TEST(SimulateMission, GivesTheSameFramesForTheSameSeedsOnly) {
+TEST(SimulateMission, DependsOnTheSeedsOnly) {
   SimulationOptions options;
   const SimulatedMission mission = simulate(options);
   EXPECT_TRUE(are_equal(mission, simulate(options)));
@@ -236,7 +236,7 @@ TEST(SimulateMission, GivesTheSameFramesForTheSameSeedsOnly) {
   EXPECT_NE(mission.landmarks_in_world, simulate(options).landmarks_in_world);
 }
 
-TEST(TrueMap, IsSoundAndTrue) {
+TEST(TrueMap, IsValidAndTrue) {
   const SimulatedMission mission = simulate({});
   const Map map = true_map(mission, 5, Origin::offline);
   EXPECT_THAT(find_faults(map), IsEmpty());
@@ -252,7 +252,7 @@ TEST(TrueMap, IsSoundAndTrue) {
   }
 }
 
-TEST(TrueMap, HangsEveryKeyframeOnTheOneBefore) {
+TEST(TrueMap, AttachesEveryKeyframeToThePreviousOne) {
   const Map map = true_map(simulate({}), 5, Origin::online);
   const std::vector<KeyframeId> keyframes = map.keyframe_ids();
   EXPECT_EQ(map.find_keyframe(keyframes.front())->parent, std::nullopt);
@@ -261,7 +261,7 @@ TEST(TrueMap, HangsEveryKeyframeOnTheOneBefore) {
   }
 }
 
-TEST(TrueMap, SaysOverWhichDistancesAPointIsSeen) {
+TEST(TrueMap, HasTheDistanceRangeOfEachPoint) {
   const SimulatedMission mission = simulate(without_noise());
   const Map map = true_map(mission, 5, Origin::online);
   for (const PointId id : map.point_ids()) {
@@ -274,7 +274,7 @@ TEST(TrueMap, SaysOverWhichDistancesAPointIsSeen) {
   }
 }
 
-TEST(TrueMap, LeavesOutOutliersAndPointsThatCannotBePlaced) {
+TEST(TrueMap, OmitsOutliersAndUnobservablePoints) {
   Rig mono_rig = simulated_rig();
   mono_rig.baseline = 0.0;
   SimulationOptions options;

@@ -31,7 +31,7 @@ TEST_P(EveryTrajectory, IsSampledAtTheFrameRate) {
   }
 }
 
-TEST_P(EveryTrajectory, EndsAfterWholeLapsWhereItBegan) {
+TEST_P(EveryTrajectory, EndsAtItsStartAfterWholeLaps) {
   const Trajectory trajectory = GetParam().make({});
   EXPECT_THAT(trajectory.back().world_from_body, PoseNear(trajectory.front().world_from_body, 1e-9, 1e-6));
 }
@@ -50,7 +50,7 @@ TEST_P(EveryTrajectory, KeepsTheCameraUpright) {
   }
 }
 
-TEST_P(EveryTrajectory, PutsTheCameraInTheSamePlacesWhateverTheBody) {
+TEST_P(EveryTrajectory, PlacesTheCameraIndependentOfTheBody) {
   const Pose body_from_camera = robot_from_camera();
   const Trajectory cameras = GetParam().make({});
   const Trajectory robots = GetParam().make(body_from_camera);
@@ -79,14 +79,14 @@ TEST(CirclingTrajectory, LooksAlongItsMotion) {
   }
 }
 
-TEST(TurningInPlace, StaysAndTurnsLeft) {
+TEST(TurningInPlace, StaysInPlaceAndTurnsLeft) {
   const Trajectory trajectory = turning_in_place_trajectory(5, 1.0, 1.0);
   EXPECT_THAT(looking_direction(trajectory[0].world_from_body), PointNear(Eigen::Vector3d::UnitX(), 1e-9));
   EXPECT_THAT(looking_direction(trajectory[1].world_from_body), PointNear(Eigen::Vector3d::UnitY(), 1e-9));
   for (const StampedPose& sample : trajectory) EXPECT_EQ(sample.world_from_body.translation.norm(), 0.0);
 }
 
-TEST(RobotFromCamera, LooksAlongTheBodysXAxisWithItsZUp) {
+TEST(RobotFromCamera, LooksAlongTheBodyXAxisWithZUp) {
   const Eigen::Quaterniond body_from_camera = robot_from_camera().rotation;
   EXPECT_THAT(body_from_camera * Eigen::Vector3d::UnitZ(), PointNear(Eigen::Vector3d::UnitX(), 1e-12));
   EXPECT_THAT(body_from_camera * Eigen::Vector3d::UnitY(), PointNear(-Eigen::Vector3d::UnitZ(), 1e-12));

@@ -32,12 +32,12 @@ TEST(SurfaceGrey, UsesManyGreyValuesInRange) {
   EXPECT_GT(brightest - darkest, 120.0f);
 }
 
-TEST(SurfaceGrey, ChangesOverAFootprintAndNotFaster) {
+TEST(SurfaceGrey, ChangesOverAFootprint) {
   EXPECT_GT(largest_step(greys_along_a_line(1, 0.001f)), 60.0f) << "seen from near, edges are crisp";
   EXPECT_LT(largest_step(greys_along_a_line(1, 0.020f)), 20.0f) << "from far, they are blurred";
 }
 
-TEST(SurfaceGrey, LosesItsDetailWithDistance) {
+TEST(SurfaceGrey, LosesDetailWithDistance) {
   const auto roughness = [](const std::vector<float>& greys) {
     float sum = 0.0f;
     for (std::size_t i = 30; i < greys.size(); i += 30) sum += std::abs(greys[i] - greys[i - 30]);
@@ -46,7 +46,7 @@ TEST(SurfaceGrey, LosesItsDetailWithDistance) {
   EXPECT_LT(roughness(greys_along_a_line(1, 0.2f)), 0.5f * roughness(greys_along_a_line(1, 0.002f)));
 }
 
-TEST(SurfaceGrey, DiffersFromSurfaceToSurface) {
+TEST(SurfaceGrey, DiffersBetweenSurfaces) {
   EXPECT_EQ(greys_along_a_line(1, 0.005f), greys_along_a_line(1, 0.005f));
   EXPECT_NE(greys_along_a_line(1, 0.005f), greys_along_a_line(2, 0.005f));
 }

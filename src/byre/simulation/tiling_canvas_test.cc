@@ -18,7 +18,7 @@ float texel(const TilingCanvas& canvas, int column, int row) {
   return canvas.texels()[static_cast<std::size_t>(row * kCanvasSize + column)];
 }
 
-TEST(TilingCanvas, DrawsAStrokeAsLongAndWideAsAskedFor) {
+TEST(TilingCanvas, DrawsAStrokeOfTheGivenLengthAndWidth) {
   TilingCanvas canvas(kCanvasSize, 0.0f);
   canvas.draw({.x = 4.0f, .y = 10.0f, .direction = 0.0f, .length = 12.0f, .width = 3.0f, .reflectance = 1.0f});
   EXPECT_EQ(texel(canvas, 8, 10), 1.0f);
@@ -28,7 +28,7 @@ TEST(TilingCanvas, DrawsAStrokeAsLongAndWideAsAskedFor) {
   EXPECT_EQ(texel(canvas, 18, 10), 0.0f);
 }
 
-TEST(TilingCanvas, ContinuesAStrokeOnTheOtherSide) {
+TEST(TilingCanvas, ContinuesAStrokeOnTheOppositeSide) {
   TilingCanvas canvas(kCanvasSize, 0.0f);
   constexpr float kUp = 0.5f * std::numbers::pi_v<float>;
   canvas.draw({.x = 5.0f, .y = 28.0f, .direction = kUp, .length = 10.0f, .width = 1.0f, .reflectance = 1.0f});
@@ -43,7 +43,7 @@ TEST(TilingCanvas, FillsEachTexel) {
   EXPECT_THAT(canvas.texels(), Each(FloatNear(0.75f, 1e-6f)));
 }
 
-TEST(TilingNoise, VariesWithoutAStepWhereItRepeats) {
+TEST(TilingNoise, IsContinuousAcrossTheBorder) {
   const std::vector<float> noise = tiling_noise(kCanvasSize, 4, 4, 1, 7);
   const auto at = [&](int column, int row) { return noise[static_cast<std::size_t>(row * kCanvasSize + column)]; };
   float largest_step = 0.0f;

@@ -199,7 +199,7 @@ TEST_F(TrackHybrid, IsBiasedByLessThanHalfOfASmallMotionOfALargeObject) {
   }
 }
 
-TEST_F(TrackHybrid, MatchesZeroWeightPointsWithoutEffect) {
+TEST_F(TrackHybrid, ClassifiesGivenPointsAsAgreedOrMoved) {
   const std::vector<PointId> all = offline_.point_ids();
   std::vector<PointId> shelf;
   for (std::size_t i = 0; i < all.size(); i += 5) shelf.push_back(all[i]);
