@@ -151,9 +151,9 @@ struct FindingCase {
   std::string what;
 };
 
-class OneFinding : public testing::TestWithParam<FindingCase> {};
+class RecordingFinding : public testing::TestWithParam<FindingCase> {};
 
-TEST_P(OneFinding, HasFiguresAndARemedy) {
+TEST_P(RecordingFinding, HasFiguresAndARemedy) {
   RecordingCheck check = sound_check();
   GetParam().change(check);
   const std::vector<Finding> findings = findings_of(check);
@@ -170,7 +170,7 @@ void give_fault(CameraCheck& camera, ImageFault fault, int images) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    RecordingCheck, OneFinding,
+    RecordingCheck, RecordingFinding,
     testing::Values(
         FindingCase{[](RecordingCheck& check) { check.rate_hz = 2.04; }, false, "only 2.0 frames a second"},
         FindingCase{[](RecordingCheck& check) {

@@ -160,9 +160,9 @@ TEST_F(EurocRecording, SortsAndCountsLateLines) {
 
 // Twelve pairs, 100 ms apart, with a clock that is set back by 350 ms before the seventh. Wheels and gyroscope share
 // the clock.
-class EurocOfAClockSetBack : public EurocRecording {
+class EurocWithClockStep : public EurocRecording {
  protected:
-  EurocOfAClockSetBack() {
+  EurocWithClockStep() {
     const auto stamp = [](int ms) { return std::to_string(1'000'000 + ms - (ms >= 580 ? 350 : 0)); };
     std::string images, wheels, imu;
     for (int i = 0; i < 12; ++i) images += stamp(100 * i) + "000000," + std::to_string(i % 4 + 1) + ".png\n";
@@ -178,7 +178,7 @@ class EurocOfAClockSetBack : public EurocRecording {
   }
 };
 
-TEST_F(EurocOfAClockSetBack, ContinuesWithSynchronisedWheelsAndGyroscope) {
+TEST_F(EurocWithClockStep, ContinuesWithSynchronisedWheelsAndGyroscope) {
   const auto recording = open_recording(folder_, {}, {.use_gyroscope = true});
   ASSERT_EQ(recording->size(), 12);
   ASSERT_THAT(recording->time_corrections().clock_steps, SizeIs(1));

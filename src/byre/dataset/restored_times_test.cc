@@ -92,9 +92,9 @@ TEST(RestoredTimes, AreEmptyWithoutItems) {
   EXPECT_THAT(restore_times({}).times, IsEmpty());
 }
 
-class ClockSetBack : public testing::TestWithParam<Timestamp> {};
+class SteppedClock : public testing::TestWithParam<Timestamp> {};
 
-TEST_P(ClockSetBack, ContinuesByTheRecordingOrderAlone) {
+TEST_P(SteppedClock, ContinuesByTheRecordingOrderAlone) {
   const Times taken = steady(140);
   const RestoredTimes restored = restore_times({with_step(taken, 70, -GetParam())});
   expect_restored(restored, taken, 1us);
@@ -104,7 +104,7 @@ TEST_P(ClockSetBack, ContinuesByTheRecordingOrderAlone) {
   EXPECT_EQ(restored.corrections.late + restored.corrections.repeated, 0);
 }
 
-TEST_P(ClockSetBack, ContinuesAcrossALostItemByReceiveTimes) {
+TEST_P(SteppedClock, ContinuesAcrossALostItemByReceiveTimes) {
   Times taken = steady(140), received = received_of(taken);
   taken.erase(taken.begin() + 70);
   received.erase(received.begin() + 70);
@@ -113,7 +113,7 @@ TEST_P(ClockSetBack, ContinuesAcrossALostItemByReceiveTimes) {
   EXPECT_THAT(restored.corrections.clock_steps, SizeIs(1));
 }
 
-INSTANTIATE_TEST_SUITE_P(Steps, ClockSetBack,
+INSTANTIATE_TEST_SUITE_P(Steps, SteppedClock,
                          testing::Values(110ms, 173ms, 250ms, 400ms, 620ms, 1s, 3s, 3s + 17ms, 3600s, 1'700'000s));
 
 TEST(RestoredTimes, ContinueAcrossAShortStepSeenInReceiveTimes) {

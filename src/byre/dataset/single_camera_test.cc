@@ -54,9 +54,9 @@ std::vector<int> greys_of(Recording& recording) {
 }
 
 // Three frames of an EuRoC recording without sensor files; the second has no right image.
-class OneOfAPair : public SingleCamera {
+class SingleCameraOfPair : public SingleCamera {
  protected:
-  OneOfAPair() {
+  SingleCameraOfPair() {
     write("mav0/cam0/data.csv", "100000000,1.png\n200000000,2.png\n300000000,3.png\n");
     write("mav0/cam1/data.csv", "100000000,1.png\n300000000,3.png\n");
     for (int i = 1; i <= 3; ++i) {
@@ -68,7 +68,7 @@ class OneOfAPair : public SingleCamera {
   OpenOptions options(std::optional<CameraChoice> camera) const { return {camera, calibration(kPair)}; }
 };
 
-TEST_F(OneOfAPair, OpensBothByDefault) {
+TEST_F(SingleCameraOfPair, OpensBothByDefault) {
   const OpenOptions both = options({});
   const auto recording = open(both);
   EXPECT_TRUE(recording->calibration().right);
@@ -77,7 +77,7 @@ TEST_F(OneOfAPair, OpensBothByDefault) {
   EXPECT_TRUE(open(options(CameraChoice::stereo))->calibration().right);
 }
 
-TEST_F(OneOfAPair, OpensTheLeftAlone) {
+TEST_F(SingleCameraOfPair, OpensTheLeftAlone) {
   fs::remove_all(folder_ / "mav0/cam1/data");
   const auto recording = open(options(CameraChoice::left));
   EXPECT_FALSE(recording->calibration().right);
@@ -88,7 +88,7 @@ TEST_F(OneOfAPair, OpensTheLeftAlone) {
   EXPECT_THAT(recording->warnings(), IsEmpty());
 }
 
-TEST_F(OneOfAPair, OpensTheRightAloneWithItsBodyPose) {
+TEST_F(SingleCameraOfPair, OpensTheRightAloneWithItsBodyPose) {
   const OpenOptions right = options(CameraChoice::right);
   const auto recording = open(right);
   EXPECT_EQ(camera_of(*recording, right), CameraChoice::right);
@@ -100,7 +100,7 @@ TEST_F(OneOfAPair, OpensTheRightAloneWithItsBodyPose) {
   EXPECT_FALSE(recording->read(0)->right);
 }
 
-TEST_F(OneOfAPair, KeepsTheGivenReadoutTime) {
+TEST_F(SingleCameraOfPair, KeepsTheGivenReadoutTime) {
   for (const CameraChoice camera : {CameraChoice::left, CameraChoice::right}) {
     const OpenOptions options{
         camera, calibration(camera_yaml("cam0", "  readout_time: 0.015\n") + kPair.substr(kPair.find("cam1")))};
@@ -108,14 +108,14 @@ TEST_F(OneOfAPair, KeepsTheGivenReadoutTime) {
   }
 }
 
-TEST_F(OneOfAPair, CountsFramesEquallyForBothCameras) {
+TEST_F(SingleCameraOfPair, CountsFramesEquallyForBothCameras) {
   EXPECT_THAT(open(options(CameraChoice::right), {.first = 2})->times(), ElementsAre(milliseconds(300)));
   EXPECT_THAT(open_error(options(CameraChoice::right), {.first = 1, .last = 2}),
               HasSubstr("no frame in the selected range has a right image"));
   EXPECT_FALSE(open(options({}), {.first = 1, .last = 2})->read(0)->right);
 }
 
-TEST_F(OneOfAPair, NeedsNoCalibrationOfTheOther) {
+TEST_F(SingleCameraOfPair, NeedsNoCalibrationOfTheOther) {
   const auto recording = open({.calibration = calibration(kOne)});
   EXPECT_FALSE(recording->calibration().right);
   EXPECT_FALSE(recording->read(0)->right);
@@ -125,13 +125,13 @@ TEST_F(OneOfAPair, NeedsNoCalibrationOfTheOther) {
               HasSubstr("has a calibration without right camera"));
 }
 
-TEST_F(OneOfAPair, HasTheSizeOfItsOwnCalibration) {
+TEST_F(SingleCameraOfPair, HasTheSizeOfItsOwnCalibration) {
   for (int i = 1; i <= 3; ++i) write_image("mav0/cam1/data/" + std::to_string(i) + ".png", 16, 12, 5);
   EXPECT_EQ(open(options(CameraChoice::left))->size(), 3);
   EXPECT_THAT(open_error(options(CameraChoice::right)), HasSubstr("cameras.yaml: is 32x24, but the images are 16x12"));
 }
 
-TEST_F(OneOfAPair, RejectsAFrameRateForStampedImages) {
+TEST_F(SingleCameraOfPair, RejectsAFrameRateForStampedImages) {
   OpenOptions timed = options({});
   timed.frame_rate_hz = 20.0;
   EXPECT_THAT(open_error(timed), HasSubstr("has time stamps; a frame rate is not accepted"));

@@ -164,9 +164,9 @@ TEST(DepthReader, RejectsFlyingPixels) {
 }
 
 // A depth camera 6 cm to the right, slightly rotated, with other intrinsics.
-class DepthBesideColour : public testing::Test {
+class RegisteredDepthReader : public testing::Test {
  protected:
-  DepthBesideColour() : calibration_(with_depth(colour_lens())) {
+  RegisteredDepthReader() : calibration_(with_depth(colour_lens())) {
     const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitY()));
     calibration_.depth->camera = Camera{CameraModel::pinhole, 128, 96, 90.0, 91.0, 62.0, 49.0, {}};
     calibration_.depth->left_from_depth = {turned, {0.06, 0.01, -0.005}};
@@ -180,7 +180,7 @@ class DepthBesideColour : public testing::Test {
   Calibration calibration_;
 };
 
-TEST_F(DepthBesideColour, IsRegisteredToTheColourCamera) {
+TEST_F(RegisteredDepthReader, IsRegisteredToTheColourCamera) {
   const Plane slanted{{0.0, 0.0, 1.5}, Eigen::Vector3d(0.5, -0.4, -1.0).normalized()};
   const DepthImage image = seen([&](const auto& from, const auto& along) { return slanted.range(from, along); });
   const Rig rig = rig_of(calibration_);
@@ -192,7 +192,7 @@ TEST_F(DepthBesideColour, IsRegisteredToTheColourCamera) {
   }
 }
 
-TEST_F(DepthBesideColour, KeepsTheNearestOfTwoSurfaces) {
+TEST_F(RegisteredDepthReader, KeepsTheNearestOfTwoSurfaces) {
   const auto range = [](const Eigen::Vector3d& from, const Eigen::Vector3d& along) {
     const double to_near = Plane{{0.0, 0.0, 0.8}}.range(from, along);
     const bool is_near = (from + to_near * along).x() > 0.0;

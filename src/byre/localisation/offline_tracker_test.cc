@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 // A robot at its true pose in an offline map.
-class OnAnOfflineMap : public ::testing::Test {
+class OfflineTrackerTest : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
   const std::shared_ptr<const OfflineMap> map_ = offline_map_of(mission_);
@@ -75,7 +75,7 @@ class OnAnOfflineMap : public ::testing::Test {
   OfflineTracker::Consequence consequence_;  // consequence of the last frame of track_beside()
 };
 
-TEST_F(OnAnOfflineMap, ReportsEnteringTheMappedAreaOnce) {
+TEST_F(OfflineTrackerTest, ReportsEnteringTheMappedAreaOnce) {
   note_found(0);
   EXPECT_THAT(note(4, 100).events, ElementsAre(SessionEvent::entered_mapped_area));
   EXPECT_THAT(note(5, 100).events, IsEmpty());
@@ -84,7 +84,7 @@ TEST_F(OnAnOfflineMap, ReportsEnteringTheMappedAreaOnce) {
   EXPECT_GT(tracker_.mission().distance_since_offline(), 0.0);
 }
 
-TEST_F(OnAnOfflineMap, WidensItsLimitsWithTheTimeWithoutOfflinePoints) {
+TEST_F(OfflineTrackerTest, WidensItsLimitsWithTheTimeWithoutOfflinePoints) {
   note_found(0);
   note(4, 100);
   const Mission& mission = tracker_.mission();
@@ -98,7 +98,7 @@ TEST_F(OnAnOfflineMap, WidensItsLimitsWithTheTimeWithoutOfflinePoints) {
   EXPECT_GT(mission.limits(false, 0.1).drift.translation, mission.limits(true, 0.1).drift.translation);
 }
 
-TEST_F(OnAnOfflineMap, ReplacesAnUnacceptedPlaceByALikelierRival) {
+TEST_F(OfflineTrackerTest, ReplacesAnUnacceptedPlaceByALikelierRival) {
   track_beside(0, 3);
   EXPECT_FALSE(consequence_.refutes_pose) << "not by one find";
   track_beside(3, 6);
@@ -111,7 +111,7 @@ TEST_F(OnAnOfflineMap, ReplacesAnUnacceptedPlaceByALikelierRival) {
   EXPECT_FALSE(tracker_.find_at_rival(mission_.frames[6], mission_.rig, {})) << "asked for once";
 }
 
-TEST_F(OnAnOfflineMap, KeepsAnAcceptedPlaceAfterOneContradictingSearch) {
+TEST_F(OfflineTrackerTest, KeepsAnAcceptedPlaceAfterOneContradictingSearch) {
   note_found(0);
   ASSERT_TRUE(whereabouts_.place().is_accepted());
   const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0), whereabouts_, mapper_);
@@ -119,7 +119,7 @@ TEST_F(OnAnOfflineMap, KeepsAnAcceptedPlaceAfterOneContradictingSearch) {
   EXPECT_FALSE(consequence.correction);
 }
 
-TEST_F(OnAnOfflineMap, RequiresNoFurtherEvidenceForAConsistentHint) {
+TEST_F(OfflineTrackerTest, RequiresNoFurtherEvidenceForAConsistentHint) {
   mapper_.begin_where_found(track_of(0));
   for (std::size_t i = 0; i < 4; ++i) {
     const PlaceView view = view_of_room(2, 4);
@@ -131,7 +131,7 @@ TEST_F(OnAnOfflineMap, RequiresNoFurtherEvidenceForAConsistentHint) {
   EXPECT_TRUE(tracker_.consider(search, whereabouts_, mapper_).agrees_with_hint);
 }
 
-TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapAfterEnoughConsistentPlaces) {
+TEST_F(OfflineTrackerTest, CorrectsTheOnlineMapAfterEnoughConsistentPlaces) {
   note_found(0);
   const int confirmations = RegistrationOptions{}.confirmations;
   for (int i = 1; i < confirmations; ++i) {
@@ -144,7 +144,7 @@ TEST_F(OnAnOfflineMap, CorrectsTheOnlineMapAfterEnoughConsistentPlaces) {
   EXPECT_NEAR(correction->offline_from_online.translation.norm(), 0.005, 1e-6);
 }
 
-TEST_F(OnAnOfflineMap, SearchesPlacesWhileItsPlaceIsNotAccepted) {
+TEST_F(OfflineTrackerTest, SearchesPlacesWhileItsPlaceIsNotAccepted) {
   note_found(0, view_of_room(2, 8));
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
   const std::optional<PlaceSearch> search = tracker_.collect_place();
@@ -153,7 +153,7 @@ TEST_F(OnAnOfflineMap, SearchesPlacesWhileItsPlaceIsNotAccepted) {
   EXPECT_THAT(search->found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
 }
 
-TEST_F(OnAnOfflineMap, SearchesPlacesOncePerSecondWithFewOfflinePoints) {
+TEST_F(OfflineTrackerTest, SearchesPlacesOncePerSecondWithFewOfflinePoints) {
   note_found(0);
   const PlaceView view = view_of_room(4, 6);
   for (int i = 0; i < 6; ++i) {
@@ -168,7 +168,7 @@ TEST_F(OnAnOfflineMap, SearchesPlacesOncePerSecondWithFewOfflinePoints) {
   EXPECT_FALSE(tracker_.collect_place());
 }
 
-TEST_F(OnAnOfflineMap, SearchesNoPlacesWhileOfflinePointsHoldThePose) {
+TEST_F(OfflineTrackerTest, SearchesNoPlacesWhileOfflinePointsHoldThePose) {
   note_found(0);
   note(4, 100);
   tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
@@ -176,7 +176,7 @@ TEST_F(OnAnOfflineMap, SearchesNoPlacesWhileOfflinePointsHoldThePose) {
 }
 
 // Each frame fits two rooms of the map.
-class BetweenTwinRooms : public ::testing::Test {
+class OfflineTrackerInTwinRooms : public ::testing::Test {
  protected:
   int points_alone(bool finds_rivals) {
     int points = 0;
@@ -200,7 +200,7 @@ class BetweenTwinRooms : public ::testing::Test {
   }();
 };
 
-TEST_F(BetweenTwinRooms, CommonPointsAreNoEvidenceAgainstARival) {
+TEST_F(OfflineTrackerInTwinRooms, CommonPointsAreNoEvidenceAgainstARival) {
   EXPECT_GT(points_alone(true), 0) << "no rival so far";
   tracker_.begin_place(mission_.frames[0].time, track_.tracked.camera_from_world);
   HybridTrack elsewhere = track_;

@@ -15,7 +15,7 @@ SimulatedMission lap() {
 }
 
 // Two equal rooms, 10 m apart.
-class SearchInTwinRooms : public ::testing::Test {
+class PlaceSearchInTwinRooms : public ::testing::Test {
  protected:
   static const OfflineMap& twins() {
     static const OfflineMap map = [] {
@@ -27,7 +27,7 @@ class SearchInTwinRooms : public ::testing::Test {
   const SimulatedMission mission_ = lap();
 };
 
-TEST_F(SearchInTwinRooms, ReturnsBothPlacesAndSelectsNone) {
+TEST_F(PlaceSearchInTwinRooms, ReturnsBothPlacesAndSelectsNone) {
   const PlaceSearch search = search_place(twins(), {mission_.frames[0], mission_.rig}, {});
   EXPECT_FALSE(search.found);
   EXPECT_THAT(search.places, SizeIs(2));

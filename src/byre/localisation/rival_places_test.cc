@@ -21,9 +21,9 @@ PlaceHypothesis open_place(const PlaceView& view = view_of_room(4, 6)) {
 }
 
 // A camera at the robot's place, with a rival 5 m to the side.
-class RivalBeside : public ::testing::Test {
+class RivalPlaceTest : public ::testing::Test {
  protected:
-  RivalBeside() { rivals_.propose(camera_at(0.0), camera_at(5.0), 0.0); }
+  RivalPlaceTest() { rivals_.propose(camera_at(0.0), camera_at(5.0), 0.0); }
 
   // Observes a frame at x with the same view at every rival.
   void observe(double x, const PlaceView& view, bool is_tracked = true) {
@@ -38,12 +38,12 @@ class RivalBeside : public ::testing::Test {
   RivalPlaces rivals_{RegistrationOptions{}};
 };
 
-TEST_F(RivalBeside, HasTheLogOddsOfItsViews) {
+TEST_F(RivalPlaceTest, HasTheLogOddsOfItsViews) {
   observe(0.0, shown_);
   EXPECT_NEAR(rivals_.log_odds(), open_place(shown_).log_odds(), 1e-9);
 }
 
-TEST_F(RivalBeside, IsTestedAtThePredictedPose) {
+TEST_F(RivalPlaceTest, IsTestedAtThePredictedPose) {
   Pose tested_at;
   observe(0.0, shown_);
   rivals_.observe(camera_at(1.0), [&](const Pose& predicted) {
@@ -53,18 +53,18 @@ TEST_F(RivalBeside, IsTestedAtThePredictedPose) {
   EXPECT_NEAR(inverse(tested_at).translation.x(), 6.0, 1e-12);
 }
 
-TEST_F(RivalBeside, IsDroppedIfItShowsNothingOfTheMap) {
+TEST_F(RivalPlaceTest, IsDroppedIfItShowsNothingOfTheMap) {
   observe(0.0, shown_);
   for (int i = 0; i < 20; ++i) observe(0.1 * i, not_shown_);
   EXPECT_EQ(rivals_.log_odds(), kNoRivals);
 }
 
-TEST_F(RivalBeside, IsDroppedIfTheFirstFrameIsNotTracked) {
+TEST_F(RivalPlaceTest, IsDroppedIfTheFirstFrameIsNotTracked) {
   observe(0.0, not_shown_, false);
   EXPECT_EQ(rivals_.log_odds(), kNoRivals);
 }
 
-TEST_F(RivalBeside, IsKeptWithoutKeyframesNearby) {
+TEST_F(RivalPlaceTest, IsKeptWithoutKeyframesNearby) {
   observe(0.0, shown_);
   const double before = rivals_.log_odds();
   PlaceView from_afar = not_shown_;
@@ -73,14 +73,14 @@ TEST_F(RivalBeside, IsKeptWithoutKeyframesNearby) {
   EXPECT_EQ(rivals_.log_odds(), before);
 }
 
-TEST_F(RivalBeside, IsAddedOncePerPlace) {
+TEST_F(RivalPlaceTest, IsAddedOncePerPlace) {
   rivals_.propose(camera_at(0.0), camera_at(5.2), 0.0);
   rivals_.propose(camera_at(0.0), camera_at(0.2), 0.0);
   observe(0.0, shown_);
   EXPECT_NEAR(rivals_.log_odds(), open_place(shown_).log_odds(), 1e-9);
 }
 
-TEST_F(RivalBeside, RefutesAnUnacceptedPlaceAfterThreeFrames) {
+TEST_F(RivalPlaceTest, RefutesAnUnacceptedPlaceAfterThreeFrames) {
   observe(0.0, shown_);
   observe(0.0, shown_);
   EXPECT_FALSE(rivals_.refute(open_place(), false));
@@ -89,7 +89,7 @@ TEST_F(RivalBeside, RefutesAnUnacceptedPlaceAfterThreeFrames) {
   EXPECT_FALSE(rivals_.refute(open_place(view_of_room(20, 0)), false));
 }
 
-TEST_F(RivalBeside, RefutesAnAcceptedPlaceOnlyAlongAPath) {
+TEST_F(RivalPlaceTest, RefutesAnAcceptedPlaceOnlyAlongAPath) {
   const PlaceHypothesis accepted;
   for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
   EXPECT_FALSE(rivals_.refute(accepted, false)) << "from one spot";
@@ -97,14 +97,14 @@ TEST_F(RivalBeside, RefutesAnAcceptedPlaceOnlyAlongAPath) {
   EXPECT_TRUE(rivals_.refute(accepted, false));
 }
 
-TEST_F(RivalBeside, RefutesAPlaceFoundByAHintOnlyAlongAPath) {
+TEST_F(RivalPlaceTest, RefutesAPlaceFoundByAHintOnlyAlongAPath) {
   for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
   EXPECT_FALSE(rivals_.refute(open_place(not_shown_), true)) << "from one spot";
   observe_along(0.5, 2.0, shown_);
   EXPECT_TRUE(rivals_.refute(open_place(not_shown_), true));
 }
 
-TEST_F(RivalBeside, KeepsTheThresholdWhenAdopted) {
+TEST_F(RivalPlaceTest, KeepsTheThresholdWhenAdopted) {
   RegistrationOptions strict;
   strict.accept_log_odds = 100.0;
   RivalPlaces rivals(strict);
@@ -117,12 +117,12 @@ TEST_F(RivalBeside, KeepsTheThresholdWhenAdopted) {
   EXPECT_FALSE(place->is_accepted());
 }
 
-TEST_F(RivalBeside, RefutesNoPlaceIfItHasChangedAsWell) {
+TEST_F(RivalPlaceTest, RefutesNoPlaceIfItHasChangedAsWell) {
   observe_along(0.0, 3.0, view_of_room(2, 4));
   EXPECT_FALSE(rivals_.refute(open_place(not_shown_), false));
 }
 
-TEST_F(RivalBeside, IsRecognisedAtALaterFrame) {
+TEST_F(RivalPlaceTest, IsRecognisedAtALaterFrame) {
   observe(0.0, shown_);
   rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
   const Timestamp next = from_seconds(0.1);
@@ -134,14 +134,14 @@ TEST_F(RivalBeside, IsRecognisedAtALaterFrame) {
   EXPECT_EQ(rivals_.known_at(from_seconds(2.0), camera_at(5.1)), nullptr) << "too long ago";
 }
 
-TEST_F(RivalBeside, IsSwappedWithTheAdoptedPlace) {
+TEST_F(RivalPlaceTest, IsSwappedWithTheAdoptedPlace) {
   observe(0.0, shown_);
   rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
   rivals_.begin(from_seconds(0.1), camera_at(5.0));
   EXPECT_NEAR(rivals_.log_odds(), open_place().log_odds(), 1e-9);
 }
 
-TEST_F(RivalBeside, IsForgottenAfterALongTime) {
+TEST_F(RivalPlaceTest, IsForgottenAfterALongTime) {
   observe(0.0, shown_);
   rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
   rivals_.begin(from_seconds(2.0), camera_at(5.0));

@@ -11,7 +11,7 @@ namespace byre {
 namespace {
 
 // Frames tracked at their true poses, on a true map in which every fourth frame is a keyframe.
-class TrueWhereabouts : public ::testing::Test {
+class WhereaboutsOnATrueMap : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.3), {});
   Map map_ = true_map(mission_, 4, Origin::online);
@@ -39,7 +39,7 @@ class TrueWhereabouts : public ::testing::Test {
   const PlaceHypothesis& place() const { return whereabouts_.place(); }
 };
 
-TEST_F(TrueWhereabouts, ConfirmAPoseAfterTheConfiguredFrames) {
+TEST_F(WhereaboutsOnATrueMap, ConfirmAPoseAfterTheConfiguredFrames) {
   EXPECT_FALSE(whereabouts_.has_pose());
   note(0, true);
   EXPECT_TRUE(whereabouts_.has_pose());
@@ -52,7 +52,7 @@ TEST_F(TrueWhereabouts, ConfirmAPoseAfterTheConfiguredFrames) {
   EXPECT_TRUE(note(static_cast<std::size_t>(frames) + 1).was_ever_believed);
 }
 
-TEST_F(TrueWhereabouts, DropAPoseThatIsLostBeforeConfirmation) {
+TEST_F(WhereaboutsOnATrueMap, DropAPoseThatIsLostBeforeConfirmation) {
   note(0, true);
   note(1);
   whereabouts_.lose();
@@ -60,7 +60,7 @@ TEST_F(TrueWhereabouts, DropAPoseThatIsLostBeforeConfirmation) {
   EXPECT_TRUE(whereabouts_.trajectory().empty());
 }
 
-TEST_F(TrueWhereabouts, KeepOdometryContinuousAfterADroppedPose) {
+TEST_F(WhereaboutsOnATrueMap, KeepOdometryContinuousAfterADroppedPose) {
   note(0, true);
   note(1);
   const Pose smooth = whereabouts_.odometry().odometry_from_body();
@@ -69,14 +69,14 @@ TEST_F(TrueWhereabouts, KeepOdometryContinuousAfterADroppedPose) {
   EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth, 1e-12, 1e-12));
 }
 
-TEST_F(TrueWhereabouts, KeepConfirmedFramesWhenThePoseIsLost) {
+TEST_F(WhereaboutsOnATrueMap, KeepConfirmedFramesWhenThePoseIsLost) {
   find_and_believe(0);
   const std::size_t frames = whereabouts_.trajectory().size();
   whereabouts_.lose();
   EXPECT_EQ(whereabouts_.trajectory().size(), frames);
 }
 
-TEST_F(TrueWhereabouts, NeedNoNewEvidenceShortlyAfterAnAcceptedPose) {
+TEST_F(WhereaboutsOnATrueMap, NeedNoNewEvidenceShortlyAfterAnAcceptedPose) {
   find_and_believe(0);
   whereabouts_.lose();
   note(6, true);
@@ -84,7 +84,7 @@ TEST_F(TrueWhereabouts, NeedNoNewEvidenceShortlyAfterAnAcceptedPose) {
   EXPECT_TRUE(place().is_accepted());
 }
 
-TEST_F(TrueWhereabouts, PredictConstantVelocity) {
+TEST_F(WhereaboutsOnATrueMap, PredictConstantVelocity) {
   find_and_believe(0);
   const std::size_t last = whereabouts_.trajectory().size() - 1;
   whereabouts_.tell({});
@@ -94,7 +94,7 @@ TEST_F(TrueWhereabouts, PredictConstantVelocity) {
   EXPECT_THAT(predicted, PoseNear(true_camera_from_world(mission_, last + 1), 0.01, 0.01));
 }
 
-TEST_F(TrueWhereabouts, ExcludeRelocalisationsFromThePathLength) {
+TEST_F(WhereaboutsOnATrueMap, ExcludeRelocalisationsFromThePathLength) {
   EXPECT_EQ(note(0, true).step, 0.0);
   const double step = note(1).step;
   EXPECT_NEAR(step,
@@ -105,7 +105,7 @@ TEST_F(TrueWhereabouts, ExcludeRelocalisationsFromThePathLength) {
   EXPECT_NEAR(whereabouts_.odometry().travelled(), step, 1e-12);
 }
 
-TEST_F(TrueWhereabouts, FollowMapCorrections) {
+TEST_F(WhereaboutsOnATrueMap, FollowMapCorrections) {
   find_and_believe(0);
   const Pose before = whereabouts_.odometry().map_from_body();
   const Pose smooth = whereabouts_.odometry().odometry_from_body();
@@ -120,7 +120,7 @@ TEST_F(TrueWhereabouts, FollowMapCorrections) {
   EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth, 1e-9, 1e-9));
 }
 
-TEST_F(TrueWhereabouts, AllowPropagationWhileTheMotionIsCertain) {
+TEST_F(WhereaboutsOnATrueMap, AllowPropagationWhileTheMotionIsCertain) {
   find_and_believe(0);
   whereabouts_.tell(Pose{});
   EXPECT_FALSE(whereabouts_.may_be_led_back()) << "it has its pose";
@@ -132,7 +132,7 @@ TEST_F(TrueWhereabouts, AllowPropagationWhileTheMotionIsCertain) {
   EXPECT_FALSE(whereabouts_.may_be_led_back()) << "nobody knows where a hundred metres of wheels end";
 }
 
-TEST_F(TrueWhereabouts, RejectAPoseBeyondTheReachOfWheels) {
+TEST_F(WhereaboutsOnATrueMap, RejectAPoseBeyondTheReachOfWheels) {
   Whereabouts mapping({}, {}, {}, false);
   const auto is_out_of_reach = [&](std::size_t frame, Timestamp later = {}) {
     Frame seen = mission_.frames[frame];
@@ -149,7 +149,7 @@ TEST_F(TrueWhereabouts, RejectAPoseBeyondTheReachOfWheels) {
   EXPECT_TRUE(is_out_of_reach(39));
 }
 
-TEST_F(TrueWhereabouts, RejectAPoseThatContradictsWheels) {
+TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheels) {
   Whereabouts mapping({}, {}, {}, false);
   mapping.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
   mapping.note({mission_.frames[0], track_of(0), true, true, 0}, mission_.rig, map_);
@@ -174,7 +174,7 @@ TEST_F(TrueWhereabouts, RejectAPoseThatContradictsWheels) {
 }
 
 // A find that contradicts measured motion after a trusted pose.
-TEST_F(TrueWhereabouts, RejectAPoseThatContradictsWheelsAfterATrustedPose) {
+TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheelsAfterATrustedPose) {
   whereabouts_.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
   find_and_believe(0);
   const std::size_t here = whereabouts_.trajectory().size() - 1;
@@ -201,7 +201,7 @@ TEST_F(TrueWhereabouts, RejectAPoseThatContradictsWheelsAfterATrustedPose) {
   EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where wheels led to";
 }
 
-TEST_F(TrueWhereabouts, PropagateMeasuredMotionUntilItEnds) {
+TEST_F(WhereaboutsOnATrueMap, PropagateMeasuredMotionUntilItEnds) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
   const Pose before = whereabouts_.odometry().map_from_body();
@@ -222,7 +222,7 @@ TEST_F(TrueWhereabouts, PropagateMeasuredMotionUntilItEnds) {
 }
 
 // A find that is lost before it is believed does not end the bridge before it.
-TEST_F(TrueWhereabouts, PropagateFromTheLastConfirmedPoseAfterAFalseOne) {
+TEST_F(WhereaboutsOnATrueMap, PropagateFromTheLastConfirmedPoseAfterAFalseOne) {
   find_and_believe(0);
   const std::size_t next = whereabouts_.trajectory().size();
   const Pose before = whereabouts_.odometry().map_from_body();
@@ -242,7 +242,7 @@ TEST_F(TrueWhereabouts, PropagateFromTheLastConfirmedPoseAfterAFalseOne) {
       << "the smooth pose goes as the robot does, wherever it is taken to be";
 }
 
-TEST_F(TrueWhereabouts, PredictTheRegistrationOfASubmapByTheBridge) {
+TEST_F(WhereaboutsOnATrueMap, PredictTheRegistrationOfASubmapByTheBridge) {
   Pose far;
   far.translation.x() = 20.0;
   const auto begin_after = [&](std::size_t bridged_frames) {
@@ -275,7 +275,7 @@ TEST_F(TrueWhereabouts, PredictTheRegistrationOfASubmapByTheBridge) {
   EXPECT_NEAR(bridged.place().log_odds(), hinted.place().log_odds() + kLogOddsOfCarried, 1e-9);
 }
 
-TEST_F(TrueWhereabouts, MeasureTheReachFromTheLastConfirmedPose) {
+TEST_F(WhereaboutsOnATrueMap, MeasureTheReachFromTheLastConfirmedPose) {
   whereabouts_ = Whereabouts({.max_speed = 0.5}, {}, {}, true);
   find_and_believe(0);
   ASSERT_TRUE(place().is_accepted());
@@ -293,7 +293,7 @@ TEST_F(TrueWhereabouts, MeasureTheReachFromTheLastConfirmedPose) {
   EXPECT_EQ(place().log_odds(), kLogOddsOfCarried) << "near a find that was not believed";
 }
 
-TEST_F(TrueWhereabouts, PenaliseAPoseManySigmasFromMeasuredMotion) {
+TEST_F(WhereaboutsOnATrueMap, PenaliseAPoseManySigmasFromMeasuredMotion) {
   whereabouts_.hear([](Timestamp, Timestamp) { return std::optional(100.0); });
   find_and_believe(0);
   whereabouts_.note_quality({1e-6 * Matrix6::Identity(), 1e-6 * Matrix6::Identity(), Verdict::trusted});
@@ -314,7 +314,7 @@ TEST_F(TrueWhereabouts, PenaliseAPoseManySigmasFromMeasuredMotion) {
   EXPECT_EQ(log_odds_of_find(here, true), 0.0);
 }
 
-TEST_F(TrueWhereabouts, TestAPlaceAgainAfterARefutation) {
+TEST_F(WhereaboutsOnATrueMap, TestAPlaceAgainAfterARefutation) {
   find_and_believe(0);
   ASSERT_TRUE(place().is_accepted());
   const std::size_t next = whereabouts_.trajectory().size();
@@ -329,7 +329,7 @@ TEST_F(TrueWhereabouts, TestAPlaceAgainAfterARefutation) {
   EXPECT_FALSE(place().is_accepted());
 }
 
-TEST_F(TrueWhereabouts, ConfirmASubmapAtItsStart) {
+TEST_F(WhereaboutsOnATrueMap, ConfirmASubmapAtItsStart) {
   whereabouts_.begin({map_.keyframe_ids().front()}, 0, mission_.rig, map_);
   EXPECT_TRUE(whereabouts_.has_pose());
   EXPECT_TRUE(place().is_believed());

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-class KeyframesWatched : public ::testing::Test {
+class KeyframeWatchTest : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(9, 10.0, 2.0, 0.1), {});
   const Map map_ = true_map(mission_, 8, Origin::online);
@@ -24,7 +24,7 @@ class KeyframesWatched : public ::testing::Test {
   Frame without_disparities() const { return {mission_.frames[1].time, std::make_shared<const Features>()}; }
 };
 
-TEST_F(KeyframesWatched, CountsFramesSinceTheLastKeyframe) {
+TEST_F(KeyframeWatchTest, CountsFramesSinceTheLastKeyframe) {
   for (int i = 0; i < 3; ++i) watch_.note_frame(mission_.frames[1], mission_.rig);
   EXPECT_EQ(evidence().frames_since_last, 3);
   watch_.restart();
@@ -32,7 +32,7 @@ TEST_F(KeyframesWatched, CountsFramesSinceTheLastKeyframe) {
   EXPECT_EQ(evidence().pending, 2);
 }
 
-TEST_F(KeyframesWatched, CountsFramesWithoutDepthForRigsWithDepth) {
+TEST_F(KeyframeWatchTest, CountsFramesWithoutDepthForRigsWithDepth) {
   watch_.note_frame(without_disparities(), mission_.rig);
   watch_.note_frame(without_disparities(), mission_.rig);
   EXPECT_EQ(evidence().without_depth, 2);
@@ -44,7 +44,7 @@ TEST_F(KeyframesWatched, CountsFramesWithoutDepthForRigsWithDepth) {
   EXPECT_EQ(evidence().without_depth, 0);
 }
 
-TEST_F(KeyframesWatched, KeepsTheInliersOfTheFirstFrameOfAReference) {
+TEST_F(KeyframeWatchTest, KeepsTheInliersOfTheFirstFrameOfAReference) {
   const std::vector<KeyframeId> keyframes = map_.keyframe_ids();
   watch_.note_track(keyframes[0], 200);
   watch_.note_track(keyframes[0], 150);
@@ -56,7 +56,7 @@ TEST_F(KeyframesWatched, KeepsTheInliersOfTheFirstFrameOfAReference) {
   EXPECT_EQ(evidence().fresh_inliers, 170);
 }
 
-TEST_F(KeyframesWatched, MeasuresTheRotationFromTheReference) {
+TEST_F(KeyframeWatchTest, MeasuresTheRotationFromTheReference) {
   EXPECT_NEAR(evidence(0.2).turn, 0.2, 1e-9);
   EXPECT_NEAR(evidence(0.2).shift_share, 0.0, 1e-9);
 }

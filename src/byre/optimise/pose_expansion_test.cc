@@ -62,14 +62,14 @@ void expect_alike(const PoseExpansion& a, const PoseExpansion& b) {
 
 const Pose kPose{rotation_exp({0.1, -0.2, 0.3}), {1.0, 2.0, -0.5}};
 
-TEST(ExpansionOfAPosesCost, IsTheSumOfItsPoints) {
+TEST(PoseCostExpansion, IsTheSumOfItsPoints) {
   for (const int count : {1, 3, 4, 5, 102}) {
     const std::vector<WeighedPoint> points = some_points(count, kPose);
     expect_alike(side_by_side(points).expand(stereo_rig(), kPose, kWidth), expand_one_by_one(points, kPose));
   }
 }
 
-TEST(ExpansionOfAPosesCost, IsZeroWithoutPoints) {
+TEST(PoseCostExpansion, IsZeroWithoutPoints) {
   WeighedPoints points = side_by_side(some_points(9, kPose));
   points.clear();
   const PoseExpansion nothing = points.expand(stereo_rig(), kPose, kWidth);
@@ -78,7 +78,7 @@ TEST(ExpansionOfAPosesCost, IsZeroWithoutPoints) {
   EXPECT_EQ(nothing.descent, Vector6::Zero());
 }
 
-TEST(ExpansionOfAPosesCost, IgnoresPointsBehindTheCamera) {
+TEST(PoseCostExpansion, IgnoresPointsBehindTheCamera) {
   std::vector<WeighedPoint> points = some_points(6, kPose);
   const PoseExpansion without = side_by_side(points).expand(stereo_rig(), kPose, kWidth);
   for (const double depth : {-1.0, 0.0}) {
@@ -91,7 +91,7 @@ TEST(ExpansionOfAPosesCost, IgnoresPointsBehindTheCamera) {
   EXPECT_NEAR(with.cost - without.cost, 2.0 * points.front().weight * huber_cost(1e4, kWidth), 1e-6);
 }
 
-TEST(ExpansionOfAPosesCost, SquaresWeights) {
+TEST(PoseCostExpansion, SquaresWeights) {
   std::vector<WeighedPoint> points = some_points(9, kPose);
   WeighedPoints squared = side_by_side(points);
   squared.square_weights();
@@ -99,7 +99,7 @@ TEST(ExpansionOfAPosesCost, SquaresWeights) {
   expect_alike(squared.expand(stereo_rig(), kPose, kWidth), expand_one_by_one(points, kPose));
 }
 
-TEST(ExpansionOfAPosesCost, IsBitIdenticalForEveryInstructionSet) {
+TEST(PoseCostExpansion, IsBitIdenticalForEveryInstructionSet) {
   const WeighedPoints points = side_by_side(some_points(102, kPose));
   const PoseExpansion usual = points.expand(stereo_rig(), kPose, kWidth);
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {

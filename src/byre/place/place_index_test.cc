@@ -304,12 +304,12 @@ TEST_F(TwoRooms, AreIndexedByDescriptorsWithoutWords) {
 }
 
 // A sequence of keyframes with random words, each covisible with its predecessors. Some have equal words.
-class Row : public testing::Test {
+class RowOfRooms : public testing::Test {
  protected:
   static constexpr int kKeyframes = 600;  // enough for indexing on several threads
   static constexpr int kNeighbours = 3;
 
-  Row() {
+  RowOfRooms() {
     map.add_rig({});
     const auto features =
         std::make_shared<const Features>(640, 480, std::vector<Keypoint>(kWordsEach, Keypoint{{1.0f, 1.0f}}),
@@ -363,7 +363,7 @@ class Row : public testing::Test {
   Map map{Origin::offline};
 };
 
-TEST_F(Row, ReturnsThePlacesOfAnExhaustiveSearch) {
+TEST_F(RowOfRooms, ReturnsThePlacesOfAnExhaustiveSearch) {
   const PlaceIndex index = index_of(map, vocabulary);
   const Map online(Origin::online);
   const auto is_excluded = [](KeyframeId id) { return id.number % 7 == 3; };

@@ -32,7 +32,7 @@ VocabularyOptions small_tree() {
 }
 
 // Vocabulary of five images with four families of four descriptors, which a tree of branching 4 and depth 2 separates.
-class Trained : public testing::Test {
+class TrainedVocabulary : public testing::Test {
  protected:
   const std::vector<Descriptor> centres = descriptor_families(kFamilies, kMembers, 1);
   const std::vector<std::vector<Descriptor>> images = noisy_images(centres, 5, 10, kNoise, 2);
@@ -54,13 +54,13 @@ std::string refusal(const std::vector<std::vector<Descriptor>>& images, const Vo
   return "no InputError";
 }
 
-TEST_F(Trained, HasTheRequestedShape) {
+TEST_F(TrainedVocabulary, HasTheRequestedShape) {
   EXPECT_EQ(vocabulary.branching(), 4);
   EXPECT_EQ(vocabulary.depth(), 2);
   EXPECT_EQ(vocabulary.word_count(), kFamilies * kMembers);
 }
 
-TEST_F(Trained, AssignsOneWordToNoisyViews) {
+TEST_F(TrainedVocabulary, AssignsOneWordToNoisyViews) {
   std::mt19937_64 random(3);
   for (const Descriptor& centre : centres) {
     const Word word = vocabulary.word_of(centre);
@@ -68,12 +68,12 @@ TEST_F(Trained, AssignsOneWordToNoisyViews) {
   }
 }
 
-TEST_F(Trained, AssignsDifferentWordsToDifferentFeatures) {
+TEST_F(TrainedVocabulary, AssignsDifferentWordsToDifferentFeatures) {
   const std::vector<Word> words = words_of(vocabulary, centres);
   EXPECT_EQ(std::set<Word>(words.begin(), words.end()).size(), centres.size());
 }
 
-TEST_F(Trained, GroupsSimilarFeaturesBelowOneNode) {
+TEST_F(TrainedVocabulary, GroupsSimilarFeaturesBelowOneNode) {
   std::set<Word> nodes;
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const Word node = vocabulary.node_above(vocabulary.word_of(centres[i]), 1);
@@ -83,19 +83,19 @@ TEST_F(Trained, GroupsSimilarFeaturesBelowOneNode) {
   EXPECT_EQ(nodes.size(), static_cast<std::size_t>(kFamilies));
 }
 
-TEST_F(Trained, AssignsWordsToAllFeaturesOfAnImage) {
+TEST_F(TrainedVocabulary, AssignsWordsToAllFeaturesOfAnImage) {
   const Features features(640, 480, std::vector<Keypoint>(centres.size(), Keypoint{{1.0f, 1.0f}}), centres, {});
   EXPECT_EQ(vocabulary.words_of(features), words_of(vocabulary, to_vector(features.descriptors())));
 }
 
-TEST_F(Trained, DependsOnTheSeed) {
+TEST_F(TrainedVocabulary, DependsOnTheSeed) {
   EXPECT_EQ(Vocabulary::train(images, small_tree()).checksum(), vocabulary.checksum());
   VocabularyOptions other = small_tree();
   other.seed = 2;
   EXPECT_NE(Vocabulary::train(images, other).checksum(), vocabulary.checksum());
 }
 
-TEST_F(Trained, ReportsProgress) {
+TEST_F(TrainedVocabulary, ReportsProgress) {
   std::vector<double> shares;
   Vocabulary::train(images, small_tree(), [&shares](double share) { shares.push_back(share); });
   EXPECT_TRUE(std::ranges::is_sorted(shares));
@@ -103,7 +103,7 @@ TEST_F(Trained, ReportsProgress) {
   EXPECT_DOUBLE_EQ(shares.back(), 1.0);
 }
 
-TEST_F(Trained, ReturnsTheNodesAboveAWord) {
+TEST_F(TrainedVocabulary, ReturnsTheNodesAboveAWord) {
   std::set<Word> nodes;
   Word before = 0;
   for (Word word = 0; word < static_cast<Word>(vocabulary.word_count()); ++word) {
@@ -195,7 +195,7 @@ TEST(Training, RejectsOptionsOutOfRange) {
   EXPECT_THAT(refusal(images, options), HasSubstr("rounds: is 0"));
 }
 
-TEST_F(Trained, ReturnsSortedBagsThatSumToOne) {
+TEST_F(TrainedVocabulary, ReturnsSortedBagsThatSumToOne) {
   // Every word of this vocabulary is in every image and has zero weight, so the images get different words.
   std::vector<std::vector<Descriptor>> different(centres.size());
   for (std::size_t i = 0; i < centres.size(); ++i) different[i] = {centres[i], centres[(i + 1) % centres.size()]};
@@ -211,7 +211,7 @@ TEST_F(Trained, ReturnsSortedBagsThatSumToOne) {
   EXPECT_EQ(bag.size(), std::set<Word>(words.begin(), words.end()).size());
 }
 
-TEST_F(Trained, OmitsUnknownAndUbiquitousWords) {
+TEST_F(TrainedVocabulary, OmitsUnknownAndUbiquitousWords) {
   const std::vector<Word> words = words_of(vocabulary, centres);
   EXPECT_THAT(vocabulary.bag_of(words), IsEmpty());
   const std::vector<Word> unknown = {static_cast<Word>(vocabulary.word_count()), 4'000'000'000u};

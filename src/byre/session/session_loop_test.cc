@@ -57,7 +57,7 @@ MissionResult run(Session& session, const SimulatedMission& mission) {
   return result;
 }
 
-TEST(SessionThatRecognisesPlaces, ClosesTheLoopOnReturn) {
+TEST(SessionWithVocabulary, ClosesTheLoopOnReturn) {
   const SimulatedMission mission = laps(1.3);
   Session without(mission.rig, {}, make_inline_executor());
   const MissionResult open = run(without, mission);
@@ -69,7 +69,7 @@ TEST(SessionThatRecognisesPlaces, ClosesTheLoopOnReturn) {
   EXPECT_EQ(parts_of(session), 1);
 }
 
-TEST(SessionThatRecognisesPlaces, FindsNoLoopWithoutAReturn) {
+TEST(SessionWithVocabulary, FindsNoLoopWithoutAReturn) {
   const SimulatedMission mission = laps(0.8);
   Session session = recognising_session(mission.rig);
   for (const Frame& frame : mission.frames) EXPECT_FALSE(session.process(frame).has(SessionEvent::loop_found));
@@ -87,7 +87,7 @@ double resident_pages() {
   return resident;
 }
 
-TEST(SessionThatRecognisesPlaces, BoundsTheMapOnARepeatedPath) {
+TEST(SessionWithVocabulary, BoundsTheMapOnARepeatedPath) {
   const SimulatedMission mission = laps(20.0);
   Session session = recognising_session(mission.rig);
   std::vector<int> keyframes, points;  // after each lap
@@ -106,7 +106,7 @@ TEST(SessionThatRecognisesPlaces, BoundsTheMapOnARepeatedPath) {
   }
 }
 
-TEST(SessionThatRecognisesPlaces, RelocalisesAfterALoss) {
+TEST(SessionWithVocabulary, RelocalisesAfterALoss) {
   const SimulatedMission mission = laps(1.0);
   Session session = recognising_session(mission.rig);
   for (std::size_t i = 0; i < 40; ++i) ASSERT_TRUE(session.process(mission.frames[i]).map_from_body);
@@ -123,7 +123,7 @@ TEST(SessionThatRecognisesPlaces, RelocalisesAfterALoss) {
   EXPECT_LT(error_of(mission, 10, *found.map_from_body), 0.05);
 }
 
-TEST(SessionThatRecognisesPlaces, ContinuesAnEarlierMap) {
+TEST(SessionWithVocabulary, ContinuesAnEarlierMap) {
   const SimulatedMission first = laps(0.5), second = laps(1.0, 2);
   Session earlier = recognising_session(first.rig);
   for (const Frame& frame : first.frames) earlier.process(frame);
@@ -148,7 +148,7 @@ TEST(SessionThatRecognisesPlaces, ContinuesAnEarlierMap) {
   EXPECT_EQ(parts_of(later), 1);
 }
 
-TEST(SessionThatRecognisesPlaces, IsDeterministic) {
+TEST(SessionWithVocabulary, IsDeterministic) {
   const SimulatedMission mission = laps(1.3);
   const auto bytes = [&] {
     Session session(mission.rig, {}, Lanes(make_paced_executor(3), make_paced_executor(7)), simulated_vocabulary());
@@ -163,7 +163,7 @@ TEST(SessionThatRecognisesPlaces, IsDeterministic) {
 }
 
 // Jobs that read the map see its state at their start, on any executor.
-TEST(SessionThatRecognisesPlaces, ReturnsTheSameMapWithInlineAndConcurrentReading) {
+TEST(SessionWithVocabulary, ReturnsTheSameMapWithInlineAndConcurrentReading) {
   const SimulatedMission mission = laps(1.3);
   const auto bytes = [&](std::unique_ptr<Executor> reading) {
     Session session(mission.rig, {},
@@ -177,7 +177,7 @@ TEST(SessionThatRecognisesPlaces, ReturnsTheSameMapWithInlineAndConcurrentReadin
   EXPECT_EQ(bytes(make_inline_executor()), bytes(make_paced_executor(1)));
 }
 
-TEST(SessionThatRecognisesPlaces, LeavesTheMapWhileAJobReadsIt) {
+TEST(SessionWithVocabulary, LeavesTheMapWhileAJobReadsIt) {
   constexpr int kReading = 3;  // frames
   const SimulatedMission mission = laps(1.4);
   Session session(
@@ -203,7 +203,7 @@ TEST(SessionThatRecognisesPlaces, LeavesTheMapWhileAJobReadsIt) {
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
 }
 
-TEST(SessionThatRecognisesPlaces, MovesKeyframesAddedDuringACorrection) {
+TEST(SessionWithVocabulary, MovesKeyframesAddedDuringACorrection) {
   const SimulatedMission mission = laps(1.6);
   SessionOptions options;
   options.max_drift_to_fuse = 0.0;  // corrects the whole map after any drift
@@ -214,7 +214,7 @@ TEST(SessionThatRecognisesPlaces, MovesKeyframesAddedDuringACorrection) {
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());
 }
 
-TEST(SessionThatRecognisesPlaces, FinishesEarlyWithAValidMapWhenHurried) {
+TEST(SessionWithVocabulary, FinishesEarlyWithAValidMapWhenHurried) {
   const SimulatedMission mission = laps(1.2);
   SessionOptions options;
   options.max_drift_to_fuse = 0.0;
@@ -228,7 +228,7 @@ TEST(SessionThatRecognisesPlaces, FinishesEarlyWithAValidMapWhenHurried) {
   EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
 }
 
-TEST(SessionThatRecognisesPlaces, FinishesItsMap) {
+TEST(SessionWithVocabulary, FinishesItsMap) {
   const SimulatedMission mission = laps(1.2);
   Session session = recognising_session(mission.rig);
   for (const Frame& frame : mission.frames) session.process(frame);

@@ -275,7 +275,7 @@ TEST_F(SessionWithScriptedMapping, FollowsMapCorrections) {
 
 // --- begin and end of tracking
 
-class SessionOfACircle : public ::testing::Test {
+class SessionOnACircle : public ::testing::Test {
  protected:
   State process(std::size_t frame) { return session_.process(mission_.frames[frame]).state; }
   FrameReport blind(std::size_t frame) { return session_.process(without_features(mission_.frames[frame])); }
@@ -284,7 +284,7 @@ class SessionOfACircle : public ::testing::Test {
   Session session_{mission_.rig, {}, make_inline_executor()};
 };
 
-TEST_F(SessionOfACircle, IsLostWithoutFeaturesAndRelocalises) {
+TEST_F(SessionOnACircle, IsLostWithoutFeaturesAndRelocalises) {
   for (std::size_t i = 0; i < 15; ++i) ASSERT_EQ(process(i), State::tracking);
   for (std::size_t i = 15; i < 20; ++i) {
     const FrameReport report = blind(i);
@@ -296,14 +296,14 @@ TEST_F(SessionOfACircle, IsLostWithoutFeaturesAndRelocalises) {
   EXPECT_LT(error_of(session_.final_trajectory(), mission_.truth).translation.rmse, kMaxError);
 }
 
-TEST_F(SessionOfACircle, InitialisesWithTheFirstStereoFrame) {
+TEST_F(SessionOnACircle, InitialisesWithTheFirstStereoFrame) {
   EXPECT_EQ(blind(0).state, State::initialising);
   EXPECT_EQ(blind(1).map_from_body, std::nullopt);
   EXPECT_EQ(process(2), State::tracking);
   EXPECT_EQ(process(3), State::tracking);
 }
 
-TEST_F(SessionOfACircle, NeverInitialisesWithoutDisparities) {
+TEST_F(SessionOnACircle, NeverInitialisesWithoutDisparities) {
   Rig mono = mission_.rig;
   mono.baseline = 0.0;
   const SimulatedMission mono_mission = simulate_mission(mono, mission_.truth, {});
@@ -315,7 +315,7 @@ TEST_F(SessionOfACircle, NeverInitialisesWithoutDisparities) {
   EXPECT_THAT(session_.final_trajectory(), IsEmpty());
 }
 
-TEST_F(SessionOfACircle, HasNoPoseAfterAKidnapping) {
+TEST_F(SessionOnACircle, HasNoPoseAfterAKidnapping) {
   SimulationOptions another_room;
   another_room.seed = 99;
   const SimulatedMission elsewhere = circling_robot(40, another_room);

@@ -90,7 +90,7 @@ TEST(TrackerOnAnOfflineMap, RelocalisesInTheOfflineMapFirst) {
   EXPECT_THAT(found->tracked.camera_from_world, PoseNear(true_camera_from_world(mission, 6), 0.02, 0.01));
 }
 
-TEST(LikeAnotherPlace, IsDetectedByFewVisiblePoints) {
+TEST(LookalikePlace, IsDetectedByFewVisiblePoints) {
   TrackedFrame found;
   found.expected = 1000;
   found.features.resize(46);

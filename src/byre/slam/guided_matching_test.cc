@@ -194,7 +194,7 @@ TEST(MatchExpected, SkipsRemovedPoints) {
 }
 
 // A frame of a mission, at its true pose on the true map.
-class MatchingASimulatedFrame : public ::testing::Test {
+class GuidedMatching : public ::testing::Test {
  protected:
   static constexpr std::size_t kFrame = 15;
 
@@ -204,12 +204,12 @@ class MatchingASimulatedFrame : public ::testing::Test {
   std::vector<ExpectedPoint> expected_ = expected_points(view_, true_camera_from_world(mission_, kFrame), mission_.rig);
 };
 
-TEST_F(MatchingASimulatedFrame, ExpectsPointsInsideTheImageOnly) {
+TEST_F(GuidedMatching, ExpectsPointsInsideTheImageOnly) {
   ASSERT_THAT(expected_, SizeIs(::testing::Gt(100u)));
   for (const ExpectedPoint& point : expected_) EXPECT_TRUE(mission_.rig.contains(point.projection.predicted.head<2>()));
 }
 
-TEST_F(MatchingASimulatedFrame, HasHighRecallAndPrecision) {
+TEST_F(GuidedMatching, HasHighRecallAndPrecision) {
   const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
   const auto right = std::ranges::count_if(matches, [&](const GuidedMatch& match) {
     const int shown = mission_.landmark_of_feature[kFrame][static_cast<std::size_t>(match.feature)];
@@ -220,7 +220,7 @@ TEST_F(MatchingASimulatedFrame, HasHighRecallAndPrecision) {
   EXPECT_GT(static_cast<double>(matches.size()), 0.8 * static_cast<double>(mission_.frames[kFrame].features->size()));
 }
 
-TEST_F(MatchingASimulatedFrame, ReturnsEveryFeatureOnceInAscendingOrder) {
+TEST_F(GuidedMatching, ReturnsEveryFeatureOnceInAscendingOrder) {
   const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
   EXPECT_EQ(std::ranges::adjacent_find(matches, std::greater_equal<>{}, &GuidedMatch::feature), matches.end());
 }

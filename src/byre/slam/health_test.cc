@@ -50,16 +50,16 @@ Health with(void (*change)(Health&)) {
   return health;
 }
 
-class Judged : public ::testing::TestWithParam<Judgement> {};
+class JudgedHealth : public ::testing::TestWithParam<Judgement> {};
 
-TEST_P(Judged, FollowsTheTable) {
+TEST_P(JudgedHealth, FollowsTheTable) {
   const Health health = judged(GetParam().health, GetParam().evidence, {});
   EXPECT_EQ(health.verdict, GetParam().verdict);
   EXPECT_EQ(health.doubt, GetParam().doubt);
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Table, Judged,
+    Table, JudgedHealth,
     ::testing::Values(
         Judgement{"known place", good(), kPose, Verdict::trusted, Doubt::none},
         Judgement{"no pose", {}, {}, Verdict::untrusted, Doubt::no_pose},

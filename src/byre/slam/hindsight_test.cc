@@ -8,7 +8,7 @@ namespace byre {
 namespace {
 
 // An online map and the first frame of its mission, with its sightings of the map.
-class SeenInHindsight : public testing::Test {
+class HindsightTest : public testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle(without_noise());
   Map map_ = true_map(mission_, 2, Origin::online);
@@ -43,13 +43,13 @@ class SeenInHindsight : public testing::Test {
   }
 };
 
-TEST_F(SeenInHindsight, EstimatesThePoseInTheSettledMap) {
+TEST_F(HindsightTest, EstimatesThePoseInTheSettledMap) {
   const auto pose = pose_of(remembered({}));
   ASSERT_TRUE(pose);
   EXPECT_LT((inverse(*pose).translation - inverse(true_pose_).translation).norm(), 1e-3);
 }
 
-TEST_F(SeenInHindsight, IgnoresRemovedPoints) {
+TEST_F(HindsightTest, IgnoresRemovedPoints) {
   const RememberedFrame frame = remembered({});
   const std::vector<PointId> points = seen_points();
   for (std::size_t i = 0; i < points.size(); i += 2) map_.remove_point(points[i]);
@@ -58,7 +58,7 @@ TEST_F(SeenInHindsight, IgnoresRemovedPoints) {
   EXPECT_LT((inverse(*pose).translation - inverse(true_pose_).translation).norm(), 1e-3);
 }
 
-TEST_F(SeenInHindsight, IsEmptyForFewOrInconsistentPoints) {
+TEST_F(HindsightTest, IsEmptyForFewOrInconsistentPoints) {
   const RememberedFrame frame = remembered({});
   RememberedFrame contradicting = frame;
   for (std::size_t i = 0; i < contradicting.points.size(); i += 2) contradicting.points[i].measured.x() += 30.0f;
@@ -68,7 +68,7 @@ TEST_F(SeenInHindsight, IsEmptyForFewOrInconsistentPoints) {
 }
 
 // The frame was measured with the former rig; the pose is that of the present rig.
-TEST_F(SeenInHindsight, UsesTheRigOfTheFrame) {
+TEST_F(HindsightTest, UsesTheRigOfTheFrame) {
   Vector6 turn;
   turn << 0.0, 0.0, 0.0, 0.01, -0.02, 0.005;
   Hindsight hindsight({});
@@ -81,7 +81,7 @@ TEST_F(SeenInHindsight, UsesTheRigOfTheFrame) {
   EXPECT_LT(log_pose(*pose * inverse(expected)).norm(), 1e-3);
 }
 
-TEST_F(SeenInHindsight, KeepsAtMostTheGivenNumberOfFrames) {
+TEST_F(HindsightTest, KeepsAtMostTheGivenNumberOfFrames) {
   HindsightOptions options;
   options.frames = 2;
   Hindsight hindsight(options);
@@ -95,7 +95,7 @@ TEST_F(SeenInHindsight, KeepsAtMostTheGivenNumberOfFrames) {
 }
 
 // Offline points do not move, so the pose would not change.
-TEST_F(SeenInHindsight, DropsFramesHeldByOfflinePoints) {
+TEST_F(HindsightTest, DropsFramesHeldByOfflinePoints) {
   TrackedFrame held = tracked();
   for (TrackedFeature& seen : held.features) seen.point.origin = Origin::offline;
   Hindsight hindsight({});

@@ -151,12 +151,12 @@ TEST_F(TrackHybrid, IsLostIfOfflinePointsImplyAnImpossibleMotion) {
   EXPECT_FALSE(track_frame(predicted, OfflinePolicy::first, {.stray = 0.3}));
 }
 
-class TrackHybridAmongMuch : public TrackHybrid {
+class TrackHybridInClutter : public TrackHybrid {
  protected:
-  TrackHybridAmongMuch() : TrackHybrid(16000) {}
+  TrackHybridInClutter() : TrackHybrid(16000) {}
 };
 
-TEST_F(TrackHybridAmongMuch, FollowsTheOnlineMapIfFewOfflinePointsAgree) {
+TEST_F(TrackHybridInClutter, FollowsTheOnlineMapIfFewOfflinePointsAgree) {
   hide_but_each(27);
   move(online_, shift_by(0.06));
   const Pose predicted = truth_ * inverse(shift_by(0.06));

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kStep = 0.05;  // seconds between frames
 
-class Doubted : public ::testing::Test {
+class LastingDoubtTest : public ::testing::Test {
  protected:
   // Notes a number of frames with the same sign. Returns the number of frames at which the doubt was raised.
   int note(int frames, Sign sign, double step = kStep) {
@@ -24,45 +24,45 @@ class Doubted : public ::testing::Test {
   Timestamp time_{};
 };
 
-TEST_F(Doubted, IsNotRaisedWithoutACause) {
+TEST_F(LastingDoubtTest, IsNotRaisedWithoutACause) {
   EXPECT_EQ(note(100, Sign::absent) + note(100, Sign::unclear), 0);
 }
 
-TEST_F(Doubted, IsRaisedByTheFirstSignAndLastsASecondLonger) {
+TEST_F(LastingDoubtTest, IsRaisedByTheFirstSignAndLastsASecondLonger) {
   EXPECT_EQ(note(1, Sign::present), 1);
   const int frames = note(100, Sign::absent);
   EXPECT_GE(frames, static_cast<int>(LastingDoubt::kLeastSeconds / kStep) - 1);
   EXPECT_LE(frames, static_cast<int>(LastingDoubt::kLeastSeconds / kStep) + 1);
 }
 
-TEST_F(Doubted, RequiresFramesAtLowRates) {
+TEST_F(LastingDoubtTest, RequiresFramesAtLowRates) {
   note(1, Sign::present, 1.0);
   EXPECT_EQ(note(20, Sign::absent, 1.0), LastingDoubt::kLeastFrames - 1);
 }
 
-TEST_F(Doubted, LastsAsLongAsItsCauseDid) {
+TEST_F(LastingDoubtTest, LastsAsLongAsItsCauseDid) {
   note(100, Sign::present);
   EXPECT_NEAR(note(1000, Sign::absent) * kStep, 100 * kStep + LastingDoubt::kLeastSeconds, 3 * kStep);
 }
 
-TEST_F(Doubted, LastsAtMostUntilItsBound) {
+TEST_F(LastingDoubtTest, LastsAtMostUntilItsBound) {
   note(10'000, Sign::present);
   EXPECT_NEAR(note(10'000, Sign::absent) * kStep, LastingDoubt::kMostSeconds, 3 * kStep);
 }
 
-TEST_F(Doubted, DoesNotFlickerForAnIntermittentCause) {
+TEST_F(LastingDoubtTest, DoesNotFlickerForAnIntermittentCause) {
   for (int i = 0; i < 50; ++i) {
     EXPECT_EQ(note(1, Sign::present), 1);
     EXPECT_EQ(note(9, Sign::absent), 9);
   }
 }
 
-TEST_F(Doubted, IsNotEndedByUninformativeFrames) {
+TEST_F(LastingDoubtTest, IsNotEndedByUninformativeFrames) {
   note(1, Sign::present);
   EXPECT_EQ(note(1000, Sign::unclear), 1000);
 }
 
-TEST_F(Doubted, IsNotEndedByAGapInTime) {
+TEST_F(LastingDoubtTest, IsNotEndedByAGapInTime) {
   note(1, Sign::present);
   EXPECT_EQ(note(1, Sign::absent, 3600.0), 1);
 }

@@ -142,9 +142,9 @@ TEST_F(LoopInAMap, IsFoundWhenTheRunEnds) {
 }
 
 // The newer half shows another bay whose gate looks like that of the older bay; all else differs.
-class GateAlike : public LoopInAMap {
+class LookalikeGate : public LoopInAMap {
  protected:
-  GateAlike() : LoopInAMap(mission_with_gate()) {}
+  LookalikeGate() : LoopInAMap(mission_with_gate()) {}
 
   static SimulatedMission mission_with_gate() {
     SimulatedMission mission = LoopInAMap::mission({.landmarks = 5000});
@@ -163,7 +163,7 @@ class GateAlike : public LoopInAMap {
   }
 };
 
-TEST_F(GateAlike, IsRefutedThoughFramesAreTrackedThere) {
+TEST_F(LookalikeGate, IsRefutedThoughFramesAreTrackedThere) {
   const auto found = find_loop(map_, index_, newest(), options_);
   ASSERT_TRUE(found);
   const LoopHypothesis loop = checked(*found, {66, 67, 68});
@@ -173,7 +173,7 @@ TEST_F(GateAlike, IsRefutedThoughFramesAreTrackedThere) {
   EXPECT_TRUE(is_refuted(loop)) << "log-odds " << loop.test.log_odds();
 }
 
-TEST_F(GateAlike, IsNoLoopWhenTheRunEnds) {
+TEST_F(LookalikeGate, IsNoLoopWhenTheRunEnds) {
   FinishOptions options;
   options.loops = options_;
   EXPECT_TRUE(search_loops(map_, index_, options, {}).empty());

@@ -30,12 +30,12 @@ double gap_at(const LoopEdge& loop, const Map& map) {
   return (keyframe_from_place * inverse(loop.keyframe_from_place)).translation.norm();
 }
 
-class ScaleThatDrifts : public testing::TestWithParam<double> {
+class DriftingScale : public testing::TestWithParam<double> {
  protected:
   DriftedLap lap_{monocular_rig(), {GetParam(), drift_of_pose()}};
 };
 
-TEST_P(ScaleThatDrifts, IsMeasuredAtTheLoop) {
+TEST_P(DriftingScale, IsMeasuredAtTheLoop) {
   ASSERT_THAT(find_faults(lap_.map), IsEmpty());
   const auto loop = find_loop(lap_.map, lap_.index, lap_.newest(), finish_options().loops);
   ASSERT_TRUE(loop);
@@ -43,7 +43,7 @@ TEST_P(ScaleThatDrifts, IsMeasuredAtTheLoop) {
   EXPECT_LT(loop->scale_sigma, 0.005);
 }
 
-TEST_P(ScaleThatDrifts, IsCorrectedByTheLoop) {
+TEST_P(DriftingScale, IsCorrectedByTheLoop) {
   Map map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
   EXPECT_GE(report.loops, 1);
@@ -52,7 +52,7 @@ TEST_P(ScaleThatDrifts, IsCorrectedByTheLoop) {
   EXPECT_THAT(find_faults(map), IsEmpty());
 }
 
-TEST_P(ScaleThatDrifts, IsCorrectedBeforePointsAreFused) {
+TEST_P(DriftingScale, IsCorrectedBeforePointsAreFused) {
   const auto loop = find_loop(lap_.map, lap_.index, lap_.newest(), finish_options().loops);
   ASSERT_TRUE(loop);
   const LoopEdge edge = *edge_of(*loop, lap_.map);
@@ -64,16 +64,16 @@ TEST_P(ScaleThatDrifts, IsCorrectedBeforePointsAreFused) {
   EXPECT_LT(gap_at(in_new_lengths(edge, changes), map), 0.01);
 }
 
-TEST_P(ScaleThatDrifts, IsTheFactorOfLengths) {
+TEST_P(DriftingScale, IsTheFactorOfLengths) {
   Map map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
   EXPECT_NEAR(report.length_changes.at(lap_.newest()) * lap_.drift_at(lap_.newest()).scale, 1.0, 0.035);
   EXPECT_FALSE(report.length_changes.contains({Origin::online, 0}));
 }
 
-INSTANTIATE_TEST_SUITE_P(LoopCorrection, ScaleThatDrifts, testing::Values(0.9, 1.1));
+INSTANTIATE_TEST_SUITE_P(LoopCorrection, DriftingScale, testing::Values(0.9, 1.1));
 
-class GrownLap : public testing::Test {
+class LapWithScaleDrift : public testing::Test {
  protected:
   std::optional<LoopHypothesis> find() const { return find_loop(lap_.map, lap_.index, lap_.newest(), options_); }
 
@@ -81,7 +81,7 @@ class GrownLap : public testing::Test {
   LoopOptions options_ = finish_options().loops;
 };
 
-TEST_F(GrownLap, IsConfirmedByLaterFrames) {
+TEST_F(LapWithScaleDrift, IsConfirmedByLaterFrames) {
   auto loop = find();
   ASSERT_TRUE(loop);
   const Similarity drift = lap_.drift_at(lap_.newest());
@@ -92,22 +92,22 @@ TEST_F(GrownLap, IsConfirmedByLaterFrames) {
   EXPECT_TRUE(is_confirmed(*loop));
 }
 
-TEST_F(GrownLap, IsRejectedBeyondTheAllowedScaleDrift) {
+TEST_F(LapWithScaleDrift, IsRejectedBeyondTheAllowedScaleDrift) {
   options_.max_scale_drift = 0.05;
   EXPECT_FALSE(find());
 }
 
-TEST_F(GrownLap, IsRejectedIfTooFewPointsMeasureTheScale) {
+TEST_F(LapWithScaleDrift, IsRejectedIfTooFewPointsMeasureTheScale) {
   options_.min_scale_points = 10000;
   EXPECT_FALSE(find());
 }
 
-TEST_F(GrownLap, IsRejectedForAnUncertainScale) {
+TEST_F(LapWithScaleDrift, IsRejectedForAnUncertainScale) {
   options_.max_scale_sigma = 1e-5;
   EXPECT_FALSE(find());
 }
 
-TEST_F(GrownLap, HasAnEdgeInTheUnitsOfBothSides) {
+TEST_F(LapWithScaleDrift, HasAnEdgeInTheUnitsOfBothSides) {
   const auto loop = find();
   ASSERT_TRUE(loop);
   const auto edge = edge_of(*loop, lap_.map);
@@ -118,7 +118,7 @@ TEST_F(GrownLap, HasAnEdgeInTheUnitsOfBothSides) {
   EXPECT_THAT(edge->keyframe_from_place, PoseNear(scale_lengths(true_keyframe_from_place, drift.scale), 0.02, 0.01));
 }
 
-TEST_F(GrownLap, IncludesTheScaleInItsDrift) {
+TEST_F(LapWithScaleDrift, IncludesTheScaleInItsDrift) {
   auto loop = find();
   ASSERT_TRUE(loop);
   loop->old_from_new = Pose{};
@@ -195,9 +195,9 @@ TEST_F(LongLap, IsAdjustedAsAWholeIfItDisagrees) {
 }
 
 // A correction by which the newer half of a monocular map grows.
-class GrowingHalf : public testing::Test {
+class HalfWithScaleDrift : public testing::Test {
  protected:
-  GrowingHalf() {
+  HalfWithScaleDrift() {
     MapWindow after = before_;
     for (WindowKeyframe& keyframe : after.keyframes) {
       if (keyframe.id.number < kFirstNew) continue;
@@ -218,7 +218,7 @@ class GrowingHalf : public testing::Test {
   MapDelta correction_;
 };
 
-TEST_F(GrowingHalf, MovesLaterKeyframesAlong) {
+TEST_F(HalfWithScaleDrift, MovesLaterKeyframesAlong) {
   Keyframe later = *map_.find_keyframe(kNew);
   for (Sighting& sighting : later.sightings) sighting.point.reset();
   later.parent = kNew;
@@ -229,7 +229,7 @@ TEST_F(GrowingHalf, MovesLaterKeyframesAlong) {
   EXPECT_NEAR(changes.at(id), 1.2, 1e-6);
 }
 
-TEST_F(GrowingHalf, MovesLaterPointsAlong) {
+TEST_F(HalfWithScaleDrift, MovesLaterPointsAlong) {
   MapPoint later = *map_.find_point(*std::ranges::find_if(map_.find_keyframe(kNew)->sightings, [](const Sighting& s) {
                                        return s.point.has_value();
                                      })->point);
@@ -244,13 +244,13 @@ TEST_F(GrowingHalf, MovesLaterPointsAlong) {
   EXPECT_NEAR(map_.find_point(id)->max_distance, 1.2f * later.max_distance, 1e-3f);
 }
 
-TEST_F(GrowingHalf, LeavesTheOlderHalf) {
+TEST_F(HalfWithScaleDrift, LeavesTheOlderHalf) {
   const LengthChanges changes = apply_correction(correction_, before_, map_);
   EXPECT_FALSE(changes.contains({Origin::online, kFirstNew - 1}));
   EXPECT_TRUE(changes.contains({Origin::online, kFirstNew + 1}));
 }
 
-TEST_F(GrowingHalf, MovesRemovedKeyframes) {
+TEST_F(HalfWithScaleDrift, MovesRemovedKeyframes) {
   const KeyframeId parent = *map_.find_keyframe(kNew)->parent;
   map_.remove_keyframe(kNew);
   const Pose then = map_.camera_from_world(kNew) * inverse(map_.camera_from_world(parent));
@@ -260,7 +260,7 @@ TEST_F(GrowingHalf, MovesRemovedKeyframes) {
   EXPECT_NEAR(changes.at(kNew), 1.2, 1e-6);
 }
 
-TEST_F(GrowingHalf, ConvertsLoopsToTheNewLengths) {
+TEST_F(HalfWithScaleDrift, ConvertsLoopsToTheNewLengths) {
   const LoopEdge old{
       kNew, {Origin::online, 0}, {Eigen::Quaterniond::Identity(), {0.5, 0.0, 0.0}}, Matrix6::Identity(), 0.8};
   const LoopEdge now = in_new_lengths(old, apply_correction(correction_, before_, map_));
