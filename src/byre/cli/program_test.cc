@@ -68,7 +68,7 @@ TEST_F(Program, NamesBadInput) {
   write("broken.txt", "1 0 0 0 0 0 0 1\n2 0 0\n");
   write("later.txt", "101 0 0 0 0 0 0 1\n102 0 0 0 0 0 0 1\n");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"--truth absent.txt", "byre: error: absent.txt: cannot be opened (check that it exists and may be read)\n"},
+      {"--truth absent.txt", "byre: error: absent.txt: cannot be opened (check that it exists and is readable)\n"},
       {"--truth broken.txt", "byre: error: broken.txt:2: has 3 columns instead of 8"},
       {"--truth poses.txt", "byre: error: poses.txt: is in KITTI format, which has no time stamps"},
       {"--truth later.txt", "byre: error: estimate.txt: no pose has truth at its time"},

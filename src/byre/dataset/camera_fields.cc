@@ -103,7 +103,7 @@ void read_opencv_distortion(const CalibrationFields& fields, Camera& camera) {
 void require_sense(const Camera& camera, const std::string& place) {
   if (!(camera.fx > 0.0) || !(camera.fy > 0.0)) throw InputError(place, "the focal lengths must be positive");
   if (camera.contains({camera.cx, camera.cy})) return;
-  throw InputError(place, "the principal point lies outside the image",
+  throw InputError(place, "the principal point is outside the image",
                    "check that the intrinsics belong to this resolution");
 }
 

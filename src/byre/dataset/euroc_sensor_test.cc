@@ -84,7 +84,7 @@ TEST_F(EurocSensorFile, ReportsTheInvalidField) {
       {"T_BS", "T_CB", "T_BS: is missing"},
       {"[752, 480]", "[752, 0]", "resolution: is not a width and height"},
       {"[752, 480]", "752", "resolution: is not a list of numbers"},
-      {"[752, 480]", "[300, 200]", "intrinsics: the principal point lies outside the image"},
+      {"[752, 480]", "[300, 200]", "intrinsics: the principal point is outside the image"},
       {"458.654", "-458.654", "intrinsics: the focal lengths must be positive"},
       {"458.654", "wide", "intrinsics: contains a value that is not a number"},
       {"458.654", ".nan", "intrinsics: contains a value that is not a number"},

@@ -65,7 +65,7 @@ Camera pinhole(const Projection& projection, const Image& image, const std::stri
   camera.cx = projection(0, 2);
   camera.cy = projection(1, 2);
   if (camera.contains({camera.cx, camera.cy})) return camera;
-  throw InputError(place, "the principal point lies outside the images",
+  throw InputError(place, "the principal point is outside the images",
                    "check that calibration and images belong to the same sequence");
 }
 

@@ -44,7 +44,7 @@ TEST_F(SettingsFile, ReportsErrorsWithTheirLine) {
   EXPECT_THAT(error("just words"), HasSubstr("is not a YAML file of named fields"));
   EXPECT_THAT(error("a: 1\nb: [1\n"), HasSubstr("(correct the YAML)"));
   EXPECT_THAT(error("a: &a\n  b: *a\n"), HasSubstr("is nested too deeply"));
-  EXPECT_THAT(error_of([&] { read_settings(folder_); }), HasSubstr("is a folder (name a file)"));
+  EXPECT_THAT(error_of([&] { read_settings(folder_); }), HasSubstr("is a folder (give a file)"));
   EXPECT_THAT(error_of([&] { read_settings(folder_ / "absent.yaml"); }), HasSubstr("absent.yaml: cannot be opened"));
 }
 

@@ -33,11 +33,11 @@ TEST(DataFile, IsSearchedInTheEnvironmentVariableFirst) {
 
 TEST(DataFile, ReportsARemedyIfMissing) {
   try {
-    find_data_file("protocols/absent.yaml", "name a protocol that is there");
+    find_data_file("protocols/absent.yaml", "give an existing protocol");
     FAIL() << "no InputError";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("protocols/absent.yaml: is not found in"));
-    EXPECT_EQ(error.remedy(), "name a protocol that is there");
+    EXPECT_EQ(error.remedy(), "give an existing protocol");
   }
 }
 

@@ -162,7 +162,7 @@ TEST_F(OutputFileTest, ContinuesAFileThatOutputIsRedirectedTo) {
 
 TEST_F(OutputFileTest, ReportsReasonAndRemedy) {
   EXPECT_THAT(refusal("absent/out.byre", kNewMap), HasSubstr("the folder does not exist (create the folder"));
-  EXPECT_THAT(refusal(folder_, kNewMap), HasSubstr("is a folder (name a file in it)"));
+  EXPECT_THAT(refusal(folder_, kNewMap), HasSubstr("is a folder (choose a file in it)"));
   EXPECT_THAT(refusal(fs::path(""), kNewMap), HasSubstr("is a folder"));
   EXPECT_THAT(
       refusal(fs::path("/dev/full"), kNewMap),

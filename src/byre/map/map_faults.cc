@@ -44,9 +44,9 @@ void check_sightings(const Map& map, KeyframeId id, const Keyframe& keyframe, Fa
     const std::optional<PointId> point = keyframe.sightings[i].point;
     if (!point) continue;
     if (point->origin == map.origin() && !map.find_point(*point)) {
-      faults.push_back(name_of(id) + " sees the removed " + name_of(*point));
+      faults.push_back(name_of(id) + " observes the removed " + name_of(*point));
     } else if (!is_observed(map, *point, {id, static_cast<int>(i)})) {
-      faults.push_back(name_of(id) + " sees " + name_of(*point) + ", which does not list the observation");
+      faults.push_back(name_of(id) + " observes " + name_of(*point) + ", which does not list the observation");
     }
   }
 }
@@ -71,7 +71,8 @@ void check_observations(const Map& map, PointId id, Faults& faults) {
   for (const auto& [keyframe_id, feature] : observations) {
     const Keyframe* keyframe = map.find_keyframe(keyframe_id);
     if (!keyframe || keyframe->sightings.at(static_cast<std::size_t>(feature)).point != id) {
-      faults.push_back(name_of(id) + " lists an observation by " + name_of(keyframe_id) + ", which does not see it");
+      faults.push_back(name_of(id) + " lists an observation by " + name_of(keyframe_id) +
+                       ", which does not observe it");
     }
   }
 }
