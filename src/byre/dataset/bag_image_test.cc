@@ -70,8 +70,8 @@ TEST(BagImage, AppliesTheBayerPattern) {
 
 TEST(BagImage, RejectsInvalidMessagesWithAReason) {
   EXPECT_THAT(grey_of(image("jpeg2000", 2, 1, {1, 2}, 2)).failure, HasSubstr("encoded as \"jpeg2000\""));
-  EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3}, 2)).failure, "is not a whole image");
-  EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3, 4}, 1)).failure, "is not a whole image");
+  EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3}, 2)).failure, "is not a complete image");
+  EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3, 4}, 1)).failure, "is not a complete image");
   EXPECT_EQ(grey_of(image("mono8", 0, 2, {}, 0)).failure, "has an invalid size");
   EXPECT_EQ(grey_of(image("mono8", 0xFFFFFFFF, 0xFFFFFFFF, {1}, 0xFFFFFFFF)).failure, "has an invalid size");
 }

@@ -185,7 +185,7 @@ TEST_F(CalibrationFile, ReportsTheInvalidField) {
       {kRos, "[530, 0,", "[530, 1,", "camera_matrix: is not of the form fx 0 cx"},
       {kRos, "[530, 0,", "[530,", "camera_matrix: has 8 numbers instead of 9"},
       {kRos, "[530,", "[-530,", "camera_matrix: the focal lengths must be positive"},
-      {kRos, "0, 320, 0", "0, 700, 0", "camera_matrix: the principal point lies outside"},
+      {kRos, "0, 320, 0", "0, 700, 0", "camera_matrix: the principal point is outside"},
       {kRos, "data: [530", "values: [530", "camera_matrix: has no data"},
       {kRos, "distortion_coefficients", "dist_coeffs", "distortion_coefficients: is missing"},
       {kRos, "[-0.28, 0.07, ", "[", "distortion_coefficients: has 3 numbers instead of 4"},
@@ -197,7 +197,7 @@ TEST_F(CalibrationFile, ReportsTheInvalidField) {
       {kSensor, "intrinsics", "focal",
        "camera.yaml: is not a supported calibration file (supported files have the field intrinsics"},
       {"a: [1", "", "", "camera.yaml:1: "},
-      {"", "", "", "is not a YAML file of named fields"},
+      {"", "", "", "is not a YAML mapping of named fields"},
   };
   for (const Case& bad : cases) {
     EXPECT_THAT(error(bad.text, bad.old_text, bad.new_text), HasSubstr(bad.message)) << bad.new_text;

@@ -80,7 +80,7 @@ Camera camera_of(const ColmapCamera& camera, const std::string& place) {
   constexpr std::uint64_t kMaxSide = 20000;  // pixels
   const ColmapCameraKind* const kind = find_colmap_camera_kind(camera.model);
   if (kind == nullptr || kind->parameters != camera.parameters.size()) {
-    throw InputError(place, "is not a camera model of COLMAP");
+    throw InputError(place, "has an unknown model or a wrong number of parameters");
   }
   if (camera.width == 0 || camera.height == 0 || camera.width > kMaxSide || camera.height > kMaxSide) {
     throw InputError(place, "the width or height is invalid");

@@ -106,7 +106,8 @@ TEST_F(ColmapModelFiles, AreReadFromTextOfColmap) {
 TEST_F(ColmapModelFiles, ReportFileAndLineOfErrors) {
   EXPECT_THAT(error_with("cameras.txt", "1 SPHERE 640 480 500\n"), HasSubstr("cameras.txt:1: \"SPHERE\""));
   EXPECT_THAT(error_with("cameras.txt", "\n1 PINHOLE 640 480 500\n"), HasSubstr("cameras.txt:2: ends before"));
-  EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 480 5 5 5 5 5\n"), HasSubstr("cameras.txt:1: goes on"));
+  EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 480 5 5 5 5 5\n"),
+              HasSubstr("cameras.txt:1: contains extra text"));
   EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 -480 5 5 5 5\n"), HasSubstr("\"-480\" is no height"));
   EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 6 4 5 5 5 5\n1 PINHOLE 6 4 5 5 5 5\n"), HasSubstr("twice"));
   EXPECT_THAT(error_with("images.txt", "1 2 0 0 0 0 0 0 1 a.png\n\n"), HasSubstr("images.txt:1"));

@@ -96,7 +96,7 @@ TEST_F(EurocSensorFile, ReportsTheInvalidField) {
        "has 5 numbers"},
       {"distortion_model: radial-tangential", "", "distortion_model: is missing"},
       {"resolution: [752", "resolution: [752]]", "sensor.yaml:10: "},
-      {kEurocSensor, "nothing", "is not a YAML file of named fields"},
+      {kEurocSensor, "nothing", "is not a YAML mapping of named fields"},
   };
   for (const Case& bad : cases) {
     EXPECT_THAT(error_of([&] { read(bad.old_text, bad.new_text); }), HasSubstr(bad.message)) << bad.new_text;

@@ -86,7 +86,7 @@ TEST_F(FloorPlans, FindAllUsualNamesOfWorldFiles) {
 TEST_F(FloorPlans, ReportTheInvalidField) {
   EXPECT_THAT(error_of([&] { read_floor_plan(folder_ / "absent.yaml"); }), HasSubstr("absent.yaml: cannot be opened"));
   EXPECT_THAT(fault_in_yaml("image: [\n"), HasSubstr("correct the YAML"));
-  EXPECT_THAT(fault_in_yaml("3\n"), HasSubstr("is not a YAML file of named fields"));
+  EXPECT_THAT(fault_in_yaml("3\n"), HasSubstr("is not a YAML mapping of named fields"));
   EXPECT_THAT(fault_in_yaml("resolution: 0.05\norigin: [0, 0, 0]\n"), HasSubstr("plan.yaml: image: is missing"));
   EXPECT_THAT(fault_in_yaml("image: plan.png\norigin: [0, 0, 0]\n"), HasSubstr("resolution: is missing"));
   for (const char* const resolution : {"-1", "0", "-0.05"}) {

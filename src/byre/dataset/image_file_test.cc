@@ -107,7 +107,7 @@ TEST_F(ReadImage, IsEmptyForIncompleteImages) {
 TEST_F(ReadImage, DistinguishesUnreadableMissingAndBrokenFiles) {
   write_image("whole.png", 5, 3, 77);
   write("text.png", "no image");
-  EXPECT_EQ(try_image(folder_ / "text.png").failure, "is not a whole image");
+  EXPECT_EQ(try_image(folder_ / "text.png").failure, "is not a complete image");
   EXPECT_EQ(try_depth_image(folder_ / "text.png").failure, "is not a complete 16-bit image");
   EXPECT_EQ(try_image(folder_ / "absent.png").failure, "does not exist");
   EXPECT_EQ(try_image(folder_).failure, "cannot be read: Is a directory");

@@ -102,7 +102,7 @@ TEST(RecordingCheck, DetectsRepeatedImages) {
 
 TEST(RecordingCheck, DetectsSwappedCameras) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) { std::swap(images.left, *images.right); });
-  EXPECT_THAT(grave_findings(check), HasSubstr("found in the right image"));
+  EXPECT_THAT(grave_findings(check), HasSubstr("match in the right image"));
 }
 
 TEST(RecordingCheck, DetectsAMovedCameraByRows) {
@@ -119,7 +119,7 @@ TEST(RecordingCheck, DetectsADarkCameraWithoutBlamingThePair) {
   const RecordingCheck check =
       check_of([](ImageFrame& images, int) { images.right->pixels.assign(images.right->pixels.size(), 0); });
   EXPECT_THAT(grave_findings(check), HasSubstr("right images are dark"));
-  EXPECT_THAT(grave_findings(check), Not(HasSubstr("found in the right image")));
+  EXPECT_THAT(grave_findings(check), Not(HasSubstr("match in the right image")));
 }
 
 TEST(RecordingCheck, ReportsMissingRightImagesAndUnreadableFrames) {
@@ -172,7 +172,7 @@ void give_fault(CameraCheck& camera, ImageFault fault, int images) {
 INSTANTIATE_TEST_SUITE_P(
     RecordingCheck, RecordingFinding,
     testing::Values(
-        FindingCase{[](RecordingCheck& check) { check.rate_hz = 2.04; }, false, "only 2.0 frames a second"},
+        FindingCase{[](RecordingCheck& check) { check.rate_hz = 2.04; }, false, "frame rate of only 2.0 Hz"},
         FindingCase{[](RecordingCheck& check) {
                       check.gaps = 5;
                       check.longest_gap_s = 1.234;
@@ -245,7 +245,7 @@ TEST(RecordingCheck, ReportsTimeCorrectionsWithARemedy) {
   EXPECT_THAT(findings_with({.source = TimeSource::even_spacing}), HasSubstr("spread evenly"));
   EXPECT_THAT(findings_with({.unstamped = 3}), HasSubstr("3 images have a zero or wrong time stamp"));
   EXPECT_THAT(findings_with({.late = 2}), HasSubstr("2 images were recorded after later ones"));
-  EXPECT_THAT(findings_with({.repeated = 4}), HasSubstr("4 images have the time stamp of another one"));
+  EXPECT_THAT(findings_with({.repeated = 4}), HasSubstr("4 images have the time stamp of another image"));
 }
 
 TEST(MotionFindings, ReportFileFaultAndRemedy) {

@@ -316,7 +316,7 @@ TEST_F(KittiRecording, ReportsInvalidCalibrations) {
       {"P0: 20 0 x 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: contains a value that is not a number"},
       {"P0: -20 0 15.5 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: the focal lengths must be positive"},
       {"P0: 20 1 15.5 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: is not the projection matrix of a rectified camera"},
-      {"P0: 20 0 155 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: the principal point lies outside"},
+      {"P0: 20 0 155 0 0 20 11.5 0 0 0 1 0\n", "calib.txt: P0: the principal point is outside"},
       {p0 + "P1: 20 0 15.5 10 0 20 11.5 0 0 0 1 0\n", "calib.txt: P1: does not place the right camera to the right"},
   };
   for (const auto& [calib, message] : cases) {

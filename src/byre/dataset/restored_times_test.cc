@@ -315,7 +315,7 @@ TEST(TimeCorrections, AreDescribedWithTheirEffect) {
   corrections.unstamped = 4;
   EXPECT_THAT(
       describe(corrections, {"walk.mcap: /left", "image", "frame"}),
-      ElementsAre("walk.mcap: /left: clock set back by 0.620 s at frame 70: times after it are shifted to continue",
+      ElementsAre("walk.mcap: /left: clock set back by 0.620 s at frame 70: later times are shifted to continue",
                   HasSubstr("4 images have a zero or wrong time stamp: times are interpolated"),
                   HasSubstr("2 images were recorded after later ones: sorted by time"),
                   HasSubstr("3 images have the time stamp of another one: ignored")));

@@ -41,7 +41,7 @@ TEST_F(SettingsFile, ReportsErrorsWithTheirLine) {
   EXPECT_THAT(error("a:\n  b: 1\n  b: 2\n"), HasSubstr("options.yaml:3: a.b is given twice"));
   EXPECT_THAT(error("a.b: 1\na:\n  b: 2\n"), HasSubstr("options.yaml:3: a.b is given twice"));
   EXPECT_THAT(error("[a]: 1\n"), HasSubstr("options.yaml:1: has no name"));
-  EXPECT_THAT(error("just words"), HasSubstr("is not a YAML file of named fields"));
+  EXPECT_THAT(error("just words"), HasSubstr("is not a YAML mapping of named fields"));
   EXPECT_THAT(error("a: 1\nb: [1\n"), HasSubstr("(correct the YAML)"));
   EXPECT_THAT(error("a: &a\n  b: *a\n"), HasSubstr("is nested too deeply"));
   EXPECT_THAT(error_of([&] { read_settings(folder_); }), HasSubstr("is a folder (give a file)"));

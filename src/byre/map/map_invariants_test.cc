@@ -133,7 +133,7 @@ const std::vector<BrokenInvariant>& broken_invariants() {
        [](StoredMap&, MapParts& parts) {
          parts.keyframes[0].frame.features = with_patch_at(*parts.keyframes[0].frame.features, {kNan, 8.0f});
        }},
-      {"PointPosition", "points", "has no finite position",
+      {"PointPosition", "points", "has a position that is not finite",
        with_point([](MapPoint& p) { p.position_in_world.z() = kNan; })},
       {"PointCovariance", "points", "point 3 has a covariance that is not finite",
        with_point([](MapPoint& p) { p.covariance(0, 0) = kInfinity; })},
