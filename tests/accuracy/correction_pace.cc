@@ -47,7 +47,7 @@ void run(const char* folder) {
     }
     if (report.has(SessionEvent::map_corrected)) {
       std::printf(
-          "frame %d: %d keyframes corrected, %d frames meanwhile, slowest %.1f ms, the one that began it %.1f ms\n", i,
+          "frame %d: %d keyframes corrected, %d frames meanwhile, slowest %.1f ms, the triggering frame %.1f ms\n", i,
           session.map().online().keyframe_count(), frames, slowest_ms, copy_ms);
       std::fflush(stdout);
       frames = -1;

@@ -113,7 +113,7 @@ TEST_F(LocalisationInV101, RejectsFramesOfTheHall) {
   FrameRange range;
   range.stride = 5;
   const PosedFrames hall = posed_frames(kHall, range);
-  ASSERT_TRUE(even_half().find(half(1).front().frame, all().rig).tracked) << "the map itself is sound";
+  ASSERT_TRUE(even_half().find(half(1).front().frame, all().rig).tracked) << "the map itself is valid";
   for (const PosedFrame& frame : hall.frames) EXPECT_FALSE(even_half().find(frame.frame, hall.rig).tracked);
 }
 

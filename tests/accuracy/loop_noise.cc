@@ -51,7 +51,7 @@ int count_false_loops(const Map& map, const PlaceIndex& places, const Trajectory
     wrong += error->translation.norm() > kMaxShift || rotation_log(error->rotation).norm() > kMaxTurn;
     worst = std::max(worst, error->translation.norm());
   }
-  std::printf("seed %llu: %d loops, %d false, worst off by %.3f m\n", static_cast<unsigned long long>(seed), loops,
+  std::printf("seed %llu: %d loops, %d false, largest error %.3f m\n", static_cast<unsigned long long>(seed), loops,
               wrong, worst);
   return wrong;
 }

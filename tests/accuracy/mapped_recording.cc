@@ -70,8 +70,7 @@ std::optional<fs::path> find_recording(const fs::path& name) {
 }
 
 std::string missing(const fs::path& name) {
-  return "no recording at " + (data_folder() / name).string() + "; BYRE_DATA may name the folder that holds " +
-         name.string();
+  return "no recording at " + (data_folder() / name).string() + "; set BYRE_DATA to the folder with " + name.string();
 }
 
 const Vocabulary& shipped_vocabulary() {

@@ -56,13 +56,13 @@ class Bags(unittest.TestCase):
 
     def expect_same(self, bag, frames):
         self.assertGreaterEqual(self.from_folder[frames].count(b"\n"), frames)
-        self.assertTrue(self.trajectory(bag, frames) == self.from_folder[frames], f"{bag} gives another trajectory")
+        self.assertTrue(self.trajectory(bag, frames) == self.from_folder[frames], f"{bag}: the trajectory differs")
 
-    def test_a_bag_of_ros1_gives_what_the_folder_gives(self):
+    def test_ros1_bag_equals_folder(self):
         write_rosbag(self.folder / "long.bag", self.long, "lz4")
         self.expect_same(self.folder / "long.bag", 60)
 
-    def test_a_bag_of_ros1_may_be_compressed_in_each_way(self):
+    def test_ros1_bag_accepts_each_compression(self):
         for compression in ("none", "bz2", "lz4"):
             bag = self.folder / f"{compression}.bag"
             write_rosbag(bag, self.short, compression)
@@ -72,17 +72,17 @@ class Bags(unittest.TestCase):
             self.assertEqual(told["damage"], [])
             self.assertEqual(told["messages"], len(self.short))
 
-    def test_a_rosbag2_in_sqlite_gives_what_the_folder_gives(self):
+    def test_rosbag2_in_sqlite_equals_folder(self):
         write_rosbag2_sqlite(self.folder / "sqlite", self.long)
         self.expect_same(self.folder / "sqlite", 60)
 
-    def test_a_rosbag2_in_mcap_gives_what_the_folder_gives(self):
+    def test_rosbag2_in_mcap_equals_folder(self):
         write_rosbag2_mcap(self.folder / "mcap", self.long)
         self.expect_same(self.folder / "mcap", 60)
         write_rosbag2_mcap(self.folder / "mcap_raw", self.short)
         self.expect_same(self.folder / "mcap_raw", 10)
 
-    def test_bags_tell_their_topics(self):
+    def test_bags_report_their_topics(self):
         write_rosbag2_mcap(self.folder / "topics", self.short)
         told = json.loads(run("bag", "info", self.folder / "topics", "--json"))
         counts = {topic["name"]: topic["messages"] for topic in told["topics"]}
@@ -91,14 +91,14 @@ class Bags(unittest.TestCase):
         self.assertEqual(told["images"], {"left": "/cam0/image_raw", "right": "/cam1/image_raw"})
         self.assertEqual(told["storage"], "mcap")
 
-    def test_camera_info_and_frames_are_the_calibration(self):
+    def test_camera_info_and_frames_provide_the_calibration(self):
         write_rosbag2_sqlite(self.folder / "calibrated", self.short)
         in_bag = json.loads(run("check", self.folder / "calibrated", "--json"))
         in_folder = json.loads(run("check", RECORDING, "--frames", ":10", "--json"))
         self.assertAlmostEqual(in_bag["baseline_m"], in_folder["baseline_m"], places=8)
         self.assertAlmostEqual(in_bag["pair"]["row_error_px"], in_folder["pair"]["row_error_px"], places=4)
 
-    def test_a_bag_that_is_cut_is_mapped_as_far_as_it_goes(self):
+    def test_truncated_bag_is_mapped_up_to_the_cut(self):
         write_rosbag(self.folder / "whole.bag", self.short, "none")
         cut = self.folder / "cut.bag"
         cut.write_bytes((self.folder / "whole.bag").read_bytes()[:4_000_000])
@@ -112,7 +112,7 @@ class Bags(unittest.TestCase):
 
 if __name__ == "__main__":
     if not RECORDING.is_dir():
-        print(f"Skipped: no recording at {RECORDING}; BYRE_DATA may name the folder that holds euroc/MH_01_easy")
+        print(f"Skipped: no recording at {RECORDING}; set BYRE_DATA to the folder with euroc/MH_01_easy")
         sys.exit(77)
     BYRE = sys.argv.pop(1)
     unittest.main()

@@ -38,7 +38,7 @@ async function openMap(options, ...commandLine) {
 }
 
 describe("A map", () => {
-  test("is drawn without a word in the console", async () => {
+  test("is drawn without console messages", async () => {
     const page = await openMap();
     assert.ok((await pointCount(page)) > 500);
     const withPoints = await settledPictureOf(page, kStage);
@@ -51,7 +51,7 @@ describe("A map", () => {
     assert.deepEqual(page.problems, []);
   });
 
-  test("turns by keys and is seen from above", async () => {
+  test("rotates by keys and has a view from above", async () => {
     const page = await openMap();
     const before = await settledPictureOf(page, kStage);
     await page.locator(kStage).focus();
@@ -63,14 +63,14 @@ describe("A map", () => {
     await screenshot(page, "map_from_above");
   });
 
-  test("is drawn dark and narrow too", async () => {
+  test("is drawn in a dark, narrow window", async () => {
     const page = await openMap({ colorScheme: "dark", viewport: { width: 420, height: 860 } });
     assert.equal(await page.locator("html").getAttribute("data-theme"), "dark");
     await screenshot(page, "map_dark_narrow");
     assert.deepEqual(page.problems, []);
   });
 
-  test("is told to be missing where the browser draws nothing in three dimensions", async () => {
+  test("is reported as missing without WebGL", async () => {
     viewer = await Viewer.start("view", "room.byre", "--port", "0");
     const plain = await startBrowser({ webgl: false });
     const page = await openPage(plain, viewer.url);
@@ -79,7 +79,7 @@ describe("A map", () => {
     await plain.close();
   });
 
-  test("is shown elsewhere only with the token", async () => {
+  test("requires the token from other hosts", async () => {
     viewer = await Viewer.start("view", "room.byre", "--port", "0", "--bind", "0.0.0.0");
     const page = await openPage(browser, viewer.url);
     await eventually(async () => (await pointCount(page)) > 0, () => "points of the map");
@@ -87,14 +87,14 @@ describe("A map", () => {
     assert.equal((await stranger.goto(viewer.url.replace(/token=.*/, ""))).status(), 403);
   });
 
-  test("can be left by Ctrl-C while it is looked at", async () => {
+  test("ends by Ctrl-C with an open page", async () => {
     await openMap();
     assert.equal(await viewer.interrupt(), 0);
   });
 });
 
 describe("A run", () => {
-  test("explains its figures to whoever points at them", async () => {
+  test("explains its figures in tooltips", async () => {
     const page = await openRun();
     await eventually(async () => (await frameOf(page, "valuenow")) > 0, () => "frames");
     for (const name of await page.locator(".health dt").all()) {
@@ -111,7 +111,7 @@ describe("A run", () => {
 
   const hasEnded = (page) => () => page.getByRole("button", { name: "Live" }).isHidden();
 
-  test("moves while it goes on", async () => {
+  test("updates while it runs", async () => {
     const page = await openRun();
     await eventually(async () => (await frameOf(page, "valuenow")) > 5, () => "frames");
     const [early, image, frame] = await viewer.whileStopped(async () => [
@@ -132,7 +132,7 @@ describe("A run", () => {
     assert.equal(await viewer.interrupt(), 0);
   });
 
-  test("can be paused and scrubbed through while it goes on", async () => {
+  test("can be paused and scrubbed while it runs", async () => {
     const page = await openRun();
     await eventually(async () => (await frameOf(page, "valuenow")) > 10, () => "frames");
     const [paused, picture] = await viewer.whileStopped(async () => {
@@ -160,7 +160,7 @@ describe("A run", () => {
     assert.deepEqual(page.problems, []);
   });
 
-  test("is told from its start to a page that is opened late, dark and narrow", async () => {
+  test("is sent from its start to a page opened late, dark and narrow", async () => {
     const first = await openRun();
     await eventually(hasEnded(first), () => "the end");
     await first.close();
@@ -181,10 +181,10 @@ describe("Picking", () => {
       await page.mouse.click(box.x + x * box.width + dx, box.y + y * box.height + dy);
       if (await page.getByText("Now click the same place on the plan").isVisible()) return;
     }
-    throw new Error("no point was hit");
+    throw new Error("no map point found by clicks");
   }
 
-  test("three points puts the map on the plan, and saving keeps it there", async () => {
+  test("three points registers the map on the plan, and saving stores it", async () => {
     const plan = writePlan("room-plan");
     const page = await openMap({}, "--plan", plan.file, "-o", "room-plan.byre");
     const map = await page.evaluate(async () => {
@@ -215,7 +215,7 @@ describe("Picking", () => {
     assert.deepEqual(page.problems, []);
   });
 
-  test("a wrong place is saved only when somebody who was told how wrong wants it", async () => {
+  test("wrong points requires a confirmation of the residual to save", async () => {
     rmSync("wrong-plan.byre", { force: true });
     const plan = writePlan("room-plan");
     const page = await openMap({}, "--plan", plan.file, "-o", "wrong-plan.byre");
@@ -239,7 +239,7 @@ describe("Picking", () => {
     assert.deepEqual(page.problems, []);
   });
 
-  test("can be taken back", async () => {
+  test("can be undone", async () => {
     const plan = writePlan("room-plan");
     const page = await openMap({ colorScheme: "dark" }, "--plan", plan.file);
     await pickInMap(page, { x: 0.4, y: 0.5 });
@@ -253,7 +253,7 @@ describe("Picking", () => {
 });
 
 describe("Figures", () => {
-  test("of drawing 100,000 points and of the first paint", async (context) => {
+  test("measure drawing of 100,000 points and the first paint", async (context) => {
     const page = await openMap();
     const paintTime = () => performance.getEntriesByName("first-contentful-paint")[0]?.startTime;
     await page.waitForFunction(paintTime);

@@ -119,7 +119,7 @@ TEST_F(LiveCamera, IsRecordedPixelByPixel) {
       expect_same(output, room(), 0, 40);
     }
   }
-  EXPECT_EQ(run("camera record " + kLeft + " -o walk --frames 1").exit_code, 3) << "there is a recording in it";
+  EXPECT_EQ(run("camera record " + kLeft + " -o walk --frames 1").exit_code, 3) << "the folder contains a recording";
 }
 
 TEST_F(LiveCamera, IsRecordedInFormatsOfOtherCameras) {
@@ -177,7 +177,7 @@ TEST_F(LiveCamera, ContinuesAfterUnplugging) {
   const auto recorded = open_recording(folder_ / "walk", {});
   std::string pairs;
   for (int i = 0; i < recorded->size(); ++i) pairs += recorded->read(i)->right ? 'p' : '.';
-  EXPECT_THAT(pairs, testing::MatchesRegex("[.p]*p[.]{3,}[.p]*p[.p]*")) << "left images go on alone";
+  EXPECT_THAT(pairs, testing::MatchesRegex("[.p]*p[.]{3,}[.p]*p[.p]*")) << "left images continue alone";
 }
 
 TEST_F(LiveCamera, HasItsStampsInUtc) {
@@ -208,7 +208,7 @@ TEST_F(LiveCamera, IsExposedWithinTheLimit) {
 
 // Compares positions of a live run on a map with those of a run on the recording that the cameras play.
 void expect_same_path(const Trajectory& live, const Trajectory& played, double tolerance) {
-  ASSERT_GE(live.size(), 5u) << "however slow the machine is";
+  ASSERT_GE(live.size(), 5u) << "on any machine";
   double worst = 0.0;
   int compared = 0;
   for (const StampedPose& sample : live) {

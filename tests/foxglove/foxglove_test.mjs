@@ -59,7 +59,7 @@ before(async () => {
 
 after(() => byre.kill("SIGKILL"));
 
-test("the server tells its name and what it can", () => {
+test("the server announces its name and capabilities", () => {
   assert.match(watcher.info.name, /^byre /);
   assert.deepEqual(watcher.info.capabilities, ["time"]);
   assert.equal(watcher.info.sessionId, late.info.sessionId);
@@ -67,7 +67,7 @@ test("the server tells its name and what it can", () => {
   assert.deepEqual(watcher.statuses, []);
 });
 
-test("messages and schemas are those of the record, byte by byte", async () => {
+test("messages and schemas equal the record byte by byte", async () => {
   const {messages, schemas, topics} = await recorded();
   assert.deepEqual([...watcher.channels.keys()].sort(), topics);
   let compared = 0;
@@ -84,7 +84,7 @@ test("messages and schemas are those of the record, byte by byte", async () => {
   assert.ok(compared > 20, `${compared} messages`);
 });
 
-test("each topic's messages can be decoded and say what they should", () => {
+test("messages of each topic decode to the expected content", () => {
   for (const topic of ["/tf", "/tf_static", "/odometry", "/pose", "/path", "/diagnostics", "/map_points",
     "/left/image_raw", "/left/camera_info", "/right/image_raw", "/right/camera_info"]) {
     assert.ok(watcher.decoded(topic).length > 0, topic);
@@ -99,20 +99,20 @@ test("each topic's messages can be decoded and say what they should", () => {
   assert.deepEqual([...children].sort(), ["base_link", "left_camera", "odom", "right_camera"]);
 });
 
-test("times are those of the frames", async () => {
+test("times equal those of the frames", async () => {
   const {messages} = await recorded(); // of every frame: times come before anything is subscribed
   assert.ok(watcher.times.length > 5);
   for (const time of watcher.times) assert.ok(messages.has(`/diagnostics ${time}`), String(time));
 });
 
-test("who comes after the run has the map and nothing of what passed", () => {
+test("a client after the run receives the latched messages only", () => {
   assert.equal(late.messages.get("/map_points").length, 1);
   assert.deepEqual(late.messages.get("/map_points")[0], watcher.messages.get("/map_points").at(-1));
   assert.deepEqual(late.messages.get("/tf_static"), watcher.messages.get("/tf_static"));
   assert.deepEqual(late.messages.get("/tf"), []);
 });
 
-test("who offers both protocols has the newer one, and nonsense is answered", async () => {
+test("a client with both protocols gets the newer one, and invalid messages are answered", async () => {
   const socket = new WebSocket(url, ["foxglove.websocket.v1", "foxglove.sdk.v1"]);
   const texts = [];
   socket.on("message", (data) => texts.push(JSON.parse(data)));
@@ -125,7 +125,7 @@ test("who offers both protocols has the newer one, and nonsense is answered", as
   socket.close();
 });
 
-test("other pages and other protocols are refused", async () => {
+test("other pages and other protocols are rejected", async () => {
   const fails = (protocols, options) => new Promise((resolve) => {
     const socket = new WebSocket(url, protocols, options);
     socket.on("error", () => resolve(true));
@@ -136,7 +136,7 @@ test("other pages and other protocols are refused", async () => {
   assert.ok(!await fails(["foxglove.sdk.v1"], {origin: "https://app.foxglove.dev"}));
 });
 
-test("Ctrl-C ends byre however many watch", async () => {
+test("Ctrl-C ends byre with connected clients", async () => {
   byre.kill("SIGINT");
   assert.equal(await exit, 0);
 });

@@ -64,7 +64,8 @@ TEST(Degradation, BlackFramesAndBlankWallsAreEmptyInBothCameras) {
     EXPECT_EQ(fault_of(measure_condition(image), {}), ImageFault::flat);
     EXPECT_GT(measure_condition(image).brightness, 150.0f);
   }
-  EXPECT_NE(blank.left.pixels, blank_close_up()(pair_of_images(), 1).left.pixels) << "noise is new in every image";
+  EXPECT_NE(blank.left.pixels, blank_close_up()(pair_of_images(), 1).left.pixels)
+      << "noise is independent in every image";
 }
 
 TEST(Degradation, MotionBlurSmearsAPointAlongItsPath) {

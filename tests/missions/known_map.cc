@@ -45,7 +45,7 @@ fs::path rendered_path(const RecordingName& name) {
 
 fs::path folder_of(const RecordingName& name) {
   if (const auto folder = find(name)) return *folder;
-  throw InputError(name.name, "is no recording here", why_missing(name));
+  throw InputError(name.name, "is not available", why_missing(name));
 }
 
 // Reads and extracts the frames of an imperfect camera.
@@ -167,7 +167,7 @@ std::string why_missing(const RecordingName& name) {
   const std::string remedy =
       name.source == Source::barn ? "render it by tests/missions/render_barns.sh, or set " : "set ";
   return "no complete recording at " + rendered_path(name).string() + "; " + remedy +
-         rendered_folder(name.source).variable + " to the folder that holds " + name.name;
+         rendered_folder(name.source).variable + " to the folder with " + name.name;
 }
 
 std::string name_of(const MapRecipe& recipe) {

@@ -112,20 +112,20 @@ std::vector<std::string> broken_demands(const MissionCase& mission_case, const M
         fmt::format("{:.1f} % of the frames are trusted on the map of another place", 100.0 * score.trusted));
   }
   if (score.longest_wrong_trust > kMaxWrongTrust) {
-    broken.push_back(fmt::format("poses off by more than 0.2 m are trusted for {:.2f} s", score.longest_wrong_trust) +
-                     fmt::format(", the worst is off by {:.2f} m", score.worst_trusted_error));
+    broken.push_back(fmt::format("poses with errors above 0.2 m are trusted for {:.2f} s", score.longest_wrong_trust) +
+                     fmt::format(", largest error {:.2f} m", score.worst_trusted_error));
   }
   if (mission_case.demand.is_never_wrong && score.wrongly_trusted > 0) {
-    broken.push_back(fmt::format("{} frames are trusted that are off by more than 0.2 m", score.wrongly_trusted) +
-                     fmt::format(", the worst by {:.2f} m", score.worst_trusted_error));
+    broken.push_back(fmt::format("{} frames with errors above 0.2 m are trusted", score.wrongly_trusted) +
+                     fmt::format(", largest error {:.2f} m", score.worst_trusted_error));
   }
   if (mission_case.demand.doubt && score.time_to_doubt.value_or(1e9) > kMaxTimeToDoubt) {
-    broken.push_back("\"" + std::string(to_string(*mission_case.demand.doubt)) + "\" is told " +
+    broken.push_back("\"" + std::string(to_string(*mission_case.demand.doubt)) + "\" is reported " +
                      (score.time_to_doubt ? fmt::format("only after {:.2f} s", *score.time_to_doubt) : "never"));
   }
-  if (mission_case.demand.recovers && !score.recovery) broken.emplace_back("is never trusted again");
+  if (mission_case.demand.recovers && !score.recovery) broken.emplace_back("trust is never regained");
   if (mission_case.demand.recovers && score.recovery.value_or(0.0) > kMaxRecovery) {
-    broken.push_back(fmt::format("is trusted again only after {:.2f} s", *score.recovery));
+    broken.push_back(fmt::format("trust is regained only after {:.2f} s", *score.recovery));
   }
   if (score.trusted < mission_case.demand.min_trusted_share) {
     broken.push_back(fmt::format("only {:.1f} % of the frames are trusted", 100.0 * score.trusted));

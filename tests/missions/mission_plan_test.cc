@@ -44,7 +44,7 @@ TEST(MissionPlan, DegradesTheGivenSpanOnly) {
   EXPECT_EQ(disturbed_steps(plan).front(), 30);
   EXPECT_EQ(plan.undisturbed_from, frame_times()[50]);
   const ImageFrame images{{}, {1, 1, {99}}, std::nullopt};
-  EXPECT_EQ(plan.steps[30].disturb(images).left.pixels.front(), 0) << "steps are counted from the first degraded";
+  EXPECT_EQ(plan.steps[30].disturb(images).left.pixels.front(), 0) << "steps count from the first degraded frame";
   EXPECT_EQ(plan.steps[49].disturb(images).left.pixels.front(), 19);
 }
 

@@ -81,7 +81,7 @@ std::vector<MissionCase> chosen(const TrialOptions& options) {
   std::vector<MissionCase> cases = all_cases();
   for (const std::string& name : options.cases) {
     if (std::ranges::find(cases, name, &MissionCase::name) == cases.end()) {
-      throw InputError(name, "is no case", "--list names them");
+      throw InputError(name, "is not a case", "list the cases with --list");
     }
   }
   std::erase_if(cases, [&](const MissionCase& mission_case) {
@@ -145,7 +145,7 @@ void print_row(const MissionCase& mission_case, const MissionScore& score) {
 // Whether all requirements are met.
 bool fly_and_tell(const MissionCase& mission_case, const TrialOptions& options, KnownMaps& maps) {
   if (const auto missing = missing_recording(mission_case)) {
-    std::fprintf(stderr, "%s: left out, %s\n", mission_case.name.c_str(), why_missing(*missing).c_str());
+    std::fprintf(stderr, "%s: skipped, %s\n", mission_case.name.c_str(), why_missing(*missing).c_str());
     return true;
   }
   const FlownMission flown = fly(mission_case, maps);

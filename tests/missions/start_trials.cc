@@ -129,8 +129,8 @@ int run(const StartOptions& options) {
                                           print_late_or_wrong(mission);
                                         });
   fmt::print(
-      "{} starts, {} frames: {:.1f} % with a pose, {} trusted and right, {} trusted and wrong in {} starts (worst "
-      "{:.2f} m); {} starts found late\n",
+      "{} starts, {} frames: {:.1f} % with a pose, {} trusted and correct, {} trusted and wrong in {} starts (worst "
+      "{:.2f} m); {} starts localised late\n",
       totals.starts, totals.frames, 100.0 * totals.with_pose / std::max(1, totals.frames), totals.trusted_right,
       totals.trusted_wrong, totals.starts_wrong, totals.worst_trusted_error, totals.found_late);
   return totals.trusted_wrong > 0 ? EXIT_FAILURE : EXIT_SUCCESS;

@@ -39,20 +39,20 @@ void render(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Renders a stereo recording of a made-up room in EuRoC format.");
-  app.add_option("folder", options.folder, "Where to write the recording")->required();
+  CLI::App app("Renders a stereo recording of a simulated room in EuRoC format.");
+  app.add_option("folder", options.folder, "Output folder of the recording")->required();
   app.add_option("--frames", options.frames, "Stereo pairs")->check(CLI::Range(2, 100000))->capture_default_str();
-  app.add_option("--rate", options.frame_rate_hz, "Stereo pairs a second")
+  app.add_option("--rate", options.frame_rate_hz, "Stereo pairs per second")
       ->check(CLI::Range(1.0, 200.0))
       ->capture_default_str();
-  app.add_option("--length", options.length_m, "Of the figure of eight that the camera flies, metres")
+  app.add_option("--length", options.length_m, "Length of the figure-eight path, metres")
       ->check(CLI::Range(0.1, 5.0))
       ->capture_default_str();
-  app.add_option("--laps", options.laps, "Of that figure")->capture_default_str();
-  app.add_option("--divisor", options.divisor, "Of EuRoC's resolution of 752 x 480")
+  app.add_option("--laps", options.laps, "Number of rounds of the path")->capture_default_str();
+  app.add_option("--divisor", options.divisor, "Divisor of the EuRoC resolution, 752 x 480")
       ->check(CLI::Range(1, 4))
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of the room and the noise")->capture_default_str();
+  app.add_option("--seed", options.seed, "Seed of room and noise")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
     render(options);

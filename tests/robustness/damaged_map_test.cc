@@ -69,9 +69,9 @@ void expect_sound(const StoredMap& map, const Mutant& mutant) {
   EXPECT_THAT(find_faults(map), IsEmpty());
   const MapBytes written = write_map(map);
   if (value_at<std::uint32_t>(mutant.bytes, kFormatAt) == kNewestFormat) {
-    EXPECT_EQ(written, mutant.bytes) << "what can be read is written again byte by byte";
+    EXPECT_EQ(written, mutant.bytes) << "a readable map is written again byte by byte";
   } else {
-    EXPECT_EQ(write_map(read_map(written, "written.byre")), written) << "in the newest format it is so from then on";
+    EXPECT_EQ(write_map(read_map(written, "written.byre")), written) << "the newest format is stable";
   }
 }
 
@@ -117,7 +117,7 @@ TEST(DamagedMaps, AreReadAsValidMapsOrRejected) {
   for (const char* const section :
        {"summary", "notes", "provenance", "rigs", "keyframes", "features", "patches", "points", "observations", "words",
         "plan", "calibrations", "shutters", "descriptors", "observers", "lookup", "header"}) {
-    EXPECT_GT(tally.refusals[section], 0u) << section << " was never refused for more than its checksum";
+    EXPECT_GT(tally.refusals[section], 0u) << section << " was never rejected for more than its checksum";
   }
   EXPECT_GT(tally.read_with_right_checksums, count / 100);
 }

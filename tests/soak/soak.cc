@@ -227,11 +227,10 @@ int soak(int frames) {
   const bool is_flat = std::all_of(tenths.begin() + 2, tenths.end(), [&](const Tenth& tenth) {
     return is_near(tenth.resident_mb, settled.resident_mb) && is_near(tenth.descriptors, settled.descriptors);
   });
-  std::printf(
-      "\n%d missions, %d frames: %.1f %% with a pose, %.1f %% trusted, %d trusted and off by more than %.1f m\n",
-      missions, all.frames, 1e2 * all.with_pose / all.frames, 1e2 * all.trusted / all.frames, all.trusted_wrong,
-      kWrong);
-  std::printf("%d keyframes were mapped beside the known map; %d kept maps are broken\n", all.mapped, all.broken_maps);
+  std::printf("\n%d missions, %d frames: %.1f %% with a pose, %.1f %% trusted, %d trusted with errors above %.1f m\n",
+              missions, all.frames, 1e2 * all.with_pose / all.frames, 1e2 * all.trusted / all.frames, all.trusted_wrong,
+              kWrong);
+  std::printf("%d keyframes were added online; %d kept maps are invalid\n", all.mapped, all.broken_maps);
   std::printf("memory by tenths, MB:");
   for (const Tenth& tenth : tenths) std::printf(" %.1f", tenth.resident_mb);
   std::printf("\na day of 20 frames a second would add %.1f MB; memory and descriptors %s within 5 %%\n",

@@ -58,7 +58,7 @@ std::vector<int> units_of(Recording& recording) {
 TEST_F(DepthRecording, PairsFramesWithDepthImages) {
   for (const OpenOptions& options : {OpenOptions{}, OpenOptions{.camera = CameraChoice::rgbd}}) {
     const auto recording = open(options);
-    EXPECT_EQ(recording->size(), 5) << "frames without depth are frames all the same";
+    EXPECT_EQ(recording->size(), 5) << "frames without depth count as frames";
     EXPECT_THAT(units_of(*recording), ElementsAre(1000, -1, 1002, 1003, -1));
     EXPECT_THAT(recording->warnings(), IsEmpty());
     EXPECT_EQ(camera_of(*recording, options), CameraChoice::rgbd);

@@ -51,7 +51,7 @@ TEST_F(MotionFiles, ReadTheAccelerometerWithTheGyroscope) {
   write("mav0/imu0/data.csv", "100,0.1,0.2,0.3\n200,0.4,0.5,0.6,1.5,0,9.8\n300,0.4,0.5,0.6,0,0,0\n");
   const MotionSamples samples = read_motion(folder_, {.use_gyroscope = true}).samples;
   EXPECT_EQ(samples.rates.size(), 3u);
-  ASSERT_EQ(samples.accelerations.size(), 1u) << "zeros are none, as of a part without one";
+  ASSERT_EQ(samples.accelerations.size(), 1u) << "zeros mean a sensor without accelerometer";
   EXPECT_EQ(samples.accelerations[0].time, Timestamp(200));
   EXPECT_EQ(samples.accelerations[0].acceleration, Eigen::Vector3d(1.5, 0.0, 9.8));
   EXPECT_FALSE(samples.left_from_gyroscope);

@@ -48,7 +48,7 @@ TEST(PlanPixels, ApplyTheThresholdsOfThePlan) {
   EXPECT_EQ(grey(204, plan), -1) << "a darkness of 0.2 is not above it";
   EXPECT_EQ(grey(203, plan), 100);
   plan.occupied_threshold.reset();
-  EXPECT_EQ(grey(89, plan), 100) << "0.65 where the plan has none";
+  EXPECT_EQ(grey(89, plan), 100) << "default of 0.65";
 }
 
 TEST(PlanPixels, AreLinearBetweenTheThresholdsInModeScale) {
@@ -104,7 +104,8 @@ TEST_F(PlanImages, StartWithTheTopRow) {
   EXPECT_THAT(read(image).occupancy, ElementsAre(100, 0, -1, 0, 100, 0));
   EXPECT_THAT(read(image).image.pixels, ElementsAre(0, 254, 205, 254, 0, 254));
   EXPECT_THAT(read(255 - image, "negate: 1\n").occupancy, ElementsAre(100, 0, -1, 0, 100, 0));
-  EXPECT_THAT(read(255 - image, "negate: 1\n").image.pixels, ElementsAre(0, 254, 205, 254, 0, 254)) << "as it is shown";
+  EXPECT_THAT(read(255 - image, "negate: 1\n").image.pixels, ElementsAre(0, 254, 205, 254, 0, 254))
+      << "pixels as displayed";
 }
 
 TEST_F(PlanImages, AcceptSixteenBits) {

@@ -12,7 +12,7 @@ TEST(StampClock, KeepsContinuousStamps) {
   StampClock clock;
   for (int i = 0; i < 5; ++i) {
     const auto reading = clock.read(Timestamp(100s + i * 50ms), Timestamp(i * 900ms));
-    EXPECT_EQ(reading.time, Timestamp(100s + i * 50ms)) << "however late they arrive";
+    EXPECT_EQ(reading.time, Timestamp(100s + i * 50ms)) << "for any delay";
     EXPECT_FALSE(reading.jump);
   }
   EXPECT_FALSE(clock.read(100s + 100ms, 5s).jump) << "a late image";

@@ -43,14 +43,14 @@ TEST(WheelStream, SelectsPosesIfPresent) {
   EXPECT_EQ(both.kind, Kind::poses);
   EXPECT_EQ(both.poses, 60);
   EXPECT_EQ(both.velocities, 0);
-  EXPECT_EQ(told(true, false).poses, 60) << "a driver that fills in poses alone";
+  EXPECT_EQ(told(true, false).poses, 60) << "a driver that measures poses only";
 }
 
 TEST(WheelStream, SelectsVelocitiesIfPosesNeverChange) {
   const Counted counted = told(false, true);
   EXPECT_EQ(counted.kind, Kind::velocities);
-  EXPECT_EQ(counted.poses, 21) << "all of the second at rest";
-  EXPECT_EQ(counted.velocities, 39) << "all since, with what was held back";
+  EXPECT_EQ(counted.poses, 21) << "all samples of the second at rest";
+  EXPECT_EQ(counted.velocities, 39) << "all later samples, with the delayed ones";
 }
 
 TEST(WheelStream, StaysUndecidedAtRest) {

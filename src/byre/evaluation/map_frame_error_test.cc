@@ -96,7 +96,7 @@ TEST(ErrorsBesideMap, AreLimitedToPlacesOfTheMap) {
   const MapAlignment alignment = align_to_truth(poses_of_map(4), Scale::fixed, true_path());
   const Trajectory elsewhere = {{from_seconds(0.0), {Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}}}};
   EXPECT_EQ(errors_beside_map(elsewhere, elsewhere, alignment).size(), 0u);
-  EXPECT_EQ(errors_beside_map(true_path(), true_path(), {}).size(), 0u) << "nothing is known of the map's error";
+  EXPECT_EQ(errors_beside_map(true_path(), true_path(), {}).size(), 0u) << "the error of the map is unknown";
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ TEST(AlignPatches, RejectsDifferentPatches) {
     if (align(views, Eigen::Matrix2f::Identity())) ++accepted;
   }
   EXPECT_GT(tried, 150);
-  EXPECT_LE(accepted, tried / 8) << "few are alike by chance, within the shift allowed";
+  EXPECT_LE(accepted, tried / 8) << "few are similar by chance within the allowed shift";
 }
 
 TEST(AlignPatches, RejectsANegative) {
@@ -282,7 +282,7 @@ TEST(AlignPatches, StaysInsideThePatchesUnderArbitraryWarps) {
       EXPECT_TRUE((aligned->pixel.array() > 0.0f).all() && (aligned->pixel.array() < Patch::kSize).all());
     }
   }
-  EXPECT_GT(aligned_count, 0) << "some are to pass all bounds";
+  EXPECT_GT(aligned_count, 0) << "some must pass all bounds";
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ TEST(DepthReader, IsEmptyWithoutDepth) {
   at(image, 50, 40) = 5000;
   EXPECT_FALSE(read_at(calibration, image, {50.0, 40.0})) << "one pixel alone may be wrong";
   for (int v = 38; v <= 42; ++v) at(image, 50, v) = at(image, 49, v) = 5000;
-  EXPECT_TRUE(read_at(calibration, image, {50.0, 40.0})) << "holes beside it do no harm";
+  EXPECT_TRUE(read_at(calibration, image, {50.0, 40.0})) << "adjacent holes have no effect";
   EXPECT_FALSE(read_at(calibration, even_image(colour_lens(), 65535), {50.0, 40.0})) << "13 m";
   EXPECT_TRUE(read_at(calibration, even_image(colour_lens(), 65535), {50.0, 40.0}, {.max_depth = 14.0}));
 }

@@ -53,7 +53,7 @@ TEST(Development, BrightensDarkPartsBesideWindows) {
   cv::Mat fine, bright;
   develop(development, image, fine, bright);
   const int dark = bright.at<std::uint8_t>(100, 100), light = bright.at<std::uint8_t>(100, 125);
-  EXPECT_NEAR(std::abs(light - dark), 10, 2) << "twice as far apart in the dark, less what the root takes";
+  EXPECT_NEAR(std::abs(light - dark), 10, 2) << "twice the contrast in the dark, reduced by the root";
   EXPECT_GE(bright.at<std::uint8_t>(5, 100), 250);
   EXPECT_LT(dark, 40) << "black stays black";
 }

@@ -232,7 +232,7 @@ TEST(Extractor, ReturnsNoDisparitiesWithoutARightImage) {
   const auto features = extractor.extract(images).frame.features;
   EXPECT_EQ(share_with_disparity(*features), 0.0);
   EXPECT_TRUE(std::ranges::equal(features->descriptors(), with_right->descriptors()))
-      << "the left image alone decides what is found";
+      << "the left image alone determines the features";
 }
 
 TEST(Extractor, SkipsTheRightImageOnRequest) {
@@ -311,7 +311,7 @@ TEST(Extractor, AcceptsImagesTooSmallForMostOctaves) {
     calibration.left = calibration.right->camera = small;
     Extractor extractor(calibration, {});
     const auto features = extractor.extract(wall().seen_by(calibration)).frame.features;
-    EXPECT_LE(features->size(), std::max(0, side - 38) * std::max(0, side - 38)) << "all lie off the border";
+    EXPECT_LE(features->size(), std::max(0, side - 38) * std::max(0, side - 38)) << "none is on the border";
     EXPECT_TRUE(features->size() > 0 || side < 60) << side;
     for (const Keypoint& keypoint : features->keypoints()) EXPECT_LE(keypoint.octave, 2);
   }
@@ -334,7 +334,7 @@ TEST(Extractor, RejectsImagesOfAnotherSize) {
   wrong = images;
   wrong.right = Image{kWidth, kHeight - 1, std::vector<std::uint8_t>(kWidth * (kHeight - 1))};
   EXPECT_THROW(extractor.extract(wrong), InputError);
-  EXPECT_NO_THROW(extractor.extract(images)) << "and goes on with the next";
+  EXPECT_NO_THROW(extractor.extract(images)) << "the next frame is accepted";
 }
 
 TEST(Extractor, RejectsImagesWithMissingPixels) {

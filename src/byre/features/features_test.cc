@@ -73,7 +73,7 @@ TEST(FeaturesVisitArea, EqualsExhaustiveSearch) {
     EXPECT_THAT(visited(features, pixel, radius, low, high), UnorderedElementsAreArray(expected));
     found += expected.size();
   }
-  EXPECT_GT(found, 5000u) << "the areas are to hold something";
+  EXPECT_GT(found, 5000u) << "the areas must contain features";
 }
 
 TEST(FeaturesVisitArea, ReachesKeypointsOnTheLastRowAndColumn) {
@@ -104,7 +104,7 @@ TEST(Features, KeepDescriptorAndPatchWithTheKeypoint) {
     EXPECT_EQ(features.find_patch(i)->centre.x(), names.back());
   }
   std::sort(names.begin(), names.end());
-  EXPECT_TRUE(std::adjacent_find(names.begin(), names.end()) == names.end()) << "each is there once";
+  EXPECT_TRUE(std::adjacent_find(names.begin(), names.end()) == names.end()) << "each is present once";
 }
 
 TEST(Features, KeepTheGivenOrderWithinACell) {

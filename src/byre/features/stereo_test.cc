@@ -190,7 +190,7 @@ TEST(MatchStereo, ReturnsNothingBeyondTheLargestDisparity) {
   near.min_depth = 1.0;  // 22 pixels
   const Scene beyond{Texture(42, 0.7), 40.0};
   EXPECT_LE(count_matches(beyond, near), 15u);
-  EXPECT_GT(count_matches(beyond), 250u) << "which are there to be found";
+  EXPECT_GT(count_matches(beyond), 250u) << "matches exist";
 }
 
 TEST(MatchStereo, ReturnsNothingBehindInfinity) {

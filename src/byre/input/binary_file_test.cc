@@ -62,7 +62,7 @@ TEST_F(BinaryFile, ReadsPieces) {
   EXPECT_EQ(text_of(piece), "two");
   write_whole(folder_ / "file", bytes_of("another"));
   file.read(0, piece);
-  EXPECT_EQ(text_of(piece), "one") << "the file that was opened";
+  EXPECT_EQ(text_of(piece), "one") << "the opened file";
   EXPECT_THROW(file.read(11, piece), InputError);
   EXPECT_THROW(PiecewiseFile(folder_ / "absent"), InputError);
   EXPECT_THROW(PiecewiseFile{folder_}, InputError);

@@ -26,7 +26,8 @@ TEST(DataFile, IsSearchedInTheEnvironmentVariableFirst) {
   std::ofstream(folder / "default.vocabulary") << "another";
   setenv("BYRE_DATA", folder.c_str(), 1);
   EXPECT_EQ(find_data_file("default.vocabulary", ""), folder / "default.vocabulary");
-  EXPECT_NE(find_data_file("protocols/euroc.yaml", "").parent_path(), folder) << "what is not there is looked for on";
+  EXPECT_NE(find_data_file("protocols/euroc.yaml", "").parent_path(), folder)
+      << "the search continues for missing files";
   unsetenv("BYRE_DATA");
   std::filesystem::remove_all(folder);
 }

@@ -80,7 +80,7 @@ TEST_F(OfflineTrackerTest, ReportsEnteringTheMappedAreaOnce) {
   EXPECT_THAT(note(4, 100).events, ElementsAre(SessionEvent::entered_mapped_area));
   EXPECT_THAT(note(5, 100).events, IsEmpty());
   EXPECT_EQ(tracker_.mission().distance_since_offline(), 0.0);
-  EXPECT_THAT(note(6, 0).events, IsEmpty()) << "things have changed, which is no news of the robot";
+  EXPECT_THAT(note(6, 0).events, IsEmpty()) << "changed objects are no event of the robot";
   EXPECT_GT(tracker_.mission().distance_since_offline(), 0.0);
 }
 
@@ -89,8 +89,8 @@ TEST_F(OfflineTrackerTest, WidensItsLimitsWithTheTimeWithoutOfflinePoints) {
   note(4, 100);
   const Mission& mission = tracker_.mission();
   const HybridLimits at_once = mission.limits(true, 0.1);
-  EXPECT_LT(at_once.drift.translation, 1.0) << "metres, and no bay of a building is as short";
-  EXPECT_GT(at_once.stray, at_once.drift.translation) << "the robot may have moved unforeseen";
+  EXPECT_LT(at_once.drift.translation, 1.0) << "metres, less than a bay of a building";
+  EXPECT_GT(at_once.stray, at_once.drift.translation) << "the robot may have moved unpredictably";
   EXPECT_GT(mission.limits(true, 1.0).stray, at_once.stray);
   for (std::size_t i = 5; i < 10; ++i) note(i, 0);
   ASSERT_GT(mission.distance_since_offline(), 0.0);
@@ -100,7 +100,7 @@ TEST_F(OfflineTrackerTest, WidensItsLimitsWithTheTimeWithoutOfflinePoints) {
 
 TEST_F(OfflineTrackerTest, ReplacesAnUnacceptedPlaceByALikelierRival) {
   track_beside(0, 3);
-  EXPECT_FALSE(consequence_.refutes_pose) << "not by one find";
+  EXPECT_FALSE(consequence_.refutes_pose) << "one search is not enough";
   track_beside(3, 6);
   ASSERT_FALSE(whereabouts_.place().is_accepted());
   EXPECT_TRUE(consequence_.refutes_pose);
@@ -108,7 +108,7 @@ TEST_F(OfflineTrackerTest, ReplacesAnUnacceptedPlaceByALikelierRival) {
   const auto found = tracker_.find_at_rival(mission_.frames[6], mission_.rig, {});
   ASSERT_TRUE(found);
   EXPECT_THAT(found->camera_from_world, PoseNear(true_camera_from_world(mission_, 6), 0.05, 0.02));
-  EXPECT_FALSE(tracker_.find_at_rival(mission_.frames[6], mission_.rig, {})) << "asked for once";
+  EXPECT_FALSE(tracker_.find_at_rival(mission_.frames[6], mission_.rig, {})) << "returned once only";
 }
 
 TEST_F(OfflineTrackerTest, KeepsAnAcceptedPlaceAfterOneContradictingSearch) {
@@ -127,7 +127,7 @@ TEST_F(OfflineTrackerTest, RequiresNoFurtherEvidenceForAConsistentHint) {
   }
   tracker_.search_beside({mission_.frames[3], mission_.rig, PoseHint{}}, whereabouts_, mapper_);
   const std::optional<PlaceSearch> search = tracker_.collect_place();
-  ASSERT_TRUE(search && search->found) << "in the whole map, for the hint says that the robot is elsewhere";
+  ASSERT_TRUE(search && search->found) << "in the whole map, as the hint is elsewhere";
   EXPECT_TRUE(tracker_.consider(search, whereabouts_, mapper_).agrees_with_hint);
 }
 

@@ -19,7 +19,7 @@ TEST(PoseHint, RequiresItsPositionAndDirection) {
   EXPECT_TRUE(is_near(hint_at(5.0), pose));
   EXPECT_FALSE(is_near(hint_at(6.0), pose));
   pose.rotation = rotation_exp({0.0, 0.0, 2.0});
-  EXPECT_FALSE(is_near(hint_at(5.0), pose)) << "the other way round";
+  EXPECT_FALSE(is_near(hint_at(5.0), pose)) << "opposite direction";
 }
 
 TEST(StandingHint, StartsWithTheNextFrameAndExpires) {

@@ -123,13 +123,13 @@ TEST_F(WhereaboutsOnATrueMap, FollowMapCorrections) {
 TEST_F(WhereaboutsOnATrueMap, AllowPropagationWhileTheMotionIsCertain) {
   find_and_believe(0);
   whereabouts_.tell(Pose{});
-  EXPECT_FALSE(whereabouts_.may_be_led_back()) << "it has its pose";
+  EXPECT_FALSE(whereabouts_.may_be_led_back()) << "the pose is not lost";
   whereabouts_.lose();
   EXPECT_TRUE(whereabouts_.may_be_led_back());
   Pose far;
   far.translation.x() = 100.0;
   whereabouts_.tell(far);
-  EXPECT_FALSE(whereabouts_.may_be_led_back()) << "nobody knows where a hundred metres of wheels end";
+  EXPECT_FALSE(whereabouts_.may_be_led_back()) << "the covariance after a hundred metres is too large";
 }
 
 TEST_F(WhereaboutsOnATrueMap, RejectAPoseBeyondTheReachOfWheels) {
@@ -140,11 +140,11 @@ TEST_F(WhereaboutsOnATrueMap, RejectAPoseBeyondTheReachOfWheels) {
     return mapping.is_out_of_reach(seen, track_of(frame), mission_.rig, map_);
   };
   mapping.note({mission_.frames[0], track_of(0), true, true, 0}, mission_.rig, map_);
-  EXPECT_FALSE(is_out_of_reach(39)) << "nothing is told";
+  EXPECT_FALSE(is_out_of_reach(39)) << "no measured motion";
   mapping.hear([](Timestamp, Timestamp) { return std::optional(0.5); });
   EXPECT_FALSE(is_out_of_reach(1));
   EXPECT_TRUE(is_out_of_reach(39));
-  EXPECT_FALSE(is_out_of_reach(39, std::chrono::seconds(60))) << "it may have been carried";
+  EXPECT_FALSE(is_out_of_reach(39, std::chrono::seconds(60))) << "it may have been kidnapped";
   mapping.lose();
   EXPECT_TRUE(is_out_of_reach(39));
 }
@@ -162,15 +162,15 @@ TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheels) {
   mapping.tell(motion_to(20));
   EXPECT_FALSE(is_out_of_reach(20));
   EXPECT_FALSE(is_out_of_reach(21)) << "wheels may err";
-  EXPECT_TRUE(is_out_of_reach(39)) << "another way than they told";
+  EXPECT_TRUE(is_out_of_reach(39)) << "contradicts the measured motion";
   Pose turned = motion_to(20);
   turned.rotation = turned.rotation * rotation_exp({0.0, 0.0, 2.0});
   mapping.tell(turned);
-  EXPECT_TRUE(is_out_of_reach(20)) << "another way round";
+  EXPECT_TRUE(is_out_of_reach(20)) << "contradicts the measured rotation";
   BodyMotion unsure = motion_to(0);
   unsure.covariance = 100.0 * Matrix6::Identity();
   mapping.tell(unsure);
-  EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where they led to";
+  EXPECT_FALSE(is_out_of_reach(39)) << "the covariance of the measured motion is too large";
 }
 
 // A find that contradicts measured motion after a trusted pose.
@@ -184,7 +184,7 @@ TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheelsAfterATrustedPose)
     return whereabouts_.is_out_of_reach(seen, track_of(frame), mission_.rig, map_);
   };
   whereabouts_.tell(Pose{});
-  EXPECT_FALSE(is_out_of_reach(39)) << "it was not known well where it is";
+  EXPECT_FALSE(is_out_of_reach(39)) << "the last pose was not trusted";
   whereabouts_.note_quality({1e-6 * Matrix6::Identity(), 1e-6 * Matrix6::Identity(), Verdict::trusted});
   EXPECT_TRUE(is_out_of_reach(39));
   EXPECT_FALSE(is_out_of_reach(here));
@@ -193,12 +193,12 @@ TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheelsAfterATrustedPose)
   whereabouts_.note({mission_.frames[39], track_of(39), true, true, 0}, mission_.rig, map_);
   whereabouts_.tell(Pose{});
   ASSERT_FALSE(place().is_believed());
-  EXPECT_TRUE(is_out_of_reach(39)) << "a place that is not believed yet proves nothing";
+  EXPECT_TRUE(is_out_of_reach(39)) << "an unconfirmed pose is no evidence";
   EXPECT_FALSE(is_out_of_reach(here));
   BodyMotion far = Pose{};
   far.covariance = 100.0 * Matrix6::Identity();
   whereabouts_.tell(far);
-  EXPECT_FALSE(is_out_of_reach(39)) << "nobody knows where wheels led to";
+  EXPECT_FALSE(is_out_of_reach(39)) << "the covariance of the measured motion is too large";
 }
 
 TEST_F(WhereaboutsOnATrueMap, PropagateMeasuredMotionUntilItEnds) {
@@ -239,7 +239,7 @@ TEST_F(WhereaboutsOnATrueMap, PropagateFromTheLastConfirmedPoseAfterAFalseOne) {
   ASSERT_TRUE(whereabouts_.go_on(mission_.frames[next + 2].time, mission_.rig, map_));
   EXPECT_THAT(whereabouts_.odometry().map_from_body(), PoseNear(before * ahead * ahead * ahead, 1e-9, 1e-9));
   EXPECT_THAT(whereabouts_.odometry().odometry_from_body(), PoseNear(smooth * ahead * ahead * ahead, 1e-9, 1e-9))
-      << "the smooth pose goes as the robot does, wherever it is taken to be";
+      << "odometry is independent of the map pose";
 }
 
 TEST_F(WhereaboutsOnATrueMap, PredictTheRegistrationOfASubmapByTheBridge) {
@@ -260,7 +260,7 @@ TEST_F(WhereaboutsOnATrueMap, PredictTheRegistrationOfASubmapByTheBridge) {
     whereabouts.begin({map_.keyframe_ids()[2]}, 1, mission_.rig, map_);
     return whereabouts;
   };
-  EXPECT_EQ(begin_after(0).log_odds_of_registration(far), 0.0) << "no bridge tells where it begins";
+  EXPECT_EQ(begin_after(0).log_odds_of_registration(far), 0.0) << "no bridge predicts its start";
   Whereabouts bridged = begin_after(3);
   EXPECT_EQ(bridged.log_odds_of_registration(Pose{}), 0.0);
   EXPECT_EQ(bridged.log_odds_of_registration(far), kLogOddsOfCarried);
@@ -290,7 +290,7 @@ TEST_F(WhereaboutsOnATrueMap, MeasureTheReachFromTheLastConfirmedPose) {
   find_elsewhere(0.0);
   EXPECT_EQ(place().log_odds(), kLogOddsOfCarried);
   find_elsewhere(1.5);
-  EXPECT_EQ(place().log_odds(), kLogOddsOfCarried) << "near a find that was not believed";
+  EXPECT_EQ(place().log_odds(), kLogOddsOfCarried) << "near an unconfirmed pose";
 }
 
 TEST_F(WhereaboutsOnATrueMap, PenaliseAPoseManySigmasFromMeasuredMotion) {
@@ -322,7 +322,7 @@ TEST_F(WhereaboutsOnATrueMap, TestAPlaceAgainAfterARefutation) {
   lost.lose();
   lost.tell({});
   lost.note({mission_.frames[next], track_of(next), true, true, 0}, mission_.rig, map_);
-  EXPECT_TRUE(lost.place().is_accepted()) << "shortly lost, it is where it was";
+  EXPECT_TRUE(lost.place().is_accepted()) << "shortly lost, the place stays accepted";
   whereabouts_.give_up();
   whereabouts_.tell({});
   whereabouts_.note({mission_.frames[next], track_of(next), true, true, 0}, mission_.rig, map_);

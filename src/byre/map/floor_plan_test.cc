@@ -118,7 +118,7 @@ TEST(FloorPlan, IsRegisteredDespiteThreeSwappedPicksOfEight) {
   ASSERT_TRUE(fit.has_value());
   EXPECT_THAT(outliers_of(correspondences, *fit), ElementsAre("sign 1", "sign 2", "sign 5"));
   EXPECT_LT(scene.worst_error(fit->registration.plan_from_map), 0.08);
-  EXPECT_THAT(fit->doubts, ElementsAre(PlanDoubt::disagreement)) << "three of eight are too many to be mistakes";
+  EXPECT_THAT(fit->doubts, ElementsAre(PlanDoubt::disagreement)) << "three of eight are too many outliers";
 }
 
 TEST(FloorPlan, ProvidesTheScaleOfANonMetricMap) {
@@ -266,9 +266,10 @@ PlanFit fit_with(int inliers, int outliers) {
 
 TEST(ResidualOf, IncludesOutliersIfTheyMayBeRight) {
   EXPECT_EQ(residual_of(fit_with(6, 0)), 0.05);
-  EXPECT_EQ(residual_of(fit_with(6, 2)), 0.05) << "two of eight are told apart";
+  EXPECT_EQ(residual_of(fit_with(6, 2)), 0.05) << "two of eight are identified as outliers";
   EXPECT_FALSE(is_far_off(fit_with(6, 2)));
-  EXPECT_NEAR(residual_of(fit_with(2, 1)), std::sqrt((25.0 + 2 * 0.0025) / 3.0), 1e-12) << "one of three is not";
+  EXPECT_NEAR(residual_of(fit_with(2, 1)), std::sqrt((25.0 + 2 * 0.0025) / 3.0), 1e-12)
+      << "one of three is not identified";
   EXPECT_NEAR(residual_of(fit_with(3, 3)), std::sqrt((25.0 + 0.0025) / 2.0), 1e-12);
   EXPECT_TRUE(is_far_off(fit_with(3, 3)));
 }

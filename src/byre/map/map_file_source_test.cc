@@ -157,7 +157,7 @@ TEST(MapFileSource, IsReadCompletelyByTheFirstChange) {
   change(expected);
   EXPECT_THAT(find_faults(changed.map), IsEmpty());
   EXPECT_EQ(write_map(changed), write_map(expected));
-  EXPECT_EQ(write_map(opened), file.bytes) << "the one that was copied";
+  EXPECT_EQ(write_map(opened), file.bytes) << "the original";
 }
 
 TEST(MapFileSource, DetectsEveryFlippedBitOnAccess) {
@@ -302,9 +302,9 @@ TEST(MapFileSource, OutlivesItsNameAndReportsTruncation) {
   EXPECT_THROW(look_at_all(cut.map), InputError) << "of words";
   ASSERT_NE(cut.map.damage(), nullptr);
   EXPECT_THAT(cut.map.damage()->what(), HasSubstr("was truncated after it was opened"));
-  EXPECT_THROW(write_map(cut), InputError) << "a damaged map is not saved as a whole one";
+  EXPECT_THROW(write_map(cut), InputError) << "a damaged map is not saved as a valid one";
   EXPECT_EQ(untouched.map.damage(), nullptr);
-  EXPECT_EQ(write_map(untouched), bytes) << "another file of that name";
+  EXPECT_EQ(write_map(untouched), bytes) << "another file of the same name";
   fs::remove(path);
 }
 

@@ -375,7 +375,7 @@ TEST_F(MapFileOnDisk, IsNotReplacedByAnInvalidMap) {
   unsound.recordings.clear();
   try {
     save_map(unsound, folder_ / "barn.byre");
-    FAIL() << "an unsound map was saved";
+    FAIL() << "an invalid map was saved";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("is not written: the map is invalid: refers to recording 0 of 0"));
   }

@@ -225,7 +225,7 @@ TEST_P(MapUnderRandomOperations, EqualsTheReferenceModelAndStaysValid) {
     ASSERT_THAT(find_faults(operations.map), ::testing::IsEmpty());
     if (i % 20 == 0) expect_same_covisibility(operations.map, operations.model);
   }
-  EXPECT_GT(operations.map.point_count(), 5) << "the operations should leave something to compare";
+  EXPECT_GT(operations.map.point_count(), 5) << "the operations must leave points to compare";
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MapUnderRandomOperations, ::testing::Values(1, 2, 3, 4, 5));

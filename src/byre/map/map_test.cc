@@ -252,7 +252,7 @@ TEST_F(SmallMap, KeepsTheRequestedPatchesOnly) {
   const Features& features = *map.find_keyframe(id)->frame.features;
   EXPECT_EQ(features.find_patch(0), nullptr);
   EXPECT_NE(features.find_patch(1), nullptr);
-  EXPECT_NE(keyframe.frame.features->find_patch(0), nullptr) << "others may look at it still";
+  EXPECT_NE(keyframe.frame.features->find_patch(0), nullptr) << "others may still use it";
 }
 
 TEST_F(SmallMap, AddsTheObservationsOfANewKeyframe) {
@@ -263,7 +263,7 @@ TEST_F(SmallMap, AddsTheObservationsOfANewKeyframe) {
   ASSERT_THAT(sightings, SizeIs(5));
   EXPECT_EQ(sightings[0].point, shared);
   EXPECT_EQ(sightings[1].point, std::nullopt) << "no such point";
-  EXPECT_EQ(sightings[2].point, std::nullopt) << "seen already";
+  EXPECT_EQ(sightings[2].point, std::nullopt) << "already observed";
   EXPECT_EQ(sightings[3].point, lonely);
   EXPECT_THAT(map.covisible_keyframes(added, kAll),
               ElementsAre(SharesPoints(third, 2), SharesPoints(first, 1), SharesPoints(second, 1)));
@@ -274,7 +274,7 @@ TEST_F(SmallMap, KeepsObservationsOfOfflinePoints) {
   EXPECT_TRUE(map.add_observation({second, 1}, {offline}));
   EXPECT_TRUE(map.add_observation({first, 1}, {offline}));
   EXPECT_THAT(map.observations(offline), ElementsAre(Observation{first, 1}, Observation{second, 1}));
-  EXPECT_EQ(map.find_point(offline), nullptr) << "it lives in the other map";
+  EXPECT_EQ(map.find_point(offline), nullptr) << "the point belongs to the other map";
   map.remove_observation({first, 1});
   map.remove_keyframe(second);
   EXPECT_THAT(map.observations(offline), IsEmpty());

@@ -55,7 +55,8 @@ TEST(PlanWalls, LeaveNoPathIntoAClosedRoom) {
   PlanOfRooms rooms;
   rooms.draw_two_rooms();
   EXPECT_FALSE(rooms.walls().way_between({kWest, 0.5}, {kEast, 0.5}, 30.0));
-  EXPECT_TRUE(rooms.walls().way_between({kWest, 2.3}, {kEast, 2.3}, 30.0)) << "when either place may be behind it";
+  EXPECT_TRUE(rooms.walls().way_between({kWest, 2.3}, {kEast, 2.3}, 30.0))
+      << "if either position may be behind the wall";
 }
 
 TEST(PlanWalls, LeaveAPathThroughADoor) {
@@ -65,7 +66,7 @@ TEST(PlanWalls, LeaveAPathThroughADoor) {
   const auto way = rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
   ASSERT_TRUE(way);
   EXPECT_NEAR(*way, 2.0 * std::hypot(2.0, 0.9), 0.4);
-  EXPECT_FALSE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 4.1)) << "there is no time for it";
+  EXPECT_FALSE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 4.1)) << "the path is too long for the time";
 }
 
 TEST(PlanWalls, DoNotLeakIfThinAndSlanting) {
@@ -95,7 +96,7 @@ TEST(PlanWalls, DetectUnreachablePositions) {
   walls.open_along(ways);
   EXPECT_TRUE(walls.has_place_to_drive_to({{2.0, 4.0}, 0.3}));
   EXPECT_FALSE(walls.has_place_to_drive_to({kEast, 0.5}));
-  EXPECT_FALSE(walls.has_place_to_drive_to({{0.4, 3.0}, 0.3})) << "out of the building";
+  EXPECT_FALSE(walls.has_place_to_drive_to({{0.4, 3.0}, 0.3})) << "outside of the building";
   EXPECT_FALSE(walls.has_place_to_drive_to({{-20.0, 3.0}, 0.3})) << "off the plan";
 }
 

@@ -139,7 +139,7 @@ TEST_F(AnchoredFrames, AreKeptWhileIndexedOrUnconfirmed) {
   const std::size_t left_out = trajectory.thin_out(30);
   EXPECT_GE(left_out, 20u);
   EXPECT_EQ(trajectory[30 - left_out].time, std::chrono::milliseconds(50 * 30));
-  EXPECT_EQ(trajectory.thin_out(30 - left_out), 0u) << "all is done that may be";
+  EXPECT_EQ(trajectory.thin_out(30 - left_out), 0u) << "nothing is left to thin out";
 }
 
 TEST_F(AnchoredFrames, TakeThePoseOfTheKeyframeTheyBecome) {

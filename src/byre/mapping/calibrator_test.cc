@@ -35,7 +35,7 @@ TEST_F(RefinedCalibrator, IsPendingLongerIfImagesContradictedTheGivenCalibration
   calibrator_.note_images(true);
   refine(7);
   calibrator_.note_images(false);
-  EXPECT_TRUE(calibrator_.is_open()) << "though they fit by what was found";
+  EXPECT_TRUE(calibrator_.is_open()) << "despite the fit of the refined calibration";
   refine(25);
   EXPECT_TRUE(calibrator_.is_open());
   refine(28);

@@ -85,7 +85,7 @@ TEST(KeyframeOfACutFrame, WaitsForTheRightImage) {
   KeyframeEvidence evidence = after_a_turn();
   evidence.without_depth = 10 * kMaxWaitForDepth;  // as after many such frames
   EXPECT_FALSE(watch.asks_for_keyframe(tracked_on(200), evidence, kNoRightImage, {}));
-  EXPECT_TRUE(watch.is_short()) << "so that the next frame is seen whole";
+  EXPECT_TRUE(watch.is_short()) << "so that the next frame is not cut";
 }
 
 TEST(KeyframeOfACutFrame, IsAddedIfNothingWasCut) {

@@ -58,7 +58,7 @@ TEST_F(MapperOfAMission, ChangesItsRevisionWithTheMap) {
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   const int added = mapper.revision();
   EXPECT_GT(added, begun);
-  EXPECT_EQ(mapper.pending(), 0) << "the job has it";
+  EXPECT_EQ(mapper.pending(), 0) << "the job has the keyframe";
   EXPECT_FALSE(mapper.collect());
   EXPECT_EQ(mapper.revision(), added);
   EXPECT_TRUE(mapper.collect());
@@ -114,7 +114,7 @@ TEST_F(MapperOfAMission, StoresTheFeaturesOfOlderKeyframesInAFile) {
   }
   const std::shared_ptr<const Features> in_memory = features();
   mapper.add_keyframe(mission_.frames[33], track(mapper, 33), mission_.rig);
-  EXPECT_EQ(features(), in_memory) << "the job is not taken over";
+  EXPECT_EQ(features(), in_memory) << "the result of the job is not applied yet";
   mapper.collect();
   const auto before = in_memory->lists(), stowed = features()->lists();
   for (std::size_t i = 0; i < Features::kLists; ++i) {
@@ -140,7 +140,7 @@ TEST_F(MapperOfAMission, HasTheWordsOfAKeyframeAfterAJob) {
                 {simulated_vocabulary(), nullptr});
   const auto words_of = [&](KeyframeId id) { return mapper.online().find_keyframe(id)->words.size(); };
   const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
-  EXPECT_GT(words_of(begun.keyframes[0]), 0u) << "at once, as nothing else could be found again";
+  EXPECT_GT(words_of(begun.keyframes[0]), 0u) << "at once, for relocalisation";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   mapper.start_reading();
   EXPECT_TRUE(mapper.is_read());
@@ -151,7 +151,7 @@ TEST_F(MapperOfAMission, HasTheWordsOfAKeyframeAfterAJob) {
   EXPECT_EQ(words_of(id), static_cast<std::size_t>(mission_.frames[4].features->size()));
   EXPECT_EQ(mapper.places()->size(), 2);
   mapper.start_reading();
-  EXPECT_FALSE(mapper.is_read()) << "there is nothing to read for";
+  EXPECT_FALSE(mapper.is_read()) << "no reading is needed";
 }
 
 TEST_F(MapperOfAMission, ReadsRemainingKeyframesAtTheEnd) {
@@ -166,12 +166,12 @@ TEST_F(MapperOfAMission, ReadsRemainingKeyframesAtTheEnd) {
 TEST_F(MapperOfAMission, AppliesACorrectionOnceNoJobRuns) {
   Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
-  EXPECT_FALSE(mapper.submaps().is_registered()) << "nobody knows yet where it lies";
+  EXPECT_FALSE(mapper.submaps().is_registered()) << "its pose in the map is unknown";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   const Pose offline_from_online{rotation_exp({0.0, 0.0, 0.4}), {1.0, 2.0, 0.0}};
   mapper.correct_later({mapper.submaps().frame(), 0, offline_from_online, CorrectionShape::rigid});
   EXPECT_TRUE(mapper.has_correction());
-  EXPECT_FALSE(mapper.correct_online()) << "a job works on what would move";
+  EXPECT_FALSE(mapper.correct_online()) << "a job uses the keyframes to be moved";
   mapper.collect();
   mapper.collect();
   const Pose before = mapper.online().camera_from_world(id);

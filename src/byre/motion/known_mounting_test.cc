@@ -52,7 +52,7 @@ TEST(KnownMounting, ReadsBackItsNotes) {
   ASSERT_TRUE(read.up);
   EXPECT_EQ(read.up->up_in_map, known.up->up_in_map);
   EXPECT_EQ(read.up->sigma, 0.006);
-  EXPECT_EQ(read.gyroscope->bias, Eigen::Vector3d::Zero()) << "it is another one each day";
+  EXPECT_EQ(read.gyroscope->bias, Eigen::Vector3d::Zero()) << "the bias changes between missions";
 }
 
 TEST(KnownMounting, IgnoresInvalidNotes) {
@@ -64,7 +64,7 @@ TEST(KnownMounting, IgnoresInvalidNotes) {
   notes["gyroscope"] = "body_from_gyroscope_wxyz 1 0 0 0; error_rad_per_s 0.004";
   notes["gravity"] = "up_in_map 0 0 2; sigma_rad 0.01";
   EXPECT_FALSE(mounting_in(notes).up);
-  ASSERT_TRUE(mounting_in(notes).gyroscope) << "as older programs note it";
+  ASSERT_TRUE(mounting_in(notes).gyroscope) << "notes of older versions";
   EXPECT_GT(mounting_in(notes).gyroscope->covariance.trace(), 9.0);
   EXPECT_FALSE(mounting_in(notes).wheels);
 }

@@ -80,12 +80,12 @@ MotionPrior followed_through_resets(const std::vector<double>& resets, double en
 TEST(MotionPrior, BridgesAJumpOfTheWheelsByTheEarlierVelocity) {
   const Drive drive{.base_from_body = camera_on_base()};
   const MotionPrior prior = followed_through_resets({20.0, 65.02}, 72.0);
-  EXPECT_EQ(prior.slips(), 0) << "a jump is not a motion";
+  EXPECT_EQ(prior.slips(), 0) << "a jump is not counted as slip";
   const auto across = prior.between(from_seconds(65.0), from_seconds(65.05));
   ASSERT_TRUE(across);
   const Pose truth = true_motion(drive, 65.0, 65.05);
   EXPECT_LT((across->last_from_body.translation - truth.translation).norm(), 0.005);
-  EXPECT_GT(std::sqrt(across->covariance(0, 0)), truth.translation.norm()) << "it may be wrong by its whole length";
+  EXPECT_GT(std::sqrt(across->covariance(0, 0)), truth.translation.norm()) << "its sigma covers its whole length";
   const BodyMotion all = over(prior, 60.0, 70.0);
   const Vector6 error = log_pose(inverse(all.last_from_body) * true_motion(drive, 60.0, 70.0));
   EXPECT_LT(error.transpose() * all.covariance.ldlt().solve(error), 12.6) << "within 95 %";

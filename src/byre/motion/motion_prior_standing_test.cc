@@ -70,7 +70,8 @@ TEST(MotionPrior, DetectsNoStandstillWhileWheelsCreep) {
 
 TEST(MotionPrior, MeasuresTheTiltInTheDarkAfterAVisibleStop) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
-  EXPECT_FALSE(followed_to_a_stop(drive, {}, 50.0).tilt(from_seconds(49.9))) << "up in the map is not known";
+  EXPECT_FALSE(followed_to_a_stop(drive, {}, 50.0).tilt(from_seconds(49.9)))
+      << "the up direction of the map is unknown";
   const MotionPrior prior = followed_to_a_stop(drive, {.dark = 44.0}, 50.0);
   ASSERT_TRUE(prior.to_keep().up);
   const auto tilt = prior.tilt(from_seconds(49.9));

@@ -79,7 +79,7 @@ TEST(MotionPrior, LimitsTheReachByWheels) {
   ASSERT_TRUE(reach);
   EXPECT_GT(*reach, true_motion(drive, 30.0, 36.0).translation.norm());
   EXPECT_LT(*reach * drive.metres_per_unit, 7.0);  // metres; the base went 3 m
-  EXPECT_FALSE(prior.reach(from_seconds(36.0), from_seconds(50.0), false)) << "wheels were not heard";
+  EXPECT_FALSE(prior.reach(from_seconds(36.0), from_seconds(50.0), false)) << "no wheel samples";
 }
 
 TEST(MotionPrior, LimitsTheReachByWheelsOfUnknownMountingInAMetricMap) {
@@ -240,7 +240,8 @@ TEST(MotionPrior, MeasuresTheDistanceBeforeTheFirstFrameOfANewMap) {
     EXPECT_LT(angle_between(measured->last_from_body.rotation, truth.rotation), 0.05);
     std::mt19937 random(5);
     prior.note(from_seconds(2.05), drive.seen(2.05, random));
-    EXPECT_FALSE(prior.between(from_seconds(0.5), from_seconds(1.5))) << "from here on what is seen tells the mounting";
+    EXPECT_FALSE(prior.between(from_seconds(0.5), from_seconds(1.5)))
+        << "from here on tracked poses determine the mounting";
   }
 }
 

@@ -64,7 +64,7 @@ TEST(SteadyTrack, IsEmptyWhileTheBodySwaysOrTurns) {
   EXPECT_FALSE(told_until_end({.sway = 0.3}));
   EXPECT_FALSE(told_until_end({.vibration = 5.0}));
   EXPECT_FALSE(told_until_end({.rate = {0.0, 0.3, 0.0}}));
-  EXPECT_FALSE(told_until_end({.acceleration = {2.0, 0.0, 8.0}})) << "longer than gravity by far";
+  EXPECT_FALSE(told_until_end({.acceleration = {2.0, 0.0, 8.0}})) << "much larger than gravity";
 }
 
 TEST(SteadyTrack, IsEmptyForTooFewSamples) {
@@ -94,10 +94,10 @@ TEST(Standing, IsNotDetectedDuringSlowBraking) {
   const auto at = [&](const Standing::Witnesses& witnesses) {
     return standing.at(from_seconds(braking.until), witnesses, kStillRate);
   };
-  EXPECT_FALSE(at({})) << "nobody says that it stands";
+  EXPECT_FALSE(at({})) << "no evidence of standstill";
   EXPECT_FALSE(at({false, {}}));
   EXPECT_FALSE(at({false, true}));
-  EXPECT_FALSE(at({true, false})) << "wheels are locked, and it slides";
+  EXPECT_FALSE(at({true, false})) << "locked wheels may slide";
   EXPECT_TRUE(at({true, {}}));
 }
 
@@ -140,7 +140,7 @@ TEST(UpInBody, IsEstimatedForALevelBodyDespiteTurnsAboutOneAxis) {
     const Eigen::Vector3d slope(0.05, 0.0, 0.0);
     const UpInBody sloping = up_in_body(up_at(rotation_exp(slope) * kWorldFromSensor), mounting);
     const Eigen::Vector3d truth = rotation_exp(-slope) * Eigen::Vector3d::UnitZ();
-    EXPECT_LT((sloping.up - truth).norm(), 2.0 * sloping.sigma) << "nobody knows to which side it slopes";
+    EXPECT_LT((sloping.up - truth).norm(), 2.0 * sloping.sigma) << "the direction of the slope is unknown";
     EXPECT_GT(sloping.sigma, 0.05);
   }
 }
@@ -150,7 +150,8 @@ TEST(Standing, MeasuresTheTiltByStopsAtKnownPoses) {
   mounting.covariance = 1e-5 * Eigen::Matrix3d::Identity();
   const Eigen::Quaterniond map_from_world = rotation_exp({0.7, 0.2, -0.5});
   Standing standing;
-  EXPECT_FALSE(standing.tilt(from_seconds(99.0), up_at(kWorldFromSensor), mounting)) << "up in the map is not known";
+  EXPECT_FALSE(standing.tilt(from_seconds(99.0), up_at(kWorldFromSensor), mounting))
+      << "the up direction of the map is unknown";
   for (int stop = 0; stop < 8; ++stop) {  // different headings, slightly tilted, sensor with a bias
     const Eigen::Quaterniond world_from_sensor =
         rotation_exp({0.0, 0.0, 0.8 * stop}) * rotation_exp({0.02, 0.01 * stop, 0.0}) * kWorldFromSensor;
@@ -172,7 +173,7 @@ TEST(Standing, MeasuresTheTiltByStopsAtKnownPoses) {
   EXPECT_LT((map_from_body * tilt->up_in_body - tilt->up_in_map).norm(), 2.0 * tilt->sigma);
   EXPECT_FALSE(standing.tilt(from_seconds(99.0), std::nullopt, mounting));
   EXPECT_FALSE(standing.tilt(from_seconds(99.0), up_at(kWorldFromSensor), GyroscopeMounting{}))
-      << "it is not known how it is turned";
+      << "the mounting is unknown";
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST(UnseenWay, ReportsUntrackedIntervals) {
   expect_seen();
   unseen.note(frame(10), false);
   expect_seen();
-  EXPECT_FALSE(unseen.is_seen(frame(9), frame(10))) << "not told yet";
+  EXPECT_FALSE(unseen.is_seen(frame(9), frame(10))) << "not reported yet";
 }
 
 TEST(UnseenWay, ReportsTheFirstUnstoredInterval) {

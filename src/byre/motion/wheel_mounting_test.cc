@@ -98,7 +98,7 @@ TEST(WheelMounting, EstimatesTheSidewaysError) {
   EXPECT_LT(find_wheel_mounting(pairs_of_omni(drive, 60.0, 1.0, 0.2, 0.2))->side_error, 0.03);
   const auto never_across = find_wheel_mounting(pairs_of(drive, 30.0));
   ASSERT_TRUE(never_across);
-  EXPECT_EQ(never_across->side_error, 0.2) << "nobody has seen it go across";
+  EXPECT_EQ(never_across->side_error, 0.2) << "no sideways motion was observed";
 }
 
 TEST(WheelMounting, IsEmptyWithoutTurning) {
@@ -143,9 +143,9 @@ TEST(WheelMounting, IsPresumedForwardBeforeTracking) {
   const auto mounting = presume_looking_ahead(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
   ASSERT_TRUE(mounting);
   EXPECT_LT(angle_between(mounting->base_from_body.rotation, drive.base_from_body.rotation), 0.15);
-  EXPECT_EQ(mounting->way_error, 1.0) << "it may as well look aside";
+  EXPECT_EQ(mounting->way_error, 1.0) << "the camera may face sideways";
   EXPECT_FALSE(presume_looking_ahead(-Eigen::Vector3d::UnitY(), Eigen::Vector3d(0.0, -1.0, 0.1)))
-      << "a camera that looks up tells nothing of what is ahead";
+      << "an upward camera does not determine the forward direction";
 }
 
 // Before the first turn, only an accelerometer detects a camera that lies on its side.

@@ -42,8 +42,9 @@ TEST(CalibrationInformation, IsPositiveDefiniteForDistantPoints) {
     const auto information = calibration_information(drive_towards_far_points(seed, sensitivity), kRobustWidth);
     ASSERT_TRUE(information) << "seed " << seed;
     const Eigen::SelfAdjointEigenSolver<CalibrationMatrix> directions(*information);
-    EXPECT_GT(directions.eigenvalues()[0], 0.99) << "what was known before, seed " << seed;
-    EXPECT_GT(directions.eigenvalues()[kCalibrationParameters - 1], 100.0) << "what was seen, seed " << seed;
+    EXPECT_GT(directions.eigenvalues()[0], 0.99) << "prior information, seed " << seed;
+    EXPECT_GT(directions.eigenvalues()[kCalibrationParameters - 1], 100.0)
+        << "information of observations, seed " << seed;
   }
 }
 

@@ -344,7 +344,7 @@ TEST(RefinePose, ReturnsACovarianceThatCoversSystematicErrors) {
     add(scene.refine(kNoiseAlone), by_noise);
   }
   EXPECT_LT(known, 12.0);
-  EXPECT_GT(known, 2.0) << "nor is it far too large";
+  EXPECT_GT(known, 2.0) << "and not much too large";
   EXPECT_GT(by_noise, 2.0 * known);
 }
 
@@ -370,7 +370,7 @@ TEST(RefinePoseWithPrior, IsHeldByAStrongPrior) {
   const auto refined = scene.refine_with(prior);
   ASSERT_TRUE(refined);
   EXPECT_THAT(refined->camera_from_world, PoseNear(prior.camera_from_world, 1e-6, 1e-6));
-  EXPECT_GT(refined->inlier_count, 90) << "nor does a prior make outliers";
+  EXPECT_GT(refined->inlier_count, 90) << "a prior causes no outliers";
 }
 
 TEST(RefinePoseWithPrior, IsHardlyMovedByAWeakPrior) {

@@ -76,7 +76,7 @@ TEST_F(Dbow2File, ConvertsToAVocabulary) {
   EXPECT_EQ(vocabulary.word_of(descriptor(96)), 3u);
   EXPECT_EQ(vocabulary.word_of(descriptor(192)), 4u);
   EXPECT_EQ(vocabulary.node_above(4, 1), 3u);
-  EXPECT_EQ(vocabulary.node_above(0, 1), 0u) << "a leaf that lies higher than others stands for itself";
+  EXPECT_EQ(vocabulary.node_above(0, 1), 0u) << "a leaf above the requested level represents itself";
   const std::vector<Word> words = {4, 1, 1};
   EXPECT_THAT(vocabulary.bag_of(words),
               ElementsAre(Pair(1u, FloatEq(2.0f / 10.25f)), Pair(4u, FloatEq(8.25f / 10.25f))));

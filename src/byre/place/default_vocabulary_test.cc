@@ -38,7 +38,7 @@ TEST_F(DefaultVocabulary, IsReadFromTheEnvironmentVariable) {
   setenv(kVariable, chosen.c_str(), 1);
   EXPECT_EQ(default_vocabulary_path(), chosen);
   setenv(kVariable, "", 1);
-  EXPECT_NE(default_vocabulary_path(), "") << "an empty variable is as good as none";
+  EXPECT_NE(default_vocabulary_path(), "") << "an empty variable counts as unset";
   EXPECT_EQ(Vocabulary::load(shipped).checksum(), Vocabulary::load(chosen).checksum());
 }
 

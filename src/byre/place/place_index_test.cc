@@ -261,7 +261,7 @@ TEST_F(TwoRooms, PreferAPlaceOfSeveralSimilarKeyframes) {
   show(5, {1, 2, 3, 7});
   const std::vector<PlaceCandidate> found = places({0, 1, 2, 3});
   ASSERT_THAT(found, SizeIs(2));
-  EXPECT_EQ(found[0].keyframe, keyframes[3]) << "the lower id of the room's two";
+  EXPECT_EQ(found[0].keyframe, keyframes[3]) << "the lower id of two in the room";
   EXPECT_FLOAT_EQ(found[0].group_score, 1.5f);
   EXPECT_THAT(found[0].group, ElementsAre(keyframes[3], keyframes[5]));
   EXPECT_EQ(found[1].keyframe, keyframes[0]);

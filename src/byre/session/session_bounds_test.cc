@@ -108,7 +108,7 @@ TEST(PlaceBounds, RejectALookalikePlaceBehindAWall) {
     EXPECT_FALSE(reports[i].map_from_body) << i;
     EXPECT_EQ(reports[i].health.doubt, Doubt::behind_wall) << i;
   }
-  EXPECT_EQ(count_refusals(reports), 1) << "it is told once";
+  EXPECT_EQ(count_refusals(reports), 1) << "reported once";
 }
 
 TEST(PlaceBounds, AllowAPlaceBehindAWallAfterEnoughTime) {
@@ -145,7 +145,7 @@ TEST(PlaceBounds, RejectRegistrationOfASubmapBehindAWall) {
   const auto reports = reports_of(session, as_if_across(lap, 100));
   for (std::size_t i = kFramesOnOneSide; i < reports.size(); ++i) EXPECT_FALSE(reports[i].map_from_body) << i;
   EXPECT_EQ(reports.back().health.doubt, Doubt::not_registered);
-  EXPECT_EQ(reports.back().refused_place, Doubt::behind_wall) << "found beside tracking";
+  EXPECT_EQ(reports.back().refused_place, Doubt::behind_wall) << "found by the search during tracking";
   EXPECT_EQ(count_refusals(reports), 1);
 }
 

@@ -248,7 +248,7 @@ TEST(MeasuredMotion, DoesNotPropagateAcrossAGapBeforeTheMapStarts) {
         session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
     EXPECT_EQ(report.map_from_body.has_value(), (i > 0 && i < kUntold) || i == kSeen) << i;
     if (!is_dark) {
-      EXPECT_LT(report.map_from_body->translation.norm(), 1e-9) << "the map begins where it is";
+      EXPECT_LT(report.map_from_body->translation.norm(), 1e-9) << "the map starts at this pose";
     }
   }
 }
@@ -266,7 +266,7 @@ TEST(MeasuredMotion, StartsAStereoMapAfterADarkStart) {
     ASSERT_EQ(report.map_from_body.has_value(), i > 0) << i;
     if (i == 0) continue;
     EXPECT_LT(error_of(report, mission, i), 0.02) << i;
-    EXPECT_TRUE(is_dark || report.health.position_sigma < 0.05) << "the map's frame is where it began";
+    EXPECT_TRUE(is_dark || report.health.position_sigma < 0.05) << "the first pose defines the map frame";
   }
 }
 

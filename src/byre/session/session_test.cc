@@ -338,7 +338,7 @@ TEST(Session, AddsNothingWhileMappingIsPausedAndContinuesAfterwards) {
     EXPECT_TRUE(session.process(mission.frames[i]).map_from_body) << i;
     keyframes.push_back(session.map().online().keyframe_count());
   }
-  EXPECT_GT(keyframes[39], 3) << "the way asks for keyframes";
+  EXPECT_GT(keyframes[39], 3) << "the path requires keyframes";
   EXPECT_EQ(keyframes[49], keyframes[39]);
   EXPECT_GT(keyframes[51], keyframes[39]);
 }

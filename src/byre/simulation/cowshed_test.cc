@@ -54,7 +54,7 @@ TEST(Cowshed, KeepsThePathOfTheRobotFree) {
       const bool is_beyond_turns = thing.position.x() < 2.0f;
       if (!is_in_alley || is_beyond_turns) continue;
       EXPECT_GT(std::abs(thing.position.y()), kFarthestLane + kRobot + kThing)
-          << "thing at " << thing.position.transpose();
+          << "object at " << thing.position.transpose();
     }
   }
 }

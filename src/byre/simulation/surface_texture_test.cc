@@ -33,8 +33,8 @@ TEST(SurfaceGrey, UsesManyGreyValuesInRange) {
 }
 
 TEST(SurfaceGrey, ChangesOverAFootprint) {
-  EXPECT_GT(largest_step(greys_along_a_line(1, 0.001f)), 60.0f) << "seen from near, edges are crisp";
-  EXPECT_LT(largest_step(greys_along_a_line(1, 0.020f)), 20.0f) << "from far, they are blurred";
+  EXPECT_GT(largest_step(greys_along_a_line(1, 0.001f)), 60.0f) << "edges are sharp at a small distance";
+  EXPECT_LT(largest_step(greys_along_a_line(1, 0.020f)), 20.0f) << "edges are blurred at a large distance";
 }
 
 TEST(SurfaceGrey, LosesDetailWithDistance) {

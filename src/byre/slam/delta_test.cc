@@ -339,7 +339,7 @@ TEST_F(DeltaOfForeignViews, AddsThemToTheOnlineMap) {
   const ForeignView& view = scene_.online.foreign_views(points_[1]).front();
   EXPECT_EQ(view.observation, (Observation{kOffline, free_feature(1)}));
   EXPECT_EQ(view.sighting.pixel, Eigen::Vector2f(3.0f, 4.0f));
-  EXPECT_EQ(scene_.online.foreign_views(points_[0]).size(), 1u) << "as it was";
+  EXPECT_EQ(scene_.online.foreign_views(points_[0]).size(), 1u) << "unchanged";
 }
 
 TEST_F(DeltaOfForeignViews, RemovesThemFromTheOnlineMap) {

@@ -47,7 +47,7 @@ TEST(FocalCheck, AcceptsACorrectFocalLength) {
     const FocalCheck sound = checked(1.0, 0.4, seed), worn = checked(1.004, 0.4, seed),
                      blurred = checked(1.0, 3.0, seed);
     EXPECT_NEAR(sound.error(), 0.0, 0.003);
-    EXPECT_LT(std::abs(worn.error()), 0.01) << "as a worn calibration has it";
+    EXPECT_LT(std::abs(worn.error()), 0.01) << "error of a worn calibration";
     EXPECT_FALSE(sound.is_off() || worn.is_off() || blurred.is_off());
   }
 }

@@ -61,17 +61,20 @@ TEST_P(JudgedHealth, FollowsTheTable) {
 INSTANTIATE_TEST_SUITE_P(
     Table, JudgedHealth,
     ::testing::Values(
-        Judgement{"known place", good(), kPose, Verdict::trusted, Doubt::none},
+        Judgement{"mapped place", good(), kPose, Verdict::trusted, Doubt::none},
         Judgement{"no pose", {}, {}, Verdict::untrusted, Doubt::no_pose},
         Judgement{"no pose in the dark", {}, {.image_fault = ImageFault::dark}, Verdict::untrusted, Doubt::blinded},
-        Judgement{"place in the map unknown",
+        Judgement{"unregistered online map",
                   good(),
                   {.pose_found = true, .registered = false},
                   Verdict::untrusted,
                   Doubt::not_registered},
-        Judgement{
-            "found just now", good(), {.pose_found = true, .confirmed = false}, Verdict::untrusted, Doubt::unconfirmed},
-        Judgement{"some way off the map", with([](Health& h) {
+        Judgement{"just relocalised",
+                  good(),
+                  {.pose_found = true, .confirmed = false},
+                  Verdict::untrusted,
+                  Doubt::unconfirmed},
+        Judgement{"near the map", with([](Health& h) {
                     h.offline_expected = h.offline_inliers = 0;
                     h.online_inliers = 300;
                     h.distance_since_offline = 20.0;
@@ -87,23 +90,23 @@ INSTANTIATE_TEST_SUITE_P(
                   Doubt::uncertain},
         Judgement{"uncertain rotation", with([](Health& h) { h.rotation_sigma = 0.05; }), kPose, Verdict::degraded,
                   Doubt::uncertain},
-        Judgement{"things that moved",
+        Judgement{"moved objects",
                   with([](Health& h) {
                     h.agreement = Agreement{0.3, 0.01};
                   }),
                   {.pose_found = true, .maps_disagree = true},
                   Verdict::degraded,
                   Doubt::maps_disagree},
-        Judgement{"few far online points that tell no position", with([](Health& h) {
+        Judgement{"few distant online points without position information", with([](Health& h) {
                     h.agreement = Agreement{0.3, 0.01};
                   }),
                   kPose, Verdict::trusted, Doubt::none},
-        Judgement{"hardly any points", with([](Health& h) {
+        Judgement{"few points", with([](Health& h) {
                     h.offline_inliers = 20;
                     h.online_inliers = 10;
                   }),
                   kPose, Verdict::degraded, Doubt::few_points},
-        Judgement{"hardly any points for blur",
+        Judgement{"few points due to blur",
                   with([](Health& h) {
                     h.offline_inliers = 20;
                     h.online_inliers = 10;
@@ -113,34 +116,34 @@ INSTANTIATE_TEST_SUITE_P(
                   Doubt::blinded},
         Judgement{"points in a corner", with([](Health& h) { h.spread = 0.01; }), kPose, Verdict::degraded,
                   Doubt::clustered},
-        Judgement{"a third of the image behind dirt", with([](Health& h) { h.hidden_share = 0.33; }), kPose,
+        Judgement{"a third of the image hidden by dirt", with([](Health& h) { h.hidden_share = 0.33; }), kPose,
                   Verdict::trusted, Doubt::none},
-        Judgement{"most of the image behind dirt", with([](Health& h) { h.hidden_share = 0.7; }), kPose,
+        Judgement{"most of the image hidden by dirt", with([](Health& h) { h.hidden_share = 0.7; }), kPose,
                   Verdict::degraded, Doubt::dirty},
-        Judgement{"a place that only resembles another", with([](Health& h) {
+        Judgement{"a lookalike place", with([](Health& h) {
                     h.offline_expected = 1800;
                     h.offline_inliers = 50;
                     h.online_inliers = 300;
                   }),
                   kPose, Verdict::degraded, Doubt::few_offline_points},
-        Judgement{"a changed place, passing", with([](Health& h) {
+        Judgement{"a changed place, short", with([](Health& h) {
                     h.offline_inliers = 5;
                     h.online_inliers = 200;
                     h.distance_since_offline = 2.0;
                   }),
                   kPose, Verdict::trusted, Doubt::none},
-        Judgement{"a changed place, for long", with([](Health& h) {
+        Judgement{"a changed place, long", with([](Health& h) {
                     h.offline_inliers = 5;
                     h.online_inliers = 200;
                     h.distance_since_offline = 8.0;
                   }),
                   kPose, Verdict::degraded, Doubt::few_offline_points},
-        Judgement{"an image that came twice",
+        Judgement{"a repeated image",
                   good(),
                   {.pose_found = true, .input = {.is_repeated = true, .frozen_seconds = 0.05}},
                   Verdict::degraded,
                   Doubt::frozen},
-        Judgement{"a camera that stands still",
+        Judgement{"a frozen camera",
                   good(),
                   {.pose_found = true, .input = {.is_repeated = true, .frozen_seconds = 0.3}},
                   Verdict::untrusted,
@@ -150,12 +153,12 @@ INSTANTIATE_TEST_SUITE_P(
                   {.pose_found = true, .input = {.right_fault = ImageFault::dark}},
                   Verdict::degraded,
                   Doubt::right_camera},
-        Judgement{"cameras out of step",
+        Judgement{"unsynchronised cameras",
                   good(),
                   {.pose_found = true, .input = {.cameras_disagree = true}},
                   Verdict::degraded,
                   Doubt::cameras_disagree},
-        Judgement{"no pose with cameras out of step",
+        Judgement{"no pose with unsynchronised cameras",
                   {},
                   {.input = {.cameras_disagree = true}},
                   Verdict::untrusted,
@@ -165,17 +168,17 @@ INSTANTIATE_TEST_SUITE_P(
                   {.pose_found = true, .is_miscalibrated = true},
                   Verdict::untrusted,
                   Doubt::calibration},
-        Judgement{"a calibration that asks for more than any errs by",
+        Judgement{"an implausible calibration error",
                   good(),
                   {.pose_found = true, .is_calibration_doubtful = true},
                   Verdict::degraded,
                   Doubt::calibration},
-        Judgement{"a short way in the dark",
+        Judgement{"a short path in the dark",
                   with([](Health& h) { h.position_sigma = 0.03; }),
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::trusted},
                   Verdict::degraded,
                   Doubt::bridged},
-        Judgement{"a long way in the dark",
+        Judgement{"a long path in the dark",
                   with([](Health& h) { h.position_sigma = 0.1; }),
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::trusted},
                   Verdict::untrusted,
@@ -185,12 +188,12 @@ INSTANTIATE_TEST_SUITE_P(
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::trusted},
                   Verdict::untrusted,
                   Doubt::bridged},
-        Judgement{"a way in the dark from where nobody was sure",
+        Judgement{"a path in the dark from an untrusted pose",
                   good(),
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::untrusted},
                   Verdict::untrusted,
                   Doubt::bridged},
-        Judgement{"a calibration that nobody has looked at",
+        Judgement{"an unchecked calibration",
                   good(),
                   {.pose_found = true, .is_calibration_open = true},
                   Verdict::degraded,

@@ -66,7 +66,7 @@ TEST(InputWatch, IgnoresSimulatedFramesWithoutImages) {
 
 TEST(InputWatch, AcceptsMatchingPairs) {
   EXPECT_FALSE(disagree_after(10, pair_with(90, 0.3f)));
-  EXPECT_FALSE(disagree_after(10, pair_with(80, 0.7f))) << "as a worn calibration has them";
+  EXPECT_FALSE(disagree_after(10, pair_with(80, 0.7f))) << "errors of a worn calibration";
 }
 
 TEST(InputWatch, DetectsPairsWithoutMatchesOrOnOtherRows) {

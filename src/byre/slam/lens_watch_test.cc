@@ -60,7 +60,7 @@ TEST(LensWatch, LocatesABlotAndItsRemoval) {
   drive.go(watch, 0, drive.frames() / 2, true);
   EXPECT_TRUE(watch.hidden().hides({360.0, 205.0}, drive.rig()));
   EXPECT_FALSE(watch.hidden().hides({150.0, 205.0}, drive.rig()));
-  EXPECT_FALSE(watch.hidden_right().any()) << "nobody knows of a right image";
+  EXPECT_FALSE(watch.hidden_right().any()) << "no right image";
   ASSERT_FALSE(drive.told().empty());
   EXPECT_EQ(drive.told().front(), SessionEvent::dirt_found);
   drive.go(watch, drive.frames() / 2, drive.frames(), false);

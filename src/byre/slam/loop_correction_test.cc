@@ -39,7 +39,8 @@ TEST_P(DriftingScale, IsMeasuredAtTheLoop) {
   ASSERT_THAT(find_faults(lap_.map), IsEmpty());
   const auto loop = find_loop(lap_.map, lap_.index, lap_.newest(), finish_options().loops);
   ASSERT_TRUE(loop);
-  EXPECT_NEAR(loop->scale * lap_.drift_at(lap_.newest()).scale, 1.0, 0.025) << "points drifted as where first seen";
+  EXPECT_NEAR(loop->scale * lap_.drift_at(lap_.newest()).scale, 1.0, 0.025)
+      << "points have the drift of their first observation";
   EXPECT_LT(loop->scale_sigma, 0.005);
 }
 

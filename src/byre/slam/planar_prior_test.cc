@@ -53,7 +53,7 @@ TEST(PlanarPrior, IsEmptyForABodyInAnotherAttitude) {
   lifted.translation.z() += 0.3;
   EXPECT_FALSE(planar_prior(*ground, looking_down(), camera_of(lifted)));
   const Pose tilted = on_floor(14.0, 1.0, 0.0) * Pose{rotation_exp({0.0, 0.1, 0.0}), Eigen::Vector3d::Zero()};
-  EXPECT_FALSE(planar_prior(*ground, looking_down(), camera_of(tilted))) << "as on a ramp that is new";
+  EXPECT_FALSE(planar_prior(*ground, looking_down(), camera_of(tilted))) << "a new ramp";
   EXPECT_FALSE(planar_prior(*ground, looking_down(), camera_of(on_floor(14.0, 9.0, 0.0)))) << "far from the path";
 }
 

@@ -88,7 +88,7 @@ TEST(DepthPairs, AreThePointsOfBothParts) {
   const TrackedFrame tracked = in_older_part(lap);
   const std::vector<DepthPair> pairs = depth_pairs(lap.map, keyframe, tracked);
   EXPECT_GT(pairs.size(), 50u);
-  EXPECT_LT(pairs.size(), tracked.features.size()) << "some features have no point of their own";
+  EXPECT_LT(pairs.size(), tracked.features.size()) << "some features have no point";
   for (const DepthPair& pair : pairs) {
     EXPECT_THAT(pair.newer / pair.older, testing::AllOf(testing::Ge(1.0), testing::Le(1.13)));
     EXPECT_GE(pair.sigma, 0.005);

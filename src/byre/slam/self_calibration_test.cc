@@ -173,7 +173,7 @@ TEST(SelfCalibration, RejectsImplausibleErrors) {
   const auto refused = self_calibrate(knocked.window(), {given, CalibrationVector::Zero()}, 0, {});
   ASSERT_TRUE(refused);
   EXPECT_TRUE(refused->was_refused());
-  EXPECT_GT(refused->shift, 0.5) << "pixels: it is told how far off";
+  EXPECT_GT(refused->shift, 0.5) << "pixels: the error is reported";
 }
 
 TEST(SelfCalibration, ContinuesFromAnEarlierEstimate) {

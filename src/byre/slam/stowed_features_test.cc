@@ -89,7 +89,7 @@ TEST(StowedFeatures, CopyMovedKeypointsUntilStoredAgain) {
   const auto again = stowed(moved, file);
   expect_same(*again, expected);
   EXPECT_TRUE(is_stowed(std::as_bytes(again->keypoints()), file));
-  EXPECT_EQ(again->patches().data(), put->patches().data()) << "what lies there stays there";
+  EXPECT_EQ(again->patches().data(), put->patches().data()) << "stored patches are not moved";
 }
 
 TEST(StowedFeatures, AreRefilledInTheirOwnMemory) {

@@ -43,7 +43,7 @@ TEST_F(MotionsOfATrueMap, ConnectConsecutiveKeyframes) {
   const auto motions = told_motions(map_, ids, 0, told());
   ASSERT_THAT(motions, SizeIs(ways));
   EXPECT_EQ(motions.front().later, motions[1].earlier);
-  EXPECT_THAT(told_motions(map_, ids, 1, told()), IsEmpty()) << "of another recording";
+  EXPECT_THAT(told_motions(map_, ids, 1, told()), IsEmpty()) << "another recording";
   EXPECT_THAT(told_motions(map_, ids, 0, {}), IsEmpty());
 }
 

@@ -16,7 +16,7 @@ using testing::Each;
 TEST(ReusedMemory, IsReused) {
   void* const first = take_reused_memory(1000);
   give_reused_memory(first, 1000);
-  EXPECT_EQ(take_reused_memory(900), first) << "blocks of about the same size take each other's place";
+  EXPECT_EQ(take_reused_memory(900), first) << "blocks of similar size share a free list";
   void* const second = take_reused_memory(1000);
   EXPECT_NE(second, first) << "it is in use";
   give_reused_memory(first, 900);

@@ -82,7 +82,7 @@ TEST(ScratchFile, LivesAsLongAsAnyPiece) {
 }
 
 TEST(ScratchFile, UsesNoMemoryForUnaccessedPieces) {
-  if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
+  if (!kMemoryIsTold) GTEST_SKIP() << "sanitizers use additional memory";
   ScratchFile file;
   std::vector<std::shared_ptr<const std::byte>> pieces;
   const std::vector<std::byte> bytes = pattern(1000000, 5);
@@ -97,8 +97,8 @@ TEST(ScratchFile, UsesNoMemoryForUnaccessedPieces) {
 
 // byre node locks its memory on request.
 TEST(ScratchFile, UsesNoMemoryInAProgramWithLockedMemory) {
-  if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
-  if (mlockall(MCL_FUTURE | MCL_ONFAULT) != 0) GTEST_SKIP() << "may not lock memory here";
+  if (!kMemoryIsTold) GTEST_SKIP() << "sanitizers use additional memory";
+  if (mlockall(MCL_FUTURE | MCL_ONFAULT) != 0) GTEST_SKIP() << "no permission to lock memory";
   {
     ScratchFile file;
     const std::vector<std::byte> bytes = pattern(40000000, 5);
@@ -124,7 +124,7 @@ TEST(ScratchFile, AcceptsPiecesOfAnySize) {
 
 // Address space may be limited, and emulators keep a record of each page.
 TEST(ScratchFile, UsesOnlyTheAddressSpaceOfLivePieces) {
-  if (!kMemoryIsTold) GTEST_SKIP() << "a sanitizer takes memory of its own";
+  if (!kMemoryIsTold) GTEST_SKIP() << "sanitizers use additional memory";
   const double before = memory_now().addresses_mb;
   ScratchFile file;
   const std::vector<std::byte> bytes = pattern(1000000, 5);
