@@ -95,304 +95,315 @@ using Table = std::vector<EngineOption>;
 void add_run(Table& table) {
   table.push_back(choice(
       "pace", {Pace::same_thread, Pace::paced, Pace::live}, [](auto& o) -> auto& { return o.pace; },
-      "place of mapping, and pace at which recordings are fed"));
+      "thread of mapping, and feeding rate of recordings"));
   table.push_back(flag(
       "map_online", [](auto& o) -> auto& { return o.session.map_online; },
-      "mapping of what is new; without it a mission tracks the offline map alone"));
+      "online mapping; false: a mission tracks the offline map only"));
   table.push_back(number(
       "trajectory.max_poses", "poses", 0, 1e8, [](auto& o) -> auto& { return o.session.trajectory.max_poses; },
-      "most poses of the trajectory that are kept: the newer half, older ones evenly thinned out; 0: all"));
+      "maximum number of stored trajectory poses: the newer half is complete, older poses are thinned out evenly; 0: "
+      "unlimited"));
   table.push_back(number(
       "frame.deadline_ms", "milliseconds", 0, 1e6, [](auto& o) -> auto& { return o.frame_deadline_ms; },
-      "wall time that a frame may take: where it would take longer, online points are left out first, then the right "
-      "image; 0: as long as it needs"));
+      "wall time limit per frame; to meet it, tracking skips online points first, then the right image; 0: no limit"));
 }
 
 void add_features(Table& table) {
   table.push_back(number(
       "features.max_count", "corners", 1, 1e5, [](auto& o) -> auto& { return o.extract.max_features; },
-      "most corners of a frame"));
+      "maximum number of corners per frame"));
   table.push_back(number(
       "features.fast_threshold_grey", "grey values", 1, 255, [](auto& o) -> auto& { return o.extract.fast_threshold; },
-      "contrast of a corner against its surroundings"));
+      "FAST threshold: contrast between a corner and its surroundings"));
   table.push_back(number(
       "features.min_fast_threshold_grey", "grey values", 1, 255,
-      [](auto& o) -> auto& { return o.extract.min_fast_threshold; }, "the same where the image is dull"));
+      [](auto& o) -> auto& { return o.extract.min_fast_threshold; },
+      "FAST threshold in image cells with too few corners at features.fast_threshold_grey"));
   table.push_back(choice(
       "features.refinement", {Refinement::none, Refinement::stereo, Refinement::all},
-      [](auto& o) -> auto& { return o.extract.refinement; }, "matches refined in the image"));
+      [](auto& o) -> auto& { return o.extract.refinement; }, "matches refined to subpixel precision"));
   table.push_back(number(
       "features.threads", "threads", 1, 64, [](auto& o) -> auto& { return o.extract.threads; },
-      "threads that work on the images of one frame; results do not depend on them"));
+      "threads of feature extraction per frame; results do not depend on the number"));
   table.push_back(number(
       "depth.max_m", "metres", 0.1, 1e3, [](auto& o) -> auto& { return o.extract.depth.max_depth; },
-      "farthest depth of a depth camera that is used"));
+      "maximum depth used of a depth camera"));
   table.push_back(number(
       "depth.misalignment_px", "pixels", 0, 100, [](auto& o) -> auto& { return o.extract.depth.misalignment; },
-      "distance by which depths may lie beside what they are of"));
+      "maximum misregistration between depth image and colour image"));
 }
 
 void add_calibration(Table& table) {
   table.push_back(flag(
       "calibration.refine", [](auto& o) -> auto& { return o.self_calibrate; },
-      "refinement of the calibration given by what is seen"));
+      "refinement of the given calibration by image measurements"));
   table.push_back(number(
       "calibration.prior_sigmas", "sigmas of a good calibration", 1e-3, 1e3,
       [](auto& o) -> auto& { return o.self_calibration.prior_sigmas; },
-      "error of the calibration given, as taken at first"));
+      "assumed error of the given calibration (prior of the refinement)"));
   table.push_back(number(
       "calibration.max_keyframes", "keyframes", 6, 1e4,
       [](auto& o) -> auto& { return o.self_calibration.max_keyframes; },
-      "keyframes that refinement works on; its time grows with their cube"));
+      "maximum number of keyframes in the refinement; its time grows with the cube of the number"));
 }
 
 void add_start(Table& table) {
   table.push_back(number(
       "start.min_points", "points", 1, 1e5, [](auto& o) -> auto& { return o.session.min_initial_points; },
-      "stereo points of the first keyframe"));
+      "minimum number of stereo points of the first keyframe"));
 }
 
 void add_tracking(Table& table) {
   table.push_back(number(
       "tracking.local_keyframes", "keyframes", 1, 1e4, [](auto& o) -> auto& { return o.session.local_keyframes; },
-      "keyframes of either map whose points are looked for in a frame"));
+      "keyframes of each map (offline, online) whose points are searched in a frame"));
   table.push_back(number(
       "tracking.search_radius_px", "pixels at octave 0", 0.5, 1e3,
-      [](auto& o) -> auto& { return o.session.track.search_radius; }, "first search about the predicted pixel"));
+      [](auto& o) -> auto& { return o.session.track.search_radius; },
+      "radius of the first search around the predicted pixel"));
   table.push_back(number(
       "tracking.wide_radius_px", "pixels at octave 0", 0.5, 1e3,
-      [](auto& o) -> auto& { return o.session.track.wide_radius; }, "second search, where the first finds too little"));
+      [](auto& o) -> auto& { return o.session.track.wide_radius; },
+      "radius of the second search, used if the first one finds too few points"));
   table.push_back(number(
       "tracking.min_inliers", "points", 4, 1e5, [](auto& o) -> auto& { return o.session.track.min_inliers; },
-      "points that a tracked pose fits"));
+      "minimum number of inliers of a tracked pose"));
   table.push_back(number(
       "tracking.min_kept_share", "share of the last frame's inliers", 0, 1,
       [](auto& o) -> auto& { return o.session.min_kept_share; },
-      "inliers below which the pose is sought without prediction too"));
+      "share of inliers below which relocalisation without prediction runs as well"));
   table.push_back(choice(
       "tracking.offline_policy", {OfflinePolicy::first, OfflinePolicy::together},
       [](auto& o) -> auto& { return o.session.track.offline_policy; },
-      "offline points before online ones, or both together"));
+      "order of the search: offline points first, or both together"));
   table.push_back(number(
       "tracking.offline_weight", "weight of an online point", 1e-3, 1e3,
       [](auto& o) -> auto& { return o.session.track.offline_weight; },
-      "weight of a measured offline point, in tracking and in mapping"));
+      "weight of an observation of an offline point in tracking and mapping"));
 }
 
 void add_keyframes(Table& table) {
   table.push_back(number(
       "keyframes.min_tracked_share", "share of the reference keyframe's points", 0, 1,
       [](auto& o) -> auto& { return o.session.keyframes.min_tracked_share; },
-      "points tracked below which a keyframe is made"));
+      "share of tracked points below which a keyframe is created"));
   table.push_back(number(
       "keyframes.min_tracked", "points", 0, 1e5, [](auto& o) -> auto& { return o.session.keyframes.min_tracked; },
-      "points tracked below which a keyframe is made at once"));
+      "number of tracked points below which a keyframe is created at once"));
   table.push_back(number(
       "keyframes.max_turn_rad", "radians", 0, 4, [](auto& o) -> auto& { return o.session.keyframes.max_turn; },
-      "turn from the reference keyframe above which a keyframe is made"));
+      "rotation from the reference keyframe above which a keyframe is created"));
   table.push_back(number(
       "keyframes.max_shift_share", "share of the median depth", 0, 1e3,
       [](auto& o) -> auto& { return o.session.keyframes.max_shift_share; },
-      "shift from the reference keyframe above which a keyframe is made"));
+      "translation from the reference keyframe above which a keyframe is created"));
   table.push_back(number(
       "keyframes.min_frames", "frames", 0, 1e4, [](auto& o) -> auto& { return o.session.keyframes.min_frames; },
-      "frames between keyframes, unless tracking is about to fail"));
+      "minimum number of frames between keyframes, unless tracking is about to fail"));
 }
 
 void add_mapping(Table& table) {
   table.push_back(number(
       "mapping.movable_keyframes", "keyframes", 1, 1e3, [](auto& o) -> auto& { return o.session.window.movable; },
-      "online keyframes that one mapping job adjusts"));
+      "online keyframes adjusted by one mapping job"));
   table.push_back(number(
       "mapping.anchor_keyframes", "keyframes", 0, 1e3, [](auto& o) -> auto& { return o.session.window.anchors; },
-      "online keyframes around those, held fixed"));
+      "neighbouring online keyframes held fixed in a mapping job"));
   table.push_back(number(
       "mapping.offline_anchor_keyframes", "keyframes", 0, 1e3,
-      [](auto& o) -> auto& { return o.session.window.offline_anchors; }, "offline keyframes around those, held fixed"));
+      [](auto& o) -> auto& { return o.session.window.offline_anchors; },
+      "neighbouring offline keyframes held fixed in a mapping job"));
   table.push_back(number(
       "mapping.min_offline_sightings", "sightings", 0, kMany,
       [](auto& o) -> auto& { return o.session.window.min_offline_sightings; },
-      "sightings of offline points that hold the world in place"));
+      "minimum number of offline point observations that fix the gauge"));
   table.push_back(number(
       "mapping.sightings_in_place_of_anchors", "sightings", 0, kMany,
       [](auto& o) -> auto& { return o.session.window.sightings_in_place_of_anchors; },
-      "sightings of offline points from which online anchors are left out"));
+      "number of offline point observations from which online anchors are left out"));
   table.push_back(number(
       "mapping.max_relative_depth_sigma", "share of the depth", 1e-6, 10,
-      [](auto& o) -> auto& { return o.session.max_relative_depth_sigma; }, "uncertainty of a new point's depth"));
+      [](auto& o) -> auto& { return o.session.max_relative_depth_sigma; },
+      "maximum standard deviation of the depth of a new point"));
   table.push_back(number(
       "mapping.redundant_share", "share of a keyframe's points", 0, 1,
       [](auto& o) -> auto& { return o.session.redundant_share; },
-      "points known without a keyframe above which it is removed"));
+      "share of points that are offline or seen by three other keyframes, above which a keyframe is removed"));
 }
 
 void add_localisation(Table& table) {
   table.push_back(number(
       "localisation.min_inliers", "points", 4, kMany, [](auto& o) -> auto& { return o.session.relocalise.min_inliers; },
-      "points that a pose found from nothing fits"));
+      "minimum number of inliers of a pose found without prediction"));
   table.push_back(number(
       "localisation.min_spread", "share of the image's diagonal", 0, 1,
-      [](auto& o) -> auto& { return o.session.relocalise.min_spread; }, "deviation of those where they spread least"));
+      [](auto& o) -> auto& { return o.session.relocalise.min_spread; },
+      "minimum standard deviation of the inliers in their narrowest direction"));
   table.push_back(number(
       "localisation.max_position_sigma", "share of the median depth", 0, 100,
       [](auto& o) -> auto& { return o.session.relocalise.max_position_sigma; },
-      "uncertainty of such a pose's position"));
+      "maximum standard deviation of position of a pose found without prediction"));
   table.push_back(number(
       "localisation.max_rotation_sigma_rad", "radians", 0, 10,
       [](auto& o) -> auto& { return o.session.relocalise.max_rotation_sigma; },
-      "uncertainty of such a pose's rotation"));
+      "maximum standard deviation of rotation of a pose found without prediction"));
   table.push_back(number(
       "localisation.seed", "", 0, 1e15, [](auto& o) -> auto& { return o.session.relocalise.seed; },
-      "seed of the poses that are tried from three points"));
+      "seed of the random samples of P3P RANSAC"));
 }
 
 void add_loops(Table& table) {
   table.push_back(number(
       "loops.min_gap_keyframes", "keyframes", 1, kMany, [](auto& o) -> auto& { return o.session.loops.min_gap; },
-      "keyframes between a place and the newest, for a loop"));
+      "minimum number of keyframes between the newest keyframe and a loop candidate"));
   table.push_back(number(
       "loops.max_drift_share", "share of the path", 0, 10,
-      [](auto& o) -> auto& { return o.session.loops.max_drift_share; }, "drift that a loop may correct"));
+      [](auto& o) -> auto& { return o.session.loops.max_drift_share; }, "maximum drift that a loop corrects"));
   table.push_back(number(
       "loops.max_drift_m", "metres", 0, 1e3, [](auto& o) -> auto& { return o.session.loops.max_drift; },
-      "drift that a loop may correct, on top of that share"));
+      "maximum drift that a loop corrects, added to loops.max_drift_share"));
   table.push_back(number(
       "loops.max_scale_drift", "natural logarithm of the scale", 0, 10,
-      [](auto& o) -> auto& { return o.session.loops.max_scale_drift; }, "drift of scale without stereo"));
+      [](auto& o) -> auto& { return o.session.loops.max_scale_drift; }, "maximum scale drift of a monocular loop"));
   table.push_back(number(
       "loops.max_scale_sigma", "natural logarithm of the scale", 0, 10,
-      [](auto& o) -> auto& { return o.session.loops.max_scale_sigma; }, "uncertainty of that drift"));
+      [](auto& o) -> auto& { return o.session.loops.max_scale_sigma; },
+      "maximum standard deviation of the scale drift"));
   table.push_back(number(
       "loops.min_scale_points", "points", 1, kMany, [](auto& o) -> auto& { return o.session.loops.min_scale_points; },
-      "points in both parts of a map that tell that drift"));
+      "minimum number of points common to both ends of a loop for its scale drift"));
   table.push_back(number(
       "loops.max_drift_to_fuse_px", "pixels", 0, 1e3, [](auto& o) -> auto& { return o.session.max_drift_to_fuse; },
-      "drift up to which points are fused and the map is not bent"));
+      "drift up to which a loop only fuses points, without pose graph optimisation"));
 }
 
 void add_mission(Table& table) {
   table.push_back(number(
       "mission.search_after_m", "metres", 0, 1e3, [](auto& o) -> auto& { return o.session.mission.search_after; },
-      "path without offline points from which places are looked for beside tracking"));
+      "path without offline points after which places are searched in parallel to tracking"));
   table.push_back(number(
       "mission.restart_after_s", "seconds", 0, 1e5, [](auto& o) -> auto& { return o.session.mission.restart_after; },
-      "time without a pose from which a new piece of online map is begun"));
+      "time without a pose after which a new online submap starts"));
   table.push_back(number(
       "mission.lost_after_s", "seconds", 0, 1e5, [](auto& o) -> auto& { return o.session.state.lost_after; },
-      "time without a confirmed pose from which a navigation error is told"));
+      "time without a confirmed pose after which a navigation error is reported"));
   table.push_back(number(
       "mission.max_speed_m_per_s", "metres a second", 0, 100,
-      [](auto& o) -> auto& { return o.session.mission.registration.max_speed; }, "highest speed of the robot"));
+      [](auto& o) -> auto& { return o.session.mission.registration.max_speed; }, "maximum speed of the robot"));
   table.push_back(number(
       "mission.confirmations", "frames", 1, 1e3,
       [](auto& o) -> auto& { return o.session.mission.registration.confirmations; },
-      "frames that must say the same before a place in the offline map is believed"));
+      "consistent frames required before mapping uses a place in the offline map"));
   table.push_back(number(
       "mission.max_misses", "frames", 0, 1e3,
       [](auto& o) -> auto& { return o.session.mission.registration.max_misses; },
-      "frames that say something else before such a place is given up"));
+      "contradicting frames after which a place is dropped"));
   table.push_back(number(
       "mission.accept_log_odds", "nats", 0, 1e3,
       [](auto& o) -> auto& { return o.session.mission.registration.accept_log_odds; },
-      "log-odds of a place found, by the map cells in view, from which it is trusted"));
+      "log-odds of a place, over the map cells in view, from which it is accepted"));
   table.push_back(number(
       "mission.plane_margin_m", "metres", 0, 1e3,
       [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin; },
-      "height off the driving plane of the map from which a place found is refused, beyond what is uncertain"));
+      "distance from the map's driving plane above which a place is rejected, in addition to its uncertainty"));
   table.push_back(number(
       "mission.plane_margin_rad", "radians", 0, 4,
-      [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin_tilt; }, "tilt against it, likewise"));
+      [](auto& o) -> auto& { return o.session.mission.bounds.plane_margin_tilt; },
+      "tilt against the map's driving plane above which a place is rejected, in addition to its uncertainty"));
   table.push_back(number(
       "mission.wall_margin_m", "metres", 0, 1e3, [](auto& o) -> auto& { return o.session.mission.bounds.wall_margin; },
-      "distance behind a wall of the floor plan from which a place found is refused, beyond what is uncertain"));
+      "distance behind a wall of the floor plan above which a place is rejected, in addition to its uncertainty"));
   table.push_back(number(
       "mission.min_offline_inliers", "points", 1, 1e5,
-      [](auto& o) -> auto& { return o.session.mission.view.min_inliers; }, "offline points that hold a pose"));
+      [](auto& o) -> auto& { return o.session.mission.view.min_inliers; },
+      "minimum number of offline inliers that constrain a pose"));
   table.push_back(number(
       "mission.min_offline_expected", "points", 1, 1e5,
       [](auto& o) -> auto& { return o.session.mission.view.min_expected; },
-      "offline points in view below which the robot is off the map"));
+      "number of offline points in view below which the robot is off the map"));
   table.push_back(number(
       "mission.min_features", "corners", 0, 1e5, [](auto& o) -> auto& { return o.session.mission.view.min_features; },
-      "corners below which the camera is blinded"));
+      "number of corners below which the camera is blinded"));
   table.push_back(number(
       "mission.frames_to_suspend", "frames", 1, 3e4,
       [](auto& o) -> auto& { return o.session.mission.moved_points.frames; },
-      "frames by which an offline point was found elsewhere more often than in its place"));
+      "excess of frames with an offline point at another place over frames with it in place, from which it is "
+      "suspended"));
   table.push_back(number(
       "mission.frames_to_return", "frames", 1, 3e4,
       [](auto& o) -> auto& { return o.session.mission.moved_points.frames_to_return; },
-      "frames in a row that show a suspended point in its place again"));
+      "consecutive frames with a suspended point in its place after which it is used again"));
   table.push_back(number(
       "mission.hindsight_frames", "frames", 0, kMany, [](auto& o) -> auto& { return o.session.hindsight.frames; },
-      "frames that are refined at the end; 10 kB each"));
+      "maximum number of frames refined after mapping (hindsight); 10 kB each"));
 }
 
 void add_motion(Table& table) {
   table.push_back(flag(
       "motion.planar", [](auto& o) -> auto& { return o.session.is_planar; },
-      "height, roll and pitch of a mission held to the ground that its map was driven on"));
+      "height, roll and pitch constrained to the driving plane of the offline map"));
   table.push_back(flag(
       "motion.known_mounting", [](auto& o) -> auto& { return o.use_known_mounting; },
-      "wheels and gyroscope taken to be mounted as when the map was made, until they tell otherwise"));
+      "extrinsics of wheels and gyroscope initialised from the offline map, until measurements contradict them"));
   table.push_back(number(
       "motion.max_speed_m_per_s", "metres a second", 0.01, 1e3,
       [](auto& o) -> auto& { return o.motion_limits.max_speed; },
-      "highest speed of the robot's base: faster wheel samples are dropped; if most are, wheels are ignored"));
+      "maximum speed of the robot's base: faster wheel samples are dropped; if most are faster, wheels are ignored"));
   table.push_back(number(
       "motion.max_turn_rate_rad_per_s", "radians a second", 0.01, 1e3,
       [](auto& o) -> auto& { return o.motion_limits.max_turn_rate; },
-      "highest turn rate of base and gyroscope: faster samples are dropped; if most rates are, the gyroscope is "
+      "maximum turn rate of base and gyroscope: faster samples are dropped; if most are faster, the gyroscope is "
       "ignored"));
   table.push_back(number(
       "motion.max_acceleration_m_per_s2", "m/s^2", 10, 1e4,
       [](auto& o) -> auto& { return o.motion_limits.max_acceleration; },
-      "largest acceleration by the accelerometer: larger ones are dropped"));
+      "maximum acceleration measured by the accelerometer: larger samples are dropped"));
   table.push_back(number(
       "motion.max_position_m", "metres", 1, 1e9, [](auto& o) -> auto& { return o.motion_limits.max_position; },
       "distance from the origin of wheel odometry beyond which a pose is dropped"));
   table.push_back(number(
       "motion.wheel_scale_sigma", "share of the length", 0, 1, [](auto& o) -> auto& { return o.wheel_scale_sigma; },
-      "standard deviation of metres that wheels alone measure for a map by one camera, added to that of the fit"));
+      "standard deviation of the metric scale that wheels give a monocular map, added to that of the fit"));
 }
 
 void add_health(Table& table) {
   table.push_back(number(
       "health.trusted_error_m", "metres", 1e-6, 1e3, [](auto& o) -> auto& { return o.session.health.trusted_error; },
-      "position error that a trusted pose promises to stay within"));
+      "maximum position error of a trusted pose"));
   table.push_back(number(
       "health.sigmas", "sigmas", 0, 100, [](auto& o) -> auto& { return o.session.health.sigmas; },
-      "uncertainty of the pose that must fit into that"));
+      "number of standard deviations of position that must be within health.trusted_error_m"));
   table.push_back(number(
       "health.drift_share", "share of the path", 0, 1, [](auto& o) -> auto& { return o.session.health.drift_share; },
-      "drift since offline points last held the pose, as taken"));
+      "assumed drift since the last pose constrained by offline points"));
   table.push_back(number(
       "health.max_rotation_sigma_rad", "radians", 0, 10,
       [](auto& o) -> auto& { return o.session.health.max_rotation_sigma; },
-      "uncertainty of a trusted pose's rotation"));
+      "maximum standard deviation of rotation of a trusted pose"));
   table.push_back(number(
       "health.max_bridged_rotation_rad", "radians", 0, 10,
       [](auto& o) -> auto& { return o.session.health.max_bridged_rotation; },
-      "error of a bridged pose's rotation, up to which it is degraded"));
+      "maximum rotation error of a degraded pose during dead reckoning"));
   table.push_back(number(
       "health.min_points", "points", 0, 1e5, [](auto& o) -> auto& { return o.session.health.min_points; },
-      "points of either map that hold a trusted pose"));
+      "minimum number of inliers of both maps together of a trusted pose"));
   table.push_back(number(
       "health.min_spread", "share of the image's diagonal", 0, 1,
-      [](auto& o) -> auto& { return o.session.health.min_spread; }, "deviation of those where they spread least"));
+      [](auto& o) -> auto& { return o.session.health.min_spread; },
+      "minimum standard deviation of the inliers in their narrowest direction"));
   table.push_back(number(
       "health.max_disagreement_m", "metres", 0, 1e3, [](auto& o) -> auto& { return o.session.health.max_disagreement; },
-      "distance between the poses by offline and by online points"));
+      "maximum distance between the pose by offline points and the pose by online points"));
   table.push_back(number(
       "health.min_offline_points", "points", 0, 1e5,
       [](auto& o) -> auto& { return o.session.health.min_offline_points; },
-      "offline points of a trusted pose where many are in view"));
+      "minimum number of offline inliers of a trusted pose if many offline points are in view"));
   table.push_back(number(
       "health.max_changed_path_m", "metres", 0, 1e5, [](auto& o) -> auto& { return o.session.health.max_changed_path; },
-      "path with fewer of them that is let pass"));
+      "path with fewer offline inliers that is tolerated"));
   table.push_back(number(
       "health.max_frozen_s", "seconds", 0, 1e3, [](auto& o) -> auto& { return o.session.health.max_frozen; },
-      "time of one and the same image from which no pose is trusted"));
+      "time with an unchanged image from which poses are untrusted"));
 }
 
 void add_image(Table& table) {
@@ -405,7 +416,7 @@ void add_image(Table& table) {
       "brightness above which an image is overexposed"));
   table.push_back(number(
       "image.min_contrast_grey", "grey values", 0, 255, [](auto& o) -> auto& { return o.session.image.min_contrast; },
-      "contrast below which an image shows too little"));
+      "contrast below which an image is low in contrast"));
   table.push_back(number(
       "image.min_sharpness", "share of the contrast", 0, 10,
       [](auto& o) -> auto& { return o.session.image.min_sharpness; }, "sharpness below which an image is blurred"));
@@ -458,7 +469,7 @@ std::optional<OptionFault> set_option(EngineOptions& options, std::string_view n
   }
   if (option->set(options, text)) return std::nullopt;
   const std::string unit = option->unit.empty() ? "" : ", in " + option->unit;
-  return OptionFault{"'" + std::string(text) + "' is no value of " + option->name, "give " + option->range + unit};
+  return OptionFault{"'" + std::string(text) + "' is not a value of " + option->name, "give " + option->range + unit};
 }
 
 }  // namespace byre

@@ -27,10 +27,9 @@ TEST_F(OptionsProgram, PrintsAllOptionsWithoutDoingAnythingElse) {
     const Outcome outcome = run(std::string(command) + " --print-options");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_THAT(outcome.errors, IsEmpty());
-    EXPECT_THAT(
-        outcome.output,
-        HasSubstr("\ntracking:\n  local_keyframes: 15  # keyframes of either map whose points are looked for in "
-                  "a frame (keyframes, from 1 to 10000)\n  search_radius_px: 12  # "))
+    EXPECT_THAT(outcome.output,
+                HasSubstr("\ntracking:\n  local_keyframes: 15  # keyframes of each map (offline, online) whose points "
+                          "are searched in a frame (keyframes, from 1 to 10000)\n  search_radius_px: 12  # "))
         << command;
   }
   EXPECT_EQ(map("--print-options").exit_code, 0);
