@@ -73,7 +73,7 @@ done
 grep -qF '\fB\-o,\-\-output MAP\fR' <(zcat "$pages/byre-map.1.gz") || fail "byre-map(1) does not know the option --output"
 if command -v man >/dev/null; then
   shown=$(MANPATH=$usr/share/man man byre-map 2>&1 | cat)
-  [[ $shown == *"byre-map - turn a recording into a map"* ]] || fail "man does not show byre-map(1): $shown"
+  [[ $shown == *"byre-map - make a map and a trajectory"* ]] || fail "man does not show byre-map(1): $shown"
 fi
 # shellcheck disable=SC2016
 completed=$(bash -c 'source "$1"; COMP_WORDS=(byre map --pac); COMP_CWORD=2; _byre; echo "${COMPREPLY[@]}"' - \

@@ -152,9 +152,9 @@ std::string to_markdown(const BenchmarkResult& result, const BenchmarkProtocol& 
                         const BenchmarkSetting& setting) {
   return printable_lines(
       header(result, protocol, setting) +
-      section("Final poses: as recomputed after the last frame", final_table(result, protocol)) +
+      section("Final poses: as corrected after the last frame", final_table(result, protocol)) +
       notes(result, protocol) +
-      section("Causal poses: as published when their frames came",
+      section("Causal poses: as published with their frames",
               table_of(result, &RunMeasures::causal_poses, trajectory_measures())) +
       section("Behaviour, of the causal poses", table_of(result, &RunMeasures::behaviour, behaviour_measures())) +
       section("Cost", table_of(result, &RunMeasures::cost, cost_measures())) +

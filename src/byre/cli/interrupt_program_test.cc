@@ -96,10 +96,10 @@ TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd)
   const RenderedFixture small("byre_eventful_room", 8, 20.0);
   const Outcome full = run("run '" + small.folder().string() + "' --events /dev/full --trajectory final.txt");
   EXPECT_EQ(full.exit_code, 1);
-  const std::string warning = "byre: warning: events are missing: /dev/full: cannot be written: No space left";
+  const std::string warning = "byre: warning: events were not written: /dev/full: cannot be written: No space left";
   EXPECT_THAT(full.errors, HasSubstr(warning));
   EXPECT_LT(full.errors.find(warning), full.errors.find("8 of 8 frames"));
-  EXPECT_THAT(full.errors, HasSubstr("byre: error: events are missing: /dev/full"));
+  EXPECT_THAT(full.errors, HasSubstr("byre: error: events were not written: /dev/full"));
   EXPECT_THAT(read_trajectory(folder_ / "final.txt"), SizeIs(8));
 
   // Localised after some frames; the map being in view is a different event.
@@ -109,7 +109,7 @@ TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd)
   EXPECT_EQ(std::system(reading.c_str()), 0);
   const Outcome closed = run("run '" + small.folder().string() + "' --map known.byre --events pipe --stats stats.json");
   EXPECT_EQ(closed.exit_code, 1);
-  EXPECT_THAT(closed.errors, HasSubstr("byre: warning: events are missing: pipe: cannot be written: Broken"));
+  EXPECT_THAT(closed.errors, HasSubstr("byre: warning: events were not written: pipe: cannot be written: Broken"));
   EXPECT_EQ(json::parse(read("stats.json")).at("frames").size(), 8u);
 }
 

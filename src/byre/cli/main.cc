@@ -23,7 +23,8 @@ constexpr const char* kExitCodes =
     "130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP (the terminal was closed).\n"
     "\"byre COMMAND --help\" explains a command.";
 
-constexpr const char* kUnwritten = "standard output: cannot be written (make space, or redirect it to another file)";
+constexpr const char* kUnwritten =
+    "standard output: cannot be written (free disk space, or redirect it to another file)";
 
 int report(const std::string& message, ExitCode code) {
   std::cerr << "byre: error: " << byre::printable(message) << "\n";
@@ -69,8 +70,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.footer(kExitCodes);
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return "byre: error: " + byre::printable(error.what()) +
-           "\n\"byre --help\" and \"byre COMMAND --help\" say more.\n";
+    return "byre: error: " + byre::printable(error.what()) + "\nSee \"byre --help\" and \"byre COMMAND --help\".\n";
   });
   let_writing_fail();
   Action action;
@@ -85,6 +85,6 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return report(error.what(), failed);
   }
-  if (!action) return report("name a command, as \"byre --help\" lists them", wrong_usage);
+  if (!action) return report("give a command, see \"byre --help\"", wrong_usage);
   return run(action, app);
 }

@@ -105,19 +105,19 @@ TEST_F(Program, FailsWhenItsHelpCannotBeWritten) {
 TEST_F(Program, NamesTheChoicesOfAnOption) {
   const std::string evaluate = "evaluate --estimate estimate.txt --truth estimate.txt ";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"map . --pace fast", "--pace: 'fast' is none of: inline, live, paced"},
-      {"map . --refine 2", "--refine: '2' is none of: all, none, stereo"},
-      {"map . --format csv", "--format: 'csv' is none of: euroc, kitti, tum"},
-      {"run . --map m --frame world", "--frame: 'world' is none of: map, plan"},
-      {"run . --map m --offline-policy x", "--offline-policy: 'x' is none of: first, together"},
-      {evaluate + "--alignment rigid", "--alignment: 'rigid' is none of: none, origin, se3, sim3"},
-      {evaluate + "--label best", "--label: 'best' is none of: causal, final"},
-      {evaluate + "--frames-of . --estimate-of x", "--estimate-of: 'x' is none of: body, camera"},
-      {"simulate cowshed --time night", "--time: 'night' is none of: day, dusk"},
-      {"simulate cowshed --gate ajar", "--gate: 'ajar' is none of: closed, open"},
-      {"simulate cowshed --turn u", "--turn: 'u' is none of: arc, spot"},
-      {"simulate cowshed --imperfection bad", "--imperfection: 'bad' is none of: exact, good, worn"},
-      {"completion fish", "SHELL: 'fish' is none of: bash, zsh"},
+      {"map . --pace fast", "--pace: 'fast' is not one of: inline, live, paced"},
+      {"map . --refine 2", "--refine: '2' is not one of: all, none, stereo"},
+      {"map . --format csv", "--format: 'csv' is not one of: euroc, kitti, tum"},
+      {"run . --map m --frame world", "--frame: 'world' is not one of: map, plan"},
+      {"run . --map m --offline-policy x", "--offline-policy: 'x' is not one of: first, together"},
+      {evaluate + "--alignment rigid", "--alignment: 'rigid' is not one of: none, origin, se3, sim3"},
+      {evaluate + "--label best", "--label: 'best' is not one of: causal, final"},
+      {evaluate + "--frames-of . --estimate-of x", "--estimate-of: 'x' is not one of: body, camera"},
+      {"simulate cowshed --time night", "--time: 'night' is not one of: day, dusk"},
+      {"simulate cowshed --gate ajar", "--gate: 'ajar' is not one of: closed, open"},
+      {"simulate cowshed --turn u", "--turn: 'u' is not one of: arc, spot"},
+      {"simulate cowshed --imperfection bad", "--imperfection: 'bad' is not one of: exact, good, worn"},
+      {"completion fish", "SHELL: 'fish' is not one of: bash, zsh"},
   };
   for (const auto& [arguments, message] : cases) {
     const Outcome outcome = run(arguments);

@@ -60,7 +60,8 @@ RosDistribution read_distribution(const Environment& environment) {
   if (text.empty()) return RosDistribution::jazzy;
   const auto distribution = distribution_of(text);
   if (!distribution) {
-    throw InputError("ROS_DISTRO", "is '" + text + "', which is no release of ROS 2", "set a name as humble or jazzy");
+    throw InputError("ROS_DISTRO", "is '" + text + "', which is not a release of ROS 2",
+                     "set a name as humble or jazzy");
   }
   return *distribution;
 }

@@ -100,7 +100,7 @@ NodeSetting choice(const char* name, Names<Value> names, Place place, const char
 NodeSetting baseline() {
   return {
       "calibration.baseline", "metres or empty",
-      "baseline of the cameras, replaces that of the calibration; confirms one outside 2 mm to 1 m",
+      "baseline of the cameras, replaces that of the calibration; required to confirm one outside 2 mm to 1 m",
       [](const NodeConfig& config) { return config.baseline ? fmt::format("{:g}", *config.baseline) : std::string(); },
       [](NodeConfig& config, std::string_view value) {
         config.baseline = parse_number(value);

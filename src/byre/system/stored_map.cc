@@ -30,7 +30,7 @@ std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map
 StoredMap made_ready(StoredMap stored, const fs::path& path, const Vocabulary& vocabulary) {
   if (stored.scale != MapScale::metric) {
     throw InputError(path.string(), "has no metric scale, so nothing can be measured on it",
-                     "give it one: byre scale, or --scale when importing a model");
+                     "set it with byre scale, or --scale when importing a model");
   }
   if (stored.map.keyframe_count() == 0) throw InputError(path.string(), "holds no keyframes", "map a recording first");
   add_words(stored, vocabulary);

@@ -25,11 +25,11 @@ constexpr const char* kInfoFooter = R"(Examples:
   byre bag info recordings/2026-11-20
   byre bag info evening.bag --json
 
-A bag is a folder of rosbag2, an .mcap, a .db3 or a .bag file of ROS 1. All of it is gone through, so that what is
-damaged or cut is told, whether the bag was closed or not. "images" are the topics that "byre map" and "byre run" would
-take as left and right.
+A bag is a rosbag2 folder, an .mcap, .db3 or a ROS 1 .bag file. All of it is read, so that damaged or truncated parts
+are reported, whether the bag was closed or not. "images" are the topics that "byre map" and "byre run" use as left
+and right images.
 
-Exit codes: 0 all of it can be read, 1 a part of it cannot, 3 it is no bag or cannot be opened.)";
+Exit codes: 0 all of it can be read, 1 a part of it cannot be read, 3 it is not a bag or cannot be opened.)";
 
 ExitCode run_info(const InfoOptions& options, std::ostream& result) {
   const auto bag = open_bag(options.bag, [](std::string_view) { return false; });
@@ -48,11 +48,11 @@ Action declare_bag(CLI::App& command) {
   const auto chosen = std::make_shared<Action>();
   command.require_subcommand(1);
   const auto info = std::make_shared<InfoOptions>();
-  CLI::App& telling = *command.add_subcommand("info", "Tell the topics, the length and the damage of a bag");
-  add_input(telling, Input::recording, "BAG", info->bag, "Folder of rosbag2, or an .mcap, .db3 or .bag file")
+  CLI::App& telling = *command.add_subcommand("info", "Print topics, length and damage of a bag");
+  add_input(telling, Input::recording, "BAG", info->bag, "rosbag2 folder, or .mcap, .db3 or .bag file")
       ->type_name("PATH")
       ->required();
-  telling.add_flag("--json", info->json, "Print it as JSON");
+  telling.add_flag("--json", info->json, "Print the report as JSON");
   telling.footer(kInfoFooter);
   telling.callback([=] { *chosen = [=](std::ostream& result) { return run_info(*info, result); }; });
   return [chosen](std::ostream& result) { return (*chosen)(result); };

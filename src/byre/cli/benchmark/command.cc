@@ -56,13 +56,13 @@ constexpr const char* kBenchmarkFooter = R"(Examples:
   byre benchmark --speed monday --map barn.byre --camera left -o out
 
 Each case of the protocol is run with each of its arms: no_map (plain SLAM), localise_only (on the map of another
-recording, nothing mapped) and hybrid (on that map, with an online one beside it). Maps are made once. Into the folder
-go benchmark.md (the tables that are printed), benchmark.json, plots as SVG, the maps, and every run's trajectories,
-for "byre evaluate". Cases whose recordings are not there are skipped.
-With --speed one recording is run, at its own pace unless told otherwise, and the times of a frame's stages are printed,
-with CPU time, memory, and where the machine tells it instructions; with -o as speed.md and speed.json too.
-Ctrl-C keeps what was measured until then, then the exit code is 130. docs/reference/benchmark.md explains the protocol
-and the figures.)";
+recording, without mapping) and hybrid (on that map, with an online map). Maps are made once. The folder receives
+benchmark.md (the printed tables), benchmark.json, plots as SVG, the maps, and the trajectories of all runs, for
+"byre evaluate". Cases without their recordings are skipped.
+With --speed one recording is run, at live pace unless --pace is given. The times of the stages of a frame are
+printed, with CPU time, memory, and number of instructions if the machine counts them; -o also writes speed.md and
+speed.json. Ctrl-C keeps the measurements so far, with exit code 130. docs/reference/benchmark.md explains protocol
+and figures.)";
 
 // Writes the plots of the cases; returns Markdown that shows them.
 std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
@@ -183,10 +183,10 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
 // Options for --speed only; returns --speed.
 CLI::Option* declare_speed(CLI::App& command, SpeedCase& speed) {
   CLI::Option* const recording = add_input(command, Input::recording, "--speed", speed.recording,
-                                           "Measure the speed of this recording, in place of a protocol")
+                                           "Measure the speed on this recording, instead of running a protocol")
                                      ->type_name("RECORDING");
   const std::size_t count_before = command.get_options().size();
-  add_input(command, Input::file, "--map", speed.map, "The offline map of a mission (none: plain SLAM)")
+  add_input(command, Input::file, "--map", speed.map, "Offline map of the mission (none: plain SLAM)")
       ->type_name("MAP");
   declare_open_options(command, speed.open);
   declare_frame_range(command, speed.range);
@@ -200,24 +200,24 @@ Action declare_benchmark(CLI::App& command) {
   const auto options = std::make_shared<BenchmarkCommandOptions>();
   CLI::Option* const speed = declare_speed(command, options->speed);
   add_input(command, Input::file, "PROTOCOL", options->protocol,
-            "A protocol file, or one that comes with byre: euroc, twin, mh_short")
+            "Protocol file, or a built-in protocol: euroc, twin, mh_short")
       ->type_name("FILE|NAME")
       ->excludes(speed);
-  add_input(command, Input::folder, "--data", options->run.data, "Folder in which the protocol's recordings lie (.)")
+  add_input(command, Input::folder, "--data", options->run.data, "Folder of the protocol's recordings (.)")
       ->type_name("FOLDER")
       ->excludes(speed);
   add_output(command, Output::folder, "-o,--output", options->run.output,
-             "Folder for results, made if need be (benchmark_PROTOCOL; with --speed none)")
+             "Folder for results, created if missing (benchmark_PROTOCOL; with --speed none)")
       ->type_name("FOLDER");
   command
       .add_option("--runs", options->runs,
-                  "Runs of each arm, instead of the protocol's; with --speed of the recording (1)")
+                  "Runs of each arm, replaces the protocol's number; with --speed runs of the recording (1)")
       ->type_name("N")
       ->check(between(1, kMostRuns));
-  add_text(command, "--only", options->run.only, "Run these cases only")->type_name("CASE...")->excludes(speed);
+  add_text(command, "--only", options->run.only, "Run only these cases")->type_name("CASE...")->excludes(speed);
   declare_pace(command, options->pace);
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary to recognise places with (the one byre comes with)")
+            "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
   declare_options_file(command, options->options_file, [options = options.get()] { return options->engine_options(); });
   command.add_flag("--quiet", options->quiet, "Show no progress");

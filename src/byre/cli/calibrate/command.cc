@@ -41,11 +41,12 @@ constexpr const char* kCalibrateFooter = R"(Examples:
   byre calibrate evening_round -o calibration.yaml
   byre map evening_round --calibration calibration.yaml -o barn.byre
 
-Maps the recording, and refines the calibration that it holds (or --calibration) by what is seen: focal lengths,
-principal points, distortion, and how the right camera is turned. Each is told with how well it was known before and is
-known now; what the motion does not tell stays as given. Turn the camera about all axes, and look at things near and far,
-for a minute or two. The length of the baseline is never seen by images: "byre register --fix-scale" takes it from a floor
-plan. "byre map" does the same with each recording, and keeps the result in the map.)";
+Maps the recording, and refines its calibration (or --calibration) by image measurements: focal lengths, principal
+points, distortion, rotation of the right camera. The report gives each parameter with its standard deviation before
+and after; parameters that the motion does not constrain stay as given. Rotate the camera about all axes, and view
+near and far objects, for a minute or two. Images do not constrain the length of the baseline: "byre register
+--fix-scale" takes it from a floor plan. "byre map" refines the calibration of each recording likewise, and stores it
+in the map.)";
 
 std::string to_text(const CalibrateOptions& options, const RefinedCalibration& refined) {
   return row("recording", options.recording.string()) + row("calibration", describe_calibration(refined)) +
@@ -73,8 +74,8 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   const MapRun run = run_with_progress(*recording, run_options, {}, interrupt, options.quiet);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (!run.calibration) {
-    throw InputError(options.recording.string(), "shows too little to calibrate its cameras by",
-                     "record a minute or more of motion about a place with texture");
+    throw InputError(options.recording.string(), "shows too little to calibrate its cameras",
+                     "record a minute or more of motion at a place with texture");
   }
   if (const auto warning = calibration_warning(run.calibration, run.row_error)) show_warnings(std::cerr, {*warning});
   Calibration calibration = run.calibration->calibration;
@@ -89,14 +90,14 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
 Action declare_calibrate(CLI::App& command) {
   const auto options = std::make_shared<CalibrateOptions>();
   add_input(command, Input::recording, "RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
-  add_output(command, Output::calibration, "-o,--output", options->output, "Calibration file (Kalibr's form)")
+  add_output(command, Output::calibration, "-o,--output", options->output, "Calibration file (Kalibr format)")
       ->type_name("YAML")
       ->required();
   declare_open_options(command, options->open);
   declare_frame_range(command, options->range);
   declare_options_file(command, options->options_file,
                        [options = options.get()] { return read_engine_options(options->options_file); });
-  command.add_flag("--json", options->json, "Print what was found as JSON");
+  command.add_flag("--json", options->json, "Print the result as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kCalibrateFooter);
   return [options](std::ostream& result) { return run_calibrate(*options, result); };

@@ -15,8 +15,8 @@ struct CameraCommand {
 };
 
 constexpr std::array kCameraCommands = {
-    CameraCommand{"list", "Tell which cameras there are, and what they offer", declare_camera_list},
-    CameraCommand{"show", "Look at what a camera gives: rate, stamps, brightness, corners", declare_camera_show},
+    CameraCommand{"list", "List cameras and their formats", declare_camera_list},
+    CameraCommand{"show", "Examine a camera: frame rate, time stamps, brightness, corners", declare_camera_show},
     CameraCommand{"record", "Record cameras as a EuRoC folder or an MCAP file", declare_camera_record},
 };
 

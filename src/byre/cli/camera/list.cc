@@ -20,11 +20,11 @@ constexpr const char* kListFooter = R"(Examples:
   byre camera list
   byre camera list /dev/video0
 
-Tells of each camera its name, where it is plugged in, its names in /dev/v4l/by-id (the same after each start), and its
-formats, sizes and rates, and which moment its stamps are of. Formats that byre does not read are marked. "byre camera
-show" tells what a camera really gives.
+Lists for each camera its name, its port, its names in /dev/v4l/by-id (stable across restarts), formats, sizes and
+rates, and the meaning of its time stamps. Formats that byre does not read are marked. "byre camera show" measures
+the actual frame rate and image quality.
 
-Exit codes: 0 done, 1 no camera was found, 3 a device that was named is no camera.)";
+Exit codes: 0 done, 1 no camera was found, 3 a given device is not a camera.)";
 
 ExitCode list_named(const std::vector<fs::path>& devices, std::ostream& result) {
   for (const fs::path& device : devices) {
@@ -45,7 +45,7 @@ ExitCode list_all(std::ostream& result) {
       result << row("no access", fault.what());
     }
   }
-  if (found == 0) throw std::runtime_error("there is no camera that can be used: none of /dev/video* is one");
+  if (found == 0) throw std::runtime_error("no usable camera: none of /dev/video* is one");
   return ExitCode::done;
 }
 
@@ -53,7 +53,7 @@ ExitCode list_all(std::ostream& result) {
 
 Action declare_camera_list(CLI::App& command) {
   const auto named = std::make_shared<std::vector<fs::path>>();
-  add_text(command, "DEVICE", *named, "Cameras to tell of (all there are)")->type_name("DEVICE");
+  add_text(command, "DEVICE", *named, "Cameras to list (all)")->type_name("DEVICE");
   command.footer(kListFooter);
   return [named](std::ostream& result) { return named->empty() ? list_all(result) : list_named(*named, result); };
 }

@@ -37,11 +37,12 @@ constexpr const char* kRecordFooter = R"(Examples:
   byre camera record /dev/video0 --side-by-side --size 2560x720 -o walk --calibration camchain.yaml --exposure-limit 5
   byre map walk -o barn.byre
 
-Images are written as 8-bit grey, with the stamps that the driver gives them, in UTC. Without --calibration the
-recording holds none; "byre map walk --calibration FILE" takes one later. Ctrl-C ends the recording; what came before is
-in it, however the program ends (of an MCAP file, all but the last second). What was lost is told.
+Images are written as 8-bit grey, with the driver's time stamps, in UTC. Without --calibration the recording contains
+none; "byre map walk --calibration FILE" takes one later. Ctrl-C ends the recording; earlier frames are stored,
+however the program ends (in an MCAP file, all but the last second). Lost images are reported.
 
-Exit codes: 0 done, 1 no frame came, 3 a camera or a file cannot be had; 130 ended by Ctrl-C, which is as good as 0.)";
+Exit codes: 0 done, 1 no frame arrived, 3 a camera or a file cannot be used; 130 ended by Ctrl-C, which is equivalent
+to 0.)";
 
 // Opens the cameras, with the image size of the calibration if there is one.
 std::unique_ptr<CaptureThread> open_cameras(const RecordOptions& options,
@@ -87,7 +88,7 @@ ExitCode run_record(const RecordOptions& options, std::ostream& result) {
   result << row("recorded", options.output.string()) << row("frames", describe_frames(recorded, cameras.has_right))
          << to_text(recorded.cameras);
   if (interrupt.caught()) return ExitCode::interrupted;
-  if (recorded.frames == 0) throw std::runtime_error(options.cameras.name() + " gave no frame");
+  if (recorded.frames == 0) throw std::runtime_error(options.cameras.name() + " delivered no frame");
   return ExitCode::done;
 }
 
@@ -98,19 +99,19 @@ Action declare_camera_record(CLI::App& command) {
   CLI::Option* const devices =
       add_text(command, "DEVICE", options->cameras.devices, kDevicesHelp)->type_name("DEVICE")->required();
   add_output(command, Output::recording, "-o,--output", options->output,
-             "The recording: an MCAP file where the name ends in .mcap, else the folder of a EuRoC recording")
+             "Recording: an MCAP file if the name ends in .mcap, else the folder of a EuRoC recording")
       ->type_name("FOLDER|FILE")
       ->required();
-  add_input(command, Input::file, "--calibration", options->calibration, "Calibration to keep with the images")
+  add_input(command, Input::file, "--calibration", options->calibration, "Calibration to store with the images")
       ->type_name("FILE");
-  command.add_option("--duration", options->limits.duration_s, "End after so long")
+  command.add_option("--duration", options->limits.duration_s, "End after this time")
       ->type_name("SECONDS")
       ->check(between(0.01, 1e9));
-  command.add_option("--frames", options->limits.frames, "End after so many frames")
+  command.add_option("--frames", options->limits.frames, "End after this number of frames")
       ->type_name("N")
       ->check(between(1, 1'000'000'000));
   declare_camera_options(command, options->cameras, devices);
-  command.add_flag("--quiet", options->quiet, "Do not tell how far it is");
+  command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kRecordFooter);
   return [options](std::ostream& result) { return run_record(*options, result); };
 }

@@ -40,15 +40,15 @@ constexpr const char* kShowFooter = R"(Examples:
   byre camera show /dev/video0 -o still.png --size 1280x720 --rate 30
   byre camera show /dev/video0 /dev/video2 --duration 10 --exposure-limit 5
 
-Looks at the camera for a while and tells what it really gives: rate and how even it is, which moment the stamps are of,
-images that were lost, and of the newest image brightness, contrast, sharpness and how many corners there are in which
-part of it. Parts without corners hold no poses. Of two cameras it tells how far their images are apart in time.
+Measures for a few seconds: frame rate and its regularity, meaning of the time stamps, lost images, and of the newest
+image brightness, contrast, sharpness and the number of corners per part of the image. Parts without corners do not
+constrain poses. For two cameras it reports the time difference of their images.
 
-Exit codes: 0 done, 1 no image came, 3 the camera cannot be had.)";
+Exit codes: 0 done, 1 no image arrived, 3 the camera cannot be used.)";
 
 std::string describe_intervals(const std::vector<Timestamp>& stamps) {
   const auto intervals = measure_intervals(stamps);
-  if (!intervals) return fmt::format("{} frames: too few to tell a rate", stamps.size());
+  if (!intervals) return fmt::format("{} frames: too few to measure a rate", stamps.size());
   return fmt::format("{:.2f} Hz over {} frames; intervals deviate by {:.2f} ms, the longest is {:.1f} ms",
                      intervals->rate_hz, stamps.size(), 1e3 * intervals->deviation_s, 1e3 * intervals->longest_s);
 }
@@ -61,7 +61,7 @@ std::string describe_image(const char* name, const Image& image) {
                         condition.brightness, condition.contrast, condition.sharpness, 100.0 * condition.clipped) +
                 (fault == ImageFault::none ? "" : "; " + std::string(to_string(fault))));
   const CornerGrid grid = count_corners(image);
-  text += row("corners", fmt::format("{}; {} of {} parts without any:", grid.total(), grid.cells_without(),
+  text += row("corners", fmt::format("{}; {} of {} parts without corners:", grid.total(), grid.cells_without(),
                                      static_cast<int>(grid.corners.size())));
   for (int y = 0; y < CornerGrid::kRows; ++y) {
     std::string line;
@@ -94,7 +94,7 @@ ExitCode run_show(const CameraShowOptions& options, std::ostream& result) {
   result << to_text(capture.report());
   if (!shown.newest) {
     if (interrupt.caught()) return ExitCode::interrupted;
-    throw std::runtime_error(options.cameras.name() + " gave no image");
+    throw std::runtime_error(options.cameras.name() + " delivered no image");
   }
   result << row("rate", describe_intervals(shown.stamps));
   result << describe_image(shown.newest->right ? "left" : "image", shown.newest->left);
@@ -114,16 +114,16 @@ Action declare_camera_show(CLI::App& command) {
   const auto options = std::make_shared<CameraShowOptions>();
   CLI::Option* const devices =
       add_text(command, "DEVICE", options->cameras.devices, kDevicesHelp)->type_name("DEVICE")->required();
-  add_output(command, Output::picture, "-o,--output", options->still, "The newest image, of a pair both side by side")
+  add_output(command, Output::picture, "-o,--output", options->still, "Newest image; of a pair both, side by side")
       ->type_name("FILE.png");
-  command.add_option("--duration", options->duration_s, "How long to look")
+  command.add_option("--duration", options->duration_s, "Duration of the measurement")
       ->type_name("SECONDS")
       ->check(between(0.1, 1e6))
       ->capture_default_str();
   declare_camera_options(command, options->cameras, devices);
   check_when_parsed(command, [options] {
     if (!options->still || options->still->extension() == ".png") return;
-    throw CLI::ValidationError("--output", "names a picture that is no PNG: let it end in .png");
+    throw CLI::ValidationError("--output", "must end in .png");
   });
   command.footer(kShowFooter);
   return [options](std::ostream& result) { return run_show(*options, result); };

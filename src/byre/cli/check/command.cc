@@ -30,12 +30,12 @@ constexpr const char* kCheckFooter = R"(Examples:
   byre check evening_round
   byre check evening_round --calibration calibration.yaml --json
 
-Looks at some frames, a few seconds' work, and tells what would spoil a mission: rate and gaps, images that are dark,
-blurred or repeated, left and right images that do not fit together, a calibration that is off or not of these cameras;
-faults of wheels, gyroscope and accelerometer (--gyroscope); and what to do about each. "byre map" and "byre run" print
-its summary when they begin.
+Reads a sample of the frames, in a few seconds, and reports problems with remedies: frame rate and gaps; dark,
+blurred or repeated images; left and right images that do not match; a calibration that is inaccurate or of other
+cameras; faults of wheels, gyroscope and accelerometer (--gyroscope). "byre map" and "byre run" print the summary
+when they start.
 
-Exit codes: 0 nothing is in the way, 1 something is to be mended first, 3 the recording cannot be read.)";
+Exit codes: 0 no serious problem, 1 a serious problem must be solved first, 3 the recording cannot be read.)";
 
 ExitCode run_check(const CheckOptions& options, std::ostream& result) {
   const auto recording = open_recording(options.recording, options.range, options.open);
@@ -64,12 +64,12 @@ ExitCode run_check(const CheckOptions& options, std::ostream& result) {
 Action declare_check(CLI::App& command) {
   const auto options = std::make_shared<CheckOptions>();
   add_input(command, Input::recording, "RECORDING", options->recording, kRecordingHelp)->type_name("PATH")->required();
-  command.add_option("--samples", options->samples, "Places of the recording that are looked at, two frames at each")
+  command.add_option("--samples", options->samples, "Number of sampled places of the recording, two frames each")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   declare_open_options(command, options->open);
   declare_frame_range(command, options->range);
-  command.add_flag("--json", options->json, "Print what was found as JSON");
+  command.add_flag("--json", options->json, "Print the result as JSON");
   command.footer(kCheckFooter);
   return [options](std::ostream& result) { return run_check(*options, result); };
 }

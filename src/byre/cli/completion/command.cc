@@ -16,15 +16,14 @@ constexpr const char* kFooter = R"(Examples:
   byre completion bash > ~/.local/share/bash-completion/completions/byre
   byre completion zsh > ~/.zfunc/_byre
 
-The script is made from the commands themselves, so it knows all options, the files they take and what there is to
-choose from. An installed byre brings both scripts along. For zsh the folder must be named in fpath before compinit is
-called.)";
+The script is generated from the commands, with all options, file types and choices. The installation of byre
+includes both scripts. For zsh the folder must be in fpath before compinit is called.)";
 
 }  // namespace
 
 Action declare_completion(CLI::App& command) {
   const auto shell = std::make_shared<std::string>();
-  command.add_option("SHELL", *shell, "Which shell is to complete byre's commands")
+  command.add_option("SHELL", *shell, "Shell that completes byre's commands")
       ->type_name("bash|zsh")
       ->required()
       ->transform(one_of<std::string>({{"bash", "bash"}, {"zsh", "zsh"}}));

@@ -31,15 +31,16 @@ constexpr const char* kDemoFooter = R"(Examples:
   byre demo
   byre demo -o ~/demo --seed 7
 
-Shows the main job on simulated input, in a few minutes: two visits of a robot to a cowshed are rendered, the first is
-mapped and its map laid on the floor plan, and the second is run on it in three ways. FOLDER gets index.html, one page
-that needs neither server nor network, and beside it the recordings, the map, the trajectories and both pictures.
-Ctrl-C leaves what is done until then, but no page. docs/tutorials/demo.md explains what the page shows.)";
+Shows hybrid localisation on simulated input, in a few minutes: two visits of a robot to a cowshed are rendered, the
+first is mapped and its map registered on the floor plan, and the second is run in three ways. FOLDER receives
+index.html, a page that needs neither server nor network, and the recordings, the map, the trajectories and both
+pictures. Ctrl-C keeps the files written so far, but no page. docs/tutorials/demo.md explains the page.)";
 
 void make_new_folder(const fs::path& folder) {
   make_folder(folder);
   if (fs::exists(folder / "first_visit" / "mav0") || fs::exists(folder / "second_visit" / "mav0")) {
-    throw InputError(folder.string(), "already holds a demonstration", "name another folder, or remove that one first");
+    throw InputError(folder.string(), "already contains a demonstration",
+                     "give another folder, or remove this one first");
   }
 }
 
@@ -73,23 +74,25 @@ ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& resul
 Action declare_demo(CLI::App& command) {
   const auto options = std::make_shared<DemoCommandOptions>();
   add_output(command, Output::folder, "-o,--output", options->demo.output,
-             "Folder for the page and what it is made of (byre_demo)")
+             "Folder for the page and its data (byre_demo)")
       ->type_name("FOLDER");
-  command.add_option("--seed", options->demo.seed, "Which barn")->type_name("N")->capture_default_str();
-  command.add_option("--duration", options->demo.duration_s, "Of the first visit; the second takes a quarter longer")
+  command.add_option("--seed", options->demo.seed, "Seed of the barn")->type_name("N")->capture_default_str();
+  command
+      .add_option("--duration", options->demo.duration_s, "Duration of the first visit; the second is a quarter longer")
       ->type_name("SECONDS")
       ->check(between(1.0, 3600.0))
       ->capture_default_str();
-  command.add_option("--rate", options->demo.frame_rate_hz, "Stereo pairs in a second")
+  command.add_option("--rate", options->demo.frame_rate_hz, "Stereo pairs per second")
       ->type_name("HZ")
       ->check(between(1.0, 60.0))
       ->capture_default_str();
-  command.add_option("--divide", options->demo.image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
+  command
+      .add_option("--divide", options->demo.image_divisor, "Divisor of the image size: 752 x 480 pixels divided by N")
       ->type_name("N")
       ->check(between(1, 8))
       ->capture_default_str();
   add_input(command, Input::file, "--vocabulary", options->demo.vocabulary,
-            "Vocabulary to recognise places with (the one byre comes with)")
+            "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kDemoFooter);

@@ -42,7 +42,7 @@ TEST_F(DemoProgram, LeavesADemonstrationThatIsThereAlone) {
   fs::create_directories(folder_ / "byre_demo" / "first_visit" / "mav0");
   const Outcome outcome = run("demo");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.errors, StartsWith("byre: error: byre_demo: already holds a demonstration"));
+  EXPECT_THAT(outcome.errors, StartsWith("byre: error: byre_demo: already contains a demonstration"));
 }
 
 TEST_F(DemoProgram, StopsAtCtrlCWithoutAPage) {

@@ -28,16 +28,15 @@ namespace fs = std::filesystem;
 StoredMap load_map_to_draw(const DrawOptions& options) {
   StoredMap stored = load_map(options.map_file());
   if (stored.map.keyframe_count() == 0) {
-    throw InputError(options.map_file().string(), "holds no keyframes, so there is nothing to draw",
+    throw InputError(options.map_file().string(), "contains no keyframes, so there is nothing to draw",
                      "map a recording first");
   }
   if (options.plan && !stored.plan) {
-    throw InputError(options.map_file().string(), "lies on no floor plan, so it cannot be drawn on one",
+    throw InputError(options.map_file().string(), "is not registered on a floor plan, so it cannot be drawn on one",
                      "see \"byre register\"");
   }
   if (options.map && stored.scale != MapScale::metric) {
-    throw InputError(options.map_file().string(), "has no metric scale, so no mission can run on it",
-                     "give it one: byre scale");
+    throw InputError(options.map_file().string(), "has no metric scale, which missions need", "set it with byre scale");
   }
   return stored;
 }

@@ -47,8 +47,8 @@ DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const Pl
   const std::unique_ptr<Recording> recording = open_recording(options.input, needed_range(options), options.open);
   if (options.at_s && first + from_seconds(*options.at_s) < recording->times().front()) {
     throw InputError(options.input.string(),
-                     fmt::format("has no frame up to {:g} s in the range to run", *options.at_s),
-                     "start earlier, or have --at later");
+                     fmt::format("has no frame up to {:g} s in the selected range", *options.at_s),
+                     "set an earlier --start or a later --at");
   }
   const MissionPainting painting{options.camera_picture.has_value(), options.at_s, options.video, options.speed,
                                  options.heights};

@@ -27,11 +27,12 @@ constexpr const char* kDrawFooter = R"(Examples:
   byre draw evening_round --map barn.byre --end 30 --at 12.5 --camera-picture shot.png -o where.svg
   byre draw evening_round --map barn-plan.byre --plan plan.yaml --video round.mp4 --speed 4
 
-Of a map alone, its picture from above: points, keyframes, and the ways given by trajectories or by the statistics that
-"byre run --stats" wrote, which tell how far each pose was to be trusted. Of a recording, which is run on --map as "byre
-run" does it, also what the camera saw with the map points found in it, and a video of both. --at is the moment of the
-camera picture, whose place and direction the plan picture shows. A plan is drawn below maps that "byre register" found
-on it. Exit code 1 when no frame of the recording could be read. docs/how-to/draw_pictures.md explains the signs.)";
+For a map, a picture from above is drawn: points, keyframes, and the paths of trajectories or of the statistics of
+"byre run --stats", which contain the verdict of each pose. A recording is run on --map as by "byre run"; the camera
+image with the matched map points and a video of both can be drawn as well. --at is the time of the camera picture;
+the plan picture shows position and direction of the camera at that time. A plan is drawn below maps registered by
+"byre register". Exit code 1 if no frame of the recording could be read. docs/how-to/draw_pictures.md explains the
+symbols.)";
 
 std::string extension_of(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -54,59 +55,57 @@ std::optional<HeightBand> parse_heights(std::string_view text) {
 CLI::Option* declare_heights(CLI::App& command, HeightBand& heights) {
   const auto parse = [&heights](const CLI::results_t& texts) {
     const std::optional<HeightBand> parsed = parse_heights(texts.front());
-    if (!parsed) throw CLI::ValidationError("--heights", texts.front() + " is not LOW:HIGH in metres, such as 0.1:2.5");
+    if (!parsed) throw CLI::ValidationError("--heights", texts.front() + " is not LOW:HIGH in metres such as 0.1:2.5");
     heights = *parsed;
     return true;
   };
   return command
-      .add_option("--heights", parse, "Draw map points from so high to so high above the floor, metres (0.1:2.5)")
+      .add_option("--heights", parse, "Range of heights of the drawn map points above the floor, metres (0.1:2.5)")
       ->type_name("LOW:HIGH")
       ->expected(1);
 }
 
 void declare_inputs(CLI::App& command, DrawOptions& options) {
-  add_input(command, Input::recording, "INPUT", options.input, "A map file; or a recording to run on the map of --map")
+  add_input(command, Input::recording, "INPUT", options.input, "Map file; or recording to run on the map of --map")
       ->type_name("MAP|RECORDING")
       ->required();
-  add_input(command, Input::file, "--map", options.map, "The offline map that the recording is run on")
-      ->type_name("MAP");
+  add_input(command, Input::file, "--map", options.map, "Offline map on which the recording is run")->type_name("MAP");
   add_input(command, Input::plan, "--plan", options.plan,
-            "The floor plan the map lies on: a map_server YAML file, or an image with a world file")
+            "Floor plan of the map: a map_server YAML file, or an image with a world file")
       ->type_name("FILE");
   add_input(command, Input::file, "--trajectory", options.trajectories,
-            "A way to draw, in the map's frame; may be given again")
+            "Trajectory to draw, in the map's frame; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
   add_input(command, Input::file, "--mission", options.missions,
-            "Statistics of a mission on the map, to draw its way; may be given again")
+            "Statistics of a mission on the map, to draw its path; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
   add_input(command, Input::file, "--vocabulary", options.vocabulary,
-            "Vocabulary to look places up with (the one byre comes with)")
+            "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
 }
 
 void declare_outputs(CLI::App& command, DrawOptions& options) {
   CLI::Option* const map = command.get_option("--map");
   add_output(command, Output::picture, "-o,--plan-picture", options.plan_picture,
-             "The map from above, with the ways: .svg or .png")
+             "Map from above with the paths: .svg or .png")
       ->type_name("FILE");
   add_output(command, Output::picture, "--camera-picture", options.camera_picture,
-             "What the camera saw, with the map points found and the health: .svg or .png")
+             "Camera image with matched map points and health: .svg or .png")
       ->type_name("FILE")
       ->needs(map);
-  command
-      .add_option("--at", options.at_s, "Moment of the camera picture, from the recording's first frame (the last one)")
+  command.add_option("--at", options.at_s, "Time of the camera picture since the recording's first frame (last frame)")
       ->type_name("SECONDS")
       ->check(from(0.0))
       ->needs(map);
-  add_output(command, Output::video, "--video", options.video, "Both pictures of every frame: .mp4")
+  add_output(command, Output::video, "--video", options.video, "Video of both pictures for every frame: .mp4")
       ->type_name("FILE")
       ->needs(map);
-  command.add_option("--speed", options.speed, "Of the video, in times of the recording's own (1)")
+  command.add_option("--speed", options.speed, "Playback speed of the video, relative to the recording (1)")
       ->type_name("FACTOR")
       ->check(between(0.01, 1000.0));
-  command.add_option("--width", options.width, "Of the plan picture (1200)")
+  command.add_option("--width", options.width, "Width of the plan picture (1200)")
       ->type_name("PIXELS")
       ->check(between(200, 8000));
 }
@@ -116,13 +115,13 @@ void require_extension(const std::optional<fs::path>& file, const char* option,
   if (!file || std::ranges::count(extensions, extension_of(*file)) > 0) return;
   std::string known;
   for (const std::string_view extension : extensions) known += (known.empty() ? "" : " or ") + std::string(extension);
-  throw CLI::ValidationError(option, file->string() + " is to end in " + known);
+  throw CLI::ValidationError(option, file->string() + " must end in " + known);
 }
 
 void require_consistent(const DrawOptions& options) {
   require_sense(options.range);
   if (options.outputs().empty()) {
-    throw CLI::ValidationError("draw", "name a file to draw: --plan-picture (-o), --camera-picture or --video");
+    throw CLI::ValidationError("draw", "give a file to draw: --plan-picture (-o), --camera-picture or --video");
   }
   require_extension(options.plan_picture, "--plan-picture", {".svg", ".png"});
   require_extension(options.camera_picture, "--camera-picture", {".svg", ".png"});

@@ -48,10 +48,10 @@ constexpr const char* kEvaluateFooter = R"(Examples:
   byre evaluate --estimate out.txt --truth MH_01_easy --align origin --plot errors.svg
   byre evaluate --estimate mono.txt --truth MH_01_easy --frames-of MH_01_easy --camera left --estimate-of camera --alignment sim3
 
-Estimate and truth must be of the same body: EuRoC's truth is of the IMU, KITTI's of the left camera. What byre maps with one
-camera alone is the path of that camera, in units of its own: --estimate-of camera takes the truth there, by the calibration of
---frames-of, and --alignment sim3 finds the unit. Segments are those of KITTI's development kit: the error of the motion
-along 100 to 800 m of the true path, in per cent and degrees a metre.)";
+Estimate and truth must be of the same body: EuRoC's truth is of the IMU, KITTI's of the left camera. A monocular
+trajectory of byre is of the camera, with unknown scale: --estimate-of camera converts the truth to the camera by the
+calibration of --frames-of, and --alignment sim3 estimates the scale. Segments are those of KITTI's development kit:
+the error of the motion along 100 to 800 m of the true path, in per cent and degrees per metre.)";
 
 // True poses of the estimated frame: body or camera.
 Trajectory true_path(const EvaluateOptions& options) {
@@ -105,7 +105,7 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
   protocol.association.max_gap = from_seconds(options.max_gap_s);
   const std::optional<EvaluationReport> report = evaluate(estimate, truth, protocol, expected_frames(options));
   if (!report) {
-    throw InputError(options.estimate.string(), "no pose has truth at its time",
+    throw InputError(options.estimate.string(), "no pose of the estimate has truth at its time",
                      "the estimate is from " + span_of(estimate) + ", the truth from " + span_of(truth));
   }
   if (options.aligned) write_trajectory(aligned_trajectory(estimate, *report), *options.aligned, options.format);
@@ -116,21 +116,21 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
 
 void declare_inputs(CLI::App& command, EvaluateOptions& options) {
   add_input(command, Input::recording, "--estimate", options.estimate,
-            "Trajectory to judge: TUM, EuRoC csv, or KITTI with --times")
+            "Estimated trajectory: TUM, EuRoC csv, or KITTI with --times")
       ->type_name("FILE")
       ->required();
   add_input(command, Input::recording, "--truth", options.truth,
-            "True trajectory in any of these formats, or the recording that holds it")
+            "True trajectory in one of these formats, or a recording with truth")
       ->type_name("FILE|FOLDER")
       ->required();
   add_input(command, Input::file, "--times", options.times,
-            "Times of KITTI poses, and the frames that should have a pose")
+            "Times of KITTI poses, and of the frames counted for coverage")
       ->type_name("FILE");
   CLI::Option* const frames_of = add_input(command, Input::recording, "--frames-of", options.frames_of,
-                                           "Recording whose frames should have a pose, for the coverage")
+                                           "Recording whose frames are counted for coverage")
                                      ->type_name("FOLDER|VIDEO|BAG");
   const std::map<std::string, bool> movers = {{"body", false}, {"camera", true}};
-  command.add_option("--estimate-of", options.is_of_camera, "Whose path the estimate is (body); the truth is a body's")
+  command.add_option("--estimate-of", options.is_of_camera, "Frame of the estimate (body); the truth is of the body")
       ->type_name("body|camera")
       ->transform(one_of(movers))
       ->needs(frames_of);
@@ -144,17 +144,17 @@ void declare_protocol(CLI::App& command, EvaluateOptions& options) {
                                                            {"none", PoseAlignment::none}};
   command
       .add_option("--alignment,--align", options.protocol.alignment,
-                  "se3 (default), sim3 for monocular estimates, origin to lay the first pose on the true one, none for "
-                  "poses in the frame of an aligned map")
+                  "se3 (default), sim3 for monocular estimates, origin: first pose equals the true one, none: poses in "
+                  "the frame of an aligned map")
       ->type_name("se3|sim3|origin|none")
       ->transform(one_of(alignments));
-  command.add_option("--label", options.protocol.label, "Which poses these are, for the report's header")
+  command.add_option("--label", options.protocol.label, "Label of the estimate in the report's header")
       ->type_name("causal|final")
       ->transform(one_of<std::string>({{"causal", "causal"}, {"final", "final"}}));
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
       ->type_name("SECONDS")
       ->check(between(-1e6, 1e6));
-  command.add_option("--max-gap", options.max_gap_s, "Longest gap in the truth to interpolate across")
+  command.add_option("--max-gap", options.max_gap_s, "Longest interpolated gap in the truth")
       ->type_name("SECONDS")
       ->check(between(0.0, 1e6))
       ->capture_default_str();
@@ -168,11 +168,11 @@ Action declare_evaluate(CLI::App& command) {
   declare_protocol(command, *options);
   command.add_flag("--json", options->json, "Print the report as JSON");
   add_output(command, Output::trajectory, "--aligned", options->aligned,
-             "Also write the estimate, all its poses, as aligned to the truth")
+             "Also write all poses of the estimate, aligned to the truth")
       ->type_name("FILE");
   declare_trajectory_format(command, options->format);
   add_output(command, Output::picture, "--plot", options->plot,
-             "Also draw both paths from above, and the error over time, as an SVG picture")
+             "Also draw both paths from above and the error over time, as SVG")
       ->type_name("FILE");
   command.footer(kEvaluateFooter);
   return [options](std::ostream& result) {

@@ -31,9 +31,9 @@ constexpr const char* kExportColmapFooter = R"(Examples:
   byre export-colmap barn.byre -o model
   byre export-colmap barn.byre -o model --text --images-of MH_01_easy
 
-The model is of the left images as the camera took them, with its lens; in COLMAP's programs name the folder that holds
-them as the image path (mav0/cam0/data of an EuRoC recording). Such a model has no place for disparities, and so for
-points that are known by their disparity in one image alone, nor for descriptors and covariances.)";
+The model contains the unrectified left images with their lens model; in COLMAP's programs give their folder as the
+image path (mav0/cam0/data of a EuRoC recording). The model format has no disparities, descriptors or covariances;
+points whose depth comes from the disparity of a single image are left out.)";
 
 ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
   const StoredMap stored = load_map(options.map);
@@ -45,7 +45,7 @@ ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
   result << row("written", fmt::format("{} cameras, {} images, {} points to {}", model.cameras.size(),
                                        model.images.size(), model.points.size(), options.model.string()))
          << row("left out",
-                fmt::format("{} points that one image alone sees", stored.map.point_count() - model.points.size()));
+                fmt::format("{} points seen by one image only", stored.map.point_count() - model.points.size()));
   return ExitCode::done;
 }
 
@@ -53,15 +53,13 @@ ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
 
 Action declare_export_colmap(CLI::App& command) {
   const auto options = std::make_shared<ExportCommandOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
-      ->type_name("MAP")
-      ->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
   add_output(command, Output::colmap_model, "-o,--output", options->model,
-             "Folder for cameras, images and points3D; made when it is not there")
+             "Folder for cameras, images and points3D, created if missing")
       ->type_name("MODEL_DIR")
       ->required();
   add_input(command, Input::recording, "--images-of", options->recordings,
-            "Recordings whose files name the images (else they are called <nanoseconds>.png)")
+            "Recordings whose file names are used for the images (default: <nanoseconds>.png)")
       ->type_name("FOLDER...");
   declare_open_options(command, options->open);
   auto* const text = command.add_flag("--text", options->text, "Write the text format");

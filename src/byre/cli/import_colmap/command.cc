@@ -40,10 +40,10 @@ constexpr const char* kImportColmapFooter = R"(Examples:
   byre import-colmap sparse/0 images -o site.byre
   byre import-colmap sparse/0 images -o site.byre --scale 0.25 --site "Barn 2"
 
-Every image of the model becomes a keyframe with the pose it has there. Corners of the images become features, and each
-point of the model gets those that lie where it projects and look alike; points with fewer than two are left out.
-Corners that are none of the model's points become points of their own. The map has the model's own unit until --scale
-tells how many metres that is.)";
+Every image of the model becomes a keyframe with its pose in the model. Corners of the images become features. A
+point of the model is matched to the features near its projections that look alike; points with fewer than two features are
+left out. Corners without a model point become additional points. The map has the unit of the model unless --scale
+gives its length in metres.)";
 ColmapImport run_with_progress(const ColmapModel& model, const ImportCommandOptions& options,
                                const InterruptCatcher& interrupt) {
   Progress progress(std::cerr, progress_style(options.quiet), static_cast<int>(model.images.size()));
@@ -82,29 +82,28 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
 Action declare_import_colmap(CLI::App& command) {
   const auto options = std::make_shared<ImportCommandOptions>();
   add_input(command, Input::colmap_model, "MODEL", options->model,
-            "Folder with cameras, images and points3D, .bin or .txt, of COLMAP")
+            "COLMAP model: folder with cameras, images and points3D, .bin or .txt")
       ->type_name("MODEL_DIR")
       ->required();
   add_input(command, Input::images, "IMAGES", options->images,
-            "Folder that the names of the model's images are relative to")
+            "Folder of the images; their names in the model are relative to it")
       ->type_name("IMAGES_DIR")
       ->required();
   add_output(command, Output::map, "-o,--output", options->map, "The map")->type_name("FILE")->required();
   auto* const scale =
-      command
-          .add_option("--scale", options->scale, "Length of the model's unit; without it the map has no metric scale")
+      command.add_option("--scale", options->scale, "Length of the model's unit (none: the map has no metric scale)")
           ->type_name("METRES")
           ->check(between(1e-9, 1e9));
   add_input(command, Input::recording, "--body-of", options->body_of,
-            "Recording whose calibration says where the camera sits in the body (body and camera are one)")
+            "Recording whose calibration gives the camera pose in the body (body = camera)")
       ->type_name("FOLDER")
       ->needs(scale);
   declare_open_options(command, options->open);
   command.add_flag("--model-points-only", options->model_points_only,
-                   "Add no points for corners that are none of the model's points");
-  add_text(command, "--site", options->site, "Name of the building, kept in the map")->type_name("TEXT");
+                   "Add no points for corners without a model point");
+  add_text(command, "--site", options->site, "Name of the building, stored in the map")->type_name("TEXT");
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary of the map's words (the one that comes with byre)")
+            "Vocabulary of the map's words (the built-in one)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress and no warnings");
   command.footer(kImportColmapFooter);

@@ -28,7 +28,7 @@ constexpr const char* kInspectFooter = R"(Examples:
   byre inspect barn.byre --json
   byre inspect barn.byre --points points.ply
 
-Errors are distances in the rectified image between where a keyframe measured a point and where the map says it is.)";
+Errors are distances in the rectified image between the measured point and the projection of the map point.)";
 
 ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
   if (options.points) require_writable(*options.points);
@@ -46,10 +46,8 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
 
 Action declare_inspect(CLI::App& command) {
   const auto options = std::make_shared<InspectOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
-      ->type_name("MAP")
-      ->required();
-  command.add_flag("--json", options->json, "Print the same as JSON, sizes in bytes, lengths in the map's unit");
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  command.add_flag("--json", options->json, "Print the report as JSON, sizes in bytes, lengths in the map's unit");
   add_output(command, Output::point_cloud, "--points", options->points,
              "Also write the points, coloured by their observations. PLY format")
       ->type_name("FILE");

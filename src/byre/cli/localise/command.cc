@@ -52,11 +52,11 @@ constexpr const char* kLocaliseFooter = R"(Examples:
   byre localise barn.byre walk.mp4 --calibration phone.yaml --stride 30
   byre localise barn.byre photo1.png photo2.png --json
 
-Each frame is looked for in the whole map, without tracking and without a guess. Images are taken for the left camera's
-of the map's first recording, unless --camera or --calibration say otherwise. With truth, errors are those in the map's
+Each frame is localised in the whole map, without tracking and without prediction. Images are those of the left
+camera of the map's first recording, unless --camera or --calibration is given. With truth, errors are in the map's
 frame: the map, not the frames, is aligned to the truth by its keyframes where the truth covers them; for a map of
-another recording name that one's truth too (--map-truth). An image has the time that its name says, nanoseconds or
-seconds with a point; where one says none, they are a second apart. Exit code 0 also when no frame is found.)";
+another recording also give the truth of that recording (--map-truth). The time of an image is in its name,
+nanoseconds or decimal seconds; images without a time are one second apart. Exit code 0 even if no frame is found.)";
 
 bool is_recording(const fs::path& input) {
   return fs::is_directory(input) || is_video_file(input) || is_bag(input);
@@ -65,18 +65,18 @@ bool is_recording(const fs::path& input) {
 // Requires one recording, or existing images.
 void require_inputs(const std::vector<fs::path>& inputs) {
   for (const fs::path& input : inputs) {
-    if (!fs::exists(input)) throw InputError(input.string(), "does not exist", "name a recording, or image files");
+    if (!fs::exists(input)) throw InputError(input.string(), "does not exist", "give a recording, or image files");
     if (inputs.size() > 1 && is_recording(input)) {
-      throw InputError(input.string(), "is a recording, and was named together with something else",
-                       "localise one recording at a time, or image files alone");
+      throw InputError(input.string(), "is a recording and is given together with other inputs",
+                       "localise one recording at a time, or only image files");
     }
   }
 }
 
 Calibration calibration_of_map(const StoredMap& stored, const fs::path& path) {
   if (!stored.recordings.empty()) return stored.recordings.front().calibration;
-  throw InputError(path.string(), "does not say with which camera it was made, so images cannot be localised in it",
-                   "name the calibration of their camera (--calibration FILE)");
+  throw InputError(path.string(), "does not contain the calibration of its camera, so images cannot be localised in it",
+                   "give the calibration of the camera (--calibration FILE)");
 }
 
 // Camera of single images: from the named calibration, else that of the map.
@@ -157,21 +157,19 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
 }
 
 void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
-  add_input(command, Input::file, "MAP", options.map, "Map file, as \"byre map -o\" writes it")
-      ->type_name("MAP")
-      ->required();
+  add_input(command, Input::file, "MAP", options.map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
   add_input(command, Input::recording, "INPUT", options.inputs,
-            "A recording (EuRoC, KITTI odometry, TUM RGB-D, images, a video), or image files")
+            "Recording (EuRoC, KITTI odometry, TUM RGB-D, images, video), or image files")
       ->type_name("RECORDING|IMAGES...")
       ->required();
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   declare_pose_frame(command, options.frame);
   add_input(command, Input::recording, "--truth", options.truth,
-            "True poses of the frames: a trajectory or the recording that holds it")
+            "True poses of the frames: a trajectory or a recording with truth")
       ->type_name("FILE|FOLDER");
   add_input(command, Input::recording, "--map-truth", options.map_truth,
-            "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+            "True poses of the map's recording in the same frame, to align the map (those of --truth)")
       ->type_name("FILE|FOLDER")
       ->needs("--truth");
 }
@@ -181,10 +179,11 @@ void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
 Action declare_localise(CLI::App& command) {
   const auto options = std::make_shared<LocaliseCommandOptions>();
   declare_inputs(command, *options);
-  add_output(command, Output::trajectory, "--trajectory", options->trajectory, "Write the poses found. TUM format")
+  add_output(command, Output::trajectory, "--trajectory", options->trajectory,
+             "Write the estimated poses, in TUM format")
       ->type_name("FILE");
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary to look places up with (the one byre comes with)")
+            "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
   command.add_flag("--json", options->json, "Print the result as JSON, with every frame");
   command.add_flag("--quiet", options->quiet, "Show no progress");

@@ -28,15 +28,14 @@ constexpr const char* kNodeFooter = R"(Examples:
   byre node --config robot.yaml
   ROS_DOMAIN_ID=7 byre node --config robot.yaml --ros-distro humble
 
-A node of ROS 2 that needs no ROS: it speaks to others by Cyclone DDS. It heeds ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY,
-ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO, RMW_IMPLEMENTATION and CYCLONEDDS_URI, and goes on until
-it is stopped (Ctrl-C, SIGTERM), when it keeps what was mapped. docs/reference/ros2.md tells its topics, frames and
-settings.
+The ROS 2 node needs no ROS installation: it communicates by Cyclone DDS. It uses ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY,
+ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS, ROS_DISTRO, RMW_IMPLEMENTATION and CYCLONEDDS_URI. It runs until it
+is stopped (Ctrl-C, SIGTERM), then saves the map. docs/reference/ros2.md describes topics, frames and settings.
 
-Exit codes: 0 stopped, or --check found nothing wrong, 1 failed at work, 3 settings or files that cannot be used.)";
+Exit codes: 0 stopped, or --check found no fault, 1 failed at run time, 3 settings or files that cannot be used.)";
 
 NodeConfig sound_config(const NodeOptions& options) {
-  if (!options.config) throw InputError("--config", "is missing", "name a file, as --print-config prints it");
+  if (!options.config) throw InputError("--config", "is missing", "give a settings file as printed by --print-config");
   NodeConfigReading reading = read_node_config(*options.config);
   if (!reading.faults.empty()) throw InputError(reading.faults.front());
   return reading.config;
@@ -49,7 +48,7 @@ ExitCode check(const std::filesystem::path& path, std::ostream& result) {
   if (faults.empty()) faults = faults_in_files(reading.config);
   for (const InputError& fault : faults) std::cerr << "byre: error: " << fault.what() << "\n";
   if (!faults.empty()) return ExitCode::bad_input;
-  result << printable(path.string()) << ": nothing wrong found\n";
+  result << printable(path.string()) << ": no fault found\n";
   return ExitCode::done;
 }
 
@@ -57,7 +56,8 @@ RosNetwork network_of(const NodeOptions& options) {
   RosNetwork network = read_ros_network(program_environment());
   if (options.distribution.empty()) return network;
   const auto distribution = distribution_of(options.distribution);
-  if (!distribution) throw InputError("--ros-distro", "is no release of ROS 2", "give a name as humble or jazzy");
+  if (!distribution)
+    throw InputError("--ros-distro", "is not a release of ROS 2", "give a release such as humble or jazzy");
   network.distribution = *distribution;
   return network;
 }
@@ -81,20 +81,19 @@ ExitCode run_node(const NodeOptions& options, std::ostream& result) {
 
 Action declare_node(CLI::App& command) {
   const auto options = std::make_shared<NodeOptions>();
-  add_input(command, Input::file, "--config", options->config, "Settings, as --print-config prints them")
+  add_input(command, Input::file, "--config", options->config, "Settings file as printed by --print-config")
       ->type_name("YAML");
-  add_text(
-      command, "--ros-distro", options->distribution,
-      "Release of ROS 2 that the other programs are of: humble and before, or any later one (ROS_DISTRO, else jazzy)")
+  add_text(command, "--ros-distro", options->distribution,
+           "ROS 2 release of the other programs: humble or earlier, or any later one (ROS_DISTRO, else jazzy)")
       ->type_name("NAME");
-  command.add_flag("--check", options->check, "Say what is wrong with the settings and the files they name, and exit");
-  command.add_flag("--quiet", options->quiet, "Do not tell what happens on the standard error stream");
+  command.add_flag("--check", options->check, "Report faults of the settings and of the files in them, and exit");
+  command.add_flag("--quiet", options->quiet, "Write no log to the standard error stream");
   const auto print = [options] {
     std::cout << node_config_file(options->config ? sound_config(*options) : NodeConfig{}) << std::flush;
     if (!std::cout) throw std::runtime_error("the settings cannot be written to the standard output");
     throw CLI::Success();
   };
-  command.add_flag_callback("--print-config", print, "Print all settings as they would be used, as YAML, and exit");
+  command.add_flag_callback("--print-config", print, "Print the resulting values of all settings as YAML, and exit");
   command.footer(kNodeFooter);
   return [options](std::ostream& result) { return run_node(*options, result); };
 }

@@ -45,7 +45,7 @@ TEST_F(NodeProgram, ChecksSettingsAndTellsAllThatIsWrong) {
   write("robot.yaml", "slam:\n  task: map\n  save: barn.byre\n");
   const Outcome sound = run("node --config robot.yaml --check");
   EXPECT_EQ(sound.exit_code, 0) << sound.errors;
-  EXPECT_EQ(sound.output, "robot.yaml: nothing wrong found\n");
+  EXPECT_EQ(sound.output, "robot.yaml: no fault found\n");
 }
 
 TEST_F(NodeProgram, NamesBadInput) {
@@ -53,7 +53,7 @@ TEST_F(NodeProgram, NamesBadInput) {
   for (const auto& [arguments, message] : std::vector<std::pair<std::string, std::string>>{
            {"node", "byre: error: --config: is missing"},
            {"node --config absent.yaml", "byre: error: absent.yaml: "},
-           {"node --config robot.yaml --ros-distro 'Humble 2'", "byre: error: --ros-distro: is no release"}}) {
+           {"node --config robot.yaml --ros-distro 'Humble 2'", "byre: error: --ros-distro: is not a release"}}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 3) << arguments;
     EXPECT_THAT(outcome.errors, StartsWith(message));

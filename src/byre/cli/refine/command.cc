@@ -35,9 +35,9 @@ constexpr const char* kRefineFooter = R"(Examples:
   byre refine barn.byre
   byre refine barn.byre -o better.byre --json
 
-Does what "byre map" ends with: looks for loops once more, adjusts all keyframes and points together, and removes weak
-points and redundant keyframes. Without -o the map is replaced, as a whole or not at all. Poses that were given or
-imported are adjusted too. Ctrl-C keeps what was reached by then, then the exit code is 130.)";
+Repeats the last step of "byre map": searches for loops, adjusts all keyframes and points together, and removes weak
+points and redundant keyframes. Without -o the map is replaced, completely or not at all. Given or imported poses are
+adjusted too. Ctrl-C keeps the result so far, with exit code 130.)";
 
 std::string to_text(const RefineOptions& options, const Finishing& finishing) {
   const MapQuality& after = finishing.report.after;
@@ -70,15 +70,13 @@ ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
 
 Action declare_refine(CLI::App& command) {
   const auto options = std::make_shared<RefineOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
-      ->type_name("MAP")
-      ->required();
-  add_output(command, Output::refined_map, "-o,--output", options->output, "The refined map (it replaces the other)")
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_output(command, Output::refined_map, "-o,--output", options->output, "Refined map (default: replaces the input)")
       ->type_name("MAP");
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary to look places up with (the one byre comes with)")
+            "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
-  command.add_flag("--json", options->json, "Print what changed as JSON");
+  command.add_flag("--json", options->json, "Print the changes as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kRefineFooter);
   return [options](std::ostream& result) { return run_refine(*options, result); };

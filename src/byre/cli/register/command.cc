@@ -37,13 +37,13 @@ constexpr const char* kRegisterFooter = R"(Examples:
   byre register site.byre --plan plan.png --points picks.csv -o site-plan.byre
   byre register barn.byre --plan plan.yaml --points picks.csv --fix-scale -o barn-plan.byre
 
-Finds where a map lies on a floor plan, from points picked in both: with -o a copy of the map that knows it, with which
-"byre run" and "byre localise" give poses on the plan (--frame plan). The plan is a map_server YAML file, or an image
-with a world file beside it. Which way is up, and how high the floor lies, comes from the path that was driven. A wrong
-pick is found when four or more are given, better six. A map without a metric scale gets one on the plan; of a metric
-map the plan tells whether its scale is right. A stereo map that is too large or too small has a baseline that is:
---fix-scale mends both, where the plan is to scale. Doubts are told, and are no errors; but a map
-that is off its plan by more than half a metre is not written unless --accept-residual says so.
+Estimates the pose of a map on a floor plan from points picked in both. -o writes a copy of the map with its
+registration, with which "byre run" and "byre localise" give poses on the plan (--frame plan). The plan is a
+map_server YAML file, or an image with a world file. The vertical and the height of the floor are estimated from the
+path of the robot. Wrong picks are detected from four picks on; six are better. A map without a metric scale gets the
+scale of the plan; the scale of a metric map is compared with the plan. A wrong scale of a stereo map is a wrong
+baseline: --fix-scale corrects both, if the plan is to scale. Doubts are reported and are not errors, but a map that
+is off its plan by more than half a metre is not written unless --accept-residual allows it.
 docs/reference/floor_plan.md describes the files and the figures.)";
 
 MendedMap register_as_asked(const RegisterCommandOptions& options, const FloorPlan& plan) {
@@ -61,12 +61,12 @@ bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) 
   const double residual = residual_of(fit);
   throw InputError(
       options.picks.string(),
-      fmt::format("fits the map only to {:.2f} m, so the map is not written: poses on the plan would be wrong "
-                  "by as much",
+      fmt::format("has residuals of {:.2f} m on the map, so the map is not written: poses on the plan would have the "
+                  "same error",
                   residual),
-      fmt::format("correct the picks that are off, the plan's resolution or its origin; --accept-residual "
-                  "{:.2f} writes it all the same",
-                  std::ceil(1e2 * residual) / 1e2));
+      fmt::format(
+          "correct wrong picks, the plan's resolution or its origin; --accept-residual {:.2f} writes the map anyway",
+          std::ceil(1e2 * residual) / 1e2));
 }
 
 ExitCode run_register(const RegisterCommandOptions& options, std::ostream& result) {
@@ -91,35 +91,32 @@ ExitCode run_register(const RegisterCommandOptions& options, std::ostream& resul
 
 Action declare_register(CLI::App& command) {
   const auto options = std::make_shared<RegisterCommandOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
-      ->type_name("MAP")
-      ->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
   add_input(command, Input::plan, "--plan", options->plan,
-            "The floor plan: a map_server YAML file, or an image with a world file")
+            "Floor plan: a map_server YAML file, or an image with a world file")
       ->type_name("FILE")
       ->required();
-  add_input(command, Input::file, "--points", options->picks, "Points picked in the map and on the plan: a CSV file")
+  add_input(command, Input::file, "--points", options->picks, "CSV file of points picked in the map and on the plan")
       ->type_name("FILE")
       ->required();
   CLI::Option* const output = add_output(command, Output::updated_map, "-o,--output", options->output,
-                                         "The map with its place on the plan (none is written)")
+                                         "Map with its registration on the plan (not written)")
                                   ->type_name("MAP");
-  command.add_option("--pick-sigma", options->registering.picks.sigma, "How well points were picked, one sigma (0.05)")
+  command.add_option("--pick-sigma", options->registering.picks.sigma, "Standard deviation of the picks (0.05)")
       ->type_name("METRES")
       ->check(between(1e-4, 100.0));
   command
       .add_option("--body-height", options->registering.registration.body_height,
-                  "How high the body's origin is above the floor (0)")
+                  "Height of the body's origin above the floor (0)")
       ->type_name("METRES")
       ->check(between(-100.0, 100.0));
   command
       .add_option("--accept-residual", options->accepted_residual,
-                  "Write the map although it is off its plan by up to so much (0.5)")
+                  "Largest residual up to which the map is written (0.5)")
       ->type_name("METRES")
       ->check(between(0.0, 1e6))
       ->needs(output);
-  command
-      .add_flag("--fix-scale", options->fix_scale, "Make a stereo map, and its baseline, as large as the plan has it")
+  command.add_flag("--fix-scale", options->fix_scale, "Correct the scale of a stereo map and its baseline by the plan")
       ->needs(output);
   command.add_flag("--json", options->json, "Print the result as JSON");
   command.footer(kRegisterFooter);

@@ -72,8 +72,8 @@ TEST_F(RegisterProgram, WritesNoMapThatIsFarOffUnlessThatIsAccepted) {
   const Outcome refused = run(command);
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_THAT(refused.output, AllOf(HasSubstr("points       6, of which"), Not(HasSubstr("written"))));
-  EXPECT_THAT(refused.errors, ContainsRegex("picks.csv: fits the map only to [0-9]+\\.[0-9]+ m, so the map is not "
-                                            "written.*--accept-residual [0-9]+\\.[0-9]+ writes it"));
+  EXPECT_THAT(refused.errors, ContainsRegex("picks.csv: has residuals of [0-9]+\\.[0-9]+ m on the map, so the map is not "
+                                            "written.*--accept-residual [0-9]+\\.[0-9]+ writes the map"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "barn-plan.byre"));
   EXPECT_EQ(run(command + " --accept-residual 0.6").exit_code, 3) << "less than it is off by";
   EXPECT_EQ(run(command + " --accept-residual 100").exit_code, 0);
@@ -163,7 +163,8 @@ TEST_F(RegisterProgram, RefusesPosesOnAPlanOfAMapWithoutOne) {
   write("photo.pgm", plan_image(320, 240));
   const Outcome outcome = run("localise barn.byre photo.pgm --frame plan");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.errors, HasSubstr("barn.byre: lies on no floor plan, so poses cannot be given on one"));
+  EXPECT_THAT(outcome.errors,
+              HasSubstr("barn.byre: is not registered on a floor plan, so poses on a plan are not available"));
   EXPECT_EQ(run("localise barn.byre photo.pgm --frame world").exit_code, 2);
   EXPECT_EQ(run("run recording --frame plan").exit_code, 2);
 }

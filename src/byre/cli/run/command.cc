@@ -62,9 +62,9 @@ MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
   protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary, plan);
   if (plan && protocol.options.offline->walls() == nullptr) {
     const bool are_known = plan->plan.occupied_threshold.has_value();
-    show_warnings(std::cerr, {plan->plan.name + ": its walls bound nothing: " +
-                              (are_known ? "a tenth of the map's path lies inside them"
-                                         : "it has no occupied_thresh, which says what a wall is")});
+    show_warnings(std::cerr, {plan->plan.name + ": its walls are not used: " +
+                              (are_known ? "a tenth of the map's path is inside them"
+                                         : "it has no occupied_thresh, the threshold of walls")});
   }
   return protocol;
 }
@@ -86,7 +86,7 @@ class EventFile {
       file_->append(text_.view());
       text_.str(std::string());
     } catch (const InputError& error) {
-      fault_ = "events are missing: " + std::string(error.what());
+      fault_ = "events were not written: " + std::string(error.what());
       show_warnings(std::cerr, {*fault_});
     }
   }

@@ -32,46 +32,45 @@ constexpr const char* kRunFooter = R"(Examples:
   byre run --live /dev/video0 /dev/video2 --calibration camchain.yaml --map barn.byre --trajectory map.txt
   byre run --live /dev/video0 --side-by-side --calibration camchain.yaml --map barn.byre --exposure-limit 5 --view
 
-With a map the run is a mission on it: it finds itself without a guess, tracks the map's points, maps what is new
-beside them, and says of each frame how far its pose may be trusted. The map's file is only read. Poses are in the map's
-frame, those of odometry in one that begins where the robot does and never jumps. With --localise-only nothing is mapped
-beside the map; with --frame plan poses in the map become poses on the floor plan that "byre register" found it on.
-Without --map all is mapped, as "byre map" does it, finishing included. With truth, errors are those in the map's
-frame: the map alone, not the mission, is aligned to the truth by its own keyframes; for a map of another recording name
-that one's truth too (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
-With --live the newest frame of the cameras is taken, and --pace live holds unless told otherwise;
-docs/how-to/live_cameras.md says more. The run goes on until --duration is over, or Ctrl-C.
-With --view the run can be watched in a browser while it goes on, and afterwards until Ctrl-C, or without a terminal for
-as long as --view-for says; docs/how-to/watch_in_browser.md says more.
-Ctrl-C or SIGTERM stops after the current frame and still writes all files, then the exit code is 130 or 143. Exit code 1
-when no frame got a pose, more than one frame in twenty could not be read, or events could not be written.
-docs/reference/health_and_events.md describes the events and what health means.)";
+With a map the run is a mission: it localises without an initial pose, tracks the offline map's points, maps new
+points online, and gives each frame a verdict on its pose. The file of the offline map is only read. Poses are in the
+map's frame; odometry is in a frame that begins at the start of the robot and never jumps. --localise-only disables
+online mapping; --frame plan converts poses in the map to poses on the floor plan of "byre register". Without --map
+the whole recording is mapped as by "byre map", including finishing. With truth, errors are in the map's frame: the
+map, not the mission, is aligned to the truth by its own keyframes; for a map of another recording also give the
+truth of that recording (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
+With --live the newest frame of the cameras is taken, at live pace unless --pace is given. The run lasts until
+--duration or Ctrl-C; see docs/how-to/live_cameras.md.
+With --view the run can be watched in a browser, and afterwards until Ctrl-C, or without a terminal for --view-for
+seconds; see docs/how-to/watch_in_browser.md.
+Ctrl-C or SIGTERM stops after the current frame and still writes all files, with exit code 130 or 143. Exit code 1 if
+no frame got a pose, more than one frame in twenty could not be read, or events could not be written.
+docs/reference/health_and_events.md describes events and health.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
   CLI::Option* const map =
-      add_input(command, Input::file, "--map", options.map, "The offline map of the mission (none: plain SLAM)")
+      add_input(command, Input::file, "--map", options.map, "Offline map of the mission (none: plain SLAM)")
           ->type_name("MAP");
-  command.add_flag("--localise-only", options.localise_only, "Track the offline map alone and map nothing beside it")
+  command.add_flag("--localise-only", options.localise_only, "Track the offline map only, without online mapping")
       ->needs(map);
   declare_pose_frame(command, options.frame)->needs(map);
   CLI::Option* const truth = add_input(command, Input::recording, "--truth", options.truth,
-                                       "True poses of the frames: a trajectory or the recording that holds it")
+                                       "True poses of the frames: a trajectory or a recording with truth")
                                  ->type_name("FILE|FOLDER");
   add_input(command, Input::recording, "--map-truth", options.map_truth,
-            "True poses of the map's own recording in the same frame, to align the map by (that of --truth)")
+            "True poses of the map's recording in the same frame, to align the map (those of --truth)")
       ->type_name("FILE|FOLDER")
       ->needs(truth)
       ->needs(map);
   add_input(command, Input::recording, "--map-trajectory", options.map_trajectory,
-            "Final poses of the run that made the map, to align it by all of them (by the map's keyframes)")
+            "Final poses of the run that made the map, all used to align it (default: the map's keyframes)")
       ->type_name("FILE")
       ->needs(truth)
       ->needs(map);
   command
       .add_flag("--align-scale", options.align_scale,
-                "Lay the map on the truth by a similarity: a baseline that errs in length, which no image tells, does "
-                "not count")
+                "Align the map to the truth by a similarity, so that a scale error of the baseline does not count")
       ->needs(truth)
       ->needs(map);
   command.add_option("--time-offset", options.time_offset_s, "Added to the truth's time stamps (EuRoC MH_01: -0.0075)")
@@ -79,26 +78,26 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
       ->check(between(-1e6, 1e6))
       ->needs(truth);
   add_input(command, Input::file, "--vocabulary", options.vocabulary,
-            "Vocabulary to look places up with (the one byre comes with)")
+            "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
 }
 
 void declare_outputs(CLI::App& command, RunOptions& options) {
-  add_output(command, Output::map, "--save-online", options.online_map,
-             "What was mapped beside the offline map, as a map of its own")
+  add_output(command, Output::map, "--save-online", options.online_map, "Online map of the mission, as a separate map")
       ->type_name("MAP");
-  add_output(command, Output::json, "--events", options.events, "What happens, as it happens: JSON lines")
+  add_output(command, Output::json, "--events", options.events, "Events during the run, as JSON lines")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--trajectory", options.trajectory,
-             "Final poses in the map's frame: as recomputed after the last frame")
+             "Final poses in the map's frame: as corrected after the last frame")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
-             "Causal poses in the map's frame: as published when their frames came")
+             "Causal poses in the map's frame: as published with their frames")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--odometry", options.odometry,
-             "Smooth poses, as published, in a frame of their own")
+             "Odometry: poses without jumps, as published, in the odometry frame")
       ->type_name("FILE");
-  add_output(command, Output::json, "--stats", options.stats, "Health, times, counts and every frame's report, as JSON")
+  add_output(command, Output::json, "--stats", options.stats,
+             "Health, times, counts and the report of every frame, as JSON")
       ->type_name("FILE");
 }
 
@@ -106,13 +105,14 @@ void require_consistent(const RunOptions& options) {
   require_sense(options.range);
   require_one_input(options.recording, options.live, options.open);
   if (options.live.is_wanted() && options.truth) {
-    throw CLI::ValidationError("--truth", "is of a recording: record the cameras (--record-images), then run on that");
+    throw CLI::ValidationError("--truth",
+                               "is for recordings: record the cameras (--record-images), then run on the record");
   }
   if (options.localise_only && options.online_map) {
-    throw CLI::ValidationError("--localise-only", "maps nothing, so there is nothing to --save-online");
+    throw CLI::ValidationError("--localise-only", "disables online mapping, so --save-online has no map");
   }
   if (options.view.plan && !options.map) {
-    throw CLI::ValidationError("--plan", "lies under a map: name one that was found on it with --map");
+    throw CLI::ValidationError("--plan", "needs a map that is registered on it: --map");
   }
 }
 
@@ -120,12 +120,13 @@ void require_consistent(const RunOptions& options) {
 void declare_tracking(CLI::App& command, RunOptions& options) {
   command
       .add_option("--offline-weight", options.offline_weight,
-                  fmt::format("Weight of a measured offline point, against 1 of an online one ({:g})",
+                  fmt::format("Weight of an observation of an offline point; online points have 1 ({:g})",
                               TrackOptions{}.offline_weight))
       ->type_name("FACTOR")
       ->check(between(1e-3, 1e3));
   add_choice(command, "--offline-policy", options.offline_policy, {OfflinePolicy::first, OfflinePolicy::together},
-             "Offline points first, so that their pose guides the search for online ones, or both together (first)");
+             "Order of the search: offline points first, whose pose guides the search for online ones, or both "
+             "together (first)");
 }
 
 }  // namespace

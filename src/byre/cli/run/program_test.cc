@@ -208,7 +208,7 @@ TEST_F(MissionProgram, SaysWhereThePlansWallsBoundNothing) {
   save_map(stored, folder_ / "room.byre");
   const Outcome outcome = mission("--plan plan.yaml --quiet");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_THAT(outcome.errors, HasSubstr("plan.yaml: its walls bound nothing: it has no occupied_thresh"));
+  EXPECT_THAT(outcome.errors, HasSubstr("plan.yaml: its walls are not used: it has no occupied_thresh"));
 }
 
 // State after a scale correction on a floor plan: the recording still has the original baseline.

@@ -29,9 +29,9 @@ constexpr const char* kScaleFooter = R"(Examples:
   byre scale barn.byre --between time:1403636580.1 time:1403636584.6 --metres 2.5 -o barn_metric.byre
   byre scale barn.byre --between 0.1,0.5,2.2 1.7,0.5,2.3 --metres 4.20 -o barn_metric.byre
 
-One camera alone tells everything of a building but its size. A place is a map point by its number (as in the point cloud that
-"byre inspect" writes), the camera at a time, or a position in units of the map. Choose two that are far apart: the map is as
-exact in size as the distance is. Missions then run on the map with one camera or with two.)";
+A monocular map has no metric scale. A place is a map point by its number (as in the point cloud of "byre inspect"),
+the camera position at a time, or a position in units of the map. Choose two places that are far apart: the relative
+error of the scale is that of the distance. Missions then run on the map with one camera or with two.)";
 
 ExitCode run_scale(const ScaleOptions& options, std::ostream& result) {
   require_writable(options.output);
@@ -48,15 +48,13 @@ ExitCode run_scale(const ScaleOptions& options, std::ostream& result) {
 
 Action declare_scale(CLI::App& command) {
   const auto options = std::make_shared<ScaleOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map of one camera, as \"byre map\" writes it")
-      ->type_name("MAP")
-      ->required();
+  add_input(command, Input::file, "MAP", options->map, "Monocular map of \"byre map\"")->type_name("MAP")->required();
   add_text(command, "--between", options->between, "Two places of the map")->type_name("PLACE PLACE")->required();
-  command.add_option("--metres", options->metres, "How far they are from each other")
+  command.add_option("--metres", options->metres, "Distance between the two places")
       ->type_name("METRES")
       ->check(above_zero())
       ->required();
-  add_output(command, Output::map, "-o,--output", options->output, "The map with lengths in metres")
+  add_output(command, Output::map, "-o,--output", options->output, "Map with lengths in metres")
       ->type_name("MAP")
       ->required();
   command.footer(kScaleFooter);

@@ -40,43 +40,41 @@ void declare_camera_options(CLI::App& command, CameraOptions& options, CLI::Opti
     options.request.width = parse_side(std::string_view(text).substr(0, by));
     options.request.height = by == std::string::npos ? std::nullopt : parse_side(std::string_view(text).substr(by + 1));
     if (options.request.width && options.request.height) return;
-    throw CLI::ValidationError("--size", "\"" + text + "\" is no size such as 1280x720");
+    throw CLI::ValidationError("--size", "\"" + text + "\" is not a size such as 1280x720");
   };
   const auto set_format = [&options](const std::string& text) {
     options.request.format = parse_four_characters(text);
     if (options.request.format && is_readable(*options.request.format)) return;
-    throw CLI::ValidationError("--pixel-format", "\"" + text + "\" is none of " + readable_formats());
+    throw CLI::ValidationError("--pixel-format", "\"" + text + "\" is not one of " + readable_formats());
   };
   const auto let_need = [devices](CLI::Option* option) {
     if (!devices->get_required()) option->needs(devices);
   };
   let_need(command.add_flag("--side-by-side", options.side_by_side,
                             "Each image holds both cameras of a pair, the left one in its left half"));
-  let_need(
-      command
-          .add_option_function<std::string>("--size", set_size, "Size of the device's images, pixels (as it is set)")
-          ->type_name("WIDTHxHEIGHT"));
-  let_need(command.add_option("--rate", options.request.rate_hz, "Images in a second (as it is set)")
+  let_need(command
+               .add_option_function<std::string>("--size", set_size,
+                                                 "Image size of the device, pixels (its current setting)")
+               ->type_name("WIDTHxHEIGHT"));
+  let_need(command.add_option("--rate", options.request.rate_hz, "Frame rate of the device (its current setting)")
                ->type_name("HZ")
                ->check(between(0.1, 10'000.0)));
-  let_need(
-      command
-          .add_option_function<std::string>("--pixel-format", set_format,
-                                            "Format of the device's images (the best of " + readable_formats() + ")")
-          ->type_name("FORMAT"));
+  let_need(command
+               .add_option_function<std::string>("--pixel-format", set_format,
+                                                 "Pixel format of the device (the best of " + readable_formats() + ")")
+               ->type_name("FORMAT"));
   let_need(command
                .add_option("--pair-limit", options.pair_limit_ms,
-                           "Most time between the images of two devices that are a pair")
+                           "Maximum time between the two images of a pair from two devices")
                ->type_name("MS")
                ->check(between(0.0, 1000.0))
                ->capture_default_str());
-  let_need(
-      command
-          .add_option("--exposure-limit", options.exposure_limit_ms,
-                      "Have byre control exposure and gain, for corners all over the image, and expose no longer than "
-                      "so: what moves is blurred (the device does it)")
-          ->type_name("MS")
-          ->check(between(0.1, 10'000.0)));
+  let_need(command
+               .add_option("--exposure-limit", options.exposure_limit_ms,
+                           "Control exposure and gain by byre, for corners all over the image, up to this exposure "
+                           "time, which limits motion blur (default: control by the device)")
+               ->type_name("MS")
+               ->check(between(0.1, 10'000.0)));
 }
 
 }  // namespace byre::cli

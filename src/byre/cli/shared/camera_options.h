@@ -27,7 +27,7 @@ struct CameraOptions {
 };
 
 inline constexpr const char* kDevicesHelp =
-    "Camera, as Linux names it (/dev/video0, /dev/v4l/by-id/...); two are the left and the right one of a pair";
+    "Camera device (/dev/video0, /dev/v4l/by-id/...); two devices are the left and the right camera of a pair";
 
 // --side-by-side, --size, --rate, --pixel-format, --pair-limit and --exposure-limit. They need the option of the
 // devices, unless that is required. The options must outlive the parsing of the command line.

@@ -20,7 +20,7 @@ CLI::Validator one_of(const std::map<std::string, Value>& by_name) {
     if (found == by_name.end()) {
       std::string names;
       for (const auto& [name, value] : by_name) names += (names.empty() ? "" : ", ") + name;
-      return "'" + printable(text) + "' is none of: " + names;
+      return "'" + printable(text) + "' is not one of: " + names;
     }
     if constexpr (std::is_enum_v<Value>) {
       text = std::to_string(static_cast<std::underlying_type_t<Value>>(found->second));

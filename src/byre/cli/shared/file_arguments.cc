@@ -66,7 +66,7 @@ std::string declaration_of(CLI::Option& option) {
 
 CLI::Option* declare_file(CLI::Option* option, const char* name) {
   const auto require_name = [](const std::string& path) {
-    return path.empty() ? std::string("is empty: name a file or folder (is a shell variable not set?)") : std::string();
+    return path.empty() ? std::string("is empty: give a file or folder (is a shell variable not set?)") : std::string();
   };
   return option->check(CLI::Validator(require_name, "", name));
 }
@@ -156,7 +156,7 @@ bool is_text(CLI::Option& option) {
 }
 
 void declare_no_overwrite(CLI::App& command) {
-  command.add_flag(kNoOverwrite)->description("Replace no file that is there");
+  command.add_flag(kNoOverwrite)->description("Do not replace existing files");
 }
 
 void require_safe_files(CLI::App& command) {

@@ -16,7 +16,7 @@ namespace {
 CLI::Validator number_that(std::function<bool(double)> fits, std::string what) {
   const auto fault_of = [fits = std::move(fits), what = std::move(what)](const std::string& text) {
     const std::optional<double> number = parse_number(text);
-    return number && fits(*number) ? std::string() : "\"" + text + "\" is no number " + what;
+    return number && fits(*number) ? std::string() : "\"" + text + "\" is not a number " + what;
   };
   return {fault_of, ""};
 }
@@ -29,7 +29,7 @@ CLI::Validator between(double low, double high) {
 }
 
 CLI::Validator from(double low) {
-  return number_that([=](double number) { return low <= number; }, fmt::format("from {:.12g} on", low));
+  return number_that([=](double number) { return low <= number; }, fmt::format("of at least {:.12g}", low));
 }
 
 CLI::Validator above_zero() {

@@ -19,14 +19,14 @@ EngineOptions read_engine_options(const OptionsFile& file) {
 
 void declare_options_file(CLI::App& command, OptionsFile& file, std::function<EngineOptions()> used) {
   add_input(command, Input::file, "--options", file,
-            "Set what this file names, as --print-options prints it; switches win over it")
+            "Options of the method as printed by --print-options; command line options win over the file")
       ->type_name("YAML");
   const auto print = [used = std::move(used)] {
     std::cout << options_file(used()) << std::flush;
     if (!std::cout) throw std::runtime_error("the options cannot be written to the standard output");
     throw CLI::Success();
   };
-  command.add_flag_callback("--print-options", print, "Print all options as they would be used, as YAML, and exit");
+  command.add_flag_callback("--print-options", print, "Print the resulting values of all options as YAML, and exit");
 }
 
 }  // namespace byre::cli

@@ -42,7 +42,7 @@ void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) {
-    throw InputError(folder.string(), "cannot be made a folder", "name another with -o");
+    throw InputError(folder.string(), "cannot be created as a folder", "give another folder with -o");
   }
 }
 

@@ -12,14 +12,15 @@ namespace byre::cli {
 
 CLI::Option* declare_pose_frame(CLI::App& command, PoseFrame& frame) {
   const std::map<std::string, PoseFrame> frames = {{"map", PoseFrame::map}, {"plan", PoseFrame::plan}};
-  return command.add_option("--frame", frame, "Frame of the poses: the map's, or that of the plan it lies on (map)")
+  return command.add_option("--frame", frame, "Frame of the poses: map, or floor plan of the map (map)")
       ->type_name("map|plan")
       ->transform(one_of(frames));
 }
 
 const PlanRegistration& require_plan(const std::optional<PlanRegistration>& plan, const std::filesystem::path& map) {
   if (plan) return *plan;
-  throw InputError(map.string(), "lies on no floor plan, so poses cannot be given on one", "see \"byre register\"");
+  throw InputError(map.string(), "is not registered on a floor plan, so poses on a plan are not available",
+                   "see \"byre register\"");
 }
 
 void declare_trajectory_format(CLI::App& command, TrajectoryFormat& format) {
@@ -27,7 +28,7 @@ void declare_trajectory_format(CLI::App& command, TrajectoryFormat& format) {
       {"tum", TrajectoryFormat::tum}, {"euroc", TrajectoryFormat::euroc}, {"kitti", TrajectoryFormat::kitti}};
   command
       .add_option("--format", format,
-                  "Of the trajectories written: TUM's (default), EuRoC's with nanoseconds, or KITTI's without times")
+                  "Format of the written trajectories: TUM (default), EuRoC with nanoseconds, or KITTI without times")
       ->type_name("tum|euroc|kitti")
       ->transform(one_of(formats));
 }

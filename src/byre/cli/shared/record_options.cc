@@ -6,9 +6,10 @@ namespace byre::cli {
 
 void declare_recording(CLI::App& command, std::optional<std::filesystem::path>& record, bool& with_images) {
   CLI::Option* const file = add_output(command, Output::mcap, "--record", record,
-                                       "Poses, diagnostics, events and map as messages of ROS 2, in an MCAP file")
+                                       "MCAP file of poses, diagnostics, events and map as ROS 2 messages")
                                 ->type_name("FILE");
-  command.add_flag("--record-images", with_images, "Images and camera info too, so that the file can be run again")
+  command
+      .add_flag("--record-images", with_images, "Record images and camera info too, so that the file can be run again")
       ->needs(file);
 }
 

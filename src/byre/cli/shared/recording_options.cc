@@ -27,68 +27,70 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
   const auto set_camera = [&options](const std::string& text) {
     options.camera = parse_camera(text);
     if (!options.camera)
-      throw CLI::ValidationError("--camera", "\"" + text + "\" is none of stereo, left, right and rgbd");
+      throw CLI::ValidationError("--camera", "\"" + text + "\" is not one of stereo, left, right and rgbd");
   };
   const auto set_frame_rate = [&options](const std::string& text) {
     options.frame_rate_hz = parse_frame_rate(text);
-    if (!options.frame_rate_hz) throw CLI::ValidationError("--fps", "\"" + text + "\" is no frame rate");
+    if (!options.frame_rate_hz) throw CLI::ValidationError("--fps", "\"" + text + "\" is not a frame rate");
   };
   command
       .add_option_function<std::string>(
           "--camera", set_camera,
-          "Take both cameras of the recording, one alone, or the colour camera with depth (all it has)")
+          "Cameras to use: both, one alone, or the colour camera with depth (all cameras of the recording)")
       ->type_name("stereo|left|right|rgbd");
   add_input(command, Input::file, "--calibration", options.calibration,
-            "Calibration, in place of the recording's own: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
+            "Calibration, replaces that of the recording: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
       ->type_name("FILE");
   command
-      .add_option("--baseline", options.baseline,
-                  "Baseline of the cameras, replaces that of the calibration; confirms one outside 2 mm to 1 m")
+      .add_option(
+          "--baseline", options.baseline,
+          "Baseline of the cameras, replaces that of the calibration; required to confirm one outside 2 mm to 1 m")
       ->type_name("METRES")
       ->check(between(kShortestConfirmed, kLongestConfirmed));
   command
       .add_option_function<std::string>(
           "--fps", set_frame_rate,
-          "Frame rate of images and videos, in place of the times in their names or of what the video says")
+          "Frame rate of images and videos, replaces the times in file names and the frame rate of the video")
       ->type_name("HZ");
   add_input(command, Input::file, "--wheels", options.wheels,
-            "Wheel odometry, \"time_s tx ty tz qx qy qz qw\" a line, in place of wheel.txt in the folder")
+            "Wheel odometry, \"time_s tx ty tz qx qy qz qw\" per line, replaces wheel.txt in the folder")
       ->type_name("FILE");
-  command.add_flag("!--no-wheels", options.use_wheels, "Leave wheel.txt in the folder out");
+  command.add_flag("!--no-wheels", options.use_wheels, "Ignore wheel.txt in the folder");
   command.add_flag("--gyroscope", options.use_gyroscope,
-                   "Use the gyroscope in the folder, mav0/imu0/data.csv, or the only sensor_msgs/Imu of a bag");
-  add_text(command, "--wheels-topic", options.wheels_topic, "Topic of a bag's wheels, nav_msgs/Odometry or twists")
+                   "Use the gyroscope of the folder (mav0/imu0/data.csv) or of a bag's only sensor_msgs/Imu topic");
+  add_text(command, "--wheels-topic", options.wheels_topic,
+           "Topic of wheel odometry in a bag, nav_msgs/Odometry or twists")
       ->type_name("TOPIC");
-  add_text(command, "--imu-topic", options.imu_topic, "Topic of a bag's gyroscope that is used, sensor_msgs/Imu")
+  add_text(command, "--imu-topic", options.imu_topic, "Topic of the gyroscope in a bag, sensor_msgs/Imu")
       ->type_name("TOPIC");
-  add_text(command, "--left", options.left_topic, "Topic of a bag's left images, or of its only camera's")
+  add_text(command, "--left", options.left_topic, "Topic of the left or only camera's images in a bag")
       ->type_name("TOPIC");
-  add_text(command, "--right", options.right_topic, "Topic of a bag's right images")->type_name("TOPIC");
+  add_text(command, "--right", options.right_topic, "Topic of the right camera's images in a bag")->type_name("TOPIC");
   command
       .add_option("--pair-tolerance", options.pair_tolerance_s,
-                  "Largest difference between the stamps of a left and a right image of a pair (0.002)")
+                  "Maximum difference between the time stamps of left and right image of a pair (0.002)")
       ->type_name("SECONDS")
       ->check(between(0.0, 0.5));
 }
 
 void declare_frame_range(CLI::App& command, FrameRange& range) {
-  command.add_option("--start", range.start_s, "Begin so long after the recording's first frame")
+  command.add_option("--start", range.start_s, "Start this long after the recording's first frame")
       ->type_name("SECONDS")
       ->check(between(0.0, kLongest_s));
-  command.add_option("--end", range.end_s, "End before so long after the recording's first frame")
+  command.add_option("--end", range.end_s, "End this long after the recording's first frame, exclusive")
       ->type_name("SECONDS")
       ->check(between(0.0, kLongest_s));
   const auto set_frames = [&range](const std::string& text) {
     const std::optional<FrameRange> frames = parse_frames(text);
-    if (!frames) throw CLI::ValidationError("--frames", "\"" + text + "\" is no range of frames such as 0:150");
+    if (!frames) throw CLI::ValidationError("--frames", "\"" + text + "\" is not a range of frames such as 0:150");
     range.first = frames->first;
     range.last = frames->last;
   };
   command
-      .add_option_function<std::string>(
-          "--frames", set_frames, "Frames of the recording, counted from 0, END exclusive; either may be left out")
+      .add_option_function<std::string>("--frames", set_frames,
+                                        "Frames of the recording, counted from 0, END exclusive; both are optional")
       ->type_name("FIRST:END");
-  command.add_option("--stride", range.stride, "Take every n-th frame of those")
+  command.add_option("--stride", range.stride, "Use every n-th frame of the range")
       ->type_name("N")
       ->check(between(1, 1'000'000))
       ->capture_default_str();
@@ -102,7 +104,7 @@ void require_sense(const FrameRange& range) {
 
 void declare_pace(CLI::App& command, std::optional<Pace>& pace) {
   add_choice(command, "--pace", pace, {Pace::same_thread, Pace::paced, Pace::live},
-             "Where mapping runs and how fast frames are fed (paced)");
+             "Thread of mapping and feeding rate of frames (paced)");
 }
 
 }  // namespace byre::cli

@@ -12,7 +12,7 @@ namespace byre::cli {
 
 // Help text for recordings.
 inline constexpr const char* kRecordingHelp =
-    "Folder of a recording (EuRoC, KITTI odometry, TUM RGB-D, images), a video file, or a bag of ROS 1 or ROS 2";
+    "Recording: folder (EuRoC, KITTI odometry, TUM RGB-D, images), video file, or ROS 1 or ROS 2 bag";
 
 // Declares --camera, --calibration, --baseline, --fps, --wheels, --no-wheels, --gyroscope, --wheels-topic, --imu-topic,
 // --left, --right and --pair-tolerance. The options must outlive the parsing of the command line.

@@ -34,15 +34,16 @@ Calibration scaled_calibration(Calibration calibration, bool has_metric_map, Sca
 }  // namespace
 
 void declare_live_options(CLI::App& command, LiveOptions& options) {
-  CLI::Option* const live = add_text(command, "--live", options.cameras.devices,
-                                     std::string("In place of a recording. ") + kDevicesHelp + ". Needs --calibration")
-                                ->type_name("DEVICE");
+  CLI::Option* const live =
+      add_text(command, "--live", options.cameras.devices,
+               std::string("Live cameras instead of a recording. ") + kDevicesHelp + ". Needs --calibration")
+          ->type_name("DEVICE");
   for (const char* const name :
        {"RECORDING", "--camera", "--fps", "--left", "--right", "--start", "--end", "--frames", "--stride", "--wheels",
         "--no-wheels", "--gyroscope", "--wheels-topic", "--imu-topic", "--pair-tolerance"}) {
     live->excludes(command.get_option(name));
   }
-  command.add_option("--duration", options.duration_s, "End so long after the first frame (Ctrl-C)")
+  command.add_option("--duration", options.duration_s, "End this long after the first frame (default: Ctrl-C)")
       ->type_name("SECONDS")
       ->check(between(0.01, 1e9))
       ->needs(live);
@@ -51,7 +52,7 @@ void declare_live_options(CLI::App& command, LiveOptions& options) {
 
 void require_one_input(const std::filesystem::path& recording, const LiveOptions& live, const OpenOptions& open) {
   if (recording.empty() && !live.is_wanted()) {
-    throw CLI::ValidationError("RECORDING", "name a recording, or cameras (--live /dev/video0)");
+    throw CLI::ValidationError("RECORDING", "give a recording, or cameras (--live /dev/video0)");
   }
   if (live.is_wanted() && !open.calibration) {
     throw CLI::ValidationError("--live", "needs the calibration of the cameras (--calibration FILE)");
@@ -145,8 +146,7 @@ MapRun RunInput::run(const EngineOptions& options, const MapRunHooks& hooks, con
 std::string RunInput::report() {
   if (!live_) return "";
   const LiveCameraReport cameras = live_->finish();
-  return to_text(cameras) +
-         row("passed over", fmt::format("{} frames, as newer ones were there", live_->passed_over()));
+  return to_text(cameras) + row("skipped", fmt::format("{} frames, replaced by newer ones", live_->passed_over()));
 }
 
 }  // namespace byre::cli

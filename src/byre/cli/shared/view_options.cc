@@ -11,15 +11,15 @@ namespace byre::cli {
 namespace {
 
 CLI::Option* declare_port(CLI::App& command, const std::string& name, int& port, const std::string& what) {
-  return command.add_option(name, port, what + " (" + std::to_string(port) + "; 0: one that is free)")
+  return command.add_option(name, port, what + " (" + std::to_string(port) + "; 0: any free port)")
       ->type_name("PORT")
       ->check(between(0, 65535));
 }
 
 CLI::Option* declare_address(CLI::App& command, ViewOptions& options) {
   return add_text(command, "--bind", options.server.address,
-                  "Address of this machine to serve at, 0.0.0.0 for all; whoever asks needs the token in the address "
-                  "that is shown (127.0.0.1: this machine alone, without a token)")
+                  "Network address to serve at, 0.0.0.0 for all; clients need the token in the printed address "
+                  "(127.0.0.1: only this machine, no token)")
       ->type_name("ADDRESS");
 }
 
@@ -37,15 +37,14 @@ void declare_watching(CLI::App& command, ViewOptions& options) {
   view->each([&options](const std::string&) { options.is_wanted = true; });
   command
       .add_option("--view-for", options.stay_s,
-                  "How long the page stays once the run is over, 0: not at all (until Ctrl-C where the program has a "
-                  "terminal, else not at all)")
+                  "Time to serve the page after the end of the run (until Ctrl-C with a terminal, else 0)")
       ->type_name("SECONDS")
       ->check(between(0.0, 1e9))
       ->needs(view);
   declare_address(command, options)->needs(view);
   declare_plan(command, options,
-               "Floor plan that \"byre register\" has found the map on: the robot is not taken to be behind its walls, "
-               "and --view shows it under the map");
+               "Floor plan on which \"byre register\" registered the map: poses behind its walls are rejected, and "
+               "--view shows it below the map");
 }
 
 void declare_viewing(CLI::App& command, ViewOptions& options) {

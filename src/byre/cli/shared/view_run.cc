@@ -50,9 +50,10 @@ RunViewer start_viewer(const ViewOptions& options, const WatchedRun& run) {
 }
 
 std::string describe_stay(double stay_s, bool is_asked_for) {
-  if (stay_s == std::numeric_limits<double>::infinity()) return "goes on until Ctrl-C";
-  if (stay_s > 0.0) return fmt::format("goes on for {:g} s, or until Ctrl-C", stay_s);
-  return is_asked_for ? "ends with the run" : "ends with the run, as there is no terminal (--view-for SECONDS: stays)";
+  if (stay_s == std::numeric_limits<double>::infinity()) return "stays until Ctrl-C";
+  if (stay_s > 0.0) return fmt::format("stays for {:g} s, or until Ctrl-C", stay_s);
+  return is_asked_for ? "ends with the run"
+                      : "ends with the run, as there is no terminal (to keep it: --view-for SECONDS)";
 }
 
 }  // namespace

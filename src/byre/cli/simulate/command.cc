@@ -45,14 +45,14 @@ constexpr const char* kSimulateFooter = R"(Examples:
   byre simulate cowshed --motion --turn spot -o barn_6
   byre simulate cowshed --calibration-level 1 --calibration-seed 2 --rolling-shutter 15 -o barn_5
 
-A feeding robot drives up and down the feed alley with a stereo camera. The same seed is the same barn; another mission
-is another visit to it: other feed, other light, cows elsewhere, a share of the buckets, pallets and barrows moved, and a
-gate open to a store that the first visit did not see.
-FOLDER gets an EuRoC recording with exact truth (mav0), and a floor plan with points to register a map of this recording
-on it (plan). Where the calibration errs, sensor.yaml has the erring one, and true_sensor.yaml beside it what rendered
-the images. With --motion it gets what two driven wheels and a gyroscope told too (wheel.txt, mav0/imu0), with their
-errors. The same options give the same bytes, whatever the number of threads. Ctrl-C leaves nothing behind.
-docs/reference/simulation.md describes both.)";
+A feeding robot drives up and down the feed alley with a stereo camera. The same seed gives the same barn; another
+mission is another visit to it: other feed, other light, other cows, a share of the buckets, pallets and barrows
+moved, and an open gate to a store that was closed during the first visit.
+FOLDER receives a EuRoC recording with exact truth (mav0), and a floor plan with points to register a map of this
+recording (plan). With calibration errors, sensor.yaml contains them, and true_sensor.yaml is the calibration used
+for rendering. With --motion it also receives the measurements of two driven wheels and a gyroscope (wheel.txt,
+mav0/imu0), with their errors. The same options give the same bytes, for any number of threads. Ctrl-C leaves no
+files. docs/reference/simulation.md describes both.)";
 
 std::string to_text(const SimulateOptions& options, const Rendering& rendering) {
   return fmt::format("rendered     {} stereo pairs in {:.1f} s ({:.1f} a second), after {:.1f} s to build the barn\n",
@@ -102,42 +102,45 @@ void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
   const std::map<std::string, BarnTime> times = {{"day", BarnTime::day}, {"dusk", BarnTime::dusk}};
   const std::map<std::string, BarnGate> gates = {{"closed", BarnGate::closed}, {"open", BarnGate::open}};
   CowshedOptions& barn = options.barn;
-  command.add_option("--seed", barn.seed, "Which barn")->type_name("N")->capture_default_str();
-  command.add_option("--mission", barn.mission, "Which visit to it, counted from 1")
+  command.add_option("--seed", barn.seed, "Seed of the barn")->type_name("N")->capture_default_str();
+  command.add_option("--mission", barn.mission, "Number of the visit, counted from 1")
       ->type_name("N")
       ->check(between(1, 1'000'000))
       ->capture_default_str();
   const auto add_amount = [&command](const char* name, double& value, double most, const char* meaning) {
     command.add_option(name, value, meaning)->type_name("NUMBER")->check(between(0.0, most))->capture_default_str();
   };
-  add_amount("--change", barn.change, 1.0, "Share of the movable things that are elsewhere than in mission 1");
-  add_amount("--dirt", options.dirt, 4.0, "On the lenses: 1 is a dozen of soft spots");
-  add_amount("--dust", barn.dust, 4.0, "In the air: with 1 half of the light is lost in 14 m");
-  command.add_option("--time", barn.time, "When (day; dusk in even missions)")
+  add_amount("--change", barn.change, 1.0, "Share of the movable objects moved since mission 1");
+  add_amount("--dirt", options.dirt, 4.0, "Dirt on the lenses; 1: a dozen blurred spots");
+  add_amount("--dust", barn.dust, 4.0, "Dust in the air; 1: half of the light is lost in 14 m");
+  command.add_option("--time", barn.time, "Time of day (day; dusk in even missions)")
       ->type_name("day|dusk")
       ->transform(one_of(times));
   command
       .add_option("--gate", barn.gate,
-                  "Of the feed store, into which the robot drives where it is open (closed; open later)")
+                  "Gate of the feed store; the robot enters if it is open (closed in mission 1, open later)")
       ->type_name("open|closed")
       ->transform(one_of(gates));
-  command.add_option("--cows", barn.cows, "How many (3 in mission 1, 8 later)")->type_name("N")->check(between(0, 40));
+  command.add_option("--cows", barn.cows, "Number of cows (3 in mission 1, 8 later)")
+      ->type_name("N")
+      ->check(between(0, 40));
 }
 
 void declare_night(CLI::App& command, NightOptions& night) {
-  command.add_option("--light", night.light, "Share of the light that the barn has by day or at dusk")
+  command.add_option("--light", night.light, "Brightness of the barn, relative to that of day or dusk")
       ->type_name("SHARE")
       ->check(between(1e-6, 10.0))
       ->capture_default_str();
-  command.add_option("--headlight", night.headlight, "On the robot; 1: as bright 3 m ahead as lamps are at dusk")
+  command
+      .add_option("--headlight", night.headlight, "Headlight of the robot; 1: as bright 3 m ahead as the lamps at dusk")
       ->type_name("NUMBER")
       ->check(between(0.0, 100.0))
       ->capture_default_str();
   const auto add_time = [&command](const char* name, double& value, const char* meaning) {
     return command.add_option(name, value, meaning)->type_name("SECONDS")->check(between(0.0, 36000.0));
   };
-  CLI::Option* const out = add_time("--lights-out", night.lights_out, "When the barn's light goes out");
-  out->needs(add_time("--lights-on", night.lights_on, "When it is on again")->needs(out));
+  CLI::Option* const out = add_time("--lights-out", night.lights_out, "Time at which the barn's light goes out");
+  out->needs(add_time("--lights-on", night.lights_on, "Time at which the light is on again")->needs(out));
 }
 
 // Parses width and height. Throws CLI::ValidationError for other text.
@@ -155,29 +158,31 @@ std::array<int, 2> size_of(const std::string& text) {
 }
 
 void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
-  command.add_option("--duration", options.duration_s, "Of the drive; a longer one goes farther, then round again")
+  command.add_option("--duration", options.duration_s, "Duration of the drive")
       ->type_name("SECONDS")
       ->check(between(0.1, 36000.0))
       ->capture_default_str();
   const std::map<std::string, TurnKind> turns = {{"arc", TurnKind::arc}, {"spot", TurnKind::spot}};
-  command.add_option("--turn", options.turn, "At the ends of the alley: into the lane beside, or on the spot (arc)")
+  command
+      .add_option("--turn", options.turn,
+                  "Turns at the ends of the alley: arc into the adjacent lane, or on the spot (arc)")
       ->type_name("arc|spot")
       ->transform(one_of(turns));
-  command.add_option("--rate", options.frame_rate_hz, "Stereo pairs in a second")
+  command.add_option("--rate", options.frame_rate_hz, "Stereo pairs per second")
       ->type_name("HZ")
       ->check(between(1.0, 200.0))
       ->capture_default_str();
-  command.add_option("--divide", options.image_divisor, "Makes images smaller: 752 x 480 pixels divided by N")
+  command.add_option("--divide", options.image_divisor, "Divisor of the image size: 752 x 480 pixels divided by N")
       ->type_name("N")
       ->check(between(1, 16))
       ->capture_default_str();
   command
       .add_option_function<std::string>(
           "--size", [&options](const std::string& text) { options.image_size = size_of(text); },
-          "Of images in pixels, as wide a view as without; such as 640x480")
+          "Image size in pixels, such as 640x480; the field of view stays")
       ->type_name("WxH")
       ->excludes("--divide");
-  command.add_option("--threads", options.threads, "To render with (0: as many as the machine has)")
+  command.add_option("--threads", options.threads, "Number of rendering threads (0: all cores)")
       ->type_name("N")
       ->check(between(0, 256))
       ->capture_default_str();
@@ -187,23 +192,24 @@ void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
 
 void declare_motion(CLI::App& command, SimulateOptions& options) {
   MotionSensorOptions& motion = options.motion;
-  CLI::Option* const flag =
-      command.add_flag("--motion", options.has_motion, "Record wheel odometry and a gyroscope too");
-  command.add_option("--wheel-radius-error", motion.radius_error, "Share by which wheels are smaller than is told")
+  CLI::Option* const flag = command.add_flag("--motion", options.has_motion, "Record wheel odometry and gyroscope too");
+  command
+      .add_option("--wheel-radius-error", motion.radius_error,
+                  "Relative error of the wheel radius: wheels are smaller than assumed by this share")
       ->type_name("SHARE")
       ->check(between(-0.2, 0.2))
       ->needs(flag)
       ->capture_default_str();
-  command.add_option("--wheel-slip", motion.slip, "Deviation of a wheel's way, as a share of it")
+  command.add_option("--wheel-slip", motion.slip, "Standard deviation of a wheel's path, as a share of it")
       ->type_name("SHARE")
       ->check(between(0.0, 1.0))
       ->needs(flag)
       ->capture_default_str();
-  command.add_option("--lift-from", motion.lifted_from, "When the left wheel leaves the ground and spins")
+  command.add_option("--lift-from", motion.lifted_from, "Time at which the left wheel leaves the ground and spins")
       ->type_name("SECONDS")
       ->check(between(0.0, 36000.0))
       ->needs(flag);
-  command.add_option("--lift-to", motion.lifted_to, "When it is down again")
+  command.add_option("--lift-to", motion.lifted_to, "Time at which the wheel touches the ground again")
       ->type_name("SECONDS")
       ->check(between(0.0, 36000.0))
       ->needs(flag);

@@ -18,7 +18,7 @@ void add_number(CLI::App& command, const char* name, std::optional<Number>& valu
   command.add_option(name, value, meaning)
       ->type_name(unit)
       ->check(between(range.first, range.second))
-      ->group("Camera that errs");
+      ->group("Camera errors");
 }
 
 // Converts a given number to another unit; without one keeps the value.
@@ -34,26 +34,27 @@ void declare_imperfection(CLI::App& command, ImperfectionOptions& options) {
   for (const CameraCondition condition : {CameraCondition::exact, CameraCondition::good, CameraCondition::worn}) {
     conditions.emplace(to_string(condition), condition);
   }
-  command.add_option("--imperfection", options.condition, "All of what comes with age and use (exact)")
+  command.add_option("--imperfection", options.condition, "Preset of all camera errors by age and use (exact)")
       ->type_name("exact|good|worn")
       ->transform(one_of(conditions))
-      ->group("Camera that errs");
+      ->group("Camera errors");
   add_number(command, "--calibration-level", options.calibration_level, {0.0, 10.0}, "NUMBER",
-             "How far the calibration is off: 1 as a good one is, 3 as a worn one");
-  command.add_option("--calibration-seed", options.calibration_seed, "Which error of that level (1)")
+             "Size of the calibration error: 1 as of a good calibration, 3 as of a worn camera");
+  command.add_option("--calibration-seed", options.calibration_seed, "Seed of the calibration error (1)")
       ->type_name("N")
-      ->group("Camera that errs");
+      ->group("Camera errors");
   add_number(command, "--rolling-shutter", options.rolling_shutter_ms, {0.0, 100.0}, "MS",
-             "Rows are exposed one after the other, all within MS milliseconds");
+             "Rolling shutter: readout time of an image");
   add_number(command, "--time-offset", options.time_offset_ms, {-100.0, 100.0}, "MS",
-             "The right camera is exposed MS milliseconds later");
+             "Delay of the right camera's exposure");
   add_number(command, "--lens-blur", options.lens_blur, {0.0, 5.0}, "PX",
-             "Sigma of the blur in the corners of left images; of right ones half as much again");
-  add_number(command, "--gain", options.gain, {0.25, 4.0}, "NUMBER", "Of the right camera relative to the left one");
-  add_number(command, "--offset", options.offset, {-50.0, 50.0}, "GREY",
-             "Grey values by which right images are brighter besides");
-  add_number(command, "--vignetting", options.vignetting, {0.0, 0.9}, "SHARE", "Of the light, lost in the corners");
-  add_number(command, "--jpeg", options.jpeg_quality, {1, 100}, "QUALITY", "Images are kept as JPEG of this quality");
+             "Standard deviation of the blur in the corners of left images; 1.5 times as much in right images");
+  add_number(command, "--gain", options.gain, {0.25, 4.0}, "NUMBER",
+             "Gain of the right camera relative to the left one");
+  add_number(command, "--offset", options.offset, {-50.0, 50.0}, "GREY", "Offset of the right camera, grey values");
+  add_number(command, "--vignetting", options.vignetting, {0.0, 0.9}, "SHARE",
+             "Vignetting: share of the light lost in the corners");
+  add_number(command, "--jpeg", options.jpeg_quality, {1, 100}, "QUALITY", "Store images as JPEG of this quality");
 }
 
 CameraImperfection asked_for(const ImperfectionOptions& options) {

@@ -34,9 +34,9 @@ constexpr const char* kViewFooter = R"(Examples:
   byre view barn.byre --plan plan.yaml -o barn-plan.byre
   byre view barn.byre --bind 0.0.0.0
 
-Shows a map in a browser, at the address that is told on the standard error stream, until Ctrl-C. With a floor plan,
-points are picked in the map and on the plan, and the page tells how well they fit; with -o it can save a copy of the
-map that knows its place on the plan, as "byre register" does it, and the picks beside it (barn-plan.picks.csv).
+Shows a map in a browser, at the address printed on the standard error stream, until Ctrl-C. With a floor plan,
+points are picked in the map and on the plan, and the page shows the residuals; with -o it can save a copy of the map
+with its registration on the plan, as by "byre register", and the picks (barn-plan.picks.csv).
 docs/how-to/watch_in_browser.md describes the page.)";
 
 std::vector<fs::path> outputs_of(const ViewCommandOptions& options) {
@@ -68,7 +68,7 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 
 void require_consistent(const ViewCommandOptions& options) {
   if (options.output && is_same_file(*options.output, options.map) && !options.overwrite) {
-    throw CLI::ValidationError("--output", "is the map itself: name another file, or allow it with --overwrite");
+    throw CLI::ValidationError("--output", "is the map itself: give another file, or allow it with --overwrite");
   }
 }
 
@@ -76,24 +76,21 @@ void require_consistent(const ViewCommandOptions& options) {
 
 Action declare_view(CLI::App& command) {
   const auto options = std::make_shared<ViewCommandOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file, as \"byre map -o\" writes it")
-      ->type_name("MAP")
-      ->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
   declare_viewing(command, options->view);
   CLI::Option* const output = add_output(command, Output::viewed_map, "-o,--output", options->output,
-                                         "Where the page saves the map with its place on the plan")
+                                         "File to which the page saves the map with its registration on the plan")
                                   ->type_name("MAP")
                                   ->needs("--plan");
-  command.add_flag("--overwrite", options->overwrite, "The output may be the map itself")->needs(output);
-  command.add_option("--pick-sigma", options->pick_sigma, "How well points are picked, one sigma (0.05)")
+  command.add_flag("--overwrite", options->overwrite, "Allow the output to replace the map")->needs(output);
+  command.add_option("--pick-sigma", options->pick_sigma, "Standard deviation of the picks (0.05)")
       ->type_name("METRES")
       ->check(between(1e-4, 100.0));
   command
-      .add_option("--body-height", options->registration.body_height,
-                  "How high the body's origin is above the floor (0)")
+      .add_option("--body-height", options->registration.body_height, "Height of the body's origin above the floor (0)")
       ->type_name("METRES")
       ->check(between(-100.0, 100.0));
-  command.add_flag("--quiet", options->quiet, "Tell nothing but the address");
+  command.add_flag("--quiet", options->quiet, "Print only the address");
   check_when_parsed(command, [options] { require_consistent(*options); });
   command.footer(kViewFooter);
   return [options](std::ostream&) { return view(*options); };

@@ -67,7 +67,7 @@ TEST_F(ViewProgram, EndsWithTheRunWhereNobodyCouldEndIt) {
 TEST_F(ViewProgram, StaysForAsLongAsItIsTold) {
   const Outcome outcome = run("run '" + room_ + "' --frames 0:4 --view 0 --view-for 0.2 </dev/null");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_THAT(outcome.errors, HasSubstr("viewer: goes on for 0.2 s, or until Ctrl-C\n"));
+  EXPECT_THAT(outcome.errors, HasSubstr("viewer: stays for 0.2 s, or until Ctrl-C\n"));
   EXPECT_THAT(run("run '" + room_ + "' --frames 0:4 --view 0 --view-for 0").errors, HasSubstr("ends with the run\n"));
 }
 

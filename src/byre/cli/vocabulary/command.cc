@@ -47,7 +47,7 @@ constexpr const char* kTrainFooter = R"(Examples:
   byre vocabulary train photos -o my.vocabulary
   byre vocabulary train barn/*.png office/*.png -o my.vocabulary --branching 16 --depth 4 --seed 7
 
-The same images, options and seed give the same file. BYRE_VOCABULARY=my.vocabulary makes byre use it.)";
+The same images, options and seed give the same file. BYRE_VOCABULARY=my.vocabulary makes byre use this file.)";
 
 std::vector<std::vector<Descriptor>> describe_images(const TrainOptions& options) {
   const std::vector<fs::path> files = find_images(options.images);
@@ -62,7 +62,7 @@ std::vector<std::vector<Descriptor>> describe_images(const TrainOptions& options
     if (descriptors) {
       descriptors_of_images.push_back(std::move(*descriptors));
     } else {
-      warnings.push_back(file.string() + ": cannot be read as an image, left out");
+      warnings.push_back(file.string() + ": cannot be read as an image, skipped");
     }
     progress.update(i + 1, watch.seconds(), "describing");
   }
@@ -99,7 +99,7 @@ void run_train(const TrainOptions& options, std::ostream& result) {
   std::size_t descriptor_count = 0;
   for (const auto& image : descriptors) descriptor_count += image.size();
   result << to_text(vocabulary, options.output)
-         << fmt::format("learnt from  {} descriptors of {} images\n", descriptor_count, descriptors.size());
+         << fmt::format("trained on   {} descriptors of {} images\n", descriptor_count, descriptors.size());
 }
 
 void run_import(const ImportOptions& options, std::ostream& result) {
@@ -115,12 +115,13 @@ void run_show(const VocabularyShowOptions& options, std::ostream& result) {
 }
 
 void declare_output(CLI::App& command, fs::path& output) {
-  add_output(command, Output::vocabulary, "-o,--output", output, "Vocabulary to write")->type_name("FILE")->required();
+  add_output(command, Output::vocabulary, "-o,--output", output, "Vocabulary file to write")
+      ->type_name("FILE")
+      ->required();
 }
 
 void declare_train(CLI::App& command, TrainOptions& options) {
-  add_input(command, Input::images, "IMAGES", options.images,
-            "Image files, and folders whose image files are all taken")
+  add_input(command, Input::images, "IMAGES", options.images, "Image files, and folders of image files")
       ->type_name("FILE|FOLDER")
       ->required();
   declare_output(command, options.output);
@@ -128,9 +129,9 @@ void declare_train(CLI::App& command, TrainOptions& options) {
     command.add_option(name, value, meaning)->type_name("N")->check(between(min, max))->capture_default_str();
   };
   add_number("--branching", options.tree.branching, 2, 255, "Children of a node of the tree");
-  add_number("--depth", options.tree.depth, 1, 16, "Levels of the tree; it has at most branching^depth words");
-  add_number("--features", options.features, 1, 1'000'000, "Features to take from an image at most");
-  command.add_option("--seed", options.tree.seed, "Of the random choices in clustering")
+  add_number("--depth", options.tree.depth, 1, 16, "Levels of the tree, with at most branching^depth words");
+  add_number("--features", options.features, 1, 1'000'000, "Maximum number of features per image");
+  command.add_option("--seed", options.tree.seed, "Random seed of the clustering")
       ->type_name("N")
       ->check(from(0.0))
       ->capture_default_str();
@@ -161,14 +162,14 @@ Action declare_vocabulary(CLI::App& command) {
   const auto show = std::make_shared<VocabularyShowOptions>();
   command.require_subcommand(1);
 
-  declare_train(add(command, "train", "Learn a vocabulary from images", train, run_train, chosen), *train);
-  CLI::App& importing = add(command, "import", "Take over a vocabulary of DBoW2", import, run_import, chosen);
-  add_input(importing, Input::file, "INPUT", import->input, "Text file as DBoW2 writes it, of 256-bit descriptors")
+  declare_train(add(command, "train", "Train a vocabulary on images", train, run_train, chosen), *train);
+  CLI::App& importing = add(command, "import", "Import a DBoW2 vocabulary", import, run_import, chosen);
+  add_input(importing, Input::file, "INPUT", import->input, "DBoW2 text file of 256-bit descriptors")
       ->type_name("FILE")
       ->required();
   declare_output(importing, import->output);
-  CLI::App& showing = add(command, "show", "Tell the size and the checksum of a vocabulary", show, run_show, chosen);
-  add_input(showing, Input::file, "VOCABULARY", show->file, "Unless given, the one that byre would use")
+  CLI::App& showing = add(command, "show", "Print size and checksum of a vocabulary", show, run_show, chosen);
+  add_input(showing, Input::file, "VOCABULARY", show->file, "Vocabulary file (the one that byre uses)")
       ->type_name("FILE");
   return [chosen](std::ostream& result) { return (*chosen)(result); };
 }

@@ -62,7 +62,7 @@ TEST_F(VocabularyProgram, LeavesUnreadableImagesOutAndSaysSo) {
   const Outcome outcome = run("vocabulary train images --features 300 -o out.vocabulary");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr(" descriptors of 4 images\n"));
-  EXPECT_THAT(outcome.errors, HasSubstr("byre: warning: images/broken.png: cannot be read as an image, left out\n"));
+  EXPECT_THAT(outcome.errors, HasSubstr("byre: warning: images/broken.png: cannot be read as an image, skipped\n"));
 }
 
 TEST_F(VocabularyProgram, ImportsAndShowsAVocabularyOfDbow2) {
