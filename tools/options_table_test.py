@@ -10,7 +10,7 @@ TOOL = pathlib.Path(__file__).resolve().parent / "options_table.py"
 PROGRAM = """#!/bin/sh
 if [ "$1 $2" = "node --print-config" ]; then
   echo 'images:'
-  echo '  right: ""  # images of the right camera; empty with one (topic or empty)'
+  echo '  right: ""  # images of the right camera; empty: one (topic or empty)'
   exit
 fi
 echo 'pace: paced  # place of mapping (paced|live)'
@@ -27,7 +27,7 @@ More words.
 ROWS = ["| `pace` |  | paced | paced, live | place of mapping |",
         "| `tracking.radius_px` | pixels at octave 0 | 12.5 | from 0.5 to 1000 | first search |"]
 
-SETTING = '| `images.right` | "" | topic or empty | images of the right camera; empty with one |'
+SETTING = '| `images.right` | "" | topic or empty | images of the right camera; empty: one |'
 
 
 class OptionsTable(unittest.TestCase):

@@ -79,7 +79,7 @@ TEST_F(ByreNode, NamesWhatIsWrongWithTheCameras) {
   sensor_msgs::msg::Image broken = image_message(frames[12].left, frames[12].time, "left_optical");
   broken.height(100'000);
   feed_.send_left(broken);
-  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "are cut or not whole pixels"));
+  EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "are truncated or not whole pixels"));
   diagnostics_.forget();
   broken.height(1);
   broken.encoding("thermal");

@@ -214,14 +214,14 @@ TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
         [](const auto& event) { return event.data().find("\"command\":\"initial pose\"") != std::string::npos; });
     return told ? told->data() : "";
   };
-  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("looking within 3.0 m of it for 10 s, then in the whole map"));
-  EXPECT_THAT(answer_to_hint(0.0, "odom"), HasSubstr("give it in 'map'"));
+  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("searching within 3.0 m of it for 10 s, then in the whole map"));
+  EXPECT_THAT(answer_to_hint(0.0, "odom"), HasSubstr("publish it in 'map'"));
   for (std::size_t i = 0; i < 20; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.said();
   ASSERT_TRUE(poses.first()) << node.said();
-  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("agrees with the present pose"));
+  EXPECT_THAT(answer_to_hint(0.0), HasSubstr("agrees with the current pose"));
   const auto before = odometry_.all().back();
   message.pose().pose() = poses.all().back().pose().pose();
-  EXPECT_THAT(answer_to_hint(message.pose().pose().position().x() + 2.5), HasSubstr("looking for the robot"));
+  EXPECT_THAT(answer_to_hint(message.pose().pose().position().x() + 2.5), HasSubstr("relocalising in"));
   const auto after = answer_to(feed_, odometry_, room.frames()[20]);
   ASSERT_TRUE(after.has_value()) << node.said();
   EXPECT_LT((vector_of(after->pose().pose().position()) - vector_of(before.pose().pose().position())).norm(), 0.1)
@@ -229,7 +229,7 @@ TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
   poses.forget();
   for (std::size_t i = 21; i < 28; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.said();
   EXPECT_TRUE(poses.first()) << "found near the hint";
-  EXPECT_THAT(answer_to_hint(50.0), HasSubstr("looking for the robot"));
+  EXPECT_THAT(answer_to_hint(50.0), HasSubstr("relocalising in"));
   poses.forget();
   for (std::size_t i = 28; i < 36; ++i) {
     feed_.send(room.frames()[i]);

@@ -77,7 +77,7 @@ TEST_F(ByreNode, AnswersServicesToWhoeverCalledThem) {
   nav2_msgs::srv::SetInitialPose_Request pose;
   pose.pose().header().frame_id("map");
   EXPECT_TRUE(hint.call(pose).has_value());
-  EXPECT_THAT(node.said(), HasSubstr("looking within 3.0 m of it"));
+  EXPECT_THAT(node.said(), HasSubstr("searching within 3.0 m of it"));
   const auto looked = relocalise.call({});
   EXPECT_TRUE(looked && looked->success()) << node.said();
   EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.said();
@@ -97,7 +97,7 @@ TEST_F(ByreNode, PausesMappingByServiceAndByCommand) {
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: localisation", "no pose")) << "no map begins";
   command("resume mapping");
   EXPECT_TRUE(
-      events_.find([](const auto& event) { return event.data().find("mapping goes on") != std::string::npos; }));
+      events_.find([](const auto& event) { return event.data().find("mapping is resumed") != std::string::npos; }));
   EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.said();
   EXPECT_EQ(node.stop(), 0);
 }
@@ -114,7 +114,7 @@ TEST_F(ByreNode, LeavesRequestsAloneThatItDoesNotUnderstand) {
   command("hello again");
   ASSERT_TRUE(events_.find([](const auto& event) { return event.data().find("hello again") != std::string::npos; }));
   // Commands and requests are read in any order.
-  const std::string refusal = "/byre/save is called in words that are not rmw_cyclonedds_cpp's";
+  const std::string refusal = "/byre/save is called by another middleware than rmw_cyclonedds_cpp";
   EXPECT_TRUE(eventually([&] { return node.said().find(refusal) != std::string::npos; })) << node.said();
   EXPECT_EQ(node.stop(), 0);
 }

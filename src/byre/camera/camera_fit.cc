@@ -10,9 +10,9 @@ namespace {
 void require_size(const Camera& camera, const CaptureThread& capture, const std::string& place) {
   if (camera.width == capture.width() && camera.height == capture.height()) return;
   throw InputError(place,
-                   fmt::format("is of images of {} x {} pixels, but the camera gives {} x {}", camera.width,
+                   fmt::format("is for images of {} x {} pixels, but the camera delivers {} x {}", camera.width,
                                camera.height, capture.width(), capture.height()),
-                   "ask the camera for that size (--size), or calibrate it with this one");
+                   "set the camera to that size (--size), or calibrate it at this size");
 }
 
 }  // namespace
@@ -25,11 +25,11 @@ void ask_for_size(const Calibration& calibration, LiveCameraOptions& options) {
 
 void require_fit(const Calibration& calibration, const CaptureThread& capture, const std::string& place) {
   if (calibration.right && !capture.has_right()) {
-    throw InputError(place, "is of a pair, but there is one camera",
-                     "name the right camera's device too, or say --side-by-side where its images hold both");
+    throw InputError(place, "is of a pair, but one camera is given",
+                     "give the right camera's device too, or --side-by-side if its images contain both");
   }
   if (!calibration.right && capture.has_right()) {
-    throw InputError(place, "is of one camera, but there are two", "name the calibration of the pair");
+    throw InputError(place, "is of one camera, but two are given", "give the calibration of the pair");
   }
   require_size(calibration.left, capture, place);
   if (calibration.right) require_size(calibration.right->camera, capture, place);

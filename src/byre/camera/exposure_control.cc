@@ -54,7 +54,7 @@ ExposureControls::ExposureControls(const VideoDescriptor& descriptor, const std:
   set_control(descriptor, V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL);
   if (!exposure ||
       value_of(descriptor, V4L2_CID_EXPOSURE_AUTO).value_or(V4L2_EXPOSURE_MANUAL) != V4L2_EXPOSURE_MANUAL) {
-    throw InputError(place, "does not let its exposure time be set", "leave the exposure limit out");
+    throw InputError(place, "has no exposure time control", "omit the exposure limit");
   }
   exposure_ = *exposure;
   gain_ = range_of(descriptor, V4L2_CID_GAIN);

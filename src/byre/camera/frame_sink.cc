@@ -71,7 +71,7 @@ class EurocSink final : public FrameSink {
  private:
   static fs::path new_camera(const fs::path& folder) {
     if (!fs::exists(folder / "data.csv")) return folder;
-    throw InputError(folder.string(), "holds a recording already", "name another folder");
+    throw InputError(folder.string(), "already contains a recording", "name another folder");
   }
 
   static void write_sensor(const fs::path& folder, const EurocSensor& sensor, const RecordedCameras& cameras) {

@@ -18,11 +18,11 @@ constexpr int kExposureInterval = 6;  // frames between changes: a change takes 
 
 void require_sense(const LiveCameraOptions& options) {
   if (options.devices.empty() || options.devices.size() > 2) {
-    throw InputError("cameras", "are one device or two", "name the left one, or the left and the right one");
+    throw InputError("cameras", "must be one device or two", "give the left one, or the left and the right one");
   }
   if (options.side_by_side && options.devices.size() == 2) {
-    throw InputError(options.devices[1].string(), "is a second device beside one whose images hold both cameras",
-                     "name one device");
+    throw InputError(options.devices[1].string(),
+                     "is a second device, but the images of the first contain both cameras", "give one device");
   }
 }
 
@@ -33,8 +33,8 @@ std::string describe(const DeviceReport& device) {
   if (counts.damaged > 0) text += fmt::format(", {} damaged", counts.damaged);
   if (counts.out_of_order > 0) text += fmt::format(", {} out of order", counts.out_of_order);
   if (device.times_away > 0)
-    text += fmt::format("; away {} times for {:.1f} s", device.times_away, device.seconds_away);
-  if (device.is_away) text += ", and still";
+    text += fmt::format("; disconnected {} times for {:.1f} s", device.times_away, device.seconds_away);
+  if (device.is_away) text += ", still disconnected";
   if (device.exposure) {
     text += fmt::format("; exposure {:.1f} ms, gain {:.1f}", 1e3 * device.exposure->seconds, device.exposure->gain);
   }
@@ -43,14 +43,14 @@ std::string describe(const DeviceReport& device) {
 
 std::string describe_stamps(const LiveCameraReport& report) {
   const std::string moment(to_string(report.devices.front().moment));
-  if (!report.clock) return "none came";
+  if (!report.clock) return "none received";
   switch (*report.clock) {
     case CameraClock::monotonic:
-      return moment + ", by the kernel's clock, told as UTC";
+      return moment + ", kernel clock, converted to UTC";
     case CameraClock::utc:
       return moment + ", UTC";
     case CameraClock::own:
-      return moment + ", by a clock of the device's own";
+      return moment + ", clock of the device";
   }
   return moment;
 }
@@ -67,11 +67,11 @@ LiveCameras::LiveCameras(const LiveCameraOptions& options) : options_(options), 
   const PixelLayout& right = devices_.back()->report().mode.layout;
   if (options.side_by_side && left.width % 2 != 0) {
     throw InputError(options.devices.front().string(),
-                     fmt::format("has images {} pixels wide, which are no two halves", left.width));
+                     fmt::format("has images of odd width, {} pixels, which cannot be split in halves", left.width));
   }
   if (left.width != right.width || left.height != right.height) {
-    throw InputError(options.devices.back().string(), "has images of another size than the left camera's",
-                     "ask for one size of both (--size)");
+    throw InputError(options.devices.back().string(), "has images of another size than the left camera",
+                     "set one size for both (--size)");
   }
   exposure_ = devices_.front()->report().exposure;
 }
@@ -93,8 +93,8 @@ void LiveCameras::note_clock(Timestamp stamp) {
     utc_offset_ = byre::utc_offset(clock, machine);
   } else if (*clock_ != clock) {
     throw InputError(options_.devices.back().string(),
-                     "has time stamps by another clock than the left camera's, so that no pairs can be told",
-                     "take cameras of one driver");
+                     "has time stamps of another clock than the left camera, so pairs cannot be matched",
+                     "use cameras of the same driver");
   }
 }
 
@@ -107,8 +107,8 @@ void LiveCameras::note_difference() {
   if (!is_apart) return;  // right images are missing
   has_told_difference_ = true;
   notes_.push_back(
-      fmt::format("left and right images are {:.1f} ms apart, which is no pair; have both cameras triggered "
-                  "together, or raise --pair-limit and accept worse poses",
+      fmt::format("left and right images are {:.1f} ms apart, too far for a pair; trigger both cameras together, or "
+                  "raise --pair-limit and accept less accurate poses",
                   1e3 * std::abs(to_seconds(*difference))));
 }
 
@@ -183,7 +183,7 @@ std::string to_text(const LiveCameraReport& report) {
   for (const DeviceReport& device : report.devices) text += row("camera", describe(device));
   text += row("stamps", describe_stamps(report));
   if (report.pairs) {
-    text += row("pairs", fmt::format("{}; {} left images and {} right ones alone", report.pairs->pairs,
+    text += row("pairs", fmt::format("{}; {} left and {} right images unpaired", report.pairs->pairs,
                                      report.pairs->left_alone, report.pairs->right_alone) +
                              (report.last_difference
                                   ? fmt::format("; the last {:.2f} ms apart", 1e3 * to_seconds(*report.last_difference))

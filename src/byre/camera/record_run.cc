@@ -14,8 +14,7 @@ void tell_notes(CaptureThread& capture, int passed_over_before, const RecordHook
   for (const std::string& note : capture.take_notes()) hooks.tell(note);
   if (passed_over_before > 0 || capture.passed_over() == 0) return;
   hooks.tell(
-      "frames come faster than they can be written, and some are left out: write to another disk, or ask for a "
-      "lower --rate");
+      "frames arrive faster than they can be written, some are dropped: use another disk, or set a lower --rate");
 }
 
 }  // namespace

@@ -19,12 +19,12 @@ const char* remedy_for(int error) {
     case ENOENT:
     case ENODEV:
     case ENXIO:
-      return "plug the camera in, or name another: \"byre camera list\" tells which are there";
+      return "connect the camera, or give another one, see \"byre camera list\"";
     case EACCES:
     case EPERM:
-      return "become a member of the group video: sudo adduser $USER video, then log in again";
+      return "join the group video: sudo adduser $USER video, then log in again";
     case EBUSY:
-      return "end the other program that uses the camera";
+      return "stop the other program that uses the camera";
     default:
       return "";
   }

@@ -30,8 +30,9 @@ Timestamp stamp_of(const v4l2_buffer& buffer) {
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const char* what) {
   const int error = errno;
-  throw InputError(path.string(), std::string(what) + ": " + std::strerror(error),
-                   error == EBUSY ? "end the other program that uses the camera" : "unplug the camera and plug it in");
+  throw InputError(
+      path.string(), std::string(what) + ": " + std::strerror(error),
+      error == EBUSY ? "stop the other program that uses the camera" : "disconnect and reconnect the camera");
 }
 
 }  // namespace
@@ -56,13 +57,13 @@ void VideoDevice::map_buffers() {
   wanted.count = kBuffers;
   wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   wanted.memory = V4L2_MEMORY_MMAP;
-  if (!descriptor_.call(VIDIOC_REQBUFS, &wanted)) refuse(path_, "gives no memory for images");
+  if (!descriptor_.call(VIDIOC_REQBUFS, &wanted)) refuse(path_, "provides no image buffers");
   for (std::uint32_t i = 0; i < wanted.count; ++i) {
     v4l2_buffer buffer = buffer_at(i);
-    if (!descriptor_.call(VIDIOC_QUERYBUF, &buffer)) refuse(path_, "gives no memory for images");
+    if (!descriptor_.call(VIDIOC_QUERYBUF, &buffer)) refuse(path_, "provides no image buffers");
     void* const memory =
         mmap(nullptr, buffer.length, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_.number(), buffer.m.offset);
-    if (memory == MAP_FAILED) refuse(path_, "gives no memory for images");
+    if (memory == MAP_FAILED) refuse(path_, "provides no image buffers");
     buffers_.emplace_back(static_cast<std::uint8_t*>(memory), buffer.length);
   }
 }
@@ -70,10 +71,10 @@ void VideoDevice::map_buffers() {
 void VideoDevice::start() {
   for (std::uint32_t i = 0; i < buffers_.size(); ++i) {
     v4l2_buffer buffer = buffer_at(i);
-    if (!descriptor_.call(VIDIOC_QBUF, &buffer)) refuse(path_, "takes no buffer");
+    if (!descriptor_.call(VIDIOC_QBUF, &buffer)) refuse(path_, "does not accept a buffer");
   }
   int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  if (!descriptor_.call(VIDIOC_STREAMON, &type)) refuse(path_, "does not start");
+  if (!descriptor_.call(VIDIOC_STREAMON, &type)) refuse(path_, "does not start streaming");
 }
 
 void VideoDevice::stop() {

@@ -14,7 +14,7 @@ namespace byre {
 namespace {
 
 constexpr int kMostListed = 256;  // entries, because some drivers list without end
-constexpr const char* kSeeList = "\"byre camera list\" tells what it offers";
+constexpr const char* kSeeList = "\"byre camera list\" lists its formats";
 
 double rate_of(const v4l2_fract& interval) {
   return interval.numerator > 0 ? double{1.0} * interval.denominator / interval.numerator : 0.0;
@@ -57,13 +57,13 @@ std::vector<VideoFormats::Size> sizes_of(const VideoDescriptor& descriptor, std:
 v4l2_capability capability_of(const VideoDescriptor& descriptor, const std::string& place) {
   v4l2_capability capability{};
   if (!descriptor.call(VIDIOC_QUERYCAP, &capability)) {
-    throw InputError(place, "is no camera", "\"byre camera list\" tells which devices are");
+    throw InputError(place, "is not a camera", "\"byre camera list\" lists the cameras");
   }
   const bool tells_device = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
   const std::uint32_t does = tells_device ? capability.device_caps : capability.capabilities;
   if ((does & V4L2_CAP_VIDEO_CAPTURE) == 0 || (does & V4L2_CAP_STREAMING) == 0) {
-    throw InputError(place, "hands out no images by memory that is shared",
-                     "name the camera's other device: \"byre camera list\" tells which are there");
+    throw InputError(place, "does not support streaming by memory mapping",
+                     "give another device of the camera, see \"byre camera list\"");
   }
   return capability;
 }
@@ -84,8 +84,8 @@ std::vector<std::uint32_t> offered_formats(const VideoDescriptor& descriptor) {
 std::vector<std::uint32_t> formats_to_try(const VideoDescriptor& descriptor, const VideoRequest& request,
                                           const std::string& place) {
   if (request.format && !is_readable(*request.format)) {
-    throw InputError(place, "is asked for " + four_characters(*request.format) + ", which byre does not read",
-                     "take one of " + readable_formats());
+    throw InputError(place, "is set to " + four_characters(*request.format) + ", which byre does not read",
+                     "use one of " + readable_formats());
   }
   if (request.format) return {*request.format};
   std::vector<std::uint32_t> codes = offered_formats(descriptor);
@@ -93,8 +93,8 @@ std::vector<std::uint32_t> formats_to_try(const VideoDescriptor& descriptor, con
   for (const std::uint32_t code : codes) offered += (offered.empty() ? "" : ", ") + four_characters(code);
   std::erase_if(codes, [](std::uint32_t code) { return !is_readable(code); });
   if (codes.empty()) {
-    throw InputError(place, "offers no format that byre reads, but " + (offered.empty() ? "none" : offered),
-                     "have its driver give one of " + readable_formats());
+    throw InputError(place, "has no format that byre reads, only " + (offered.empty() ? "none" : offered),
+                     "set its driver to one of " + readable_formats());
   }
   std::ranges::sort(codes, {}, [](std::uint32_t code) { return *preference_of(code); });
   return codes;
@@ -196,14 +196,14 @@ VideoMode set_mode(const VideoDescriptor& descriptor, const VideoRequest& reques
     const auto mode = try_mode(descriptor, request, code);
     if (mode && is_as_asked(*mode, request)) return *mode;
     if (!mode && errno == EBUSY) {
-      throw InputError(place, "is used by another program", "end that one first");
+      throw InputError(place, "is used by another program", "stop that program first");
     }
-    tried += (tried.empty() ? "" : ", ") + (mode ? describe(*mode) : four_characters(code) + " not at all");
+    tried += (tried.empty() ? "" : ", ") + (mode ? describe(*mode) : four_characters(code) + " unavailable");
   }
   std::string asked;
   if (request.width && request.height) asked += fmt::format(" of {} x {} pixels", *request.width, *request.height);
   if (request.rate_hz) asked += fmt::format(" at {:g} Hz", *request.rate_hz);
-  throw InputError(place, "gives no images" + asked + ", but " + tried, kSeeList);
+  throw InputError(place, "delivers no images" + asked + ", available: " + tried, kSeeList);
 }
 
 }  // namespace byre

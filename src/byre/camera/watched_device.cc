@@ -65,7 +65,7 @@ void WatchedDevice::lose(const std::string& why, Timestamp now) {
   away_since_ = now;
   report_.is_away = true;
   ++report_.times_away;
-  notes_.push_back(path_.string() + ": " + why + "; it is taken again when it is back");
+  notes_.push_back(path_.string() + ": " + why + "; waiting for it to return");
 }
 
 void WatchedDevice::note_image(Timestamp now) {
@@ -81,8 +81,8 @@ void WatchedDevice::note_image(Timestamp now) {
 
 std::string WatchedDevice::why_silent() const {
   const char* const what = watch_.counts().out_of_order > out_of_order_at_last_image_
-                               ? "the time stamps of its images do not go on"
-                               : "no image came";
+                               ? "its time stamps do not increase"
+                               : "no image arrived";
   return what + fmt::format(" for {:.0f} s", to_seconds(patience_));
 }
 
@@ -93,7 +93,7 @@ std::vector<StampedImage> WatchedDevice::take(Timestamp now) {
     VideoDevice::Taken taken = device_->take();
     if (taken.outcome == VideoDevice::Outcome::nothing) break;
     if (taken.outcome == VideoDevice::Outcome::gone) {
-      lose("was unplugged, or gave up", now);
+      lose("was disconnected or failed", now);
       break;
     }
     if (taken.outcome == VideoDevice::Outcome::damaged) {

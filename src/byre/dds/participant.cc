@@ -171,7 +171,7 @@ std::vector<std::string> Participant::published_types(const std::string& topic) 
   if (publications_.handle() <= 0) {
     publications_ =
         DdsEntity(dds_create_reader(participant_.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
-                  "hear of topics");
+                  "read topic announcements");
   }
   std::vector<void*> read(kMost, nullptr);
   std::vector<dds_sample_info_t> about(kMost);

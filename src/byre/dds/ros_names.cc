@@ -52,7 +52,8 @@ std::string fault_in_name(std::string_view name) {
   bool is_word_begin = true;
   for (const char letter : name.substr(1)) {
     if (letter == '/' ? is_word_begin : !is_word_letter(letter)) {
-      return letter == '/' ? "has two slashes together" : "holds more than letters, digits, underscores and slashes";
+      return letter == '/' ? "has two consecutive slashes"
+                           : "contains characters other than letters, digits, underscores and slashes";
     }
     if (is_word_begin && std::isdigit(static_cast<unsigned char>(letter)) != 0)
       return "has a part that begins with a digit";

@@ -22,7 +22,8 @@ int read_domain(const Environment& environment) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
   const bool is_number = error == std::errc{} && end == text.data() + text.size();
   if (!is_number || domain < 0 || domain > kMostDomain) {
-    throw InputError("ROS_DOMAIN_ID", "is '" + text + "', which is no domain", "set a number from 0 to 232, or none");
+    throw InputError("ROS_DOMAIN_ID", "is '" + text + "', which is not a domain",
+                     "set a number from 0 to 232, or unset it");
   }
   return domain;
 }
@@ -38,7 +39,7 @@ DiscoveryRange read_range(const Environment& environment) {
   const std::string text = environment("ROS_AUTOMATIC_DISCOVERY_RANGE").value_or("");
   const auto* const found = std::ranges::find(kNames, text, &std::pair<std::string_view, DiscoveryRange>::first);
   if (found == kNames.end()) {
-    throw InputError("ROS_AUTOMATIC_DISCOVERY_RANGE", "is '" + text + "', which is no range",
+    throw InputError("ROS_AUTOMATIC_DISCOVERY_RANGE", "is '" + text + "', which is not a range",
                      "set SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT");
   }
   return found->second;
@@ -61,7 +62,7 @@ RosDistribution read_distribution(const Environment& environment) {
   const auto distribution = distribution_of(text);
   if (!distribution) {
     throw InputError("ROS_DISTRO", "is '" + text + "', which is not a release of ROS 2",
-                     "set a name as humble or jazzy");
+                     "set a release such as humble or jazzy");
   }
   return *distribution;
 }

@@ -70,8 +70,8 @@ FleetPosition FleetPositionKeeper::at(Timestamp now) const {
   position.score = 0.0;
   position.deviation.reset();
   position.velocity.reset();
-  position.problem = arrived_ ? "no images come" : "no image was tracked yet";
-  position.advice = "look at the camera and its driver";
+  position.problem = arrived_ ? "no images arrive" : "no image has been tracked yet";
+  position.advice = "check the camera and its driver";
   return position;
 }
 

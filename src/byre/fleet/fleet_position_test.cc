@@ -113,7 +113,7 @@ TEST_F(FleetPositionTest, IsNotKnownWithoutFrames) {
   EXPECT_FALSE(position.is_initialised);
   EXPECT_EQ(position.score, 0.0);
   EXPECT_EQ(position.x, 3.0);
-  EXPECT_THAT(position.problem, HasSubstr("no images come"));
+  EXPECT_THAT(position.problem, HasSubstr("no images arrive"));
 }
 
 }  // namespace

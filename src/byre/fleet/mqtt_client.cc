@@ -53,7 +53,7 @@ MqttClient::MqttClient(const MqttOptions& options, Presence presence)
     : options_(options), presence_(std::move(presence)) {
   set_up_library();
   client_.reset(mosquitto_new(options_.client_id.c_str(), true, this));
-  if (!client_) throw std::runtime_error("MQTT: no client can be made of the name " + options_.client_id);
+  if (!client_) throw std::runtime_error("MQTT: cannot create a client with the id " + options_.client_id);
   mosquitto* const client = client_.get();
   require_done(mosquitto_threaded_set(client, true), "use a thread");
   mosquitto_connect_callback_set(client, note_connect);
@@ -62,9 +62,9 @@ MqttClient::MqttClient(const MqttOptions& options, Presence presence)
   const MqttMessage& will = presence_.will;
   require_done(mosquitto_will_set(client, will.topic.c_str(), static_cast<int>(will.text.size()), will.text.data(),
                                   qos_of(will), will.is_retained),
-               "leave a will");
+               "set a will");
   if (!options_.user.empty()) {
-    require_done(mosquitto_username_pw_set(client, options_.user.c_str(), options_.password.c_str()), "tell the user");
+    require_done(mosquitto_username_pw_set(client, options_.user.c_str(), options_.password.c_str()), "set the user");
   }
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }

@@ -97,7 +97,7 @@ std::string_view fault_in_identity(std::string_view text) {
     return std::isalnum(c) != 0 || kMarks.find(c) != std::string_view::npos;
   };
   if (text.empty()) return "is empty";
-  return std::ranges::all_of(text, is_allowed) ? "" : "holds other characters than letters, digits and _ . : -";
+  return std::ranges::all_of(text, is_allowed) ? "" : "contains characters other than letters, digits and _ . : -";
 }
 
 std::string fleet_topic(const FleetIdentity& identity, std::string_view topic) {

@@ -35,13 +35,14 @@ void CameraWatch::note_unusable(const InputError& fault, Timestamp now) {
 
 void CameraWatch::note_frame(const CameraFrame& frame, Timestamp now) {
   frames_.push_back({now, frame.wants_right && !frame.has_right, frame.seconds, frame.nearest_right});
-  if (frame.is_frozen) frozen_ = Note{now, "the camera repeats its image; restart its driver"};
+  if (frame.is_frozen) frozen_ = Note{now, "repeated image; restart the camera driver"};
   if (frame.jump) {
-    jump_ = Note{now, fmt::format("stamps jumped by {:.3f} s; keep the clocks of camera and computer together (chrony)",
-                                  to_seconds(*frame.jump))};
+    jump_ =
+        Note{now, fmt::format("time stamps jumped by {:.3f} s; synchronise the clocks of camera and computer (chrony)",
+                              to_seconds(*frame.jump))};
   }
   if (is_dropped(frame.fault) || frame.fault == InputFault::late_right) {
-    dropped_ = Note{now, "an image was not used: " + std::string(to_string(frame.fault))};
+    dropped_ = Note{now, "image not used: " + std::string(to_string(frame.fault))};
   }
   forget_before(now - kRecently);
 }
@@ -65,7 +66,7 @@ std::optional<CameraWatch::Finding> CameraWatch::silence(Timestamp now) const {
   const double silent = to_seconds(now - last_arrival_.value_or(since_));
   if (!last_arrival_) {
     if (silent < 1.0) return std::nullopt;
-    return Finding{kStale, "no images on " + topic_ + "; look at the camera's driver, the topic and ROS_DOMAIN_ID"};
+    return Finding{kStale, "no images on " + topic_ + "; check the camera driver, the topic and ROS_DOMAIN_ID"};
   }
   if (silent < to_seconds(longest_silence())) return std::nullopt;
   return Finding{kStale, fmt::format("no image for {:.1f} s on ", silent) + topic_};
@@ -79,7 +80,8 @@ std::optional<CameraWatch::Finding> CameraWatch::lost_right_images() const {
   // Stamps of unsynchronised cameras differ.
   constexpr Timestamp kLikelyItsOwn = 50ms;
   if (const auto nearest = frames_.back().nearest_right; nearest && *nearest < kLikelyItsOwn) {
-    text += fmt::format(", the nearest stamp is {:.1f} ms off, see images.pair_tolerance", 1e3 * to_seconds(*nearest));
+    text += fmt::format(", the nearest time stamp differs by {:.1f} ms, see images.pair_tolerance",
+                        1e3 * to_seconds(*nearest));
   }
   return Finding{lacking == std::ssize(frames_) ? kError : kWarn, text};
 }
@@ -96,7 +98,7 @@ std::vector<CameraWatch::Finding> CameraWatch::findings(Timestamp now) const {
   add(kWarn, jump_, kRemembered);
   add(kWarn, dropped_, kRecently);
   if (!passed_over_at_.empty()) {
-    found.push_back({kWarn, fmt::format("{} images of the last second were left out, as newer ones were there",
+    found.push_back({kWarn, fmt::format("{} images of the last second were replaced by newer ones",
                                         static_cast<int>(passed_over_at_.size()))});
   }
   return found;
@@ -110,7 +112,7 @@ ros::DiagnosticStatus CameraWatch::status(Timestamp now) const {
     status.message += (status.message.empty() ? "" : "; ") + finding.text;
   }
   if (status.message.empty()) {
-    status.message = fmt::format("{} frames a second", static_cast<int>(frames_.size()));
+    status.message = fmt::format("{} frames per second", static_cast<int>(frames_.size()));
   }
   status.hardware_id = topic_;
   double slowest = 0.0;

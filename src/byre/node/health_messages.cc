@@ -12,26 +12,26 @@ namespace byre {
 std::string advice_for(Doubt doubt) {
   switch (doubt) {
     case Doubt::no_pose:
-      return "lead the robot to where the map was made";
+      return "move the robot into the mapped area";
     case Doubt::blinded:
-      return "look for covered lenses, darkness and glare";
+      return "check for covered lenses, darkness and glare";
     case Doubt::frozen:
       return "restart the camera's driver";
     case Doubt::right_camera:
-      return "look at the right camera's lens and exposure";
+      return "check lens and exposure of the right camera";
     case Doubt::cameras_disagree:
-      return "look whether the cameras are in step, exchanged or were moved; calibrate them";
+      return "check whether the cameras are synchronised, swapped or displaced; calibrate them";
     case Doubt::calibration:
       return "calibrate the cameras";
     case Doubt::map_damaged:
       return "replace the map by a copy, then send load NAME or restart the node";
     case Doubt::bridged:
-      return "look for covered lenses and darkness; wheels lead the robot on for some metres only";
+      return "check for covered lenses and darkness; dead reckoning by wheels is usable for some metres only";
     case Doubt::off_the_plane:
     case Doubt::in_wall:
     case Doubt::outside:
     case Doubt::behind_wall:
-      return "tell where the robot is, lead it to a place that looks like no other, or look at the floor plan";
+      return "set the initial pose, move the robot to a distinctive place, or check the floor plan";
     default:
       return "";
   }

@@ -55,7 +55,8 @@ void require_size(const ros::Image& message, const Encoding& encoding, const std
       message.data.size() < std::size_t{message.step} * message.height) {
     throw InputError(place,
                      "has an image of " + std::to_string(message.width) + " x " + std::to_string(message.height) +
-                         " pixels whose rows of " + std::to_string(message.step) + " bytes are cut or not whole pixels",
+                         " pixels whose rows of " + std::to_string(message.step) +
+                         " bytes are truncated or not whole pixels",
                      "check width, height, step and data of the images of the camera driver");
   }
 }
@@ -75,11 +76,11 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
   const auto* const encoding = std::ranges::find(kEncodings, message.encoding, &Encoding::name);
   if (encoding == kEncodings.end()) {
     throw InputError(place, "has images of the encoding '" + message.encoding.substr(0, 40) + "'",
-                     "have the driver send mono8, mono16, bgr8, rgb8, bgra8, rgba8, yuyv, uyvy or Bayer of 8 bits");
+                     "set the driver to mono8, mono16, bgr8, rgb8, bgra8, rgba8, yuyv, uyvy or 8-bit Bayer");
   }
   require_size(message, *encoding, place);
   if (encoding->format == PixelFormat::grey16 && message.is_bigendian != 0) {
-    throw InputError(place, "has 16-bit images with the highest byte first", "have the driver send mono8");
+    throw InputError(place, "has big-endian 16-bit images", "set the driver to mono8");
   }
   const int width = static_cast<int>(message.width), height = static_cast<int>(message.height);
   if (encoding->to_grey) {
@@ -105,8 +106,8 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
 ReceivedImage received_image(const ros::CompressedImage& message, const std::string& place) {
   ImageReading<Image> decoded = decoded_image(message.data);
   if (!decoded.image) {
-    throw InputError(place, "has an image that is no whole JPEG or PNG ('" + message.format.substr(0, 40) + "')",
-                     "look at what the camera's driver compresses to");
+    throw InputError(place, "has an image that is not a complete JPEG or PNG ('" + message.format.substr(0, 40) + "')",
+                     "check the compression format of the camera driver");
   }
   return grey_image(message.header, std::move(*decoded.image));
 }

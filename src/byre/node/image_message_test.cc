@@ -95,7 +95,7 @@ TEST(ReceivedImage, IsReadFromJpegAndPng) {
       received_image(message, "/left");
       ADD_FAILURE() << kind;
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("/left: has an image that is no whole JPEG or PNG"));
+      EXPECT_THAT(error.what(), HasSubstr("/left: has an image that is not a complete JPEG or PNG"));
     }
   }
 }

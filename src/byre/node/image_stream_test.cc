@@ -122,7 +122,7 @@ TEST_F(Watch, NamesLostRightImages) {
   EXPECT_THAT(said(3200ms), HasSubstr("right images are missing"));
   left_alone_.nearest_right = 3ms;
   frames(3200ms, 1, left_alone_);
-  EXPECT_THAT(said(3200ms), HasSubstr("the nearest stamp is 3.0 ms off, see images.pair_tolerance"));
+  EXPECT_THAT(said(3200ms), HasSubstr("the nearest time stamp differs by 3.0 ms, see images.pair_tolerance"));
   frames(3200ms, 25, good_);
   EXPECT_EQ(level(4450ms), ros::DiagnosticStatus::kOk);
 }
@@ -131,14 +131,14 @@ TEST_F(Watch, NamesFrozenImagesJumpsAndUnusableOnes) {
   CameraFrame frame = good_;
   frame.is_frozen = true;
   frames(1s, 1, frame);
-  EXPECT_THAT(said(1s), HasSubstr("repeats its image"));
+  EXPECT_THAT(said(1s), HasSubstr("repeated image"));
   frame = good_;
   frame.jump = -3600s;
   frames(3s, 1, frame);
   EXPECT_THAT(said(3s), HasSubstr("stamps jumped by -3600.000 s"));
   frames(3500ms, 10, good_);
   watch_.note_unusable(InputError("/left", "is odd", "mend it"), 4s);
-  EXPECT_THAT(said(4s), HasSubstr("/left: is odd (mend it); stamps jumped")) << "all there is to say";
+  EXPECT_THAT(said(4s), HasSubstr("/left: is odd (mend it); time stamps jumped")) << "all there is to say";
   EXPECT_EQ(level(4s), ros::DiagnosticStatus::kError);
 }
 

@@ -17,7 +17,7 @@ double side_of_pixel(const FloorPlan& plan) {
   constexpr double kMostSkew = 1e-3;
   const double side = right.norm();
   if ((Eigen::Vector2d(-right.y(), right.x()) - up).norm() > kMostSkew * side) {
-    throw InputError(plan.image.string(), "has pixels that are no squares, which an occupancy grid cannot tell",
+    throw InputError(plan.image.string(), "has non-square pixels, which an occupancy grid cannot represent",
                      "scale the image to square pixels, or leave slam.plan empty");
   }
   return side;

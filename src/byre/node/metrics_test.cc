@@ -10,8 +10,10 @@ using testing::Not;
 
 TEST(MetricsText, HasEachFigureWithItsMeaning) {
   NodeFigures figures{20, 3, 17, {}};
-  EXPECT_THAT(metrics_text(figures), HasSubstr("# HELP byre_images_total Left images that came\n"
-                                               "# TYPE byre_images_total counter\nbyre_images_total 20\n"));
+  EXPECT_THAT(
+      metrics_text(figures),
+      HasSubstr(
+          "# HELP byre_images_total Received left images\n# TYPE byre_images_total counter\nbyre_images_total 20\n"));
   EXPECT_THAT(metrics_text(figures), Not(HasSubstr("byre_verdict")));
   figures.last.emplace();
   figures.last->health.verdict = Verdict::degraded;

@@ -158,22 +158,22 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
   constexpr double kNear = 2.0;  // metres
   const std::string& frame = message.header.frame_id;
   if (!frame.empty() && frame != config_.map_frame) {
-    throw InputError(config_.initial_pose, "is given in frame '" + printable(frame, kShownOfText) + "'",
-                     "give it in '" + config_.map_frame + "', the fixed frame of RViz");
+    throw InputError(config_.initial_pose, "is in frame '" + printable(frame, kShownOfText) + "'",
+                     "publish it in '" + config_.map_frame + "', the fixed frame of RViz");
   }
   auto hint = hint_of(message);
-  if (!hint) throw InputError(config_.initial_pose, "has a position that is not finite", "give the pose anew");
+  if (!hint) throw InputError(config_.initial_pose, "has a non-finite position", "set the pose again");
   std::string answer;
   if (map_from_body_) {
     const double distance = (map_from_body_->translation - hint->map_from_body.translation).head<2>().norm();
-    if (distance <= kNear) return fmt::format("agrees with the present pose within {:.1f} m", distance);
-    answer = fmt::format("{:.1f} m from the present pose; ", distance) + runner_.relocalise() + "; ";
+    if (distance <= kNear) return fmt::format("agrees with the current pose within {:.1f} m", distance);
+    answer = fmt::format("{:.1f} m from the current pose; ", distance) + runner_.relocalise() + "; ";
     hint->map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has no height
     begin_anew();
   }
-  if (!runner_.look_near(*hint)) return "the robot is being looked for in the whole map anyway";
-  return answer +
-         fmt::format("looking within {:.1f} m of it for {:.0f} s, then in the whole map", hint->radius, hint->seconds);
+  if (!runner_.look_near(*hint)) return "not used: the search already covers the whole map";
+  return answer + fmt::format("searching within {:.1f} m of it for {:.0f} s, then in the whole map", hint->radius,
+                              hint->seconds);
 }
 
 void Node::take_requests(Timestamp now) {
@@ -254,7 +254,8 @@ ros::DiagnosticStatus Node::localisation() const {
   ros::DiagnosticStatus status;
   status.level = ros::DiagnosticStatus::kWarn;
   status.name = "byre: localisation";
-  status.message = runner_.is_running() ? "no frame was tracked yet" : "waiting for " + calibration_source_.awaited();
+  status.message =
+      runner_.is_running() ? "no frame has been tracked yet" : "waiting for " + calibration_source_.awaited();
   return status;
 }
 

@@ -65,37 +65,37 @@ void check_fleet(const FleetSettings& fleet, Consistency& consistency) {
   require_sound("mqtt.interface", fleet.interface_name);
   require_sound("mqtt.manufacturer", fleet.manufacturer);
   if (!fleet.serial_number.empty()) require_sound("mqtt.serial_number", fleet.serial_number);
-  consistency.require(!fleet.password_file || !fleet.user.empty(), "mqtt.password_file", "is of no use without a user",
-                      "set mqtt.user, or leave it empty");
+  consistency.require(!fleet.password_file || !fleet.user.empty(), "mqtt.password_file",
+                      "is set, but mqtt.user is empty", "set mqtt.user, or leave this empty");
 }
 
 void check(const NodeConfig& config, Consistency consistency) {
   const bool is_mission = config.task == NodeTask::mission;
   consistency.require(config.task == NodeTask::map || config.map.has_value(), "slam.map", "is missing",
-                      "name the map that the robot is on, or set slam.task to map");
-  consistency.require(config.task != NodeTask::map || !config.map, "slam.map", "is of no use where a map is made",
-                      "leave it out, or set slam.task to extend");
-  consistency.require(is_mission || config.save.has_value(), "slam.save", "is missing, so what is mapped would be lost",
+                      "set the map of the building, or set slam.task to map");
+  consistency.require(config.task != NodeTask::map || !config.map, "slam.map", "is not used by the task map",
+                      "leave it empty, or set slam.task to extend");
+  consistency.require(is_mission || config.save.has_value(), "slam.save", "is missing, so the map would be lost",
                       "name a file");
   consistency.require(config.has_right() || config.task != NodeTask::map, "images.right",
-                      "is empty, and one camera alone knows no metres",
-                      "name the images of a right camera, or map first with byre map and byre scale");
-  consistency.require(!config.left.empty(), "images.left", "is empty", "name the topic of the left images");
+                      "is empty, but a map of one camera has no metric scale",
+                      "set the topic of the right images, or map first with byre map and byre scale");
+  consistency.require(!config.left.empty(), "images.left", "is empty", "set the topic of the left images");
   const bool needs_info = !config.calibration;
   consistency.require(!needs_info || !config.left_info.empty(), "calibration.left_info",
-                      "is empty, and no calibration file is named", "name one of the two");
+                      "is empty, and calibration.file is empty too", "set one of the two");
   consistency.require(!needs_info || !config.has_right() || !config.right_info.empty(), "calibration.right_info",
-                      "is empty, and no calibration file is named", "name one of the two");
+                      "is empty, and calibration.file is empty too", "set one of the two");
   consistency.require(config.calibration || config.mounting != Mounting::file, "frames.mounting",
-                      "is file, and no calibration file is named", "set it to tf, or name calibration.file");
+                      "is file, but calibration.file is empty", "set it to tf, or set calibration.file");
   consistency.require(config.name_space.empty() || config.name_space.starts_with('/'), "node.namespace",
                       "does not begin with a slash", "write it as /barn");
   consistency.require(!config.plan || (config.map && config.in_plan), "slam.plan",
-                      "needs a map that lies on it, and frames.in_plan", "set both, or leave slam.plan empty");
+                      "needs a map registered on it, and frames.in_plan", "set both, or leave slam.plan empty");
   consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
-                      "is the kept map, which a mission leaves as it is", "name another file");
+                      "is the offline map, which a mission must not replace", "name another file");
   check_fleet(config.fleet, consistency);
-  consistency.require(fault_in_name("/" + config.name).empty(), "node.name", "is no name of a node",
+  consistency.require(fault_in_name("/" + config.name).empty(), "node.name", "is not a valid node name",
                       "use letters, digits and underscores");
 }
 
@@ -121,7 +121,7 @@ NodeConfigReading read_node_config(const fs::path& path) {
     const std::string place = path.string() + ":" + std::to_string(setting.line);
     const auto known = std::ranges::find(node_settings(), setting.name, &NodeSetting::name);
     if (known == node_settings().end()) {
-      reading.faults.emplace_back(place, "there is no setting " + setting.name, remedy_for_unknown(setting.name));
+      reading.faults.emplace_back(place, "unknown setting " + setting.name, remedy_for_unknown(setting.name));
     } else if (!known->set(reading.config, setting.text)) {
       reading.faults.emplace_back(place, setting.name + " is '" + setting.text + "'", "give " + known->range);
     }

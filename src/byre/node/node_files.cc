@@ -47,8 +47,8 @@ std::optional<FleetOptions> fleet_options(const NodeConfig& config) {
   if (fleet.password_file) {
     std::ifstream file(*fleet.password_file);
     if (!std::getline(file, options.broker.password)) {
-      throw InputError(fleet.password_file->string(), "holds no password that can be read",
-                       "write it into the first line, and let byre read the file");
+      throw InputError(fleet.password_file->string(), "has no readable password",
+                       "write it into the first line, and give byre read permission");
     }
   }
   options.identity = {fleet.interface_name, fleet.manufacturer,
@@ -62,19 +62,19 @@ void require_plan_of_map(const NodeConfig& config) {
   const auto registration = load_plan_registration(*config.map);
   const std::string name = config.plan->filename().string();
   if (!registration) {
-    throw InputError(config.map->string(), "lies on no floor plan, and slam.plan names one",
-                     "find it on the plan with byre register or byre view, or leave slam.plan empty");
+    throw InputError(config.map->string(), "is not registered on a floor plan, but slam.plan is set",
+                     "register it on the plan with byre register or byre view, or leave slam.plan empty");
   }
   if (registration->plan != name) {
-    throw InputError(config.plan->string(), "is not the floor plan that the map lies on, " + registration->plan,
-                     "name that one, or register the map on this one");
+    throw InputError(config.plan->string(), "is not the floor plan of the map, " + registration->plan,
+                     "give that plan, or register the map on this one");
   }
 }
 
 void require_cameras(const Calibration& calibration, const NodeConfig& config) {
   if (!config.has_right() || calibration.right) return;
-  throw InputError(config.calibration->string(), "is of one camera, and images.right names a second one",
-                   "name the calibration of the pair (a chain of Kalibr), or leave images.right empty");
+  throw InputError(config.calibration->string(), "is of one camera, but images.right gives a second one",
+                   "give the calibration of the pair (Kalibr camchain), or leave images.right empty");
 }
 
 }  // namespace byre

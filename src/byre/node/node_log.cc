@@ -27,7 +27,7 @@ void NodeLogger::tell(LogLevel level, const std::string& line, Timestamp now) {
     ++left_out_;
     return;
   }
-  if (left_out_ > 0) write(LogLevel::notice, std::to_string(std::exchange(left_out_, 0)) + " lines left out");
+  if (left_out_ > 0) write(LogLevel::notice, std::to_string(std::exchange(left_out_, 0)) + " log lines suppressed");
   allowed_ = std::max(0.0, allowed_ - 1.0);
   write(level, line);
 }

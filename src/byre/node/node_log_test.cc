@@ -34,7 +34,7 @@ TEST(NodeLogger, LeavesOutWhatComesTooFastAndSaysHowMuch) {
   EXPECT_THAT(stream.str(), HasSubstr("line 29\n"));
   EXPECT_THAT(stream.str(), Not(HasSubstr("line 30\n")));
   log.tell(LogLevel::notice, "much later", from_seconds(1.0));
-  EXPECT_THAT(stream.str(), EndsWith("70 lines left out\nbyre node: much later\n"));
+  EXPECT_THAT(stream.str(), EndsWith("70 log lines suppressed\nbyre node: much later\n"));
 }
 
 TEST(NodeLogger, LeavesNoErrorOut) {

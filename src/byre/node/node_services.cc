@@ -80,7 +80,7 @@ void NodeServices::answer(const Act& act, Timestamp now) {
         service.server.reply(std::move(*reply), now);
       } else if (!std::exchange(service.was_misunderstood, true)) {
         log_(LogLevel::warning, service.name +
-                                    " is called in words that are not rmw_cyclonedds_cpp's: send commands to " +
+                                    " is called by another middleware than rmw_cyclonedds_cpp: send commands to " +
                                     config_.topic(config_.command));
       }
     }

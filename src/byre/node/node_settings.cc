@@ -116,50 +116,50 @@ void add_slam(Table& table) {
   table.push_back(choice<std::optional<bool>>(
       "node.services", {{"auto", std::nullopt}, {"true", true}, {"false", false}},
       [](auto& c) -> auto& { return c.services; },
-      "commands as services too, for programs by rmw_cyclonedds_cpp; auto: as RMW_IMPLEMENTATION says"));
+      "commands also as services, for programs with rmw_cyclonedds_cpp; auto: depends on RMW_IMPLEMENTATION"));
   table.push_back(choice<NodeTask>(
       "slam.task", {{"mission", NodeTask::mission}, {"extend", NodeTask::extend}, {"map", NodeTask::map}},
-      [](auto& c) -> auto& { return c.task; }, "localisation in a kept map, going on with one, or making one"));
+      [](auto& c) -> auto& { return c.task; }, "mission on an offline map, extension of a map, or a new map"));
   table.push_back(file(
-      "slam.map", [](auto& c) -> auto& { return c.map; }, "kept map"));
+      "slam.map", [](auto& c) -> auto& { return c.map; }, "map to localise in or to extend"));
   table.push_back(file(
       "slam.save", [](auto& c) -> auto& { return c.save; },
-      "file of what is mapped, written on the command save and at the end"));
+      "file of the map made, written by the command save and at the end"));
   table.push_back(file(
-      "slam.options", [](auto& c) -> auto& { return c.options; }, "file of options, docs/reference/options.md"));
+      "slam.options", [](auto& c) -> auto& { return c.options; }, "options file, see docs/reference/options.md"));
   table.push_back(file(
       "slam.vocabulary", [](auto& c) -> auto& { return c.vocabulary; },
-      "visual vocabulary, instead of the one that comes with byre"));
+      "visual vocabulary, replaces the built-in one"));
   table.push_back(choice<Workers>(
       "slam.workers", {{"live", Workers::live}, {"repeatable", Workers::repeatable}, {"none", Workers::none}},
       [](auto& c) -> auto& { return c.workers; },
-      "mapping taken over when ready, after a number of frames, or at once"));
+      "mapping results applied when ready, after a fixed number of frames, or at once"));
   table.push_back(file(
-      "slam.plan", [](auto& c) -> auto& { return c.plan; }, "floor plan that is published as an occupancy grid"));
+      "slam.plan", [](auto& c) -> auto& { return c.plan; }, "floor plan published as an occupancy grid"));
 }
 
 void add_images(Table& table) {
   table.push_back(topic(
       "images.left", [](auto& c) -> auto& { return c.left; }, "images of the left or only camera"));
   table.push_back(topic(
-      "images.right", [](auto& c) -> auto& { return c.right; }, "images of the right camera; empty with one camera"));
+      "images.right", [](auto& c) -> auto& { return c.right; }, "images of the right camera; empty: one camera"));
   table.push_back(flag(
       "images.compressed", [](auto& c) -> auto& { return c.is_compressed; },
-      "images as JPEG or PNG, of sensor_msgs/CompressedImage"));
+      "images are JPEG or PNG in sensor_msgs/CompressedImage"));
   table.push_back(flag(
       "images.rectified", [](auto& c) -> auto& { return c.is_rectified; },
-      "images that were rectified before, as camera info's P says"));
+      "images are rectified, with the projection matrix P of the camera info"));
   table.push_back(flag(
       "images.reliable", [](auto& c) -> auto& { return c.is_reliable; },
-      "lost images sent again, where the camera's driver does so"));
+      "reliable subscription: lost images are sent again if the camera driver supports it"));
   table.push_back(seconds(
       "images.pair_tolerance", 0.5, [](auto& c) -> auto& { return c.pair_tolerance; },
-      "most time between the stamps of left and right image; 0: they are equal"));
+      "maximum time between the stamps of left and right image; 0: equal stamps"));
   table.push_back(seconds(
       "images.pair_wait", 1.0, [](auto& c) -> auto& { return c.pair_wait; },
-      "time that a left image waits for its right one"));
+      "maximum time that a left image waits for its right image"));
   table.push_back(file(
-      "calibration.file", [](auto& c) -> auto& { return c.calibration; }, "calibration file; empty: by camera info"));
+      "calibration.file", [](auto& c) -> auto& { return c.calibration; }, "calibration file; empty: camera info"));
   table.push_back(baseline());
   table.push_back(topic(
       "calibration.left_info", [](auto& c) -> auto& { return c.left_info; }, "camera info of the left or only camera"));
@@ -178,51 +178,52 @@ void add_frames(Table& table) {
       "frames.mounting",
       {{"auto", std::nullopt}, {"file", Mounting::file}, {"tf", Mounting::tf}, {"camera", Mounting::camera}},
       [](auto& c) -> auto& { return c.mounting; },
-      "place of the left camera on the robot: by the calibration file, /tf_static, or in its origin"));
+      "pose of the left camera on the robot: from the calibration file, from /tf_static, or identity"));
   table.push_back(flag(
       "frames.in_plan", [](auto& c) -> auto& { return c.in_plan; },
-      "map frame that is the floor plan's, where the map is registered on one"));
+      "map frame equals the frame of the floor plan if the map is registered on one"));
   table.push_back(flag(
-      "frames.map_to_odom", [](auto& c) -> auto& { return c.publishes_map_to_odom; }, "map->odom on /tf"));
+      "frames.map_to_odom", [](auto& c) -> auto& { return c.publishes_map_to_odom; },
+      "publication of map->odom on /tf"));
   table.push_back(flag(
       "frames.odom_to_base", [](auto& c) -> auto& { return c.publishes_odom_to_base; },
-      "odom->base on /tf; false where wheels or a filter give it"));
+      "publication of odom->base on /tf; false if wheel odometry or a filter publishes it"));
   table.push_back(flag(
       "frames.cameras", [](auto& c) -> auto& { return c.publishes_cameras; },
-      "base->camera on /tf_static, where frames.mounting is not tf"));
+      "publication of base->camera on /tf_static, unless frames.mounting is tf"));
   table.push_back(seconds(
       "frames.future", 2.0, [](auto& c) -> auto& { return c.future; },
-      "time by which map->odom is stamped later than its image"));
+      "offset of the time stamp of map->odom after that of its image"));
 }
 
 void add_motion(Table& table) {
   table.push_back(topic(
       "motion.wheels", [](auto& c) -> auto& { return c.wheels; },
-      "nav_msgs/Odometry by wheels alone, or their twists, docs/how-to/use_wheels_and_imu.md; empty: none"));
+      "wheel odometry: nav_msgs/Odometry of wheels alone, or twists, docs/how-to/use_wheels_and_imu.md; empty: none"));
   table.push_back(topic(
       "motion.gyroscope", [](auto& c) -> auto& { return c.gyroscope; },
-      "sensor_msgs/Imu, docs/how-to/use_wheels_and_imu.md; empty: none"));
+      "gyroscope: sensor_msgs/Imu, docs/how-to/use_wheels_and_imu.md; empty: none"));
 }
 
 void add_topics(Table& table) {
   table.push_back(topic(
-      "topics.odometry", [](auto& c) -> auto& { return c.odometry; }, "smooth pose and motion"));
+      "topics.odometry", [](auto& c) -> auto& { return c.odometry; }, "pose without jumps, and velocity"));
   table.push_back(topic(
       "topics.pose", [](auto& c) -> auto& { return c.pose; }, "pose in the map"));
   table.push_back(topic(
-      "topics.path", [](auto& c) -> auto& { return c.path; }, "way so far"));
+      "topics.path", [](auto& c) -> auto& { return c.path; }, "trajectory of the run"));
   table.push_back(topic(
-      "topics.points", [](auto& c) -> auto& { return c.points; }, "points of the kept map"));
+      "topics.points", [](auto& c) -> auto& { return c.points; }, "points of the map"));
   table.push_back(topic(
       "topics.health", [](auto& c) -> auto& { return c.health; }, "health, as JSON"));
   table.push_back(topic(
-      "topics.events", [](auto& c) -> auto& { return c.events; }, "what happens, as JSON"));
+      "topics.events", [](auto& c) -> auto& { return c.events; }, "events, as JSON"));
   table.push_back(topic(
       "topics.command", [](auto& c) -> auto& { return c.command; }, "commands, as text"));
   table.push_back(topic(
       "topics.grid", [](auto& c) -> auto& { return c.grid; }, "floor plan"));
   table.push_back(topic(
-      "topics.initial_pose", [](auto& c) -> auto& { return c.initial_pose; }, "poses given by hand"));
+      "topics.initial_pose", [](auto& c) -> auto& { return c.initial_pose; }, "initial poses set by an operator"));
 }
 
 std::optional<int> parse_port(std::string_view value) {
@@ -234,7 +235,7 @@ std::optional<int> parse_port(std::string_view value) {
 void add_http(Table& table) {
   table.push_back(text(
       "http.address", [](auto& c) -> auto& { return c.http_address; },
-      "address of /healthz, /metrics and Foxglove's protocol"));
+      "address of /healthz, /metrics and the Foxglove protocol"));
   const auto get = [](const NodeConfig& config) { return config.http_port ? std::to_string(*config.http_port) : ""; };
   const auto set = [](NodeConfig& config, std::string_view value) {
     const std::optional<int> port = parse_port(value);
@@ -249,7 +250,7 @@ void add_http(Table& table) {
 void add_broker(Table& table) {
   table.push_back(any_text(
       "mqtt.host", [](auto& c) -> auto& { return c.fleet.host; },
-      "broker of MQTT that a fleet hears of the robot by, as VDA 5050 has it; empty: none"));
+      "MQTT broker for VDA 5050 messages to a fleet manager; empty: none"));
   const auto set_port = [](NodeConfig& config, std::string_view value) {
     const std::optional<int> port = parse_port(value);
     if (port) config.fleet.port = *port;
@@ -258,7 +259,7 @@ void add_broker(Table& table) {
   table.push_back({"mqtt.port", "1 to 65535", "port of the broker",
                    [](const NodeConfig& config) { return std::to_string(config.fleet.port); }, set_port});
   table.push_back(any_text(
-      "mqtt.user", [](auto& c) -> auto& { return c.fleet.user; }, "user that the broker knows; empty: none"));
+      "mqtt.user", [](auto& c) -> auto& { return c.fleet.user; }, "user name at the broker; empty: none"));
   table.push_back(file(
       "mqtt.password_file", [](auto& c) -> auto& { return c.fleet.password_file; },
       "file whose first line is the user's password"));
@@ -267,7 +268,7 @@ void add_broker(Table& table) {
 void add_fleet(Table& table) {
   add_broker(table);
   table.push_back(text(
-      "mqtt.interface", [](auto& c) -> auto& { return c.fleet.interface_name; }, "first part of the topics' names"));
+      "mqtt.interface", [](auto& c) -> auto& { return c.fleet.interface_name; }, "first part of the topic names"));
   table.push_back(text(
       "mqtt.manufacturer", [](auto& c) -> auto& { return c.fleet.manufacturer; }, "manufacturer of the robot"));
   table.push_back(any_text(
@@ -275,20 +276,20 @@ void add_fleet(Table& table) {
       "serial number of the robot; empty: the node's name"));
   table.push_back(any_text(
       "mqtt.map_description", [](auto& c) -> auto& { return c.fleet.map_description; },
-      "description of the map, for people"));
+      "human-readable description of the map"));
   const auto set_rate = [](NodeConfig& config, std::string_view value) {
     const auto number = parse_number(value);
     if (!number || !(*number >= 0.1 && *number <= 20.0)) return false;
     config.fleet.rate = *number;
     return true;
   };
-  table.push_back({"mqtt.rate", "0.1 to 20", "most messages a second on a topic",
+  table.push_back({"mqtt.rate", "0.1 to 20", "maximum number of messages per second on a topic",
                    [](const NodeConfig& config) { return fmt::format("{:g}", config.fleet.rate); }, set_rate});
 }
 
 void add_process(Table& table) {
   table.push_back(flag(
-      "process.lock_memory", [](auto& c) -> auto& { return c.locks_memory; }, "memory kept from being paged out"));
+      "process.lock_memory", [](auto& c) -> auto& { return c.locks_memory; }, "memory locked against paging"));
   const auto set_priority = [](NodeConfig& config, std::string_view value) {
     const auto number = parse_number(value);
     if (!number || !(*number >= 0.0 && *number <= 99.0 && *number == std::floor(*number))) return false;
@@ -296,7 +297,7 @@ void add_process(Table& table) {
     return true;
   };
   table.push_back({"process.priority", "0 to 99",
-                   "real-time priority of tracking (SCHED_RR), mapping has none; 0: as other programs",
+                   "real-time priority of tracking (SCHED_RR), not of mapping; 0: normal priority",
                    [](const NodeConfig& config) { return std::to_string(config.priority); }, set_priority});
 }
 

@@ -49,8 +49,8 @@ bool lies_on(const fs::path& map, const fs::path& plan) {
 // files.
 fs::path beside(const fs::path& map, const std::string& name) {
   if (name.empty() || name.starts_with('.') || name.find('/') != std::string::npos) {
-    throw InputError("load", "'" + name.substr(0, 100) + "' is no file's name",
-                     "name a file beside the present map, without its folder");
+    throw InputError("load", "'" + name.substr(0, 100) + "' is not a file name",
+                     "give a file in the folder of the current map, without the folder");
   }
   return map.parent_path() / name;
 }
@@ -140,7 +140,7 @@ std::string SlamRunner::start(const Calibration& calibration) {
   }
   if (slam_->is_metric()) return said;
   slam_.reset();
-  throw InputError("the calibration", "is of one camera, which knows no metres without a map", "name a kept map");
+  throw InputError("the calibration", "is of one camera, which has no metric scale without a map", "set slam.map");
 }
 
 Pose SlamRunner::published(const Pose& map_from_body) const {
@@ -168,7 +168,7 @@ void SlamRunner::require_running() const {
 
 std::string SlamRunner::save() {
   require_running();
-  if (!config_.save) throw InputError("save", "has no file to write", "set slam.save");
+  if (!config_.save) throw InputError("save", "has no output file", "set slam.save");
   require_safe_save(config_);
   if (slam_->keyframes() > 0 && is_map_sound_ && !has_saved_) keep_as_previous(*config_.save);
   slam_->save(*config_.save);
@@ -180,7 +180,7 @@ std::string SlamRunner::save() {
 std::string SlamRunner::load(const std::string& name) {
   require_running();
   if (config_.task != NodeTask::mission) {
-    throw InputError("load", "would leave the map that is being made", "set slam.task to mission");
+    throw InputError("load", "would discard the map being made", "set slam.task to mission");
   }
   const fs::path map = beside(*map_, name);
   replace(make(&map));
@@ -191,10 +191,10 @@ std::string SlamRunner::load(const std::string& name) {
 std::string SlamRunner::relocalise() {
   require_running();
   if (config_.task != NodeTask::mission) {
-    throw InputError("relocalise", "would leave the map that is being made", "set slam.task to mission");
+    throw InputError("relocalise", "would discard the map being made", "set slam.task to mission");
   }
   replace(make(&*map_));
-  return "looking for the robot in " + map_->string();
+  return "relocalising in " + map_->string();
 }
 
 bool SlamRunner::look_near(PoseHint hint) {
@@ -208,7 +208,7 @@ bool SlamRunner::look_near(PoseHint hint) {
 std::string SlamRunner::pause_mapping(bool is_paused) {
   require_running();
   slam_->pause_mapping(is_paused);
-  return is_paused ? "nothing is added to the map until mapping is resumed" : "mapping goes on";
+  return is_paused ? "mapping is paused" : "mapping is resumed";
 }
 
 Obeyed obey(SlamRunner& runner, const std::string& line) {
@@ -218,7 +218,7 @@ Obeyed obey(SlamRunner& runner, const std::string& line) {
   if (line == "save") return {runner.save()};
   if (line == "pause mapping") return {runner.pause_mapping(true)};
   if (line == "resume mapping") return {runner.pause_mapping(false)};
-  throw InputError("'" + printable(line, 100) + "'", "is no command",
+  throw InputError("'" + printable(line, 100) + "'", "is not a command",
                    "send save, load NAME, relocalise, pause mapping or resume mapping");
 }
 

@@ -38,7 +38,7 @@ DecodedFrame DecodeAhead::decode(int index) {
   }
   const std::vector<std::string>& warnings = recording_.warnings();
   slot.warnings.assign(warnings.begin() + warned_before, warnings.end());
-  if (!failure.empty()) slot.warnings.push_back("frame " + std::to_string(index) + " is left out: " + failure);
+  if (!failure.empty()) slot.warnings.push_back("frame " + std::to_string(index) + " is skipped: " + failure);
   slot.seconds = watch.seconds();
   return slot;
 }

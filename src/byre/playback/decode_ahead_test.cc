@@ -82,7 +82,7 @@ TEST(DecodeAhead, LeavesOutAFrameWhoseReadingThrows) {
   const auto left_out = decoder.next();
   EXPECT_FALSE(left_out->images);
   EXPECT_EQ(left_out->time, Timestamp(10));
-  EXPECT_THAT(left_out->warnings, ElementsAre("frame 1 is left out: the camera is gone"));
+  EXPECT_THAT(left_out->warnings, ElementsAre("frame 1 is skipped: the camera is gone"));
   EXPECT_FALSE(decoder.next()->images) << "frame 2 cannot be read";
 }
 

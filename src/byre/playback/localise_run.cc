@@ -62,7 +62,7 @@ std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std
   if (image->width == camera.width && image->height == camera.height) return std::move(image);
   warnings.push_back(
       path.string() +
-      fmt::format(": is of {} x {} pixels, the camera of {} x {}: scaled and cut, as if it were the camera's",
+      fmt::format(": is of {} x {} pixels, the camera of {} x {}: scaled and cropped to the size of the camera",
                   image->width, image->height, camera.width, camera.height));
   return fit(*image, camera.width, camera.height);
 }

@@ -26,8 +26,8 @@ PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_b
     hooks.after_frame(run.frames);
   }
   if (frames.empty() && run.without_pose > 0) {
-    throw InputError("trajectory", "has no pose for any frame of the recording",
-                     "check that both count time from the same epoch");
+    throw InputError("trajectory", "has no pose at the time of any frame of the recording",
+                     "check that the times of both have the same epoch");
   }
   run.map = offline_copy(map_from_poses({extractor.rig()}, frames, options.map));
   return run;

@@ -57,16 +57,17 @@ TEST_F(OptionsFile, IsReadBackAsItWasWritten) {
 }
 
 TEST_F(OptionsFile, SaysWhatIsWrongInWhichLineAndWhatToDo) {
-  EXPECT_THAT(error("tracking:\n  serch_radius_px: 3\n"),
-              HasSubstr("options.yaml:2: there is no option 'tracking.serch_radius_px' (did you mean "
-                        "'tracking.search_radius_px'?)"));
+  EXPECT_THAT(
+      error("tracking:\n  serch_radius_px: 3\n"),
+      HasSubstr(
+          "options.yaml:2: unknown option 'tracking.serch_radius_px' (did you mean 'tracking.search_radius_px'?)"));
   EXPECT_THAT(
       error("health:\n  trusted_error_m: wide\n"),
       HasSubstr(
           "options.yaml:2: 'wide' is not a value of health.trusted_error_m (give from 0.000001 to 1000, in metres)"));
   EXPECT_THAT(error("pace: fast\n"),
               HasSubstr("options.yaml:1: 'fast' is not a value of pace (give inline|paced|live)"));
-  EXPECT_THAT(error("tracking: 5\n"), HasSubstr("there is no option 'tracking'"));
+  EXPECT_THAT(error("tracking: 5\n"), HasSubstr("unknown option 'tracking'"));
   EXPECT_THAT(error("map_online:\n"), HasSubstr("'' is not a value of map_online (give true|false)"));
 }
 

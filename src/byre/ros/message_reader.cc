@@ -19,7 +19,8 @@ MessageReader::MessageReader(std::span<const std::byte> bytes, Encoding encoding
   if (encoding_ == Encoding::ros1) return;
   const std::span<const std::byte> encapsulation = take(kEncapsulation);
   const int representation = std::to_integer<int>(encapsulation[0]) << 8 | std::to_integer<int>(encapsulation[1]);
-  if (representation > 1) fail("is in representation " + std::to_string(representation) + " of CDR, not in plain CDR");
+  if (representation > 1)
+    fail("is in representation " + std::to_string(representation) + " of CDR, but plain CDR is required");
   is_swapped_ = representation == 0;
 }
 
@@ -64,7 +65,7 @@ void MessageReader::swap_each(std::span<std::byte> bytes, std::size_t size) {
 
 void MessageReader::fail(std::string_view reason) const {
   throw InputError(place_ + " at byte " + std::to_string(position_), reason,
-                   "the message is damaged, or of another type than it is said to be");
+                   "the message is damaged, or its type differs from the declared one");
 }
 
 }  // namespace byre::ros

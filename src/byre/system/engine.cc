@@ -182,11 +182,12 @@ void Engine::measure_by_wheels() {
   if (!wheels || wheels->scale_sigma > kMaxSigma) return;
   // A wrong wheel radius scales path lengths and turns by the same factor.
   if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnScale) {
-    prior_.warn({MotionSensor::wheels,
-                 {},
-                 fmt::format("wheels measure turns {:.3g} times as large as the camera does; the map has no metres",
-                             1.0 / wheels->turn_errors.scale),
-                 "calibrate the wheel radius and the track width, or measure the map: byre scale"});
+    prior_.warn(
+        {MotionSensor::wheels,
+         {},
+         fmt::format("wheels measure turns {:.3g} times as large as the camera does; the map has no metric scale",
+                     1.0 / wheels->turn_errors.scale),
+         "calibrate wheel radius and track width, or scale the map with byre scale"});
     return;
   }
   const double factor = wheels->metres_per_unit;

@@ -465,7 +465,7 @@ std::optional<OptionFault> set_option(EngineOptions& options, std::string_view n
   if (option == table.end()) {
     const auto like = std::ranges::min_element(
         table, {}, [&](const EngineOption& known) { return distance_between(known.name, name); });
-    return OptionFault{"there is no option '" + std::string(name) + "'", "did you mean '" + like->name + "'?"};
+    return OptionFault{"unknown option '" + std::string(name) + "'", "did you mean '" + like->name + "'?"};
   }
   if (option->set(options, text)) return std::nullopt;
   const std::string unit = option->unit.empty() ? "" : ", in " + option->unit;

@@ -131,7 +131,7 @@ TEST(OptionTable, KnowsTheNameThatAWrongOneIsMostLike) {
   EngineOptions options;
   const auto fault = set_option(options, "tracking.min_inlier", "20");
   ASSERT_TRUE(fault);
-  EXPECT_EQ(fault->reason, "there is no option 'tracking.min_inlier'");
+  EXPECT_EQ(fault->reason, "unknown option 'tracking.min_inlier'");
   EXPECT_EQ(fault->remedy, "did you mean 'tracking.min_inliers'?");
   EXPECT_THAT(set_option(options, "keyframes.min_frames", "2.5")->remedy, HasSubstr("from 0 to 10000, in frames"));
 }

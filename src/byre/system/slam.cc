@@ -287,12 +287,12 @@ void Slam::finish(const std::function<bool()>& should_stop) {
 
 void Slam::save(const fs::path& path) const {
   if (!parts_->has_mapped()) {
-    throw InputError(path.string(), "is not written, as nothing was mapped yet",
-                     "let the robot move, and look at the reports");
+    throw InputError(path.string(), "is not written, because the map is still empty",
+                     "let the robot move, and check the frame reports");
   }
   std::error_code none_there;
   if (parts_->mission_map && fs::equivalent(path, *parts_->mission_map, none_there)) {
-    throw InputError(path.string(), "is the map of the mission, which may not be replaced", "name another file");
+    throw InputError(path.string(), "is the offline map of the mission and must not be replaced", "name another file");
   }
   save_for_use(parts_->kept(), parts_->vocabulary, parts_->options.site, path);
 }

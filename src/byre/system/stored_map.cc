@@ -15,12 +15,12 @@ namespace {
 std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map, const DrawnFloorPlan& drawn) {
   const FloorPlan& plan = drawn.plan;
   if (!stored.plan) {
-    throw InputError(map.string(), "lies on no floor plan, and one is named",
-                     "find it on the plan with byre register or byre view");
+    throw InputError(map.string(), "is not registered on a floor plan, but a plan is given",
+                     "register it on the plan with byre register or byre view");
   }
   if (stored.plan->plan != plan.name) {
-    throw InputError(plan.name, "is not the floor plan that the map lies on, " + stored.plan->plan,
-                     "name that one, or register the map on this one");
+    throw InputError(plan.name, "is not the floor plan of the map, " + stored.plan->plan,
+                     "give that plan, or register the map on this one");
   }
   if (!plan.occupied_threshold) return std::nullopt;
   return place_walls(stored.map, *stored.plan, PlanWalls(plan, drawn.occupancy));
@@ -29,10 +29,11 @@ std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map
 // Adds words. Throws InputError for a map without metric scale.
 StoredMap made_ready(StoredMap stored, const fs::path& path, const Vocabulary& vocabulary) {
   if (stored.scale != MapScale::metric) {
-    throw InputError(path.string(), "has no metric scale, so nothing can be measured on it",
+    throw InputError(path.string(), "has no metric scale, which missions need",
                      "set it with byre scale, or --scale when importing a model");
   }
-  if (stored.map.keyframe_count() == 0) throw InputError(path.string(), "holds no keyframes", "map a recording first");
+  if (stored.map.keyframe_count() == 0)
+    throw InputError(path.string(), "contains no keyframes", "map a recording first");
   add_words(stored, vocabulary);
   return stored;
 }

@@ -38,7 +38,7 @@ tcp::endpoint endpoint_of(const WebServerOptions& options) {
 [[noreturn]] void refuse_to_listen(const WebServerOptions& options, const error_code& error) {
   const std::string place = options.address + " port " + std::to_string(options.port);
   if (error == asio::error::address_in_use) {
-    throw InputError(place, "is in use", "end the other program, or choose another port; 0 takes one that is free");
+    throw InputError(place, "is in use", "stop the other program, or choose another port; 0: any free port");
   }
   if (error == asio::error::access_denied) {
     throw InputError(place, "may not be used", "choose a port from 1024 on");

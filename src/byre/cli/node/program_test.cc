@@ -36,7 +36,7 @@ TEST_F(NodeProgram, ChecksSettingsAndTellsAllThatIsWrong) {
   const Outcome faults = run("node --config robot.yaml --check");
   EXPECT_EQ(faults.exit_code, 3);
   EXPECT_THAT(faults.output, IsEmpty());
-  EXPECT_THAT(faults.errors, AllOf(HasSubstr("byre: error: robot.yaml:3: there is no setting slam.worker"),
+  EXPECT_THAT(faults.errors, AllOf(HasSubstr("byre: error: robot.yaml:3: unknown setting slam.worker"),
                                    HasSubstr("byre: error: robot.yaml:5: images.pair_wait is 'soon'")));
   write("robot.yaml", "slam:\n  map: barn.byre\n");
   const Outcome files = run("node --config robot.yaml --check");

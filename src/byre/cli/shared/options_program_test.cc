@@ -71,8 +71,10 @@ TEST_F(OptionsProgram, RefusesAFileThatIsWrongAndSaysWhere) {
   for (const std::string more : {"", " --print-options"}) {
     const Outcome outcome = map("--options mine.yaml" + more);
     EXPECT_EQ(outcome.exit_code, 3);
-    EXPECT_THAT(outcome.errors, HasSubstr("mine.yaml:3: there is no option 'tracking.serch_radius_px' (did you mean "
-                                          "'tracking.search_radius_px'?)"));
+    EXPECT_THAT(
+        outcome.errors,
+        HasSubstr(
+            "mine.yaml:3: unknown option 'tracking.serch_radius_px' (did you mean 'tracking.search_radius_px'?)"));
     EXPECT_EQ(map("--options absent.yaml" + more).exit_code, 3);
   }
 }
