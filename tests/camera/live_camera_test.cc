@@ -252,7 +252,7 @@ TEST_F(LiveCamera, IsMappedUntilCtrlC) {
   EXPECT_EQ(exit_code_of(process), 130);
   EXPECT_GE(read_trajectory(folder_ / "room.txt").size(), 1u);
   EXPECT_TRUE(fs::exists(folder_ / "room.byre"));
-  EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    left out"));
+  EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    skipped"));
 }
 
 TEST_F(LiveCamera, RequiresItsOwnCalibration) {

@@ -84,12 +84,12 @@ class Cameras {
 std::optional<Image> read_as_taken(const fs::path& path, const Camera& camera, std::vector<std::string>& warnings) {
   std::optional<Image> image = read_image(path);
   if (!image) {
-    warnings.push_back(path.string() + ": is not a whole image, left out");
+    warnings.push_back(path.string() + ": is truncated or not an image, skipped");
     return std::nullopt;
   }
   if (image->width == camera.width && image->height == camera.height) return image;
-  warnings.push_back(path.string() + fmt::format(": is of {} x {} pixels, its camera of {} x {}, left out",
-                                                 image->width, image->height, camera.width, camera.height));
+  warnings.push_back(path.string() + fmt::format(": is of {} x {} pixels, its camera of {} x {}, skipped", image->width,
+                                                 image->height, camera.width, camera.height));
   return std::nullopt;
 }
 
@@ -178,9 +178,9 @@ void add_recordings(const std::vector<Calibration>& calibrations, const SfmModel
 }
 
 void require_content(const ColmapModel& model, const std::string& name) {
-  const char* const remedy = "name the folder of a finished reconstruction";
-  if (model.images.empty()) throw InputError(name, "is a model without images, so no map can be made of it", remedy);
-  if (model.points.empty()) throw InputError(name, "is a model without points, so no map can be made of it", remedy);
+  const char* const remedy = "give the folder of a finished reconstruction";
+  if (model.images.empty()) throw InputError(name, "is a model without images, so it cannot be imported", remedy);
+  if (model.points.empty()) throw InputError(name, "is a model without points, so it cannot be imported", remedy);
 }
 
 // Reprojection error of each key point with a point, pixels; the image width for a point that does not project.
@@ -215,9 +215,9 @@ void require_agreement(const ColmapModel& model, const std::string& name) {
   if (median <= std::max(kLargestMedian, kShareOfWidth * width)) return;
   throw InputError(
       name,
-      fmt::format("has image poses that do not fit its points: the median reprojection error is {:.0f} pixels", median),
-      "write the model again with the program that made it; poses in frames.txt or frames.bin may be newer "
-      "than those in images (colmap model_converter writes them)");
+      fmt::format("has inconsistent image poses and points: the median reprojection error is {:.0f} pixels", median),
+      "export the model again; poses in frames.txt or frames.bin may be newer than those in images (colmap "
+      "model_converter updates them)");
 }
 
 }  // namespace
@@ -232,8 +232,8 @@ ColmapImport import_colmap(const ColmapModel& model, const std::string& model_na
   ConvertedModel converted;
   extract_images(model, images_folder, scale, cameras, hooks, converted, result.warnings);
   if (converted.image_ids.empty()) {
-    throw InputError(images_folder.string(), "holds none of the model's images as its cameras took them",
-                     "name the folder that was given to colmap as its image path");
+    throw InputError(images_folder.string(), "contains none of the model's images in the size of its cameras",
+                     "give the image path of colmap");
   }
   convert_points(model, scale, converted);
   const ModelMap made = map_from_model(converted.model, options.map);
@@ -278,14 +278,13 @@ std::string to_text(const ColmapImport& imported) {
   std::ranges::sort(errors);
   const Map& map = imported.stored.map;
   std::string text = fmt::format("keyframes          {}\n", map.keyframe_count());
-  text += fmt::format("points             {} of the model's {}, and {} of byre's own\n", imported.colmap_ids.size(),
+  text += fmt::format("points             {} of {} in the model, {} added by byre\n", imported.colmap_ids.size(),
                       imported.points_in_model, map.point_count() - imported.colmap_ids.size());
   if (attached.empty()) return text;
-  text += fmt::format("points per image   median {:.0f}, least {:.0f}\n", quantile(attached, 0.5), attached.front());
-  text +=
-      fmt::format("error per image    median {:.2f} pixels, largest {:.2f}\n", quantile(errors, 0.5), errors.back());
+  text += fmt::format("points per image   median {:.0f}, min {:.0f}\n", quantile(attached, 0.5), attached.front());
+  text += fmt::format("error per image    median {:.2f} pixels, max {:.2f}\n", quantile(errors, 0.5), errors.back());
   text += imported.stored.scale == MapScale::metric ? "scale              metres\n"
-                                                    : "scale              the model's own (--scale makes it metres)\n";
+                                                    : "scale              of the model (metric with --scale)\n";
   return text;
 }
 

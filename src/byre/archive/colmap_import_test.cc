@@ -62,8 +62,7 @@ TEST_F(ImportedMap, IsRefusedIfPosesDoNotFitThePoints) {
   ColmapModel stale = model_;
   double sign = 1.0;  // metres
   for (auto& [id, image] : stale.images) image.camera_from_world.translation.x() += (sign = -sign);
-  EXPECT_THAT(refusal(stale),
-              HasSubstr("has image poses that do not fit its points: the median reprojection error is"));
+  EXPECT_THAT(refusal(stale), HasSubstr("has inconsistent image poses and points: the median reprojection error is"));
   ColmapModel rough = model_;
   for (auto& [id, image] : rough.images) {
     for (ColmapKeypoint& keypoint : image.keypoints) keypoint.pixel.x() += 3.0;
@@ -127,9 +126,9 @@ TEST_F(ImportedMap, NeedsAModelWithImagesAndPoints) {
     }
     return "";
   };
-  EXPECT_THAT(error_of({}), HasSubstr("model: is a model without images, so no map can be made of it"));
+  EXPECT_THAT(error_of({}), HasSubstr("model: is a model without images, so it cannot be imported"));
   model_.points.clear();
-  EXPECT_THAT(error_of(model_), HasSubstr("model: is a model without points, so no map can be made of it"));
+  EXPECT_THAT(error_of(model_), HasSubstr("model: is a model without points, so it cannot be imported"));
 }
 
 TEST_F(ImportedMap, NamesTheCameraItDoesNotHave) {

@@ -32,20 +32,20 @@ bool has_scale_of_baseline(const StoredMap& stored) {
 void require_scale_of_baseline(const StoredMap& stored, const std::string& map) {
   if (has_scale_of_baseline(stored)) return;
   if (stored.scale != MapScale::metric) {
-    throw InputError(map, "has no metric scale that could be mended",
-                     "leave --fix-scale out, and its scale is found; byre scale makes it metric");
+    throw InputError(map, "has no metric scale to correct",
+                     "omit --fix-scale, and the scale is estimated; or set it with byre scale");
   }
   if (!is_stereo(stored)) {
-    throw InputError(map, "was made by one camera, so it has no baseline that could be mended",
-                     "use byre scale with a distance that is known");
+    throw InputError(map, "was made by one camera, so it has no baseline to correct",
+                     "use byre scale with a known distance");
   }
-  throw InputError(map, "has the scale of poses that came from elsewhere, not of a baseline",
-                   "mend the scale of these poses, and make the map anew");
+  throw InputError(map, "has the scale of given poses, not of a baseline",
+                   "correct the scale of the given poses, and make the map again");
 }
 
 void require_scale_known(const PlanScale& scale, const std::string& picks) {
   if (!scale.doubt) return;
-  throw InputError(picks, "does not tell the scale: " + std::string(to_string(*scale.doubt)),
+  throw InputError(picks, "does not determine the scale: " + std::string(to_string(*scale.doubt)),
                    "without --fix-scale the map keeps its scale");
 }
 
@@ -55,12 +55,11 @@ void require_unambiguous(const StoredMap& stored, const std::filesystem::path& p
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
     const double factor = baseline_factor(stored, i);
     if (factor == 1.0) continue;
-    throw InputError(
-        picks.string(),
-        fmt::format("gives positions, and the map has been scaled by {:.6g} since it was made: they may be of "
-                    "the map before",
-                    factor),
-        "name points, times or pixels of the map");
+    throw InputError(picks.string(),
+                     fmt::format("gives positions, but the map has been scaled by {:.6g} since it was made: they may "
+                                 "refer to the map before scaling",
+                                 factor),
+                     "give points, times or pixels of the map");
   }
 }
 
@@ -70,7 +69,8 @@ Registering register_map(const StoredMap& stored, const std::filesystem::path& m
                          const std::filesystem::path& picks, const RegisterOptions& options) {
   const std::optional<DrivingPlane> plane = fit_driving_plane(stored.map);
   if (!plane) {
-    throw InputError(map.string(), "does not tell which way is up: its keyframes are none, or held in all directions",
+    throw InputError(map.string(),
+                     "does not determine the vertical: it has no keyframes, or they have no common upright direction",
                      "map a recording of a camera that stays upright");
   }
   Registering result;
@@ -78,8 +78,8 @@ Registering register_map(const StoredMap& stored, const std::filesystem::path& m
   const Scale scale = stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
   std::optional<PlanFit> fit = register_on_plan(result.correspondences, *plane, scale, options.registration);
   if (!fit) {
-    throw InputError(picks.string(), "has not two points that lie apart, so the map cannot be placed on the plan",
-                     "pick three or more, far apart");
+    throw InputError(picks.string(), "needs two distant points to register the map on the plan",
+                     "pick three or more distant points");
   }
   result.fit = std::move(*fit);
   result.fit.registration.plan = plan.name;

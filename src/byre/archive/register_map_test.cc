@@ -91,7 +91,7 @@ TEST_F(RegisterMap, FindsNothingToMendTheSecondTime) {
   EXPECT_EQ(twice.stored.map.rigs()[0].baseline, once.stored.map.rigs()[0].baseline);
   const std::string positions = picks_csv(scene.correspondences(8, 0.03));
   EXPECT_THAT([&] { mend_with(once.stored, positions); },
-              ThrowsMessage<InputError>(HasSubstr("gives positions, and the map has been scaled by 0.98")));
+              ThrowsMessage<InputError>(HasSubstr("gives positions, but the map has been scaled by 0.98")));
 }
 
 TEST_F(RegisterMap, MendsNoScaleThatIsNotThatOfABaseline) {
@@ -102,23 +102,23 @@ TEST_F(RegisterMap, MendsNoScaleThatIsNotThatOfABaseline) {
   };
   StoredMap stored = driven_barn(scene);
   stored.scale = MapScale::unknown;
-  refusal_of(stored, "leave --fix-scale out, and its scale is found; byre scale makes it metric");
+  refusal_of(stored, "omit --fix-scale, and the scale is estimated; or set it with byre scale");
   stored = driven_barn(scene);
   stored.pose_source = PoseSource::given;
-  refusal_of(stored, "has the scale of poses that came from elsewhere");
+  refusal_of(stored, "has the scale of given poses");
   MapParts one_camera{stored.map.rigs(), {}, {}};
   one_camera.rigs[0].baseline = 0.0;
   for (const KeyframeId id : stored.map.keyframe_ids()) one_camera.keyframes.push_back(*stored.map.find_keyframe(id));
   stored = driven_barn(scene);
   stored.map = Map(Origin::offline, one_camera);
-  refusal_of(stored, "has no baseline that could be mended (use byre scale with a distance that is known)");
+  refusal_of(stored, "has no baseline to correct (use byre scale with a known distance)");
 }
 
 TEST_F(RegisterMap, MendsNoScaleThatThePicksDoNotTell) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const StoredMap stored = driven_barn(scene);
   EXPECT_THAT([&] { mend(stored, scene.correspondences(3)); },
-              ThrowsMessage<InputError>(HasSubstr("does not tell the scale: fewer than four")));
+              ThrowsMessage<InputError>(HasSubstr("does not determine the scale: fewer than four")));
   EXPECT_THAT([&] { mend(stored, scene.correspondences(8, 2.0)); },
               ThrowsMessage<InputError>(HasSubstr("the correspondences are inconsistent")));
 }

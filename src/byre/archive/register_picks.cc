@@ -65,7 +65,7 @@ class Pick {
 
   double number(std::string_view column) const {
     const std::optional<double> value = parse_number(text(column));
-    if (!value) fail("has no number as " + std::string(column), "give a number, with a point before its decimals");
+    if (!value) fail("has no number in " + std::string(column), "give a number with a decimal point");
     return *value;
   }
 
@@ -77,7 +77,7 @@ class Pick {
 };
 
 Eigen::Vector2d read_point_in_plan(const Pick& pick, const FloorPlan& plan) {
-  pick.require_one({kPlanMetres, kPlanPixel}, "its place on the plan",
+  pick.require_one({kPlanMetres, kPlanPixel}, "its position on the plan",
                    "fill in plan_x_m and plan_y_m, or plan_column_px and plan_row_px");
   if (pick.has(kPlanMetres)) return {pick.number(kPlanMetres[0]), pick.number(kPlanMetres[1])};
   return plan.point_at({pick.number(kPlanPixel[0]), pick.number(kPlanPixel[1])});
@@ -88,7 +88,7 @@ MapPlace read_point(const Pick& pick, const StoredMap& stored) {
   const auto whole = static_cast<std::uint32_t>(std::clamp(number, 0.0, 4294967295.0));
   const auto place = place_of_point(stored, {stored.map.origin(), whole});
   if (!place || number != whole) {
-    pick.fail("names point " + pick.text(kPoint[0]) + ", which the map does not have",
+    pick.fail("refers to point " + pick.text(kPoint[0]) + ", which is not in the map",
               "the map has " + std::to_string(stored.map.point_count()) + " points, numbered from 0");
   }
   return *place;
@@ -110,27 +110,27 @@ const Keyframe& find_keyframe_at(const Pick& pick, Timestamp time, const Map& ma
     if (nearest == nullptr || gap < std::chrono::abs(nearest->frame.time - time)) nearest = &keyframe;
     if (gap <= kNearestKeyframe) ++count;
   }
-  if (nearest == nullptr) pick.fail("names a keyframe, and the map has none", "map a recording first");
+  if (nearest == nullptr) pick.fail("refers to a keyframe, but the map has none", "map a recording first");
   if (count == 0) {
-    pick.fail("names a time of no keyframe", "the nearest keyframe is at " + seconds_text(nearest->frame.time) + " s");
+    pick.fail("has a time without keyframe", "the nearest keyframe is at " + seconds_text(nearest->frame.time) + " s");
   }
-  if (count > 1) pick.fail("names a time of two keyframes", "give the position instead");
+  if (count > 1) pick.fail("has a time of two keyframes", "give the position instead");
   return *nearest;
 }
 
 MapPlace read_body(const Pick& pick, const StoredMap& stored) {
   const std::optional<Timestamp> time = parse_seconds(pick.text(kBody[0]));
-  if (!time) pick.fail("has no time in seconds as time_s", "give the time stamp of a keyframe");
+  if (!time) pick.fail("has no time in seconds in time_s", "give the time stamp of a keyframe");
   return {body_at(stored.map, find_keyframe_at(pick, *time, stored.map))};
 }
 
 MapPlace read_image_pixel(const Pick& pick, const StoredMap& stored) {
   const std::optional<Timestamp> time = parse_nanoseconds(pick.text(kImagePixel[0]));
-  if (!time) pick.fail("has no whole number as time_ns", "give the time stamp of a keyframe's image");
+  if (!time) pick.fail("has no integer in time_ns", "give the time stamp of a keyframe's image");
   const Keyframe& keyframe = find_keyframe_at(pick, *time, stored.map);
   const Eigen::Vector2d pixel(pick.number(kImagePixel[1]), pick.number(kImagePixel[2]));
   const std::optional<MapPlace> place = place_at_pixel(stored, keyframe, pixel);
-  if (!place) pick.fail("names a pixel near which the map has no point", "pick another keyframe or another pixel");
+  if (!place) pick.fail("has a pixel without a map point nearby", "pick another keyframe or another pixel");
   return *place;
 }
 
@@ -140,7 +140,7 @@ MapPlace read_position(const Pick& pick, double scale) {
 }
 
 MapPlace read_place_in_map(const Pick& pick, const StoredMap& stored, double positions_scale) {
-  pick.require_one({kPoint, kPosition, kPositionOfPoint, kBody, kImagePixel}, "its place in the map",
+  pick.require_one({kPoint, kPosition, kPositionOfPoint, kBody, kImagePixel}, "its position in the map",
                    "fill in point, or map_x_m to map_z_m, or time_s, or time_ns, u_px and v_px");
   if (pick.has(kPoint)) return read_point(pick, stored);
   if (pick.has(kBody)) return read_body(pick, stored);
@@ -151,7 +151,7 @@ MapPlace read_place_in_map(const Pick& pick, const StoredMap& stored, double pos
 double read_sigma(const Pick& pick, const PickOptions& options) {
   if (!pick.has(kSigma)) return options.sigma;
   const double sigma = pick.number(kSigma[0]);
-  if (!(sigma > 0.0)) pick.fail("has a sigma_m that is not positive", "give the uncertainty of the pick in metres");
+  if (!(sigma > 0.0)) pick.fail("has a non-positive sigma_m", "give the standard deviation of the pick in metres");
   return sigma;
 }
 

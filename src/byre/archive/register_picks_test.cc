@@ -121,22 +121,23 @@ TEST_F(RegisterPicks, AreNotTakenForKnownInMetresWhereTheMapHasNone) {
 
 TEST_F(RegisterPicks, AreRefusedWhereTheyNameWhatTheMapHasNot) {
   const std::string columns = "point,time_s,time_ns,u_px,v_px,plan_x_m,plan_y_m\n";
-  EXPECT_THAT(refusal_of(columns + "7,,,,,1,2\n"), HasSubstr(":2: names point 7, which the map does not have"));
-  EXPECT_THAT(refusal_of(columns + "0.5,,,,,1,2\n"), HasSubstr("names point 0.5"));
-  EXPECT_THAT(refusal_of(columns + "-1,,,,,1,2\n"), HasSubstr("names point -1"));
+  EXPECT_THAT(refusal_of(columns + "7,,,,,1,2\n"), HasSubstr(":2: refers to point 7, which is not in the map"));
+  EXPECT_THAT(refusal_of(columns + "0.5,,,,,1,2\n"), HasSubstr("refers to point 0.5"));
+  EXPECT_THAT(refusal_of(columns + "-1,,,,,1,2\n"), HasSubstr("refers to point -1"));
   EXPECT_THAT(refusal_of(columns + ",50,,,,1,2\n"),
-              HasSubstr("names a time of no keyframe (the nearest keyframe is at 100.000000000 s)"));
-  EXPECT_THAT(refusal_of(columns + ",,101500000000,163,121,1,2\n"), HasSubstr("names a time of no keyframe"));
+              HasSubstr("has a time without keyframe (the nearest keyframe is at 100.000000000 s)"));
+  EXPECT_THAT(refusal_of(columns + ",,101500000000,163,121,1,2\n"), HasSubstr("has a time without keyframe"));
   EXPECT_THAT(refusal_of(columns + ",,100000000000,163,150,1,2\n"),
-              HasSubstr("names a pixel near which the map has no point"));
+              HasSubstr("has a pixel without a map point nearby"));
 }
 
 TEST_F(RegisterPicks, AreRefusedWithoutOnePlaceInTheMapAndOneOnThePlan) {
   const std::string columns = "point,time_s,plan_x_m,plan_y_m,plan_column_px,plan_row_px\n";
-  EXPECT_THAT(refusal_of(columns + "0,101,1,2,,\n"), HasSubstr(":2: gives its place in the map twice (fill in point"));
-  EXPECT_THAT(refusal_of(columns + ",,1,2,,\n"), HasSubstr(":2: does not give its place in the map (fill in point"));
-  EXPECT_THAT(refusal_of(columns + "0,,1,2,3,4\n"), HasSubstr("gives its place on the plan twice"));
-  EXPECT_THAT(refusal_of(columns + "0,,,,,\n"), HasSubstr("does not give its place on the plan"));
+  EXPECT_THAT(refusal_of(columns + "0,101,1,2,,\n"),
+              HasSubstr(":2: gives its position in the map twice (fill in point"));
+  EXPECT_THAT(refusal_of(columns + ",,1,2,,\n"), HasSubstr(":2: does not give its position in the map (fill in point"));
+  EXPECT_THAT(refusal_of(columns + "0,,1,2,3,4\n"), HasSubstr("gives its position on the plan twice"));
+  EXPECT_THAT(refusal_of(columns + "0,,,,,\n"), HasSubstr("does not give its position on the plan"));
 }
 
 TEST_F(RegisterPicks, AreRefusedWhereANumberIsNone) {

@@ -34,26 +34,26 @@ std::optional<std::string_view> after(std::string_view prefix, std::string_view 
 
 Eigen::Vector3d point_position(const StoredMap& stored, const std::string& text, std::string_view number) {
   const auto parsed = parse<std::uint32_t>(number);
-  if (!parsed) reject(text, "is no number of a point");
+  if (!parsed) reject(text, "is not a point number");
   const MapPoint* const point = stored.map.find_point({Origin::offline, *parsed});
   if (point == nullptr) reject(text, "is not in the map");
   return point->position_in_world;
 }
 
 std::string time_span(const Map& map) {
-  if (map.keyframe_count() == 0) return "which holds none";
+  if (map.keyframe_count() == 0) return "which has none";
   Timestamp first = Timestamp::max(), last = Timestamp::min();
   for (const KeyframeId id : map.keyframe_ids()) {
     first = std::min(first, map.find_keyframe(id)->frame.time);
     last = std::max(last, map.find_keyframe(id)->frame.time);
   }
-  return fmt::format("which are from {:.3f} to {:.3f} s", to_seconds(first), to_seconds(last));
+  return fmt::format("which cover {:.3f} to {:.3f} s", to_seconds(first), to_seconds(last));
 }
 
 Eigen::Vector3d camera_position_at(const StoredMap& stored, const std::string& text, std::string_view seconds) {
   constexpr double kMaxGap = 1.0;  // seconds
   const auto parsed = parse<double>(seconds);
-  if (!parsed) reject(text, "is no time");
+  if (!parsed) reject(text, "is not a time");
   const Keyframe* nearest = nullptr;
   double nearest_gap = kMaxGap;
   for (const KeyframeId id : stored.map.keyframe_ids()) {
@@ -74,12 +74,12 @@ Eigen::Vector3d position(const std::string& text) {
   while (true) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
     const auto number = parse<double>(rest.substr(0, comma));
-    if (!number || !std::isfinite(*number)) reject(text, "is no place");
+    if (!number || !std::isfinite(*number)) reject(text, "is not a place");
     numbers.push_back(*number);
     if (comma == rest.size()) break;
     rest.remove_prefix(comma + 1);
   }
-  if (numbers.size() != 3) reject(text, "has no three coordinates");
+  if (numbers.size() != 3) reject(text, "does not have three coordinates");
   return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -94,12 +94,12 @@ Eigen::Vector3d find_place(const StoredMap& stored, const std::string& text) {
 ScaledMap scale_by_distance(const StoredMap& stored, const std::string& first, const std::string& second,
                             double metres) {
   if (std::ranges::any_of(stored.map.rigs(), &Rig::is_stereo)) {
-    throw InputError("the map", "was made by a stereo or depth camera, which tells the scale", "use it as it is");
+    throw InputError("the map", "was made by a stereo or depth camera and is already metric", "use it unchanged");
   }
   ScaledMap scaled;
   scaled.distance = (find_place(stored, first) - find_place(stored, second)).norm();
   if (!(scaled.distance > 0.0)) {
-    throw InputError("--between " + first + " " + second, "is one and the same place", "name two that are apart");
+    throw InputError("--between " + first + " " + second, "is the same place twice", "give two different places");
   }
   scaled.factor = metres / scaled.distance;
   scaled.stored = scaled_copy(stored, scaled.factor);

@@ -70,17 +70,17 @@ TEST(FindPlace, TakesTheCameraAtATime) {
 
 TEST(FindPlace, SaysWhatIsWrong) {
   const auto of = [](const std::string& text) { return [text] { find_place(unscaled(), text); }; };
-  EXPECT_THAT(of("point:x"), ThrowsMessage<InputError>(HasSubstr("is no number of a point")));
+  EXPECT_THAT(of("point:x"), ThrowsMessage<InputError>(HasSubstr("is not a point number")));
   EXPECT_THAT(of("point:999999"), ThrowsMessage<InputError>(HasSubstr("is not in the map")));
-  EXPECT_THAT(of("time:60"), ThrowsMessage<InputError>(HasSubstr("which are from 0.000 to 3.600 s")));
-  EXPECT_THAT(of("1,2"), ThrowsMessage<InputError>(HasSubstr("has no three coordinates")));
-  EXPECT_THAT(of("1,2,nan"), ThrowsMessage<InputError>(HasSubstr("is no place")));
+  EXPECT_THAT(of("time:60"), ThrowsMessage<InputError>(HasSubstr("which cover 0.000 to 3.600 s")));
+  EXPECT_THAT(of("1,2"), ThrowsMessage<InputError>(HasSubstr("does not have three coordinates")));
+  EXPECT_THAT(of("1,2,nan"), ThrowsMessage<InputError>(HasSubstr("is not a place")));
   EXPECT_THAT(of("the door"), ThrowsMessage<InputError>(HasSubstr("point:NUMBER")));
 }
 
 TEST(ScaleByDistance, RefusesOnePlaceForTwo) {
   EXPECT_THAT([] { scale_by_distance(unscaled(), "point:3", "point:3", 1.0); },
-              ThrowsMessage<InputError>(HasSubstr("one and the same place")));
+              ThrowsMessage<InputError>(HasSubstr("the same place twice")));
 }
 
 TEST(ScaleByDistance, RefusesAMapWhoseScaleIsKnown) {

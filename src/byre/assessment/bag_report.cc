@@ -51,7 +51,7 @@ std::string describe(const BagTopic& topic, double seconds, std::size_t longest_
   if (topic.messages > 1 && seconds > 0.0) {
     text += fmt::format(", {:.1f} Hz", static_cast<double>(topic.messages - 1) / seconds);
   }
-  return encoding_of(topic) ? text : text + ", encoded as " + topic.encoding + ", which byre does not read";
+  return encoding_of(topic) ? text : text + ", encoded as " + topic.encoding + ", not readable by byre";
 }
 
 }  // namespace

@@ -45,12 +45,12 @@ std::string names_of_changed(const std::vector<Row>& rows) {
 }
 
 std::string describe_optics(const RefinedCalibration& refined) {
-  if (refined.keyframes == 0) return "as given, but for the length of the baseline or the shutter";
+  if (refined.keyframes == 0) return "as given, except for baseline length or readout time";
   if (refined.was_refused()) {
-    return fmt::format("as given; refinement by {} keyframes asks for a change of {:.2f} px, which is refused",
-                       refined.keyframes, refined.shift);
+    return fmt::format("as given; refinement from {} keyframes rejected: change of {:.2f} px", refined.keyframes,
+                       refined.shift);
   }
-  if (refined.change.isZero(0.0)) return fmt::format("as given; {} keyframes confirm it", refined.keyframes);
+  if (refined.change.isZero(0.0)) return fmt::format("as given, confirmed by {} keyframes", refined.keyframes);
   const std::string changed = names_of_changed(rows_of(refined));
   return fmt::format("refined from {} keyframes, by {:.2f} px (root mean square)", refined.keyframes, refined.shift) +
          (changed.empty() ? "" : ": " + changed);
@@ -63,13 +63,13 @@ std::string describe_calibration(const RefinedCalibration& refined) {
   const double readout_time = refined.calibration.readout_time;
   return describe_optics(refined) +
          (readout_time == 0.0 ? ""
-                              : fmt::format("; rolling shutter, {:.1f} ms an image", kMilliseconds * readout_time));
+                              : fmt::format("; rolling shutter, readout time {:.1f} ms", kMilliseconds * readout_time));
 }
 
 std::string calibration_row(const std::optional<RefinedCalibration>& refined, const std::optional<double>& row_error) {
   if (!refined) return "";
   const std::string by_rows =
-      row_error ? fmt::format("off by about {:.2f} px, by the rows of the pair; ", *row_error) : "";
+      row_error ? fmt::format("error about {:.2f} px (row differences of the pair); ", *row_error) : "";
   return row("calibration", by_rows + describe_calibration(*refined));
 }
 
@@ -77,9 +77,9 @@ std::string calibration_table(const RefinedCalibration& refined) {
   std::string text;
   if (refined.keyframes == 0) return text;
   for (const Row& row : rows_of(refined)) {
-    text += fmt::format("  {:28} {:+11.5f} {:3}  known to {:.5f} before, {:.5f} now{}\n",
-                        std::string(row.parameter.name), row.change, std::string(row.parameter.unit), row.sigma_before,
-                        row.sigma_after, row.is_changed() ? "" : " (as given)");
+    text += fmt::format("  {:28} {:+11.5f} {:3}  sigma {:.5f} before, {:.5f} now{}\n", std::string(row.parameter.name),
+                        row.change, std::string(row.parameter.unit), row.sigma_before, row.sigma_after,
+                        row.is_changed() ? "" : " (as given)");
   }
   return text;
 }
@@ -88,15 +88,15 @@ std::optional<std::string> calibration_warning(const std::optional<RefinedCalibr
                                                const std::optional<double>& row_error) {
   if (refined && refined->is_implausible()) {
     return fmt::format(
-        "the calibration is not of these cameras: refinement by {} keyframes asks for a change of {:.2f} px, more than "
-        "errors of calibrations; it is used unchanged. Check resolution and focal length, and calibrate the cameras "
-        "again",
+        "the calibration is not of these cameras: refinement from {} keyframes would change it by {:.2f} px, more than "
+        "plausible calibration errors; it is used unchanged. Check resolution and focal length, and calibrate the "
+        "cameras again",
         refined->keyframes, refined->shift);
   }
   if (!row_error || *row_error <= kFarOffCalibration) return std::nullopt;
   const bool is_refined = refined && !refined->was_refused();
-  return fmt::format("the calibration is off by about {:.2f} px, by the rows of the pair: ", *row_error) +
-         (is_refined ? "calibrate the cameras again, or use the calibration that \"byre calibrate\" writes"
+  return fmt::format("the calibration has an error of about {:.2f} px (row differences of the pair): ", *row_error) +
+         (is_refined ? "calibrate the cameras again, or use a calibration by \"byre calibrate\""
                      : "calibrate the cameras again");
 }
 

@@ -33,10 +33,10 @@ std::string_view name_of(PoseAlignment alignment) {
 }
 
 std::string describe_alignment(const EvaluationReport& report) {
-  if (report.protocol.alignment == PoseAlignment::none) return "none, the estimate is taken to be in the truth's frame";
+  if (report.protocol.alignment == PoseAlignment::none) return "none, estimate and truth are in the same frame";
   if (report.protocol.alignment == PoseAlignment::origin)
-    return "origin: the first pose is laid on the true one, rotation too";
-  if (!report.ate) return "impossible: the positions lie on a line, or there are fewer than three";
+    return "origin: the first pose equals the true one, including rotation";
+  if (!report.ate) return "impossible: collinear positions, or fewer than three";
   if (report.protocol.alignment == PoseAlignment::se3) return "SE(3) over all pairs (Umeyama)";
   return fmt::format("Sim(3) over all pairs (Umeyama), scale {:.6f}", report.ate->truth_from_estimate.scale);
 }
@@ -45,9 +45,9 @@ std::string caveat_row(const EvaluationReport& report) {
   const PoseAlignment alignment = report.protocol.alignment;
   if (!is_nearly_a_line(report) || (alignment != PoseAlignment::se3 && alignment != PoseAlignment::sim3)) return "";
   return fmt::format(
-      "caveat       the path is nearly a line: it spreads {:.3g} m along it, {:.3g} m across. How the alignment "
-      "turns about that line is\n             not determined, so errors across it and of rotation may be "
-      "any (--alignment origin has no such freedom)\n",
+      "caveat       the path is nearly a line, {:.3g} m long and {:.3g} m wide. The rotation of the alignment about "
+      "this line is\n             undetermined, so errors across it and of rotation are arbitrary (not with "
+      "--alignment origin)\n",
       report.true_spread[0], report.true_spread[1]);
 }
 
@@ -76,7 +76,7 @@ std::string header(const EvaluationReport& report, const std::string& estimate_f
 }
 
 std::string ate_rpe_row(const char* name, const ErrorStatistics& errors) {
-  if (errors.count == 0) return fmt::format("{:22} no pair of poses is that far apart\n", name);
+  if (errors.count == 0) return fmt::format("{:22} no pair of poses at this distance\n", name);
   return fmt::format("{:22} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:8}\n", name, errors.rmse, errors.mean,
                      errors.median, errors.p95, errors.max, errors.count);
 }
@@ -97,7 +97,7 @@ std::string segment_row(const std::string& name, const SegmentError& error) {
 }
 
 std::string segment_rows(const SegmentErrors& segments) {
-  if (segments.all.count == 0) return "segments (KITTI)       none, as the path is shorter than 100 m\n";
+  if (segments.all.count == 0) return "segments (KITTI)       none, the path is shorter than 100 m\n";
   std::string text = segment_row("segments (KITTI)", segments.all);
   for (const SegmentError& error : segments.by_length)
     text += segment_row(fmt::format("  of {:.0f} m", error.length), error);

@@ -11,9 +11,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string describe_loops(const FinishReport& report) {
-  if (report.loops == 0) return "no more found";
-  return fmt::format("{} more, drifted by {:.1f} px, now off by {:.3f} m", report.loops,
-                     fmt::join(report.loop_drifts, ", "), fmt::join(report.loop_residuals, ", "));
+  if (report.loops == 0) return "none";
+  return fmt::format("{} closed; drift {:.1f} px, residual {:.3f} m", report.loops, fmt::join(report.loop_drifts, ", "),
+                     fmt::join(report.loop_residuals, ", "));
 }
 
 std::string describe_faults(const std::vector<std::string>& faults) {
@@ -42,10 +42,10 @@ std::string to_text(const Finishing& finishing) {
   text += row("pixel error",
               fmt::format("median {:.3f} -> {:.3f} px, 95 % within {:.3f} -> {:.3f} px", before.reprojection_median,
                           after.reprojection_median, before.reprojection_p95, after.reprojection_p95));
-  text += row("parts", fmt::format("{} -> {} that share no points", before.parts, after.parts));
+  text += row("parts", fmt::format("{} -> {} without common points", before.parts, after.parts));
   text += row("faults", describe_faults(finishing.faults));
   text += row("finishing", fmt::format("{:.1f} s{}", finishing.seconds,
-                                       finishing.cut_short ? ", cut short; \"byre refine\" goes on with it" : ""));
+                                       finishing.cut_short ? ", interrupted; continue with \"byre refine\"" : ""));
   return text;
 }
 

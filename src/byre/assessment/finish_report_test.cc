@@ -24,10 +24,10 @@ Finishing finishing_with_two_loops() {
 
 TEST(FinishText, TellsWhatChangedAndHowSoundTheMapIs) {
   const std::string text = to_text(finishing_with_two_loops());
-  EXPECT_THAT(text, HasSubstr("last loops   2 more, drifted by 7.2, 12.0 px, now off by 0.004, 0.011 m\n"));
+  EXPECT_THAT(text, HasSubstr("last loops   2 closed; drift 7.2, 12.0 px, residual 0.004, 0.011 m\n"));
   EXPECT_THAT(text, HasSubstr("removed      3 redundant keyframes, 40 weak points\n"));
   EXPECT_THAT(text, HasSubstr("pixel error  median 0.500 -> 0.250 px, 95 % within 2.000 -> 1.500 px\n"));
-  EXPECT_THAT(text, HasSubstr("parts        2 -> 1 that share no points\n"));
+  EXPECT_THAT(text, HasSubstr("parts        2 -> 1 without common points\n"));
   EXPECT_THAT(text, HasSubstr("faults       none\n"));
 }
 
@@ -36,9 +36,9 @@ TEST(FinishText, SaysWhenThereWasNothingToFindAndWhenItWasCutShort) {
   finishing.cut_short = true;
   finishing.faults = {"point 7 is seen by nobody", "point 8 is seen by nobody"};
   const std::string text = to_text(finishing);
-  EXPECT_THAT(text, HasSubstr("last loops   no more found\n"));
+  EXPECT_THAT(text, HasSubstr("last loops   none\n"));
   EXPECT_THAT(text, HasSubstr("faults       2; the first: point 7 is seen by nobody\n"));
-  EXPECT_THAT(text, HasSubstr("cut short; \"byre refine\" goes on with it\n"));
+  EXPECT_THAT(text, HasSubstr("interrupted; continue with \"byre refine\"\n"));
 }
 
 TEST(FinishJson, HoldsTheSame) {

@@ -70,7 +70,7 @@ std::string describe(const Distribution& values, const char* unit) {
 
 std::string describe_words(const StoredMap& stored, const MapCounts& counts) {
   if (counts.keyframes_with_words == 0) return "none";
-  return fmt::format("of {} keyframes, by the vocabulary {:016x}", counts.keyframes_with_words,
+  return fmt::format("of {} keyframes, vocabulary {:016x}", counts.keyframes_with_words,
                      static_cast<unsigned long long>(stored.vocabulary_checksum));
 }
 
@@ -124,7 +124,7 @@ std::string origin_text(const StoredMap& stored, const MapInspection& inspection
   const KnownMounting mounting = mounting_in(stored.notes);
   for (const auto& [key, note] : stored.notes) {
     const bool is_mounting = (key == "wheels" && mounting.wheels) || (key == "gyroscope" && mounting.gyroscope);
-    text += wide_row(key, is_mounting ? "known how mounted, for missions to begin with" : note);
+    text += wide_row(key, is_mounting ? "extrinsics stored, initial values of missions" : note);
   }
   if (stored.plan) text += wide_row("plan", describe_origin(*stored.plan));
   return text;

@@ -22,7 +22,7 @@ TEST(InspectReport, IsReadable) {
   EXPECT_THAT(text, HasSubstr("recording      barn_morning, 100.0 s, last frame at 200.000 s, 4 keyframes, stereo\n"));
   EXPECT_THAT(text, HasSubstr("site           barn 3\n"));
   EXPECT_THAT(text, HasSubstr("keyframes      5, with 36 features, 20 with a patch\n"));
-  EXPECT_THAT(text, HasSubstr("words          of 2 keyframes, by the vocabulary 0123456789abcdef\n"));
+  EXPECT_THAT(text, HasSubstr("words          of 2 keyframes, vocabulary 0123456789abcdef\n"));
   EXPECT_THAT(text, HasSubstr("file           12.3 MB, 2469.1 kB per keyframe\n"));
   EXPECT_THAT(text, HasSubstr("header 432 B, points 2.0 MB"));
   EXPECT_THAT(text, HasSubstr("faults         none\n"));

@@ -88,15 +88,15 @@ std::string error_rows(const LocalisationErrors& errors, std::size_t frames) {
   const ErrorSummary summary = summarise_errors(errors);
   std::string text =
       row("truth", errors.alignment_keyframes == 0
-                       ? std::string("taken for given in the map's frame")
-                       : fmt::format("the map is aligned to it by its {} keyframes", errors.alignment_keyframes));
-  text += row("position", fmt::format("median {:.4f} m, 95 % within {:.4f} m, worst {:.4f} m", summary.position.median,
+                       ? std::string("in the map's frame, without alignment")
+                       : fmt::format("aligned to the map by its {} keyframes", errors.alignment_keyframes));
+  text += row("position", fmt::format("median {:.4f} m, 95 % within {:.4f} m, max {:.4f} m", summary.position.median,
                                       summary.position.p95, summary.position.max));
-  text += row("rotation", fmt::format("median {:.3f} deg, 95 % within {:.3f} deg, worst {:.3f} deg",
+  text += row("rotation", fmt::format("median {:.3f} deg, 95 % within {:.3f} deg, max {:.3f} deg",
                                       summary.rotation.median, summary.rotation.p95, summary.rotation.max));
-  text += row("close", fmt::format("{} of {} frames ({:.1f} %) found within {:g} m and {:g} deg", summary.close, frames,
+  text += row("close", fmt::format("{} of {} frames ({:.1f} %) within {:g} m and {:g} deg", summary.close, frames,
                                    percent(summary.close, frames), kCloseMetres, kCloseDegrees));
-  text += row("far", fmt::format("{} frames accepted but off by more than {:g} m", summary.far, kFarFoundMetres));
+  text += row("far", fmt::format("{} accepted frames with an error above {:g} m", summary.far, kFarFoundMetres));
   return text;
 }
 
@@ -153,7 +153,7 @@ std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
   std::string text = row("map", protocol.map);
   if (protocol.plan) text += row("plan", protocol.plan->plan);
   text += row("frames", fmt::format("{}, {} frames", protocol.input, protocol.frames));
-  text += row("found", fmt::format("{} of {} frames ({:.1f} %), each without a guess", found, run.frames.size(),
+  text += row("found", fmt::format("{} of {} frames ({:.1f} %), without prediction", found, run.frames.size(),
                                    percent(found, run.frames.size())));
   for (const auto& [failure, count] : count_failures(run)) {
     text += row("not found", fmt::format("{}: ", count) + std::string(to_string(failure)));

@@ -70,7 +70,7 @@ TEST(LocaliseReport, CountsWhatWasFoundAndWhyOthersWereNot) {
 
 TEST(LocaliseReport, CountsFramesThatAreFarOff) {
   const auto errors = errors_in_map(small_run(), small_map(), truth_of_run(), truth_of_run());
-  EXPECT_THAT(to_text(small_run(), {}, errors), HasSubstr("far          1 frames accepted but off by more than 0.5 m"));
+  EXPECT_THAT(to_text(small_run(), {}, errors), HasSubstr("far          1 accepted frames with an error above 0.5 m"));
   const json report = json::parse(to_json(small_run(), {"room.byre", "evening", 5}, errors));
   EXPECT_EQ(report.at("errors").at("frames_within_0.1m_2deg"), 3);
   EXPECT_EQ(report.at("errors").at("frames_off_by_more_than_0.5m"), 1);

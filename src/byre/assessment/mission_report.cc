@@ -28,7 +28,7 @@ std::string describe_verdicts(const MissionStatistics& statistics) {
 
 std::string describe_missing(const MissionStatistics& statistics) {
   return fmt::format("{} of {} frames could not be read", statistics.missing, statistics.frames) +
-         (is_full_of_gaps(statistics) ? ": too many for the verdicts of the others to stand for the mission" : "");
+         (is_full_of_gaps(statistics) ? ": too many for verdict shares to describe the mission" : "");
 }
 
 std::string describe_doubts(const MissionStatistics& statistics) {
@@ -41,7 +41,7 @@ std::string describe_doubts(const MissionStatistics& statistics) {
 }
 
 std::string describe_losses(const MissionStatistics& statistics) {
-  return fmt::format("{} times, found again {} times; {} navigation errors", statistics.losses,
+  return fmt::format("{} times, relocalised {} times; {} navigation errors", statistics.losses,
                      statistics.relocalisations, statistics.navigation_errors);
 }
 
@@ -50,13 +50,13 @@ std::string describe_dirt(const MissionStatistics& statistics) {
   Health health;
   health.hidden_share = statistics.most_hidden;
   health.hidden_share_right = statistics.most_hidden_right;
-  return note_on_dirt(health) + fmt::format(" (at most; {} frames)", statistics.frames_with_dirt);
+  return note_on_dirt(health) + fmt::format(" (maximum; {} frames)", statistics.frames_with_dirt);
 }
 
 // Empty if the mission had no such places.
 std::string keyframe_row(const char* places, const KeyframeRate& rate) {
   if (rate.minutes <= 0.0) return "";
-  return row("keyframes", fmt::format("{:.1f} a minute in {} places ({} in {:.0f} s)", rate.per_minute(), places,
+  return row("keyframes", fmt::format("{:.1f} per minute in {} places ({} in {:.0f} s)", rate.per_minute(), places,
                                       rate.keyframes, 60.0 * rate.minutes));
 }
 
@@ -69,27 +69,27 @@ std::string describe_inliers(const MissionStatistics& statistics) {
 }
 
 std::string describe_alignment(const MissionErrors& errors) {
-  if (!errors.in_map_frame) return "causal and final poses are each aligned to it";
-  if (errors.alignment_poses == 0) return "taken for given in the map's frame";
-  return fmt::format("the map alone is aligned to it, by {} poses of the run that made it", errors.alignment_poses);
+  if (!errors.in_map_frame) return "causal and final poses are aligned to it separately";
+  if (errors.alignment_poses == 0) return "in the map's frame, without alignment";
+  return fmt::format("aligned to the map by {} poses of the run that made the map", errors.alignment_poses);
 }
 
 std::string error_row(const char* name, const std::vector<PoseError>& errors) {
   const ErrorStatistics position = position_statistics(errors);
   if (position.count == 0) return row(name, "no pose with truth");
   return row(name,
-             fmt::format("RMSE {:.4f} m and {:.3f} deg, median {:.4f} m, 95 % within {:.4f} m, worst {:.4f} m",
+             fmt::format("RMSE {:.4f} m and {:.3f} deg, median {:.4f} m, 95 % within {:.4f} m, max {:.4f} m",
                          position.rmse, rotation_statistics(errors).rmse, position.median, position.p95, position.max));
 }
 
 std::string trust_rows(const MissionErrors& errors) {
   std::string text = error_row("trusted", errors.trusted);
-  text += row("wrong trust", fmt::format("{} frames trusted but off by more than {:g} m, {:.2f} s at a time",
+  text += row("wrong trust", fmt::format("{} trusted frames with an error above {:g} m, longest {:.2f} s",
                                          errors.wrongly_trusted, kFarMetres, errors.longest_wrong_trust_s));
   if (!errors.within_bound) return text;
   std::string within = fmt::format("{:.1f} % of causal positions within its 95 % bound", 100.0 * *errors.within_bound);
   if (errors.within_bound_beside_map) {
-    within += fmt::format(", {:.1f} % beside the map's own error", 100.0 * *errors.within_bound_beside_map);
+    within += fmt::format(", {:.1f} % without the map's own error", 100.0 * *errors.within_bound_beside_map);
   }
   text += row("covariance", within);
   return text;

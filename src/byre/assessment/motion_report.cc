@@ -14,7 +14,8 @@ namespace {
 std::string describe_lengths(const WheelMounting& wheels, const MapRun& run, bool sees_metres) {
   const double share = 100.0 * wheels.scale_sigma;
   if (sees_metres) {
-    return fmt::format("{:.2f} % longer than seen (sigma {:.2f} %); ", 100.0 * (wheels.metres_per_unit - 1.0), share);
+    return fmt::format("{:.2f} % longer than by camera (sigma {:.2f} %); ", 100.0 * (wheels.metres_per_unit - 1.0),
+                       share);
   }
   if (run.is_metric) return "";
   return fmt::format("a unit of the map is {:.3f} m (sigma {:.2f} %); ", wheels.metres_per_unit, share);
@@ -24,17 +25,18 @@ std::string describe(const WheelMounting& wheels, const MapRun& run, bool sees_m
   const ToldMotion& told = run.told;
   const Eigen::Vector3d& arm = wheels.base_from_body.translation;
   std::string text =
-      fmt::format("body {:.2f} m ahead and {:.2f} m to the left of the base; stamped {:.0f} ms after the images; ",
+      fmt::format("body {:.2f} m ahead and {:.2f} m to the left of the base; time offset {:.0f} ms to the images; ",
                   arm.x(), arm.y(), 1e3 * told.time_offset);
   text += describe_lengths(wheels, run, sees_metres);
-  text += fmt::format("left out for slip {} times", told.slips);
-  return text + (told.is_mounted_otherwise ? "; mounted otherwise than when the map was made" : "");
+  text += fmt::format("ignored {} times for slip", told.slips);
+  return text + (told.is_mounted_otherwise ? "; extrinsics differ from those of the map" : "");
 }
 
 std::string describe_stops(const ToldMotion& told) {
-  std::string text = fmt::format("stood still {} times, {:.1f} s", told.stops, told.stood_s);
-  if (told.to_keep.up) text += fmt::format("; up is known to {:.1f} deg in the map", told.to_keep.up->sigma / kDegree);
-  return text + fmt::format("; held roll and pitch of {} bridged frames", told.tilts_held);
+  std::string text = fmt::format("{} stops, {:.1f} s", told.stops, told.stood_s);
+  if (told.to_keep.up)
+    text += fmt::format("; vertical in the map with sigma {:.1f} deg", told.to_keep.up->sigma / kDegree);
+  return text + fmt::format("; roll and pitch of {} bridged frames corrected", told.tilts_held);
 }
 
 bool is_bridged(const MappedFrame& frame) {
@@ -54,13 +56,14 @@ std::string motion_rows(const MapRun& run, bool sees_metres) {
   }
   if (told.stops > 0) text += row("gravity", describe_stops(told));
   if (!told.wheels && told.is_mounted_otherwise) {
-    text += row("wheels", "mounted otherwise than when the map was made, and it is not known yet how");
+    text += row("wheels", "not used: extrinsics differ from those of the map and are not estimated yet");
   } else if (!told.wheels && !told.gyroscope) {
-    return text + row("motion", "not used: too little was driven and turned to know how what tells it is mounted");
+    return text + row("motion", "not used: too little motion to estimate the extrinsics");
   }
   const auto bridged = std::ranges::count_if(run.frames, is_bridged);
-  return text + row("bridged", fmt::format("{} frames that show nothing known; {} more have a final pose by wheels",
-                                           static_cast<int>(bridged), told.led_afterwards));
+  return text +
+         row("bridged", fmt::format("{} frames without visual pose; {} further frames have a final pose by wheels",
+                                    static_cast<int>(bridged), told.led_afterwards));
 }
 
 }  // namespace byre

@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string describe(const CameraCheck& camera) {
-  return fmt::format("brightness {:.0f} and contrast {:.0f} grey values, sharpness {:.2f}; {} of {} images of no use",
+  return fmt::format("brightness {:.0f} and contrast {:.0f} grey values, sharpness {:.2f}; {} of {} images unusable",
                      camera.brightness, camera.contrast, camera.sharpness, camera.of_no_use(), camera.images);
 }
 
@@ -21,7 +21,7 @@ bool has_features(const RecordingCheck& check) {
 }
 
 std::string describe(const PairCheck& pair) {
-  return fmt::format("{:.0f} % of the features found in the right image, {:.2f} px off their row", 100.0 * pair.matched,
+  return fmt::format("{:.0f} % of the features matched in the right image, row error {:.2f} px", 100.0 * pair.matched,
                      pair.row_error);
 }
 
@@ -42,29 +42,29 @@ Json to_json(const CameraCheck& camera) {
 std::string summary_of(const RecordingCheck& check) {
   std::string text = fmt::format("{:.1f} Hz, {} gaps; {:.0f} features", check.rate_hz, check.gaps, check.features);
   if (!check.pair || !has_features(check)) return text;
-  return text + fmt::format(", {:.0f} % of them in both images, {:.2f} px off their row", 100.0 * check.pair->matched,
+  return text + fmt::format(", {:.0f} % matched in both images, row error {:.2f} px", 100.0 * check.pair->matched,
                             check.pair->row_error);
 }
 
 std::string describe(const RecordingCheck& check, const std::vector<Finding>& findings) {
   std::string text = row("frames", fmt::format("{} at {:.1f} Hz, {} gaps, the longest {:.2f} s", check.frames,
                                                check.rate_hz, check.gaps, check.longest_gap_s));
-  text += row("looked at", fmt::format("{}; {} unreadable, {} without a right image, {} the same as the one before",
-                                       check.looked_at, check.unreadable, check.without_right, check.repeated));
+  text += row("sampled", fmt::format("{} frames; {} unreadable, {} without a right image, {} repeated", check.looked_at,
+                                     check.unreadable, check.without_right, check.repeated));
   text += row("left", describe(check.left));
   if (check.right) text += row("right", describe(*check.right));
   if (check.pair && has_features(check)) {
     text += row("pair", describe(*check.pair));
     text += row("calibration",
-                fmt::format("off by about {:.2f} px, by the rows of the pair", check.pair->calibration_error));
+                fmt::format("error about {:.2f} px (row differences of the pair)", check.pair->calibration_error));
   }
-  text += row("features", fmt::format("{:.0f} in an image", check.features));
+  text += row("features", fmt::format("{:.0f} per image", check.features));
   text += row("view", fmt::format("{:.0f} degrees wide", check.field_of_view_deg));
   if (check.baseline_m > 0.0) text += row("baseline", fmt::format("{:.4f} m", check.baseline_m));
   for (const Finding& finding : findings) {
-    text += row(finding.is_grave ? "TO MEND" : "to see to", finding.what) + row("", finding.remedy);
+    text += row(finding.is_grave ? "PROBLEM" : "warning", finding.what) + row("", finding.remedy);
   }
-  if (findings.empty()) text += row("found", "nothing that needs seeing to");
+  if (findings.empty()) text += row("found", "no problems");
   return text;
 }
 

@@ -21,17 +21,17 @@ RecordingCheck check_of_pairs(double features) {
 
 TEST(RecordingCheckReport, GivesTheShareOfFeaturesInBothImages) {
   EXPECT_EQ(summary_of(check_of_pairs(1000.0)),
-            "20.0 Hz, 2 gaps; 1000 features, 53 % of them in both images, 0.25 px off their row");
+            "20.0 Hz, 2 gaps; 1000 features, 53 % matched in both images, row error 0.25 px");
   EXPECT_THAT(describe(check_of_pairs(1000.0), {}),
-              AllOf(HasSubstr("53 % of the features found in the right image, 0.25 px off their row"),
-                    HasSubstr("off by about 0.10 px, by the rows of the pair")));
+              AllOf(HasSubstr("53 % of the features matched in the right image, row error 0.25 px"),
+                    HasSubstr("error about 0.10 px (row differences of the pair)")));
 }
 
 // The median number of features is zero although some images have features.
 TEST(RecordingCheckReport, GivesNoShareWithoutFeatures) {
   EXPECT_EQ(summary_of(check_of_pairs(0.0)), "20.0 Hz, 2 gaps; 0 features");
   EXPECT_THAT(describe(check_of_pairs(0.0), {}),
-              AllOf(HasSubstr("0 in an image"), Not(HasSubstr("%")), Not(HasSubstr("by the rows of the pair"))));
+              AllOf(HasSubstr("0 per image"), Not(HasSubstr("%")), Not(HasSubstr("row differences"))));
 }
 
 TEST(RecordingCheckReport, GivesNoShareForOneCamera) {

@@ -29,23 +29,22 @@ std::string describe_plan(const FloorPlan& plan) {
 std::string describe_agreement(const Registering& registering) {
   const auto outliers = std::ranges::count(registering.fit.residuals, true, &PlanResidual::is_outlier);
   const auto count = static_cast<std::ptrdiff_t>(registering.correspondences.size());
-  return fmt::format("{}, of which {} agree to {:.3f} m (root mean square)", count, count - outliers,
-                     registering.fit.rms);
+  return fmt::format("{}; {} inliers, RMSE {:.3f} m", count, count - outliers, registering.fit.rms);
 }
 
 std::string residual_row(const PlanCorrespondence& correspondence, const PlanResidual& residual) {
   const Eigen::Vector2d& error = residual.error_in_plan;
-  return row(residual.is_outlier ? "outlier" : "fits",
-             correspondence.name +
-                 fmt::format(": off by {:.3f} m (x {:+.3f}, y {:+.3f})", error.norm(), error.x(), error.y()));
+  return row(
+      residual.is_outlier ? "outlier" : "fits",
+      correspondence.name + fmt::format(": error {:.3f} m (x {:+.3f}, y {:+.3f})", error.norm(), error.x(), error.y()));
 }
 
 std::string describe_turn(const PlanRegistration& registration) {
   const Eigen::Matrix3d rotation = rotation_of(registration);
   const double heading = kDegreesPerRadian * std::atan2(rotation(1, 0), rotation(0, 0));
   return fmt::format(
-      "the map's x points to {:.3f} deg on the plan, anticlockwise; up is ({:.4f}, {:.4f}, {:.4f}) in the map", heading,
-      rotation(2, 0), rotation(2, 1), rotation(2, 2));
+      "x axis of the map at {:.3f} deg on the plan, anticlockwise; vertical ({:.4f}, {:.4f}, {:.4f}) in the map",
+      heading, rotation(2, 0), rotation(2, 1), rotation(2, 2));
 }
 
 double yaw_sigma(const PlanRegistration& registration) {
@@ -62,13 +61,12 @@ std::string describe_excess(const PlanScale& scale) {
 std::string describe_measured_scale(const PlanScale& scale, bool has_baseline) {
   if (scale.doubt) return "not checked: " + std::string(to_string(*scale.doubt));
   if (!scale.differs_from_one()) return "agrees with the plan: " + describe_excess(scale);
-  return "the map is " + describe_excess(scale) + (has_baseline ? ": --fix-scale mends it" : " for the plan");
+  return "the map is " + describe_excess(scale) + (has_baseline ? ": correct it with --fix-scale" : " for the plan");
 }
 
 std::string describe_mended_scale(const PlanScale& scale, double factor) {
-  if (factor == 1.0) return "nothing to mend: " + describe_excess(scale);
-  return "the map was " + describe_excess(scale) +
-         fmt::format(": its lengths and baseline are now {:.6g} of those", factor);
+  if (factor == 1.0) return "no correction needed: " + describe_excess(scale);
+  return "the map was " + describe_excess(scale) + fmt::format(": lengths and baseline are scaled by {:.6g}", factor);
 }
 
 Json measured_scale_json(const PlanScale& scale) {
@@ -101,14 +99,14 @@ std::string to_text(const Registering& registering, const RegisterProtocol& prot
   }
   text += row("origin", describe_origin(registration)) + row("turn", describe_turn(registration));
   if (registration.covariance(6, 6) > 0.0) {
-    text += row("scale", fmt::format("{:.6g} m per unit of the map, known to {:.2f} %",
-                                     registration.plan_from_map.scale, 1e2 * std::sqrt(registration.covariance(6, 6))));
+    text += row("scale", fmt::format("{:.6g} m per unit of the map, sigma {:.2f} %", registration.plan_from_map.scale,
+                                     1e2 * std::sqrt(registration.covariance(6, 6))));
   }
   if (const std::optional<PlanScale>& measured = registering.measured_scale) {
     text += row("scale", protocol.scaled_by ? describe_mended_scale(*measured, *protocol.scaled_by)
                                             : describe_measured_scale(*measured, registering.has_baseline));
   }
-  text += row("known to", fmt::format("{:.3f} m on all of the path, {:.3f} deg in yaw (one sigma)",
+  text += row("accuracy", fmt::format("{:.3f} m along the path, {:.3f} deg in yaw (one sigma)",
                                       registering.largest_path_sigma, yaw_sigma(registration)));
   for (const PlanDoubt doubt : registering.fit.doubts) text += row("doubt", std::string(to_string(doubt)));
   if (!protocol.written.empty()) text += row("written", protocol.written);

@@ -46,8 +46,9 @@ TEST_F(RegisterReport, SaysThatAMapOfAnotherScaleCanBeMendedWhereItHasABaseline)
   StoredMap stored = driven_barn(scene);
   const auto correspondences = scene.correspondences(8, 0.03);
   const Registering registering = register_with(stored, correspondences);
-  EXPECT_THAT(to_text(registering, {"barn.byre", plan_, "", {}}),
-              ContainsRegex("scale        the map is 1\\.[56]. % \\+- 0\\.[01]. % too large: --fix-scale mends it\n"));
+  EXPECT_THAT(
+      to_text(registering, {"barn.byre", plan_, "", {}}),
+      ContainsRegex("scale        the map is 1\\.[56]. % \\+- 0\\.[01]. % too large: correct it with --fix-scale\n"));
   stored.pose_source = PoseSource::given;
   EXPECT_THAT(to_text(register_with(stored, correspondences), {"barn.byre", plan_, "", {}}),
               AllOf(HasSubstr("too large for the plan\n"), Not(HasSubstr("--fix-scale"))));

@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kMillisecondsPerSecond = 1e3;
 constexpr std::size_t kListedWarnings = 20;
 constexpr const char* kCovariance =
-    "6x6, row-major, of a small motion (translation in metres, rotation vector in radians) as seen in the body, "
-    "relative to the map's origin";
+    "6x6, row-major, of a small motion (translation in metres, rotation vector in radians) in the body frame, relative "
+    "to the map's origin";
 
 // Rounded to microseconds; further digits are noise.
 double rounded_ms(double milliseconds) {

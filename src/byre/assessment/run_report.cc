@@ -26,8 +26,8 @@ std::string describe_poses(const FrameCounts& counts) {
 }
 
 std::string describe_map(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
-  return fmt::format("{} keyframes, of {}{} made; {} points", run.map.keyframe_count(),
-                     protocol.extended.empty() ? "" : "those before and ", counts.keyframes, run.map.point_count());
+  return fmt::format("{} keyframes left of {}{} made; {} points", run.map.keyframe_count(),
+                     protocol.extended.empty() ? "" : "the extended map and ", counts.keyframes, run.map.point_count());
 }
 
 // Most frequent reason first; empty without refusals.
@@ -55,17 +55,17 @@ std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const Fra
                         static_cast<int>(first - run.frames.begin()));
   }
   const std::string refusals = describe_refusals(counts);
-  if (!refusals.empty()) begun += "; refused before: " + refusals;
-  const std::string scale =
-      run.is_metric ? fmt::format("metres by the wheels (sigma {:.2f} %)", 100.0 * run.told.metres_sigma.value_or(0.0))
-                    : "of the map's own; \"byre scale\" makes it metres";
-  return row("begun", begun) + row("scale", scale);
+  if (!refusals.empty()) begun += "; earlier attempts failed: " + refusals;
+  const std::string scale = run.is_metric ? fmt::format("metric by wheel odometry (sigma {:.2f} %)",
+                                                        100.0 * run.told.metres_sigma.value_or(0.0))
+                                          : "arbitrary; set it with \"byre scale\"";
+  return row("initialised", begun) + row("scale", scale);
 }
 
 std::string describe_loops(const FrameCounts& counts) {
   std::string text =
-      fmt::format("{} found on the way, {} corrections of the whole map", counts.loops, counts.corrections);
-  if (counts.relocalisations > 0) text += fmt::format("; found again {} times", counts.relocalisations);
+      fmt::format("{} closed while tracking, {} corrections of the whole map", counts.loops, counts.corrections);
+  if (counts.relocalisations > 0) text += fmt::format("; relocalised {} times", counts.relocalisations);
   return text;
 }
 
@@ -73,8 +73,8 @@ std::string describe_loops(const FrameCounts& counts) {
 std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
   if (protocol.extended.empty()) return "";
   const std::string found = counts.frames_to_first
-                                ? fmt::format(", found in it after {} frames", *counts.frames_to_first)
-                                : std::string(", never found in it");
+                                ? fmt::format(", localised in it after {} frames", *counts.frames_to_first)
+                                : std::string(", never localised in it");
   std::string text = row("extended", protocol.extended + found);
   const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
@@ -86,7 +86,7 @@ std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const
 std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
   std::string text = protocol.recording + fmt::format(", {} frames", protocol.frames_in_range);
   if (protocol.camera == CameraChoice::rgbd) {
-    text += fmt::format(", {} of them with depth", count_frames(run.frames).with_depth_image);
+    text += fmt::format(", {} with depth images", count_frames(run.frames).with_depth_image);
   } else if (protocol.camera != CameraChoice::stereo) {
     text += fmt::format(" of the {} camera", to_string(protocol.camera));
   }
@@ -113,13 +113,13 @@ std::string describe_mapping(const MapRun& run) {
 std::string describe_late(const MapRun& run) {
   const TimeSummary late = summarise_times(run.lateness);
   if (late.count == 0) return "no frame";
-  return fmt::format("{} frames, by up to {:.1f} ms", late.count, late.max_ms);
+  return fmt::format("{} frames, at most {:.1f} ms", late.count, late.max_ms);
 }
 
 std::string describe_deadline(const MapRun& run, double deadline_ms) {
   const FrameCounts counts = count_frames(run.frames);
-  return fmt::format("{:g} ms: {} frames late; {} without most online points, {} without their right image",
-                     deadline_ms, counts.late, counts.without_online_points, counts.with_left_alone);
+  return fmt::format("{:g} ms: {} frames late; {} with limited online points, {} without the right image", deadline_ms,
+                     counts.late, counts.without_online_points, counts.with_left_alone);
 }
 
 std::string describe_processor(const MapRun& run, const ResourceUse& resources) {
@@ -130,7 +130,7 @@ std::string describe_processor(const MapRun& run, const ResourceUse& resources) 
 }
 
 std::string describe_memory(const MapRun& run, const ResourceUse& resources) {
-  std::string text = fmt::format("{:.0f} MB at most", resources.peak_memory_mb);
+  std::string text = fmt::format("peak {:.0f} MB", resources.peak_memory_mb);
   if (run.frames.empty()) return text;
   return text + fmt::format("; {:.0f} MB after the first frame, {:.0f} MB after the last", run.frames.front().memory_mb,
                             run.frames.back().memory_mb);
@@ -148,9 +148,9 @@ std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
 
 std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
   if (run.finishing) return calibration_row(run.calibration, run.row_error) + to_text(*run.finishing);
-  if (!protocol.options.vocabulary) return row("finishing", "left out, as no places were recognised (--no-loops)");
-  if (run.final.empty()) return row("finishing", "left out, as there is no map");
-  return row("finishing", "left out; \"byre refine\" does it");
+  if (!protocol.options.vocabulary) return row("finishing", "skipped (--no-loops)");
+  if (run.final.empty()) return row("finishing", "skipped, no map");
+  return row("finishing", "skipped; run \"byre refine\"");
 }
 
 std::string cost_rows(const MapRun& run, const EngineOptions& options, const ResourceUse& resources) {
@@ -176,7 +176,7 @@ std::string closing_rows(const MapRun& run, const std::vector<std::string>& file
 std::string describe_offline(const MapProtocol& protocol) {
   const Map& map = protocol.options.offline->map();
   return protocol.offline + fmt::format(", {} keyframes, {} points", map.keyframe_count(), map.point_count()) +
-         (protocol.options.session.map_online ? "" : "; nothing is mapped beside it (--localise-only)") +
+         (protocol.options.session.map_online ? "" : "; no online mapping (--localise-only)") +
          (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
 }
 
@@ -202,13 +202,13 @@ std::string describe_coverage(const MapRun& run, const MissionStatistics& statis
 // Without the offline points that online keyframes observe.
 std::string describe_online(const MapRun& run, const FrameCounts& counts) {
   if (run.frames.empty()) return "none";
-  return fmt::format("{} keyframes, of {} made; {} points", run.frames.back().keyframes, counts.keyframes,
+  return fmt::format("{} keyframes left of {} made; {} points", run.frames.back().keyframes, counts.keyframes,
                      run.frames.back().points);
 }
 
 std::string describe_mission_finishing(const MapRun& run) {
-  if (!run.mission_finishing_seconds) return "left out";
-  return fmt::format("{:.1f} s: the online map adjusted as a whole, around the offline one",
+  if (!run.mission_finishing_seconds) return "skipped";
+  return fmt::format("{:.1f} s: adjustment of the whole online map, with the offline map fixed",
                      *run.mission_finishing_seconds);
 }
 
@@ -249,7 +249,7 @@ void require_frames(int unreadable, int frames, const std::vector<std::string>& 
   if (!is_full_of_gaps(unreadable, frames)) return;
   std::string text = fmt::format("{} of {} frames could not be read", unreadable, frames);
   if (!warnings.empty()) text += ", see the warnings: " + warnings.front();
-  throw std::runtime_error(text + " (record or copy these images again, or leave them out with --frames)");
+  throw std::runtime_error(text + " (record or copy these images again, or exclude them with --frames)");
 }
 
 void require_poses(const MapRun& run, const MapProtocol& protocol) {
@@ -261,12 +261,12 @@ void require_poses(const MapRun& run, const MapProtocol& protocol) {
   }
   const std::string& before = protocol.extended.empty() ? protocol.offline : protocol.extended;
   if (!before.empty()) {
-    throw std::runtime_error("no frame was found in " + before +
-                             ": the recording may be of another place, or too different in light or viewpoint");
+    throw std::runtime_error("no frame was localised in " + before +
+                             ": the recording may be of another place, or differ too much in lighting or viewpoint");
   }
   const std::string refusals = describe_refusals(counts);
   if (!refusals.empty()) {
-    throw std::runtime_error("no frame got a pose, for one camera begins a map by moving sideways: " + refusals);
+    throw std::runtime_error("no frame got a pose: monocular initialisation needs sideways motion: " + refusals);
   }
   throw std::runtime_error("no frame got a pose: the images may be too dark or without texture");
 }

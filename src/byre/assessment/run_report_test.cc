@@ -227,15 +227,15 @@ TEST(MapText, SumsTheRunUp) {
   const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {1.5, 64.0}, {"out.txt", "stats.json"});
   EXPECT_THAT(text, HasSubstr("recording    MH_01_easy, 4 frames\n"));
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %); 1 could not be read\n"));
-  EXPECT_THAT(text, HasSubstr("map          1 keyframes, of 1 made; 1234 points\n"));
+  EXPECT_THAT(text, HasSubstr("map          1 keyframes left of 1 made; 1234 points\n"));
   EXPECT_THAT(text, HasSubstr("path         3.00 m, through 3 final poses\n"));
   EXPECT_THAT(text, HasSubstr("frame time   mean 11.7 ms, p99 13.0 ms\n"));
   EXPECT_THAT(text, HasSubstr("mapping      2 jobs, mean 20.5 ms, max 30.5 ms\n"));
   EXPECT_THAT(text, HasSubstr("CPU time     1.5 s, in 2.0 s of wall time: 2.0 frames/s\n"));
-  EXPECT_THAT(text, HasSubstr("memory       64 MB at most; 60 MB after the first frame, 63 MB after the last\n"));
+  EXPECT_THAT(text, HasSubstr("memory       peak 64 MB; 60 MB after the first frame, 63 MB after the last\n"));
   EXPECT_THAT(text, HasSubstr("warnings     1; the first: 2.png: is not a whole image\n"));
   EXPECT_THAT(text, HasSubstr("written      out.txt, stats.json\n"));
-  EXPECT_THAT(text, HasSubstr("finishing    left out, as no places were recognised (--no-loops)\n"));
+  EXPECT_THAT(text, HasSubstr("finishing    skipped (--no-loops)\n"));
   EXPECT_THAT(text, Not(HasSubstr("late")));
   EXPECT_THAT(text, Not(HasSubstr("extended")));
 }
@@ -257,8 +257,8 @@ TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
   for (int i = 0; i < 2; ++i) run.map.add_keyframe(keyframe);
   run.frames.front().report->map_from_body.reset();
   const std::string text = to_text(run, protocol, {}, {});
-  EXPECT_THAT(text, HasSubstr("extended     barn.byre, found in it after 2 frames\n"));
-  EXPECT_THAT(text, HasSubstr("map          3 keyframes, of those before and 1 made; 1234 points\n"));
+  EXPECT_THAT(text, HasSubstr("extended     barn.byre, localised in it after 2 frames\n"));
+  EXPECT_THAT(text, HasSubstr("map          3 keyframes left of the extended map and 1 made; 1234 points\n"));
   EXPECT_THAT(text, HasSubstr("of           MH_01_easy, 1 keyframes\nof           MH_02_easy, 2 keyframes\n"));
 }
 
@@ -268,7 +268,7 @@ TEST(MapText, IsAboutTheMissionWhereThereIsOne) {
   const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {}, {}, mission);
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %), the first after 0.10 s\n"));
   EXPECT_THAT(text, HasSubstr("verdicts     trusted "));
-  EXPECT_THAT(text, HasSubstr("finishing    left out")) << "as of a map, for there is no offline one";
+  EXPECT_THAT(text, HasSubstr("finishing    skipped")) << "as of a map, for there is no offline one";
   EXPECT_THAT(text, Not(HasSubstr("truth"))) << "there is none";
 }
 
@@ -278,7 +278,7 @@ TEST(MapText, SaysWhenItWasStoppedAndHowLateFramesWere) {
   run.lateness = {0.0405};
   const std::string text = to_text(run, protocol_of(Pace::live), {}, {"out.txt"});
   EXPECT_THAT(text, HasSubstr("4 frames, stopped after 3\n"));
-  EXPECT_THAT(text, HasSubstr("late         1 frames, by up to 40.5 ms\n"));
+  EXPECT_THAT(text, HasSubstr("late         1 frames, at most 40.5 ms\n"));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST_F(InterruptedProgram, StopsAndStillWritesEverything) {
     EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(1));
     EXPECT_EQ(json::parse(read("stats.json")).at("stopped_early"), true);
     EXPECT_THAT(read("stdout.txt"), HasSubstr("2 frames, stopped after 1\n"));
-    EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    left out; \"byre refine\" does it\n"));
+    EXPECT_THAT(read("stdout.txt"), HasSubstr("finishing    skipped; run \"byre refine\"\n"));
     EXPECT_EQ(load_map(folder_ / "room.byre").map.keyframe_count(), 1);
   }
 }

@@ -28,7 +28,7 @@ void FoxgloveClient::subscribe(const FoxgloveRequest::Subscription& wanted) {
   const auto topic = static_cast<ros::MessageSink::TopicId>(wanted.channel);
   const auto has_topic = [topic](const auto& each) { return each.second == topic; };
   if (!topics_.is_known(wanted.channel)) {
-    refuse("there is no channel " + std::to_string(wanted.channel));
+    refuse("unknown channel " + std::to_string(wanted.channel));
   } else if (subscribed_.contains(wanted.id)) {
     refuse("subscription " + std::to_string(wanted.id) + " is in use");
   } else if (std::ranges::any_of(subscribed_, has_topic)) {
@@ -43,7 +43,7 @@ void FoxgloveClient::subscribe(const FoxgloveRequest::Subscription& wanted) {
 void FoxgloveClient::unsubscribe(std::uint32_t id) {
   const auto found = subscribed_.find(id);
   if (found == subscribed_.end()) {
-    refuse("there is no subscription " + std::to_string(id));
+    refuse("unknown subscription " + std::to_string(id));
     return;
   }
   topics_.unsubscribe(found->second);
@@ -75,7 +75,7 @@ void FoxgloveClient::drop_oldest() {
   waiting_bytes_ -= dropped->message.cdr->size();
   waiting_.erase(dropped);
   if (std::exchange(leaves_out_, true) || answers_.size() > limits_.most_answers) return;
-  answers_.push_back(status_text(StatusLevel::warning, "messages are left out, as they are not read in time"));
+  answers_.push_back(status_text(StatusLevel::warning, "messages are dropped, because the client reads too slowly"));
 }
 
 std::optional<FoxgloveOutput> FoxgloveClient::next() {

@@ -87,13 +87,13 @@ TEST_F(FoxgloveClientTest, IsSentTheLastMessageOfATopicThatKeepsIt) {
 
 TEST_F(FoxgloveClientTest, IsToldOfWhatCannotBe) {
   subscribe(1, 7);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("no channel 7")));
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("unknown channel 7")));
   subscribe(1, passing_);
   subscribe(1, kept_);
   subscribe(2, passing_);
   EXPECT_THAT(said(), ElementsAre(HasSubstr("1 is in use"), HasSubstr("0 is subscribed already")));
   ask({{"op", "unsubscribe"}, {"subscriptionIds", {3}}});
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("no subscription 3")));
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("unknown subscription 3")));
   EXPECT_TRUE(ask({{"op", "getParameters"}}));
   EXPECT_THAT(said(), ElementsAre(StartsWith("status ")));
 }
@@ -107,10 +107,10 @@ TEST_F(FoxgloveClientTest, IsSentAwayWhenItAsksOnAndNeverReads) {
 TEST_F(FoxgloveClientTest, SkipsTheOldestMessagesWhenItIsSlowAndIsToldSoOnce) {
   subscribe(1, passing_);
   for (int time = 1; time <= 9; ++time) put(passing_, time);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("left out"), "time 6", "message 1 6", "time 7", "message 1 7", "time 8",
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("dropped"), "time 6", "message 1 6", "time 7", "message 1 7", "time 8",
                                   "message 1 8", "time 9", "message 1 9"));
   for (int time = 1; time <= 3; ++time) put(passing_, time, 600);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("left out"), "time 3", "message 1 3"));
+  EXPECT_THAT(said(), ElementsAre(HasSubstr("dropped"), "time 3", "message 1 3"));
 }
 
 TEST_F(FoxgloveClientTest, DoesNotMissAMapForImages) {

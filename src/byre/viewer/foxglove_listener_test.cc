@@ -69,9 +69,9 @@ TEST_F(FoxgloveServerTest, AnswersWhatItDoesNotUnderstandAndGoesOn) {
   client.next();
   client.next();
   client.say("nonsense");
-  EXPECT_THAT(client.next().bytes, HasSubstr("no JSON object"));
+  EXPECT_THAT(client.next().bytes, HasSubstr("not a JSON object"));
   client.say("\x01nonsense", true);
-  EXPECT_THAT(client.next().bytes, HasSubstr("takes no messages"));
+  EXPECT_THAT(client.next().bytes, HasSubstr("accepts no messages"));
 }
 
 TEST_F(FoxgloveServerTest, ClosesOnMessagesThatAreTooLong) {

@@ -45,7 +45,7 @@ FoxgloveRequest read_subscribe(const Json& message) {
   for (const Json& each : *wanted) {
     const auto id = number_in(each, "id");
     const auto channel = number_in(each, "channelId");
-    if (!id || !channel) return fault("a subscription is without its numbers id and channelId");
+    if (!id || !channel) return fault("a subscription has no numbers id and channelId");
     request.subscribe.push_back({*id, *channel});
   }
   return request;
@@ -57,7 +57,7 @@ FoxgloveRequest read_unsubscribe(const Json& message) {
   FoxgloveRequest request;
   for (const Json& each : *given_up) {
     const auto id = number_of(each);
-    if (!id) return fault("a subscriptionId is no number of a subscription");
+    if (!id) return fault("a subscriptionId is not a number");
     request.unsubscribe.push_back(*id);
   }
   return request;
@@ -128,15 +128,15 @@ std::string time_bytes(Timestamp time) {
 }
 
 FoxgloveRequest read_foxglove_request(std::string_view bytes, bool is_binary) {
-  if (is_binary) return fault("byre takes no messages and has no services");
+  if (is_binary) return fault("byre accepts no messages and offers no services");
   const Json message = Json::parse(bytes, nullptr, false);
-  if (!message.is_object()) return fault("that is no JSON object");
+  if (!message.is_object()) return fault("the message is not a JSON object");
   const auto op = message.find("op");
-  if (op == message.end() || !op->is_string()) return fault("the message has no text op");
+  if (op == message.end() || !op->is_string()) return fault("the message has no string op");
   const auto& name = op->get_ref<const std::string&>();
   if (name == "subscribe") return read_subscribe(message);
   if (name == "unsubscribe") return read_unsubscribe(message);
-  return fault("byre knows subscribe and unsubscribe, not " + name.substr(0, kMostQuoted));
+  return fault("only subscribe and unsubscribe are supported, not " + name.substr(0, kMostQuoted));
 }
 
 }  // namespace byre

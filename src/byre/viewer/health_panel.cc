@@ -92,7 +92,7 @@ std::vector<Meter> meters_of(const Health& health, const HealthOptions& limits) 
       limited("position sigma", metres(health.position_sigma), health.position_sigma, sigma_limit, 2.0 * sigma_limit,
               Good::low),
       agreement_meter(health, limits.max_disagreement),
-      limited("way since offline points", metres(health.distance_since_offline), health.distance_since_offline,
+      limited("path since offline points", metres(health.distance_since_offline), health.distance_since_offline,
               way_limit, 1.25 * way_limit, Good::low),
   };
 }

@@ -18,7 +18,7 @@ Verdict verdict_named(const std::string& name, const std::string& file) {
     if (name == to_string(verdict)) return verdict;
   }
   throw InputError(file, "has a frame with the unknown verdict \"" + name + "\"",
-                   "write it anew with byre run --stats");
+                   "write it again with byre run --stats");
 }
 
 Pose pose_of(const json& frame) {
@@ -42,16 +42,16 @@ PlanPath path_in_stats(const json& stats, const std::string& file) {
 PlanPath load_mission(const std::filesystem::path& stats) {
   refuse_pipe(stats);
   std::ifstream file(stats);
-  if (!file) throw InputError(stats.string(), "cannot be opened", "check its name");
+  if (!file) throw InputError(stats.string(), "cannot be opened", "check the file name");
   try {
     const json content = json::parse(file);
     if (content.at("protocol").value("pose_frame", "map") != "map") {
-      throw InputError(stats.string(), "has its poses on the floor plan, not in the map",
+      throw InputError(stats.string(), "has poses on the floor plan, not in the map",
                        "run the mission without --frame plan");
     }
     return path_in_stats(content, stats.string());
   } catch (const json::exception&) {
-    throw InputError(stats.string(), "is no statistics of a mission", "name what byre run --stats has written");
+    throw InputError(stats.string(), "is not a statistics file of a mission", "give a file of byre run --stats");
   }
 }
 

@@ -13,7 +13,7 @@ namespace byre {
 
 std::string plan_png(const FloorPlan& plan, int max_side) {
   cv::Mat image = shown_plan(plan);
-  if (image.empty()) throw InputError(plan.image.string(), "is no image that can be read", "name a PNG, JPEG or PGM");
+  if (image.empty()) throw InputError(plan.image.string(), "is not a readable image", "give a PNG, JPEG or PGM");
   const int longest = std::max(image.cols, image.rows);
   if (longest > max_side) {
     const double scale = static_cast<double>(max_side) / longest;

@@ -25,8 +25,8 @@ PlanPick parse_pick(const nlohmann::json& fields, const Map& map) {
   pick.point = fields.at("point").get<std::uint32_t>();
   pick.point_in_plan = {fields.at("plan").at(0).get<double>(), fields.at("plan").at(1).get<double>()};
   if (map.find_point({map.origin(), pick.point}) == nullptr) {
-    throw InputError(kPlace, "name point " + std::to_string(pick.point) + ", which the map does not have",
-                     "load the page again");
+    throw InputError(kPlace, "refer to point " + std::to_string(pick.point) + ", which is not in the map",
+                     "reload the page");
   }
   return pick;
 }
@@ -40,7 +40,7 @@ std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map) 
     for (const nlohmann::json& pick : fields.at("picks")) picks.push_back(parse_pick(pick, map));
     return picks;
   } catch (const nlohmann::json::exception& error) {
-    throw InputError(kPlace, std::string("are not as the page sends them: ") + error.what());
+    throw InputError(kPlace, std::string("have an invalid format: ") + error.what());
   }
 }
 

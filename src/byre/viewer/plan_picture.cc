@@ -173,7 +173,7 @@ ExplainedMarks ground_marks(const PlanScene& scene, const PlanPictureOptions& op
 
 std::string note_on(const PlanScene& scene, const HeightBand& heights) {
   if (!scene.ground.is_level) return "Map points of all heights.";
-  const char* const above = scene.ground.plan ? "the floor" : "the plane driven on";
+  const char* const above = scene.ground.plan ? "the floor" : "the driving plane";
   return "Map points from " + fixed_point(heights.low, 1) + " to " + fixed_point(heights.high, 1) + " m above " +
          above + ".";
 }

@@ -248,7 +248,7 @@ TEST(PlanPicture, SaysWhatItShows) {
   EXPECT_THAT(svg, HasSubstr(">barn &lt;1&gt;<"));
   EXPECT_THAT(svg, HasSubstr(">5 m<")) << "scale bar";
   EXPECT_THAT(svg, HasSubstr(">offline map<"));
-  EXPECT_THAT(svg, HasSubstr("from 0.1 to 2.5 m above the plane driven on"));
+  EXPECT_THAT(svg, HasSubstr("from 0.1 to 2.5 m above the driving plane"));
   EXPECT_THAT(svg, Not(HasSubstr(">online map<"))) << "there is none";
 }
 

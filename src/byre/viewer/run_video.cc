@@ -40,7 +40,7 @@ RunVideo::RunVideo(const std::filesystem::path& file, double frame_rate_hz, int 
   if (!is_h264_) writer_ = open_video_writer(name, "mp4v", frame_rate_hz, size);
   if (writer_->isOpened()) return;
   throw InputError(file.string(), "cannot be written as a video",
-                   "name it .mp4 in a folder that exists, and have OpenCV with FFmpeg");
+                   "use a .mp4 name in an existing folder, and OpenCV with FFmpeg");
 }
 
 RunVideo::~RunVideo() = default;

@@ -65,7 +65,7 @@ WebAccess access_to(const std::string& bound_address) {
 std::string make_token() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    throw std::runtime_error("the system gives no random numbers to make a token of");
+    throw std::runtime_error("the system provides no random numbers for a token");
   }
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string token;
@@ -78,10 +78,10 @@ std::string make_token() {
 
 std::string_view refusal(const WebAccess& access, const WebOrigin& from) {
   if (!access.host_names.empty() && std::ranges::find(access.host_names, name_in(from.host)) == access.host_names.end())
-    return "byre answers on this machine only, by the name localhost";
-  if (!may_ask(access, from)) return "byre answers its own page only";
+    return "requests are answered only from this machine, under the name localhost";
+  if (!may_ask(access, from)) return "requests are answered only from byre's own page";
   if (!access.token.empty() && !equal_in_constant_time(query_value(from.target, "token"), access.token))
-    return "the token is missing or wrong: open the address that byre printed when it started";
+    return "the token is missing or wrong: open the address printed at the start of byre";
   return {};
 }
 

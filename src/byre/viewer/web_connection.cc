@@ -45,7 +45,7 @@ Response finished(const WebResponse& answer, const Request& request) {
 
 WebResponse answer(WebSite& site, const Request& request) {
   if (request.method() != http::verb::get && request.method() != http::verb::post) {
-    return problem_response(405, "only GET and POST are known");
+    return problem_response(405, "only GET and POST are supported");
   }
   const auto method = request.method() == http::verb::get ? WebRequest::Method::get : WebRequest::Method::post;
   try {

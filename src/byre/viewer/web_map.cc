@@ -71,21 +71,22 @@ class MapSite : public WebSite {
   }
 
   std::vector<PlanPick> picks_of(const WebRequest& request) const {
-    if (!map_.plan) throw InputError(map_.name, "has no plan to be found on", "start \"byre view\" with --plan");
+    if (!map_.plan) throw InputError(map_.name, "has no floor plan to register on", "start \"byre view\" with --plan");
     return parse_plan_picks(request.body, map_.stored.map);
   }
 
   PlanFit fit(const std::vector<PlanPick>& picks) const {
     if (!driving_plane_) {
-      throw InputError(map_.name, "does not tell which way is up: its keyframes are none, or held in all directions",
+      throw InputError(map_.name,
+                       "does not determine the vertical: it has no keyframes, or they have no common upright direction",
                        "map a recording of a camera that stays upright");
     }
     const Scale scale = map_.stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
     const std::vector<PlanCorrespondence> correspondences = correspondences_of(picks, map_.stored, map_.pick_sigma);
     std::optional<PlanFit> found = register_on_plan(correspondences, *driving_plane_, scale, map_.registration);
     if (!found) {
-      throw InputError("picks", "do not tell where the map lies on the plan",
-                       "pick three places or more that lie far apart, and look for a wrong one");
+      throw InputError("picks", "do not determine the pose of the map on the plan",
+                       "pick three or more distant places, and check for wrong picks");
     }
     found->registration.plan = map_.plan->name;
     return *found;
@@ -97,8 +98,8 @@ class MapSite : public WebSite {
     if (!map_.output) throw InputError(map_.name, "cannot be saved", "start \"byre view\" with -o FILE");
     const PlanFit found = fit(picks);
     if (const double residual = residual_of(found); residual > accepted_residual(request.body)) {
-      throw InputError("picks", fmt::format("fit the map only to {:.2f} m", residual),
-                       "correct them, or confirm the figure");
+      throw InputError("picks", fmt::format("have residuals of {:.2f} m on the map", residual),
+                       "correct them, or confirm the residual");
     }
     map_.stored.plan = found.registration;
     save_map(map_.stored, *map_.output);

@@ -111,7 +111,7 @@ TEST_F(MapViewerTest, SavesWhatIsFarOffOnlyWhenTheFigureIsConfirmed) {
   EXPECT_GT(residual, 1.0);
   const WebClient::Answer refused = client.post("/save", picks(6));
   EXPECT_EQ(refused.status, 400);
-  EXPECT_THAT(refused.json().at("problem").get<std::string>(), HasSubstr("fit the map only to "));
+  EXPECT_THAT(refused.json().at("problem").get<std::string>(), HasSubstr("have residuals of "));
   Json confirmed = Json::parse(picks(6));
   confirmed["accepted_residual_m"] = 0.9 * residual;
   EXPECT_EQ(client.post("/save", confirmed.dump()).status, 400) << "another figure was confirmed";
@@ -127,8 +127,8 @@ TEST_F(MapViewerTest, SaysWhyItCannotRegisterOrSave) {
   const WebClient client = client_of(viewer);
   const auto problem = [](const WebClient::Answer& answer) { return answer.json().at("problem").get<std::string>(); };
   EXPECT_EQ(client.post("/registration", picks(1)).status, 400);
-  EXPECT_THAT(problem(client.post("/registration", picks(1))), HasSubstr("pick three places or more"));
-  EXPECT_THAT(problem(client.post("/registration", "{")), HasSubstr("not as the page sends them"));
+  EXPECT_THAT(problem(client.post("/registration", picks(1))), HasSubstr("pick three or more distant places"));
+  EXPECT_THAT(problem(client.post("/registration", "{")), HasSubstr("have an invalid format"));
   EXPECT_THAT(problem(client.post("/save", picks(3))), HasSubstr("-o FILE"));
 }
 

@@ -31,7 +31,7 @@ tcp::endpoint endpoint_of(const WebServerOptions& options) {
   error_code error;
   const std::string& name = options.address;
   const asio::ip::address address = asio::ip::make_address(name == "localhost" ? "127.0.0.1" : name, error);
-  if (error) throw InputError(name, "is no IP address", "name one of this machine's, or 0.0.0.0 for all of them");
+  if (error) throw InputError(name, "is not an IP address", "give an address of this machine, or 0.0.0.0 for all");
   return {address, static_cast<std::uint16_t>(options.port)};
 }
 
@@ -41,9 +41,9 @@ tcp::endpoint endpoint_of(const WebServerOptions& options) {
     throw InputError(place, "is in use", "stop the other program, or choose another port; 0: any free port");
   }
   if (error == asio::error::access_denied) {
-    throw InputError(place, "may not be used", "choose a port from 1024 on");
+    throw InputError(place, "needs privileges", "choose a port of at least 1024");
   }
-  throw InputError(place, "cannot be listened on: " + error.message(), "name an address of this machine");
+  throw InputError(place, "cannot be used for listening: " + error.message(), "give an address of this machine");
 }
 
 tcp::acceptor listen(asio::io_context& context, const WebServerOptions& options) {

@@ -223,8 +223,8 @@ TEST_F(WebServerTest, SaysWhatIsWrongWithAnAddressOrPort) {
     return "served";
   };
   EXPECT_THAT(serve_at("127.0.0.1", server.port()), HasSubstr("is in use"));
-  EXPECT_THAT(serve_at("barn", 0), HasSubstr("is no IP address"));
-  EXPECT_THAT(serve_at("192.0.2.1", 0), HasSubstr("cannot be listened on"));
+  EXPECT_THAT(serve_at("barn", 0), HasSubstr("is not an IP address"));
+  EXPECT_THAT(serve_at("192.0.2.1", 0), HasSubstr("cannot be used for listening"));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ WebResponse problem_response(int status, std::string_view problem) {
 }
 
 WebResponse not_found(const WebRequest& request) {
-  return problem_response(404, "there is no " + request.path);
+  return problem_response(404, "not found: " + request.path);
 }
 
 }  // namespace byre

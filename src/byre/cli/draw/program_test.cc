@@ -118,7 +118,7 @@ TEST_F(DrawProgram, NamesBadInput) {
       {"absent.byre -o a.svg", "byre: error: absent.byre: "},
       {"torn.byre -o a.svg", "byre: error: torn.byre: "},
       {"room.byre -o nowhere/a.svg", "byre: error: nowhere/a.svg: cannot be written"},
-      {"room.byre --plan plan.yaml -o a.svg", "byre: error: room.byre: lies on no floor plan"},
+      {"room.byre --plan plan.yaml -o a.svg", "byre: error: room.byre: is not registered on a floor plan"},
       {"room.byre --trajectory absent.txt -o a.svg", "byre: error: absent.txt: "},
       {"room.byre --mission absent.json -o a.svg", "byre: error: absent.json: cannot be opened"},
       {"room.byre --mission no.json -o a.svg", "byre: error: no.json: is no statistics of a mission"},

@@ -44,7 +44,7 @@ ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
   write_colmap_model(model, options.model, options.text ? ColmapFormat::text : ColmapFormat::binary);
   result << row("written", fmt::format("{} cameras, {} images, {} points to {}", model.cameras.size(),
                                        model.images.size(), model.points.size(), options.model.string()))
-         << row("left out",
+         << row("skipped",
                 fmt::format("{} points seen by one image only", stored.map.point_count() - model.points.size()));
   return ExitCode::done;
 }

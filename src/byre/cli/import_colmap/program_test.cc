@@ -40,7 +40,7 @@ TEST_F(ColmapCommands, TakeAMapToAModelAndBack) {
 
   const Outcome model_only =
       run("import-colmap model/of/room " + images() + " -o model_only.byre --model-points-only --quiet");
-  EXPECT_THAT(model_only.output, HasSubstr("and 0 of byre's own"));
+  EXPECT_THAT(model_only.output, HasSubstr(", 0 added by byre"));
   EXPECT_LT(load_map(folder_ / "model_only.byre").map.point_count(), stored.map.point_count());
 }
 
@@ -51,7 +51,7 @@ TEST_F(ColmapCommands, ReportBadInputWithItsOwnExitCode) {
   run("export-colmap room.byre -o model");
   const Outcome no_images = run("import-colmap model . -o back.byre --quiet");
   EXPECT_EQ(no_images.exit_code, 3);
-  EXPECT_THAT(no_images.errors, HasSubstr("holds none of the model's images"));
+  EXPECT_THAT(no_images.errors, HasSubstr("contains none of the model's images"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "back.byre"));
   EXPECT_EQ(run("export-colmap nowhere.byre -o model").exit_code, 3);
   write("file", "no folder");

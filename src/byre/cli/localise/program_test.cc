@@ -32,7 +32,7 @@ TEST_F(LocaliseProgram, FindsTheOtherFrames) {
       localise(rendered_room() + " --frames 1: --stride 2 --trajectory found.txt --truth " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("found        12 of 12 frames (100.0 %)"));
-  EXPECT_THAT(outcome.output, HasSubstr("found within 0.1 m and 2 deg"));
+  EXPECT_THAT(outcome.output, HasSubstr("within 0.1 m and 2 deg"));
   EXPECT_THAT(read_trajectory(folder_ / "found.txt"), SizeIs(12));
 }
 

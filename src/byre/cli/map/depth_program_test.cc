@@ -129,7 +129,7 @@ TEST_F(DepthProgram, MapsInMetresAndSaysHowManyFramesHadDepth) {
   const Outcome outcome =
       run("map " + with_depth() + " --camera rgbd -o depth.byre --trajectory t.txt --stats s.json" + " --quiet");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_THAT(outcome.output, HasSubstr("40 frames, 14 of them with depth"));
+  EXPECT_THAT(outcome.output, HasSubstr("40 frames, 14 with depth images"));
   const json stats = json::parse(read("s.json"));
   EXPECT_EQ(stats["protocol"]["camera"], "rgbd");
   EXPECT_EQ(stats["protocol"]["scale"], "metric");

@@ -29,7 +29,7 @@ TEST_F(MonocularProgram, MapsOneCameraAndSaysWhenItBeganAndThatTheScaleIsItsOwn)
   const Outcome outcome = map_by_left_camera();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("of the left camera"), HasSubstr("s after the first frame, at frame"),
-                                    HasSubstr("of the map's own; \"byre scale\" makes it metres")));
+                                    HasSubstr("arbitrary; set it with \"byre scale\"")));
   EXPECT_EQ(json::parse(read("s.json"))["protocol"]["scale"], "unknown");
   const StoredMap stored = load_map(folder_ / "mono.byre");
   EXPECT_EQ(stored.scale, MapScale::unknown);

@@ -106,7 +106,7 @@ TEST_F(MapProgram, LeavesPlacesAndFinishingOutWhenTold) {
   const Outcome outcome = map("-o room.byre --stats stats.json --no-loops");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.errors, Not(HasSubstr("finishing")));
-  EXPECT_THAT(outcome.output, HasSubstr("finishing    left out"));
+  EXPECT_THAT(outcome.output, HasSubstr("finishing    skipped"));
   EXPECT_TRUE(json::parse(read("stats.json")).at("finishing").is_null());
   EXPECT_NE(load_map(folder_ / "room.byre").vocabulary_checksum, 0u) << "others may recognise places in it";
 }
@@ -181,7 +181,7 @@ TEST_F(MapProgram, IsNotDoneIfManyFramesCannotBeRead) {
     EXPECT_EQ(outcome.exit_code, 1) << poses;
     EXPECT_THAT(outcome.errors, HasSubstr("byre: error: 9 of 24 frames could not be read, see the warnings: torn/"))
         << poses;
-    EXPECT_THAT(outcome.errors, HasSubstr("(record or copy these images again, or leave them out with --frames)"))
+    EXPECT_THAT(outcome.errors, HasSubstr("(record or copy these images again, or exclude them with --frames)"))
         << poses;
     EXPECT_GT(load_map(folder_ / "torn.byre").map.keyframe_count(), 0) << "all files are written";
   }
@@ -190,7 +190,7 @@ TEST_F(MapProgram, IsNotDoneIfManyFramesCannotBeRead) {
 TEST_F(MapProgram, SaysWhyOneCameraBeganNoMap) {
   const Outcome outcome = map("--trajectory out.txt --camera left --frames 0:2");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.errors, HasSubstr("no frame got a pose, for one camera begins a map by moving sideways"));
+  EXPECT_THAT(outcome.errors, HasSubstr("no frame got a pose: monocular initialisation needs sideways motion"));
 }
 
 TEST_F(MapProgram, FailsWhenNoFrameGetsAPoseAndStillSaysWhatItSaw) {

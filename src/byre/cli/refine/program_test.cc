@@ -35,7 +35,7 @@ TEST_F(RefineProgram, ReplacesTheMapByTheRefinedOneAndSaysWhatChanged) {
   const Outcome outcome = run("refine room.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, StartsWith("map          room.byre: "));
-  EXPECT_THAT(outcome.output, HasSubstr("parts        1 -> 1 that share no points\nfaults       none\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("parts        1 -> 1 without common points\nfaults       none\n"));
   EXPECT_THAT(outcome.output, HasSubstr("written      room.byre\n"));
   EXPECT_THAT(outcome.errors, HasSubstr("finishing: adjusting the whole map\n"));
   EXPECT_NE(read("room.byre"), before);
@@ -67,7 +67,7 @@ TEST_F(RefineProgram, ExtendsAMapByAnotherRecordingAndRemembersWhichIsWhich) {
   const Outcome outcome = run("map " + rendered_room() +
                               " --frames 8: --extend room.byre -o both.byre --trajectory second.txt --site Room");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_THAT(outcome.output, HasSubstr("extended     room.byre, found in it after 0 frames\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("extended     room.byre, localised in it after 0 frames\n"));
   EXPECT_EQ(read("room.byre"), before);
   const StoredMap both = load_map(folder_ / "both.byre");
   EXPECT_THAT(both.recordings, SizeIs(2));
@@ -87,8 +87,8 @@ TEST_F(RefineProgram, ExtendsNoMapOfAnotherPlace) {
                         figure_eight_trajectory(4, 20.0, 3.0, 0.05, calibration.body_from_left), elsewhere, {});
   const Outcome outcome = run("map elsewhere --extend room.byre -o both.byre");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.output, HasSubstr("extended     room.byre, never found in it\n"));
-  EXPECT_THAT(outcome.errors, HasSubstr("byre: error: no frame was found in room.byre: "));
+  EXPECT_THAT(outcome.output, HasSubstr("extended     room.byre, never localised in it\n"));
+  EXPECT_THAT(outcome.errors, HasSubstr("byre: error: no frame was localised in room.byre: "));
   EXPECT_FALSE(fs::exists(folder_ / "both.byre"));
 }
 

@@ -143,7 +143,7 @@ TEST_F(ViewProgram, SaysWhatIsWrongWithItsOptions) {
   EXPECT_THAT(run("view a.byre --plan plan.yaml -o a.byre").errors, HasSubstr("--overwrite"));
   EXPECT_THAT(run("view a.byre -o b.byre").errors, HasSubstr("--plan"));
   EXPECT_THAT(run("view a.byre --port 70000").errors, HasSubstr("--port"));
-  EXPECT_THAT(run("run '" + room_ + "' --view 0 --bind barn").errors, HasSubstr("is no IP address"));
+  EXPECT_THAT(run("run '" + room_ + "' --view 0 --bind barn").errors, HasSubstr("is not an IP address"));
   EXPECT_THAT(run("run '" + room_ + "' --view 0 --plan plan.yaml").errors, HasSubstr("--map"));
   EXPECT_THAT(run("run '" + room_ + "' --bind 127.0.0.1").errors, HasSubstr("--view"));
 }
