@@ -44,7 +44,7 @@ Calibration make_calibration(const Camera& left, const std::optional<Camera>& ri
 }
 
 void bind_camera(py::module_& module) {
-  py::class_<Camera>(module, "Camera", "A camera as calibrated. Pixels count from the centre of the top-left one.")
+  py::class_<Camera>(module, "Camera", "Calibrated camera. The centre of the top left pixel is (0, 0).")
       .def(py::init(&make_camera), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
            py::arg("cy"), py::arg("model") = CameraModel::pinhole, py::arg("distortion") = std::vector<double>{})
       .def_readonly("model", &Camera::model)
@@ -59,7 +59,7 @@ void bind_camera(py::module_& module) {
 }
 
 void bind_calibration(py::module_& module) {
-  py::class_<DepthCamera>(module, "DepthCamera", "A camera whose images hold depths along the optical axis.")
+  py::class_<DepthCamera>(module, "DepthCamera", "Camera with images of depths along the optical axis.")
       .def(py::init([](double units_per_metre, double sigma_at_one_metre, const std::optional<Camera>& camera,
                        const std::optional<Eigen::Matrix4d>& left_from_depth) {
              DepthCamera depth;
@@ -71,13 +71,13 @@ void bind_calibration(py::module_& module) {
            }),
            py::arg("units_per_metre") = DepthCamera{}.units_per_metre,
            py::arg("sigma_at_one_metre") = DepthCamera{}.sigma_at_one_metre, py::arg("camera") = py::none(),
-           py::arg("left_from_depth") = py::none(), "Without a camera of its own it is registered to the left one.")
+           py::arg("left_from_depth") = py::none(), "Without `camera`, depth images are registered to the left camera.")
       .def_readonly("units_per_metre", &DepthCamera::units_per_metre)
       .def_readonly("sigma_at_one_metre", &DepthCamera::sigma_at_one_metre)
       .def_readonly("camera", &DepthCamera::camera)
       .def_property_readonly("left_from_depth",
                              [](const DepthCamera& depth) { return matrix_of(depth.left_from_depth); });
-  py::class_<Calibration>(module, "Calibration", "What is known of a robot's cameras, before any rectification.")
+  py::class_<Calibration>(module, "Calibration", "Calibration of a robot's unrectified cameras.")
       .def(py::init(&make_calibration), py::arg("left"), py::arg("right") = py::none(),
            py::arg("right_from_left") = py::none(), py::arg("body_from_left") = py::none(),
            py::arg("depth") = py::none(), py::arg("readout_time") = 0.0)
@@ -94,10 +94,11 @@ void bind_calibration(py::module_& module) {
       .def_property_readonly("body_from_left",
                              [](const Calibration& calibration) { return matrix_of(calibration.body_from_left); })
       .def_readonly("depth", &Calibration::depth)
-      .def_readonly("readout_time", &Calibration::readout_time, "Seconds from the first row to the last.")
+      .def_readonly("readout_time", &Calibration::readout_time,
+                    "Rolling shutter: seconds from the first to the last row.")
       .def("__eq__", [](const Calibration& calibration, const Calibration& other) { return calibration == other; });
   module.def("read_calibration", &read_calibration, py::arg("path"),
-             "The calibration of a file: EuRoC's sensor.yaml, a camera chain of Kalibr, OpenCV or ROS.");
+             "Reads a calibration file: EuRoC sensor.yaml, Kalibr camchain, OpenCV or ROS.");
 }
 
 // A view of the pixels; keeps the frame alive.
@@ -137,7 +138,7 @@ std::shared_ptr<SharedRecording> open(const std::filesystem::path& path, const s
   range.start_s = start_s;
   range.end_s = end_s;
   range.stride = stride;
-  if (stride < 1) throw py::value_error("stride is at least one");
+  if (stride < 1) throw py::value_error("stride must be at least one");
   const py::gil_scoped_release release;
   OpenOptions options{camera, calibration, frame_rate_hz, left_topic, right_topic};
   options.baseline = baseline;
@@ -146,7 +147,7 @@ std::shared_ptr<SharedRecording> open(const std::filesystem::path& path, const s
 
 std::optional<ImageFrame> frame_of(SharedRecording& recording, int index) {
   if (index < 0) index += recording.size();
-  if (index < 0 || index >= recording.size()) throw py::index_error("the recording has no such frame");
+  if (index < 0 || index >= recording.size()) throw py::index_error("frame index out of range");
   const py::gil_scoped_release release;
   return recording.read(index);
 }
@@ -184,7 +185,7 @@ struct FrameIterator {
 };
 
 void bind_images(py::module_& module) {
-  py::class_<ImageFrame>(module, "Images", "What the cameras took at one time.")
+  py::class_<ImageFrame>(module, "Images", "Images of one frame.")
       .def_property_readonly("time_ns", [](const ImageFrame& frame) { return frame.time.count(); })
       .def_property_readonly("left",
                              [](const py::object& self) {
@@ -209,23 +210,22 @@ void bind_recording(py::module_& module) {
       .def("__iter__", [](FrameIterator& iterator) -> FrameIterator& { return iterator; })
       .def("__next__", &FrameIterator::take);
   py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
-      module, "Recording", "A recorded sequence; a list of frames, read when they are asked for.")
+      module, "Recording", "Recording: a sequence of frames that are read on access.")
       .def(py::init(&open), py::arg("path"), py::kw_only(), py::arg("camera") = py::none(),
            py::arg("calibration") = py::none(), py::arg("frame_rate_hz") = py::none(), py::arg("start_s") = py::none(),
            py::arg("end_s") = py::none(), py::arg("stride") = 1, py::arg("left_topic") = py::none(),
            py::arg("right_topic") = py::none(), py::arg("baseline") = py::none(),
-           "EuRoC, KITTI, TUM RGB-D, a folder of images, a video or a bag of ROS. Raises InputError.")
+           "EuRoC, KITTI, TUM RGB-D, a folder of images, a video or a ROS bag. Raises InputError.")
       .def_property_readonly("calibration",
                              [](const SharedRecording& recording) { return recording.constant().calibration(); })
       .def_property_readonly("warnings", &warnings_of)
       .def_property_readonly("times_ns", &times_of)
       .def("__len__", &SharedRecording::size)
-      .def("__getitem__", &frame_of, "The images of a frame; None when they cannot be read, see warnings.")
+      .def("__getitem__", &frame_of, "Images of a frame; None if they cannot be read, see warnings.")
       .def(
           "__iter__", [](const std::shared_ptr<SharedRecording>& recording) { return FrameIterator{recording}; },
-          "The frames that can be read.");
-  module.def("find_ground_truth", &find_ground_truth, py::arg("path"),
-             "The file of the truth that came with a recording, or None.");
+          "Iterates over the readable frames.");
+  module.def("find_ground_truth", &find_ground_truth, py::arg("path"), "Ground truth file of a recording, or None.");
 }
 
 }  // namespace

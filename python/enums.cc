@@ -22,17 +22,17 @@ void bind_enums_of_input(py::module_& module) {
                          {{"pinhole", CameraModel::pinhole},
                           {"radial_tangential", CameraModel::radial_tangential},
                           {"equidistant", CameraModel::equidistant}});
-  bind_enum<CameraChoice>(module, "CameraChoice", "Which of a recording's cameras to use.",
+  bind_enum<CameraChoice>(module, "CameraChoice", "Cameras of a recording to use.",
                           {{"stereo", CameraChoice::stereo},
                            {"left", CameraChoice::left},
                            {"right", CameraChoice::right},
                            {"rgbd", CameraChoice::rgbd}});
-  bind_enum<PixelFormat>(module, "PixelFormat", "What the numbers of a picture mean.",
+  bind_enum<PixelFormat>(module, "PixelFormat", "Pixel format of an image.",
                          {{"grey8", PixelFormat::grey8},
                           {"grey16", PixelFormat::grey16},
                           {"bgr8", PixelFormat::bgr8},
                           {"rgb8", PixelFormat::rgb8}});
-  bind_enum<InputFault>(module, "InputFault", "What was wrong with a frame as it was handed over.",
+  bind_enum<InputFault>(module, "InputFault", "Fault of the input of a frame.",
                         {{"none", InputFault::none},
                          {"after_gap", InputFault::after_gap},
                          {"missing_right", InputFault::missing_right},
@@ -49,15 +49,15 @@ void bind_enums_of_input(py::module_& module) {
 }
 
 void bind_enums_of_reports(py::module_& module) {
-  bind_enum<State>(module, "State", "Whether the robot knows where it is.",
+  bind_enum<State>(module, "State", "Tracking state.",
                    {{"initialising", State::initialising},
                     {"tracking", State::tracking},
                     {"relocalising", State::relocalising},
                     {"lost", State::lost}});
   bind_enum<Verdict>(
-      module, "Verdict", "How far the pose in the map may be relied on.",
+      module, "Verdict", "Reliability of the pose in the map.",
       {{"trusted", Verdict::trusted}, {"degraded", Verdict::degraded}, {"untrusted", Verdict::untrusted}});
-  bind_enum<Doubt>(module, "Doubt", "What speaks against a pose most.",
+  bind_enum<Doubt>(module, "Doubt", "Main reason of a verdict other than trusted.",
                    {{"none", Doubt::none},
                     {"no_pose", Doubt::no_pose},
                     {"blinded", Doubt::blinded},
@@ -80,7 +80,7 @@ void bind_enums_of_reports(py::module_& module) {
                     {"in_wall", Doubt::in_wall},
                     {"outside", Doubt::outside},
                     {"behind_wall", Doubt::behind_wall}});
-  bind_enum<SessionEvent>(module, "Event", "What happened in a frame.",
+  bind_enum<SessionEvent>(module, "Event", "Event of a frame.",
                           {{"initialised", SessionEvent::initialised},
                            {"localised", SessionEvent::localised},
                            {"pose_lost", SessionEvent::pose_lost},
@@ -105,10 +105,10 @@ void bind_enums_of_reports(py::module_& module) {
 void bind_enums(py::module_& module) {
   bind_enums_of_input(module);
   bind_enums_of_reports(module);
-  bind_enum<Workers>(module, "Workers", "Where mapping is worked out beside tracking.",
+  bind_enum<Workers>(module, "Workers", "Threads of mapping.",
                      {{"live", Workers::live}, {"repeatable", Workers::repeatable}, {"none", Workers::none}});
   bind_enum<TrajectoryFormat>(
-      module, "TrajectoryFormat", "Files of trajectories.",
+      module, "TrajectoryFormat", "File formats of trajectories.",
       {{"tum", TrajectoryFormat::tum}, {"euroc", TrajectoryFormat::euroc}, {"kitti", TrajectoryFormat::kitti}});
 }
 

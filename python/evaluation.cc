@@ -15,17 +15,18 @@ using Times = py::array_t<std::int64_t, py::array::c_style | py::array::forcecas
 using Matrices = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 Trajectory make_trajectory(const py::array& times, const Matrices& poses) {
-  if (times.dtype().kind() != 'i' && times.dtype().kind() != 'u') throw py::type_error("times are whole nanoseconds");
+  if (times.dtype().kind() != 'i' && times.dtype().kind() != 'u')
+    throw py::type_error("times must be integer nanoseconds");
   const Times times_ns(times);
   const bool fits = times_ns.ndim() == 1 && poses.ndim() == 3 && poses.shape(0) == times_ns.shape(0) &&
                     poses.shape(1) == 4 && poses.shape(2) == 4;
-  if (!fits) throw py::value_error("a trajectory has n times and n poses of 4 x 4");
+  if (!fits) throw py::value_error("a trajectory needs n times and n poses of 4 x 4");
   Trajectory trajectory;
   for (py::ssize_t i = 0; i < times_ns.shape(0); ++i) {
     using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
     const Eigen::Matrix4d matrix = Eigen::Map<const RowMajor>(poses.data(i));
     const Timestamp time(times_ns.at(i));
-    if (!trajectory.empty() && time <= trajectory.back().time) throw py::value_error("times do not increase");
+    if (!trajectory.empty() && time <= trajectory.back().time) throw py::value_error("times must increase");
     trajectory.push_back({time, pose_of(matrix, "pose " + std::to_string(i))});
   }
   return trajectory;
@@ -57,23 +58,23 @@ std::vector<PosePair> pairs_of(const Trajectory& estimate, const Trajectory& tru
 AbsoluteTrajectoryError ate(const Trajectory& estimate, const Trajectory& truth, bool scale, double time_offset_s) {
   const auto error =
       absolute_trajectory_error(pairs_of(estimate, truth, time_offset_s), scale ? Scale::free : Scale::fixed);
-  if (!error) throw InputError("the trajectories", "have less than three poses in common, or all on a line");
+  if (!error) throw InputError("the trajectories", "have fewer than three common poses, or collinear positions");
   return *error;
 }
 
 RelativePoseError rpe(const Trajectory& estimate, const Trajectory& truth, std::optional<double> metres,
                       std::optional<double> seconds, double scale, double time_offset_s) {
-  if (metres && seconds) throw py::value_error("give metres or seconds, or none of them for one frame");
+  if (metres && seconds) throw py::value_error("give metres or seconds, or neither for one frame");
   const std::vector<PosePair> pairs = pairs_of(estimate, truth, time_offset_s);
   const RelativePoseError error = metres    ? relative_pose_error_by_distance(pairs, *metres, scale)
                                   : seconds ? relative_pose_error_by_time(pairs, from_seconds(*seconds), scale)
                                             : relative_pose_error_by_frame(pairs, scale);
-  if (error.translation.count == 0) throw InputError("the trajectories", "have no two poses in common so far apart");
+  if (error.translation.count == 0) throw InputError("the trajectories", "have no common poses at this distance");
   return error;
 }
 
 void bind_trajectory(py::module_& module) {
-  py::class_<Trajectory>(module, "Trajectory", "Poses of a body in the world, in order of time.")
+  py::class_<Trajectory>(module, "Trajectory", "Poses of a body in the world, ordered by time.")
       .def(py::init(&make_trajectory), py::arg("times_ns"), py::arg("poses"))
       .def("__len__", &Trajectory::size)
       .def_property_readonly("times_ns", &times_of, "n times, int64.")
@@ -85,21 +86,22 @@ void bind_trajectory(py::module_& module) {
           },
           py::arg("path"), py::arg("format") = TrajectoryFormat::tum);
   module.def("read_trajectory", &read_trajectory, py::arg("path"),
-             "A trajectory of a file in TUM's or EuRoC's format, or the truth of an EuRoC recording.");
+             "Reads a trajectory in TUM or EuRoC format, or the truth of a EuRoC recording.");
 }
 
 }  // namespace
 
 void bind_evaluation(py::module_& module) {
   bind_trajectory(module);
-  py::class_<ErrorStatistics>(module, "ErrorStatistics", "Of errors, in metres or degrees.")
+  py::class_<ErrorStatistics>(module, "ErrorStatistics", "Statistics of errors, in metres or degrees.")
       .def_readonly("rmse", &ErrorStatistics::rmse)
       .def_readonly("mean", &ErrorStatistics::mean)
       .def_readonly("median", &ErrorStatistics::median)
       .def_readonly("p95", &ErrorStatistics::p95)
       .def_readonly("max", &ErrorStatistics::max)
       .def_readonly("count", &ErrorStatistics::count);
-  py::class_<AbsoluteTrajectoryError>(module, "AbsoluteTrajectoryError", "After aligning the estimate to the truth.")
+  py::class_<AbsoluteTrajectoryError>(module, "AbsoluteTrajectoryError",
+                                      "Pose errors after alignment of the estimate to the truth.")
       .def_readonly("translation", &AbsoluteTrajectoryError::translation, "Metres.")
       .def_readonly("rotation", &AbsoluteTrajectoryError::rotation, "Degrees.")
       .def_property_readonly("scale",
@@ -107,16 +109,16 @@ void bind_evaluation(py::module_& module) {
       .def_property_readonly("errors", [](const AbsoluteTrajectoryError& error) {
         return py::array_t<double>(static_cast<py::ssize_t>(error.errors.size()), error.errors.data());
       });
-  py::class_<RelativePoseError>(module, "RelativePoseError", "Of motions between pairs of poses.")
+  py::class_<RelativePoseError>(module, "RelativePoseError", "Errors of the motion between pairs of poses.")
       .def_readonly("translation", &RelativePoseError::translation, "Metres.")
       .def_readonly("rotation", &RelativePoseError::rotation, "Degrees.");
   module.def("absolute_trajectory_error", &ate, py::arg("estimate"), py::arg("truth"), py::arg("scale") = false,
              py::arg("time_offset_s") = 0.0,
-             "Position error after aligning the estimate to the truth (Sturm 2012), rigidly or with a scale.");
+             "Position error after alignment of the estimate to the truth (Sturm 2012), rigid or with scale.");
   module.def("relative_pose_error", &rpe, py::arg("estimate"), py::arg("truth"), py::kw_only(),
              py::arg("metres") = py::none(), py::arg("seconds") = py::none(), py::arg("scale") = 1.0,
              py::arg("time_offset_s") = 0.0,
-             "Error of motions over one frame, or so many metres or seconds (Sturm 2012).");
+             "Error of motions over one frame, or over the given metres or seconds (Sturm 2012).");
 }
 
 }  // namespace byre::python

@@ -23,7 +23,7 @@ Pose pose_of(const Eigen::Matrix4d& matrix, std::string_view name) {
   const auto rotation = rotation_from_matrix(matrix.topLeftCorner<3, 3>());
   const bool is_affine = matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
   if (!rotation || !is_affine || !matrix.allFinite()) {
-    throw InputError(std::string(name), "is no rigid motion", "give a 4x4 matrix of a rotation and a translation");
+    throw InputError(std::string(name), "is not a rigid motion", "give a 4x4 matrix of rotation and translation");
   }
   return {*rotation, matrix.topRightCorner<3, 1>()};
 }
@@ -38,8 +38,7 @@ namespace {
 void bind_input_error(py::module_& module) {
   static py::handle type;  // never released
   type = py::exception<InputError>(module, "InputError", PyExc_ValueError).release();
-  type.attr("__doc__") =
-      "Bad input: a file, a calibration, an argument. Says what (place, reason) and what to do (remedy).";
+  type.attr("__doc__") = "Bad input: a file, a calibration, an argument; with place, reason and remedy.";
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(std::move(thrown));

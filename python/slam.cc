@@ -29,7 +29,7 @@ std::vector<std::string> texts_of(const std::vector<MotionWarning>& warnings) {
 }
 
 void bind_reports(py::module_& module) {
-  py::class_<Health>(module, "Health", "What one frame tells of how well the robot knows where it is.")
+  py::class_<Health>(module, "Health", "Localisation quality of a frame.")
       .def_readonly("verdict", &Health::verdict)
       .def_readonly("doubt", &Health::doubt)
       .def_readonly("offline_expected", &Health::offline_expected)
@@ -43,26 +43,26 @@ void bind_reports(py::module_& module) {
       .def_readonly("rotation_sigma", &Health::rotation_sigma, "Radians.")
       .def_readonly("distance_since_offline", &Health::distance_since_offline, "Metres.")
       .def_readonly("seconds_since_offline", &Health::seconds_since_offline)
-      .def_readonly("hidden_share", &Health::hidden_share, "Of the left image behind dirt.")
-      .def_readonly("hidden_share_right", &Health::hidden_share_right, "Of the right image behind dirt.")
-      .def_property_readonly("note_on_dirt", &note_on_dirt, "What there is to be done about dirt; empty without dirt.");
-  py::class_<FrameReport>(module, "FrameReport", "What is known after one frame. Poses are 4x4 matrices.")
+      .def_readonly("hidden_share", &Health::hidden_share, "Share of the left image covered by dirt.")
+      .def_readonly("hidden_share_right", &Health::hidden_share_right, "Share of the right image covered by dirt.")
+      .def_property_readonly("note_on_dirt", &note_on_dirt, "Remedy for dirt on the lenses; empty without dirt.");
+  py::class_<FrameReport>(module, "FrameReport", "Result of a frame. Poses are 4x4 matrices.")
       .def_property_readonly("time_ns", [](const FrameReport& report) { return report.time.count(); })
       .def_readonly("state", &FrameReport::state)
       .def_readonly("input", &FrameReport::input)
       .def_property_readonly(
           "map_from_body", [](const FrameReport& report) { return matrix_of(report.map_from_body); },
-          "The pose in the map, which is corrected when more is known; None while it is not known.")
+          "Pose in the map, which may jump by corrections; None without a pose.")
       .def_property_readonly(
           "covariance",
           [](const FrameReport& report) { return covariance_of(report.map_from_body, report.covariance); },
-          "6x6, translation first, of a small motion as seen in the body; None without a pose.")
+          "6x6, translation first, of a small motion in the body frame; None without a pose.")
       .def_property_readonly(
           "correction", [](const FrameReport& report) { return matrix_of(report.correction); },
-          "By what a correction of the map moved the robot since the frame before, or None.")
+          "Jump of the pose by a map correction since the previous frame, or None.")
       .def_property_readonly(
           "odometry_from_body", [](const FrameReport& report) { return matrix_of(report.odometry_from_body); },
-          "The smooth pose, in a frame of its own.")
+          "Pose without jumps, in the odometry frame.")
       .def_property_readonly("odometry_covariance",
                              [](const FrameReport& report) {
                                return covariance_of(report.odometry_from_body, report.odometry_covariance);
@@ -79,14 +79,13 @@ void bind_reports(py::module_& module) {
       .def_readonly("keyframe_added", &FrameReport::keyframe_added)
       .def_property_readonly(
           "online_points_left_out", [](const FrameReport& report) { return report.cuts.online_points; },
-          "Whether few points of the session's own map were looked for, to keep to the deadline.")
+          "Whether online points were limited to meet the deadline.")
       .def_property_readonly(
           "right_image_left_out", [](const FrameReport& report) { return report.cuts.right_image; },
-          "Whether the frame was tracked by its left image alone, to keep to the deadline.")
-      .def_readonly("is_late", &FrameReport::is_late, "Whether the frame took longer than its deadline.")
-      .def_readonly(
-          "refused_place", &FrameReport::refused_place,
-          "Why the robot cannot be where it was found in the offline map; Doubt.none where it was not refused.")
+          "Whether only the left image was tracked, to meet the deadline.")
+      .def_readonly("is_late", &FrameReport::is_late, "Whether the frame exceeded its deadline.")
+      .def_readonly("refused_place", &FrameReport::refused_place,
+                    "Reason for rejecting a place in the offline map; Doubt.none without a rejection.")
       .def("__repr__", [](const FrameReport& report) {
         return "<FrameReport " + std::to_string(to_seconds(report.time)) + " s, " +
                std::string(to_string(report.state)) + ", " + std::string(to_string(report.health.verdict)) + ">";
@@ -122,7 +121,7 @@ ImageView view_of(const py::array& image, PixelFormat format, Timestamp time, in
   const py::ssize_t channels = image.ndim() == 3 ? image.shape(2) : 1;
   const bool is_packed = image.strides(1) == channels * image.itemsize() && image.strides(0) > 0 &&
                          (channels == 1 || image.strides(2) == image.itemsize());
-  if (!is_packed) throw py::value_error("the pixels of a row do not lie side by side; use numpy.ascontiguousarray");
+  if (!is_packed) throw py::value_error("the pixels of a row are not contiguous; use numpy.ascontiguousarray");
   ImageView view{image.data(), static_cast<int>(image.shape(1)), static_cast<int>(image.shape(0))};
   view.stride = static_cast<std::size_t>(image.strides(0));
   view.format = format;
@@ -199,7 +198,7 @@ py::dict settings_of(const SlamOptions& options) {
 }
 
 void bind_options(py::module_& module) {
-  py::class_<SlamOptions>(module, "SlamOptions", "How a Slam works; none needs to be given.")
+  py::class_<SlamOptions>(module, "SlamOptions", "Options of a Slam; all have defaults.")
       .def(py::init(&options_of))
       .def_property(
           "workers", [](const SlamOptions& options) { return options.workers; },
@@ -211,7 +210,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("max_features", &SlamOptions::max_features)
       .def_readwrite("image_threads", &SlamOptions::image_threads)
       .def_readwrite("baseline", &SlamOptions::baseline,
-                     "Metres, replaces that of the calibration; confirms one outside 2 mm to 1 m.")
+                     "Metres, replaces that of the calibration; required to confirm one outside 2 mm to 1 m.")
       .def_readwrite("recording", &SlamOptions::recording)
       .def_readwrite("site", &SlamOptions::site)
       .def_readwrite("vocabulary", &SlamOptions::vocabulary)
@@ -223,7 +222,7 @@ void bind_options(py::module_& module) {
           [](SlamOptions& options, const std::optional<std::filesystem::path>& file) {
             options.plan = file ? std::optional(read_drawn_floor_plan(*file)) : std::nullopt;
           },
-          "The floor plan that the map of a mission lies on: its file is given, and the name of that is told.")
+          "Floor plan on which the mission's map is registered: set to a file, reads as its name.")
       .def_property("settings", &settings_of, &set_settings, "Options of docs/reference/options.md by name.");
 }
 
@@ -232,92 +231,91 @@ using SlamClass = py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>;
 void bind_making(SlamClass& type) {
   const auto released = py::call_guard<py::gil_scoped_release>();
   type.def_static("mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
-                  "Maps what is seen.")
+                  "Makes a new map.")
       .def_static("extending", &Slam::extending, py::arg("calibration"), py::arg("map"),
-                  py::arg("options") = SlamOptions{}, released, "Goes on with a kept map.")
+                  py::arg("options") = SlamOptions{}, released, "Extends a stored map.")
       .def_static("on_map", &Slam::on_map, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
-                  released, "A mission on a kept map.");
+                  released, "Mission on an offline map.");
 }
 
 void bind_input(SlamClass& type) {
   type.def("process", &process_images, py::arg("images"), py::arg("last_from_body") = py::none(),
-           "Tracks the next frame of a Recording.")
-      .def(
-          "process", &process, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
-          py::arg("depth") = py::none(), py::arg("last_from_body") = py::none(), py::arg("format") = py::none(),
-          py::arg("bits") = 16, py::arg("right_time_ns") = py::none(), py::arg("depth_time_ns") = py::none(),
-          "Tracks the next frame: arrays height x width of uint8 or uint16 (of so many bits), or height x width x 3 of "
-          "uint8 (blue, green, red, unless format says rgb8); depth of uint16 (units) or float32 (metres). They are "
-          "borrowed for the time of the call.")
+           "Processes the next frame of a Recording.")
+      .def("process", &process, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
+           py::arg("depth") = py::none(), py::arg("last_from_body") = py::none(), py::arg("format") = py::none(),
+           py::arg("bits") = 16, py::arg("right_time_ns") = py::none(), py::arg("depth_time_ns") = py::none(),
+           "Processes the next frame: arrays height x width of uint8 or uint16 (with `bits` bits), or height x width x "
+           "3 of uint8 (BGR unless format is rgb8); depth of uint16 (units) or float32 (metres). Arrays are borrowed "
+           "for the call.")
       .def(
           "tell_wheels",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Matrix4d& odometry_from_base) {
             slam.tell_wheels({Timestamp(time_ns), pose_of(odometry_from_base, "odometry_from_base")});
           },
           py::arg("time_ns"), py::arg("odometry_from_base"),
-          "What wheels tell, before the frames that it leads to: the robot's base in a frame of their own.")
+          "Adds wheel odometry, before the frames that follow it: base pose in the drifting odometry frame.")
       .def(
           "tell_wheel_velocity",
           [](Slam& slam, std::int64_t time_ns, double ahead, double left, double turning) {
             slam.tell_wheels(BaseVelocity{Timestamp(time_ns), ahead, left, turning});
           },
           py::arg("time_ns"), py::arg("ahead"), py::arg("left"), py::arg("turning"),
-          "The same by wheels that tell no poses: how fast the base moves in its own axes, metres and radians per "
-          "second.")
+          "Adds wheel odometry without poses: velocity of the base in its own axes, metres and radians per second.")
       .def(
           "tell_gyroscope",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& rate) {
             slam.tell_gyroscope({Timestamp(time_ns), rate});
           },
-          py::arg("time_ns"), py::arg("rate"), "What a gyroscope tells, likewise: radians per second.")
+          py::arg("time_ns"), py::arg("rate"),
+          "Adds a gyroscope sample, before the frames that follow it: radians per second.")
       .def(
           "tell_accelerometer",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& acceleration) {
             slam.tell_accelerometer({Timestamp(time_ns), acceleration});
           },
           py::arg("time_ns"), py::arg("acceleration"),
-          "What an accelerometer beside it tells, likewise: m/s^2 with gravity, about the same axes.")
+          "Adds an accelerometer sample of the same IMU: m/s^2 including gravity, along the same axes.")
       .def(
           "look_near",
           [](Slam& slam, const Eigen::Matrix4d& map_from_body, double radius, double turn, double seconds) {
             slam.look_near({pose_of(map_from_body, "map_from_body"), radius, turn, seconds});
           },
           py::arg("map_from_body"), py::arg("radius") = 2.0, py::arg("turn") = 1.0, py::arg("seconds") = 10.0,
-          "Where the robot is, as somebody says: while a mission finds itself from nothing it looks in the kept map "
-          "there alone for so many seconds, then everywhere again. Metres, radians.")
+          "Initial pose by an operator: a mission without a pose searches the offline map only near it for the given "
+          "seconds, then everywhere. Metres, radians.")
       .def("pause_mapping", &Slam::pause_mapping, py::arg("is_paused"),
-           "While it is paused nothing is added to the map, and frames are tracked on what there is.")
+           "Pauses mapping: frames are tracked on the existing maps, which do not grow.")
       .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused);
 }
 
 void bind_results(SlamClass& type) {
   const auto released = py::call_guard<py::gil_scoped_release>();
-  type.def("finish", &finish, "Closes the last loops and adjusts the map as a whole. Later frames are dropped.")
-      .def("save", &Slam::save, py::arg("path"), released, "Keeps what was mapped.")
-      .def("trajectory", &Slam::trajectory, "Every frame that had a pose, as the map has it now.")
+  type.def("finish", &finish, "Closes the last loops and adjusts the whole map. Later frames are dropped.")
+      .def("save", &Slam::save, py::arg("path"), released, "Saves the map.")
+      .def("trajectory", &Slam::trajectory, "Poses of all localised frames, as corrected by the map so far.")
       .def(
           "plan_from_body",
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body) {
             return matrix_of(slam.plan_from_body(pose_of(map_from_body, "map_from_body")));
           },
-          py::arg("map_from_body"), "The pose on the floor plan that the map is registered on, or None.")
+          py::arg("map_from_body"), "Pose on the floor plan of the map, or None.")
       .def(
           "plan_covariance",
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body, const Matrix6& covariance) {
             return slam.plan_covariance(pose_of(map_from_body, "map_from_body"), covariance);
           },
           py::arg("map_from_body"), py::arg("covariance"),
-          "The covariance of that pose on the floor plan, with what the registration leaves open, or None.")
-      .def_property_readonly("calibration", &Slam::calibration, "As it is known by now.")
+          "Covariance of the pose on the floor plan, including that of the registration, or None.")
+      .def_property_readonly("calibration", &Slam::calibration, "Current calibration, with refinements.")
       .def_property_readonly("is_metric", &Slam::is_metric)
       .def_property_readonly("map_damage", &Slam::map_damage,
-                             "Damage of the file of a mission's map, as text; None without damage.")
+                             "Damage of the mission's map file, as text; None without damage.")
       .def_property_readonly("keyframes", &Slam::keyframes)
       .def_property_readonly("points", &Slam::points)
       .def_property_readonly(
           "motion_warnings", [](const Slam& slam) { return texts_of(slam.motion_warnings()); },
           "Faults of wheels, gyroscope and accelerometer so far, as text; each kind once.")
-      .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_), "Frames handed over.")
+      .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_), "Number of processed frames.")
       .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"));
 }
 

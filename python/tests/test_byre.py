@@ -200,7 +200,7 @@ def test_arrays_that_are_no_images_are_refused(room, frames):
     assert slam.process(1, np.zeros((0, 64), np.uint8)).input is byre.InputFault.no_image
     with pytest.raises(ValueError, match="ascontiguousarray"):
         slam.process(1, frames[0].left.T.copy().T)
-    with pytest.raises(byre.InputError, match="no rigid motion"):
+    with pytest.raises(byre.InputError, match="not a rigid motion"):
         slam.process(frames[0], last_from_body=2 * np.eye(4))
 
 
@@ -252,7 +252,7 @@ def test_bad_input_says_what_and_where(tmp_path, room):
         byre.Recording("caf\udce9")
     with pytest.raises(byre.InputError, match="no-such.byre"):
         byre.Slam.on_map(byre.Recording(room).calibration, tmp_path / "no-such.byre")
-    with pytest.raises(byre.InputError, match="nothing was mapped"):
+    with pytest.raises(byre.InputError, match="map is still empty"):
         byre.Slam.mapping(byre.Recording(room).calibration).save(tmp_path / "empty.byre")
     assert issubclass(byre.InputError, ValueError)
 
@@ -291,11 +291,11 @@ def test_trajectories_go_to_files_and_back(tmp_path):
     error = byre.absolute_trajectory_error(estimate, truth)
     assert error.errors.shape == (5,) and error.translation.rmse > 0.5
     assert byre.relative_pose_error(truth, truth, seconds=0.2).translation.rmse < 1e-9
-    with pytest.raises(ValueError, match="do not increase"):
+    with pytest.raises(ValueError, match="must increase"):
         byre.Trajectory(times[::-1], poses)
-    with pytest.raises(TypeError, match="whole nanoseconds"):
+    with pytest.raises(TypeError, match="integer nanoseconds"):
         byre.Trajectory(times * 1e-9, poses)
-    with pytest.raises(byre.InputError, match="no two poses"):
+    with pytest.raises(byre.InputError, match="no common poses"):
         byre.relative_pose_error(truth, truth, metres=1000.0)
 
 

@@ -48,7 +48,7 @@ std::vector<BenchmarkCase> chosen_cases(const BenchmarkProtocol& protocol, const
     if (found == protocol.cases.end()) {
       std::string names;
       for (const BenchmarkCase& known : protocol.cases) names += (names.empty() ? "" : ", ") + known.name;
-      throw InputError("--only " + name, "is no case of " + protocol.name, "its cases are " + names);
+      throw InputError("--only " + name, "is not a case of " + protocol.name, "available cases: " + names);
     }
     chosen.push_back(*found);
   }
@@ -60,7 +60,7 @@ std::optional<SkippedCase> missing_data(const BenchmarkCase& benchmark_case, con
                                         const fs::path& data) {
   for (const std::string& name : recordings_of(benchmark_case)) {
     const fs::path folder = data / protocol.recording(name).folder;
-    if (!fs::exists(folder)) return SkippedCase{benchmark_case.name, folder.string() + " is not there"};
+    if (!fs::exists(folder)) return SkippedCase{benchmark_case.name, folder.string() + " does not exist"};
   }
   return std::nullopt;
 }
@@ -77,8 +77,8 @@ Source open_source(const BenchmarkRecording& recording, const fs::path& data) {
 // Throws InputError for a recording without metric scale, which missions need.
 void require_metric(const Source& source) {
   if (source.open_frames(false).is_metric) return;
-  throw InputError(source.folder.string(), "is of one camera, so its map has no metric scale for missions",
-                   "make the map of a stereo recording, by both cameras, or of one with depth");
+  throw InputError(source.folder.string(), "is of one camera, so its map has no metric scale, which missions need",
+                   "make the map of a stereo recording with both cameras, or of one with depth");
 }
 
 Sources open_sources(const std::vector<BenchmarkCase>& cases, const BenchmarkProtocol& protocol, const fs::path& data) {
@@ -126,8 +126,8 @@ class BenchmarkRunner {
     std::vector<BenchmarkCase> cases = chosen_cases(protocol_, options_.only);
     std::erase_if(cases, [this](const BenchmarkCase& candidate) { return skip_without_data(candidate); });
     if (cases.empty()) {
-      throw InputError(options_.data.string(), "holds none of the recordings of " + protocol_.name,
-                       "name the folder in which they lie (--data), or get them: see docs/how-to/benchmark.md");
+      throw InputError(options_.data.string(), "contains none of the recordings of " + protocol_.name,
+                       "give their folder (--data), or download them: see docs/how-to/benchmark.md");
     }
     sources_ = open_sources(cases, protocol_, options_.data);
     for (const BenchmarkCase& benchmark_case : cases) run_case(benchmark_case);
@@ -152,7 +152,7 @@ class BenchmarkRunner {
     const MadeMap* const map = benchmark_case.map ? map_of(*benchmark_case.map) : nullptr;
     if (hooks_.should_stop()) return;
     if (benchmark_case.map && map == nullptr) {
-      return skip({benchmark_case.name, "no map could be made of " + *benchmark_case.map + ": no frame got a pose"});
+      return skip({benchmark_case.name, "mapping failed for " + *benchmark_case.map + ": no frame got a pose"});
     }
     const Source& source = sources_.at(benchmark_case.recording);
     const auto recording = source.open_frames(map != nullptr).recording;

@@ -91,7 +91,7 @@ TEST_F(BenchmarkRun, SkipsCasesWhoseRecordingsAreNotThere) {
   EXPECT_THAT(result.cases, SizeIs(1));
   ASSERT_THAT(result.skipped, SizeIs(2));
   EXPECT_EQ(result.skipped[1].name, "far*");
-  EXPECT_THAT(result.skipped[1].reason, HasSubstr("byre_absent is not there"));
+  EXPECT_THAT(result.skipped[1].reason, HasSubstr("byre_absent does not exist"));
 }
 
 TEST_F(BenchmarkRun, RefusesToRunNothing) {
@@ -100,7 +100,7 @@ TEST_F(BenchmarkRun, RefusesToRunNothing) {
     run();
     FAIL() << "no InputError";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("holds none of the recordings of room"));
+    EXPECT_THAT(error.what(), HasSubstr("contains none of the recordings of room"));
     EXPECT_THAT(error.remedy(), HasSubstr("--data"));
   }
 }

@@ -54,9 +54,9 @@ Chart error_chart(const EvaluationReport& report, const std::vector<PosePair>& p
     return Eigen::Vector2d(to_seconds(point.time - begin), point.error);
   };
   Chart chart;
-  chart.title = "Error of the position over time";
-  chart.subtitle = fmt::format("root mean square {:.4f} m, largest {:.4f} m", report.ate->translation.rmse,
-                               report.ate->translation.max);
+  chart.title = "Position error over time";
+  chart.subtitle =
+      fmt::format("RMSE {:.4f} m, max {:.4f} m", report.ate->translation.rmse, report.ate->translation.max);
   chart.x_label = "time [s]";
   chart.y_label = "error [m]";
   chart.series = {

@@ -35,12 +35,12 @@ constexpr auto kBehaviourMeasures = std::to_array<Measure<BehaviourMeasures>>({
     {&BehaviourMeasures::longest_wrong_trust, "longest_wrong_trust_s", "longest s", kUnchanged, 2, false},
     {&BehaviourMeasures::within_bound, "within_bound", "within 95 % bound %", kPercent, 1, true},
     {&BehaviourMeasures::keyframes, "keyframes", "keyframes", kUnchanged, 0, false},
-    {&BehaviourMeasures::keyframe_rate_known, "keyframes_per_minute_known", "a minute, known", kUnchanged, 1, false},
-    {&BehaviourMeasures::keyframe_rate_new, "keyframes_per_minute_new", "a minute, new", kUnchanged, 1, false},
+    {&BehaviourMeasures::keyframe_rate_known, "keyframes_per_minute_known", "per minute, known", kUnchanged, 1, false},
+    {&BehaviourMeasures::keyframe_rate_new, "keyframes_per_minute_new", "per minute, new", kUnchanged, 1, false},
 });
 
 constexpr auto kCostMeasures = std::to_array<Measure<CostMeasures>>({
-    {&CostMeasures::frame_ms_mean, "frame_ms_mean", "ms a frame", kUnchanged, 1, false},
+    {&CostMeasures::frame_ms_mean, "frame_ms_mean", "ms per frame", kUnchanged, 1, false},
     {&CostMeasures::frame_ms_p99, "frame_ms_p99", "p99 ms", kUnchanged, 1, false},
     {&CostMeasures::peak_memory_mb, "peak_memory_mb", "peak memory MB", kUnchanged, 0, false},
     {&CostMeasures::cpu_seconds, "cpu_s", "CPU s", kUnchanged, 1, false},

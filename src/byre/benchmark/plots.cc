@@ -46,7 +46,8 @@ std::string about(const CaseResult& result) {
 Chart path_chart(const CaseResult& result) {
   Chart chart;
   chart.title = result.what.name + ": path from above";
-  chart.subtitle = about(result) + "; final poses; no map: aligned to the truth, else in the frame of the offline map";
+  chart.subtitle =
+      about(result) + "; final poses; no map: aligned to the truth; others: in the frame of the offline map";
   chart.x_label = "x [m]";
   chart.y_label = result.format == RecordingFormat::kitti ? "z [m]" : "y [m]";
   chart.equal_scales = true;
@@ -67,8 +68,8 @@ Chart path_chart(const CaseResult& result) {
 Chart error_chart(const CaseResult& result) {
   constexpr double kMillimetres = 1e3;
   Chart chart;
-  chart.title = result.what.name + ": error of position over time";
-  chart.subtitle = about(result) + "; causal poses; no map: after alignment, else in the frame of the offline map";
+  chart.title = result.what.name + ": position error over time";
+  chart.subtitle = about(result) + "; causal poses; no map: after alignment; others: in the frame of the offline map";
   chart.x_label = "time [s]";
   chart.y_label = "error [mm]";
   chart.log_y = true;

@@ -29,18 +29,19 @@ Arm read_arm(const YamlValue& value) {
   const std::string text = value.text();
   const auto* const arm = std::ranges::find(kArms, text, [](Arm candidate) { return name_of(candidate); });
   if (arm != kArms.end()) return *arm;
-  value.fail("\"" + text + "\" is no arm", "use " + listed(kArms, [](Arm known) { return name_of(known); }));
+  value.fail("\"" + text + "\" is not an arm", "use " + listed(kArms, [](Arm known) { return name_of(known); }));
 }
 
 FrameRange read_frames(const YamlValue& value) {
   const std::optional<FrameRange> range = parse_frames(value.text());
-  if (!range) value.fail("\"" + value.text() + "\" is no range of frames", "write it as \"0:150\", the end exclusive");
+  if (!range)
+    value.fail("\"" + value.text() + "\" is not a range of frames", "write it as \"0:150\", the end exclusive");
   return *range;
 }
 
 CameraChoice read_camera(const YamlValue& value) {
   const std::optional<CameraChoice> camera = parse_camera(value.text());
-  if (!camera) value.fail("\"" + value.text() + "\" is no choice of cameras", "use stereo, left, right or rgbd");
+  if (!camera) value.fail("\"" + value.text() + "\" is not a choice of cameras", "use stereo, left, right or rgbd");
   return *camera;
 }
 
@@ -75,7 +76,7 @@ std::vector<Arm> read_arms(const YamlValue& value) {
   std::vector<Arm> arms;
   for (const YamlValue& entry : value.entries()) {
     const Arm arm = read_arm(entry);
-    if (std::ranges::count(arms, arm) > 0) entry.fail("the arm is named twice", "name it once");
+    if (std::ranges::count(arms, arm) > 0) entry.fail("the arm is given twice", "give it once");
     arms.push_back(arm);
   }
   return arms;
@@ -84,7 +85,7 @@ std::vector<Arm> read_arms(const YamlValue& value) {
 void require_map_for(const BenchmarkCase& benchmark_case, const YamlValue& value) {
   const bool needs_map = std::ranges::any_of(benchmark_case.arms, [](Arm arm) { return arm != Arm::no_map; });
   if (needs_map && !benchmark_case.map) {
-    value.fail("localise_only and hybrid need a map", "name the recording it is to be made of (map: mh_01)");
+    value.fail("localise_only and hybrid need a map", "give the recording for the map (map: mh_01)");
   }
 }
 
@@ -112,7 +113,7 @@ TrajectoryMeasures read_figures(const YamlValue& value) {
   for (const auto& [key, figure] : value.fields()) {
     const auto known = std::ranges::find(trajectory_measures(), key.text(), &Known::key);
     if (known == trajectory_measures().end()) {
-      key.fail("\"" + key.text() + "\" is no figure",
+      key.fail("\"" + key.text() + "\" is not a figure",
                "use " + listed(trajectory_measures(), [](const Known& measure) { return measure.key; }));
     }
     figures.*known->figure = figure.number(0.0, kLargestFigure);
@@ -127,7 +128,7 @@ PublishedFigures read_published(const YamlValue& value, const BenchmarkProtocol&
   if (const auto note = value.find("note")) published.note = note->text();
   for (const auto& [name, figures] : value["cases"].fields()) {
     if (std::ranges::count(protocol.cases, name.text(), &BenchmarkCase::name) == 0) {
-      name.fail("there is no case \"" + name.text() + "\"", "declare it under cases, or leave its figures out");
+      name.fail("unknown case \"" + name.text() + "\"", "declare it under cases, or remove its figures");
     }
     published.of_case[name.text()] = read_figures(figures);
   }
@@ -184,7 +185,7 @@ fs::path find_benchmark_protocol(const std::string& file_or_name) {
   const fs::path path = file_or_name;
   if (path.has_extension() || path.has_parent_path() || fs::is_regular_file(path)) return path;
   return find_data_file(fs::path("protocols") / (file_or_name + ".yaml"),
-                        "name a file, or one that comes with byre: euroc, twin or mh_short");
+                        "give a file or a built-in protocol: euroc, twin or mh_short");
 }
 
 BenchmarkProtocol read_benchmark_protocol(const fs::path& path) {

@@ -51,8 +51,8 @@ TEST_F(Protocols, SayHowToTakeARecording) {
   EXPECT_EQ(bag.left_topic, "/cam0/image");
   EXPECT_EQ(bag.right_topic, "/cam1/image");
   EXPECT_THAT(fault_of(recording + "camera: middle}\n" + cases),
-              HasSubstr("\"middle\" is no choice of cameras | use stereo, left, right or rgbd"));
-  EXPECT_THAT(fault_of(recording + "fps: 0}\n" + cases), HasSubstr("is no number from 0.01"));
+              HasSubstr("\"middle\" is not a choice of cameras | use stereo, left, right or rgbd"));
+  EXPECT_THAT(fault_of(recording + "fps: 0}\n" + cases), HasSubstr("is not a number from 0.01"));
 }
 
 constexpr const char* kComplete = R"(title: Barns
@@ -122,30 +122,30 @@ TEST_F(Protocols, NameTheLineOfWhatIsWrong) {
   EXPECT_THAT(fault_of(begin + "cases:\n  - {name: c, recording: a, arms: [hybrid]}\n"),
               HasSubstr(":4 localise_only and hybrid need a map"));
   EXPECT_THAT(fault_of(begin + "cases:\n  - {name: c, recording: a, arms: [mono]}\n"),
-              HasSubstr("\"mono\" is no arm | use no_map, localise_only, hybrid"));
+              HasSubstr("\"mono\" is not an arm | use no_map, localise_only, hybrid"));
   EXPECT_THAT(fault_of(begin + "cases:\n  - {name: c, recording: a}\n  - {name: c, recording: a}\n"),
               HasSubstr(":5 the name is used twice"));
-  EXPECT_THAT(fault_of(begin + "cases: []\n"), HasSubstr(":3 is no list, or an empty one"));
+  EXPECT_THAT(fault_of(begin + "cases: []\n"), HasSubstr(":3 is not a list, or is empty"));
   EXPECT_THAT(fault_of(begin), HasSubstr("\"cases\" is missing"));
-  EXPECT_THAT(fault_of(begin + "speed: 3\n"), HasSubstr(":3 there is no field \"speed\" here | the fields are title"));
-  EXPECT_THAT(fault_of(begin + "runs: many\n"), HasSubstr(":3 is no number from 1 to 1000"));
-  EXPECT_THAT(fault_of(begin + "runs: 1.5\n"), HasSubstr(":3 is no whole number"));
+  EXPECT_THAT(fault_of(begin + "speed: 3\n"), HasSubstr(":3 unknown field \"speed\" | fields: title"));
+  EXPECT_THAT(fault_of(begin + "runs: many\n"), HasSubstr(":3 is not a number from 1 to 1000"));
+  EXPECT_THAT(fault_of(begin + "runs: 1.5\n"), HasSubstr(":3 is not an integer"));
   EXPECT_THAT(fault_of(begin + "runs: 1\nruns: 2\n"), HasSubstr("\"runs\" is given twice"));
-  EXPECT_THAT(fault_of("recordings:\n  - {name: a, folder: f, frames: all}\n"), HasSubstr("no range of frames"));
+  EXPECT_THAT(fault_of("recordings:\n  - {name: a, folder: f, frames: all}\n"), HasSubstr("not a range of frames"));
   EXPECT_THAT(fault_of("recordings:\n  - {name: a}\n"), HasSubstr("\"folder\" is missing"));
 }
 
 TEST_F(Protocols, NameWhatIsWrongWithPublishedFigures) {
   const std::string begin = std::string(kRecordings) + "cases:\n  - {name: c, recording: a}\npublished:\n  - name: X\n";
-  EXPECT_THAT(fault_of(begin + "    cases: {d: {ate_m: 1}}\n"), HasSubstr(":7 there is no case \"d\""));
+  EXPECT_THAT(fault_of(begin + "    cases: {d: {ate_m: 1}}\n"), HasSubstr(":7 unknown case \"d\""));
   EXPECT_THAT(fault_of(begin + "    cases: {c: {ate: 1}}\n"),
-              HasSubstr(":7 \"ate\" is no figure | use coverage, ate_m"));
-  EXPECT_THAT(fault_of(begin + "    cases: {c: {ate_m: small}}\n"), HasSubstr("is no number"));
+              HasSubstr(":7 \"ate\" is not a figure | use coverage, ate_m"));
+  EXPECT_THAT(fault_of(begin + "    cases: {c: {ate_m: small}}\n"), HasSubstr("is not a number"));
 }
 
 TEST_F(Protocols, AreYaml) {
   EXPECT_THAT(fault_of("cases: [\n"), HasSubstr("correct the YAML"));
-  EXPECT_THAT(fault_of("- a\n- b\n"), HasSubstr("is not a YAML file of named fields"));
+  EXPECT_THAT(fault_of("- a\n- b\n"), HasSubstr("is not a YAML mapping"));
   EXPECT_THROW(read_benchmark_protocol("absent.yaml"), InputError);
 }
 

@@ -110,18 +110,18 @@ std::string header(const BenchmarkResult& result, const BenchmarkProtocol& proto
   std::ostringstream text;
   text << "# " << protocol.title << "\n\n";
   if (!protocol.about.empty()) text << protocol.about << "\n\n";
-  text
-      << "- **byre** " BYRE_VERSION ", protocol " << setting.protocol_file << ", recordings in " << setting.data << "\n"
-      << "- **runs** " << protocol.runs << " an arm, seeds " << seeds_text(protocol)
-      << (protocol.runs > 1 ? "; figures are mean / median / worst over the runs, one where they agree\n" : "\n")
-      << "- **machine** " << setting.cores << " cores; pace " << name_of(setting.pace) << "\n"
-      << "- **ATE** RMSE of position after SE(3) alignment of each run to the truth (Umeyama)\n"
-      << "- **map error** RMSE, median and max of position in the frame of the offline map: no run is aligned, the map "
-         "is, once, by its own keyframes\n"
-      << "- **coverage** share of the recording's frames that have a pose; errors are over those that have truth too\n"
-      << "- **RPE** RMSE over 1 frame, 1 s and 1 m of path\n";
+  text << "- **byre** " BYRE_VERSION ", protocol " << setting.protocol_file << ", recordings in " << setting.data
+       << "\n"
+       << "- **runs** " << protocol.runs << " per arm, seeds " << seeds_text(protocol)
+       << (protocol.runs > 1 ? "; figures are mean / median / worst over the runs, or one if all are equal\n" : "\n")
+       << "- **machine** " << setting.cores << " cores; pace " << name_of(setting.pace) << "\n"
+       << "- **ATE** RMSE of position after SE(3) alignment of each run to the truth (Umeyama)\n"
+       << "- **map error** RMSE, median and max of position in the frame of the offline map; only the map is aligned "
+          "to the truth, once, by its own keyframes\n"
+       << "- **coverage** share of the recording's frames with a pose; errors are over the poses with truth\n"
+       << "- **RPE** RMSE over 1 frame, 1 s and 1 m of path\n";
   for (const auto& [name, value] : setting.changed_options) text << "- **option** " << name << ": " << value << "\n";
-  if (result.stopped) text << "- **stopped early**: what follows is what was measured until then\n";
+  if (result.stopped) text << "- **stopped early**: the figures cover the finished runs only\n";
   return text.str() + "\n";
 }
 
@@ -156,7 +156,7 @@ std::string to_markdown(const BenchmarkResult& result, const BenchmarkProtocol& 
       notes(result, protocol) +
       section("Causal poses: as published with their frames",
               table_of(result, &RunMeasures::causal_poses, trajectory_measures())) +
-      section("Behaviour, of the causal poses", table_of(result, &RunMeasures::behaviour, behaviour_measures())) +
+      section("Behaviour, causal poses", table_of(result, &RunMeasures::behaviour, behaviour_measures())) +
       section("Cost", table_of(result, &RunMeasures::cost, cost_measures())) +
       section("Offline maps", maps_table(result)) + section("Skipped", skipped_list(result)));
 }

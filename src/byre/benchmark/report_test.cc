@@ -44,7 +44,7 @@ BenchmarkResult result() {
   one.arms = {arm};
   result.cases = {one};
   result.maps = {{"a", "out/a.byre", 120, 9000, {{}, 118}, 12.5}};
-  result.skipped = {{"c", "/data/c is not there"}};
+  result.skipped = {{"c", "/data/c does not exist"}};
   return result;
 }
 
@@ -98,7 +98,7 @@ TEST(BenchmarkMarkdown, TellsWhatIsMissing) {
   BenchmarkResult stopped = result();
   stopped.stopped = true;
   const std::string text = to_markdown(stopped, protocol(), kSetting);
-  EXPECT_THAT(text, HasSubstr("- c: /data/c is not there"));
+  EXPECT_THAT(text, HasSubstr("- c: /data/c does not exist"));
   EXPECT_THAT(text, HasSubstr("stopped early"));
 }
 

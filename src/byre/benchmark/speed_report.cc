@@ -36,7 +36,7 @@ std::string cell_with_range(const std::vector<SpeedMeasures>& runs, const SpeedM
 }
 
 std::string stage_table(const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median) {
-  MarkdownTable table({"wall time of a frame, ms", "mean", "median", "95 %", "99 %", "worst"});
+  MarkdownTable table({"wall time per frame, ms", "mean", "median", "95 %", "99 %", "worst"});
   for (std::size_t i = 0; i < frame_stages().size(); ++i) {
     std::vector<std::string> cells = {frame_stages()[i].name};
     for (double TimeSummary::*figure : {&TimeSummary::mean_ms, &TimeSummary::p50_ms, &TimeSummary::p95_ms,
@@ -56,7 +56,7 @@ std::string cost_table(const SpeedCase& what, const std::vector<SpeedMeasures>& 
     table.add({name, cell_with_range(runs, median, figure, digits)});
   };
   add(
-      "first pose after, s", [](const SpeedMeasures& run) { return run.first_pose_seconds; }, 2);
+      "time to first pose, s", [](const SpeedMeasures& run) { return run.first_pose_seconds; }, 2);
   add(
       "CPU time, s", [](const SpeedMeasures& run) { return run.cpu_seconds; }, 2);
   add(
@@ -64,7 +64,7 @@ std::string cost_table(const SpeedCase& what, const std::vector<SpeedMeasures>& 
   add(
       "peak memory, MB", [](const SpeedMeasures& run) { return run.peak_memory_mb; }, 0);
   add(
-      "instructions a frame, millions",
+      "instructions per frame, millions",
       [](const SpeedMeasures& run) -> std::optional<double> {
         if (!run.instructions || run.frames == 0) return std::nullopt;
         return static_cast<double>(*run.instructions) / kMega / run.frames;
@@ -76,9 +76,9 @@ std::string cost_table(const SpeedCase& what, const std::vector<SpeedMeasures>& 
     add(
         "frames late", [](const SpeedMeasures& run) { return run.late; }, 0);
     add(
-        "frames without most online points", [](const SpeedMeasures& run) { return run.without_online_points; }, 0);
+        "frames with limited online points", [](const SpeedMeasures& run) { return run.without_online_points; }, 0);
     add(
-        "frames without their right image", [](const SpeedMeasures& run) { return run.with_left_alone; }, 0);
+        "frames without the right image", [](const SpeedMeasures& run) { return run.with_left_alone; }, 0);
   }
   add(
       "mapping jobs", [](const SpeedMeasures& run) { return run.jobs.count; }, 0);
@@ -120,17 +120,17 @@ Json run_json(const SpeedMeasures& run) {
 
 std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> runs) {
   std::string text = "# Speed of " + what.recording.string() + "\n\n";
-  if (runs.empty()) return printable_lines(text) + "Nothing was measured.\n";
+  if (runs.empty()) return printable_lines(text) + "No measurements.\n";
   std::ranges::sort(runs, {}, mean_frame_ms);
   const SpeedMeasures& median = runs[(runs.size() - 1) / 2];
   text += fmt::format("{} frames, {} with a pose; {}; pace {}; {} cores", median.frames, median.with_pose,
                       what.map ? ("on the map " + what.map->string()).c_str() : "without a map",
                       std::string(name_of(what.engine.pace)), what.cores);
   if (runs.size() > 1) {
-    text += fmt::format(". Of {} runs, the one whose frames took the median time, with the range of all", runs.size());
+    text += fmt::format(". Run with the median frame time of {} runs, with the range of all runs", runs.size());
   }
   text += ".\n\n" + stage_table(runs, median) + "\n" + cost_table(what, runs, median);
-  if (!median.instructions) text += "\nThis machine does not let programs count instructions.\n";
+  if (!median.instructions) text += "\nInstruction counts are not available on this machine.\n";
   return printable_lines(text);
 }
 

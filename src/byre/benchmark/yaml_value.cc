@@ -19,11 +19,11 @@ YamlValue YamlValue::load(const fs::path& path) {
   refuse_pipe(path);
   std::ifstream file(path);
   if (!file || fs::is_directory(path)) {
-    throw InputError(path.string(), "cannot be opened", "check that it exists and may be read");
+    throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
   }
   try {
     const YamlValue root(path, YAML::Load(file));
-    if (!root.node_.IsMap()) throw InputError(path.string(), "is not a YAML file of named fields");
+    if (!root.node_.IsMap()) throw InputError(path.string(), "is not a YAML mapping");
     return root;
   } catch (const YAML::Exception& error) {
     throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
@@ -31,31 +31,31 @@ YamlValue YamlValue::load(const fs::path& path) {
 }
 
 std::string YamlValue::text() const {
-  if (!node_.IsScalar() || node_.Scalar().empty()) fail("is no text", "write a word or a text in quotes");
+  if (!node_.IsScalar() || node_.Scalar().empty()) fail("is not a text", "give a word or a quoted text");
   return node_.Scalar();
 }
 
 double YamlValue::number(double least, double most) const {
   const std::optional<double> value = node_.IsScalar() ? parse_number(node_.Scalar()) : std::nullopt;
   if (value && *value >= least && *value <= most) return *value;
-  fail(fmt::format("is no number from {:g} to {:g}", least, most), "write such a number");
+  fail(fmt::format("is not a number from {:g} to {:g}", least, most), "give a number in this range");
 }
 
 int YamlValue::whole_number(int least, int most) const {
   const double value = number(least, most);
-  if (value != std::floor(value)) fail("is no whole number", "write it without a fraction");
+  if (value != std::floor(value)) fail("is not an integer", "give a number without fraction");
   return static_cast<int>(value);
 }
 
 std::vector<YamlValue> YamlValue::entries() const {
-  if (!node_.IsSequence() || node_.size() == 0) fail("is no list, or an empty one", "list at least one entry");
+  if (!node_.IsSequence() || node_.size() == 0) fail("is not a list, or is empty", "give at least one entry");
   std::vector<YamlValue> entries;
   for (const YAML::Node& entry : node_) entries.push_back({path_, entry});
   return entries;
 }
 
 std::vector<std::pair<YamlValue, YamlValue>> YamlValue::fields() const {
-  if (!node_.IsMap()) fail("holds no named fields", "write them as \"name: value\"");
+  if (!node_.IsMap()) fail("is not a mapping", "give fields as \"name: value\"");
   std::vector<std::pair<YamlValue, YamlValue>> fields;
   for (const auto& field : node_) fields.push_back({YamlValue(path_, field.first), YamlValue(path_, field.second)});
   return fields;
@@ -80,7 +80,7 @@ void YamlValue::require_fields(std::initializer_list<std::string_view> names) co
     if (std::ranges::find(names, text) == names.end()) {
       std::string known;
       for (const std::string_view candidate : names) known += (known.empty() ? "" : ", ") + std::string(candidate);
-      name.fail("there is no field \"" + text + "\" here", "the fields are " + known);
+      name.fail("unknown field \"" + text + "\"", "fields: " + known);
     }
     if (!seen.insert(text).second) name.fail("\"" + text + "\" is given twice", "give it once");
   }

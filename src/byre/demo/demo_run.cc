@@ -134,7 +134,7 @@ class DemoRunner {
   }
 
   void map_first_visit() {
-    tell("mapping the first visit, and laying the map on the floor plan");
+    tell("mapping the first visit, and registering the map on the floor plan");
     const std::unique_ptr<Recording> recording = open_recording(visit(1), {});
     MapRun run = hooks_.run(*recording, run_options(Arm::no_map), {});
     if (hooks_.should_stop()) return;

@@ -73,21 +73,19 @@ footer { border-top: 1px solid var(--rule); margin-top: 4rem; padding-top: 1rem;
 )";
 
 constexpr const char* kExplanation = R"(
-<h2>What is seen here</h2>
-<p><b>The first visit</b> was by day. The robot drove along the feed alley once, and byre made a map of it: points in
-space that its two cameras saw, with how they look and how well they are known. Signs that somebody picked on the floor
-plan tell where the map lies on it.</p>
-<p><b>The second visit</b> is at dusk, by lamplight. Half of the buckets, bales and barrows are somewhere else, the feed
-lies in other heaps, more cows walk about, and a gate that was closed stands open: the robot turns round in a store that
-it has never seen.</p>
-<p>A robot <b>without a map</b> can always tell how it moved, but not where it is: here it was told its true start, and
-what it adds up from there drifts. A robot that <b>only localises</b> knows its place while it sees enough of what the map
-holds. Behind the gate there is nothing of that, and where it searches from nothing, one bay of a barn looks much like
-the next: what it then takes for its place may be another. <b>Hybrid</b> localisation holds on to the map&rsquo;s points
-(green) where they still are, maps what is new beside them (purple), and leaves those out that have moved. Off the map
-the new points carry it; when known ones come into view again, it is back on them without a jump.</p>
-<p>With each pose byre says whether to steer by it. Trusted means that it expects to be within 20 cm of the truth. The
-truth comes from the simulation and is only compared with: byre never saw it.</p>
+<h2>Scenario</h2>
+<p><b>The first visit</b> is by day. The robot drives along the feed alley once, and byre makes a map of it: points with
+descriptors, positions and covariances. The map is registered on the floor plan by signs that were picked in both.</p>
+<p><b>The second visit</b> is at dusk, by lamplight. Half of the buckets, bales and barrows have moved, the feed lies in
+other heaps, more cows walk about, and a gate is open that was closed: the robot turns round in an unmapped store.</p>
+<p><b>No map</b> is plain SLAM. It measures motion, not the position in the building: it starts at the true pose and
+drifts from there. <b>Localise only</b> tracks the offline map. It has a position while enough points of the map
+are visible. Behind the gate there are none, and when it relocalises, the bays of the barn look alike, so that a wrong
+one may be found. <b>Hybrid</b> localisation tracks the points of the offline map (green) that are still in place, maps
+new points online (purple), and rejects points that have moved. Off the map the online points constrain the pose; when
+points of the offline map come into view again, it is back on them without a jump.</p>
+<p>Each pose has a verdict. Trusted means an expected error below 20 cm. The truth comes from the simulation and is used
+for evaluation only.</p>
 )";
 
 std::string element(const std::string& name, const std::string& content) {
@@ -125,18 +123,18 @@ std::string header(const DemoFindings& findings) {
   if (hybrid == nullptr) return html;
   const RunMeasures& measures = hybrid->measures;
   html +=
-      "<p class=\"lead\">A robot comes back to a barn that it has mapped once. It is dark now, half of the things in "
-      "it have moved, and for " +
+      "<p class=\"lead\">A robot returns to a barn that it has mapped once. It is dark now, half of the objects have "
+      "moved, and for " +
       percent(off_the_map_share(findings, *hybrid)) +
-      " of the time it drives where it has never been. With the old map and a new one beside it, byre knew its "
-      "place on the floor plan in " +
-      percent(measures.causal_poses.coverage) + " of the frames, to " + centimetres(measures.causal_poses.map_error) +
-      ".</p>\n<dl class=\"key\">\n";
+      " of the time it drives in unmapped space. With the offline map and a new online map, byre gave its position on "
+      "the floor plan in " +
+      percent(measures.causal_poses.coverage) + " of the frames, with an error of " +
+      centimetres(measures.causal_poses.map_error) + ".</p>\n<dl class=\"key\">\n";
   html += key_figure(percent(hybrid->close_share), "of all frames within 10 cm of the truth, as published");
-  html += key_figure(percent(measures.behaviour.trusted_share), "reported as fit to steer by");
+  html += key_figure(percent(measures.behaviour.trusted_share), "reported as trusted");
   if (measures.behaviour.trusted_wrong) {
     html += key_figure(fmt::format("{:.0f}", *measures.behaviour.trusted_wrong),
-                       "frames trusted and yet off by more than 20 cm");
+                       "frames trusted with an error above 20 cm");
   }
   if (measures.cost.frame_ms_mean) {
     html += key_figure(fmt::format("{:.0f} ms", *measures.cost.frame_ms_mean),
@@ -148,18 +146,18 @@ std::string header(const DemoFindings& findings) {
 const char* about(Arm arm) {
   switch (arm) {
     case Arm::no_map:
-      return "told its true start";
+      return "starting at the true pose";
     case Arm::localise_only:
-      return "on the map, nothing added";
+      return "on the offline map only";
     case Arm::hybrid:
       break;
   }
-  return "on the map, a new one beside it";
+  return "on the offline map, with an online map";
 }
 
 std::string table(const DemoFindings& findings) {
   std::string html =
-      "<h2>Three ways to take the visit</h2>\n<div class=\"wide\"><table id=\"arms\">\n<thead><tr><th></th>";
+      "<h2>Three ways to run the second visit</h2>\n<div class=\"wide\"><table id=\"arms\">\n<thead><tr><th></th>";
   for (const DemoArm& arm : findings.arms) {
     html += element("th", shown_name(arm.arm) + element("small", about(arm.arm)));
   }
@@ -172,11 +170,10 @@ std::string table(const DemoFindings& findings) {
     html += "</tr>\n";
   }
   return html +
-         "</tbody></table></div>\n<p class=\"note\">Errors are on the floor plan, of the frames that have a position: "
-         "nothing is fitted to the truth afterwards, but for the row on the shape of the path, where each path is laid "
-         "on the truth as well as it can be. <i>Published</i> is what was known at the time, <i>final</i> what was "
-         "known after the last frame. Frames were given as fast as they were taken; the time of each counts what it "
-         "waited for mapping.</p>\n";
+         "</tbody></table></div>\n<p class=\"note\">Errors are on the floor plan, over the frames with a position, "
+         "without alignment to the truth; only in the row \"path after alignment\" each path is aligned to the truth. "
+         "<i>Published</i> positions are causal, <i>final</i> positions are corrected after the last frame. Frames "
+         "were fed as fast as they were processed; the time per frame includes waiting for mapping.</p>\n";
 }
 
 std::string figure(const char* id, const std::string& svg, const std::string& alternative, const std::string& caption) {
@@ -188,22 +185,21 @@ std::string plan_section(const DemoFindings& findings) {
   return "<h2>On the floor plan</h2>\n" +
          figure(
              "plan", findings.plan_picture, "Floor plan with map points and paths",
-             "Map points of the first visit are green, those of the second purple. The hybrid&rsquo;s way is drawn by "
-             "its verdicts. " +
+             "Map points of the first visit are green, those of the second purple. The path of the hybrid run is "
+             "coloured by verdict. " +
                  fmt::format("The map has {} keyframes and {} points; ", findings.map_keyframes, findings.map_points) +
-                 fmt::format("{} signs, picked exactly, lay it on the plan. ", findings.picks) +
-                 fmt::format("The path it was made on is off by {:.1f} cm (ATE, {} frames).", 1e2 * findings.map_ate,
+                 fmt::format("it is registered on the plan by {} exactly picked signs. ", findings.picks) +
+                 fmt::format("Its mapping path has an error of {:.1f} cm (ATE, {} frames).", 1e2 * findings.map_ate,
                              findings.map_frames));
 }
 
 std::string camera_section(const DemoFindings& findings) {
   if (!findings.camera_s) return "";
-  return "<h2>What the camera saw</h2>\n" +
-         figure(
-             "camera", findings.camera_picture, "Camera image with matched map points",
-             fmt::format("After {:.1f} s. ", *findings.camera_s) +
-                 "Green: points of the old map that are still there. Purple: points mapped in this visit. Crosses are "
-                 "matches that are not where the pose has them. The blue wedge on the plan shows where this was.");
+  return "<h2>Camera image</h2>\n" +
+         figure("camera", findings.camera_picture, "Camera image with matched map points",
+                fmt::format("After {:.1f} s. ", *findings.camera_s) +
+                    "Green: points of the offline map that are still in place. Purple: points of the online map. "
+                    "Crosses are outliers. The blue wedge on the plan shows the camera pose.");
 }
 
 std::string sign(const char* colour, const char* meaning) {
@@ -213,16 +209,16 @@ std::string sign(const char* colour, const char* meaning) {
 std::string timeline_section(const DemoFindings& findings) {
   return "<h2>Health over time</h2>\n<ul class=\"legend\">" + sign("trusted", "trusted") +
          sign("degraded", "degraded") + sign("untrusted", "untrusted") + sign("none", "no position") +
-         sign("offline", "points of the old map") + sign("online", "points of this visit") +
+         sign("offline", "points of the offline map") + sign("online", "points of the online map") +
          sign("nomap", "error: no map") + sign("localise", "error: localise only") + sign("hybrid", "error: hybrid") +
-         sign("faint", "what the hybrid expects (one sigma, dashed)") + "</ul>\n<figure id=\"health\">\n" +
+         sign("faint", "estimated error of the hybrid run (one sigma, dashed)") + "</ul>\n<figure id=\"health\">\n" +
          demo_timeline(findings) + "</figure>\n";
 }
 
 std::string footer(const DemoFindings& findings) {
   return "<footer>Made by <code>byre demo</code> in " + format_duration(findings.total_s) + ", of which " +
          format_duration(findings.rendering_s) +
-         " went into rendering both visits. The recordings, the map and the trajectories lie beside this "
+         " for rendering both visits. The recordings, the map and the trajectories are in the folder of this "
          "page.</footer>\n";
 }
 

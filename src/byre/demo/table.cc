@@ -33,12 +33,12 @@ RowKind error_row(const char* measure, TrajectoryMeasures RunMeasures::*poses) {
   const auto rmse = [poses](const DemoArm& arm) { return (arm.measures.*poses).map_error; };
   return {measure, rmse, [poses](const DemoArm& arm) {
             const TrajectoryMeasures& measures = arm.measures.*poses;
-            return centimetres(*measures.map_error) + ", at most " + centimetres(*measures.map_error_max);
+            return centimetres(*measures.map_error) + ", max " + centimetres(*measures.map_error_max);
           }};
 }
 
 RowKind shape_row() {
-  return {"Shape of the path alone (ATE, RMSE), cm: published, final",
+  return {"Path after alignment (ATE, RMSE), cm: published, final",
           [](const DemoArm& arm) { return arm.measures.causal_poses.ate; },
           [](const DemoArm& arm) {
             const Figure final_ate = arm.measures.final_poses.ate;
@@ -47,7 +47,8 @@ RowKind shape_row() {
 }
 
 RowKind time_row() {
-  return {"Time per frame, ms: mean, 99 % within", [](const DemoArm& arm) { return arm.measures.cost.frame_ms_mean; },
+  return {"Time per frame, ms: mean, 99th percentile",
+          [](const DemoArm& arm) { return arm.measures.cost.frame_ms_mean; },
           [](const DemoArm& arm) {
             const CostMeasures& cost = arm.measures.cost;
             return fmt::format("{:.0f}, {:.0f}", *cost.frame_ms_mean, *cost.frame_ms_p99);
@@ -68,7 +69,7 @@ std::vector<RowKind> row_kinds() {
           error_row("Error of final positions (RMSE), cm", &RunMeasures::final_poses),
           shape_row(),
           share_row("Frames reported as trusted, %", on_the_plan(&BehaviourMeasures::trusted_share)),
-          {"Trusted and yet off by more than 20 cm, frames", wrong,
+          {"Frames trusted with an error above 20 cm", wrong,
            [wrong](const DemoArm& arm) { return fmt::format("{:.0f}", *wrong(arm)); }},
           time_row()};
 }

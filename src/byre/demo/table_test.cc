@@ -43,8 +43,8 @@ TEST_F(DemoTable, MarksTheLeastErrorAndThoseThatReadTheSame) {
   arm(Arm::localise_only).measures.causal_poses.map_error = 5.0;
   arm(Arm::hybrid).measures.causal_poses.map_error = 0.01;
   const DemoRow error = row("Error of published");
-  EXPECT_EQ(error.cells[2].text, "1.0, at most 10.0");
-  EXPECT_EQ(error.cells[1].text, "500, at most 10.0");
+  EXPECT_EQ(error.cells[2].text, "1.0, max 10.0");
+  EXPECT_EQ(error.cells[1].text, "500, max 10.0");
   EXPECT_TRUE(error.cells[0].is_best);
   EXPECT_FALSE(error.cells[1].is_best);
   EXPECT_TRUE(error.cells[2].is_best);

@@ -126,7 +126,7 @@ std::string points_panel(const DemoFindings& findings, const TimeAxis& axis) {
   for (const DemoMoment& moment : hybrid->moments) {
     values.most = std::max({values.most, 1.05 * moment.offline_inliers, 1.05 * moment.online_inliers});
   }
-  std::string svg = text_at(kLeft, kPointsTop - 12.0, "Points that hold the hybrid's pose", "title");
+  std::string svg = text_at(kLeft, kPointsTop - 12.0, "Inliers of the hybrid run", "title");
   for (const double tick : round_ticks(0.0, 2.0 * values.most)) {
     if (tick <= values.most) svg += value_grid(values, tick, fmt::format("{:.0f}", tick));
   }
@@ -138,7 +138,7 @@ std::string points_panel(const DemoFindings& findings, const TimeAxis& axis) {
 
 std::string errors_panel(const DemoFindings& findings, const TimeAxis& axis) {
   const ValueAxis values{kErrorsTop, kErrorsHeight, std::log10(kLeastError), std::log10(kMostError)};
-  std::string svg = text_at(kLeft, kErrorsTop - 12.0, "Published position: how far from the truth", "title");
+  std::string svg = text_at(kLeft, kErrorsTop - 12.0, "Error of published positions", "title");
   for (const auto& [metres, label] :
        {std::pair(1e-3, "1 mm"), {1e-2, "1 cm"}, {1e-1, "10 cm"}, {1.0, "1 m"}, {10.0, "10 m"}}) {
     svg += value_grid(values, std::log10(metres), label);

@@ -85,9 +85,9 @@ TEST_F(BenchmarkProgram, SaysWhatIsWrongWithItsInput) {
   EXPECT_THAT(unknown.errors, HasSubstr("euroc, twin or mh_short"));
   const Outcome nothing = run("benchmark room.yaml --data .");
   EXPECT_EQ(nothing.exit_code, 3);
-  EXPECT_THAT(nothing.errors, HasSubstr("holds none of the recordings of room"));
+  EXPECT_THAT(nothing.errors, HasSubstr("contains none of the recordings of room"));
   write("broken.yaml", "cases: 1\nrunz: 2\n");
-  EXPECT_THAT(run("benchmark broken.yaml").errors, HasSubstr("broken.yaml:2: there is no field \"runz\" here"));
+  EXPECT_THAT(run("benchmark broken.yaml").errors, HasSubstr("broken.yaml:2: unknown field \"runz\""));
 }
 
 TEST_F(BenchmarkProgram, KeepsWhatWasMeasuredWhenInterrupted) {
