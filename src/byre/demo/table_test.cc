@@ -52,7 +52,7 @@ TEST_F(DemoTable, MarksTheLeastErrorAndThoseThatReadTheSame) {
 
 TEST_F(DemoTable, HasADashWhereAnArmHasNoFigure) {
   arm(Arm::hybrid).measures.behaviour.trusted_wrong = 0.0;
-  const DemoRow wrong = row("Trusted and yet");
+  const DemoRow wrong = row("Frames trusted with");
   EXPECT_EQ(wrong.cells[1].text, "-");
   EXPECT_FALSE(wrong.cells[1].is_best);
   EXPECT_EQ(wrong.cells[2].text, "0");
