@@ -140,7 +140,7 @@ void add_calibration(Table& table) {
   table.push_back(number(
       "calibration.prior_sigmas", "sigmas of a good calibration", 1e-3, 1e3,
       [](auto& o) -> auto& { return o.self_calibration.prior_sigmas; },
-      "assumed error of the given calibration (prior of the refinement)"));
+      "assumed error of the given calibration, prior of the refinement"));
   table.push_back(number(
       "calibration.max_keyframes", "keyframes", 6, 1e4,
       [](auto& o) -> auto& { return o.self_calibration.max_keyframes; },
@@ -156,7 +156,7 @@ void add_start(Table& table) {
 void add_tracking(Table& table) {
   table.push_back(number(
       "tracking.local_keyframes", "keyframes", 1, 1e4, [](auto& o) -> auto& { return o.session.local_keyframes; },
-      "keyframes of each map (offline, online) whose points are searched in a frame"));
+      "keyframes of each map whose points are searched in a frame"));
   table.push_back(number(
       "tracking.search_radius_px", "pixels at octave 0", 0.5, 1e3,
       [](auto& o) -> auto& { return o.session.track.search_radius; },
@@ -335,7 +335,7 @@ void add_mission(Table& table) {
       "consecutive frames with a suspended point in its place after which it is used again"));
   table.push_back(number(
       "mission.hindsight_frames", "frames", 0, kMany, [](auto& o) -> auto& { return o.session.hindsight.frames; },
-      "maximum number of frames refined after mapping (hindsight); 10 kB each"));
+      "maximum number of frames refined in hindsight; 10 kB each"));
 }
 
 void add_motion(Table& table) {

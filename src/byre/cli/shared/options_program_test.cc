@@ -28,7 +28,7 @@ TEST_F(OptionsProgram, PrintsAllOptionsWithoutDoingAnythingElse) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_THAT(outcome.errors, IsEmpty());
     EXPECT_THAT(outcome.output,
-                HasSubstr("\ntracking:\n  local_keyframes: 15  # keyframes of each map (offline, online) whose points "
+                HasSubstr("\ntracking:\n  local_keyframes: 15  # keyframes of each map whose points "
                           "are searched in a frame (keyframes, from 1 to 10000)\n  search_radius_px: 12  # "))
         << command;
   }
