@@ -36,7 +36,7 @@ def room_map(room, frames, tmp_path_factory):
     return path
 
 
-def test_recordings_are_lists_of_frames(room):
+def test_recordings_are_sequences_of_frames(room):
     recording = byre.Recording(room)
     assert len(recording) == 30
     assert recording.times_ns.shape == (30,)
@@ -52,7 +52,7 @@ def test_recordings_are_lists_of_frames(room):
         byre.Recording(room, left_topic="/left", right_topic="/right")
 
 
-def test_pixels_outlive_what_they_came_from(room, frames):
+def test_pixels_outlive_their_frame(room, frames):
     left = byre.Recording(room)[0].left
     gc.collect()
     others = [byre.Recording(room)[i].left for i in range(1, 5)]
@@ -75,7 +75,7 @@ def test_recordings_are_read_by_several_threads(room):
     assert sums == [expected] * 4
 
 
-def test_frames_that_cannot_be_read_are_left_out(room, tmp_path):
+def test_unreadable_frames_are_skipped(room, tmp_path):
     damaged = tmp_path / "damaged"
     shutil.copytree(room, damaged)
     recording = byre.Recording(damaged)
@@ -86,7 +86,7 @@ def test_frames_that_cannot_be_read_are_left_out(room, tmp_path):
     assert image.name in recording.warnings[-1]
 
 
-def test_mapping_gives_what_the_program_gives(room, frames, tmp_path):
+def test_mapping_equals_the_program(room, frames, tmp_path):
     slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
     reports = [slam.process(images) for images in frames]
     assert reports[-1].state == byre.State.tracking
@@ -104,7 +104,7 @@ def test_mapping_gives_what_the_program_gives(room, frames, tmp_path):
     assert (tmp_path / "here.txt").read_bytes() == (tmp_path / "program.txt").read_bytes()
 
 
-def test_arrays_of_ones_own_are_seen_alike(room, frames):
+def test_numpy_arrays_give_the_same_poses(room, frames):
     calibration = byre.Recording(room).calibration
     by_images, by_arrays = (byre.Slam.mapping(calibration, REPEATABLE) for _ in range(2))
     for images in frames[:6]:
@@ -116,7 +116,7 @@ def test_arrays_of_ones_own_are_seen_alike(room, frames):
         assert (found == expected).all()
 
 
-def test_arrays_may_come_from_elsewhere(room, frames):
+def test_foreign_arrays_are_accepted(room, frames):
     calibration = byre.Recording(room).calibration
     plain, other = (byre.Slam.mapping(calibration, REPEATABLE) for _ in range(2))
     for images in frames[:6]:
@@ -128,7 +128,7 @@ def test_arrays_may_come_from_elsewhere(room, frames):
         assert (found == expected).all()
 
 
-def test_colours_are_weighed_as_their_order_says(room, frames):
+def test_colour_order_sets_luminance_weights(room, frames):
     calibration = byre.Recording(room).calibration
     reports = {}
     for order in (byre.PixelFormat.bgr8, byre.PixelFormat.rgb8):
@@ -140,7 +140,7 @@ def test_colours_are_weighed_as_their_order_says(room, frames):
     assert (reports[byre.PixelFormat.bgr8].map_from_body != reports[byre.PixelFormat.rgb8].map_from_body).any()
 
 
-def test_depths_are_of_units_or_metres(room, frames):
+def test_depths_are_in_units_or_metres(room, frames):
     left = byre.Recording(room).calibration.left
     calibration = byre.Calibration(left, depth=byre.DepthCamera(units_per_metre=1000.0))
     found = []
@@ -155,7 +155,7 @@ def test_depths_are_of_units_or_metres(room, frames):
     assert late.input is byre.InputFault.late_depth
 
 
-def test_frames_that_cannot_be_used_are_told(room, frames):
+def test_unusable_frames_are_reported(room, frames):
     slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
     slam.process(frames[1])
     assert slam.process(frames[1]).input == byre.InputFault.repeated_time
@@ -172,7 +172,7 @@ def test_frames_that_cannot_be_used_are_told(room, frames):
         slam.frames_with(20)
 
 
-def test_enumerations_are_those_of_python():
+def test_enumerations_are_python_enums():
     assert issubclass(byre.Verdict, enum.Enum) and len(byre.Verdict) == 3
     assert byre.Verdict["trusted"] is byre.Verdict.trusted
     options = byre.SlamOptions(workers=byre.Workers.none, max_gap=2.0)
@@ -183,7 +183,7 @@ def test_enumerations_are_those_of_python():
         byre.SlamOptions(worker=byre.Workers.none)
 
 
-def test_settings_are_those_of_the_page_of_options(room):
+def test_settings_match_the_options_page(room):
     calibration = byre.Recording(room).calibration
     options = byre.SlamOptions(settings={"tracking.search_radius_px": 20.5, "calibration.refine": False})
     assert options.settings == {"tracking.search_radius_px": "20.5", "calibration.refine": "false"}
@@ -192,7 +192,7 @@ def test_settings_are_those_of_the_page_of_options(room):
         byre.Slam.mapping(calibration, byre.SlamOptions(settings={"features.max_counts": 500}))
 
 
-def test_arrays_that_are_no_images_are_refused(room, frames):
+def test_invalid_arrays_are_rejected(room, frames):
     slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
     for image in (frames[0].left.astype(np.float64), frames[0].left.astype(">u2"), frames[0].left > 100):
         with pytest.raises(TypeError, match="uint8 or uint16"):
@@ -204,7 +204,7 @@ def test_arrays_that_are_no_images_are_refused(room, frames):
         slam.process(frames[0], last_from_body=2 * np.eye(4))
 
 
-def test_missions_are_told_whether_to_trust(room, frames, room_map):
+def test_missions_report_verdicts(room, frames, room_map):
     slam = byre.Slam.on_map(byre.Recording(room).calibration, room_map, REPEATABLE)
     reports = [slam.process(images) for images in frames]
     assert any(byre.Event.localised in report.events for report in reports)
@@ -216,7 +216,7 @@ def test_missions_are_told_whether_to_trust(room, frames, room_map):
     assert "trusted" in repr(reports[-1])
 
 
-def test_a_mission_may_be_told_where_it_is(room, frames, room_map):
+def test_a_mission_accepts_a_pose_hint(room, frames, room_map):
     far = np.eye(4)
     far[0, 3] = 50.0
     for hint, is_found in ((np.eye(4), True), (far, False)):
@@ -234,7 +234,7 @@ def test_mapping_pauses(room, frames):
     assert slam.process(frames[1]).map_from_body is not None
 
 
-def test_a_map_is_gone_on_with(room, frames, room_map, tmp_path):
+def test_a_map_is_extended(room, frames, room_map, tmp_path):
     slam = byre.Slam.extending(byre.Recording(room).calibration, room_map, REPEATABLE)
     before = slam.keyframes
     assert before > 0
@@ -244,7 +244,7 @@ def test_a_map_is_gone_on_with(room, frames, room_map, tmp_path):
     assert (tmp_path / "more.byre").stat().st_size > 0
 
 
-def test_bad_input_says_what_and_where(tmp_path, room):
+def test_bad_input_has_place_and_reason(tmp_path, room):
     with pytest.raises(byre.InputError, match="no-such-recording") as raised:
         byre.Recording(tmp_path / "no-such-recording")
     assert "no-such-recording" in raised.value.place and raised.value.reason and raised.value.remedy
@@ -257,7 +257,7 @@ def test_bad_input_says_what_and_where(tmp_path, room):
     assert issubclass(byre.InputError, ValueError)
 
 
-def test_calibrations_may_be_made_by_hand():
+def test_calibrations_can_be_constructed():
     camera = byre.Camera(640, 480, 400.0, 400.0, 319.5, 239.5, byre.CameraModel.radial_tangential, [0.1, -0.05])
     right_from_left = np.eye(4)
     right_from_left[0, 3] = -0.12
@@ -275,7 +275,7 @@ def test_calibrations_may_be_made_by_hand():
         byre.Calibration(camera, camera, 2 * right_from_left)
 
 
-def test_trajectories_go_to_files_and_back(tmp_path):
+def test_trajectories_are_written_and_read(tmp_path):
     times = np.arange(5, dtype=np.int64) * 100_000_000
     poses = np.tile(np.eye(4), (5, 1, 1))
     poses[:, :3, 3] = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 1, 1], [3, 0, 1]]
@@ -333,7 +333,7 @@ def test_everything_has_a_signature():
         assert not missing, f"{name}: {missing}"
 
 
-def test_the_example_maps_and_tells_its_error(room, tmp_path):
+def test_the_example_maps_and_prints_its_error(room, tmp_path):
     script = HERE.parent / "examples" / "map_and_plot.py"
     done = subprocess.run(
         [sys.executable, script, room, "--map", tmp_path / "room.byre"], check=True, capture_output=True, text=True

@@ -51,7 +51,7 @@ def installed(tmp_path_factory):
     return folder
 
 
-def test_is_for_the_python_that_it_was_built_for(content):
+def test_wheel_matches_its_python(content):
     here = f"{sys.version_info.major}{sys.version_info.minor}"
     assert (NAME, PYTHON, ABI) == ("byre", f"cp{here}", f"cp{here}")
     assert f"Tag: {PYTHON}-{ABI}-{PLATFORM}\n" in content[f"{INFORMATION}/WHEEL"].decode()
@@ -61,7 +61,7 @@ def test_is_for_the_python_that_it_was_built_for(content):
     assert metadata["Requires-Dist"] == "numpy"
 
 
-def test_records_each_file_by_its_hash(content):
+def test_wheel_records_file_hashes(content):
     record = f"{INFORMATION}/RECORD"
     rows = {row[0]: row[1] for row in csv.reader(content[record].decode().splitlines())}
     assert set(rows) == set(content) and rows.pop(record) == ""
@@ -70,7 +70,7 @@ def test_records_each_file_by_its_hash(content):
         assert written == f"sha256={digest}", name
 
 
-def test_holds_signatures_licence_and_vocabulary(content):
+def test_wheel_contains_signatures_licence_and_vocabulary(content):
     package = SOURCE / "python" / "byre"
     for name in ("__init__.py", "__init__.pyi", "py.typed"):
         assert content[f"byre/{name}"] == (package / name).read_bytes()
@@ -79,7 +79,7 @@ def test_holds_signatures_licence_and_vocabulary(content):
     assert content[f"{INFORMATION}/LICENSE"] == (SOURCE / "LICENSE").read_bytes()
 
 
-def test_maps_where_pip_has_installed_it(installed, room):
+def test_installed_wheel_maps(installed, room):
     surroundings = {name: value for name, value in os.environ.items() if not name.startswith("BYRE_")}
     command = [sys.executable, "-I", "-c", MAPS_A_FEW_FRAMES, installed, room]
     done = subprocess.run(command, env=surroundings, capture_output=True, text=True)

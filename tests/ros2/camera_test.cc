@@ -27,7 +27,7 @@ TEST(KilledFeeder, DISABLED_Feeds) {
   }
 }
 
-TEST_F(ByreNode, GoesOnWithAFeederThatWasKilledAndBeganAgain) {
+TEST_F(ByreNode, ContinuesAfterARestartOfTheCameraDriver) {
   NodeProcess node(folder_, mission(), domain_);
   const fs::path program = fs::read_symlink("/proc/self/exe");
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -48,7 +48,7 @@ TEST_F(ByreNode, GoesOnWithAFeederThatWasKilledAndBeganAgain) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-TEST_F(ByreNode, NamesWhatIsWrongWithTheCameras) {
+TEST_F(ByreNode, ReportsFaultsOfTheCameras) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   NodeProcess node(folder_, mission(), domain_);
   ASSERT_TRUE(is_connected()) << node.said();
@@ -89,7 +89,7 @@ TEST_F(ByreNode, NamesWhatIsWrongWithTheCameras) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-TEST_F(ByreNode, TakesItsCalibrationFromCameraInfoAndItsMountingFromTransforms) {
+TEST_F(ByreNode, ReadsCameraInfoAndExtrinsicsFromTransforms) {
   const Room& room = Room::shared();
   Calibration calibration = read_calibration(room.calibration());
   NodeProcess node(
@@ -154,7 +154,7 @@ TEST_F(ByreNode, TakesItsCalibrationFromCameraInfoAndItsMountingFromTransforms) 
   EXPECT_EQ(node.stop(), 0);
 }
 
-TEST_F(ByreNode, TakesCompressedImagesOfOneCamera) {
+TEST_F(ByreNode, ProcessesCompressedImagesOfOneCamera) {
   const Room& room = Room::shared();
   Calibration calibration = read_calibration(room.calibration());
   calibration.right.reset();

@@ -47,7 +47,7 @@ MqttListener::Condition connection_is(const std::string& state) {
   return [state](const Json& message) { return message.at("connectionState") == state; };
 }
 
-TEST_F(FleetTest, TellsWhereTheRobotIs) {
+TEST_F(FleetTest, PublishesTheRobotPosition) {
   const MqttBroker broker(folder_, "byre", "secret");
   NodeProcess node(folder_, settings(broker), domain_);
   MqttListener fleet(broker, "uagv/#");
@@ -62,7 +62,7 @@ TEST_F(FleetTest, TellsWhereTheRobotIs) {
   EXPECT_TRUE(fleet.find(kConnection, connection_is("OFFLINE"))) << "who stops says so";
 }
 
-TEST_F(FleetTest, ComesBackWithTheBrokerAndNeverHoldsAFrameUp) {
+TEST_F(FleetTest, ReconnectsToTheBrokerWithoutDelayingFrames) {
   std::optional<MqttBroker> broker(std::in_place, folder_, "byre", "secret");
   const int port = broker->port();
   NodeProcess node(folder_, settings(*broker), domain_);
@@ -96,7 +96,7 @@ TEST_F(FleetTest, ReportsAnAbsentBroker) {
   })) << node.said();
 }
 
-TEST_F(FleetTest, SaysThatTheBrokerRefusesIt) {
+TEST_F(FleetTest, ReportsARejectionByTheBroker) {
   const MqttBroker broker(folder_, "byre", "another");
   NodeProcess node(folder_, settings(broker), domain_);
   ASSERT_TRUE(is_connected()) << node.said();

@@ -243,7 +243,7 @@ class KilledRobot {
   int saved_ = 0;
 };
 
-TEST_F(ByreNodeStaysUp, WholeWhateverItIsKilledAt) {
+TEST_F(ByreNodeStaysUp, KeepsCompleteMapsWhenKilledAtAnyTime) {
   const int kills = number_from_environment("BYRE_NODE_KILLS", 3);
   const fs::path extended = folder_ / "extended" / "barn.byre", beside = folder_ / "beside" / "beside.byre";
   for (const fs::path& file : {extended, beside}) fs::create_directories(file.parent_path());

@@ -34,17 +34,17 @@ def panels_in(layout) -> list[str]:
 
 
 class Layouts(unittest.TestCase):
-    def test_foxglove_shows_every_panel_that_it_sets_up(self):
+    def test_foxglove_shows_every_configured_panel(self):
         layout = json.loads((FOLDER / "foxglove/byre.json").read_text())
         self.assertCountEqual(panels_in(layout["layout"]), layout["configById"])
 
-    def test_foxglove_names_topics_of_the_node(self):
+    def test_foxglove_uses_topics_of_the_node(self):
         text = (FOLDER / "foxglove/byre.json").read_text()
         named = {name.split(".")[0] for name in re.findall(r'"(/[\w/.]+)', text)}
         self.assertIn("/byre/points", named)
         self.assertLessEqual(named, node_topics())
 
-    def test_rviz_names_topics_of_the_node(self):
+    def test_rviz_uses_topics_of_the_node(self):
         named = set(re.findall(r"Value: (/\S+)", (FOLDER / "rviz/byre.rviz").read_text()))
         self.assertIn("/byre/points", named)
         self.assertLessEqual(named, node_topics())

@@ -111,11 +111,11 @@ void ByreNodeOnWheels::expect_to_go_on_in_the_dark(const TypeSupport& type, Mess
   EXPECT_EQ(node.stop(), 0);
 }
 
-TEST_F(ByreNodeOnWheels, GoesOnByOdometryWhereItSeesNothing) {
+TEST_F(ByreNodeOnWheels, BridgesDarknessByOdometry) {
   expect_to_go_on_in_the_dark(TypeSupport(new nav_msgs::msg::OdometryPubSubType), wheel_message);
 }
 
-TEST_F(ByreNodeOnWheels, GoesOnByVelocitiesWhereItSeesNothing) {
+TEST_F(ByreNodeOnWheels, BridgesDarknessByVelocities) {
   expect_to_go_on_in_the_dark(TypeSupport(new geometry_msgs::msg::TwistStampedPubSubType), twist_message);
 }
 

@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 using std::chrono_literals::operator""ms;
 
-TEST_F(ByreNode, GivesEachFrameThePosesThatSlamGives) {
+TEST_F(ByreNode, PublishesThePosesOfSlam) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =
       room.tracked(Slam::mapping(read_calibration(room.calibration()), Room::options()));
@@ -38,7 +38,7 @@ TEST_F(ByreNode, GivesEachFrameThePosesThatSlamGives) {
   EXPECT_TRUE(fs::exists(folder_ / "made.byre")) << "what was mapped is kept at the end";
 }
 
-TEST_F(ByreNode, GivesEachFrameOfAMissionThePoseInTheMapThatSlamGives) {
+TEST_F(ByreNode, PublishesTheMissionPosesOfSlam) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =
       room.tracked(Slam::on_map(read_calibration(room.calibration()), room.map(), Room::options()));
@@ -84,7 +84,7 @@ TEST_F(ByreNode, GivesEachFrameOfAMissionThePoseInTheMapThatSlamGives) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-TEST_F(ByreNode, FindsItselfInAMapAndTellsLateJoiners) {
+TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
   const Room& room = Room::shared();
   std::ofstream(folder_ / "plan.pgm") << "P5\n3 2\n255\n" << std::string("\xff\x00\xff\x80\xff\x00", 6);
   std::ofstream(folder_ / "plan.yaml") << "image: plan.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\n";
@@ -141,7 +141,7 @@ TEST_F(ByreNode, FindsItselfInAMapAndTellsLateJoiners) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
+TEST_F(ByreNode, ExecutesCommandsAndRejectsOtherFolders) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   NodeProcess node(folder_, mission(), domain_);
   ASSERT_TRUE(is_connected()) << node.said();
@@ -169,7 +169,7 @@ TEST_F(ByreNode, ObeysCommandsAndRefusesWaysOutOfTheFolder) {
   EXPECT_EQ(node.stop(), 0);
 }
 
-TEST_F(ByreNode, KeepsTheMapBeforeAndUsesItWhereTheKeptOneIsDamaged) {
+TEST_F(ByreNode, KeepsThePreviousMapAndUsesItIfTheMapIsDamaged) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   const fs::path map = folder_ / "room.byre";
   fs::copy_file(Room::shared().map(), map);
@@ -196,7 +196,7 @@ TEST_F(ByreNode, KeepsTheMapBeforeAndUsesItWhereTheKeptOneIsDamaged) {
   EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), kept) << "no damaged map takes its place";
 }
 
-TEST_F(ByreNode, LooksForTheRobotAnewWhereAPoseGivenByHandContradictsIts) {
+TEST_F(ByreNode, RelocalisesIfAnInitialPoseContradictsItsPose) {
   const Room& room = Room::shared();
   Poses poses(peer_, "rt/byre/pose", kLatched);
   Texts health(peer_, "rt/byre/health", kVolatile);
@@ -250,7 +250,7 @@ double processor_seconds(pid_t process) {
   return static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-TEST_F(ByreNode, AnswersARecordingAsFastAsItCan) {
+TEST_F(ByreNode, ProcessesARecordingAtFullSpeed) {
   const auto folder = find_recording("euroc/MH_01_easy");
   if (!folder) GTEST_SKIP() << missing("euroc/MH_01_easy");
   constexpr int kFrames = 60;

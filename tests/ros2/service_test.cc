@@ -50,7 +50,7 @@ using SetInitialPose =
 
 constexpr const char* kOffered = "node:\n  services: true\n";
 
-TEST_F(ByreNode, AnswersServicesToWhoeverCalledThem) {
+TEST_F(ByreNode, AnswersServicesToTheirCallers) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   NodeProcess node(folder_, kOffered + mission(), domain_);
   Trigger save(peer_, "save", 0x1234567890abcdef), relocalise(peer_, "relocalise", 2), other(peer_, "save", 3);
@@ -103,7 +103,7 @@ TEST_F(ByreNode, PausesMappingByServiceAndByCommand) {
 }
 
 // Requests in the native form of Fast DDS have no id.
-TEST_F(ByreNode, LeavesRequestsAloneThatItDoesNotUnderstand) {
+TEST_F(ByreNode, IgnoresMalformedRequests) {
   NodeProcess node(folder_, kOffered + mission(), domain_);
   TypeSupport bare(new std_srvs::srv::BareTrigger_RequestPubSubType);
   bare->setName("std_srvs::srv::dds_::Trigger_Request_");

@@ -99,7 +99,7 @@ Usage usage_of(pid_t process) {
   return usage;
 }
 
-TEST_F(ByreNodeStaysUp, ThroughOneVisitAfterAnother) {
+TEST_F(ByreNodeStaysUp, RunsVisitAfterVisit) {
   const int frames = number_from_environment("BYRE_NODE_SOAK_FRAMES", 200);
   // Memory grows until the node's path has its maximum length, so short runs do not evaluate it.
   constexpr int kSettled = 20'000;  // frames

@@ -61,7 +61,7 @@ class Watcher {
   std::map<std::string, int> ids_;
 };
 
-TEST_F(ByreNode, SendsWatchersWhatItSendsReaders) {
+TEST_F(ByreNode, SendsTheSameMessagesToFoxgloveAndReaders) {
   const int port = free_port();
   const NodeProcess node(folder_, mapping() + "http:\n  port: " + std::to_string(port) + "\n", domain_);
   ASSERT_TRUE(is_connected()) << node.said();

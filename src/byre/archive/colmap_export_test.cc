@@ -18,7 +18,7 @@ class ExportedModel : public testing::Test {
   ColmapModel model_ = colmap_model_of(stored_, {});
 };
 
-TEST_F(ExportedModel, HoldsTheCameraThatTookTheImages) {
+TEST_F(ExportedModel, ContainsTheCameraOfTheImages) {
   ASSERT_EQ(model_.cameras.size(), 1u);
   const Camera& left = stored_.recordings.front().calibration.left;
   const Camera camera = camera_of(model_.cameras.at(1), "camera");
@@ -28,7 +28,7 @@ TEST_F(ExportedModel, HoldsTheCameraThatTookTheImages) {
   EXPECT_DOUBLE_EQ(camera.cx, left.cx);
 }
 
-TEST_F(ExportedModel, PutsThatCameraWhereTheRecordingHasIt) {
+TEST_F(ExportedModel, HasTheCameraPoseOfTheRecording) {
   const Pose& body_from_left = stored_.recordings.front().calibration.body_from_left;
   ASSERT_EQ(model_.images.size(), 8u);
   for (std::uint32_t i = 0; i < 8; ++i) {
@@ -38,7 +38,7 @@ TEST_F(ExportedModel, PutsThatCameraWhereTheRecordingHasIt) {
   }
 }
 
-TEST_F(ExportedModel, NamesImagesByTheirTimesUnlessToldOtherwise) {
+TEST_F(ExportedModel, NamesImagesByTheirTimesByDefault) {
   const Timestamp time = RenderedFixture::shared().truth().front().time;
   EXPECT_EQ(model_.images.at(1).name, std::to_string(time.count()) + ".png");
   EXPECT_EQ(colmap_model_of(stored_, {{time, "first.jpg"}}).images.at(1).name, "first.jpg");
@@ -48,7 +48,7 @@ TEST_F(ExportedModel, NamesImagesByTheirTimesUnlessToldOtherwise) {
             RenderedFixture::shared().truth().size());
 }
 
-TEST_F(ExportedModel, HasThePointsOfTwoViewsWhereTheMapHasThem) {
+TEST_F(ExportedModel, ContainsThePointsOfTwoViews) {
   for (const PointId id : stored_.map.point_ids()) {
     const auto point = model_.points.find(id.number + 1u);
     const std::size_t views = stored_.map.observations(id).size();
@@ -78,7 +78,7 @@ TEST_F(ExportedModel, ProjectsItsPointsOntoItsKeypoints) {
   EXPECT_LT(errors.back(), 10.0);
 }
 
-TEST_F(ExportedModel, IsOfNothingForAnEmptyMap) {
+TEST_F(ExportedModel, IsEmptyForAnEmptyMap) {
   const ColmapModel model = colmap_model_of({}, {});
   EXPECT_TRUE(model.images.empty());
   EXPECT_TRUE(model.points.empty());

@@ -28,7 +28,7 @@ class ImportedMap : public testing::Test {
   ColmapModel model_ = colmap_model_of(exported_, {});
 };
 
-TEST_F(ImportedMap, HasPointsAndCamerasWhereTheExportedMapHadThem) {
+TEST_F(ImportedMap, PreservesPointsAndCamerasOfTheExportedMap) {
   const ColmapImport imported = import(model_);
   const Map& map = imported.stored.map;
   EXPECT_THAT(find_faults(imported.stored), IsEmpty());
@@ -50,7 +50,7 @@ TEST_F(ImportedMap, HasPointsAndCamerasWhereTheExportedMapHadThem) {
   }
 }
 
-TEST_F(ImportedMap, IsRefusedIfPosesDoNotFitThePoints) {
+TEST_F(ImportedMap, IsRejectedIfPosesContradictThePoints) {
   const auto refusal = [](const ColmapModel& model) -> std::string {
     try {
       import(model);
@@ -70,7 +70,7 @@ TEST_F(ImportedMap, IsRefusedIfPosesDoNotFitThePoints) {
   EXPECT_EQ(refusal(rough), "");
 }
 
-TEST_F(ImportedMap, SeesItsPointsWhereTheyProject) {
+TEST_F(ImportedMap, ObservesItsPointsAtTheirProjections) {
   for (const ImportedImage& image : import(model_).images) {
     EXPECT_GT(image.points_attached, 20) << image.name;
     EXPECT_GE(image.features, image.points_attached);
@@ -78,7 +78,7 @@ TEST_F(ImportedMap, SeesItsPointsWhereTheyProject) {
   }
 }
 
-TEST_F(ImportedMap, HasNoScaleUntilOneIsGiven) {
+TEST_F(ImportedMap, HasNoMetricScaleByDefault) {
   EXPECT_EQ(import(model_).stored.scale, MapScale::unknown);
   ColmapImportOptions halved;
   halved.metres_per_unit = 0.5;
@@ -91,7 +91,7 @@ TEST_F(ImportedMap, HasNoScaleUntilOneIsGiven) {
   EXPECT_THAT(position, PointNear(0.5 * model_.points.at(imported.colmap_ids.front()).position_in_world, 1e-9));
 }
 
-TEST_F(ImportedMap, TakesTheCameraForTheBodyUnlessToldOtherwise) {
+TEST_F(ImportedMap, UsesTheCameraAsBodyByDefault) {
   const auto body_from_camera = [](const ColmapImport& imported) {
     return imported.stored.map.rigs().front().body_from_camera;
   };
@@ -101,7 +101,7 @@ TEST_F(ImportedMap, TakesTheCameraForTheBodyUnlessToldOtherwise) {
   EXPECT_THAT(body_from_camera(import(model_, options)), PoseNear(options.body_from_camera, 1e-12, 1e-12));
 }
 
-TEST_F(ImportedMap, LeavesOutImagesItCannotUse) {
+TEST_F(ImportedMap, SkipsUnusableImages) {
   model_.images.at(2).name = "missing.png";
   model_.cameras[2] = model_.cameras.at(1);
   model_.cameras[2].width += 1;
@@ -131,7 +131,7 @@ TEST_F(ImportedMap, NeedsAModelWithImagesAndPoints) {
   EXPECT_THAT(error_of(model_), HasSubstr("model: is a model without points, so it cannot be imported"));
 }
 
-TEST_F(ImportedMap, NamesTheCameraItDoesNotHave) {
+TEST_F(ImportedMap, ReportsAnUnsupportedCamera) {
   model_.cameras.at(1) = {"FOV", 188, 120, {100, 100, 94, 60, 0.9}};
   try {
     import(model_);
@@ -141,12 +141,12 @@ TEST_F(ImportedMap, NamesTheCameraItDoesNotHave) {
   }
 }
 
-TEST(TimesOfNames, AreReadFromNamesThatAreTimes) {
+TEST(TimesOfNames, AreParsedFromNames) {
   EXPECT_THAT(times_of_names({"1403715273262142976.png", "a/1403715280562142976.jpg"}),
               ElementsAre(Timestamp(1403715273262142976), Timestamp(1403715280562142976)));
 }
 
-TEST(TimesOfNames, AreCountedWhereSomeNameIsNone) {
+TEST(TimesOfNames, AreCountedIfANameHasNoTime) {
   EXPECT_THAT(times_of_names({"c.png", "1403715273262142976.png", "b.png"}),
               ElementsAre(seconds(2), seconds(0), seconds(1)));
   EXPECT_THAT(times_of_names({"b/7.png", "a/7.png"}), ElementsAre(seconds(1), seconds(0)));

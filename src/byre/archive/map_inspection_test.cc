@@ -25,7 +25,7 @@ StoredMap simulated_map(int keyframes = 60) {
   return stored;
 }
 
-TEST(Inspect, CountsWhatTheMapHolds) {
+TEST(Inspect, CountsTheContentsOfTheMap) {
   const StoredMapScene scene(4, 9);  // keyframes: three observe 8 points, the fourth 8 others, a fifth has no features
   const MapInspection inspection = inspect(scene.stored());
   EXPECT_EQ(inspection.counts.keyframes, 5);
@@ -39,7 +39,7 @@ TEST(Inspect, CountsWhatTheMapHolds) {
   EXPECT_THAT(inspection.faults, IsEmpty());
 }
 
-TEST(Inspect, MeasuresTheErrorsThatWereSimulated) {
+TEST(Inspect, MeasuresSimulatedErrors) {
   const MapInspection inspection = inspect(simulated_map());
   const ReprojectionErrors& errors = inspection.errors;
   EXPECT_EQ(errors.behind_camera, 0);
@@ -66,7 +66,7 @@ TEST(Inspect, FindsPointsBehindTheirCameras) {
   EXPECT_EQ(inspection.errors.pixel.count, inspection.counts.observations - inspection.errors.behind_camera);
 }
 
-TEST(Inspect, MeasuresTheRoomAndThePath) {
+TEST(Inspect, MeasuresExtentAndPath) {
   const MapInspection inspection = inspect(simulated_map());
   ASSERT_TRUE(inspection.points_in_world.has_value());
   const Eigen::Vector3d size = inspection.points_in_world->max - inspection.points_in_world->min;
@@ -74,7 +74,7 @@ TEST(Inspect, MeasuresTheRoomAndThePath) {
   EXPECT_NEAR(inspection.path_length, 2.0 * std::numbers::pi * kRadius, 0.3);
 }
 
-TEST(Inspect, ManagesAnEmptyMap) {
+TEST(Inspect, AcceptsAnEmptyMap) {
   const MapInspection inspection = inspect({});
   EXPECT_FALSE(inspection.points_in_world.has_value());
   EXPECT_EQ(inspection.errors.pixel.count, 0);

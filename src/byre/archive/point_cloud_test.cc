@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(PointCloud, HoldsEveryPoint) {
+TEST(PointCloud, ContainsEveryPoint) {
   const StoredMap stored = StoredMapScene(4, 9).stored();
   const std::vector<std::byte> bytes = point_cloud(stored.map);
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());

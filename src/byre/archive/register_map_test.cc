@@ -40,7 +40,7 @@ class RegisterMap : public testing::Test {
       std::filesystem::path(testing::TempDir()) / ("register_" + std::to_string(getpid()) + ".csv");
 };
 
-TEST_F(RegisterMap, KnowsThePlaceOfThePathBetterWithSmallerResiduals) {
+TEST_F(RegisterMap, HasSmallerSigmasWithSmallerResiduals) {
   FloorPlanScene scene;
   const StoredMap stored = driven_barn(scene);
   const Registering exact = register_with(stored, scene.correspondences(12));
@@ -50,7 +50,7 @@ TEST_F(RegisterMap, KnowsThePlaceOfThePathBetterWithSmallerResiduals) {
   EXPECT_GT(noisy.largest_path_sigma, 3.0 * exact.largest_path_sigma);
 }
 
-TEST_F(RegisterMap, FindsAScaleOnlyForAMapWithoutOne) {
+TEST_F(RegisterMap, EstimatesTheScaleOnlyOfUnscaledMaps) {
   FloorPlanScene scene(1, 2.0);
   StoredMap stored = driven_barn(scene);
   stored.scale = MapScale::unknown;
@@ -59,7 +59,7 @@ TEST_F(RegisterMap, FindsAScaleOnlyForAMapWithoutOne) {
   EXPECT_FALSE(registering.measured_scale.has_value());
 }
 
-TEST_F(RegisterMap, LaysAMetricMapOnItsPlanAsItIs) {
+TEST_F(RegisterMap, RegistersAMetricMapWithoutScaling) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const Registering registering = register_with(driven_barn(scene), scene.correspondences(8, 0.03));
   EXPECT_EQ(registering.fit.registration.plan_from_map.scale, 1.0);
@@ -67,7 +67,7 @@ TEST_F(RegisterMap, LaysAMetricMapOnItsPlanAsItIs) {
   EXPECT_TRUE(registering.has_baseline);
 }
 
-TEST_F(RegisterMap, MendsTheScaleAndLaysTheMendedMapOnThePlan) {
+TEST_F(RegisterMap, CorrectsTheScaleAndRegistersTheCorrectedMap) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const auto correspondences = scene.correspondences(8, 0.03);
   const MendedMap mended = mend(driven_barn(scene), correspondences);
@@ -79,7 +79,7 @@ TEST_F(RegisterMap, MendsTheScaleAndLaysTheMendedMapOnThePlan) {
 }
 
 // Picks by keyframe remain valid after a correction of the scale; picks by position do not.
-TEST_F(RegisterMap, FindsNothingToMendTheSecondTime) {
+TEST_F(RegisterMap, CorrectsNothingTheSecondTime) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const StoredMap stored = driven_barn(scene);
   const std::string picks = keyframe_picks_csv(scene, stored);
@@ -94,7 +94,7 @@ TEST_F(RegisterMap, FindsNothingToMendTheSecondTime) {
               ThrowsMessage<InputError>(HasSubstr("gives positions, but the map has been scaled by 0.98")));
 }
 
-TEST_F(RegisterMap, MendsNoScaleThatIsNotThatOfABaseline) {
+TEST_F(RegisterMap, RejectsCorrectionWithoutABaseline) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const auto correspondences = scene.correspondences(8);
   const auto refusal_of = [&](const StoredMap& stored, const std::string& reason) {
@@ -114,7 +114,7 @@ TEST_F(RegisterMap, MendsNoScaleThatIsNotThatOfABaseline) {
   refusal_of(stored, "has no baseline to correct (use byre scale with a known distance)");
 }
 
-TEST_F(RegisterMap, MendsNoScaleThatThePicksDoNotTell) {
+TEST_F(RegisterMap, RejectsCorrectionWithInsufficientPicks) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const StoredMap stored = driven_barn(scene);
   EXPECT_THAT([&] { mend(stored, scene.correspondences(3)); },
@@ -123,7 +123,7 @@ TEST_F(RegisterMap, MendsNoScaleThatThePicksDoNotTell) {
               ThrowsMessage<InputError>(HasSubstr("the correspondences are inconsistent")));
 }
 
-TEST_F(RegisterMap, NeedsAMapThatTellsWhichWayIsUp) {
+TEST_F(RegisterMap, RejectsAMapWithoutVertical) {
   EXPECT_THROW(register_with(StoredMap(), FloorPlanScene().correspondences(6)), InputError);
 }
 

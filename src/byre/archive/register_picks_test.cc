@@ -71,7 +71,7 @@ class RegisterPicks : public testing::Test {
       std::filesystem::path(testing::TempDir()) / ("picks_" + std::to_string(getpid()) + ".csv");
 };
 
-TEST_F(RegisterPicks, AreReadAsTheSimulatedBarnWritesThem) {
+TEST_F(RegisterPicks, AreReadFromTheSimulatedBarn) {
   const auto picks = read("#point_x_m,point_y_m,point_z_m,plan_x_m,plan_y_m,name\n1.5,-2,0.25,10.5,3,column 4 south\n");
   ASSERT_THAT(picks, SizeIs(1));
   EXPECT_EQ(picks[0].name, "column 4 south");
@@ -80,7 +80,7 @@ TEST_F(RegisterPicks, AreReadAsTheSimulatedBarnWritesThem) {
   EXPECT_EQ(picks[0].sigma, kPickSigma);
 }
 
-TEST_F(RegisterPicks, MayGivePositionsInTheMapByEitherName) {
+TEST_F(RegisterPicks, AcceptBothNamesOfMapPositions) {
   const auto picks = read("map_x_m,map_y_m,map_z_m,plan_x_m,plan_y_m\n1.5,-2,0.25,10.5,3\n");
   EXPECT_EQ(picks.at(0).point_in_map, Eigen::Vector3d(1.5, -2.0, 0.25));
 }
@@ -95,12 +95,12 @@ TEST_F(RegisterPicks, ScalePositionsButNotPoints) {
   EXPECT_FALSE(gives_positions(path_));
 }
 
-TEST_F(RegisterPicks, MayBePixelsOfTheImageOfAKeyframe) {
+TEST_F(RegisterPicks, AcceptPixelsOfKeyframeImages) {
   const auto picks = read("time_ns,u_px,v_px,plan_x_m,plan_y_m\n100000000000,163,121,1,2\n");
   EXPECT_EQ(picks.at(0).point_in_map, Eigen::Vector3d(4.0, 5.0, 6.0));
 }
 
-TEST_F(RegisterPicks, MayNamePointsKeyframesAndPixels) {
+TEST_F(RegisterPicks, AcceptPointsKeyframesAndPixels) {
   const auto picks = read(
       "name,point,time_s,plan_column_px,plan_row_px,plan_x_m,plan_y_m,sigma_m\n"
       "post,0,,10,20,,,0.2\n"
@@ -114,12 +114,12 @@ TEST_F(RegisterPicks, MayNamePointsKeyframesAndPixels) {
   EXPECT_EQ(picks[1].point_in_plan, Eigen::Vector2d(7.0, 8.0));
 }
 
-TEST_F(RegisterPicks, AreNotTakenForKnownInMetresWhereTheMapHasNone) {
+TEST_F(RegisterPicks, HaveOnlyThePickSigmaInAnUnscaledMap) {
   map_.scale = MapScale::unknown;
   EXPECT_EQ(read("point,plan_x_m,plan_y_m\n0,1,2\n").at(0).sigma, kPickSigma);
 }
 
-TEST_F(RegisterPicks, AreRefusedWhereTheyNameWhatTheMapHasNot) {
+TEST_F(RegisterPicks, AreRejectedIfNotInTheMap) {
   const std::string columns = "point,time_s,time_ns,u_px,v_px,plan_x_m,plan_y_m\n";
   EXPECT_THAT(refusal_of(columns + "7,,,,,1,2\n"), HasSubstr(":2: refers to point 7, which is not in the map"));
   EXPECT_THAT(refusal_of(columns + "0.5,,,,,1,2\n"), HasSubstr("refers to point 0.5"));
@@ -131,7 +131,7 @@ TEST_F(RegisterPicks, AreRefusedWhereTheyNameWhatTheMapHasNot) {
               HasSubstr("has a pixel without a map point nearby"));
 }
 
-TEST_F(RegisterPicks, AreRefusedWithoutOnePlaceInTheMapAndOneOnThePlan) {
+TEST_F(RegisterPicks, AreRejectedWithoutOneMapAndOnePlanPosition) {
   const std::string columns = "point,time_s,plan_x_m,plan_y_m,plan_column_px,plan_row_px\n";
   EXPECT_THAT(refusal_of(columns + "0,101,1,2,,\n"),
               HasSubstr(":2: gives its position in the map twice (fill in point"));
@@ -140,7 +140,7 @@ TEST_F(RegisterPicks, AreRefusedWithoutOnePlaceInTheMapAndOneOnThePlan) {
   EXPECT_THAT(refusal_of(columns + "0,,,,,\n"), HasSubstr("does not give its position on the plan"));
 }
 
-TEST_F(RegisterPicks, AreRefusedWhereANumberIsNone) {
+TEST_F(RegisterPicks, AreRejectedWithInvalidNumbers) {
   const std::string columns = "point,time_s,time_ns,map_x_m,map_y_m,map_z_m,plan_x_m,plan_y_m,sigma_m\n";
   EXPECT_THAT(refusal_of(columns + "gate,,,,,,1,2,\n"), HasSubstr("has no number as point"));
   EXPECT_THAT(refusal_of(columns + ",noon,,,,,1,2,\n"), HasSubstr("has no time in seconds as time_s"));

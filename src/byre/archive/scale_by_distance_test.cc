@@ -30,7 +30,7 @@ Eigen::Vector3d camera_in_world(const StoredMap& stored, std::uint32_t keyframe)
   return inverse(stored.map.camera_from_world({Origin::offline, keyframe})).translation;
 }
 
-TEST(ScaleByDistance, MakesTheDistanceWhatItIsAndTheMapMetric) {
+TEST(ScaleByDistance, MakesTheMapMetric) {
   const ScaledMap scaled = scale_by_distance(unscaled(), "point:3", "point:40", 4.2);
   EXPECT_EQ(scaled.stored.scale, MapScale::metric);
   EXPECT_NEAR((find_place(scaled.stored, "point:3") - find_place(scaled.stored, "point:40")).norm(), 4.2, 1e-9);
@@ -38,7 +38,7 @@ TEST(ScaleByDistance, MakesTheDistanceWhatItIsAndTheMapMetric) {
   EXPECT_THAT(find_faults(scaled.stored.map), ::testing::IsEmpty());
 }
 
-TEST(ScaleByDistance, LeavesWhatIsSeenWhereItIsInTheImages) {
+TEST(ScaleByDistance, PreservesProjections) {
   const ScaledMap scaled = scale_by_distance(unscaled(), "0,0,0", "0,0,0.5", 1.0);
   EXPECT_NEAR(scaled.factor, 2.0, 1e-12);
   for (const PointId id : unscaled().map.point_ids()) {
@@ -54,7 +54,7 @@ TEST(ScaleByDistance, LeavesWhatIsSeenWhereItIsInTheImages) {
   }
 }
 
-TEST(ScaleByDistance, LeavesTheMapWhereItLiesOnItsPlan) {
+TEST(ScaleByDistance, PreservesTheRegistration) {
   StoredMap stored = unscaled();
   stored.plan.emplace();
   stored.plan->plan_from_map = {3.5, {rotation_exp({0.1, 0.2, 0.3}), {10.0, -4.0, 1.0}}};
@@ -64,11 +64,11 @@ TEST(ScaleByDistance, LeavesTheMapWhereItLiesOnItsPlan) {
   EXPECT_LT((now - before).norm(), 1e-9);
 }
 
-TEST(FindPlace, TakesTheCameraAtATime) {
+TEST(FindPlace, FindsTheCameraAtATime) {
   EXPECT_LT((find_place(unscaled(), "time:0.41") - camera_in_world(unscaled(), 1)).norm(), 1e-12);
 }
 
-TEST(FindPlace, SaysWhatIsWrong) {
+TEST(FindPlace, ReportsFaults) {
   const auto of = [](const std::string& text) { return [text] { find_place(unscaled(), text); }; };
   EXPECT_THAT(of("point:x"), ThrowsMessage<InputError>(HasSubstr("is not a point number")));
   EXPECT_THAT(of("point:999999"), ThrowsMessage<InputError>(HasSubstr("is not in the map")));
@@ -78,12 +78,12 @@ TEST(FindPlace, SaysWhatIsWrong) {
   EXPECT_THAT(of("the door"), ThrowsMessage<InputError>(HasSubstr("point:NUMBER")));
 }
 
-TEST(ScaleByDistance, RefusesOnePlaceForTwo) {
+TEST(ScaleByDistance, RejectsEqualPlaces) {
   EXPECT_THAT([] { scale_by_distance(unscaled(), "point:3", "point:3", 1.0); },
               ThrowsMessage<InputError>(HasSubstr("the same place twice")));
 }
 
-TEST(ScaleByDistance, RefusesAMapWhoseScaleIsKnown) {
+TEST(ScaleByDistance, RejectsAMetricMap) {
   StoredMap stereo;
   stereo.map =
       true_map(simulate_mission(simulated_rig(), circling_trajectory(8, 10.0, 2.0, 0.05), {}), 4, Origin::offline);

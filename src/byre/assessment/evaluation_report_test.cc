@@ -51,7 +51,7 @@ TEST(EvaluationReport, StatesItsProtocolFirst) {
                                "coverage     "));
 }
 
-TEST(EvaluationReport, SaysSoWhenTheKindOfPosesIsNotStated) {
+TEST(EvaluationReport, ReportsAMissingLabel) {
   const std::string text = to_text(evaluate(circle(), circle(), EvaluationProtocol{}, {}).value(), "a", "b");
   EXPECT_THAT(text, HasSubstr("poses        not stated\n"));
 }
@@ -65,7 +65,7 @@ TEST(EvaluationReport, HasARowForEachError) {
   }
 }
 
-TEST(EvaluationReport, OfASimilarityScalesRelativeErrorsToo) {
+TEST(EvaluationReport, ScalesRelativeErrorsByTheSimilarity) {
   const EvaluationReport report = report_of(scaled(circle(), 0.5), PoseAlignment::sim3);
   EXPECT_LT(report.ate->translation.max, 1e-9);
   EXPECT_LT(report.rpe_second.translation.max, 1e-9);
@@ -78,7 +78,7 @@ Trajectory moved(Trajectory trajectory, const Pose& other_from_world) {
   return trajectory;
 }
 
-TEST(EvaluationReport, LaysTheFirstPoseOnTheTrueOneWhereAsked) {
+TEST(EvaluationReport, AlignsTheFirstPoseOnRequest) {
   const Pose elsewhere{rotation_exp({0.1, 0.2, 1.0}), {5.0, -3.0, 1.0}};
   EXPECT_LT(report_of(moved(circle(), elsewhere), PoseAlignment::origin).ate->translation.max, 1e-9);
   Trajectory estimate = circle();
@@ -103,7 +103,7 @@ EvaluationReport report_of_line(double sway, double error, PoseAlignment alignme
   return evaluate(estimate, truth, protocol, {}).value();
 }
 
-TEST(EvaluationReport, WarnsOfAlignmentsThatAreFreeToTurnAboutALine) {
+TEST(EvaluationReport, WarnsOfAlignmentsAlongALine) {
   const EvaluationReport thin = report_of_line(0.1, 0.0, PoseAlignment::se3);
   EXPECT_NEAR(thin.true_spread[0], std::sqrt((501.0 * 501.0 - 1.0) / 12.0) * 0.1, 1e-3);
   EXPECT_NEAR(thin.true_spread[1], 0.1 / std::sqrt(2.0), 2e-3);
@@ -115,7 +115,7 @@ TEST(EvaluationReport, WarnsOfAlignmentsThatAreFreeToTurnAboutALine) {
   EXPECT_THAT(to_text(report_of(circle(), PoseAlignment::se3), "a", "b"), Not(HasSubstr("caveat")));
 }
 
-TEST(EvaluationReport, HasTheSegmentsOfKitti) {
+TEST(EvaluationReport, ContainsKittiSegments) {
   EXPECT_THAT(to_text(report_of(circle(), PoseAlignment::se3), "a", "b"),
               HasSubstr("segments (KITTI)       none, the path is shorter than 100 m\n"));
   Trajectory truth;
@@ -143,14 +143,14 @@ TEST(EvaluationReport, CountsTheFramesGiven) {
   EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("coverage     75.2 % (76 of 101 frames of room)\n"));
 }
 
-TEST(EvaluationReport, EstimatesTheFramesWhereNoneAreGiven) {
+TEST(EvaluationReport, EstimatesTheNumberOfFramesIfNotGiven) {
   Trajectory estimate = circle();
   estimate.resize(76);
   EXPECT_THAT(to_text(report_of(estimate, PoseAlignment::se3), "a", "b"),
               HasSubstr("coverage     75.2 % (76 of 101 frames expected from the time span of the truth"));
 }
 
-TEST(EvaluationReport, OfOnePoseSaysWhatCannotBeTold) {
+TEST(EvaluationReport, ReportsUndefinedFiguresOfOnePose) {
   Trajectory estimate = circle();
   estimate.resize(1);
   const EvaluationReport report = report_of(estimate, PoseAlignment::se3);
@@ -165,7 +165,7 @@ TEST(EvaluationReport, OfOnePoseSaysWhatCannotBeTold) {
   EXPECT_TRUE(json["rpe"]["1_s"]["translation_m"].is_null());
 }
 
-TEST(EvaluationReport, InJsonHoldsTheSameFigures) {
+TEST(EvaluationReport, ContainsTheSameFiguresInJson) {
   const EvaluationReport report = report_of(scaled(circle(), 1.1), PoseAlignment::none);
   const std::string text = to_json(report, "out.txt", "truth.csv");
   EXPECT_THAT(text, StartsWith("{\n  \"protocol\": {\n    \"poses\": \"final\""));
@@ -182,7 +182,7 @@ TEST(EvaluationReport, InJsonHoldsTheSameFigures) {
   EXPECT_EQ(json["rpe"]["1_m"]["translation_m"]["rmse"].get<double>(), report.rpe_metre.translation.rmse);
 }
 
-TEST(EvaluationReport, IsEmptyWhereNothingCanBeCompared) {
+TEST(EvaluationReport, IsEmptyWithoutCommonPoses) {
   Trajectory estimate = circle();
   for (StampedPose& sample : estimate) sample.time += std::chrono::hours(1);
   EXPECT_FALSE(evaluate(estimate, circle(), EvaluationProtocol{}, {}).has_value());

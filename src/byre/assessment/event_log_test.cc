@@ -50,7 +50,7 @@ TEST(EventLog, BeginsWithTheFirstStateAndVerdict) {
   EXPECT_EQ(lines[1].at("health").at("offline_inliers"), 0);
 }
 
-TEST(EventLog, TellsOfChangesOnlyWhenThereAreAny) {
+TEST(EventLog, ContainsOnlyChanges) {
   const MappedFrame steady = frame_at(0.1, State::tracking, Verdict::trusted);
   const std::vector<json> lines = lines_of({steady, steady, frame_at(0.3, State::tracking, Verdict::degraded)});
   EXPECT_THAT(events_of(lines), ElementsAre("state changed", "verdict changed", "verdict changed"));
@@ -60,7 +60,7 @@ TEST(EventLog, TellsOfChangesOnlyWhenThereAreAny) {
   EXPECT_DOUBLE_EQ(lines[2].at("time_s"), 0.3);
 }
 
-TEST(EventLog, TellsEachEventOfAFrameInOrderWithWhereAndHowLongSinceTheMap) {
+TEST(EventLog, ContainsEventsOfAFrameInOrderWithPoseAndDistance) {
   MappedFrame lost = frame_at(7.0, State::lost, Verdict::untrusted, {SessionEvent::pose_lost, SessionEvent::blinded});
   lost.report->health.distance_since_offline = 1.5;
   lost.report->health.seconds_since_offline = 3.0;
@@ -76,7 +76,7 @@ TEST(EventLog, TellsEachEventOfAFrameInOrderWithWhereAndHowLongSinceTheMap) {
   EXPECT_EQ(lines[1].at("image").at("sharpness"), 0.25);
 }
 
-TEST(EventLog, TellsHowFarACorrectionMovedThePoseBesideWhatTheBodyDid) {
+TEST(EventLog, ContainsTheJumpOfAMapCorrection) {
   const auto with_poses = [](MappedFrame frame, double map_x, double odometry_x) {
     frame.report->map_from_body = Pose{Eigen::Quaterniond::Identity(), {map_x, 0.0, 0.0}};
     frame.report->odometry_from_body = Pose{Eigen::Quaterniond::Identity(), {odometry_x, 0.0, 0.0}};
@@ -94,7 +94,7 @@ TEST(EventLog, TellsHowFarACorrectionMovedThePoseBesideWhatTheBodyDid) {
   EXPECT_TRUE(first[0].at("jump_m").is_null()) << "nothing is known of before";
 }
 
-TEST(EventLog, PassesOverFramesThatCouldNotBeRead) {
+TEST(EventLog, SkipsUnreadableFrames) {
   const MappedFrame steady = frame_at(0.1, State::tracking, Verdict::trusted);
   EXPECT_THAT(lines_of({steady, MappedFrame{}, steady}), testing::SizeIs(2));
 }

@@ -22,7 +22,7 @@ Finishing finishing_with_two_loops() {
   return finishing;
 }
 
-TEST(FinishText, TellsWhatChangedAndHowSoundTheMapIs) {
+TEST(FinishText, ContainsChangesAndFaults) {
   const std::string text = to_text(finishing_with_two_loops());
   EXPECT_THAT(text, HasSubstr("last loops   2 closed; drift 7.2, 12.0 px, residual 0.004, 0.011 m\n"));
   EXPECT_THAT(text, HasSubstr("removed      3 redundant keyframes, 40 weak points\n"));
@@ -31,7 +31,7 @@ TEST(FinishText, TellsWhatChangedAndHowSoundTheMapIs) {
   EXPECT_THAT(text, HasSubstr("faults       none\n"));
 }
 
-TEST(FinishText, SaysWhenThereWasNothingToFindAndWhenItWasCutShort) {
+TEST(FinishText, ReportsNoLoopsAndInterruption) {
   Finishing finishing;
   finishing.cut_short = true;
   finishing.faults = {"point 7 is seen by nobody", "point 8 is seen by nobody"};
@@ -41,7 +41,7 @@ TEST(FinishText, SaysWhenThereWasNothingToFindAndWhenItWasCutShort) {
   EXPECT_THAT(text, HasSubstr("interrupted; continue with \"byre refine\"\n"));
 }
 
-TEST(FinishJson, HoldsTheSame) {
+TEST(FinishJson, ContainsTheSameFigures) {
   const json report = to_json(finishing_with_two_loops());
   EXPECT_EQ(report.at("loops"), 2);
   EXPECT_EQ(report.at("loop_residuals_m"), (json{0.004, 0.0105}));

@@ -30,7 +30,7 @@ TEST(InspectReport, IsReadable) {
   EXPECT_THAT(to_text(stored, inspection, file), HasSubstr("fault          point 3 is not observed by any keyframe\n"));
 }
 
-TEST(InspectReport, SaysWhichCamerasMadeTheMap) {
+TEST(InspectReport, ContainsTheCamerasOfTheMap) {
   StoredMap stored = StoredMapScene(4, 9).stored();
   EXPECT_THAT(inspect(stored).cameras_of_recordings, testing::ElementsAre("stereo", "mono"));
   stored.recordings[0].calibration.right.reset();
@@ -40,7 +40,7 @@ TEST(InspectReport, SaysWhichCamerasMadeTheMap) {
   EXPECT_EQ(Json::parse(to_json(stored, inspection, {}))["recordings"][0]["camera"], "rgbd");
 }
 
-TEST(InspectReport, NamesItsUnit) {
+TEST(InspectReport, ContainsItsUnit) {
   StoredMap stored = StoredMapScene().stored();
   EXPECT_THAT(to_text(stored, inspect(stored), {}), testing::ContainsRegex("path +[0-9.]+ m\n"));
   stored.scale = MapScale::unknown;
@@ -67,7 +67,7 @@ TEST(InspectReport, IsJsonWithStableKeys) {
   EXPECT_EQ(report["observations_per_point"]["p50"], 2.0);
 }
 
-TEST(InspectReport, SaysInJsonWhereTheMapLiesOnItsPlan) {
+TEST(InspectReport, ContainsTheRegistrationInJson) {
   const StoredMap stored = StoredMapScene().stored_with_plan();
   const Json plan = Json::parse(to_json(stored, inspect(stored), {})).at("plan");
   EXPECT_EQ(plan.at("plan"), "barn 3, ground floor");
@@ -78,7 +78,7 @@ TEST(InspectReport, SaysInJsonWhereTheMapLiesOnItsPlan) {
   EXPECT_TRUE(Json::parse(to_json(without, inspect(without), {})).at("plan").is_null());
 }
 
-TEST(InspectReport, ManagesAnEmptyMap) {
+TEST(InspectReport, AcceptsAnEmptyMap) {
   const MapInspection inspection = inspect({});
   EXPECT_THAT(to_text({}, inspection, {"empty.byre", 512, {}}), HasSubstr("faults         none\n"));
   EXPECT_TRUE(Json::parse(to_json({}, inspection, {"empty.byre", 512, {}}))["bounding_box"].is_null());

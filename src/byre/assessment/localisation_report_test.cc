@@ -47,7 +47,7 @@ Trajectory truth_of_run() {
   return result;
 }
 
-TEST(ErrorsInMap, AlignTheMapByItsKeyframesAndNotByWhatWasFound) {
+TEST(ErrorsInMap, AlignTheMapByItsKeyframesOnly) {
   const LocalisationErrors errors = errors_in_map(small_run(), small_map(), truth_of_run(), truth_of_run());
   EXPECT_EQ(errors.alignment_keyframes, 4);
   ASSERT_EQ(errors.errors.size(), 4u);
@@ -56,13 +56,13 @@ TEST(ErrorsInMap, AlignTheMapByItsKeyframesAndNotByWhatWasFound) {
   EXPECT_NEAR(errors.errors[3].position(), (at(4.5).translation - at(3.5).translation).norm(), 1e-9);
 }
 
-TEST(ErrorsInMap, TakeTheTruthAsItIsWhereItDoesNotCoverTheMap) {
+TEST(ErrorsInMap, UseUnalignedTruthThatDoesNotCoverTheMap) {
   const LocalisationErrors errors = errors_in_map(small_run(), small_map(), {}, truth_of_run());
   EXPECT_EQ(errors.alignment_keyframes, 0);
   EXPECT_GT(errors.errors[0].position(), 1.0);
 }
 
-TEST(LocaliseReport, CountsWhatWasFoundAndWhyOthersWereNot) {
+TEST(LocaliseReport, CountsFoundFramesAndReasonsOfOthers) {
   const std::string text = to_text(small_run(), {"room.byre", "evening", 5}, std::nullopt);
   EXPECT_THAT(text, HasSubstr("found        4 of 5 frames (80.0 %)"));
   EXPECT_THAT(text, HasSubstr("not found    1: too few matches"));

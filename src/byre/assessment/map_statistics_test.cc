@@ -14,7 +14,7 @@ MappedFrame frame_in(State state) {
   return frame;
 }
 
-TEST(SummariseTimes, GivesMillisecondsWhateverTheOrder) {
+TEST(SummariseTimes, GivesMillisecondsInAnyOrder) {
   std::vector<double> seconds;
   for (int i = 100; i >= 0; --i) seconds.push_back(1e-3 * i);
   const TimeSummary summary = summarise_times(seconds);
@@ -39,7 +39,7 @@ TEST(SummariseTimes, IsZeroForNothing) {
   EXPECT_EQ(summary.max_ms, 0.0);
 }
 
-TEST(SummariseStage, LeavesOutFramesThatWereNotProcessed) {
+TEST(SummariseStage, SkipsUnprocessedFrames) {
   std::vector<MappedFrame> frames(3, frame_in(State::tracking));
   frames[0].seconds.track = 0.010;
   frames[1].report.reset();
@@ -49,14 +49,14 @@ TEST(SummariseStage, LeavesOutFramesThatWereNotProcessed) {
   EXPECT_NEAR(track.mean_ms, 15.0, 1e-9);
 }
 
-TEST(SummariseWithoutJobs, TakesOffWhatWasSpentInSubmitting) {
+TEST(SummariseWithoutJobs, SubtractsTheTimeOfSubmittedJobs) {
   MappedFrame frame = frame_in(State::tracking);
   frame.seconds.total = 0.100;
   frame.seconds.map_submit = 0.080;
   EXPECT_NEAR(summarise_without_jobs({frame}).max_ms, 20.0, 1e-9);
 }
 
-TEST(CountFrames, CountsEpisodesOfBeingLostAndTheirFrames) {
+TEST(CountFrames, CountsLostEpisodesAndTheirFrames) {
   std::vector<MappedFrame> frames;
   for (const State state : {State::initialising, State::tracking, State::relocalising, State::lost, State::tracking,
                             State::relocalising, State::tracking, State::tracking}) {
@@ -72,7 +72,7 @@ TEST(CountFrames, CountsEpisodesOfBeingLostAndTheirFrames) {
   EXPECT_DOUBLE_EQ(counts.coverage(), 4.0 / 8.0);
 }
 
-TEST(CountFrames, TakesAnUnreadableFrameForNeitherLostNorFound) {
+TEST(CountFrames, CountsUnreadableFramesSeparately) {
   std::vector<MappedFrame> frames(5, frame_in(State::lost));
   frames[2].report.reset();
   frames[3].has_right = false;
@@ -83,7 +83,7 @@ TEST(CountFrames, TakesAnUnreadableFrameForNeitherLostNorFound) {
   EXPECT_EQ(counts.lost_episodes, 1);
 }
 
-TEST(CountFrames, CountsWhatHappenedToTheMapOnTheWay) {
+TEST(CountFrames, CountsMapEvents) {
   std::vector<MappedFrame> frames(4, frame_in(State::tracking));
   frames[0] = frame_in(State::lost);
   frames[1].report->events.push_back(SessionEvent::relocalised);
@@ -97,7 +97,7 @@ TEST(CountFrames, CountsWhatHappenedToTheMapOnTheWay) {
   EXPECT_EQ(count_frames({frame_in(State::lost)}).frames_to_first, std::nullopt);
 }
 
-TEST(CountFrames, CoversNothingWhenThereIsNothing) {
+TEST(CountFrames, HasZeroCoverageWithoutFrames) {
   EXPECT_EQ(count_frames({}).coverage(), 0.0);
 }
 

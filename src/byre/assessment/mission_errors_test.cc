@@ -58,7 +58,7 @@ MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Ve
   return run;
 }
 
-TEST(MissionErrors, AreThoseInTheFrameOfTheMapWhateverTheMission) {
+TEST(MissionErrors, AreInTheMapFrame) {
   const MissionErrors errors = mission_errors(run_with_errors({0.1, 0.1, 0.1, 0.1}), aligned_map(), truth());
   EXPECT_TRUE(errors.in_map_frame);
   EXPECT_EQ(errors.alignment_poses, 4);
@@ -66,7 +66,7 @@ TEST(MissionErrors, AreThoseInTheFrameOfTheMapWhateverTheMission) {
   EXPECT_NEAR(position_statistics(errors.final).rmse, 0.1, 1e-9);
 }
 
-TEST(MissionErrors, SayHowMuchTrustWasWrong) {
+TEST(MissionErrors, CountWronglyTrustedFrames) {
   MapRun run = run_with_errors({0.0, 0.3, 0.0, 0.3, 0.3, 0.3, 0.3, 0.0});
   run.frames[6].report->health.verdict = Verdict::degraded;
   const MissionErrors errors = mission_errors(run, aligned_map(), truth());
@@ -76,13 +76,13 @@ TEST(MissionErrors, SayHowMuchTrustWasWrong) {
   EXPECT_NEAR(errors.longest_wrong_trust_s, 1.0, 1e-9) << "from the fourth frame to the sixth";
 }
 
-TEST(MissionErrors, HoldErrorsAgainstTheirCovariance) {
+TEST(MissionErrors, CompareErrorsWithTheirCovariance) {
   // The 95 % bound for three degrees of freedom is 2.8 sigmas.
   const MapRun run = run_with_errors({0.0, 0.027, 0.029, 0.1});
   EXPECT_EQ(mission_errors(run, aligned_map(), truth()).within_bound, 0.5);
 }
 
-TEST(MissionErrors, LeaveOutFramesThatCouldNotBeReadOrHaveNoPose) {
+TEST(MissionErrors, SkipUnreadableFramesAndFramesWithoutPose) {
   MapRun run = run_with_errors({0.0, 0.0, 0.0, 0.0});
   run.frames[1].report.reset();
   run.frames[2].report->map_from_body.reset();
@@ -93,7 +93,7 @@ TEST(MissionErrors, LeaveOutFramesThatCouldNotBeReadOrHaveNoPose) {
   EXPECT_THAT(errors.final, SizeIs(4));
 }
 
-TEST(MissionErrors, AreNoneWithoutTruthAtTheRightTime) {
+TEST(MissionErrors, AreEmptyWithoutTruthAtTheSameTime) {
   const MissionErrors errors = mission_errors(run_with_errors({0.0, 0.0}), aligned_map(), {});
   EXPECT_THAT(errors.causal, SizeIs(0));
   EXPECT_EQ(errors.within_bound, std::nullopt);

@@ -13,7 +13,7 @@ Trajectory curve(double offset) {
   return path;
 }
 
-TEST(JudgeMission, TellsErrorsWhereThereIsTruth) {
+TEST(JudgeMission, MeasuresErrorsGivenTruth) {
   MapRun run;
   run.causal = run.final = curve(0.0);
   EXPECT_FALSE(judge_mission(run, {}, std::nullopt, {}).errors.has_value());

@@ -48,7 +48,7 @@ MissionErrors small_errors() {
   return errors;
 }
 
-TEST(MissionText, SumsTrustUpWithTheMainDoubts) {
+TEST(MissionText, SummarisesVerdictsAndMainDoubts) {
   const std::string text = to_text(small_mission());
   EXPECT_THAT(text, HasSubstr("verdicts     trusted 95.0 %, degraded 3.0 %, untrusted 2.0 % of 200 frames\n"));
   EXPECT_THAT(text, HasSubstr("doubts       too few offline points 5, no pose 3, points are clustered 1 frames\n"));
@@ -69,14 +69,14 @@ TEST(MissionText, CountsMissingFramesAmongTheOthers) {
   EXPECT_THAT(to_text(small_mission()), Not(HasSubstr("missing")));
 }
 
-TEST(MissionText, TellsKeyframesOfPlacesTheMissionCameTo) {
+TEST(MissionText, ReportsKeyframesOfVisitedPlaces) {
   const std::string text = to_text(small_mission());
   EXPECT_THAT(text, HasSubstr("keyframes    2.0 per minute in known places (3 in 90 s)\n"));
   EXPECT_THAT(text, Not(HasSubstr("changed or new")));
   EXPECT_THAT(text, HasSubstr("inliers      offline median 120, online 30; up to 17 offline points suspended\n"));
 }
 
-TEST(MissionText, TellsOfDirtWhereThereWasAny) {
+TEST(MissionText, ReportsDirt) {
   EXPECT_THAT(to_text(small_mission()), Not(HasSubstr("dirt")));
   MissionStatistics statistics = small_mission();
   statistics.frames_with_dirt = 40;
@@ -86,7 +86,7 @@ TEST(MissionText, TellsOfDirtWhereThereWasAny) {
   EXPECT_EQ(to_json(statistics).at("most_hidden"), 0.12);
 }
 
-TEST(MissionText, TellsErrorsInTheMapsFrameAndOfTrustedFramesApart) {
+TEST(MissionText, ReportsErrorsInTheMapFrameAndOfTrustedFrames) {
   const std::string text = to_text(small_errors());
   EXPECT_THAT(text, HasSubstr("truth        aligned to the map by 12 poses of the run that made the map\n"));
   EXPECT_THAT(text, HasSubstr("causal       RMSE 0.1446 m"));
@@ -98,7 +98,7 @@ TEST(MissionText, TellsErrorsInTheMapsFrameAndOfTrustedFramesApart) {
   EXPECT_THAT(text, HasSubstr("map          RMSE 0.0200 m"));
 }
 
-TEST(MissionText, SaysWhenPosesWereAlignedOrHaveNoTruth) {
+TEST(MissionText, ReportsAlignmentAndMissingTruth) {
   const std::string text = to_text(MissionErrors{});
   EXPECT_THAT(text, HasSubstr("truth        causal and final poses are aligned to it separately\n"));
   EXPECT_THAT(text, HasSubstr("final        no pose with truth\n"));
@@ -106,7 +106,7 @@ TEST(MissionText, SaysWhenPosesWereAlignedOrHaveNoTruth) {
   EXPECT_THAT(text, Not(HasSubstr("map  ")));
 }
 
-TEST(MissionJson, HoldsEveryFigureByName) {
+TEST(MissionJson, ContainsEveryFigureByName) {
   const json mission = to_json(small_mission());
   EXPECT_EQ(mission.at("trusted_share"), 0.95);
   EXPECT_EQ(mission.at("doubts").at("too few offline points"), 5);

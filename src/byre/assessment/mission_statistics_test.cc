@@ -39,7 +39,7 @@ std::vector<MappedFrame> mission() {
   return frames;
 }
 
-TEST(SummariseMission, CountsVerdictsAndDoubtsOfFramesThatWereReadAndThoseMissing) {
+TEST(SummariseMission, CountsVerdictsDoubtsAndMissingFrames) {
   const MissionStatistics statistics = summarise_mission(mission(), 25);
   EXPECT_EQ(statistics.frames, 6);
   EXPECT_EQ(statistics.missing, 1);
@@ -49,12 +49,12 @@ TEST(SummariseMission, CountsVerdictsAndDoubtsOfFramesThatWereReadAndThoseMissin
   EXPECT_THAT(statistics.doubts, ElementsAre(Pair(Doubt::few_offline_points, 2), Pair(Doubt::no_pose, 1)));
 }
 
-TEST(SummariseMission, TellsWhenTheFirstPoseCame) {
+TEST(SummariseMission, MeasuresTheTimeToTheFirstPose) {
   EXPECT_EQ(summarise_mission(mission(), 25).seconds_to_first_pose, 1.0);
   EXPECT_EQ(summarise_mission({mission().front()}, 25).seconds_to_first_pose, std::nullopt);
 }
 
-TEST(SummariseMission, CountsKeyframesApartForKnownPlacesAndOthers) {
+TEST(SummariseMission, CountsKeyframesInKnownAndOtherPlacesSeparately) {
   std::vector<MappedFrame> frames = mission();
   for (const std::size_t i : {1, 4, 5}) frames[i].report->keyframe_added = true;
   const MissionStatistics statistics = summarise_mission(frames, 25);
@@ -65,7 +65,7 @@ TEST(SummariseMission, CountsKeyframesApartForKnownPlacesAndOthers) {
   EXPECT_EQ(KeyframeRate{}.per_minute(), 0.0);
 }
 
-TEST(SummariseMission, CountsLossesAndWhatCameOfThem) {
+TEST(SummariseMission, CountsLossesAndRelocalisations) {
   std::vector<MappedFrame> frames = mission();
   frames[2].report->events = {SessionEvent::blinded, SessionEvent::pose_lost};
   frames[4].report->events = {SessionEvent::navigation_error};
@@ -76,7 +76,7 @@ TEST(SummariseMission, CountsLossesAndWhatCameOfThem) {
   EXPECT_EQ(statistics.relocalisations, 1);
 }
 
-TEST(SummariseMission, TakesInliersOfFramesWithAPose) {
+TEST(SummariseMission, UsesInliersOfFramesWithPose) {
   std::vector<MappedFrame> frames = mission();
   frames[2].report->health.suspended = 7;
   const MissionStatistics statistics = summarise_mission(frames, 25);
@@ -85,7 +85,7 @@ TEST(SummariseMission, TakesInliersOfFramesWithAPose) {
   EXPECT_EQ(statistics.most_suspended, 7);
 }
 
-TEST(SummariseMission, SaysWhenTooManyFramesAreMissing) {
+TEST(SummariseMission, ReportsTooManyMissingFrames) {
   MissionStatistics statistics;
   EXPECT_FALSE(is_full_of_gaps(statistics));
   statistics.frames = 100;

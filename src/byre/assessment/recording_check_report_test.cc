@@ -19,7 +19,7 @@ RecordingCheck check_of_pairs(double features) {
   return check;
 }
 
-TEST(RecordingCheckReport, GivesTheShareOfFeaturesInBothImages) {
+TEST(RecordingCheckReport, ContainsTheShareOfMatchedFeatures) {
   EXPECT_EQ(summary_of(check_of_pairs(1000.0)),
             "20.0 Hz, 2 gaps; 1000 features, 53 % matched in both images, row error 0.25 px");
   EXPECT_THAT(describe(check_of_pairs(1000.0), {}),
@@ -28,13 +28,13 @@ TEST(RecordingCheckReport, GivesTheShareOfFeaturesInBothImages) {
 }
 
 // The median number of features is zero although some images have features.
-TEST(RecordingCheckReport, GivesNoShareWithoutFeatures) {
+TEST(RecordingCheckReport, OmitsTheShareWithoutFeatures) {
   EXPECT_EQ(summary_of(check_of_pairs(0.0)), "20.0 Hz, 2 gaps; 0 features");
   EXPECT_THAT(describe(check_of_pairs(0.0), {}),
               AllOf(HasSubstr("0 per image"), Not(HasSubstr("%")), Not(HasSubstr("row differences"))));
 }
 
-TEST(RecordingCheckReport, GivesNoShareForOneCamera) {
+TEST(RecordingCheckReport, OmitsTheShareForOneCamera) {
   RecordingCheck check = check_of_pairs(1000.0);
   check.right.reset();
   check.pair.reset();

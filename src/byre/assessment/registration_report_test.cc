@@ -29,7 +29,7 @@ class RegisterReport : public testing::Test {
       std::filesystem::path(testing::TempDir()) / ("register_report_" + std::to_string(getpid()) + ".csv");
 };
 
-TEST_F(RegisterReport, TellsTheScaleFoundForAMapWithoutOne) {
+TEST_F(RegisterReport, ContainsTheEstimatedScaleOfAnUnscaledMap) {
   FloorPlanScene scene(1, 2.0);
   StoredMap stored = driven_barn(scene);
   stored.scale = MapScale::unknown;
@@ -41,7 +41,7 @@ TEST_F(RegisterReport, TellsTheScaleFoundForAMapWithoutOne) {
               AllOf(HasSubstr("scale        agrees with the plan: 0.00 % +- 0.0"), Not(HasSubstr("written"))));
 }
 
-TEST_F(RegisterReport, SaysThatAMapOfAnotherScaleCanBeMendedWhereItHasABaseline) {
+TEST_F(RegisterReport, OffersScaleCorrectionForMapsWithABaseline) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   StoredMap stored = driven_barn(scene);
   const auto correspondences = scene.correspondences(8, 0.03);

@@ -33,7 +33,7 @@ Pose pose_of(const ros::Transform& transform) {
   return {Eigen::Quaterniond(q.w, q.x, q.y, q.z), {t.x, t.y, t.z}};
 }
 
-TEST(RosReport, TurnsCovariancesIntoTheAxesOfTheParent) {
+TEST(RosReport, RotatesCovariancesIntoTheParentFrame) {
   Matrix6 in_body = Matrix6::Zero();
   in_body.diagonal() << 4.0, 1.0, 0.5, 0.4, 0.1, 0.2;  // a quarter turn about z swaps x and y
   const ros::PoseWithCovariance pose = pose_message({}, kMapFromBody, in_body).pose;
@@ -66,7 +66,7 @@ TEST(RosReport, WithholdsThePoseInTheMapWhileItIsUntrusted) {
   EXPECT_THAT(ros_transforms({}).transforms, IsEmpty());
 }
 
-TEST(RosReport, TellsTheMotionSinceTheFrameBefore) {
+TEST(RosReport, ContainsTheMotionSinceThePreviousFrame) {
   const StampedPose before{Timestamp(1'000'000'000),
                            kOdometryFromBody * exp_pose((Vector6() << -0.5, 0, 0, 0, 0, -0.1).finished())};
   const ros::Twist twist = ros_odometry(report(Verdict::trusted), before).twist.twist;
@@ -75,7 +75,7 @@ TEST(RosReport, TellsTheMotionSinceTheFrameBefore) {
   EXPECT_EQ(ros_odometry(report(Verdict::trusted), {}).twist.twist, ros::Twist{});
 }
 
-TEST(RosReport, DiagnosesByTheVerdict) {
+TEST(RosReport, HasADiagnosticLevelByVerdict) {
   MappedFrame frame;
   frame.report = report(Verdict::degraded);
   const ros::DiagnosticStatus degraded = ros_diagnostics(7, frame).status.at(0);
@@ -91,7 +91,7 @@ TEST(RosReport, DiagnosesByTheVerdict) {
   EXPECT_EQ(ros_diagnostics(7, frame).status.at(0).level, ros::DiagnosticStatus::kStale);
 }
 
-TEST(RosReport, DescribesCamerasAsTheyAreCalibrated) {
+TEST(RosReport, DescribesCalibratedCameras) {
   const Camera fisheye{CameraModel::equidistant, 752, 480, 458.0, 457.0, 367.0, 248.0, {0.1, 0.2, 0.3, 0.4}};
   const ros::CameraInfo info = ros_camera_info(fisheye, "left_camera", {});
   EXPECT_EQ(info.distortion_model, "equidistant");

@@ -56,11 +56,11 @@ std::map<std::string, int> told_of_a_run(const std::set<std::string>& wanted, bo
   return sink.counts();
 }
 
-TEST(RunMessages, MakeNothingButEventsAndMountsForNobody) {
+TEST(RunMessages, CreateOnlyEventsAndExtrinsicsWithoutSubscribers) {
   EXPECT_THAT(told_of_a_run({}, false), ElementsAre(Key("/events"), Key("/tf_static")));
 }
 
-TEST(RunMessages, MakeWhatIsWanted) {
+TEST(RunMessages, CreateSubscribedMessages) {
   const std::map<std::string, int> told = told_of_a_run({"/left/image_raw", "/diagnostics", "/map_points"}, false);
   EXPECT_EQ(told.at("/left/image_raw"), kFramesTold);
   EXPECT_EQ(told.at("/diagnostics"), kFramesTold);
@@ -69,7 +69,7 @@ TEST(RunMessages, MakeWhatIsWanted) {
   EXPECT_FALSE(told.contains("/path"));
 }
 
-TEST(RunMessages, LeavePathAndMapBehindForThoseWhoComeLater) {
+TEST(RunMessages, LatchPathAndMap) {
   const std::map<std::string, int> told = told_of_a_run({}, true);
   EXPECT_EQ(told.at("/path"), 1);
   EXPECT_EQ(told.at("/map_points"), 1);

@@ -66,7 +66,7 @@ class RecordedRun {
   MapRun run_;
 };
 
-TEST(RunRecord, IsAWholeBag) {
+TEST(RunRecord, IsACompleteBag) {
   const auto bag = open_bag(RecordedRun::shared().path(), [](std::string_view) { return false; });
   EXPECT_THAT(bag->content().damage, testing::IsEmpty());
   std::map<std::string, std::uint64_t> counts;
@@ -80,7 +80,7 @@ TEST(RunRecord, IsAWholeBag) {
   }
 }
 
-TEST(RunRecord, HoldsThePosesOfTheReports) {
+TEST(RunRecord, ContainsThePosesOfTheReports) {
   const RecordedRun& recorded = RecordedRun::shared();
   const auto odometry = recorded.messages<ros::Odometry>("/odometry");
   ASSERT_EQ(odometry.size(), recorded.run().frames.size());
@@ -91,7 +91,7 @@ TEST(RunRecord, HoldsThePosesOfTheReports) {
   }
 }
 
-TEST(RunRecord, TellsOfFramesThatCouldNotBeRead) {
+TEST(RunRecord, ReportsUnreadableFrames) {
   const auto diagnostics = RecordedRun::shared().messages<ros::DiagnosticArray>("/diagnostics");
   EXPECT_NE(diagnostics.front().status.at(0).level, ros::DiagnosticStatus::kStale);
   EXPECT_EQ(diagnostics.back().status.at(0).level, ros::DiagnosticStatus::kStale);
@@ -107,7 +107,7 @@ TEST(RunRecord, EndsWithTheFinalPathAndMap) {
   EXPECT_EQ(cloud.data.size(), 16u * cloud.width);
 }
 
-TEST(RunRecord, WithImagesCanBeRunAgain) {
+TEST(RunRecord, CanBeRunAgainWithImages) {
   const RecordedRun& recorded = RecordedRun::shared();
   const auto original = open_recording(RenderedFixture::shared().folder(), {.last = kFramesRecorded});
   const auto again = open_recording(recorded.path(), {});
@@ -121,7 +121,7 @@ TEST(RunRecord, WithImagesCanBeRunAgain) {
   EXPECT_EQ(again->read(3)->right->pixels, original->read(3)->right->pixels);
 }
 
-TEST(RunRecord, CanBeReadWithoutItsEnd) {
+TEST(RunRecord, CanBeReadWhenTruncated) {
   const fs::path cut = RecordedRun::shared().path().string() + ".cut.mcap";
   fs::copy_file(RecordedRun::shared().path(), cut, fs::copy_options::overwrite_existing);
   fs::resize_file(cut, fs::file_size(cut) * 3 / 4);

@@ -78,7 +78,7 @@ TEST(MapJson, BeginsWithTheProtocol) {
   EXPECT_EQ(protocol.at("options").at("max_features"), ExtractOptions{}.max_features);
 }
 
-TEST(MapJson, CountsFramesAndWhatBecameOfThem) {
+TEST(MapJson, CountsFramesByResult) {
   const json counts = stats_of(small_map_run()).at("counts");
   EXPECT_EQ(counts.at("frames"), 4);
   EXPECT_EQ(counts.at("frames_with_pose"), 3);
@@ -99,19 +99,19 @@ TEST(MapJson, SummarisesTimesInMilliseconds) {
   EXPECT_EQ(stats.at("peak_memory_mb"), 64.0);
 }
 
-TEST(MapJson, TellsFramesWithoutTheirJobsWhereTheseShareTheThread) {
+TEST(MapJson, ReportsFrameTimesWithoutJobsOnTheSameThread) {
   EXPECT_EQ(stats_of(small_map_run(), Pace::same_thread).at("frame_thread_without_jobs_ms").at("max"), 12.0);
   EXPECT_FALSE(stats_of(small_map_run()).contains("frame_thread_without_jobs_ms"));
 }
 
-TEST(MapJson, TellsLateFramesWhenLive) {
+TEST(MapJson, ReportsLateFramesWhenLive) {
   MapRun run = small_map_run();
   run.lateness = {0.002, 0.0405};
   EXPECT_EQ(stats_of(run, Pace::live).at("late"), (json{{"frames", 2}, {"max_ms", 40.5}}));
   EXPECT_FALSE(stats_of(run).contains("late"));
 }
 
-TEST(MapJson, TellsOfFinishingAndOfWhatWasExtended) {
+TEST(MapJson, ReportsFinishingAndTheExtendedMap) {
   MapProtocol protocol = protocol_of(Pace::paced);
   protocol.extended = "barn.byre";
   MapRun run = small_map_run();
@@ -124,7 +124,7 @@ TEST(MapJson, TellsOfFinishingAndOfWhatWasExtended) {
   EXPECT_TRUE(stats_of(small_map_run()).at("extension").is_null());
 }
 
-TEST(MapJson, HoldsEveryFrame) {
+TEST(MapJson, ContainsEveryFrame) {
   const json frames = stats_of(small_map_run()).at("frames");
   ASSERT_EQ(frames.size(), 4u);
   const json& frame = frames[2];
@@ -149,7 +149,7 @@ TEST(MapJson, HoldsEveryFrame) {
   EXPECT_TRUE(frames[0].at("ms").at("job_taken_over").is_null());
 }
 
-TEST(MapJson, HoldsHealthAndSmoothPoseOfEveryFrame) {
+TEST(MapJson, ContainsHealthAndOdometryOfEveryFrame) {
   MapRun run = small_map_run();
   FrameReport& report = *run.frames[2].report;
   report.odometry_from_body = Pose{Eigen::Quaterniond::Identity(), {0.0, 1.5, 0.0}};
@@ -173,7 +173,7 @@ TEST(MapJson, HoldsHealthAndSmoothPoseOfEveryFrame) {
   EXPECT_FALSE(frames[2].contains("error")) << "there is no truth";
 }
 
-TEST(MapJson, TellsOfTheMissionAndHowFarEachPoseWasOff) {
+TEST(MapJson, ContainsTheMissionAndTheErrorOfEachPose) {
   MissionOutcome mission;
   mission.statistics.losses = 3;
   mission.errors.emplace().causal = {{milliseconds(100), Vector6::Unit(1)}};
@@ -190,7 +190,7 @@ TEST(MapJson, TellsOfTheMissionAndHowFarEachPoseWasOff) {
   EXPECT_FALSE(stats_of(small_map_run()).contains("mission"));
 }
 
-TEST(MapJson, KeepsAFrameThatCouldNotBeRead) {
+TEST(MapJson, ContainsUnreadableFrames) {
   const json frame = stats_of(small_map_run()).at("frames")[1];
   EXPECT_EQ(frame.at("state"), "unreadable");
   EXPECT_EQ(frame.at("time_s"), 0.05);
@@ -205,7 +205,7 @@ TEST(MapJson, ListsTheFirstTwentyWarnings) {
   EXPECT_EQ(warnings.at("first").size(), 20u);
 }
 
-TEST(MapJson, HasNoControlCharactersOfNames) {
+TEST(MapJson, EscapesControlCharactersOfNames) {
   MapProtocol protocol = protocol_of(Pace::paced);
   protocol.recording =
       "walk\xc2\x9b"
@@ -215,7 +215,7 @@ TEST(MapJson, HasNoControlCharactersOfNames) {
   EXPECT_EQ(json::parse(text).at("protocol").at("recording"), protocol.recording);
 }
 
-TEST(MapJson, IsWholeForARunWithoutFrames) {
+TEST(MapJson, IsCompleteForARunWithoutFrames) {
   const json stats = stats_of({});
   EXPECT_EQ(stats.at("frames"), json::array());
   EXPECT_EQ(stats.at("stopped_early"), true);
@@ -223,7 +223,7 @@ TEST(MapJson, IsWholeForARunWithoutFrames) {
   EXPECT_EQ(stats.at("counts").at("coverage"), 0.0);
 }
 
-TEST(MapText, SumsTheRunUp) {
+TEST(MapText, SummarisesTheRun) {
   const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {1.5, 64.0}, {"out.txt", "stats.json"});
   EXPECT_THAT(text, HasSubstr("recording    MH_01_easy, 4 frames\n"));
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %); 1 could not be read\n"));
@@ -240,14 +240,14 @@ TEST(MapText, SumsTheRunUp) {
   EXPECT_THAT(text, Not(HasSubstr("extended")));
 }
 
-TEST(MapText, TellsWhatFinishingChanged) {
+TEST(MapText, ReportsChangesByFinishing) {
   MapRun run = small_map_run();
   run.finishing.emplace().report.points_removed = 12;
   EXPECT_THAT(to_text(run, protocol_of(Pace::paced), {}, {}),
               HasSubstr("removed      0 redundant keyframes, 12 weak points\n"));
 }
 
-TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
+TEST(MapText, ReportsTheRecordingsOfAnExtendedMap) {
   MapProtocol protocol = protocol_of(Pace::paced);
   protocol.extended = "barn.byre";
   protocol.recordings = {"MH_01_easy", "MH_02_easy"};
@@ -262,7 +262,7 @@ TEST(MapText, TellsWhereAnExtendedMapIsFrom) {
   EXPECT_THAT(text, HasSubstr("of           MH_01_easy, 1 keyframes\nof           MH_02_easy, 2 keyframes\n"));
 }
 
-TEST(MapText, IsAboutTheMissionWhereThereIsOne) {
+TEST(MapText, ReportsTheMission) {
   MissionOutcome mission;
   mission.statistics.seconds_to_first_pose = 0.1;
   const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {}, {}, mission);
@@ -272,7 +272,7 @@ TEST(MapText, IsAboutTheMissionWhereThereIsOne) {
   EXPECT_THAT(text, Not(HasSubstr("truth"))) << "there is none";
 }
 
-TEST(MapText, SaysWhenItWasStoppedAndHowLateFramesWere) {
+TEST(MapText, ReportsInterruptionAndLateFrames) {
   MapRun run = small_map_run();
   run.frames.pop_back();
   run.lateness = {0.0405};

@@ -84,7 +84,7 @@ TEST_F(BenchmarkRun, MakesAMapOnceForAllCasesOnIt) {
   EXPECT_TRUE(fs::is_regular_file(options_.output / "trajectories" / "one-star.hybrid.1.causal.txt"));
 }
 
-TEST_F(BenchmarkRun, SkipsCasesWhoseRecordingsAreNotThere) {
+TEST_F(BenchmarkRun, SkipsCasesWithoutRecordings) {
   protocol_.cases.push_back({"far", "absent", {}, {Arm::no_map}});
   protocol_.cases.push_back({"far*", "visit", "absent", {Arm::hybrid}});
   const BenchmarkResult result = run();
@@ -94,7 +94,7 @@ TEST_F(BenchmarkRun, SkipsCasesWhoseRecordingsAreNotThere) {
   EXPECT_THAT(result.skipped[1].reason, HasSubstr("byre_absent does not exist"));
 }
 
-TEST_F(BenchmarkRun, RefusesToRunNothing) {
+TEST_F(BenchmarkRun, RejectsAnEmptySelection) {
   protocol_.cases = {{"far", "absent", {}, {Arm::no_map}}};
   try {
     run();
@@ -105,7 +105,7 @@ TEST_F(BenchmarkRun, RefusesToRunNothing) {
   }
 }
 
-TEST_F(BenchmarkRun, RunsOnlyWhatIsAskedFor) {
+TEST_F(BenchmarkRun, RunsOnlySelectedCases) {
   protocol_.cases.push_back({"again", "visit", {}, {Arm::no_map}});
   options_.only = {"again"};
   EXPECT_THAT(run().cases, SizeIs(1));
@@ -114,7 +114,7 @@ TEST_F(BenchmarkRun, RunsOnlyWhatIsAskedFor) {
   EXPECT_THROW(run(), InputError);
 }
 
-TEST_F(BenchmarkRun, KeepsWhatWasMeasuredWhenStopped) {
+TEST_F(BenchmarkRun, KeepsMeasurementsWhenStopped) {
   protocol_.runs = 3;
   protocol_.cases.push_back({"again", "visit", {}, {Arm::no_map}});
   const BenchmarkResult result = run(2);
@@ -123,13 +123,13 @@ TEST_F(BenchmarkRun, KeepsWhatWasMeasuredWhenStopped) {
   EXPECT_THAT(result.cases[0].arms[0].runs, SizeIs(2));
 }
 
-TEST_F(BenchmarkRun, RefusesTruthThatCannotBeReadBeforeItRuns) {
+TEST_F(BenchmarkRun, RejectsUnreadableTruthBeforeRunning) {
   protocol_.recordings[0].truth = "absent.txt";
   EXPECT_THROW(run(), InputError);
   EXPECT_THAT(begun_, SizeIs(0));
 }
 
-TEST_F(BenchmarkRun, ShiftsTheClockOfTheTruth) {
+TEST_F(BenchmarkRun, AppliesTheTimeOffsetToTheTruth) {
   protocol_.recordings[0].truth_offset = std::chrono::seconds(1000);
   const BenchmarkResult result = run();
   EXPECT_THAT(result.cases[0].truth, SizeIs(0));

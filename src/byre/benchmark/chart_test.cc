@@ -72,7 +72,7 @@ TEST(Chart, BreaksLinesAtGaps) {
   EXPECT_EQ(count(to_svg(chart), "<polyline"), 2);
 }
 
-TEST(Chart, LeavesOutWhatHasNoLogarithm) {
+TEST(Chart, OmitsNonPositiveValuesOnLogarithmicAxes) {
   Chart chart = parabola();
   chart.log_y = true;
   const std::string svg = to_svg(chart);
@@ -82,7 +82,7 @@ TEST(Chart, LeavesOutWhatHasNoLogarithm) {
   EXPECT_THAT(svg, HasSubstr(">0.1<"));
 }
 
-TEST(Chart, DrawsAxesAlsoWithoutAnyPoint) {
+TEST(Chart, DrawsAxesWithoutPoints) {
   Chart chart = parabola();
   chart.series[0].pieces.clear();
   for (const bool logarithmic : {false, true}) {
@@ -105,7 +105,7 @@ std::vector<Eigen::Vector2d> corners(const std::string& svg) {
   return result;
 }
 
-TEST(Chart, DrawsMetresEquallyLongWhereAsked) {
+TEST(Chart, DrawsEqualScalesOnRequest) {
   Chart chart = parabola();
   chart.equal_scales = true;
   for (const double height : {0.5, 3.0, 40.0}) {
@@ -117,7 +117,7 @@ TEST(Chart, DrawsMetresEquallyLongWhereAsked) {
   }
 }
 
-TEST(Chart, GoesBelowAnother) {
+TEST(Chart, StacksBelowAnotherChart) {
   Chart second = parabola();
   second.title = "Again";
   const std::string svg = to_svg(std::vector<Chart>{parabola(), second});
@@ -152,7 +152,7 @@ CaseResult case_with_a_gap() {
   return result;
 }
 
-TEST(PathChart, ShowsTheTruthBeneathTheArms) {
+TEST(PathChart, DrawsTheTruthBelowTheArms) {
   const Chart chart = path_chart(case_with_a_gap());
   ASSERT_THAT(chart.series, SizeIs(2));
   EXPECT_EQ(chart.series[0].name, "truth");
@@ -163,7 +163,7 @@ TEST(PathChart, ShowsTheTruthBeneathTheArms) {
   EXPECT_THAT(chart.subtitle, HasSubstr("b on the map of a"));
 }
 
-TEST(PathChart, LooksAtKittiAlongItsVerticalAxis) {
+TEST(PathChart, ProjectsKittiAlongItsVerticalAxis) {
   CaseResult result = case_with_a_gap();
   result.format = RecordingFormat::kitti;
   EXPECT_EQ(path_chart(result).series[1].pieces[1][0], Eigen::Vector2d(40.0, 3.5));

@@ -19,7 +19,7 @@ void touch_pages(std::size_t pages) {
   munmap(memory, bytes);
 }
 
-TEST(EventCounter, CountsWhatItsThreadAndLaterOnesDid) {
+TEST(EventCounter, CountsEventsOfItsThreadAndLaterThreads) {
   constexpr std::size_t kPages = 1000;
   const EventCounter counter(EventCounter::Event::page_faults);
   if (!counter.count()) GTEST_SKIP() << "this system lets no program count its events";

@@ -78,7 +78,7 @@ const Trajectory kTruth = truth();
 const RunTruth kOnMap{kTruth, MapAlignment{{1.0, kTruthFromMap}, 20}};
 const RunTruth kWithoutMap{kTruth, {}};
 
-TEST(Judge, TellsErrorsWithAndWithoutAlignmentApart) {
+TEST(Judge, SeparatesErrorsWithAndWithoutAlignment) {
   const RunMeasures measures = judge(run_with_poses(0, kFrames - 1, 0.01), kOnMap);
   for (const TrajectoryMeasures& poses : {measures.final_poses, measures.causal_poses}) {
     EXPECT_THAT(poses.coverage, Optional(1.0));
@@ -92,7 +92,7 @@ TEST(Judge, TellsErrorsWithAndWithoutAlignmentApart) {
   }
 }
 
-TEST(Judge, KnowsNoErrorInTheMapsFrameWithoutAMap) {
+TEST(Judge, HasNoErrorInTheMapFrameWithoutAMap) {
   const RunMeasures measures = judge(run_with_poses(0, kFrames - 1, 0.01), kWithoutMap);
   EXPECT_FALSE(measures.final_poses.map_error);
   EXPECT_FALSE(measures.behaviour.within_bound);
@@ -107,7 +107,7 @@ TEST(Judge, CountsFramesWithoutPose) {
   EXPECT_THAT(measures.behaviour.trusted_share, Optional(DoubleNear(0.5, 1e-12)));
 }
 
-TEST(Judge, MeasuresARunWithoutAnyPose) {
+TEST(Judge, MeasuresARunWithoutPoses) {
   const RunMeasures measures = judge(run_with_poses(kFrames, kFrames, 0.01), kOnMap);
   EXPECT_THAT(measures.final_poses.coverage, Optional(0.0));
   EXPECT_FALSE(measures.final_poses.ate);
@@ -121,7 +121,7 @@ TEST(Judge, ComparesErrorsWithTheirCovariance) {
   EXPECT_THAT(judge(run_with_poses(0, 99, 0.003), kOnMap).behaviour.within_bound, Optional(0.0));
 }
 
-TEST(Judge, HoldsTrustAgainstErrors) {
+TEST(Judge, ComparesTrustWithErrors) {
   MapRun run = run_with_poses(0, 99, 0.01);
   for (const int far : {30, 31, 60}) run.causal[far].world_from_body.translation.x() += 0.3;
   run.frames[60].report->health.verdict = Verdict::degraded;
@@ -132,7 +132,7 @@ TEST(Judge, HoldsTrustAgainstErrors) {
   EXPECT_THAT(behaviour.longest_wrong_trust, Optional(DoubleNear(to_seconds(kInterval), 1e-9)));
 }
 
-TEST(Judge, CountsLossesAndKeyframesAndTimes) {
+TEST(Judge, CountsLossesKeyframesAndTimes) {
   MapRun run = run_with_poses(0, 99, 0.01);
   run.frames[10].report->events = {SessionEvent::pose_lost};
   run.frames[40].report->events = {SessionEvent::relocalised};
@@ -145,7 +145,7 @@ TEST(Judge, CountsLossesAndKeyframesAndTimes) {
   EXPECT_GT(*measures.cost.frame_ms_p99, 10.0);
 }
 
-TEST(Judge, TellsKeyframesInKnownPlacesFromOthers) {
+TEST(Judge, SeparatesKeyframesInKnownPlacesFromOthers) {
   MapRun run = run_with_poses(0, 99, 0.01);
   for (int i = 1; i <= 60; ++i) run.frames[i].report->health.offline_inliers = 1000;
   for (const int keyframe : {30, 70, 80}) run.frames[keyframe].report->keyframe_added = true;

@@ -9,7 +9,7 @@ namespace {
 
 using testing::DoubleEq;
 
-TEST(RunSummary, TellsMeanMedianAndWorst) {
+TEST(RunSummary, ContainsMeanMedianAndWorst) {
   const auto summary = summarise_runs({0.5, 0.1, 0.3, 0.2}, false);
   ASSERT_TRUE(summary);
   EXPECT_EQ(summary->runs, 4);
@@ -18,11 +18,11 @@ TEST(RunSummary, TellsMeanMedianAndWorst) {
   EXPECT_THAT(summary->worst, DoubleEq(0.5));
 }
 
-TEST(RunSummary, TakesTheLeastForWorstWhereMoreIsBetter) {
+TEST(RunSummary, UsesTheMinimumAsWorstIfMoreIsBetter) {
   EXPECT_THAT(summarise_runs({0.9, 1.0, 0.7}, true)->worst, DoubleEq(0.7));
 }
 
-TEST(RunSummary, CountsOnlyRunsThatHaveTheFigure) {
+TEST(RunSummary, CountsOnlyRunsWithTheFigure) {
   const auto summary = summarise_runs({std::nullopt, 3.0, 5.0}, false);
   EXPECT_EQ(summary->runs, 2);
   EXPECT_THAT(summary->mean, DoubleEq(4.0));
@@ -30,7 +30,7 @@ TEST(RunSummary, CountsOnlyRunsThatHaveTheFigure) {
   EXPECT_FALSE(summarise_runs(std::vector<Figure>(), false));
 }
 
-TEST(RunSummary, IsOfOneFigureOfEachRun) {
+TEST(RunSummary, UsesOneFigurePerRun) {
   std::vector<BehaviourMeasures> runs(2);
   runs[0].losses = 1.0;
   runs[1].losses = 3.0;
@@ -43,7 +43,7 @@ TEST(RunSummary, IsOfOneFigureOfEachRun) {
   }
 }
 
-TEST(TrajectoryMeasures, HaveKeysOfTheirOwn) {
+TEST(TrajectoryMeasures, HaveUniqueKeys) {
   std::set<std::string> keys;
   for (const Measure<TrajectoryMeasures>& measure : trajectory_measures()) keys.insert(measure.key);
   EXPECT_EQ(keys.size(), trajectory_measures().size());

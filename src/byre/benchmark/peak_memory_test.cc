@@ -16,7 +16,7 @@ void use_for_a_moment(std::size_t bytes) {
   munmap(memory, bytes);
 }
 
-TEST(PeakMemory, IsOfWhatCameSinceTheReset) {
+TEST(PeakMemory, CoversTheTimeSinceTheReset) {
   constexpr std::size_t kBytes = 200'000'000;
   constexpr double kMegabytes = 200.0;
   const double before = peak_memory_mb().value();

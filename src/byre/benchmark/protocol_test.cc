@@ -40,7 +40,7 @@ class Protocols : public testing::Test {
   fs::path path_ = fs::path(testing::TempDir()) / ("byre_protocol." + std::to_string(getpid()) + ".yaml");
 };
 
-TEST_F(Protocols, SayHowToTakeARecording) {
+TEST_F(Protocols, DefineHowToOpenARecording) {
   const std::string cases = "cases:\n  - {name: a, recording: a}\n";
   const std::string recording = "recordings:\n  - {name: a, folder: monday, ";
   const BenchmarkProtocol protocol = read(recording + "camera: right, calibration: cameras.yaml, fps: 12.5}\n" + cases);
@@ -73,7 +73,7 @@ published:
       b*: {ate_m: 0.12, rpe_1s_deg: 2.5, coverage: 0.9}
 )";
 
-TEST_F(Protocols, SayWhatIsToBeRun) {
+TEST_F(Protocols, DefineTheRuns) {
   const BenchmarkProtocol protocol = read(kComplete);
   EXPECT_EQ(protocol.title, "Barns");
   EXPECT_EQ(protocol.about, "Two visits.");
@@ -93,7 +93,7 @@ TEST_F(Protocols, SayWhatIsToBeRun) {
   EXPECT_THAT(protocol.cases[2].arms, ElementsAre(Arm::no_map, Arm::localise_only, Arm::hybrid));
 }
 
-TEST_F(Protocols, HoldWhatOthersPublished) {
+TEST_F(Protocols, ContainPublishedFigures) {
   const BenchmarkProtocol protocol = read(kComplete);
   ASSERT_THAT(protocol.published, SizeIs(1));
   EXPECT_EQ(protocol.published[0].note, "As printed.");
@@ -104,7 +104,7 @@ TEST_F(Protocols, HoldWhatOthersPublished) {
   EXPECT_FALSE(figures.map_error);
 }
 
-TEST_F(Protocols, CountOnFromTheirLastSeed) {
+TEST_F(Protocols, ContinueFromTheLastSeed) {
   const BenchmarkProtocol protocol = read(kComplete);
   EXPECT_EQ(protocol.seed_of_run(0), 7u);
   EXPECT_EQ(protocol.seed_of_run(1), 9u);
@@ -114,7 +114,7 @@ TEST_F(Protocols, CountOnFromTheirLastSeed) {
 
 constexpr const char* kRecordings = "recordings:\n  - {name: a, folder: monday}\n";
 
-TEST_F(Protocols, NameTheLineOfWhatIsWrong) {
+TEST_F(Protocols, ReportTheLineOfAFault) {
   const std::string begin = kRecordings;
   EXPECT_THAT(fault_of(begin + "cases:\n  - {name: c, recording: b}\n"),
               HasSubstr(":4 the recording \"b\" is not declared | the protocol has a"));
@@ -135,7 +135,7 @@ TEST_F(Protocols, NameTheLineOfWhatIsWrong) {
   EXPECT_THAT(fault_of("recordings:\n  - {name: a}\n"), HasSubstr("\"folder\" is missing"));
 }
 
-TEST_F(Protocols, NameWhatIsWrongWithPublishedFigures) {
+TEST_F(Protocols, ReportFaultsOfPublishedFigures) {
   const std::string begin = std::string(kRecordings) + "cases:\n  - {name: c, recording: a}\npublished:\n  - name: X\n";
   EXPECT_THAT(fault_of(begin + "    cases: {d: {ate_m: 1}}\n"), HasSubstr(":7 unknown case \"d\""));
   EXPECT_THAT(fault_of(begin + "    cases: {c: {ate: 1}}\n"),
@@ -149,7 +149,7 @@ TEST_F(Protocols, AreYaml) {
   EXPECT_THROW(read_benchmark_protocol("absent.yaml"), InputError);
 }
 
-TEST(ShippedProtocols, AreFoundByNameAndUnderstood) {
+TEST(ShippedProtocols, AreFoundByNameAndParsed) {
   const BenchmarkProtocol euroc = read_benchmark_protocol(find_benchmark_protocol("euroc"));
   EXPECT_EQ(euroc.name, "euroc");
   EXPECT_THAT(euroc.cases, SizeIs(15));
@@ -158,7 +158,7 @@ TEST(ShippedProtocols, AreFoundByNameAndUnderstood) {
   EXPECT_THAT(read_benchmark_protocol(find_benchmark_protocol("mh_short")).cases, SizeIs(2));
 }
 
-TEST(ShippedProtocols, StandBehindFilesOfTheUser) {
+TEST(ShippedProtocols, AreShadowedByFilesOfTheUser) {
   EXPECT_EQ(find_benchmark_protocol("folder/euroc"), "folder/euroc");
   EXPECT_EQ(find_benchmark_protocol("mine.yaml"), "mine.yaml");
   EXPECT_THAT(find_benchmark_protocol("twin").string(), EndsWith("protocols/twin.yaml"));

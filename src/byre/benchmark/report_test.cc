@@ -48,7 +48,7 @@ BenchmarkResult result() {
   return result;
 }
 
-TEST(BenchmarkMarkdown, SaysHowFiguresWereMade) {
+TEST(BenchmarkMarkdown, DescribesTheProtocol) {
   const std::string text = to_markdown(result(), protocol(), kSetting);
   for (const char* part : {"# Barns", "**byre** " BYRE_VERSION, "barns.yaml", "seeds 0, 1, 2", "2 cores; pace paced",
                            "mean / median / worst", "SE(3)", "no run is aligned", "120", "118 poses"}) {
@@ -63,7 +63,7 @@ TEST(BenchmarkMarkdown, ShowsMeanMedianAndWorst) {
   EXPECT_THAT(text, HasSubstr("| 7.0 / 6.0 / 10.0 |"));
 }
 
-TEST(BenchmarkMarkdown, ShowsWhatWasPublishedBesideIt) {
+TEST(BenchmarkMarkdown, ShowsPublishedFigures) {
   const std::string text = to_markdown(result(), protocol(), kSetting);
   EXPECT_THAT(text, HasSubstr("| b*   | *Others*      | –"));
   EXPECT_THAT(text, HasSubstr("| 11.9 "));
@@ -71,20 +71,20 @@ TEST(BenchmarkMarkdown, ShowsWhatWasPublishedBesideIt) {
   EXPECT_THAT(text, Not(HasSubstr("Elsewhere")));
 }
 
-TEST(BenchmarkMarkdown, LeavesOutColumnsAndTablesThatAreEmpty) {
+TEST(BenchmarkMarkdown, OmitsEmptyColumnsAndTables) {
   BenchmarkResult only_maps = result();
   EXPECT_THAT(to_markdown(only_maps, protocol(), kSetting), Not(HasSubstr("RPE 1 m mm")));
   only_maps.cases.clear();
   EXPECT_THAT(to_markdown(only_maps, protocol(), kSetting), Not(HasSubstr("## Final poses")));
 }
 
-TEST(BenchmarkMarkdown, TellsOfHowManyRunsAFigureIs) {
+TEST(BenchmarkMarkdown, ShowsTheNumberOfRunsOfAFigure) {
   BenchmarkResult partly = result();
   partly.cases[0].arms[0].runs[2].measures.final_poses.map_error.reset();
   EXPECT_THAT(to_markdown(partly, protocol(), kSetting), HasSubstr("5.5 / 5.5 / 6.0 (2 of 3)"));
 }
 
-TEST(BenchmarkMarkdown, ShowsOneFigureWhereRunsAgree) {
+TEST(BenchmarkMarkdown, ShowsOneFigureIfRunsAgree) {
   EXPECT_THAT(to_markdown(result(), protocol(), kSetting), HasSubstr("| b*   | localise only | 14.2       |"));
 }
 
@@ -94,7 +94,7 @@ TEST(BenchmarkMarkdown, ShowsOneFigureForOneRun) {
   EXPECT_THAT(to_markdown(once, protocol(), kSetting), HasSubstr("| 100.0      |"));
 }
 
-TEST(BenchmarkMarkdown, TellsWhatIsMissing) {
+TEST(BenchmarkMarkdown, ListsMissingCases) {
   BenchmarkResult stopped = result();
   stopped.stopped = true;
   const std::string text = to_markdown(stopped, protocol(), kSetting);
@@ -102,7 +102,7 @@ TEST(BenchmarkMarkdown, TellsWhatIsMissing) {
   EXPECT_THAT(text, HasSubstr("stopped early"));
 }
 
-TEST(BenchmarkMarkdown, HasNoControlCharactersOfNames) {
+TEST(BenchmarkMarkdown, EscapesControlCharactersOfNames) {
   BenchmarkSetting setting = kSetting;
   setting.data =
       "/data\x1b\xc2\x9b"
@@ -111,7 +111,7 @@ TEST(BenchmarkMarkdown, HasNoControlCharactersOfNames) {
   EXPECT_THAT(text, HasSubstr("recordings in /data\\x1b\\xc2\\x9b2J\n"));
 }
 
-TEST(BenchmarkJson, HoldsEveryRunAndItsSummary) {
+TEST(BenchmarkJson, ContainsEveryRunAndItsSummary) {
   const auto json = nlohmann::json::parse(to_json(result(), protocol(), kSetting));
   EXPECT_EQ(json["protocol"]["seeds"], nlohmann::json({0, 1, 2}));
   EXPECT_EQ(json["protocol"]["version"], BYRE_VERSION);

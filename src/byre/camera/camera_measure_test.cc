@@ -18,7 +18,7 @@ Image half_full() {
   return image;
 }
 
-TEST(CornerGrid, TellsWhereCornersAre) {
+TEST(CornerGrid, CountsCornersPerCell) {
   const CornerGrid grid = count_corners(half_full());
   EXPECT_GT(grid.total(), 100);
   EXPECT_EQ(grid.cells_without(), 24) << "the left half of the image";
@@ -30,7 +30,7 @@ TEST(CornerGrid, OfATinyImageIsEmpty) {
   EXPECT_EQ(count_corners({4, 4, std::vector<std::uint8_t>(16)}).total(), 0);
 }
 
-TEST(StampIntervals, TellRateAndWhatIsUneven) {
+TEST(StampIntervals, MeasureRateAndJitter) {
   EXPECT_FALSE(measure_intervals({0ms, 50ms}));
   const auto even = measure_intervals({0ms, 50ms, 100ms, 150ms});
   ASSERT_TRUE(even);

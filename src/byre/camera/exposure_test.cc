@@ -42,7 +42,7 @@ CameraExposure settled(const Scene& scene, CameraExposure exposure, const Camera
   return exposure;
 }
 
-TEST(Exposure, BecomesMoreWhereItIsTooDarkAndLessWhereItIsTooBright) {
+TEST(Exposure, IncreasesIfTooDarkAndDecreasesIfTooBright) {
   const CameraExposureLimits limits{.max_seconds = 0.02};
   const CameraExposure now{2e-3, 1.0};
   EXPECT_GT(next_exposure(now, 1.7, limits).light(), 1.1 * now.light());
@@ -89,7 +89,7 @@ TEST(Exposure, FindsCornersFromTooDarkAndFromTooBright) {
 }
 
 // A featureless window covers half of the image, so the mean does not represent the wall next to it.
-TEST(Exposure, LooksAtCornersAndNotAtTheMean) {
+TEST(Exposure, DependsOnCornersNotOnTheMean) {
   const Scene scene = [](int x, int y) { return x < kWidth / 2 ? 5.0 : 0.15 * squares(1.0)(x, y); };
   const CameraExposure exposure = settled(scene, {2e-4, 1.0}, {.max_seconds = 0.05});
   const Image image = taken(scene, exposure);
@@ -99,7 +99,7 @@ TEST(Exposure, LooksAtCornersAndNotAtTheMean) {
   EXPECT_GT(corner_information(image, 1.0), 2.0 * corner_information(by_mean, 1.0));
 }
 
-TEST(Exposure, Settles) {
+TEST(Exposure, Converges) {
   const CameraExposureLimits limits{.max_seconds = 0.05};
   const Scene scene = squares(1.0);
   const CameraExposure settling = settled(scene, {2e-4, 1.0}, limits);
@@ -109,7 +109,7 @@ TEST(Exposure, Settles) {
   }
 }
 
-TEST(Exposure, StaysWhereThereIsNothingToSee) {
+TEST(Exposure, StaysConstantWithoutTexture) {
   const CameraExposure exposure = settled([](int, int) { return 0.5; }, {1e-3, 1.0}, {});
   EXPECT_DOUBLE_EQ(exposure.light(), 1e-3);
 }

@@ -42,7 +42,7 @@ class FrameSinks : public testing::Test {
   fs::path folder_ = fs::path(testing::TempDir()) / ("byre_frame_sink." + std::to_string(getpid()));
 };
 
-TEST_F(FrameSinks, KeepPixelsStampsAndCalibration) {
+TEST_F(FrameSinks, PreservePixelsStampsAndCalibration) {
   for (const char* const name : {"walk", "walk.mcap"}) {
     const auto sink = open_sink(folder_ / name, {true, 20.0, calibration()});
     for (int i = 0; i < 4; ++i) sink->write(frame(i));
@@ -61,7 +61,7 @@ TEST_F(FrameSinks, KeepPixelsStampsAndCalibration) {
   }
 }
 
-TEST_F(FrameSinks, KeepFramesOfTheLeftCameraAlone) {
+TEST_F(FrameSinks, StoreFramesWithoutRightImage) {
   const auto sink = open_sink(folder_ / "walk", {true, 20.0, calibration()});
   sink->write(frame(0));
   ImageFrame alone = frame(1);
@@ -74,7 +74,7 @@ TEST_F(FrameSinks, KeepFramesOfTheLeftCameraAlone) {
   EXPECT_TRUE(recording->read(2)->right);
 }
 
-TEST_F(FrameSinks, AreWholeUpToTheLastFrameHoweverTheyEnd) {
+TEST_F(FrameSinks, AreCompleteUpToTheLastFrameAfterAnyEnd) {
   const auto folder = open_sink(folder_ / "walk", {false, 20.0, {}});
   const auto bag = open_sink(folder_ / "walk.mcap", {true, 20.0, calibration()});
   for (int i = 0; i < 45; ++i) {
@@ -89,7 +89,7 @@ TEST_F(FrameSinks, AreWholeUpToTheLastFrameHoweverTheyEnd) {
   EXPECT_GE(open_recording(folder_ / "walk.mcap", {})->size(), 40) << "all but the last second";
 }
 
-TEST_F(FrameSinks, NeverWriteIntoARecordingThatIsThere) {
+TEST_F(FrameSinks, NeverWriteIntoAnExistingRecording) {
   open_sink(folder_ / "walk", {true, 20.0, {}})->write(frame(0));
   EXPECT_THROW(open_sink(folder_ / "walk", {true, 20.0, {}}), InputError);
   EXPECT_THROW(open_sink(folder_ / "none" / "walk.mcap", {true, 20.0, {}}), InputError);

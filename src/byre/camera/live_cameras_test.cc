@@ -19,7 +19,7 @@ TEST(LiveCameras, AreOneDeviceOrTwo) {
   EXPECT_THROW(LiveCameras({.devices = {"a", "b"}, .side_by_side = true}), InputError);
 }
 
-TEST(LiveCameras, AreNamedWhereTheyCannotBeHad) {
+TEST(LiveCameras, AreNamedInErrors) {
   for (const char* const path : {"/dev/no-such-video", "/dev/null"}) {
     try {
       const LiveCameras cameras({.devices = {path}});
@@ -31,7 +31,7 @@ TEST(LiveCameras, AreNamedWhereTheyCannotBeHad) {
   }
 }
 
-TEST(LiveCameraReport, TellsOnlyWhatHappened) {
+TEST(LiveCameraReport, ContainsOnlyFaultsThatOccurred) {
   DeviceReport left;
   left.path = "/dev/video0";
   left.mode = {{V4L2_PIX_FMT_GREY, 752, 480, 752}, 20.0};

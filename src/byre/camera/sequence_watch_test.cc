@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 
-TEST(SequenceWatch, CountsWhatIsMissingBetweenNumbers) {
+TEST(SequenceWatch, CountsGapsBetweenNumbers) {
   SequenceWatch watch;
   EXPECT_TRUE(watch.note(10, 0ms));
   EXPECT_TRUE(watch.note(11, 50ms));
@@ -17,7 +17,7 @@ TEST(SequenceWatch, CountsWhatIsMissingBetweenNumbers) {
   EXPECT_EQ(watch.counts().images, 3);
 }
 
-TEST(SequenceWatch, GoesOnWhereNumbersBeginAgain) {
+TEST(SequenceWatch, ContinuesAfterARestartOfNumbers) {
   SequenceWatch watch;
   EXPECT_TRUE(watch.note(0xFFFFFFFFu, 0ms));
   EXPECT_TRUE(watch.note(0, 50ms)) << "after 2^32 images";
@@ -28,7 +28,7 @@ TEST(SequenceWatch, GoesOnWhereNumbersBeginAgain) {
   EXPECT_EQ(watch.counts().lost, 6);
 }
 
-TEST(SequenceWatch, CountsDamagedImagesApartFromLostOnes) {
+TEST(SequenceWatch, CountsDamagedAndLostImagesSeparately) {
   SequenceWatch watch;
   watch.note(0, 0ms);
   watch.note_damaged(1);
@@ -38,7 +38,7 @@ TEST(SequenceWatch, CountsDamagedImagesApartFromLostOnes) {
   EXPECT_EQ(watch.counts().images, 2);
 }
 
-TEST(SequenceWatch, RefusesStampsThatDoNotGoOn) {
+TEST(SequenceWatch, RejectsNonIncreasingStamps) {
   SequenceWatch watch;
   EXPECT_TRUE(watch.note(0, 100ms));
   EXPECT_FALSE(watch.note(1, 100ms));

@@ -17,7 +17,7 @@ class StampPairs : public testing::Test {
   StampPairing pairing_{{.tolerance = 5ms, .wait = 200ms}};
 };
 
-TEST_F(StampPairs, AreOfTheNearestStamps) {
+TEST_F(StampPairs, HaveTheNearestStamps) {
   left(100ms, 100ms);
   right(96ms);
   right(101ms);
@@ -38,7 +38,7 @@ TEST_F(StampPairs, WaitForTheRightImage) {
   EXPECT_EQ(pair->right->stamp, 102ms);
 }
 
-TEST_F(StampPairs, AreLeftAloneWhenTheRightOneStaysAway) {
+TEST_F(StampPairs, LackTheRightImageAfterATimeout) {
   left(100ms, 100ms);
   EXPECT_FALSE(pairing_.next(299ms));
   const auto pair = pairing_.next(300ms);
@@ -47,7 +47,7 @@ TEST_F(StampPairs, AreLeftAloneWhenTheRightOneStaysAway) {
   EXPECT_EQ(pairing_.counts().left_alone, 1);
 }
 
-TEST_F(StampPairs, AreLeftAloneAtOnceWhenALaterRightOneIsThere) {
+TEST_F(StampPairs, LackTheRightImageAtOnceIfALaterOneArrived) {
   left(100ms, 100ms);
   left(150ms, 150ms);
   right(151ms);
@@ -61,7 +61,7 @@ TEST_F(StampPairs, AreLeftAloneAtOnceWhenALaterRightOneIsThere) {
   EXPECT_EQ(pair->left.stamp, 150ms);
 }
 
-TEST_F(StampPairs, AreNoneWhereStampsAreTooFarApart) {
+TEST_F(StampPairs, AreRejectedIfStampsAreTooFarApart) {
   for (int i = 0; i < 5; ++i) {
     left(i * 50ms, i * 50ms);
     right(i * 50ms + 20ms);
@@ -73,7 +73,7 @@ TEST_F(StampPairs, AreNoneWhereStampsAreTooFarApart) {
   EXPECT_EQ(pairing_.counts().right_alone, 4) << "the last may still have a partner";
 }
 
-TEST_F(StampPairs, KeepOrderAndDropNothingThatHasAPartner) {
+TEST_F(StampPairs, PreserveOrderAndAllMatches) {
   for (const int right_one : {0, 1, 3, 4}) right(right_one * 50ms);
   for (const int left_one : {0, 1, 2, 3}) left(left_one * 50ms, 1ms);
   std::vector<std::optional<Timestamp>> rights;
@@ -84,7 +84,7 @@ TEST_F(StampPairs, KeepOrderAndDropNothingThatHasAPartner) {
   EXPECT_EQ(pairing_.counts().right_alone, 0);
 }
 
-TEST_F(StampPairs, DoNotGatherRightImagesForever) {
+TEST_F(StampPairs, LimitStoredRightImages) {
   for (int i = 0; i < 1000; ++i) right(i * 50ms);
   EXPECT_EQ(pairing_.counts().right_alone, 1000 - 32);
 }

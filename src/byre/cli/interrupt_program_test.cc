@@ -28,7 +28,7 @@ class InterruptedProgram : public ProgramTest {
   }
 };
 
-TEST_F(InterruptedProgram, StopsAndStillWritesEverything) {
+TEST_F(InterruptedProgram, StopsAndWritesAllOutputs) {
   const RenderedFixture slow("byre_slow_room", 2, 1.0 / 3600.0);  // live; the second frame is due in an hour
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     for (const char* const file : {"room.byre", "final.txt", "causal.txt", "stats.json", "stderr.txt"}) {
@@ -51,7 +51,7 @@ TEST_F(InterruptedProgram, StopsAndStillWritesEverything) {
   }
 }
 
-TEST_F(InterruptedProgram, GoesOnWhenItsTerminalClosesAndItWasToldToIgnoreThat) {
+TEST_F(InterruptedProgram, IgnoresHangupUnderNohup) {
   const RenderedFixture slow("byre_nohup_room", 2, 1.0 / 3600.0);
   const auto before = std::signal(SIGHUP, SIG_IGN);
   const pid_t process = start({"map", slow.folder().string(), "--pace", "live", "-o", (folder_ / "room.byre").string()},
@@ -67,7 +67,7 @@ TEST_F(InterruptedProgram, GoesOnWhenItsTerminalClosesAndItWasToldToIgnoreThat) 
   EXPECT_EQ(load_map(folder_ / "room.byre").map.keyframe_count(), 1);
 }
 
-TEST_F(InterruptedProgram, WritesTheOtherFilesWhenOneIsTooLarge) {
+TEST_F(InterruptedProgram, WritesTheOtherFilesIfOneIsTooLarge) {
   const RenderedFixture small("byre_small_room", 2, 20.0);
   const std::string command = "ulimit -f 8; cd '" + folder_.string() + "' && '" + BYRE_PROGRAM + "' map '" +
                               small.folder().string() +
@@ -80,7 +80,7 @@ TEST_F(InterruptedProgram, WritesTheOtherFilesWhenOneIsTooLarge) {
   EXPECT_FALSE(has_unfinished_files());
 }
 
-TEST_F(InterruptedProgram, WritesEverythingWhenNobodyReadsWhatItSays) {
+TEST_F(InterruptedProgram, WritesAllOutputsWithAClosedStandardOutput) {
   const RenderedFixture small("byre_unheard_room", 2, 20.0);
   const std::string command = "cd '" + folder_.string() + "' && { sleep 0.2; '" + BYRE_PROGRAM + "' map '" +
                               small.folder().string() +
@@ -91,7 +91,7 @@ TEST_F(InterruptedProgram, WritesEverythingWhenNobodyReadsWhatItSays) {
   EXPECT_GT(load_map(folder_ / "room.byre").map.keyframe_count(), 0);
 }
 
-TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd) {
+TEST_F(InterruptedProgram, WarnsOfUnwrittenEventsAndFailsAtTheEnd) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const RenderedFixture small("byre_eventful_room", 8, 20.0);
   const Outcome full = run("run '" + small.folder().string() + "' --events /dev/full --trajectory final.txt");
@@ -113,7 +113,7 @@ TEST_F(InterruptedProgram, TellsAtOnceThatEventsCannotBeWrittenAndFailsAtTheEnd)
   EXPECT_EQ(json::parse(read("stats.json")).at("frames").size(), 8u);
 }
 
-TEST_F(InterruptedProgram, EndsAtOnceAtTheSecondCtrlCAndLeavesNoBrokenFile) {
+TEST_F(InterruptedProgram, EndsAtOnceAtTheSecondCtrlCWithoutBrokenFiles) {
   const RenderedFixture slow("byre_twice_stopped_room", 2, 1.0 / 3600.0);
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // without a reader, so writing blocks
@@ -129,7 +129,7 @@ TEST_F(InterruptedProgram, EndsAtOnceAtTheSecondCtrlCAndLeavesNoBrokenFile) {
   EXPECT_EQ(load_map(folder_ / "room.byre").map.keyframe_count(), 1);
 }
 
-TEST_F(InterruptedProgram, LeavesTheMapItSavedLastWhenItIsKilled) {
+TEST_F(InterruptedProgram, LeavesTheLastSavedMapWhenKilled) {
   const RenderedFixture ticking("byre_ticking_room", 12, 2.0);
   const pid_t process = start({"map", ticking.folder().string(), "--pace", "live", "--autosave", "0.1", "-o",
                                (folder_ / "room.byre").string()});

@@ -35,7 +35,7 @@ class Program : public ProgramTest {
   }
 };
 
-TEST_F(Program, ExplainsItself) {
+TEST_F(Program, PrintsHelp) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output, HasSubstr("evaluate"));
@@ -46,13 +46,13 @@ TEST_F(Program, ExplainsItself) {
   EXPECT_THAT(evaluate_help.output, HasSubstr("Examples:\n  byre evaluate --estimate"));
 }
 
-TEST_F(Program, TellsItsVersion) {
+TEST_F(Program, PrintsItsVersion) {
   const Outcome outcome = run("--version");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.output, testing::MatchesRegex("byre [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 
-TEST_F(Program, RefusesWrongUsage) {
+TEST_F(Program, RejectsWrongUsage) {
   for (const char* const arguments : {"", "evaluat", "--loud", "evaluate", "evaluate --estimate estimate.txt",
                                       "evaluate --estimate estimate.txt --truth estimate.txt --alignment rigid",
                                       "evaluate --estimate estimate.txt --truth estimate.txt --label best",
@@ -84,7 +84,7 @@ TEST_F(Program, NamesBadInput) {
   }
 }
 
-TEST_F(Program, FailsWhenItsResultCannotBeWritten) {
+TEST_F(Program, FailsIfItsResultCannotBeWritten) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const std::string command = std::string("'") + BYRE_PROGRAM + "' evaluate --estimate '" +
                               (folder_ / "estimate.txt").string() + "' --truth '" +
@@ -92,7 +92,7 @@ TEST_F(Program, FailsWhenItsResultCannotBeWritten) {
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
 }
 
-TEST_F(Program, FailsWhenItsHelpCannotBeWritten) {
+TEST_F(Program, FailsIfItsHelpCannotBeWritten) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   for (const char* const arguments : {"--help", "--version", "map --help"}) {
     const std::string command = std::string("'") + BYRE_PROGRAM + "' " + arguments + " >/dev/full 2>'" +
@@ -102,7 +102,7 @@ TEST_F(Program, FailsWhenItsHelpCannotBeWritten) {
   }
 }
 
-TEST_F(Program, NamesTheChoicesOfAnOption) {
+TEST_F(Program, ListsTheChoicesOfAnOption) {
   const std::string evaluate = "evaluate --estimate estimate.txt --truth estimate.txt ";
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"map . --pace fast", "--pace: 'fast' is not one of: inline, live, paced"},
@@ -139,7 +139,7 @@ TEST_F(Program, PrintsArgumentsWithoutControlCharacters) {
 }
 
 // Libraries for image and video formats would take most of the program's memory if linked.
-TEST_F(Program, IsNotLinkedWithWhatFewRunsNeed) {
+TEST_F(Program, LoadsRarelyUsedLibrariesLazily) {
   const std::string list = (folder_ / "libraries.txt").string();
   const std::string command = std::string("LD_TRACE_LOADED_OBJECTS=1 '") + BYRE_PROGRAM + "' > '" + list + "'";
   ASSERT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
@@ -165,7 +165,7 @@ TEST_F(Program, PrintsJsonAndWritesTheAlignedEstimate) {
   EXPECT_THAT(read("aligned.txt"), HasSubstr("\n3.000000000 3.000000000 9.000000000 "));
 }
 
-TEST_F(Program, WritesTheAlignedEstimateInTheFormatAskedFor) {
+TEST_F(Program, WritesTheAlignedEstimateInTheRequestedFormat) {
   const std::string command = "evaluate --estimate estimate.txt --truth poses.txt --times times.txt --align origin ";
   const Outcome outcome = run(command + "--aligned aligned.csv --format euroc");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;

@@ -145,7 +145,7 @@ class Stops : public ProgramTest {
   const RenderedFixture recording_{"byre_stopped_room", 16, 20.0};
 };
 
-TEST_F(Stops, AtRandomMomentsLeaveWholeFiles) {
+TEST_F(Stops, AtRandomTimesLeaveCompleteFiles) {
   constexpr std::array kStops = {SIGINT, SIGTERM, SIGHUP, SIGKILL};
   std::mt19937 random(wanted_seed());
   const double whole_s = seconds_of_whole_run();

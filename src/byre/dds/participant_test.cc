@@ -56,7 +56,7 @@ class TwoParticipants : public testing::Test {
   Participant receiver_ = participant(2);
 };
 
-TEST_F(TwoParticipants, DropMessagesLongerThanTheBoundOfTheirTopic) {
+TEST_F(TwoParticipants, DropMessagesAboveTheSizeLimitOfTheirTopic) {
   Publisher bounded = sender_.publish("/bounded", kText, {});
   Publisher unbounded = sender_.publish("/unbounded", kText, {});
   Subscriber bounded_in = receiver_.subscribe("/bounded", kText, {.most_bytes = 1000});
@@ -74,7 +74,7 @@ TEST_F(TwoParticipants, DropMessagesLongerThanTheBoundOfTheirTopic) {
   EXPECT_TRUE(bounded_in.take().empty());
 }
 
-TEST_F(TwoParticipants, HandMessagesOfAnySizeOverAsTheyAre) {
+TEST_F(TwoParticipants, ExchangeMessagesOfAnySizeUnchanged) {
   Publisher publisher = sender_.publish("/sizes", kText, {});
   Subscriber subscriber = receiver_.subscribe("/sizes", kText, {});
   ASSERT_TRUE(becomes_subscribed(publisher, sender_));
@@ -90,7 +90,7 @@ TEST_F(TwoParticipants, HandMessagesOfAnySizeOverAsTheyAre) {
   EXPECT_EQ(publisher.left_out(), 0);
 }
 
-TEST_F(TwoParticipants, GiveLateReadersWhatIsLatched) {
+TEST_F(TwoParticipants, SendLatchedMessagesToLateReaders) {
   Publisher latched = sender_.publish("/latched", kText, {.is_latched = true, .depth = 1});
   latched.publish(message_of(12));
   latched.publish(message_of(16));
@@ -100,7 +100,7 @@ TEST_F(TwoParticipants, GiveLateReadersWhatIsLatched) {
   EXPECT_EQ(message->bytes().size(), 16u) << "the last one alone";
 }
 
-TEST_F(TwoParticipants, KeepTheNewestForAReaderThatIsSlow) {
+TEST_F(TwoParticipants, KeepTheNewestMessageForSlowReaders) {
   Publisher publisher = sender_.publish("/many", kText, {.is_reliable = true, .depth = 50});
   Subscriber subscriber = receiver_.subscribe("/many", kText, {.is_reliable = true, .depth = 2});
   ASSERT_TRUE(becomes_subscribed(publisher, sender_));
@@ -114,7 +114,7 @@ TEST_F(TwoParticipants, KeepTheNewestForAReaderThatIsSlow) {
   }
 }
 
-TEST_F(TwoParticipants, HaveIdsOfTheirOwn) {
+TEST_F(TwoParticipants, HaveDistinctIds) {
   const Publisher publisher = sender_.publish("/ids", kText, {});
   const Subscriber subscriber = receiver_.subscribe("/ids", kText, {});
   EXPECT_NE(publisher.id(), subscriber.id());

@@ -46,7 +46,7 @@ TEST(GraphMessage, HasIdsOf24BytesUpToHumble) {
                          0,  0,  0,  0}));
 }
 
-TEST(TypeHash, IsKnownOfWhatIsSentAlone) {
+TEST(TypeHash, ExistsForSentTypesOnly) {
   EXPECT_TRUE(type_hash("sensor_msgs/msg/Image").starts_with("RIHS01_d31d41a9"));
   EXPECT_EQ(type_hash("std_msgs/msg/String").size(), 7u + 64u);
   EXPECT_EQ(type_hash("geometry_msgs/msg/Point"), "");

@@ -8,7 +8,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(RosNames, AreThoseOfDds) {
+TEST(RosNames, AreConvertedToDdsNames) {
   EXPECT_EQ(dds_topic_name("/left/image_raw"), "rt/left/image_raw");
   EXPECT_EQ(dds_type_name("sensor_msgs/msg/Image"), "sensor_msgs::msg::dds_::Image_");
   EXPECT_EQ(dds_request_name("/byre/save"), "rq/byre/saveRequest");
@@ -18,13 +18,13 @@ TEST(RosNames, AreThoseOfDds) {
   EXPECT_EQ(dds_type_name("std_srvs/srv/Trigger_Request"), "std_srvs::srv::dds_::Trigger_Request_");
 }
 
-TEST(RosNames, AreResolvedInTheNodesNamespace) {
+TEST(RosNames, AreResolvedInTheNamespaceOfTheNode) {
   EXPECT_EQ(resolved("odometry", "/"), "/odometry");
   EXPECT_EQ(resolved("odometry", "/barn/robot_1"), "/barn/robot_1/odometry");
   EXPECT_EQ(resolved("/tf", "/barn"), "/tf");
 }
 
-TEST(RosNames, HaveAFormThatIsChecked) {
+TEST(RosNames, AreValidated) {
   EXPECT_THAT(fault_in_name("/"), IsEmpty());
   EXPECT_THAT(fault_in_name("/left/image_raw2"), IsEmpty());
   EXPECT_THAT(fault_in_name(""), HasSubstr("begin with a slash"));

@@ -22,7 +22,7 @@ Environment environment_of(const std::map<std::string, std::string>& variables) 
   };
 }
 
-TEST(RosNetwork, IsTheWholeSubnetInDomainZeroUnlessSaidOtherwise) {
+TEST(RosNetwork, DefaultsToTheSubnetInDomainZero) {
   const RosNetwork network = read_ros_network(environment_of({}));
   EXPECT_EQ(network.domain, 0);
   EXPECT_EQ(network.range, DiscoveryRange::subnet);
@@ -32,7 +32,7 @@ TEST(RosNetwork, IsTheWholeSubnetInDomainZeroUnlessSaidOtherwise) {
   EXPECT_THAT(cyclone_settings(network, ""), AllOf(Not(HasSubstr("Discovery")), Not(HasSubstr("Multicast"))));
 }
 
-TEST(RosNetwork, IsReadFromTheVariablesOfRos) {
+TEST(RosNetwork, IsReadFromRosVariables) {
   const RosNetwork network = read_ros_network(environment_of({{"ROS_DOMAIN_ID", "42"},
                                                               {"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"},
                                                               {"ROS_STATIC_PEERS", "10.0.0.7;barn.local"},
@@ -48,7 +48,7 @@ TEST(RosNetwork, IsReadFromTheVariablesOfRos) {
                     HasSubstr("address=\"10.0.0.7\""), HasSubstr("address=\"127.0.0.1\"")));
 }
 
-TEST(RosNetwork, HeedsTheOlderVariableForLocalhost) {
+TEST(RosNetwork, ReadsTheOlderVariableForLocalhost) {
   const auto range = [](const char* value) {
     return read_ros_network(environment_of({{"ROS_LOCALHOST_ONLY", value}})).range;
   };
@@ -56,21 +56,21 @@ TEST(RosNetwork, HeedsTheOlderVariableForLocalhost) {
   EXPECT_EQ(range("0"), DiscoveryRange::subnet);
 }
 
-TEST(RosNetwork, AsksNobodyWhereDiscoveryIsOff) {
+TEST(RosNetwork, DisablesDiscovery) {
   const RosNetwork network =
       read_ros_network(environment_of({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}, {"ROS_STATIC_PEERS", "10.0.0.7"}}));
   EXPECT_THAT(network.peers, IsEmpty());
   EXPECT_THAT(cyclone_settings(network, ""), HasSubstr("<AllowMulticast>false</AllowMulticast>"));
 }
 
-TEST(RosNetwork, LeavesCyclonesOwnSettingsTheLastWord) {
+TEST(RosNetwork, LetsCycloneSettingsOverride) {
   const std::string settings =
       cyclone_settings({.range = DiscoveryRange::localhost, .peers = {"<evil&\">"}}, "file:///etc/cyclone.xml");
   EXPECT_LT(settings.find("localhost"), settings.find("file:///etc/cyclone.xml"));
   EXPECT_THAT(settings, Not(HasSubstr("<evil")));
 }
 
-TEST(RosNetwork, RefusesWhatIsNoValue) {
+TEST(RosNetwork, RejectsInvalidValues) {
   for (const auto& [name, value] : std::map<std::string, std::string>{
            {"ROS_DOMAIN_ID", "barn"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", "nearby"}, {"ROS_DISTRO", "Humble 2"}}) {
     try {
@@ -85,7 +85,7 @@ TEST(RosNetwork, RefusesWhatIsNoValue) {
   EXPECT_THROW(read_ros_network(environment_of({{"ROS_DOMAIN_ID", "-1"}})), InputError);
 }
 
-TEST(RosDistribution, IsToldByTheAlphabet) {
+TEST(RosDistribution, IsOrderedByItsFirstLetter) {
   EXPECT_EQ(distribution_of("foxy"), RosDistribution::humble);
   EXPECT_EQ(distribution_of("humble"), RosDistribution::humble);
   EXPECT_EQ(distribution_of("iron"), RosDistribution::jazzy);

@@ -37,7 +37,7 @@ std::vector<std::string> unbalanced_elements(const std::string& html) {
   return faults;
 }
 
-TEST(DemoPage, HoldsTableBothPicturesAndTimeline) {
+TEST(DemoPage, ContainsTablePicturesAndTimeline) {
   const std::string html = demo_page(small_findings());
   EXPECT_THAT(html, StartsWith("<!DOCTYPE html>"));
   EXPECT_THAT(html, AllOf(HasSubstr("<table id=\"arms\">"), HasSubstr("<figure id=\"plan\">"),
@@ -45,7 +45,7 @@ TEST(DemoPage, HoldsTableBothPicturesAndTimeline) {
   EXPECT_THAT(html, AllOf(HasSubstr("No map"), HasSubstr("Localise only"), HasSubstr("Hybrid")));
 }
 
-TEST(DemoPage, NeedsNothingButItself) {
+TEST(DemoPage, IsSelfContained) {
   const std::string html = demo_page(small_findings());
   EXPECT_THAT(html, Not(HasSubstr("http:")));  // escaped in the pictures' data URLs
   EXPECT_THAT(html, Not(HasSubstr("https:")));
@@ -59,13 +59,13 @@ TEST(DemoPage, ClosesItsElements) {
   EXPECT_THAT(unbalanced_elements(demo_page(small_findings())), IsEmpty());
 }
 
-TEST(DemoPage, GoesWithoutACameraPictureWhereNoFrameHadAPose) {
+TEST(DemoPage, OmitsTheCameraPictureWithoutPoses) {
   DemoFindings findings = small_findings();
   findings.camera_s.reset();
   EXPECT_THAT(demo_page(findings), Not(HasSubstr("id=\"camera\"")));
 }
 
-TEST(DemoPage, EncodesPicturesIntoAddresses) {
+TEST(DemoPage, EmbedsPicturesAsDataUrls) {
   const std::string address = data_address("<svg xmlns=\"http://x\">50 % #1</svg>");
   EXPECT_EQ(address, "data:image/svg+xml,%3Csvg xmlns=%22http%3A//x%22%3E50 %25 %231%3C/svg%3E");
 }

@@ -26,7 +26,7 @@ class DemoTable : public testing::Test {
   std::vector<DemoArm> arms = small_findings().arms;
 };
 
-TEST_F(DemoTable, MarksTheArmThatIsBest) {
+TEST_F(DemoTable, MarksTheBestArm) {
   arm(Arm::no_map).measures.causal_poses.coverage = 0.2;
   arm(Arm::localise_only).measures.causal_poses.coverage = 0.5;
   arm(Arm::hybrid).measures.causal_poses.coverage = 0.9;
@@ -37,7 +37,7 @@ TEST_F(DemoTable, MarksTheArmThatIsBest) {
   EXPECT_FALSE(coverage.cells[1].is_best);
 }
 
-TEST_F(DemoTable, MarksTheLeastErrorAndThoseThatReadTheSame) {
+TEST_F(DemoTable, MarksTheSmallestErrorAndEqualTexts) {
   for (DemoArm& each : arms) each.measures.causal_poses.map_error_max = 0.1;
   arm(Arm::no_map).measures.causal_poses.map_error = 0.01001;
   arm(Arm::localise_only).measures.causal_poses.map_error = 5.0;
@@ -50,7 +50,7 @@ TEST_F(DemoTable, MarksTheLeastErrorAndThoseThatReadTheSame) {
   EXPECT_TRUE(error.cells[2].is_best);
 }
 
-TEST_F(DemoTable, HasADashWhereAnArmHasNoFigure) {
+TEST_F(DemoTable, ShowsADashForAMissingFigure) {
   arm(Arm::hybrid).measures.behaviour.trusted_wrong = 0.0;
   const DemoRow wrong = row("Frames trusted with");
   EXPECT_EQ(wrong.cells[1].text, "-");
@@ -58,7 +58,7 @@ TEST_F(DemoTable, HasADashWhereAnArmHasNoFigure) {
   EXPECT_EQ(wrong.cells[2].text, "0");
 }
 
-TEST_F(DemoTable, LeavesOutTheTrustOfARunWithoutAMap) {
+TEST_F(DemoTable, OmitsTrustOfARunWithoutAMap) {
   for (DemoArm& each : arms) each.measures.behaviour.trusted_share = 0.9;
   const DemoRow trusted = row("Frames reported as trusted");
   EXPECT_EQ(trusted.cells[0].text, "-");
@@ -69,7 +69,7 @@ TEST_F(DemoTable, MarksNothingInARowWithoutFigures) {
   for (const DemoCell& cell : row("Time per frame").cells) EXPECT_FALSE(cell.is_best);
 }
 
-TEST_F(DemoTable, IsALineForEachRowInATerminal) {
+TEST_F(DemoTable, PrintsOneLinePerRow) {
   const std::vector<DemoRow> rows = demo_table(arms);
   const std::string text = to_text(rows, arms);
   EXPECT_EQ(std::ranges::count(text, '\n'), static_cast<std::ptrdiff_t>(rows.size() + 1));

@@ -22,7 +22,7 @@ std::string line_of(const std::string& svg, const std::string& kind) {
   return begin == std::string::npos ? "" : svg.substr(begin, svg.find("/>", begin) - begin);
 }
 
-TEST(DemoTimeline, HasABarForEachStretchOfOneVerdict) {
+TEST(DemoTimeline, DrawsABarForEachVerdictInterval) {
   DemoFindings findings = small_findings();
   findings.arms[1].moments[3].verdict = Verdict::untrusted;
   findings.arms[1].moments[5].has_pose = false;
@@ -41,7 +41,7 @@ TEST(DemoTimeline, DrawsBothKindsOfPointsAndTheErrorOfEachArm) {
   }
 }
 
-TEST(DemoTimeline, BreaksALineWhereThereIsNothingToShow) {
+TEST(DemoTimeline, BreaksLinesAtGaps) {
   DemoFindings findings = small_findings();
   for (const std::size_t i : {4u, 5u}) findings.arms[1].moments[i].error.reset();
   const std::string line = line_of(demo_timeline(findings), "localise_only");
@@ -49,14 +49,14 @@ TEST(DemoTimeline, BreaksALineWhereThereIsNothingToShow) {
   EXPECT_EQ(count(line, "L"), 6);
 }
 
-TEST(DemoTimeline, ShadesWhereTheRobotIsOffTheMap) {
+TEST(DemoTimeline, ShadesTimesOffTheMap) {
   DemoFindings findings = small_findings();
   EXPECT_EQ(count(demo_timeline(findings), "class=\"off\""), 1);
   findings.off_the_map.clear();
   EXPECT_THAT(demo_timeline(findings), Not(HasSubstr("off the map")));
 }
 
-TEST(DemoTimeline, IsDrawnOfNothingToo) {
+TEST(DemoTimeline, DrawsEmptyFindings) {
   EXPECT_THAT(demo_timeline({}), HasSubstr("</svg>"));
 }
 

@@ -39,7 +39,7 @@ class FleetPositionTest : public testing::Test {
   FleetPositionKeeper keeper_;
 };
 
-TEST_F(FleetPositionTest, IsThatOfThePoseSeenFromAbove) {
+TEST_F(FleetPositionTest, ProjectsThePoseToThePlane) {
   note(report(Verdict::trusted, turned(3.0, -2.0, 2.5)));
   const FleetPosition position = keeper_.at(1s);
   EXPECT_EQ(position.x, 3.0);
@@ -51,12 +51,12 @@ TEST_F(FleetPositionTest, IsThatOfThePoseSeenFromAbove) {
   EXPECT_NEAR(keeper_.at(1s).theta, 0.1 - std::numbers::pi, 1e-12);
 }
 
-TEST_F(FleetPositionTest, DeviatesByWhatTheVerdictCompares) {
+TEST_F(FleetPositionTest, ReportsTheErrorBoundAsDeviation) {
   note(report(Verdict::trusted, Pose{}));
   EXPECT_THAT(keeper_.at(1s).deviation, Optional(DoubleNear(3 * 0.01 + 0.005 * 2.0, 1e-12)));
 }
 
-TEST_F(FleetPositionTest, ScoresByVerdictAndByHowMuchErrorIsAllowedFor) {
+TEST_F(FleetPositionTest, ScoresByVerdictAndErrorBound) {
   FrameReport frame = report(Verdict::trusted, Pose{});
   EXPECT_NEAR(localization_score(frame), 1.0 - 0.5 * 0.04 / 0.2, 1e-12);
   frame.health.position_sigma = 1.0;
@@ -67,7 +67,7 @@ TEST_F(FleetPositionTest, ScoresByVerdictAndByHowMuchErrorIsAllowedFor) {
   EXPECT_EQ(localization_score(frame), 0.0);
 }
 
-TEST_F(FleetPositionTest, IsInitialisedFromATrustedFrameOnUntilItIsLost) {
+TEST_F(FleetPositionTest, IsInitialisedFromATrustedFrameUntilLost) {
   EXPECT_FALSE(keeper_.at(1s).is_initialised);
   note(report(Verdict::degraded, Pose{}));
   EXPECT_FALSE(keeper_.at(1s).is_initialised);
@@ -87,14 +87,14 @@ TEST_F(FleetPositionTest, IsInitialisedFromATrustedFrameOnUntilItIsLost) {
   EXPECT_FALSE(keeper_.at(1s).is_initialised);
 }
 
-TEST_F(FleetPositionTest, KeepsTheLastBelievedPlace) {
+TEST_F(FleetPositionTest, KeepsTheLastReliablePosition) {
   note(report(Verdict::trusted, turned(3.0, 0.0, 0.0)));
   note(report(Verdict::untrusted, turned(40.0, 0.0, 0.0)));
   EXPECT_EQ(keeper_.at(1s).x, 3.0);
   EXPECT_FALSE(keeper_.at(1s).deviation);
 }
 
-TEST_F(FleetPositionTest, MovesAsSeenFromTheRobot) {
+TEST_F(FleetPositionTest, ReportsVelocityInTheRobotFrame) {
   note(report(Verdict::trusted, turned(0.0, 0.0, std::numbers::pi / 2), 1s));
   EXPECT_FALSE(keeper_.at(1s).velocity);
   note(report(Verdict::trusted, turned(0.0, 0.1, std::numbers::pi / 2 + 0.02), 1s + 100ms));
@@ -105,7 +105,7 @@ TEST_F(FleetPositionTest, MovesAsSeenFromTheRobot) {
   EXPECT_NEAR(velocity->omega, 0.2, 1e-9);
 }
 
-TEST_F(FleetPositionTest, IsNotKnownWithoutFrames) {
+TEST_F(FleetPositionTest, IsUnknownWithoutFrames) {
   EXPECT_THAT(keeper_.at(1s).problem, HasSubstr("no image"));
   note(report(Verdict::trusted, turned(3.0, 0.0, 0.0)));
   EXPECT_TRUE(keeper_.at(4s).is_initialised);

@@ -36,17 +36,17 @@ class FleetReporterTest : public testing::Test {
   FleetReporter reporter_{{}, 2.0, [this](const MqttMessage& message) { sent_.push_back(message); }};
 };
 
-TEST_F(FleetReporterTest, TellsNothingBeforeThereIsAConnection) {
+TEST_F(FleetReporterTest, PublishesNothingBeforeConnecting) {
   EXPECT_THAT(tell(1s, 0), IsEmpty());
 }
 
-TEST_F(FleetReporterTest, TellsPositionsAtItsRate) {
+TEST_F(FleetReporterTest, PublishesPositionsAtItsRate) {
   EXPECT_THAT(tell(1s), ElementsAre("state 0", "visualization 0"));
   EXPECT_THAT(tell(1s + 499ms), IsEmpty());
   EXPECT_THAT(tell(1s + 500ms), ElementsAre("visualization 1"));
 }
 
-TEST_F(FleetReporterTest, TellsStateWhenItChangesButNotTooOften) {
+TEST_F(FleetReporterTest, PublishesStateChangesAtALimitedRate) {
   tell(1s);
   position_.is_initialised = true;
   EXPECT_THAT(tell(1s + 100ms), IsEmpty());
@@ -55,13 +55,13 @@ TEST_F(FleetReporterTest, TellsStateWhenItChangesButNotTooOften) {
   EXPECT_THAT(tell(2s), ElementsAre("state 2", "visualization 2"));
 }
 
-TEST_F(FleetReporterTest, TellsStateAfterThirtySecondsAtLatest) {
+TEST_F(FleetReporterTest, PublishesStateEveryThirtySeconds) {
   tell(1s);
   EXPECT_THAT(tell(31s - 1ms), ElementsAre("visualization 1"));
   EXPECT_THAT(tell(31s), ElementsAre("state 1"));
 }
 
-TEST_F(FleetReporterTest, TellsStateUponEachConnection) {
+TEST_F(FleetReporterTest, PublishesStateAfterEachConnection) {
   tell(1s);
   EXPECT_THAT(tell(1s + 10ms, 2), ElementsAre("state 1"));
   EXPECT_THAT(tell(1s + 20ms, 2), IsEmpty());

@@ -50,7 +50,7 @@ TEST_F(Vda5050Messages, HaveTheTopicsOfTheStandard) {
   EXPECT_EQ(fleet_topic(identity_, "state"), "uagv/v2/barnworks/robot7/state");
 }
 
-TEST_F(Vda5050Messages, OfStateHoldAllThatIsRequired) {
+TEST_F(Vda5050Messages, OfStateContainAllRequiredFields) {
   const Json message = state();
   expect_fields(message, kHeaderFields);
   expect_fields(message, kStateFields);
@@ -64,7 +64,7 @@ TEST_F(Vda5050Messages, OfStateHoldAllThatIsRequired) {
   EXPECT_EQ(message.at("operatingMode"), "MANUAL");
 }
 
-TEST_F(Vda5050Messages, TellPositionAndVelocity) {
+TEST_F(Vda5050Messages, ContainPositionAndVelocity) {
   for (const Json& message : {state(), Json::parse(visualization_text(identity_, header_, position_, map_))}) {
     expect_fields(message, kHeaderFields);
     EXPECT_EQ(message.at("agvPosition"), Json({{"x", 1.5},
@@ -79,7 +79,7 @@ TEST_F(Vda5050Messages, TellPositionAndVelocity) {
   }
 }
 
-TEST_F(Vda5050Messages, LeaveOutWhatIsNotKnown) {
+TEST_F(Vda5050Messages, OmitUnknownFields) {
   position_.deviation = std::numeric_limits<double>::infinity();
   position_.velocity.reset();
   map_.description.clear();
@@ -89,7 +89,7 @@ TEST_F(Vda5050Messages, LeaveOutWhatIsNotKnown) {
   EXPECT_FALSE(message.at("agvPosition").contains("mapDescription"));
 }
 
-TEST_F(Vda5050Messages, TellWhetherTheRobotDrives) {
+TEST_F(Vda5050Messages, ReportDriving) {
   EXPECT_EQ(state().at("driving"), true);
   position_.velocity = FleetVelocity{0.0, 0.001, 0.001};
   EXPECT_EQ(state().at("driving"), false);
@@ -97,7 +97,7 @@ TEST_F(Vda5050Messages, TellWhetherTheRobotDrives) {
   EXPECT_EQ(state().at("driving"), true);
 }
 
-TEST_F(Vda5050Messages, TellAPositionThatIsNotTrustedAsAnError) {
+TEST_F(Vda5050Messages, ReportAnUntrustedPositionAsAnError) {
   EXPECT_THAT(state().at("errors"), IsEmpty());
   position_.problem = "degraded: few points";
   position_.advice = "clean the lens";
@@ -111,7 +111,7 @@ TEST_F(Vda5050Messages, TellAPositionThatIsNotTrustedAsAnError) {
   EXPECT_EQ(state().at("errors")[0].at("errorLevel"), "FATAL");
 }
 
-TEST_F(Vda5050Messages, TellTheConnection) {
+TEST_F(Vda5050Messages, ReportTheConnection) {
   const std::pair<FleetConnection, const char*> states[] = {{FleetConnection::online, "ONLINE"},
                                                             {FleetConnection::offline, "OFFLINE"},
                                                             {FleetConnection::broken, "CONNECTIONBROKEN"}};
@@ -122,7 +122,7 @@ TEST_F(Vda5050Messages, TellTheConnection) {
   }
 }
 
-TEST_F(Vda5050Messages, AreTextWhateverAMapIsCalled) {
+TEST_F(Vda5050Messages, AreValidUtf8ForAnyMapName) {
   map_.id = "barn \xff\"";
   EXPECT_NO_THROW(state());
 }
@@ -134,7 +134,7 @@ TEST_F(Vda5050Messages, EscapeControlCharacters) {
   EXPECT_THAT(state_text(identity_, header_, position_, map_), HasSubstr(R"("a\u009b2J")"));
 }
 
-TEST(FleetIdentityText, HoldsWhatTheStandardAllows) {
+TEST(FleetIdentityText, AcceptsCharactersOfTheStandard) {
   for (const char* sound : {"robot7", "A-1_b.c:d"}) EXPECT_THAT(fault_in_identity(sound), IsEmpty()) << sound;
   for (const char* wrong : {"", "robot 7", "a/b", "#", "+", "r\xc3\xb6"}) {
     EXPECT_THAT(fault_in_identity(wrong), Not(IsEmpty())) << wrong;

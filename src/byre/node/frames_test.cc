@@ -29,14 +29,14 @@ FrameReport report_at(const std::optional<Pose>& odometry, const std::optional<P
   return report;
 }
 
-TEST(PoseFrames, PutMapAndOdometryTogether) {
+TEST(PoseFrames, ComposeMapAndOdometry) {
   PoseFrames frames;
   frames.note(report_at(some_pose(1), some_pose(2)));
   EXPECT_LT(distance(*frames.map_from_odom() * *frames.odom_from_base(), some_pose(2)), 1e-9);
   EXPECT_FALSE(frames.is_held());
 }
 
-TEST(PoseFrames, HoldTheMapWhileItIsDoubtfulAndWithdrawItOnceTheRobotIsLost) {
+TEST(PoseFrames, HoldTheMapFrameInDoubtAndWithdrawItWhenLost) {
   PoseFrames frames;
   frames.note(report_at(some_pose(1), some_pose(2), Verdict::untrusted));
   EXPECT_FALSE(frames.map_from_odom()) << "nothing was trusted so far";
@@ -53,7 +53,7 @@ TEST(PoseFrames, HoldTheMapWhileItIsDoubtfulAndWithdrawItOnceTheRobotIsLost) {
   EXPECT_FALSE(frames.odom_from_base());
 }
 
-TEST(PoseFrames, GoOnWithOdometryWhereTrackingBeginsAnew) {
+TEST(PoseFrames, ContinueOdometryAfterReinitialisation) {
   PoseFrames frames;
   frames.note(report_at(some_pose(1), some_pose(2)));
   const Pose before = *frames.odom_from_base();
@@ -65,7 +65,7 @@ TEST(PoseFrames, GoOnWithOdometryWhereTrackingBeginsAnew) {
   EXPECT_LT(distance(*frames.odom_from_base(), before * some_pose(0.2)), 1e-9);
 }
 
-TEST(PoseMessages, TurnCovariancesIntoTheParentsAxes) {
+TEST(PoseMessages, RotateCovariancesIntoTheParentFrame) {
   Matrix6 covariance = Matrix6::Zero();
   covariance(0, 0) = 4.0;   // along x of the body
   covariance(5, 5) = 0.01;  // about z of the body
@@ -78,7 +78,7 @@ TEST(PoseMessages, TurnCovariancesIntoTheParentsAxes) {
   EXPECT_NEAR(turned[11], 0.1, 1e-12) << "row y, column of the rotation about z";
 }
 
-TEST(PoseMessages, TellMotionAsSeenInTheBody) {
+TEST(PoseMessages, ExpressMotionInTheBodyFrame) {
   const Eigen::Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   const ros::Twist twist = twist_between({quarter, {1, 0, 0}}, {quarter, {1, 0.1, 0}}, from_seconds(0.05));
   EXPECT_NEAR(twist.linear.x, 2.0, 1e-9) << "forward, which is y of the parent";

@@ -50,7 +50,7 @@ TEST(LocalisationStatus, HasTheLevelOfTheVerdict) {
   EXPECT_EQ(localisation_status(report_with(Verdict::degraded, Doubt::few_points)).level, ros::DiagnosticStatus::kWarn);
 }
 
-TEST(HealthLine, NamesTheDamageOfTheMap) {
+TEST(HealthLine, ReportsDamageOfTheMap) {
   const auto health = nlohmann::json::parse(health_line(kDamaged)).at("health");
   EXPECT_EQ(health.at("verdict"), "untrusted");
   EXPECT_EQ(health.at("doubt"), "map file is damaged");

@@ -17,7 +17,7 @@ ros::PoseWithCovarianceStamped clicked() {
   return message;
 }
 
-TEST(HintMessage, TellsWhereAndHowTurned) {
+TEST(HintMessage, ContainsPositionAndHeading) {
   const PoseHint hint = *hint_of(clicked());
   EXPECT_EQ(hint.map_from_body.translation, Eigen::Vector3d(4.0, -2.0, 0.0));
   EXPECT_DOUBLE_EQ(hint.map_from_body.rotation.z(), 0.6);
@@ -25,7 +25,7 @@ TEST(HintMessage, TellsWhereAndHowTurned) {
   EXPECT_DOUBLE_EQ(hint.turn, 1.0);
 }
 
-TEST(HintMessage, IsAsWideAsItsCovariance) {
+TEST(HintMessage, HasTheRadiusOfItsCovariance) {
   auto message = clicked();
   message.pose.covariance[7] = 4.0;
   message.pose.covariance[35] = 0.25;
@@ -33,13 +33,13 @@ TEST(HintMessage, IsAsWideAsItsCovariance) {
   EXPECT_DOUBLE_EQ(hint_of(message)->turn, 1.5);
 }
 
-TEST(HintMessage, WithoutADirectionIsGoodForAny) {
+TEST(HintMessage, WithoutHeadingAllowsAnyHeading) {
   auto message = clicked();
   message.pose.pose.orientation = {0.0, 0.0, 0.0, 0.0};
   EXPECT_DOUBLE_EQ(hint_of(message)->turn, std::numbers::pi);
 }
 
-TEST(HintMessage, ThatIsNotFiniteIsNone) {
+TEST(HintMessage, IsRejectedIfNotFinite) {
   auto message = clicked();
   message.pose.pose.position.y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(hint_of(message));

@@ -30,7 +30,7 @@ Image grey_of(const ReceivedImage& received) {
   return grey;
 }
 
-TEST(ReceivedImage, IsGreyOfEachEncoding) {
+TEST(ReceivedImage, IsConvertedToGreyFromEachEncoding) {
   for (const auto& [encoding, bytes] : std::vector<std::pair<std::string, std::uint32_t>>{{"mono8", 1},
                                                                                           {"8UC1", 1},
                                                                                           {"mono16", 2},
@@ -53,20 +53,20 @@ TEST(ReceivedImage, IsGreyOfEachEncoding) {
   }
 }
 
-TEST(ReceivedImage, TakesLuminanceOfUyvyFromTheSecondByte) {
+TEST(ReceivedImage, ReadsLuminanceOfUyvyFromTheSecondByte) {
   ros::Image image = image_of("uyvy", 2, 10);
   for (std::size_t i = 1; i < image.data.size(); i += 2) image.data[i] = 200;
   EXPECT_THAT(grey_of(received_image(image, "/left")).pixels, Each(200));
 }
 
-TEST(ReceivedImage, TakesRowsWithPadding) {
+TEST(ReceivedImage, ReadsRowsWithPadding) {
   ros::Image image = image_of("mono8", 1, 7);
   image.step = 13;
   image.data.assign(13 * 4, 7);
   EXPECT_THAT(grey_of(received_image(image, "/left")).pixels, Each(7));
 }
 
-TEST(ReceivedImage, RefusesSizesThatTheDataDoNotHave) {
+TEST(ReceivedImage, RejectsSizesThatContradictTheData) {
   const auto refusal = [](auto change) {
     ros::Image image = image_of("mono8", 1, 7);
     change(image);
@@ -81,7 +81,7 @@ TEST(ReceivedImage, RefusesSizesThatTheDataDoNotHave) {
   refusal([](ros::Image& image) { image.encoding = "thermal"; });
 }
 
-TEST(ReceivedImage, IsReadFromJpegAndPng) {
+TEST(ReceivedImage, IsDecodedFromJpegAndPng) {
   const cv::Mat grey(20, 30, CV_8UC1, cv::Scalar(120));
   for (const char* const kind : {".jpg", ".png"}) {
     ros::CompressedImage message;

@@ -24,7 +24,7 @@ Pairs waiting_pairs(int count) {
   return pairs;
 }
 
-TEST(ImagePairs, GivesTheNewestWholePairAndPassesOlderOnesOver) {
+TEST(ImagePairs, ReturnsTheNewestCompletePairAndSkipsOlderOnes) {
   Pairs pairs = waiting_pairs(3);
   pairs.add_left(4s, 4, 2ms);
   const auto pair = pairs.next(3ms);
@@ -37,14 +37,14 @@ TEST(ImagePairs, GivesTheNewestWholePairAndPassesOlderOnesOver) {
   EXPECT_EQ(pairs.next(5ms)->right, 14);
 }
 
-TEST(ImagePairs, PassesNoneOverWhereTheyAreAskedForLateByOne) {
+TEST(ImagePairs, SkipsNoneIfReadOneLate) {
   Pairs pairs = waiting_pairs(2);
   EXPECT_EQ(pairs.next(1ms)->left, 1);
   EXPECT_EQ(pairs.next(2ms)->left, 2);
   EXPECT_EQ(pairs.counts().passed_over, 0);
 }
 
-TEST(ImagePairs, GivesALeftImageAloneOnceItHasWaited) {
+TEST(ImagePairs, ReturnsALeftImageAloneAfterTheTimeout) {
   Pairs pairs({true, 0ms, 50ms});
   pairs.add_left(1s, 1, 0ms);
   pairs.add_right(1s + 1ms, 11, 0ms);
@@ -56,7 +56,7 @@ TEST(ImagePairs, GivesALeftImageAloneOnceItHasWaited) {
   EXPECT_EQ(pairs.counts().without_right, 1);
 }
 
-TEST(ImagePairs, TakesTheNearestRightImageWithinTheTolerance) {
+TEST(ImagePairs, MatchesTheNearestRightImageWithinTheTolerance) {
   Pairs pairs({true, 5ms, 50ms});
   pairs.add_right(1s - 4ms, 10, 0ms);
   pairs.add_right(1s + 2ms, 11, 0ms);
@@ -64,7 +64,7 @@ TEST(ImagePairs, TakesTheNearestRightImageWithinTheTolerance) {
   EXPECT_EQ(pairs.next(0ms)->right, 11);
 }
 
-TEST(ImagePairs, AreLeftImagesAloneOfOneCamera) {
+TEST(ImagePairs, ReturnsLeftImagesForOneCamera) {
   Pairs pairs({false, 0ms, 50ms});
   pairs.add_left(1s, 1, 0ms);
   pairs.add_left(2s, 2, 0ms);
@@ -73,7 +73,7 @@ TEST(ImagePairs, AreLeftImagesAloneOfOneCamera) {
   EXPECT_FALSE(pairs.next(0ms));
 }
 
-TEST(ImagePairs, KeepFewImagesThatNobodyAsksFor) {
+TEST(ImagePairs, LimitsStoredImages) {
   Pairs pairs({true, 0ms, 1s});
   for (int i = 0; i < 100; ++i) pairs.add_left(Timestamp(i * 50ms), i, 0ms);
   EXPECT_EQ(pairs.counts().passed_over, 92);
@@ -99,12 +99,12 @@ class Watch : public testing::Test {
   }();
 };
 
-TEST_F(Watch, IsContentWithACameraThatWorks) {
+TEST_F(Watch, ReportsNothingForAWorkingCamera) {
   frames(1s, 40, good_);
   EXPECT_EQ(level(3s), ros::DiagnosticStatus::kOk);
 }
 
-TEST_F(Watch, NamesACameraThatIsSilent) {
+TEST_F(Watch, ReportsASilentCamera) {
   EXPECT_EQ(level(1500ms), ros::DiagnosticStatus::kStale);
   EXPECT_THAT(said(1500ms), HasSubstr("no images on /left"));
   frames(2s, 20, good_);
@@ -113,7 +113,7 @@ TEST_F(Watch, NamesACameraThatIsSilent) {
   EXPECT_THAT(said(3600ms), HasSubstr("no image for"));
 }
 
-TEST_F(Watch, NamesLostRightImages) {
+TEST_F(Watch, ReportsLostRightImages) {
   frames(1s, 20, good_);
   frames(2s, 4, left_alone_);
   EXPECT_EQ(level(2200ms), ros::DiagnosticStatus::kWarn);
@@ -127,7 +127,7 @@ TEST_F(Watch, NamesLostRightImages) {
   EXPECT_EQ(level(4450ms), ros::DiagnosticStatus::kOk);
 }
 
-TEST_F(Watch, NamesFrozenImagesJumpsAndUnusableOnes) {
+TEST_F(Watch, ReportsFrozenImagesJumpsAndUnusableImages) {
   CameraFrame frame = good_;
   frame.is_frozen = true;
   frames(1s, 1, frame);
@@ -142,7 +142,7 @@ TEST_F(Watch, NamesFrozenImagesJumpsAndUnusableOnes) {
   EXPECT_EQ(level(4s), ros::DiagnosticStatus::kError);
 }
 
-TEST_F(Watch, CountsImagesThatWereLeftOut) {
+TEST_F(Watch, CountsReplacedImages) {
   frames(1s, 20, good_);
   watch_.note_passed_over(3, 1950ms);
   EXPECT_EQ(level(2s), ros::DiagnosticStatus::kWarn);

@@ -35,7 +35,7 @@ const std::string kBegin =
     "\x89"
     "BYRE\r\n";
 
-TEST_F(KeptMaps, AreTheOneThatIsSavedAndTheOneBefore) {
+TEST_F(KeptMaps, AreTheSavedMapAndThePreviousOne) {
   keep_as_previous(map_);
   EXPECT_FALSE(fs::exists(previous_map(map_))) << "there was none";
   for (const char* const day : {"monday", "tuesday", "wednesday"}) {
@@ -47,14 +47,14 @@ TEST_F(KeptMaps, AreTheOneThatIsSavedAndTheOneBefore) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
-TEST_F(KeptMaps, LeaveNothingBesideWhereASaveWasInterruptedBeforeTheMapWasReplaced) {
+TEST_F(KeptMaps, LeaveNoFilesAfterASaveInterruptedBeforeReplacement) {
   write_whole(map_, kBegin + "monday");
   for (int save = 0; save < 2; ++save) keep_as_previous(map_);
   EXPECT_EQ(content(previous_map(map_)), kBegin + "monday");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
-TEST_F(KeptMaps, OutliveWhatAnInterruptedSaveLeft) {
+TEST_F(KeptMaps, SurviveLeftoversOfAnInterruptedSave) {
   write_whole(map_, kBegin + "monday");
   std::ofstream(folder_ / "barn.previous.byre.0123abcd.unfinished") << "half";
   keep_as_previous(map_);
@@ -84,7 +84,7 @@ std::string refusal_of(const NodeConfig& config) {
   }
 }
 
-TEST_F(KeptMaps, AreRefusedForInputsOfTheNodeAndFilesOfOtherKinds) {
+TEST_F(KeptMaps, AreRejectedForInputsOfTheNodeAndOtherFileTypes) {
   NodeConfig config;
   config.file = folder_ / "robot.yaml";
   config.map = folder_ / "barn.byre";

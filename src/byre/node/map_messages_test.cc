@@ -24,7 +24,7 @@ class PlanFile : public testing::Test {
   fs::path folder_ = fs::path(testing::TempDir()) / ("byre_plan_file." + std::to_string(getpid()));
 };
 
-TEST_F(PlanFile, BecomesAGridFromTheLowestRowUp) {
+TEST_F(PlanFile, IsConvertedToAGridFromTheLowestRow) {
   std::ofstream(folder_ / "plan.yaml") << "image: plan.pgm\nresolution: 0.5\norigin: [-1, 2, 0.3]\n";
   const ros::OccupancyGrid grid = grid_of(read_floor_plan(folder_ / "plan.yaml"));
   EXPECT_EQ(grid.info.width, 3u);
@@ -36,7 +36,7 @@ TEST_F(PlanFile, BecomesAGridFromTheLowestRowUp) {
   EXPECT_THAT(grid.data, ElementsAre(-1, 0, 100, 0, 100, 0));
 }
 
-TEST_F(PlanFile, IsPublishedByTheRulesOfItsYaml) {
+TEST_F(PlanFile, IsConvertedByTheThresholdsOfItsYaml) {
   const std::string lies = "image: plan.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
   const auto grid = [&](const std::string& fields) {
     std::ofstream(folder_ / "plan.yaml") << lies + fields;
@@ -48,12 +48,12 @@ TEST_F(PlanFile, IsPublishedByTheRulesOfItsYaml) {
   EXPECT_THAT(grid("mode: raw\n"), ElementsAre(-1, -1, 0, -1, 0, -1));
 }
 
-TEST_F(PlanFile, IsRefusedWithPixelsThatAreNoSquares) {
+TEST_F(PlanFile, IsRejectedWithNonSquarePixels) {
   std::ofstream(folder_ / "plan.wld") << "0.5\n0\n0\n-0.6\n0\n0\n";
   EXPECT_THROW(grid_of(read_floor_plan(folder_ / "plan.pgm")), InputError);
 }
 
-TEST(CloudMessage, HoldsThreeNumbersAPoint) {
+TEST(CloudMessage, ContainsThreeNumbersPerPoint) {
   const ros::PointCloud2 cloud = cloud_message({{}, "map"}, {{1, 2, 3}, {4, 5, 6}});
   EXPECT_EQ(cloud.width, 2u);
   EXPECT_EQ(cloud.row_step, 24u);
@@ -63,7 +63,7 @@ TEST(CloudMessage, HoldsThreeNumbersAPoint) {
   EXPECT_EQ(y, 5.0f);
 }
 
-TEST(PathMessage, IsThinnedWhereItIsLong) {
+TEST(PathMessage, IsThinnedIfLong) {
   Trajectory trajectory(20'000);
   for (std::size_t i = 0; i < trajectory.size(); ++i) trajectory[i].time = Timestamp(i);
   const ros::Path path = path_message({}, trajectory, [](const Pose& pose) { return pose; });

@@ -8,7 +8,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(MetricsText, HasEachFigureWithItsMeaning) {
+TEST(MetricsText, ContainsEachFigureWithItsMeaning) {
   NodeFigures figures{20, 3, 17, {}};
   EXPECT_THAT(
       metrics_text(figures),

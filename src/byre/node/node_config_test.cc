@@ -36,7 +36,7 @@ class NodeConfigFile : public testing::Test {
   fs::path folder_ = fs::path(testing::TempDir()) / ("byre_node_config." + std::to_string(getpid()));
 };
 
-TEST_F(NodeConfigFile, TakesPathsFromItsFolderAndTopicsFromTheNode) {
+TEST_F(NodeConfigFile, ResolvesPathsInItsFolderAndTopicsInTheNode) {
   const NodeConfig config =
       read(
           "node:\n  name: eyes\n  namespace: /barn\nslam:\n  map: barn.byre\n  save: /var/lib/byre/new.byre\n"
@@ -49,7 +49,7 @@ TEST_F(NodeConfigFile, TakesPathsFromItsFolderAndTopicsFromTheNode) {
   EXPECT_EQ(config.topic(""), "");
 }
 
-TEST_F(NodeConfigFile, TellsAllFaultsWithLineAndRemedy) {
+TEST_F(NodeConfigFile, ReportsAllFaultsWithLineAndRemedy) {
   const std::string told =
       faults("slam:\n  map: barn.byre\n  worker: 3\nimages:\n  pair_wait: soon\n  left: two words\n");
   EXPECT_THAT(told, AllOf(HasSubstr("robot.yaml:3: unknown setting slam.worker"),
@@ -59,7 +59,7 @@ TEST_F(NodeConfigFile, TellsAllFaultsWithLineAndRemedy) {
   EXPECT_THAT(faults("left: x\nslam:\n  map: m\n"), HasSubstr("is images.left meant?"));
 }
 
-TEST_F(NodeConfigFile, RefusesWhatDoesNotGoTogether) {
+TEST_F(NodeConfigFile, RejectsContradictingSettings) {
   EXPECT_THAT(faults("images:\n  left: /a\n"), HasSubstr("slam.map is missing"));
   EXPECT_THAT(faults("slam:\n  task: map\n"), HasSubstr("robot.yaml: slam.save is missing"));
   EXPECT_THAT(faults("slam:\n  task: map\n  save: s\n  map: m\n"), HasSubstr("robot.yaml:4: slam.map is not used"));
@@ -73,7 +73,7 @@ TEST_F(NodeConfigFile, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
 }
 
-TEST_F(NodeConfigFile, TellsWhatAFleetCannotUse) {
+TEST_F(NodeConfigFile, ReportsFaultsOfFleetSettings) {
   const std::string sound = "slam:\n  map: m\nmqtt:\n  host: broker\n";
   EXPECT_THAT(faults(sound + "  port: 0\n"), HasSubstr("robot.yaml:5: mqtt.port is '0'"));
   EXPECT_THAT(faults(sound + "  rate: 100\n"), HasSubstr("robot.yaml:5: mqtt.rate is '100'"));
@@ -85,7 +85,7 @@ TEST_F(NodeConfigFile, TellsWhatAFleetCannotUse) {
   EXPECT_THAT(faults(sound), IsEmpty());
 }
 
-TEST_F(NodeConfigFile, HasFleetsToldOnlyWhereThereIsABroker) {
+TEST_F(NodeConfigFile, EnablesTheFleetLinkOnlyWithABroker) {
   EXPECT_FALSE(fleet_options(read("slam:\n  map: m\n").config));
   std::ofstream(folder_ / "password") << "secret\nmore\n";
   const std::string text = "slam:\n  map: m\nnode:\n  name: eyes\nmqtt:\n  host: broker\n  user: me\n  password_file: ";
@@ -96,7 +96,7 @@ TEST_F(NodeConfigFile, HasFleetsToldOnlyWhereThereIsABroker) {
   EXPECT_THROW(fleet_options(read(text + "absent\n").config), InputError);
 }
 
-TEST_F(NodeConfigFile, IsReadAgainAsItIsPrinted) {
+TEST_F(NodeConfigFile, IsReadAsPrinted) {
   NodeConfig config =
       read("slam:\n  map: /m\n  workers: repeatable\nimages:\n  right: ''\nframes:\n  mounting: tf\n").config;
   const std::string printed = node_config_file(config);
@@ -114,7 +114,7 @@ TEST_F(NodeConfigFile, QuotesTextWithoutControlCharacters) {
   EXPECT_EQ(read(printed).config.map, config.map);
 }
 
-TEST_F(NodeConfigFile, NamesFilesThatCannotBeUsed) {
+TEST_F(NodeConfigFile, ReportsUnusableFiles) {
   const NodeConfig config =
       read("slam:\n  map: absent.byre\n  plan: absent.yaml\ncalibration:\n  file: absent.yml\n").config;
   const std::vector<InputError> found = faults_in_files(config);
@@ -122,7 +122,7 @@ TEST_F(NodeConfigFile, NamesFilesThatCannotBeUsed) {
   for (const InputError& fault : found) EXPECT_THAT(fault.what(), HasSubstr("absent"));
 }
 
-TEST_F(NodeConfigFile, NamesACalibrationWithAnUnusualBaseline) {
+TEST_F(NodeConfigFile, ReportsACalibrationWithAnUnusualBaseline) {
   Calibration calibration;
   calibration.left = {.width = 752, .height = 480, .fx = 400.0, .fy = 400.0, .cx = 376.0, .cy = 240.0};
   calibration.right = {calibration.left, {Eigen::Quaterniond::Identity(), {-7.5, 0.0, 0.0}}};

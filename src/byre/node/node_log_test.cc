@@ -11,7 +11,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(NodeLogger, TellsTheJournalHowMuchALineMatters) {
+TEST(NodeLogger, WritesPrioritiesForTheJournal) {
   std::ostringstream journal, terminal;
   NodeLogger(journal, true).tell(LogLevel::warning, "untrusted: no pose", {});
   NodeLogger(terminal, false).tell(LogLevel::warning, "untrusted: no pose", {});
@@ -19,7 +19,7 @@ TEST(NodeLogger, TellsTheJournalHowMuchALineMatters) {
   EXPECT_EQ(terminal.str(), "byre node: untrusted: no pose\n");
 }
 
-TEST(NodeLogger, WritesTextFromOutsideOnOneLine) {
+TEST(NodeLogger, EscapesLineBreaksOfExternalText) {
   std::ostringstream journal, terminal;
   NodeLogger(journal, true).tell(LogLevel::info, "save\n<3>fake", {});
   NodeLogger(terminal, false).tell(LogLevel::info, "\x1b[2J\xff", {});
@@ -27,7 +27,7 @@ TEST(NodeLogger, WritesTextFromOutsideOnOneLine) {
   EXPECT_EQ(terminal.str(), "byre node: \\x1b[2J\\xff\n");
 }
 
-TEST(NodeLogger, LeavesOutWhatComesTooFastAndSaysHowMuch) {
+TEST(NodeLogger, LimitsTheRateAndCountsSuppressedLines) {
   std::ostringstream stream;
   NodeLogger log(stream, false);
   for (int i = 0; i < 100; ++i) log.tell(LogLevel::notice, "line " + std::to_string(i), {});
@@ -37,7 +37,7 @@ TEST(NodeLogger, LeavesOutWhatComesTooFastAndSaysHowMuch) {
   EXPECT_THAT(stream.str(), EndsWith("70 log lines suppressed\nbyre node: much later\n"));
 }
 
-TEST(NodeLogger, LeavesNoErrorOut) {
+TEST(NodeLogger, NeverSuppressesErrors) {
   std::ostringstream stream;
   NodeLogger log(stream, false);
   for (int i = 0; i < 50; ++i) log.tell(LogLevel::error, "error " + std::to_string(i), {});

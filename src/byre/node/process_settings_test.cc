@@ -20,13 +20,13 @@ std::string told_by(const NodeConfig& config, int& policy) {
   return told;
 }
 
-TEST(ProcessSettings, LeaveAloneWhatNobodyAskedFor) {
+TEST(ProcessSettings, ChangeNothingByDefault) {
   int policy = 0;
   EXPECT_THAT(told_by({}, policy), IsEmpty());
   EXPECT_EQ(policy, SCHED_OTHER);
 }
 
-TEST(ProcessSettings, LetTrackingGoFirstOrSayWhyNot) {
+TEST(ProcessSettings, SetThePriorityOrReportWhyNot) {
   NodeConfig config;
   config.priority = 10;
   int policy = 0;

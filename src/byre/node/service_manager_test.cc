@@ -41,7 +41,7 @@ class NotifySocket {
   int socket_ = -1;
 };
 
-TEST(ServiceManager, HearsHowTheProgramIs) {
+TEST(ServiceManager, ReceivesTheStatus) {
   const NotifySocket socket;
   setenv("WATCHDOG_USEC", "60000000", 1);
   ServiceManager manager;
@@ -59,7 +59,7 @@ TEST(ServiceManager, HearsHowTheProgramIs) {
   EXPECT_EQ(socket.next(), "STOPPING=1");
 }
 
-TEST(ServiceManager, WaitsForWhatTakesLong) {
+TEST(ServiceManager, ExtendsTheWatchdogForLongTasks) {
   const NotifySocket socket;
   setenv("WATCHDOG_USEC", "10000000", 1);
   ServiceManager manager;
@@ -74,7 +74,7 @@ TEST(ServiceManager, WaitsForWhatTakesLong) {
   EXPECT_EQ(socket.next(), "") << "half of the time is not over";
 }
 
-TEST(ServiceManager, NeedNotWaitForWhatIsShort) {
+TEST(ServiceManager, KeepsTheWatchdogForShortTasks) {
   const NotifySocket socket;
   setenv("WATCHDOG_USEC", "60000000", 1);
   ServiceManager manager;
@@ -82,7 +82,7 @@ TEST(ServiceManager, NeedNotWaitForWhatIsShort) {
   EXPECT_EQ(socket.next(), "");
 }
 
-TEST(ServiceManager, IsNotNeeded) {
+TEST(ServiceManager, IsOptional) {
   unsetenv("NOTIFY_SOCKET");
   ServiceManager manager;
   EXPECT_NO_THROW(manager.ready());

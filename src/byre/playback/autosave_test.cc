@@ -16,7 +16,7 @@ Map map_of(int points) {
   return map;
 }
 
-TEST(Autosave, SavesTheMapAsItWasWhenOffered) {
+TEST(Autosave, SavesTheMapAsOffered) {
   std::vector<int> saved;
   Autosave autosave(0.0, [&saved](const Map& map, const auto&) { saved.push_back(map.point_count()); });
   Map map = map_of(1);
@@ -29,7 +29,7 @@ TEST(Autosave, SavesTheMapAsItWasWhenOffered) {
   EXPECT_EQ(autosave.saved(), 2);
 }
 
-TEST(Autosave, KeepsHowWheelsWereMountedThen) {
+TEST(Autosave, SavesWheelExtrinsics) {
   std::vector<double> saved;
   Autosave autosave(
       0.0, [&saved](const Map&, const KeptWithMap& kept) { saved.push_back(kept.mounting.wheels->metres_per_unit); });
@@ -41,14 +41,14 @@ TEST(Autosave, KeepsHowWheelsWereMountedThen) {
   EXPECT_THAT(saved, ElementsAre(1.01));
 }
 
-TEST(Autosave, WaitsForItsTime) {
+TEST(Autosave, WaitsForItsInterval) {
   Autosave autosave(3600.0, [](const Map&, const auto&) { FAIL() << "an hour too early"; });
   autosave.offer(map_of(1), {});
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 0);
 }
 
-TEST(Autosave, PassesOverWhatComesWhileItSaves) {
+TEST(Autosave, SkipsMapsOfferedWhileSaving) {
   std::promise<void> disk;
   Autosave autosave(0.0, [done = disk.get_future().share()](const Map&, const auto&) { done.wait(); });
   for (int i = 0; i < 3; ++i) autosave.offer(map_of(1), {});
@@ -57,7 +57,7 @@ TEST(Autosave, PassesOverWhatComesWhileItSaves) {
   EXPECT_EQ(autosave.saved(), 1);
 }
 
-TEST(Autosave, GoesOnAfterAFailureAndRemembersIt) {
+TEST(Autosave, ContinuesAfterAFailureAndReportsIt) {
   bool is_full = true;
   Autosave autosave(0.0, [&is_full](const Map&, const auto&) {
     if (is_full) throw std::runtime_error("the disk is full");
@@ -71,7 +71,7 @@ TEST(Autosave, GoesOnAfterAFailureAndRemembersIt) {
   EXPECT_EQ(autosave.saved(), 1);
 }
 
-TEST(Autosave, HasNothingToWaitForBeforeTheFirst) {
+TEST(Autosave, WaitsForNothingBeforeTheFirstSave) {
   Autosave autosave(0.0, [](const Map&, const auto&) {});
   autosave.finish();
   EXPECT_THAT(autosave.failures(), IsEmpty());

@@ -40,7 +40,7 @@ class FakeRecording final : public Recording {
   std::vector<std::string> warnings_;
 };
 
-TEST(DecodeAhead, GivesAllFramesInOrder) {
+TEST(DecodeAhead, ReturnsAllFramesInOrder) {
   FakeRecording recording(20);
   DecodeAhead decoder(recording);
   for (int i = 0; i < 20; ++i) {
@@ -55,7 +55,7 @@ TEST(DecodeAhead, GivesAllFramesInOrder) {
   EXPECT_FALSE(decoder.next());
 }
 
-TEST(DecodeAhead, HandsWarningsOverWithTheirFrame) {
+TEST(DecodeAhead, ReturnsWarningsWithTheirFrame) {
   FakeRecording recording(4);
   DecodeAhead decoder(recording);
   EXPECT_THAT(decoder.next()->warnings, IsEmpty());
@@ -64,7 +64,7 @@ TEST(DecodeAhead, HandsWarningsOverWithTheirFrame) {
   EXPECT_THAT(decoder.next()->warnings, IsEmpty());
 }
 
-TEST(DecodeAhead, StaysAFewFramesAheadAndNoMore) {
+TEST(DecodeAhead, LimitsTheNumberOfFramesAhead) {
   FakeRecording recording(100);
   DecodeAhead decoder(recording);
   for (int taken = 0; taken < 100; ++taken) {
@@ -74,7 +74,7 @@ TEST(DecodeAhead, StaysAFewFramesAheadAndNoMore) {
   EXPECT_EQ(recording.reads, 100);
 }
 
-TEST(DecodeAhead, LeavesOutAFrameWhoseReadingThrows) {
+TEST(DecodeAhead, SkipsAFrameWhoseReadingThrows) {
   FakeRecording recording(3);
   recording.failing = 1;
   DecodeAhead decoder(recording);
@@ -86,7 +86,7 @@ TEST(DecodeAhead, LeavesOutAFrameWhoseReadingThrows) {
   EXPECT_FALSE(decoder.next()->images) << "frame 2 cannot be read";
 }
 
-TEST(DecodeAhead, MayBeLeftAtAnyFrame) {
+TEST(DecodeAhead, MayBeDestroyedAtAnyFrame) {
   for (int taken = 0; taken < 6; ++taken) {
     FakeRecording recording(6);
     {

@@ -18,13 +18,13 @@ TEST(LiveClock, StartsWithItsFirstFrame) {
   EXPECT_EQ(clock.wait_until_due(hours(1), never), 0.0);
 }
 
-TEST(LiveClock, TellsHowLateAFrameIs) {
+TEST(LiveClock, MeasuresTheLatenessOfAFrame) {
   LiveClock clock;
   clock.wait_until_due(seconds(10), never);
   EXPECT_GE(clock.wait_until_due(seconds(7), never), 3.0);
 }
 
-TEST(LiveClock, WaitsForAFrameThatIsNotDueYet) {
+TEST(LiveClock, WaitsForAFutureFrame) {
   LiveClock clock;
   const auto start = std::chrono::steady_clock::now();
   clock.wait_until_due(Timestamp(0), never);
@@ -32,7 +32,7 @@ TEST(LiveClock, WaitsForAFrameThatIsNotDueYet) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, milliseconds(70));
 }
 
-TEST(LiveClock, GivesUpWaitingWhenItShouldStop) {
+TEST(LiveClock, StopsWaitingOnRequest) {
   LiveClock clock;
   clock.wait_until_due(Timestamp(0), never);
   EXPECT_EQ(clock.wait_until_due(hours(1), [] { return true; }), 0.0);

@@ -17,7 +17,7 @@ PosedRun run(const std::filesystem::path& folder, const Trajectory& poses, Frame
   return run_map_from_poses(*recording, poses, {}, {[] { return false; }, [](int) {}});
 }
 
-TEST(RunMapFromPoses, MakesAKeyframeOfEveryFrameWhereItIsSaidToBe) {
+TEST(RunMapFromPoses, MakesAKeyframeAtEveryGivenPose) {
   const RenderedFixture& rendered = RenderedFixture::shared();
   const PosedRun made = run(rendered.folder(), rendered.truth(), {.stride = 4});
   EXPECT_THAT(find_faults(made.map), IsEmpty());
@@ -33,7 +33,7 @@ TEST(RunMapFromPoses, MakesAKeyframeOfEveryFrameWhereItIsSaidToBe) {
   }
 }
 
-TEST(RunMapFromPoses, LeavesOutFramesWithoutPose) {
+TEST(RunMapFromPoses, SkipsFramesWithoutPose) {
   const RenderedFixture& rendered = RenderedFixture::shared();
   const Trajectory second_half(rendered.truth().begin() + 12, rendered.truth().end());
   const PosedRun made = run(rendered.folder(), second_half, {.stride = 4});
@@ -43,7 +43,7 @@ TEST(RunMapFromPoses, LeavesOutFramesWithoutPose) {
   EXPECT_THAT(made.trajectory, SizeIs(3));
 }
 
-TEST(RunMapFromPoses, RefusesATrajectoryOfAnotherTime) {
+TEST(RunMapFromPoses, RejectsATrajectoryOfAnotherTime) {
   const RenderedFixture& rendered = RenderedFixture::shared();
   const Trajectory elsewhere = {{std::chrono::hours(1), {}}, {std::chrono::hours(2), {}}};
   EXPECT_THROW(run(rendered.folder(), elsewhere), InputError);

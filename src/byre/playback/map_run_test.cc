@@ -39,7 +39,7 @@ std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory) {
   return positions;
 }
 
-TEST(RunMap, FollowsARecordingInEveryPace) {
+TEST(RunMap, TracksARecordingInEveryPace) {
   const RenderedFixture& rendered = RenderedFixture::shared();
   for (const Pace pace : {Pace::same_thread, Pace::paced, Pace::live}) {
     SCOPED_TRACE(name_of(pace));
@@ -59,7 +59,7 @@ TEST(RunMap, FollowsARecordingInEveryPace) {
   }
 }
 
-TEST(RunMap, ShowsEachFrameWithThePointsSeenInIt) {
+TEST(RunMap, ReportsEachFrameWithItsPoints) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {});
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
@@ -75,7 +75,7 @@ TEST(RunMap, ShowsEachFrameWithThePointsSeenInIt) {
   EXPECT_EQ(looks, static_cast<int>(mapped.frames.size()));
 }
 
-TEST(RunMap, RepeatsItselfWhenPaced) {
+TEST(RunMap, IsDeterministicWhenPaced) {
   const MapRun first = run(RenderedFixture::shared(), Pace::paced);
   const MapRun second = run(RenderedFixture::shared(), Pace::paced);
   EXPECT_EQ(positions(first.causal), positions(second.causal));
@@ -88,7 +88,7 @@ bool same(const Trajectory& first, const Trajectory& second) {
   });
 }
 
-TEST(RunMap, GivesThePosesOfSlam) {
+TEST(RunMap, EqualsThePosesOfSlam) {
   const MapRun mapped = run(RenderedFixture::shared(), Pace::paced);
   const auto recording = open_recording(RenderedFixture::shared().folder(), {});
   SlamOptions options;
@@ -107,7 +107,7 @@ TEST(RunMap, GivesThePosesOfSlam) {
   EXPECT_EQ(slam.points(), mapped.map.point_count());
 }
 
-TEST(RunMap, NotesInWhichFrameAJobRanWhereTheyShareAThread) {
+TEST(RunMap, ReportsTheFrameOfAJobOnTheSameThread) {
   const MapRun mapped = run(RenderedFixture::shared(), Pace::same_thread);
   int taken_over = 0;
   for (std::size_t i = 1; i < mapped.frames.size(); ++i) {
@@ -121,7 +121,7 @@ TEST(RunMap, NotesInWhichFrameAJobRanWhereTheyShareAThread) {
   EXPECT_GT(taken_over, 0);
 }
 
-TEST(RunMap, StopsAfterTheFrameItIsAt) {
+TEST(RunMap, StopsAfterTheCurrentFrame) {
   const MapRun mapped = run(RenderedFixture::shared(), Pace::paced, 5);
   EXPECT_THAT(mapped.frames, SizeIs(5));
   EXPECT_THAT(mapped.causal, SizeIs(5));
@@ -129,7 +129,7 @@ TEST(RunMap, StopsAfterTheFrameItIsAt) {
   EXPECT_FALSE(mapped.finishing) << "a stopped run is to be saved soon";
 }
 
-TEST(RunMap, CutsFinishingShortWhenStopped) {
+TEST(RunMap, InterruptsFinishingWhenStopped) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
   EngineOptions options;
   options.vocabulary = Vocabulary::load(default_vocabulary_path());
@@ -144,7 +144,7 @@ TEST(RunMap, CutsFinishingShortWhenStopped) {
   EXPECT_THAT(mapped.final, SizeIs(6));
 }
 
-TEST(RunMap, OffersTheMapFromTheFirstPoseOn) {
+TEST(RunMap, OffersTheMapFromTheFirstPose) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
   std::vector<int> keyframes;
   MapRunHooks hooks;
@@ -157,7 +157,7 @@ TEST(RunMap, OffersTheMapFromTheFirstPoseOn) {
   EXPECT_FALSE(mapped.finishing) << "no places were recognised";
 }
 
-TEST(RunMap, OffersHowWheelsAreMountedWithTheMap) {
+TEST(RunMap, OffersWheelExtrinsicsWithTheMap) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 2});
   EngineOptions options;
   options.mounting.wheels.emplace().metres_per_unit = 1.02;  // from the map that is extended
@@ -172,7 +172,7 @@ TEST(RunMap, OffersHowWheelsAreMountedWithTheMap) {
   EXPECT_THAT(offered, AllOf(SizeIs(2), Each(1.02)));
 }
 
-TEST(RunMap, GoesOnPastImagesThatAreTornOrAbsent) {
+TEST(RunMap, ContinuesAfterDamagedOrMissingImages) {
   const RenderedFixture damaged("byre_damaged_room", 12, 20.0);
   std::filesystem::resize_file(damaged.image("cam0", 4), 100);
   std::filesystem::remove(damaged.image("cam1", 7));

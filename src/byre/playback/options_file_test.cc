@@ -39,7 +39,7 @@ EngineOptions all_changed() {
   return options;
 }
 
-TEST_F(OptionsFile, SetsWhatItNamesAndNothingElse) {
+TEST_F(OptionsFile, SetsOnlyItsOptions) {
   const EngineOptions options = read("pace: live\ntracking:\n  search_radius_px: 20.5\n");
   EXPECT_EQ(options.pace, Pace::live);
   EXPECT_EQ(options.session.track.search_radius, 20.5f);
@@ -49,14 +49,14 @@ TEST_F(OptionsFile, SetsWhatItNamesAndNothingElse) {
   EXPECT_EQ(options_file(back), options_file({}));
 }
 
-TEST_F(OptionsFile, IsReadBackAsItWasWritten) {
+TEST_F(OptionsFile, IsReadAsWritten) {
   const EngineOptions options = all_changed();
   EXPECT_NE(options_file(options), options_file({}));
   EXPECT_EQ(options_file(read(options_file(options))), options_file(options));
   EXPECT_EQ(options_file(read(options_file({}))), options_file({}));
 }
 
-TEST_F(OptionsFile, SaysWhatIsWrongInWhichLineAndWhatToDo) {
+TEST_F(OptionsFile, ReportsFaultsWithLineAndRemedy) {
   EXPECT_THAT(
       error("tracking:\n  serch_radius_px: 3\n"),
       HasSubstr(

@@ -15,7 +15,7 @@ PlanRegistration turned_and_shifted() {
   return registration;
 }
 
-TEST(RunOnPlan, MovesEveryPoseInTheMapAndNoOther) {
+TEST(RunOnPlan, TransformsOnlyPosesInTheMap) {
   const PlanRegistration registration = turned_and_shifted();
   MapRun run;
   run.causal = run.final = run.odometry = {{{}, kMapFromBody}};
@@ -35,7 +35,7 @@ TEST(RunOnPlan, MovesEveryPoseInTheMapAndNoOther) {
   EXPECT_THAT(*moved.frames[2].report->odometry_from_body, PoseNear(kMapFromBody, 0.0, 1e-9));
 }
 
-TEST(RunOnPlan, TellsWhatTheRegistrationLeavesOpen) {
+TEST(RunOnPlan, AddsTheCovarianceOfTheRegistration) {
   PlanRegistration registration = turned_and_shifted();
   registration.covariance(5, 5) = 1e-4;  // about the vertical through the origin of the map
   MappedFrame frame;

@@ -73,18 +73,18 @@ void for_each_message(Check check) {
   check(diagnostics());
 }
 
-TEST(MessageBytes, BeginWithTheByteOrderAndEndStringsWithAZeroInCdr) {
+TEST(MessageBytes, HaveAByteOrderAndTerminatedStringsInCdr) {
   EXPECT_EQ(write_message(String{"hi"}, Encoding::cdr), bytes_of("00 01 00 00 03 00 00 00 68 69 00"));
   EXPECT_EQ(write_message(String{}, Encoding::cdr), bytes_of("00 01 00 00 01 00 00 00 00"));
 }
 
-TEST(MessageBytes, AreWithoutZerosAndPaddingInRos1) {
+TEST(MessageBytes, HaveNoTerminatorsAndPaddingInRos1) {
   EXPECT_EQ(write_message(String{"hi"}, Encoding::ros1), bytes_of("02 00 00 00 68 69"));
   EXPECT_EQ(write_message(PointField{"x", 4, 7, 1}, Encoding::ros1),
             bytes_of("01 00 00 00 78 04 00 00 00 07 01 00 00 00"));
 }
 
-TEST(MessageBytes, AreAlignedFromBehindTheFirstFourInCdr) {
+TEST(MessageBytes, AreAlignedAfterTheCdrHeader) {
   EXPECT_EQ(write_message(PointField{"x", 4, 7, 1}, Encoding::cdr),
             bytes_of("00 01 00 00 02 00 00 00 78 00 00 00 04 00 00 00 07 00 00 00 01 00 00 00"));
   // Time, "m", then a double at offset 16, a multiple of eight.
@@ -94,14 +94,14 @@ TEST(MessageBytes, AreAlignedFromBehindTheFirstFourInCdr) {
   EXPECT_EQ(bytes.size(), 4u + 16 + 7 * 8);
 }
 
-TEST(MessageBytes, HoldTheSequenceNumberInRos1Alone) {
+TEST(MessageBytes, ContainTheSequenceNumberInRos1Only) {
   EXPECT_EQ(write_message(header(), Encoding::ros1),
             bytes_of("07 00 00 00 01 00 00 00 02 00 00 00 03 00 00 00 6d 61 70"));
   EXPECT_EQ(write_message(header(), Encoding::cdr),
             bytes_of("00 01 00 00 01 00 00 00 02 00 00 00 04 00 00 00 6d 61 70 00"));
 }
 
-TEST(MessageBytes, AreReadWithTheHighestByteFirst) {
+TEST(MessageBytes, AreReadInBigEndianOrder) {
   const auto field = read_message<PointField>(
       bytes_of("00 00 00 00 00 00 00 02 78 00 00 00 00 00 00 04 07 00 00 00 00 00 00 09"), Encoding::cdr, "test");
   EXPECT_EQ(field, (PointField{"x", 4, 7, 9}));
@@ -111,12 +111,12 @@ TEST(MessageBytes, AreReadWithTheHighestByteFirst) {
   EXPECT_EQ(point, (Point{1.0, 2.0, -1.0}));
 }
 
-TEST(MessageBytes, MayLackTheZeroOfStrings) {
+TEST(MessageBytes, MayLackStringTerminators) {
   EXPECT_EQ(read_message<String>(bytes_of("00 01 00 00 00 00 00 00"), Encoding::cdr, "test").data, "");
   EXPECT_EQ(read_message<String>(bytes_of("00 01 00 00 02 00 00 00 68 69"), Encoding::cdr, "test").data, "hi");
 }
 
-TEST(MessageBytes, ComeBackAsTheMessage) {
+TEST(MessageBytes, AreReadAsWritten) {
   for_each_message([]<typename M>(const M& message) {
     EXPECT_EQ(read_message<M>(write_message(message, Encoding::ros1), Encoding::ros1, "test"), message) << M::kType;
     const M from_cdr = read_message<M>(write_message(message, Encoding::cdr), Encoding::cdr, "test");
@@ -124,7 +124,7 @@ TEST(MessageBytes, ComeBackAsTheMessage) {
   });
 }
 
-TEST(MessageBytes, AreRefusedWhenCutAnywhere) {
+TEST(MessageBytes, AreRejectedWhenTruncatedAnywhere) {
   for_each_message([]<typename M>(const M& message) {
     for (const Encoding encoding : {Encoding::cdr, Encoding::ros1}) {
       const Bytes whole = write_message(message, encoding);
@@ -137,7 +137,7 @@ TEST(MessageBytes, AreRefusedWhenCutAnywhere) {
   });
 }
 
-TEST(MessageBytes, AreRefusedWhenTheyClaimMoreThanIsThere) {
+TEST(MessageBytes, AreRejectedWithLengthsBeyondTheEnd) {
   for_each_message([]<typename M>(const M& message) {
     const Bytes whole = write_message(message, Encoding::ros1);
     for (std::size_t place = 0; place + 4 <= whole.size(); ++place) {  // includes lengths
@@ -160,7 +160,7 @@ TEST(MessageBytes, AreRefusedWhenTheyClaimMoreThanIsThere) {
       InputError);
 }
 
-TEST(MessageBytes, AreRefusedInARepresentationOtherThanPlainCdr) {
+TEST(MessageBytes, AreRejectedUnlessPlainCdr) {
   try {
     read_message<String>(bytes_of("00 07 00 00 01 00 00 00 00"), Encoding::cdr, "barn.mcap: /events, message 3");
     FAIL() << "read a later CDR";
@@ -173,7 +173,7 @@ TEST(MessageBytes, MayBePaddedAtTheirEnd) {
   EXPECT_EQ(read_message<String>(bytes_of("00 01 00 00 03 00 00 00 68 69 00 00"), Encoding::cdr, "test").data, "hi");
 }
 
-TEST(MessageTime, IsNanosecondsBackAndForth) {
+TEST(MessageTime, ConvertsToNanosecondsAndBack) {
   EXPECT_EQ(to_nanoseconds({1403636579, 763555584}), std::chrono::nanoseconds(1403636579763555584));
   EXPECT_EQ(to_time(std::chrono::nanoseconds(1403636579763555584)), (Time{1403636579, 763555584}));
   EXPECT_EQ(to_time(std::chrono::nanoseconds(-1)), (Time{-1, 999999999}));

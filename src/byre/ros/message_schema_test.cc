@@ -17,7 +17,7 @@ TEST(MessageSchema, NamesEachFieldWithItsType) {
             "uint32 x_offset\nuint32 y_offset\nuint32 height\nuint32 width\nbool do_rectify\n");
 }
 
-TEST(MessageSchema, HasTheDefinitionsOfPartsBehindIt) {
+TEST(MessageSchema, AppendsTheDefinitionsOfParts) {
   EXPECT_EQ(message_schema<Image>(),
             "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\n"
             "uint8[] data\n" +
@@ -35,7 +35,7 @@ TEST(MessageSchema, DefinesEachPartOnce) {
                 "\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
 }
 
-TEST(MessageSchema, TellsArraysFromSequencesAndBytesFromNumbers) {
+TEST(MessageSchema, SeparatesArraysFromSequencesAndBytesFromNumbers) {
   EXPECT_THAT(message_schema<CameraInfo>(), testing::HasSubstr("\nfloat64[] d\nfloat64[9] k\nfloat64[9] r\n"));
   EXPECT_THAT(message_schema<OccupancyGrid>(), testing::HasSubstr("\nint8[] data\n"));
   EXPECT_THAT(message_schema<DiagnosticArray>(), testing::HasSubstr("\nbyte level\nstring name\n"));

@@ -28,7 +28,7 @@ SimulatedMission figure_eight(const Rig& rig) {
   return simulate_mission(rig, path, visit);
 }
 
-TEST(Engine, MeasuresWhatOneCameraMapsByWheels) {
+TEST(Engine, ScalesAMonocularMapByWheels) {
   for (const bool has_wheels : {true, false}) {
     EngineOptions options;
     options.pace = Pace::same_thread;

@@ -29,28 +29,28 @@ class StereoInput : public testing::Test {
   InputCheck check_{pair(), {}, {0.005, 1.0}};
 };
 
-TEST_F(StereoInput, IsSoundInOrderOfTime) {
+TEST_F(StereoInput, IsAcceptedInOrderOfTime) {
   EXPECT_EQ(check_.note(images(milliseconds(0))), InputFault::none);
   EXPECT_EQ(check_.note(images(milliseconds(50))), InputFault::none);
   EXPECT_EQ(check_.frames(), 2);
   EXPECT_EQ(check_.frames(InputFault::none), 2);
 }
 
-TEST_F(StereoInput, MayComeTwiceOrTooLate) {
+TEST_F(StereoInput, IsReportedIfRepeatedOrOutOfOrder) {
   check_.note(images(milliseconds(100)));
   EXPECT_EQ(check_.note(images(milliseconds(100))), InputFault::repeated_time);
   EXPECT_EQ(check_.note(images(milliseconds(50))), InputFault::out_of_order);
   EXPECT_EQ(check_.note(images(milliseconds(150))), InputFault::none) << "what is dropped moves no clock";
 }
 
-TEST_F(StereoInput, MayComeAfterAGap) {
+TEST_F(StereoInput, IsReportedAfterAGap) {
   check_.note(images(milliseconds(0)));
   EXPECT_EQ(check_.note(images(milliseconds(1000))), InputFault::none);
   EXPECT_EQ(check_.note(images(milliseconds(2001))), InputFault::after_gap);
   EXPECT_FALSE(is_dropped(InputFault::after_gap));
 }
 
-TEST_F(StereoInput, MayLackItsRightImage) {
+TEST_F(StereoInput, IsReportedWithoutRightImage) {
   CameraImages alone = images(milliseconds(0));
   alone.right.reset();
   EXPECT_EQ(check_.note(alone), InputFault::missing_right);
@@ -60,7 +60,7 @@ TEST_F(StereoInput, MayLackItsRightImage) {
   EXPECT_EQ(check_.frames(InputFault::missing_right), 2);
 }
 
-TEST_F(StereoInput, MayHaveARightImageOfAnotherTime) {
+TEST_F(StereoInput, IsReportedWithARightImageOfAnotherTime) {
   CameraImages off = images(milliseconds(0));
   off.right->time = milliseconds(5);
   EXPECT_EQ(check_.note(off), InputFault::none);
@@ -72,7 +72,7 @@ TEST_F(StereoInput, MayHaveARightImageOfAnotherTime) {
   EXPECT_EQ(check_.note(off), InputFault::late_right) << "a gap matters less than which images may be used";
 }
 
-TEST_F(StereoInput, IsDroppedWhereItIsNoImageOfTheCamera) {
+TEST_F(StereoInput, IsDroppedIfItDoesNotFitTheCamera) {
   CameraImages none = images(milliseconds(0));
   none.left.data = nullptr;
   EXPECT_EQ(check_.note(none), InputFault::no_image);
@@ -90,7 +90,7 @@ TEST_F(StereoInput, IsDroppedWhereItIsNoImageOfTheCamera) {
   }
 }
 
-TEST_F(StereoInput, MayLackDepths) {
+TEST_F(StereoInput, IsReportedWithoutDepth) {
   Calibration calibration = pair();
   calibration.right.reset();
   calibration.depth = DepthCamera{};
@@ -108,21 +108,21 @@ TEST_F(StereoInput, MayLackDepths) {
   EXPECT_FALSE(check.may_use_depth());
 }
 
-TEST_F(StereoInput, HasTheTimeOfItsLeftImageWhereTheRightOneTellsNone) {
+TEST_F(StereoInput, UsesTheLeftTimeIfTheRightOneIsUnset) {
   CameraImages untold = images(milliseconds(500));
   untold.right->time = {};
   EXPECT_EQ(check_.note(untold), InputFault::none);
   EXPECT_TRUE(check_.may_use_right());
 }
 
-TEST_F(StereoInput, MayHaveTimesThatMakeNoSense) {
+TEST_F(StereoInput, IsReportedWithInvalidTimes) {
   CameraImages far = images(milliseconds(0));
   far.right->time = Timestamp::min();
   EXPECT_EQ(check_.note(far), InputFault::late_right);
   EXPECT_EQ(check_.note(images(std::chrono::duration_cast<milliseconds>(Timestamp::max()))), InputFault::after_gap);
 }
 
-TEST(FeatureInput, NeedsFeaturesThatACameraSees) {
+TEST(FeatureInput, NeedsFeaturesInsideTheImage) {
   Rig rig;
   rig.width = 8;
   rig.height = 6;

@@ -8,7 +8,7 @@ namespace {
 using testing::ElementsAre;
 using testing::SizeIs;
 
-TEST(LoggedExecutor, HandsOverTheResultAndNotesItsTime) {
+TEST(LoggedExecutor, ReturnsTheResultAndLogsItsTime) {
   JobLog log;
   const auto executor = make_logged_executor(make_inline_executor(), log);
   EXPECT_TRUE(executor->idle());
@@ -22,7 +22,7 @@ TEST(LoggedExecutor, HandsOverTheResultAndNotesItsTime) {
   EXPECT_THAT(log.job_seconds, SizeIs(1));
 }
 
-TEST(LoggedExecutor, CountsAJobThatRunsInlineAsTheCallersTime) {
+TEST(LoggedExecutor, CountsAnInlineJobAsTimeOfTheCaller) {
   JobLog log;
   const auto executor = make_logged_executor(make_inline_executor(), log);
   executor->submit([] { return std::any(); });
@@ -30,7 +30,7 @@ TEST(LoggedExecutor, CountsAJobThatRunsInlineAsTheCallersTime) {
   EXPECT_GE(log.submit_seconds, log.job_seconds.front());
 }
 
-TEST(LoggedExecutor, NotesJobsThatEndWithTheRun) {
+TEST(LoggedExecutor, LogsJobsThatEndWithTheRun) {
   JobLog log;
   const auto executor = make_logged_executor(make_paced_executor(4), log);
   executor->submit([] { return std::any(); });

@@ -70,11 +70,11 @@ TEST(OptionTable, ListsEveryLeaf) {
                                        member_count<SelfCalibrationOptions>() + member_count<MotionLimits>());
 }
 
-TEST(OptionTable, IsShortEnoughToBeRead) {
+TEST(OptionTable, IsShort) {
   EXPECT_LT(option_table().size(), 90u);
 }
 
-TEST(OptionTable, NamesAndExplainsEachOptionOnceAndInItsGroup) {
+TEST(OptionTable, DescribesEachOptionOnceInItsGroup) {
   std::set<std::string> names;
   std::set<std::string> groups;
   std::string group;
@@ -92,7 +92,7 @@ TEST(OptionTable, NamesAndExplainsEachOptionOnceAndInItsGroup) {
   }
 }
 
-TEST(OptionTable, SetsEachOptionAndNoOther) {
+TEST(OptionTable, SetsEachOptionOnly) {
   const std::vector<std::string> before = values({});
   for (std::size_t i = 0; i < option_table().size(); ++i) {
     const EngineOption& option = option_table()[i];
@@ -107,7 +107,7 @@ TEST(OptionTable, SetsEachOptionAndNoOther) {
   }
 }
 
-TEST(OptionTable, TakesBackWhatItTells) {
+TEST(OptionTable, ReadsItsPrintedValues) {
   for (const EngineOption& option : option_table()) {
     EngineOptions options;
     const std::string value = option.get(options);
@@ -116,7 +116,7 @@ TEST(OptionTable, TakesBackWhatItTells) {
   }
 }
 
-TEST(OptionTable, RefusesWhatIsNoValueAndLeavesTheOptionAsItIs) {
+TEST(OptionTable, RejectsInvalidValuesAndKeepsTheOption) {
   const std::vector<std::string> before = values({});
   for (const EngineOption& option : option_table()) {
     for (const char* const text : {"", "nan", "inf", "-inf", "1e400", "-1", "1e300", "many", "5 m", "yes", "0x10"}) {
@@ -127,7 +127,7 @@ TEST(OptionTable, RefusesWhatIsNoValueAndLeavesTheOptionAsItIs) {
   }
 }
 
-TEST(OptionTable, KnowsTheNameThatAWrongOneIsMostLike) {
+TEST(OptionTable, SuggestsTheMostSimilarName) {
   EngineOptions options;
   const auto fault = set_option(options, "tracking.min_inlier", "20");
   ASSERT_TRUE(fault);
@@ -136,7 +136,7 @@ TEST(OptionTable, KnowsTheNameThatAWrongOneIsMostLike) {
   EXPECT_THAT(set_option(options, "keyframes.min_frames", "2.5")->remedy, HasSubstr("from 0 to 10000, in frames"));
 }
 
-TEST(OptionTable, TellsWhatIsNotAsByDefault) {
+TEST(OptionTable, ListsChangedOptions) {
   EngineOptions options;
   EXPECT_THAT(changed_options(options), testing::IsEmpty());
   options.session.health.sigmas = 2.5;
@@ -145,7 +145,7 @@ TEST(OptionTable, TellsWhatIsNotAsByDefault) {
               testing::ElementsAre(testing::Pair("pace", "live"), testing::Pair("health.sigmas", "2.5")));
 }
 
-TEST(OptionTable, MappingTakesItsSharedLeavesFromTheSession) {
+TEST(OptionTable, MappingUsesSharedOptionsOfTheSession) {
   const MappingOptions by_default = mapper_options({}).mapping;
   EXPECT_EQ(by_default.offline_weight, MappingOptions{}.offline_weight);
   EngineOptions options;

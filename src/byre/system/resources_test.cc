@@ -7,20 +7,20 @@
 namespace byre {
 namespace {
 
-TEST(ResourcesUsedSoFar, AreThoseOfAProgramThatRuns) {
+TEST(ResourcesUsedSoFar, ArePositive) {
   const ResourceUse resources = resources_used_so_far();
   EXPECT_GT(resources.cpu_seconds, 0.0);
   EXPECT_GT(resources.peak_memory_mb, 1.0);
 }
 
-TEST(ResidentMemory, IsNoMoreThanItEverWas) {
+TEST(ResidentMemory, IsAtMostThePeak) {
   const double now = resident_memory_mb();
   EXPECT_GT(now, 1.0);
   EXPECT_LE(now, 1.1 * resources_used_so_far().peak_memory_mb);
 }
 
 #ifndef BYRE_SANITIZED  // sanitizers keep freed memory
-TEST(ReleaseFreeMemory, LeavesLessResident) {
+TEST(ReleaseFreeMemory, ReducesResidentMemory) {
   std::vector<std::vector<char>> blocks;
   for (int i = 0; i < 40000; ++i) blocks.emplace_back(1000, 'x');  // small blocks: on the heap
   const std::vector<char> last(1000, 'y');                         // keeps the end of the heap in use

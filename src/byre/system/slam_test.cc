@@ -77,7 +77,7 @@ class SlamWithAFile : public testing::Test {
   const fs::path map_ = fs::path(testing::TempDir()) / ("byre_slam_test." + std::to_string(getpid()) + ".byre");
 };
 
-TEST(SlamOptions, ConfirmOrCorrectABaselineThatIsRefusedOtherwise) {
+TEST(SlamOptions, ConfirmOrReplaceAnUnusualBaseline) {
   Calibration calibration = open_shared()->calibration();
   calibration.right->right_from_left.translation *= 7.5 / calibration.right->right_from_left.translation.norm();
   EXPECT_THAT(
@@ -88,7 +88,7 @@ TEST(SlamOptions, ConfirmOrCorrectABaselineThatIsRefusedOtherwise) {
   EXPECT_NEAR(Slam::mapping(calibration, options).rig().baseline, 0.075, 1e-9);
 }
 
-TEST_F(SlamWithAFile, KeepsWhatAMapWasMadeFrom) {
+TEST_F(SlamWithAFile, SavesTheRecordingOfAMap) {
   map_shared();
   const std::vector<ImageFrame> frames = shared_frames();
   const StoredMap kept = load_map(map_);
@@ -101,7 +101,7 @@ TEST_F(SlamWithAFile, KeepsWhatAMapWasMadeFrom) {
   EXPECT_EQ(kept.scale, MapScale::metric);
 }
 
-TEST_F(SlamWithAFile, TellsWhereAMissionIsOnAMap) {
+TEST_F(SlamWithAFile, LocalisesAMissionOnAMap) {
   map_shared();
   Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
   std::set<SessionEvent> events;
@@ -170,7 +170,7 @@ TEST_F(SlamWithAFile, DoesNotReplaceTheMapOfAMission) {
   fs::remove(letter);
 }
 
-TEST_F(SlamWithAFile, GoesOnWithAMap) {
+TEST_F(SlamWithAFile, ExtendsAMap) {
   map_shared(8);
   const Map before = load_map(map_).map;
   Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
@@ -184,7 +184,7 @@ TEST_F(SlamWithAFile, GoesOnWithAMap) {
   EXPECT_GT(slam.trajectory().size(), 10u);
 }
 
-TEST_F(SlamWithAFile, LeavesAMapAloneInWhichItNeverFoundItself) {
+TEST_F(SlamWithAFile, LeavesAMapUnchangedWithoutLocalisation) {
   map_shared(8);
   Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
   ImageFrame dark = shared_frames().front();
@@ -194,7 +194,7 @@ TEST_F(SlamWithAFile, LeavesAMapAloneInWhichItNeverFoundItself) {
   EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("the map is still empty"));
 }
 
-TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
+TEST_F(SlamWithAFile, SavesTheOnlineMapOfAMission) {
   map_shared(8);
   StoredMap on_plan = load_map(map_);
   on_plan.plan = PlanRegistration{"barn", {1.0, {Eigen::Quaterniond::Identity(), {10.0, 20.0, 0.0}}}};
@@ -219,7 +219,7 @@ TEST_F(SlamWithAFile, KeepsWhatAMissionMappedBesideItsMap) {
   EXPECT_FALSE(kept.plan) << "it was the other map that was laid on the plan";
 }
 
-TEST_F(SlamWithAFile, KeepsItsMapInEveryState) {
+TEST_F(SlamWithAFile, SavesItsMapInEveryState) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam slam = Slam::mapping(open_shared()->calibration());
   EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("the map is still empty"));
@@ -239,7 +239,7 @@ TEST_F(SlamWithAFile, KeepsItsMapInEveryState) {
   EXPECT_GT(load_map(map_).map.keyframe_count(), 0);
 }
 
-TEST(Slam, NeedsACalibrationThatMakesSense) {
+TEST(Slam, RejectsInvalidCalibrations) {
   const Calibration sound = open_shared()->calibration();
   const auto error_with = [](const Calibration& calibration) { return error_by([&] { Slam::mapping(calibration); }); };
   Calibration unknown = sound;
@@ -254,7 +254,7 @@ TEST(Slam, NeedsACalibrationThatMakesSense) {
   EXPECT_THAT(error_with(unitless), HasSubstr("has an invalid depth camera"));
 }
 
-TEST(Slam, NeedsAMapThatCanBeLoaded) {
+TEST(Slam, RejectsUnreadableMaps) {
   EXPECT_THAT(error_by([] { Slam::on_map(open_shared()->calibration(), "no/such.byre"); }), HasSubstr("no/such.byre"));
   EXPECT_THAT(error_by([] { Slam::extending(open_shared()->calibration(), "no/such.byre"); }),
               HasSubstr("no/such.byre"));
@@ -263,7 +263,7 @@ TEST(Slam, NeedsAMapThatCanBeLoaded) {
   EXPECT_THAT(error_by([&] { Slam::mapping(open_shared()->calibration(), options); }), HasSubstr("no/such.vocabulary"));
 }
 
-TEST(Slam, TakesOptionsByName) {
+TEST(Slam, SetsOptionsByName) {
   const std::vector<ImageFrame> frames = shared_frames();
   SlamOptions options = repeatable();
   options.settings = {{"features.max_count", "150"}, {"tracking.search_radius_px", "20.5"}};
@@ -278,7 +278,7 @@ TEST(Slam, TakesOptionsByName) {
               HasSubstr("(give from 1 to 100000, in corners)"));
 }
 
-TEST(Slam, DropsWhatIsNoFrameAndGoesOn) {
+TEST(Slam, DropsInvalidFramesAndContinues) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
   slam.process(view_of(frames[0]));
@@ -301,7 +301,7 @@ TEST(Slam, DropsWhatIsNoFrameAndGoesOn) {
   EXPECT_EQ(slam.process(Frame{}).input, InputFault::after_finishing);
 }
 
-TEST(Slam, TracksTheLeftImageWhereTheRightOneCannotBeUsed) {
+TEST(Slam, TracksTheLeftImageIfTheRightOneIsUnusable) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
   for (std::size_t i = 0; i < 4; ++i) slam.process(view_of(frames[i]));
@@ -317,7 +317,7 @@ TEST(Slam, TracksTheLeftImageWhereTheRightOneCannotBeUsed) {
   EXPECT_TRUE(unpaired.map_from_body);
 }
 
-TEST(Slam, LeavesOutWhatADeadlineHasNoTimeForAndTellsIt) {
+TEST(Slam, ReducesWorkForADeadlineAndReportsIt) {
   const std::vector<ImageFrame> frames = shared_frames();
   SlamOptions options = repeatable();
   options.settings.emplace_back("frame.deadline_ms", "0.001");
@@ -333,7 +333,7 @@ TEST(Slam, LeavesOutWhatADeadlineHasNoTimeForAndTellsIt) {
   EXPECT_GT(2 * with_left_alone, static_cast<int>(frames.size()));
 }
 
-TEST(Slam, SeesTheSameInEveryFormatOfTheSamePicture) {
+TEST(Slam, GivesEqualResultsForEveryPixelFormat) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam grey = Slam::mapping(open_shared()->calibration(), repeatable());
   Slam colour = Slam::mapping(open_shared()->calibration(), repeatable());
@@ -355,7 +355,7 @@ TEST(Slam, SeesTheSameInEveryFormatOfTheSamePicture) {
   }
 }
 
-TEST(Slam, KnowsNoMetresByOneCamera) {
+TEST(Slam, HasNoMetricScaleWithOneCamera) {
   Calibration one = open_shared()->calibration();
   one.right.reset();
   EXPECT_FALSE(Slam::mapping(one).is_metric());
@@ -363,7 +363,7 @@ TEST(Slam, KnowsNoMetresByOneCamera) {
   EXPECT_TRUE(Slam::mapping(open_shared()->calibration()).is_metric());
 }
 
-TEST(Slam, TracksOwnFeaturesAsItsOwn) {
+TEST(Slam, TracksGivenFeaturesLikeItsOwn) {
   const Calibration calibration = open_shared()->calibration();
   Slam by_images = Slam::mapping(calibration, repeatable()), by_features = Slam::mapping(calibration, repeatable());
   Extractor extractor(calibration, {});

@@ -38,7 +38,7 @@ TEST(CameraPicture, FillsInliersWithTheColourOfTheirMap) {
   EXPECT_EQ(colour_at(drawn, 150, 50), kGrey);
 }
 
-TEST(CameraPicture, CrossesOutliers) {
+TEST(CameraPicture, DrawsOutliersAsCrosses) {
   const cv::Mat drawn = decoded(to_png(camera_picture(four_points())));
   EXPECT_EQ(colour_at(drawn, 102, 102), palette::kOffline);
   EXPECT_EQ(colour_at(drawn, 98, 102), palette::kOffline);
@@ -47,7 +47,7 @@ TEST(CameraPicture, CrossesOutliers) {
   EXPECT_EQ(colour_at(drawn, 200, 97), palette::kOnline);
 }
 
-TEST(CameraPicture, LeavesTheImageElseAsItIs) {
+TEST(CameraPicture, LeavesOtherPixelsUnchanged) {
   FrameScene scene = four_points();
   scene.seen.clear();
   for (std::size_t i = 0; i < scene.left.pixels.size(); ++i) scene.left.pixels[i] = static_cast<std::uint8_t>(i * 31);
@@ -68,7 +68,7 @@ TEST(CameraPicture, EnlargesSmallImagesAndReducesLargeOnes) {
   EXPECT_EQ(colour_at(large, 50, 25), palette::kOffline);
 }
 
-TEST(CameraPicture, TellsHealthBesideTheImage) {
+TEST(CameraPicture, ShowsHealthNextToTheImage) {
   const Picture picture = camera_picture(four_points(), {"12.50 s", true, {}});
   const std::string svg = to_svg(picture);
   for (const char* const text : {">12.50 s<", ">tracking<", ">degraded<", ">points are clustered<", ">118 of 240<",
@@ -79,7 +79,7 @@ TEST(CameraPicture, TellsHealthBesideTheImage) {
   EXPECT_THAT(to_svg(camera_picture(four_points(), {"", false, {}})), Not(HasSubstr("degraded")));
 }
 
-TEST(CameraPicture, PaintsTheVerdict) {
+TEST(CameraPicture, ShowsTheVerdict) {
   const auto verdict_pixel = [](Verdict verdict) {
     FrameScene scene = four_points();
     scene.report.health.verdict = verdict;
@@ -106,7 +106,7 @@ TEST(CameraPicture, WarnsOfMeasuresPastTheirLimits) {
   EXPECT_GT(painted(0.15), 100);
 }
 
-TEST(CameraPicture, HoldsEveryPointAsSvg) {
+TEST(CameraPicture, ContainsEveryPointInSvg) {
   const std::string svg = to_svg(camera_picture(four_points()));
   EXPECT_TRUE(is_well_formed(svg));
   EXPECT_EQ(moves_in_class(svg, "offline-inliers"), 1);

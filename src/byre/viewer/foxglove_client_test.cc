@@ -55,7 +55,7 @@ class FoxgloveClientTest : public testing::Test {
   FoxgloveClient client_{topics_, "session", kLimits};
 };
 
-TEST_F(FoxgloveClientTest, IsToldOfServerAndChannelsFirst) {
+TEST_F(FoxgloveClientTest, ReceivesServerInfoAndChannelsFirst) {
   FoxgloveClient client(topics_, "session");
   EXPECT_EQ(summary(*client.next()), "serverInfo ");
   EXPECT_EQ(Json::parse(client.next()->head).at("channels").size(), 2u);
@@ -64,7 +64,7 @@ TEST_F(FoxgloveClientTest, IsToldOfServerAndChannelsFirst) {
   EXPECT_EQ(Json::parse(client.next()->head).at("channels")[0].at("id"), 2);
 }
 
-TEST_F(FoxgloveClientTest, IsSentWhatItSubscribedUntilItUnsubscribes) {
+TEST_F(FoxgloveClientTest, ReceivesSubscribedTopicsUntilItUnsubscribes) {
   put(passing_, 1);
   EXPECT_THAT(said(), IsEmpty());
   subscribe(9, passing_);
@@ -78,14 +78,14 @@ TEST_F(FoxgloveClientTest, IsSentWhatItSubscribedUntilItUnsubscribes) {
   EXPECT_THAT(said(), IsEmpty());
 }
 
-TEST_F(FoxgloveClientTest, IsSentTheLastMessageOfATopicThatKeepsIt) {
+TEST_F(FoxgloveClientTest, ReceivesTheLastMessageOfALatchedTopic) {
   put(kept_, 1);
   put(kept_, 2);
   subscribe(5, kept_);
   EXPECT_THAT(said(), ElementsAre("message 5 2"));
 }
 
-TEST_F(FoxgloveClientTest, IsToldOfWhatCannotBe) {
+TEST_F(FoxgloveClientTest, ReceivesErrors) {
   subscribe(1, 7);
   EXPECT_THAT(said(), ElementsAre(HasSubstr("unknown channel 7")));
   subscribe(1, passing_);
@@ -98,13 +98,13 @@ TEST_F(FoxgloveClientTest, IsToldOfWhatCannotBe) {
   EXPECT_THAT(said(), ElementsAre(StartsWith("status ")));
 }
 
-TEST_F(FoxgloveClientTest, IsSentAwayWhenItAsksOnAndNeverReads) {
+TEST_F(FoxgloveClientTest, IsDisconnectedIfItNeverReads) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(client_.receive("nonsense", false));
   EXPECT_FALSE(client_.receive("nonsense", false));
   EXPECT_FALSE(client_.receive("nonsense", true));
 }
 
-TEST_F(FoxgloveClientTest, SkipsTheOldestMessagesWhenItIsSlowAndIsToldSoOnce) {
+TEST_F(FoxgloveClientTest, SkipsTheOldestMessagesWhenSlowAndIsWarnedOnce) {
   subscribe(1, passing_);
   for (int time = 1; time <= 9; ++time) put(passing_, time);
   EXPECT_THAT(said(), ElementsAre(HasSubstr("dropped"), "time 6", "message 1 6", "time 7", "message 1 7", "time 8",
@@ -113,7 +113,7 @@ TEST_F(FoxgloveClientTest, SkipsTheOldestMessagesWhenItIsSlowAndIsToldSoOnce) {
   EXPECT_THAT(said(), ElementsAre(HasSubstr("dropped"), "time 3", "message 1 3"));
 }
 
-TEST_F(FoxgloveClientTest, DoesNotMissAMapForImages) {
+TEST_F(FoxgloveClientTest, KeepsALatchedMapDespiteImages) {
   subscribe(1, passing_);
   subscribe(2, kept_);
   put(kept_, 1);
@@ -121,7 +121,7 @@ TEST_F(FoxgloveClientTest, DoesNotMissAMapForImages) {
   EXPECT_THAT(said(), testing::Contains("message 2 1"));
 }
 
-TEST_F(FoxgloveClientTest, WantsNothingMoreOnceItIsGone) {
+TEST_F(FoxgloveClientTest, HasNoSubscriptionsAfterDisconnecting) {
   {
     FoxgloveClient another(topics_, "session");
     another.receive(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})", false);

@@ -37,14 +37,14 @@ class FoxgloveServerTest : public testing::Test {
   LiveTopics::TopicId words_ = topics_->add(ros::topic_of<ros::String>("/words", ros::Durability::kept));
 };
 
-TEST_F(FoxgloveServerTest, SpeaksTheProtocolThatIsAskedFor) {
+TEST_F(FoxgloveServerTest, SelectsTheRequestedProtocol) {
   const WebServer server = serve();
   EXPECT_EQ(connect(server).protocol(), "foxglove.websocket.v1");
   EXPECT_EQ(connect(server, "foxglove.websocket.v1, foxglove.sdk.v1").protocol(), "foxglove.sdk.v1");
   EXPECT_THROW(connect(server, "another"), boost::system::system_error);
 }
 
-TEST_F(FoxgloveServerTest, TellsTheSameSessionToAllAndSendsMessagesAsTheyAre) {
+TEST_F(FoxgloveServerTest, SendsTheSameSessionToAllAndMessagesUnchanged) {
   WebServer server = serve();
   LiveClient client = connect(server);
   LiveClient another = connect(server);
@@ -63,7 +63,7 @@ TEST_F(FoxgloveServerTest, TellsTheSameSessionToAllAndSendsMessagesAsTheyAre) {
   EXPECT_EQ(ros::read_message<ros::String>(std::as_bytes(std::span(cdr)), ros::Encoding::cdr, "/words"), sent);
 }
 
-TEST_F(FoxgloveServerTest, AnswersWhatItDoesNotUnderstandAndGoesOn) {
+TEST_F(FoxgloveServerTest, AnswersInvalidRequestsAndContinues) {
   const WebServer server = serve();
   LiveClient client = connect(server);
   client.next();
@@ -74,7 +74,7 @@ TEST_F(FoxgloveServerTest, AnswersWhatItDoesNotUnderstandAndGoesOn) {
   EXPECT_THAT(client.next().bytes, HasSubstr("accepts no messages"));
 }
 
-TEST_F(FoxgloveServerTest, ClosesOnMessagesThatAreTooLong) {
+TEST_F(FoxgloveServerTest, ClosesOnTooLongMessages) {
   const WebServer server = serve();
   LiveClient client = connect(server);
   client.next();
@@ -86,7 +86,7 @@ TEST_F(FoxgloveServerTest, ClosesOnMessagesThatAreTooLong) {
   EXPECT_THROW(talk(), boost::system::system_error);
 }
 
-TEST_F(FoxgloveServerTest, NeverWaitsForAClientThatDoesNotRead) {
+TEST_F(FoxgloveServerTest, NeverWaitsForAnIdleClient) {
   WebServer server = serve();
   LiveClient slow = connect(server), quick = connect(server);
   subscribe(slow);
@@ -102,7 +102,7 @@ TEST_F(FoxgloveServerTest, NeverWaitsForAClientThatDoesNotRead) {
   EXPECT_EQ(last.size(), 13u + (1u << 20));
 }
 
-TEST_F(FoxgloveServerTest, IsForOwnAndKnownPagesOnly) {
+TEST_F(FoxgloveServerTest, AcceptsOnlyOwnAndKnownPages) {
   const WebServer server = serve();
   const auto ask_from = [&server](const std::string& page) {
     LiveClient(server.port(), "/", {{"Sec-WebSocket-Protocol", "foxglove.sdk.v1"}, {"Origin", page}});
@@ -119,7 +119,7 @@ TEST_F(FoxgloveServerTest, NeedsTheTokenThroughTheNetwork) {
   EXPECT_NO_THROW(LiveClient(server.port(), target, {{"Sec-WebSocket-Protocol", "foxglove.sdk.v1"}}));
 }
 
-TEST_F(FoxgloveServerTest, IsNotSpokenWithoutTopics) {
+TEST_F(FoxgloveServerTest, IsDisabledWithoutTopics) {
   const WebServer server({"127.0.0.1", 0, {}}, std::make_unique<EmptySite>());
   EXPECT_THROW(connect(server), boost::system::system_error);
 }

@@ -23,7 +23,7 @@ FoxgloveRequest read(std::string_view text) {
   return read_foxglove_request(text, false);
 }
 
-TEST(FoxgloveProtocol, TakesTheNewerOneOfThoseThatAreOffered) {
+TEST(FoxgloveProtocol, SelectsTheNewestOfferedVersion) {
   EXPECT_EQ(foxglove_protocol("foxglove.websocket.v1"), "foxglove.websocket.v1");
   EXPECT_EQ(foxglove_protocol("other, foxglove.websocket.v1 ,foxglove.sdk.v1"), "foxglove.sdk.v1");
   for (const char* offered : {"", ",", "foxglove.websocket.v2", "foxglove.sdk.v1x", "other"}) {
@@ -31,7 +31,7 @@ TEST(FoxgloveProtocol, TakesTheNewerOneOfThoseThatAreOffered) {
   }
 }
 
-TEST(FoxgloveProtocol, TellsWhatTheServerIs) {
+TEST(FoxgloveProtocol, DescribesTheServer) {
   const Json info = Json::parse(server_info_text("abc"));
   EXPECT_EQ(info.at("op"), "serverInfo");
   EXPECT_THAT(info.at("name").get<std::string>(), HasSubstr("byre"));
@@ -39,7 +39,7 @@ TEST(FoxgloveProtocol, TellsWhatTheServerIs) {
   EXPECT_EQ(info.at("sessionId"), "abc");
 }
 
-TEST(FoxgloveProtocol, AdvertisesTopicsAsRos2Has) {
+TEST(FoxgloveProtocol, AdvertisesTopicsWithRos2Schemas) {
   const std::vector<ros::Topic> topics = {ros::topic_of<ros::String>("/words"), ros::topic_of<ros::Odometry>("/odom")};
   const Json advertise = Json::parse(advertise_text(3, topics));
   EXPECT_EQ(advertise.at("op"), "advertise");
@@ -54,13 +54,13 @@ TEST(FoxgloveProtocol, AdvertisesTopicsAsRos2Has) {
   EXPECT_EQ(advertise.at("channels")[1].at("id"), 4);
 }
 
-TEST(FoxgloveProtocol, WritesNumbersWithTheLowestByteFirst) {
+TEST(FoxgloveProtocol, WritesLittleEndianNumbers) {
   EXPECT_EQ(message_head(0x01020304, Timestamp(0x1122334455667788)),
             std::string("\x01\x04\x03\x02\x01\x88\x77\x66\x55\x44\x33\x22\x11", 13));
   EXPECT_EQ(time_bytes(Timestamp(0x0102)), std::string("\x02\x02\x01\0\0\0\0\0\0", 9));
 }
 
-TEST(FoxgloveProtocol, TellsStatusWithoutBytesThatAreNoText) {
+TEST(FoxgloveProtocol, ReplacesInvalidUtf8InStatus) {
   const Json status = Json::parse(status_text(StatusLevel::error, "bad \xff"));
   EXPECT_EQ(status.at("op"), "status");
   EXPECT_EQ(status.at("level"), 2);
@@ -81,7 +81,7 @@ TEST(FoxgloveProtocol, ReadsSubscriptions) {
   EXPECT_THAT(read(R"({"op":"unsubscribe","subscriptionIds":[0,7]})").unsubscribe, ElementsAre(0, 7));
 }
 
-TEST(FoxgloveProtocol, BelievesNothingThatIsNoRequest) {
+TEST(FoxgloveProtocol, RejectsInvalidRequests) {
   const char* const messages[] = {
       "",
       "null",
@@ -112,7 +112,7 @@ TEST(FoxgloveProtocol, BelievesNothingThatIsNoRequest) {
   EXPECT_THAT(read_foxglove_request(R"({"op":"subscribe","subscriptions":[]})", true).fault, Not(IsEmpty()));
 }
 
-TEST(FoxgloveProtocol, QuotesLittleOfWhatItDoesNotKnow) {
+TEST(FoxgloveProtocol, QuotesUnknownTextBriefly) {
   EXPECT_THAT(read(R"({"op":")" + std::string(10'000, 'x') + "\"}").fault.size(), testing::Lt(120u));
 }
 

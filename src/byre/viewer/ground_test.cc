@@ -39,7 +39,7 @@ StoredMap round_trip(double height, double uneven) {
   return map_of(places);
 }
 
-TEST(Ground, IsThePlaneDrivenOn) {
+TEST(Ground, IsTheDrivingPlane) {
   const Ground ground = ground_of(round_trip(3.0, 0.0));
   EXPECT_TRUE(ground.is_level);
   EXPECT_TRUE(ground.is_metric);
@@ -60,16 +60,16 @@ TEST(Ground, DoesNotMirrorTheMap) {
   EXPECT_NEAR(x.cross(y).z(), 1.0, 1e-6);
 }
 
-TEST(Ground, IsNotLevelBelowACameraThatFlew) {
+TEST(Ground, IsNotLevelForAFlyingCamera) {
   EXPECT_FALSE(ground_of(round_trip(3.0, 4.0)).is_level);
 }
 
-TEST(Ground, IsThereForASingleKeyframe) {
+TEST(Ground, ExistsForASingleKeyframe) {
   const Ground ground = ground_of(map_of({{1.0, 2.0, 3.0}}));
   EXPECT_THAT(ground.ground_from_map * Eigen::Vector3d(1.0, 2.0, 3.0), PointNear(Eigen::Vector3d::Zero(), 1e-9));
 }
 
-TEST(Ground, IsThePlanWhereTheMapLiesOnOne) {
+TEST(Ground, IsThePlanOfARegisteredMap) {
   StoredMap stored = round_trip(0.8, 0.0);
   stored.scale = MapScale::unknown;
   stored.plan = PlanRegistration{};
@@ -81,13 +81,13 @@ TEST(Ground, IsThePlanWhereTheMapLiesOnOne) {
   EXPECT_EQ(ground.image, nullptr);
 }
 
-TEST(Ground, WithoutAScaleIsInTheMapsUnit) {
+TEST(Ground, IsInTheUnitOfAnUnscaledMap) {
   StoredMap stored = round_trip(0.8, 0.0);
   stored.scale = MapScale::unknown;
   EXPECT_FALSE(ground_of(stored).is_metric);
 }
 
-TEST(Ground, SaysWhenThePlansImageCannotBeRead) {
+TEST(Ground, ReportsAnUnreadablePlanImage) {
   StoredMap stored = round_trip(0.8, 0.0);
   stored.plan = PlanRegistration{};
   FloorPlan plan;

@@ -11,7 +11,7 @@ std::string image_of(std::size_t frame) {
   return bytes;
 }
 
-TEST(ImageStore, FindsTheImageNearestToAFrame) {
+TEST(ImageStore, FindsTheNearestImage) {
   ImageStore store(1000);
   EXPECT_EQ(store.find_nearest(3), nullptr);
   store.add(10, image_of(10));
@@ -23,7 +23,7 @@ TEST(ImageStore, FindsTheImageNearestToAFrame) {
   EXPECT_EQ(*store.find_nearest(99), image_of(20));
 }
 
-TEST(ImageStore, ThinsOutTheOlderImagesWhenTheyBecomeTooMany) {
+TEST(ImageStore, ThinsOutOlderImages) {
   ImageStore store(1000);
   for (std::size_t frame = 0; frame < 1000; ++frame) {
     store.add(frame, image_of(frame));

@@ -27,7 +27,7 @@ class LiveTopicsTest : public testing::Test {
   LiveTopics::TopicId kept_ = topics_.add(ros::topic_of<ros::String>("/kept", ros::Durability::kept));
 };
 
-TEST_F(LiveTopicsTest, TakeMessagesOnlyWhileSomebodyWants) {
+TEST_F(LiveTopicsTest, AcceptMessagesOnlyWhileSubscribed) {
   EXPECT_FALSE(topics_.is_wanted(passing_));
   topics_.put(passing_, Timestamp(1), bytes(4));
   topics_.subscribe(passing_);
@@ -41,7 +41,7 @@ TEST_F(LiveTopicsTest, TakeMessagesOnlyWhileSomebodyWants) {
   EXPECT_THAT(taken(topics_), IsEmpty());
 }
 
-TEST_F(LiveTopicsTest, KeepTheLastMessageOfTopicsThatSaySo) {
+TEST_F(LiveTopicsTest, KeepTheLastMessageOfLatchedTopics) {
   EXPECT_FALSE(topics_.kept(kept_));
   topics_.put(kept_, Timestamp(1), bytes(4));
   topics_.put(kept_, Timestamp(2), bytes(4));
@@ -51,13 +51,13 @@ TEST_F(LiveTopicsTest, KeepTheLastMessageOfTopicsThatSaySo) {
   EXPECT_FALSE(topics_.kept(passing_));
 }
 
-TEST_F(LiveTopicsTest, LeaveOutTheOldestWhereNobodyTakes) {
+TEST_F(LiveTopicsTest, DropTheOldestMessages) {
   topics_.subscribe(passing_);
   for (int time = 1; time <= 5; ++time) topics_.put(passing_, Timestamp(time), bytes(40));
   EXPECT_THAT(taken(topics_), ElementsAre(4, 5));
 }
 
-TEST_F(LiveTopicsTest, NeverLeaveOutTheLastMessageOfATopicThatKeepsIt) {
+TEST_F(LiveTopicsTest, NeverDropTheLastMessageOfALatchedTopic) {
   topics_.subscribe(passing_);
   topics_.put(kept_, Timestamp(1), bytes(40));
   topics_.put(kept_, Timestamp(2), bytes(40));
@@ -66,7 +66,7 @@ TEST_F(LiveTopicsTest, NeverLeaveOutTheLastMessageOfATopicThatKeepsIt) {
   EXPECT_THAT(taken(topics_), ElementsAre(2, 4));
 }
 
-TEST_F(LiveTopicsTest, TellTopicsFromANumberOn) {
+TEST_F(LiveTopicsTest, ListTopicsFromAnIndex) {
   ASSERT_EQ(topics_.topics_from(1).size(), 1u);
   EXPECT_EQ(topics_.topics_from(1)[0].name, "/kept");
   EXPECT_THAT(topics_.topics_from(2), IsEmpty());

@@ -38,7 +38,7 @@ TEST(Picture, HasItsSizeAndBackground) {
   EXPECT_EQ(colour_at(empty, 50, 40), kWhite);
 }
 
-TEST(Picture, FillsASymbolInItsPlaceAndNowhereElse) {
+TEST(Picture, FillsOnlyTheAreaOfASymbol) {
   for (const Symbol symbol : {Symbol::disc, Symbol::square, Symbol::diamond, Symbol::triangle}) {
     const cv::Mat filled = drawn({symbols(symbol, {{30.5, 20.5}})});
     EXPECT_EQ(colour_at(filled, 30, 20), kRed) << static_cast<int>(symbol);
@@ -47,7 +47,7 @@ TEST(Picture, FillsASymbolInItsPlaceAndNowhereElse) {
   }
 }
 
-TEST(Picture, CrossesAlongTheDiagonalsAlone) {
+TEST(Picture, DrawsCrossesAlongDiagonals) {
   const cv::Mat crossed = drawn({symbols(Symbol::cross, {{30.5, 20.5}})});
   EXPECT_EQ(colour_at(crossed, 33, 23), kRed);
   EXPECT_EQ(colour_at(crossed, 27, 23), kRed);
@@ -57,7 +57,7 @@ TEST(Picture, CrossesAlongTheDiagonalsAlone) {
   EXPECT_EQ(colour_at(plus, 34, 24), kWhite);
 }
 
-TEST(Picture, PutsARimAroundASymbol) {
+TEST(Picture, DrawsARimAroundASymbol) {
   PictureSymbols mark = symbols(Symbol::disc, {{30.5, 20.5}});
   mark.rim = kBlue;
   const cv::Mat rimmed = drawn({mark});
@@ -66,7 +66,7 @@ TEST(Picture, PutsARimAroundASymbol) {
   EXPECT_LT(colour_at(rimmed, 30, 27).red, 160);
 }
 
-TEST(Picture, LetsThroughWhatItIsNotOpaqueFor) {
+TEST(Picture, BlendsTransparentMarks) {
   const PictureArea area{{{10.0, 10.0}, {60.0, 10.0}, {60.0, 60.0}, {10.0, 60.0}}, {0, 0, 0}, 0.5};
   EXPECT_NEAR(colour_at(drawn({area}), 30, 30).green, 128, 1);
   EXPECT_EQ(colour_at(drawn({area}), 70, 30), kWhite);
@@ -84,7 +84,7 @@ TEST(Picture, LeavesGapsInDashedAndDottedLines) {
   EXPECT_NEAR(red_columns(Stroke::dotted), 50, 15);
 }
 
-TEST(Picture, DrawsLinesOfTheirWidth) {
+TEST(Picture, DrawsLinesWithTheirWidth) {
   for (const double width : {1.0, 2.5, 4.0}) {
     const cv::Mat line = drawn({PictureLine{{{5.0, 40.0}, {95.0, 40.0}}, {0, 0, 0}, width}});
     double ink = 0.0;
@@ -131,7 +131,7 @@ TEST(Picture, WritesText) {
   EXPECT_GT(cv::countNonZero(ink), 10);
 }
 
-TEST(Picture, OfTwoHasRoomForBoth) {
+TEST(Picture, FitsTwoPanes) {
   const Picture wide = beside(picture_of({}, 100, 80), picture_of({}, 50, 120));
   EXPECT_EQ(wide.width, 150);
   EXPECT_EQ(wide.height, 120);
@@ -142,7 +142,7 @@ TEST(Picture, OfTwoHasRoomForBoth) {
   EXPECT_EQ(high.panes[1].top, 80);
 }
 
-TEST(PictureSvg, IsWellFormedWhateverIsDrawn) {
+TEST(PictureSvg, IsWellFormed) {
   auto image = std::make_shared<Image>(Image{2, 2, {0, 100, 200, 255}});
   const std::string svg = to_svg(picture_of({
       PictureImage{image, Eigen::Matrix<double, 2, 3>::Identity()},
@@ -157,7 +157,7 @@ TEST(PictureSvg, IsWellFormedWhateverIsDrawn) {
   EXPECT_THAT(svg, HasSubstr("fill=\"#c80000\""));
 }
 
-TEST(PictureSvg, HoldsEverySymbol) {
+TEST(PictureSvg, ContainsEverySymbol) {
   const std::vector<Eigen::Vector2d> centres = {{1.0, 2.0}, {3.0, 4.0}, {50.0, 60.0}};
   EXPECT_EQ(moves_in_class(to_svg(picture_of({symbols(Symbol::disc, centres)})), "things"), 3);
   EXPECT_EQ(moves_in_class(to_svg(picture_of({symbols(Symbol::diamond, centres)})), "things"), 3);
@@ -165,7 +165,7 @@ TEST(PictureSvg, HoldsEverySymbol) {
   EXPECT_THAT(to_svg(picture_of({symbols(Symbol::disc, {})})), Not(HasSubstr("things")));
 }
 
-TEST(PictureSvg, PutsPanesWhereTheyAre) {
+TEST(PictureSvg, PlacesPanes) {
   Picture picture{100, 80, {}};
   picture.panes.push_back({50, 7, 20, 30, kWhite, {}});
   EXPECT_THAT(to_svg(picture), HasSubstr("<svg x=\"50\" y=\"7\" width=\"20\" height=\"30\">"));

@@ -16,7 +16,7 @@ class PlanPicksTest : public testing::Test {
   const StoredMap& stored_ = scene_.stored();
 };
 
-TEST_F(PlanPicksTest, AreReadAsThePageSendsThem) {
+TEST_F(PlanPicksTest, AreParsedFromThePage) {
   const auto picks =
       parse_plan_picks(R"({"picks": [{"name": "gate, left\n", "point": 3, "plan": [1.5, -2]}]})", stored_.map);
   ASSERT_THAT(picks, SizeIs(1));
@@ -25,7 +25,7 @@ TEST_F(PlanPicksTest, AreReadAsThePageSendsThem) {
   EXPECT_EQ(picks[0].point_in_plan, Eigen::Vector2d(1.5, -2.0));
 }
 
-TEST_F(PlanPicksTest, AreRefusedWhenTheyAreAnythingElse) {
+TEST_F(PlanPicksTest, AreRejectedIfInvalid) {
   for (const char* text : {"", "[]", R"({"picks": 1})", R"({"picks": [{"name": "a", "point": 0}]})",
                            R"({"picks": [{"name": "a", "point": 0, "plan": [1]}]})",
                            R"({"picks": [{"name": "a", "point": "0", "plan": [1, 2]}]})",
@@ -34,7 +34,7 @@ TEST_F(PlanPicksTest, AreRefusedWhenTheyAreAnythingElse) {
   }
 }
 
-TEST_F(PlanPicksTest, CountInThePointsOwnUncertainty) {
+TEST_F(PlanPicksTest, IncludeTheUncertaintyOfThePoint) {
   const auto found = correspondences_of({{"gate", 3, {1.5, -2.0}}}, stored_, 0.05);
   const MapPoint& point = *stored_.map.find_point({Origin::offline, 3});
   ASSERT_THAT(found, SizeIs(1));

@@ -62,7 +62,7 @@ PlanPath straight_path(int poses) {
   return path;
 }
 
-TEST(PlanPicture, ShowsPointsWhereTheyAreInTheColourOfTheirMap) {
+TEST(PlanPicture, DrawsPointsInTheColourOfTheirMap) {
   PlanScene scene = level_scene();
   scene.map.points = {point_at(10.025, 14.975, 1.0, Origin::offline), point_at(30.025, 4.975, 1.0, Origin::online)};
   const cv::Mat barn = drawn(scene);
@@ -71,7 +71,7 @@ TEST(PlanPicture, ShowsPointsWhereTheyAreInTheColourOfTheirMap) {
   EXPECT_FALSE(is_greenish(colour_on(barn, 10.5, 15.2)));
 }
 
-TEST(PlanPicture, LeavesOutFloorAndCeilingWhereTheGroundIsLevel) {
+TEST(PlanPicture, OmitsFloorAndCeilingOnLevelGround) {
   PlanScene scene = level_scene();
   scene.map.points = {point_at(10.0, 15.0, 0.0, Origin::offline), point_at(11.0, 15.0, 2.0, Origin::offline),
                       point_at(12.0, 15.0, 4.0, Origin::offline)};
@@ -83,14 +83,14 @@ TEST(PlanPicture, LeavesOutFloorAndCeilingWhereTheGroundIsLevel) {
   EXPECT_EQ(moves_in_class(to_svg(plan_picture(scene, whole_barn())), "offline-points"), 3);
 }
 
-TEST(PlanPicture, DrawsPointsInOnePlaceOnceAndThoseOutsideNotAtAll) {
+TEST(PlanPicture, DrawsCoincidentPointsOnceAndOutsideOnesNever) {
   PlanScene scene = level_scene();
   scene.map.points.assign(50, point_at(10.0, 15.0, 1.0, Origin::offline));
   scene.map.points.push_back(point_at(100.0, 15.0, 1.0, Origin::offline));
   EXPECT_EQ(moves_in_class(to_svg(plan_picture(scene, whole_barn())), "offline-points"), 1);
 }
 
-TEST(PlanPicture, MovesTheMapOntoTheGround) {
+TEST(PlanPicture, TransformsTheMapToTheGround) {
   PlanScene scene = level_scene();
   scene.ground.ground_from_map = {
       2.0, {Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())), {20.0, 10.0, 0.5}}};
@@ -98,7 +98,7 @@ TEST(PlanPicture, MovesTheMapOntoTheGround) {
   EXPECT_TRUE(is_greenish(colour_on(drawn(scene), 10.01, 15.99)));
 }
 
-TEST(PlanPicture, PaintsAWayByItsVerdicts) {
+TEST(PlanPicture, ColoursAPathByVerdict) {
   PlanScene scene = level_scene();
   PlanPath path = straight_path(300);
   path.verdicts.assign(100, Verdict::trusted);
@@ -121,7 +121,7 @@ TEST(PlanPicture, PaintsAWayByItsVerdicts) {
   }
 }
 
-TEST(PlanPicture, LeavesAGapWhereThereWasNoPose) {
+TEST(PlanPicture, LeavesGapsWithoutPose) {
   PlanScene scene = level_scene();
   PlanPath path = straight_path(100);
   PlanPath later = straight_path(300);
@@ -133,7 +133,7 @@ TEST(PlanPicture, LeavesAGapWhereThereWasNoPose) {
   EXPECT_NE(colour_on(barn, 20.0, 10.0), palette::kPaths[0]);
 }
 
-TEST(PlanPicture, TellsWaysApartByColourAndName) {
+TEST(PlanPicture, DistinguishesPathsByColourAndName) {
   PlanScene scene = level_scene();
   scene.paths = {straight_path(100), straight_path(100)};
   scene.paths[1].name = "evening & night";
@@ -144,7 +144,7 @@ TEST(PlanPicture, TellsWaysApartByColourAndName) {
   EXPECT_THAT(to_svg(plan_picture(scene)), HasSubstr(">evening &amp; night<"));
 }
 
-TEST(PlanPicture, OpensAWedgeWhereTheCameraLooks) {
+TEST(PlanPicture, DrawsTheViewingDirectionAsAWedge) {
   PlanScene scene = level_scene();
   Eigen::Matrix3d map_from_camera;  // level, looking along x of the map
   map_from_camera << 0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0;
@@ -157,7 +157,7 @@ TEST(PlanPicture, OpensAWedgeWhereTheCameraLooks) {
   EXPECT_EQ(behind.blue, behind.red);
 }
 
-TEST(PlanPicture, KnowsWhereACameraLooksFromItsBody) {
+TEST(PlanPicture, DerivesTheViewingDirectionFromTheBody) {
   Rig rig{752, 480, 376.0, 376.0, 240.0, 0.1, {}};
   rig.body_from_camera.translation = {0.5, 0.0, 1.0};
   const PlanCamera camera = plan_camera({Eigen::Quaterniond::Identity(), {1.0, 1.0, 1.0}}, rig);
@@ -165,7 +165,7 @@ TEST(PlanPicture, KnowsWhereACameraLooksFromItsBody) {
   EXPECT_EQ(camera.map_from_camera.translation, Eigen::Vector3d(1.5, 1.0, 2.0));
 }
 
-TEST(PlanPicture, JoinsKeyframesButForLongLeaps) {
+TEST(PlanPicture, JoinsKeyframesExceptAcrossLongGaps) {
   PlanScene scene = level_scene();
   for (int i = 0; i < 20; ++i) {
     SceneKeyframe keyframe{from_seconds(i), {}, Origin::offline};
@@ -196,7 +196,7 @@ PlanScene scene_on_plan() {
   return scene;
 }
 
-TEST(PlanPicture, HasThePlanBelowAllElse) {
+TEST(PlanPicture, DrawsThePlanFirst) {
   const cv::Mat barn = drawn(scene_on_plan());
   EXPECT_LT(colour_on(barn, 30.5, 4.5).red, 140);
   EXPECT_EQ(colour_on(barn, 29.5, 4.5), palette::kPaper);
@@ -221,7 +221,7 @@ TEST(PlanPicture, ShowsThePartOfALargeSiteWhereTheMapIs) {
   EXPECT_TRUE(shown.contains(Vector2d(5.0, 10.0)));
 }
 
-TEST(PlanPicture, ShowsTheMapButForItsFarthestPoints) {
+TEST(PlanPicture, ShowsTheMapExceptItsFarthestPoints) {
   PlanScene scene = level_scene();
   for (int i = 0; i < 1000; ++i) scene.map.points.push_back(point_at(0.03 * i, 5.0 + i % 7, 1.0, Origin::offline));
   scene.map.points.push_back(point_at(900.0, -500.0, 1.0, Origin::offline));
@@ -231,7 +231,7 @@ TEST(PlanPicture, ShowsTheMapButForItsFarthestPoints) {
   EXPECT_GT(shown.min().y(), 2.0);
 }
 
-TEST(PlanPicture, FitsIntoTheSizeAskedFor) {
+TEST(PlanPicture, FitsTheRequestedSize) {
   PlanPictureOptions options = whole_barn();
   EXPECT_EQ(plan_picture(level_scene(), options).width, 800);
   options.shown = AlignedBox2d(Vector2d(0.0, 0.0), Vector2d(20.0, 40.0));
@@ -239,7 +239,7 @@ TEST(PlanPicture, FitsIntoTheSizeAskedFor) {
   EXPECT_EQ(high.panes[1].height, 800);
 }
 
-TEST(PlanPicture, SaysWhatItShows) {
+TEST(PlanPicture, HasALegend) {
   PlanScene scene = level_scene();
   scene.title = "barn <1>";
   scene.map.points = {point_at(10.0, 15.0, 1.0, Origin::offline)};

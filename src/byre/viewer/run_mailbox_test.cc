@@ -40,7 +40,7 @@ TEST(RunMailbox, KeepsTheNewestMap) {
   EXPECT_THAT(mailbox.take().online->points, SizeIs(1));
 }
 
-TEST(RunMailbox, IsEmptyOnceItIsTaken) {
+TEST(RunMailbox, IsEmptyAfterTaking) {
   RunMailbox mailbox;
   mailbox.put(frame_at(1), scene_at(1));
   mailbox.put(MapScene{});

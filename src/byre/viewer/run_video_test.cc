@@ -23,7 +23,7 @@ Picture plain(const Colour& colour, int width, int height) {
   return {width, height, {{0, 0, width, height, colour, {}}}};
 }
 
-TEST_F(RunVideoTest, HoldsEveryFrameAtItsRate) {
+TEST_F(RunVideoTest, ContainsEveryFrameAtItsRate) {
   {
     RunVideo video(file_, 12.5, 161, 120);
     for (int i = 0; i < 7; ++i) video.add(plain({0, 0, 200}, 161, 120));
@@ -42,7 +42,7 @@ TEST_F(RunVideoTest, HoldsEveryFrameAtItsRate) {
   EXPECT_GT(colour_at(frames[10], 80, 60).red, 150);
 }
 
-TEST_F(RunVideoTest, CutsOffAndFillsUpWhatIsOfAnotherSize) {
+TEST_F(RunVideoTest, CropsAndPadsFramesOfOtherSizes) {
   {
     RunVideo video(file_, 10.0, 160, 120);
     for (int i = 0; i < 3; ++i) video.add(plain({0, 0, 200}, 80, 300));
@@ -55,7 +55,7 @@ TEST_F(RunVideoTest, CutsOffAndFillsUpWhatIsOfAnotherSize) {
   EXPECT_GT(colour_at(frame, 120, 60).red, 230) << "white";
 }
 
-TEST_F(RunVideoTest, SaysWhenTheFileCannotBeWritten) {
+TEST_F(RunVideoTest, ReportsAnUnwritableFile) {
   EXPECT_THROW(RunVideo("/nowhere/at/all.mp4", 10.0, 160, 120), InputError);
 }
 
@@ -71,21 +71,21 @@ Picture arranged(double width, double height) {
   return frame_and_plan(grey_frame(), {}, {}, options);
 }
 
-TEST(FrameAndPlan, PutsAWideBuildingBelowTheCamera) {
+TEST(FrameAndPlan, PlacesAWideBuildingBelowTheCamera) {
   const Picture camera = camera_picture(grey_frame());
   const Picture picture = arranged(60.0, 20.0);
   EXPECT_EQ(picture.width, camera.width);
   EXPECT_GT(picture.height, camera.height + camera.width / 4);
 }
 
-TEST(FrameAndPlan, PutsAHighBuildingBesideIt) {
+TEST(FrameAndPlan, PlacesATallBuildingNextToTheCamera) {
   const Picture camera = camera_picture(grey_frame());
   const Picture picture = arranged(20.0, 20.0);
   EXPECT_GT(picture.width, camera.width);
   EXPECT_LT(picture.height, camera.height + 80);
 }
 
-TEST(FrameAndPlan, IsOfOneSizeForAllFramesOfARun) {
+TEST(FrameAndPlan, HasOneSizeForAllFramesOfARun) {
   PlanPictureOptions options;
   options.shown = Eigen::AlignedBox2d(Eigen::Vector2d::Zero(), Eigen::Vector2d(60.0, 20.0));
   PlanScene later;

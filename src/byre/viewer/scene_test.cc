@@ -32,7 +32,7 @@ Map map_of_one_point(Origin origin, double depth) {
   return map;
 }
 
-TEST(Scene, HoldsThePointsOfBothMapsTheOfflineOnesFirst) {
+TEST(Scene, ContainsOfflineThenOnlinePoints) {
   const Map offline = map_of_one_point(Origin::offline, 2.0);
   const Map online = map_of_one_point(Origin::online, 3.0);
   const MapScene scene = scene_of({&offline, online});
@@ -43,7 +43,7 @@ TEST(Scene, HoldsThePointsOfBothMapsTheOfflineOnesFirst) {
   EXPECT_EQ(scene.points[1].position_in_map, Eigen::Vector3f(0.0f, 0.0f, 3.0f));
 }
 
-TEST(Scene, PutsKeyframesWhereTheBodyWas) {
+TEST(Scene, PlacesKeyframesAtTheBody) {
   const Map online = map_of_one_point(Origin::online, 2.0);
   const MapScene scene = scene_of(online);
   ASSERT_THAT(scene.keyframes, SizeIs(1));
@@ -51,7 +51,7 @@ TEST(Scene, PutsKeyframesWhereTheBodyWas) {
   EXPECT_THAT(scene.keyframes[0].map_from_body.translation, PointNear(Eigen::Vector3d(-0.5, 0.0, -1.0), 1e-12));
 }
 
-TEST(Scene, OfAnEmptyMapIsEmpty) {
+TEST(Scene, IsEmptyForAnEmptyMap) {
   const MapScene scene = scene_of(Map(Origin::online));
   EXPECT_THAT(scene.points, IsEmpty());
   EXPECT_THAT(scene.keyframes, IsEmpty());

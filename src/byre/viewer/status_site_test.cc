@@ -9,7 +9,7 @@ WebRequest get(const std::string& path) {
   return {WebRequest::Method::get, path, ""};
 }
 
-TEST(StatusSite, TellsHowTheProgramIs) {
+TEST(StatusSite, ServesHealthAndMetrics) {
   const auto board = std::make_shared<StatusBoard>();
   StatusSite site(board);
   EXPECT_EQ(site.answer(get("/healthz")).status, 503) << "nothing was put there yet";

@@ -9,7 +9,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-TEST(WebAccess, OnLoopbackGoesByItsNamesWhateverThePort) {
+TEST(WebAccess, AcceptsLoopbackNamesOnAnyPort) {
   const WebAccess access = access_to("127.0.0.1");
   for (const char* host : {"localhost", "localhost:8017", "127.0.0.1:9000", "[::1]:8017"}) {
     EXPECT_THAT(refusal(access, {host, "", "/"}), IsEmpty()) << host;
@@ -19,14 +19,14 @@ TEST(WebAccess, OnLoopbackGoesByItsNamesWhateverThePort) {
   }
 }
 
-TEST(WebAccess, IsForTheOwnPageOnly) {
+TEST(WebAccess, AcceptsOnlyTheOwnPage) {
   const WebAccess access = access_to("127.0.0.1");
   EXPECT_THAT(refusal(access, {"localhost:8017", "http://localhost:8017", "/"}), IsEmpty());
   EXPECT_THAT(refusal(access, {"localhost:8017", "http://localhost:8018", "/"}), Not(IsEmpty()));
   EXPECT_THAT(refusal(access, {"localhost:8017", "null", "/"}), Not(IsEmpty()));
 }
 
-TEST(WebAccess, LetsApplicationsOfFoxgloveSpeakTheirProtocolAlone) {
+TEST(WebAccess, AllowsOnlyTheProtocolToFoxgloveApplications) {
   const WebAccess access = access_to("127.0.0.1");
   for (const char* page : {"", "https://app.foxglove.dev", "file://", "http://localhost:8080", "https://[::1]"}) {
     EXPECT_THAT(refusal(access, {"localhost:8017", page, "/", true}), IsEmpty()) << page;
@@ -38,14 +38,14 @@ TEST(WebAccess, LetsApplicationsOfFoxgloveSpeakTheirProtocolAlone) {
   EXPECT_THAT(refusal(access, {"localhost:8017", "https://app.foxglove.dev", "/", false}), Not(IsEmpty()));
 }
 
-TEST(WebAccess, ThroughTheNetworkFoxgloveNeedsTheTokenWhateverItsPage) {
+TEST(WebAccess, RequiresTheTokenFromFoxgloveThroughTheNetwork) {
   const WebAccess access = access_to("192.0.2.7");
   const std::string with_token = "/?token=" + access.token;
   EXPECT_THAT(refusal(access, {"barn.example", "https://own.example", with_token, true}), IsEmpty());
   EXPECT_THAT(refusal(access, {"barn.example", "https://app.foxglove.dev", "/", true}), Not(IsEmpty()));
 }
 
-TEST(WebAccess, ThroughTheNetworkNeedsTheToken) {
+TEST(WebAccess, RequiresTheTokenThroughTheNetwork) {
   const WebAccess access = access_to("192.0.2.7");
   EXPECT_THAT(access.token, SizeIs(32));
   EXPECT_NE(access.token, access_to("192.0.2.7").token);
@@ -55,7 +55,7 @@ TEST(WebAccess, ThroughTheNetworkNeedsTheToken) {
   }
 }
 
-TEST(WebAccess, TellsThePartsOfATarget) {
+TEST(WebAccess, SplitsATarget) {
   EXPECT_EQ(path_of("/images/7?token=abc"), "/images/7");
   EXPECT_EQ(path_of("/"), "/");
   EXPECT_EQ(query_value("/?first=1&token=abc", "token"), "abc");

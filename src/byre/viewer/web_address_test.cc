@@ -8,12 +8,12 @@ namespace {
 
 using ::testing::ElementsAre;
 
-TEST(ReachableAddresses, OfOneAddressIsThatOne) {
+TEST(ReachableAddresses, OfOneAddressIsTheAddress) {
   EXPECT_THAT(reachable_addresses("192.0.2.7"), ElementsAre("192.0.2.7"));
   EXPECT_THAT(reachable_addresses("::1"), ElementsAre("::1"));
 }
 
-TEST(ReachableAddresses, OfAllAreThoseOfTheInterfacesAndLoopbackLast) {
+TEST(ReachableAddresses, OfAllAreTheInterfacesThenLoopback) {
   for (const char* const all : {"0.0.0.0", "::"}) {
     const std::vector<std::string> addresses = reachable_addresses(all);
     ASSERT_FALSE(addresses.empty());

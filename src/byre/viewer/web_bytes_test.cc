@@ -14,7 +14,7 @@ Value value_at(const std::string& bytes, std::size_t offset) {
   return value;
 }
 
-TEST(WebBytes, LayOutAMapInColumns) {
+TEST(WebBytes, EncodeAMapInColumns) {
   MapScene scene;
   scene.points = {{{1.0f, 2.0f, 3.0f}, Origin::offline}, {{4.0f, 5.0f, 6.0f}, Origin::online}};
   scene.keyframes = {{{}, {Eigen::Quaterniond::Identity(), {7.0, 8.0, 9.0}}, Origin::online}};
@@ -29,7 +29,7 @@ TEST(WebBytes, LayOutAMapInColumns) {
   EXPECT_EQ(bytes.substr(8 + 24 + 28), std::string("\0\1\1", 3));
 }
 
-TEST(WebBytes, LayOutAnImageAfterThePointsSeenInIt) {
+TEST(WebBytes, EncodeAnImageAfterItsPoints) {
   std::vector<SeenPoint> seen(2);
   seen[0] = {{Origin::offline, 3}, {10.5f, 20.5f}, true};
   seen[1] = {{Origin::online, 4}, {30.0f, 40.0f}, false};

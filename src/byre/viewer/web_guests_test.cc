@@ -17,7 +17,7 @@ WebLimits small() {
   return limits;
 }
 
-TEST(WebGuests, LetsStrangersMakeRoomForStrangers) {
+TEST(WebGuests, ReplacesUnidentifiedGuests) {
   WebGuests guests(small());
   const WebGuests::Id first = guests.arrive("a").id;
   guests.arrive("a");
@@ -27,7 +27,7 @@ TEST(WebGuests, LetsStrangersMakeRoomForStrangers) {
   EXPECT_EQ(guests.strangers(), 3);
 }
 
-TEST(WebGuests, ClosesThoseOfTheAddressThatHasTheMost) {
+TEST(WebGuests, ClosesGuestsOfTheAddressWithMostConnections) {
   WebGuests guests(small());
   guests.arrive("calm");
   const WebGuests::Id oldest_of_many = guests.arrive("many").id;
@@ -35,7 +35,7 @@ TEST(WebGuests, ClosesThoseOfTheAddressThatHasTheMost) {
   EXPECT_THAT(guests.arrive("late").to_close, Optional(Eq(oldest_of_many)));
 }
 
-TEST(WebGuests, LeavesThoseAloneThatHaveIntroducedThemselves) {
+TEST(WebGuests, KeepsIdentifiedGuests) {
   WebGuests guests(small());
   const WebGuests::Id one = guests.arrive("a").id;
   const WebGuests::Id two = guests.arrive("a").id;
@@ -51,7 +51,7 @@ TEST(WebGuests, LeavesThoseAloneThatHaveIntroducedThemselves) {
   EXPECT_EQ(guests.strangers(), 0);
 }
 
-TEST(ArrivalRate, LetsSomeInAtOnceAndThenSoManyASecond) {
+TEST(ArrivalRate, AllowsABurstThenAFixedRate) {
   WebLimits limits;
   limits.arrivals_per_second = 10.0;
   limits.arrivals_at_once = 2;
@@ -68,7 +68,7 @@ TEST(ArrivalRate, LetsSomeInAtOnceAndThenSoManyASecond) {
   EXPECT_EQ(rate.wait(start + std::chrono::hours(1)), milliseconds(100)) << "no more than two at once after an hour";
 }
 
-TEST(EndOfDescriptors, LeavesSomeFreeWhateverTheLimit) {
+TEST(EndOfDescriptors, ReservesDescriptorsAtAnyLimit) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
   const auto end_at = [&before](rlim_t most) {

@@ -76,7 +76,7 @@ TEST_F(MapViewerTest, ServesTheMapAndThePlan) {
   EXPECT_EQ(client.get("/nothing").status, 404);
 }
 
-TEST_F(MapViewerTest, FindsTheMapOnThePlanByThePicks) {
+TEST_F(MapViewerTest, RegistersTheMapOnThePlanByPicks) {
   const MapViewer viewer(viewed_, any_port_);
   const Json fit = client_of(viewer).post("/registration", picks(6)).json();
   EXPECT_LT(fit.at("rms_m"), 0.01);
@@ -101,7 +101,7 @@ TEST_F(MapViewerTest, SavesTheRegisteredMapAndThePicks) {
   EXPECT_EQ(header, "name,point,plan_x_m,plan_y_m");
 }
 
-TEST_F(MapViewerTest, SavesWhatIsFarOffOnlyWhenTheFigureIsConfirmed) {
+TEST_F(MapViewerTest, SavesLargeResidualsOnlyWhenConfirmed) {
   for (PlanCorrespondence& sign : signs_) sign.point_in_plan *= 1.5;  // simulates a plan with a wrong resolution
   const MapViewer viewer(viewed_, any_port_);
   const WebClient client = client_of(viewer);
@@ -121,7 +121,7 @@ TEST_F(MapViewerTest, SavesWhatIsFarOffOnlyWhenTheFigureIsConfirmed) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "barn-plan.byre"));
 }
 
-TEST_F(MapViewerTest, SaysWhyItCannotRegisterOrSave) {
+TEST_F(MapViewerTest, ReportsWhyItCannotRegisterOrSave) {
   viewed_.output.reset();
   const MapViewer viewer(viewed_, any_port_);
   const WebClient client = client_of(viewer);

@@ -87,7 +87,7 @@ Told listen_to_the_end(LiveClient& client) {
   }
 }
 
-TEST_F(RunViewerTest, TellsEveryFrameTheNewestImageAndTheMap) {
+TEST_F(RunViewerTest, SendsEveryFrameTheNewestImageAndTheMap) {
   RunViewer viewer = view();
   LiveClient client(port_of(viewer));
   show_all(viewer);
@@ -101,14 +101,14 @@ TEST_F(RunViewerTest, TellsEveryFrameTheNewestImageAndTheMap) {
   EXPECT_EQ(number_at(told.last_image, 0), static_cast<std::uint32_t>(kFrames - 1));
 }
 
-TEST_F(RunViewerTest, TellsAPageThatIsOpenedLateAllOfTheRun) {
+TEST_F(RunViewerTest, SendsTheWholeRunToALatePage) {
   RunViewer viewer = view();
   show_all(viewer);
   LiveClient late(port_of(viewer));
   EXPECT_THAT(listen_to_the_end(late).frames, SizeIs(kFrames));
 }
 
-TEST_F(RunViewerTest, SendsImagesAsRectifiedJpegWithThePointsSeen) {
+TEST_F(RunViewerTest, SendsImagesAsRectifiedJpegWithTheirPoints) {
   RunViewer viewer = view();
   LiveClient client(port_of(viewer));
   show_all(viewer);

@@ -54,7 +54,7 @@ class WebServerTest : public testing::Test {
   std::atomic<int> last_ = 0;
 };
 
-TEST_F(WebServerTest, HandsRequestsToTheSite) {
+TEST_F(WebServerTest, PassesRequestsToTheSite) {
   const WebServer server = serve();
   const WebClient client(server.port());
   EXPECT_THAT(server.urls(), ElementsAre("http://127.0.0.1:" + std::to_string(server.port()) + "/"));
@@ -62,7 +62,7 @@ TEST_F(WebServerTest, HandsRequestsToTheSite) {
   EXPECT_EQ(client.post("/picks", "[1]").body, "post /picks [1]");
 }
 
-TEST_F(WebServerTest, TurnsExceptionsIntoAnswers) {
+TEST_F(WebServerTest, ConvertsExceptionsToResponses) {
   const WebServer server = serve();
   const WebClient client(server.port());
   EXPECT_EQ(client.get("/bad").status, 400);
@@ -72,7 +72,7 @@ TEST_F(WebServerTest, TurnsExceptionsIntoAnswers) {
   EXPECT_EQ(client.ask("DELETE", "/", "", {}).status, 405);
 }
 
-TEST_F(WebServerTest, RefusesOtherNamesAndOtherPages) {
+TEST_F(WebServerTest, RejectsOtherNamesAndOtherPages) {
   const WebServer server = serve();
   const WebClient client(server.port());
   EXPECT_EQ(client.get("/", {{"Host", "elsewhere.example"}}).status, 403);
@@ -80,7 +80,7 @@ TEST_F(WebServerTest, RefusesOtherNamesAndOtherPages) {
   EXPECT_THROW(LiveClient(server.port(), "/another"), boost::system::system_error);
 }
 
-TEST_F(WebServerTest, AsksForTheTokenOnceItIsOpenToTheNetwork) {
+TEST_F(WebServerTest, RequiresTheTokenWhenOpenToTheNetwork) {
   const WebServer server = serve("0.0.0.0");
   const WebClient client(server.port());
   const std::string page = "http://127.0.0.1:" + std::to_string(server.port());
@@ -93,7 +93,7 @@ TEST_F(WebServerTest, AsksForTheTokenOnceItIsOpenToTheNetwork) {
   EXPECT_NO_THROW(LiveClient(server.port(), "/live" + target.substr(1)));
 }
 
-TEST_F(WebServerTest, TellsListenersWhatIsNewWhenItIsWoken) {
+TEST_F(WebServerTest, SendsNewsToListenersWhenWoken) {
   WebServer server = serve();
   LiveClient early(server.port());
   last_ = 2;
@@ -106,7 +106,7 @@ TEST_F(WebServerTest, TellsListenersWhatIsNewWhenItIsWoken) {
   EXPECT_EQ(late.next().bytes, "1");
 }
 
-TEST_F(WebServerTest, EndsWithListenersOpen) {
+TEST_F(WebServerTest, StopsWithOpenListeners) {
   std::optional<LiveClient> listener;
   {
     WebServer server = serve();
@@ -118,7 +118,7 @@ TEST_F(WebServerTest, EndsWithListenersOpen) {
   EXPECT_THROW(listener->next(), boost::system::system_error);
 }
 
-TEST_F(WebServerTest, NamesAddressesThatOtherMachinesCanOpen) {
+TEST_F(WebServerTest, ListsReachableAddresses) {
   const WebServer server = serve("0.0.0.0");
   EXPECT_THAT(server.urls(), Each(Not(HasSubstr("0.0.0.0"))));
   EXPECT_THAT(server.urls(), Each(HasSubstr(":" + std::to_string(server.port()) + "/?token=")));
@@ -172,7 +172,7 @@ WebLimits impatient() {
   return limits;
 }
 
-TEST_F(WebServerTest, ClosesWhoeverDoesNotAskInTime) {
+TEST_F(WebServerTest, ClosesSlowClients) {
   const WebServer server = serve("0.0.0.0", impatient());
   Crowd crowd(server.port());
   crowd.add(2, "");
@@ -184,7 +184,7 @@ TEST_F(WebServerTest, ClosesWhoeverDoesNotAskInTime) {
   EXPECT_EQ(crowd.still_open(), 0) << "a byte now and then buys no time";
 }
 
-TEST_F(WebServerTest, ReadsNothingButTheHeadOfWhatItRefuses) {
+TEST_F(WebServerTest, ReadsOnlyTheHeaderOfRejectedRequests) {
   const WebServer server = serve("0.0.0.0");
   Crowd crowd(server.port());
   crowd.add(1, "POST / HTTP/1.1\r\nHost: barn\r\nContent-Length: 1000000\r\n\r\n");
@@ -192,7 +192,7 @@ TEST_F(WebServerTest, ReadsNothingButTheHeadOfWhatItRefuses) {
   EXPECT_EQ(crowd.still_open(), 0) << "long before the body came, or the time to ask was over";
 }
 
-TEST_F(WebServerTest, AnswersWhoeverHasTheTokenAmongHundredsThatHaveNot) {
+TEST_F(WebServerTest, AnswersTokenHoldersAmongHundredsOfOthers) {
   WebLimits limits = impatient();
   limits.patience = std::chrono::seconds(30);
   const WebServer server = serve("0.0.0.0", limits);
@@ -212,7 +212,7 @@ TEST_F(WebServerTest, AnswersWhoeverHasTheTokenAmongHundredsThatHaveNot) {
   EXPECT_LE(crowd.still_open(), limits.strangers);
 }
 
-TEST_F(WebServerTest, SaysWhatIsWrongWithAnAddressOrPort) {
+TEST_F(WebServerTest, ReportsAnUnusableAddressOrPort) {
   const WebServer server = serve();
   const auto serve_at = [&](const std::string& address, int port) -> std::string {
     try {

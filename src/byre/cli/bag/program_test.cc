@@ -23,7 +23,7 @@ class BagProgram : public ProgramTest {
   }
 };
 
-TEST_F(BagProgram, TellsWhatABagHolds) {
+TEST_F(BagProgram, PrintsTheContentsOfABag) {
   write_scene("walk.mcap");
   const Outcome outcome = run("bag info walk.mcap");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -33,7 +33,7 @@ TEST_F(BagProgram, TellsWhatABagHolds) {
   EXPECT_THAT(outcome.output, HasSubstr("images       left /left/image_raw, right /right/image_raw\n"));
 }
 
-TEST_F(BagProgram, TellsTheSameAsJson) {
+TEST_F(BagProgram, PrintsTheContentsAsJson) {
   write_scene("walk.mcap");
   const json told = json::parse(run("bag info walk.mcap --json").output);
   EXPECT_EQ(told.at("program"), "byre bag info");
@@ -44,7 +44,7 @@ TEST_F(BagProgram, TellsTheSameAsJson) {
   EXPECT_THAT(told.at("damage"), IsEmpty());
 }
 
-TEST_F(BagProgram, TellsOfDamageByItsExitCodeToo) {
+TEST_F(BagProgram, ReportsDamageWithExitCodeOne) {
   write_scene("cut.mcap", 200);
   const Outcome outcome = run("bag info cut.mcap");
   EXPECT_EQ(outcome.exit_code, 1);
@@ -53,14 +53,14 @@ TEST_F(BagProgram, TellsOfDamageByItsExitCodeToo) {
   EXPECT_EQ(run("bag").exit_code, 2);
 }
 
-TEST_F(BagProgram, ListsTopicsWhereANameIsWrong) {
+TEST_F(BagProgram, ListsTopicsForAnUnknownName) {
   write_scene("walk.mcap");
   const Outcome outcome = run("check walk.mcap --left /front");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.errors, HasSubstr("has no images on topic /front; available image topics: /left/image_raw (6)"));
 }
 
-TEST_F(BagProgram, ReadsWhatMappingRecordedAndMapsItAgain) {
+TEST_F(BagProgram, MapsTheRecordOfAMappingRun) {
   const Outcome mapped = run("map " + rendered_room() +
                              " --frames :6 --no-loops --pace inline --quiet --trajectory walk.txt "
                              "--record walk.mcap --record-images");
@@ -71,7 +71,7 @@ TEST_F(BagProgram, ReadsWhatMappingRecordedAndMapsItAgain) {
   EXPECT_EQ(std::ranges::count(read("again.txt"), '\n'), std::ranges::count(read("walk.txt"), '\n'));
 }
 
-TEST_F(BagProgram, DoesNotRecordOverWhatIsReadOrOfAnotherKind) {
+TEST_F(BagProgram, DoesNotOverwriteInputsOrOtherFileTypes) {
   write_scene("walk.mcap");
   EXPECT_THAT(run("map walk.mcap -o walk.byre --record walk.mcap").errors, HasSubstr("is also an input (RECORDING)"));
   write("notes.txt", "bring hay\n");

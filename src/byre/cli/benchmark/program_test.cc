@@ -42,7 +42,7 @@ TEST_F(BenchmarkProgram, WritesTablesFiguresAndPlots) {
   EXPECT_TRUE(fs::exists(folder_ / "out/first/trajectories/room.no_map.2.final.txt"));
 }
 
-TEST_F(BenchmarkProgram, RepeatsItselfQuietly) {
+TEST_F(BenchmarkProgram, RepeatsResultsWithQuiet) {
   ASSERT_EQ(run("benchmark room.yaml " + data_ + " -o a --quiet").exit_code, 0);
   const Outcome again = run("benchmark room.yaml " + data_ + " -o b --quiet");
   EXPECT_THAT(again.errors, IsEmpty());
@@ -67,7 +67,7 @@ TEST_F(BenchmarkProgram, MeasuresTheSpeedOfARecording) {
   EXPECT_GT(first["wall_s"], first["first_pose_s"]);
 }
 
-TEST_F(BenchmarkProgram, TakesAProtocolOrARecordingAndNotBoth) {
+TEST_F(BenchmarkProgram, AcceptsEitherAProtocolOrARecording) {
   const std::string room = "'" + RenderedFixture::shared().folder().string() + "'";
   EXPECT_EQ(run("benchmark room.yaml --speed " + room).exit_code, 2);
   EXPECT_EQ(run("benchmark --speed " + room + " --only room").exit_code, 2);
@@ -77,7 +77,7 @@ TEST_F(BenchmarkProgram, TakesAProtocolOrARecordingAndNotBoth) {
   EXPECT_THAT(neither.errors, HasSubstr("PROTOCOL or --speed"));
 }
 
-TEST_F(BenchmarkProgram, SaysWhatIsWrongWithItsInput) {
+TEST_F(BenchmarkProgram, ReportsFaultsOfItsInput) {
   EXPECT_EQ(run("benchmark").exit_code, 2);
   EXPECT_EQ(run("benchmark room.yaml --runs 0").exit_code, 2);
   const Outcome unknown = run("benchmark unknown");
@@ -90,7 +90,7 @@ TEST_F(BenchmarkProgram, SaysWhatIsWrongWithItsInput) {
   EXPECT_THAT(run("benchmark broken.yaml").errors, HasSubstr("broken.yaml:2: unknown field \"runz\""));
 }
 
-TEST_F(BenchmarkProgram, KeepsWhatWasMeasuredWhenInterrupted) {
+TEST_F(BenchmarkProgram, KeepsMeasurementsWhenInterrupted) {
   const pid_t process = start({"benchmark", (folder_ / "room.yaml").string(), "--data",
                                RenderedFixture::shared().folder().parent_path().string(), "-o",
                                (folder_ / "out").string(), "--runs", "500"});

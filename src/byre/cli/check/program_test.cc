@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 class CheckProgram : public ProgramTest {};
 
-TEST_F(CheckProgram, FindsNothingInTheWayOfASoundRecording) {
+TEST_F(CheckProgram, FindsNoProblemInASoundRecording) {
   const Outcome outcome = run("check " + rendered_room() + " --samples 3");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output << outcome.errors;
   for (const char* const row : {"frames ", "left ", "right ", "pair ", "calibration ", "baseline "}) {
@@ -21,7 +21,7 @@ TEST_F(CheckProgram, FindsNothingInTheWayOfASoundRecording) {
   }
 }
 
-TEST_F(CheckProgram, TellsTheSameAsJson) {
+TEST_F(CheckProgram, PrintsTheReportAsJson) {
   const Outcome outcome = run("check " + rendered_room() + " --samples 3 --json");
   const json told = json::parse(outcome.output);
   EXPECT_EQ(told.at("program"), "byre check");
@@ -30,7 +30,7 @@ TEST_F(CheckProgram, TellsTheSameAsJson) {
   EXPECT_LT(told.at("pair").at("calibration_error_px"), 0.2);
 }
 
-TEST_F(CheckProgram, OfOneCameraSaysNothingOfAPair) {
+TEST_F(CheckProgram, OmitsThePairForOneCamera) {
   const json told = json::parse(run("check " + rendered_room() + " --camera left --samples 3 --json").output);
   EXPECT_TRUE(told.at("pair").is_null());
   EXPECT_EQ(told.at("without_right"), 0);
@@ -45,7 +45,7 @@ TEST_F(CheckProgram, ReplacesTheBaselineOfTheCalibration) {
   EXPECT_NE(run("check " + rendered_room() + " --samples 3 --baseline 0").exit_code, 0);
 }
 
-TEST_F(CheckProgram, ItsSummaryBeginsAMapping) {
+TEST_F(CheckProgram, PrintsASummaryBeforeMapping) {
   const Outcome outcome = run("map " + rendered_room() + " --frames :4 --no-loops -o room.byre");
   EXPECT_THAT(outcome.errors, HasSubstr("checked "));
 }

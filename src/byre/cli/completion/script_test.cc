@@ -113,7 +113,7 @@ class Completion : public ProgramTest {
   Action action_;
 };
 
-TEST_F(Completion, KnowsEveryCommandOptionAndChoiceInBash) {
+TEST_F(Completion, ContainsAllCommandsOptionsAndChoicesInBash) {
   std::vector<Expected> expected;
   collect(app_, "byre ", expected);
   std::vector<std::string> lines;
@@ -125,7 +125,7 @@ TEST_F(Completion, KnowsEveryCommandOptionAndChoiceInBash) {
   }
 }
 
-TEST_F(Completion, OffersFilesAndFoldersWhereTheyAreTaken) {
+TEST_F(Completion, OffersFilesAndFolders) {
   write("barn 1.byre", "");
   std::filesystem::create_directories(folder_ / "barn_2");
   const auto offered =
@@ -140,7 +140,7 @@ TEST_F(Completion, OffersFilesAndFoldersWhereTheyAreTaken) {
   EXPECT_THAT(offered[6], ElementsAre("--align", "--aligned", "--alignment"));
 }
 
-TEST_F(Completion, OffersChoicesThatAreTaken) {
+TEST_F(Completion, OffersChoices) {
   std::vector<CLI::App*> commands = {&app_};
   int choices = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
@@ -175,7 +175,7 @@ TEST_F(Completion, CompletesInZsh) {
   }
 }
 
-TEST_F(Completion, IsForShellsThatAreKnown) {
+TEST_F(Completion, RejectsUnknownShells) {
   EXPECT_EQ(run("completion fish").exit_code, 2);
   EXPECT_EQ(run("completion").exit_code, 2);
   EXPECT_THAT(run("completion zsh").output, testing::StartsWith("#compdef byre\n"));

@@ -19,7 +19,7 @@ using testing::StartsWith;
 
 class DemoProgram : public ProgramTest {};
 
-TEST_F(DemoProgram, WritesAPageAndWhatItIsMadeOf) {
+TEST_F(DemoProgram, WritesAPageAndItsData) {
   const Outcome outcome = run("demo -o out --duration 8 --rate 4 --divide 2");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output,
@@ -38,7 +38,7 @@ TEST_F(DemoProgram, WritesAPageAndWhatItIsMadeOf) {
   EXPECT_THAT(read("out/plan.svg"), StartsWith("<svg"));
 }
 
-TEST_F(DemoProgram, LeavesADemonstrationThatIsThereAlone) {
+TEST_F(DemoProgram, DoesNotOverwriteADemonstration) {
   fs::create_directories(folder_ / "byre_demo" / "first_visit" / "mav0");
   const Outcome outcome = run("demo");
   EXPECT_EQ(outcome.exit_code, 3);
@@ -55,7 +55,7 @@ TEST_F(DemoProgram, StopsAtCtrlCWithoutAPage) {
   EXPECT_THAT(read("stdout.txt"), IsEmpty());
 }
 
-TEST_F(DemoProgram, RefusesWrongUsage) {
+TEST_F(DemoProgram, RejectsWrongUsage) {
   EXPECT_EQ(run("demo --duration 0").exit_code, 2);
   EXPECT_EQ(run("demo somewhere").exit_code, 2);
 }

@@ -32,7 +32,7 @@ class DrawProgram : public ProgramTest {
   }
 };
 
-TEST_F(DrawProgram, ExplainsItself) {
+TEST_F(DrawProgram, PrintsHelp) {
   const Outcome help = run("draw --help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output, AllOf(HasSubstr("--camera-picture"), HasSubstr("--video"), HasSubstr("--heights"),
@@ -50,13 +50,13 @@ TEST_F(DrawProgram, DrawsAMapFromAbove) {
   EXPECT_THAT(read("room.PNG"), StartsWith(kPngBegin));
 }
 
-TEST_F(DrawProgram, RepeatsItself) {
+TEST_F(DrawProgram, IsDeterministic) {
   ASSERT_EQ(run("draw room.byre -o a.svg").exit_code, 0);
   ASSERT_EQ(run("draw room.byre -o b.svg").exit_code, 0);
   EXPECT_EQ(read("a.svg"), read("b.svg"));
 }
 
-TEST_F(DrawProgram, DrawsWaysThatFilesTell) {
+TEST_F(DrawProgram, DrawsTrajectoriesOfFiles) {
   ASSERT_EQ(
       run("run " + rendered_room() + " --map room.byre --trajectory round.txt --stats stats.json --quiet").exit_code,
       0);
@@ -66,7 +66,7 @@ TEST_F(DrawProgram, DrawsWaysThatFilesTell) {
               AllOf(HasSubstr(">round</text>"), HasSubstr(">trusted</text>"), HasSubstr(">start</text>")));
 }
 
-TEST_F(DrawProgram, DrawsAMissionAndWhatItsCameraSaw) {
+TEST_F(DrawProgram, DrawsAMissionAndItsCameraImage) {
   const Outcome outcome = draw_mission("--at 0.5 --camera-picture shot.svg -o where.svg");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, IsEmpty());
@@ -76,27 +76,27 @@ TEST_F(DrawProgram, DrawsAMissionAndWhatItsCameraSaw) {
   EXPECT_THAT(read("where.svg"), AllOf(HasSubstr(">trusted</text>"), HasSubstr(">camera</text>")));
 }
 
-TEST_F(DrawProgram, ShowsTheLastFrameUnlessToldWhich) {
+TEST_F(DrawProgram, ShowsTheLastFrameByDefault) {
   EXPECT_THAT(draw_mission("--camera-picture shot.png").output, HasSubstr("camera at    1.15 s\n"));
   EXPECT_THAT(read("shot.png"), StartsWith(kPngBegin));
 }
 
-TEST_F(DrawProgram, RunsNoFartherThanThePictureNeeds) {
+TEST_F(DrawProgram, StopsAtTheTimeOfThePicture) {
   EXPECT_THAT(draw_mission("--at 0.3 --camera-picture shot.png").output, HasSubstr("mission      3 poses\n"));
 }
 
-TEST_F(DrawProgram, FilmsAMission) {
+TEST_F(DrawProgram, WritesAVideoOfAMission) {
   const Outcome outcome = draw_mission("--video round.mp4 --speed 2");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("video        12 frames, "));
   EXPECT_THAT(read("round.mp4").substr(4, 4), "ftyp");
 }
 
-TEST_F(DrawProgram, FilmsNoMoreFramesThanCanBeSeen) {
+TEST_F(DrawProgram, LimitsTheFrameRateOfTheVideo) {
   EXPECT_THAT(draw_mission("--video round.mp4 --speed 9").output, HasSubstr("video        4 frames, "));
 }
 
-TEST_F(DrawProgram, RefusesWrongUsage) {
+TEST_F(DrawProgram, RejectsWrongUsage) {
   for (const char* const arguments :
        {"draw", "draw room.byre", "draw room.byre -o room.jpg", "draw room.byre --camera-picture shot.png",
         "draw room.byre --video a.mp4", "draw room.byre -o a.svg --heights 2:1", "draw room.byre -o a.svg --heights 1",
@@ -148,7 +148,7 @@ class DrawOnPlanProgram : public ProgramTest {
   FloorPlanScene scene_;
 };
 
-TEST_F(DrawOnPlanProgram, HasThePlanBelowTheMap) {
+TEST_F(DrawOnPlanProgram, DrawsThePlanBelowTheMap) {
   const Outcome outcome = run("draw barn.byre --plan plan.yaml -o barn.svg --width 840");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(read("barn.svg"),
@@ -156,12 +156,12 @@ TEST_F(DrawOnPlanProgram, HasThePlanBelowTheMap) {
                     HasSubstr("<svg x=\"0\" y=\"38\" width=\"840\" height=\"280\">"), HasSubstr("above the floor")));
 }
 
-TEST_F(DrawOnPlanProgram, LiesAsOnThePlanWithoutItsImageToo) {
+TEST_F(DrawOnPlanProgram, UsesThePlanFrameWithoutThePlan) {
   ASSERT_EQ(run("draw barn.byre -o barn.svg").exit_code, 0);
   EXPECT_THAT(read("barn.svg"), AllOf(Not(HasSubstr("<image")), HasSubstr("class=\"keyframes\"")));
 }
 
-TEST_F(DrawOnPlanProgram, SaysWhenThePlansImageIsGone) {
+TEST_F(DrawOnPlanProgram, ReportsAMissingPlanImage) {
   fs::remove(folder_ / "plan.pgm");
   EXPECT_EQ(run("draw barn.byre --plan plan.yaml -o barn.svg").exit_code, 3);
 }

@@ -22,7 +22,7 @@ class ColmapCommands : public ProgramTest {
   static std::string images() { return recording() + "/mav0/cam0/data"; }
 };
 
-TEST_F(ColmapCommands, TakeAMapToAModelAndBack) {
+TEST_F(ColmapCommands, ExportAndImportAMap) {
   const Outcome exported = run("export-colmap room.byre -o model/of/room --text --images-of " + recording());
   EXPECT_EQ(exported.exit_code, 0) << exported.errors;
   EXPECT_THAT(exported.output, HasSubstr("1 cameras, 8 images"));
@@ -58,7 +58,7 @@ TEST_F(ColmapCommands, ReportBadInputWithItsOwnExitCode) {
   EXPECT_EQ(run("export-colmap room.byre -o file").exit_code, 3);
 }
 
-TEST_F(ColmapCommands, RefuseOptionsThatContradict) {
+TEST_F(ColmapCommands, RejectContradictingOptions) {
   EXPECT_EQ(run("export-colmap room.byre -o model --text --binary").exit_code, 2);
   EXPECT_EQ(run("import-colmap model images -o back.byre --scale 0").exit_code, 2);
   EXPECT_EQ(run("import-colmap model images -o back.byre --body-of room").exit_code, 2);

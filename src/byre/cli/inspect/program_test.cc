@@ -25,7 +25,7 @@ class InspectProgram : public ProgramTest {
   }
 };
 
-TEST_F(InspectProgram, PrintsAPageAboutTheMap) {
+TEST_F(InspectProgram, PrintsAReport) {
   const Outcome outcome = run("inspect barn.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, StartsWith("map            barn.byre\n"));
@@ -40,7 +40,7 @@ TEST_F(InspectProgram, PrintsJsonAndWritesThePoints) {
   EXPECT_THAT(read("points.ply"), HasSubstr("element vertex 16\n"));
 }
 
-TEST_F(InspectProgram, RefusesWhatIsNoMap) {
+TEST_F(InspectProgram, RejectsOtherFiles) {
   for (const char* const command : {"inspect", "validate"}) {
     const Outcome damaged = run(std::string(command) + " damaged.byre");
     EXPECT_EQ(damaged.exit_code, 3);

@@ -27,7 +27,7 @@ class LocaliseProgram : public ProgramTest {
   Outcome localise(const std::string& arguments) const { return run("localise room.byre " + arguments); }
 };
 
-TEST_F(LocaliseProgram, FindsTheOtherFrames) {
+TEST_F(LocaliseProgram, LocalisesTheOtherFrames) {
   const Outcome outcome =
       localise(rendered_room() + " --frames 1: --stride 2 --trajectory found.txt --truth " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -36,7 +36,7 @@ TEST_F(LocaliseProgram, FindsTheOtherFrames) {
   EXPECT_THAT(read_trajectory(folder_ / "found.txt"), SizeIs(12));
 }
 
-TEST_F(LocaliseProgram, SaysOfEachFrameWhatCameOfIt) {
+TEST_F(LocaliseProgram, ReportsTheResultOfEachFrame) {
   const Outcome outcome =
       localise(rendered_room() + " --frames 1:4 --stride 2 --json --quiet --truth " + rendered_room());
   const json report = json::parse(outcome.output);
@@ -48,7 +48,7 @@ TEST_F(LocaliseProgram, SaysOfEachFrameWhatCameOfIt) {
   EXPECT_THAT(outcome.errors, IsEmpty());
 }
 
-TEST_F(LocaliseProgram, FindsTheBodyByEitherCameraAlone) {
+TEST_F(LocaliseProgram, LocalisesTheBodyByEitherCamera) {
   for (const char* const camera : {"left", "right"}) {
     const Outcome outcome =
         localise(rendered_room() + " --frames 1: --stride 4 --json --camera " + camera + " --truth " + rendered_room());
@@ -59,7 +59,7 @@ TEST_F(LocaliseProgram, FindsTheBodyByEitherCameraAlone) {
   }
 }
 
-TEST_F(LocaliseProgram, FindsImagesOfAFolderByTheTimesOfTheirNames) {
+TEST_F(LocaliseProgram, LocalisesImagesOfAFolderWithTimesOfTheirNames) {
   const std::filesystem::path camera = RenderedFixture::shared().folder() / "mav0/cam1";
   const std::string images = quoted(camera / "data"), calibration = " --calibration " + quoted(camera / "sensor.yaml");
   const Outcome outcome = localise(images + calibration + " --stride 6 --json --truth " + rendered_room());
@@ -85,7 +85,7 @@ TEST_F(LocaliseProgram, WarnsOfAnAssumedFrameRate) {
   EXPECT_THAT(quiet.output, HasSubstr("found        2 of 2 frames"));
 }
 
-TEST_F(LocaliseProgram, TakesImagesForTheCameraThatIsNamed) {
+TEST_F(LocaliseProgram, UsesTheGivenCameraForImages) {
   const std::string image = quoted(RenderedFixture::shared().image("cam1", 4));
   const auto position_by = [&](const std::string& options) {
     const json report = json::parse(localise(image + " --json" + options).output);
@@ -100,7 +100,7 @@ TEST_F(LocaliseProgram, TakesImagesForTheCameraThatIsNamed) {
   EXPECT_NEAR(apart, 0.11, 0.03) << "taken for the left camera's, the body is off by the baseline";
 }
 
-TEST_F(LocaliseProgram, GivesPosesOnThePlanThatTheMapLiesOn) {
+TEST_F(LocaliseProgram, GivesPosesOnThePlan) {
   StoredMap stored = load_map(folder_ / "room.byre");
   stored.plan.emplace();
   stored.plan->plan_from_map.target_from_source.translation << 1000.0, 2000.0, 0.0;
@@ -117,14 +117,14 @@ TEST_F(LocaliseProgram, GivesPosesOnThePlanThatTheMapLiesOn) {
               report.at("per_frame").at(1).at("position_in_map_m").at(0).get<double>() + 1000.0, 1e-6);
 }
 
-TEST_F(LocaliseProgram, TakesImagesForTheMapsCamera) {
+TEST_F(LocaliseProgram, UsesTheCameraOfTheMapForImages) {
   const Outcome outcome = localise(quoted(RenderedFixture::shared().image("cam0", 1)) + " " +
                                    quoted(RenderedFixture::shared().image("cam0", 3)));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.output, HasSubstr("found        2 of 2 frames"));
 }
 
-TEST_F(LocaliseProgram, TakesTimesFromTheNamesOfImages) {
+TEST_F(LocaliseProgram, ReadsTimesFromImageNames) {
   const RenderedFixture& room = RenderedFixture::shared();
   const auto named = [&](std::size_t frame, std::int64_t nanoseconds) {
     const std::string name = std::to_string(nanoseconds) + ".png";
@@ -142,7 +142,7 @@ TEST_F(LocaliseProgram, TakesTimesFromTheNamesOfImages) {
   EXPECT_EQ(read_trajectory(folder_ / "one.txt").at(0).time, Timestamp(1403715274302140000));
 }
 
-TEST_F(LocaliseProgram, RefusesAnotherRoomAndSaysWhy) {
+TEST_F(LocaliseProgram, RejectsAnotherRoomWithReason) {
   const std::filesystem::path elsewhere = folder_ / "elsewhere";
   RenderedRoomOptions other;
   other.seed = 99;

@@ -125,7 +125,7 @@ class DepthProgram : public ProgramTest {
   }
 };
 
-TEST_F(DepthProgram, MapsInMetresAndSaysHowManyFramesHadDepth) {
+TEST_F(DepthProgram, MapsInMetresAndCountsFramesWithDepth) {
   const Outcome outcome =
       run("map " + with_depth() + " --camera rgbd -o depth.byre --trajectory t.txt --stats s.json" + " --quiet");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -144,7 +144,7 @@ TEST_F(DepthProgram, MapsInMetresAndSaysHowManyFramesHadDepth) {
   EXPECT_LT(json::parse(judged.output)["ate"]["translation_m"]["rmse"], 0.02);
 }
 
-TEST_F(DepthProgram, MakesAMapForOneCameraAndRunsOnTheMapOfTwo) {
+TEST_F(DepthProgram, MakesAMapForOneCameraAndRunsOnAStereoMap) {
   ASSERT_EQ(run("map " + with_depth() + " -o depth.byre --quiet").exit_code, 0);
   ASSERT_EQ(run_once("map " + rendered_bend() + " -o stereo.byre --quiet").exit_code, 0);
   const std::string truth = " --truth " + with_depth();
@@ -153,7 +153,7 @@ TEST_F(DepthProgram, MakesAMapForOneCameraAndRunsOnTheMapOfTwo) {
   EXPECT_LT(error_of_mission(with_depth() + " --camera rgbd --map stereo.byre" + truth), 0.02);
 }
 
-TEST_F(DepthProgram, RefusesARecordingWithoutDepth) {
+TEST_F(DepthProgram, RejectsARecordingWithoutDepth) {
   const Outcome refused = run("map " + rendered_bend() + " --camera rgbd -o out.byre --quiet");
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_THAT(refused.errors, HasSubstr("has no depth images"));

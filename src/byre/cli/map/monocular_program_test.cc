@@ -25,7 +25,7 @@ class MonocularProgram : public ProgramTest {
   }
 };
 
-TEST_F(MonocularProgram, MapsOneCameraAndSaysWhenItBeganAndThatTheScaleIsItsOwn) {
+TEST_F(MonocularProgram, MapsWithOneCameraAndReportsInitialisationAndScale) {
   const Outcome outcome = map_by_left_camera();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("of the left camera"), HasSubstr("s after the first frame, at frame"),
@@ -40,7 +40,7 @@ TEST_F(MonocularProgram, MapsOneCameraAndSaysWhenItBeganAndThatTheScaleIsItsOwn)
   EXPECT_LT(json::parse(judged.output)["ate"]["translation_m"]["rmse"], 0.02);
 }
 
-TEST_F(MonocularProgram, TakesAMissionOnceTheMapHasItsSize) {
+TEST_F(MonocularProgram, RunsAMissionOnceTheMapIsScaled) {
   ASSERT_EQ(map_by_left_camera().exit_code, 0);
   const Outcome refused = run("run " + rendered_bend() + " --camera left --map mono.byre --quiet");
   EXPECT_EQ(refused.exit_code, 3);
@@ -51,7 +51,7 @@ TEST_F(MonocularProgram, TakesAMissionOnceTheMapHasItsSize) {
   EXPECT_EQ(run("run " + rendered_bend() + " --camera left --map metric.byre --quiet").exit_code, 0);
 }
 
-TEST_F(MonocularProgram, RunsOnAMapThatTwoCamerasHaveMadeWithItsScale) {
+TEST_F(MonocularProgram, RunsOnAStereoMapWithItsScale) {
   ASSERT_EQ(run_once("map " + rendered_bend() + " -o stereo.byre --quiet").exit_code, 0);
   for (const std::string camera : {"left", "right"}) {
     const Outcome outcome = run("run " + rendered_bend() + " --camera " + camera + " --map stereo.byre --truth " +

@@ -5,7 +5,7 @@
 namespace byre::cli {
 namespace {
 
-TEST(MapOptions, ListsTheOutputsAskedFor) {
+TEST(MapOptions, ListsTheRequestedOutputs) {
   MapOptions options;
   EXPECT_TRUE(options.outputs().empty());
   options.map = "barn.byre";

@@ -34,14 +34,14 @@ class MapProgram : public ProgramTest {
   auto files_left() const { return std::distance(fs::directory_iterator(folder_), {}); }
 };
 
-TEST_F(MapProgram, ExplainsItself) {
+TEST_F(MapProgram, PrintsHelp) {
   const Outcome help = run("map --help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output, AllOf(HasSubstr("--causal-trajectory"), HasSubstr("--pace"), HasSubstr("--stride"),
                                  HasSubstr("Examples:\n  byre map MH_01_easy -o barn.byre\n")));
 }
 
-TEST_F(MapProgram, WritesWhatItWasAskedFor) {
+TEST_F(MapProgram, WritesTheRequestedOutputs) {
   const Outcome outcome = map("--trajectory final.txt --causal-trajectory causal.txt --stats stats.json");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   const std::size_t frames = RenderedFixture::shared().truth().size();
@@ -57,7 +57,7 @@ TEST_F(MapProgram, WritesWhatItWasAskedFor) {
   EXPECT_EQ(files_left(), 5) << "three results and the two streams";
 }
 
-TEST_F(MapProgram, KeepsTheMapWithItsWordsAndItsOrigin) {
+TEST_F(MapProgram, SavesTheMapWithWordsAndOrigin) {
   const Outcome outcome = map("-o room.byre --site 'Test room' --quiet");
   EXPECT_EQ(outcome.exit_code, 0);
   const StoredMap stored = load_map(folder_ / "room.byre");
@@ -70,13 +70,13 @@ TEST_F(MapProgram, KeepsTheMapWithItsWordsAndItsOrigin) {
   EXPECT_THAT(outcome.output, HasSubstr("written      room.byre\n"));
 }
 
-TEST_F(MapProgram, KeepsTheSameBytesWhenItMapsTheSameAgain) {
+TEST_F(MapProgram, SavesTheSameBytesForTheSameInput) {
   map_room("", "room.byre");
   ASSERT_EQ(map("-o again.byre --quiet").exit_code, 0);
   EXPECT_EQ(read("room.byre"), read("again.byre"));
 }
 
-TEST_F(MapProgram, TakesPosesThatAreGivenAndSaysSo) {
+TEST_F(MapProgram, UsesGivenPosesAndReportsThem) {
   const Outcome outcome = map("-o posed.byre --stride 4 --quiet --poses " + quoted(RenderedFixture::shared().folder()));
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.output, HasSubstr("not estimated"));
@@ -85,7 +85,7 @@ TEST_F(MapProgram, TakesPosesThatAreGivenAndSaysSo) {
   EXPECT_EQ(stored.map.keyframe_count(), 6);
 }
 
-TEST_F(MapProgram, TakesOneCameraOfAPair) {
+TEST_F(MapProgram, MapsWithOneCameraOfAPair) {
   const Outcome outcome =
       map("-o right.byre --camera right --stride 4 --quiet --poses " + quoted(RenderedFixture::shared().folder()));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -95,14 +95,14 @@ TEST_F(MapProgram, TakesOneCameraOfAPair) {
   EXPECT_GT(stored.map.point_count(), 100);
 }
 
-TEST_F(MapProgram, SaysNothingOnTheWayWhenQuiet) {
+TEST_F(MapProgram, PrintsNoProgressWhenQuiet) {
   const Outcome outcome = map("--trajectory final.txt --frames 0:3 --quiet");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.errors, IsEmpty());
   EXPECT_THAT(outcome.output, StartsWith("recording    "));
 }
 
-TEST_F(MapProgram, LeavesPlacesAndFinishingOutWhenTold) {
+TEST_F(MapProgram, SkipsLoopsAndFinishingOnRequest) {
   const Outcome outcome = map("-o room.byre --stats stats.json --no-loops");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.errors, Not(HasSubstr("finishing")));
@@ -111,7 +111,7 @@ TEST_F(MapProgram, LeavesPlacesAndFinishingOutWhenTold) {
   EXPECT_NE(load_map(folder_ / "room.byre").vocabulary_checksum, 0u) << "others may recognise places in it";
 }
 
-TEST_F(MapProgram, MapsThePartAskedFor) {
+TEST_F(MapProgram, MapsTheSelectedRange) {
   EXPECT_EQ(map("--trajectory frames.txt --frames 4:12 --stride 2 --pace inline").exit_code, 0);
   const Trajectory frames = read_trajectory(folder_ / "frames.txt");
   ASSERT_THAT(frames, SizeIs(4));
@@ -124,7 +124,7 @@ TEST_F(MapProgram, MapsThePartAskedFor) {
   EXPECT_EQ(seconds.front().time, std::chrono::milliseconds(100));
 }
 
-TEST_F(MapProgram, RefusesWrongUsage) {
+TEST_F(MapProgram, RejectsWrongUsage) {
   for (const char* const arguments : {"",
                                       "--poses truth.txt --trajectory out.txt",
                                       "-o map.byre --poses truth.txt --trajectory out.txt",
@@ -170,7 +170,7 @@ TEST_F(MapProgram, NamesBadInput) {
   }
 }
 
-TEST_F(MapProgram, IsNotDoneIfManyFramesCannotBeRead) {
+TEST_F(MapProgram, FailsIfManyFramesCannotBeRead) {
   const RenderedFixture& room = RenderedFixture::shared();
   fs::copy(room.folder(), folder_ / "torn", fs::copy_options::recursive);
   for (std::size_t frame = 8; frame < 17; ++frame) {
@@ -187,13 +187,13 @@ TEST_F(MapProgram, IsNotDoneIfManyFramesCannotBeRead) {
   }
 }
 
-TEST_F(MapProgram, SaysWhyOneCameraBeganNoMap) {
+TEST_F(MapProgram, ReportsWhyMonocularInitialisationFailed) {
   const Outcome outcome = map("--trajectory out.txt --camera left --frames 0:2");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.errors, HasSubstr("no frame got a pose: monocular initialisation needs sideways motion"));
 }
 
-TEST_F(MapProgram, FailsWhenNoFrameGetsAPoseAndStillSaysWhatItSaw) {
+TEST_F(MapProgram, FailsWithoutAnyPoseAndPrintsAReport) {
   const RenderedFixture blind("byre_blind_room", 2, 20.0);
   fs::remove(blind.image("cam1", 0));
   const Outcome outcome =

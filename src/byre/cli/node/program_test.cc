@@ -14,14 +14,14 @@ using testing::StartsWith;
 
 class NodeProgram : public ProgramTest {};
 
-TEST_F(NodeProgram, ExplainsItself) {
+TEST_F(NodeProgram, PrintsHelp) {
   const Outcome help = run("node --help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output,
               AllOf(HasSubstr("--print-config"), HasSubstr("ROS_DOMAIN_ID"), HasSubstr("docs/reference/ros2.md")));
 }
 
-TEST_F(NodeProgram, PrintsSettingsThatItTakesBack) {
+TEST_F(NodeProgram, ReadsItsPrintedSettings) {
   const Outcome first = run("node --print-config");
   EXPECT_EQ(first.exit_code, 0);
   EXPECT_THAT(first.output, HasSubstr("task: mission"));
@@ -31,7 +31,7 @@ TEST_F(NodeProgram, PrintsSettingsThatItTakesBack) {
   EXPECT_THAT(printed.output, AllOf(HasSubstr("pose: /amcl_pose"), HasSubstr("map: barn.byre")));
 }
 
-TEST_F(NodeProgram, ChecksSettingsAndTellsAllThatIsWrong) {
+TEST_F(NodeProgram, ReportsAllFaultsOfSettings) {
   write("robot.yaml", "slam:\n  map: barn.byre\n  worker: 3\nimages:\n  pair_wait: soon\n");
   const Outcome faults = run("node --config robot.yaml --check");
   EXPECT_EQ(faults.exit_code, 3);

@@ -30,7 +30,7 @@ class RefineProgram : public ProgramTest {
   }
 };
 
-TEST_F(RefineProgram, ReplacesTheMapByTheRefinedOneAndSaysWhatChanged) {
+TEST_F(RefineProgram, ReplacesTheMapAndReportsChanges) {
   const std::string before = read("room.byre");
   const Outcome outcome = run("refine room.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -42,7 +42,7 @@ TEST_F(RefineProgram, ReplacesTheMapByTheRefinedOneAndSaysWhatChanged) {
   EXPECT_EQ(run("validate room.byre").exit_code, 0);
 }
 
-TEST_F(RefineProgram, LeavesTheMapAsItIsWhenAnotherIsNamed) {
+TEST_F(RefineProgram, LeavesTheInputUnchangedWithAnOutput) {
   const std::string before = read("room.byre");
   const Outcome outcome = run("refine room.byre -o better.byre --json --quiet");
   EXPECT_THAT(outcome.errors, IsEmpty());
@@ -62,7 +62,7 @@ TEST_F(RefineProgram, NamesBadInput) {
   EXPECT_EQ(run("refine").exit_code, 2);
 }
 
-TEST_F(RefineProgram, ExtendsAMapByAnotherRecordingAndRemembersWhichIsWhich) {
+TEST_F(RefineProgram, ExtendsAMapAndStoresItsRecordings) {
   const std::string before = read("room.byre");
   const Outcome outcome = run("map " + rendered_room() +
                               " --frames 8: --extend room.byre -o both.byre --trajectory second.txt --site Room");
@@ -78,7 +78,7 @@ TEST_F(RefineProgram, ExtendsAMapByAnotherRecordingAndRemembersWhichIsWhich) {
   EXPECT_GT(recordings.at(1).at("keyframes"), 0);
 }
 
-TEST_F(RefineProgram, ExtendsNoMapOfAnotherPlace) {
+TEST_F(RefineProgram, RejectsExtensionOfAMapOfAnotherPlace) {
   const fs::path elsewhere = folder_ / "elsewhere";
   RenderedRoomOptions other;
   other.seed = 99;
@@ -92,7 +92,7 @@ TEST_F(RefineProgram, ExtendsNoMapOfAnotherPlace) {
   EXPECT_FALSE(fs::exists(folder_ / "both.byre"));
 }
 
-TEST_F(RefineProgram, ExtendsNoMapOfUnknownScale) {
+TEST_F(RefineProgram, RejectsExtensionOfAMapOfUnknownScale) {
   write_map_of_unknown_scale();
   const Outcome outcome = run("map " + rendered_room() + " --extend unknown.byre -o both.byre");
   EXPECT_EQ(outcome.exit_code, 3);

@@ -30,7 +30,7 @@ class RegisterProgram : public ProgramTest {
   FloorPlanScene scene_;
 };
 
-TEST_F(RegisterProgram, WritesAMapThatKnowsItsPlaceOnThePlan) {
+TEST_F(RegisterProgram, WritesARegisteredMap) {
   const std::string before = read("barn.byre");
   const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -49,7 +49,7 @@ TEST_F(RegisterProgram, WritesAMapThatKnowsItsPlaceOnThePlan) {
               HasSubstr("plan           plan.yaml: the map's origin is at x 7.000"));
 }
 
-TEST_F(RegisterProgram, NamesAWrongPick) {
+TEST_F(RegisterProgram, ReportsAWrongPick) {
   auto correspondences = scene_.correspondences(8);
   correspondences[3].name = "water trough";
   correspondences[3].point_in_plan.x() += 2.0;
@@ -64,7 +64,7 @@ TEST_F(RegisterProgram, NamesAWrongPick) {
               HasSubstr("outlier      water trough: error 2.000 m (x -2.000, y "));
 }
 
-TEST_F(RegisterProgram, WritesNoMapThatIsFarOffUnlessThatIsAccepted) {
+TEST_F(RegisterProgram, WritesNoMapWithLargeResidualsUnlessAccepted) {
   auto correspondences = scene_.correspondences(6);
   for (PlanCorrespondence& each : correspondences) each.point_in_plan *= 1.5;  // wrong resolution of the plan
   write("picks.csv", picks_csv(correspondences));
@@ -81,7 +81,7 @@ TEST_F(RegisterProgram, WritesNoMapThatIsFarOffUnlessThatIsAccepted) {
   EXPECT_TRUE(load_map(folder_ / "barn-plan.byre").plan.has_value());
 }
 
-TEST_F(RegisterProgram, PlacesAMapInAProjectedCoordinateSystem) {
+TEST_F(RegisterProgram, RegistersAMapInAProjectedCoordinateSystem) {
   write("plan.wld", "0.1\n0\n0\n-0.1\n499999.05\n5400006.95\n");
   auto correspondences = scene_.correspondences(6);
   for (PlanCorrespondence& each : correspondences) each.point_in_plan += Eigen::Vector2d(500000.0, 5400000.0);
@@ -93,7 +93,7 @@ TEST_F(RegisterProgram, PlacesAMapInAProjectedCoordinateSystem) {
               PoseNear(expected, 1e-5, 1e-6));
 }
 
-TEST_F(RegisterProgram, MendsTheScaleOfAStereoMapOnce) {
+TEST_F(RegisterProgram, CorrectsTheScaleOfAStereoMapOnce) {
   const FloorPlanScene scene(1, 1.0 / 1.016);
   FloorPlanScene driven = scene;
   const StoredMap before = driven_barn(driven);
@@ -126,7 +126,7 @@ TEST_F(RegisterProgram, MendsTheScaleOfAStereoMapOnce) {
   EXPECT_EQ(run("validate mended.byre").exit_code, 0);
 }
 
-TEST_F(RegisterProgram, RefusesToMendTheScaleWhereItCannot) {
+TEST_F(RegisterProgram, RejectsImpossibleScaleCorrections) {
   write("three.csv", picks_csv(scene_.correspondences(3)));
   const Outcome few = run("register barn.byre --plan plan.yaml --points three.csv --fix-scale -o out.byre");
   EXPECT_EQ(few.exit_code, 3);
@@ -141,14 +141,14 @@ TEST_F(RegisterProgram, RefusesToMendTheScaleWhereItCannot) {
   EXPECT_EQ(run("register barn.byre --plan plan.yaml --points picks.csv --fix-scale").exit_code, 2) << "without -o";
 }
 
-TEST_F(RegisterProgram, TellsDoubtsOfTooFewPicks) {
+TEST_F(RegisterProgram, ReportsDoubtsForTooFewPicks) {
   write("picks.csv", picks_csv(scene_.correspondences(2)));
   const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("doubt        fewer than three correspondences are used"));
 }
 
-TEST_F(RegisterProgram, RefusesBadInput) {
+TEST_F(RegisterProgram, RejectsBadInput) {
   write("one.csv", picks_csv(scene_.correspondences(1)));
   const Outcome outcome = run("register barn.byre --plan plan.yaml --points one.csv -o out.byre");
   EXPECT_EQ(outcome.exit_code, 3);
@@ -160,7 +160,7 @@ TEST_F(RegisterProgram, RefusesBadInput) {
   EXPECT_EQ(run("register barn.byre --plan plan.yaml --points picks.csv --pick-sigma 0").exit_code, 2);
 }
 
-TEST_F(RegisterProgram, RefusesPosesOnAPlanOfAMapWithoutOne) {
+TEST_F(RegisterProgram, RejectsPosesOnAPlanForAnUnregisteredMap) {
   write("photo.pgm", plan_image(320, 240));
   const Outcome outcome = run("localise barn.byre photo.pgm --frame plan");
   EXPECT_EQ(outcome.exit_code, 3);

@@ -41,7 +41,7 @@ class RunProgram : public ProgramTest {
   }
 };
 
-TEST_F(RunProgram, ExplainsItself) {
+TEST_F(RunProgram, PrintsHelp) {
   const Outcome help = run("run --help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.output, AllOf(HasSubstr("--localise-only"), HasSubstr("--events"), HasSubstr("--map-truth"),
@@ -49,7 +49,7 @@ TEST_F(RunProgram, ExplainsItself) {
   EXPECT_THAT(run("--help").output, HasSubstr("  run "));
 }
 
-TEST_F(RunProgram, DoesTheSameAsMapWithoutAMap) {
+TEST_F(RunProgram, EqualsMappingWithoutAMap) {
   ASSERT_EQ(
       run("map " + rendered_room() + " --trajectory a.txt --causal-trajectory b.txt -o map.byre --quiet").exit_code, 0);
   const Outcome outcome = run_room("--trajectory c.txt --causal-trajectory d.txt --save-online run.byre --quiet");
@@ -61,7 +61,7 @@ TEST_F(RunProgram, DoesTheSameAsMapWithoutAMap) {
   EXPECT_EQ(read("map.byre"), read("run.byre"));
 }
 
-TEST_F(RunProgram, ComparesPosesWithTheTruthAfterAlignmentWhereThereIsNoMap) {
+TEST_F(RunProgram, AlignsPosesToTheTruthWithoutAMap) {
   const Outcome outcome = run_room("--stats stats.json --truth " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("truth        causal and final poses are aligned to it separately\n"));
@@ -72,7 +72,7 @@ TEST_F(RunProgram, ComparesPosesWithTheTruthAfterAlignmentWhereThereIsNoMap) {
   EXPECT_LT(stats.at("frames").at(5).at("error").at("position_m"), 0.1);
 }
 
-TEST_F(RunProgram, WritesTrajectoriesInTheFormatAskedFor) {
+TEST_F(RunProgram, WritesTrajectoriesInTheRequestedFormat) {
   const Outcome outcome = run_room("--quiet --frames 0:6 --format euroc --trajectory a.csv --causal-trajectory b.csv");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr(" m, through 6 final poses\n"));
@@ -82,7 +82,7 @@ TEST_F(RunProgram, WritesTrajectoriesInTheFormatAskedFor) {
   }
 }
 
-TEST_F(RunProgram, TakesAClockErrorOutOfTheTruth) {
+TEST_F(RunProgram, AppliesTheTimeOffsetOfTheTruth) {
   const auto worst = [this](const std::string& options) {
     EXPECT_EQ(run_room("--quiet --stats stats.json " + options).exit_code, 0);
     return json::parse(read("stats.json")).at("errors").at("final").at("position_m").at("max").get<double>();
@@ -93,7 +93,7 @@ TEST_F(RunProgram, TakesAClockErrorOutOfTheTruth) {
   EXPECT_NEAR(worst("--truth late.txt --time-offset -0.25"), worst("--truth " + rendered_room()), 1e-6);
 }
 
-TEST_F(RunProgram, WritesWhatHappensOneObjectALine) {
+TEST_F(RunProgram, WritesEventsAsJsonLines) {
   ASSERT_EQ(run_room("--frames 0:6 --events events.jsonl --quiet").exit_code, 0);
   const std::vector<json> lines = lines_of("events.jsonl");
   ASSERT_GE(lines.size(), 2u);
@@ -101,7 +101,7 @@ TEST_F(RunProgram, WritesWhatHappensOneObjectALine) {
   EXPECT_EQ(lines.front().at("time_ns"), RenderedFixture::shared().truth().front().time.count());
 }
 
-TEST_F(RunProgram, RefusesWrongUsage) {
+TEST_F(RunProgram, RejectsWrongUsage) {
   for (const char* const arguments :
        {"--localise-only", "--map-truth truth.txt", "--map room.byre --map-truth truth.txt", "--pace fast",
         "--map room.byre --localise-only --save-online online.byre", "--map room.byre --save-online ./room.byre",
@@ -130,7 +130,7 @@ TEST_F(RunProgram, NamesBadInput) {
   }
 }
 
-TEST_F(RunProgram, KeepsEverythingSoFarAtCtrlC) {
+TEST_F(RunProgram, KeepsResultsAtCtrlC) {
   const RenderedFixture slow("byre_slow_mission", 2, 1.0 / 3600.0);  // live; the second frame is due in an hour
   const pid_t process =
       start({"run", slow.folder().string(), "--pace", "live", "--save-online", (folder_ / "online.byre").string(),
@@ -156,7 +156,7 @@ class MissionProgram : public RunProgram {
   }
 };
 
-TEST_F(MissionProgram, LeavesTheMapAsItWas) {
+TEST_F(MissionProgram, LeavesTheMapFileUnchanged) {
   const std::string before = read("room.byre");
   const Outcome outcome =
       mission("--trajectory final.txt --stats stats.json --events events.jsonl --save-online online.byre");
@@ -166,7 +166,7 @@ TEST_F(MissionProgram, LeavesTheMapAsItWas) {
   EXPECT_EQ(json::parse(read("stats.json")).at("protocol").at("offline_map"), "room.byre");
 }
 
-TEST_F(MissionProgram, PublishesPosesInTheMapsFrame) {
+TEST_F(MissionProgram, PublishesPosesInTheMapFrame) {
   const Outcome outcome = mission("--causal-trajectory causal.txt --stats stats.json --truth " + rendered_room());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(12));
@@ -176,7 +176,7 @@ TEST_F(MissionProgram, PublishesPosesInTheMapsFrame) {
   EXPECT_EQ(errors.at("trusted_off_by_more_than_0.2m"), 0);
 }
 
-TEST_F(MissionProgram, PublishesPosesOnThePlanThatTheMapLiesOn) {
+TEST_F(MissionProgram, PublishesPosesOnThePlan) {
   StoredMap stored = load_map(folder_ / "room.byre");
   stored.plan.emplace();
   stored.plan->plan = "plan.yaml";
@@ -199,7 +199,7 @@ TEST_F(MissionProgram, PublishesPosesOnThePlanThatTheMapLiesOn) {
   EXPECT_GT(lines_of("events.jsonl").back().at("position_m").at(1), 1900.0);
 }
 
-TEST_F(MissionProgram, SaysWhereThePlansWallsBoundNothing) {
+TEST_F(MissionProgram, ReportsUnusedWallsOfThePlan) {
   write("plan.yaml", "image: plan.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n");
   write("plan.pgm", "P2 2 2 255\n255 255 255 255\n");
   StoredMap stored = load_map(folder_ / "room.byre");
@@ -212,7 +212,7 @@ TEST_F(MissionProgram, SaysWhereThePlansWallsBoundNothing) {
 }
 
 // State after a scale correction on a floor plan: the recording still has the original baseline.
-TEST_F(MissionProgram, TakesTheBaselineThatItsMapHas) {
+TEST_F(MissionProgram, UsesTheBaselineOfTheMap) {
   constexpr double kFactor = 0.95;
   ASSERT_EQ(mission("--causal-trajectory before.txt --quiet").exit_code, 0);
   const StoredMap stored = load_map(folder_ / "room.byre");
@@ -225,7 +225,7 @@ TEST_F(MissionProgram, TakesTheBaselineThatItsMapHas) {
   EXPECT_EQ(json::parse(read("stats.json")).at("frames").back().at("health").at("verdict"), "trusted");
 }
 
-TEST_F(MissionProgram, DoesNotCountAsDoneWhereManyFramesAreMissing) {
+TEST_F(MissionProgram, FailsIfManyFramesAreMissing) {
   const RenderedFixture& room = RenderedFixture::shared();
   fs::copy(room.folder(), folder_ / "torn", fs::copy_options::recursive);
   for (const std::size_t frame : {15, 17, 19})
@@ -240,7 +240,7 @@ TEST_F(MissionProgram, DoesNotCountAsDoneWhereManyFramesAreMissing) {
   EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(9)) << "all files are written";
 }
 
-TEST_F(MissionProgram, EndsTrustedInAKnownPlaceAndSaysHowItGotThere) {
+TEST_F(MissionProgram, EndsTrustedAndWritesEvents) {
   ASSERT_EQ(mission("--events events.jsonl --stats stats.json").exit_code, 0);
   std::vector<std::string> events;
   for (const json& line : lines_of("events.jsonl")) events.push_back(line.at("event"));
@@ -251,7 +251,7 @@ TEST_F(MissionProgram, EndsTrustedInAKnownPlaceAndSaysHowItGotThere) {
   EXPECT_GT(json::parse(read("stats.json")).at("mission").at("in_known_places").at("minutes"), 0.0);
 }
 
-TEST_F(MissionProgram, WritesSmoothPosesToo) {
+TEST_F(MissionProgram, WritesOdometryPoses) {
   ASSERT_EQ(mission("--odometry odometry.txt --stats stats.json").exit_code, 0);
   const Trajectory odometry = read_trajectory(folder_ / "odometry.txt");
   ASSERT_THAT(odometry, SizeIs(12));
@@ -259,7 +259,7 @@ TEST_F(MissionProgram, WritesSmoothPosesToo) {
   EXPECT_EQ(json::parse(read("stats.json")).at("frames").back().at("odometry").at("body_covariance").size(), 36u);
 }
 
-TEST_F(MissionProgram, MapsNothingWhenItIsToLocaliseOnly) {
+TEST_F(MissionProgram, MapsNothingWithLocaliseOnly) {
   const Outcome outcome = mission("--localise-only --stats stats.json --causal-trajectory causal.txt");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("no online mapping"));
@@ -268,7 +268,7 @@ TEST_F(MissionProgram, MapsNothingWhenItIsToLocaliseOnly) {
   EXPECT_EQ(counts.at("frames_with_pose"), 12);
 }
 
-TEST_F(MissionProgram, SavesWhatItMappedAsAMapOfItsOwn) {
+TEST_F(MissionProgram, SavesTheOnlineMap) {
   map_room("--frames 0:6", "corner.byre");
   const Outcome outcome = run_room("--map corner.byre --frames 3: --save-online online.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -277,7 +277,7 @@ TEST_F(MissionProgram, SavesWhatItMappedAsAMapOfItsOwn) {
   EXPECT_THAT(found.output, HasSubstr("found        4 of 4 frames"));
 }
 
-TEST_F(MissionProgram, NotesInTheMapThatItSavesHowWheelsAreMounted) {
+TEST_F(MissionProgram, StoresWheelExtrinsicsInTheSavedMap) {
   map_room("--frames 0:6", "corner.byre");
   StoredMap stored = load_map(folder_ / "corner.byre");
   KnownMounting known;
@@ -288,7 +288,7 @@ TEST_F(MissionProgram, NotesInTheMapThatItSavesHowWheelsAreMounted) {
   EXPECT_EQ(load_map(folder_ / "online.byre").notes, stored.notes);
 }
 
-TEST_F(MissionProgram, FailsInAnotherRoomAndStillSaysWhatItSaw) {
+TEST_F(MissionProgram, FailsInAnotherRoomAndPrintsAReport) {
   RenderedRoomOptions other;
   other.seed = 99;
   const Calibration calibration = euroc_like_calibration(4);

@@ -216,7 +216,7 @@ bool may_replace(CLI::Option& output, CLI::Option& input) {
   return is_in_place && input.get_name() == "MAP";
 }
 
-TEST_F(FileArguments, AreDeclaredAsInputOutputOrTextByEveryOptionThatTakesAnyText) {
+TEST_F(FileArguments, AreDeclaredByEveryTextOption) {
   CommandLine line;
   for (const std::vector<std::string>& names : line.commands()) {
     for (CLI::Option* const option : options_that(line.command(names), [](auto& o) { return takes_a_value(o); })) {
@@ -226,7 +226,7 @@ TEST_F(FileArguments, AreDeclaredAsInputOutputOrTextByEveryOptionThatTakesAnyTex
   }
 }
 
-TEST_F(FileArguments, AreFoundToBeUndeclared) {
+TEST_F(FileArguments, AreDetectedIfUndeclared) {
   CLI::App app;
   std::string path;
   double number = 0.0;
@@ -234,7 +234,7 @@ TEST_F(FileArguments, AreFoundToBeUndeclared) {
   EXPECT_FALSE(accepts(*app.add_option("--number", number), "some/file"));
 }
 
-TEST_F(FileArguments, AreRefusedWhereAnOutputIsAnInputByAnyName) {
+TEST_F(FileArguments, AreRejectedIfAnOutputIsAnInput) {
   int pairs = 0;
   for (const std::vector<std::string>& names : CommandLine().commands()) {
     CommandLine listed;
@@ -258,7 +258,7 @@ TEST_F(FileArguments, AreRefusedWhereAnOutputIsAnInputByAnyName) {
               HasSubstr("cannot be overwritten"));  // detected although no such file exists
 }
 
-TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {
+TEST_F(FileArguments, StayUnchangedWhenRejected) {
   for (const std::vector<std::string>& names : CommandLine().commands()) {
     CommandLine listed;
     CLI::App& command = listed.command(names);
@@ -283,7 +283,7 @@ TEST_F(FileArguments, AreLeftAsTheyWereByTheProgramThatRefusesThem) {
   }
 }
 
-TEST_F(FileArguments, AreRefusedWhereTheyAreEmpty) {
+TEST_F(FileArguments, AreRejectedIfEmpty) {
   for (const std::vector<std::string>& names : CommandLine().commands()) {
     CommandLine listed;
     CLI::App& command = listed.command(names);
@@ -294,7 +294,7 @@ TEST_F(FileArguments, AreRefusedWhereTheyAreEmpty) {
   }
 }
 
-TEST_F(FileArguments, ReplaceNothingOfAnotherKindAndNothingAtAllWhereAsked) {
+TEST_F(FileArguments, ReplaceOnlyFilesOfTheSameKindOrNone) {
   for (const std::vector<std::string>& names : CommandLine().commands()) {
     CommandLine listed;
     CLI::App& command = listed.command(names);
@@ -326,7 +326,7 @@ TEST_F(FileArguments, ReplaceNothingOfAnotherKindAndNothingAtAllWhereAsked) {
   }
 }
 
-TEST_F(FileArguments, AreRefusedAsTwoOutputsOfOneName) {
+TEST_F(FileArguments, AreRejectedAsTwoEqualOutputs) {
   for (const char* const other : {"out.txt", "./out.txt", "link.txt"}) {
     start_over();
     fs::create_symlink("out.txt", folder_ / "link.txt");
@@ -337,14 +337,14 @@ TEST_F(FileArguments, AreRefusedAsTwoOutputsOfOneName) {
   }
 }
 
-TEST_F(FileArguments, MayBearTheNameOfAProtocolThatComesWithByre) {
+TEST_F(FileArguments, MayHaveTheNameOfABuiltInProtocol) {
   const std::string folder = (folder_ / "euroc").string();
   EXPECT_THAT(CommandLine().fault_of({"benchmark", folder, "-o", folder}), IsEmpty());
   fs::create_directory(folder);
   EXPECT_THAT(CommandLine().fault_of({"benchmark", folder, "-o", folder}), IsEmpty());
 }
 
-TEST_F(FileArguments, KeepTheMapThatIsRefinedInPlaceWhereAsked) {
+TEST_F(FileArguments, KeepAMapRefinedInPlaceWithNoOverwrite) {
   write("barn.byre",
         "\x89"
         "BYRE\r\n");
@@ -354,7 +354,7 @@ TEST_F(FileArguments, KeepTheMapThatIsRefinedInPlaceWhereAsked) {
   EXPECT_THAT(CommandLine().fault_of({"refine", map, "--no-overwrite"}), HasSubstr("because of --no-overwrite"));
 }
 
-TEST_F(FileArguments, AreBadInputWhereTheyArePipesOrLinksInACircle) {
+TEST_F(FileArguments, AreRejectedIfPipesOrCyclicLinks) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   fs::create_symlink("circle", folder_ / "circle");
   for (const char* const name : {"pipe", "circle"}) {
@@ -374,7 +374,7 @@ TEST_F(FileArguments, AreBadInputWhereTheyArePipesOrLinksInACircle) {
   }
 }
 
-TEST_F(FileArguments, OrNumbersAreNeverNanOrInfinite) {
+TEST_F(FileArguments, NumbersMustBeFinite) {
   CommandLine line;
   for (const std::vector<std::string>& names : line.commands()) {
     for (CLI::Option* const option : options_that(line.command(names), [](auto& o) { return takes_a_value(o); })) {
@@ -386,7 +386,7 @@ TEST_F(FileArguments, OrNumbersAreNeverNanOrInfinite) {
   }
 }
 
-TEST_F(FileArguments, OrNumbersAreToldWithoutTheLimitsOfTheMachine) {
+TEST_F(FileArguments, NumbersAreDocumentedWithoutMachineLimits) {
   CommandLine line;
   for (const std::vector<std::string>& names : line.commands()) {
     EXPECT_THAT(line.command(names).help(), testing::Not(HasSubstr("e+308"))) << joined(names);

@@ -29,7 +29,7 @@ class Interrupt : public testing::Test {
   std::vector<void (*)(int)> before_;
 };
 
-TEST_F(Interrupt, IsNotedOnce) {
+TEST_F(Interrupt, IsCaughtOnce) {
   for (const int signal : kSignals) {
     const InterruptCatcher catcher;
     EXPECT_FALSE(catcher.caught());
@@ -39,7 +39,7 @@ TEST_F(Interrupt, IsNotedOnce) {
   }
 }
 
-TEST_F(Interrupt, ByATerminalThatClosesNeverEndsTheProgramAtOnce) {
+TEST_F(Interrupt, ByHangupNeverEndsTheProgramAtOnce) {
   const InterruptCatcher catcher;
   std::raise(SIGTERM);
   std::raise(SIGHUP);
@@ -72,7 +72,7 @@ TEST_F(Interrupt, EndsTheProgramTheSecondTime) {
       testing::ExitedWithCode(143), "");
 }
 
-TEST_F(Interrupt, RemovesWhatWasBeingWrittenTheSecondTimeAndNothingElse) {
+TEST_F(Interrupt, RemovesOnlyUnfinishedFilesTheSecondTime) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "byre_interrupted";
   std::filesystem::create_directory(folder);
   std::ofstream(folder / "whole.txt") << "whole";
@@ -90,7 +90,7 @@ TEST_F(Interrupt, RemovesWhatWasBeingWrittenTheSecondTimeAndNothingElse) {
   std::filesystem::remove_all(folder);
 }
 
-TEST_F(Interrupt, StaysIgnoredWhereItWas) {
+TEST_F(Interrupt, StaysIgnoredIfItWasIgnored) {
   for (const int signal : kSignals) {
     std::signal(signal, SIG_IGN);
     const InterruptCatcher catcher;

@@ -22,7 +22,7 @@ class OptionsProgram : public ProgramTest {
   }
 };
 
-TEST_F(OptionsProgram, PrintsAllOptionsWithoutDoingAnythingElse) {
+TEST_F(OptionsProgram, PrintsAllOptionsAndExits) {
   for (const char* const command : {"map", "run", "benchmark", "calibrate", "draw"}) {
     const Outcome outcome = run(std::string(command) + " --print-options");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -36,7 +36,7 @@ TEST_F(OptionsProgram, PrintsAllOptionsWithoutDoingAnythingElse) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.txt"));
 }
 
-TEST_F(OptionsProgram, ReadsBackWhatItPrints) {
+TEST_F(OptionsProgram, ReadsItsPrintedOptions) {
   write("mine.yaml", "features:\n  max_count: 321\nhealth: {sigmas: 2.5}\n");
   const Outcome printed = run("map --options mine.yaml --print-options");
   EXPECT_THAT(printed.output, AllOf(HasSubstr("  max_count: 321  #"), HasSubstr("  sigmas: 2.5  #")));
@@ -55,7 +55,7 @@ TEST_F(OptionsProgram, LetsTheCommandLineWinOverTheFile) {
               AllOf(HasSubstr("  offline_weight: 3  #"), HasSubstr("  offline_policy: together  #")));
 }
 
-TEST_F(OptionsProgram, UsesThemAndTellsSo) {
+TEST_F(OptionsProgram, UsesAndReportsChangedOptions) {
   write("mine.yaml", "pace: inline\nfeatures:\n  max_count: 300\n");
   const Outcome outcome = map("--options mine.yaml --frames :6 --stats stats.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -66,7 +66,7 @@ TEST_F(OptionsProgram, UsesThemAndTellsSo) {
   for (const json& frame : stats.at("frames")) EXPECT_LE(frame.at("features"), 300);
 }
 
-TEST_F(OptionsProgram, RefusesAFileThatIsWrongAndSaysWhere) {
+TEST_F(OptionsProgram, RejectsAFaultyFileWithItsLine) {
   write("mine.yaml", "pace: live\ntracking:\n  serch_radius_px: 20\n");
   for (const std::string more : {"", " --print-options"}) {
     const Outcome outcome = map("--options mine.yaml" + more);

@@ -7,7 +7,7 @@
 namespace byre::cli {
 namespace {
 
-TEST(PoseFrame, OfAPlanIsRefusedForAMapThatLiesOnNone) {
+TEST(PoseFrame, OfAPlanIsRejectedForAnUnregisteredMap) {
   EXPECT_THROW(require_plan(std::nullopt, "barn.byre"), InputError);
   PlanRegistration registration;
   registration.plan_from_map.scale = 2.0;

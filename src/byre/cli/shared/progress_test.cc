@@ -42,7 +42,7 @@ TEST(Progress, RedrawsTheBarInOneLine) {
       EndsWith("[########################] 100 of 100 frames, 16.0 frames/s, 0:00 left, tracking\x1b[K\x1b[?7h\n"));
 }
 
-TEST(Progress, TellsNoEndWhereNobodyKnowsIt) {
+TEST(Progress, OmitsTheRemainingTimeIfUnknown) {
   EXPECT_EQ(shown(ProgressStyle::lines, 30, 1.0, false),
             "1 frames, 1.0 frames/s, tracking\n11 frames, 1.0 frames/s, tracking\n21 frames, 1.0 frames/s, tracking\n");
   const std::string text = shown(ProgressStyle::bar, 2, 1.0, false);
@@ -56,7 +56,7 @@ std::string end_of_bar(ProgressStyle style, Tone tone) {
   return stream.str();
 }
 
-TEST(Progress, ColoursTheStateByHowGoodItIsWhereThereAreColours) {
+TEST(Progress, ColoursTheStateIfSupported) {
   EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::good), HasSubstr(", \x1b[32mtracking\x1b[0m\x1b[K"));
   EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::doubtful), HasSubstr(", \x1b[33mtracking\x1b[0m"));
   EXPECT_THAT(end_of_bar(ProgressStyle::coloured_bar, Tone::bad), HasSubstr(", \x1b[31mtracking\x1b[0m"));
@@ -64,7 +64,7 @@ TEST(Progress, ColoursTheStateByHowGoodItIsWhereThereAreColours) {
   EXPECT_EQ(end_of_bar(ProgressStyle::lines, Tone::bad), "1 of 1 frames, 1.0 frames/s, 0:00 left, tracking\n");
 }
 
-TEST(Progress, IsSilentWhenToldSo) {
+TEST(Progress, IsSilentWhenQuiet) {
   EXPECT_EQ(shown(ProgressStyle::none, 100, 1.0), "");
 }
 

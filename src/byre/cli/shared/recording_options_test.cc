@@ -24,14 +24,14 @@ TEST(OpenOptions, AreUnsetUnlessGiven) {
   EXPECT_FALSE(options.frame_rate_hz);
 }
 
-TEST(OpenOptions, AreTakenAsGiven) {
+TEST(OpenOptions, AreParsed) {
   const OpenOptions options = parsed("--camera right --calibration camchain.yaml --fps 20");
   EXPECT_EQ(options.camera, CameraChoice::right);
   EXPECT_EQ(options.calibration, "camchain.yaml");
   EXPECT_EQ(options.frame_rate_hz, 20.0);
 }
 
-TEST(OpenOptions, AreRefusedWhereTheyMakeNoSense) {
+TEST(OpenOptions, AreRejectedIfInvalid) {
   for (const char* const arguments : {"--camera", "--camera middle", "--camera 1", "--camera Left", "--fps 0",
                                       "--fps -5", "--fps fast", "--fps nan"}) {
     EXPECT_THROW(parsed(arguments), CLI::ParseError) << arguments;

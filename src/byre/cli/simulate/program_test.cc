@@ -19,7 +19,7 @@ class SimulateProgram : public ProgramTest {};
 const std::string kSmall = "simulate cowshed --duration 0.2 --rate 10 --divide 8 ";
 const std::string kByTwoThreads = kSmall + "--threads 2 -o barn";  // for run_once
 
-TEST_F(SimulateProgram, RendersARecordingThatByreReads) {
+TEST_F(SimulateProgram, RendersAReadableRecording) {
   const Outcome outcome = run_once(kByTwoThreads);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, StartsWith("rendered     2 stereo pairs in "));
@@ -30,7 +30,7 @@ TEST_F(SimulateProgram, RendersARecordingThatByreReads) {
   EXPECT_TRUE(fs::exists(folder_ / "barn" / "plan" / "picks.csv"));
 }
 
-TEST_F(SimulateProgram, RendersImagesOfTheSizeAskedFor) {
+TEST_F(SimulateProgram, RendersImagesOfTheRequestedSize) {
   const std::string quick = "simulate cowshed --duration 0.2 --rate 10 ";
   EXPECT_EQ(run(quick + "--size 96x80 -o barn --quiet").exit_code, 0);
   const auto recording = open_recording(folder_ / "barn", {});
@@ -51,7 +51,7 @@ TEST_F(SimulateProgram, WritesTheSameBytesForTheSameOptions) {
   }
 }
 
-TEST_F(SimulateProgram, KeepsTheTrueCalibrationBesideOneThatErrs) {
+TEST_F(SimulateProgram, WritesTheTrueCalibrationToo) {
   EXPECT_EQ(run_once(kByTwoThreads).exit_code, 0);
   EXPECT_EQ(run(kSmall + "--calibration-level 1 --calibration-seed 4 -o erring --quiet").exit_code, 0);
   EXPECT_EQ(read("barn/mav0/cam0/data/100000000000000.png"), read("erring/mav0/cam0/data/100000000000000.png"));
@@ -72,7 +72,7 @@ TEST_F(SimulateProgram, WritesTheSameBytesForTheSameImperfection) {
   }
 }
 
-TEST_F(SimulateProgram, LetsSingleOptionsDifferFromTheCondition) {
+TEST_F(SimulateProgram, LetsOptionsOverrideThePreset) {
   const Outcome outcome = run(kSmall + "--imperfection good --gain 1.5 --rolling-shutter 15 -o barn --json --quiet");
   const json imperfection = json::parse(outcome.output).at("imperfection");
   EXPECT_EQ(imperfection.at("calibration_level"), 1.0);
@@ -91,14 +91,14 @@ TEST_F(SimulateProgram, ReportsAsJson) {
   EXPECT_EQ(report.at("frames"), 2);
 }
 
-TEST_F(SimulateProgram, LeavesARecordingThatIsThereAlone) {
+TEST_F(SimulateProgram, DoesNotOverwriteARecording) {
   fs::create_directories(folder_ / "barn" / "mav0");
   const Outcome outcome = run(kSmall + "-o barn");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.errors, StartsWith("byre: error: barn: already contains a recording"));
 }
 
-TEST_F(SimulateProgram, LeavesNothingBehindAtCtrlC) {
+TEST_F(SimulateProgram, LeavesNoFilesAtCtrlC) {
   const pid_t process =
       start({"simulate", "cowshed", "--duration", "600", "--divide", "8", "-o", (folder_ / "barn").string()});
   ASSERT_GT(process, 0);
@@ -108,7 +108,7 @@ TEST_F(SimulateProgram, LeavesNothingBehindAtCtrlC) {
   EXPECT_TRUE(fs::is_empty(folder_ / "barn"));
 }
 
-TEST_F(SimulateProgram, RefusesWrongUsage) {
+TEST_F(SimulateProgram, RejectsWrongUsage) {
   EXPECT_EQ(run("simulate").exit_code, 2);
   EXPECT_EQ(run("simulate cowshed").exit_code, 2);
   EXPECT_EQ(run("simulate cowshed --mission 0 -o barn").exit_code, 2);

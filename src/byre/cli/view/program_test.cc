@@ -37,7 +37,7 @@ TEST_F(ViewProgram, ShowsAMapUntilItIsInterrupted) {
   EXPECT_THAT(read("stdout.txt"), IsEmpty());
 }
 
-TEST_F(ViewProgram, TellsOnlyItsAddressWhenQuiet) {
+TEST_F(ViewProgram, PrintsOnlyItsAddressWhenQuiet) {
   map_room("", "room.byre");
   const pid_t process =
       start({"view", (folder_ / "room.byre").string(), "--port", "0", "--bind", "0.0.0.0", "--quiet"});
@@ -48,7 +48,7 @@ TEST_F(ViewProgram, TellsOnlyItsAddressWhenQuiet) {
   EXPECT_THAT(read("stderr.txt"), AllOf(HasSubstr("viewer: http://127.0.0.1:"), Not(HasSubstr("0.0.0.0"))));
 }
 
-TEST_F(ViewProgram, GoesOnShowingARunOnceItsFilesAreWritten) {
+TEST_F(ViewProgram, ServesARunAfterItsFilesAreWritten) {
   const pid_t process =
       start({"run", room_, "--trajectory", (folder_ / "path.txt").string(), "--view", "0", "--view-for", "1000000"});
   ASSERT_TRUE(appears("until Ctrl-C", "stderr.txt"));
@@ -58,20 +58,20 @@ TEST_F(ViewProgram, GoesOnShowingARunOnceItsFilesAreWritten) {
   EXPECT_EQ(exit_code_of(process), 0);
 }
 
-TEST_F(ViewProgram, EndsWithTheRunWhereNobodyCouldEndIt) {
+TEST_F(ViewProgram, EndsWithTheRunWithoutATerminal) {
   const Outcome outcome = run("run '" + room_ + "' --frames 0:4 --view 0 </dev/null");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, HasSubstr("viewer: ends with the run, as there is no terminal"));
 }
 
-TEST_F(ViewProgram, StaysForAsLongAsItIsTold) {
+TEST_F(ViewProgram, StaysForTheGivenTime) {
   const Outcome outcome = run("run '" + room_ + "' --frames 0:4 --view 0 --view-for 0.2 </dev/null");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, HasSubstr("viewer: stays for 0.2 s, or until Ctrl-C\n"));
   EXPECT_THAT(run("run '" + room_ + "' --frames 0:4 --view 0 --view-for 0").errors, HasSubstr("ends with the run\n"));
 }
 
-TEST_F(ViewProgram, StaysWhereThereIsATerminal) {
+TEST_F(ViewProgram, StaysWithATerminal) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
   if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) GTEST_SKIP() << "no terminal to be had here";
   const pid_t process =
@@ -120,7 +120,7 @@ class HostileCrowd {
   std::vector<int> sockets_;
 };
 
-TEST_F(ViewProgram, LosesNoFrameToHundredsOfHostileConnections) {
+TEST_F(ViewProgram, LosesNoFrameUnderHostileConnections) {
   const pid_t process = start({"run", room_, "--pace", "live", "--stats", (folder_ / "stats.json").string(), "--view",
                                "0", "--bind", "0.0.0.0", "--view-for", "1000000"});
   const rlimit few{64, 64};
@@ -138,7 +138,7 @@ TEST_F(ViewProgram, LosesNoFrameToHundredsOfHostileConnections) {
   EXPECT_EQ(counts.at("frames_without_right_image"), 0);
 }
 
-TEST_F(ViewProgram, SaysWhatIsWrongWithItsOptions) {
+TEST_F(ViewProgram, ReportsFaultsOfItsOptions) {
   EXPECT_EQ(run("view nothing.byre").exit_code, 3);
   EXPECT_THAT(run("view a.byre --plan plan.yaml -o a.byre").errors, HasSubstr("--overwrite"));
   EXPECT_THAT(run("view a.byre -o b.byre").errors, HasSubstr("--plan"));

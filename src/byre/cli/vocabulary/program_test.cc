@@ -55,7 +55,7 @@ TEST_F(VocabularyProgram, TrainsTheSameVocabularyEachTime) {
   EXPECT_NE(read("other.vocabulary"), read("first.vocabulary"));
 }
 
-TEST_F(VocabularyProgram, LeavesUnreadableImagesOutAndSaysSo) {
+TEST_F(VocabularyProgram, SkipsUnreadableImagesWithAWarning) {
   write_images();
   write("images/broken.png", "not a PNG");
   write_image("images/tiny.pgm", 3, 2, 4);
@@ -75,13 +75,13 @@ TEST_F(VocabularyProgram, ImportsAndShowsAVocabularyOfDbow2) {
   EXPECT_EQ(run("vocabulary show imported.vocabulary").output, imported.output);
 }
 
-TEST_F(VocabularyProgram, ShowsTheOneThatByreUses) {
+TEST_F(VocabularyProgram, ShowsTheVocabularyInUse) {
   const Outcome shipped = run("vocabulary show");
   EXPECT_EQ(shipped.exit_code, 0) << shipped.errors;
   EXPECT_THAT(shipped.output, HasSubstr("default.vocabulary\n"));
 }
 
-TEST_F(VocabularyProgram, RefusesWrongUsage) {
+TEST_F(VocabularyProgram, RejectsWrongUsage) {
   write_images();
   for (const char* const arguments :
        {"", "teach", "train", "train images", "train images -o out --branching 1", "train images -o out --depth 17",
@@ -114,7 +114,7 @@ TEST_F(VocabularyProgram, NamesBadInput) {
   }
 }
 
-TEST_F(VocabularyProgram, TakesTheImagesOfAFolderByName) {
+TEST_F(VocabularyProgram, ReadsImagesOfAFolderInOrderOfNames) {
   write_images();
   const std::vector<std::filesystem::path> paths = {folder_ / "images", folder_ / "images/readme.txt"};
   EXPECT_THAT(find_images(paths), testing::ElementsAre(folder_ / "images/a.PGM", folder_ / "images/b.pgm",
