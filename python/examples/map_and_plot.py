@@ -29,7 +29,7 @@ def tell_error(estimate: byre.Trajectory, path: str) -> None:
     try:
         truth = byre.read_trajectory(found)
     except byre.InputError as error:
-        print(f"no error is told: {error}")
+        print(f"no trajectory error: {error}")
         return
     error = byre.absolute_trajectory_error(estimate, truth).translation
     print(f"ATE {1e3 * error.rmse:.1f} mm over {error.count} of {len(estimate)} poses, at most {1e3 * error.max:.1f} mm")
@@ -53,8 +53,8 @@ def plot(estimate: byre.Trajectory, path: str) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Maps a recording and plots where the robot went.")
     parser.add_argument("recording")
-    parser.add_argument("-o", "--plot", help="picture to write, as its ending says")
-    parser.add_argument("--map", help="map to keep")
+    parser.add_argument("-o", "--plot", help="picture to write; its suffix selects the format")
+    parser.add_argument("--map", help="map to write")
     arguments = parser.parse_args()
     slam = run(arguments.recording)
     trajectory = slam.trajectory()

@@ -23,12 +23,12 @@ for component in core shared; do
   (cd "$work" && "$component/consumer") >"$work/$component.txt"
 done
 cat "$work/core.txt"
-[[ $(head -n 1 "$work/core.txt") == "initialising, no image" ]] || fail "a frame without images was taken for something else"
-[[ $(sed -n 21p "$work/core.txt") == "tracking, none, "* ]] || fail "the consumer does not know where it is"
-[[ $(tail -n 1 "$work/core.txt") == "no-such.byre" ]] || fail "an error did not name what it is about"
+[[ $(head -n 1 "$work/core.txt") == "initialising, no image" ]] || fail "a frame without images was not rejected"
+[[ $(sed -n 21p "$work/core.txt") == "tracking, none, "* ]] || fail "the consumer does not track"
+[[ $(tail -n 1 "$work/core.txt") == "no-such.byre" ]] || fail "an error does not name its file"
 cmp "$work/core.txt" "$work/shared.txt" || fail "byre::core and byre::shared give different poses"
 ! ldd "$work/core/consumer" "$work/shared/consumer" | grep -E "embree|imgcodecs|videoio|boost|sqlite|lz4|zstd|bz2" ||
-  fail "a consumer is linked with what it has no use for"
+  fail "a consumer is linked with unused libraries"
 grep -q "libbyre\.so\.0 => $prefix/" <(ldd "$work/shared/consumer") || fail "byre::shared is not the library that was installed"
 "$source_dir/tests/install/check_exports.py" "$(find "$prefix" -name libbyre.so)" "$prefix/include/byre" ||
   fail "exports are wrong"
@@ -67,17 +67,17 @@ examples/02_map_a_recording room room.byre room.txt
 cmp room.txt program.txt || fail "02_map_a_recording and the program give different poses"
 
 examples/03_mission_on_a_map room room.byre | tee mission.log
-grep -q "localised" mission.log || fail "03_mission_on_a_map did not find itself in its map"
+grep -q "localised" mission.log || fail "03_mission_on_a_map did not localise in its map"
 trusted=$(sed -n 's/^\([0-9]*\) of 60 frames trusted$/\1/p' mission.log)
 ((trusted >= 50)) || fail "only $trusted of 60 frames are trusted on the map of the same recording"
 
 examples/01_live_stereo room | tail -n 3 | tee live.log
-grep -qE "^[0-9]+ frames, [0-9]+ missed, [0-9]+ keyframes$" live.log || fail "01_live_stereo did not come to its end"
-grep -q "tracking" live.log || fail "01_live_stereo does not know where it is"
+grep -qE "^[0-9]+ frames, [0-9]+ missed, [0-9]+ keyframes$" live.log || fail "01_live_stereo did not finish"
+grep -q "tracking" live.log || fail "01_live_stereo does not track"
 
 examples/04_own_features | tee features.log
 grep -qE "^400 of 400 frames have a pose; the worst is off by [0-9]\.[0-9] mm$" features.log ||
-  fail "04_own_features is further off than a centimetre"
+  fail "04_own_features has an error above a centimetre"
 
-! examples/03_mission_on_a_map room no-such.byre 2>refused.log || fail "a map that is not there was taken"
-grep -q "no-such.byre" refused.log || fail "the message does not name the map that is not there"
+! examples/03_mission_on_a_map room no-such.byre 2>refused.log || fail "a missing map was accepted"
+grep -q "no-such.byre" refused.log || fail "the message does not name the missing map"

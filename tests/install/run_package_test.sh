@@ -37,7 +37,7 @@ cpack --config "$build_dir/CPackConfig.cmake" -B "$packages" >"$work/cpack.log" 
 names=(byre byre-data libbyre0 libbyre-dev)
 [[ ! -f $build_dir/python/byre/__init__.py ]] || names+=(python3-byre)
 for name in "${names[@]}"; do
-  [[ -f $(echo "$packages/$name"_*.deb) ]] || fail "there is no package $name"
+  [[ -f $(echo "$packages/$name"_*.deb) ]] || fail "missing package $name"
 done
 version=$(field byre Version)
 require_depends byre "byre-data (= $version)" libyaml-cpp libfmt9 libopencv-videoio libsqlite3-0 libzstd1 liblz4-1 libbz2
@@ -54,7 +54,7 @@ usr=$root/usr
 byre=$usr/bin/byre
 
 if grep -q '^BYRE_BUILD_NODE:BOOL=ON' "$build_dir/CMakeCache.txt"; then
-  [[ -f $usr/lib/systemd/system/byre.service ]] || fail "there is no service"
+  [[ -f $usr/lib/systemd/system/byre.service ]] || fail "missing service"
   "$byre" node --print-config >/dev/null || fail "byre node does not start"
 fi
 "$byre" --version
@@ -70,7 +70,7 @@ for command in $("$byre" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z-]
   [[ -f $page ]] || fail "byre $command has no manual page"
   grep -q "^byre\\\\-${command//-/\\\\-} \\\\- " <(zcat "$page") || fail "$page has no name"
 done
-grep -qF '\fB\-o,\-\-output MAP\fR' <(zcat "$pages/byre-map.1.gz") || fail "byre-map(1) does not know the option --output"
+grep -qF '\fB\-o,\-\-output MAP\fR' <(zcat "$pages/byre-map.1.gz") || fail "byre-map(1) does not contain the option --output"
 if command -v man >/dev/null; then
   shown=$(MANPATH=$usr/share/man man byre-map 2>&1 | cat)
   [[ $shown == *"byre-map - make a map and a trajectory"* ]] || fail "man does not show byre-map(1): $shown"
@@ -79,7 +79,7 @@ fi
 completed=$(bash -c 'source "$1"; COMP_WORDS=(byre map --pac); COMP_CWORD=2; _byre; echo "${COMPREPLY[@]}"' - \
   "$usr/share/bash-completion/completions/byre")
 [[ $completed == "--pace" ]] || fail "bash completes --pac as: $completed"
-[[ -f $usr/share/zsh/vendor-completions/_byre ]] || fail "there is no completion for zsh"
+[[ -f $usr/share/zsh/vendor-completions/_byre ]] || fail "missing completion for zsh"
 
 {
   cmake -S "$source_dir/tests/install" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$usr" -DBYRE_COMPONENT=shared
@@ -87,7 +87,7 @@ completed=$(bash -c 'source "$1"; COMP_WORDS=(byre map --pac); COMP_CWORD=2; _by
 } >"$work/consumer.log" 2>&1 || { cat "$work/consumer.log"; exit 1; }
 grep -q "libbyre\.so\.0 => $usr/" <(ldd "$work/consumer/consumer") || fail "the consumer does not use the package's library"
 said=$("$work/consumer/consumer")
-[[ $(sed -n 21p <<<"$said") == "tracking, none, "* ]] || fail "the consumer does not know where it is: $said"
+[[ $(sed -n 21p <<<"$said") == "tracking, none, "* ]] || fail "the consumer does not track: $said"
 
 if [[ -d $usr/lib/python3/dist-packages/byre ]]; then
   require_depends python3-byre "byre-data (= $version)" python3-numpy "python3 (>= 3."
@@ -102,9 +102,9 @@ PYTHON
 fi
 
 for name in "${names[@]}"; do
-  [[ -f $usr/share/doc/$name/copyright ]] || fail "$name does not tell its licence"
+  [[ -f $usr/share/doc/$name/copyright ]] || fail "$name has no licence"
 done
 dpkg_here --purge "${names[@]}" >"$work/dpkg.log" 2>&1 || { cat "$work/dpkg.log"; exit 1; }
 left=$(find "$root" -mindepth 1 -path "$root/var" -prune -o -print)
-[[ -z $left ]] || fail "the packages have left behind: $left"
+[[ -z $left ]] || fail "left over after removal: $left"
 echo "${#names[@]} packages of byre $version were made, used and removed"

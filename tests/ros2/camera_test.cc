@@ -61,7 +61,7 @@ TEST_F(ByreNode, ReportsFaultsOfTheCameras) {
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "right images are missing"));
 
   diagnostics_.forget();
-  for (std::size_t i = 8; i < 12; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i], 1h)) << "stamps went on";
+  for (std::size_t i = 8; i < 12; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i], 1h)) << "stamps increase";
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "stamps jumped by 3"));
   for (std::size_t i = 12; i < 16; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i])) << "stamps went back";
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "stamps jumped by -3"));
@@ -208,7 +208,7 @@ TEST_F(ByreNode, SurvivesAFloodOfImages) {
     std::this_thread::sleep_for(1ms);
   }
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "were left out"));
-  EXPECT_TRUE(answer_to(feed_, odometry_, Room::shared().frames()[0], 1h)) << "it goes on as before";
+  EXPECT_TRUE(answer_to(feed_, odometry_, Room::shared().frames()[0], 1h)) << "it continues";
   EXPECT_EQ(node.stop(), 0);
 }
 

@@ -59,7 +59,7 @@ TEST_F(FleetTest, PublishesTheRobotPosition) {
   EXPECT_EQ(shown->at("agvPosition").at("mapId"), "room");
   EXPECT_GT(shown->at("agvPosition").at("localizationScore"), 0.5);
   EXPECT_EQ(node.stop(), 0);
-  EXPECT_TRUE(fleet.find(kConnection, connection_is("OFFLINE"))) << "who stops says so";
+  EXPECT_TRUE(fleet.find(kConnection, connection_is("OFFLINE"))) << "a regular stop is announced";
 }
 
 TEST_F(FleetTest, ReconnectsToTheBrokerWithoutDelayingFrames) {
@@ -69,7 +69,7 @@ TEST_F(FleetTest, ReconnectsToTheBrokerWithoutDelayingFrames) {
   ASSERT_TRUE(is_connected()) << node.said();
   {
     MqttListener fleet(*broker, "uagv/#");
-    EXPECT_TRUE(fleet.find(kConnection, connection_is("ONLINE"))) << "is kept for who comes later";
+    EXPECT_TRUE(fleet.find(kConnection, connection_is("ONLINE"))) << "is latched for late joiners";
   }
   broker->kill();
   for (std::size_t i = 0; i < 3; ++i) {
@@ -81,7 +81,7 @@ TEST_F(FleetTest, ReconnectsToTheBrokerWithoutDelayingFrames) {
   EXPECT_TRUE(fleet.find(kVisualization, [](const Json&) { return true; })) << node.said();
   EXPECT_TRUE(node.is_running());
   kill(node.process(), SIGKILL);
-  EXPECT_TRUE(fleet.find(kConnection, connection_is("CONNECTIONBROKEN"))) << "the broker tells of who is gone";
+  EXPECT_TRUE(fleet.find(kConnection, connection_is("CONNECTIONBROKEN"))) << "the broker publishes the will";
 }
 
 TEST_F(FleetTest, ReportsAnAbsentBroker) {

@@ -86,7 +86,7 @@ class KilledRobot {
       ASSERT_NO_FATAL_FAILURE(drive());
       wait_for(moment);
     }
-    EXPECT_TRUE(node_->is_running()) << "it has ended by itself\n" << node_->said();
+    EXPECT_TRUE(node_->is_running()) << "it ended by itself\n" << node_->said();
     node_.reset();
     const bool was_saved = is_saved(0s);
     look_at_files(before, was_saved);
@@ -152,7 +152,7 @@ class KilledRobot {
       most_frames_to_find_ = std::max(most_frames_to_find_, frames_to_find_);
       return;
     }
-    FAIL() << "it does not find itself in " << kFramesToFind << " frames\n" << node_->said();
+    FAIL() << "it does not localise in " << kFramesToFind << " frames\n" << node_->said();
   }
 
   // Drives on, beyond the area of half_map().
@@ -208,7 +208,7 @@ class KilledRobot {
     std::erase_if(names, [&](const std::string& name) {  // a link left by a kill before its rename
       return name.starts_with(previous.filename().string() + ".") && name.ends_with(".unfinished");
     });
-    EXPECT_THAT(names, testing::IsEmpty()) << "nothing piles up";
+    EXPECT_THAT(names, testing::IsEmpty()) << "no backlog";
     const int most = task_.is_extended() ? sessions_before + 1 : 1;
     EXPECT_THAT(sessions(), testing::AllOf(testing::Ge(was_saved ? most : sessions_before), testing::Le(most)));
     if (!task_.is_extended()) {

@@ -33,9 +33,9 @@ TEST_F(ByreNode, PublishesThePosesOfSlam) {
     EXPECT_EQ(odometry->header().frame_id(), "odom");
     EXPECT_EQ(odometry->child_frame_id(), "base_link");
   }
-  EXPECT_TRUE(points.find([](const auto& cloud) { return cloud.width() > 100; })) << "of the map that grows";
+  EXPECT_TRUE(points.find([](const auto& cloud) { return cloud.width() > 100; })) << "of the online map";
   EXPECT_EQ(node.stop(), 0);
-  EXPECT_TRUE(fs::exists(folder_ / "made.byre")) << "what was mapped is kept at the end";
+  EXPECT_TRUE(fs::exists(folder_ / "made.byre")) << "the map is saved at the end";
 }
 
 TEST_F(ByreNode, PublishesTheMissionPosesOfSlam) {
@@ -128,7 +128,7 @@ TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
   const auto grid = grids.first();
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->info().width(), 3u);
-  EXPECT_THAT(grid->data(), testing::ElementsAre(255, 0, 100, 0, 100, 0)) << "from the lowest row up; 255: not known";
+  EXPECT_THAT(grid->data(), testing::ElementsAre(255, 0, 100, 0, 100, 0)) << "from the lowest row; 255: unknown";
   EXPECT_DOUBLE_EQ(grid->info().origin().position().x(), -1.0);
   EXPECT_TRUE(
       events.find([](const auto& message) { return message.data().find("\"localised\"") != std::string::npos; }));
@@ -189,11 +189,11 @@ TEST_F(ByreNode, KeepsThePreviousMapAndUsesItIfTheMapIsDamaged) {
   events_.forget();
   NodeProcess node(folder_, extend, domain_);
   ASSERT_TRUE(is_connected()) << node.said();
-  EXPECT_THAT(node.said(), HasSubstr("room.byre: ")) << "what is wrong with it";
+  EXPECT_THAT(node.said(), HasSubstr("room.byre: ")) << "fault of the map";
   EXPECT_THAT(node.said(), HasSubstr("the previous map is used, " + (folder_ / "room.previous.byre").string()));
   EXPECT_TRUE(answer_to(feed_, odometry_, frames[10], std::chrono::seconds(60))) << node.said();
   EXPECT_EQ(node.stop(), 0) << node.said();
-  EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), kept) << "no damaged map takes its place";
+  EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), kept) << "a damaged map does not replace it";
 }
 
 TEST_F(ByreNode, RelocalisesIfAnInitialPoseContradictsItsPose) {
@@ -236,7 +236,7 @@ TEST_F(ByreNode, RelocalisesIfAnInitialPoseContradictsItsPose) {
     const std::string time = "\"time_ns\":" + std::to_string(room.frames()[i].time.count()) + ",";
     ASSERT_TRUE(health.find([&](const auto& text) { return text.data().find(time) != std::string::npos; })) << i;
   }
-  EXPECT_THAT(poses.all(), testing::IsEmpty()) << "it is looked for where it is not";
+  EXPECT_THAT(poses.all(), testing::IsEmpty()) << "search at a wrong place";
   EXPECT_EQ(node.stop(), 0);
 }
 

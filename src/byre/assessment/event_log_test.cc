@@ -91,7 +91,7 @@ TEST(EventLog, ContainsTheJumpOfAMapCorrection) {
   EXPECT_DOUBLE_EQ(lines[2].at("jump_m"), 0.25);
   EXPECT_EQ(lines[2].at("position_m"), (json{10.5, 0.0, 0.0}));
   const std::vector<json> first = lines_of({after});
-  EXPECT_TRUE(first[0].at("jump_m").is_null()) << "nothing is known of before";
+  EXPECT_TRUE(first[0].at("jump_m").is_null()) << "no previous frame";
 }
 
 TEST(EventLog, SkipsUnreadableFrames) {

@@ -268,7 +268,7 @@ TEST(MapText, ReportsTheMission) {
   const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {}, {}, mission);
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %), the first after 0.10 s\n"));
   EXPECT_THAT(text, HasSubstr("verdicts     trusted "));
-  EXPECT_THAT(text, HasSubstr("finishing    skipped")) << "as of a map, for there is no offline one";
+  EXPECT_THAT(text, HasSubstr("finishing    skipped")) << "as without an offline map";
   EXPECT_THAT(text, Not(HasSubstr("truth"))) << "there is none";
 }
 

@@ -22,7 +22,7 @@ void touch_pages(std::size_t pages) {
 TEST(EventCounter, CountsEventsOfItsThreadAndLaterThreads) {
   constexpr std::size_t kPages = 1000;
   const EventCounter counter(EventCounter::Event::page_faults);
-  if (!counter.count()) GTEST_SKIP() << "this system lets no program count its events";
+  if (!counter.count()) GTEST_SKIP() << "event counters are not available";
   const std::uint64_t before = *counter.count();
   touch_pages(kPages);
   const std::uint64_t own = *counter.count() - before;

@@ -152,7 +152,7 @@ TEST(Judge, SeparatesKeyframesInKnownPlacesFromOthers) {
   const BehaviourMeasures on_map = judge(run, kOnMap).behaviour;
   EXPECT_THAT(on_map.keyframe_rate_known, Optional(DoubleNear(60.0 / 3.0, 1e-9))) << "one in 3 s";
   EXPECT_THAT(on_map.keyframe_rate_new, Optional(DoubleNear(2.0 * 60.0 / 1.95, 1e-9))) << "two in 39 intervals";
-  EXPECT_FALSE(judge(run, kWithoutMap).behaviour.keyframe_rate_known) << "nothing is known without a map";
+  EXPECT_FALSE(judge(run, kWithoutMap).behaviour.keyframe_rate_known) << "no known places without a map";
 }
 
 TEST(Trace, IsInTheFrameOfTheTruth) {

@@ -23,7 +23,7 @@ TEST(PeakMemory, CoversTheTimeSinceTheReset) {
   use_for_a_moment(kBytes);
   const double with_large = peak_memory_mb().value();
   EXPECT_GT(with_large, kMegabytes);
-  if (!reset_peak_memory()) GTEST_SKIP() << "the system lets no program reset its peak";
+  if (!reset_peak_memory()) GTEST_SKIP() << "the system does not allow resetting the peak";
   EXPECT_LT(peak_memory_mb().value(), with_large - 0.5 * kMegabytes);
   EXPECT_LT(peak_memory_mb().value(), before + 0.5 * kMegabytes);
 }

@@ -70,7 +70,7 @@ TEST(Exposure, UsesTimeBeforeGain) {
   EXPECT_DOUBLE_EQ(next_exposure({2e-3, 1.0}, 1.7, limits).gain, 1.0);
   EXPECT_GT(next_exposure({5e-3, 1.0}, 1.7, limits).gain, 1.2);
   const CameraExposure darker = next_exposure({5e-3, 4.0}, 0.6, limits);
-  EXPECT_DOUBLE_EQ(darker.seconds, 5e-3) << "gain is what is taken back first, as it only adds noise";
+  EXPECT_DOUBLE_EQ(darker.seconds, 5e-3) << "gain is reduced first, as it adds noise";
   EXPECT_LT(darker.gain, 3.0);
 }
 

@@ -23,8 +23,8 @@ TEST(SequenceWatch, ContinuesAfterARestartOfNumbers) {
   EXPECT_TRUE(watch.note(0, 50ms)) << "after 2^32 images";
   EXPECT_TRUE(watch.note(7, 400ms));
   watch.restart();
-  EXPECT_TRUE(watch.note(100, 450ms)) << "the first of a device opened anew";
-  EXPECT_TRUE(watch.note(3, 500ms)) << "of a driver that began anew by itself";
+  EXPECT_TRUE(watch.note(100, 450ms)) << "first image after reopening the device";
+  EXPECT_TRUE(watch.note(3, 500ms)) << "of a restarted driver";
   EXPECT_EQ(watch.counts().lost, 6);
 }
 

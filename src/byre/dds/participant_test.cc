@@ -97,7 +97,7 @@ TEST_F(TwoParticipants, SendLatchedMessagesToLateReaders) {
   Subscriber late = receiver_.subscribe("/latched", kText, {.is_latched = true, .depth = 1});
   const auto message = next(receiver_, late);
   ASSERT_TRUE(message.has_value());
-  EXPECT_EQ(message->bytes().size(), 16u) << "the last one alone";
+  EXPECT_EQ(message->bytes().size(), 16u) << "only the last message";
 }
 
 TEST_F(TwoParticipants, KeepTheNewestMessageForSlowReaders) {

@@ -39,7 +39,7 @@ TEST(PoseFrames, ComposeMapAndOdometry) {
 TEST(PoseFrames, HoldTheMapFrameInDoubtAndWithdrawItWhenLost) {
   PoseFrames frames;
   frames.note(report_at(some_pose(1), some_pose(2), Verdict::untrusted));
-  EXPECT_FALSE(frames.map_from_odom()) << "nothing was trusted so far";
+  EXPECT_FALSE(frames.map_from_odom()) << "no trusted frame so far";
   frames.note(report_at(some_pose(1), some_pose(2)));
   const Pose known = *frames.map_from_odom();
   frames.note(report_at(some_pose(3), some_pose(0.5), Verdict::untrusted));

@@ -138,7 +138,7 @@ TEST_F(Watch, ReportsFrozenImagesJumpsAndUnusableImages) {
   EXPECT_THAT(said(3s), HasSubstr("stamps jumped by -3600.000 s"));
   frames(3500ms, 10, good_);
   watch_.note_unusable(InputError("/left", "is odd", "mend it"), 4s);
-  EXPECT_THAT(said(4s), HasSubstr("/left: is odd (mend it); time stamps jumped")) << "all there is to say";
+  EXPECT_THAT(said(4s), HasSubstr("/left: is odd (mend it); time stamps jumped")) << "all findings";
   EXPECT_EQ(level(4s), ros::DiagnosticStatus::kError);
 }
 

@@ -76,7 +76,7 @@ void check(const NodeConfig& config, Consistency consistency) {
   consistency.require(config.task != NodeTask::map || !config.map, "slam.map", "is not used by the task map",
                       "leave it empty, or set slam.task to extend");
   consistency.require(is_mission || config.save.has_value(), "slam.save", "is missing, so the map would be lost",
-                      "name a file");
+                      "give a file");
   consistency.require(config.has_right() || config.task != NodeTask::map, "images.right",
                       "is empty, but a map of one camera has no metric scale",
                       "set the topic of the right images, or map first with byre map and byre scale");

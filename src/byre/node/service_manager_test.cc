@@ -50,7 +50,7 @@ TEST(ServiceManager, ReceivesTheStatus) {
   manager.status("trusted;\n20 frames a second");
   EXPECT_EQ(socket.next(), "STATUS=trusted; 20 frames a second");
   manager.status("trusted;\n20 frames a second");
-  EXPECT_EQ(socket.next(), "") << "nothing new";
+  EXPECT_EQ(socket.next(), "") << "unchanged";
   manager.alive();
   EXPECT_EQ(socket.next(), "WATCHDOG=1");
   manager.alive();
@@ -68,7 +68,7 @@ TEST(ServiceManager, ExtendsTheWatchdogForLongTasks) {
   manager.busy(std::chrono::seconds(300));
   EXPECT_EQ(socket.next(), "WATCHDOG_USEC=300000000");
   manager.alive();
-  EXPECT_EQ(socket.next(), "WATCHDOG_USEC=10000000") << "as it was before";
+  EXPECT_EQ(socket.next(), "WATCHDOG_USEC=10000000") << "the previous interval";
   EXPECT_EQ(socket.next(), "WATCHDOG=1");
   manager.alive();
   EXPECT_EQ(socket.next(), "") << "half of the time is not over";

@@ -126,7 +126,7 @@ TEST(RunMap, StopsAfterTheCurrentFrame) {
   EXPECT_THAT(mapped.frames, SizeIs(5));
   EXPECT_THAT(mapped.causal, SizeIs(5));
   EXPECT_THAT(mapped.final, SizeIs(5));
-  EXPECT_FALSE(mapped.finishing) << "a stopped run is to be saved soon";
+  EXPECT_FALSE(mapped.finishing) << "a stopped run is saved soon";
 }
 
 TEST(RunMap, InterruptsFinishingWhenStopped) {

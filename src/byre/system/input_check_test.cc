@@ -40,7 +40,7 @@ TEST_F(StereoInput, IsReportedIfRepeatedOrOutOfOrder) {
   check_.note(images(milliseconds(100)));
   EXPECT_EQ(check_.note(images(milliseconds(100))), InputFault::repeated_time);
   EXPECT_EQ(check_.note(images(milliseconds(50))), InputFault::out_of_order);
-  EXPECT_EQ(check_.note(images(milliseconds(150))), InputFault::none) << "what is dropped moves no clock";
+  EXPECT_EQ(check_.note(images(milliseconds(150))), InputFault::none) << "dropped frames do not change the clock";
 }
 
 TEST_F(StereoInput, IsReportedAfterAGap) {
@@ -69,7 +69,7 @@ TEST_F(StereoInput, IsReportedWithARightImageOfAnotherTime) {
   EXPECT_EQ(check_.note(off), InputFault::late_right);
   off = images(milliseconds(5000));
   off.right->time = milliseconds(1);
-  EXPECT_EQ(check_.note(off), InputFault::late_right) << "a gap matters less than which images may be used";
+  EXPECT_EQ(check_.note(off), InputFault::late_right) << "unusable images take precedence over a gap";
 }
 
 TEST_F(StereoInput, IsDroppedIfItDoesNotFitTheCamera) {

@@ -113,7 +113,7 @@ TEST_F(SlamWithAFile, LocalisesAMissionOnAMap) {
   EXPECT_TRUE(events.contains(SessionEvent::localised));
   EXPECT_EQ(report.health.verdict, Verdict::trusted) << to_string(report.health.doubt);
   ASSERT_TRUE(report.map_from_body);
-  EXPECT_FALSE(slam.plan_from_body(*report.map_from_body)) << "the map is on no plan";
+  EXPECT_FALSE(slam.plan_from_body(*report.map_from_body)) << "the map is not registered";
   EXPECT_FALSE(slam.plan_covariance(*report.map_from_body, report.covariance));
   slam.finish();
   EXPECT_GT(slam.trajectory().size(), 10u);
@@ -216,7 +216,7 @@ TEST_F(SlamWithAFile, SavesTheOnlineMapOfAMission) {
   const StoredMap kept = load_map(beside);
   std::filesystem::remove(beside);
   EXPECT_THAT(kept.recordings, SizeIs(1));
-  EXPECT_FALSE(kept.plan) << "it was the other map that was laid on the plan";
+  EXPECT_FALSE(kept.plan) << "the registration is of the other map";
 }
 
 TEST_F(SlamWithAFile, SavesItsMapInEveryState) {
@@ -327,7 +327,7 @@ TEST(Slam, ReducesWorkForADeadlineAndReportsIt) {
     const FrameReport report = slam.process(view_of(frame));
     EXPECT_TRUE(report.map_from_body);
     EXPECT_TRUE(report.is_late);
-    EXPECT_EQ(report.input, InputFault::none) << "the right image is there, and left alone";
+    EXPECT_EQ(report.input, InputFault::none) << "the right image exists but is not used";
     with_left_alone += report.cuts.right_image ? 1 : 0;
   }
   EXPECT_GT(2 * with_left_alone, static_cast<int>(frames.size()));

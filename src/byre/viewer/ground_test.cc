@@ -77,7 +77,7 @@ TEST(Ground, IsThePlanOfARegisteredMap) {
   const Ground ground = ground_of(stored);
   EXPECT_THAT(ground.ground_from_map * Eigen::Vector3d(1.0, 2.0, 0.5),
               PointNear(Eigen::Vector3d(102.0, 204.0, 1.0), 1e-9));
-  EXPECT_TRUE(ground.is_metric) << "the plan tells the scale";
+  EXPECT_TRUE(ground.is_metric) << "the plan gives the scale";
   EXPECT_EQ(ground.image, nullptr);
 }
 

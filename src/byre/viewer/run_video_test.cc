@@ -28,7 +28,7 @@ TEST_F(RunVideoTest, ContainsEveryFrameAtItsRate) {
     RunVideo video(file_, 12.5, 161, 120);
     for (int i = 0; i < 7; ++i) video.add(plain({0, 0, 200}, 161, 120));
     for (int i = 0; i < 6; ++i) video.add(plain({200, 0, 0}, 161, 120));
-    EXPECT_FALSE(fs::exists(file_)) << "not yet whole";
+    EXPECT_FALSE(fs::exists(file_)) << "incomplete";
     video.finish();
   }
   cv::VideoCapture played(file_.string());
@@ -37,7 +37,7 @@ TEST_F(RunVideoTest, ContainsEveryFrameAtItsRate) {
   std::vector<cv::Mat> frames;
   for (cv::Mat frame; played.read(frame);) frames.push_back(frame.clone());
   ASSERT_EQ(frames.size(), 13u);
-  EXPECT_EQ(frames[0].size(), cv::Size(162, 120)) << "even, as the format wants it";
+  EXPECT_EQ(frames[0].size(), cv::Size(162, 120)) << "even, as required by the format";
   EXPECT_GT(colour_at(frames[2], 80, 60).blue, 150);
   EXPECT_GT(colour_at(frames[10], 80, 60).red, 150);
 }

@@ -12,7 +12,7 @@ WebRequest get(const std::string& path) {
 TEST(StatusSite, ServesHealthAndMetrics) {
   const auto board = std::make_shared<StatusBoard>();
   StatusSite site(board);
-  EXPECT_EQ(site.answer(get("/healthz")).status, 503) << "nothing was put there yet";
+  EXPECT_EQ(site.answer(get("/healthz")).status, 503) << "still empty";
   board->put({true, "trusted", "byre_frames_total 3\n"});
   const WebResponse health = site.answer(get("/healthz"));
   EXPECT_EQ(health.status, 200);

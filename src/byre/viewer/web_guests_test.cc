@@ -42,12 +42,12 @@ TEST(WebGuests, KeepsIdentifiedGuests) {
   const WebGuests::Id three = guests.arrive("a").id;
   EXPECT_TRUE(guests.introduce(one));
   EXPECT_TRUE(guests.introduce(two));
-  EXPECT_FALSE(guests.introduce(three)) << "there are as many as may be";
+  EXPECT_FALSE(guests.introduce(three)) << "the limit is reached";
   EXPECT_EQ(guests.strangers(), 1);
   guests.leave(one);
   EXPECT_EQ(guests.known(), 1);
   EXPECT_TRUE(guests.introduce(three));
-  EXPECT_FALSE(guests.introduce(three)) << "once is enough";
+  EXPECT_FALSE(guests.introduce(three)) << "leaving twice is harmless";
   EXPECT_EQ(guests.strangers(), 0);
 }
 
@@ -65,7 +65,7 @@ TEST(ArrivalRate, AllowsABurstThenAFixedRate) {
   EXPECT_EQ(rate.wait(start + milliseconds(100)), milliseconds(0));
   rate.count(start + std::chrono::hours(1));
   rate.count(start + std::chrono::hours(1));
-  EXPECT_EQ(rate.wait(start + std::chrono::hours(1)), milliseconds(100)) << "no more than two at once after an hour";
+  EXPECT_EQ(rate.wait(start + std::chrono::hours(1)), milliseconds(100)) << "the burst stays at two after an hour";
 }
 
 TEST(EndOfDescriptors, ReservesDescriptorsAtAnyLimit) {

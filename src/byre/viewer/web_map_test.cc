@@ -114,7 +114,7 @@ TEST_F(MapViewerTest, SavesLargeResidualsOnlyWhenConfirmed) {
   EXPECT_THAT(refused.json().at("problem").get<std::string>(), HasSubstr("have residuals of "));
   Json confirmed = Json::parse(picks(6));
   confirmed["accepted_residual_m"] = 0.9 * residual;
-  EXPECT_EQ(client.post("/save", confirmed.dump()).status, 400) << "another figure was confirmed";
+  EXPECT_EQ(client.post("/save", confirmed.dump()).status, 400) << "another residual was confirmed";
   EXPECT_FALSE(std::filesystem::exists(folder_ / "barn-plan.byre"));
   confirmed["accepted_residual_m"] = residual;
   EXPECT_EQ(client.post("/save", confirmed.dump()).status, 200);

@@ -181,7 +181,7 @@ TEST_F(WebServerTest, ClosesSlowClients) {
     crowd.drip();
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  EXPECT_EQ(crowd.still_open(), 0) << "a byte now and then buys no time";
+  EXPECT_EQ(crowd.still_open(), 0) << "slow bytes do not extend the timeout";
 }
 
 TEST_F(WebServerTest, ReadsOnlyTheHeaderOfRejectedRequests) {
@@ -189,7 +189,7 @@ TEST_F(WebServerTest, ReadsOnlyTheHeaderOfRejectedRequests) {
   Crowd crowd(server.port());
   crowd.add(1, "POST / HTTP/1.1\r\nHost: barn\r\nContent-Length: 1000000\r\n\r\n");
   for (int i = 0; i < 100 && crowd.still_open() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_EQ(crowd.still_open(), 0) << "long before the body came, or the time to ask was over";
+  EXPECT_EQ(crowd.still_open(), 0) << "before the body arrives or the request times out";
 }
 
 TEST_F(WebServerTest, AnswersTokenHoldersAmongHundredsOfOthers) {

@@ -135,7 +135,7 @@ TEST_F(Completion, OffersFilesAndFolders) {
     EXPECT_THAT(offered[static_cast<std::size_t>(i)], testing::UnorderedElementsAre("barn 1.byre", "barn_2")) << i;
   }
   EXPECT_THAT(offered[3], ElementsAre("barn_2")) << "a model is a folder";
-  EXPECT_THAT(offered[4], IsEmpty()) << "seconds are no file";
+  EXPECT_THAT(offered[4], IsEmpty()) << "seconds are not a file";
   EXPECT_THAT(offered[5], ElementsAre("inline"));
   EXPECT_THAT(offered[6], ElementsAre("--align", "--aligned", "--alignment"));
 }

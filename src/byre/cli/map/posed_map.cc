@@ -35,7 +35,7 @@ PosedRun run_with_progress(Recording& recording, const MapOptions& options, cons
 
 std::string to_text(const PosedRun& run, const MapOptions& options) {
   std::string poses = "given by " + options.given_poses->string() + ", not estimated";
-  if (run.without_pose > 0) poses += fmt::format("; {} frames have none and are left out", run.without_pose);
+  if (run.without_pose > 0) poses += fmt::format("; {} frames without pose are skipped", run.without_pose);
   return row("recording", fmt::format("{}, {} frames", options.recording.string(), run.frames)) + row("poses", poses) +
          row("map", fmt::format("{} keyframes, {} points", run.map.keyframe_count(), run.map.point_count())) +
          row("written", options.map->string());

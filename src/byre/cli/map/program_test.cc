@@ -108,7 +108,7 @@ TEST_F(MapProgram, SkipsLoopsAndFinishingOnRequest) {
   EXPECT_THAT(outcome.errors, Not(HasSubstr("finishing")));
   EXPECT_THAT(outcome.output, HasSubstr("finishing    skipped"));
   EXPECT_TRUE(json::parse(read("stats.json")).at("finishing").is_null());
-  EXPECT_NE(load_map(folder_ / "room.byre").vocabulary_checksum, 0u) << "others may recognise places in it";
+  EXPECT_NE(load_map(folder_ / "room.byre").vocabulary_checksum, 0u) << "place recognition works in the saved map";
 }
 
 TEST_F(MapProgram, MapsTheSelectedRange) {

@@ -76,7 +76,7 @@ TEST_F(RegisterProgram, WritesNoMapWithLargeResidualsUnlessAccepted) {
               ContainsRegex("picks.csv: has residuals of [0-9]+\\.[0-9]+ m on the map, so the map is not "
                             "written.*--accept-residual [0-9]+\\.[0-9]+ writes the map"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "barn-plan.byre"));
-  EXPECT_EQ(run(command + " --accept-residual 0.6").exit_code, 3) << "less than it is off by";
+  EXPECT_EQ(run(command + " --accept-residual 0.6").exit_code, 3) << "less than the residual";
   EXPECT_EQ(run(command + " --accept-residual 100").exit_code, 0);
   EXPECT_TRUE(load_map(folder_ / "barn-plan.byre").plan.has_value());
 }

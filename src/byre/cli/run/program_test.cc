@@ -138,7 +138,7 @@ TEST_F(RunProgram, KeepsResultsAtCtrlC) {
              "--stats", (folder_ / "stats.json").string()});
   ASSERT_GT(process, 0);
   EXPECT_TRUE(appears("1 of 2 frames", "stderr.txt"));
-  EXPECT_THAT(lines_of("events.jsonl"), testing::Not(IsEmpty())) << "as things happen, not at the end";
+  EXPECT_THAT(lines_of("events.jsonl"), testing::Not(IsEmpty())) << "during the run, not at the end";
   kill(process, SIGINT);
   EXPECT_EQ(exit_code_of(process), 130);
   EXPECT_THAT(read_trajectory(folder_ / "causal.txt"), SizeIs(1));
@@ -191,11 +191,11 @@ TEST_F(MissionProgram, PublishesPosesOnThePlan) {
   const Pose in_map = read_trajectory(folder_ / "map.txt").back().world_from_body;
   const Pose on_plan = read_trajectory(folder_ / "plan.txt").back().world_from_body;
   EXPECT_THAT(on_plan, PoseNear(stored.plan->plan_from_map.target_from_source * in_map, 1e-6, 1e-6));
-  EXPECT_EQ(read("a.txt"), read("b.txt")) << "odometry has a frame of its own";
+  EXPECT_EQ(read("a.txt"), read("b.txt")) << "odometry has its own frame";
   const json stats = json::parse(read("stats.json"));
   EXPECT_EQ(stats.at("protocol").at("pose_frame"), "plan");
   EXPECT_NEAR(stats.at("frames").back().at("position_m").at(1), on_plan.translation.y(), 1e-6);
-  EXPECT_LT(stats.at("errors").at("causal").at("position_m").at("max"), 0.05) << "errors stay those in the map";
+  EXPECT_LT(stats.at("errors").at("causal").at("position_m").at("max"), 0.05) << "errors are still in the map frame";
   EXPECT_GT(lines_of("events.jsonl").back().at("position_m").at(1), 1900.0);
 }
 
@@ -255,7 +255,7 @@ TEST_F(MissionProgram, WritesOdometryPoses) {
   ASSERT_EQ(mission("--odometry odometry.txt --stats stats.json").exit_code, 0);
   const Trajectory odometry = read_trajectory(folder_ / "odometry.txt");
   ASSERT_THAT(odometry, SizeIs(12));
-  EXPECT_LT(odometry.front().world_from_body.translation.norm(), 1e-6) << "it begins where the robot does";
+  EXPECT_LT(odometry.front().world_from_body.translation.norm(), 1e-6) << "it begins at the start of the robot";
   EXPECT_EQ(json::parse(read("stats.json")).at("frames").back().at("odometry").at("body_covariance").size(), 36u);
 }
 

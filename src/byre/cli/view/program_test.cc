@@ -73,7 +73,7 @@ TEST_F(ViewProgram, StaysForTheGivenTime) {
 
 TEST_F(ViewProgram, StaysWithATerminal) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) GTEST_SKIP() << "no terminal to be had here";
+  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) GTEST_SKIP() << "no terminal available";
   const pid_t process =
       start({"run", room_, "--frames", "0:4", "--view", "0"}, {SIGINT, SIGTERM, SIGHUP}, ptsname(terminal));
   EXPECT_TRUE(appears("until Ctrl-C", "stderr.txt"));
@@ -124,7 +124,7 @@ TEST_F(ViewProgram, LosesNoFrameUnderHostileConnections) {
   const pid_t process = start({"run", room_, "--pace", "live", "--stats", (folder_ / "stats.json").string(), "--view",
                                "0", "--bind", "0.0.0.0", "--view-for", "1000000"});
   const rlimit few{64, 64};
-  ASSERT_EQ(prlimit(process, RLIMIT_NOFILE, &few, nullptr), 0) << "long before it serves";
+  ASSERT_EQ(prlimit(process, RLIMIT_NOFILE, &few, nullptr), 0) << "before it starts to serve";
   ASSERT_TRUE(appears("viewer: http://127.0.0.1:", "stderr.txt"));
   const std::string said = read("stderr.txt");
   const std::size_t port = said.find("http://127.0.0.1:") + std::string_view("http://127.0.0.1:").size();
