@@ -172,7 +172,7 @@ TEST_F(LiveCamera, ContinuesAfterUnplugging) {
   const Outcome outcome =
       run("camera record " + kLeft + " " + kRight + " -o walk --duration 1.9 --calibration calibration.yaml");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_EQ(times_that_it_says(outcome.errors, kRight + ": was unplugged"), "1") << outcome.errors;
+  EXPECT_EQ(times_that_it_says(outcome.errors, kRight + ": was disconnected"), "1") << outcome.errors;
   EXPECT_EQ(times_that_it_says(outcome.errors, kRight + ": is back after"), "1") << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("disconnected 1 times"));
   unsetenv("LD_PRELOAD");

@@ -51,7 +51,7 @@ BenchmarkResult result() {
 TEST(BenchmarkMarkdown, DescribesTheProtocol) {
   const std::string text = to_markdown(result(), protocol(), kSetting);
   for (const char* part : {"# Barns", "**byre** " BYRE_VERSION, "barns.yaml", "seeds 0, 1, 2", "2 cores; pace paced",
-                           "mean / median / worst", "SE(3)", "no run is aligned", "120", "118 poses"}) {
+                           "mean / median / worst", "SE(3)", "only the map is aligned", "120", "118 poses"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
   EXPECT_THAT(text, Not(HasSubstr("stopped early")));

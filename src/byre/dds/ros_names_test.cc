@@ -29,7 +29,7 @@ TEST(RosNames, AreValidated) {
   EXPECT_THAT(fault_in_name("/left/image_raw2"), IsEmpty());
   EXPECT_THAT(fault_in_name(""), HasSubstr("begin with a slash"));
   EXPECT_THAT(fault_in_name("left"), HasSubstr("begin with a slash"));
-  EXPECT_THAT(fault_in_name("/left//image"), HasSubstr("two slashes"));
+  EXPECT_THAT(fault_in_name("/left//image"), HasSubstr("two consecutive slashes"));
   EXPECT_THAT(fault_in_name("/left/"), HasSubstr("ends with a slash"));
   EXPECT_THAT(fault_in_name("/2nd"), HasSubstr("digit"));
   EXPECT_THAT(fault_in_name("/left-image"), HasSubstr("letters"));

@@ -79,7 +79,7 @@ TEST(ImagePairs, LimitsStoredImages) {
   EXPECT_EQ(pairs.counts().passed_over, 92);
 }
 
-class Watch : public testing::Test {
+class CameraWatchTest : public testing::Test {
  protected:
   void frames(Timestamp from, int count, const CameraFrame& frame) {
     for (int i = 0; i < count; ++i) {
@@ -99,12 +99,12 @@ class Watch : public testing::Test {
   }();
 };
 
-TEST_F(Watch, ReportsNothingForAWorkingCamera) {
+TEST_F(CameraWatchTest, ReportsNothingForAWorkingCamera) {
   frames(1s, 40, good_);
   EXPECT_EQ(level(3s), ros::DiagnosticStatus::kOk);
 }
 
-TEST_F(Watch, ReportsASilentCamera) {
+TEST_F(CameraWatchTest, ReportsASilentCamera) {
   EXPECT_EQ(level(1500ms), ros::DiagnosticStatus::kStale);
   EXPECT_THAT(said(1500ms), HasSubstr("no images on /left"));
   frames(2s, 20, good_);
@@ -113,7 +113,7 @@ TEST_F(Watch, ReportsASilentCamera) {
   EXPECT_THAT(said(3600ms), HasSubstr("no image for"));
 }
 
-TEST_F(Watch, ReportsLostRightImages) {
+TEST_F(CameraWatchTest, ReportsLostRightImages) {
   frames(1s, 20, good_);
   frames(2s, 4, left_alone_);
   EXPECT_EQ(level(2200ms), ros::DiagnosticStatus::kWarn);
@@ -127,7 +127,7 @@ TEST_F(Watch, ReportsLostRightImages) {
   EXPECT_EQ(level(4450ms), ros::DiagnosticStatus::kOk);
 }
 
-TEST_F(Watch, ReportsFrozenImagesJumpsAndUnusableImages) {
+TEST_F(CameraWatchTest, ReportsFrozenImagesJumpsAndUnusableImages) {
   CameraFrame frame = good_;
   frame.is_frozen = true;
   frames(1s, 1, frame);
@@ -142,7 +142,7 @@ TEST_F(Watch, ReportsFrozenImagesJumpsAndUnusableImages) {
   EXPECT_EQ(level(4s), ros::DiagnosticStatus::kError);
 }
 
-TEST_F(Watch, CountsReplacedImages) {
+TEST_F(CameraWatchTest, CountsReplacedImages) {
   frames(1s, 20, good_);
   watch_.note_passed_over(3, 1950ms);
   EXPECT_EQ(level(2s), ros::DiagnosticStatus::kWarn);

@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-TEST(ResourcesUsedSoFar, ArePositive) {
+TEST(ResourceUse, ArePositive) {
   const ResourceUse resources = resources_used_so_far();
   EXPECT_GT(resources.cpu_seconds, 0.0);
   EXPECT_GT(resources.peak_memory_mb, 1.0);

@@ -59,10 +59,10 @@ std::string error_by(const std::function<void()>& attempt) {
   return "";
 }
 
-class SlamWithAFile : public testing::Test {
+class SlamFileTest : public testing::Test {
  protected:
-  SlamWithAFile() { fs::remove(map_); }
-  ~SlamWithAFile() override { fs::remove(map_); }
+  SlamFileTest() { fs::remove(map_); }
+  ~SlamFileTest() override { fs::remove(map_); }
 
   // Maps the shared recording into the file.
   void map_shared(std::size_t frames = 1000) const {
@@ -88,7 +88,7 @@ TEST(SlamOptions, ConfirmOrReplaceAnUnusualBaseline) {
   EXPECT_NEAR(Slam::mapping(calibration, options).rig().baseline, 0.075, 1e-9);
 }
 
-TEST_F(SlamWithAFile, SavesTheRecordingOfAMap) {
+TEST_F(SlamFileTest, SavesTheRecordingOfAMap) {
   map_shared();
   const std::vector<ImageFrame> frames = shared_frames();
   const StoredMap kept = load_map(map_);
@@ -101,7 +101,7 @@ TEST_F(SlamWithAFile, SavesTheRecordingOfAMap) {
   EXPECT_EQ(kept.scale, MapScale::metric);
 }
 
-TEST_F(SlamWithAFile, LocalisesAMissionOnAMap) {
+TEST_F(SlamFileTest, LocalisesAMissionOnAMap) {
   map_shared();
   Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
   std::set<SessionEvent> events;
@@ -129,7 +129,7 @@ void cut_in_place(const fs::path& file) {
   fs::resize_file(file, 1000);
 }
 
-TEST_F(SlamWithAFile, ReportsDamageOfItsMapAndLosesNothing) {
+TEST_F(SlamFileTest, ReportsDamageOfItsMapAndLosesNothing) {
   const std::vector<ImageFrame> frames = shared_frames();
   for (const auto damage : {zero_in_place, cut_in_place}) {
     for (const std::size_t good_frames : {0, 4}) {
@@ -156,13 +156,13 @@ TEST_F(SlamWithAFile, ReportsDamageOfItsMapAndLosesNothing) {
   }
 }
 
-TEST_F(SlamWithAFile, DoesNotReplaceTheMapOfAMission) {
+TEST_F(SlamFileTest, DoesNotReplaceTheMapOfAMission) {
   map_shared(8);
   Slam slam = Slam::on_map(open_shared()->calibration(), map_, repeatable());
   causal(slam, shared_frames());
   ASSERT_GT(slam.keyframes(), 0);
   const auto time = fs::last_write_time(map_);
-  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("is the map of the mission"));
+  EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("is the offline map of the mission"));
   EXPECT_EQ(fs::last_write_time(map_), time);
   const fs::path letter = map_.string() + ".txt";
   std::ofstream(letter) << "Dear reader";
@@ -170,7 +170,7 @@ TEST_F(SlamWithAFile, DoesNotReplaceTheMapOfAMission) {
   fs::remove(letter);
 }
 
-TEST_F(SlamWithAFile, ExtendsAMap) {
+TEST_F(SlamFileTest, ExtendsAMap) {
   map_shared(8);
   const Map before = load_map(map_).map;
   Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
@@ -184,7 +184,7 @@ TEST_F(SlamWithAFile, ExtendsAMap) {
   EXPECT_GT(slam.trajectory().size(), 10u);
 }
 
-TEST_F(SlamWithAFile, LeavesAMapUnchangedWithoutLocalisation) {
+TEST_F(SlamFileTest, LeavesAMapUnchangedWithoutLocalisation) {
   map_shared(8);
   Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
   ImageFrame dark = shared_frames().front();
@@ -194,7 +194,7 @@ TEST_F(SlamWithAFile, LeavesAMapUnchangedWithoutLocalisation) {
   EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("the map is still empty"));
 }
 
-TEST_F(SlamWithAFile, SavesTheOnlineMapOfAMission) {
+TEST_F(SlamFileTest, SavesTheOnlineMapOfAMission) {
   map_shared(8);
   StoredMap on_plan = load_map(map_);
   on_plan.plan = PlanRegistration{"barn", {1.0, {Eigen::Quaterniond::Identity(), {10.0, 20.0, 0.0}}}};
@@ -219,7 +219,7 @@ TEST_F(SlamWithAFile, SavesTheOnlineMapOfAMission) {
   EXPECT_FALSE(kept.plan) << "the registration is of the other map";
 }
 
-TEST_F(SlamWithAFile, SavesItsMapInEveryState) {
+TEST_F(SlamFileTest, SavesItsMapInEveryState) {
   const std::vector<ImageFrame> frames = shared_frames();
   Slam slam = Slam::mapping(open_shared()->calibration());
   EXPECT_THAT(error_by([&] { slam.save(map_); }), HasSubstr("the map is still empty"));
@@ -435,7 +435,7 @@ std::optional<BodyMotion> hostile_motion(std::mt19937& random) {
   return motion;
 }
 
-TEST_F(SlamWithAFile, StaysFiniteWhateverMotionInputsReport) {
+TEST_F(SlamFileTest, StaysFiniteWhateverMotionInputsReport) {
   map_shared();
   std::vector<ImageFrame> frames = shared_frames();
   for (std::size_t i = frames.size() / 3; i < frames.size() / 2; ++i) {  // measured motion bridges frames

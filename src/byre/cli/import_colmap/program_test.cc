@@ -31,7 +31,8 @@ TEST_F(ColmapCommands, ExportAndImportAMap) {
   const Outcome imported = run("import-colmap model/of/room " + images() + " -o back.byre --site Barn --quiet");
   EXPECT_EQ(imported.exit_code, 0) << imported.errors;
   EXPECT_THAT(imported.errors, IsEmpty());
-  EXPECT_THAT(imported.output, AllOf(HasSubstr("keyframes          8"), HasSubstr("the model's own")));
+  EXPECT_THAT(imported.output,
+              AllOf(HasSubstr("keyframes          8"), HasSubstr("of the model (metric with --scale)")));
   const StoredMap stored = load_map(folder_ / "back.byre");
   EXPECT_EQ(stored.scale, MapScale::unknown);
   EXPECT_EQ(stored.pose_source, PoseSource::imported);
