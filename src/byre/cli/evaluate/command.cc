@@ -130,7 +130,9 @@ void declare_inputs(CLI::App& command, EvaluateOptions& options) {
                                            "Recording whose frames are counted for coverage")
                                      ->type_name("FOLDER|VIDEO|BAG");
   const std::map<std::string, bool> movers = {{"body", false}, {"camera", true}};
-  command.add_option("--estimate-of", options.is_of_camera, "Frame of the estimate (body); the truth is of the body")
+  command
+      .add_option("--estimate-of", options.is_of_camera,
+                  "Path of the estimate, of body or camera (body); the truth is of the body")
       ->type_name("body|camera")
       ->transform(one_of(movers))
       ->needs(frames_of);
