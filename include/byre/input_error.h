@@ -10,8 +10,7 @@ namespace byre {
 class InputError : public std::runtime_error {
  public:
   // place: "file", "file:line" or "file: field"; remedy: advice to the user, may be empty. Control characters and
-  // invalid UTF-8 are escaped, as "\xNN" for
-  // example.
+  // invalid UTF-8 are escaped ("\xNN").
   InputError(std::string_view place, std::string_view reason, std::string_view remedy = {});
 
   const std::string& place() const { return place_; }
