@@ -69,7 +69,7 @@ TEST(BagImage, AppliesTheBayerPattern) {
 }
 
 TEST(BagImage, RejectsInvalidMessagesWithAReason) {
-  EXPECT_THAT(grey_of(image("jpeg2000", 2, 1, {1, 2}, 2)).failure, HasSubstr("encoded as \"jpeg2000\""));
+  EXPECT_THAT(grey_of(image("jpeg2000", 2, 1, {1, 2}, 2)).failure, HasSubstr("unsupported encoding \"jpeg2000\""));
   EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3}, 2)).failure, "is not a complete image");
   EXPECT_EQ(grey_of(image("mono8", 2, 2, {1, 2, 3, 4}, 1)).failure, "is not a complete image");
   EXPECT_EQ(grey_of(image("mono8", 0, 2, {}, 0)).failure, "has an invalid size");

@@ -108,12 +108,13 @@ TEST_F(ColmapModelFiles, ReportFileAndLineOfErrors) {
   EXPECT_THAT(error_with("cameras.txt", "\n1 PINHOLE 640 480 500\n"), HasSubstr("cameras.txt:2: ends before"));
   EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 480 5 5 5 5 5\n"),
               HasSubstr("cameras.txt:1: contains extra text"));
-  EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 -480 5 5 5 5\n"), HasSubstr("\"-480\" is no height"));
+  EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 640 -480 5 5 5 5\n"), HasSubstr("\"-480\" is not a valid height"));
   EXPECT_THAT(error_with("cameras.txt", "1 PINHOLE 6 4 5 5 5 5\n1 PINHOLE 6 4 5 5 5 5\n"), HasSubstr("twice"));
   EXPECT_THAT(error_with("images.txt", "1 2 0 0 0 0 0 0 1 a.png\n\n"), HasSubstr("images.txt:1"));
   EXPECT_THAT(error_with("images.txt", "1 1 0 0 0 0 0 0 1 a.png\n1 2\n"), HasSubstr("images.txt:2: ends before"));
-  EXPECT_THAT(error_with("images.txt", "1 1 0 0 0 0 nan 0 1 a.png\n\n"), HasSubstr("\"nan\" is no translation"));
-  EXPECT_THAT(error_with("points3D.txt", "5 0 0 1 0 0 256 1\n"), HasSubstr("\"256\" is no colour"));
+  EXPECT_THAT(error_with("images.txt", "1 1 0 0 0 0 nan 0 1 a.png\n\n"),
+              HasSubstr("\"nan\" is not a valid translation"));
+  EXPECT_THAT(error_with("points3D.txt", "5 0 0 1 0 0 256 1\n"), HasSubstr("\"256\" is not a valid colour"));
   EXPECT_THAT(error_with("points3D.txt", "5 0 0 1 0 0 0 1 2\n"), HasSubstr("points3D.txt:1: ends before"));
 }
 

@@ -105,7 +105,7 @@ TEST_F(EurocRecording, ContinuesAfterABadImage) {
   EXPECT_FALSE(recording->read(1)->right.has_value());
   EXPECT_FALSE(recording->read(2).has_value());
   EXPECT_TRUE(recording->read(3)->right.has_value());
-  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("cam0/data/1.png: is not a whole image"),
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("cam0/data/1.png: is not a complete image"),
                                                  HasSubstr("cam1/data/2.png: does not exist"),
                                                  HasSubstr("cam0/data/3.png: is 32x25 instead of 32x24")));
 }

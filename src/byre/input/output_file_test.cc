@@ -99,7 +99,8 @@ TEST_F(OutputFileTest, ReplacesOnlyFilesOfTheSameKindAndEmptyOnes) {
   }
   put("barn.byre", kMap);
   EXPECT_EQ(refusal("barn.byre", kNewMap), "");
-  EXPECT_THAT(refusal("barn.byre", "a,b\n1,2\n"), HasSubstr("is no table of comma-separated values"));
+  EXPECT_THAT(refusal("barn.byre", "a,b\n1,2\n"),
+              HasSubstr("is not the expected kind of file (table of comma-separated values)"));
   put("empty", "");
   EXPECT_EQ(refusal("empty", kNewMap), "");
   EXPECT_EQ(entries(), static_cast<long>(others.size()) + 2);

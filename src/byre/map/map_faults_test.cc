@@ -76,7 +76,7 @@ TEST(FindFaults, ReportsAnUnobservedPoint) {
 TEST(FindFaults, ReportsAPointWithInvalidValues) {
   EXPECT_THAT(
       faults_of_point([](MapPoint& point) { point.position_in_world.y() = std::numeric_limits<double>::infinity(); }),
-      ElementsAre(HasSubstr("a position that is not finite")));
+      ElementsAre(HasSubstr("no finite position")));
   EXPECT_THAT(faults_of_point([](MapPoint& point) { point.mean_viewing_direction.setZero(); }),
               ElementsAre(HasSubstr("a viewing direction that is not of unit length")));
   EXPECT_THAT(faults_of_point([](MapPoint& point) { point.min_distance = 2.0f; }),
