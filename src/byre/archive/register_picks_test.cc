@@ -142,12 +142,12 @@ TEST_F(RegisterPicks, AreRejectedWithoutOneMapAndOnePlanPosition) {
 
 TEST_F(RegisterPicks, AreRejectedWithInvalidNumbers) {
   const std::string columns = "point,time_s,time_ns,map_x_m,map_y_m,map_z_m,plan_x_m,plan_y_m,sigma_m\n";
-  EXPECT_THAT(refusal_of(columns + "gate,,,,,,1,2,\n"), HasSubstr("has no number as point"));
-  EXPECT_THAT(refusal_of(columns + ",noon,,,,,1,2,\n"), HasSubstr("has no time in seconds as time_s"));
-  EXPECT_THAT(refusal_of(columns + ",,1.5,,,,1,2,\n"), HasSubstr("has no whole number as time_ns"));
-  EXPECT_THAT(refusal_of(columns + ",,,1,2,,1,2,\n"), HasSubstr("has no number as map_z_m"));
-  EXPECT_THAT(refusal_of(columns + ",,,1,2,high,1,2,\n"), HasSubstr("has no number as map_z_m"));
-  EXPECT_THAT(refusal_of(columns + "0,,,,,,1,2,-1\n"), HasSubstr("has a sigma_m that is not positive"));
+  EXPECT_THAT(refusal_of(columns + "gate,,,,,,1,2,\n"), HasSubstr("has no number in point"));
+  EXPECT_THAT(refusal_of(columns + ",noon,,,,,1,2,\n"), HasSubstr("has no time in seconds in time_s"));
+  EXPECT_THAT(refusal_of(columns + ",,1.5,,,,1,2,\n"), HasSubstr("has no integer in time_ns"));
+  EXPECT_THAT(refusal_of(columns + ",,,1,2,,1,2,\n"), HasSubstr("has no number in map_z_m"));
+  EXPECT_THAT(refusal_of(columns + ",,,1,2,high,1,2,\n"), HasSubstr("has no number in map_z_m"));
+  EXPECT_THAT(refusal_of(columns + "0,,,,,,1,2,-1\n"), HasSubstr("has a non-positive sigma_m"));
   EXPECT_THAT(refusal_of("map_x,plan_x_m\n"), HasSubstr("contains the unknown column \"map_x\""));
 }
 

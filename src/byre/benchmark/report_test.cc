@@ -85,7 +85,7 @@ TEST(BenchmarkMarkdown, ShowsTheNumberOfRunsOfAFigure) {
 }
 
 TEST(BenchmarkMarkdown, ShowsOneFigureIfRunsAgree) {
-  EXPECT_THAT(to_markdown(result(), protocol(), kSetting), HasSubstr("| b*   | localise only | 14.2       |"));
+  EXPECT_THAT(to_markdown(result(), protocol(), kSetting), HasSubstr("| b*   | localise only | 14.2         |"));
 }
 
 TEST(BenchmarkMarkdown, ShowsOneFigureForOneRun) {

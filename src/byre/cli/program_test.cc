@@ -71,7 +71,7 @@ TEST_F(Program, NamesBadInput) {
       {"--truth absent.txt", "byre: error: absent.txt: cannot be opened (check that it exists and is readable)\n"},
       {"--truth broken.txt", "byre: error: broken.txt:2: has 3 columns instead of 8"},
       {"--truth poses.txt", "byre: error: poses.txt: is in KITTI format, which has no time stamps"},
-      {"--truth later.txt", "byre: error: estimate.txt: no pose has truth at its time"},
+      {"--truth later.txt", "byre: error: estimate.txt: no pose of the estimate has truth at its time"},
       {"--truth .", "byre: error: .: contains no recording in a supported format"},
       {"--truth estimate.txt --frames-of absent", "byre: error: absent: is not a folder"},
       {"--truth estimate.txt --aligned absent/out.txt", "byre: error: absent/out.txt: cannot be written"},

@@ -121,8 +121,8 @@ TEST_F(DrawProgram, NamesBadInput) {
       {"room.byre --plan plan.yaml -o a.svg", "byre: error: room.byre: is not registered on a floor plan"},
       {"room.byre --trajectory absent.txt -o a.svg", "byre: error: absent.txt: "},
       {"room.byre --mission absent.json -o a.svg", "byre: error: absent.json: cannot be opened"},
-      {"room.byre --mission no.json -o a.svg", "byre: error: no.json: is no statistics of a mission"},
-      {"room.byre --mission plan.json -o a.svg", "byre: error: plan.json: has its poses on the floor plan"},
+      {"room.byre --mission no.json -o a.svg", "byre: error: no.json: is not a statistics file of a mission"},
+      {"room.byre --mission plan.json -o a.svg", "byre: error: plan.json: has poses on the floor plan"},
       {"absent --map room.byre -o a.svg", "byre: error: absent: is not a folder"},
       {rendered_room() + " --map room.byre --start 0.5 --at 0.2 -o a.svg", "byre: error: "},
   };

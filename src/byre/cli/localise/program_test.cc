@@ -158,7 +158,7 @@ TEST_F(LocaliseProgram, RejectsAnotherRoomWithReason) {
 TEST_F(LocaliseProgram, NamesBadInput) {
   write("torn.png", "torn");
   EXPECT_EQ(localise("torn.png").exit_code, 0) << "an image that cannot be read is a warning";
-  EXPECT_THAT(localise("torn.png").errors, HasSubstr("torn.png: is not a whole image"));
+  EXPECT_THAT(localise("torn.png").errors, HasSubstr("torn.png: is not a complete image"));
   EXPECT_EQ(localise("absent").exit_code, 3);
   EXPECT_THAT(localise("absent").errors, HasSubstr("absent: does not exist"));
   EXPECT_EQ(localise(rendered_room() + " torn.png").exit_code, 3);
