@@ -48,7 +48,7 @@ before(async () => {
     slow.send(JSON.stringify({op: "subscribe", subscriptions}));
     slow.pause();
   });
-  await eventually(() => said.includes("viewer: goes on"), () => `the end of the run in: ${said}`);
+  await eventually(() => said.includes("viewer: stays"), () => `the end of the run in: ${said}`);
   await eventually(() => watcher.messages.get("/diagnostics").length > 0, () => "diagnostics");
   const last = watcher.messages.get("/diagnostics").at(-1).time;
   const hasMap = (each) => each.messages.get("/map_points").at(-1)?.time >= last;

@@ -37,7 +37,7 @@ std::string refusal_with(const char* section_name, std::size_t place, std::uint3
 // Offsets follow docs/reference/map_format.md.
 TEST(OldFormats, RejectInvalidValues) {
   constexpr std::uint32_t kHuge = 0xfffffff0;
-  EXPECT_THAT(refusal_with("patches", 0, kHuge), HasSubstr("claims 4294967280 entries"));
+  EXPECT_THAT(refusal_with("patches", 0, kHuge), HasSubstr("declares 4294967280 entries"));
   EXPECT_THAT(refusal_with("patches", 4 + 268, 0), HasSubstr("has unsorted features"));
   EXPECT_THAT(refusal_with("points", 4 + 128, kHuge), HasSubstr("refers to feature 4294967280"));
   EXPECT_THAT(refusal_with("observations", 4 + 20, 0), HasSubstr("has unsorted features"));
