@@ -75,7 +75,8 @@ TEST_F(BagProgram, DoesNotOverwriteInputsOrOtherFileTypes) {
   write_scene("walk.mcap");
   EXPECT_THAT(run("map walk.mcap -o walk.byre --record walk.mcap").errors, HasSubstr("is also an input (RECORDING)"));
   write("notes.txt", "bring hay\n");
-  EXPECT_THAT(run("map walk.mcap -o walk.byre --record notes.txt").errors, HasSubstr("is not the expected kind of file (MCAP file)"));
+  EXPECT_THAT(run("map walk.mcap -o walk.byre --record notes.txt").errors,
+              HasSubstr("is not the expected kind of file (MCAP file)"));
   EXPECT_EQ(run("map walk.mcap -o walk.byre --record-images").exit_code, 2);
 }
 
