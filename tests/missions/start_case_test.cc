@@ -57,8 +57,11 @@ std::vector<StartCase> start_cases() {
   // The robot passes bays that are missing in the map, among mapped ones that look alike.
   MapChoice with_hole = whole;
   with_hole.hole = Span{4.0, 10.0};
-  cases.push_back(
-      {"repeated_bays", with_hole, "visit_1", {.every_s = 0.5, .length_s = 3.0, .from_s = 4.0, .to_s = 8.0}});
+  cases.push_back({"repeated_bays",
+                   with_hole,
+                   "visit_1",
+                   {.every_s = 0.5, .length_s = 3.0, .from_s = 4.0, .to_s = 8.0},
+                   no_wheels});
   return cases;
 }
 
