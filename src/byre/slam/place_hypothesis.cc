@@ -1,6 +1,7 @@
 #include "byre/slam/place_hypothesis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -9,19 +10,13 @@
 namespace byre {
 namespace {
 
-// Log-likelihood ratios of a right against a wrong pose, by a cell's expected points.
-struct CellEvidence {
-  double agrees;
-  double disagrees;
-};
-
-// Measured on simulated missions by day and at dusk with images of 320x240 to 752x480, on 202 right and 314 wrong poses
-// that were tracked. Cells with few expected points agree in 45 % of the right and 18 % of the wrong poses, those with
-// many in 76 % and 17 %.
-CellEvidence evidence_of_cell(double expected) {
-  constexpr double kMany = 20.0;
-  return expected < kMany ? CellEvidence{0.87, -0.45} : CellEvidence{1.5, -1.24};
-}
+// Log-likelihood ratios of a right against a wrong pose by one cell, with few and with many expected points. Fitted on
+// a part of the simulated missions in which such cells were counted at 202 right and 314 wrong poses (exact and good
+// calibrations, day and dusk, 320x240 to 752x480). Over all of them 50 % of the cells with few points agree at right
+// poses and 20 % at wrong ones, of those with many 79 % and 23 %: ratios of 0.94, -0.48, 1.26 and -1.31.
+constexpr std::array kOfAgreement = {0.87, 1.5};
+constexpr std::array kOfDisagreement = {-0.45, -1.24};
+constexpr double kManyExpected = 20.0;
 
 constexpr double kMinExpected = 6.0;  // expected points from which a cell counts
 constexpr double kLeastSeen = 0.5;    // least seen points of an agreeing cell, mean of its frames
@@ -42,7 +37,7 @@ struct AgreeingCell {
 using Cells = ReusedVector<AgreeingCell>;
 
 Cells cells_around(const Eigen::Vector3d& middle, const Cells& cells) {
-  constexpr double kReach = 2.0;  // metres, half the size of a large thing
+  constexpr double kReach = 2.0;  // metres, half the size of a large object
   Cells around;
   for (const AgreeingCell& cell : cells) {
     if ((cell.centre - middle).norm() <= kReach) around.push_back(cell);
@@ -79,7 +74,7 @@ double evidence_on_plane(Cells cells) {
   return std::max(strongest, sum_of(cells));
 }
 
-// Largest evidence of cells that one moved thing can cover: those on a plane, within kReach of their middle.
+// Largest evidence of cells that one moved object can cover: those on a plane, within kReach of their middle.
 double most_on_one_thing(const Cells& cells) {
   double most = 0.0;
   for (const AgreeingCell& cell : cells) {
@@ -97,10 +92,10 @@ double PlaceHypothesis::evidence(Count Cell::*points) const {
   for (const Cell& cell : cells_) {
     const auto& [expected, seen] = cell.*points;
     if (expected < kMinExpected) continue;
-    const CellEvidence evidence = evidence_of_cell(expected);
+    const std::size_t many = expected >= kManyExpected;
     const bool agrees = seen >= std::max(kLeastSeen, kMinShare * expected);
-    all += agrees ? evidence.agrees : evidence.disagrees;
-    if (agrees) agreeing.push_back({cell.centre_of_seen, evidence.agrees});
+    all += agrees ? kOfAgreement[many] : kOfDisagreement[many];
+    if (agrees) agreeing.push_back({cell.centre_of_seen, kOfAgreement[many]});
   }
   return std::min(all, all - most_on_one_thing(agreeing) + kOfMovedThing);
 }
