@@ -1,5 +1,6 @@
 // Starts missions on a map at regular times of a recording, and counts wrongly trusted frames.
 // Usage: byre_start_trials MISSION --map MAP --map-truth RECORDING [options]
+//        byre_start_trials --case NAME [--calibration-seed N]
 // MISSION is a recording with ground truth. MAP is an offline map of RECORDING, whose ground truth aligns it.
 //   --every S          seconds between starts (0.5)
 //   --length S         duration of each mission, seconds (11)
@@ -8,11 +9,14 @@
 //   --no-wheels        without wheel.txt and gyroscope
 //   --no-gyroscope     without gyroscope
 //   --cover A:B        black images from A to B seconds after each start
+//   --case NAME        case of start_cases.cc, whose recordings render_barns.sh renders; it makes its map
+//   --calibration-seed N   calibration error of the cameras of a case (1)
 //   --trace FILE       writes a line of CSV for each frame
 // Found late: the map was in view for 3 s without a trusted pose. Features of each frame are extracted once. Exit code:
 // 0 no wrongly trusted frames, 1 some, 2 bad usage or data.
 
 #include "known_map.h"
+#include "start_cases.h"
 #include "start_run.h"
 
 #include "byre/dataset/trajectory_input.h"
@@ -22,9 +26,12 @@
 #include "byre/recording.h"
 #include "byre/system/stored_map.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <span>
 #include <string_view>
@@ -41,6 +48,8 @@ struct StartOptions {
   OpenOptions open{.use_wheels = true, .use_gyroscope = true};
   StartPlan plan;
   std::optional<std::string> trace;
+  std::string start_case;
+  std::uint64_t calibration_seed = 1;
 };
 
 std::optional<StartOptions> parse(std::span<char*> arguments) {
@@ -77,6 +86,10 @@ std::optional<StartOptions> parse(std::span<char*> arguments) {
     } else if (argument == "--camera") {
       if (value != "stereo" && value != "left") return std::nullopt;
       options.open.camera = value == "left" ? CameraChoice::left : CameraChoice::stereo;
+    } else if (argument == "--case") {
+      options.start_case = value;
+    } else if (argument == "--calibration-seed") {
+      options.calibration_seed = static_cast<std::uint64_t>(number);
     } else if (argument == "--trace") {
       options.trace = value;
     } else if (argument == "--cover" && value.find(':') != std::string::npos) {
@@ -85,6 +98,7 @@ std::optional<StartOptions> parse(std::span<char*> arguments) {
       return std::nullopt;
     }
   }
+  if (!options.start_case.empty()) return options;
   const auto gyroscope = std::filesystem::path(options.mission) / "mav0" / "imu0" / "data.csv";
   options.open.use_gyroscope = options.open.use_gyroscope && std::filesystem::exists(gyroscope);
   if (options.mission.empty() || options.map.empty() || options.map_recording.empty()) return std::nullopt;
@@ -115,19 +129,34 @@ void print_late_or_wrong(const StartedMission& mission) {
   std::fflush(stdout);
 }
 
-int run(const StartOptions& options) {
+StartTotals run_case(const StartOptions& options, const std::function<void(const StartedMission&)>& each) {
+  const auto named = std::ranges::find(start_cases(), options.start_case, &StartCase::name);
+  if (named == start_cases().end()) throw InputError(options.start_case, "is not a case", "see start_cases.cc");
+  StartCase start_case = *named;
+  if (const auto missing = what_is_missing(start_case)) throw InputError(start_case.name, "cannot be run", *missing);
+  start_case.map.recipe.imperfection.calibration_seed = options.calibration_seed;
+  return run(start_case, KnownMaps().get(start_case.map), each);
+}
+
+StartTotals run_recording(const StartOptions& options, const std::function<void(const StartedMission&)>& each,
+                          std::ofstream& trace) {
   const auto map = load_offline_map(options.map, mission_vocabulary());
   const Similarity truth_from_map =
       align_to_truth(keyframe_path(map->map()), Scale::fixed, load_truth(options.map_recording)).truth_from_map;
   const auto recording = open_recording(options.mission, {}, options.open);
+  const Imperfection exact{CameraCondition::exact};  // recordings contain their own imperfections
+  return run_starts(*recording, load_truth(options.mission), map, truth_from_map, exact, options.plan,
+                    [&](const StartedMission& mission) {
+                      if (trace.is_open()) write_trace(trace, mission, truth_from_map);
+                      each(mission);
+                    });
+}
+
+int run_trials(const StartOptions& options) {
   std::ofstream trace;
   if (options.trace) trace.open(*options.trace);
-  const Imperfection exact{CameraCondition::exact};  // recordings contain their own imperfections
-  const StartTotals totals = run_starts(*recording, load_truth(options.mission), map, truth_from_map, exact,
-                                        options.plan, [&](const StartedMission& mission) {
-                                          if (options.trace) write_trace(trace, mission, truth_from_map);
-                                          print_late_or_wrong(mission);
-                                        });
+  const StartTotals totals = options.start_case.empty() ? run_recording(options, print_late_or_wrong, trace)
+                                                        : run_case(options, print_late_or_wrong);
   fmt::print(
       "{} starts, {} frames: {:.1f} % with a pose, {} trusted and correct, {} trusted and wrong in {} starts (worst "
       "{:.2f} m); {} starts localised late\n",
@@ -145,11 +174,12 @@ int main(int argc, char** argv) {
     std::cerr
         << "usage: byre_start_trials MISSION --map MAP --map-truth RECORDING [--every S] [--length S] [--from S]\n"
            "         [--to S] [--camera stereo|left] [--no-wheels] [--no-gyroscope] [--cover A:B]\n"
-           "         [--trace FILE]\n";
+           "         [--trace FILE]\n"
+           "       byre_start_trials --case NAME [--calibration-seed N]\n";
     return 2;
   }
   try {
-    return byre::run(*options);
+    return byre::run_trials(*options);
   } catch (const byre::InputError& error) {
     std::cerr << error.what() << '\n';
     return 2;

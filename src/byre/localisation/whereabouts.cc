@@ -93,15 +93,16 @@ bool Whereabouts::is_out_of_reach(const Frame& frame, const HybridTrack& track, 
                                   const MapView& map) const {
   constexpr Timestamp kLongest = std::chrono::seconds(30);
   constexpr double kSigmas = 5.0;
-  if (!reach_ || trajectory_.believed_count() == 0) return false;
-  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
-  const AnchoredPose& last_seen = bridge_ ? trajectory_[bridge_begin_] : believed;
-  if (!on_offline_map_ && frame.time - last_seen.time > kLongest) return false;
+  if (trajectory_.believed_count() == 0) return false;
   const Pose now = body_pose(rig, track.tracked.camera_from_world);
   if (is_continued(frame.time, now, rig, map)) return false;
+  if (on_offline_map_) return log_odds_of_find(frame.time, now, rig, map) <= kLogOddsOfCarried;
+  if (!reach_) return false;
+  const AnchoredPose& believed = trajectory_[trajectory_.believed_count() - 1];
+  const AnchoredPose& last_seen = bridge_ ? trajectory_[bridge_begin_] : believed;
+  if (frame.time - last_seen.time > kLongest) return false;
   const std::optional<MeasuredPose> measured = measured_pose(rig, map);
   const bool is_elsewhere = measured && is_beyond(measured->covariance, inverse(measured->map_from_body) * now);
-  if (on_offline_map_) return quality_.verdict != Verdict::untrusted && is_elsewhere;
   const auto reach = reach_(last_seen.time, frame.time);
   if (!reach) return false;
   const double carried = std::sqrt(carried_covariance().topLeftCorner<3, 3>().trace());

@@ -64,9 +64,9 @@ class Whereabouts {
   // Covariance of the odometry due to bridges that ended at found places; without the drift of visual odometry.
   Matrix6 bridged_odometry_covariance() const;
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last visual pose
-  // Whether measured motion since the last visual pose contradicts a tracked pose, which then is a look-alike place.
-  // False for a pose that continues the camera's motion, and while the last pose was untrusted. Without an offline map
-  // also false after 30 s, when the robot may have been carried.
+  // Whether the motion since the last visual pose contradicts a tracked pose, which then is a look-alike place. False
+  // for a pose that continues the camera's motion. On an offline map: the robot's speed and the measured motion, see
+  // log_odds_of_find. Without one: the measured motion alone, up to 30 s, after which the robot may have been carried.
   bool is_out_of_reach(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
   // Prior log-odds that offline_from_online registers the present submap, by the measured motion up to its beginning. 0
   // if that motion is unknown.

@@ -183,8 +183,9 @@ TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheelsAfterATrustedPose)
     seen.time += later;
     return whereabouts_.is_out_of_reach(seen, track_of(frame), mission_.rig, map_);
   };
+  EXPECT_TRUE(is_out_of_reach(39)) << "too far for the robot's speed, even without measured motion";
   whereabouts_.tell(Pose{});
-  EXPECT_FALSE(is_out_of_reach(39)) << "the last pose was not trusted";
+  EXPECT_FALSE(is_out_of_reach(39, std::chrono::seconds(60))) << "the last pose was not trusted";
   whereabouts_.note_quality({1e-6 * Matrix6::Identity(), 1e-6 * Matrix6::Identity(), Verdict::trusted});
   EXPECT_TRUE(is_out_of_reach(39));
   EXPECT_FALSE(is_out_of_reach(here));
@@ -198,7 +199,7 @@ TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheelsAfterATrustedPose)
   BodyMotion far = Pose{};
   far.covariance = 100.0 * Matrix6::Identity();
   whereabouts_.tell(far);
-  EXPECT_FALSE(is_out_of_reach(39)) << "the covariance of the measured motion is too large";
+  EXPECT_FALSE(is_out_of_reach(39, std::chrono::seconds(60))) << "the covariance of the measured motion is too large";
 }
 
 TEST_F(WhereaboutsOnATrueMap, PropagateMeasuredMotionUntilItEnds) {

@@ -10,12 +10,12 @@
 namespace byre {
 namespace {
 
-// Log-likelihood ratios of a right against a wrong pose by one cell, with few and with many expected points. Fitted on
-// a part of the simulated missions in which such cells were counted at 202 right and 314 wrong poses (exact and good
-// calibrations, day and dusk, 320x240 to 752x480). Over all of them 50 % of the cells with few points agree at right
-// poses and 20 % at wrong ones, of those with many 79 % and 23 %: ratios of 0.94, -0.48, 1.26 and -1.31.
-constexpr std::array kOfAgreement = {0.87, 1.5};
-constexpr std::array kOfDisagreement = {-0.45, -1.24};
+// Log-likelihood ratios of a right against a wrong pose by one cell, with few and with many expected points. Such cells
+// were counted at 202 right and 314 wrong poses of simulated missions (exact and good calibrations, day and dusk,
+// 320x240 to 752x480): 50 % of the cells with few points agree at right poses and 20 % at wrong ones, of those with
+// many 79 % and 23 %.
+constexpr std::array kOfAgreement = {0.94, 1.26};
+constexpr std::array kOfDisagreement = {-0.48, -1.31};
 constexpr double kManyExpected = 20.0;
 
 constexpr double kMinExpected = 6.0;  // expected points from which a cell counts

@@ -37,8 +37,8 @@ TEST(PlaceHypothesis, IsAcceptedIfTheMapIsVisibleAllAround) {
   EXPECT_TRUE(observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 1).is_accepted());
 }
 
-TEST(PlaceHypothesis, IsAcceptedIfHalfOfTheCellsHaveChanged) {
-  EXPECT_TRUE(observed(PlaceHypothesis(0.0, 0), view_of_room(10, 10), 1).is_accepted());
+TEST(PlaceHypothesis, IsAcceptedIfAThirdOfTheCellsHasChanged) {
+  EXPECT_TRUE(observed(PlaceHypothesis(0.0, 0), view_of_room(14, 7), 1).is_accepted());
 }
 
 TEST(PlaceHypothesis, StaysOpenIfFewExpectedPointsAreFound) {

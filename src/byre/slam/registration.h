@@ -8,10 +8,10 @@
 namespace byre {
 
 struct RegistrationOptions {
-  int confirmations = 3;         // frames that must agree before mapping uses a place
-  double accept_log_odds = 2.5;  // log-odds from which a place is accepted, nats; see PlaceHypothesis
-  double max_speed = 3.0;        // metres per second, highest speed of the robot
-  int max_misses = 2;            // contradicting finds before a registration is given up
+  int confirmations = 3;          // frames that must agree before mapping uses a place
+  double accept_log_odds = 3.25;  // log-odds from which a place is accepted, nats; see PlaceHypothesis
+  double max_speed = 3.0;         // metres per second, highest speed of the robot
+  int max_misses = 2;             // contradicting finds before a registration is given up
 };
 
 inline constexpr int kConfirmationsOfJump = 10;  // frames, after the robot was carried or exceeded max_speed
