@@ -69,7 +69,7 @@ std::shared_ptr<const OfflineMap> map_of(int keyframes) {
 }
 
 Session session_on(const std::shared_ptr<const OfflineMap>& offline) {
-  return {simulated_rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), vocabulary(), offline};
+  return {simulated_rig(), {}, SessionExecutors(make_inline_executor(), make_inline_executor()), vocabulary(), offline};
 }
 
 // A second lap through the first hall, localised and tracked; the argument is the number of keyframes of the offline

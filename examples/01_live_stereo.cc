@@ -22,7 +22,7 @@ class NewestFrame {
  public:
   void put(byre::ImageFrame frame) {
     const std::scoped_lock lock(mutex_);
-    if (frame_) ++missed_;
+    if (frame_) ++dropped_;
     frame_ = std::move(frame);
     changed_.notify_one();
   }
@@ -39,7 +39,7 @@ class NewestFrame {
   }
   int missed() const {
     const std::scoped_lock lock(mutex_);
-    return missed_;
+    return dropped_;
   }
 
  private:
@@ -47,7 +47,7 @@ class NewestFrame {
   std::condition_variable changed_;
   std::optional<byre::ImageFrame> frame_;
   bool is_closed_ = false;
-  int missed_ = 0;
+  int dropped_ = 0;
 };
 
 // Simulates the camera: frames at their own times.
@@ -61,7 +61,7 @@ void play(byre::Recording& recording, NewestFrame& newest) {
   newest.close();
 }
 
-void tell(const byre::FrameReport& report) {
+void print_report(const byre::FrameReport& report) {
   const std::string_view state = byre::to_string(report.state);
   std::printf("%.3f s  %-12.*s", byre::to_seconds(report.time), static_cast<int>(state.size()), state.data());
   if (report.map_from_body) {
@@ -80,7 +80,7 @@ void run(const char* path) {
   byre::Slam slam = byre::Slam::mapping(recording->calibration());
   NewestFrame newest;
   std::jthread camera([&] { play(*recording, newest); });
-  while (const auto frame = newest.take()) tell(slam.process(view_of(*frame)));
+  while (const auto frame = newest.take()) print_report(slam.process(view_of(*frame)));
   std::printf("%d frames, %d missed, %d keyframes\n", slam.frames(), newest.missed(), slam.keyframes());
 }
 

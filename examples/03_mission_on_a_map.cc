@@ -21,7 +21,7 @@ class Log {
     const byre::Health& health = report.health;
     if (verdict_ != health.verdict) {
       verdict_ = health.verdict;
-      const bool is_doubted = health.doubt != byre::Doubt::none;
+      const bool is_doubted = health.doubt != byre::DistrustReason::none;
       say(report, std::string(byre::to_string(health.verdict)) +
                       (is_doubted ? ": " + std::string(byre::to_string(health.doubt)) : ""));
     }

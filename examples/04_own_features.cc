@@ -1,5 +1,5 @@
 // SLAM on features from another source instead of images: here simulated landmarks on the walls of a room, each with
-// 256 random bits as descriptor, seen by a stereo camera on a lap through the room.
+// 256 random bits as descriptor, observed by a stereo camera on a lap through the room.
 //
 //   04_own_features
 
@@ -55,7 +55,7 @@ byre::Pose world_from_camera(int frame) {
   return {Eigen::Quaterniond(axes), {2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.0}};
 }
 
-byre::Frame seen(const std::vector<Landmark>& landmarks, const byre::Rig& rig, int frame) {
+byre::Frame observed(const std::vector<Landmark>& landmarks, const byre::Rig& rig, int frame) {
   const byre::Pose camera_from_world = inverse(world_from_camera(frame));
   std::vector<byre::Keypoint> keypoints;
   std::vector<byre::Descriptor> descriptors;
@@ -88,7 +88,7 @@ int main() {
   double worst = 0.0;
   int poses = 0;
   for (int i = 0; i < 400; ++i) {
-    const byre::FrameReport report = slam.process(seen(landmarks, slam.rig(), i));
+    const byre::FrameReport report = slam.process(observed(landmarks, slam.rig(), i));
     if (!report.map_from_body) continue;
     // The map's origin is the robot's first pose.
     const byre::Pose truth = inverse(world_from_camera(0)) * world_from_camera(i);

@@ -35,7 +35,7 @@ void read_bag(std::span<const std::byte> bytes) {
 }
 
 template <ros::Message... Messages>
-void read_as_each(std::span<const std::byte> bytes, ros::Encoding encoding) {
+void read_as_every_message(std::span<const std::byte> bytes, ros::Encoding encoding) {
   const auto read = [&]<ros::Message M>(std::type_identity<M>) {
     try {
       const M message = ros::read_message<M>(bytes, encoding, "fuzz");
@@ -49,9 +49,10 @@ void read_as_each(std::span<const std::byte> bytes, ros::Encoding encoding) {
 void read_as(unsigned kind, std::span<const std::byte> bytes) {
   if (kind == 0) return read_bag<McapBag>(bytes);
   if (kind == 1) return read_bag<Ros1Bag>(bytes);
-  read_as_each<ros::Image, ros::CompressedImage, ros::CameraInfo, ros::TFMessage, ros::Imu, ros::PointCloud2,
-               ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped, ros::Path, ros::OccupancyGrid,
-               ros::DiagnosticArray>(bytes, kind == 2 ? ros::Encoding::cdr : ros::Encoding::ros1);
+  read_as_every_message<ros::Image, ros::CompressedImage, ros::CameraInfo, ros::TFMessage, ros::Imu, ros::PointCloud2,
+                        ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped, ros::Path,
+                        ros::OccupancyGrid, ros::DiagnosticArray>(bytes,
+                                                                  kind == 2 ? ros::Encoding::cdr : ros::Encoding::ros1);
 }
 
 // Valid start of mutations, because random bytes never become a bag.

@@ -14,7 +14,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace {
 
 // Reads all parts of a map on demand, as missions do. Returns whether that succeeded.
-bool look_at_all(std::span<const std::byte> bytes) {
+bool read_whole_map(std::span<const std::byte> bytes) {
   try {
     const auto read_at = [bytes](std::size_t offset, std::span<std::byte> into) {
       std::ranges::copy(bytes.subspan(offset, into.size()), into.begin());
@@ -32,10 +32,10 @@ bool look_at_all(std::span<const std::byte> bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> bytes = std::as_bytes(std::span(data, size));
-  const bool can_be_looked_at = look_at_all(bytes);
+  const bool is_valid = read_whole_map(bytes);
   try {
     const byre::StoredMap map = byre::read_map(bytes, "fuzz.byre");
-    if (!can_be_looked_at) std::abort();
+    if (!is_valid) std::abort();
     if (!byre::find_faults(map).empty()) std::abort();
     const byre::MapBytes written = byre::write_map(map);
     const bool is_newest = byre::value_at<std::uint32_t>(written, byre::kFormatAt) ==

@@ -52,7 +52,7 @@ struct type_caster<byre::State> : byre_enum_caster<byre::State> {};
 template <>
 struct type_caster<byre::Verdict> : byre_enum_caster<byre::Verdict> {};
 template <>
-struct type_caster<byre::Doubt> : byre_enum_caster<byre::Doubt> {};
+struct type_caster<byre::DistrustReason> : byre_enum_caster<byre::DistrustReason> {};
 template <>
 struct type_caster<byre::InputFault> : byre_enum_caster<byre::InputFault> {};
 template <>

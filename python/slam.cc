@@ -85,7 +85,7 @@ void bind_reports(py::module_& module) {
           "Whether only the left image was tracked, to meet the deadline.")
       .def_readonly("is_late", &FrameReport::is_late, "Whether the frame exceeded its deadline.")
       .def_readonly("refused_place", &FrameReport::refused_place,
-                    "Reason for rejecting a place in the offline map; Doubt.none without a rejection.")
+                    "Reason for rejecting a place in the offline map; DistrustReason.none without a rejection.")
       .def("__repr__", [](const FrameReport& report) {
         return "<FrameReport " + std::to_string(to_seconds(report.time)) + " s, " +
                std::string(to_string(report.state)) + ", " + std::string(to_string(report.health.verdict)) + ">";
@@ -248,37 +248,37 @@ void bind_input(SlamClass& type) {
            "3 of uint8 (BGR unless format is rgb8); depth of uint16 (units) or float32 (metres). Arrays are borrowed "
            "for the call.")
       .def(
-          "tell_wheels",
+          "add_wheel_odometry",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Matrix4d& odometry_from_base) {
-            slam.tell_wheels({Timestamp(time_ns), pose_of(odometry_from_base, "odometry_from_base")});
+            slam.add_wheel_odometry({Timestamp(time_ns), pose_of(odometry_from_base, "odometry_from_base")});
           },
           py::arg("time_ns"), py::arg("odometry_from_base"),
           "Adds wheel odometry, before the frames that follow it: base pose in the drifting odometry frame.")
       .def(
-          "tell_wheel_velocity",
-          [](Slam& slam, std::int64_t time_ns, double ahead, double left, double turning) {
-            slam.tell_wheels(BaseVelocity{Timestamp(time_ns), ahead, left, turning});
+          "add_wheel_velocity",
+          [](Slam& slam, std::int64_t time_ns, double vx, double vy, double wz) {
+            slam.add_wheel_odometry(BaseTwist{Timestamp(time_ns), vx, vy, wz});
           },
-          py::arg("time_ns"), py::arg("ahead"), py::arg("left"), py::arg("turning"),
+          py::arg("time_ns"), py::arg("vx"), py::arg("vy"), py::arg("wz"),
           "Adds wheel odometry without poses: velocity of the base in its own axes, metres and radians per second.")
       .def(
-          "tell_gyroscope",
+          "add_gyro",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& rate) {
-            slam.tell_gyroscope({Timestamp(time_ns), rate});
+            slam.add_gyro({Timestamp(time_ns), rate});
           },
           py::arg("time_ns"), py::arg("rate"),
           "Adds a gyroscope sample, before the frames that follow it: radians per second.")
       .def(
-          "tell_accelerometer",
+          "add_accel",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& acceleration) {
-            slam.tell_accelerometer({Timestamp(time_ns), acceleration});
+            slam.add_accel({Timestamp(time_ns), acceleration});
           },
           py::arg("time_ns"), py::arg("acceleration"),
           "Adds an accelerometer sample of the same IMU: m/s^2 including gravity, along the same axes.")
       .def(
-          "look_near",
+          "set_initial_pose",
           [](Slam& slam, const Eigen::Matrix4d& map_from_body, double radius, double turn, double seconds) {
-            slam.look_near({pose_of(map_from_body, "map_from_body"), radius, turn, seconds});
+            slam.set_initial_pose({pose_of(map_from_body, "map_from_body"), radius, turn, seconds});
           },
           py::arg("map_from_body"), py::arg("radius") = 2.0, py::arg("turn") = 1.0, py::arg("seconds") = 10.0,
           "Initial pose by an operator: a mission without a pose searches the offline map only near it for the given "

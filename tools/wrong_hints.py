@@ -62,7 +62,7 @@ def main() -> None:
             hint = poses[start].copy()
             hint[:3, 3] += shift * axis
             slam = mission_on(recording, arguments.map)
-            slam.look_near(hint, radius=1.5, turn=0.5, seconds=8.0)
+            slam.set_initial_pose(hint, radius=1.5, turn=0.5, seconds=8.0)
             frames = range(start, start + arguments.frames)
             print(f"frame {start}, {shift:+.0f} m: {fly(slam, recording, frames, poses)}", flush=True)
 

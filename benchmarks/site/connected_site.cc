@@ -50,11 +50,11 @@ double ConnectedSite::position_error(const std::vector<Pose>& camera_from_world)
 }
 
 // Pose after a driven distance, metres. Lanes of the given length lie in the ground plane, x and z.
-Pose ConnectedSite::pose_after(double way, double length) const {
-  const int lane = static_cast<int>(way / length);
+Pose ConnectedSite::pose_after(double distance, double length) const {
+  const int lane = static_cast<int>(distance / length);
   const bool is_across = lane >= lanes_;
   const bool is_back = lane % 2 == 1;
-  const double along = is_back ? length * (lane + 1) - way : way - length * lane;
+  const double along = is_back ? length * (lane + 1) - distance : distance - length * lane;
   const double beside = kBetween * (0.5 + lane % lanes_);
   const double heading = (is_back ? std::numbers::pi : 0.0) + (is_across ? 0.5 * std::numbers::pi : 0.0);
   const Eigen::Vector3d place = is_across ? Eigen::Vector3d(along, 0.0, beside) : Eigen::Vector3d(beside, 0.0, along);
@@ -67,7 +67,7 @@ Vector6 ConnectedSite::random_motion(double metres, double radians) {
   return motion;
 }
 
-bool ConnectedSite::sees(int pose, const Eigen::Vector3d& point_in_world) const {
+bool ConnectedSite::observes(int pose, const Eigen::Vector3d& point_in_world) const {
   const Rig& rig = problem_.rigs[0];
   const Eigen::Vector3d point_in_camera = truth_[static_cast<std::size_t>(pose)] * point_in_world;
   return point_in_camera.z() > 0.5 && point_in_camera.z() < kReach && std::abs(point_in_camera.x()) < kAside &&
@@ -75,8 +75,8 @@ bool ConnectedSite::sees(int pose, const Eigen::Vector3d& point_in_world) const 
 }
 
 // Up to most poses that see a point: two of other lanes, and the nearest of the given pose's lane.
-std::vector<int> ConnectedSite::poses_that_see(const Eigen::Vector3d& point_in_world, int near,
-                                               std::size_t most) const {
+std::vector<int> ConnectedSite::observing_poses(const Eigen::Vector3d& point_in_world, int near,
+                                                std::size_t most) const {
   constexpr int kSameLane = 30;  // poses apart
   constexpr std::size_t kOthers = 2;
   std::vector<int> same, others;
@@ -86,7 +86,7 @@ std::vector<int> ConnectedSite::poses_that_see(const Eigen::Vector3d& point_in_w
     const auto found = cells_.find(cell);
     if (found == cells_.end()) continue;
     for (const int pose : found->second) {
-      if (sees(pose, point_in_world)) (std::abs(pose - near) < kSameLane ? same : others).push_back(pose);
+      if (observes(pose, point_in_world)) (std::abs(pose - near) < kSameLane ? same : others).push_back(pose);
     }
   }
   std::ranges::sort(same, {}, [&](int pose) { return std::abs(pose - near); });
@@ -102,7 +102,7 @@ void ConnectedSite::add_point() {
   const auto near = static_cast<int>(uniform(0.0, static_cast<double>(truth_.size())));
   const Eigen::Vector3d ray = rig.ray({uniform(0.0, rig.width), uniform(0.0, rig.height)});
   const Eigen::Vector3d point_in_world = inverse(truth_[static_cast<std::size_t>(near)]) * (uniform(1.5, 8.0) * ray);
-  const std::vector<int> poses = poses_that_see(point_in_world, near, static_cast<std::size_t>(uniform(3.0, 10.0)));
+  const std::vector<int> poses = observing_poses(point_in_world, near, static_cast<std::size_t>(uniform(3.0, 10.0)));
   if (poses.size() < 3) return;
   problem_.points.push_back({point_in_world, false});
   for (const int pose : poses) add_observation(pose);

@@ -23,12 +23,12 @@ class ConnectedSite {
  private:
   using Cell = std::pair<int, int>;
 
-  Pose pose_after(double way, double length) const;
+  Pose pose_after(double distance, double length) const;
   Vector6 random_motion(double metres, double radians);
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
   double normal(double sigma) { return std::normal_distribution<double>(0.0, sigma)(generator_); }
-  bool sees(int pose, const Eigen::Vector3d& point_in_world) const;
-  std::vector<int> poses_that_see(const Eigen::Vector3d& point_in_world, int near, std::size_t most) const;
+  bool observes(int pose, const Eigen::Vector3d& point_in_world) const;
+  std::vector<int> observing_poses(const Eigen::Vector3d& point_in_world, int near, std::size_t most) const;
   void add_point();
   void add_observation(int pose);
 

@@ -135,10 +135,10 @@ Opening open_site(const Inputs& inputs, const fs::path& file) {
   Opening best;
   for (int i = 0; i < kTimes; ++i) {
     const double memory_before = resident_memory_mb();
-    const double cpu_before = resources_used_so_far().cpu_seconds;
+    const double cpu_before = resource_usage().cpu_seconds;
     const Stopwatch watch;
     const auto offline = load_offline_map(file, inputs.vocabulary);
-    const double seconds = watch.seconds(), cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+    const double seconds = watch.seconds(), cpu_seconds = resource_usage().cpu_seconds - cpu_before;
     if (i == 0) best = {seconds, cpu_seconds, cpu_seconds, resident_memory_mb() - memory_before};
     best.seconds = std::min(best.seconds, seconds);
     best.cpu_seconds = std::min(best.cpu_seconds, cpu_seconds);
@@ -148,14 +148,14 @@ Opening open_site(const Inputs& inputs, const fs::path& file) {
 
 void measure_index(const Inputs& inputs, const OfflineMap& offline, Use& use) {
   const double heap_before = heap_mb();
-  const double cpu_before = resources_used_so_far().cpu_seconds;
+  const double cpu_before = resource_usage().cpu_seconds;
   const PlaceIndex index = index_of(offline.map(), inputs.vocabulary);
-  use.index_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+  use.index_seconds = resource_usage().cpu_seconds - cpu_before;
   use.index_mb = heap_mb() - heap_before;
 }
 
 Calibration calibration_of(const OfflineMap& offline, const Recording& recording) {
-  const auto known = known_calibration(offline.recordings(), recording.calibration());
+  const auto known = stored_calibration(offline.recordings(), recording.calibration());
   return known ? known->calibration : recording.calibration();
 }
 
@@ -214,7 +214,8 @@ void measure_ground(int keyframes, Use& use) {
   use.ground_seconds = watch.seconds();
   if (!ground) return;
   const ThreadStopwatch stands;
-  for (int i = 0; i < kStands; ++i) ground->stand_of({Eigen::Quaterniond::Identity(), {0.05 * i, 0.03 * i, 0.0}});
+  for (int i = 0; i < kStands; ++i)
+    ground->offset_from_ground({Eigen::Quaterniond::Identity(), {0.05 * i, 0.03 * i, 0.0}});
   use.stand_us = kMicroseconds * stands.seconds() / kStands;
 }
 
@@ -299,10 +300,10 @@ void adjust_sites(const std::vector<int>& sizes) {
     BundleOptions options;
     options.max_iterations = 14;
     reset_peak_memory();
-    const double before = resident_memory_mb(), cpu_before = resources_used_so_far().cpu_seconds;
+    const double before = resident_memory_mb(), cpu_before = resource_usage().cpu_seconds;
     const Stopwatch watch;
     const BundleResult result = bundle_adjust(site.problem(), options);
-    const double seconds = watch.seconds(), cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+    const double seconds = watch.seconds(), cpu_seconds = resource_usage().cpu_seconds - cpu_before;
     table.add({std::to_string(poses), std::to_string(site.problem().points.size()),
                std::to_string(site.problem().observations.size()), std::to_string(result.iterations),
                fmt::format("{:.1f}", seconds), fmt::format("{:.1f}", cpu_seconds),

@@ -30,12 +30,12 @@ inline BodyMotion no_motion() {
 // deviations add up, not variances.
 BodyMotion operator*(const BodyMotion& first, const BodyMotion& second);
 
-// Measured velocity of the robot's base, in its own axes. `left` is zero for wheels that only roll ahead.
-struct BaseVelocity {
+// Planar velocity of the robot's base, in its own axes: x ahead, y left. vy is zero for differential drives.
+struct BaseTwist {
   Timestamp time{};
-  double ahead = 0.0;    // metres per second
-  double left = 0.0;     // metres per second
-  double turning = 0.0;  // radians per second, positive to the left
+  double vx = 0.0;  // metres per second
+  double vy = 0.0;  // metres per second
+  double wz = 0.0;  // radians per second, positive to the left
 };
 
 // Sample of a gyroscope.
@@ -52,8 +52,8 @@ struct Acceleration {
 
 // Motion measurements of a recording. Each list is in order of time.
 struct MotionSamples {
-  Trajectory wheels;                     // wheel odometry: poses of the base in the odometry frame
-  std::vector<BaseVelocity> velocities;  // wheel odometry that measures velocities only
+  Trajectory wheels;                  // wheel odometry: poses of the base in the odometry frame
+  std::vector<BaseTwist> velocities;  // wheel odometry that measures velocities only
   std::vector<AngularRate> rates;
   std::vector<Acceleration> accelerations;
   // Rotation from gyroscope to left camera; empty if the recording does not contain it.

@@ -65,7 +65,7 @@ struct Calibration {
   double readout_time = 0.0;
 
   // Whether these cameras alone determine metric scale.
-  bool tells_metres() const { return right.has_value() || depth.has_value(); }
+  bool is_metric() const { return right.has_value() || depth.has_value(); }
 
   // Exact equality of all numbers.
   bool operator==(const Calibration&) const = default;

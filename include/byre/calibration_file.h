@@ -30,7 +30,7 @@ std::string write_calibration(const Calibration& calibration);
 DepthCamera read_depth_camera(const std::filesystem::path& path);
 
 // Whether the file has any field of a depth camera. Throws InputError if it cannot be read.
-bool names_depth_camera(const std::filesystem::path& path);
+bool has_depth_camera_fields(const std::filesystem::path& path);
 
 // Throws InputError with this place if the baseline of the pair is zero, as depth is then unobservable.
 void require_baseline(const StereoPartner& partner, const std::string& place);

@@ -83,10 +83,10 @@ class Features {
   Features with_patches_of(std::span<const int> features) const;
 
   // Bytes of all arrays, to be stored elsewhere, and a copy of the features that refers to stored arrays. An array with
-  // a null place is copied. Precondition: places hold copies of what lists() returns, equally aligned.
-  static constexpr std::size_t kLists = 5;
-  std::array<std::span<const std::byte>, kLists> lists() const;
-  Features with_lists_at(const std::array<std::shared_ptr<const std::byte>, kLists>& places) const;
+  // a null place is copied. Precondition: places hold copies of what arrays() returns, equally aligned.
+  static constexpr std::size_t kArrays = 5;
+  std::array<std::span<const std::byte>, kArrays> arrays() const;
+  Features with_arrays_at(const std::array<std::shared_ptr<const std::byte>, kArrays>& places) const;
 
   int size() const { return static_cast<int>(keypoints().size()); }
   std::span<const Keypoint> keypoints() const { return keypoints_.view(); }
@@ -118,21 +118,21 @@ class Features {
     ~Items() = default;
     Items& operator=(const Items& other) {
       if (this == &other) return *this;
-      own_ = other.own_;
-      elsewhere_ = other.elsewhere_;
-      view_ = elsewhere_ ? other.view_ : own_;
+      owned_ = other.owned_;
+      shared_ = other.shared_;
+      view_ = shared_ ? other.view_ : owned_;
       return *this;
     }
     Items& operator=(Items&& other) noexcept {
-      own_ = std::exchange(other.own_, {});
-      elsewhere_ = std::exchange(other.elsewhere_, {});
+      owned_ = std::exchange(other.owned_, {});
+      shared_ = std::exchange(other.shared_, {});
       view_ = std::exchange(other.view_, {});
       return *this;
     }
 
     // Refers to count shared items.
-    Items(std::shared_ptr<const Item> elsewhere, std::size_t count)
-        : elsewhere_(std::move(elsewhere)), view_(elsewhere_.get(), count) {}
+    Items(std::shared_ptr<const Item> shared, std::size_t count)
+        : shared_(std::move(shared)), view_(shared_.get(), count) {}
     // Refers to the same number of items at a place; a copy if the place is null.
     Items at(const std::shared_ptr<const std::byte>& place) const {
       if (!place) return *this;
@@ -143,22 +143,22 @@ class Features {
     // Calls fill to write own items into allocated memory.
     template <typename Fill>
     void refill(Fill fill) {
-      elsewhere_.reset();
-      fill(own_);
-      view_ = own_;
+      shared_.reset();
+      fill(owned_);
+      view_ = owned_;
     }
     void take(std::vector<Item> items) {
       refill([&](std::vector<Item>& own) { own = std::move(items); });
     }
 
    private:
-    std::vector<Item> own_;  // empty if items are shared
-    std::shared_ptr<const Item> elsewhere_;
+    std::vector<Item> owned_;  // empty if items are shared
+    std::shared_ptr<const Item> shared_;
     std::span<const Item> view_;
   };
 
-  void note_moves(std::span<const Keypoint> keypoints);
-  void take_patches(const std::shared_ptr<const std::vector<Patch>>& patches);
+  void update_slack(std::span<const Keypoint> keypoints);
+  void set_patches(const std::shared_ptr<const std::vector<Patch>>& patches);
 
   int cell_size_ = 0;  // pixels
   int columns_ = 0;

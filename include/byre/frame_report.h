@@ -66,7 +66,7 @@ struct FrameReport {
   bool is_late = false;  // exceeded its deadline despite the cuts
   // Reason for rejecting the place where this or a recent frame was found in the offline map. Repeated in Health::doubt
   // if there is no other pose.
-  Doubt refused_place = Doubt::none;
+  DistrustReason refused_place = DistrustReason::none;
   TwoViewFailure start_failure = TwoViewFailure::none;  // reason why a monocular map was not initialised
   std::vector<SessionEvent> events;                     // in order
   std::vector<MotionWarning> warnings;  // faults of motion inputs since the previous frame; each kind once

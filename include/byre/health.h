@@ -18,7 +18,7 @@ enum class Verdict : std::uint8_t { trusted, degraded, untrusted };
 std::string_view to_string(Verdict verdict);
 
 // Main reason against trusting a pose.
-enum class Doubt : std::uint8_t {
+enum class DistrustReason : std::uint8_t {
   none,
   no_pose,             // tracking and relocalisation failed
   blinded,             // the image is dark, overexposed, flat or blurred
@@ -44,7 +44,7 @@ enum class Doubt : std::uint8_t {
   behind_wall     // no time to drive around the walls since the last trusted pose
 };
 
-std::string_view to_string(Doubt doubt);
+std::string_view to_string(DistrustReason doubt);
 
 // Distance between the poses estimated from offline points alone and from online points alone.
 struct Agreement {
@@ -55,7 +55,7 @@ struct Agreement {
 // Quality measures of one frame. Counts are of map points.
 struct Health {
   Verdict verdict = Verdict::untrusted;
-  Doubt doubt = Doubt::no_pose;
+  DistrustReason doubt = DistrustReason::no_pose;
   int offline_expected = 0;  // offline points in the frustum, without suspended ones and those hidden by dirt
   int offline_matches = 0;   // offline points matched
   int offline_inliers = 0;   // offline points that fit the pose

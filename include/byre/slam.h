@@ -71,35 +71,35 @@ class Slam {
   ~Slam();
 
   // Tracks the next frame. The images are borrowed for the duration of the call.
-  // told: measured motion of the body since the previous call, metres. It replaces the constant-velocity prediction,
-  // and bridges frames without recognised points, with growing covariance. Ignored while the scale is unknown. Empty:
-  // wheel and gyroscope samples are used, if any.
-  FrameReport process(const CameraImages& images, const std::optional<BodyMotion>& told = {});
+  // body_motion: measured motion of the body since the previous call, metres. It replaces the constant-velocity
+  // prediction, and bridges frames without recognised points, with growing covariance. Ignored while the scale is
+  // unknown. Empty: wheel and gyroscope samples are used, if any.
+  FrameReport process(const CameraImages& images, const std::optional<BodyMotion>& body_motion = {});
 
   // Tracks the next frame with the caller's features, in pixels of rig().
-  FrameReport process(const Frame& frame, const std::optional<BodyMotion>& told = {});
+  FrameReport process(const Frame& frame, const std::optional<BodyMotion>& body_motion = {});
 
   // Wheel odometry at any rate: pose of the base in a drifting odometry frame, metres. Samples are in order of time, by
   // the clock of the images, and precede the frame that they lead to; delays up to 0.2 s are bridged. Driving and
   // turning determine the mounting of the camera on the base, the offset of the stamps (0.2 s at most) and, for one
   // camera, the metric scale; until then defaults with a larger covariance are used. Wheel slip is rejected. finish()
   // scales a monocular map to metres.
-  void tell_wheels(const StampedPose& odometry_from_base);
+  void add_wheel_odometry(const StampedPose& odometry_from_base);
   // Wheel odometry as velocities. Motion is not interpolated across gaps of more than 0.3 s. Give either poses or
   // velocities.
-  void tell_wheels(const BaseVelocity& velocity);
+  void add_wheel_odometry(const BaseTwist& velocity);
   // Gyroscope sample; order and clock as for wheels. Its bias and its rotation to the body are estimated.
-  void tell_gyroscope(const AngularRate& rate);
+  void add_gyro(const AngularRate& rate);
   // Sample of the accelerometer on the gyroscope's axes; order and clock as for wheels. Only used at standstill, as the
   // direction of gravity.
-  void tell_accelerometer(const Acceleration& acceleration);
+  void add_accel(const Acceleration& acceleration);
   // Calibrated rotation from gyroscope and accelerometer to the left camera, accurate to one or two degrees. Call it
   // before the first sample. Without it the rotation is estimated.
-  void tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope);
+  void set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope);
 
   // Limits relocalisation to the surroundings of a pose for the hint's lifetime, for buildings with similar-looking
   // places. Does not affect tracking. Replaces an earlier hint. Invalid poses are ignored. Only for on_map().
-  void look_near(const PoseHint& hint);
+  void set_initial_pose(const PoseHint& hint);
 
   // While paused, frames are tracked, but the map is neither initialised nor extended, for example among cows.
   void pause_mapping(bool is_paused);

@@ -20,7 +20,7 @@ from ._byre import (
     CameraChoice,
     CameraModel,
     DepthCamera,
-    Doubt,
+    DistrustReason,
     ErrorStatistics,
     Event,
     FrameReport,

@@ -209,7 +209,7 @@ def test_missions_report_verdicts(room, frames, room_map):
     reports = [slam.process(images) for images in frames]
     assert any(byre.Event.localised in report.events for report in reports)
     assert reports[-1].verdict == byre.Verdict.trusted
-    assert reports[-1].health.doubt == byre.Doubt.none
+    assert reports[-1].health.doubt == byre.DistrustReason.none
     assert reports[-1].health.offline_inliers > 50
     assert slam.plan_from_body(np.eye(4)) is None
     assert slam.plan_covariance(np.eye(4), np.eye(6)) is None
@@ -221,7 +221,7 @@ def test_a_mission_accepts_a_pose_hint(room, frames, room_map):
     far[0, 3] = 50.0
     for hint, is_found in ((np.eye(4), True), (far, False)):
         slam = byre.Slam.on_map(byre.Recording(room).calibration, room_map, REPEATABLE)
-        slam.look_near(hint, radius=3.0)
+        slam.set_initial_pose(hint, radius=3.0)
         assert (slam.process(frames[0]).map_from_body is not None) == is_found
 
 

@@ -29,7 +29,7 @@ void run(const char* folder) {
   Extractor extractor(recording->calibration(), {});
   SessionOptions options;
   options.max_drift_to_fuse = 0.0;
-  Session session(extractor.rig(), options, Lanes(make_live_executor(), make_live_executor()),
+  Session session(extractor.rig(), options, SessionExecutors(make_live_executor(), make_live_executor()),
                   Vocabulary::load(default_vocabulary_path()));
   double copy_ms = 0.0, slowest_ms = 0.0;  // times of the frame that began the correction, and of the slowest since
   int frames = -1;                         // frames since the correction began; -1: no correction
@@ -58,7 +58,7 @@ void run(const char* folder) {
       frames = 0;
     }
   }
-  session.hurry();
+  session.finish_early();
   session.finish();
 }
 

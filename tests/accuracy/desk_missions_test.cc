@@ -61,7 +61,8 @@ struct DeskMap {
 DeskMap make_desk_map() {
   const auto recording = open_recording(*find_recording(kDesk), {});
   Extractor extractor(recording->calibration(), {});
-  Session session(extractor.rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary());
+  Session session(extractor.rig(), {}, SessionExecutors(make_inline_executor(), make_inline_executor()),
+                  shipped_vocabulary());
   refine(session, recording->calibration(), std::nullopt);
   follow(session, *recording, extractor);
   session.finish_map({[] { return false; }, [](const char*) {}});
@@ -77,15 +78,15 @@ DeskMap make_desk_map() {
           truth_from_map};
 }
 
-Poses fly(const std::shared_ptr<const OfflineMap>& map, bool map_online) {
+Poses run_mission(const std::shared_ptr<const OfflineMap>& map, bool map_online) {
   const auto recording = open_recording(*find_recording(kTurns), {});
   const Calibration given = recording->calibration();
-  const auto known = map ? known_calibration(map->recordings(), given) : std::nullopt;
+  const auto known = map ? stored_calibration(map->recordings(), given) : std::nullopt;
   Extractor extractor(known ? known->calibration : given, {});
   SessionOptions options;
   options.map_online = map_online;
-  Session session(extractor.rig(), options, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary(),
-                  map);
+  Session session(extractor.rig(), options, SessionExecutors(make_inline_executor(), make_inline_executor()),
+                  shipped_vocabulary(), map);
   refine(session, given, known);
   return follow(session, *recording, extractor);
 }
@@ -126,7 +127,7 @@ class DeskMissions : public testing::Test {
     return made;
   }
   static const Poses& hybrid() {
-    static const Poses flown = fly(desk().map, true);
+    static const Poses flown = run_mission(desk().map, true);
     return flown;
   }
 };
@@ -140,7 +141,7 @@ TEST_F(DeskMissions, EstimateTheShutterAndTrackATurnOnTheMap) {
 }
 
 TEST_F(DeskMissions, TrackATurnNoWorseThanLocalisationAlone) {
-  const Poses localised = fly(desk().map, false);
+  const Poses localised = run_mission(desk().map, false);
   const double by_hybrid = error_in_map(at_times_of(localised.causal, hybrid().causal));
   const double alone = error_in_map(at_times_of(hybrid().causal, localised.causal));
   EXPECT_GT(localised.causal.size(), 240);
@@ -148,7 +149,7 @@ TEST_F(DeskMissions, TrackATurnNoWorseThanLocalisationAlone) {
 }
 
 TEST_F(DeskMissions, TrackATurnNoWorseThanWithoutAMap) {
-  const Poses without = fly(nullptr, true);
+  const Poses without = run_mission(nullptr, true);
   ASSERT_GT(without.final.size(), 100);
   const double by_hybrid = error_of_shape(at_times_of(without.final, hybrid().final));
   const double alone = error_of_shape(at_times_of(hybrid().final, without.final));

@@ -27,8 +27,8 @@ constexpr const char* kHall = "euroc/MH_01_easy";
 constexpr const char* kElsewhere = "vocabulary";
 
 // A map with words, ready for localisation.
-struct KnownPlace {
-  explicit KnownPlace(const Map& mapped) {
+struct MappedPlace {
+  explicit MappedPlace(const Map& mapped) {
     stored.map = offline_copy(mapped);
     add_words(stored, shipped_vocabulary());
     index = index_of(stored.map, shipped_vocabulary());
@@ -85,15 +85,15 @@ class LocalisationInV101 : public testing::Test {
     return frames;
   }
 
-  static const KnownPlace& even_half() {
-    static const KnownPlace place(map_from_poses({all().rig}, half(0), {}));
+  static const MappedPlace& even_half() {
+    static const MappedPlace place(map_from_poses({all().rig}, half(0), {}));
     return place;
   }
 };
 
 TEST_F(LocalisationInV101, LocatesNineInTenFramesAndNoneFarOff) {
   for (const std::size_t mapped : {0u, 1u}) {
-    const KnownPlace place(map_from_poses({all().rig}, half(mapped), {}));
+    const MappedPlace place(map_from_poses({all().rig}, half(mapped), {}));
     const std::vector<PosedFrame> wanted = half(1 - mapped);
     int close = 0;
     for (const PosedFrame& frame : wanted) {
@@ -127,7 +127,7 @@ TEST_F(LocalisationInV101, RejectsImagesOfOtherPlaces) {
     const std::optional<Image> image = read_image(entry.path());
     if (!image) continue;
     ImageFrame images;
-    images.left = fit(*image, camera.left.width, camera.left.height);
+    images.left = resize_to_cover(*image, camera.left.width, camera.left.height);
     const Frame frame = extractor.extract(images).frame;
     EXPECT_FALSE(even_half().find(frame, extractor.rig()).tracked) << entry.path();
     ++looked_for;
@@ -140,7 +140,7 @@ TEST(LocalisationInMh01, LocatesTheSecondHalfOfAFlightInTheFirst) {
   FrameRange first, second;
   first.last = 150;
   second.first = 150;
-  const KnownPlace place(map_recording(*find_recording(kHall), first, make_inline_executor()).map);
+  const MappedPlace place(map_recording(*find_recording(kHall), first, make_inline_executor()).map);
   const PosedFrames wanted = posed_frames(kHall, second);
   Trajectory found;
   for (const PosedFrame& frame : wanted.frames) {

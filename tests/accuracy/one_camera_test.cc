@@ -30,7 +30,11 @@ Calibration left_alone(Calibration calibration) {
 }
 
 Session session_of(const Rig& rig, std::shared_ptr<const OfflineMap> offline = nullptr) {
-  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary(), std::move(offline)};
+  return {rig,
+          {},
+          SessionExecutors(make_inline_executor(), make_inline_executor()),
+          shipped_vocabulary(),
+          std::move(offline)};
 }
 
 std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {

@@ -72,7 +72,7 @@ class LiveCamera : public ProgramTest {
   Settings settings_;
 };
 
-std::string times_that_it_says(const std::string& text, const std::string& what) {
+std::string count_occurrences(const std::string& text, const std::string& what) {
   int count = 0;
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
   return std::to_string(count);
@@ -172,8 +172,8 @@ TEST_F(LiveCamera, ContinuesAfterUnplugging) {
   const Outcome outcome =
       run("camera record " + kLeft + " " + kRight + " -o walk --duration 1.9 --calibration calibration.yaml");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_EQ(times_that_it_says(outcome.errors, kRight + ": was disconnected"), "1") << outcome.errors;
-  EXPECT_EQ(times_that_it_says(outcome.errors, kRight + ": is back after"), "1") << outcome.errors;
+  EXPECT_EQ(count_occurrences(outcome.errors, kRight + ": was disconnected"), "1") << outcome.errors;
+  EXPECT_EQ(count_occurrences(outcome.errors, kRight + ": is back after"), "1") << outcome.errors;
   EXPECT_THAT(outcome.output, HasSubstr("disconnected 1 times"));
   unsetenv("LD_PRELOAD");
   const auto recorded = open_recording(folder_ / "walk", {});

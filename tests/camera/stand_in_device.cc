@@ -106,10 +106,10 @@ std::size_t Device::bytes() const {
   return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 2;
 }
 
-bool Device::is_away() {
-  if (!away_until_) return false;
-  if (Clock::now() < *away_until_) return true;
-  away_until_.reset();
+bool Device::is_unplugged() {
+  if (!unplugged_until_) return false;
+  if (Clock::now() < *unplugged_until_) return true;
+  unplugged_until_.reset();
   return false;
 }
 
@@ -131,7 +131,7 @@ Device Device::stopped() const {
 
 void Device::start() {
   is_streaming_ = true;
-  if (!begun_) begun_ = Clock::now();
+  if (!start_) start_ = Clock::now();
   opened_at_ = static_cast<std::uint32_t>(next_);
 }
 
@@ -143,15 +143,15 @@ void Device::stop() {
 
 // Brings the state up to date: due frames go into buffers, or are lost without one.
 void Device::advance() {
-  while (begun_ && next_ < frames_.size() && !is_away()) {
+  while (start_ && next_ < frames_.size() && !is_unplugged()) {
     const bool is_paced = speed_ > 0.0;
     if (is_paced) {
       const double seconds = 1e-9 * static_cast<double>(frames_[next_].time_ns - frames_.front().time_ns) / speed_;
-      if (Clock::now() < *begun_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)))
+      if (Clock::now() < *start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)))
         return;
     }
     if (unplugging_ && static_cast<int>(next_) >= unplugging_->first) {
-      away_until_ = Clock::now() + std::chrono::milliseconds(unplugging_->second);
+      unplugged_until_ = Clock::now() + std::chrono::milliseconds(unplugging_->second);
       unplugging_.reset();
       stop();
       return;
@@ -172,7 +172,7 @@ void Device::advance() {
 
 bool Device::is_ready() {
   advance();
-  return is_away() || !done_.empty();
+  return is_unplugged() || !done_.empty();
 }
 
 std::optional<Device::Filled> Device::take(std::uint8_t* memory) {
@@ -196,9 +196,9 @@ std::optional<Device::Filled> Device::take(std::uint8_t* memory) {
   Filled filled{buffer, static_cast<std::uint32_t>(number) - opened_at_, frame.time_ns / 1000 + skew_us_,
                 damaged_.contains(static_cast<int>(number)), bytes.size()};
   if (has_monotonic_stamps_) {
-    const auto begun = std::chrono::duration_cast<std::chrono::microseconds>(begun_->time_since_epoch()).count();
+    const auto start_us = std::chrono::duration_cast<std::chrono::microseconds>(start_->time_since_epoch()).count();
     const double since = 1e-3 * static_cast<double>(frame.time_ns - frames_.front().time_ns);
-    filled.stamp_us = begun + static_cast<std::int64_t>(speed_ > 0.0 ? since / speed_ : since) + skew_us_;
+    filled.stamp_us = start_us + static_cast<std::int64_t>(speed_ > 0.0 ? since / speed_ : since) + skew_us_;
   }
   return filled;
 }

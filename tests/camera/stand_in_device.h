@@ -32,7 +32,7 @@ class Device {
 
   explicit Device(const std::string& name);
 
-  bool is_away();
+  bool is_unplugged();
   bool open();  // false if already open
   void close() { *this = stopped(); }
 
@@ -82,8 +82,8 @@ class Device {
   double rate_hz_ = 20.0;
 
   bool is_open_ = false, is_streaming_ = false;
-  std::optional<Clock::time_point> begun_;  // due time of the first frame
-  std::optional<Clock::time_point> away_until_;
+  std::optional<Clock::time_point> start_;  // due time of the first frame
+  std::optional<Clock::time_point> unplugged_until_;
   std::size_t next_ = 0;         // frame
   std::uint32_t opened_at_ = 0;  // frame with sequence number 0 since opening
   std::deque<std::uint32_t> queued_;

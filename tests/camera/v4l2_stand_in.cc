@@ -47,7 +47,7 @@ int failed(int error) {
 }
 
 int open_device(Device& device) {
-  if (device.is_away()) return failed(ENOENT);
+  if (device.is_unplugged()) return failed(ENOENT);
   if (!device.open()) return failed(EBUSY);
   const int number = memfd_create("stand-in", MFD_CLOEXEC);
   const std::size_t size = Device::kBuffers * length_of(device);
@@ -67,7 +67,7 @@ int fill_format(const Device& device, v4l2_format& format) {
   return 0;
 }
 
-int tell_of(const Device& device, unsigned long request, void* argument) {
+int describe_device(const Device& device, unsigned long request, void* argument) {
   switch (request) {
     case VIDIOC_QUERYCAP: {
       auto& capability = *static_cast<v4l2_capability*>(argument);
@@ -142,7 +142,7 @@ int stream(const Opened& open, unsigned long request, void* argument) {
   if (request == VIDIOC_QBUF) return device.queue(buffer.index), 0;
   std::vector<std::uint8_t> image(device.bytes());
   const auto filled = device.take(image.data());
-  if (!filled) return failed(device.is_away() ? ENODEV : EAGAIN);
+  if (!filled) return failed(device.is_unplugged() ? ENODEV : EAGAIN);
   std::memcpy(open.memory + length * filled->buffer, image.data(), image.size());
   buffer.index = filled->buffer;
   buffer.sequence = filled->sequence;
@@ -154,7 +154,7 @@ int stream(const Opened& open, unsigned long request, void* argument) {
 }
 
 int call(const Opened& open, unsigned long request, void* argument) {
-  if (open.device->is_away()) return failed(ENODEV);
+  if (open.device->is_unplugged()) return failed(ENODEV);
   switch (request) {
     case VIDIOC_QUERYCAP:
     case VIDIOC_ENUM_FMT:
@@ -164,7 +164,7 @@ int call(const Opened& open, unsigned long request, void* argument) {
     case VIDIOC_S_FMT:
     case VIDIOC_G_PARM:
     case VIDIOC_S_PARM:
-      return tell_of(*open.device, request, argument);
+      return describe_device(*open.device, request, argument);
     case VIDIOC_QUERYCTRL:
     case VIDIOC_G_CTRL:
     case VIDIOC_S_CTRL:
@@ -189,7 +189,7 @@ int ready_among(pollfd* waiting, nfds_t count) {
     waiting[i].revents = 0;
     const auto found = opened.find(waiting[i].fd);
     if (found == opened.end() || !found->second.device->is_ready()) continue;
-    waiting[i].revents = found->second.device->is_away() ? POLLERR : POLLIN;
+    waiting[i].revents = found->second.device->is_unplugged() ? POLLERR : POLLIN;
     ++ready;
   }
   return ready;

@@ -66,8 +66,8 @@ TEST(SteadyFrame, OfAMissionAllocatesNothing) {
   }
   const auto offline = std::make_shared<const OfflineMap>(std::move(map), shipped_vocabulary());
   const SimulatedMission mission = lap(2);
-  Session session(mission.rig, {}, Lanes(make_inline_executor(), make_inline_executor()), shipped_vocabulary(),
-                  offline);
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor(), make_inline_executor()),
+                  shipped_vocabulary(), offline);
   SteadyFrames steady;
   for (const Frame& frame : mission.frames) steady.count([&] { return session.process(frame); });
   EXPECT_GE(steady.counted(), 200);

@@ -44,7 +44,7 @@ std::vector<std::uint8_t> draw(double camera_x) {  // metres along the wall
   return pixels;
 }
 
-byre::FrameReport look(byre::Slam& slam, int frame) {
+byre::FrameReport process_frame(byre::Slam& slam, int frame) {
   const double x = 0.02 * frame;  // metres
   const std::vector<std::uint8_t> left = draw(x), right = draw(x + kBaseline);
   const byre::Timestamp time = std::chrono::milliseconds(50) * (frame + 1);
@@ -54,7 +54,7 @@ byre::FrameReport look(byre::Slam& slam, int frame) {
   return slam.process(images);
 }
 
-void tell(const byre::FrameReport& report) {
+void print_report(const byre::FrameReport& report) {
   std::printf("%s, %s", std::string(to_string(report.state)).c_str(), std::string(to_string(report.input)).c_str());
   if (report.map_from_body) {
     const Eigen::Vector3d& place = report.map_from_body->translation;
@@ -69,8 +69,8 @@ int main() {
   byre::SlamOptions options;
   options.workers = byre::Workers::repeatable;
   byre::Slam slam = byre::Slam::mapping(calibration(), options);
-  tell(slam.process(byre::CameraImages{}));
-  for (int frame = 0; frame < 20; ++frame) tell(look(slam, frame));
+  print_report(slam.process(byre::CameraImages{}));
+  for (int frame = 0; frame < 20; ++frame) print_report(process_frame(slam, frame));
   slam.finish();
   std::printf("%d keyframes, %d points\n", slam.keyframes(), slam.points());
   try {

@@ -115,7 +115,7 @@ class Hand {
 };
 
 template <typename Change>
-ImageFrame change_each(const ImageFrame& images, Change change) {
+ImageFrame transform_images(const ImageFrame& images, Change change) {
   ImageFrame changed{images.time, change(images.left, 0), std::nullopt};
   if (images.right) changed.right = change(*images.right, 1);
   return changed;
@@ -189,8 +189,8 @@ Image blank_wall(const Image& image, std::uint64_t seed) {
 
 Degradation black_frames() {
   return [](const ImageFrame& images, int step) {
-    return change_each(images,
-                       [&](const Image& image, int camera) { return without_light(image, seed_of(step, camera)); });
+    return transform_images(
+        images, [&](const Image& image, int camera) { return without_light(image, seed_of(step, camera)); });
   };
 }
 
@@ -201,7 +201,7 @@ Degradation hand_over_the_lens(double coverage) {
     if (!*drawn) drawn->emplace(cv::Size(images.left.width, images.left.height), coverage);
     const int to_go = std::max(0, kComing - 1 - step);
     const int down = images.left.height * to_go / (kComing + 1);
-    return change_each(images, [&](const Image& image, int camera) {
+    return transform_images(images, [&](const Image& image, int camera) {
       return (*drawn)->before(image, camera == 0 ? 0 : -image.width / 16, down);
     });
   };
@@ -210,7 +210,7 @@ Degradation hand_over_the_lens(double coverage) {
 Degradation motion_blur(double pixels) {
   return [pixels](const ImageFrame& images, int step) {
     const double angle = 0.7 + 2.4 * step;  // radians; differs in every step
-    return change_each(images, [&](const Image& image, int) { return motion_blurred(image, pixels, angle); });
+    return transform_images(images, [&](const Image& image, int) { return motion_blurred(image, pixels, angle); });
   };
 }
 
@@ -218,27 +218,27 @@ Degradation exposure_jumps(double factor, int steps_per_level) {
   return [factor, steps_per_level](const ImageFrame& images, int step) {
     const std::array<double, 4> levels = {factor, 1.0, 1.0 / factor, 1.0};
     const double level = levels[static_cast<std::size_t>(step / steps_per_level) % levels.size()];
-    return change_each(images, [&](const Image& image, int) { return exposed(image, level); });
+    return transform_images(images, [&](const Image& image, int) { return exposed(image, level); });
   };
 }
 
 Degradation blank_close_up() {
   return [](const ImageFrame& images, int step) {
-    return change_each(images,
-                       [&](const Image& image, int camera) { return blank_wall(image, seed_of(step, camera)); });
+    return transform_images(images,
+                            [&](const Image& image, int camera) { return blank_wall(image, seed_of(step, camera)); });
   };
 }
 
 Degradation haze(double transmission) {
   return [transmission](const ImageFrame& images, int) {
-    return change_each(images, [&](const Image& image, int) { return hazed(image, transmission); });
+    return transform_images(images, [&](const Image& image, int) { return hazed(image, transmission); });
   };
 }
 
 Degradation dirt(int spots) {
   return [spots](const ImageFrame& images, int) {
-    return change_each(images,
-                       [&](const Image& image, int camera) { return dirtied(image, spots, seed_of(3, camera)); });
+    return transform_images(images,
+                            [&](const Image& image, int camera) { return dirtied(image, spots, seed_of(3, camera)); });
   };
 }
 
@@ -289,8 +289,8 @@ Degradation frozen(double sigma) {
     if (step == 0) *shown = images;
     const ImageFrame repeated{images.time, (*shown)->left, (*shown)->right};
     if (sigma == 0.0) return repeated;
-    return change_each(repeated,
-                       [&](const Image& image, int camera) { return with_noise(image, sigma, seed_of(step, camera)); });
+    return transform_images(
+        repeated, [&](const Image& image, int camera) { return with_noise(image, sigma, seed_of(step, camera)); });
   };
 }
 
@@ -334,19 +334,19 @@ Degradation swapped() {
 
 Degradation mirrored() {
   return [](const ImageFrame& images, int) {
-    return change_each(images, [](const Image& image, int) { return flipped(image, 1); });
+    return transform_images(images, [](const Image& image, int) { return flipped(image, 1); });
   };
 }
 
 Degradation upside_down() {
   return [](const ImageFrame& images, int) {
-    return change_each(images, [](const Image& image, int) { return flipped(image, 0); });
+    return transform_images(images, [](const Image& image, int) { return flipped(image, 0); });
   };
 }
 
 Degradation contrast_loss(double share) {
   return [share](const ImageFrame& images, int) {
-    return change_each(images, [&](const Image& image, int) { return flattened(image, share); });
+    return transform_images(images, [&](const Image& image, int) { return flattened(image, share); });
   };
 }
 

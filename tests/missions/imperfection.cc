@@ -24,7 +24,7 @@ class ImperfectCamera {
     std::ranges::transform(light, seen.pixels.begin(), [&](float grey) {
       return static_cast<std::uint8_t>(std::clamp(gain * grey + offset + 0.5f, 0.0f, 255.0f));
     });
-    return imperfection_.jpeg_quality > 0 ? jpeg_kept(seen, imperfection_.jpeg_quality) : seen;
+    return imperfection_.jpeg_quality > 0 ? jpeg_compressed(seen, imperfection_.jpeg_quality) : seen;
   }
 
  private:
@@ -48,16 +48,16 @@ std::string name_of(const Imperfection& imperfection) {
   return name;
 }
 
-Calibration told_calibration(const Calibration& calibration, const Imperfection& imperfection) {
-  Calibration told =
+Calibration nominal_calibration(const Calibration& calibration, const Imperfection& imperfection) {
+  Calibration nominal =
       perturbed(calibration, imperfection_of(imperfection.condition).calibration_level, imperfection.calibration_seed);
   const auto stretch = [&](Camera& camera) {
     camera.fx *= imperfection.focal_factor;
     camera.fy *= imperfection.focal_factor;
   };
-  stretch(told.left);
-  if (told.right) stretch(told.right->camera);
-  return told;
+  stretch(nominal.left);
+  if (nominal.right) stretch(nominal.right->camera);
+  return nominal;
 }
 
 Degradation imperfect_cameras(const Imperfection& imperfection) {

@@ -23,7 +23,7 @@ struct Imperfection {
 std::string name_of(const Imperfection& imperfection);  // unique name such as "exact" or "good_1"
 
 // The perturbed calibration that the robot is given.
-Calibration told_calibration(const Calibration& calibration, const Imperfection& imperfection);
+Calibration nominal_calibration(const Calibration& calibration, const Imperfection& imperfection);
 
 // Degradations of the images: lens blur, gain and offset of the right camera, JPEG loss. None for exact cameras.
 Degradation imperfect_cameras(const Imperfection& imperfection);

@@ -43,7 +43,7 @@ TEST(Imperfection, OfAnExactCameraChangesNothing) {
   const ImageFrame images = two_textures(), seen = imperfect_cameras(kExact)(images, 4);
   EXPECT_EQ(seen.left.pixels, images.left.pixels);
   EXPECT_EQ(seen.right->pixels, images.right->pixels);
-  const Calibration calibration = euroc_like_calibration(1), told = told_calibration(calibration, kExact);
+  const Calibration calibration = euroc_like_calibration(1), told = nominal_calibration(calibration, kExact);
   EXPECT_EQ(told.left.fx, calibration.left.fx);
   EXPECT_EQ(told.right->right_from_left.translation, calibration.right->right_from_left.translation);
 }
@@ -78,7 +78,7 @@ TEST(Imperfection, BrightensTheRightImageOnly) {
 TEST(Imperfection, HasAnErrorPerSeedThatGrowsWithWear) {
   const Calibration calibration = euroc_like_calibration(1);
   const auto focal_error = [&](const Imperfection& imperfection) {
-    return told_calibration(calibration, imperfection).left.fx - calibration.left.fx;
+    return nominal_calibration(calibration, imperfection).left.fx - calibration.left.fx;
   };
   EXPECT_NE(focal_error(kGood), 0.0);
   EXPECT_NE(focal_error(kGood), focal_error({CameraCondition::good, 2}));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "known_map.h"
+#include "aligned_map.h"
 #include "mission_plan.h"
 #include "mission_score.h"
 
@@ -20,11 +20,11 @@ struct MapChoice {
 };
 
 // Requirements beyond never trusting a wrong pose for long.
-struct Demand {
-  bool recovers = true;            // trusted again within kMaxRecovery of the disturbance's end
-  double min_trusted_share = 0.0;  // least share of trusted frames
-  bool is_never_wrong = false;     // no trusted frame has an error above kMaxTrustedError
-  std::optional<Doubt> doubt{};    // is reported within kMaxTimeToDoubt of the disturbance's begin
+struct Requirements {
+  bool recovers = true;                   // trusted again within kMaxRecovery of the disturbance's end
+  double min_trusted_share = 0.0;         // least share of trusted frames
+  bool is_never_wrong = false;            // no trusted frame has an error above kMaxTrustedError
+  std::optional<DistrustReason> doubt{};  // is reported within kMaxTimeToDoubt of the disturbance's begin
 };
 
 struct MissionCase {
@@ -33,7 +33,7 @@ struct MissionCase {
   FrameRange range;
   MapChoice map;
   std::function<MissionPlan(const std::vector<Timestamp>& times)> plan;
-  Demand demand{};
+  Requirements requirements{};
   std::optional<double> mapped_again_after{};  // seconds after which the robot is back in the mapped area
   Imperfection imperfection{};
 };
@@ -44,37 +44,37 @@ inline constexpr double kMaxTimeToDoubt = 0.5;  // seconds
 
 // The case with cameras of map and mission in this condition, and the map's calibration error drawn by its seed.
 // Mission and map still share one error if they did before.
-MissionCase flown_with(MissionCase mission_case, const Imperfection& imperfection);
+MissionCase with_imperfection(MissionCase mission_case, const Imperfection& imperfection);
 
 std::vector<MissionCase> real_mission_cases();
 std::vector<MissionCase> twin_mission_cases();
 
 // Sensor faults in the hall and in the rendered room, with and without their map.
-std::vector<MissionCase> lying_mission_cases();
+std::vector<MissionCase> sensor_fault_cases();
 
 // First missing recording of a case.
 std::optional<RecordingName> missing_recording(const MissionCase& mission_case);
 
-struct FlownMission {
+struct MissionRun {
   std::vector<MissionFrame> frames;
   std::optional<Similarity> truth_from_map;  // empty when the map is of another place
   MissionScore score;
 };
 
 // Cache of maps for a sequence of missions. Owned by the calling thread.
-class KnownMaps {
+class MapCache {
  public:
   // Throws InputError when the map's recording is missing or damaged.
-  KnownMap get(const MapChoice& choice);
+  AlignedMap get(const MapChoice& choice);
 
  private:
-  std::map<std::string, KnownMap> maps_;
+  std::map<std::string, AlignedMap> maps_;
 };
 
 // Runs a mission. Throws InputError when a recording is missing or damaged.
-FlownMission fly(const MissionCase& mission_case, KnownMaps& maps);
+MissionRun run_mission(const MissionCase& mission_case, MapCache& maps);
 
 // Descriptions of the unmet requirements.
-std::vector<std::string> broken_demands(const MissionCase& mission_case, const MissionScore& score);
+std::vector<std::string> unmet_requirements(const MissionCase& mission_case, const MissionScore& score);
 
 }  // namespace byre

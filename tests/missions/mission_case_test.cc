@@ -13,9 +13,9 @@ class MissionHealth : public testing::TestWithParam<MissionCase> {
     if (const auto missing = missing_recording(GetParam())) GTEST_SKIP() << why_missing(*missing);
   }
 
-  static KnownMaps& maps() {
-    static KnownMaps known;
-    return known;
+  static MapCache& maps() {
+    static MapCache cache;
+    return cache;
   }
 };
 
@@ -24,13 +24,13 @@ std::string name_of_case(const testing::TestParamInfo<MissionCase>& info) {
 }
 
 TEST_P(MissionHealth, IsHonestAndRecovers) {
-  const FlownMission flown = fly(GetParam(), maps());
-  EXPECT_GE(flown.score.frames, 25);
-  EXPECT_THAT(broken_demands(GetParam(), flown.score), testing::IsEmpty());
+  const MissionRun mission_run = run_mission(GetParam(), maps());
+  EXPECT_GE(mission_run.score.frames, 25);
+  EXPECT_THAT(unmet_requirements(GetParam(), mission_run.score), testing::IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Real, MissionHealth, testing::ValuesIn(real_mission_cases()), name_of_case);
-INSTANTIATE_TEST_SUITE_P(Lies, MissionHealth, testing::ValuesIn(lying_mission_cases()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(SensorFaults, MissionHealth, testing::ValuesIn(sensor_fault_cases()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Twin, MissionHealth, testing::ValuesIn(twin_mission_cases()), name_of_case);
 
 }  // namespace

@@ -88,8 +88,8 @@ MissionCase with_map(MissionCase mission_case, const MapChoice& map) {
   return mission_case;
 }
 
-MissionCase with_demand(MissionCase mission_case, const Demand& demand) {
-  mission_case.demand = demand;
+MissionCase with_requirements(MissionCase mission_case, const Requirements& requirements) {
+  mission_case.requirements = requirements;
   return mission_case;
 }
 
@@ -109,18 +109,19 @@ MapChoice wrong(const MapRecipe& recipe) {
   return choice;
 }
 
-constexpr Demand kHardlyDisturbed{true, 0.98};
-constexpr Demand kHonestOnly{false, 0.0};
+constexpr Requirements kHardlyDisturbed{true, 0.98};
+constexpr Requirements kNeverWrongOnly{false, 0.0};
 
 constexpr Imperfection kExact{CameraCondition::exact, 1};
 constexpr Imperfection kOtherError{CameraCondition::good, 2};
 
 // Cases in which map and mission do not share one good camera.
 std::vector<MissionCase> calibrated_otherwise() {
-  const MissionCase undisturbed = with_demand(in_hall("undisturbed", frames(150, 300), as_recorded), kHardlyDisturbed);
+  const MissionCase undisturbed =
+      with_requirements(in_hall("undisturbed", frames(150, 300), as_recorded), kHardlyDisturbed);
   MissionCase recalibrated = named(undisturbed, "hall_recalibrated");
   recalibrated.imperfection = kOtherError;
-  return {named(flown_with(undisturbed, kExact), "hall_undisturbed_exact"), recalibrated};
+  return {named(with_imperfection(undisturbed, kExact), "hall_undisturbed_exact"), recalibrated};
 }
 
 }  // namespace
@@ -129,7 +130,7 @@ std::vector<MissionCase> calibrated_otherwise() {
 // covers all of the second half.
 std::vector<MissionCase> real_mission_cases() {
   const FrameRange whole = frames(150, 300), six_seconds = frames(150, 270), four_seconds = frames(150, 230);
-  std::vector<MissionCase> cases = {with_demand(in_hall("undisturbed", whole, as_recorded), kHardlyDisturbed)};
+  std::vector<MissionCase> cases = {with_requirements(in_hall("undisturbed", whole, as_recorded), kHardlyDisturbed)};
   for (const NamedPlan& disturbance : passing_disturbances({1.5, 3.5})) {
     cases.push_back(in_hall(disturbance.name, six_seconds, disturbance.plan));
   }
@@ -139,7 +140,8 @@ std::vector<MissionCase> real_mission_cases() {
   cases.push_back(in_hall("dirt", four_seconds, degrade_all(dirt(40))));
   cases.push_back(in_hall("contrast_loss", four_seconds, degrade_all(contrast_loss(0.3))));
   cases.push_back(with_map(in_hall("half_the_points", whole, as_recorded), {kHall, 0.5}));
-  cases.push_back(with_demand(with_map(in_hall("wrong_map", six_seconds, as_recorded), wrong(kRealRoom)), kHonestOnly));
+  cases.push_back(
+      with_requirements(with_map(in_hall("wrong_map", six_seconds, as_recorded), wrong(kRealRoom)), kNeverWrongOnly));
   for (const MissionCase& other : calibrated_otherwise()) cases.push_back(other);
   return cases;
 }
@@ -148,7 +150,8 @@ namespace {
 
 std::vector<MissionCase> room_cases() {
   const FrameRange eight_seconds = seconds(11.0, 19.0);
-  std::vector<MissionCase> cases = {with_demand(in_room("undisturbed", eight_seconds, as_recorded), kHardlyDisturbed)};
+  std::vector<MissionCase> cases = {
+      with_requirements(in_room("undisturbed", eight_seconds, as_recorded), kHardlyDisturbed)};
   for (const NamedPlan& disturbance : passing_disturbances({2.0, 4.0})) {
     cases.push_back(in_room(disturbance.name, eight_seconds, disturbance.plan));
   }
@@ -158,9 +161,9 @@ std::vector<MissionCase> room_cases() {
   cases.push_back(in_room("kidnapped_in_the_dark", both_ends, kidnap({0.0, 4.0}, {32.0, 36.0}, 1.0)));
   cases.push_back(with_map(in_room("half_the_points", eight_seconds, as_recorded), {kTwinRoom, 0.5}));
   cases.push_back(
-      with_demand(with_map(in_room("wrong_map", eight_seconds, as_recorded), wrong(kTwinShed)), kHonestOnly));
-  cases.push_back(with_demand(
-      of_recording(in_room("fast_flight", seconds(5.0, 30.0), as_recorded), twin("V1_03_difficult")), kHonestOnly));
+      with_requirements(with_map(in_room("wrong_map", eight_seconds, as_recorded), wrong(kTwinShed)), kNeverWrongOnly));
+  cases.push_back(with_requirements(
+      of_recording(in_room("fast_flight", seconds(5.0, 30.0), as_recorded), twin("V1_03_difficult")), kNeverWrongOnly));
   return cases;
 }
 
@@ -182,7 +185,7 @@ std::vector<MissionCase> shed_cases() {
   cases.push_back(in_shed("kidnapped", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 0.0)));
   cases.push_back(in_shed("kidnapped_in_the_dark", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 1.0)));
   cases.push_back(
-      with_demand(with_map(in_shed("wrong_map", eight_seconds, as_recorded), wrong(kTwinRoom)), kHonestOnly));
+      with_requirements(with_map(in_shed("wrong_map", eight_seconds, as_recorded), wrong(kTwinRoom)), kNeverWrongOnly));
   for (const MissionCase& detour : detours()) cases.push_back(detour);
   for (const char* condition : {"dirt", "haze", "flat"}) {
     const std::string recording = std::string("cowshed_m2_") + condition;
@@ -202,10 +205,10 @@ std::vector<MissionCase> twin_mission_cases() {
 namespace {
 
 // A sensor fault and the doubt expected for it.
-struct Lie {
+struct SensorFault {
   const char* name;
   Plan plan;
-  std::optional<Doubt> doubt;
+  std::optional<DistrustReason> doubt;
   double focal_factor = 1.0;
 };
 
@@ -222,13 +225,13 @@ Plan clock_jumping(const Span& span, double jump_seconds) {
 }
 
 // frozen lasts for two seconds only, because recovery is tested as well.
-std::vector<Lie> lies() {
+std::vector<SensorFault> sensor_faults() {
   const auto always = [](const Degradation& degradation) { return degrade_all(degradation); };
-  return {{"frozen", degrade({1.5, 3.5}, frozen()), Doubt::frozen},
+  return {{"frozen", degrade({1.5, 3.5}, frozen()), DistrustReason::frozen},
           {"frozen_with_noise_1", degrade({1.5, 3.5}, frozen(1.0)), {}},
           {"frozen_with_noise_2", degrade({1.5, 3.5}, frozen(2.0)), {}},
           {"frozen_with_noise_4", degrade({1.5, 3.5}, frozen(4.0)), {}},
-          {"right_dead", degrade({1.5, 3.5}, right_exposed(0.0)), Doubt::right_camera},
+          {"right_dead", degrade({1.5, 3.5}, right_exposed(0.0)), DistrustReason::right_camera},
           {"right_half_as_bright", always(right_exposed(0.5)), {}},
           {"right_third_as_bright", always(right_exposed(1.0 / 3.0)), {}},
           {"right_noisy", degrade({1.5, 3.5}, right_noisy(80.0)), {}},
@@ -238,16 +241,16 @@ std::vector<Lie> lies() {
           {"left_late_by_2", degrade({1.5, 3.5}, left_late(2)), {}},
           {"right_always_late", always(right_late(1)), {}},
           {"left_always_late", always(left_late(1)), {}},
-          {"swapped", always(swapped()), Doubt::cameras_disagree},
+          {"swapped", always(swapped()), DistrustReason::cameras_disagree},
           {"mirrored", always(mirrored()), {}},
-          {"upside_down", always(upside_down()), Doubt::cameras_disagree},
+          {"upside_down", always(upside_down()), DistrustReason::cameras_disagree},
           {"frames_twice", stuttering(2), {}},
           {"frames_dropped", dropping(4), {}},
           {"clock_jump", clock_jumping({2.0, kToTheEnd}, 5.0), {}},
-          {"focal_5_percent_long", as_recorded, Doubt::calibration, 1.05},
-          {"focal_10_percent_long", as_recorded, Doubt::calibration, 1.1},
-          {"focal_20_percent_long", as_recorded, Doubt::calibration, 1.2},
-          {"focal_10_percent_short", as_recorded, Doubt::calibration, 0.9}};
+          {"focal_5_percent_long", as_recorded, DistrustReason::calibration, 1.05},
+          {"focal_10_percent_long", as_recorded, DistrustReason::calibration, 1.1},
+          {"focal_20_percent_long", as_recorded, DistrustReason::calibration, 1.2},
+          {"focal_10_percent_short", as_recorded, DistrustReason::calibration, 0.9}};
 }
 
 MissionCase without_map(MissionCase mission_case) {
@@ -257,25 +260,25 @@ MissionCase without_map(MissionCase mission_case) {
 }
 
 // Without map points a wrong focal length cannot be detected immediately.
-MissionCase told(MissionCase mission_case, const Lie& lie) {
-  mission_case.name += std::string("lie_") + lie.name;
-  mission_case.plan = lie.plan;
-  mission_case.imperfection.focal_factor = lie.focal_factor;
+MissionCase with_fault(MissionCase mission_case, const SensorFault& fault) {
+  mission_case.name += std::string("lie_") + fault.name;
+  mission_case.plan = fault.plan;
+  mission_case.imperfection.focal_factor = fault.focal_factor;
   const bool has_map = !mission_case.map.is_absent;
-  mission_case.demand = {.recovers = false, .is_never_wrong = has_map, .doubt = lie.doubt};
-  if (!has_map && lie.doubt == Doubt::calibration) mission_case.demand.doubt.reset();
+  mission_case.requirements = {.recovers = false, .is_never_wrong = has_map, .doubt = fault.doubt};
+  if (!has_map && fault.doubt == DistrustReason::calibration) mission_case.requirements.doubt.reset();
   return mission_case;
 }
 
 }  // namespace
 
-std::vector<MissionCase> lying_mission_cases() {
+std::vector<MissionCase> sensor_fault_cases() {
   std::vector<MissionCase> cases;
-  for (const Lie& lie : lies()) {
-    for (const MissionCase& honest :
+  for (const SensorFault& fault : sensor_faults()) {
+    for (const MissionCase& fault_free :
          {in_hall("", frames(150, 250), as_recorded), in_room("", seconds(25.0, 33.0), as_recorded)}) {
-      cases.push_back(told(honest, lie));
-      cases.push_back(told(without_map(honest), lie));
+      cases.push_back(with_fault(fault_free, fault));
+      cases.push_back(with_fault(without_map(fault_free), fault));
     }
   }
   return cases;

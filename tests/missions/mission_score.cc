@@ -96,16 +96,16 @@ std::optional<double> recovery_after(std::span<const MissionFrame> frames, Times
 
 }  // namespace
 
-std::optional<double> time_to_doubt(std::span<const MissionFrame> frames, Doubt doubt, Timestamp from) {
-  const auto told = std::ranges::find_if(frames, [&](const MissionFrame& frame) {
+std::optional<double> time_to_doubt(std::span<const MissionFrame> frames, DistrustReason doubt, Timestamp from) {
+  const auto found = std::ranges::find_if(frames, [&](const MissionFrame& frame) {
     return frame.report.time >= from && frame.report.health.doubt == doubt;
   });
-  if (told == frames.end()) return std::nullopt;
+  if (found == frames.end()) return std::nullopt;
   const auto posed = std::ranges::find_if(frames, [&](const MissionFrame& frame) {
     return frame.report.time >= from && frame.report.map_from_body.has_value();
   });
   const Timestamp begin = posed == frames.end() ? from : posed->report.time;
-  return std::max(0.0, to_seconds(told->report.time - begin));
+  return std::max(0.0, to_seconds(found->report.time - begin));
 }
 
 std::optional<double> position_error(const MissionFrame& frame, const std::optional<Similarity>& truth_from_map) {

@@ -38,7 +38,7 @@ MissionScore score(std::span<const MissionFrame> frames, const std::optional<Sim
 
 // Seconds from a time, or from the first pose after it, to the first frame with this doubt: before a pose there is
 // nothing to doubt. Empty if no frame has the doubt.
-std::optional<double> time_to_doubt(std::span<const MissionFrame> frames, Doubt doubt, Timestamp from);
+std::optional<double> time_to_doubt(std::span<const MissionFrame> frames, DistrustReason doubt, Timestamp from);
 
 // Position error, metres: empty without pose or truth, infinite on a map of another place.
 std::optional<double> position_error(const MissionFrame& frame, const std::optional<Similarity>& truth_from_map);

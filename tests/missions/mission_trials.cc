@@ -73,7 +73,7 @@ std::optional<TrialOptions> parse(std::span<char*> arguments) {
 std::vector<MissionCase> all_cases() {
   std::vector<MissionCase> cases = real_mission_cases();
   std::ranges::move(twin_mission_cases(), std::back_inserter(cases));
-  std::ranges::move(lying_mission_cases(), std::back_inserter(cases));
+  std::ranges::move(sensor_fault_cases(), std::back_inserter(cases));
   return cases;
 }
 
@@ -89,27 +89,27 @@ std::vector<MissionCase> chosen(const TrialOptions& options) {
   });
   for (MissionCase& mission_case : cases) {
     const Imperfection& own = mission_case.map.recipe.imperfection;
-    mission_case = flown_with(mission_case, {options.condition.value_or(own.condition),
-                                             options.calibration_seed.value_or(own.calibration_seed)});
+    mission_case = with_imperfection(mission_case, {options.condition.value_or(own.condition),
+                                                    options.calibration_seed.value_or(own.calibration_seed)});
   }
   return cases;
 }
 
-void write_trace(const FlownMission& flown, const fs::path& file) {
+void write_trace(const MissionRun& mission_run, const fs::path& file) {
   std::ofstream out(file);
   out << "frame,time_s,state,verdict,doubt,error_m,position_sigma_m,offline_expected,offline_matches,offline_inliers,"
          "online_inliers,inlier_share,spread,agreement_m,since_offline_m,brightness,contrast,sharpness,events\n";
-  for (std::size_t i = 0; i < flown.frames.size(); ++i) {
-    const FrameReport& report = flown.frames[i].report;
+  for (std::size_t i = 0; i < mission_run.frames.size(); ++i) {
+    const FrameReport& report = mission_run.frames[i].report;
     const Health& health = report.health;
     const ImageCondition image = health.image.value_or(ImageCondition{});
-    out << i << ',' << to_seconds(report.time - flown.frames.front().report.time) << ',' << to_string(report.state)
-        << ',' << to_string(health.verdict) << ',' << to_string(health.doubt) << ','
-        << position_error(flown.frames[i], flown.truth_from_map).value_or(-1.0) << ',' << health.position_sigma << ','
-        << health.offline_expected << ',' << health.offline_matches << ',' << health.offline_inliers << ','
-        << health.online_inliers << ',' << health.inlier_share << ',' << health.spread << ','
-        << (health.agreement ? health.agreement->translation : -1.0) << ',' << health.distance_since_offline << ','
-        << image.brightness << ',' << image.contrast << ',' << image.sharpness << ',';
+    out << i << ',' << to_seconds(report.time - mission_run.frames.front().report.time) << ','
+        << to_string(report.state) << ',' << to_string(health.verdict) << ',' << to_string(health.doubt) << ','
+        << position_error(mission_run.frames[i], mission_run.truth_from_map).value_or(-1.0) << ','
+        << health.position_sigma << ',' << health.offline_expected << ',' << health.offline_matches << ','
+        << health.offline_inliers << ',' << health.online_inliers << ',' << health.inlier_share << ',' << health.spread
+        << ',' << (health.agreement ? health.agreement->translation : -1.0) << ',' << health.distance_since_offline
+        << ',' << image.brightness << ',' << image.contrast << ',' << image.sharpness << ',';
     for (const SessionEvent event : report.events) out << to_string(event) << ' ';
     out << '\n';
   }
@@ -143,16 +143,17 @@ void print_row(const MissionCase& mission_case, const MissionScore& score) {
 }
 
 // Whether all requirements are met.
-bool fly_and_tell(const MissionCase& mission_case, const TrialOptions& options, KnownMaps& maps) {
+bool run_and_print(const MissionCase& mission_case, const TrialOptions& options, MapCache& maps) {
   if (const auto missing = missing_recording(mission_case)) {
     std::fprintf(stderr, "%s: skipped, %s\n", mission_case.name.c_str(), why_missing(*missing).c_str());
     return true;
   }
-  const FlownMission flown = fly(mission_case, maps);
-  print_row(mission_case, flown.score);
-  if (options.trace) write_trace(flown, *options.trace / (mission_case.name + ".csv"));
-  const std::vector<std::string> broken = broken_demands(mission_case, flown.score);
-  for (const std::string& demand : broken) std::fprintf(stderr, "%s: %s\n", mission_case.name.c_str(), demand.c_str());
+  const MissionRun mission_run = run_mission(mission_case, maps);
+  print_row(mission_case, mission_run.score);
+  if (options.trace) write_trace(mission_run, *options.trace / (mission_case.name + ".csv"));
+  const std::vector<std::string> broken = unmet_requirements(mission_case, mission_run.score);
+  for (const std::string& requirement : broken)
+    std::fprintf(stderr, "%s: %s\n", mission_case.name.c_str(), requirement.c_str());
   return broken.empty();
 }
 
@@ -191,10 +192,10 @@ int run(const TrialOptions& options) {
     for (const MissionCase& mission_case : cases) dump(mission_case, *options.dump);
     return EXIT_SUCCESS;
   }
-  KnownMaps maps;
+  MapCache maps;
   bool all_met = true;
   print_heading();
-  for (const MissionCase& mission_case : cases) all_met = fly_and_tell(mission_case, options, maps) && all_met;
+  for (const MissionCase& mission_case : cases) all_met = run_and_print(mission_case, options, maps) && all_met;
   return all_met ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -60,7 +60,7 @@ std::optional<std::string> what_is_missing(const StartCase& start_case) {
   return std::nullopt;
 }
 
-StartTotals run(const StartCase& start_case, const KnownMap& known,
+StartTotals run(const StartCase& start_case, const AlignedMap& known,
                 const std::function<void(const StartedMission&)>& each) {
   const RecordingName mission = barn(start_case.mission);
   const auto recording = open_recording(find(mission).value(), {}, start_case.open);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "known_map.h"
+#include "aligned_map.h"
 #include "mission_case.h"
 #include "start_run.h"
 
@@ -27,7 +27,7 @@ const std::vector<StartCase>& start_cases();
 std::optional<std::string> what_is_missing(const StartCase& start_case);
 
 // The missions have the camera of the map. Throws InputError for damaged recordings.
-StartTotals run(const StartCase& start_case, const KnownMap& known,
+StartTotals run(const StartCase& start_case, const AlignedMap& known,
                 const std::function<void(const StartedMission&)>& each);
 
 }  // namespace byre

@@ -1,10 +1,10 @@
 #include "start_run.h"
 
-#include "known_map.h"
+#include "aligned_map.h"
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/map/known_calibration.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/place_view.h"
 #include "byre/system/engine.h"
@@ -61,17 +61,16 @@ std::vector<MissionFrame> run_from(const Visit& visit, std::size_t first) {
   Engine engine(visit.calibration, options);
   const std::vector<Timestamp>& times = visit.recording.times();
   const MotionSamples& motion = visit.recording.motion();
-  if (const auto& axes = motion.left_from_gyroscope) engine.tell_gyroscope_mounting(*axes);
+  if (const auto& axes = motion.left_from_gyroscope) engine.set_gyro_extrinsics(*axes);
   const Timestamp begin = times[first];
   std::vector<MissionFrame> frames;
   std::size_t wheel = 0, velocity = 0, rate = 0, acceleration = 0;
   for (std::size_t i = first; i < times.size() && to_seconds(times[i] - begin) < visit.plan.length_s; ++i) {
     if (!visit.frames[i]) continue;
-    feed(motion.wheels, wheel, begin, times[i], [&](const auto& sample) { engine.tell_wheels(sample); });
-    feed(motion.velocities, velocity, begin, times[i], [&](const auto& sample) { engine.tell_wheels(sample); });
-    feed(motion.rates, rate, begin, times[i], [&](const auto& sample) { engine.tell_gyroscope(sample); });
-    feed(motion.accelerations, acceleration, begin, times[i],
-         [&](const auto& sample) { engine.tell_accelerometer(sample); });
+    feed(motion.wheels, wheel, begin, times[i], [&](const auto& sample) { engine.add_wheel_odometry(sample); });
+    feed(motion.velocities, velocity, begin, times[i], [&](const auto& sample) { engine.add_wheel_odometry(sample); });
+    feed(motion.rates, rate, begin, times[i], [&](const auto& sample) { engine.add_gyro(sample); });
+    feed(motion.accelerations, acceleration, begin, times[i], [&](const auto& sample) { engine.add_accel(sample); });
     const double seconds = to_seconds(times[i] - begin);
     const auto& cover = visit.plan.cover_s;
     const bool is_covered = cover && seconds >= cover->first && seconds < cover->second;
@@ -99,8 +98,8 @@ bool is_map_in_view(const Visit& visit, const Rig& rig, const MissionFrame& fram
   return in_view >= kPointsInView;
 }
 
-// Whether the map was in view for kMaxTimeToFind without a trusted pose.
-bool is_found_late(const Visit& visit, const Rig& rig, const std::vector<MissionFrame>& frames) {
+// Whether the map was in view for kMaxTimeToLocalise without a trusted pose.
+bool is_localised_late(const Visit& visit, const Rig& rig, const std::vector<MissionFrame>& frames) {
   std::optional<Timestamp> since;
   for (const MissionFrame& frame : frames) {
     if (frame.report.health.verdict == Verdict::trusted) return false;
@@ -109,7 +108,7 @@ bool is_found_late(const Visit& visit, const Rig& rig, const std::vector<Mission
       continue;
     }
     if (!since) since = frame.report.time;
-    if (to_seconds(frame.report.time - *since) > kMaxTimeToFind) return true;
+    if (to_seconds(frame.report.time - *since) > kMaxTimeToLocalise) return true;
   }
   return false;
 }
@@ -121,19 +120,19 @@ void StartTotals::add(const StartedMission& mission) {
   ++starts;
   frames += score.frames;
   with_pose += static_cast<int>(score.coverage * score.frames + 0.5);
-  trusted_wrong += score.wrongly_trusted;
-  trusted_right += static_cast<int>(score.trusted * score.frames + 0.5) - score.wrongly_trusted;
-  starts_wrong += score.wrongly_trusted > 0 ? 1 : 0;
-  found_late += mission.is_found_late ? 1 : 0;
+  wrongly_trusted += score.wrongly_trusted;
+  correctly_trusted += static_cast<int>(score.trusted * score.frames + 0.5) - score.wrongly_trusted;
+  starts_wrongly_trusted += score.wrongly_trusted > 0 ? 1 : 0;
+  localised_late += mission.is_localised_late ? 1 : 0;
   worst_trusted_error = std::max(worst_trusted_error, score.worst_trusted_error);
 }
 
 StartTotals run_starts(Recording& recording, const Trajectory& truth, std::shared_ptr<const OfflineMap> map,
                        const Similarity& truth_from_map, const Imperfection& imperfection, const StartPlan& plan,
                        const std::function<void(const StartedMission&)>& each) {
-  const Calibration told = told_calibration(recording.calibration(), imperfection);
-  const auto known = known_calibration(map->recordings(), told);
-  const Calibration& calibration = known ? known->calibration : told;
+  const Calibration nominal = nominal_calibration(recording.calibration(), imperfection);
+  const auto known = stored_calibration(map->recordings(), nominal);
+  const Calibration& calibration = known ? known->calibration : nominal;
   const Frames frames = extract_all(recording, calibration, imperfection);
   const Rig rig = Extractor(calibration, {}).rig();
   const Visit visit{recording, calibration, frames, truth, std::move(map), truth_from_map, plan};
@@ -147,7 +146,7 @@ StartTotals run_starts(Recording& recording, const Trajectory& truth, std::share
     StartedMission mission{seconds, run_from(visit, i), {}};
     if (mission.frames.empty()) continue;
     mission.score = score(mission.frames, truth_from_map, mission.frames.front().report.time);
-    mission.is_found_late = is_found_late(visit, rig, mission.frames);
+    mission.is_localised_late = is_localised_late(visit, rig, mission.frames);
     totals.add(mission);
     if (each) each(mission);
   }

@@ -26,8 +26,8 @@ struct StartedMission {
   double start_s = 0.0;  // seconds of the recording
   std::vector<MissionFrame> frames;
   MissionScore score;
-  // The map was in view for kMaxTimeToFind without a trusted pose.
-  bool is_found_late = false;
+  // The map was in view for kMaxTimeToLocalise without a trusted pose.
+  bool is_localised_late = false;
 };
 
 // Sums over all starts.
@@ -35,17 +35,17 @@ struct StartTotals {
   int starts = 0;
   int frames = 0;
   int with_pose = 0;
-  int trusted_right = 0;  // trusted frames with an error up to kMaxTrustedError
-  int trusted_wrong = 0;  // trusted frames with a larger error
-  int starts_wrong = 0;   // starts with such a frame
-  int found_late = 0;
+  int correctly_trusted = 0;       // trusted frames with an error up to kMaxTrustedError
+  int wrongly_trusted = 0;         // trusted frames with a larger error
+  int starts_wrongly_trusted = 0;  // starts with such a frame
+  int localised_late = 0;
   double worst_trusted_error = 0.0;  // metres
 
   void add(const StartedMission& mission);
 };
 
-inline constexpr double kMaxTimeToFind = 3.0;  // seconds
-inline constexpr int kPointsInView = 60;       // points seen by keyframes near the true pose: the map is in view
+inline constexpr double kMaxTimeToLocalise = 3.0;  // seconds
+inline constexpr int kPointsInView = 60;           // points seen by keyframes near the true pose: the map is in view
 
 // Starts missions with the recording's images, extracted once, and its wheels and gyroscope if opened. each: called
 // after each mission. Throws InputError for damaged data.

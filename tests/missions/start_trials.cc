@@ -15,7 +15,7 @@
 // Found late: the map was in view for 3 s without a trusted pose. Features of each frame are extracted once. Exit code:
 // 0 no wrongly trusted frames, 1 some, 2 bad usage or data.
 
-#include "known_map.h"
+#include "aligned_map.h"
 #include "start_cases.h"
 #include "start_run.h"
 
@@ -119,9 +119,9 @@ void write_trace(std::ofstream& out, const StartedMission& trial, const Similari
   }
 }
 
-void print_late_or_wrong(const StartedMission& mission) {
+void print_failure(const StartedMission& mission) {
   const MissionScore& score = mission.score;
-  if (score.wrongly_trusted == 0 && !mission.is_found_late) return;
+  if (score.wrongly_trusted == 0 && !mission.is_localised_late) return;
   fmt::print(
       "  start {:.2f} s: {:.0f} % of {} frames trusted, {} of them wrong, worst {:.2f} m, first trusted after {}\n",
       mission.start_s, 100.0 * score.trusted, score.frames, score.wrongly_trusted, score.worst_trusted_error,
@@ -135,7 +135,7 @@ StartTotals run_case(const StartOptions& options, const std::function<void(const
   StartCase start_case = *named;
   if (const auto missing = what_is_missing(start_case)) throw InputError(start_case.name, "cannot be run", *missing);
   start_case.map.recipe.imperfection.calibration_seed = options.calibration_seed;
-  return run(start_case, KnownMaps().get(start_case.map), each);
+  return run(start_case, MapCache().get(start_case.map), each);
 }
 
 StartTotals run_recording(const StartOptions& options, const std::function<void(const StartedMission&)>& each,
@@ -155,14 +155,14 @@ StartTotals run_recording(const StartOptions& options, const std::function<void(
 int run_trials(const StartOptions& options) {
   std::ofstream trace;
   if (options.trace) trace.open(*options.trace);
-  const StartTotals totals = options.start_case.empty() ? run_recording(options, print_late_or_wrong, trace)
-                                                        : run_case(options, print_late_or_wrong);
+  const StartTotals totals =
+      options.start_case.empty() ? run_recording(options, print_failure, trace) : run_case(options, print_failure);
   fmt::print(
       "{} starts, {} frames: {:.1f} % with a pose, {} trusted and correct, {} trusted and wrong in {} starts (worst "
       "{:.2f} m); {} starts localised late\n",
-      totals.starts, totals.frames, 100.0 * totals.with_pose / std::max(1, totals.frames), totals.trusted_right,
-      totals.trusted_wrong, totals.starts_wrong, totals.worst_trusted_error, totals.found_late);
-  return totals.trusted_wrong > 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+      totals.starts, totals.frames, 100.0 * totals.with_pose / std::max(1, totals.frames), totals.correctly_trusted,
+      totals.wrongly_trusted, totals.starts_wrongly_trusted, totals.worst_trusted_error, totals.localised_late);
+  return totals.wrongly_trusted > 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using std::chrono_literals::operator""s;
 TEST(KilledFeeder, DISABLED_Feeds) {
   FastPeer peer(std::atoi(std::getenv("BYRE_TEST_DOMAIN")));
   CameraFeed feed(peer);
-  ASSERT_TRUE(feed.is_heard());
+  ASSERT_TRUE(feed.has_subscriber());
   for (const ImageFrame& frame : Room::shared().frames()) {
     feed.send(frame);
     std::this_thread::sleep_for(50ms);
@@ -31,7 +31,7 @@ TEST_F(ByreNode, ContinuesAfterARestartOfTheCameraDriver) {
   NodeProcess node(folder_, mission(), domain_);
   const fs::path program = fs::read_symlink("/proc/self/exe");
   for (int attempt = 0; attempt < 2; ++attempt) {
-    odometry_.forget();
+    odometry_.clear();
     setenv("BYRE_TEST_DOMAIN", std::to_string(domain_).c_str(), 1);
     const pid_t feeder = fork();
     if (feeder == 0) {
@@ -39,11 +39,11 @@ TEST_F(ByreNode, ContinuesAfterARestartOfTheCameraDriver) {
             "--gtest_brief=1", nullptr);
       _exit(127);
     }
-    EXPECT_TRUE(odometry_.first()) << node.said();
+    EXPECT_TRUE(odometry_.first()) << node.stderr_output();
     kill(feeder, SIGKILL);
     waitpid(feeder, nullptr, 0);
     EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "no image for"));
-    diagnostics_.forget();
+    diagnostics_.clear();
   }
   EXPECT_EQ(node.stop(), 0);
 }
@@ -51,7 +51,7 @@ TEST_F(ByreNode, ContinuesAfterARestartOfTheCameraDriver) {
 TEST_F(ByreNode, ReportsFaultsOfTheCameras) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   NodeProcess node(folder_, mission(), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   ASSERT_TRUE(answer_to(feed_, odometry_, frames[0]));
 
   for (std::size_t i = 1; i < 8; ++i) {
@@ -60,13 +60,13 @@ TEST_F(ByreNode, ReportsFaultsOfTheCameras) {
   }
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "right images are missing"));
 
-  diagnostics_.forget();
+  diagnostics_.clear();
   for (std::size_t i = 8; i < 12; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i], 1h)) << "stamps increase";
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "stamps jumped by 3"));
   for (std::size_t i = 12; i < 16; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i])) << "stamps went back";
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "stamps jumped by -3"));
 
-  diagnostics_.forget();
+  diagnostics_.clear();
   for (int i = 0; i < 12; ++i) {
     ImageFrame frozen = frames[15];
     frozen.time += (i + 1) * 50ms;
@@ -75,12 +75,12 @@ TEST_F(ByreNode, ReportsFaultsOfTheCameras) {
   }
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "repeated image"));
 
-  diagnostics_.forget();
+  diagnostics_.clear();
   sensor_msgs::msg::Image broken = image_message(frames[12].left, frames[12].time, "left_optical");
   broken.height(100'000);
   feed_.send_left(broken);
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "are truncated or not whole pixels"));
-  diagnostics_.forget();
+  diagnostics_.clear();
   broken.height(1);
   broken.encoding("thermal");
   feed_.send_left(broken);
@@ -122,7 +122,7 @@ TEST_F(ByreNode, ReadsCameraInfoAndExtrinsicsFromTransforms) {
   auto* const right_info = peer_.writer("rt/right/camera_info", info_type(), kVolatile);
   auto* const fixed =
       peer_.writer("rt/tf_static", TypeSupport(new tf2_msgs::msg::TFMessagePubSubType), {true, true, 1});
-  ASSERT_TRUE(FastPeer::is_heard(left_info) && FastPeer::is_heard(right_info) && is_connected());
+  ASSERT_TRUE(FastPeer::has_subscriber(left_info) && FastPeer::has_subscriber(right_info) && is_connected());
   tf2_msgs::msg::TFMessage mounting;
   geometry_msgs::msg::TransformStamped transform;
   transform.header().frame_id("base_link");
@@ -144,7 +144,7 @@ TEST_F(ByreNode, ReadsCameraInfoAndExtrinsicsFromTransforms) {
     feed_.send(room.frames()[0]);
     is_first_tracked = odometry_.find([](const auto&) { return true; }, 1s).has_value();
   }
-  ASSERT_TRUE(is_first_tracked) << node.said();
+  ASSERT_TRUE(is_first_tracked) << node.stderr_output();
   for (std::size_t i = 1; i < 10; ++i) {
     const auto odometry = answer_to(feed_, odometry_, room.frames()[i]);
     ASSERT_TRUE(odometry.has_value()) << i;
@@ -167,8 +167,8 @@ TEST_F(ByreNode, ProcessesCompressedImagesOfOneCamera) {
                        "\nimages:\n  left: /left/compressed\n  right: ''\n  compressed: true\n  reliable: true\n" +
                        "calibration:\n  file: " + room.calibration().string() + "\n",
                    domain_);
-  ASSERT_TRUE(FastPeer::is_heard(left) && diagnostics_.first()) << node.said();
-  ASSERT_TRUE(settle(left, sensor_msgs::msg::CompressedImage()));
+  ASSERT_TRUE(FastPeer::has_subscriber(left) && diagnostics_.first()) << node.stderr_output();
+  ASSERT_TRUE(send_acknowledged(left, sensor_msgs::msg::CompressedImage()));
   std::vector<nav_msgs::msg::Odometry> answers;
   for (std::size_t i = 0; i < 20; ++i) {
     sensor_msgs::msg::CompressedImage message;
@@ -181,11 +181,11 @@ TEST_F(ByreNode, ProcessesCompressedImagesOfOneCamera) {
     const std::string time = "\"time_ns\":" + std::to_string(room.frames()[i].time.count()) + ",";
     ASSERT_TRUE(health.find([&](const auto& text) { return text.data().find(time) != std::string::npos; }))
         << "frame " << i << "\n"
-        << node.said();
+        << node.stderr_output();
     if (!expected.odometry_from_body) continue;
     const auto odometry =
         odometry_.find([&](const auto& answer) { return time_of(answer.header().stamp()) == room.frames()[i].time; });
-    ASSERT_TRUE(odometry.has_value()) << i << "\n" << node.said();
+    ASSERT_TRUE(odometry.has_value()) << i << "\n" << node.stderr_output();
     const Eigen::Vector3d position = vector_of(odometry->pose().pose().position());
     EXPECT_LT((position - expected.odometry_from_body->translation).norm(), 1e-6) << i;
     answers.push_back(*odometry);
@@ -200,7 +200,7 @@ TEST_F(ByreNode, SurvivesAFloodOfImages) {
   std::string unreliable = mission();
   unreliable.replace(unreliable.find("reliable: true"), 14, "reliable: false");
   NodeProcess node(folder_, unreliable, domain_);
-  ASSERT_TRUE(is_connected() && flood.is_heard()) << node.said();
+  ASSERT_TRUE(is_connected() && flood.has_subscriber()) << node.stderr_output();
   for (int i = 0; i < 2000; ++i) {  // a thousand per second
     ImageFrame frame = Room::shared().frames()[static_cast<std::size_t>(i) % 40];
     frame.time = std::chrono::milliseconds(i);

@@ -70,7 +70,7 @@ DataReader* FastPeer::reader(const std::string& name, TypeSupport type, const Pe
   return subscriber_->create_datareader(topic(name, type), qos, listener);
 }
 
-bool FastPeer::is_heard(DataWriter* writer) {
+bool FastPeer::has_subscriber(DataWriter* writer) {
   PublicationMatchedStatus matched;
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (std::chrono::steady_clock::now() < end) {

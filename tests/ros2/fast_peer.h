@@ -41,7 +41,7 @@ class FastPeer {
                                              const PeerQos& qos, eprosima::fastdds::dds::DataReaderListener* listener);
 
   // Whether the writer gets a reader within some seconds.
-  static bool is_heard(eprosima::fastdds::dds::DataWriter* writer);
+  static bool has_subscriber(eprosima::fastdds::dds::DataWriter* writer);
 
  private:
   eprosima::fastdds::dds::Topic* topic(const std::string& name, eprosima::fastdds::dds::TypeSupport type);
@@ -64,7 +64,7 @@ class Inbox : private eprosima::fastdds::dds::DataReaderListener {
     std::unique_lock lock(mutex_);
     std::size_t looked_at = 0;
     std::optional<Message> found;
-    came_.wait_for(lock, patience, [&] {
+    received_.wait_for(lock, patience, [&] {
       for (; !found && looked_at < messages_.size(); ++looked_at) {
         if (fits(messages_[looked_at])) found = messages_[looked_at];
       }
@@ -79,7 +79,7 @@ class Inbox : private eprosima::fastdds::dds::DataReaderListener {
     const std::lock_guard lock(mutex_);
     return messages_;
   }
-  void forget() {
+  void clear() {
     const std::lock_guard lock(mutex_);
     messages_.clear();
   }
@@ -92,12 +92,12 @@ class Inbox : private eprosima::fastdds::dds::DataReaderListener {
       if (!info.valid_data) continue;
       const std::lock_guard lock(mutex_);
       messages_.push_back(message);
-      came_.notify_all();
+      received_.notify_all();
     }
   }
 
   std::mutex mutex_;
-  std::condition_variable came_;
+  std::condition_variable received_;
   std::vector<Message> messages_;  // guarded by mutex_
   eprosima::fastdds::dds::DataReader* reader_;
 };

@@ -51,9 +51,10 @@ TEST_F(FleetTest, PublishesTheRobotPosition) {
   const MqttBroker broker(folder_, "byre", "secret");
   NodeProcess node(folder_, settings(broker), domain_);
   MqttListener fleet(broker, "uagv/#");
-  ASSERT_TRUE(fleet.find(kVisualization, [](const Json& message) { return !is_known(message); })) << node.said();
-  ASSERT_TRUE(is_connected()) << node.said();
-  ASSERT_TRUE(is_found(fleet)) << node.said();
+  ASSERT_TRUE(fleet.find(kVisualization, [](const Json& message) { return !is_known(message); }))
+      << node.stderr_output();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  ASSERT_TRUE(is_found(fleet)) << node.stderr_output();
   const auto shown = fleet.find(kVisualization, is_known);
   ASSERT_TRUE(shown);
   EXPECT_EQ(shown->at("agvPosition").at("mapId"), "room");
@@ -66,19 +67,20 @@ TEST_F(FleetTest, ReconnectsToTheBrokerWithoutDelayingFrames) {
   std::optional<MqttBroker> broker(std::in_place, folder_, "byre", "secret");
   const int port = broker->port();
   NodeProcess node(folder_, settings(*broker), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   {
     MqttListener fleet(*broker, "uagv/#");
     EXPECT_TRUE(fleet.find(kConnection, connection_is("ONLINE"))) << "is latched for late joiners";
   }
   broker->kill();
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_TRUE(answer_to(feed_, odometry_, Room::shared().frames()[i])) << "frame " << i << "\n" << node.said();
+    EXPECT_TRUE(answer_to(feed_, odometry_, Room::shared().frames()[i])) << "frame " << i << "\n"
+                                                                         << node.stderr_output();
   }
   broker.emplace(folder_, "byre", "secret", port);
   MqttListener fleet(*broker, "uagv/#");
-  EXPECT_TRUE(fleet.find(kConnection, connection_is("ONLINE"))) << node.said();
-  EXPECT_TRUE(fleet.find(kVisualization, [](const Json&) { return true; })) << node.said();
+  EXPECT_TRUE(fleet.find(kConnection, connection_is("ONLINE"))) << node.stderr_output();
+  EXPECT_TRUE(fleet.find(kVisualization, [](const Json&) { return true; })) << node.stderr_output();
   EXPECT_TRUE(node.is_running());
   kill(node.process(), SIGKILL);
   EXPECT_TRUE(fleet.find(kConnection, connection_is("CONNECTIONBROKEN"))) << "the broker publishes the will";
@@ -91,17 +93,17 @@ TEST_F(FleetTest, ReportsAnAbsentBroker) {
   broker.reset();
   NodeProcess node(folder_, given, domain_);
   EXPECT_TRUE(eventually([&] {
-    return node.said().find("mqtt: " + place + " cannot be reached: Connection refused (start the broker, ") !=
+    return node.stderr_output().find("mqtt: " + place + " cannot be reached: Connection refused (start the broker, ") !=
            std::string::npos;
-  })) << node.said();
+  })) << node.stderr_output();
 }
 
 TEST_F(FleetTest, ReportsARejectionByTheBroker) {
   const MqttBroker broker(folder_, "byre", "another");
   NodeProcess node(folder_, settings(broker), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
-  EXPECT_TRUE(eventually([&] { return node.said().find("refuses the connection") != std::string::npos; }))
-      << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  EXPECT_TRUE(eventually([&] { return node.stderr_output().find("refuses the connection") != std::string::npos; }))
+      << node.stderr_output();
 }
 
 }  // namespace

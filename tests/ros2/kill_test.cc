@@ -58,38 +58,38 @@ class KilledRobot {
   }
 
   // A session that ends normally: start, localise, drive, save, stop.
-  void live() {
+  void run() {
     const int before = sessions();
     begin();
-    ASSERT_NO_FATAL_FAILURE(find_itself());
+    ASSERT_NO_FATAL_FAILURE(localise());
     ASSERT_NO_FATAL_FAILURE(drive());
     const auto asked = Clock::now();
-    others_->command("save");
-    ASSERT_TRUE(is_saved(20s)) << node_->said();
+    peers_->command("save");
+    ASSERT_TRUE(is_saved(20s)) << node_->stderr_output();
     seconds_to_save_ = seconds_since(asked);
-    EXPECT_EQ(node_->stop(), 0) << node_->said();
-    look_at_files(before, true);
+    EXPECT_EQ(node_->stop(), 0) << node_->stderr_output();
+    check_files(before, true);
     EXPECT_FALSE(unfinished()) << "a save removes temporary files of earlier ones";
     std::printf("%s, not killed: ready after %.2f s, found after %d frames, saved in %.3f s, %d sessions\n",
-                task_.name.c_str(), seconds_to_begin_, frames_to_find_, seconds_to_save_, sessions());
+                task_.name.c_str(), seconds_to_begin_, frames_to_localise_, seconds_to_save_, sessions());
   }
 
   // A session that is killed; checks the files that it leaves.
-  void live_and_die(Moment moment) {
+  void run_and_kill(Moment moment) {
     const int before = sessions();
     const auto mark = mark_of_unfinished();
     begin();
     if (moment == Moment::loading) {
-      std::this_thread::sleep_for(up_to(1.2 * seconds_to_begin_));
+      std::this_thread::sleep_for(random_duration(1.2 * seconds_to_begin_));
     } else {
-      ASSERT_NO_FATAL_FAILURE(find_itself());
+      ASSERT_NO_FATAL_FAILURE(localise());
       ASSERT_NO_FATAL_FAILURE(drive());
       wait_for(moment);
     }
-    EXPECT_TRUE(node_->is_running()) << "it ended by itself\n" << node_->said();
+    EXPECT_TRUE(node_->is_running()) << "it ended by itself\n" << node_->stderr_output();
     node_.reset();
     const bool was_saved = is_saved(0s);
-    look_at_files(before, was_saved);
+    check_files(before, was_saved);
     const bool is_unfinished = mark_of_unfinished() && mark_of_unfinished() != mark;
     unfinished_ += is_unfinished ? 1 : 0;
     saved_ += was_saved ? 1 : 0;
@@ -103,7 +103,7 @@ class KilledRobot {
   const std::string& name() const { return task_.name; }
   int unfinished_files() const { return unfinished_; }  // kills that left a temporary file
   int saves() const { return saved_; }                  // saves that were answered before the kill
-  int most_frames_to_find() const { return most_frames_to_find_; }
+  int max_frames_to_localise() const { return max_frames_to_localise_; }
 
  private:
   static constexpr int kFramesToFind = 60;
@@ -121,7 +121,7 @@ class KilledRobot {
     }
     return newest;
   }
-  Clock::duration up_to(double seconds) {
+  Clock::duration random_duration(double seconds) {
     std::uniform_real_distribution<double> draw(0.0, seconds);
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(draw(random_)));
   }
@@ -130,56 +130,56 @@ class KilledRobot {
   int sessions() const {
     return fs::exists(task_.saved) ? static_cast<int>(load_map(task_.saved).recordings.size()) : 0;
   }
-  std::string formatted_find() const { return "found after " + std::to_string(frames_to_find_) + " frames, "; }
+  std::string formatted_find() const { return "found after " + std::to_string(frames_to_localise_) + " frames, "; }
 
   void begin() {
-    others_.emplace(domain_);
+    peers_.emplace(domain_);
     begin_ = Clock::now();
     node_.emplace(folder_, task_.config(), domain_);
     visit_ = static_cast<std::size_t>(draw(0, static_cast<int>(Visits::shared().count()) - 1));
   }
 
-  void find_itself() {
-    ASSERT_TRUE(others_->is_connected()) << node_->said();
+  void localise() {
+    ASSERT_TRUE(peers_->is_connected()) << node_->stderr_output();
     seconds_to_begin_ = seconds_since(begin_);
     constexpr int kKnown = 20;  // frames of a visit that even the smallest map covers
     for (int i = 0; i < kFramesToFind; ++i) {
       at_ = i % (2 * kKnown) < kKnown ? i % kKnown : kKnown - 1 - i % kKnown;  // forth and back
-      const auto answer = others_->answer_to(frame(), next_time());
-      ASSERT_TRUE(answer) << node_->said();
+      const auto answer = peers_->answer_to(frame(), next_time());
+      ASSERT_TRUE(answer) << node_->stderr_output();
       if (!answer->has_pose) continue;
-      frames_to_find_ = i + 1;
-      most_frames_to_find_ = std::max(most_frames_to_find_, frames_to_find_);
+      frames_to_localise_ = i + 1;
+      max_frames_to_localise_ = std::max(max_frames_to_localise_, frames_to_localise_);
       return;
     }
-    FAIL() << "it does not localise in " << kFramesToFind << " frames\n" << node_->said();
+    FAIL() << "it does not localise in " << kFramesToFind << " frames\n" << node_->stderr_output();
   }
 
   // Drives on, beyond the area of half_map().
   void drive() {
     for (const int end = draw(40, std::ssize(Visits::shared()[visit_]) - 1); at_ < end;) {
       ++at_;
-      ASSERT_TRUE(others_->answer_to(frame(), next_time())) << node_->said();
+      ASSERT_TRUE(peers_->answer_to(frame(), next_time())) << node_->stderr_output();
     }
   }
 
   void wait_for(Moment moment) {
     if (moment == Moment::tracking) {
-      others_->send(frame(), next_time());
-      std::this_thread::sleep_for(up_to(0.03));
+      peers_->send(frame(), next_time());
+      std::this_thread::sleep_for(random_duration(0.03));
       return;
     }
     // An earlier save may have left a shorter or older file.
     const auto mark = mark_of_unfinished();
-    others_->command("save");
+    peers_->command("save");
     if (moment == Moment::saving) {
-      std::this_thread::sleep_for(up_to(1.5 * seconds_to_save_));
+      std::this_thread::sleep_for(random_duration(1.5 * seconds_to_save_));
       return;
     }
     const auto asked = Clock::now();
-    while (mark_of_unfinished() == mark && !others_->answer("save", 0s) && seconds_since(asked) < 20.0)
+    while (mark_of_unfinished() == mark && !peers_->answer("save", 0s) && seconds_since(asked) < 20.0)
       std::this_thread::yield();
-    std::this_thread::sleep_for(up_to(0.003));
+    std::this_thread::sleep_for(random_duration(0.003));
   }
   std::optional<fs::file_time_type> mark_of_unfinished() const {
     const auto file = unfinished();
@@ -190,14 +190,14 @@ class KilledRobot {
   }
 
   bool is_saved(std::chrono::seconds patience) {
-    const auto answer = others_->answer("save", patience);
+    const auto answer = peers_->answer("save", patience);
     return answer && answer->at("done") == true;
   }
 
   const ImageFrame& frame() const { return Visits::shared()[visit_][static_cast<std::size_t>(at_)]; }
   Timestamp next_time() { return time_ += kFrameTime; }
 
-  void look_at_files(int sessions_before, bool was_saved) const {
+  void check_files(int sessions_before, bool was_saved) const {
     std::set<std::string> names;
     for (const auto& entry : fs::directory_iterator(task_.saved.parent_path())) {
       names.insert(entry.path().filename().string());
@@ -229,7 +229,7 @@ class KilledRobot {
   std::vector<std::byte> map_bytes_;
 
   std::mt19937_64 random_;
-  std::optional<Others> others_;
+  std::optional<NodePeers> peers_;
   std::optional<NodeProcess> node_;
   Clock::time_point begin_;
   std::size_t visit_ = 0;
@@ -237,8 +237,8 @@ class KilledRobot {
   Timestamp time_ = 1000s;
   double seconds_to_begin_ = 1.0;
   double seconds_to_save_ = 0.1;
-  int frames_to_find_ = 0;
-  int most_frames_to_find_ = 0;
+  int frames_to_localise_ = 0;
+  int max_frames_to_localise_ = 0;
   int unfinished_ = 0;
   int saved_ = 0;
 };
@@ -250,17 +250,17 @@ TEST_F(ByreNodeStaysUp, KeepsCompleteMapsWhenKilledAtAnyTime) {
   fs::copy_file(Visits::shared().half_map(), extended);
   std::array robots = {KilledRobot(folder_ / "extend", domain_, {"extend", extended, extended}, 1),
                        KilledRobot(folder_ / "mission", domain_, {"mission", Visits::shared().half_map(), beside}, 2)};
-  for (KilledRobot& robot : robots) ASSERT_NO_FATAL_FAILURE(robot.live());
+  for (KilledRobot& robot : robots) ASSERT_NO_FATAL_FAILURE(robot.run());
   for (int i = 0; i < kills; ++i) {
     const auto moment = static_cast<std::size_t>(i) % kMoments.size();
     const auto robot = (static_cast<std::size_t>(i) + static_cast<std::size_t>(i) / kMoments.size()) % robots.size();
     std::printf("%d: ", i + 1);
-    ASSERT_NO_FATAL_FAILURE(robots[robot].live_and_die(kMoments[moment])) << "kill " << i + 1;
+    ASSERT_NO_FATAL_FAILURE(robots[robot].run_and_kill(kMoments[moment])) << "kill " << i + 1;
   }
   for (KilledRobot& robot : robots) {
-    ASSERT_NO_FATAL_FAILURE(robot.live());
+    ASSERT_NO_FATAL_FAILURE(robot.run());
     std::printf("%s: found after %d frames at most, %d saves before kills, %d kills in the midst of writing\n",
-                robot.name().c_str(), robot.most_frames_to_find(), robot.saves(), robot.unfinished_files());
+                robot.name().c_str(), robot.max_frames_to_localise(), robot.saves(), robot.unfinished_files());
   }
 }
 

@@ -84,16 +84,16 @@ class ByreNodeOnWheels : public ByreNode {
  protected:
   // Tests dead reckoning without images. message_of: wheel odometry at a time, as a message of the given type.
   template <typename Message>
-  void expect_to_go_on_in_the_dark(const TypeSupport& type, Message (*message_of)(Timestamp));
+  void expect_dead_reckoning(const TypeSupport& type, Message (*message_of)(Timestamp));
 };
 
 template <typename Message>
-void ByreNodeOnWheels::expect_to_go_on_in_the_dark(const TypeSupport& type, Message (*message_of)(Timestamp)) {
+void ByreNodeOnWheels::expect_dead_reckoning(const TypeSupport& type, Message (*message_of)(Timestamp)) {
   const DriveThroughRoom drive;
   auto* const wheels = peer_.writer("rt/wheels", type, kVolatile);
   NodeProcess node(folder_, mapping() + "motion:\n  wheels: /wheels\n", domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
-  ASSERT_TRUE(FastPeer::is_heard(wheels) && settle(wheels, Message()));
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  ASSERT_TRUE(FastPeer::has_subscriber(wheels) && send_acknowledged(wheels, Message()));
   std::vector<Eigen::Vector3d> positions;
   for (std::size_t i = 0; i < drive.frames().size(); ++i) {
     const Timestamp time = drive.frames()[i].time;
@@ -102,7 +102,7 @@ void ByreNodeOnWheels::expect_to_go_on_in_the_dark(const TypeSupport& type, Mess
       wheels->write(&message);
     }
     const auto odometry = answer_to(feed_, odometry_, drive.frames()[i]);
-    ASSERT_TRUE(odometry) << "frame " << i << "\n" << node.said();
+    ASSERT_TRUE(odometry) << "frame " << i << "\n" << node.stderr_output();
     positions.push_back(vector_of(odometry->pose().pose().position()));
   }
   const double driven = (drive.position(kFrames - 1) - drive.position(kFirstDark - 1)).norm();
@@ -112,11 +112,11 @@ void ByreNodeOnWheels::expect_to_go_on_in_the_dark(const TypeSupport& type, Mess
 }
 
 TEST_F(ByreNodeOnWheels, BridgesDarknessByOdometry) {
-  expect_to_go_on_in_the_dark(TypeSupport(new nav_msgs::msg::OdometryPubSubType), wheel_message);
+  expect_dead_reckoning(TypeSupport(new nav_msgs::msg::OdometryPubSubType), wheel_message);
 }
 
 TEST_F(ByreNodeOnWheels, BridgesDarknessByVelocities) {
-  expect_to_go_on_in_the_dark(TypeSupport(new geometry_msgs::msg::TwistStampedPubSubType), twist_message);
+  expect_dead_reckoning(TypeSupport(new geometry_msgs::msg::TwistStampedPubSubType), twist_message);
 }
 
 }  // namespace

@@ -38,9 +38,9 @@ bool answers(int port) {
   return !error;
 }
 
-bool becomes_so(const std::function<bool()>& is_so, std::chrono::milliseconds patience) {
+bool wait_until(const std::function<bool()>& condition, std::chrono::milliseconds patience) {
   const auto end = std::chrono::steady_clock::now() + patience;
-  while (!is_so()) {
+  while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
@@ -49,8 +49,8 @@ bool becomes_so(const std::function<bool()>& is_so, std::chrono::milliseconds pa
 
 }  // namespace
 
-bool eventually(const std::function<bool()>& is_so) {
-  return becomes_so(is_so, std::chrono::minutes(1));
+bool eventually(const std::function<bool()>& condition) {
+  return wait_until(condition, std::chrono::minutes(1));
 }
 
 bool MqttBroker::is_installed() {
@@ -106,14 +106,14 @@ MqttListener::~MqttListener() {
   mosquitto_destroy(client_);
 }
 
-std::optional<nlohmann::json> MqttListener::find(const std::string& topic, const Condition& is_so,
+std::optional<nlohmann::json> MqttListener::find(const std::string& topic, const Condition& condition,
                                                  std::chrono::milliseconds patience) {
   std::optional<nlohmann::json> found;
-  becomes_so(
+  wait_until(
       [&] {
         const std::lock_guard lock(mutex_);
         for (const auto& [name, message] : messages_) {
-          if (!found && name == topic && is_so(message)) found = message;
+          if (!found && name == topic && condition(message)) found = message;
         }
         return found.has_value();
       },

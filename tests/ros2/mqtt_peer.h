@@ -17,7 +17,7 @@ struct mosquitto;
 namespace byre::testing_ros2 {
 
 // Polls until the condition holds, for up to a minute.
-bool eventually(const std::function<bool()>& is_so);
+bool eventually(const std::function<bool()>& condition);
 
 // An MQTT broker on the loopback interface with one user. The destructor kills it.
 class MqttBroker {
@@ -51,7 +51,7 @@ class MqttListener {
   MqttListener& operator=(const MqttListener&) = delete;
 
   // The first message of a topic that fulfils the condition, waiting for it up to patience.
-  std::optional<nlohmann::json> find(const std::string& topic, const Condition& is_so,
+  std::optional<nlohmann::json> find(const std::string& topic, const Condition& condition,
                                      std::chrono::milliseconds patience = std::chrono::minutes(1));
 
  private:

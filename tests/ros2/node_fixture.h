@@ -40,13 +40,13 @@ inline void send_text(eprosima::fastdds::dds::DataWriter* writer, const std::str
 
 // Waits until node and peer have discovered each other. Endpoints are announced in order of creation: a node that
 // answers a command has discovered the cameras' writers, and a peer that receives the answer gets all other messages.
-inline bool have_found_one_another(CameraFeed& feed, Texts& events, eprosima::fastdds::dds::DataWriter* command) {
-  if (!feed.is_heard()) return false;
+inline bool have_discovered_each_other(CameraFeed& feed, Texts& events, eprosima::fastdds::dds::DataWriter* command) {
+  if (!feed.has_subscriber()) return false;
   for (int attempt = 0; attempt < 100; ++attempt) {
     send_text(command, "hello");
     if (events.find([](const auto& event) { return event.data().find("hello") != std::string::npos; },
                     std::chrono::seconds(1)))
-      return feed.settle();
+      return feed.send_acknowledged();
   }
   return false;
 }
@@ -115,7 +115,7 @@ class ByreNode : public testing::Test {
     return config("  map: " + Room::shared().map().string() + "\n", more);
   }
 
-  bool is_connected() { return diagnostics_.first() && have_found_one_another(feed_, events_, command_); }
+  bool is_connected() { return diagnostics_.first() && have_discovered_each_other(feed_, events_, command_); }
   void command(const std::string& text) { send_text(command_, text); }
 
   // Sends a frame and waits for its odometry message.

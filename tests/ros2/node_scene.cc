@@ -58,7 +58,7 @@ bool NodeProcess::is_running() const {
   return process_ > 0 && kill(process_, 0) == 0 && waitpid(process_, nullptr, WNOHANG) == 0;
 }
 
-std::string NodeProcess::said() const {
+std::string NodeProcess::stderr_output() const {
   std::ostringstream text;
   text << std::ifstream(folder_ / "said.txt").rdbuf();
   return text.str();
@@ -110,14 +110,14 @@ CameraFeed::CameraFeed(FastPeer& peer, bool is_reliable) {
   right_ = peer.writer("rt/right/image_raw", type(), qos);
 }
 
-bool CameraFeed::is_heard() const {
-  return FastPeer::is_heard(left_) && FastPeer::is_heard(right_);
+bool CameraFeed::has_subscriber() const {
+  return FastPeer::has_subscriber(left_) && FastPeer::has_subscriber(right_);
 }
 
-bool CameraFeed::settle() {
+bool CameraFeed::send_acknowledged() {
   sensor_msgs::msg::Image image = image_message({1, 1, {0}}, {}, "left_optical");
   image.encoding("none");
-  return testing_ros2::settle(left_, image) && testing_ros2::settle(right_, image);
+  return testing_ros2::send_acknowledged(left_, image) && testing_ros2::send_acknowledged(right_, image);
 }
 
 void CameraFeed::send_left(const ImageFrame& frame, Timestamp later) {

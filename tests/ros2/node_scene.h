@@ -28,7 +28,7 @@ class NodeProcess {
 
   int stop();  // by SIGTERM; the exit code, or -1 if it ended otherwise
   bool is_running() const;
-  std::string said() const;  // output on stderr
+  std::string stderr_output() const;  // output on stderr
   pid_t process() const { return process_; }
 
  private:
@@ -39,7 +39,7 @@ class NodeProcess {
 // Sends a dummy message and waits for its acknowledgment: Cyclone DDS drops messages of a reliable writer before its
 // first heartbeat.
 template <typename Message>
-bool settle(eprosima::fastdds::dds::DataWriter* writer, Message message) {
+bool send_acknowledged(eprosima::fastdds::dds::DataWriter* writer, Message message) {
   writer->write(&message);
   return writer->wait_for_acknowledgments(eprosima::fastrtps::Duration_t(20, 0)) == ReturnCode_t::RETCODE_OK;
 }
@@ -59,8 +59,8 @@ class CameraFeed {
  public:
   explicit CameraFeed(FastPeer& peer, bool is_reliable = true);
 
-  bool is_heard() const;
-  bool settle();  // settles both writers with dummy images
+  bool has_subscriber() const;
+  bool send_acknowledged();  // settles both writers with dummy images
   void send(const ImageFrame& frame, Timestamp later = {}) {
     send_left(frame, later);
     if (frame.right) send_right(frame, later);

@@ -23,10 +23,10 @@ TEST_F(ByreNode, PublishesThePosesOfSlam) {
       room.tracked(Slam::mapping(read_calibration(room.calibration()), Room::options()));
   Clouds points(peer_, "rt/byre/points", kLatched);
   NodeProcess node(folder_, mapping(), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const auto odometry = answer_to(feed_, odometry_, room.frames()[i]);
-    ASSERT_TRUE(odometry.has_value()) << "frame " << i << "\n" << node.said();
+    ASSERT_TRUE(odometry.has_value()) << "frame " << i << "\n" << node.stderr_output();
     ASSERT_TRUE(expected[i].odometry_from_body.has_value());
     const Eigen::Vector3d position = vector_of(odometry->pose().pose().position());
     EXPECT_LT((position - expected[i].odometry_from_body->translation).norm(), 1e-6) << "frame " << i;
@@ -46,14 +46,14 @@ TEST_F(ByreNode, PublishesTheMissionPosesOfSlam) {
   Transforms transforms(peer_, "rt/tf", kVolatile);
   Texts health(peer_, "rt/byre/health", kVolatile);
   NodeProcess node(folder_, mission(), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   for (const FrameReport& report : expected) {
     const auto index = static_cast<std::size_t>(&report - expected.data());
     feed_.send(room.frames()[index]);
     const std::string time = "\"time_ns\":" + std::to_string(report.time.count());
     ASSERT_TRUE(health.find([&](const auto& text) { return text.data().find(time + ",") != std::string::npos; }))
         << "frame " << index << "\n"
-        << node.said();
+        << node.stderr_output();
   }
   int compared = 0;
   for (const FrameReport& report : expected) {
@@ -92,7 +92,7 @@ TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
   stored.plan = PlanRegistration{"plan.yaml", {1.0, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 10.0}}}};
   save_map(stored, folder_ / "on_plan.byre");
   NodeProcess node(folder_, config("  map: on_plan.byre\n  plan: plan.yaml\n"), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   for (const ImageFrame& frame : room.frames()) {
     feed_.send(frame);
     std::this_thread::sleep_for(30ms);
@@ -100,7 +100,7 @@ TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
   Poses early(peer_, "rt/byre/pose", kLatched);
   ASSERT_TRUE(early.find([&](const auto& message) {
     return time_of(message.header().stamp()) == room.frames().back().time;
-  })) << node.said();
+  })) << node.stderr_output();
 
   FastPeer late(domain_);
   Poses poses(late, "rt/byre/pose", kLatched);
@@ -144,7 +144,7 @@ TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
 TEST_F(ByreNode, ExecutesCommandsAndRejectsOtherFolders) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   NodeProcess node(folder_, mission(), domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   ASSERT_TRUE(answer_to(feed_, odometry_, frames[0]));
   const auto answer = [&](const std::string& text) {
     command(text);
@@ -159,11 +159,11 @@ TEST_F(ByreNode, ExecutesCommandsAndRejectsOtherFolders) {
   command("save\n<3>fake");
   EXPECT_TRUE(events_.find([](const auto& event) {
     return event.data().find(R"("command":"save\\n<3>fake")") != std::string::npos;
-  })) << node.said();
-  EXPECT_EQ(node.said().find("\n<3>fake"), std::string::npos) << node.said();
+  })) << node.stderr_output();
+  EXPECT_EQ(node.stderr_output().find("\n<3>fake"), std::string::npos) << node.stderr_output();
   command(std::string(1 << 20, 'a'));  // longer than the limit of commands
   EXPECT_EQ(answer("load room.byre").at("done"), true);
-  EXPECT_EQ(node.said().find("aaa"), std::string::npos);
+  EXPECT_EQ(node.stderr_output().find("aaa"), std::string::npos);
   EXPECT_EQ(answer("relocalise").at("done"), true);
   for (std::size_t i = 1; i < 6; ++i) EXPECT_TRUE(answer_to(feed_, odometry_, frames[i])) << i;
   EXPECT_EQ(node.stop(), 0);
@@ -176,23 +176,24 @@ TEST_F(ByreNode, KeepsThePreviousMapAndUsesItIfTheMapIsDamaged) {
   const std::string extend = config("  task: extend\n  map: " + map.string() + "\n  save: " + map.string() + "\n");
   {
     NodeProcess node(folder_, extend, domain_);
-    ASSERT_TRUE(is_connected()) << node.said();
-    for (std::size_t i = 0; i < 10; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, frames[i])) << node.said();
+    ASSERT_TRUE(is_connected()) << node.stderr_output();
+    for (std::size_t i = 0; i < 10; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, frames[i])) << node.stderr_output();
     command("save");
     ASSERT_TRUE(events_.find([](const auto& event) { return event.data().find("\"saved ") != std::string::npos; }));
     EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), fs::file_size(Room::shared().map()));
-    EXPECT_EQ(node.stop(), 0) << node.said();
+    EXPECT_EQ(node.stop(), 0) << node.stderr_output();
   }
   fs::resize_file(map, fs::file_size(map) / 2);
   const auto kept = fs::file_size(folder_ / "room.previous.byre");
-  odometry_.forget();
-  events_.forget();
+  odometry_.clear();
+  events_.clear();
   NodeProcess node(folder_, extend, domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
-  EXPECT_THAT(node.said(), HasSubstr("room.byre: ")) << "fault of the map";
-  EXPECT_THAT(node.said(), HasSubstr("the previous map is used, " + (folder_ / "room.previous.byre").string()));
-  EXPECT_TRUE(answer_to(feed_, odometry_, frames[10], std::chrono::seconds(60))) << node.said();
-  EXPECT_EQ(node.stop(), 0) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  EXPECT_THAT(node.stderr_output(), HasSubstr("room.byre: ")) << "fault of the map";
+  EXPECT_THAT(node.stderr_output(),
+              HasSubstr("the previous map is used, " + (folder_ / "room.previous.byre").string()));
+  EXPECT_TRUE(answer_to(feed_, odometry_, frames[10], std::chrono::seconds(60))) << node.stderr_output();
+  EXPECT_EQ(node.stop(), 0) << node.stderr_output();
   EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), kept) << "a damaged map does not replace it";
 }
 
@@ -203,10 +204,10 @@ TEST_F(ByreNode, RelocalisesIfAnInitialPoseContradictsItsPose) {
   auto* const hint = peer_.writer("rt/initialpose",
                                   TypeSupport(new geometry_msgs::msg::PoseWithCovarianceStampedPubSubType), kVolatile);
   NodeProcess node(folder_, mission(), domain_);
-  ASSERT_TRUE(is_connected() && FastPeer::is_heard(hint)) << node.said();
+  ASSERT_TRUE(is_connected() && FastPeer::has_subscriber(hint)) << node.stderr_output();
   geometry_msgs::msg::PoseWithCovarianceStamped message;
   const auto answer_to_hint = [&](double x, const std::string& frame = "map") {
-    events_.forget();
+    events_.clear();
     message.header().frame_id(frame);
     message.pose().pose().position().x(x);
     hint->write(&message);
@@ -216,21 +217,23 @@ TEST_F(ByreNode, RelocalisesIfAnInitialPoseContradictsItsPose) {
   };
   EXPECT_THAT(answer_to_hint(0.0), HasSubstr("searching within 3.0 m of it for 10 s, then in the whole map"));
   EXPECT_THAT(answer_to_hint(0.0, "odom"), HasSubstr("publish it in 'map'"));
-  for (std::size_t i = 0; i < 20; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.said();
-  ASSERT_TRUE(poses.first()) << node.said();
+  for (std::size_t i = 0; i < 20; ++i)
+    ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.stderr_output();
+  ASSERT_TRUE(poses.first()) << node.stderr_output();
   EXPECT_THAT(answer_to_hint(0.0), HasSubstr("agrees with the current pose"));
   const auto before = odometry_.all().back();
   message.pose().pose() = poses.all().back().pose().pose();
   EXPECT_THAT(answer_to_hint(message.pose().pose().position().x() + 2.5), HasSubstr("relocalising in"));
   const auto after = answer_to(feed_, odometry_, room.frames()[20]);
-  ASSERT_TRUE(after.has_value()) << node.said();
+  ASSERT_TRUE(after.has_value()) << node.stderr_output();
   EXPECT_LT((vector_of(after->pose().pose().position()) - vector_of(before.pose().pose().position())).norm(), 0.1)
       << "odometry does not jump";
-  poses.forget();
-  for (std::size_t i = 21; i < 28; ++i) ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.said();
+  poses.clear();
+  for (std::size_t i = 21; i < 28; ++i)
+    ASSERT_TRUE(answer_to(feed_, odometry_, room.frames()[i])) << node.stderr_output();
   EXPECT_TRUE(poses.first()) << "found near the hint";
   EXPECT_THAT(answer_to_hint(50.0), HasSubstr("relocalising in"));
-  poses.forget();
+  poses.clear();
   for (std::size_t i = 28; i < 36; ++i) {
     feed_.send(room.frames()[i]);
     const std::string time = "\"time_ns\":" + std::to_string(room.frames()[i].time.count()) + ",";
@@ -261,7 +264,7 @@ TEST_F(ByreNode, ProcessesARecordingAtFullSpeed) {
                    "slam:\n  task: map\n  workers: repeatable\n  save: made.byre\nimages:\n  reliable: true\n"
                    "  pair_wait: 1\ncalibration:\n  file: camchain.yaml\n",
                    domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   std::vector<double> milliseconds;
   for (int i = 0; i < kFrames; ++i) {
     const auto frame = recording->read(i);
@@ -269,7 +272,7 @@ TEST_F(ByreNode, ProcessesARecordingAtFullSpeed) {
     const auto begin = std::chrono::steady_clock::now();
     const auto odometry = answer_to(feed_, odometry_, *frame);
     milliseconds.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-    ASSERT_TRUE(odometry.has_value()) << "frame " << i << "\n" << node.said();
+    ASSERT_TRUE(odometry.has_value()) << "frame " << i << "\n" << node.stderr_output();
     const FrameReport expected = slam.process(view_of(*frame));
     const Eigen::Vector3d position = vector_of(odometry->pose().pose().position());
     EXPECT_LT((position - expected.odometry_from_body->translation).norm(), 1e-6) << "frame " << i;

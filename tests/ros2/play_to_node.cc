@@ -26,7 +26,7 @@ double milliseconds(Clock::duration time) {
 class Answers : private eprosima::fastdds::dds::DataReaderListener {
  public:
   struct Answer {
-    Clock::time_point came{};
+    Clock::time_point received{};
     Eigen::Vector3d position;
   };
 
@@ -57,16 +57,16 @@ class Answers : private eprosima::fastdds::dds::DataReaderListener {
 };
 
 // Processor time of this process, or of its terminated children (getrusage(2)).
-double processor_seconds(int of_whom) {
+double processor_seconds(int who) {
   rusage usage{};
-  getrusage(of_whom, &usage);
+  getrusage(who, &usage);
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-void tell(const char* what, std::vector<double> values) {
+void print_statistics(const char* what, std::vector<double> values) {
   if (values.empty()) return;
   std::ranges::sort(values);
   double sum = 0.0;
@@ -100,7 +100,8 @@ Played play(const Playing& playing, const std::string& workers) {
       "slam:\n  workers: " + workers + "\n  map: " + playing.map.string() +
           "\nimages:\n  reliable: true\n  pair_wait: 0.2\ncalibration:\n  file: " + playing.calibration.string() + "\n",
       domain);
-  if (!feed.is_heard() || !feed.settle()) throw std::runtime_error("the node does not hear: " + node.said());
+  if (!feed.has_subscriber() || !feed.send_acknowledged())
+    throw std::runtime_error("the node does not hear: " + node.stderr_output());
   std::map<Timestamp, Clock::time_point> sent;
   Clock::time_point next = Clock::now();
   for (const ImageFrame& frame : playing.frames) {
@@ -113,7 +114,8 @@ Played play(const Playing& playing, const std::string& workers) {
   Played played{{}, answers.all(), 0.0};
   node.stop();
   played.node_seconds = processor_seconds(RUSAGE_CHILDREN) - before;
-  for (const auto& [time, answer] : played.answers) played.latency_ms.push_back(milliseconds(answer.came - sent[time]));
+  for (const auto& [time, answer] : played.answers)
+    played.latency_ms.push_back(milliseconds(answer.received - sent[time]));
   return played;
 }
 
@@ -171,8 +173,8 @@ int run(const fs::path& recording_path, const fs::path& map, double rate) {
 
   const Tracked live = track(playing, Workers::live);
   const Played played_live = play(playing, "live");
-  tell("process, in one's own program", live.process_ms);
-  tell("image sent to odometry received", played_live.latency_ms);
+  print_statistics("process, in one's own program", live.process_ms);
+  print_statistics("image sent to odometry received", played_live.latency_ms);
   const double seconds = static_cast<double>(playing.frames.size()) / rate;
   std::printf("%-34s %.1f s in one's own program, %.1f s in the node: %.1f %% of a core more\n", "processor time",
               live.seconds, played_live.node_seconds, 100.0 * (played_live.node_seconds - live.seconds) / seconds);

@@ -21,7 +21,7 @@ class Client {
         requests_(peer.writer("rq/byre/" + service + "Request", TypeSupport(new RequestType), kVolatile)),
         replies_(peer, "rr/byre/" + service + "Reply", kVolatile) {}
 
-  bool is_heard() const { return FastPeer::is_heard(requests_); }
+  bool has_subscriber() const { return FastPeer::has_subscriber(requests_); }
 
   std::optional<Response> call(Request request) {
     request.client(id_);
@@ -56,12 +56,13 @@ TEST_F(ByreNode, AnswersServicesToTheirCallers) {
   Trigger save(peer_, "save", 0x1234567890abcdef), relocalise(peer_, "relocalise", 2), other(peer_, "save", 3);
   LoadMap load(peer_, "load_map", 4);
   SetInitialPose hint(peer_, "set_initial_pose", 5);
-  ASSERT_TRUE(is_connected() && save.is_heard() && relocalise.is_heard() && load.is_heard() && hint.is_heard())
-      << node.said();
-  ASSERT_TRUE(answer_to(feed_, odometry_, frames[0])) << node.said();
+  ASSERT_TRUE(is_connected() && save.has_subscriber() && relocalise.has_subscriber() && load.has_subscriber() &&
+              hint.has_subscriber())
+      << node.stderr_output();
+  ASSERT_TRUE(answer_to(feed_, odometry_, frames[0])) << node.stderr_output();
 
   const auto saved = save.call({});
-  ASSERT_TRUE(saved.has_value()) << node.said();
+  ASSERT_TRUE(saved.has_value()) << node.stderr_output();
   EXPECT_FALSE(saved->success());
   EXPECT_THAT(saved->message(), HasSubstr("set slam.save"));
   EXPECT_TRUE(other.call({}).has_value()) << "another client";
@@ -69,18 +70,18 @@ TEST_F(ByreNode, AnswersServicesToTheirCallers) {
   nav2_msgs::srv::LoadMap_Request map;
   map.map_url("../secret");
   const auto refused = load.call(map);
-  EXPECT_TRUE(refused && refused->result() == 255) << node.said();
+  EXPECT_TRUE(refused && refused->result() == 255) << node.stderr_output();
   map.map_url("room.byre");
   const auto loaded = load.call(map);
-  EXPECT_TRUE(loaded && loaded->result() == 0) << node.said();
+  EXPECT_TRUE(loaded && loaded->result() == 0) << node.stderr_output();
 
   nav2_msgs::srv::SetInitialPose_Request pose;
   pose.pose().header().frame_id("map");
   EXPECT_TRUE(hint.call(pose).has_value());
-  EXPECT_THAT(node.said(), HasSubstr("searching within 3.0 m of it"));
+  EXPECT_THAT(node.stderr_output(), HasSubstr("searching within 3.0 m of it"));
   const auto looked = relocalise.call({});
-  EXPECT_TRUE(looked && looked->success()) << node.said();
-  EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.said();
+  EXPECT_TRUE(looked && looked->success()) << node.stderr_output();
+  EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.stderr_output();
   EXPECT_EQ(node.stop(), 0);
 }
 
@@ -88,17 +89,17 @@ TEST_F(ByreNode, PausesMappingByServiceAndByCommand) {
   const std::vector<ImageFrame>& frames = Room::shared().frames();
   NodeProcess node(folder_, kOffered + mapping(), domain_);
   SetBool pause(peer_, "pause_mapping", 1);
-  ASSERT_TRUE(is_connected() && pause.is_heard()) << node.said();
+  ASSERT_TRUE(is_connected() && pause.has_subscriber()) << node.stderr_output();
   std_srvs::srv::SetBool_Request is_paused;
   is_paused.data(true);
   const auto paused = pause.call(is_paused);
-  ASSERT_TRUE(paused && paused->success()) << node.said();
+  ASSERT_TRUE(paused && paused->success()) << node.stderr_output();
   feed_.send(frames[0]);
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: localisation", "no pose")) << "no map begins";
   command("resume mapping");
   EXPECT_TRUE(
       events_.find([](const auto& event) { return event.data().find("mapping is resumed") != std::string::npos; }));
-  EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.said();
+  EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.stderr_output();
   EXPECT_EQ(node.stop(), 0);
 }
 
@@ -108,14 +109,15 @@ TEST_F(ByreNode, IgnoresMalformedRequests) {
   TypeSupport bare(new std_srvs::srv::BareTrigger_RequestPubSubType);
   bare->setName("std_srvs::srv::dds_::Trigger_Request_");
   auto* const requests = peer_.writer("rq/byre/saveRequest", bare, kVolatile);
-  ASSERT_TRUE(is_connected() && FastPeer::is_heard(requests)) << node.said();
+  ASSERT_TRUE(is_connected() && FastPeer::has_subscriber(requests)) << node.stderr_output();
   std_srvs::srv::BareTrigger_Request request;
   requests->write(&request);
   command("hello again");
   ASSERT_TRUE(events_.find([](const auto& event) { return event.data().find("hello again") != std::string::npos; }));
   // Commands and requests are read in any order.
   const std::string refusal = "/byre/save is called by another middleware than rmw_cyclonedds_cpp";
-  EXPECT_TRUE(eventually([&] { return node.said().find(refusal) != std::string::npos; })) << node.said();
+  EXPECT_TRUE(eventually([&] { return node.stderr_output().find(refusal) != std::string::npos; }))
+      << node.stderr_output();
   EXPECT_EQ(node.stop(), 0);
 }
 

@@ -106,20 +106,20 @@ TEST_F(ByreNodeStaysUp, RunsVisitAfterVisit) {
   constexpr int kJudged = 40'000;   // frames
   constexpr double kGrowth = 1.05;
   Watchdog watchdog(folder_);
-  Others others(domain_);
+  NodePeers peers(domain_);
   NodeProcess node(folder_, config("  map: " + Visits::shared().whole_map().string() + "\n"), domain_,
                    watchdog.variables());
-  ASSERT_TRUE(others.is_connected()) << node.said();
+  ASSERT_TRUE(peers.is_connected()) << node.stderr_output();
   Player player(1);
   std::vector<Usage> tenths;
   int with_pose = 0;
   const auto begin = Clock::now();
   for (int i = 0; i < frames; ++i) {
-    const auto answer = others.answer_to(player.next(), 1000s + i * kFrameTime);
-    ASSERT_TRUE(answer) << "frame " << i << "\n" << node.said();
+    const auto answer = peers.answer_to(player.next(), 1000s + i * kFrameTime);
+    ASSERT_TRUE(answer) << "frame " << i << "\n" << node.stderr_output();
     if (answer->has_pose) ++with_pose;
     if ((i + 1) * 10 / frames == i * 10 / frames) continue;
-    others.forget();
+    peers.clear();
     tenths.push_back(usage_of(node.process()));
     const double seconds = seconds_since(begin);
     std::printf("%7d frames %7.1f s %6.1f frames/s  VmRSS %ld kB  RssAnon %ld kB  %ld descriptors\n", i + 1, seconds,
@@ -140,7 +140,7 @@ TEST_F(ByreNodeStaysUp, RunsVisitAfterVisit) {
     EXPECT_LT(static_cast<double>(tenths.back().anonymous_kb),
               kGrowth * static_cast<double>(tenths[settled].anonymous_kb));
   }
-  EXPECT_EQ(node.stop(), 0) << node.said();
+  EXPECT_EQ(node.stop(), 0) << node.stderr_output();
 }
 
 }  // namespace

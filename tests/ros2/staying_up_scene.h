@@ -29,9 +29,9 @@ inline double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-inline int number_from_environment(const char* name, int otherwise) {
+inline int number_from_environment(const char* name, int default_value) {
   const char* const text = std::getenv(name);
-  return text == nullptr ? otherwise : std::stoi(text);
+  return text == nullptr ? default_value : std::stoi(text);
 }
 
 // Visits to a rendered room, and maps of it, with the smallest images that track well: 188 x 120 pixels.
@@ -122,11 +122,11 @@ class Player {
 };
 
 // Peer programs of a robot's node.
-class Others {
+class NodePeers {
  public:
-  explicit Others(int domain) : peer_(domain) {}
+  explicit NodePeers(int domain) : peer_(domain) {}
 
-  bool is_connected() { return have_found_one_another(feed_, events_, command_); }
+  bool is_connected() { return have_discovered_each_other(feed_, events_, command_); }
   void command(const std::string& text) { send_text(command_, text); }
   // The node's answer to a command: done, or failed.
   std::optional<nlohmann::json> answer(const std::string& command, std::chrono::seconds patience = 20s) {
@@ -141,8 +141,8 @@ class Others {
     bool has_pose = false;
   };
   std::optional<Answer> answer_to(const ImageFrame& frame, Timestamp time) {
-    health_.forget();
-    odometry_.forget();
+    health_.clear();
+    odometry_.clear();
     feed_.send(frame, time - frame.time);
     const std::string stamp = "\"time_ns\":" + std::to_string(time.count()) + ",";
     const auto health = health_.find([&](const auto& text) { return text.data().find(stamp) != std::string::npos; });
@@ -156,7 +156,7 @@ class Others {
   }
   void send(const ImageFrame& frame, Timestamp time) { feed_.send(frame, time - frame.time); }
   // Frees the memory of received messages.
-  void forget() { events_.forget(); }
+  void clear() { events_.clear(); }
 
  private:
   FastPeer peer_;

@@ -28,12 +28,12 @@ class Watcher {
   void subscribe(const std::string& topic) {
     const int id = ids_.at(topic);
     const nlohmann::json request = {{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", id}}}}};
-    client_.say(request.dump());
+    client_.send(request.dump());
   }
 
   // Returns once the server has processed all requests.
   void settle() {
-    client_.say("hello");
+    client_.send("hello");
     while (client_.next().is_binary) {
     }
   }
@@ -64,7 +64,7 @@ class Watcher {
 TEST_F(ByreNode, SendsTheSameMessagesToFoxgloveAndReaders) {
   const int port = free_port();
   const NodeProcess node(folder_, mapping() + "http:\n  port: " + std::to_string(port) + "\n", domain_);
-  ASSERT_TRUE(is_connected()) << node.said();
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
   Watcher watcher(port);
   watcher.subscribe("/left/image_raw");
   watcher.subscribe("/byre/odometry");
@@ -76,7 +76,7 @@ TEST_F(ByreNode, SendsTheSameMessagesToFoxgloveAndReaders) {
     answered = &frame;
     if (answer) break;
   }
-  ASSERT_TRUE(answer) << node.said();
+  ASSERT_TRUE(answer) << node.stderr_output();
   const auto image = watcher.message<ros::Image>("/left/image_raw", answered->time);
   EXPECT_EQ(image.data, answered->left.pixels);
   const auto odometry = watcher.message<ros::Odometry>("/byre/odometry", answered->time);

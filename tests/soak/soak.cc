@@ -83,15 +83,15 @@ struct Tally {
   int frames = 0;
   int with_pose = 0;
   int trusted = 0;
-  int trusted_wrong = 0;  // trusted poses with an error above kWrong
-  int mapped = 0;         // keyframes
-  int broken_maps = 0;    // saved maps that are invalid when read again
+  int wrongly_trusted = 0;  // trusted poses with an error above kWrong
+  int mapped = 0;           // keyframes
+  int broken_maps = 0;      // saved maps that are invalid when read again
 
   void add(const Tally& other) {
     frames += other.frames;
     with_pose += other.with_pose;
     trusted += other.trusted;
-    trusted_wrong += other.trusted_wrong;
+    wrongly_trusted += other.wrongly_trusted;
     mapped += other.mapped;
     broken_maps += other.broken_maps;
   }
@@ -116,7 +116,7 @@ class Soak {
     for (int i = 0; i < kVisits; ++i) visits_.push_back(visit(2.0, kFramesPerMission, 10 + i));
   }
 
-  Tally fly(int mission) const {
+  Tally run_mission(int mission) const {
     const SimulatedMission& visit = visits_[static_cast<std::size_t>(mission % kVisits)];
     Tally tally;
     Session session = start();
@@ -125,12 +125,12 @@ class Soak {
       const Frame& seen = frame_at(visit, mission, i, covered);
       Frame frame = seen;
       frame.time = from_seconds(3600.0 * mission + 0.05 * i);
-      judge(session.process(frame), visit, seen, tally);
+      evaluate(session.process(frame), visit, seen, tally);
     }
     session.finish();
     session.finish_mission({});
     tally.mapped = session.map().online().keyframe_count();
-    if (tally.mapped > 0) tally.broken_maps = keep(session) ? 0 : 1;
+    if (tally.mapped > 0) tally.broken_maps = is_saved_map_valid(session) ? 0 : 1;
     return tally;
   }
 
@@ -139,12 +139,12 @@ class Soak {
     StoredMap stored = load_map(folder_ / "known.byre");
     return {simulated_rig(),
             {},
-            Lanes(make_paced_executor(4), make_paced_executor(20)),
+            SessionExecutors(make_paced_executor(4), make_paced_executor(20)),
             vocabulary_,
             std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary_)};
   }
 
-  static void judge(const FrameReport& report, const SimulatedMission& visit, const Frame& seen, Tally& tally) {
+  static void evaluate(const FrameReport& report, const SimulatedMission& visit, const Frame& seen, Tally& tally) {
     ++tally.frames;
     if (!report.map_from_body) return;
     ++tally.with_pose;
@@ -153,11 +153,11 @@ class Soak {
     const auto shown = std::ranges::find(visit.frames, seen.features, &Frame::features);
     if (shown == visit.frames.end()) return;
     const Pose& truth = visit.truth[static_cast<std::size_t>(shown - visit.frames.begin())].world_from_body;
-    if ((report.map_from_body->translation - truth.translation).norm() > kWrong) ++tally.trusted_wrong;
+    if ((report.map_from_body->translation - truth.translation).norm() > kWrong) ++tally.wrongly_trusted;
   }
 
   // Saves the online map; returns whether it is valid when read again.
-  bool keep(const Session& session) const {
+  bool is_saved_map_valid(const Session& session) const {
     StoredMap stored;
     stored.map = offline_copy(session.map().online());
     stored.recordings = {source()};
@@ -213,7 +213,7 @@ int soak(int frames) {
   Tally all;
   std::vector<Usage> usages;
   for (int mission = 0; mission < missions; ++mission) {
-    all.add(soak.fly(mission));
+    all.add(soak.run_mission(mission));
     usages.push_back(usage_now());
     if ((mission + 1) % std::max(1, missions / 10) == 0) {
       std::printf("%7d frames  %6.1f MB  %d descriptors\n", all.frames, usages.back().resident_mb,
@@ -228,14 +228,14 @@ int soak(int frames) {
     return is_near(tenth.resident_mb, settled.resident_mb) && is_near(tenth.descriptors, settled.descriptors);
   });
   std::printf("\n%d missions, %d frames: %.1f %% with a pose, %.1f %% trusted, %d trusted with errors above %.1f m\n",
-              missions, all.frames, 1e2 * all.with_pose / all.frames, 1e2 * all.trusted / all.frames, all.trusted_wrong,
-              kWrong);
+              missions, all.frames, 1e2 * all.with_pose / all.frames, 1e2 * all.trusted / all.frames,
+              all.wrongly_trusted, kWrong);
   std::printf("%d keyframes were added online; %d kept maps are invalid\n", all.mapped, all.broken_maps);
   std::printf("memory by tenths, MB:");
   for (const Tenth& tenth : tenths) std::printf(" %.1f", tenth.resident_mb);
   std::printf("\na day of 20 frames a second would add %.1f MB; memory and descriptors %s within 5 %%\n",
               growth_in_a_day(tenths, all.frames), is_flat ? "stay" : "DO NOT stay");
-  return is_flat && all.trusted_wrong == 0 && all.broken_maps == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return is_flat && all.wrongly_trusted == 0 && all.broken_maps == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace

@@ -127,8 +127,8 @@ ColmapModel colmap_model_of(const StoredMap& stored, const ImageNames& names) {
 
 ImageNames names_of_images(const std::filesystem::path& recording, const OpenOptions& options) {
   RecordingIndex index = index_recording(recording, options);
-  const BesideLeft beside = images_beside_left(index);
-  index = choose_camera(std::move(index), beside, options.camera, recording);
+  const ExtraImages extra = extra_images_of(index);
+  index = choose_camera(std::move(index), extra, options.camera, recording);
   ImageNames names;
   for (const FrameFiles& frame : index.frames) names[frame.time] = frame.left.filename().string();
   return names;

@@ -51,7 +51,7 @@ void require_scale_known(const PlanScale& scale, const std::string& picks) {
 
 // Positions refer to the map in which they were picked. After an earlier correction it is ambiguous which map that is.
 void require_unambiguous(const StoredMap& stored, const std::filesystem::path& picks) {
-  if (!gives_positions(picks)) return;
+  if (!has_positions(picks)) return;
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
     const double factor = baseline_factor(stored, i);
     if (factor == 1.0) continue;
@@ -90,23 +90,23 @@ Registering register_map(const StoredMap& stored, const std::filesystem::path& m
   return result;
 }
 
-MendedMap mend_scale(StoredMap stored, const std::filesystem::path& map, const FloorPlan& plan,
-                     const std::filesystem::path& picks, const RegisterOptions& options) {
+ScaleCorrectedMap correct_scale(StoredMap stored, const std::filesystem::path& map, const FloorPlan& plan,
+                                const std::filesystem::path& picks, const RegisterOptions& options) {
   require_scale_of_baseline(stored, map.string());
-  MendedMap mended{std::move(stored), {}, 1.0};
-  mended.registering = register_map(mended.stored, map, plan, picks, options);
-  const PlanScale measured = mended.registering.measured_scale.value();
+  ScaleCorrectedMap corrected{std::move(stored), {}, 1.0};
+  corrected.registering = register_map(corrected.stored, map, plan, picks, options);
+  const PlanScale measured = corrected.registering.measured_scale.value();
   require_scale_known(measured, picks.string());
-  if (!measured.differs_from_one()) return mended;
+  if (!measured.differs_from_one()) return corrected;
 
-  require_unambiguous(mended.stored, picks);
-  mended.factor = measured.plan_from_map;
-  mended.stored = scaled_copy(mended.stored, mended.factor);
+  require_unambiguous(corrected.stored, picks);
+  corrected.factor = measured.plan_from_map;
+  corrected.stored = scaled_copy(corrected.stored, corrected.factor);
   RegisterOptions of_scaled = options;
-  of_scaled.picks.positions_scale *= mended.factor;
-  mended.registering = register_map(mended.stored, map, plan, picks, of_scaled);
-  mended.registering.measured_scale = measured;
-  return mended;
+  of_scaled.picks.positions_scale *= corrected.factor;
+  corrected.registering = register_map(corrected.stored, map, plan, picks, of_scaled);
+  corrected.registering.measured_scale = measured;
+  return corrected;
 }
 
 std::string describe_origin(const PlanRegistration& registration) {

@@ -27,7 +27,7 @@ struct Registering {
 };
 
 // A map after correction of its scale, and its registration.
-struct MendedMap {
+struct ScaleCorrectedMap {
   StoredMap stored;
   Registering registering;  // result for the corrected map; measured_scale is that before the correction
   double factor = 1.0;      // new over old length; 1 without a correction
@@ -39,8 +39,8 @@ Registering register_map(const StoredMap& stored, const std::filesystem::path& m
 
 // Registers the map and corrects its scale and baselines by the picks if the difference is significant. Throws
 // InputError also if the map's scale does not come from a baseline, or the picks do not determine it.
-MendedMap mend_scale(StoredMap stored, const std::filesystem::path& map, const FloorPlan& plan,
-                     const std::filesystem::path& picks, const RegisterOptions& options);
+ScaleCorrectedMap correct_scale(StoredMap stored, const std::filesystem::path& map, const FloorPlan& plan,
+                                const std::filesystem::path& picks, const RegisterOptions& options);
 
 // Text line with the position of the map's origin on the plan.
 std::string describe_origin(const PlanRegistration& registration);

@@ -26,13 +26,13 @@ class RegisterMap : public testing::Test {
     return register_map(stored, "barn.byre", plan_, picks_, {});
   }
 
-  MendedMap mend_with(const StoredMap& stored, const std::string& picks) const {
+  ScaleCorrectedMap correct_with(const StoredMap& stored, const std::string& picks) const {
     std::ofstream(picks_) << picks;
-    return mend_scale(stored, "barn.byre", plan_, picks_, {});
+    return correct_scale(stored, "barn.byre", plan_, picks_, {});
   }
 
-  MendedMap mend(const StoredMap& stored, const std::vector<PlanCorrespondence>& correspondences) const {
-    return mend_with(stored, picks_csv(correspondences));
+  ScaleCorrectedMap correct(const StoredMap& stored, const std::vector<PlanCorrespondence>& correspondences) const {
+    return correct_with(stored, picks_csv(correspondences));
   }
 
   FloorPlan plan_{"plan.yaml", "plan.png", 420, 140, Eigen::Matrix2d::Identity(), Eigen::Vector2d::Zero()};
@@ -70,12 +70,12 @@ TEST_F(RegisterMap, RegistersAMetricMapWithoutScaling) {
 TEST_F(RegisterMap, CorrectsTheScaleAndRegistersTheCorrectedMap) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const auto correspondences = scene.correspondences(8, 0.03);
-  const MendedMap mended = mend(driven_barn(scene), correspondences);
-  EXPECT_NEAR(mended.factor * 1.016, 1.0, 3.0 * mended.registering.measured_scale->sigma);
-  EXPECT_EQ(mended.registering.fit.registration.plan_from_map.scale, 1.0);
-  EXPECT_LT(mended.registering.fit.rms, 0.05);
-  EXPECT_DOUBLE_EQ(mended.stored.map.rigs()[0].baseline, mended.factor * 0.11);
-  EXPECT_DOUBLE_EQ(baseline_factor(mended.stored, 0), mended.factor);
+  const ScaleCorrectedMap corrected = correct(driven_barn(scene), correspondences);
+  EXPECT_NEAR(corrected.factor * 1.016, 1.0, 3.0 * corrected.registering.measured_scale->sigma);
+  EXPECT_EQ(corrected.registering.fit.registration.plan_from_map.scale, 1.0);
+  EXPECT_LT(corrected.registering.fit.rms, 0.05);
+  EXPECT_DOUBLE_EQ(corrected.stored.map.rigs()[0].baseline, corrected.factor * 0.11);
+  EXPECT_DOUBLE_EQ(baseline_factor(corrected.stored, 0), corrected.factor);
 }
 
 // Picks by keyframe remain valid after a correction of the scale; picks by position do not.
@@ -83,14 +83,14 @@ TEST_F(RegisterMap, CorrectsNothingTheSecondTime) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const StoredMap stored = driven_barn(scene);
   const std::string picks = keyframe_picks_csv(scene, stored);
-  const MendedMap once = mend_with(stored, picks);
+  const ScaleCorrectedMap once = correct_with(stored, picks);
   EXPECT_NEAR(once.factor * 1.016, 1.0, 0.001);
-  const MendedMap twice = mend_with(once.stored, picks);
+  const ScaleCorrectedMap twice = correct_with(once.stored, picks);
   EXPECT_EQ(twice.factor, 1.0);
   EXPECT_LT(std::abs(twice.registering.measured_scale->excess()), 0.001);
   EXPECT_EQ(twice.stored.map.rigs()[0].baseline, once.stored.map.rigs()[0].baseline);
   const std::string positions = picks_csv(scene.correspondences(8, 0.03));
-  EXPECT_THAT([&] { mend_with(once.stored, positions); },
+  EXPECT_THAT([&] { correct_with(once.stored, positions); },
               ThrowsMessage<InputError>(HasSubstr("gives positions, but the map has been scaled by 0.98")));
 }
 
@@ -98,7 +98,7 @@ TEST_F(RegisterMap, RejectsCorrectionWithoutABaseline) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const auto correspondences = scene.correspondences(8);
   const auto refusal_of = [&](const StoredMap& stored, const std::string& reason) {
-    EXPECT_THAT([&] { mend(stored, correspondences); }, ThrowsMessage<InputError>(HasSubstr(reason)));
+    EXPECT_THAT([&] { correct(stored, correspondences); }, ThrowsMessage<InputError>(HasSubstr(reason)));
   };
   StoredMap stored = driven_barn(scene);
   stored.scale = MapScale::unknown;
@@ -117,9 +117,9 @@ TEST_F(RegisterMap, RejectsCorrectionWithoutABaseline) {
 TEST_F(RegisterMap, RejectsCorrectionWithInsufficientPicks) {
   FloorPlanScene scene(1, 1.0 / 1.016);
   const StoredMap stored = driven_barn(scene);
-  EXPECT_THAT([&] { mend(stored, scene.correspondences(3)); },
+  EXPECT_THAT([&] { correct(stored, scene.correspondences(3)); },
               ThrowsMessage<InputError>(HasSubstr("does not determine the scale: fewer than four")));
-  EXPECT_THAT([&] { mend(stored, scene.correspondences(8, 2.0)); },
+  EXPECT_THAT([&] { correct(stored, scene.correspondences(8, 2.0)); },
               ThrowsMessage<InputError>(HasSubstr("the correspondences are inconsistent")));
 }
 

@@ -83,10 +83,10 @@ Eigen::Vector2d read_point_in_plan(const Pick& pick, const FloorPlan& plan) {
   return plan.point_at({pick.number(kPlanPixel[0]), pick.number(kPlanPixel[1])});
 }
 
-MapPlace read_point(const Pick& pick, const StoredMap& stored) {
+MapPosition read_point(const Pick& pick, const StoredMap& stored) {
   const double number = pick.number(kPoint[0]);
   const auto whole = static_cast<std::uint32_t>(std::clamp(number, 0.0, 4294967295.0));
-  const auto place = place_of_point(stored, {stored.map.origin(), whole});
+  const auto place = position_of_point(stored, {stored.map.origin(), whole});
   if (!place || number != whole) {
     pick.fail("refers to point " + pick.text(kPoint[0]) + ", which is not in the map",
               "the map has " + std::to_string(stored.map.point_count()) + " points, numbered from 0");
@@ -118,28 +118,28 @@ const Keyframe& find_keyframe_at(const Pick& pick, Timestamp time, const Map& ma
   return *nearest;
 }
 
-MapPlace read_body(const Pick& pick, const StoredMap& stored) {
+MapPosition read_body(const Pick& pick, const StoredMap& stored) {
   const std::optional<Timestamp> time = parse_seconds(pick.text(kBody[0]));
   if (!time) pick.fail("has no time in seconds in time_s", "give the time stamp of a keyframe");
   return {body_at(stored.map, find_keyframe_at(pick, *time, stored.map))};
 }
 
-MapPlace read_image_pixel(const Pick& pick, const StoredMap& stored) {
+MapPosition read_image_pixel(const Pick& pick, const StoredMap& stored) {
   const std::optional<Timestamp> time = parse_nanoseconds(pick.text(kImagePixel[0]));
   if (!time) pick.fail("has no integer in time_ns", "give the time stamp of a keyframe's image");
   const Keyframe& keyframe = find_keyframe_at(pick, *time, stored.map);
   const Eigen::Vector2d pixel(pick.number(kImagePixel[1]), pick.number(kImagePixel[2]));
-  const std::optional<MapPlace> place = place_at_pixel(stored, keyframe, pixel);
+  const std::optional<MapPosition> place = position_at_pixel(stored, keyframe, pixel);
   if (!place) pick.fail("has a pixel without a map point nearby", "pick another keyframe or another pixel");
   return *place;
 }
 
-MapPlace read_position(const Pick& pick, double scale) {
+MapPosition read_position(const Pick& pick, double scale) {
   const Columns columns = pick.has(kPosition) ? kPosition : kPositionOfPoint;
   return {scale * Eigen::Vector3d(pick.number(columns[0]), pick.number(columns[1]), pick.number(columns[2]))};
 }
 
-MapPlace read_place_in_map(const Pick& pick, const StoredMap& stored, double positions_scale) {
+MapPosition read_place_in_map(const Pick& pick, const StoredMap& stored, double positions_scale) {
   pick.require_one({kPoint, kPosition, kPositionOfPoint, kBody, kImagePixel}, "its position in the map",
                    "fill in point, or map_x_m to map_z_m, or time_s, or time_ns, u_px and v_px");
   if (pick.has(kPoint)) return read_point(pick, stored);
@@ -173,7 +173,7 @@ std::vector<PlanCorrespondence> read_plan_correspondences(const std::filesystem:
   return correspondences;
 }
 
-bool gives_positions(const std::filesystem::path& path) {
+bool has_positions(const std::filesystem::path& path) {
   const CsvTable table = read_csv_table(path, all_columns());
   return std::ranges::any_of(table.rows, [&table](const CsvTable::Row& row) {
     return Pick(table, row).has(kPosition) || Pick(table, row).has(kPositionOfPoint);

@@ -21,6 +21,6 @@ std::vector<PlanCorrespondence> read_plan_correspondences(const std::filesystem:
 
 // Whether any row gives a position in the map, which becomes invalid when the map's scale changes. Throws InputError
 // like read_plan_correspondences if the file is not a table.
-bool gives_positions(const std::filesystem::path& path);
+bool has_positions(const std::filesystem::path& path);
 
 }  // namespace byre

@@ -90,9 +90,9 @@ TEST_F(RegisterPicks, ScalePositionsButNotPoints) {
   const auto picks = read("map_x_m,map_y_m,map_z_m,point,plan_x_m,plan_y_m\n1.5,-2,0.25,,10.5,3\n,,,0,10.5,3\n");
   EXPECT_EQ(picks.at(0).point_in_map, Eigen::Vector3d(3.0, -4.0, 0.5));
   EXPECT_EQ(picks.at(1).point_in_map, Eigen::Vector3d(4.0, 5.0, 6.0));
-  EXPECT_TRUE(gives_positions(path_));
+  EXPECT_TRUE(has_positions(path_));
   read("map_x_m,map_y_m,map_z_m,point,plan_x_m,plan_y_m\n,,,0,10.5,3\n");
-  EXPECT_FALSE(gives_positions(path_));
+  EXPECT_FALSE(has_positions(path_));
 }
 
 TEST_F(RegisterPicks, AcceptPixelsOfKeyframeImages) {

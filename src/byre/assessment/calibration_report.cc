@@ -1,6 +1,6 @@
 #include "byre/assessment/calibration_report.h"
 
-#include "byre/features/stereo_fit.h"
+#include "byre/features/stereo_quality.h"
 #include "byre/input/report_row.h"
 
 #include <cmath>
@@ -93,7 +93,7 @@ std::optional<std::string> calibration_warning(const std::optional<RefinedCalibr
         "cameras again",
         refined->keyframes, refined->shift);
   }
-  if (!row_error || *row_error <= kFarOffCalibration) return std::nullopt;
+  if (!row_error || *row_error <= kMaxCommonRowError) return std::nullopt;
   const bool is_refined = refined && !refined->was_refused();
   return fmt::format("the calibration has an error of about {:.2f} px (row differences of the pair): ", *row_error) +
          (is_refined ? "calibrate the cameras again, or use a calibration by \"byre calibrate\""

@@ -43,7 +43,7 @@ std::string describe_alignment(const EvaluationReport& report) {
 
 std::string caveat_row(const EvaluationReport& report) {
   const PoseAlignment alignment = report.protocol.alignment;
-  if (!is_nearly_a_line(report) || (alignment != PoseAlignment::se3 && alignment != PoseAlignment::sim3)) return "";
+  if (!is_nearly_straight(report) || (alignment != PoseAlignment::se3 && alignment != PoseAlignment::sim3)) return "";
   return fmt::format(
       "caveat       the path is nearly a line, {:.3g} m long and {:.3g} m wide. The rotation of the alignment about "
       "this line is\n             undetermined, so errors across it and of rotation are arbitrary (not with "
@@ -177,7 +177,7 @@ std::string to_json(const EvaluationReport& report, const std::string& estimate_
       {"pairs", report.pairs},
       {"true_path_m", report.true_path},
       {"true_spread_m", {report.true_spread[0], report.true_spread[1], report.true_spread[2]}},
-      {"is_nearly_a_line", is_nearly_a_line(report)},
+      {"is_nearly_a_line", is_nearly_straight(report)},
       {"coverage", coverage_json(report)},
       {"ate", ate_json(report.ate)},
       {"rpe",
@@ -186,7 +186,7 @@ std::string to_json(const EvaluationReport& report, const std::string& estimate_
         {"1_m", to_json(report.rpe_metre)}}},
       {"segments", to_json(report.segments)},
   };
-  return dumped(json, 2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace byre

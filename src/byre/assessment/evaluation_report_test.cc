@@ -109,8 +109,9 @@ TEST(EvaluationReport, WarnsOfAlignmentsAlongALine) {
   EXPECT_NEAR(thin.true_spread[1], 0.1 / std::sqrt(2.0), 2e-3);
   EXPECT_THAT(to_text(thin, "a", "b"), HasSubstr("caveat       the path is nearly a line, 14.5 m long "));
   EXPECT_TRUE(nlohmann::json::parse(to_json(thin, "a", "b"))["is_nearly_a_line"]);
-  EXPECT_TRUE(is_nearly_a_line(report_of_line(1.0, 0.5, PoseAlignment::se3))) << "the errors are as large as the sway";
-  EXPECT_FALSE(is_nearly_a_line(report_of_line(1.0, 0.01, PoseAlignment::se3)));
+  EXPECT_TRUE(is_nearly_straight(report_of_line(1.0, 0.5, PoseAlignment::se3)))
+      << "the errors are as large as the sway";
+  EXPECT_FALSE(is_nearly_straight(report_of_line(1.0, 0.01, PoseAlignment::se3)));
   EXPECT_THAT(to_text(report_of_line(0.1, 0.0, PoseAlignment::origin), "a", "b"), Not(HasSubstr("caveat")));
   EXPECT_THAT(to_text(report_of(circle(), PoseAlignment::se3), "a", "b"), Not(HasSubstr("caveat")));
 }

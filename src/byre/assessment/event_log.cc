@@ -56,7 +56,7 @@ Json before_json(const std::optional<Value>& before) {
 void EventLog::note(int number, const MappedFrame& frame) {
   if (!frame.report) return;
   const FrameReport& report = *frame.report;
-  const auto write = [this](const Json& line) { stream_ << dumped(line) << std::endl; };
+  const auto write = [this](const Json& line) { stream_ << dump_json(line) << std::endl; };
   for (const SessionEvent event : report.events) {
     Json line = line_of(number, report, to_string(event));
     if (moves_the_pose(event)) line["jump_m"] = jump_json(report, map_from_odometry_);

@@ -64,7 +64,7 @@ TEST(EventLog, ContainsEventsOfAFrameInOrderWithPoseAndDistance) {
   MappedFrame lost = frame_at(7.0, State::lost, Verdict::untrusted, {SessionEvent::pose_lost, SessionEvent::blinded});
   lost.report->health.distance_since_offline = 1.5;
   lost.report->health.seconds_since_offline = 3.0;
-  lost.report->health.doubt = Doubt::blinded;
+  lost.report->health.doubt = DistrustReason::blinded;
   lost.report->health.image = ImageCondition{2.0f, 1.0f, 0.5f, 0.25f};
   const std::vector<json> lines = lines_of({lost});
   EXPECT_THAT(events_of(lines), ElementsAre("pose lost", "blinded", "state changed", "verdict changed"));

@@ -32,7 +32,7 @@ Json to_json(const MapQuality& quality) {
 
 }  // namespace
 
-std::string to_text(const Finishing& finishing) {
+std::string to_text(const FinishResult& finishing) {
   const FinishReport& report = finishing.report;
   const MapQuality& before = report.before;
   const MapQuality& after = report.after;
@@ -49,7 +49,7 @@ std::string to_text(const Finishing& finishing) {
   return text;
 }
 
-Json to_json(const Finishing& finishing) {
+Json to_json(const FinishResult& finishing) {
   const FinishReport& report = finishing.report;
   return {{"loops", report.loops},
           {"loop_drifts_px", report.loop_drifts},

@@ -9,7 +9,7 @@
 namespace byre {
 
 // Rows of a name and a value.
-std::string to_text(const Finishing& finishing);
-nlohmann::ordered_json to_json(const Finishing& finishing);
+std::string to_text(const FinishResult& finishing);
+nlohmann::ordered_json to_json(const FinishResult& finishing);
 
 }  // namespace byre

@@ -9,8 +9,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-Finishing finishing_with_two_loops() {
-  Finishing finishing;
+FinishResult finishing_with_two_loops() {
+  FinishResult finishing;
   finishing.report.loops = 2;
   finishing.report.loop_drifts = {7.25, 12.0};
   finishing.report.loop_residuals = {0.004, 0.0105};
@@ -32,7 +32,7 @@ TEST(FinishText, ContainsChangesAndFaults) {
 }
 
 TEST(FinishText, ReportsNoLoopsAndInterruption) {
-  Finishing finishing;
+  FinishResult finishing;
   finishing.cut_short = true;
   finishing.faults = {"point 7 is seen by nobody", "point 8 is seen by nobody"};
   const std::string text = to_text(finishing);

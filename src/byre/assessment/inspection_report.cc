@@ -4,7 +4,7 @@
 #include "byre/assessment/calibration_report.h"
 #include "byre/assessment/report_json.h"
 #include "byre/input/printable.h"
-#include "byre/motion/known_mounting.h"
+#include "byre/motion/odometry_calibration.h"
 
 #include <algorithm>
 #include <string_view>
@@ -121,9 +121,9 @@ std::string origin_text(const StoredMap& stored, const MapInspection& inspection
     text += wide_row("calibration", describe_calibration(*stored.recordings[i].refined)) +
             calibration_table(*stored.recordings[i].refined);
   }
-  const KnownMounting mounting = mounting_in(stored.notes);
+  const OdometryCalibration extrinsics = read_odometry_calibration(stored.notes);
   for (const auto& [key, note] : stored.notes) {
-    const bool is_mounting = (key == "wheels" && mounting.wheels) || (key == "gyroscope" && mounting.gyroscope);
+    const bool is_mounting = (key == "wheels" && extrinsics.wheels) || (key == "gyroscope" && extrinsics.gyroscope);
     text += wide_row(key, is_mounting ? "extrinsics stored, initial values of missions" : note);
   }
   if (stored.plan) text += wide_row("plan", describe_origin(*stored.plan));
@@ -237,7 +237,7 @@ std::string to_json(const StoredMap& stored, const MapInspection& inspection, co
       {"path_length", inspection.path_length},
       {"memory_bytes", sizes_json(inspection.memory)},
       {"faults", inspection.faults}};
-  return dumped(json, 2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace byre

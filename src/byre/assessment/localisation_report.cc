@@ -187,7 +187,7 @@ std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
   json["warnings"] = run.warnings;
   json["per_frame"] = Json::array();
   for (const LocalisedFrame& frame : run.frames) json["per_frame"].push_back(frame_json(frame, protocol.plan));
-  return dumped(json, 1) + "\n";
+  return dump_json(json, 1) + "\n";
 }
 
 }  // namespace byre

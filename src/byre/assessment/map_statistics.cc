@@ -57,8 +57,8 @@ FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
     const State before = std::exchange(state, frame.report->state);
     counts.with_pose += frame.report->map_from_body ? 1 : 0;
     counts.keyframes += frame.report->keyframe_added ? 1 : 0;
-    counts.lost += has_lost_its_way(state) ? 1 : 0;
-    counts.lost_episodes += has_lost_its_way(state) && !has_lost_its_way(before) ? 1 : 0;
+    counts.lost += needs_relocalisation(state) ? 1 : 0;
+    counts.lost_episodes += needs_relocalisation(state) && !needs_relocalisation(before) ? 1 : 0;
   }
   return counts;
 }

@@ -79,7 +79,7 @@ MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, c
   judge_trust(run, errors);
   errors.within_bound = share_within_bound(run, errors.causal);
   errors.map = errors_of_map(alignment);
-  errors.within_bound_beside_map = share_within_bound(run, errors_beside_map(run.causal, truth, alignment));
+  errors.within_bound_without_map_error = share_within_bound(run, errors_relative_to_map(run.causal, truth, alignment));
   return errors;
 }
 

@@ -19,9 +19,9 @@ struct MissionErrors {
   std::vector<PoseError> final;  // poses recomputed after the last frame
   int wrongly_trusted = 0;       // trusted frames with an error above kFarMetres
   double longest_wrong_trust_s = 0.0;
-  std::optional<double> within_bound;             // share of causal positions within the 95 % bound of their covariance
-  std::vector<PoseError> map;                     // poses that align the map
-  std::optional<double> within_bound_beside_map;  // within_bound after subtraction of the map's local error
+  std::optional<double> within_bound;  // share of causal positions within the 95 % bound of their covariance
+  std::vector<PoseError> map;          // poses that align the map
+  std::optional<double> within_bound_without_map_error;  // within_bound after subtraction of the map's local error
 };
 
 inline constexpr double kFarMetres = 0.2;

@@ -28,7 +28,7 @@ std::string describe_verdicts(const MissionStatistics& statistics) {
 
 std::string describe_missing(const MissionStatistics& statistics) {
   return fmt::format("{} of {} frames could not be read", statistics.missing, statistics.frames) +
-         (is_full_of_gaps(statistics) ? ": too many for verdict shares to describe the mission" : "");
+         (misses_too_many_frames(statistics) ? ": too many for verdict shares to describe the mission" : "");
 }
 
 std::string describe_doubts(const MissionStatistics& statistics) {
@@ -48,8 +48,8 @@ std::string describe_losses(const MissionStatistics& statistics) {
 // Maximum dirt over the mission.
 std::string describe_dirt(const MissionStatistics& statistics) {
   Health health;
-  health.hidden_share = statistics.most_hidden;
-  health.hidden_share_right = statistics.most_hidden_right;
+  health.hidden_share = statistics.max_hidden;
+  health.hidden_share_right = statistics.max_hidden_right;
   return note_on_dirt(health) + fmt::format(" (maximum; {} frames)", statistics.frames_with_dirt);
 }
 
@@ -63,8 +63,8 @@ std::string keyframe_row(const char* places, const KeyframeRate& rate) {
 std::string describe_inliers(const MissionStatistics& statistics) {
   std::string text = fmt::format("offline median {:.0f}, online {:.0f}", statistics.offline_inliers.median,
                                  statistics.online_inliers.median);
-  if (statistics.most_suspended > 0)
-    text += fmt::format("; up to {} offline points suspended", statistics.most_suspended);
+  if (statistics.max_suspended > 0)
+    text += fmt::format("; up to {} offline points suspended", statistics.max_suspended);
   return text;
 }
 
@@ -88,8 +88,8 @@ std::string trust_rows(const MissionErrors& errors) {
                                          errors.wrongly_trusted, kFarMetres, errors.longest_wrong_trust_s));
   if (!errors.within_bound) return text;
   std::string within = fmt::format("{:.1f} % of causal positions within its 95 % bound", 100.0 * *errors.within_bound);
-  if (errors.within_bound_beside_map) {
-    within += fmt::format(", {:.1f} % without the map's own error", 100.0 * *errors.within_bound_beside_map);
+  if (errors.within_bound_without_map_error) {
+    within += fmt::format(", {:.1f} % without the map's own error", 100.0 * *errors.within_bound_without_map_error);
   }
   text += row("covariance", within);
   return text;
@@ -125,7 +125,7 @@ std::string to_text(const MissionStatistics& statistics) {
   if (statistics.missing > 0) text += row("missing", describe_missing(statistics));
   if (!statistics.doubts.empty()) text += row("doubts", describe_doubts(statistics));
   text += row("lost", describe_losses(statistics));
-  text += keyframe_row("known", statistics.in_known_places);
+  text += keyframe_row("known", statistics.in_mapped_area);
   text += keyframe_row("changed or new", statistics.in_changed_or_new);
   text += row("inliers", describe_inliers(statistics));
   if (statistics.frames_with_dirt > 0) text += row("dirt", describe_dirt(statistics));
@@ -144,7 +144,7 @@ std::string to_text(const MissionErrors& errors) {
 Json to_json(const MissionStatistics& statistics) {
   const std::optional<double>& first = statistics.seconds_to_first_pose;
   return {{"frames_missing", statistics.missing},
-          {"is_full_of_gaps", is_full_of_gaps(statistics)},
+          {"is_full_of_gaps", misses_too_many_frames(statistics)},
           {"frames_trusted", statistics.trusted},
           {"frames_degraded", statistics.degraded},
           {"frames_untrusted", statistics.untrusted},
@@ -154,14 +154,14 @@ Json to_json(const MissionStatistics& statistics) {
           {"losses", statistics.losses},
           {"relocalisations", statistics.relocalisations},
           {"navigation_errors", statistics.navigation_errors},
-          {"in_known_places", to_json(statistics.in_known_places)},
+          {"in_known_places", to_json(statistics.in_mapped_area)},
           {"in_changed_or_new_places", to_json(statistics.in_changed_or_new)},
           {"offline_inliers_median", statistics.offline_inliers.median},
           {"online_inliers_median", statistics.online_inliers.median},
-          {"most_suspended", statistics.most_suspended},
+          {"most_suspended", statistics.max_suspended},
           {"frames_with_dirt", statistics.frames_with_dirt},
-          {"most_hidden", statistics.most_hidden},
-          {"most_hidden_right", statistics.most_hidden_right}};
+          {"most_hidden", statistics.max_hidden},
+          {"most_hidden_right", statistics.max_hidden_right}};
 }
 
 Json to_json(const MissionErrors& errors) {
@@ -175,7 +175,7 @@ Json to_json(const MissionErrors& errors) {
           {"longest_wrong_trust_s", errors.longest_wrong_trust_s},
           {"share_within_95_percent_bound", to_json(errors.within_bound)},
           {"map", errors_json(errors.map)},
-          {"share_within_95_percent_bound_beside_map", to_json(errors.within_bound_beside_map)}};
+          {"share_within_95_percent_bound_beside_map", to_json(errors.within_bound_without_map_error)}};
 }
 
 }  // namespace byre

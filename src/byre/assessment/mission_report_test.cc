@@ -16,15 +16,18 @@ MissionStatistics small_mission() {
   statistics.trusted = 190;
   statistics.degraded = 6;
   statistics.untrusted = 4;
-  statistics.doubts = {{Doubt::few_offline_points, 5}, {Doubt::no_pose, 3}, {Doubt::clustered, 1}, {Doubt::blinded, 1}};
+  statistics.doubts = {{DistrustReason::few_offline_points, 5},
+                       {DistrustReason::no_pose, 3},
+                       {DistrustReason::clustered, 1},
+                       {DistrustReason::blinded, 1}};
   statistics.seconds_to_first_pose = 0.25;
   statistics.losses = 2;
   statistics.relocalisations = 2;
   statistics.navigation_errors = 1;
-  statistics.in_known_places = {3, 1.5};
+  statistics.in_mapped_area = {3, 1.5};
   statistics.offline_inliers = summarise({120.0});
   statistics.online_inliers = summarise({30.0});
-  statistics.most_suspended = 17;
+  statistics.max_suspended = 17;
   return statistics;
 }
 
@@ -44,7 +47,7 @@ MissionErrors small_errors() {
   errors.wrongly_trusted = 1;
   errors.within_bound = 2.0 / 3.0;
   errors.map = {off_by(0.02)};
-  errors.within_bound_beside_map = 0.95;
+  errors.within_bound_without_map_error = 0.95;
   return errors;
 }
 
@@ -80,7 +83,7 @@ TEST(MissionText, ReportsDirt) {
   EXPECT_THAT(to_text(small_mission()), Not(HasSubstr("dirt")));
   MissionStatistics statistics = small_mission();
   statistics.frames_with_dirt = 40;
-  statistics.most_hidden = 0.12;
+  statistics.max_hidden = 0.12;
   EXPECT_THAT(to_text(statistics),
               HasSubstr("dirt         dirt hides 12 % of the left image: clean the lens (maximum; 40 frames)\n"));
   EXPECT_EQ(to_json(statistics).at("most_hidden"), 0.12);

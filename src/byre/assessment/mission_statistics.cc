@@ -7,7 +7,7 @@ namespace byre {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-constexpr double kMostMissing = 0.05;
+constexpr double kMaxMissing = 0.05;
 
 void count_verdict(const Health& health, MissionStatistics& statistics) {
   switch (health.verdict) {
@@ -30,17 +30,17 @@ void count_events(const FrameReport& report, MissionStatistics& statistics) {
 }
 
 void note_dirt(const Health& health, MissionStatistics& statistics) {
-  statistics.most_hidden = std::max(statistics.most_hidden, health.hidden_share);
-  statistics.most_hidden_right = std::max(statistics.most_hidden_right, health.hidden_share_right);
+  statistics.max_hidden = std::max(statistics.max_hidden, health.hidden_share);
+  statistics.max_hidden_right = std::max(statistics.max_hidden_right, health.hidden_share_right);
   if (health.hidden_share > 0.0 || health.hidden_share_right > 0.0) ++statistics.frames_with_dirt;
 }
 
-std::vector<std::pair<Doubt, int>> count_doubts(const std::vector<MappedFrame>& frames) {
-  std::map<Doubt, int> counts;
+std::vector<std::pair<DistrustReason, int>> count_doubts(const std::vector<MappedFrame>& frames) {
+  std::map<DistrustReason, int> counts;
   for (const MappedFrame& frame : frames) {
     if (frame.report && frame.report->health.verdict != Verdict::trusted) ++counts[frame.report->health.doubt];
   }
-  std::vector<std::pair<Doubt, int>> doubts(counts.begin(), counts.end());
+  std::vector<std::pair<DistrustReason, int>> doubts(counts.begin(), counts.end());
   std::ranges::stable_sort(doubts, [](const auto& a, const auto& b) { return a.second > b.second; });
   return doubts;
 }
@@ -61,8 +61,8 @@ void add_to_rate(const FrameReport& report, double seconds, KeyframeRate& rate) 
 
 }  // namespace
 
-bool is_full_of_gaps(int missing, int frames) {
-  return missing > kMostMissing * frames;
+bool misses_too_many_frames(int missing, int frames) {
+  return missing > kMaxMissing * frames;
 }
 
 MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers) {
@@ -77,14 +77,14 @@ MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int 
     const FrameReport& report = *frame.report;
     count_verdict(report.health, statistics);
     count_events(report, statistics);
-    statistics.most_suspended = std::max(statistics.most_suspended, report.health.suspended);
+    statistics.max_suspended = std::max(statistics.max_suspended, report.health.suspended);
     note_dirt(report.health, statistics);
     if (!report.map_from_body) continue;
     if (!statistics.seconds_to_first_pose) {
       statistics.seconds_to_first_pose = to_seconds(frame.time - frames.front().time);
     }
-    const bool is_known = report.health.offline_inliers >= min_offline_inliers;
-    add_to_rate(report, seconds, is_known ? statistics.in_known_places : statistics.in_changed_or_new);
+    const bool is_in_mapped_area = report.health.offline_inliers >= min_offline_inliers;
+    add_to_rate(report, seconds, is_in_mapped_area ? statistics.in_mapped_area : statistics.in_changed_or_new);
   }
   statistics.doubts = count_doubts(frames);
   statistics.offline_inliers = inliers_with_pose(frames, &Health::offline_inliers);

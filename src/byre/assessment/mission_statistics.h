@@ -22,28 +22,28 @@ struct MissionStatistics {
   int trusted = 0;
   int degraded = 0;
   int untrusted = 0;
-  std::vector<std::pair<Doubt, int>> doubts;  // doubts of frames that are not trusted, most frequent first
+  std::vector<std::pair<DistrustReason, int>> doubts;  // doubts of frames that are not trusted, most frequent first
   std::optional<double> seconds_to_first_pose;
   int losses = 0;
   int relocalisations = 0;
   int navigation_errors = 0;
-  KeyframeRate in_known_places;     // frames whose pose rests on offline points
+  KeyframeRate in_mapped_area;      // frames whose pose rests on offline points
   KeyframeRate in_changed_or_new;   // all other frames with a pose
   ErrorStatistics offline_inliers;  // per frame with a pose
   ErrorStatistics online_inliers;   // per frame with a pose
-  int most_suspended = 0;           // maximum number of offline points suspended at once
-  double most_hidden = 0.0;         // maximum share of a left image hidden by dirt
-  double most_hidden_right = 0.0;   // maximum share of a right image hidden by dirt
+  int max_suspended = 0;            // maximum number of offline points suspended at once
+  double max_hidden = 0.0;          // maximum share of a left image hidden by dirt
+  double max_hidden_right = 0.0;    // maximum share of a right image hidden by dirt
   int frames_with_dirt = 0;         // frames with dirt in either image
 };
 
 // Whether too many frames are missing for the rest to represent the recording.
-bool is_full_of_gaps(int missing, int frames);
-inline bool is_full_of_gaps(const MissionStatistics& statistics) {
-  return is_full_of_gaps(statistics.missing, statistics.frames);
+bool misses_too_many_frames(int missing, int frames);
+inline bool misses_too_many_frames(const MissionStatistics& statistics) {
+  return misses_too_many_frames(statistics.missing, statistics.frames);
 }
 
-// min_offline_inliers: offline inliers from which a frame counts as in_known_places.
+// min_offline_inliers: offline inliers from which a frame counts as in_mapped_area.
 MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers);
 
 }  // namespace byre

@@ -7,7 +7,7 @@
 namespace byre {
 
 // Report rows on wheel and gyroscope calibration and on poses from dead reckoning. Empty without such sensors.
-// sees_metres: the cameras are a metric source (a stereo pair, or a map).
-std::string motion_rows(const MapRun& run, bool sees_metres);
+// has_metric_source: the cameras are a metric source (a stereo pair, or a map).
+std::string motion_rows(const MapRun& run, bool has_metric_source);
 
 }  // namespace byre

@@ -27,8 +27,8 @@ void RecordFile::note(const RunView& view) {
   attempt([&] { record_->note(view); });
 }
 
-void RecordFile::note_unread(const MappedFrame& frame) {
-  attempt([&] { record_->note_unread(frame); });
+void RecordFile::note_unreadable(const MappedFrame& frame) {
+  attempt([&] { record_->note_unreadable(frame); });
 }
 
 void RecordFile::finish(const MapRun& run) {

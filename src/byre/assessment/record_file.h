@@ -17,8 +17,8 @@ class RecordFile {
   RecordFile(std::optional<McapWriter> writer, const Calibration& calibration, bool with_images, Warn warn);
 
   bool is_wanted() const { return record_.has_value(); }
-  void note(const RunView& view);              // call after each frame with readable images
-  void note_unread(const MappedFrame& frame);  // call after each other frame
+  void note(const RunView& view);                  // call after each frame with readable images
+  void note_unreadable(const MappedFrame& frame);  // call after each other frame
   void finish(const MapRun& run);
   void require_written() const;
 

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 std::string describe(const CameraCheck& camera) {
   return fmt::format("brightness {:.0f} and contrast {:.0f} grey values, sharpness {:.2f}; {} of {} images unusable",
-                     camera.brightness, camera.contrast, camera.sharpness, camera.of_no_use(), camera.images);
+                     camera.brightness, camera.contrast, camera.sharpness, camera.unusable(), camera.images);
 }
 
 // Whether at least half of the left images have features.
@@ -49,7 +49,7 @@ std::string summary_of(const RecordingCheck& check) {
 std::string describe(const RecordingCheck& check, const std::vector<Finding>& findings) {
   std::string text = row("frames", fmt::format("{} at {:.1f} Hz, {} gaps, the longest {:.2f} s", check.frames,
                                                check.rate_hz, check.gaps, check.longest_gap_s));
-  text += row("sampled", fmt::format("{} frames; {} unreadable, {} without a right image, {} repeated", check.looked_at,
+  text += row("sampled", fmt::format("{} frames; {} unreadable, {} without a right image, {} repeated", check.sampled,
                                      check.unreadable, check.without_right, check.repeated));
   text += row("left", describe(check.left));
   if (check.right) text += row("right", describe(*check.right));
@@ -62,7 +62,7 @@ std::string describe(const RecordingCheck& check, const std::vector<Finding>& fi
   text += row("view", fmt::format("{:.0f} degrees wide", check.field_of_view_deg));
   if (check.baseline_m > 0.0) text += row("baseline", fmt::format("{:.4f} m", check.baseline_m));
   for (const Finding& finding : findings) {
-    text += row(finding.is_grave ? "PROBLEM" : "warning", finding.what) + row("", finding.remedy);
+    text += row(finding.is_critical ? "PROBLEM" : "warning", finding.what) + row("", finding.remedy);
   }
   if (findings.empty()) text += row("found", "no problems");
   return text;
@@ -84,7 +84,7 @@ Json check_json(const RecordingCheck& check, const std::vector<Finding>& finding
                {"rate_hz", check.rate_hz},
                {"gaps", check.gaps},
                {"longest_gap_s", check.longest_gap_s},
-               {"looked_at", check.looked_at},
+               {"looked_at", check.sampled},
                {"unreadable", check.unreadable},
                {"without_right", check.without_right},
                {"repeated", check.repeated},
@@ -103,7 +103,7 @@ Json check_json(const RecordingCheck& check, const std::vector<Finding>& finding
                     {"calibration_error_px", check.pair->calibration_error}};
   }
   for (const Finding& finding : findings) {
-    json["findings"].push_back({{"grave", finding.is_grave}, {"what", finding.what}, {"remedy", finding.remedy}});
+    json["findings"].push_back({{"grave", finding.is_critical}, {"what", finding.what}, {"remedy", finding.remedy}});
   }
   return json;
 }

@@ -64,7 +64,7 @@ std::string describe_measured_scale(const PlanScale& scale, bool has_baseline) {
   return "the map is " + describe_excess(scale) + (has_baseline ? ": correct it with --fix-scale" : " for the plan");
 }
 
-std::string describe_mended_scale(const PlanScale& scale, double factor) {
+std::string describe_corrected_scale(const PlanScale& scale, double factor) {
   if (factor == 1.0) return "no correction needed: " + describe_excess(scale);
   return "the map was " + describe_excess(scale) + fmt::format(": lengths and baseline are scaled by {:.6g}", factor);
 }
@@ -103,7 +103,7 @@ std::string to_text(const Registering& registering, const RegisterProtocol& prot
                                      1e2 * std::sqrt(registration.covariance(6, 6))));
   }
   if (const std::optional<PlanScale>& measured = registering.measured_scale) {
-    text += row("scale", protocol.scaled_by ? describe_mended_scale(*measured, *protocol.scaled_by)
+    text += row("scale", protocol.scaled_by ? describe_corrected_scale(*measured, *protocol.scaled_by)
                                             : describe_measured_scale(*measured, registering.has_baseline));
   }
   text += row("accuracy", fmt::format("{:.3f} m along the path, {:.3f} deg in yaw (one sigma)",
@@ -130,7 +130,7 @@ std::string to_json(const Registering& registering, const RegisterProtocol& prot
     json["points"].push_back(correspondence_json(registering.correspondences[i], registering.fit.residuals[i]));
   }
   json["written"] = protocol.written.empty() ? Json() : Json(protocol.written);
-  return dumped(json, 2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace byre

@@ -75,7 +75,7 @@ Json registration_json(const PlanRegistration& registration) {
   return json;
 }
 
-std::string dumped(const Json& json, int indent) {
+std::string dump_json(const Json& json, int indent) {
   return printable_json(json.dump(indent, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -23,6 +23,6 @@ nlohmann::ordered_json position_json(const std::optional<Pose>& frame_from_body)
 nlohmann::ordered_json registration_json(const PlanRegistration& registration);
 
 // One line, or indented by indent spaces. Replaces invalid UTF-8 and escapes control characters.
-std::string dumped(const nlohmann::ordered_json& json, int indent = -1);
+std::string dump_json(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace byre

@@ -14,7 +14,7 @@ ros::Header header(const char* frame, Timestamp time) {
   return {ros::to_time(time), frame};
 }
 
-bool is_believed(const FrameReport& report) {
+bool is_usable(const FrameReport& report) {
   return report.map_from_body && report.health.verdict != Verdict::untrusted;
 }
 
@@ -67,14 +67,14 @@ std::byte diagnostic_level(Verdict verdict) {
 
 std::string verdict_and_doubt(const Health& health) {
   std::string text(to_string(health.verdict));
-  if (health.doubt != Doubt::none) text.append(": ").append(to_string(health.doubt));
+  if (health.doubt != DistrustReason::none) text.append(": ").append(to_string(health.doubt));
   return text;
 }
 
 ros::TFMessage ros_transforms(const FrameReport& report) {
   ros::TFMessage message;
   if (!report.odometry_from_body) return message;
-  if (is_believed(report)) {
+  if (is_usable(report)) {
     const Pose map_from_odometry = *report.map_from_body * inverse(*report.odometry_from_body);
     message.transforms.push_back(transform_message(header(kMapFrame, report.time), kOdometryFrame, map_from_odometry));
   }
@@ -95,7 +95,7 @@ ros::Odometry ros_odometry(const FrameReport& report, const std::optional<Stampe
 }
 
 std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report) {
-  if (!is_believed(report)) return std::nullopt;
+  if (!is_usable(report)) return std::nullopt;
   return pose_message(header(kMapFrame, report.time), *report.map_from_body, report.covariance);
 }
 
@@ -137,7 +137,7 @@ ros::PointCloud2 ros_cloud(const Map& map, Timestamp time) {
   return cloud;
 }
 
-ros::TFMessage ros_mounts(const Calibration& calibration, Timestamp time) {
+ros::TFMessage ros_camera_extrinsics(const Calibration& calibration, Timestamp time) {
   ros::TFMessage mounts{{transform_message(header(kBodyFrame, time), kLeftFrame, calibration.body_from_left)}};
   if (calibration.right) {
     const Pose left_from_right = inverse(calibration.right->right_from_left);

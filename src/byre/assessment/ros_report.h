@@ -42,7 +42,7 @@ ros::Path ros_path(const Trajectory& trajectory, Timestamp time);
 ros::PointCloud2 ros_cloud(const Map& map, Timestamp time);
 
 // Camera extrinsics in the body frame.
-ros::TFMessage ros_mounts(const Calibration& calibration, Timestamp time);
+ros::TFMessage ros_camera_extrinsics(const Calibration& calibration, Timestamp time);
 
 ros::CameraInfo ros_camera_info(const Camera& camera, const std::string& frame, Timestamp time);
 ros::Image ros_image(const Image& image, const std::string& frame, Timestamp time);

@@ -24,7 +24,7 @@ FrameReport report(Verdict verdict) {
   report.map_from_body = kMapFromBody;
   report.odometry_from_body = kOdometryFromBody;
   report.health.verdict = verdict;
-  report.health.doubt = verdict == Verdict::trusted ? Doubt::none : Doubt::few_points;
+  report.health.doubt = verdict == Verdict::trusted ? DistrustReason::none : DistrustReason::few_points;
   return report;
 }
 
@@ -80,7 +80,7 @@ TEST(RosReport, HasADiagnosticLevelByVerdict) {
   frame.report = report(Verdict::degraded);
   const ros::DiagnosticStatus degraded = ros_diagnostics(7, frame).status.at(0);
   EXPECT_EQ(degraded.level, ros::DiagnosticStatus::kWarn);
-  EXPECT_EQ(degraded.message, "degraded: " + std::string(to_string(Doubt::few_points)));
+  EXPECT_EQ(degraded.message, "degraded: " + std::string(to_string(DistrustReason::few_points)));
   EXPECT_THAT(degraded.values, Contains(ros::KeyValue{"frame", "7"}));
   frame.report = report(Verdict::trusted);
   EXPECT_EQ(ros_diagnostics(7, frame).status.at(0).level, ros::DiagnosticStatus::kOk);

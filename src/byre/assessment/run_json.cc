@@ -166,7 +166,7 @@ Json warnings_json(const std::vector<std::string>& warnings) {
   return {{"count", warnings.size()}, {"first", std::vector(warnings.begin(), warnings.begin() + listed)}};
 }
 
-Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+Json run_json(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
               const std::optional<MissionOutcome>& mission) {
   const Pace pace = protocol.options.pace;
   Json json = {{"protocol", protocol_json(protocol)},
@@ -241,16 +241,16 @@ Json frame_json(const MappedFrame& frame, const PoseError* error) {
 
 }  // namespace
 
-std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
                     const std::optional<MissionOutcome>& mission) {
-  std::string text = dumped(run_json(run, protocol, resources, mission), 2);
+  std::string text = dump_json(run_json(run, protocol, resources, mission), 2);
   text.erase(text.rfind("\n}"));
   text += ",\n  \"frames\": [";
   const char* separator = "\n    ";
   for (const MappedFrame& frame : run.frames) {
     const bool has_truth = mission && mission->errors;
     const PoseError* const error = has_truth ? find_error(mission->errors->causal, frame.time) : nullptr;
-    text += separator + dumped(frame_json(frame, error));
+    text += separator + dump_json(frame_json(frame, error));
     separator = ",\n    ";
   }
   return text + "\n  ]\n}\n";

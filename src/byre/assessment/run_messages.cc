@@ -20,16 +20,16 @@ constexpr double kPathStep = 0.1;      // metres between poses of the path messa
 
 RunMessages::RunMessages(ros::MessageSink& sink, const Calibration& calibration, const RunMessageOptions& options)
     : calibration_(calibration), sink_(sink), is_watched_(options.is_watched) {
-  constexpr auto kKept = ros::Durability::kept;
+  constexpr auto kLatched = ros::Durability::latched;
   topics_.transforms = sink_.add(topic_of<ros::TFMessage>("/tf"));
-  topics_.mounts = sink_.add(topic_of<ros::TFMessage>("/tf_static", kKept));
+  topics_.mounts = sink_.add(topic_of<ros::TFMessage>("/tf_static", kLatched));
   topics_.odometry = sink_.add(topic_of<ros::Odometry>("/odometry"));
   topics_.pose = sink_.add(topic_of<ros::PoseWithCovarianceStamped>("/pose"));
-  topics_.path = sink_.add(topic_of<ros::Path>("/path", kKept));
+  topics_.path = sink_.add(topic_of<ros::Path>("/path", kLatched));
   topics_.diagnostics = sink_.add(topic_of<ros::DiagnosticArray>("/diagnostics"));
   topics_.events = sink_.add(topic_of<ros::String>("/events"));
-  topics_.points = sink_.add(topic_of<ros::PointCloud2>("/map_points", kKept));
-  topics_.offline_points = sink_.add(topic_of<ros::PointCloud2>("/offline_map_points", kKept));
+  topics_.points = sink_.add(topic_of<ros::PointCloud2>("/map_points", kLatched));
+  topics_.offline_points = sink_.add(topic_of<ros::PointCloud2>("/offline_map_points", kLatched));
   if (!options.with_images) return;
   left_ = add_camera("/left");
   if (calibration_.right) right_ = add_camera("/right");
@@ -48,14 +48,14 @@ void RunMessages::note(const RunView& view) {
   last_time_ = view.frame.time;
 }
 
-void RunMessages::note_unread(const MappedFrame& frame) {
+void RunMessages::note_unreadable(const MappedFrame& frame) {
   note_diagnostics(frames_++, frame);
   last_time_ = frame.time;
 }
 
 void RunMessages::note_first(const RunView& view) {
   const Timestamp time = view.frame.time;
-  sink_.put_message(topics_.mounts, time, ros_mounts(calibration_, time));
+  sink_.put_message(topics_.mounts, time, ros_camera_extrinsics(calibration_, time));
   if (const Map* const offline = view.session.map().offline()) {
     sink_.put_message(topics_.offline_points, time, ros_cloud(*offline, time));
   }

@@ -24,8 +24,8 @@ class RunMessages {
   RunMessages(ros::MessageSink& sink, const Calibration& calibration, const RunMessageOptions& options);
 
   // Call one of the two after each frame, in order.
-  void note(const RunView& view);              // frame with readable images
-  void note_unread(const MappedFrame& frame);  // frame without
+  void note(const RunView& view);                  // frame with readable images
+  void note_unreadable(const MappedFrame& frame);  // frame without
 
   void finish(const MapRun& run);  // call after the last frame: publishes final path and map, wanted or not
 

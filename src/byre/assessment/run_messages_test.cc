@@ -39,10 +39,10 @@ class CountingSink : public ros::MessageSink {
   std::map<std::string, int> counts_;
 };
 
-constexpr int kFramesTold = 6;
+constexpr int kFrames = 6;
 
-std::map<std::string, int> told_of_a_run(const std::set<std::string>& wanted, bool is_finished) {
-  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFramesTold});
+std::map<std::string, int> messages_of_run(const std::set<std::string>& wanted, bool is_finished) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFrames});
   CountingSink sink(wanted);
   RunMessages messages(sink, recording->calibration(), {.with_images = true, .is_watched = true});
   EngineOptions options;
@@ -50,29 +50,29 @@ std::map<std::string, int> told_of_a_run(const std::set<std::string>& wanted, bo
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
-  hooks.look = [&messages](const RunView& view) { messages.note(view); };
+  hooks.on_frame = [&messages](const RunView& view) { messages.note(view); };
   const MapRun run = run_map(*recording, options, hooks);
   if (is_finished) messages.finish(run);
   return sink.counts();
 }
 
 TEST(RunMessages, CreateOnlyEventsAndExtrinsicsWithoutSubscribers) {
-  EXPECT_THAT(told_of_a_run({}, false), ElementsAre(Key("/events"), Key("/tf_static")));
+  EXPECT_THAT(messages_of_run({}, false), ElementsAre(Key("/events"), Key("/tf_static")));
 }
 
 TEST(RunMessages, CreateSubscribedMessages) {
-  const std::map<std::string, int> told = told_of_a_run({"/left/image_raw", "/diagnostics", "/map_points"}, false);
-  EXPECT_EQ(told.at("/left/image_raw"), kFramesTold);
-  EXPECT_EQ(told.at("/diagnostics"), kFramesTold);
-  EXPECT_EQ(told.at("/map_points"), 1);
-  EXPECT_FALSE(told.contains("/right/image_raw"));
-  EXPECT_FALSE(told.contains("/path"));
+  const std::map<std::string, int> counts = messages_of_run({"/left/image_raw", "/diagnostics", "/map_points"}, false);
+  EXPECT_EQ(counts.at("/left/image_raw"), kFrames);
+  EXPECT_EQ(counts.at("/diagnostics"), kFrames);
+  EXPECT_EQ(counts.at("/map_points"), 1);
+  EXPECT_FALSE(counts.contains("/right/image_raw"));
+  EXPECT_FALSE(counts.contains("/path"));
 }
 
 TEST(RunMessages, LatchPathAndMap) {
-  const std::map<std::string, int> told = told_of_a_run({}, true);
-  EXPECT_EQ(told.at("/path"), 1);
-  EXPECT_EQ(told.at("/map_points"), 1);
+  const std::map<std::string, int> counts = messages_of_run({}, true);
+  EXPECT_EQ(counts.at("/path"), 1);
+  EXPECT_EQ(counts.at("/map_points"), 1);
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ void RunRecord::note(const RunView& view) {
   flush_time_ = time;
 }
 
-void RunRecord::note_unread(const MappedFrame& frame) {
-  messages_.note_unread(frame);
+void RunRecord::note_unreadable(const MappedFrame& frame) {
+  messages_.note_unreadable(frame);
 }
 
 void RunRecord::finish(const MapRun& run) {

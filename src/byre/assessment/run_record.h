@@ -18,8 +18,8 @@ class RunRecord {
   RunRecord& operator=(const RunRecord&) = delete;
 
   // Call one of the two after each frame, in order.
-  void note(const RunView& view);              // frame with readable images
-  void note_unread(const MappedFrame& frame);  // frame without
+  void note(const RunView& view);                  // frame with readable images
+  void note_unreadable(const MappedFrame& frame);  // frame without
 
   void finish(const MapRun& run);  // call after the last frame: writes final path and map
 

@@ -30,11 +30,11 @@ class RecordedRun {
     MapRunHooks hooks;
     hooks.should_stop = [] { return false; };
     hooks.after_frame = [](int, const MappedFrame&) {};
-    hooks.look = [&record](const RunView& view) { record.note(view); };
+    hooks.on_frame = [&record](const RunView& view) { record.note(view); };
     run_ = run_map(*recording, options, hooks);
     MappedFrame unread;
     unread.time = run_.frames.back().time + Timestamp(1);
-    record.note_unread(unread);
+    record.note_unreadable(unread);
     record.finish(run_);
   }
   ~RecordedRun() { fs::remove(path_); }

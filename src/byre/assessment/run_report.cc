@@ -57,7 +57,7 @@ std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const Fra
   const std::string refusals = describe_refusals(counts);
   if (!refusals.empty()) begun += "; earlier attempts failed: " + refusals;
   const std::string scale = run.is_metric ? fmt::format("metric by wheel odometry (sigma {:.2f} %)",
-                                                        100.0 * run.told.metres_sigma.value_or(0.0))
+                                                        100.0 * run.motion.scale_sigma.value_or(0.0))
                                           : "arbitrary; set it with \"byre scale\"";
   return row("initialised", begun) + row("scale", scale);
 }
@@ -122,14 +122,14 @@ std::string describe_deadline(const MapRun& run, double deadline_ms) {
                      counts.late, counts.without_online_points, counts.with_left_alone);
 }
 
-std::string describe_processor(const MapRun& run, const ResourceUse& resources) {
+std::string describe_processor(const MapRun& run, const ResourceUsage& resources) {
   const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
   const double rate = seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0;
   return fmt::format("{:.1f} s, in {:.1f} s of wall time: {:.1f} frames/s", resources.cpu_seconds, run.wall_seconds,
                      rate);
 }
 
-std::string describe_memory(const MapRun& run, const ResourceUse& resources) {
+std::string describe_memory(const MapRun& run, const ResourceUsage& resources) {
   std::string text = fmt::format("peak {:.0f} MB", resources.peak_memory_mb);
   if (run.frames.empty()) return text;
   return text + fmt::format("; {:.0f} MB after the first frame, {:.0f} MB after the last", run.frames.front().memory_mb,
@@ -153,7 +153,7 @@ std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
   return row("finishing", "skipped; run \"byre refine\"");
 }
 
-std::string cost_rows(const MapRun& run, const EngineOptions& options, const ResourceUse& resources) {
+std::string cost_rows(const MapRun& run, const EngineOptions& options, const ResourceUsage& resources) {
   const Pace pace = options.pace;
   std::string text = row("frame time", describe_frame_time(run, pace));
   if (options.frame_deadline_ms > 0.0) text += row("deadline", describe_deadline(run, options.frame_deadline_ms));
@@ -233,7 +233,7 @@ std::string mission_rows(const MissionOutcome& mission, const MapRun& run, const
 
 }  // namespace
 
-std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
                     const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission) {
   std::string text = recording_rows(run, protocol);
   text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
@@ -246,7 +246,7 @@ std::string to_text(const MapRun& run, const MapProtocol& protocol, const Resour
 }
 
 void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings) {
-  if (!is_full_of_gaps(unreadable, frames)) return;
+  if (!misses_too_many_frames(unreadable, frames)) return;
   std::string text = fmt::format("{} of {} frames could not be read", unreadable, frames);
   if (!warnings.empty()) text += ", see the warnings: " + warnings.front();
   throw std::runtime_error(text + " (record or copy these images again, or exclude them with --frames)");

@@ -29,15 +29,15 @@ struct MapProtocol {
 };
 
 // Full report: protocol, figures, and an array with one object per frame, one a line. mission adds its outcome.
-std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
                     const std::optional<MissionOutcome>& mission = {});
 
 // Text report on the map, or with mission on the mission. files: the files written.
-std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUse& resources,
+std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
                     const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission = {});
 
 // Throws std::runtime_error, with the first warning and a remedy, if too many frames were unreadable for the result to
-// represent the recording (is_full_of_gaps).
+// represent the recording (misses_too_many_frames).
 void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings);
 inline void require_frames(const MapRun& run) {
   const FrameCounts counts = count_frames(run.frames);

@@ -155,7 +155,7 @@ TEST(MapJson, ContainsHealthAndOdometryOfEveryFrame) {
   report.odometry_from_body = Pose{Eigen::Quaterniond::Identity(), {0.0, 1.5, 0.0}};
   report.odometry_covariance(0, 1) = 0.125;
   report.health.verdict = Verdict::degraded;
-  report.health.doubt = Doubt::maps_disagree;
+  report.health.doubt = DistrustReason::maps_disagree;
   report.health.offline_inliers = 77;
   report.health.position_sigma = 0.5;
   report.health.agreement = Agreement{0.25, 0.125};

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostOfSmallMessage = 64u << 20;  // decompressed bytes allowed for a message of any size
+constexpr std::uint64_t kMaxSmallMessageBytes = 64u << 20;  // decompressed bytes allowed for a message of any size
 constexpr std::string_view kRos1Begin = "#ROSBAG V";
 constexpr std::string_view kSqliteBegin = "SQLite format 3";
 
@@ -145,7 +145,7 @@ std::vector<std::byte> BagFile::read(const BagMessage& message) {
   std::vector<std::byte> bytes = bag_->read(message);
   if (!is_zstd(bytes)) return bytes;
   Decompressed whole = decompress(Compression::zstd, bytes,
-                                  std::min(kMostChunkBytes, kMostOfSmallMessage + limits_.ratio * bytes.size()));
+                                  std::min(kMaxChunkBytes, kMaxSmallMessageBytes + limits_.ratio * bytes.size()));
   if (whole.is_whole) return std::move(whole.bytes);
   throw InputError(place_, "a message cannot be decompressed", "the bag is damaged; exclude this frame");
 }
@@ -220,7 +220,7 @@ void BagFolder::add(std::unique_ptr<Bag> file) {
 
 }  // namespace
 
-bool is_of_type(const BagTopic& topic, std::string_view type) {
+bool has_type(const BagTopic& topic, std::string_view type) {
   return ros::short_type(topic.type) == ros::short_type(type);
 }
 

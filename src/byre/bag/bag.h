@@ -24,10 +24,10 @@ struct BagTopic {
 };
 
 // Whether the topic's messages are of this type, in ROS 1 or in ROS 2.
-bool is_of_type(const BagTopic& topic, std::string_view type);
+bool has_type(const BagTopic& topic, std::string_view type);
 template <ros::Message M>
 bool holds(const BagTopic& topic) {
-  return is_of_type(topic, M::kType);
+  return has_type(topic, M::kType);
 }
 
 // Empty for an unsupported encoding.

@@ -12,20 +12,20 @@ ChunkedBag::ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, 
     : source_(std::move(source)),
       place_(std::move(place)),
       wanted_(std::move(wanted)),
-      most_decompressed_(limits.most(source_->size())) {
+      max_decompressed_(limits.most(source_->size())) {
   content_.storage = std::move(storage);
   content_.bytes = source_->size();
 }
 
 Decompressed ChunkedBag::decompress_piece(const CompressedPiece& piece) {
-  if (piece.original_size > kMostChunkBytes) return {};
+  if (piece.original_size > kMaxChunkBytes) return {};
   return decompress(piece.compression, read_piece(*source_, piece.begin, piece.size), piece.original_size);
 }
 
 std::optional<Decompressed> ChunkedBag::scan_piece(const CompressedPiece& piece) {
-  const std::uint64_t stated = std::min(piece.original_size, kMostChunkBytes);
-  if (left_out_ > 0 || stated > most_decompressed_ - decompressed_) {
-    ++left_out_;
+  const std::uint64_t stated = std::min(piece.original_size, kMaxChunkBytes);
+  if (skipped_ > 0 || stated > max_decompressed_ - decompressed_) {
+    ++skipped_;
     return std::nullopt;
   }
   decompressed_ += stated;
@@ -91,9 +91,9 @@ void ChunkedBag::add_broken(std::uint64_t record, const std::string& why) {
 }
 
 void ChunkedBag::finish_scan() {
-  if (left_out_ > 0) {
-    add_damage(std::to_string(left_out_) + " chunks were not read: the chunks exceed " +
-               std::to_string(most_decompressed_ >> 20) +
+  if (skipped_ > 0) {
+    add_damage(std::to_string(skipped_) + " chunks were not read: the chunks exceed " +
+               std::to_string(max_decompressed_ >> 20) +
                " MB when decompressed; if the bag is intact, record without compression");
   }
   if (broken_ > 0) {
@@ -104,7 +104,7 @@ void ChunkedBag::finish_scan() {
   content_.messages.shrink_to_fit();
 }
 
-std::string cut_at(std::uint64_t begin, std::uint64_t size) {
+std::string truncation_text(std::uint64_t begin, std::uint64_t size) {
   return "is truncated or damaged from byte " + std::to_string(begin) + " of " + std::to_string(size) +
          " on; the part before was read";
 }

@@ -59,7 +59,7 @@ class ChunkedBag : public Bag {
     std::vector<std::byte> bytes{};
   };
   std::span<const std::byte> chunk_at(std::uint64_t begin);
-  // Chunks that claim more than kMostChunkBytes are damaged.
+  // Chunks that claim more than kMaxChunkBytes are damaged.
   Decompressed decompress_piece(const CompressedPiece& piece);
 
   std::unique_ptr<ByteSource> source_;
@@ -68,9 +68,9 @@ class ChunkedBag : public Bag {
   BagContent content_;
   std::vector<bool> is_wanted_;  // indexed by topic
   std::unordered_map<std::string, std::size_t> topic_numbers_;
-  std::uint64_t most_decompressed_;  // bound of all chunks, bytes; constant after construction
-  std::uint64_t decompressed_ = 0;   // stated bytes of the chunks scanned so far
-  std::uint64_t left_out_ = 0;       // number of chunks beyond most_decompressed_
+  std::uint64_t max_decompressed_;  // bound of all chunks, bytes; constant after construction
+  std::uint64_t decompressed_ = 0;  // stated bytes of the chunks scanned so far
+  std::uint64_t skipped_ = 0;       // number of chunks beyond max_decompressed_
   std::uint64_t broken_ = 0;
   std::string first_broken_;
   // Last one first. Two, because left and right images may be in different chunks.
@@ -78,9 +78,9 @@ class ChunkedBag : public Bag {
 };
 
 // Text such as "is cut or damaged from byte 120 of 400 on; what comes before was read".
-std::string cut_at(std::uint64_t begin, std::uint64_t size);
+std::string truncation_text(std::uint64_t begin, std::uint64_t size);
 
 // Largest size of a decompressed chunk, bytes; a larger one counts as damage.
-inline constexpr std::uint64_t kMostChunkBytes = 256u << 20;
+inline constexpr std::uint64_t kMaxChunkBytes = 256u << 20;
 
 }  // namespace byre

@@ -153,7 +153,7 @@ std::vector<std::byte> compress_zstd(std::span<const std::byte> bytes) {
 bool decompress_zstd_file(const std::filesystem::path& from, const std::filesystem::path& to, std::uint64_t most) try {
   constexpr std::size_t kPiece = 1 << 20;
   FileSource source(from);
-  OutputFile output(to, FileContent::other, Durability::left_to_system);
+  OutputFile output(to, FileContent::other, Durability::unsynced);
   ZstdDecoder decoder;
   std::vector<std::byte> made(kPiece);
   bool is_sound = true, is_end = true;

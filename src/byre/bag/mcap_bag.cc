@@ -12,7 +12,7 @@
 namespace byre {
 namespace {
 
-constexpr std::uint64_t kMostOfSchema = 16u << 20;  // bytes of a schema or a channel
+constexpr std::uint64_t kMaxSchemaBytes = 16u << 20;  // bytes of a schema or a channel
 
 }  // namespace
 
@@ -28,7 +28,8 @@ McapBag::McapBag(std::unique_ptr<ByteSource> source, std::string place, TypeFilt
     add_damage(std::to_string(unknown_messages_) + " messages belong to undeclared channels");
   }
   if (!is_closed_)
-    add_damage(stop == end ? "was not closed: only the end of the data section is missing" : cut_at(stop, end));
+    add_damage(stop == end ? "was not closed: only the end of the data section is missing"
+                           : truncation_text(stop, end));
   finish_scan();
 }
 
@@ -59,9 +60,9 @@ void McapBag::take_record(McapRecord kind, std::uint64_t begin, std::uint64_t si
   ByteSource& source = region.source;
   switch (kind) {
     case McapRecord::schema:
-      return take_schema(read_piece(source, begin, std::min(size, kMostOfSchema)), begin);
+      return take_schema(read_piece(source, begin, std::min(size, kMaxSchemaBytes)), begin);
     case McapRecord::channel:
-      return take_channel(read_piece(source, begin, std::min(size, kMostOfSchema)), begin);
+      return take_channel(read_piece(source, begin, std::min(size, kMaxSchemaBytes)), begin);
     case McapRecord::message:
       return take_message(begin, size, region);
     case McapRecord::chunk:
@@ -85,7 +86,7 @@ McapBag::Chunk McapBag::chunk_of(std::uint64_t begin, std::uint64_t size) {
   chunk.piece.original_size = reader.read<std::uint64_t>();
   chunk.checksum = reader.read<std::uint32_t>();
   const std::optional<Compression> compression = parse_compression(reader.read_text());
-  chunk.is_known = compression.has_value();
+  chunk.is_supported = compression.has_value();
   chunk.piece.compression = compression.value_or(Compression::none);
   const auto stated_size = reader.read<std::uint64_t>();
   const std::uint64_t before = head.size() - reader.remaining();
@@ -107,7 +108,7 @@ void McapBag::take_chunk(std::uint64_t begin, std::uint64_t size) {
   const std::uint64_t record = begin - kMcapRecordHead;
   const Chunk chunk = chunk_of(begin, size);
   const CompressedPiece& piece = chunk.piece;
-  if (!chunk.is_known) return add_broken(record, "has an unsupported compression");
+  if (!chunk.is_supported) return add_broken(record, "has an unsupported compression");
   add_compression(piece.compression);
   if (piece.compression == Compression::none) {
     const std::uint64_t end = piece.begin + piece.size;

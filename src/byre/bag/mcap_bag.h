@@ -22,7 +22,7 @@ class McapBag final : public ChunkedBag {
   struct Chunk {
     std::uint32_t checksum = 0;  // CRC-32 of the content, 0 if not recorded
     CompressedPiece piece{};
-    bool is_known = true;  // whether its compression is supported
+    bool is_supported = true;  // whether its compression is supported
   };
 
   // A sequence of records: the file or a chunk.

@@ -29,7 +29,7 @@ void write_entries(ByteWriter& writer, const ByteWriter& entries) {
 std::string qos_of(ros::Durability durability) {
   const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
   return "- history: 1\n  depth: 10\n  reliability: 1\n  durability: " +
-         std::string(durability == ros::Durability::kept ? "1" : "2") + "\n  deadline:" + forever +
+         std::string(durability == ros::Durability::latched ? "1" : "2") + "\n  deadline:" + forever +
          "  lifespan:" + forever + "  liveliness: 1\n  liveliness_lease_duration:" + forever +
          "  avoid_ros_namespace_conventions: false";
 }

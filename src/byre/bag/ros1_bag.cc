@@ -13,8 +13,8 @@ namespace {
 using Fields = std::map<std::string, std::vector<std::byte>, std::less<>>;
 
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr std::uint64_t kMostHeader = 1u << 20;         // bytes of a record's header
-constexpr std::uint64_t kMostOfConnection = 16u << 20;  // bytes of the description of a connection
+constexpr std::uint64_t kMaxHeader = 1u << 20;            // bytes of a record's header
+constexpr std::uint64_t kMaxConnectionBytes = 16u << 20;  // bytes of the description of a connection
 
 enum class Operation : std::uint8_t {
   message = 2,
@@ -73,7 +73,7 @@ Ros1Bag::Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilt
   if (unknown_messages_ > 0) {
     add_damage(std::to_string(unknown_messages_) + " messages belong to undeclared connections");
   }
-  if (stop < end) add_damage(cut_at(stop, end));
+  if (stop < end) add_damage(truncation_text(stop, end));
   if (stop == end && !is_indexed_) add_damage("was not closed: it has no index");
   finish_scan();
 }
@@ -86,7 +86,7 @@ std::optional<Ros1Bag::Record> Ros1Bag::record_at(const Region& region, std::uin
     return ByteReader(bytes, place(), at).read<std::uint32_t>();
   };
   const std::optional<std::uint32_t> header_size = length_at(begin);
-  if (!header_size || *header_size > kMostHeader || *header_size > region.end - begin - kLength) return std::nullopt;
+  if (!header_size || *header_size > kMaxHeader || *header_size > region.end - begin - kLength) return std::nullopt;
   const std::uint64_t header = begin + kLength;
   const std::optional<std::uint32_t> data_size = length_at(header + *header_size);
   if (!data_size) return std::nullopt;
@@ -129,7 +129,7 @@ void Ros1Bag::take_file_header(const Record& record) {
 
 void Ros1Bag::take_connection(const Record& record, const Region& region) {
   const auto connection = number<std::uint32_t>(record.fields, "conn");
-  if (!connection || record.data_size > kMostOfConnection) return;
+  if (!connection || record.data_size > kMaxConnectionBytes) return;
   const std::vector<std::byte> data = read_piece(region.source, record.data_begin, record.data_size);
   const std::string type = text(fields_of(data, place(), record.data_begin), "type");
   connections_[*connection] = topic_number(text(record.fields, "topic"), type, "ros1");

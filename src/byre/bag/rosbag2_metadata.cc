@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> files_beside(const fs::path& folder) {
+std::vector<fs::path> sibling_files(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -29,20 +29,20 @@ std::vector<fs::path> files_beside(const fs::path& folder) {
 }
 
 // Path relative to the folder; the first versions prefix the folder's own name.
-fs::path found_in(const fs::path& folder, const fs::path& named) {
+fs::path resolve_file(const fs::path& folder, const fs::path& named) {
   const std::array<fs::path, 2> places = {folder / named, folder / named.filename()};
   std::error_code error;
   return fs::exists(places[0], error) || !fs::exists(places[1], error) ? places[0] : places[1];
 }
 
 // The files of metadata.yaml without duplicates, with a warning about these.
-Rosbag2Files files_named(const fs::path& metadata) {
+Rosbag2Files listed_files(const fs::path& metadata) {
   const YAML::Node bag = YAML::LoadFile(metadata.string())[kRosbag2Key];
   Rosbag2Files named;
   std::set<fs::path> known;
   int repeated = 0;
   for (const YAML::Node& file : bag["relative_file_paths"]) {
-    fs::path path = found_in(metadata.parent_path(), file.as<std::string>());
+    fs::path path = resolve_file(metadata.parent_path(), file.as<std::string>());
     std::error_code error;
     const bool is_new = known.insert(fs::weakly_canonical(path, error)).second;
     if (is_new || error) {
@@ -74,14 +74,14 @@ Rosbag2Files rosbag2_files(const fs::path& folder) {
     why = "is missing, as after a killed recorder";
   } else {
     try {
-      Rosbag2Files named = files_named(metadata);
+      Rosbag2Files named = listed_files(metadata);
       if (!named.files.empty()) return named;
       why = "lists no files";
     } catch (const YAML::Exception& exception) {
       why = std::string("cannot be parsed (") + exception.what() + ")";
     }
   }
-  return {files_beside(folder), {metadata.string() + ": " + why + "; bag files in its folder are used"}};
+  return {sibling_files(folder), {metadata.string() + ": " + why + "; bag files in its folder are used"}};
 }
 
 }  // namespace byre

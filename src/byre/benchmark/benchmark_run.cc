@@ -107,11 +107,11 @@ struct TimedRun {
 
 TimedRun run_and_time(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks) {
   const bool is_reset = reset_peak_memory();
-  const double cpu_before = resources_used_so_far().cpu_seconds;
+  const double cpu_before = resource_usage().cpu_seconds;
   TimedRun timed;
   timed.run = run_map(recording, options, hooks);
   if (timed.run.map_damage) throw InputError(*timed.run.map_damage);
-  timed.cost.cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+  timed.cost.cpu_seconds = resource_usage().cpu_seconds - cpu_before;
   if (is_reset) timed.cost.peak_memory_mb = peak_memory_mb();
   return timed;
 }
@@ -149,7 +149,7 @@ class BenchmarkRunner {
 
   void run_case(const BenchmarkCase& benchmark_case) {
     if (hooks_.should_stop()) return;
-    const MadeMap* const map = benchmark_case.map ? map_of(*benchmark_case.map) : nullptr;
+    const BuiltMap* const map = benchmark_case.map ? map_of(*benchmark_case.map) : nullptr;
     if (hooks_.should_stop()) return;
     if (benchmark_case.map && map == nullptr) {
       return skip({benchmark_case.name, "mapping failed for " + *benchmark_case.map + ": no frame got a pose"});
@@ -164,7 +164,7 @@ class BenchmarkRunner {
     for (const Arm arm : benchmark_case.arms) run_arm(benchmark_case, arm, arm == Arm::no_map ? nullptr : map);
   }
 
-  void run_arm(const BenchmarkCase& benchmark_case, Arm arm, const MadeMap* map) {
+  void run_arm(const BenchmarkCase& benchmark_case, Arm arm, const BuiltMap* map) {
     const Source& source = sources_.at(benchmark_case.recording);
     const ScaledRecording opened = source.open_frames(map != nullptr);
     Recording& recording = *opened.recording;
@@ -185,7 +185,7 @@ class BenchmarkRunner {
         result.final_trace = trace_of(timed.run.final, truth);
         result.causal_trace = trace_of(timed.run.causal, truth);
       }
-      RunMeasures measures = judge(timed.run, truth);
+      RunMeasures measures = evaluate_run(timed.run, truth);
       measures.cost.peak_memory_mb = timed.cost.peak_memory_mb;
       measures.cost.cpu_seconds = timed.cost.cpu_seconds;
       result.runs.push_back({protocol_.seed_of_run(i), measures, timed.run.warnings});
@@ -202,11 +202,11 @@ class BenchmarkRunner {
   }
 
   // Built at the first call; null if that failed or was stopped.
-  const MadeMap* map_of(const std::string& name) {
-    const auto made = std::ranges::find(result_.maps, name, &MadeMap::recording);
+  const BuiltMap* map_of(const std::string& name) {
+    const auto made = std::ranges::find(result_.maps, name, &BuiltMap::recording);
     if (made != result_.maps.end()) return &*made;
     if (!failed_maps_.contains(name)) make_map(name);
-    const auto now = std::ranges::find(result_.maps, name, &MadeMap::recording);
+    const auto now = std::ranges::find(result_.maps, name, &BuiltMap::recording);
     return now != result_.maps.end() ? &*now : nullptr;
   }
 
@@ -220,16 +220,16 @@ class BenchmarkRunner {
       failed_maps_.insert(name);
       return;
     }
-    MadeMap made{name,
-                 options_.output / (file_name_of(name) + ".byre"),
-                 run.map.keyframe_count(),
-                 run.map.point_count(),
-                 align_to_truth(run.final, Scale::fixed, source.truth),
-                 run.wall_seconds};
+    BuiltMap made{name,
+                  options_.output / (file_name_of(name) + ".byre"),
+                  run.map.keyframe_count(),
+                  run.map.point_count(),
+                  align_to_truth(run.final, Scale::fixed, source.truth),
+                  run.wall_seconds};
     StoredMap stored;
     stored.recordings.push_back(describe_source(source.folder, *recording, run.calibration));
     stored.map = std::move(run.map);
-    save_for_use(std::move(stored), vocabulary_, "", made.file);
+    save_for_missions(std::move(stored), vocabulary_, "", made.file);
     write_trajectories(run, file_name_of(name) + ".map", 0);
     result_.maps.push_back(std::move(made));
   }

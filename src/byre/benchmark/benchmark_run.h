@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/benchmark/judge.h"
+#include "byre/benchmark/evaluate_run.h"
 #include "byre/benchmark/protocol.h"
 #include "byre/place/vocabulary.h"
 #include "byre/playback/map_run.h"
@@ -22,7 +22,7 @@ struct BenchmarkOptions {
 };
 
 // An offline map, built once for all cases on it.
-struct MadeMap {
+struct BuiltMap {
   std::string recording;
   std::filesystem::path file;
   int keyframes = 0;
@@ -60,7 +60,7 @@ struct SkippedCase {
 };
 
 struct BenchmarkResult {
-  std::vector<MadeMap> maps;
+  std::vector<BuiltMap> maps;
   std::vector<CaseResult> cases;
   std::vector<SkippedCase> skipped;
   bool stopped = false;  // should_stop returned true; a run in progress was discarded

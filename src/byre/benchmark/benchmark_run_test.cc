@@ -37,7 +37,7 @@ class BenchmarkRun : public testing::Test {
   BenchmarkResult run(int stop_after_runs = 1000) {
     BenchmarkHooks hooks;
     hooks.should_stop = [this, stop_after_runs] { return static_cast<int>(runs_done_) >= stop_after_runs; };
-    hooks.before_run = [this](const std::string& what, int) { begun_.push_back(what); };
+    hooks.before_run = [this](const std::string& what, int) { started_runs_.push_back(what); };
     hooks.after_frame = [](int, const MappedFrame&) {};
     hooks.after_run = [this](const BenchmarkResult&) { ++runs_done_; };
     hooks.on_skipped = [](const SkippedCase&) {};
@@ -46,7 +46,7 @@ class BenchmarkRun : public testing::Test {
 
   BenchmarkProtocol protocol_;
   BenchmarkOptions options_;
-  std::vector<std::string> begun_;
+  std::vector<std::string> started_runs_;
   int runs_done_ = 0;
 };
 
@@ -68,7 +68,7 @@ TEST_F(BenchmarkRun, MeasuresEachRunOfACase) {
   }
   EXPECT_THAT(arm.final_trace, SizeIs(12));
   EXPECT_THAT(result.cases[0].truth, SizeIs(12));
-  EXPECT_THAT(begun_, ElementsAre("plain no_map, run 1 of 2", "plain no_map, run 2 of 2"));
+  EXPECT_THAT(started_runs_, ElementsAre("plain no_map, run 1 of 2", "plain no_map, run 2 of 2"));
   EXPECT_FALSE(result.stopped);
 }
 
@@ -76,8 +76,8 @@ TEST_F(BenchmarkRun, MakesAMapOnceForAllCasesOnIt) {
   protocol_.cases = {{"one*", "visit", "map", {Arm::localise_only, Arm::hybrid}},
                      {"two*", "visit", "map", {Arm::hybrid}}};
   const BenchmarkResult result = run();
-  EXPECT_THAT(begun_, ElementsAre("map of map", "one* localise_only, run 1 of 1", "one* hybrid, run 1 of 1",
-                                  "two* hybrid, run 1 of 1"));
+  EXPECT_THAT(started_runs_, ElementsAre("map of map", "one* localise_only, run 1 of 1", "one* hybrid, run 1 of 1",
+                                         "two* hybrid, run 1 of 1"));
   ASSERT_THAT(result.maps, SizeIs(1));
   EXPECT_GT(result.maps[0].keyframes, 1);
   EXPECT_TRUE(fs::is_regular_file(result.maps[0].file));
@@ -109,7 +109,7 @@ TEST_F(BenchmarkRun, RunsOnlySelectedCases) {
   protocol_.cases.push_back({"again", "visit", {}, {Arm::no_map}});
   options_.only = {"again"};
   EXPECT_THAT(run().cases, SizeIs(1));
-  EXPECT_THAT(begun_, ElementsAre("again no_map, run 1 of 1"));
+  EXPECT_THAT(started_runs_, ElementsAre("again no_map, run 1 of 1"));
   options_.only = {"other"};
   EXPECT_THROW(run(), InputError);
 }
@@ -126,7 +126,7 @@ TEST_F(BenchmarkRun, KeepsMeasurementsWhenStopped) {
 TEST_F(BenchmarkRun, RejectsUnreadableTruthBeforeRunning) {
   protocol_.recordings[0].truth = "absent.txt";
   EXPECT_THROW(run(), InputError);
-  EXPECT_THAT(begun_, SizeIs(0));
+  EXPECT_THAT(started_runs_, SizeIs(0));
 }
 
 TEST_F(BenchmarkRun, AppliesTheTimeOffsetToTheTruth) {

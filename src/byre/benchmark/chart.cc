@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWidth = 860.0, kLeft = 72.0, kRight = 24.0, kTop = 92.0, kBottom = 56.0;  // pixels
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
-constexpr double kPlotHeight = 340.0, kLeastPlotHeight = 260.0, kMostPlotHeight = 760.0;
+constexpr double kPlotHeight = 340.0, kMinPlotHeight = 260.0, kMaxPlotHeight = 760.0;
 constexpr double kMargin = 0.05;  // share of the value range, on each side
 constexpr const char* kInk = "#222222";
 constexpr const char* kFaint = "#666666";
@@ -50,7 +50,7 @@ bool is_drawn(const Chart& chart, const Eigen::Vector2d& point) {
   return !chart.log_y || point.y() > 0.0;
 }
 
-double drawn_y(const Chart& chart, double y) {
+double axis_y(const Chart& chart, double y) {
   return chart.log_y ? std::log10(y) : y;
 }
 
@@ -58,7 +58,7 @@ void for_each_point(const Chart& chart, const std::function<void(const Eigen::Ve
   for (const ChartSeries& series : chart.series) {
     for (const auto& piece : series.pieces) {
       for (const Eigen::Vector2d& point : piece) {
-        if (is_drawn(chart, point)) visit({point.x(), drawn_y(chart, point.y())});
+        if (is_drawn(chart, point)) visit({point.x(), axis_y(chart, point.y())});
       }
     }
   }
@@ -73,7 +73,7 @@ Range widened(const Range& range) {
 }
 
 void equalise_scales(ChartFrame& frame) {
-  frame.height = std::clamp(kPlotWidth * frame.y.length() / frame.x.length(), kLeastPlotHeight, kMostPlotHeight);
+  frame.height = std::clamp(kPlotWidth * frame.y.length() / frame.x.length(), kMinPlotHeight, kMaxPlotHeight);
   const double metres_per_pixel = std::max(frame.x.length() / kPlotWidth, frame.y.length() / frame.height);
   frame.x.grow_to(metres_per_pixel * kPlotWidth);
   frame.y.grow_to(metres_per_pixel * frame.height);
@@ -164,7 +164,7 @@ std::string polyline(const std::vector<Eigen::Vector2d>& piece, const ChartSerie
   Eigen::Vector2d last = Eigen::Vector2d::Constant(-1e9);
   for (const Eigen::Vector2d& point : piece) {
     if (!is_drawn(chart, point)) continue;
-    const Eigen::Vector2d pixel = frame.pixel(point.x(), drawn_y(chart, point.y()));
+    const Eigen::Vector2d pixel = frame.pixel(point.x(), axis_y(chart, point.y()));
     if ((pixel - last).norm() < kVisible) continue;
     last = pixel;
     points += fmt::format("{}{:.1f},{:.1f}", points.empty() ? "" : " ", pixel.x(), pixel.y());
@@ -200,7 +200,7 @@ double height_of(const ChartFrame& frame) {
   return kTop + frame.height + kBottom;
 }
 
-std::string begin_of_svg(double height) {
+std::string svg_header(double height) {
   std::string svg =
       fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" ", kWidth, height);
   svg += fmt::format("viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"Helvetica, Arial, sans-serif\" ", kWidth, height);
@@ -217,8 +217,8 @@ std::string content(const Chart& chart, const ChartFrame& frame) {
 }  // namespace
 
 std::vector<double> round_ticks(double least, double most) {
-  constexpr double kMostParts = 10.0;
-  const double rough = (most - least) / kMostParts;
+  constexpr double kMaxParts = 10.0;
+  const double rough = (most - least) / kMaxParts;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10.0 * power;
   for (const double factor : {5.0, 2.0, 1.0}) {
@@ -233,7 +233,7 @@ std::vector<double> round_ticks(double least, double most) {
 
 std::string to_svg(const Chart& chart) {
   const ChartFrame frame = frame_of(chart);
-  return begin_of_svg(height_of(frame)) + content(chart, frame) + "</svg>\n";
+  return svg_header(height_of(frame)) + content(chart, frame) + "</svg>\n";
 }
 
 std::string to_svg(const std::vector<Chart>& charts) {
@@ -244,7 +244,7 @@ std::string to_svg(const std::vector<Chart>& charts) {
     svg += fmt::format("<g transform=\"translate(0 {:.0f})\">\n", height) + content(chart, frame) + "</g>\n";
     height += height_of(frame);
   }
-  return begin_of_svg(height) + svg + "</svg>\n";
+  return svg_header(height) + svg + "</svg>\n";
 }
 
 }  // namespace byre

@@ -1,7 +1,7 @@
 #include "byre/benchmark/evaluation_plot.h"
 
 #include "byre/benchmark/chart.h"
-#include "byre/benchmark/judge.h"
+#include "byre/benchmark/evaluate_run.h"
 
 #include <algorithm>
 #include <chrono>

@@ -26,7 +26,7 @@ std::string MarkdownTable::text() const {
 }
 
 bool MarkdownTable::is_used(std::size_t column) const {
-  return std::ranges::any_of(rows_, [column](const auto& row) { return row[column] != kNothing; });
+  return std::ranges::any_of(rows_, [column](const auto& row) { return row[column] != kEmptyCell; });
 }
 
 std::size_t MarkdownTable::width(std::size_t column) const {

@@ -6,7 +6,7 @@
 
 namespace byre {
 
-inline constexpr const char* kNothing = "–";  // cell without a figure
+inline constexpr const char* kEmptyCell = "–";  // cell without a figure
 
 // A Markdown table with padded columns, readable as plain text. Empty columns are left out.
 class MarkdownTable {

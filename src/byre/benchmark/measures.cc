@@ -31,12 +31,12 @@ constexpr auto kBehaviourMeasures = std::to_array<Measure<BehaviourMeasures>>({
     {&BehaviourMeasures::losses, "losses", "losses", kUnchanged, 0, false},
     {&BehaviourMeasures::trusted_share, "trusted_share", "trusted %", kPercent, 1, true},
     {&BehaviourMeasures::trusted_map_error_max, "trusted_map_error_max_m", "worst trusted mm", kMillimetres, 1, false},
-    {&BehaviourMeasures::trusted_wrong, "trusted_wrong", "trusted > 0.2 m", kUnchanged, 0, false},
+    {&BehaviourMeasures::wrongly_trusted, "trusted_wrong", "trusted > 0.2 m", kUnchanged, 0, false},
     {&BehaviourMeasures::longest_wrong_trust, "longest_wrong_trust_s", "longest s", kUnchanged, 2, false},
     {&BehaviourMeasures::within_bound, "within_bound", "within 95 % bound %", kPercent, 1, true},
     {&BehaviourMeasures::keyframes, "keyframes", "keyframes", kUnchanged, 0, false},
-    {&BehaviourMeasures::keyframe_rate_known, "keyframes_per_minute_known", "per minute, known", kUnchanged, 1, false},
-    {&BehaviourMeasures::keyframe_rate_new, "keyframes_per_minute_new", "per minute, new", kUnchanged, 1, false},
+    {&BehaviourMeasures::keyframe_rate_mapped, "keyframes_per_minute_known", "per minute, known", kUnchanged, 1, false},
+    {&BehaviourMeasures::keyframe_rate_unmapped, "keyframes_per_minute_new", "per minute, new", kUnchanged, 1, false},
 });
 
 constexpr auto kCostMeasures = std::to_array<Measure<CostMeasures>>({

@@ -26,16 +26,16 @@ struct TrajectoryMeasures {
 };
 
 struct BehaviourMeasures {
-  Figure first_pose;             // seconds from the first frame to the first pose
-  Figure losses;                 // number of tracking losses
-  Figure trusted_share;          // share of all frames with verdict trusted
-  Figure trusted_map_error_max;  // metres
-  Figure trusted_wrong;          // trusted frames with an error above kFarMetres
-  Figure longest_wrong_trust;    // longest uninterrupted span of such frames, seconds
-  Figure within_bound;           // share of map-frame errors within the 95 % bound of the position covariance
-  Figure keyframes;              // added during the run
-  Figure keyframe_rate_known;    // per minute, in frames whose pose rests on offline points
-  Figure keyframe_rate_new;      // per minute, in the other frames with a pose
+  Figure first_pose;              // seconds from the first frame to the first pose
+  Figure losses;                  // number of tracking losses
+  Figure trusted_share;           // share of all frames with verdict trusted
+  Figure trusted_map_error_max;   // metres
+  Figure wrongly_trusted;         // trusted frames with an error above kFarMetres
+  Figure longest_wrong_trust;     // longest uninterrupted span of such frames, seconds
+  Figure within_bound;            // share of map-frame errors within the 95 % bound of the position covariance
+  Figure keyframes;               // added during the run
+  Figure keyframe_rate_mapped;    // per minute, in frames whose pose rests on offline points
+  Figure keyframe_rate_unmapped;  // per minute, in the other frames with a pose
 };
 
 struct CostMeasures {

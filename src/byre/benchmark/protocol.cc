@@ -1,7 +1,7 @@
 #include "byre/benchmark/protocol.h"
 
 #include "byre/benchmark/yaml_value.h"
-#include "byre/dataset/recording_words.h"
+#include "byre/dataset/recording_options.h"
 #include "byre/input/data_file.h"
 #include "byre/input_error.h"
 
@@ -148,8 +148,8 @@ auto read_named(const YamlValue& list, Read read) {
 }
 
 void read_runs(const YamlValue& root, BenchmarkProtocol& protocol) {
-  constexpr int kMostRuns = 1000, kLargestSeed = 1'000'000'000;
-  if (const auto runs = root.find("runs")) protocol.runs = runs->whole_number(1, kMostRuns);
+  constexpr int kMaxRuns = 1000, kLargestSeed = 1'000'000'000;
+  if (const auto runs = root.find("runs")) protocol.runs = runs->whole_number(1, kMaxRuns);
   const auto seeds = root.find("seeds");
   if (!seeds) return;
   for (const YamlValue& seed : seeds->entries()) {

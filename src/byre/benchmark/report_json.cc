@@ -81,7 +81,7 @@ Json case_json(const CaseResult& result, const BenchmarkProtocol& protocol) {
   return json;
 }
 
-Json map_json(const MadeMap& map) {
+Json map_json(const BuiltMap& map) {
   const Pose& truth_from_map = map.alignment.truth_from_map.target_from_source;
   const Eigen::Vector3d& t = truth_from_map.translation;
   const Eigen::Quaterniond& q = truth_from_map.rotation;
@@ -119,14 +119,14 @@ Json protocol_json(const BenchmarkProtocol& protocol, const BenchmarkSetting& se
 std::string to_json(const BenchmarkResult& result, const BenchmarkProtocol& protocol, const BenchmarkSetting& setting) {
   Json json = {{"protocol", protocol_json(protocol, setting)}, {"stopped_early", result.stopped}};
   json["maps"] = Json::array();
-  for (const MadeMap& map : result.maps) json["maps"].push_back(map_json(map));
+  for (const BuiltMap& map : result.maps) json["maps"].push_back(map_json(map));
   json["cases"] = Json::array();
   for (const CaseResult& one : result.cases) json["cases"].push_back(case_json(one, protocol));
   json["skipped"] = Json::array();
   for (const SkippedCase& skipped : result.skipped) {
     json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
   }
-  return dumped(json, 2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace byre

@@ -19,7 +19,7 @@ std::string number(double value, double scale, int digits) {
 template <typename Measures>
 std::string cell(const std::vector<Measures>& runs, const Measure<Measures>& measure) {
   const std::optional<RunSummary> summary = summarise_runs(runs, measure);
-  if (!summary) return kNothing;
+  if (!summary) return kEmptyCell;
   const auto shown = [&measure](double value) { return number(value, measure.scale, measure.digits); };
   const std::string mean = shown(summary->mean), median = shown(summary->median), worst = shown(summary->worst);
   std::string text = mean;
@@ -93,7 +93,7 @@ std::string alignment_text(const MapAlignment& alignment) {
 
 std::string maps_table(const BenchmarkResult& result) {
   MarkdownTable table({"map of", "keyframes", "points", "aligned to the truth by", "made in s"});
-  for (const MadeMap& map : result.maps) {
+  for (const BuiltMap& map : result.maps) {
     table.add({map.recording, std::to_string(map.keyframes), std::to_string(map.points), alignment_text(map.alignment),
                fmt::format("{:.1f}", map.wall_seconds)});
   }

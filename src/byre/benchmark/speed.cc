@@ -44,7 +44,7 @@ std::span<const FrameStage> frame_stages() {
 
 SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
   const bool is_reset = reset_peak_memory();
-  const double cpu_before = resources_used_so_far().cpu_seconds;
+  const double cpu_before = resource_usage().cpu_seconds;
   const EventCounter instructions(EventCounter::Event::instructions);
   const Stopwatch watch;
 
@@ -64,7 +64,7 @@ SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
   SpeedMeasures measures = measures_of(run);
   measures.first_pose_seconds = first_pose_seconds;
   measures.wall_seconds = watch.seconds();
-  measures.cpu_seconds = resources_used_so_far().cpu_seconds - cpu_before;
+  measures.cpu_seconds = resource_usage().cpu_seconds - cpu_before;
   measures.instructions = instructions.count();
   if (is_reset) measures.peak_memory_mb = peak_memory_mb();
   return measures;

@@ -30,7 +30,7 @@ std::string cell_with_range(const std::vector<SpeedMeasures>& runs, const SpeedM
     least = std::min(*value, least.value_or(*value));
     most = std::max(*value, most.value_or(*value));
   }
-  if (!figure(median)) return kNothing;
+  if (!figure(median)) return kEmptyCell;
   const std::string text = shown(*figure(median));
   return shown(*least) == shown(*most) ? text : text + " (" + shown(*least) + " to " + shown(*most) + ")";
 }
@@ -141,7 +141,7 @@ std::string speed_json(const SpeedCase& what, const std::vector<SpeedMeasures>& 
                {"cores", what.cores},
                {"runs", Json::array()}};
   for (const SpeedMeasures& run : runs) json["runs"].push_back(run_json(run));
-  return dumped(json, 2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace byre

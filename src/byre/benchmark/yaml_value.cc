@@ -35,14 +35,14 @@ std::string YamlValue::text() const {
   return node_.Scalar();
 }
 
-double YamlValue::number(double least, double most) const {
+double YamlValue::number(double min_value, double max_value) const {
   const std::optional<double> value = node_.IsScalar() ? parse_number(node_.Scalar()) : std::nullopt;
-  if (value && *value >= least && *value <= most) return *value;
-  fail(fmt::format("is not a number from {:g} to {:g}", least, most), "give a number in this range");
+  if (value && *value >= min_value && *value <= max_value) return *value;
+  fail(fmt::format("is not a number from {:g} to {:g}", min_value, max_value), "give a number in this range");
 }
 
-int YamlValue::whole_number(int least, int most) const {
-  const double value = number(least, most);
+int YamlValue::whole_number(int min_value, int max_value) const {
+  const double value = number(min_value, max_value);
   if (value != std::floor(value)) fail("is not an integer", "give a number without fraction");
   return static_cast<int>(value);
 }

@@ -20,8 +20,8 @@ class YamlValue {
 
   // Each throws InputError if the value is of another kind or outside the inclusive limits.
   std::string text() const;
-  double number(double least, double most) const;
-  int whole_number(int least, int most) const;
+  double number(double min_value, double max_value) const;
+  int whole_number(int min_value, int max_value) const;
   std::vector<YamlValue> entries() const;                       // entries of a list, not empty
   std::vector<std::pair<YamlValue, YamlValue>> fields() const;  // names and values in file order
   YamlValue operator[](const std::string& name) const;          // value of a required field

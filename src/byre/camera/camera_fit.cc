@@ -17,7 +17,7 @@ void require_size(const Camera& camera, const CaptureThread& capture, const std:
 
 }  // namespace
 
-void ask_for_size(const Calibration& calibration, LiveCameraOptions& options) {
+void request_calibrated_size(const Calibration& calibration, LiveCameraOptions& options) {
   if (options.request.width) return;
   options.request.width = calibration.left.width * (options.side_by_side ? 2 : 1);
   options.request.height = calibration.left.height;

@@ -8,7 +8,7 @@
 namespace byre {
 
 // Requests images of the calibrated size, unless the options request a size.
-void ask_for_size(const Calibration& calibration, LiveCameraOptions& options);
+void request_calibrated_size(const Calibration& calibration, LiveCameraOptions& options);
 
 // Throws InputError if the calibration has another number of cameras, or another image size. place: its file.
 void require_fit(const Calibration& calibration, const CaptureThread& capture, const std::string& place);

@@ -12,7 +12,7 @@ int CornerGrid::total() const {
   return std::accumulate(corners.begin(), corners.end(), 0);
 }
 
-int CornerGrid::cells_without() const {
+int CornerGrid::empty_cells() const {
   return static_cast<int>(std::ranges::count(corners, 0));
 }
 

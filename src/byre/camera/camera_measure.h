@@ -14,7 +14,7 @@ struct CornerGrid {
   std::array<int, kColumns * kRows> corners{};  // row by row
 
   int total() const;
-  int cells_without() const;
+  int empty_cells() const;
 };
 
 // FAST corners with the first threshold of tracking.

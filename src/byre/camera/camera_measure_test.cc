@@ -21,7 +21,7 @@ Image half_full() {
 TEST(CornerGrid, CountsCornersPerCell) {
   const CornerGrid grid = count_corners(half_full());
   EXPECT_GT(grid.total(), 100);
-  EXPECT_EQ(grid.cells_without(), 24) << "the left half of the image";
+  EXPECT_EQ(grid.empty_cells(), 24) << "the left half of the image";
   EXPECT_EQ(grid.corners[0], 0);
   EXPECT_GT(grid.corners[CornerGrid::kColumns - 1], 3);
 }

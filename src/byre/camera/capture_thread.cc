@@ -7,27 +7,27 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kMostNotes = 100;
+constexpr std::size_t kMaxNotes = 100;
 
-std::size_t capacity_for(KeptFrames kept, const LiveCameras& cameras) {
-  if (kept == KeptFrames::newest) return 1;
-  constexpr std::size_t kMostBytes = 256u << 20;
+std::size_t capacity_for(FrameRetention retention, const LiveCameras& cameras) {
+  if (retention == FrameRetention::newest) return 1;
+  constexpr std::size_t kMaxBytes = 256u << 20;
   constexpr std::size_t kFewest = 8;
   const std::size_t bytes = static_cast<std::size_t>(cameras.width()) * static_cast<std::size_t>(cameras.height()) *
                             (cameras.has_right() ? 2 : 1);
-  return std::max(kFewest, kMostBytes / bytes);
+  return std::max(kFewest, kMaxBytes / bytes);
 }
 
 }  // namespace
 
-CaptureThread::CaptureThread(const LiveCameraOptions& options, KeptFrames kept)
+CaptureThread::CaptureThread(const LiveCameraOptions& options, FrameRetention retention)
     : cameras_(options),
       has_right_(cameras_.has_right()),
       width_(cameras_.width()),
       height_(cameras_.height()),
       rate_hz_(cameras_.report().devices.front().mode.rate_hz),
-      frames_(capacity_for(kept, cameras_)),
-      notes_(kMostNotes),
+      frames_(capacity_for(retention, cameras_)),
+      notes_(kMaxNotes),
       thread_([this](const std::stop_token& stop) { capture(stop); }) {}
 
 CaptureThread::~CaptureThread() = default;
@@ -44,8 +44,8 @@ void CaptureThread::capture(const std::stop_token& stop) {
   }
 }
 
-std::optional<ImageFrame> CaptureThread::next(std::chrono::milliseconds at_most) {
-  return frames_.take(at_most);
+std::optional<ImageFrame> CaptureThread::next(std::chrono::milliseconds timeout) {
+  return frames_.take(timeout);
 }
 
 std::vector<std::string> CaptureThread::take_notes() {

@@ -14,13 +14,13 @@ namespace byre {
 // Frames kept until they are taken.
 //   newest  only the newest: for consumers that must not fall behind
 //   all     all, within a memory limit: for consumers that must not miss any
-enum class KeptFrames : std::uint8_t { newest, all };
+enum class FrameRetention : std::uint8_t { newest, all };
 
 // Captures frames in its own thread, so that no image waits in a driver. A slow consumer misses the oldest frames
 // beyond those kept.
 class CaptureThread {
  public:
-  CaptureThread(const LiveCameraOptions& options, KeptFrames kept);  // throws InputError like LiveCameras
+  CaptureThread(const LiveCameraOptions& options, FrameRetention retention);  // throws InputError like LiveCameras
   ~CaptureThread();
   CaptureThread(const CaptureThread&) = delete;
   CaptureThread& operator=(const CaptureThread&) = delete;
@@ -32,9 +32,9 @@ class CaptureThread {
   double rate_hz() const { return rate_hz_; }  // zero: unknown
 
   // The next frame; waits at most this long. Throws InputError if the cameras are unusable.
-  std::optional<ImageFrame> next(std::chrono::milliseconds at_most);
+  std::optional<ImageFrame> next(std::chrono::milliseconds timeout);
   std::vector<std::string> take_notes();
-  int passed_over() const { return frames_.dropped(); }
+  int skipped() const { return frames_.dropped(); }
 
   // Ends the thread. Waiting frames can still be taken.
   void stop();

@@ -82,7 +82,7 @@ double corner_information(const Image& image, double factor) {
   return total;
 }
 
-double best_light_factor(const Image& image) {
+double best_exposure_factor(const Image& image) {
   constexpr std::array kFactors = {1.0, 1.0 / 1.1, 1.1, 1.0 / 1.3, 1.3, 1.0 / 1.7, 1.7, 1.0 / 2.3, 2.3, 4.0, 8.0};
   constexpr double kClearly = 1.003;  // ignores insignificant improvements
   constexpr double kNothing = 1.0;
@@ -99,8 +99,8 @@ double best_light_factor(const Image& image) {
 
 CameraExposure next_exposure(const CameraExposure& now, double factor, const CameraExposureLimits& limits) {
   constexpr double kShare = 0.7;  // share of the step, in the logarithm
-  constexpr double kMost = 2.0;
-  const double change = std::clamp(std::pow(factor, kShare), 1.0 / kMost, kMost);
+  constexpr double kMax = 2.0;
+  const double change = std::clamp(std::pow(factor, kShare), 1.0 / kMax, kMax);
   const double light = std::max(now.light(), limits.min_seconds) * change;
   CameraExposure next;
   next.seconds = std::clamp(light, limits.min_seconds, limits.max_seconds);

@@ -27,7 +27,7 @@ double corner_information(const Image& image, double factor);
 
 // Exposure factor with the most corner information, among several candidates. For an image without information it
 // depends on whether the image is too bright or too dark.
-double best_light_factor(const Image& image);
+double best_exposure_factor(const Image& image);
 
 // Exposure after an image with this best factor: a damped step, at most a factor of two, so that the control converges.
 // Raises the exposure time up to its limit first, then the gain.

@@ -38,11 +38,11 @@ int on_step(const ControlRange& range, double value) {
 }  // namespace
 
 int gain_value(const ControlRange& range, double gain) {
-  return on_step(range, range.min + (gain - 1.0) / (kMostGain - 1.0) * (range.max - range.min));
+  return on_step(range, range.min + (gain - 1.0) / (kMaxGain - 1.0) * (range.max - range.min));
 }
 
 double gain_factor(const ControlRange& range, int value) {
-  return 1.0 + (kMostGain - 1.0) * (value - range.min) / (range.max - range.min);
+  return 1.0 + (kMaxGain - 1.0) * (value - range.min) / (range.max - range.min);
 }
 
 ExposureControls::ExposureControls(const VideoDescriptor& descriptor, const std::string& place)
@@ -64,7 +64,7 @@ CameraExposureLimits ExposureControls::limits(double max_seconds) const {
   CameraExposureLimits limits;
   limits.min_seconds = std::max(1, exposure_.min) * kUnit;
   limits.max_seconds = std::max(limits.min_seconds, std::min(max_seconds, exposure_.max * kUnit));
-  limits.max_gain = gain_ ? kMostGain : 1.0;
+  limits.max_gain = gain_ ? kMaxGain : 1.0;
   return limits;
 }
 

@@ -16,7 +16,7 @@ struct ControlRange {
 
 // Assumed gain factor at the upper end of a driver's range, which drivers do not report. The feedback of images
 // corrects the error.
-inline constexpr double kMostGain = 16.0;
+inline constexpr double kMaxGain = 16.0;
 
 // Converts a gain factor to the value of a driver's control, and back.
 int gain_value(const ControlRange& range, double gain);

@@ -38,7 +38,7 @@ Image taken(const Scene& scene, const CameraExposure& exposure) {
 }
 
 CameraExposure settled(const Scene& scene, CameraExposure exposure, const CameraExposureLimits& limits) {
-  for (int i = 0; i < 60; ++i) exposure = next_exposure(exposure, best_light_factor(taken(scene, exposure)), limits);
+  for (int i = 0; i < 60; ++i) exposure = next_exposure(exposure, best_exposure_factor(taken(scene, exposure)), limits);
   return exposure;
 }
 
@@ -104,7 +104,7 @@ TEST(Exposure, Converges) {
   const Scene scene = squares(1.0);
   const CameraExposure settling = settled(scene, {2e-4, 1.0}, limits);
   for (CameraExposure exposure = settling; const int step : {1, 2, 3}) {
-    exposure = next_exposure(exposure, best_light_factor(taken(scene, exposure)), limits);
+    exposure = next_exposure(exposure, best_exposure_factor(taken(scene, exposure)), limits);
     EXPECT_NEAR(exposure.light() / settling.light(), 1.0, 0.1) << step;
   }
 }

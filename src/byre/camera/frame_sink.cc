@@ -32,7 +32,7 @@ class EurocCamera {
 
   void write_image(const Image& image, Timestamp time) const {
     const std::vector<std::uint8_t> bytes = png_of(image);
-    write_whole(folder_ / "data" / name_of(time), std::as_bytes(std::span(bytes)), Durability::left_to_system);
+    write_atomically(folder_ / "data" / name_of(time), std::as_bytes(std::span(bytes)), Durability::unsynced);
   }
 
   void list(Timestamp time) { list_->append(std::to_string(time.count()) + "," + name_of(time) + "\n"); }
@@ -75,7 +75,8 @@ class EurocSink final : public FrameSink {
   }
 
   static void write_sensor(const fs::path& folder, const EurocSensor& sensor, const RecordedCameras& cameras) {
-    write_whole(folder / "sensor.yaml", write_euroc_sensor(sensor, cameras.rate_hz, "recorded by byre " BYRE_VERSION));
+    write_atomically(folder / "sensor.yaml",
+                     write_euroc_sensor(sensor, cameras.rate_hz, "recorded by byre " BYRE_VERSION));
   }
 
   EurocCamera left_;
@@ -87,12 +88,13 @@ class McapSink final : public FrameSink {
   McapSink(const fs::path& path, const RecordedCameras& cameras)
       : writer_(path), calibration_(cameras.calibration), left_(add_camera("/left")) {
     if (cameras.has_right) right_ = add_camera("/right");
-    if (calibration_) mounts_ = writer_.add(ros::topic_of<ros::TFMessage>("/tf_static", ros::Durability::kept));
+    if (calibration_) mounts_ = writer_.add(ros::topic_of<ros::TFMessage>("/tf_static", ros::Durability::latched));
   }
 
   void write(const ImageFrame& frame) override {
     constexpr Timestamp kFlushInterval = std::chrono::seconds(1);
-    if (!last_flush_ && calibration_) writer_.put_message(*mounts_, frame.time, ros_mounts(*calibration_, frame.time));
+    if (!last_flush_ && calibration_)
+      writer_.put_message(*mounts_, frame.time, ros_camera_extrinsics(*calibration_, frame.time));
     write_image(left_, frame.left, calibration_ ? &calibration_->left : nullptr, kLeftFrame, frame.time);
     if (right_ && frame.right) {
       write_image(*right_, *frame.right, calibration_ ? &calibration_->right->camera : nullptr, kRightFrame,

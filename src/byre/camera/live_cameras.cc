@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kExposureInterval = 6;  // frames between changes: a change takes effect some frames later
 
-void require_sense(const LiveCameraOptions& options) {
+void require_valid(const LiveCameraOptions& options) {
   if (options.devices.empty() || options.devices.size() > 2) {
     throw InputError("cameras", "must be one device or two", "give the left one, or the left and the right one");
   }
@@ -32,9 +32,9 @@ std::string describe(const DeviceReport& device) {
   if (counts.lost > 0) text += fmt::format(", {} lost", counts.lost);
   if (counts.damaged > 0) text += fmt::format(", {} damaged", counts.damaged);
   if (counts.out_of_order > 0) text += fmt::format(", {} out of order", counts.out_of_order);
-  if (device.times_away > 0)
-    text += fmt::format("; disconnected {} times for {:.1f} s", device.times_away, device.seconds_away);
-  if (device.is_away) text += ", still disconnected";
+  if (device.disconnections > 0)
+    text += fmt::format("; disconnected {} times for {:.1f} s", device.disconnections, device.seconds_disconnected);
+  if (device.is_disconnected) text += ", still disconnected";
   if (device.exposure) {
     text += fmt::format("; exposure {:.1f} ms, gain {:.1f}", 1e3 * device.exposure->seconds, device.exposure->gain);
   }
@@ -58,10 +58,10 @@ std::string describe_stamps(const LiveCameraReport& report) {
 }  // namespace
 
 LiveCameras::LiveCameras(const LiveCameraOptions& options) : options_(options), pairing_(options.pairing) {
-  require_sense(options);
+  require_valid(options);
   for (const std::filesystem::path& path : options.devices) {
     devices_.push_back(
-        std::make_unique<WatchedDevice>(path, options.request, options.exposure_limit_s, monotonic_now()));
+        std::make_unique<ReconnectingDevice>(path, options.request, options.exposure_limit_s, monotonic_now()));
   }
   const PixelLayout& left = devices_.front()->report().mode.layout;
   const PixelLayout& right = devices_.back()->report().mode.layout;
@@ -101,11 +101,11 @@ void LiveCameras::note_clock(Timestamp stamp) {
 void LiveCameras::note_difference() {
   constexpr int kEnough = 20;  // left images without a right one, before it is reported
   const StampPairCounts& counts = pairing_.counts();
-  if (has_told_difference_ || counts.left_alone < kEnough || counts.left_alone < counts.pairs) return;
+  if (has_reported_difference_ || counts.unpaired_left < kEnough || counts.unpaired_left < counts.pairs) return;
   const auto difference = pairing_.last_difference();
   const bool is_apart = difference && std::chrono::abs(*difference) > options_.pairing.tolerance;
   if (!is_apart) return;  // right images are missing
-  has_told_difference_ = true;
+  has_reported_difference_ = true;
   notes_.push_back(
       fmt::format("left and right images are {:.1f} ms apart, too far for a pair; trigger both cameras together, or "
                   "raise --pair-limit and accept less accurate poses",
@@ -116,7 +116,7 @@ void LiveCameras::control_exposure(const Image& left) {
   const auto limits = devices_.front()->exposure_limits();
   if (!exposure_ || !limits || ++frames_since_exposure_ < kExposureInterval) return;
   frames_since_exposure_ = 0;
-  exposure_ = next_exposure(*exposure_, best_light_factor(left), *limits);
+  exposure_ = next_exposure(*exposure_, best_exposure_factor(left), *limits);
   for (const auto& device : devices_) device->set_exposure(*exposure_);
 }
 
@@ -184,7 +184,7 @@ std::string to_text(const LiveCameraReport& report) {
   text += row("stamps", describe_stamps(report));
   if (report.pairs) {
     text += row("pairs", fmt::format("{}; {} left and {} right images unpaired", report.pairs->pairs,
-                                     report.pairs->left_alone, report.pairs->right_alone) +
+                                     report.pairs->unpaired_left, report.pairs->unpaired_right) +
                              (report.last_difference
                                   ? fmt::format("; the last {:.2f} ms apart", 1e3 * to_seconds(*report.last_difference))
                                   : std::string()));

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "byre/camera/camera_clock.h"
+#include "byre/camera/reconnecting_device.h"
 #include "byre/camera/stamp_pairing.h"
-#include "byre/camera/watched_device.h"
 #include "byre/image.h"
 
 #include <filesystem>
@@ -32,7 +32,7 @@ struct LiveCameraReport {
 // Live cameras. Use from one thread.
 class LiveCameras {
  public:
-  // Throws InputError like WatchedDevice, and for images that cannot be two halves or a pair.
+  // Throws InputError like ReconnectingDevice, and for images that cannot be two halves or a pair.
   explicit LiveCameras(const LiveCameraOptions& options);
 
   bool has_right() const { return options_.side_by_side || devices_.size() > 1; }
@@ -53,14 +53,14 @@ class LiveCameras {
   void control_exposure(const Image& left);
   std::vector<ImageFrame> frames_of(std::vector<StampedImage> lefts, std::vector<StampedImage> rights, Timestamp now);
 
-  LiveCameraOptions options_;                            // constant after construction
-  std::vector<std::unique_ptr<WatchedDevice>> devices_;  // left, right
+  LiveCameraOptions options_;                                 // constant after construction
+  std::vector<std::unique_ptr<ReconnectingDevice>> devices_;  // left, right
   StampPairing pairing_;
   std::optional<CameraClock> clock_;
   Timestamp utc_offset_{};
   std::optional<CameraExposure> exposure_;  // empty until exposure is controlled
   int frames_since_exposure_ = 0;
-  bool has_told_difference_ = false;
+  bool has_reported_difference_ = false;
   std::vector<std::string> notes_;
 };
 

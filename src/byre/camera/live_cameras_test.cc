@@ -44,10 +44,10 @@ TEST(LiveCameraReport, ContainsOnlyFaultsThatOccurred) {
   EXPECT_THAT(sound, AllOf(Not(HasSubstr("lost")), Not(HasSubstr("pairs"))));
 
   report.devices.front().counts.lost = 3;
-  report.devices.front().times_away = 1;
-  report.devices.front().seconds_away = 2.5;
+  report.devices.front().disconnections = 1;
+  report.devices.front().seconds_disconnected = 2.5;
   report.devices.front().exposure = CameraExposure{0.005, 2.0};
-  report.devices.front().is_away = true;
+  report.devices.front().is_disconnected = true;
   report.pairs = StampPairCounts{190, 10, 4};
   report.last_difference = 1500us;
   EXPECT_THAT(

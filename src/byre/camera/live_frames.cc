@@ -8,18 +8,18 @@ namespace byre {
 namespace {
 
 LiveCameraOptions of_calibrated_size(LiveCameraOptions options, const Calibration& calibration) {
-  ask_for_size(calibration, options);
+  request_calibrated_size(calibration, options);
   return options;
 }
 
 }  // namespace
 
 LiveFrames::LiveFrames(LiveCameraOptions options, const Calibration& calibration, const std::string& calibration_file,
-                       std::optional<double> duration_s, std::function<void(const std::string& note)> tell)
+                       std::optional<double> duration_s, std::function<void(const std::string& note)> on_note)
     : calibration_(calibration),
       duration_s_(duration_s),
-      tell_(std::move(tell)),
-      capture_(of_calibrated_size(std::move(options), calibration), KeptFrames::newest) {
+      on_note_(std::move(on_note)),
+      capture_(of_calibrated_size(std::move(options), calibration), FrameRetention::newest) {
   require_fit(calibration, capture_, calibration_file);
 }
 
@@ -28,15 +28,15 @@ bool LiveFrames::is_over() const {
   return since_first_->seconds() > *duration_s_ || to_seconds(*last_ - *first_) > *duration_s_;
 }
 
-void LiveFrames::tell_notes() {
-  for (const std::string& note : capture_.take_notes()) tell_(note);
+void LiveFrames::report_notes() {
+  for (const std::string& note : capture_.take_notes()) on_note_(note);
 }
 
 std::optional<FrameSource::SourceFrame> LiveFrames::next(const std::function<bool()>& should_stop) {
   constexpr auto kStopInterval = std::chrono::milliseconds(50);
   while (!should_stop() && !is_over()) {
     auto images = capture_.next(kStopInterval);
-    tell_notes();
+    report_notes();
     if (!images) continue;
     if (!first_) first_ = images->time;
     if (!since_first_) since_first_.emplace();
@@ -53,7 +53,7 @@ std::optional<FrameSource::SourceFrame> LiveFrames::next(const std::function<boo
 
 LiveCameraReport LiveFrames::finish() {
   capture_.stop();
-  tell_notes();
+  report_notes();
   return capture_.report();
 }
 

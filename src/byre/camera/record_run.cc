@@ -10,10 +10,10 @@ bool is_after_end(Timestamp time, const RecordedFrames& recorded, const RecordLi
   return limits.duration_s && recorded.first && to_seconds(time - *recorded.first) > *limits.duration_s;
 }
 
-void tell_notes(CaptureThread& capture, int passed_over_before, const RecordHooks& hooks) {
-  for (const std::string& note : capture.take_notes()) hooks.tell(note);
-  if (passed_over_before > 0 || capture.passed_over() == 0) return;
-  hooks.tell(
+void report_notes(CaptureThread& capture, int skipped_before, const RecordHooks& hooks) {
+  for (const std::string& note : capture.take_notes()) hooks.on_note(note);
+  if (skipped_before > 0 || capture.skipped() == 0) return;
+  hooks.on_note(
       "frames arrive faster than they can be written, some are dropped: use another disk, or set a lower --rate");
 }
 
@@ -45,8 +45,8 @@ RecordedFrames record_frames(CaptureThread& capture, FrameSink& sink, const Reco
   const auto is_late = [&](double seconds) { return limits.duration_s && seconds > *limits.duration_s; };
   while (!is_over && !hooks.should_stop()) {
     write_next(kStopInterval);
-    tell_notes(capture, recorded.passed_over, hooks);
-    recorded.passed_over = capture.passed_over();
+    report_notes(capture, recorded.skipped, hooks);
+    recorded.skipped = capture.skipped();
     is_over = is_over || is_late(since_first ? since_first->seconds() : since_start.seconds() - kPatience_s);
   }
   capture.stop();

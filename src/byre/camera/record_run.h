@@ -18,13 +18,13 @@ struct RecordLimits {
 struct RecordHooks {
   std::function<bool()> should_stop;  // polled continuously; earlier frames are still written
   std::function<void(int frames, const ImageFrame& newest)> after_frame;
-  std::function<void(const std::string& note)> tell;  // receives events of the cameras immediately
+  std::function<void(const std::string& note)> on_note;  // receives events of the cameras immediately
 };
 
 struct RecordedFrames {
   int frames = 0;
   int with_right = 0;
-  int passed_over = 0;  // frames dropped because writing was too slow and the queue was full
+  int skipped = 0;  // frames dropped because writing was too slow and the queue was full
   std::optional<Timestamp> first{}, last{};
   LiveCameraReport cameras;
 };

@@ -7,7 +7,7 @@ namespace byre {
 
 namespace {
 
-constexpr std::size_t kMostRights = 32;  // right images kept while left ones are missing
+constexpr std::size_t kMaxRights = 32;  // right images kept while left ones are missing
 
 }  // namespace
 
@@ -17,9 +17,9 @@ void StampPairing::add_left(StampedImage image, Timestamp now) {
 
 void StampPairing::add_right(StampedImage image) {
   rights_.push_back(std::move(image));
-  if (rights_.size() <= kMostRights) return;
+  if (rights_.size() <= kMaxRights) return;
   rights_.pop_front();
-  ++counts_.right_alone;
+  ++counts_.unpaired_right;
 }
 
 std::optional<std::size_t> StampPairing::nearest_right(Timestamp stamp) const {
@@ -49,9 +49,9 @@ StampPairing::Pair StampPairing::take(std::optional<std::size_t> right) {
   if (right) pair.right = std::move(rights_[*right]);
   std::size_t done = right ? *right + 1 : 0;
   while (done < rights_.size() && rights_[done].stamp < stamp - limits_.tolerance) ++done;
-  counts_.right_alone += static_cast<int>(done) - (right ? 1 : 0);
+  counts_.unpaired_right += static_cast<int>(done) - (right ? 1 : 0);
   rights_.erase(rights_.begin(), rights_.begin() + static_cast<std::ptrdiff_t>(done));
-  ++(right ? counts_.pairs : counts_.left_alone);
+  ++(right ? counts_.pairs : counts_.unpaired_left);
   return pair;
 }
 

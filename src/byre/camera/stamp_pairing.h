@@ -21,8 +21,8 @@ struct PairingLimits {
 
 struct StampPairCounts {
   int pairs = 0;
-  int left_alone = 0;   // left images without a right one
-  int right_alone = 0;  // right images without a left one, which are dropped
+  int unpaired_left = 0;   // left images without a right one
+  int unpaired_right = 0;  // right images without a left one, which are dropped
 };
 
 // Pairs the images of two devices by their stamps: each left image with the nearest right one. The order is kept. A

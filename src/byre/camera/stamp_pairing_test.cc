@@ -25,7 +25,7 @@ TEST_F(StampPairs, HaveTheNearestStamps) {
   ASSERT_TRUE(pair && pair->right);
   EXPECT_EQ(pair->right->stamp, 101ms);
   EXPECT_EQ(pairing_.counts().pairs, 1);
-  EXPECT_EQ(pairing_.counts().right_alone, 1);
+  EXPECT_EQ(pairing_.counts().unpaired_right, 1);
   EXPECT_THAT(pairing_.last_difference(), Optional(Eq(1ms)));
 }
 
@@ -44,7 +44,7 @@ TEST_F(StampPairs, LackTheRightImageAfterATimeout) {
   const auto pair = pairing_.next(300ms);
   ASSERT_TRUE(pair);
   EXPECT_FALSE(pair->right);
-  EXPECT_EQ(pairing_.counts().left_alone, 1);
+  EXPECT_EQ(pairing_.counts().unpaired_left, 1);
 }
 
 TEST_F(StampPairs, LackTheRightImageAtOnceIfALaterOneArrived) {
@@ -69,8 +69,8 @@ TEST_F(StampPairs, AreRejectedIfStampsAreTooFarApart) {
     ASSERT_TRUE(alone);
     EXPECT_FALSE(alone->right);
   }
-  EXPECT_EQ(pairing_.counts().left_alone, 5);
-  EXPECT_EQ(pairing_.counts().right_alone, 4) << "the last may still have a partner";
+  EXPECT_EQ(pairing_.counts().unpaired_left, 5);
+  EXPECT_EQ(pairing_.counts().unpaired_right, 4) << "the last may still have a partner";
 }
 
 TEST_F(StampPairs, PreserveOrderAndAllMatches) {
@@ -81,12 +81,12 @@ TEST_F(StampPairs, PreserveOrderAndAllMatches) {
     rights.push_back(pair->right ? std::optional(pair->right->stamp) : std::nullopt);
   EXPECT_THAT(rights, testing::ElementsAre(Optional(Eq(Timestamp(0ms))), Optional(Eq(Timestamp(50ms))),
                                            Eq(std::nullopt), Optional(Eq(Timestamp(150ms)))));
-  EXPECT_EQ(pairing_.counts().right_alone, 0);
+  EXPECT_EQ(pairing_.counts().unpaired_right, 0);
 }
 
 TEST_F(StampPairs, LimitStoredRightImages) {
   for (int i = 0; i < 1000; ++i) right(i * 50ms);
-  EXPECT_EQ(pairing_.counts().right_alone, 1000 - 32);
+  EXPECT_EQ(pairing_.counts().unpaired_right, 1000 - 32);
 }
 
 }  // namespace

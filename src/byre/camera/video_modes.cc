@@ -13,7 +13,7 @@
 namespace byre {
 namespace {
 
-constexpr int kMostListed = 256;  // entries, because some drivers list without end
+constexpr int kMaxListed = 256;  // entries, because some drivers list without end
 constexpr const char* kSeeList = "\"byre camera list\" lists its formats";
 
 double rate_of(const v4l2_fract& interval) {
@@ -22,7 +22,7 @@ double rate_of(const v4l2_fract& interval) {
 
 std::vector<double> rates_of(const VideoDescriptor& descriptor, std::uint32_t code, int width, int height) {
   std::vector<double> rates;
-  for (int i = 0; i < kMostListed; ++i) {
+  for (int i = 0; i < kMaxListed; ++i) {
     v4l2_frmivalenum interval{};
     interval.index = static_cast<std::uint32_t>(i);
     interval.pixel_format = code;
@@ -40,7 +40,7 @@ std::vector<double> rates_of(const VideoDescriptor& descriptor, std::uint32_t co
 
 std::vector<VideoFormats::Size> sizes_of(const VideoDescriptor& descriptor, std::uint32_t code) {
   std::vector<VideoFormats::Size> sizes;
-  for (int i = 0; i < kMostListed; ++i) {
+  for (int i = 0; i < kMaxListed; ++i) {
     v4l2_frmsizeenum size{};
     size.index = static_cast<std::uint32_t>(i);
     size.pixel_format = code;
@@ -59,8 +59,8 @@ v4l2_capability capability_of(const VideoDescriptor& descriptor, const std::stri
   if (!descriptor.call(VIDIOC_QUERYCAP, &capability)) {
     throw InputError(place, "is not a camera", "\"byre camera list\" lists the cameras");
   }
-  const bool tells_device = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
-  const std::uint32_t does = tells_device ? capability.device_caps : capability.capabilities;
+  const bool has_device_caps = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  const std::uint32_t does = has_device_caps ? capability.device_caps : capability.capabilities;
   if ((does & V4L2_CAP_VIDEO_CAPTURE) == 0 || (does & V4L2_CAP_STREAMING) == 0) {
     throw InputError(place, "does not support streaming by memory mapping",
                      "give another device of the camera, see \"byre camera list\"");
@@ -70,7 +70,7 @@ v4l2_capability capability_of(const VideoDescriptor& descriptor, const std::stri
 
 std::vector<std::uint32_t> offered_formats(const VideoDescriptor& descriptor) {
   std::vector<std::uint32_t> codes;
-  for (int i = 0; i < kMostListed; ++i) {
+  for (int i = 0; i < kMaxListed; ++i) {
     v4l2_fmtdesc format{};
     format.index = static_cast<std::uint32_t>(i);
     format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -131,7 +131,7 @@ std::optional<VideoMode> try_mode(const VideoDescriptor& descriptor, const Video
   return mode;
 }
 
-bool is_as_asked(const VideoMode& mode, const VideoRequest& request) {
+bool fits_request(const VideoMode& mode, const VideoRequest& request) {
   constexpr double kNearly = 0.98;  // accepts 29.97 Hz for 30 Hz
   const bool has_size = mode.layout.width == request.width.value_or(mode.layout.width) &&
                         mode.layout.height == request.height.value_or(mode.layout.height);
@@ -139,7 +139,7 @@ bool is_as_asked(const VideoMode& mode, const VideoRequest& request) {
 }
 
 // Drivers report the moment of stamps with the first buffer.
-std::optional<StampMoment> told_moment(const VideoDescriptor& descriptor) {
+std::optional<StampMoment> reported_moment(const VideoDescriptor& descriptor) {
   v4l2_requestbuffers wanted{};
   wanted.count = 1;
   wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -176,7 +176,7 @@ VideoFormats formats_of(const VideoDescriptor& descriptor, const std::string& pl
   VideoFormats formats;
   formats.name = reinterpret_cast<const char*>(capability.card);
   formats.bus = reinterpret_cast<const char*>(capability.bus_info);
-  for (int i = 0; i < kMostListed; ++i) {
+  for (int i = 0; i < kMaxListed; ++i) {
     v4l2_fmtdesc format{};
     format.index = static_cast<std::uint32_t>(i);
     format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -184,7 +184,7 @@ VideoFormats formats_of(const VideoDescriptor& descriptor, const std::string& pl
     formats.formats.push_back({format.pixelformat, reinterpret_cast<const char*>(format.description),
                                sizes_of(descriptor, format.pixelformat)});
   }
-  formats.moment = told_moment(descriptor);
+  formats.moment = reported_moment(descriptor);
   return formats;
 }
 
@@ -194,7 +194,7 @@ VideoMode set_mode(const VideoDescriptor& descriptor, const VideoRequest& reques
   for (const std::uint32_t code : formats_to_try(descriptor, request, place)) {
     errno = 0;
     const auto mode = try_mode(descriptor, request, code);
-    if (mode && is_as_asked(*mode, request)) return *mode;
+    if (mode && fits_request(*mode, request)) return *mode;
     if (!mode && errno == EBUSY) {
       throw InputError(place, "is used by another program", "stop that program first");
     }

@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
     return "byre: error: " + byre::printable(error.what()) + "\nSee \"byre --help\" and \"byre COMMAND --help\".\n";
   });
-  let_writing_fail();
+  ignore_write_signals();
   Action action;
   declare_commands(app, action);
   try {

@@ -29,7 +29,7 @@ std::vector<std::string> add_right(std::vector<BagFrame>& frames, const std::vec
   std::vector<Timestamp> times;
   for (const BagFrame& frame : frames) times.push_back(frame.time);
   const std::vector<Timestamp> right_times = times_of(right);
-  const auto partners = partners_in_time(times, right_times, tolerance);
+  const auto partners = match_by_time(times, right_times, tolerance);
   std::vector<bool> is_used(right.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!partners[i]) continue;
@@ -38,7 +38,7 @@ std::vector<std::string> add_right(std::vector<BagFrame>& frames, const std::vec
   }
   const auto alone = static_cast<std::size_t>(std::ranges::count(partners, std::optional<std::size_t>()));
   const auto unused = static_cast<std::size_t>(std::ranges::count(is_used, false));
-  if (alone == frames.size()) throw no_pairs(place, times, right_times, tolerance);
+  if (alone == frames.size()) throw no_pairs_error(place, times, right_times, tolerance);
   if (alone + unused == 0) return {};
   return {place + ": " + std::to_string(alone) + " of " + std::to_string(frames.size()) +
           " left images have no right image within " + in_ms(tolerance) + ", " + std::to_string(unused) + " of " +

@@ -52,7 +52,7 @@ struct HeaderStamp {
   ros::Time stamp{};
   std::uint32_t seq = 0;
   static void fields(auto& self, auto& visit) {
-    visit.in_ros1_alone(self.seq);
+    visit.ros1_only(self.seq);
     visit("stamp", self.stamp);
   }
 };
@@ -89,7 +89,7 @@ ImageReading<Image> grey_of(const ros::Image& image) {
     return {std::nullopt, "has the unsupported encoding \"" + image.encoding + "\""};
   }
   const ImageSize size{image.width, image.height};
-  if (image.width == 0 || image.height == 0 || size.pixels() > kMostPixels) {
+  if (image.width == 0 || image.height == 0 || size.pixels() > kMaxPixels) {
     return {std::nullopt, "has an invalid size"};
   }
   if (image.data.size() < bytes_needed(image, layout->type)) return {std::nullopt, "is not a complete image"};

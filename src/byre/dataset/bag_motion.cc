@@ -15,7 +15,7 @@ namespace byre {
 namespace {
 
 // Topic of a sensor in the options.
-struct Asked {
+struct TopicRequest {
   const std::optional<std::string>& topic;  // empty: the only one
   const char* remedy;
 };
@@ -27,21 +27,21 @@ std::string kinds() {
 }
 
 template <ros::Message... Ms>
-std::size_t choose_topic(const BagContent& content, const Asked& asked, const std::string& place) {
+std::size_t choose_topic(const BagContent& content, const TopicRequest& request, const std::string& place) {
   std::vector<std::size_t> topics;
   std::string names;
   for (std::size_t i = 0; i < content.topics.size(); ++i) {
     const BagTopic& topic = content.topics[i];
     if (!(holds<Ms>(topic) || ...) || topic.messages == 0 || !encoding_of(topic)) continue;
     names += (names.empty() ? "" : ", ") + topic.name;
-    if (!asked.topic || topic.name == *asked.topic || topic.name == "/" + *asked.topic) topics.push_back(i);
+    if (!request.topic || topic.name == *request.topic || topic.name == "/" + *request.topic) topics.push_back(i);
   }
   if (topics.size() == 1) return topics.front();
   throw InputError(place,
-                   (asked.topic ? "has no " + kinds<Ms...>() + " messages on topic " + *asked.topic
-                                : "has no unique topic of type " + kinds<Ms...>()) +
+                   (request.topic ? "has no " + kinds<Ms...>() + " messages on topic " + *request.topic
+                                  : "has no unique topic of type " + kinds<Ms...>()) +
                        "; available topics of this type: " + (names.empty() ? "none" : names),
-                   asked.remedy);
+                   request.remedy);
 }
 
 // Samples of the messages of one topic.
@@ -81,7 +81,7 @@ std::vector<WheelSample> read_wheels(Bag& bag, std::size_t topic, const std::str
 }
 
 // All messages use one kind, which may only be decided by later ones.
-void take_over_wheels(const std::vector<WheelSample>& wheels, MotionSamples& samples) {
+void append_wheel_odometry(const std::vector<WheelSample>& wheels, MotionSamples& samples) {
   WheelStream stream;
   for (const WheelSample& sample : wheels) stream.add(sample);
   const bool has_velocities = stream.kind() == WheelStream::Kind::velocities;
@@ -97,7 +97,7 @@ bool wants_gyroscope(const OpenOptions& options) {
 
 }  // namespace
 
-bool is_of_motion(std::string_view type, const OpenOptions& options) {
+bool is_motion_type(std::string_view type, const OpenOptions& options) {
   const BagTopic topic{"", std::string(type), ""};
   const bool is_of_wheels =
       holds<ros::Odometry>(topic) || holds<ros::TwistStamped>(topic) || holds<ros::TwistWithCovarianceStamped>(topic);
@@ -109,14 +109,14 @@ BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::strin
   if (options.wheels) {
     motion.samples.wheels = read_wheel_file(*options.wheels, images, motion.warnings);
   } else if (options.wheels_topic) {
-    const Asked asked{options.wheels_topic, "select one with --wheels-topic TOPIC"};
+    const TopicRequest request{options.wheels_topic, "select one with --wheels-topic TOPIC"};
     const std::size_t topic =
-        choose_topic<ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped>(bag.content(), asked, place);
-    take_over_wheels(read_wheels(bag, topic, place, images, motion.warnings), motion.samples);
+        choose_topic<ros::Odometry, ros::TwistStamped, ros::TwistWithCovarianceStamped>(bag.content(), request, place);
+    append_wheel_odometry(read_wheels(bag, topic, place, images, motion.warnings), motion.samples);
   }
   if (wants_gyroscope(options)) {
-    const Asked asked{options.imu_topic, "select one with --imu-topic TOPIC, or omit the gyroscope"};
-    const std::size_t topic = choose_topic<ros::Imu>(bag.content(), asked, place);
+    const TopicRequest request{options.imu_topic, "select one with --imu-topic TOPIC, or omit the gyroscope"};
+    const std::size_t topic = choose_topic<ros::Imu>(bag.content(), request, place);
     std::size_t unmeasured = 0;
     for (const ImuSample& sample : read_topic<ros::Imu, ImuSample>(bag, topic, place, images, motion.warnings)) {
       if (sample.rate) motion.samples.rates.push_back(*sample.rate);

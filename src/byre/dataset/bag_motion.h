@@ -17,7 +17,7 @@ struct BagMotion {
 };
 
 // Whether the options require messages of this type, other than images.
-bool is_of_motion(std::string_view type, const OpenOptions& options);
+bool is_motion_type(std::string_view type, const OpenOptions& options);
 
 // Samples of wheels and gyroscope, with header times:
 //   wheels      nav_msgs/Odometry: its poses, or its twists if the poses never change; geometry_msgs/TwistStamped or

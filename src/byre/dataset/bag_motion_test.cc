@@ -40,7 +40,7 @@ class BagMotions : public BagFolderTest {
  protected:
   BagMotion read(const std::vector<SceneMessage>& messages, const OpenOptions& options) const {
     const auto bag = open_bag(write("walk.mcap", mcap_bytes(messages, "zstd")),
-                              [&](std::string_view type) { return is_of_motion(type, options); });
+                              [&](std::string_view type) { return is_motion_type(type, options); });
     return read_bag_motion(*bag, options, "walk.mcap");
   }
   std::string read_error(const std::vector<SceneMessage>& messages, const OpenOptions& options) const {
@@ -75,9 +75,9 @@ TEST_F(BagMotions, ReadVelocitiesOfTwistTopics) {
                                 {.wheels_topic = "/wheel/twist"});
   EXPECT_THAT(motion.samples.wheels, IsEmpty());
   ASSERT_THAT(motion.samples.velocities, SizeIs(2));
-  const BaseVelocity& last = motion.samples.velocities.back();
+  const BaseTwist& last = motion.samples.velocities.back();
   EXPECT_EQ(last.time, at_ms(1020));
-  EXPECT_EQ(Eigen::Vector3d(last.ahead, last.left, last.turning), Eigen::Vector3d(0.6, 0.1, 0.3));
+  EXPECT_EQ(Eigen::Vector3d(last.vx, last.vy, last.wz), Eigen::Vector3d(0.6, 0.1, 0.3));
 }
 
 // A driver with constant default poses, and one that marks them as invalid by their covariance.

@@ -22,19 +22,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_of_transforms(const BagTopic& topic) {
+bool is_transform_topic(const BagTopic& topic) {
   return holds<ros::TFMessage>(topic) || topic.type == "tf/tfMessage";
 }
 
 bool is_wanted(std::string_view type) {
   const BagTopic topic{"", std::string(type), ""};
   return holds<ros::Image>(topic) || holds<ros::CompressedImage>(topic) || holds<ros::CameraInfo>(topic) ||
-         is_of_transforms(topic);
+         is_transform_topic(topic);
 }
 
 class BagRecording final : public Recording {
  public:
-  BagRecording(std::unique_ptr<Bag> bag, PlacedCalibration calibration, std::vector<BagFrame> frames,
+  BagRecording(std::unique_ptr<Bag> bag, CalibrationWithSource calibration, std::vector<BagFrame> frames,
                MotionSamples motion, TimeCorrections corrections, std::string place, std::vector<std::string> warnings)
       : bag_(std::move(bag)),
         calibration_(std::move(calibration)),
@@ -58,7 +58,7 @@ class BagRecording final : public Recording {
   void warn(const BagFrame& frame, const BagMessage& message, const std::string& what);
 
   std::unique_ptr<Bag> bag_;
-  PlacedCalibration calibration_;      // constant after construction
+  CalibrationWithSource calibration_;  // constant after construction
   std::vector<BagFrame> frames_;       // constant after construction
   std::vector<Timestamp> times_;       // constant after construction
   MotionSamples motion_;               // constant after construction
@@ -106,14 +106,14 @@ class BagCalibration {
   BagCalibration(Bag& bag, std::string place) : bag_(bag), place_(std::move(place)) {}
 
   // Empty without camera info for the left images.
-  std::optional<PlacedCalibration> read(const ImageTopics& topics) const {
-    const std::optional<PlacedCameraInfo> left = info_of(topics.left);
+  std::optional<CalibrationWithSource> read(const ImageTopics& topics) const {
+    const std::optional<CameraInfoWithSource> left = info_of(topics.left);
     if (!left) return std::nullopt;
     const StaticFrames frames = tree();
-    PlacedCalibration calibration{
+    CalibrationWithSource calibration{
         {camera_of(*left), std::nullopt, body_from_camera(left->info.header.frame_id, frames)}, left->place, ""};
     if (!topics.right) return calibration;
-    const std::optional<PlacedCameraInfo> right = info_of(*topics.right);
+    const std::optional<CameraInfoWithSource> right = info_of(*topics.right);
     if (!right) {
       throw InputError(place_, "has no camera info for " + bag_.content().topics[*topics.right].name,
                        "give a stereo calibration with --calibration FILE, or use one camera with --camera left");
@@ -136,14 +136,14 @@ class BagCalibration {
   }
 
   // The first camera info for the topic of images.
-  std::optional<PlacedCameraInfo> info_of(std::size_t images) const {
+  std::optional<CameraInfoWithSource> info_of(std::size_t images) const {
     const BagContent& content = bag_.content();
     const std::string wanted = camera_info_topic(content.topics[images].name);
     for (const BagMessage& each : content.messages) {
       const BagTopic& topic = content.topics[each.topic];
       if (topic.name != wanted || !holds<ros::CameraInfo>(topic) || !encoding_of(topic)) continue;
       if (auto info = message<ros::CameraInfo>(each)) {
-        return PlacedCameraInfo{std::move(*info), place_ + ": " + wanted, is_rectified(content.topics[images])};
+        return CameraInfoWithSource{std::move(*info), place_ + ": " + wanted, is_rectified(content.topics[images])};
       }
     }
     return std::nullopt;
@@ -154,7 +154,7 @@ class BagCalibration {
     const BagContent& content = bag_.content();
     for (const BagMessage& each : content.messages) {
       const BagTopic& topic = content.topics[each.topic];
-      if (!topic.name.ends_with("tf_static") || !is_of_transforms(topic) || !encoding_of(topic)) continue;
+      if (!topic.name.ends_with("tf_static") || !is_transform_topic(topic) || !encoding_of(topic)) continue;
       if (const auto transforms = message<ros::TFMessage>(each)) frames.take(*transforms);
     }
     return frames;
@@ -164,8 +164,8 @@ class BagCalibration {
   std::string place_;
 };
 
-PlacedCalibration calibration_of(Bag& bag, const fs::path& path, const ImageTopics& topics,
-                                 const OpenOptions& options) {
+CalibrationWithSource calibration_of(Bag& bag, const fs::path& path, const ImageTopics& topics,
+                                     const OpenOptions& options) {
   const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
   if (options.calibration) return calibration_for(folder, options);
   if (auto calibration = BagCalibration(bag, path.string()).read(topics)) return std::move(*calibration);
@@ -188,7 +188,7 @@ void require_calibrated_size(Bag& bag, const std::vector<BagMessage>& messages, 
   throw InputError(path.string(), "no image can be read: " + first_failure, "select another topic with --left TOPIC");
 }
 
-void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, const PlacedCalibration& calibration,
+void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, const CalibrationWithSource& calibration,
                               const fs::path& path) {
   std::vector<BagMessage> left, right;
   for (const BagFrame& frame : frames) {
@@ -201,7 +201,7 @@ void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, con
 }
 
 // Frames with the images of the chosen cameras.
-std::vector<BagFrame> frames_of_choice(std::vector<BagFrame> frames, const PlacedCalibration& calibration,
+std::vector<BagFrame> frames_of_choice(std::vector<BagFrame> frames, const CalibrationWithSource& calibration,
                                        const std::optional<CameraChoice>& choice) {
   if (calibration.cameras.right) return frames;
   if (choice == CameraChoice::right) {
@@ -217,7 +217,7 @@ std::vector<BagFrame> frames_of_choice(std::vector<BagFrame> frames, const Place
 std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameRange& range,
                                               const OpenOptions& options) {
   std::unique_ptr<Bag> bag =
-      open_bag(path, [&](std::string_view type) { return is_wanted(type) || is_of_motion(type, options); });
+      open_bag(path, [&](std::string_view type) { return is_wanted(type) || is_motion_type(type, options); });
   const BagContent& content = bag->content();
   const std::string place = path.string();
   std::vector<std::string> warnings = content.damage;
@@ -226,7 +226,7 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   auto [frames, corrections, clock, frame_warnings] = bag_frames(content, topics, place, pair_tolerance(options));
   warnings.insert(warnings.end(), frame_warnings.begin(), frame_warnings.end());
 
-  PlacedCalibration calibration = calibration_of(*bag, path, topics, options);
+  CalibrationWithSource calibration = calibration_of(*bag, path, topics, options);
   if (topics.right && !calibration.cameras.right && !options.camera) {
     warnings.push_back(place + ": the calibration has one camera only; right images are ignored");
   }

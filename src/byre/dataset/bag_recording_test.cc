@@ -1,7 +1,7 @@
 #include "byre/dataset/bag_recording.h"
 
 #include "byre/bag/bag_scene.h"
-#include "byre/dataset/files_read.h"
+#include "byre/dataset/input_files.h"
 #include "byre/dataset/test_folder.h"
 
 #include <gmock/gmock.h>

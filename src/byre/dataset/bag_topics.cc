@@ -61,7 +61,7 @@ std::set<std::string> names_of_right(const std::string& left) {
 std::string listing(const BagContent& content) {
   std::string text;
   for (const BagTopic& topic : content.topics) {
-    if (!is_of_images(topic)) continue;
+    if (!is_image_topic(topic)) continue;
     text += (text.empty() ? "" : ", ") + topic.name + " (" + std::to_string(topic.messages) + ")";
   }
   return text.empty() ? "none" : text;
@@ -76,7 +76,7 @@ class Chooser {
  public:
   Chooser(const BagContent& content, const fs::path& bag) : content_(content), bag_(bag) {
     for (std::size_t i = 0; i < content.topics.size(); ++i) {
-      if (is_of_images(content.topics[i])) images_.push_back(i);
+      if (is_image_topic(content.topics[i])) images_.push_back(i);
     }
   }
 
@@ -127,7 +127,7 @@ class Chooser {
 
 }  // namespace
 
-bool is_of_images(const BagTopic& topic) {
+bool is_image_topic(const BagTopic& topic) {
   if (!holds<ros::Image>(topic) && !holds<ros::CompressedImage>(topic)) return false;
   return topic.messages > 0 && encoding_of(topic) && topic.name.find("depth") == std::string::npos &&
          topic.name.find("Depth") == std::string::npos;

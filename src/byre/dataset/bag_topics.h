@@ -18,7 +18,7 @@ struct ImageTopics {
 };
 
 // Whether a topic has images of a camera: a supported type, not depths, at least one message.
-bool is_of_images(const BagTopic& topic);
+bool is_image_topic(const BagTopic& topic);
 
 // Whether the images are rectified, by the name of the topic.
 bool is_rectified(const BagTopic& topic);

@@ -68,7 +68,7 @@ CalibrationFields CalibrationFields::group(const std::string& field) const {
   return {place(field) + ".", find(field)};
 }
 
-std::string CalibrationFields::word(const std::string& field) const {
+std::string CalibrationFields::text(const std::string& field) const {
   if (!has(field)) throw InputError(place(field), "is missing");
   if (!find(field).IsScalar()) throw InputError(place(field), "is not a scalar");
   return find(field).Scalar();
@@ -104,13 +104,13 @@ Pose CalibrationFields::pose(const std::string& field) const {
 }
 
 double CalibrationFields::positive(const std::string& field) const {
-  const std::optional<double> number = parse_number(word(field));
+  const std::optional<double> number = parse_number(text(field));
   if (number && *number > 0.0) return *number;
   throw InputError(place(field), "is not a positive number");
 }
 
 int CalibrationFields::pixels(const std::string& field) const {
-  const std::optional<double> number = parse_number(word(field));
+  const std::optional<double> number = parse_number(text(field));
   if (!number) throw InputError(place(field), "is not a number");
   return to_image_side(*number, place(field));
 }

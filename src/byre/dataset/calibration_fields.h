@@ -23,7 +23,7 @@ class CalibrationFields {
 
   // Each throws InputError if the field is missing or has another type.
   CalibrationFields group(const std::string& field) const;  // fields inside this field
-  std::string word(const std::string& field) const;
+  std::string text(const std::string& field) const;
   // Numbers of a list, of a list of rows, or of a matrix stored row by row under "data".
   std::vector<double> numbers(const std::string& field) const;
   std::vector<double> numbers(const std::string& field, std::size_t count) const;  // requires this count

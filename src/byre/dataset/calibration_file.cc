@@ -132,7 +132,7 @@ DepthCamera read_depth_camera(const fs::path& path) {
   return depth;
 }
 
-bool names_depth_camera(const fs::path& path) {
+bool has_depth_camera_fields(const fs::path& path) {
   const CalibrationFields fields = CalibrationFields::load(path);
   return fields.has(kDepthScale) || fields.has(kDepthSigma) || fields.has(kDepthCamera);
 }

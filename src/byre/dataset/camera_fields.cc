@@ -18,8 +18,8 @@ namespace {
       "distortion (none); calibrate with one of these, in Kalibr with --models pinhole-radtan or pinhole-equi");
 }
 
-CameraModel lens_of_word(const CalibrationFields& fields) {
-  const std::string distortion = fields.word("distortion_model");
+CameraModel parse_lens_model(const CalibrationFields& fields) {
+  const std::string distortion = fields.text("distortion_model");
   if (distortion == "radial-tangential" || distortion == "radtan") return CameraModel::radial_tangential;
   if (distortion == "equidistant") return CameraModel::equidistant;
   if (distortion == "none") return CameraModel::pinhole;
@@ -27,10 +27,10 @@ CameraModel lens_of_word(const CalibrationFields& fields) {
 }
 
 CameraModel read_model(const CalibrationFields& fields) {
-  if (const std::string model = fields.word("camera_model"); model != "pinhole") {
+  if (const std::string model = fields.text("camera_model"); model != "pinhole") {
     refuse_model(fields.place("camera_model"), model);
   }
-  return lens_of_word(fields);
+  return parse_lens_model(fields);
 }
 
 void read_resolution(const CalibrationFields& fields, Camera& camera) {
@@ -45,7 +45,7 @@ void read_intrinsics(const CalibrationFields& fields, Camera& camera) {
   camera.fy = intrinsics[1];
   camera.cx = intrinsics[2];
   camera.cy = intrinsics[3];
-  require_sense(camera, fields.place("intrinsics"));
+  require_valid(camera, fields.place("intrinsics"));
 }
 
 // Precondition: the lens has distortion.
@@ -59,12 +59,12 @@ void read_distortion(const CalibrationFields& fields, const std::string& name, C
 // Model names of OpenCV's programs and ROS; without a name, the lens of cv::calibrateCamera.
 CameraModel read_opencv_model(const CalibrationFields& fields) {
   if (fields.has("distortion_model")) {
-    const std::string distortion = fields.word("distortion_model");
+    const std::string distortion = fields.text("distortion_model");
     if (distortion == "plumb_bob" || distortion == "rational_polynomial") return CameraModel::radial_tangential;
     if (distortion == "fisheye") return CameraModel::equidistant;
-    return lens_of_word(fields);
+    return parse_lens_model(fields);
   }
-  const bool is_fisheye = fields.has("fisheye_model") && fields.word("fisheye_model") != "0";
+  const bool is_fisheye = fields.has("fisheye_model") && fields.text("fisheye_model") != "0";
   return is_fisheye ? CameraModel::equidistant : CameraModel::radial_tangential;
 }
 
@@ -79,7 +79,7 @@ void read_camera_matrix(const CalibrationFields& fields, Camera& camera) {
   camera.cx = matrix[2];
   camera.fy = matrix[4];
   camera.cy = matrix[5];
-  require_sense(camera, place);
+  require_valid(camera, place);
 }
 
 // OpenCV's longer lists continue with k4 to k6 of the rational model, thin prisms and a tilt, which are not supported.
@@ -100,7 +100,7 @@ void read_opencv_distortion(const CalibrationFields& fields, Camera& camera) {
 
 }  // namespace
 
-void require_sense(const Camera& camera, const std::string& place) {
+void require_valid(const Camera& camera, const std::string& place) {
   if (!(camera.fx > 0.0) || !(camera.fy > 0.0)) throw InputError(place, "the focal lengths must be positive");
   if (camera.contains({camera.cx, camera.cy})) return;
   throw InputError(place, "the principal point is outside the image",
@@ -130,7 +130,7 @@ double read_readout_time(const CalibrationFields& fields, const Camera& camera) 
   constexpr double kLongest = 1.0;  // seconds
   for (const auto& [field, unit] : {std::pair("readout_time", 1.0), std::pair("line_delay", 1.0 * camera.height)}) {
     if (!fields.has(field)) continue;
-    const std::optional<double> number = parse_number(fields.word(field));
+    const std::optional<double> number = parse_number(fields.text(field));
     if (number && std::abs(*number * unit) <= kLongest) return *number * unit;
     throw InputError(fields.place(field), "is not a valid readout time",
                      "give seconds: line_delay per row, or readout_time for all rows");

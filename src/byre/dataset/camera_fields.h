@@ -21,6 +21,6 @@ Camera read_opencv_camera(const CalibrationFields& fields);
 double read_readout_time(const CalibrationFields& fields, const Camera& camera);
 
 // Throws InputError with the place for focal lengths that are not positive, and a principal point outside the image.
-void require_sense(const Camera& camera, const std::string& place);
+void require_valid(const Camera& camera, const std::string& place);
 
 }  // namespace byre

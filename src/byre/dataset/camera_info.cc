@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::string_view kGiveFile = "give a calibration file of the cameras";
 
-[[noreturn]] void refuse(const PlacedCameraInfo& placed, const std::string& reason, const std::string& remedy = {}) {
+[[noreturn]] void refuse(const CameraInfoWithSource& placed, const std::string& reason,
+                         const std::string& remedy = {}) {
   throw InputError(placed.place, reason,
                    remedy.empty() ? std::string(kGiveFile) : remedy + ", or " + std::string(kGiveFile));
 }
@@ -25,7 +26,7 @@ bool all_finite(std::span<const double> numbers) {
   return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
 }
 
-void require_sense(const PlacedCameraInfo& placed) {
+void require_valid(const CameraInfoWithSource& placed) {
   constexpr std::uint32_t kMostSide = 1U << 16U;  // pixels
   const ros::CameraInfo& info = placed.info;
   if (!all_finite(info.k) || !all_finite(info.d) || !all_finite(info.r) || !all_finite(info.p)) {
@@ -46,7 +47,7 @@ void require_sense(const PlacedCameraInfo& placed) {
 }
 
 // "plumb_bob" (k1, k2, p1, p2, k3), "rational_polynomial" without its last terms, "equidistant" (k1..k4).
-void take_distortion(const PlacedCameraInfo& placed, Camera& camera) {
+void take_distortion(const CameraInfoWithSource& placed, Camera& camera) {
   const ros::CameraInfo& info = placed.info;
   const auto is_zero = [](double coefficient) { return coefficient == 0.0; };
   const bool is_fisheye = info.distortion_model == "equidistant" || info.distortion_model == "fisheye";
@@ -79,7 +80,7 @@ bool has_baseline(const ros::CameraInfo& right) {
   return right.p[0] > 0.0 && right.p[5] > 0.0 && right.p[3] != 0.0;
 }
 
-std::optional<Pose> by_projections(const PlacedCameraInfo& left, const PlacedCameraInfo& right) {
+std::optional<Pose> by_projections(const CameraInfoWithSource& left, const CameraInfoWithSource& right) {
   if (!has_baseline(right.info)) return std::nullopt;
   if (right.is_rectified) return Pose{Eigen::Quaterniond::Identity(), shift_of(right.info)};
   const auto left_rotation = rotation_from_matrix(rotation_of(left.info));
@@ -93,9 +94,9 @@ std::optional<Pose> by_projections(const PlacedCameraInfo& left, const PlacedCam
 
 }  // namespace
 
-Camera camera_of(const PlacedCameraInfo& placed) {
+Camera camera_of(const CameraInfoWithSource& placed) {
   const ros::CameraInfo& info = placed.info;
-  require_sense(placed);
+  require_valid(placed);
   Camera camera{.width = static_cast<int>(info.width), .height = static_cast<int>(info.height)};
   if (placed.is_rectified && info.p[0] > 0.0 && info.p[5] > 0.0) {
     camera.fx = info.p[0], camera.fy = info.p[5], camera.cx = info.p[2], camera.cy = info.p[6];
@@ -106,8 +107,9 @@ Camera camera_of(const PlacedCameraInfo& placed) {
   return camera;
 }
 
-StereoPartner partner_of(const PlacedCameraInfo& left, const PlacedCameraInfo& right, const StaticFrames& frames) {
-  require_sense(right);
+StereoPartner partner_of(const CameraInfoWithSource& left, const CameraInfoWithSource& right,
+                         const StaticFrames& frames) {
+  require_valid(right);
   if (right.info.p[3] > 0.0) {
     refuse(right, "places the right camera to the left of the left camera: the fourth value of P is positive",
            "swap left and right");
@@ -115,7 +117,7 @@ StereoPartner partner_of(const PlacedCameraInfo& left, const PlacedCameraInfo& r
   std::optional<Pose> right_from_left = by_projections(left, right);
   if (!right_from_left) right_from_left = frames.between(right.info.header.frame_id, left.info.header.frame_id);
   if (!right_from_left && has_baseline(right.info)) {
-    for (const PlacedCameraInfo* const each : {&left, &right}) {
+    for (const CameraInfoWithSource* const each : {&left, &right}) {
       if (rotation_from_matrix(rotation_of(each->info))) continue;
       refuse(*each, "has a matrix R that is not a rotation", "correct R in the calibration of the driver");
     }

@@ -17,8 +17,8 @@ using testing::HasSubstr;
 
 const Pose kRightFromLeft{rotation_exp({0.01, -0.02, 0.005}), {-0.11, 0.002, 0.001}};
 
-PlacedCameraInfo placed_info(const std::string& frame) {
-  PlacedCameraInfo placed{{.height = 480, .width = 752}, "walk.bag: /" + frame + "/camera_info"};
+CameraInfoWithSource placed_info(const std::string& frame) {
+  CameraInfoWithSource placed{{.height = 480, .width = 752}, "walk.bag: /" + frame + "/camera_info"};
   placed.info.header.frame_id = frame;
   placed.info.k = {458.0, 0.0, 367.0, 0.0, 457.0, 248.0, 0.0, 0.0, 1.0};
   placed.info.distortion_model = "plumb_bob";
@@ -44,44 +44,44 @@ TEST(CameraInfo, SelectsTheModelByName) {
                             367.0,
                             248.0,
                             {-0.28, 0.07, 0.0002, 0.00002, 0.001}}));
-  PlacedCameraInfo fisheye = placed_info("left");
+  CameraInfoWithSource fisheye = placed_info("left");
   fisheye.info.distortion_model = "equidistant";
   fisheye.info.d = {0.1, 0.2, 0.3, 0.4};
   EXPECT_EQ(camera_of(fisheye).model, CameraModel::equidistant);
   EXPECT_EQ(camera_of(fisheye).distortion[3], 0.4);
-  PlacedCameraInfo rational = placed_info("left");
+  CameraInfoWithSource rational = placed_info("left");
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d.resize(8, 0.0);
   EXPECT_EQ(camera_of(rational), camera);
 }
 
 TEST(CameraInfo, UsesTheProjectionOfRectifiedImages) {
-  PlacedCameraInfo placed = placed_info("left");
+  CameraInfoWithSource placed = placed_info("left");
   placed.is_rectified = true;
   placed.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 431.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   EXPECT_EQ(camera_of(placed), (Camera{CameraModel::pinhole, 752, 480, 430.0, 431.0, 360.0, 240.0, {}}));
 }
 
 TEST(CameraInfo, RejectsUnsupportedLensModels) {
-  PlacedCameraInfo rational = placed_info("left");
+  CameraInfoWithSource rational = placed_info("left");
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d = {0.1, 0.1, 0.0, 0.0, 0.1, 0.2, 0.2, 0.1};
   EXPECT_THAT(error_of([&] { camera_of(rational); }),
               HasSubstr("walk.bag: /left/camera_info: has the unsupported lens model \"rational_polynomial\" with 8"));
-  PlacedCameraInfo none = placed_info("left");
+  CameraInfoWithSource none = placed_info("left");
   none.info.k = {};
   EXPECT_THAT(error_of([&] { camera_of(none); }),
               HasSubstr("uncalibrated camera: its focal lengths are not positive (give a calibration"));
-  PlacedCameraInfo binned = placed_info("left");
+  CameraInfoWithSource binned = placed_info("left");
   binned.info.binning_x = 2;
   EXPECT_THAT(error_of([&] { camera_of(binned); }), HasSubstr("binned"));
-  PlacedCameraInfo cut = placed_info("left");
+  CameraInfoWithSource cut = placed_info("left");
   cut.info.roi = {10, 10, 100, 100, false};
   EXPECT_THAT(error_of([&] { camera_of(cut); }), HasSubstr("region of interest"));
 }
 
 TEST(CameraInfo, ReadsTheBaselineOfRectifiedProjections) {
-  PlacedCameraInfo left = placed_info("left"), right = placed_info("left");
+  CameraInfoWithSource left = placed_info("left"), right = placed_info("left");
   left.is_rectified = right.is_rectified = true;
   left.info.p = right.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   right.info.p[3] = -43.0;
@@ -95,7 +95,7 @@ TEST(CameraInfo, RotatesRawImagesIntoTheRectifiedFrames) {
   const Pose left_turn{rotation_exp({0.003, -0.01, 0.02}), Eigen::Vector3d::Zero()};
   const Pose right_turn{rotation_exp({-0.004, 0.02, 0.01}), Eigen::Vector3d::Zero()};
   const Pose expected = inverse(right_turn) * Pose{Eigen::Quaterniond::Identity(), {-0.11, 0.0, 0.0}} * left_turn;
-  PlacedCameraInfo left = placed_info("left"), right = placed_info("right");
+  CameraInfoWithSource left = placed_info("left"), right = placed_info("right");
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(left.info.r.data()) = left_turn.rotation.toRotationMatrix();
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(right.info.r.data()) =
       right_turn.rotation.toRotationMatrix();
@@ -122,7 +122,7 @@ TEST(CameraInfo, RejectsAPairWithoutABaseline) {
 }
 
 TEST(CameraInfo, RejectsAnInvalidRotation) {
-  PlacedCameraInfo left = placed_info("left"), right = placed_info("right");
+  CameraInfoWithSource left = placed_info("left"), right = placed_info("right");
   right.info.p = {430.0, 0.0, 360.0, -43.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   right.info.r[4] = 2.0;
   EXPECT_THAT(error_of([&] { partner_of(left, right, {}); }),
@@ -135,10 +135,10 @@ TEST(CameraInfo, RejectsAnInvalidRotation) {
 }
 
 TEST(CameraInfo, RejectsInvalidValues) {
-  PlacedCameraInfo left = placed_info("left");
+  CameraInfoWithSource left = placed_info("left");
   left.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
   const auto is_refused = [&left](const std::function<void(ros::CameraInfo&)>& change) {
-    PlacedCameraInfo right = left;
+    CameraInfoWithSource right = left;
     right.info.p[3] = -43.0;
     change(right.info);
     EXPECT_THROW(partner_of(left, right, {}), InputError);

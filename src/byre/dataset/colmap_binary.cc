@@ -54,7 +54,7 @@ Pose read_pose(ByteReader& reader) {
 
 std::pair<std::uint32_t, ColmapCamera> read_camera(ByteReader& reader) {
   const auto id = reader.read<std::uint32_t>();
-  const ColmapCameraKind* const kind = find_colmap_camera_kind(reader.read<std::int32_t>());
+  const ColmapCameraModel* const kind = find_colmap_camera_model(reader.read<std::int32_t>());
   if (kind == nullptr) reader.fail("contains a camera of an unknown model");
   ColmapCamera camera;
   camera.model = kind->name;
@@ -119,7 +119,7 @@ ByteWriter camera_bytes(const ColmapModel& model) {
   writer.write(static_cast<std::uint64_t>(model.cameras.size()));
   for (const auto& [id, camera] : model.cameras) {
     writer.write(id);
-    writer.write(find_colmap_camera_kind(camera.model)->id);
+    writer.write(find_colmap_camera_model(camera.model)->id);
     writer.write(camera.width);
     writer.write(camera.height);
     writer.write_all(std::span<const double>(camera.parameters));
@@ -179,9 +179,9 @@ std::map<std::uint64_t, ColmapPoint> read_colmap_points_binary(const fs::path& p
 }
 
 void write_colmap_binary(const ColmapModel& model, const fs::path& folder) {
-  write_whole(folder / "cameras.bin", camera_bytes(model).bytes());
-  write_whole(folder / "images.bin", image_bytes(model).bytes());
-  write_whole(folder / "points3D.bin", point_bytes(model).bytes());
+  write_atomically(folder / "cameras.bin", camera_bytes(model).bytes());
+  write_atomically(folder / "images.bin", image_bytes(model).bytes());
+  write_atomically(folder / "points3D.bin", point_bytes(model).bytes());
 }
 
 }  // namespace byre

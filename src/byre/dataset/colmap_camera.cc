@@ -9,17 +9,17 @@
 namespace byre {
 namespace {
 
-constexpr std::array<ColmapCameraKind, 11> kKinds = {{{0, "SIMPLE_PINHOLE", 3},
-                                                      {1, "PINHOLE", 4},
-                                                      {2, "SIMPLE_RADIAL", 4},
-                                                      {3, "RADIAL", 5},
-                                                      {4, "OPENCV", 8},
-                                                      {5, "OPENCV_FISHEYE", 8},
-                                                      {6, "FULL_OPENCV", 12},
-                                                      {7, "FOV", 5},
-                                                      {8, "SIMPLE_RADIAL_FISHEYE", 4},
-                                                      {9, "RADIAL_FISHEYE", 5},
-                                                      {10, "THIN_PRISM_FISHEYE", 12}}};
+constexpr std::array<ColmapCameraModel, 11> kKinds = {{{0, "SIMPLE_PINHOLE", 3},
+                                                       {1, "PINHOLE", 4},
+                                                       {2, "SIMPLE_RADIAL", 4},
+                                                       {3, "RADIAL", 5},
+                                                       {4, "OPENCV", 8},
+                                                       {5, "OPENCV_FISHEYE", 8},
+                                                       {6, "FULL_OPENCV", 12},
+                                                       {7, "FOV", 5},
+                                                       {8, "SIMPLE_RADIAL_FISHEYE", 4},
+                                                       {9, "RADIAL_FISHEYE", 5},
+                                                       {10, "THIN_PRISM_FISHEYE", 12}}};
 
 constexpr double kHalf = 0.5;  // COLMAP's principal points minus byre's, pixels
 
@@ -66,19 +66,19 @@ Camera lens_of(const ColmapCamera& camera, const std::string& place) {
 
 }  // namespace
 
-const ColmapCameraKind* find_colmap_camera_kind(std::int32_t id) {
-  const auto found = std::ranges::find(kKinds, id, &ColmapCameraKind::id);
+const ColmapCameraModel* find_colmap_camera_model(std::int32_t id) {
+  const auto found = std::ranges::find(kKinds, id, &ColmapCameraModel::id);
   return found == kKinds.end() ? nullptr : &*found;
 }
 
-const ColmapCameraKind* find_colmap_camera_kind(std::string_view name) {
-  const auto found = std::ranges::find(kKinds, name, &ColmapCameraKind::name);
+const ColmapCameraModel* find_colmap_camera_model(std::string_view name) {
+  const auto found = std::ranges::find(kKinds, name, &ColmapCameraModel::name);
   return found == kKinds.end() ? nullptr : &*found;
 }
 
 Camera camera_of(const ColmapCamera& camera, const std::string& place) {
   constexpr std::uint64_t kMaxSide = 20000;  // pixels
-  const ColmapCameraKind* const kind = find_colmap_camera_kind(camera.model);
+  const ColmapCameraModel* const kind = find_colmap_camera_model(camera.model);
   if (kind == nullptr || kind->parameters != camera.parameters.size()) {
     throw InputError(place, "has an unknown model or a wrong number of parameters");
   }
@@ -88,7 +88,7 @@ Camera camera_of(const ColmapCamera& camera, const std::string& place) {
   Camera result = lens_of(camera, place);
   result.width = static_cast<int>(camera.width);
   result.height = static_cast<int>(camera.height);
-  require_sense(result, place);
+  require_valid(result, place);
   return result;
 }
 

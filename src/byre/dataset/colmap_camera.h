@@ -11,14 +11,14 @@
 namespace byre {
 
 // A camera model of COLMAP 3.8, supported by byre or not.
-struct ColmapCameraKind {
+struct ColmapCameraModel {
   std::int32_t id = 0;  // number of the model in binary files
   std::string_view name;
   std::size_t parameters = 0;  // number of parameters
 };
 
-const ColmapCameraKind* find_colmap_camera_kind(std::int32_t id);        // nullptr if there is none
-const ColmapCameraKind* find_colmap_camera_kind(std::string_view name);  // nullptr if there is none
+const ColmapCameraModel* find_colmap_camera_model(std::int32_t id);        // nullptr if there is none
+const ColmapCameraModel* find_colmap_camera_model(std::string_view name);  // nullptr if there is none
 
 // Converts SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, OPENCV_FISHEYE, and FULL_OPENCV without k4 to k6.
 // Throws InputError with the place for any other model, and for invalid sizes, focal lengths and principal points.

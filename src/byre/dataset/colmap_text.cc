@@ -105,7 +105,7 @@ class Fields {
 ColmapCamera read_camera(Fields& fields) {
   ColmapCamera camera;
   camera.model = fields.word("camera model");
-  const ColmapCameraKind* const kind = find_colmap_camera_kind(camera.model);
+  const ColmapCameraModel* const kind = find_colmap_camera_model(camera.model);
   if (kind == nullptr) fields.fail("camera model of COLMAP", camera.model);
   camera.width = fields.whole<std::uint64_t>("width");
   camera.height = fields.whole<std::uint64_t>("height");
@@ -180,7 +180,7 @@ void append(std::string& text, const Eigen::Vector3d& vector) {
 }
 
 void write_text(const std::string& text, const fs::path& path) {
-  write_whole(path, text);
+  write_atomically(path, text);
 }
 
 std::string camera_text(const ColmapModel& model) {

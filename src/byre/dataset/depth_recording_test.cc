@@ -62,7 +62,7 @@ TEST_F(DepthRecording, PairsFramesWithDepthImages) {
     EXPECT_THAT(units_of(*recording), ElementsAre(1000, -1, 1002, 1003, -1));
     EXPECT_THAT(recording->warnings(), IsEmpty());
     EXPECT_EQ(camera_of(*recording, options), CameraChoice::rgbd);
-    EXPECT_TRUE(recording->calibration().tells_metres());
+    EXPECT_TRUE(recording->calibration().is_metric());
     EXPECT_FALSE(recording->read(0)->right);
   }
   EXPECT_THAT(units_of(*open({}, {.first = 2, .last = 4})), ElementsAre(1002, 1003));

@@ -40,12 +40,12 @@ StereoPartner read_partner(const EurocSensor& left, const fs::path& right_file) 
   return partner;
 }
 
-PlacedCalibration read_sensors(const fs::path& mav, bool has_right) {
+CalibrationWithSource read_sensors(const fs::path& mav, bool has_right) {
   const fs::path left_file = mav / "cam0" / "sensor.yaml", right_file = mav / "cam1" / "sensor.yaml";
   const EurocSensor left = read_euroc_sensor(left_file);
-  PlacedCalibration calibration{{left.camera, std::nullopt, left.body_from_camera},
-                                left_file.string() + ": resolution",
-                                right_file.string() + ": resolution"};
+  CalibrationWithSource calibration{{left.camera, std::nullopt, left.body_from_camera},
+                                    left_file.string() + ": resolution",
+                                    right_file.string() + ": resolution"};
   calibration.cameras.readout_time = left.readout_time;
   if (has_right) calibration.cameras.right = read_partner(left, right_file);
   return calibration;

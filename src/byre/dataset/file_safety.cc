@@ -1,6 +1,6 @@
 #include "byre/dataset/file_safety.h"
 
-#include "byre/dataset/files_read.h"
+#include "byre/dataset/input_files.h"
 #include "byre/input/output_file.h"
 
 #include <algorithm>

@@ -28,7 +28,7 @@ constexpr double kFarthest = 1e9;        // metres, largest coordinate of a proj
 
 void read_image_size(FloorPlan& plan) {
   const std::optional<ImageSize> size = stated_size(plan.image);
-  if (size && size->pixels() > kMostPixels) {
+  if (size && size->pixels() > kMaxPixels) {
     throw InputError(plan.image.string(),
                      "has " + std::to_string(size->width) + " x " + std::to_string(size->height) +
                          " pixels; the limit for floor plans is 100 million",

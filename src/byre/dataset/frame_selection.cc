@@ -20,21 +20,21 @@ std::string describe_extent(const std::vector<Timestamp>& times) {
   return "the recording has " + std::to_string(times.size()) + " frames in " + std::to_string(span) + " s";
 }
 
-PlacedCalibration without_right(PlacedCalibration calibration) {
+CalibrationWithSource without_right(CalibrationWithSource calibration) {
   calibration.cameras.right.reset();
   return calibration;
 }
 
-PlacedCalibration without_depth(PlacedCalibration calibration) {
+CalibrationWithSource without_depth(CalibrationWithSource calibration) {
   calibration.cameras.depth.reset();
   return calibration;
 }
 
 // Precondition: there is a right camera.
-PlacedCalibration right_alone(const PlacedCalibration& calibration) {
+CalibrationWithSource right_alone(const CalibrationWithSource& calibration) {
   const Calibration& pair = calibration.cameras;
   const Pose body_from_right = pair.body_from_left * inverse(pair.right->right_from_left);
-  PlacedCalibration alone{{pair.right->camera, std::nullopt, body_from_right}, calibration.right_size, ""};
+  CalibrationWithSource alone{{pair.right->camera, std::nullopt, body_from_right}, calibration.right_size, ""};
   alone.cameras.readout_time = pair.readout_time;
   return alone;
 }
@@ -43,15 +43,15 @@ bool has_right_image(const FrameFiles& frame) {
   return frame.right.has_value();
 }
 
-void require_pair(const PlacedCalibration& calibration, const BesideLeft& beside, const fs::path& path) {
-  if (beside.right && calibration.cameras.right) return;
+void require_pair(const CalibrationWithSource& calibration, const ExtraImages& extra, const fs::path& path) {
+  if (extra.right && calibration.cameras.right) return;
   throw InputError(path.string(),
-                   beside.right ? "has a calibration of one camera only" : "has images of one camera only",
+                   extra.right ? "has a calibration of one camera only" : "has images of one camera only",
                    "select one camera: left, or right of a calibrated pair");
 }
 
-void require_depth(const PlacedCalibration& calibration, const BesideLeft& beside, const fs::path& path) {
-  if (beside.depth && calibration.cameras.depth) return;
+void require_depth(const CalibrationWithSource& calibration, const ExtraImages& extra, const fs::path& path) {
+  if (extra.depth && calibration.cameras.depth) return;
   throw InputError(path.string(), "has no depth images",
                    "give the folder of an RGB-D recording with depth.txt (TUM), or select the camera alone: "
                    "left");
@@ -72,20 +72,20 @@ std::vector<std::size_t> frames_in_range(const std::vector<Timestamp>& times, co
   return selected;
 }
 
-PlacedCalibration choose_calibration(const PlacedCalibration& calibration, const BesideLeft& beside,
-                                     const std::optional<CameraChoice>& choice, const fs::path& path) {
-  const bool is_pair = beside.right && calibration.cameras.right;
+CalibrationWithSource choose_calibration(const CalibrationWithSource& calibration, const ExtraImages& extra,
+                                         const std::optional<CameraChoice>& choice, const fs::path& path) {
+  const bool is_pair = extra.right && calibration.cameras.right;
   switch (choice.value_or(is_pair ? CameraChoice::stereo : CameraChoice::rgbd)) {
     case CameraChoice::right:
       if (calibration.cameras.right) return right_alone(calibration);
       throw InputError(path.string(), "has a calibration without right camera",
                        "give a stereo calibration, or select the left camera");
     case CameraChoice::stereo:
-      require_pair(calibration, beside, path);
+      require_pair(calibration, extra, path);
       return without_depth(calibration);
     case CameraChoice::rgbd:
-      if (choice) require_depth(calibration, beside, path);
-      return without_right(beside.depth ? calibration : without_depth(calibration));
+      if (choice) require_depth(calibration, extra, path);
+      return without_right(extra.depth ? calibration : without_depth(calibration));
     case CameraChoice::left:
       break;
   }
@@ -100,19 +100,19 @@ void require_calibrated_size(int width, int height, const Camera& camera, const 
                    "use a calibration for this image size");
 }
 
-BesideLeft images_beside_left(const RecordingIndex& index) {
+ExtraImages extra_images_of(const RecordingIndex& index) {
   return {.right = std::ranges::any_of(index.frames, has_right_image),
           .depth = std::ranges::any_of(index.frames, [](const FrameFiles& frame) { return frame.depth.has_value(); })};
 }
 
-RecordingIndex choose_camera(RecordingIndex index, const BesideLeft& beside, const std::optional<CameraChoice>& choice,
+RecordingIndex choose_camera(RecordingIndex index, const ExtraImages& extra, const std::optional<CameraChoice>& choice,
                              const fs::path& path) {
-  if (beside.right && !index.calibration.cameras.right && !choice) {
+  if (extra.right && !index.calibration.cameras.right && !choice) {
     index.warnings.push_back(path.string() + ": the calibration has one camera only; right images are ignored");
   }
-  index.calibration = choose_calibration(index.calibration, beside, choice, path);
+  index.calibration = choose_calibration(index.calibration, extra, choice, path);
   if (index.calibration.cameras.right) return index;
-  if (beside.right && choice == CameraChoice::right) {
+  if (extra.right && choice == CameraChoice::right) {
     std::erase_if(index.frames, [](const FrameFiles& frame) { return !has_right_image(frame); });
     for (FrameFiles& frame : index.frames) frame.left = *frame.right;
   }

@@ -16,22 +16,22 @@ std::vector<std::size_t> frames_in_range(const std::vector<Timestamp>& times, co
                                          const std::filesystem::path& path);
 
 // Kinds of images of a recording, except those of the left camera.
-struct BesideLeft {
+struct ExtraImages {
   bool right = false;
   bool depth = false;
 };
 
 // The calibration of the chosen cameras. If the right camera alone is chosen, it becomes the left one. Throws
 // InputError with the path if the recording lacks the camera.
-PlacedCalibration choose_calibration(const PlacedCalibration& calibration, const BesideLeft& beside,
-                                     const std::optional<CameraChoice>& choice, const std::filesystem::path& path);
+CalibrationWithSource choose_calibration(const CalibrationWithSource& calibration, const ExtraImages& extra,
+                                         const std::optional<CameraChoice>& choice, const std::filesystem::path& path);
 
 // Kinds of images that at least one frame has.
-BesideLeft images_beside_left(const RecordingIndex& index);
+ExtraImages extra_images_of(const RecordingIndex& index);
 
-// The index reduced to the chosen cameras and their images. beside: of the whole recording. For the right camera alone,
+// The index reduced to the chosen cameras and their images. extra: of the whole recording. For the right camera alone,
 // frames without its image are dropped.
-RecordingIndex choose_camera(RecordingIndex index, const BesideLeft& beside, const std::optional<CameraChoice>& choice,
+RecordingIndex choose_camera(RecordingIndex index, const ExtraImages& extra, const std::optional<CameraChoice>& choice,
                              const std::filesystem::path& path);
 
 // Throws InputError if the size of images differs from the calibration. place: of the size in the calibration.

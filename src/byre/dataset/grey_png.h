@@ -19,7 +19,7 @@ struct GreyPng {
 
 // Decodes PNG files as written by cameras: 8 or 16 bits of grey, neither interlaced nor transparent (PNG specification,
 // sections 7 to 10), with two thirds of the instructions of OpenCV's decoder. Empty for other kinds and for damaged
-// files, which are left to OpenCV. Precondition: the file states at most kMostPixels.
+// files, which are left to OpenCV. Precondition: the file states at most kMaxPixels.
 std::optional<GreyPng> decode_grey_png(std::span<const PngChunk> chunks);
 
 }  // namespace byre

@@ -42,7 +42,7 @@ std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pix
 
 void write_image_file(const std::filesystem::path& path, const cv::Mat& pixels, const std::vector<int>& parameters) {
   const std::vector<std::uint8_t> bytes = encode_image(path.extension().c_str(), pixels, parameters);
-  write_whole(path, std::as_bytes(std::span(bytes)), Durability::left_to_system);
+  write_atomically(path, std::as_bytes(std::span(bytes)), Durability::unsynced);
 }
 
 }  // namespace byre

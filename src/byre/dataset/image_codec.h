@@ -21,7 +21,7 @@ cv::Mat decode_image_file(const std::filesystem::path& path, int flags);
 std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pixels,
                                        const std::vector<int>& parameters = {});
 
-// The extension determines the format. Not synced, see Durability::left_to_system. Throws InputError on failure.
+// The extension determines the format. Not synced, see Durability::unsynced. Throws InputError on failure.
 void write_image_file(const std::filesystem::path& path, const cv::Mat& pixels,
                       const std::vector<int>& parameters = {});
 

@@ -73,7 +73,7 @@ cv::Mat decode_grey(std::span<const PngChunk> chunks) {
 
 cv::Mat decode(const OwnBytes& bytes, int flags) {
   const std::optional<ImageSize> size = stated_size(bytes);
-  if (size && size->pixels() > kMostPixels) return {};
+  if (size && size->pixels() > kMaxPixels) return {};
   std::optional<OwnBytes> png;
   if (is_png(bytes)) {
     const std::optional<std::vector<PngChunk>> chunks = png_chunks(bytes);

@@ -7,7 +7,7 @@
 
 namespace byre {
 
-Image fit(const Image& image, int width, int height) {
+Image resize_to_cover(const Image& image, int width, int height) {
   const cv::Mat source(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
   const double scale = std::max(static_cast<double>(width) / image.width, static_cast<double>(height) / image.height);
   const cv::Size covering(std::max(width, static_cast<int>(std::lround(image.width * scale))),

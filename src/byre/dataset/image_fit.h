@@ -5,6 +5,6 @@
 namespace byre {
 
 // Scales the image to cover the size, and crops it about its centre.
-Image fit(const Image& image, int width, int height);
+Image resize_to_cover(const Image& image, int width, int height);
 
 }  // namespace byre

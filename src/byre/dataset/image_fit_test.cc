@@ -15,11 +15,11 @@ Image ramp(int width, int height) {
 }
 
 TEST(Fit, KeepsAnImageThatFits) {
-  EXPECT_EQ(fit(ramp(40, 30), 40, 30).pixels, ramp(40, 30).pixels);
+  EXPECT_EQ(resize_to_cover(ramp(40, 30), 40, 30).pixels, ramp(40, 30).pixels);
 }
 
 TEST(Fit, CropsToTheCentre) {
-  const Image middle = fit(ramp(60, 20), 20, 20);
+  const Image middle = resize_to_cover(ramp(60, 20), 20, 20);
   EXPECT_EQ(middle.width, 20);
   EXPECT_EQ(middle.height, 20);
   EXPECT_EQ(middle.pixels.front(), 40);
@@ -27,7 +27,7 @@ TEST(Fit, CropsToTheCentre) {
 }
 
 TEST(Fit, ScalesToCover) {
-  const Image half = fit(ramp(80, 60), 40, 30);
+  const Image half = resize_to_cover(ramp(80, 60), 40, 30);
   EXPECT_EQ(half.pixels.size(), 1200u);
   EXPECT_NEAR(half.pixels[20], 81, 1);  // the mean of columns 40 and 41
 }

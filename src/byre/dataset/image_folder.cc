@@ -45,7 +45,7 @@ std::optional<std::vector<TimedFile>> timed_by_name(const std::vector<fs::path>&
 }
 
 std::vector<TimedFile> steadily_timed(const std::vector<fs::path>& files, const OpenOptions& options) {
-  return with_times(files, steady_times(files.size(), options.frame_rate_hz.value_or(kAssumedFrameRate)));
+  return with_times(files, uniform_times(files.size(), options.frame_rate_hz.value_or(kAssumedFrameRate)));
 }
 
 void require_equal_count(const std::vector<fs::path>& left, const std::vector<fs::path>& right,
@@ -77,7 +77,7 @@ TimedPair timed_images(const ImageFolders& folders, const OpenOptions& options, 
 
 }  // namespace
 
-bool holds_images(const fs::path& folder) {
+bool has_images(const fs::path& folder) {
   return folders_of(folder).right || !images_in(folder).empty();
 }
 

@@ -63,12 +63,12 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     if (entry.is_regular_file() && has_image_name(entry.path())) images.push_back(entry.path());
   }
   std::ranges::sort(images, [](const fs::path& a, const fs::path& b) {
-    return comes_before(a.filename().string(), b.filename().string());
+    return natural_less(a.filename().string(), b.filename().string());
   });
   return images;
 }
 
-bool comes_before(std::string_view name, std::string_view other) {
+bool natural_less(std::string_view name, std::string_view other) {
   const std::string_view whole_name = name, whole_other = other;
   while (!name.empty() && !other.empty()) {
     if (is_digit(name.front()) && is_digit(other.front())) {
@@ -103,7 +103,7 @@ std::optional<Timestamp> time_in_name(const fs::path& file) {
   return nanoseconds && *nanoseconds >= kFirstYears ? nanoseconds : std::nullopt;
 }
 
-std::vector<Timestamp> steady_times(std::size_t count, double frame_rate_hz) {
+std::vector<Timestamp> uniform_times(std::size_t count, double frame_rate_hz) {
   std::vector<Timestamp> times;
   for (std::size_t i = 0; i < count; ++i) times.push_back(from_seconds(static_cast<double>(i) / frame_rate_hz));
   return times;

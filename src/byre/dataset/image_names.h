@@ -15,7 +15,7 @@ bool has_image_name(const std::filesystem::path& path);
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
 
 // Natural order, with digits compared as numbers: frame9 precedes frame10.
-bool comes_before(std::string_view name, std::string_view other);
+bool natural_less(std::string_view name, std::string_view other);
 
 // Times from file names: nanoseconds ("1403636584763555584.png") or seconds with a decimal point
 // ("1305031102.175304.png"). Empty unless all names are times of one kind. Whole numbers with steps below 0.1 ms,
@@ -27,6 +27,6 @@ std::optional<std::vector<Timestamp>> times_in_names(const std::vector<std::file
 std::optional<Timestamp> time_in_name(const std::filesystem::path& file);
 
 // Times at a constant rate, the first one zero. Precondition: frame_rate_hz > 0.
-std::vector<Timestamp> steady_times(std::size_t count, double frame_rate_hz);
+std::vector<Timestamp> uniform_times(std::size_t count, double frame_rate_hz);
 
 }  // namespace byre

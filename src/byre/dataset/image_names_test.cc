@@ -17,16 +17,16 @@ using testing::Optional;
 
 TEST(ComesBefore, SortsDigitsAsNumbers) {
   std::vector<std::string> names = {"frame10.png", "frame9.png", "frame2.png", "a1b10", "a1b9", "a", "frame010.png"};
-  std::ranges::sort(names, comes_before);
+  std::ranges::sort(names, natural_less);
   EXPECT_THAT(names, ElementsAre("a", "a1b9", "a1b10", "frame2.png", "frame9.png", "frame010.png", "frame10.png"));
 }
 
 TEST(ComesBefore, IsAStrictOrder) {
   const std::vector<std::string> names = {"", "0", "00", "1", "01", "1a", "a", "a0", "a1", "99999999999999999999999"};
   for (const std::string& a : names) {
-    EXPECT_FALSE(comes_before(a, a)) << a;
+    EXPECT_FALSE(natural_less(a, a)) << a;
     for (const std::string& b : names) {
-      EXPECT_EQ(comes_before(a, b) != comes_before(b, a), a != b) << a << " " << b;
+      EXPECT_EQ(natural_less(a, b) != natural_less(b, a), a != b) << a << " " << b;
     }
   }
 }
@@ -62,8 +62,8 @@ TEST(TimeInName, IsReadFromOneFileIfUnambiguous) {
 }
 
 TEST(SteadyTimes, StartAtZero) {
-  EXPECT_THAT(steady_times(3, 20.0), ElementsAre(milliseconds(0), milliseconds(50), milliseconds(100)));
-  EXPECT_THAT(steady_times(0, 20.0), IsEmpty());
+  EXPECT_THAT(uniform_times(3, 20.0), ElementsAre(milliseconds(0), milliseconds(50), milliseconds(100)));
+  EXPECT_THAT(uniform_times(0, 20.0), IsEmpty());
 }
 
 using ImagesIn = TestFolder;

@@ -15,7 +15,7 @@ struct ImageSize {
 };
 
 // Larger images are not decoded, because a file of few bytes may state any size.
-inline constexpr double kMostPixels = 100e6;
+inline constexpr double kMaxPixels = 100e6;
 
 // Size from the header of a PNG, JPEG, BMP, TIFF or netpbm image; empty for other formats.
 std::optional<ImageSize> stated_size(std::span<const std::uint8_t> bytes);

@@ -87,9 +87,9 @@ std::vector<fs::path> image_paths(const fs::path& folder, std::size_t count) {
   return paths;
 }
 
-PlacedCalibration read_projections(const fs::path& file, const Image& image, bool stereo) {
+CalibrationWithSource read_projections(const fs::path& file, const Image& image, bool stereo) {
   const Projection projection = read_projection(file, "P0");
-  PlacedCalibration calibration{{}, file.string() + ": P0", file.string() + ": P1"};
+  CalibrationWithSource calibration{{}, file.string() + ": P0", file.string() + ": P1"};
   calibration.cameras.left = pinhole(projection, image, calibration.left_size);
   if (stereo) calibration.cameras.right = read_partner(file, projection, image);
   return calibration;

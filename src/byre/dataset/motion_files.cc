@@ -28,16 +28,16 @@ Eigen::Vector3d parse_vector(const std::vector<std::string_view>& fields, std::s
 
 // Format: "time_ns, w_x, w_y, w_z, a_x, a_y, a_z"; the last three may be missing.
 ImuSample parse_imu_line(const TextLine& line, const std::string& place) {
-  constexpr std::size_t kLeastFields = 4, kAllFields = 7;
+  constexpr std::size_t kMinFields = 4, kAllFields = 7;
   const std::vector<std::string_view> fields = split_fields(line.text);
-  if (fields.size() < kLeastFields) {
+  if (fields.size() < kMinFields) {
     throw InputError(place, "has fewer than four fields", "expected: a time in nanoseconds and three rates in rad/s");
   }
   const std::optional<Timestamp> time = parse_nanoseconds(fields[0]);
   if (!time) throw InputError(place, "\"" + std::string(fields[0]) + "\" is not a time in nanoseconds");
   ImuSample sample{*time, AngularRate{*time, parse_vector(fields, 1, place)}};
   if (fields.size() < kAllFields) return sample;
-  const Eigen::Vector3d acceleration = parse_vector(fields, kLeastFields, place);
+  const Eigen::Vector3d acceleration = parse_vector(fields, kMinFields, place);
   if (!acceleration.isZero(0.0)) sample.acceleration = {*time, acceleration};
   return sample;
 }

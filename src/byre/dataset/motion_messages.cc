@@ -5,13 +5,13 @@
 namespace byre {
 namespace {
 
-std::optional<BaseVelocity> velocity_of(const ros::Twist& twist, Timestamp time) {
-  const BaseVelocity velocity{time, twist.linear.x, twist.linear.y, twist.angular.z};
-  const bool is_finite = std::isfinite(velocity.ahead + velocity.left + velocity.turning);
+std::optional<BaseTwist> velocity_of(const ros::Twist& twist, Timestamp time) {
+  const BaseTwist velocity{time, twist.linear.x, twist.linear.y, twist.angular.z};
+  const bool is_finite = std::isfinite(velocity.vx + velocity.vy + velocity.wz);
   return is_finite ? std::optional(velocity) : std::nullopt;
 }
 
-std::optional<WheelSample> sample_of(const std::optional<BaseVelocity>& velocity, Timestamp time) {
+std::optional<WheelSample> sample_of(const std::optional<BaseTwist>& velocity, Timestamp time) {
   return velocity ? std::optional(WheelSample{time, {}, velocity}) : std::nullopt;
 }
 

@@ -13,8 +13,8 @@ std::optional<Pose> pose_of(const ros::Pose& message);
 // Sample of one wheel message: pose of the base, velocity, or both.
 struct WheelSample {
   Timestamp time{};
-  std::optional<Pose> pose{};              // in the odometry frame
-  std::optional<BaseVelocity> velocity{};  // in the plane of the base
+  std::optional<Pose> pose{};           // in the odometry frame
+  std::optional<BaseTwist> velocity{};  // in the plane of the base
 };
 
 // Sample at the given time; empty if numbers are not finite. Odometry has no pose if its covariance begins with a

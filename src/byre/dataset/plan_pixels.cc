@@ -55,7 +55,7 @@ std::vector<std::int8_t> read_occupancy(const FloorPlan& plan) {
   throw InputError(plan.image.string(), "is not a grey or colour image with 8 or 16 bits", "save it as an 8-bit PNG");
 }
 
-void put_on_white(cv::Mat& image) {
+void blend_on_white(cv::Mat& image) {
   for (int row = 0; row < image.rows; ++row) {
     for (int column = 0; column < image.cols; ++column) {
       auto& pixel = image.at<cv::Vec4b>(row, column);
@@ -89,12 +89,12 @@ std::int8_t occupancy_of(const PlanPixel& pixel, const FloorPlan& plan) {
   return static_cast<std::int8_t>(std::rint(kPercent * share));
 }
 
-cv::Mat shown_plan(const FloorPlan& plan) {
+cv::Mat render_plan(const FloorPlan& plan) {
   cv::Mat image = decode_plan(plan, cv::IMREAD_UNCHANGED);
   if (image.channels() == kWithAlpha && !image.empty()) {
     if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 256.0);
     if (image.depth() != CV_8U) return {};
-    put_on_white(image);
+    blend_on_white(image);
   } else {
     image = decode_plan(plan, cv::IMREAD_COLOR);
   }
@@ -109,7 +109,7 @@ DrawnFloorPlan read_plan_pixels(const FloorPlan& plan) {
   const bool is_shown_as_it_is = !plan.is_negated && decode_plan(plan, cv::IMREAD_UNCHANGED).channels() < kWithAlpha;
   if (is_shown_as_it_is) return drawn;
   cv::Mat grey;
-  cv::cvtColor(shown_plan(plan), grey, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(render_plan(plan), grey, cv::COLOR_BGR2GRAY);
   drawn.image.pixels.assign(grey.begin<std::uint8_t>(), grey.end<std::uint8_t>());
   return drawn;
 }

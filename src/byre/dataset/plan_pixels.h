@@ -20,6 +20,6 @@ struct PlanPixel {
 std::int8_t occupancy_of(const PlanPixel& pixel, const FloorPlan& plan);
 
 // The image for display, 8-bit BGR: transparent pixels on white, a negated plan inverted. Empty if it cannot be read.
-cv::Mat shown_plan(const FloorPlan& plan);
+cv::Mat render_plan(const FloorPlan& plan);
 
 }  // namespace byre

@@ -166,16 +166,16 @@ std::string place_of_calibration(const fs::path& recording, const OpenOptions& o
   return options.calibration.value_or(recording).string();
 }
 
-PlacedCalibration calibration_for(const fs::path& folder, const OpenOptions& options) {
+CalibrationWithSource calibration_for(const fs::path& folder, const OpenOptions& options) {
   const fs::path file = calibration_file_for(folder, options);
   return {read_calibration(file), file.string(), file.string()};
 }
 
-PlacedDepthCamera depth_camera_for(const fs::path& folder, const OpenOptions& options) {
-  const fs::path of_cameras = calibration_file_for(folder, options);
-  const fs::path beside = folder / "depth.yaml";
-  const bool is_beside = !names_depth_camera(of_cameras) && fs::is_regular_file(beside);
-  const fs::path file = is_beside ? beside : of_cameras;
+DepthCameraWithSource depth_camera_for(const fs::path& folder, const OpenOptions& options) {
+  const fs::path camera_file = calibration_file_for(folder, options);
+  const fs::path extra = folder / "depth.yaml";
+  const bool has_extra = !has_depth_camera_fields(camera_file) && fs::is_regular_file(extra);
+  const fs::path file = has_extra ? extra : camera_file;
   return {read_depth_camera(file), file.string()};
 }
 
@@ -232,7 +232,7 @@ RecordingFormat guess_format(const fs::path& path) {
   if (fs::exists(path / "rgb.txt")) return RecordingFormat::tum;
   if (fs::exists(path / "calib.txt") || fs::is_directory(path / "image_0")) return RecordingFormat::kitti;
   if (is_bag(path)) return RecordingFormat::bag;
-  if (holds_images(path)) return RecordingFormat::images;
+  if (has_images(path)) return RecordingFormat::images;
   throw InputError(path.string(), "contains no recording in a supported format",
                    "supported: mav0/cam0 or cam0 (EuRoC), calib.txt or image_0 (KITTI odometry), rgb.txt (TUM RGB-D), "
                    "image files, also in folders left and right");
@@ -270,9 +270,9 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
     return open_bag_recording(path, range, options);
   }
   const RecordingIndex whole = index_recording(path, options);
-  const BesideLeft beside = images_beside_left(whole);
-  require_calibrated_sizes(choose_camera(whole, beside, options.camera, path));
-  RecordingIndex chosen = choose_camera(select(whole, range, path), beside, options.camera, path);
+  const ExtraImages extra = extra_images_of(whole);
+  require_calibrated_sizes(choose_camera(whole, extra, options.camera, path));
+  RecordingIndex chosen = choose_camera(select(whole, range, path), extra, options.camera, path);
   chosen.calibration.cameras = with_checked_baseline(chosen.calibration.cameras, options.baseline,
                                                      place_of_calibration(path, options), "--baseline ");
   FileMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);

@@ -1,7 +1,7 @@
 #include "byre/dataset/recording_check.h"
 
 #include "byre/features/extract.h"
-#include "byre/features/stereo_fit.h"
+#include "byre/features/stereo_quality.h"
 #include "byre/geometry/median.h"
 #include "byre/motion/recorded_motion.h"
 
@@ -61,7 +61,7 @@ class PairSum {
   }
 
   PairCheck result() const {
-    return {pairs_, median_or_zero(matched_), by_part_.at_best(), median_or_zero(row_errors_),
+    return {pairs_, median_or_zero(matched_), by_part_.best_rate(), median_or_zero(row_errors_),
             common_error_.pixels().value_or(0.0)};
   }
 
@@ -69,7 +69,7 @@ class PairSum {
   Rig rig_;
   int pairs_ = 0;
   std::vector<double> matched_, row_errors_;
-  MatchedByPart by_part_{1.0};
+  MatchRateGrid by_part_{1.0};
   CommonRowError common_error_;
 };
 
@@ -86,7 +86,7 @@ void check_times(const std::vector<Timestamp>& times, RecordingCheck& check) {
 }
 
 // Indices of the first frames of the sampled pairs, spread evenly over the recording.
-std::vector<int> spread_over(int frames, int samples) {
+std::vector<int> sample_frames(int frames, int samples) {
   std::vector<int> first;
   const int count = std::max(1, std::min(samples, frames / 2));
   for (int i = 0; i < count; ++i) first.push_back(static_cast<int>(static_cast<long long>(i) * frames / count));
@@ -101,8 +101,8 @@ class FrameSum {
 
   const Rig& rig() const { return extractor_.rig(); }
 
-  void look_at(const std::optional<ImageFrame>& images, std::uint64_t content_before, RecordingCheck& check) {
-    ++check.looked_at;
+  void add(const std::optional<ImageFrame>& images, std::uint64_t content_before, RecordingCheck& check) {
+    ++check.sampled;
     content_ = 0;
     if (!images) {
       ++check.unreadable;
@@ -123,7 +123,7 @@ class FrameSum {
 
   std::uint64_t content() const { return content_; }  // checksum of the last frame; 0 if it was unreadable
 
-  void tell(RecordingCheck& check) const {
+  void write_to(RecordingCheck& check) const {
     check.left = left_.result();
     check.features = median_or_zero(features_);
     if (right_.result().images == 0) return;
@@ -151,11 +151,11 @@ void add_times(const RecordingCheck& check, std::vector<Finding>& findings) {
                         "check disk, cable and encoder for insufficient speed while recording"});
   }
   if (check.unreadable > 0) {
-    findings.push_back({check.unreadable > check.looked_at / 10,
+    findings.push_back({check.unreadable > check.sampled / 10,
                         fmt::format("{} of the checked images cannot be read", check.unreadable),
                         "record again, or exclude them with --frames"});
   }
-  if (check.repeated > check.looked_at / 20) {
+  if (check.repeated > check.sampled / 20) {
     findings.push_back(
         {true, fmt::format("{} images are identical to the previous one, bit by bit", check.repeated),
          "the camera or its driver stalls; restart it and check for a fault, as motion is not measured meanwhile"});
@@ -211,28 +211,28 @@ void add_camera(const CameraCheck& camera, const char* name, std::vector<Finding
 }
 
 void add_pair(const RecordingCheck& check, std::vector<Finding>& findings) {
-  if (check.without_right > check.looked_at / 20) {
+  if (check.without_right > check.sampled / 20) {
     findings.push_back({false, fmt::format("{} frames have no right image", check.without_right),
                         "check why the recorder drops them, or use one camera with --camera left"});
   }
-  if (!check.pair || (check.right && check.right->of_no_use() > check.right->images / 2)) return;
-  if (is_partly_hidden({check.pair->matched, check.pair->matched_at_best, check.pair->row_error})) {
+  if (!check.pair || (check.right && check.right->unusable() > check.right->images / 2)) return;
+  if (is_partly_hidden({check.pair->matched, check.pair->best_match_rate, check.pair->row_error})) {
     findings.push_back(
         {false,
          fmt::format("only {:.1f} % of the features match in the right image, but {:.0f} % in parts of it",
-                     100.0 * check.pair->matched, 100.0 * check.pair->matched_at_best),
+                     100.0 * check.pair->matched, 100.0 * check.pair->best_match_rate),
          "parts of the images are hidden: clean the lenses"});
-  } else if (check.pair->matched < kLeastStereoShare) {
+  } else if (check.pair->matched < kMinMatchedShare) {
     findings.push_back(
         {true, fmt::format("only {:.1f} % of the features match in the right image", 100.0 * check.pair->matched),
          "check whether left and right are swapped, upside down or unsynchronised, and whether the calibration is of "
          "this pair"});
-  } else if (check.pair->row_error > kMostRowOffset) {
+  } else if (check.pair->row_error > kMaxRowOffset) {
     findings.push_back({true,
                         fmt::format("features of the right image are {:.2f} px off their row", check.pair->row_error),
                         "the cameras are unsynchronised, or one has moved since calibration: check the trigger, "
                         "then run \"byre calibrate\""});
-  } else if (check.pair->calibration_error > kFarOffCalibration) {
+  } else if (check.pair->calibration_error > kMaxCommonRowError) {
     findings.push_back({false, fmt::format("the calibration error is about {:.2f} px", check.pair->calibration_error),
                         "run \"byre calibrate\" on a minute of motion"});
   }
@@ -243,7 +243,7 @@ void add_rig(const RecordingCheck& check, std::vector<Finding>& findings) {
     findings.push_back({false, fmt::format("a field of view of {:.0f} degrees", check.field_of_view_deg),
                         "check that the calibration is of this camera at this resolution"});
   }
-  if (check.features < 200.0 && check.left.of_no_use() <= check.left.images / 2) {
+  if (check.features < 200.0 && check.left.unusable() <= check.left.images / 2) {
     findings.push_back({false, fmt::format("only {:.0f} features per image", check.features),
                         "record scenes with texture; clean the lens; check light and focus"});
   }
@@ -259,13 +259,13 @@ RecordingCheck check_recording(Recording& recording, int samples, const std::fun
   const Camera& camera = recording.calibration().left;
   check.field_of_view_deg = 2.0 * std::atan(0.5 * camera.width / camera.fx) * 180.0 / std::numbers::pi;
   check.baseline_m = recording.calibration().right ? sum.rig().baseline : 0.0;
-  for (const int first : spread_over(recording.size(), samples)) {
+  for (const int first : sample_frames(recording.size(), samples)) {
     if (should_stop && should_stop()) break;
-    sum.look_at(recording.read(first), 0, check);
+    sum.add(recording.read(first), 0, check);
     const std::uint64_t before = sum.content();
-    if (first + 1 < recording.size()) sum.look_at(recording.read(first + 1), before, check);
+    if (first + 1 < recording.size()) sum.add(recording.read(first + 1), before, check);
   }
-  sum.tell(check);
+  sum.write_to(check);
   return check;
 }
 
@@ -289,7 +289,7 @@ std::vector<Finding> findings_of(const RecordingCheck& check) {
   if (check.right) add_camera(*check.right, "right ", findings);
   add_pair(check, findings);
   add_rig(check, findings);
-  std::ranges::stable_sort(findings, std::ranges::greater{}, &Finding::is_grave);
+  std::ranges::stable_sort(findings, std::ranges::greater{}, &Finding::is_critical);
   return findings;
 }
 

@@ -20,14 +20,14 @@ struct CameraCheck {
   double sharpness = 0.0;         // see ImageCondition
   std::array<int, 5> by_fault{};  // images by ImageFault
 
-  int of_no_use() const { return images - by_fault[0]; }
+  int unusable() const { return images - by_fault[0]; }
 };
 
 // Consistency of left and right images, medians over the sampled pairs.
 struct PairCheck {
   int pairs = 0;
   double matched = 0.0;          // share of the left image's features matched in the right one
-  double matched_at_best = 0.0;  // same in the tenth of the image with the largest share
+  double best_match_rate = 0.0;  // same in the tenth of the image with the largest share
   double row_error = 0.0;        // median distance of matches from their row, pixels
   // Row error common to features of a region, pixels, root mean square over regions.
   double calibration_error = 0.0;
@@ -39,7 +39,7 @@ struct RecordingCheck {
   double rate_hz = 0.0;
   int gaps = 0;  // intervals of more than 1.5 usual intervals
   double longest_gap_s = 0.0;
-  int looked_at = 0;      // sampled frames
+  int sampled = 0;        // sampled frames
   int unreadable = 0;     // sampled frames that could not be read
   int without_right = 0;  // sampled frames that lack their right image
   int repeated = 0;       // sampled frames that are bit-identical to the previous frame
@@ -58,7 +58,7 @@ RecordingCheck check_recording(Recording& recording, int samples, const std::fun
 
 // A problem of a recording, with a remedy.
 struct Finding {
-  bool is_grave = false;  // the recording is unusable until it is fixed
+  bool is_critical = false;  // the recording is unusable until it is fixed
   std::string what;
   std::string remedy;
 };

@@ -30,11 +30,11 @@ Image texture(int frame, int shift) {
 }
 
 // A stereo pair in front of a wall, at ten frames a second, with modified images.
-class MadeUpRecording : public Recording {
+class SyntheticRecording : public Recording {
  public:
   using Change = std::function<void(ImageFrame& images, int index)>;
 
-  explicit MadeUpRecording(Change change = {}) : change_(std::move(change)) {
+  explicit SyntheticRecording(Change change = {}) : change_(std::move(change)) {
     Camera camera;
     camera.width = kWidth;
     camera.height = kHeight;
@@ -67,14 +67,14 @@ class MadeUpRecording : public Recording {
   std::vector<std::string> warnings_;
 };
 
-RecordingCheck check_of(const MadeUpRecording::Change& change = {}) {
-  MadeUpRecording recording(change);
+RecordingCheck check_of(const SyntheticRecording::Change& change = {}) {
+  SyntheticRecording recording(change);
   return check_recording(recording, 5);
 }
 
-std::string grave_findings(const RecordingCheck& check) {
+std::string critical_findings(const RecordingCheck& check) {
   std::string text;
-  for (const Finding& finding : findings_of(check)) text += finding.is_grave ? finding.what + "\n" : "";
+  for (const Finding& finding : findings_of(check)) text += finding.is_critical ? finding.what + "\n" : "";
   return text;
 }
 
@@ -84,25 +84,25 @@ TEST(RecordingCheck, MeasuresASoundPair) {
   EXPECT_NEAR(check.rate_hz, 10.0, 1e-6);
   EXPECT_EQ(check.gaps, 1);
   EXPECT_NEAR(check.longest_gap_s, 2.1, 1e-6);
-  EXPECT_EQ(check.looked_at, 10);
+  EXPECT_EQ(check.sampled, 10);
   EXPECT_EQ(check.repeated, 0);
   EXPECT_NEAR(check.baseline_m, 0.1, 1e-9);
   EXPECT_NEAR(check.field_of_view_deg, 65.2, 0.1);
   ASSERT_TRUE(check.pair);
   EXPECT_GT(check.pair->matched, 0.4);
   EXPECT_LT(check.pair->row_error, 0.3);
-  EXPECT_THAT(grave_findings(check), IsEmpty());
+  EXPECT_THAT(critical_findings(check), IsEmpty());
 }
 
 TEST(RecordingCheck, DetectsRepeatedImages) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) { images.left = texture(0, 0); });
   EXPECT_EQ(check.repeated, 5);
-  EXPECT_THAT(grave_findings(check), HasSubstr("identical to the previous one"));
+  EXPECT_THAT(critical_findings(check), HasSubstr("identical to the previous one"));
 }
 
 TEST(RecordingCheck, DetectsSwappedCameras) {
   const RecordingCheck check = check_of([](ImageFrame& images, int) { std::swap(images.left, *images.right); });
-  EXPECT_THAT(grave_findings(check), HasSubstr("match in the right image"));
+  EXPECT_THAT(critical_findings(check), HasSubstr("match in the right image"));
 }
 
 TEST(RecordingCheck, DetectsAMovedCameraByRows) {
@@ -112,14 +112,14 @@ TEST(RecordingCheck, DetectsAMovedCameraByRows) {
   });
   ASSERT_TRUE(check.pair);
   EXPECT_NEAR(check.pair->calibration_error, 1.0, 0.2);
-  EXPECT_THAT(grave_findings(check), HasSubstr("off their row"));
+  EXPECT_THAT(critical_findings(check), HasSubstr("off their row"));
 }
 
 TEST(RecordingCheck, DetectsADarkCameraWithoutBlamingThePair) {
   const RecordingCheck check =
       check_of([](ImageFrame& images, int) { images.right->pixels.assign(images.right->pixels.size(), 0); });
-  EXPECT_THAT(grave_findings(check), HasSubstr("right images are dark"));
-  EXPECT_THAT(grave_findings(check), Not(HasSubstr("match in the right image")));
+  EXPECT_THAT(critical_findings(check), HasSubstr("right images are dark"));
+  EXPECT_THAT(critical_findings(check), Not(HasSubstr("match in the right image")));
 }
 
 TEST(RecordingCheck, ReportsMissingRightImagesAndUnreadableFrames) {
@@ -127,19 +127,19 @@ TEST(RecordingCheck, ReportsMissingRightImagesAndUnreadableFrames) {
     if (index % 2 == 1) images.right.reset();
   });
   EXPECT_GT(check.without_right, 0);
-  EXPECT_THAT(grave_findings(check), IsEmpty());
+  EXPECT_THAT(critical_findings(check), IsEmpty());
 }
 
 // A check without findings.
 RecordingCheck sound_check() {
   RecordingCheck check;
-  check.frames = check.looked_at = 100;
+  check.frames = check.sampled = 100;
   check.rate_hz = 10.0;
   check.features = 900.0;
   check.left.images = 100;
   check.left.by_fault[0] = 100;
   check.right = check.left;
-  check.pair = PairCheck{.pairs = 100, .matched = 0.6, .matched_at_best = 0.9, .row_error = 0.2};
+  check.pair = PairCheck{.pairs = 100, .matched = 0.6, .best_match_rate = 0.9, .row_error = 0.2};
   check.field_of_view_deg = 80.0;
   check.baseline_m = 0.1;
   return check;
@@ -147,7 +147,7 @@ RecordingCheck sound_check() {
 
 struct FindingCase {
   std::function<void(RecordingCheck&)> change;
-  bool is_grave;
+  bool is_critical;
   std::string what;
 };
 
@@ -159,12 +159,12 @@ TEST_P(RecordingFinding, HasFiguresAndARemedy) {
   const std::vector<Finding> findings = findings_of(check);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].what, GetParam().what);
-  EXPECT_EQ(findings[0].is_grave, GetParam().is_grave);
+  EXPECT_EQ(findings[0].is_critical, GetParam().is_critical);
   EXPECT_FALSE(findings[0].remedy.empty());
 }
 
 // Sets the number of images with a fault.
-void give_fault(CameraCheck& camera, ImageFault fault, int images) {
+void set_fault(CameraCheck& camera, ImageFault fault, int images) {
   camera.by_fault[static_cast<std::size_t>(fault)] = images;
   camera.by_fault[0] -= images;
 }
@@ -184,28 +184,28 @@ INSTANTIATE_TEST_SUITE_P(
                     "12 of the checked images cannot be read"},
         FindingCase{[](RecordingCheck& check) { check.repeated = 6; }, true,
                     "6 images are identical to the previous one, bit by bit"},
-        FindingCase{[](RecordingCheck& check) { give_fault(check.left, ImageFault::dark, 51); }, true,
+        FindingCase{[](RecordingCheck& check) { set_fault(check.left, ImageFault::dark, 51); }, true,
                     "51 of 100 left images are dark"},
-        FindingCase{[](RecordingCheck& check) { give_fault(*check.right, ImageFault::overexposed, 6); }, false,
+        FindingCase{[](RecordingCheck& check) { set_fault(*check.right, ImageFault::overexposed, 6); }, false,
                     "6 of 100 right images are overexposed"},
-        FindingCase{[](RecordingCheck& check) { give_fault(*check.right, ImageFault::flat, 7); }, false,
+        FindingCase{[](RecordingCheck& check) { set_fault(*check.right, ImageFault::flat, 7); }, false,
                     "7 of 100 right images are flat"},
         FindingCase{[](RecordingCheck& check) {
                       check.right.reset();
                       check.pair.reset();
                       check.baseline_m = 0.0;
-                      give_fault(check.left, ImageFault::blurred, 8);
+                      set_fault(check.left, ImageFault::blurred, 8);
                     },
                     false, "8 of 100 images are blurred"},
         FindingCase{[](RecordingCheck& check) { check.without_right = 9; }, false, "9 frames have no right image"},
         FindingCase{[](RecordingCheck& check) {
                       check.pair->matched = 0.101;
-                      check.pair->matched_at_best = 0.34;
+                      check.pair->best_match_rate = 0.34;
                     },
                     false, "only 10.1 % of the features match in the right image, but 34 % in parts of it"},
         FindingCase{[](RecordingCheck& check) {
                       check.pair->matched = 0.011;
-                      check.pair->matched_at_best = 0.02;
+                      check.pair->best_match_rate = 0.02;
                     },
                     true, "only 1.1 % of the features match in the right image"},
         FindingCase{[](RecordingCheck& check) { check.pair->row_error = 1.234; }, true,
@@ -226,8 +226,8 @@ TEST(RecordingCheck, ListsSevereFindingsFirst) {
   check.repeated = 50;
   const std::vector<Finding> findings = findings_of(check);
   ASSERT_EQ(findings.size(), 2u);
-  EXPECT_TRUE(findings[0].is_grave);
-  EXPECT_FALSE(findings[1].is_grave);
+  EXPECT_TRUE(findings[0].is_critical);
+  EXPECT_FALSE(findings[1].is_critical);
 }
 
 TEST(RecordingCheck, ReportsTimeCorrectionsWithARemedy) {
@@ -249,7 +249,7 @@ TEST(RecordingCheck, ReportsTimeCorrectionsWithARemedy) {
 }
 
 TEST(MotionFindings, ReportFileFaultAndRemedy) {
-  MadeUpRecording recording;
+  SyntheticRecording recording;
   const auto source_of = [](MotionSensor sensor) {
     return sensor == MotionSensor::wheels ? "walk/wheel.txt" : "walk/imu.csv";
   };

@@ -22,7 +22,7 @@ struct FrameFiles {
 };
 
 // A calibration, and the places of the image sizes in it for InputError.
-struct PlacedCalibration {
+struct CalibrationWithSource {
   Calibration cameras;
   std::string left_size;
   std::string right_size;
@@ -35,7 +35,7 @@ std::string place_of_calibration(const std::filesystem::path& recording, const O
 // Contents of a recording of image files. The calibration may be of a pair although frames have one camera, or vice
 // versa; choose_camera resolves this.
 struct RecordingIndex {
-  PlacedCalibration calibration;
+  CalibrationWithSource calibration;
   std::vector<FrameFiles> frames;  // strictly increasing in time
   std::vector<std::string> warnings{};
   TimeCorrections corrections{};  // corrections of the left images
@@ -46,7 +46,7 @@ struct RecordingIndex {
 std::optional<std::filesystem::path> find_mav_folder(const std::filesystem::path& folder);
 
 // Whether the folder contains image files, or folders left and right with image files.
-bool holds_images(const std::filesystem::path& folder);
+bool has_images(const std::filesystem::path& folder);
 
 // All throw InputError like open_recording. Images of two cameras are a pair if their time stamps differ by at most the
 // tolerance; KITTI's by their number. The right camera is omitted if only the left one is requested. A depth image
@@ -60,17 +60,17 @@ RecordingIndex index_images(const std::filesystem::path& folder, const OpenOptio
 RecordingIndex index_recording(const std::filesystem::path& path, const OpenOptions& options);
 
 // The calibration of the options, else the one in the folder. Throws InputError if there is neither.
-PlacedCalibration calibration_for(const std::filesystem::path& folder, const OpenOptions& options);
+CalibrationWithSource calibration_for(const std::filesystem::path& folder, const OpenOptions& options);
 
 // A depth camera, and the place of its image size for InputError.
-struct PlacedDepthCamera {
+struct DepthCameraWithSource {
   DepthCamera camera;
   std::string size;
 };
 
 // The depth camera from the calibration file of calibration_for, or from the folder's depth.yaml if that has none.
 // Throws InputError like calibration_for and read_depth_camera.
-PlacedDepthCamera depth_camera_for(const std::filesystem::path& folder, const OpenOptions& options);
+DepthCameraWithSource depth_camera_for(const std::filesystem::path& folder, const OpenOptions& options);
 
 // The first image that can be decoded. Throws InputError with the folder if there is none.
 Image first_readable(const std::vector<std::filesystem::path>& files);

@@ -10,7 +10,7 @@ StampClock::Reading StampClock::read(Timestamp stamp, Timestamp arrival) {
   last_ = Last{stamp, arrival};
   const Timestamp received = std::max(arrival - last.arrival, kShortest);
   const Timestamp stamped = stamp - last.stamp;
-  if (stamped >= -kMostLate && !is_set_forward(stamped, received)) return {stamp - jumped_, std::nullopt};
+  if (stamped >= -kMaxLateness && !is_set_forward(stamped, received)) return {stamp - jumped_, std::nullopt};
   const Timestamp jump = stamped - received;
   jumped_ += jump;
   return {stamp - jumped_, jump};

@@ -8,14 +8,14 @@
 namespace byre {
 
 // Stamps that go back by at most this time are of late messages, unless other evidence shows a step of the clock.
-inline constexpr Timestamp kMostLate = std::chrono::milliseconds(500);
+inline constexpr Timestamp kMaxLateness = std::chrono::milliseconds(500);
 // A clock was set forward if its stamps advance by this time more than the receiver's clock.
-inline constexpr Timestamp kLeastForward = std::chrono::seconds(1);
+inline constexpr Timestamp kMinForwardStep = std::chrono::seconds(1);
 
 // Whether a clock was set forward, if its stamps advance by `stamped` while the receiver's clock advances by
 // `received`.
 constexpr bool is_set_forward(Timestamp stamped, Timestamp received) {
-  return stamped > kLeastForward && stamped - received > kLeastForward;
+  return stamped > kMinForwardStep && stamped - received > kMinForwardStep;
 }
 
 // Continuous time from stamps of live images, whose clock may be set meanwhile. For recordings, where later stamps are

@@ -34,7 +34,7 @@ Timestamp multiple(double factor, Timestamp interval) {
   return Timestamp(std::llround(factor * static_cast<double>(interval.count())));
 }
 
-Timestamp usual_interval(const std::vector<Timestamp>& stamps) {
+Timestamp typical_interval(const std::vector<Timestamp>& stamps) {
   std::vector<Timestamp> intervals;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] > stamps[i - 1]) intervals.push_back(stamps[i] - stamps[i - 1]);
@@ -44,14 +44,14 @@ Timestamp usual_interval(const std::vector<Timestamp>& stamps) {
 
 bool is_coarse(const std::vector<Timestamp>& stamps) {
   constexpr std::size_t kLeast = 6;  // items; fewer may be repeated by chance
-  return stamps.size() >= kLeast && !are_mostly_different(stamps);
+  return stamps.size() >= kLeast && !are_mostly_distinct(stamps);
 }
 
-bool are_mostly_different(const std::vector<Timestamp>& stamps) {
+bool are_mostly_distinct(const std::vector<Timestamp>& stamps) {
   return 2 * stamps.size() < 3 * runs_of(stamps).size();
 }
 
-bool is_each_repeated(const std::vector<Timestamp>& stamps, const std::vector<Timestamp>& received) {
+bool are_all_repeated(const std::vector<Timestamp>& stamps, const std::vector<Timestamp>& received) {
   if (received.size() != stamps.size()) return false;
   std::vector<Timestamp> within, between;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
@@ -64,7 +64,7 @@ std::vector<Timestamp> spread_evenly(const std::vector<Timestamp>& stamps) {
   const std::vector<StampRun> runs = runs_of(stamps);
   std::vector<Timestamp> starts;
   for (const StampRun& run : runs) starts.push_back(stamps[run.begin]);
-  const Timestamp resolution = usual_interval(starts);
+  const Timestamp resolution = typical_interval(starts);
   const auto step_after = [&](std::size_t run) { return starts[run + 1] - starts[run]; };
   const auto is_whole = [&](std::size_t run) {
     return run > 0 && run + 1 < runs.size() && step_after(run) > Timestamp{} &&
@@ -88,15 +88,15 @@ std::vector<Timestamp> spread_evenly(const std::vector<Timestamp>& stamps) {
   return spread;
 }
 
-void fill_in(std::vector<Timestamp>& times, const std::vector<bool>& is_known, Timestamp interval) {
+void interpolate_gaps(std::vector<Timestamp>& times, const std::vector<bool>& has_time, Timestamp interval) {
   const std::size_t size = times.size();
   for (std::size_t begin = 0; begin < size;) {
-    if (is_known[begin]) {
+    if (has_time[begin]) {
       ++begin;
       continue;
     }
     std::size_t end = begin;
-    while (end < size && !is_known[end]) ++end;
+    while (end < size && !has_time[end]) ++end;
     const auto count = static_cast<Timestamp::rep>(end - begin);
     const bool is_between = begin > 0 && end < size;
     const Timestamp step = is_between ? (times[end] - times[begin - 1]) / (count + 1) : interval;

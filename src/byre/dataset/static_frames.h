@@ -24,7 +24,7 @@ class StaticFrames {
     Pose parent_from_child;
   };
   // Ancestors of a frame with the transforms to them, the frame itself included; the topmost has no parent.
-  std::map<std::string, Pose> above(const std::string& frame) const;
+  std::map<std::string, Pose> ancestors(const std::string& frame) const;
 
   std::map<std::string, Parent> parents_;  // key: name of the child
 };

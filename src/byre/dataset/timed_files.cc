@@ -46,7 +46,7 @@ std::vector<Timestamp> times_of_files(const std::vector<TimedFile>& files) {
 }
 
 // Median of the times from each image to the nearest one of the other camera.
-Timestamp usual_difference(const std::vector<Timestamp>& left, const std::vector<Timestamp>& right) {
+Timestamp median_difference(const std::vector<Timestamp>& left, const std::vector<Timestamp>& right) {
   std::vector<Timestamp> differences;
   for (const Timestamp time : left) {
     differences.push_back(std::chrono::abs(*find_nearest(right, time, Timestamp::max()) - time));
@@ -57,7 +57,7 @@ Timestamp usual_difference(const std::vector<Timestamp>& left, const std::vector
 }  // namespace
 
 Timestamp pair_tolerance(const OpenOptions& options) {
-  return options.pair_tolerance_s ? from_seconds(*options.pair_tolerance_s) : kUsualPairTolerance;
+  return options.pair_tolerance_s ? from_seconds(*options.pair_tolerance_s) : kDefaultPairTolerance;
 }
 
 void require_times(std::size_t kept, int repeated, const std::string& place) {
@@ -86,8 +86,8 @@ RestoredFiles restore_files(const std::vector<TimedFile>& listed, const std::str
   return result;
 }
 
-std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
-                                                         const std::vector<Timestamp>& others, Timestamp tolerance) {
+std::vector<std::optional<std::size_t>> match_by_time(const std::vector<Timestamp>& times,
+                                                      const std::vector<Timestamp>& others, Timestamp tolerance) {
   std::vector<std::optional<std::size_t>> partners;
   for (const Timestamp time : times) {
     const auto partner = find_nearest(others, time, tolerance);
@@ -101,7 +101,7 @@ std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std:
                                   Timestamp tolerance) {
   std::vector<FrameFiles> frames;
   const std::vector<std::optional<std::size_t>> partners =
-      partners_in_time(times_of_files(left), times_of_files(right), tolerance);
+      match_by_time(times_of_files(left), times_of_files(right), tolerance);
   for (std::size_t i = 0; i < left.size(); ++i) {
     frames.push_back({left[i].time, left[i].path, std::nullopt});
     if (partners[i]) frames.back().right = right[*partners[i]].path;
@@ -127,13 +127,13 @@ void require_pairs(const std::vector<FrameFiles>& frames, const std::vector<Time
   if (std::ranges::any_of(frames, [](const FrameFiles& frame) { return frame.right.has_value(); })) return;
   std::vector<Timestamp> left;
   for (const FrameFiles& frame : frames) left.push_back(frame.time);
-  throw no_pairs(place, left, times_of_files(right), tolerance);
+  throw no_pairs_error(place, left, times_of_files(right), tolerance);
 }
 
-InputError no_pairs(const std::string& place, const std::vector<Timestamp>& left, const std::vector<Timestamp>& right,
-                    Timestamp tolerance) {
+InputError no_pairs_error(const std::string& place, const std::vector<Timestamp>& left,
+                          const std::vector<Timestamp>& right, Timestamp tolerance) {
   constexpr double kLikelyOnePair = 0.1;  // seconds
-  const double difference = to_seconds(usual_difference(left, right));
+  const double difference = to_seconds(median_difference(left, right));
   const std::string reason =
       fmt::format("no right image is within {:g} ms of a left image; the median difference is {:.3f} ms",
                   1e3 * to_seconds(tolerance), 1e3 * difference);

@@ -17,7 +17,7 @@ struct TimedFile {
   std::filesystem::path path;
 };
 
-inline constexpr Timestamp kUsualPairTolerance = std::chrono::milliseconds(2);
+inline constexpr Timestamp kDefaultPairTolerance = std::chrono::milliseconds(2);
 
 // Largest time between the stamps of a pair.
 Timestamp pair_tolerance(const OpenOptions& options);
@@ -39,8 +39,8 @@ RestoredFiles restore_files(const std::vector<TimedFile>& listed, const std::str
 void require_times(std::size_t kept, int repeated, const std::string& place);
 
 // For each time the index of the nearest other one, if that is within the tolerance. Precondition: both ascend.
-std::vector<std::optional<std::size_t>> partners_in_time(const std::vector<Timestamp>& times,
-                                                         const std::vector<Timestamp>& others, Timestamp tolerance);
+std::vector<std::optional<std::size_t>> match_by_time(const std::vector<Timestamp>& times,
+                                                      const std::vector<Timestamp>& others, Timestamp tolerance);
 
 // Frames of the left images, each with the right image within the tolerance, if any. Precondition: both ascend in time.
 std::vector<FrameFiles> frames_of(const std::vector<TimedFile>& left, const std::vector<TimedFile>& right,
@@ -55,7 +55,7 @@ void require_pairs(const std::vector<FrameFiles>& frames, const std::vector<Time
                    const std::string& place);
 
 // Error for a recording without any pair. Precondition: both ascend and are not empty.
-InputError no_pairs(const std::string& place, const std::vector<Timestamp>& left, const std::vector<Timestamp>& right,
-                    Timestamp tolerance);
+InputError no_pairs_error(const std::string& place, const std::vector<Timestamp>& left,
+                          const std::vector<Timestamp>& right, Timestamp tolerance);
 
 }  // namespace byre

@@ -31,7 +31,7 @@ RestoredFiles read_list(const fs::path& folder, const char* name, const SensorCl
   return restore_files(files, list.string(), rgb);
 }
 
-bool is_there(const FrameFiles& frame) {
+bool has_depth(const FrameFiles& frame) {
   return frame.depth && fs::exists(*frame.depth);
 }
 
@@ -40,13 +40,13 @@ void add_listed_depth(const fs::path& folder, const OpenOptions& options, Record
   const RestoredFiles depth_files = read_list(folder, "depth.txt", index.clock);
   index.warnings.insert(index.warnings.end(), depth_files.warnings.begin(), depth_files.warnings.end());
   add_depth(index.frames, depth_files.files);
-  if (std::ranges::none_of(index.frames, is_there)) {
+  if (std::ranges::none_of(index.frames, has_depth)) {
     index.warnings.push_back((folder / "depth.txt").string() +
                              ": no listed image exists within 20 ms of a frame; depth is ignored");
     for (FrameFiles& frame : index.frames) frame.depth.reset();
     return;
   }
-  const PlacedDepthCamera depth = depth_camera_for(folder, options);
+  const DepthCameraWithSource depth = depth_camera_for(folder, options);
   index.calibration.cameras.depth = depth.camera;
   index.calibration.depth_size = depth.size;
 }

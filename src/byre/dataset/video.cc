@@ -135,7 +135,7 @@ bool is_video_file(const fs::path& path) {
 
 std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& range, const OpenOptions& options) {
   std::unique_ptr<cv::VideoCapture> capture = open_capture(file);
-  const PlacedCalibration calibration =
+  const CalibrationWithSource calibration =
       choose_calibration(calibration_for(file.parent_path(), options), {}, options.camera, file);
   with_checked_baseline(calibration.cameras, options.baseline, place_of_calibration(file, options), "--baseline ");
   require_calibrated_size(static_cast<int>(capture->get(cv::CAP_PROP_FRAME_WIDTH)),
@@ -144,7 +144,7 @@ std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& ra
   const std::optional<double> rate = options.frame_rate_hz ? options.frame_rate_hz : stated_frame_rate(*capture);
   std::vector<std::string> warnings;
   if (!rate) warnings.push_back(file.string() + ": has no frame rate; 30 frames per second are assumed");
-  const std::vector<Timestamp> times = steady_times(frame_count(file, *capture), rate.value_or(kAssumedFrameRate));
+  const std::vector<Timestamp> times = uniform_times(frame_count(file, *capture), rate.value_or(kAssumedFrameRate));
   auto video = std::make_unique<Video>(file, std::move(capture), calibration.cameras, std::move(warnings));
   video->select(frames_in_range(times, range, file), times);
   return video;

@@ -21,16 +21,16 @@ class WheelStream {
   std::vector<WheelSample> take();
 
  private:
-  bool has_moved_away(const WheelSample& sample);
-  void tell(const WheelSample& sample);
+  bool accumulate_motion(const WheelSample& sample);
+  void emit(const WheelSample& sample);
   void decide(Kind kind);
 
   Kind kind_ = Kind::open;
   std::optional<Pose> first_;
-  std::optional<BaseVelocity> last_;
+  std::optional<BaseTwist> last_;
   Eigen::Vector3d moved_ = Eigen::Vector3d::Zero();  // metres ahead and to the left, radians; integrated velocities
-  std::vector<WheelSample> held_;
-  std::vector<WheelSample> told_;
+  std::vector<WheelSample> pending_;
+  std::vector<WheelSample> output_;
 };
 
 }  // namespace byre

@@ -12,7 +12,7 @@ WheelSample sample_at(int step, bool has_pose, bool has_velocity) {
   const double seconds = 0.05 * step, way = 0.5 * std::max(0.0, seconds - 1.0);
   WheelSample sample{from_seconds(seconds), {}, {}};
   sample.pose = Pose{Eigen::Quaterniond::Identity(), {has_pose ? way : 0.0, 0.0, 0.0}};
-  sample.velocity = BaseVelocity{sample.time, has_velocity && seconds > 1.0 ? 0.5 : 0.0, 0.0, 0.0};
+  sample.velocity = BaseTwist{sample.time, has_velocity && seconds > 1.0 ? 0.5 : 0.0, 0.0, 0.0};
   return sample;
 }
 
@@ -22,7 +22,7 @@ struct Counted {
   Kind kind = Kind::open;
 };
 
-Counted told(bool has_pose, bool has_velocity, int steps = 60) {
+Counted count_samples(bool has_pose, bool has_velocity, int steps = 60) {
   WheelStream stream;
   Counted counted;
   Timestamp last{-1};
@@ -39,28 +39,28 @@ Counted told(bool has_pose, bool has_velocity, int steps = 60) {
 }
 
 TEST(WheelStream, SelectsPosesIfPresent) {
-  const Counted both = told(true, true);
+  const Counted both = count_samples(true, true);
   EXPECT_EQ(both.kind, Kind::poses);
   EXPECT_EQ(both.poses, 60);
   EXPECT_EQ(both.velocities, 0);
-  EXPECT_EQ(told(true, false).poses, 60) << "a driver that measures poses only";
+  EXPECT_EQ(count_samples(true, false).poses, 60) << "a driver that measures poses only";
 }
 
 TEST(WheelStream, SelectsVelocitiesIfPosesNeverChange) {
-  const Counted counted = told(false, true);
+  const Counted counted = count_samples(false, true);
   EXPECT_EQ(counted.kind, Kind::velocities);
   EXPECT_EQ(counted.poses, 21) << "all samples of the second at rest";
   EXPECT_EQ(counted.velocities, 39) << "all later samples, with the delayed ones";
 }
 
 TEST(WheelStream, StaysUndecidedAtRest) {
-  EXPECT_EQ(told(false, true, 15).kind, Kind::open);
-  EXPECT_EQ(told(false, true, 15).poses, 15);
+  EXPECT_EQ(count_samples(false, true, 15).kind, Kind::open);
+  EXPECT_EQ(count_samples(false, true, 15).poses, 15);
   WheelStream stream;
   for (int i = 0; i < 2000; ++i) {
     WheelSample sample = sample_at(0, false, false);
     sample.time = from_seconds(0.05 * i);
-    sample.velocity = BaseVelocity{sample.time, i % 2 == 0 ? 0.01 : -0.01, 0.0, i % 2 == 0 ? -0.01 : 0.01};
+    sample.velocity = BaseTwist{sample.time, i % 2 == 0 ? 0.01 : -0.01, 0.0, i % 2 == 0 ? -0.01 : 0.01};
     stream.add(sample);
   }
   EXPECT_NE(stream.kind(), Kind::velocities) << "noise is no motion";

@@ -19,11 +19,11 @@ namespace {
 // Callbacks for threads of Cyclone DDS, which is C: they throw no exceptions; a null pointer means out of memory.
 
 struct CdrType : ddsi_sertype {
-  std::size_t most_bytes = 0;  // longer received messages are dropped
+  std::size_t max_bytes = 0;  // longer received messages are dropped
 };
 
-std::size_t most_bytes_of(const ddsi_sertype* type) {
-  return static_cast<const CdrType*>(type)->most_bytes;
+std::size_t max_bytes_of(const ddsi_sertype* type) {
+  return static_cast<const CdrType*>(type)->max_bytes;
 }
 
 struct Sample : ddsi_serdata {
@@ -49,7 +49,7 @@ Sample* new_sample(const ddsi_sertype* type, ddsi_serdata_kind kind) {
 template <typename Fill>
 ddsi_serdata* filled_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, std::size_t size,
                             const Fill& fill) noexcept {
-  if (size > most_bytes_of(type)) return nullptr;
+  if (size > max_bytes_of(type)) return nullptr;
   try {
     std::unique_ptr<Sample> sample(new_sample(type, kind));
     sample->bytes.resize(padded(size));
@@ -171,11 +171,11 @@ void resize_structs(void**, const ddsi_sertype*, void*, std::size_t, std::size_t
 void free_structs(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
 
 bool equal_types(const ddsi_sertype* one, const ddsi_sertype* other) {
-  return most_bytes_of(one) == most_bytes_of(other);  // called for equal names only
+  return max_bytes_of(one) == max_bytes_of(other);  // called for equal names only
 }
 
 std::uint32_t hash_type(const ddsi_sertype* type) {
-  return static_cast<std::uint32_t>(most_bytes_of(type));  // combined with the hash of the name
+  return static_cast<std::uint32_t>(max_bytes_of(type));  // combined with the hash of the name
 }
 
 const ddsi_sertype_ops kTypeCallbacks = {ddsi_sertype_v0, nullptr,     free_type, zero_structs, resize_structs,
@@ -184,9 +184,9 @@ const ddsi_sertype_ops kTypeCallbacks = {ddsi_sertype_v0, nullptr,     free_type
 
 }  // namespace
 
-ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t most_bytes) {
+ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t max_bytes) {
   auto* const type = new CdrType;
-  type->most_bytes = most_bytes;
+  type->max_bytes = max_bytes;
   ddsi_sertype_init_flags(type, dds_type_name.c_str(), &kTypeCallbacks, &kSampleCallbacks,
                           DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;

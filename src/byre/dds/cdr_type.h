@@ -13,8 +13,8 @@ namespace byre {
 // Cyclone DDS type for messages as opaque bytes. All types are those of ROS 2: without keys, in XCDR1. A message is
 // four bytes for encoding and byte order, then its fields.
 
-// Type for dds_create_topic_sertype, which takes ownership. Longer received messages than most_bytes are dropped.
-ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t most_bytes);
+// Type for dds_create_topic_sertype, which takes ownership. Longer received messages than max_bytes are dropped.
+ddsi_sertype* make_cdr_type(const std::string& dds_type_name, std::size_t max_bytes);
 
 // Message of a topic's type for dds_writecdr, which takes ownership; null if out of memory.
 ddsi_serdata* make_cdr_sample(const ddsi_sertype* type, std::vector<std::byte> message) noexcept;

@@ -25,9 +25,9 @@ Qos make_qos(const TopicQos& wanted) {
   return qos;
 }
 
-void tell_user_data(dds_qos_t* qos, const MessageType& type, std::string told, RosDistribution distribution) {
-  if (distribution != RosDistribution::humble && !type.hash.empty()) told += "typehash=" + type.hash + ";";
-  if (!told.empty()) dds_qset_userdata(qos, told.data(), told.size());
+void set_user_data(dds_qos_t* qos, const MessageType& type, std::string user_data, RosDistribution distribution) {
+  if (distribution != RosDistribution::humble && !type.hash.empty()) user_data += "typehash=" + type.hash + ";";
+  if (!user_data.empty()) dds_qset_userdata(qos, user_data.data(), user_data.size());
 }
 
 struct TypedTopic {
@@ -36,9 +36,9 @@ struct TypedTopic {
 };
 
 TypedTopic make_topic(std::int32_t participant, const std::string& topic, const MessageType& type,
-                      std::size_t most_bytes) {
+                      std::size_t max_bytes) {
   const std::string name = topic.starts_with('/') ? dds_topic_name(topic) : topic;
-  ddsi_sertype* cdr_type = make_cdr_type(dds_type_name(type.name), most_bytes);
+  ddsi_sertype* cdr_type = make_cdr_type(dds_type_name(type.name), max_bytes);
   const dds_entity_t made = dds_create_topic_sertype(participant, name.c_str(), &cdr_type, nullptr, nullptr, nullptr);
   if (made < 0) ddsi_sertype_unref(cdr_type);
   return {DdsEntity(made, "make the topic " + topic), cdr_type};
@@ -69,7 +69,7 @@ DdsEntity::~DdsEntity() {
 
 void Publisher::publish(std::vector<std::byte> message) {
   ddsi_serdata* const sample = make_cdr_sample(type_, std::move(message));
-  if (sample == nullptr || dds_writecdr(writer_.handle(), sample) != DDS_RETCODE_OK) ++left_out_;
+  if (sample == nullptr || dds_writecdr(writer_.handle(), sample) != DDS_RETCODE_OK) ++dropped_;
 }
 
 int Publisher::subscribers() const {
@@ -134,9 +134,9 @@ Participant::Participant(const RosNetwork& network, const std::string& own_setti
 
 Publisher Participant::publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
                                const std::string& note) {
-  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.most_bytes);
+  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.max_bytes);
   const Qos wanted = make_qos(qos);
-  tell_user_data(wanted.get(), type, note, distribution_);
+  set_user_data(wanted.get(), type, note, distribution_);
   dds_qset_writer_data_lifecycle(wanted.get(), false);
   if (qos.is_latched) {
     dds_qset_durability_service(wanted.get(), 0, DDS_HISTORY_KEEP_LAST, qos.depth, DDS_LENGTH_UNLIMITED,
@@ -152,9 +152,9 @@ Publisher Participant::publish(const std::string& topic, const MessageType& type
 
 Subscriber Participant::subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
                                   const std::string& note) {
-  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.most_bytes);
+  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.max_bytes);
   const Qos wanted = make_qos(qos);
-  tell_user_data(wanted.get(), type, note, distribution_);
+  set_user_data(wanted.get(), type, note, distribution_);
   Subscriber subscriber;
   subscriber.topic_ = std::move(made.topic);
   subscriber.reader_ =
@@ -167,15 +167,15 @@ Subscriber Participant::subscribe(const std::string& topic, const MessageType& t
 }
 
 std::vector<std::string> Participant::published_types(const std::string& topic) {
-  constexpr std::size_t kMost = 1000;
+  constexpr std::size_t kMax = 1000;
   if (publications_.handle() <= 0) {
     publications_ =
         DdsEntity(dds_create_reader(participant_.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
                   "read topic announcements");
   }
-  std::vector<void*> read(kMost, nullptr);
-  std::vector<dds_sample_info_t> about(kMost);
-  const dds_return_t count = dds_read(publications_.handle(), read.data(), about.data(), kMost, kMost);
+  std::vector<void*> read(kMax, nullptr);
+  std::vector<dds_sample_info_t> about(kMax);
+  const dds_return_t count = dds_read(publications_.handle(), read.data(), about.data(), kMax, kMax);
   std::vector<std::string> types;
   for (int i = 0; i < count; ++i) {
     const auto& info = about[static_cast<std::size_t>(i)];

@@ -22,13 +22,13 @@ namespace byre {
 // need latched writers.
 struct TopicQos {
   bool is_reliable = true;
-  bool is_latched = false;                          // keeps the last messages for late subscribers ("transient local")
-  int depth = 10;                                   // messages kept for a slow reader
-  std::size_t most_bytes = std::size_t{128} << 20;  // longer received messages are dropped
+  bool is_latched = false;                         // keeps the last messages for late subscribers ("transient local")
+  int depth = 10;                                  // messages kept for a slow reader
+  std::size_t max_bytes = std::size_t{128} << 20;  // longer received messages are dropped
 };
 
 // Largest received message without an image: commands, poses, camera calibrations, motion, transforms.
-inline constexpr std::size_t kMostBytesWithoutImage = std::size_t{256} << 10;
+inline constexpr std::size_t kMaxBytesWithoutImage = std::size_t{256} << 10;
 
 // 16-byte GUID of DDS.
 using EntityId = std::array<std::uint8_t, 16>;
@@ -58,14 +58,14 @@ class Publisher {
   int subscribers() const;
   bool has_subscribers() const { return subscribers() > 0; }
   EntityId id() const;
-  int left_out() const { return left_out_; }  // dropped messages
+  int dropped() const { return dropped_; }  // dropped messages
 
  private:
   friend class Participant;
   const ddsi_sertype* type_ = nullptr;  // constant after construction; owned by the topic
   DdsEntity topic_;
   DdsEntity writer_;
-  int left_out_ = 0;
+  int dropped_ = 0;
 };
 
 // Received message. Its bytes stay valid for its lifetime.

@@ -59,7 +59,7 @@ class TwoParticipants : public testing::Test {
 TEST_F(TwoParticipants, DropMessagesAboveTheSizeLimitOfTheirTopic) {
   Publisher bounded = sender_.publish("/bounded", kText, {});
   Publisher unbounded = sender_.publish("/unbounded", kText, {});
-  Subscriber bounded_in = receiver_.subscribe("/bounded", kText, {.most_bytes = 1000});
+  Subscriber bounded_in = receiver_.subscribe("/bounded", kText, {.max_bytes = 1000});
   Subscriber unbounded_in = receiver_.subscribe("/unbounded", kText, {});
   ASSERT_TRUE(becomes_subscribed(bounded, receiver_));
   ASSERT_TRUE(becomes_subscribed(unbounded, receiver_));
@@ -87,7 +87,7 @@ TEST_F(TwoParticipants, ExchangeMessagesOfAnySizeUnchanged) {
     EXPECT_LT(bytes.size(), size + 4) << "DDS fills the last four bytes up";
     EXPECT_TRUE(std::ranges::equal(bytes.first(size), message_of(size))) << size;
   }
-  EXPECT_EQ(publisher.left_out(), 0);
+  EXPECT_EQ(publisher.dropped(), 0);
 }
 
 TEST_F(TwoParticipants, SendLatchedMessagesToLateReaders) {

@@ -90,7 +90,7 @@ void GraphAnnouncement::add(const Subscriber& subscriber) {
   node_.readers.push_back(subscriber.id());
 }
 
-void GraphAnnouncement::tell() {
+void GraphAnnouncement::publish() {
   publisher_.publish(graph_message(participant_, node_, distribution_));
 }
 

@@ -28,7 +28,7 @@ class GraphAnnouncement {
   // Adds endpoints made later.
   void add(const Publisher& publisher);
   void add(const Subscriber& subscriber);
-  void tell();
+  void publish();
 
  private:
   EntityId participant_;          // constant after construction

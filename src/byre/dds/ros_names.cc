@@ -62,7 +62,7 @@ std::string fault_in_name(std::string_view name) {
   return is_word_begin ? "ends with a slash" : "";
 }
 
-std::string resolved(std::string_view topic, std::string_view name_space) {
+std::string resolve_name(std::string_view topic, std::string_view name_space) {
   if (topic.starts_with('/')) return std::string(topic);
   return std::string(name_space) + (name_space.ends_with('/') ? "" : "/") + std::string(topic);
 }

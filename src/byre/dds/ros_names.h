@@ -23,6 +23,6 @@ std::string ros_type_name(std::string_view dds_type);    // inverse; "" for type
 std::string fault_in_name(std::string_view name);
 
 // Full topic name: relative topics are within the namespace.
-std::string resolved(std::string_view topic, std::string_view name_space);
+std::string resolve_name(std::string_view topic, std::string_view name_space);
 
 }  // namespace byre

@@ -19,9 +19,9 @@ TEST(RosNames, AreConvertedToDdsNames) {
 }
 
 TEST(RosNames, AreResolvedInTheNamespaceOfTheNode) {
-  EXPECT_EQ(resolved("odometry", "/"), "/odometry");
-  EXPECT_EQ(resolved("odometry", "/barn/robot_1"), "/barn/robot_1/odometry");
-  EXPECT_EQ(resolved("/tf", "/barn"), "/tf");
+  EXPECT_EQ(resolve_name("odometry", "/"), "/odometry");
+  EXPECT_EQ(resolve_name("odometry", "/barn/robot_1"), "/barn/robot_1/odometry");
+  EXPECT_EQ(resolve_name("/tf", "/barn"), "/tf");
 }
 
 TEST(RosNames, AreValidated) {

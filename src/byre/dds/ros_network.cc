@@ -13,7 +13,7 @@
 namespace byre {
 namespace {
 
-constexpr int kMostDomain = 232;  // largest domain with valid ports
+constexpr int kMaxDomain = 232;  // largest domain with valid ports
 
 int read_domain(const Environment& environment) {
   const std::string text = environment("ROS_DOMAIN_ID").value_or("");
@@ -21,7 +21,7 @@ int read_domain(const Environment& environment) {
   int domain = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
   const bool is_number = error == std::errc{} && end == text.data() + text.size();
-  if (!is_number || domain < 0 || domain > kMostDomain) {
+  if (!is_number || domain < 0 || domain > kMaxDomain) {
     throw InputError("ROS_DOMAIN_ID", "is '" + text + "', which is not a domain",
                      "set a number from 0 to 232, or unset it");
   }
@@ -117,7 +117,7 @@ RosNetwork read_ros_network(const Environment& environment) {
   network.range = read_range(environment);
   if (network.range != DiscoveryRange::off) network.peers = read_peers(environment);
   network.distribution = read_distribution(environment);
-  network.has_cyclone = environment("RMW_IMPLEMENTATION") == "rmw_cyclonedds_cpp";
+  network.uses_cyclone = environment("RMW_IMPLEMENTATION") == "rmw_cyclonedds_cpp";
   return network;
 }
 

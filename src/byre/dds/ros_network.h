@@ -27,7 +27,7 @@ struct RosNetwork {
   DiscoveryRange range = DiscoveryRange::subnet;
   std::vector<std::string> peers{};  // addresses of further computers for discovery
   RosDistribution distribution = RosDistribution::jazzy;
-  bool has_cyclone = false;  // whether RMW_IMPLEMENTATION is Cyclone DDS
+  bool uses_cyclone = false;  // whether RMW_IMPLEMENTATION is Cyclone DDS
 };
 
 // Value of an environment variable; empty if unset.

@@ -28,7 +28,7 @@ TEST(RosNetwork, DefaultsToTheSubnetInDomainZero) {
   EXPECT_EQ(network.range, DiscoveryRange::subnet);
   EXPECT_THAT(network.peers, IsEmpty());
   EXPECT_EQ(network.distribution, RosDistribution::jazzy);
-  EXPECT_FALSE(network.has_cyclone);
+  EXPECT_FALSE(network.uses_cyclone);
   EXPECT_THAT(cyclone_settings(network, ""), AllOf(Not(HasSubstr("Discovery")), Not(HasSubstr("Multicast"))));
 }
 
@@ -42,7 +42,7 @@ TEST(RosNetwork, IsReadFromRosVariables) {
   EXPECT_EQ(network.range, DiscoveryRange::localhost);
   EXPECT_THAT(network.peers, ElementsAre("10.0.0.7", "barn.local"));
   EXPECT_EQ(network.distribution, RosDistribution::humble);
-  EXPECT_TRUE(network.has_cyclone);
+  EXPECT_TRUE(network.uses_cyclone);
   EXPECT_THAT(cyclone_settings(network, ""),
               AllOf(HasSubstr("<AllowMulticast>false</AllowMulticast>"), HasSubstr("address=\"localhost\""),
                     HasSubstr("address=\"10.0.0.7\""), HasSubstr("address=\"127.0.0.1\"")));

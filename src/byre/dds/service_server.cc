@@ -22,7 +22,7 @@ ServiceServer::ServiceServer(Participant& participant, GraphAnnouncement& graph,
                              const std::string& type) {
   const std::string note = service_note(participant.id(), service);
   requests_ = participant.subscribe(dds_request_name(service), {type + "_Request", ""},
-                                    {.most_bytes = kMostBytesWithoutImage}, note);
+                                    {.max_bytes = kMaxBytesWithoutImage}, note);
   replies_ = participant.publish(dds_reply_name(service), {type + "_Response", ""}, {}, note);
   graph.add(requests_);
   graph.add(replies_);

@@ -2,7 +2,7 @@
 
 #include "byre/archive/register_map.h"
 #include "byre/assessment/mission_errors.h"
-#include "byre/benchmark/judge.h"
+#include "byre/benchmark/evaluate_run.h"
 #include "byre/dataset/trajectory_input.h"
 #include "byre/demo/painter.h"
 #include "byre/demo/table.h"
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr int kStages = 6;
 
 // Result of the first visit.
-struct KnownBarn {
+struct FirstVisit {
   StoredMap stored;  // registered on the plan
   FloorPlan plan;
   Trajectory path;
@@ -85,8 +85,8 @@ std::vector<DemoMoment> moments_of(const MapRun& run, const std::vector<PoseErro
   return moments;
 }
 
-DemoArm judged_arm(Arm arm, const MapRun& run, const MapAlignment& alignment, const Trajectory& truth) {
-  DemoArm result{.arm = arm, .measures = judge(run, {truth, alignment}), .close_share = 0.0, .moments = {}};
+DemoArm evaluate_arm(Arm arm, const MapRun& run, const MapAlignment& alignment, const Trajectory& truth) {
+  DemoArm result{.arm = arm, .measures = evaluate_run(run, {truth, alignment}), .close_share = 0.0, .moments = {}};
   const std::vector<PoseError> errors = errors_in_map(run.causal, truth, alignment);
   const auto close =
       std::ranges::count_if(errors, [](const PoseError& error) { return error.position() <= kCloseMetres; });
@@ -141,7 +141,7 @@ class DemoRunner {
     if (run.causal.empty()) throw std::runtime_error("no frame of the first visit got a pose");
     write_trajectories(run, "first_visit");
     findings_.map_frames = static_cast<int>(run.frames.size());
-    findings_.map_ate = judge(run, {load_truth(visit(1)), {}}).final_poses.ate.value_or(0.0);
+    findings_.map_ate = evaluate_run(run, {load_truth(visit(1)), {}}).final_poses.ate.value_or(0.0);
     barn_.path = run.final;
     barn_.stored.recordings = {describe_source(visit(1), *recording, run.calibration)};
     barn_.stored.map = std::move(run.map);
@@ -153,7 +153,7 @@ class DemoRunner {
     barn_.plan = read_floor_plan(folder / "plan.yaml");
     const Registering registering = register_map(barn_.stored, map_file(), barn_.plan, folder / "picks.csv", {});
     barn_.stored.plan = registering.fit.registration;
-    save_for_use(barn_.stored, vocabulary_, "simulated cowshed", map_file());
+    save_for_missions(barn_.stored, vocabulary_, "simulated cowshed", map_file());
     findings_.map_keyframes = barn_.stored.map.keyframe_count();
     findings_.map_points = barn_.stored.map.point_count();
     findings_.picks = static_cast<int>(registering.correspondences.size());
@@ -165,13 +165,13 @@ class DemoRunner {
     const Trajectory truth = load_truth(visit(2));
     DemoPainter painter(recording->calibration());
     MapRunHooks hooks;
-    if (arm == Arm::hybrid) hooks.look = [&painter](const RunView& view) { painter.look(view); };
+    if (arm == Arm::hybrid) hooks.on_frame = [&painter](const RunView& view) { painter.add(view); };
     const MapRun run = hooks_.run(*recording, run_options(arm), hooks);
     if (hooks_.should_stop()) return;
     write_trajectories(run, std::string(name_of(arm)));
     const MapAlignment alignment =
         arm == Arm::no_map ? alignment_at_start(run.causal, truth) : MapAlignment{barn_.stored.plan->plan_from_map, 0};
-    findings_.arms.push_back(judged_arm(arm, run, alignment, truth));
+    findings_.arms.push_back(evaluate_arm(arm, run, alignment, truth));
     if (arm != Arm::hybrid) return;
     findings_.off_the_map = spans_off_the_map(truth);
     draw(painter);
@@ -203,7 +203,7 @@ class DemoRunner {
   const Vocabulary vocabulary_;
 
   int stage_ = 0;
-  KnownBarn barn_;  // set once the first visit is mapped
+  FirstVisit barn_;  // set once the first visit is mapped
   DemoFindings findings_;
 };
 

@@ -132,8 +132,8 @@ std::string header(const DemoFindings& findings) {
       centimetres(measures.causal_poses.map_error) + ".</p>\n<dl class=\"key\">\n";
   html += key_figure(percent(hybrid->close_share), "of all frames within 10 cm of the truth, as published");
   html += key_figure(percent(measures.behaviour.trusted_share), "reported as trusted");
-  if (measures.behaviour.trusted_wrong) {
-    html += key_figure(fmt::format("{:.0f}", *measures.behaviour.trusted_wrong),
+  if (measures.behaviour.wrongly_trusted) {
+    html += key_figure(fmt::format("{:.0f}", *measures.behaviour.wrongly_trusted),
                        "frames trusted with an error above 20 cm");
   }
   if (measures.cost.frame_ms_mean) {

@@ -9,13 +9,13 @@
 
 namespace byre {
 
-void DemoPainter::look(const RunView& run) {
+void DemoPainter::add(const RunView& run) {
   const FrameReport& report = *run.frame.report;
   if (!first_) first_ = report.time;
   online_ = scene_of(run.session.map().online());
   if (!report.map_from_body) return;
-  way_.map_from_body.push_back({report.time, *report.map_from_body});
-  way_.verdicts.push_back(report.health.verdict);
+  path_.map_from_body.push_back({report.time, *report.map_from_body});
+  path_.verdicts.push_back(report.health.verdict);
   const int points = std::min(report.health.offline_inliers, report.health.online_inliers);
   if (points <= best_points_) return;
   best_points_ = points;
@@ -30,7 +30,7 @@ std::optional<double> DemoPainter::camera_s() const {
 std::string DemoPainter::plan_picture(PlanScene background) const {
   std::ranges::copy(online_.points, std::back_inserter(background.map.points));
   std::ranges::copy(online_.keyframes, std::back_inserter(background.map.keyframes));
-  background.paths.push_back(way_);
+  background.paths.push_back(path_);
   background.paths.back().name = "second visit, hybrid";
   if (best_) background.camera = plan_camera(*best_->report.map_from_body, view_.rig());
   return to_svg(byre::plan_picture(background));

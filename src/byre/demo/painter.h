@@ -15,7 +15,7 @@ class DemoPainter {
  public:
   explicit DemoPainter(const Calibration& calibration) : view_(calibration) {}
 
-  void look(const RunView& run);
+  void add(const RunView& run);
 
   std::optional<double> camera_s() const;  // from the first frame; empty before the first pose
 
@@ -26,7 +26,7 @@ class DemoPainter {
  private:
   FrameView view_;
   std::optional<Timestamp> first_;
-  PlanPath way_;     // published poses with verdicts
+  PlanPath path_;    // published poses with verdicts
   MapScene online_;  // map after the last frame
   std::optional<FrameScene> best_;
   int best_points_ = -1;  // count of the rarer kind of points, offline or online, in best_; -1: none yet

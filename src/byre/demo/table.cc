@@ -61,7 +61,7 @@ std::function<Figure(const DemoArm&)> on_the_plan(Figure BehaviourMeasures::*fig
 }
 
 std::vector<RowKind> row_kinds() {
-  const auto wrong = on_the_plan(&BehaviourMeasures::trusted_wrong);
+  const auto wrong = on_the_plan(&BehaviourMeasures::wrongly_trusted);
   return {share_row("Frames with a position, %", [](const DemoArm& arm) { return arm.measures.causal_poses.coverage; }),
           share_row("Frames with a position within 10 cm of the truth, %",
                     [](const DemoArm& arm) { return Figure(arm.close_share); }),

@@ -51,7 +51,7 @@ TEST_F(DemoTable, MarksTheSmallestErrorAndEqualTexts) {
 }
 
 TEST_F(DemoTable, ShowsADashForAMissingFigure) {
-  arm(Arm::hybrid).measures.behaviour.trusted_wrong = 0.0;
+  arm(Arm::hybrid).measures.behaviour.wrongly_trusted = 0.0;
   const DemoRow wrong = row("Frames trusted with");
   EXPECT_EQ(wrong.cells[1].text, "-");
   EXPECT_FALSE(wrong.cells[1].is_best);

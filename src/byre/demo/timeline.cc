@@ -22,8 +22,8 @@ constexpr double kBandsTop = kTitle, kPointsTop = 116.0, kErrorsTop = 306.0;
 constexpr double kPointsHeight = 150.0, kErrorsHeight = 190.0;
 constexpr double kBottom = kErrorsTop + kErrorsHeight;
 constexpr double kHeight = kBottom + 44.0;
-constexpr double kLeastError = 1e-3, kMostError = 30.0;  // range of the error axis, metres
-constexpr double kLongestGap_s = 0.5;                    // longest time between frames of a line without a gap
+constexpr double kMinError = 1e-3, kMaxError = 30.0;  // range of the error axis, metres
+constexpr double kLongestGap_s = 0.5;                 // longest time between frames of a line without a gap
 
 struct TimeAxis {
   double duration_s = 1.0;
@@ -137,18 +137,18 @@ std::string points_panel(const DemoFindings& findings, const TimeAxis& axis) {
 }
 
 std::string errors_panel(const DemoFindings& findings, const TimeAxis& axis) {
-  const ValueAxis values{kErrorsTop, kErrorsHeight, std::log10(kLeastError), std::log10(kMostError)};
+  const ValueAxis values{kErrorsTop, kErrorsHeight, std::log10(kMinError), std::log10(kMaxError)};
   std::string svg = text_at(kLeft, kErrorsTop - 12.0, "Error of published positions", "title");
   for (const auto& [metres, label] :
        {std::pair(1e-3, "1 mm"), {1e-2, "1 cm"}, {1e-1, "10 cm"}, {1.0, "1 m"}, {10.0, "10 m"}}) {
     svg += value_grid(values, std::log10(metres), label);
   }
   const auto error = [](const DemoMoment& moment) {
-    return moment.error ? Figure(std::log10(std::max(*moment.error, kLeastError))) : Figure();
+    return moment.error ? Figure(std::log10(std::max(*moment.error, kMinError))) : Figure();
   };
   const auto sigma = [](const DemoMoment& moment) {
     const bool is_known = moment.has_pose && moment.position_sigma > 0.0;
-    return is_known ? Figure(std::log10(std::max(moment.position_sigma, kLeastError))) : Figure();
+    return is_known ? Figure(std::log10(std::max(moment.position_sigma, kMinError))) : Figure();
   };
   for (const DemoArm& arm : findings.arms) svg += line_of(arm.moments, error, values, axis, name_of(arm.arm));
   const DemoArm* const hybrid = find_arm(findings, Arm::hybrid);

@@ -27,7 +27,7 @@ double true_path(const std::vector<PosePair>& pairs) {
 
 }  // namespace
 
-bool is_nearly_a_line(const EvaluationReport& report) {
+bool is_nearly_straight(const EvaluationReport& report) {
   constexpr double kThinnest = 0.01;     // share of the length; less is unevenness of a floor or of a hand-held path
   constexpr double kErrorsAcross = 3.0;  // least width that determines the rotation about the line, in position errors
   const double width = report.true_spread[1];

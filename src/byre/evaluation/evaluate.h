@@ -42,7 +42,7 @@ struct EvaluationReport {
 
 // Whether the true path is so nearly a line that the rotation about it is undetermined: its width is below a few
 // position errors or a small share of its length.
-bool is_nearly_a_line(const EvaluationReport& report);
+bool is_nearly_straight(const EvaluationReport& report);
 
 // Empty if no estimated pose has truth at its time.
 std::optional<EvaluationReport> evaluate(const Trajectory& estimate, const Trajectory& truth,

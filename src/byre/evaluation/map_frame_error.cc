@@ -81,7 +81,7 @@ class MapDeformation {
 
 // A straight path. Its positions determine the rotation about it only by their noise.
 struct StraightPath {
-  Eigen::Vector3d true_middle;
+  Eigen::Vector3d true_centroid;
   Eigen::Vector3d middle;     // in the map
   Eigen::Vector3d direction;  // in the truth
 };
@@ -91,12 +91,12 @@ std::optional<StraightPath> straight_path(const std::vector<PosePair>& pairs) {
   const double share = 1.0 / static_cast<double>(pairs.size());
   StraightPath path{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (const PosePair& pair : pairs) {
-    path.true_middle += share * pair.true_world_from_body.translation;
+    path.true_centroid += share * pair.true_world_from_body.translation;
     path.middle += share * pair.estimated_world_from_body.translation;
   }
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const PosePair& pair : pairs) {
-    const Eigen::Vector3d from_middle = pair.true_world_from_body.translation - path.true_middle;
+    const Eigen::Vector3d from_middle = pair.true_world_from_body.translation - path.true_centroid;
     scatter += share * from_middle * from_middle.transpose();
   }
   const auto [left, spread, right] = singular_values(scatter);
@@ -109,21 +109,21 @@ std::optional<StraightPath> straight_path(const std::vector<PosePair>& pairs) {
 std::optional<Similarity> fit_to_straight_path(const StraightPath& path, const std::vector<PosePair>& pairs,
                                                Scale scale) {
   Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();  // direction in the map, times the squared true length
-  double true_way = 0.0;                          // squared true length
+  Eigen::Vector3d scaled_direction = Eigen::Vector3d::Zero();  // direction in the map, times the squared true length
+  double squared_length = 0.0;                                 // squared true length
   for (const PosePair& pair : pairs) {
     turns +=
         (pair.true_world_from_body.rotation * pair.estimated_world_from_body.rotation.conjugate()).toRotationMatrix();
-    const double along = path.direction.dot(pair.true_world_from_body.translation - path.true_middle);
-    way += along * (pair.estimated_world_from_body.translation - path.middle);
-    true_way += along * along;
+    const double along = path.direction.dot(pair.true_world_from_body.translation - path.true_centroid);
+    scaled_direction += along * (pair.estimated_world_from_body.translation - path.middle);
+    squared_length += along * along;
   }
-  if (!(way.norm() > 0.0)) return std::nullopt;
+  if (!(scaled_direction.norm() > 0.0)) return std::nullopt;
   const Eigen::Quaterniond by_orientations = nearest_rotation(turns);
   const Eigen::Quaterniond rotation =
-      rotation_between(by_orientations * way.normalized(), path.direction) * by_orientations;
-  const double factor = scale == Scale::free ? true_way / way.norm() : 1.0;
-  return Similarity{factor, {rotation.normalized(), path.true_middle - rotation * (factor * path.middle)}};
+      rotation_between(by_orientations * scaled_direction.normalized(), path.direction) * by_orientations;
+  const double factor = scale == Scale::free ? squared_length / scaled_direction.norm() : 1.0;
+  return Similarity{factor, {rotation.normalized(), path.true_centroid - rotation * (factor * path.middle)}};
 }
 
 }  // namespace
@@ -162,8 +162,8 @@ std::vector<PoseError> errors_of_map(const MapAlignment& alignment) {
   return errors;
 }
 
-std::vector<PoseError> errors_beside_map(const Trajectory& world_from_body, const Trajectory& truth,
-                                         const MapAlignment& alignment) {
+std::vector<PoseError> errors_relative_to_map(const Trajectory& world_from_body, const Trajectory& truth,
+                                              const MapAlignment& alignment) {
   const MapDeformation deformation(alignment);
   std::vector<PoseError> errors;
   for (const PosePair& pair : associate(world_from_body, truth, {})) {

@@ -36,8 +36,8 @@ std::vector<PoseError> errors_of_map(const MapAlignment& alignment);
 
 // Errors with the map's position error at its nearest pose subtracted: localisation accuracy relative to the map. Only
 // for poses within one metre (or unit of the truth) of a map pose.
-std::vector<PoseError> errors_beside_map(const Trajectory& world_from_body, const Trajectory& truth,
-                                         const MapAlignment& alignment);
+std::vector<PoseError> errors_relative_to_map(const Trajectory& world_from_body, const Trajectory& truth,
+                                              const MapAlignment& alignment);
 
 // Error at exactly this time; nullptr without truth. Precondition: errors are in order of time.
 const PoseError* find_error(const std::vector<PoseError>& errors, Timestamp time);

@@ -87,7 +87,7 @@ TEST(ErrorsBesideMap, ExcludeTheErrorOfTheMap) {
   EXPECT_GT(position_statistics(errors_in_map(mission, path, alignment)).max, 0.5);
   EXPECT_NEAR(position_statistics(errors_of_map(alignment)).rmse,
               position_statistics(errors_in_map(map_path, path, alignment)).rmse, 1e-9);
-  const std::vector<PoseError> errors = errors_beside_map(mission, path, alignment);
+  const std::vector<PoseError> errors = errors_relative_to_map(mission, path, alignment);
   ASSERT_EQ(errors.size(), mission.size());
   EXPECT_NEAR(position_statistics(errors).max, 0.03, 1e-9);
 }
@@ -95,8 +95,8 @@ TEST(ErrorsBesideMap, ExcludeTheErrorOfTheMap) {
 TEST(ErrorsBesideMap, AreLimitedToPlacesOfTheMap) {
   const MapAlignment alignment = align_to_truth(poses_of_map(4), Scale::fixed, true_path());
   const Trajectory elsewhere = {{from_seconds(0.0), {Eigen::Quaterniond::Identity(), {50.0, 0.0, 0.0}}}};
-  EXPECT_EQ(errors_beside_map(elsewhere, elsewhere, alignment).size(), 0u);
-  EXPECT_EQ(errors_beside_map(true_path(), true_path(), {}).size(), 0u) << "the error of the map is unknown";
+  EXPECT_EQ(errors_relative_to_map(elsewhere, elsewhere, alignment).size(), 0u);
+  EXPECT_EQ(errors_relative_to_map(true_path(), true_path(), {}).size(), 0u) << "the error of the map is unknown";
 }
 
 }  // namespace

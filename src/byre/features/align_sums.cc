@@ -104,7 +104,7 @@ float centre_10(float* values) {
   return dot<padded(100)>(values, values);
 }
 
-void warp(const std::uint8_t* pixels, const WarpedPlaces& places, float* values) {
+void warp(const std::uint8_t* pixels, const WarpGrid& places, float* values) {
   constexpr int kSide = 16;  // pixels
   const D d;
   const hn::Rebind<std::int32_t, D> d32;
@@ -199,7 +199,7 @@ float centre_template(float* values, int size) {
   return size == 8 ? HWY_DYNAMIC_DISPATCH(centre_8)(values) : HWY_DYNAMIC_DISPATCH(centre_10)(values);
 }
 
-void warp_square(const std::uint8_t* pixels, const WarpedPlaces& places, float* values) {
+void warp_square(const std::uint8_t* pixels, const WarpGrid& places, float* values) {
   HWY_DYNAMIC_DISPATCH(warp)(pixels, places, values);
 }
 

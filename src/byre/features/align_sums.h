@@ -30,7 +30,7 @@ AlignSums align_sums(const float* centred_template, float sum_of_squares, const 
 float centre_template(float* values, int size);
 
 // A position in an image, and the steps to the next position in a row and in a column.
-struct WarpedPlaces {
+struct WarpGrid {
   float x = 0.0f, y = 0.0f;
   float x_along_row = 0.0f, y_along_row = 0.0f;
   float x_along_column = 0.0f, y_along_column = 0.0f;
@@ -38,7 +38,7 @@ struct WarpedPlaces {
 
 // Fills 8 x 8 values of an image of 16 x 16 pixels, interpolated at the positions. Bit-identical on all processors.
 // Precondition: each position has a pixel to the right and below, or is on a pixel.
-void warp_square(const std::uint8_t* pixels, const WarpedPlaces& places, float* values);
+void warp_square(const std::uint8_t* pixels, const WarpGrid& places, float* values);
 
 // Fills size x size values, interpolated at the offset (right, below) in pixels from each pixel, starting at the first.
 // Preconditions: the size is 8 to 16; one more row and column are readable.

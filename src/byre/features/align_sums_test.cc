@@ -128,9 +128,9 @@ TEST(WarpedSquare, InterpolatesBetweenPixels) {
   constexpr int kSide = 16;
   std::vector<std::uint8_t> pixels(kSide * kSide);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * i % 251);
-  for (const WarpedPlaces& places :
-       {WarpedPlaces{3.25f, 4.7f, 1.0f, 0.0f, 0.0f, 1.0f}, WarpedPlaces{4.0f, 6.5f, 1.1f, -0.3f, 0.25f, 0.9f},
-        WarpedPlaces{0.01f, 14.98f, 2.13f, 0.0f, 0.0f, -2.13f}}) {
+  for (const WarpGrid& places :
+       {WarpGrid{3.25f, 4.7f, 1.0f, 0.0f, 0.0f, 1.0f}, WarpGrid{4.0f, 6.5f, 1.1f, -0.3f, 0.25f, 0.9f},
+        WarpGrid{0.01f, 14.98f, 2.13f, 0.0f, 0.0f, -2.13f}}) {
     std::vector<float> values(64), again(64);
     warp_square(pixels.data(), places, values.data());
     for (int row = 0; row < 8; ++row) {

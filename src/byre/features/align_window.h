@@ -77,7 +77,7 @@ template <int Size>
 std::optional<Alignment> align_window(const CentredTemplate<Size>& reference, const GreyWindow& window,
                                       const Eigen::Vector2f& start, const AlignOptions& options) {
   constexpr float kMinSquares = 4.0f * Size * Size;  // a standard deviation of two grey values
-  constexpr float kSettled = 0.02f;                  // octave pixels
+  constexpr float kConverged = 0.02f;                // octave pixels
   if (reference.sum_of_squares < kMinSquares) return std::nullopt;
   Eigen::Vector2f pixel = start;
   std::array<float, (Size + 2) * (Size + 2)> around;
@@ -89,7 +89,7 @@ std::optional<Alignment> align_window(const CentredTemplate<Size>& reference, co
     const Eigen::Vector2f change = -step.hessian.inverse() * step.gradient;
     pixel += change;
     if (!((pixel - start).cwiseAbs().maxCoeff() <= options.max_shift)) return std::nullopt;
-    if (change.squaredNorm() < kSettled * kSettled) {
+    if (change.squaredNorm() < kConverged * kConverged) {
       if (step.similarity < options.min_similarity) return std::nullopt;
       return Alignment{pixel, std::max(options.min_sigma, position_sigma<Size>(step)), step.similarity};
     }

@@ -18,7 +18,7 @@ std::vector<std::uint8_t> noise(std::uint32_t seed) {
   return image;
 }
 
-int differences_one_by_one(const std::uint8_t* block, const std::uint8_t* candidate) {
+int reference_differences(const std::uint8_t* block, const std::uint8_t* candidate) {
   int sum = 0;
   for (int row = 0; row < kBlockRows; ++row) {
     for (int column = 0; column < kBlockColumns; ++column) {
@@ -33,7 +33,7 @@ TEST(BlockDifferences, MatchEachCandidate) {
   const std::vector<std::uint8_t> second = noise(2);
   const auto sums = block_differences(first.data() + 5, kStride, second.data() + 3, kStride);
   for (int i = 0; i < kBlockCandidates; ++i) {
-    EXPECT_EQ(sums[static_cast<std::size_t>(i)], differences_one_by_one(first.data() + 5, second.data() + 3 + i)) << i;
+    EXPECT_EQ(sums[static_cast<std::size_t>(i)], reference_differences(first.data() + 5, second.data() + 3 + i)) << i;
   }
 }
 

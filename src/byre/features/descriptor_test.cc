@@ -79,7 +79,7 @@ TEST(Orientation, PointsTowardsTheBrightSide) {
 }
 
 // Reference implementation without vectors.
-Descriptor described_plainly(const std::uint8_t* blurred_centre, std::ptrdiff_t stride, float angle) {
+Descriptor reference_descriptor(const std::uint8_t* blurred_centre, std::ptrdiff_t stride, float angle) {
   const float cosine = std::cos(angle), sine = std::sin(angle);
   const auto grey = [&](std::size_t point) {
     const auto x = static_cast<float>(kBriefPattern[2 * point]), y = static_cast<float>(kBriefPattern[2 * point + 1]);
@@ -98,7 +98,7 @@ TEST(Describe, MatchesTheReferenceBitForBit) {
   const cv::Mat image = white_noise({61, 47}, 3);
   for (float angle = -3.2f; angle < 3.2f; angle += 0.01f) {
     EXPECT_EQ(describe(at(image, {30, 23}), stride(image), angle),
-              described_plainly(at(image, {30, 23}), stride(image), angle))
+              reference_descriptor(at(image, {30, 23}), stride(image), angle))
         << angle;
   }
 }

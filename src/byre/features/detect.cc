@@ -53,7 +53,7 @@ Key key_among_equal_ranks(Key key, std::size_t square) {
 }
 
 // Thread-local working memory of detections.
-struct Memory {
+struct Scratch {
   std::vector<std::uint8_t> strengths;
   std::vector<std::uint8_t> cell;
   std::vector<Corner> corners;
@@ -67,8 +67,8 @@ struct Memory {
   std::vector<Key> last;           // corners of the last rank used
 };
 
-Memory& memory_of_thread() {
-  thread_local Memory memory;
+Scratch& thread_scratch() {
+  thread_local Scratch memory;
   return memory;
 }
 
@@ -94,7 +94,7 @@ void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, 
 }
 
 // Searches the cells with less than their share of corners again, at the lower threshold.
-void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options, Memory& memory) {
+void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options, Scratch& memory) {
   std::vector<Corner>& corners = memory.corners;
   const CellGrid grid{searched_area(strengths, options.border), options.cell_size};
   std::vector<int>& cell_of_column = memory.cell_of_column;
@@ -120,7 +120,7 @@ void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOp
 }
 
 // Refills `ranked`, and the start of each square in it.
-void rank_in_squares(const cv::Size& size, int max_corners, Memory& memory) {
+void rank_in_squares(const cv::Size& size, int max_corners, Scratch& memory) {
   const double area = static_cast<double>(size.width) * size.height;
   const double side = std::max(1.0, std::sqrt(area / std::max(1, max_corners)));
   const int columns = static_cast<int>(size.width / side) + 1;
@@ -148,12 +148,12 @@ void rank_in_squares(const cv::Size& size, int max_corners, Memory& memory) {
 }
 
 // Number of corners that all squares contribute, and the end of the next rank's corners that are also used.
-struct Share {
+struct Selection {
   std::size_t of_all = 0;
   Key end_of_next = 0;  // see key_among_equal_ranks
 };
 
-Share share_of_squares(std::size_t wanted, Memory& memory) {
+Selection select_from_squares(std::size_t wanted, Scratch& memory) {
   std::vector<int>& of_rank = memory.of_rank;
   of_rank.clear();
   const std::vector<std::size_t>& begin = memory.begin;
@@ -162,7 +162,7 @@ Share share_of_squares(std::size_t wanted, Memory& memory) {
     if (count > of_rank.size()) of_rank.resize(count, 0);
     for (std::size_t rank = 0; rank < count; ++rank) ++of_rank[rank];
   }
-  Share share;
+  Selection share;
   for (; share.of_all < of_rank.size() && wanted >= static_cast<std::size_t>(of_rank[share.of_all]); ++share.of_all) {
     wanted -= static_cast<std::size_t>(of_rank[share.of_all]);
   }
@@ -185,7 +185,7 @@ void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& 
   corners.clear();
   const cv::Rect area = level.empty() ? cv::Rect() : searched_area(level, options.border);
   if (std::min(area.width, area.height) <= 0) return;
-  Memory& memory = memory_of_thread();
+  Scratch& memory = thread_scratch();
   cv::Mat strengths = scratch_image(memory.strengths, level.size());
   measure_fast_strengths(level, area, std::min(options.fast_threshold, options.min_fast_threshold), strengths);
   memory.corners.clear();
@@ -194,7 +194,7 @@ void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& 
 
   rank_in_squares(level.size(), max_corners, memory);
   const std::size_t wanted = std::min(memory.ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));
-  const Share share = share_of_squares(wanted, memory);
+  const Selection share = select_from_squares(wanted, memory);
   corners.reserve(wanted);
   for (std::size_t square = 0; square + 1 < memory.begin.size(); ++square) {
     const std::size_t end = memory.begin[square + 1];

@@ -2,7 +2,7 @@
 
 #include "byre/features/descriptor.h"
 #include "byre/features/detect.h"
-#include "byre/features/develop.h"
+#include "byre/features/enhance.h"
 #include "byre/features/gaussian_blur.h"
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
@@ -10,7 +10,7 @@
 #include "byre/image_condition.h"
 #include "byre/input/byte_stream.h"
 #include "byre/input_error.h"
-#include "byre/workers/shared_pool.h"
+#include "byre/workers/object_pool.h"
 #include "byre/workers/task_threads.h"
 
 #include <algorithm>
@@ -52,16 +52,16 @@ cv::Mat as_matrix(const Image& image, const Camera& camera) {
 
 // Adapts the exposure of the right image to the left one, because stereo matching compares grey values. Small
 // differences are left to the matching.
-cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, const ImageCondition& of_right) {
-  constexpr float kMinContrast = 1.0f;       // grey values: lower contrast has no signal to amplify
-  constexpr float kAlike = 1.25f;            // ratio of contrasts
-  constexpr float kMaxGain = 6.0f;           // a larger gain would amplify quantisation steps, which would match
-  constexpr float kAlikeBrightness = 25.0f;  // grey values
+cv::Mat match_exposure(const cv::Mat& right, const ImageCondition& of_left, const ImageCondition& of_right) {
+  constexpr float kMinContrast = 1.0f;         // grey values: lower contrast has no signal to amplify
+  constexpr float kSimilarContrast = 1.25f;    // ratio of contrasts
+  constexpr float kMaxGain = 6.0f;             // a larger gain would amplify quantisation steps, which would match
+  constexpr float kSimilarBrightness = 25.0f;  // grey values
   if (of_left.contrast < kMinContrast || of_right.contrast < kMinContrast) return right;
   const float ratio = of_left.contrast / of_right.contrast;
-  const bool is_alike =
-      ratio < kAlike && ratio > 1.0f / kAlike && std::abs(of_left.brightness - of_right.brightness) < kAlikeBrightness;
-  if (is_alike) return right;
+  const bool is_similar = ratio < kSimilarContrast && ratio > 1.0f / kSimilarContrast &&
+                          std::abs(of_left.brightness - of_right.brightness) < kSimilarBrightness;
+  if (is_similar) return right;
   const float gain = std::clamp(ratio, 1.0f / kMaxGain, kMaxGain);
   cv::Mat exposed;
   right.convertTo(exposed, CV_8U, gain, of_left.brightness - gain * of_right.brightness);
@@ -70,7 +70,7 @@ cv::Mat exposed_as_left(const cv::Mat& right, const ImageCondition& of_left, con
 
 // Stores the measured disparities in the keypoints.
 template <typename Measured>
-void take_over(std::span<const std::optional<Measured>> measured, std::span<Keypoint> keypoints) {
+void store_disparities(std::span<const std::optional<Measured>> measured, std::span<Keypoint> keypoints) {
   for (std::size_t i = 0; i < measured.size(); ++i) {
     if (!measured[i]) continue;
     keypoints[i].disparity = measured[i]->disparity;
@@ -79,7 +79,7 @@ void take_over(std::span<const std::optional<Measured>> measured, std::span<Keyp
 }
 
 // Number of features of each octave, proportional to its side length.
-std::array<int, kOctaves> share_out(int max_features) {
+std::array<int, kOctaves> octave_quotas(int max_features) {
   double sum = 0.0;
   for (const float scale : kScaleOfOctave) sum += 1.0 / scale;
   std::array<int, kOctaves> quota{};
@@ -118,21 +118,21 @@ struct Described {
   }
 };
 
-// Predicted condition of the developed image.
-ImageCondition condition_of_developed(const ImageCondition& of_original) {
-  return condition_after(development_for(of_original), of_original);
+// Predicted condition of the enhanced image.
+ImageCondition enhanced_condition(const ImageCondition& of_original) {
+  return condition_after_enhancement(choose_enhancement(of_original), of_original);
 }
 
 // An image prepared for feature detection.
-struct Developed {
+struct EnhancedImage {
   cv::Mat image;
   ImageCondition condition;
 
   void take(const cv::Mat& rectified, const ImageCondition& of_original) {
-    const Development development = development_for(of_original);
-    condition = condition_after(development, of_original);
-    if (development.changes_anything()) {
-      develop(development, rectified, fine_, own_);
+    const Enhancement enhancement = choose_enhancement(of_original);
+    condition = condition_after_enhancement(enhancement, of_original);
+    if (enhancement.is_active()) {
+      enhance(enhancement, rectified, fine_, own_);
       image = own_;
     } else {
       image = rectified;
@@ -140,7 +140,7 @@ struct Developed {
   }
 
  private:
-  cv::Mat fine_;  // working memory, see develop()
+  cv::Mat fine_;  // working memory, see enhance()
   cv::Mat own_;   // own memory, because the caller may own the rectified image
 };
 
@@ -157,15 +157,15 @@ struct Extractor::State {
   // Working memory, see rest().
   Pyramid left;
   Pyramid right;
-  Developed left_developed;
-  Developed right_developed;
+  EnhancedImage left_enhanced;
+  EnhancedImage right_enhanced;
   std::array<cv::Mat, kOctaves> blurred;
   std::array<std::vector<Corner>, kOctaves> corners_of_octave;
   std::array<Described, kOctaves> described;
   std::vector<Keypoint> keypoints;  // all octaves, the finest first; working memory as the next members
   std::vector<Descriptor> descriptors;
-  SharedPool<std::vector<Patch>> patches_of_frames;
-  SharedPool<Features> features_of_frames;
+  ObjectPool<std::vector<Patch>> patches_of_frames;
+  ObjectPool<Features> features_of_frames;
   std::vector<std::optional<StereoMatch>> stereo_matches;
   TaskThreads threads;
 
@@ -177,7 +177,7 @@ struct Extractor::State {
   void time_rows();
 };
 
-// Rectified and developed pyramids of both images, and the condition of the original images. The exposure of the right
+// Rectified and enhanced pyramids of both images, and the condition of the original images. The exposure of the right
 // image follows the left one, so it needs the conditions of both.
 void Extractor::State::prepare(const ImageFrame& images, bool stereo, Frame& frame) {
   const cv::Mat left_image = as_matrix(images.left, calibration.left);
@@ -188,14 +188,13 @@ void Extractor::State::prepare(const ImageFrame& images, bool stereo, Frame& fra
     if (i == 2) frame.right_condition = measure_condition(*images.right);
   });
   const auto prepare_left = [&] {
-    left_developed.take(rectifier.left(left_image), *frame.condition);
-    build_pyramid(left_developed.image, left);
+    left_enhanced.take(rectifier.left(left_image), *frame.condition);
+    build_pyramid(left_enhanced.image, left);
   };
   const auto prepare_right = [&] {
-    right_developed.take(rectifier.right(right_image), *frame.right_condition);
-    build_pyramid(
-        exposed_as_left(right_developed.image, condition_of_developed(*frame.condition), right_developed.condition),
-        right);
+    right_enhanced.take(rectifier.right(right_image), *frame.right_condition);
+    build_pyramid(match_exposure(right_enhanced.image, enhanced_condition(*frame.condition), right_enhanced.condition),
+                  right);
   };
   threads.run(stereo ? 2 : 1, [&](int i) { i == 0 ? prepare_left() : prepare_right(); });
 }
@@ -232,7 +231,7 @@ void Extractor::State::describe_octave(int octave, int quota) {
 
 // Describes all octaves. Returns the patches.
 std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all() {
-  const std::array<int, kOctaves> quota = share_out(options.max_features);
+  const std::array<int, kOctaves> quota = octave_quotas(options.max_features);
   threads.run(kOctaves, [&](int octave) { describe_octave(octave, quota[static_cast<std::size_t>(octave)]); });
   const std::shared_ptr<std::vector<Patch>>& patches = patches_of_frames.take();
   keypoints.clear();
@@ -258,7 +257,7 @@ void Extractor::State::match_right() {
     const std::span<Keypoint> some = all.subspan(first, std::min(kAtOnce, all.size() - first));
     const std::span matches = std::span(stereo_matches).subspan(first, some.size());
     match_stereo(left, right, rectifier.rig(), some, stereo_options, matches);
-    take_over<StereoMatch>(matches, some);
+    store_disparities<StereoMatch>(matches, some);
     for (std::size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) some[i].row_offset = matches[i]->row_offset;
     }
@@ -267,7 +266,7 @@ void Extractor::State::match_right() {
 
 void Extractor::State::read_depths(const DepthImage& image) {
   require_size(image.width, image.height, image.units.size(), calibration.depth->camera.value_or(calibration.left));
-  take_over<DepthReading>(depth->read(image, keypoints, options.depth), keypoints);
+  store_disparities<DepthReading>(depth->read(image, keypoints, options.depth), keypoints);
 }
 
 void Extractor::State::time_rows() {
@@ -302,8 +301,8 @@ const Rig& Extractor::rig() const {
 void Extractor::rest() {
   state_->left = {};
   state_->right = {};
-  state_->left_developed = {};
-  state_->right_developed = {};
+  state_->left_enhanced = {};
+  state_->right_enhanced = {};
   state_->blurred = {};
   state_->corners_of_octave = {};
   state_->described = {};
@@ -316,7 +315,7 @@ void Extractor::rest() {
 
 Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   const Clock::time_point start = Clock::now();
-  const TaskThreads::Shift shift(state_->threads);
+  const TaskThreads::SpinScope shift(state_->threads);
   const Calibration& calibration = state_->calibration;
   const bool stereo = calibration.right && images.right && used == ImagesUsed::all;
   Extraction extraction;

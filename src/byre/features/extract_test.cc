@@ -34,7 +34,7 @@ struct Wall {
   double depth = 2.0;               // metres
   double pixels_per_metre = 115.0;  // the texture's resolution
 
-  Image seen_by(const Camera& camera, const Pose& camera_from_left) const {
+  Image render_view(const Camera& camera, const Pose& camera_from_left) const {
     const Pose left_from_camera = inverse(camera_from_left);
     return to_image(render(camera.width, camera.height, [&](double u, double v) {
       const auto bearing = camera.bearing({u, v});
@@ -46,9 +46,9 @@ struct Wall {
     }));
   }
 
-  ImageFrame seen_by(const Calibration& calibration) const {
-    ImageFrame images{from_seconds(12.5), seen_by(calibration.left, Pose{}), std::nullopt};
-    if (calibration.right) images.right = seen_by(calibration.right->camera, calibration.right->right_from_left);
+  ImageFrame render_view(const Calibration& calibration) const {
+    ImageFrame images{from_seconds(12.5), render_view(calibration.left, Pose{}), std::nullopt};
+    if (calibration.right) images.right = render_view(calibration.right->camera, calibration.right->right_from_left);
     return images;
   }
 };
@@ -65,7 +65,7 @@ double share_with_disparity(const Features& features) {
 
 TEST(Extractor, ReturnsADescriptorAndAPatchPerKeypoint) {
   Extractor extractor(ideal_pair(), {});
-  const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
+  const Extraction extraction = extractor.extract(wall().render_view(ideal_pair()));
   const Features& features = *extraction.frame.features;
   EXPECT_EQ(extraction.frame.time, from_seconds(12.5));
   EXPECT_GE(features.size(), 500);
@@ -76,7 +76,7 @@ TEST(Extractor, ReturnsADescriptorAndAPatchPerKeypoint) {
 
 TEST(Extractor, ReturnsTheReadoutTimeOfKeypointRows) {
   Extractor extractor(ideal_pair(), {});
-  const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
+  const Extraction extraction = extractor.extract(wall().render_view(ideal_pair()));
   const auto height = static_cast<float>(ideal_pair().left.height);
   for (const Keypoint& keypoint : extraction.frame.features->keypoints()) {
     EXPECT_NEAR(keypoint.row_time, (keypoint.pixel.y() + 0.5f) / height - 0.5f, 1e-6f);
@@ -84,7 +84,7 @@ TEST(Extractor, ReturnsTheReadoutTimeOfKeypointRows) {
 }
 
 TEST(Extractor, MeasuresTheConditionOfTheLeftImage) {
-  ImageFrame images = wall().seen_by(ideal_pair());
+  ImageFrame images = wall().render_view(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   const std::optional<ImageCondition> seen = extractor.extract(images).frame.condition;
   ASSERT_TRUE(seen);
@@ -97,13 +97,13 @@ TEST(Extractor, MeasuresTheConditionOfTheLeftImage) {
 TEST(Extractor, FillsTheQuotaIfPossible) {
   for (const int wanted : {1, 100, 300}) {
     Extractor extractor(ideal_pair(), {wanted});
-    EXPECT_EQ(extractor.extract(wall().seen_by(ideal_pair())).frame.features->size(), wanted);
+    EXPECT_EQ(extractor.extract(wall().render_view(ideal_pair())).frame.features->size(), wanted);
   }
 }
 
 TEST(Extractor, UsesAllOctaves) {
   Extractor extractor(ideal_pair(), {});
-  const Extraction extraction = extractor.extract(wall().seen_by(ideal_pair()));
+  const Extraction extraction = extractor.extract(wall().render_view(ideal_pair()));
   std::array<int, kOctaves> count{};
   for (const Keypoint& keypoint : extraction.frame.features->keypoints()) ++count[keypoint.octave];
   EXPECT_GE(*std::min_element(count.begin(), count.end()), 20);
@@ -112,7 +112,7 @@ TEST(Extractor, UsesAllOctaves) {
 TEST(Extractor, MeasuresTheDisparityOfAWall) {
   Extractor extractor(ideal_pair(), {});
   const Wall seen = wall();
-  const auto features = extractor.extract(seen.seen_by(ideal_pair())).frame.features;
+  const auto features = extractor.extract(seen.render_view(ideal_pair())).frame.features;
   const double expected = kFocal * kBaseline / seen.depth;  // 12.65 pixels
   EXPECT_GE(share_with_disparity(*features), 0.9);
   for (const Keypoint& keypoint : features->keypoints()) {
@@ -143,7 +143,7 @@ TEST(Extractor, MeasuresInTheRigOfADistortedPair) {
   const Calibration calibration{left, StereoPartner{right, inverse(left_from_right)}, Pose{}};
   const Wall seen = wall();
   Extractor extractor(calibration, {});
-  const auto features = extractor.extract(seen.seen_by(calibration)).frame.features;
+  const auto features = extractor.extract(seen.render_view(calibration)).frame.features;
   EXPECT_GE(share_with_disparity(*features), 0.8);
   int on_wall = 0, measured = 0;
   for (const Keypoint& keypoint : features->keypoints()) {
@@ -158,9 +158,9 @@ TEST(Extractor, MeasuresInTheRigOfADistortedPair) {
 }
 
 TEST(Extractor, IsDeterministic) {
-  const ImageFrame images = wall().seen_by(ideal_pair());
+  const ImageFrame images = wall().render_view(ideal_pair());
   Extractor used(ideal_pair(), {});
-  used.extract(Wall{Texture(52)}.seen_by(ideal_pair()));  // leaves other images in the working memory
+  used.extract(Wall{Texture(52)}.render_view(ideal_pair()));  // leaves other images in the working memory
   Extractor fresh(ideal_pair(), {});
   const auto first = used.extract(images).frame.features;
   const auto second = fresh.extract(images).frame.features;
@@ -178,7 +178,7 @@ TEST(Extractor, IsDeterministic) {
 
 TEST(Extractor, IsDeterministicAfterAPause) {
   Extractor extractor(ideal_pair(), {});
-  const ImageFrame images = wall().seen_by(ideal_pair());
+  const ImageFrame images = wall().render_view(ideal_pair());
   const Extraction before = extractor.extract(images);
   extractor.rest();
   const Extraction after = extractor.extract(images);
@@ -187,7 +187,7 @@ TEST(Extractor, IsDeterministicAfterAPause) {
 }
 
 TEST(Extractor, CutsThePatchAroundEachKeypoint) {
-  const ImageFrame images = wall().seen_by(ideal_pair());
+  const ImageFrame images = wall().render_view(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   const auto features = extractor.extract(images).frame.features;
   for (int i = 0; i < features->size(); ++i) {
@@ -204,7 +204,7 @@ TEST(Extractor, CutsThePatchAroundEachKeypoint) {
 }
 
 TEST(Extractor, RefinesOnlyRequestedDisparities) {
-  const ImageFrame images = wall().seen_by(ideal_pair());
+  const ImageFrame images = wall().render_view(ideal_pair());
   const auto median_disparity_error = [&](Refinement refinement) {
     ExtractOptions options;
     options.refinement = refinement;
@@ -225,7 +225,7 @@ TEST(Extractor, RefinesOnlyRequestedDisparities) {
 }
 
 TEST(Extractor, ReturnsNoDisparitiesWithoutARightImage) {
-  ImageFrame images = wall().seen_by(ideal_pair());
+  ImageFrame images = wall().render_view(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   const auto with_right = extractor.extract(images).frame.features;
   images.right.reset();
@@ -236,7 +236,7 @@ TEST(Extractor, ReturnsNoDisparitiesWithoutARightImage) {
 }
 
 TEST(Extractor, SkipsTheRightImageOnRequest) {
-  const ImageFrame images = wall().seen_by(ideal_pair());
+  const ImageFrame images = wall().render_view(ideal_pair());
   Extractor extractor(ideal_pair(), {});
   ImageFrame left = images;
   left.right.reset();
@@ -249,7 +249,7 @@ TEST(Extractor, SkipsTheRightImageOnRequest) {
 
 TEST(Extractor, IgnoresTheRightImageOfASingleCamera) {
   Extractor extractor({ideal_camera(), std::nullopt, Pose{}}, {});
-  const auto features = extractor.extract(wall().seen_by(ideal_pair())).frame.features;
+  const auto features = extractor.extract(wall().render_view(ideal_pair())).frame.features;
   EXPECT_GE(features->size(), 500);
   EXPECT_EQ(share_with_disparity(*features), 0.0);
 }
@@ -264,7 +264,7 @@ DepthImage even_depth(double metres) {
 }
 
 TEST(Extractor, ConvertsDepthsToDisparities) {
-  ImageFrame images = wall().seen_by(with_registered_depth());
+  ImageFrame images = wall().render_view(with_registered_depth());
   images.depth = even_depth(2.0);
   Extractor extractor(with_registered_depth(), {});
   ASSERT_TRUE(extractor.rig().is_stereo());
@@ -280,13 +280,13 @@ TEST(Extractor, ConvertsDepthsToDisparities) {
 
 TEST(Extractor, ReturnsNoDisparitiesWithoutADepthImage) {
   Extractor extractor(with_registered_depth(), {});
-  const auto features = extractor.extract(wall().seen_by(with_registered_depth())).frame.features;
+  const auto features = extractor.extract(wall().render_view(with_registered_depth())).frame.features;
   EXPECT_GE(features->size(), 500);
   EXPECT_EQ(share_with_disparity(*features), 0.0);
 }
 
 TEST(Extractor, RejectsDepthImagesOfAnotherSize) {
-  ImageFrame images = wall().seen_by(with_registered_depth());
+  ImageFrame images = wall().render_view(with_registered_depth());
   images.depth = DepthImage{2, 1, {1000, 1000}};
   Extractor extractor(with_registered_depth(), {});
   EXPECT_THROW(extractor.extract(images), InputError);
@@ -310,7 +310,7 @@ TEST(Extractor, AcceptsImagesTooSmallForMostOctaves) {
     Calibration calibration = ideal_pair();
     calibration.left = calibration.right->camera = small;
     Extractor extractor(calibration, {});
-    const auto features = extractor.extract(wall().seen_by(calibration)).frame.features;
+    const auto features = extractor.extract(wall().render_view(calibration)).frame.features;
     EXPECT_LE(features->size(), std::max(0, side - 38) * std::max(0, side - 38)) << "none is on the border";
     EXPECT_TRUE(features->size() > 0 || side < 60) << side;
     for (const Keypoint& keypoint : features->keypoints()) EXPECT_LE(keypoint.octave, 2);
@@ -321,12 +321,12 @@ TEST(Extractor, IsMovable) {
   Extractor first(ideal_pair(), {100});
   Extractor second = std::move(first);
   EXPECT_EQ(second.rig().width, kWidth);
-  EXPECT_GT(second.extract(wall().seen_by(ideal_pair())).frame.features->size(), 50);
+  EXPECT_GT(second.extract(wall().render_view(ideal_pair())).frame.features->size(), 50);
 }
 
 TEST(Extractor, RejectsImagesOfAnotherSize) {
   Extractor extractor(ideal_pair(), {});
-  const ImageFrame images = wall().seen_by(ideal_pair());
+  const ImageFrame images = wall().render_view(ideal_pair());
   ImageFrame wrong = images;
   wrong.left.width = kHeight;
   wrong.left.height = kWidth;
@@ -339,7 +339,7 @@ TEST(Extractor, RejectsImagesOfAnotherSize) {
 
 TEST(Extractor, RejectsImagesWithMissingPixels) {
   Extractor extractor(ideal_pair(), {});
-  ImageFrame images = wall().seen_by(ideal_pair());
+  ImageFrame images = wall().render_view(ideal_pair());
   images.left.pixels.pop_back();
   EXPECT_THROW(extractor.extract(images), InputError);
 }
@@ -350,7 +350,7 @@ TEST(Extractor, AcceptsCamerasOfDifferentSizes) {
   calibration.right->camera.height += 20;
   const Wall seen = wall();
   Extractor extractor(calibration, {});
-  const auto features = extractor.extract(seen.seen_by(calibration)).frame.features;
+  const auto features = extractor.extract(seen.render_view(calibration)).frame.features;
   EXPECT_GE(share_with_disparity(*features), 0.9);
 }
 

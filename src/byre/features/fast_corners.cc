@@ -25,7 +25,7 @@ constexpr std::size_t kCircle = 16;
 
 // Over all arcs of nine contiguous values on the circle: the largest minimum and the smallest maximum.
 template <class V>
-HWY_INLINE void find_extreme_arcs(const V* on_circle, V& least_of_brightest, V& most_of_darkest) {
+HWY_INLINE void find_extreme_arcs(const V* on_circle, V& min_of_brightest, V& max_of_darkest) {
   // Extremes of two, four and eight contiguous values, from every second position of the circle.
   V low_two[kCircle], high_two[kCircle], low_four[kCircle], high_four[kCircle];
   for (std::size_t i = 1; i < kCircle; i += 2) {
@@ -42,8 +42,8 @@ HWY_INLINE void find_extreme_arcs(const V* on_circle, V& least_of_brightest, V& 
     // The ninth value is before or after these.
     const V before = on_circle[i - 1], after = on_circle[(i + 8) % kCircle];
     const V low = hn::Min(low_eight, hn::Max(before, after)), high = hn::Max(high_eight, hn::Min(before, after));
-    least_of_brightest = i == 1 ? low : hn::Max(least_of_brightest, low);
-    most_of_darkest = i == 1 ? high : hn::Min(most_of_darkest, high);
+    min_of_brightest = i == 1 ? low : hn::Max(min_of_brightest, low);
+    max_of_darkest = i == 1 ? high : hn::Min(max_of_darkest, high);
   }
 }
 
@@ -67,9 +67,9 @@ void measure_row(const std::uint8_t* pixels, const std::ptrdiff_t* offsets, std:
     if (!hn::AllFalse(d, hn::Gt(hn::Max(brighter, darker), limit))) {
       V on_circle[kCircle];
       for (std::size_t i = 0; i < kCircle; ++i) on_circle[i] = neighbour(i);
-      V least_of_brightest, most_of_darkest;
-      find_extreme_arcs(on_circle, least_of_brightest, most_of_darkest);
-      strength = hn::Max(hn::SaturatedSub(least_of_brightest, centre), hn::SaturatedSub(centre, most_of_darkest));
+      V min_of_brightest, max_of_darkest;
+      find_extreme_arcs(on_circle, min_of_brightest, max_of_darkest);
+      strength = hn::Max(hn::SaturatedSub(min_of_brightest, centre), hn::SaturatedSub(centre, max_of_darkest));
       strength = hn::IfThenElseZero(hn::Gt(strength, limit), strength);
     }
     hn::StoreU(strength, d, strengths + at);
@@ -176,9 +176,9 @@ bool is_peak(const std::uint8_t* strength, std::ptrdiff_t stride, int threshold)
 void clear_outside(const cv::Rect& area, cv::Mat& strengths) {
   for (int y = 0; y < strengths.rows; ++y) {
     std::uint8_t* const row = strengths.ptr<std::uint8_t>(y);
-    const bool is_beside = y >= area.y && y < area.y + area.height;
-    const int left = is_beside ? area.x : strengths.cols;
-    const int right = is_beside ? area.x + area.width : strengths.cols;
+    const bool is_row_inside = y >= area.y && y < area.y + area.height;
+    const int left = is_row_inside ? area.x : strengths.cols;
+    const int right = is_row_inside ? area.x + area.width : strengths.cols;
     std::fill(row, row + left, std::uint8_t{0});
     std::fill(row + right, row + strengths.cols, std::uint8_t{0});
   }

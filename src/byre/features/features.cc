@@ -11,7 +11,7 @@ namespace byre {
 namespace {
 
 template <typename Item>
-std::vector<Item> in_order(std::vector<Item> items, const std::vector<int>& order) {
+std::vector<Item> reordered(std::vector<Item> items, const std::vector<int>& order) {
   if (items.empty() || std::ranges::is_sorted(order)) return items;
   std::vector<Item> sorted;
   sorted.reserve(items.size());
@@ -27,7 +27,7 @@ int cell_size_for(int width, int height, std::size_t keypoints) {
   return static_cast<int>(std::ceil(std::max(kSmallest, std::sqrt(area / max_cells))));
 }
 
-std::vector<int> one_each(std::size_t count) {
+std::vector<int> identity_order(std::size_t count) {
   std::vector<int> indices(count);
   std::iota(indices.begin(), indices.end(), 0);
   return indices;
@@ -35,7 +35,7 @@ std::vector<int> one_each(std::size_t count) {
 
 // Same, in the memory of the resulting vector.
 template <typename Item>
-void take_in_order(const std::vector<Item>& items, const std::vector<int>& order, std::vector<Item>& sorted) {
+void reorder_into(const std::vector<Item>& items, const std::vector<int>& order, std::vector<Item>& sorted) {
   sorted.clear();
   sorted.reserve(items.size());
   for (const int i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
@@ -91,7 +91,7 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
 
 Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors,
                    std::vector<Patch> patches, std::vector<int> patch_of_keypoint) {
-  take_patches(std::make_shared<const std::vector<Patch>>(std::move(patches)));
+  set_patches(std::make_shared<const std::vector<Patch>>(std::move(patches)));
   if (keypoints.empty()) return;
   std::vector<int> cell_begin;
   const Cells cells(width, height, keypoints, cell_begin);
@@ -99,16 +99,16 @@ Features::Features(int width, int height, std::vector<Keypoint> keypoints, std::
   columns_ = cells.columns;
   rows_ = cells.rows;
   cell_begin_.take(std::move(cell_begin));
-  keypoints_.take(in_order(std::move(keypoints), cells.order));
-  descriptors_.take(in_order(std::move(descriptors), cells.order));
-  if (patch_of_keypoint.empty()) patch_of_keypoint = one_each(patches_.view().size());
-  patch_of_keypoint_.take(in_order(std::move(patch_of_keypoint), cells.order));
+  keypoints_.take(reordered(std::move(keypoints), cells.order));
+  descriptors_.take(reordered(std::move(descriptors), cells.order));
+  if (patch_of_keypoint.empty()) patch_of_keypoint = identity_order(patches_.view().size());
+  patch_of_keypoint_.take(reordered(std::move(patch_of_keypoint), cells.order));
 }
 
 void Features::refill(int width, int height, const std::vector<Keypoint>& keypoints,
                       const std::vector<Descriptor>& descriptors,
                       const std::shared_ptr<const std::vector<Patch>>& patches) {
-  take_patches(patches);
+  set_patches(patches);
   slack_ = 0.0f;
   std::vector<int>* order = nullptr;
   cell_begin_.refill([&](std::vector<int>& begin) {
@@ -118,8 +118,8 @@ void Features::refill(int width, int height, const std::vector<Keypoint>& keypoi
     rows_ = keypoints.empty() ? 0 : cells.rows;
     order = &cells.order;
   });
-  keypoints_.refill([&](std::vector<Keypoint>& sorted) { take_in_order(keypoints, *order, sorted); });
-  descriptors_.refill([&](std::vector<Descriptor>& sorted) { take_in_order(descriptors, *order, sorted); });
+  keypoints_.refill([&](std::vector<Keypoint>& sorted) { reorder_into(keypoints, *order, sorted); });
+  descriptors_.refill([&](std::vector<Descriptor>& sorted) { reorder_into(descriptors, *order, sorted); });
   patch_of_keypoint_.refill([&](std::vector<int>& patch_of_keypoint) {
     patch_of_keypoint.clear();
     if (!patches_.view().empty()) patch_of_keypoint = *order;
@@ -134,7 +134,7 @@ std::vector<int> Features::order_of(int width, int height, const std::vector<Key
 Features Features::moved(std::vector<Keypoint> keypoints) const {
   assert(static_cast<int>(keypoints.size()) == size());
   Features result = *this;
-  result.note_moves(keypoints);
+  result.update_slack(keypoints);
   result.keypoints_.take(std::move(keypoints));
   return result;
 }
@@ -142,11 +142,11 @@ Features Features::moved(std::vector<Keypoint> keypoints) const {
 void Features::refill_moved(const Features& features, const std::vector<Keypoint>& keypoints) {
   assert(static_cast<int>(keypoints.size()) == features.size());
   *this = features;
-  note_moves(keypoints);
+  update_slack(keypoints);
   keypoints_.refill([&](std::vector<Keypoint>& own) { own = keypoints; });
 }
 
-void Features::note_moves(std::span<const Keypoint> keypoints) {
+void Features::update_slack(std::span<const Keypoint> keypoints) {
   float farthest = 0.0f;
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     farthest = std::max(farthest, (keypoints[i].pixel - this->keypoints()[i].pixel).cwiseAbs().maxCoeff());
@@ -167,17 +167,17 @@ Features Features::with_patches_of(std::span<const int> features) const {
   if (kept.empty()) patch_of_keypoint = {};
   Features result = *this;
   result.patch_of_keypoint_.take(std::move(patch_of_keypoint));
-  result.take_patches(std::make_shared<const std::vector<Patch>>(std::move(kept)));
+  result.set_patches(std::make_shared<const std::vector<Patch>>(std::move(kept)));
   return result;
 }
 
 // Lists that are accessed together come first.
-std::array<std::span<const std::byte>, Features::kLists> Features::lists() const {
+std::array<std::span<const std::byte>, Features::kArrays> Features::arrays() const {
   return {std::as_bytes(keypoints()), std::as_bytes(patch_of_keypoint_.view()), std::as_bytes(cell_begin_.view()),
           std::as_bytes(descriptors()), std::as_bytes(patches())};
 }
 
-Features Features::with_lists_at(const std::array<std::shared_ptr<const std::byte>, kLists>& places) const {
+Features Features::with_arrays_at(const std::array<std::shared_ptr<const std::byte>, kArrays>& places) const {
   Features result;
   result.cell_size_ = cell_size_;
   result.columns_ = columns_;
@@ -191,7 +191,7 @@ Features Features::with_lists_at(const std::array<std::shared_ptr<const std::byt
   return result;
 }
 
-void Features::take_patches(const std::shared_ptr<const std::vector<Patch>>& patches) {
+void Features::set_patches(const std::shared_ptr<const std::vector<Patch>>& patches) {
   patches_ = Items<Patch>(std::shared_ptr<const Patch>(patches, patches->data()), patches->size());
 }
 

@@ -1,5 +1,5 @@
 #include "byre/features.h"
-#include "byre/workers/shared_pool.h"
+#include "byre/workers/object_pool.h"
 
 #include <algorithm>
 #include <set>
@@ -28,8 +28,8 @@ Parts parts_of(int count, int seed) {
 }
 
 struct Pools {
-  SharedPool<Features> features;
-  SharedPool<std::vector<Patch>> patches;
+  ObjectPool<Features> features;
+  ObjectPool<std::vector<Patch>> patches;
 
   std::shared_ptr<const Features> refilled(const Parts& parts) {
     const std::shared_ptr<std::vector<Patch>>& of_frame = patches.take();
@@ -55,17 +55,17 @@ void expect_same(const Features& features, const Features& expected) {
   EXPECT_EQ(found, wanted);
 }
 
-Features made_of(Parts parts) {
+Features features_from(Parts parts) {
   return {320, 240, std::move(parts.keypoints), std::move(parts.descriptors), std::move(parts.patches)};
 }
 
 TEST(RefilledFeatures, EqualsTheConstructor) {
   Pools pool;
   for (const int count : {50, 0, 90, 20, 1})
-    expect_same(*pool.refilled(parts_of(count, 3)), made_of(parts_of(count, 3)));
+    expect_same(*pool.refilled(parts_of(count, 3)), features_from(parts_of(count, 3)));
   Parts without = parts_of(30, 1);
   without.patches.clear();
-  expect_same(*pool.refilled(without), made_of(without));
+  expect_same(*pool.refilled(without), features_from(without));
 }
 
 TEST(RefilledFeatures, ReusesUnreferencedMemory) {
@@ -89,20 +89,20 @@ TEST(RefilledFeatures, LeavesReferencedFeatures) {
   std::vector<std::shared_ptr<const Features>> held;
   for (int seed = 0; seed < 10; ++seed) held.push_back(pool.refilled(parts_of(40, seed)));
   for (int seed = 0; seed < 10; ++seed) {
-    expect_same(*held[static_cast<std::size_t>(seed)], made_of(parts_of(40, seed)));
+    expect_same(*held[static_cast<std::size_t>(seed)], features_from(parts_of(40, seed)));
   }
 }
 
 TEST(RefilledFeatures, LeavesPatchesSharedByCopies) {
   Pools pool;
-  const Features copy = pool.refilled(parts_of(40, 1))->moved(to_vector(made_of(parts_of(40, 1)).keypoints()));
+  const Features copy = pool.refilled(parts_of(40, 1))->moved(to_vector(features_from(parts_of(40, 1)).keypoints()));
   pool.refilled(parts_of(40, 2));
-  expect_same(copy, made_of(parts_of(40, 1)));
+  expect_same(copy, features_from(parts_of(40, 1)));
 }
 
 TEST(RefilledFeatures, MovesFeaturesIntoExistingMemory) {
   Pools pool;
-  const Features features = made_of(parts_of(40, 1));
+  const Features features = features_from(parts_of(40, 1));
   std::vector<Keypoint> keypoints = to_vector(features.keypoints());
   for (Keypoint& keypoint : keypoints) keypoint.pixel.x() = std::min(319.0f, keypoint.pixel.x() + 3.0f);
   for (int i = 0; i < 2; ++i) {

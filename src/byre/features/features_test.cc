@@ -48,8 +48,8 @@ std::vector<int> visited(const Features& features, const Eigen::Vector2f& pixel,
   return indices;
 }
 
-std::vector<int> looked_for_one_by_one(const Features& features, const Eigen::Vector2f& pixel, float radius,
-                                       int min_octave, int max_octave) {
+std::vector<int> brute_force_search(const Features& features, const Eigen::Vector2f& pixel, float radius,
+                                    int min_octave, int max_octave) {
   std::vector<int> indices;
   for (int i = 0; i < features.size(); ++i) {
     const Keypoint& keypoint = features.keypoint(i);
@@ -69,7 +69,7 @@ TEST(FeaturesVisitArea, EqualsExhaustiveSearch) {
     const Eigen::Vector2f pixel(u(random), v(random));
     const float radius = size(random);
     const auto [low, high] = std::minmax({octave(random), octave(random)});
-    const std::vector<int> expected = looked_for_one_by_one(features, pixel, radius, low, high);
+    const std::vector<int> expected = brute_force_search(features, pixel, radius, low, high);
     EXPECT_THAT(visited(features, pixel, radius, low, high), UnorderedElementsAreArray(expected));
     found += expected.size();
   }

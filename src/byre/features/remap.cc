@@ -85,10 +85,10 @@ void look_up(const std::uint8_t* source, std::ptrdiff_t stride, std::ptrdiff_t l
     auto above = lower;
     for (int row = 1; row < row_count; ++row) {
       const auto below = go_down();
-      const auto is_here =
+      const auto is_in_range =
           hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(du, hn::Eq(hn::ShiftRight<14>(place), hn::Set(du, row)))));
-      upper = hn::IfThenElse(is_here, above, upper);
-      lower = hn::IfThenElse(is_here, below, lower);
+      upper = hn::IfThenElse(is_in_range, above, upper);
+      lower = hn::IfThenElse(is_in_range, below, lower);
       above = below;
     }
     const auto down = hn::BitCast(d, hn::And(hn::ShiftRight<5>(place), hn::Set(du, 31)));
@@ -117,7 +117,7 @@ HWY_EXPORT(look_up);
 constexpr int kSteps = 32;         // positions between two pixels
 constexpr std::size_t kGroup = 8;  // pixels
 constexpr int kBytesAtOnce = 16;   // source bytes read per row and group
-constexpr int kMostRows = 4;
+constexpr int kMaxRows = 4;
 
 struct Neighbours {
   int pixel = 0;     // always has a neighbour after it
@@ -161,7 +161,7 @@ Remap::Group Remap::group_of(const SinglePixel* pixels, cv::Size source) {
   const int last = source.area() - kBytesAtOnce;
   const int first = top.pixel * source.width + left.pixel;
   const int beyond = std::max(0, first + (is_last_row ? row_count - 1 : row_count) * source.width - last);
-  if (row_count > kMostRows || first < beyond || right.pixel - left.pixel + beyond + 1 >= kBytesAtOnce) return {};
+  if (row_count > kMaxRows || first < beyond || right.pixel - left.pixel + beyond + 1 >= kBytesAtOnce) return {};
   Group group{true, first - beyond, static_cast<std::uint8_t>(row_count), {}};
   for (std::size_t i = 0; i < kGroup; ++i) {
     const int column = columns[i].pixel - left.pixel + beyond, row = rows[i].pixel - top.pixel;

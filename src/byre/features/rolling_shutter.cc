@@ -7,7 +7,7 @@
 namespace byre {
 namespace {
 
-Keypoint seen_at_once(Keypoint keypoint, const Rig& rig, const CameraMotion& motion, double readout_time) {
+Keypoint correct_rolling_shutter(Keypoint keypoint, const Rig& rig, const CameraMotion& motion, double readout_time) {
   const double depth = keypoint.has_disparity() ? rig.focal * rig.baseline / keypoint.disparity : motion.depth;
   const Pose middle_from_row = exp_pose(motion.velocity * (-readout_time * keypoint.row_time));
   const Eigen::Vector3d point = middle_from_row * Eigen::Vector3d(depth * rig.ray(keypoint.pixel.cast<double>()));
@@ -20,17 +20,18 @@ Keypoint seen_at_once(Keypoint keypoint, const Rig& rig, const CameraMotion& mot
 
 }  // namespace
 
-Features seen_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time) {
+Features correct_rolling_shutter(const Features& features, const Rig& rig, const CameraMotion& motion,
+                                 double readout_time) {
   std::vector<Keypoint> keypoints = to_vector(features.keypoints());
-  for (Keypoint& keypoint : keypoints) keypoint = seen_at_once(keypoint, rig, motion, readout_time);
+  for (Keypoint& keypoint : keypoints) keypoint = correct_rolling_shutter(keypoint, rig, motion, readout_time);
   return features.moved(std::move(keypoints));
 }
 
-void see_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
-                 Features& result) {
+void correct_rolling_shutter(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
+                             Features& result) {
   thread_local std::vector<Keypoint> keypoints;  // working memory
   keypoints.assign(features.keypoints().begin(), features.keypoints().end());
-  for (Keypoint& keypoint : keypoints) keypoint = seen_at_once(keypoint, rig, motion, readout_time);
+  for (Keypoint& keypoint : keypoints) keypoint = correct_rolling_shutter(keypoint, rig, motion, readout_time);
   result.refill_moved(features, keypoints);
 }
 

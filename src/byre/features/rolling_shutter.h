@@ -12,9 +12,10 @@ struct CameraMotion {
 
 // Rolling-shutter correction: moves each corner, seen at the time of its row, to its position at the time of the middle
 // row. readout_time: seconds, see Calibration.
-Features seen_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time);
+Features correct_rolling_shutter(const Features& features, const Rig& rig, const CameraMotion& motion,
+                                 double readout_time);
 // Same, refills `result`.
-void see_at_once(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
-                 Features& result);
+void correct_rolling_shutter(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
+                             Features& result);
 
 }  // namespace byre

@@ -34,7 +34,7 @@ Keypoint rolled(bool has_disparity) {
 Keypoint at_once(const Keypoint& keypoint, const CameraMotion& motion, double readout_time) {
   const Rig rig = rig_of_camera();
   const Features features(rig.width, rig.height, {keypoint}, {Descriptor{}}, {});
-  return seen_at_once(features, rig, motion, readout_time).keypoint(0);
+  return correct_rolling_shutter(features, rig, motion, readout_time).keypoint(0);
 }
 
 TEST(SeenAtOnce, MovesACornerToTheTimeOfTheMiddleRow) {

@@ -24,7 +24,7 @@ const std::uint8_t* block(const cv::Mat& level, int x, int y) {
 
 struct RowMatch {
   int x = -1;
-  int cost = std::numeric_limits<int>::max();         // see least_costs
+  int cost = std::numeric_limits<int>::max();         // see find_minimum_cost
   int second_cost = std::numeric_limits<int>::max();  // the best more than one pixel away
 
   bool is_unique(float max_ratio) const {
@@ -34,12 +34,12 @@ struct RowMatch {
   }
 };
 
-// Costs of neighbouring columns, in the layout of least_costs.
+// Costs of neighbouring columns, in the layout of find_minimum_cost.
 using Costs = std::vector<std::uint16_t>;
 
 // Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row.
 void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last, Costs& costs) {
-  costs.resize(static_cast<std::size_t>(last - first + 3) + kCostsBeyond);
+  costs.resize(static_cast<std::size_t>(last - first + 3) + kCostPadding);
   costs.front() = 0;
   const auto stride = [](const cv::Mat& image) { return static_cast<std::ptrdiff_t>(image.step); };
   for (int candidate = first; candidate <= last; candidate += kBlockCandidates) {
@@ -57,7 +57,7 @@ RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int fi
   thread_local Costs padded;
   compare_with_row(from, x, y, to, first, last, padded);
   if (last < first) return {};
-  const LeastCosts least = least_costs(padded.data() + 1, static_cast<std::size_t>(last - first + 1));
+  const MinimumCost least = find_minimum_cost(padded.data() + 1, static_cast<std::size_t>(last - first + 1));
   RowMatch match;
   match.x = first + least.best;
   match.cost = least.cost;

@@ -31,16 +31,16 @@ void FleetLink::note(const FrameReport& report, Timestamp arrived, const std::st
   keeper_.note(report, arrived, advice);
 }
 
-void FleetLink::tell(const FleetMap& map, Timestamp now) {
+void FleetLink::publish(const FleetMap& map, Timestamp now) {
   if (!client_.is_connected()) return;
-  reporter_.tell(keeper_.at(now), map, now, std::chrono::system_clock::now(), client_.connections());
+  reporter_.publish(keeper_.at(now), map, now, std::chrono::system_clock::now(), client_.connections());
 }
 
-std::optional<std::string> FleetLink::news() {
+std::optional<std::string> FleetLink::connection_change() {
   std::string state = client_.state();
-  if (state == last_news_) return std::nullopt;
-  last_news_ = std::move(state);
-  return last_news_;
+  if (state == last_connection_) return std::nullopt;
+  last_connection_ = std::move(state);
+  return last_connection_;
 }
 
 }  // namespace byre

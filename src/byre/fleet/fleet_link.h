@@ -22,17 +22,17 @@ class FleetLink {
 
   // Adds a frame, see FleetPositionKeeper.
   void note(const FrameReport& report, Timestamp arrived, const std::string& advice);
-  void begin_anew() { keeper_.begin_anew(); }
+  void restart() { keeper_.restart(); }
 
   // Publishes due messages. now: of a monotonic clock.
-  void tell(const FleetMap& map, Timestamp now);
+  void publish(const FleetMap& map, Timestamp now);
 
   // Change of the connection state, a line of text.
-  std::optional<std::string> news();
+  std::optional<std::string> connection_change();
 
  private:
   FleetPositionKeeper keeper_;
-  std::string last_news_;
+  std::string last_connection_;
   MqttClient client_;
   FleetReporter reporter_;
 };

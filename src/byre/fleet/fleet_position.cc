@@ -9,8 +9,8 @@
 namespace byre {
 namespace {
 
-constexpr Timestamp kMostSilence = std::chrono::seconds(3);  // time without frames after which the position is invalid
-constexpr double kMostDegraded = 0.4;
+constexpr Timestamp kMaxSilence = std::chrono::seconds(3);  // time without frames after which the position is invalid
+constexpr double kMaxDegraded = 0.4;
 constexpr double kUntrusted = 0.1;
 
 std::string problem_of(const FrameReport& report) {
@@ -27,16 +27,16 @@ double localization_score(const FrameReport& report) {
   const HealthOptions options;
   const double taken_up = position_error(report.health, options) / options.trusted_error;
   const double score = 1.0 - 0.5 * std::clamp(taken_up, 0.0, 1.0);
-  return report.health.verdict == Verdict::trusted ? score : std::min(score, kMostDegraded);
+  return report.health.verdict == Verdict::trusted ? score : std::min(score, kMaxDegraded);
 }
 
 void FleetPositionKeeper::note(const FrameReport& report, Timestamp arrived, const std::string& advice) {
-  const bool is_believed = report.map_from_body && report.health.verdict != Verdict::untrusted;
+  const bool is_usable = report.map_from_body && report.health.verdict != Verdict::untrusted;
   position_.score = localization_score(report);
   position_.problem = problem_of(report);
   position_.advice = advice;
   position_.deviation.reset();
-  if (is_believed) {
+  if (is_usable) {
     const Eigen::Vector3d ahead = report.map_from_body->rotation * Eigen::Vector3d::UnitX();
     position_.x = report.map_from_body->translation.x();
     position_.y = report.map_from_body->translation.y();
@@ -58,14 +58,14 @@ void FleetPositionKeeper::note(const FrameReport& report, Timestamp arrived, con
   arrived_ = arrived;
 }
 
-void FleetPositionKeeper::begin_anew() {
+void FleetPositionKeeper::restart() {
   position_.is_initialised = false;
   odometry_.reset();
 }
 
 FleetPosition FleetPositionKeeper::at(Timestamp now) const {
   FleetPosition position = position_;
-  if (arrived_ && now - *arrived_ <= kMostSilence) return position;
+  if (arrived_ && now - *arrived_ <= kMaxSilence) return position;
   position.is_initialised = false;
   position.score = 0.0;
   position.deviation.reset();

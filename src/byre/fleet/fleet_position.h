@@ -38,7 +38,7 @@ class FleetPositionKeeper {
   void note(const FrameReport& report, Timestamp arrived, const std::string& advice);
 
   // Starts over for another map or global relocalisation.
-  void begin_anew();
+  void restart();
 
   FleetPosition at(Timestamp now) const;
 

@@ -26,7 +26,7 @@ FrameReport report(Verdict verdict, const Pose& pose, Timestamp time = 1s) {
   report.map_from_body = pose;
   report.odometry_from_body = pose;
   report.health.verdict = verdict;
-  report.health.doubt = verdict == Verdict::trusted ? Doubt::none : Doubt::few_points;
+  report.health.doubt = verdict == Verdict::trusted ? DistrustReason::none : DistrustReason::few_points;
   report.health.position_sigma = 0.01;
   report.health.distance_since_offline = 2.0;
   return report;
@@ -83,7 +83,7 @@ TEST_F(FleetPositionTest, IsInitialisedFromATrustedFrameUntilLost) {
   EXPECT_FALSE(keeper_.at(1s).is_initialised);
   note(report(Verdict::trusted, Pose{}));
   EXPECT_TRUE(keeper_.at(1s).is_initialised);
-  keeper_.begin_anew();
+  keeper_.restart();
   EXPECT_FALSE(keeper_.at(1s).is_initialised);
 }
 

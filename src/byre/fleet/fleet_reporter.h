@@ -22,10 +22,10 @@ class FleetReporter {
   FleetReporter(const FleetIdentity& identity, double rate, Send send);
 
   // now: of a monotonic clock; connections: number of connections so far
-  void tell(const FleetPosition& position, const FleetMap& map, Timestamp now, WallTime wall, int connections);
+  void publish(const FleetPosition& position, const FleetMap& map, Timestamp now, WallTime wall, int connections);
 
  private:
-  struct Told {
+  struct SentState {
     Timestamp at{};
     std::string summary;  // content whose change triggers a message
   };
@@ -38,7 +38,7 @@ class FleetReporter {
   Send send_;
 
   std::uint32_t states_ = 0, visualizations_ = 0;  // messages so far
-  std::optional<Told> state_;
+  std::optional<SentState> state_;
   std::optional<Timestamp> visualization_;  // time of the last message
   int connections_ = 0;                     // number of connections at the last state message
 };

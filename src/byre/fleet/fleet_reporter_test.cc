@@ -18,9 +18,9 @@ using ::testing::IsEmpty;
 class FleetReporterTest : public testing::Test {
  protected:
   // Messages sent at a time: last part of the topic, and id.
-  std::vector<std::string> tell(Timestamp now, int connections = 1) {
+  std::vector<std::string> publish(Timestamp now, int connections = 1) {
     sent_.clear();
-    reporter_.tell(position_, {"barn", ""}, now, {}, connections);
+    reporter_.publish(position_, {"barn", ""}, now, {}, connections);
     std::vector<std::string> summaries;
     for (const MqttMessage& message : sent_) {
       const std::string topic = message.topic.substr(message.topic.rfind('/') + 1);
@@ -37,34 +37,34 @@ class FleetReporterTest : public testing::Test {
 };
 
 TEST_F(FleetReporterTest, PublishesNothingBeforeConnecting) {
-  EXPECT_THAT(tell(1s, 0), IsEmpty());
+  EXPECT_THAT(publish(1s, 0), IsEmpty());
 }
 
 TEST_F(FleetReporterTest, PublishesPositionsAtItsRate) {
-  EXPECT_THAT(tell(1s), ElementsAre("state 0", "visualization 0"));
-  EXPECT_THAT(tell(1s + 499ms), IsEmpty());
-  EXPECT_THAT(tell(1s + 500ms), ElementsAre("visualization 1"));
+  EXPECT_THAT(publish(1s), ElementsAre("state 0", "visualization 0"));
+  EXPECT_THAT(publish(1s + 499ms), IsEmpty());
+  EXPECT_THAT(publish(1s + 500ms), ElementsAre("visualization 1"));
 }
 
 TEST_F(FleetReporterTest, PublishesStateChangesAtALimitedRate) {
-  tell(1s);
+  publish(1s);
   position_.is_initialised = true;
-  EXPECT_THAT(tell(1s + 100ms), IsEmpty());
-  EXPECT_THAT(tell(1s + 500ms), ElementsAre("state 1", "visualization 1"));
+  EXPECT_THAT(publish(1s + 100ms), IsEmpty());
+  EXPECT_THAT(publish(1s + 500ms), ElementsAre("state 1", "visualization 1"));
   position_.problem = "degraded: few points";
-  EXPECT_THAT(tell(2s), ElementsAre("state 2", "visualization 2"));
+  EXPECT_THAT(publish(2s), ElementsAre("state 2", "visualization 2"));
 }
 
 TEST_F(FleetReporterTest, PublishesStateEveryThirtySeconds) {
-  tell(1s);
-  EXPECT_THAT(tell(31s - 1ms), ElementsAre("visualization 1"));
-  EXPECT_THAT(tell(31s), ElementsAre("state 1"));
+  publish(1s);
+  EXPECT_THAT(publish(31s - 1ms), ElementsAre("visualization 1"));
+  EXPECT_THAT(publish(31s), ElementsAre("state 1"));
 }
 
 TEST_F(FleetReporterTest, PublishesStateAfterEachConnection) {
-  tell(1s);
-  EXPECT_THAT(tell(1s + 10ms, 2), ElementsAre("state 1"));
-  EXPECT_THAT(tell(1s + 20ms, 2), IsEmpty());
+  publish(1s);
+  EXPECT_THAT(publish(1s + 10ms, 2), ElementsAre("state 1"));
+  EXPECT_THAT(publish(1s + 20ms, 2), IsEmpty());
 }
 
 }  // namespace

@@ -14,12 +14,12 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 
-constexpr int kKeepAlive = 15;         // seconds without a message before a ping
-constexpr auto kRetry = 1000ms;        // pause before reconnecting
-constexpr auto kStep = 20ms;           // polling interval
-constexpr auto kMostFarewell = 500ms;  // time to send the last message
-constexpr int kLoopWait = 100;         // milliseconds
-constexpr int kMostUnderWay = 8;       // messages
+constexpr int kKeepAlive = 15;        // seconds without a message before a ping
+constexpr auto kRetry = 1000ms;       // pause before reconnecting
+constexpr auto kStep = 20ms;          // polling interval
+constexpr auto kMaxFarewell = 500ms;  // time to send the last message
+constexpr int kLoopWait = 100;        // milliseconds
+constexpr int kMaxInFlight = 8;       // messages
 
 // The library is initialised once, and never released.
 void set_up_library() {
@@ -72,9 +72,9 @@ MqttClient::MqttClient(const MqttOptions& options, Presence presence)
 MqttClient::~MqttClient() {
   if (is_connected_) {
     send(presence_.farewell());
-    wait_at_most(kMostFarewell, [this] { return under_way_ == 0 || !is_connected_; });
+    wait_at_most(kMaxFarewell, [this] { return in_flight_ == 0 || !is_connected_; });
     mosquitto_disconnect(client_.get());
-    wait_at_most(kMostFarewell, [this] { return !is_connected_; });
+    wait_at_most(kMaxFarewell, [this] { return !is_connected_; });
   }
   thread_.request_stop();
   thread_.join();
@@ -85,14 +85,14 @@ void MqttClient::run(const std::stop_token& stop) {
     int code = mosquitto_connect_async(client_.get(), options_.host.c_str(), options_.port, kKeepAlive);
     while (code == MOSQ_ERR_SUCCESS && !stop.stop_requested()) code = mosquitto_loop(client_.get(), kLoopWait, 1);
     is_connected_ = false;
-    under_way_ = 0;
+    in_flight_ = 0;
     fault_ = code == MOSQ_ERR_ERRNO ? -errno : code;  // errno is per thread
     wait_at_most(kRetry, [&stop] { return stop.stop_requested(); });
   }
 }
 
 void MqttClient::send(const MqttMessage& message) {
-  ++under_way_;
+  ++in_flight_;
   const int code =
       mosquitto_publish(client_.get(), nullptr, message.topic.c_str(), static_cast<int>(message.text.size()),
                         message.text.data(), qos_of(message), message.is_retained);
@@ -100,7 +100,7 @@ void MqttClient::send(const MqttMessage& message) {
 }
 
 void MqttClient::publish(const MqttMessage& message) {
-  if (is_connected_ && under_way_ < kMostUnderWay) send(message);
+  if (is_connected_ && in_flight_ < kMaxInFlight) send(message);
 }
 
 void MqttClient::note_connect(mosquitto* /*client*/, void* self, int code) {
@@ -118,9 +118,9 @@ void MqttClient::note_disconnect(mosquitto* /*client*/, void* self, int /*code*/
 
 // Acknowledgements of messages from an earlier connection are not counted.
 void MqttClient::note_published(mosquitto* /*client*/, void* self, int /*id*/) {
-  std::atomic<int>& under_way = static_cast<MqttClient*>(self)->under_way_;
-  int count = under_way;
-  while (count > 0 && !under_way.compare_exchange_weak(count, count - 1)) {
+  std::atomic<int>& in_flight = static_cast<MqttClient*>(self)->in_flight_;
+  int count = in_flight;
+  while (count > 0 && !in_flight.compare_exchange_weak(count, count - 1)) {
   }
 }
 

@@ -65,7 +65,7 @@ class MqttClient {
 
   std::atomic<bool> is_connected_ = false;
   std::atomic<int> connections_ = 0;
-  std::atomic<int> under_way_ = 0;  // messages queued and not yet sent
+  std::atomic<int> in_flight_ = 0;  // messages queued and not yet sent
   std::atomic<int> refusal_ = 0;    // broker's error code for the last connection
   std::atomic<int> fault_ = 0;      // error of the last attempt or connection: MOSQ_ERR, or -errno if negative
   std::jthread thread_;             // runs the client

@@ -95,14 +95,14 @@ bool has_rival(const MotionCandidate& best, const std::vector<MotionCandidate>& 
   });
 }
 
-TwoViewFailure reason_to_doubt(const Models& models, bool planar) {
+TwoViewFailure rejection_reason(const Models& models, bool planar) {
   const int inliers = planar ? models.homography.inliers : models.essential.inliers;
   if (inliers < kMinPoints) return TwoViewFailure::no_common_motion;
   const bool turned = models.rotation.score > kRotationShare * models.homography.score;
   return planar && turned ? TwoViewFailure::rotation_only : TwoViewFailure::none;
 }
 
-TwoViewFailure reason_to_doubt(const MotionCandidate& best, const std::vector<MotionCandidate>& candidates) {
+TwoViewFailure rejection_reason(const MotionCandidate& best, const std::vector<MotionCandidate>& candidates) {
   if (best.motion.median_parallax < kMinParallax) return TwoViewFailure::small_parallax;
   if (has_rival(best, candidates)) return TwoViewFailure::planar_ambiguity;
   return best.motion.point_count < kMinPoints ? TwoViewFailure::too_few_points : TwoViewFailure::none;
@@ -140,12 +140,12 @@ TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches) 
   if (static_cast<int>(matches.size()) < kMinTwoViewMatches) return failed(TwoViewFailure::too_few_matches);
   const Models models = search_models(matches);
   const bool planar = is_planar(models);
-  const TwoViewFailure doubt = reason_to_doubt(models, planar);
+  const TwoViewFailure doubt = rejection_reason(models, planar);
   if (doubt != TwoViewFailure::none) return failed(doubt);
   std::vector<MotionCandidate> candidates;
   for (const Pose& motion : motions_of(models, matches)) candidates.push_back(weigh(motion, matches));
   MotionCandidate best = *std::ranges::max_element(candidates, {}, &MotionCandidate::score);
-  const TwoViewFailure failure = reason_to_doubt(best, candidates);
+  const TwoViewFailure failure = rejection_reason(best, candidates);
   if (failure != TwoViewFailure::none) return failed(failure);
   best.motion.is_planar = planar;
   return {std::move(best.motion), TwoViewFailure::none};

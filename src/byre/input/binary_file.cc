@@ -79,7 +79,7 @@ std::vector<std::byte> read_file(const fs::path& path) {
   return bytes;
 }
 
-PiecewiseFile::PiecewiseFile(const fs::path& path) : path_(path) {
+RandomAccessFile::RandomAccessFile(const fs::path& path) : path_(path) {
   refuse_pipe(path);
   const OpenFile file(path);
   const struct stat status = file.status();
@@ -90,11 +90,11 @@ PiecewiseFile::PiecewiseFile(const fs::path& path) : path_(path) {
     fail(path, "cannot be kept open", "close other files, or raise the limit of open files (ulimit -n)");
 }
 
-PiecewiseFile::~PiecewiseFile() {
+RandomAccessFile::~RandomAccessFile() {
   close(descriptor_);
 }
 
-void PiecewiseFile::read(std::size_t offset, std::span<std::byte> bytes) const {
+void RandomAccessFile::read(std::size_t offset, std::span<std::byte> bytes) const {
   while (!bytes.empty()) {
     const ssize_t count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;

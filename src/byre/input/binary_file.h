@@ -15,12 +15,12 @@ std::vector<std::byte> read_file(const std::filesystem::path& path);
 std::filesystem::path folder_of(const std::filesystem::path& path);
 
 // An open file that is read piece by piece. Keeps reading the same file if its path is replaced. Thread-safe reads.
-class PiecewiseFile {
+class RandomAccessFile {
  public:
-  explicit PiecewiseFile(const std::filesystem::path& path);  // throws InputError if it cannot be opened
-  ~PiecewiseFile();
-  PiecewiseFile(const PiecewiseFile&) = delete;
-  PiecewiseFile& operator=(const PiecewiseFile&) = delete;
+  explicit RandomAccessFile(const std::filesystem::path& path);  // throws InputError if it cannot be opened
+  ~RandomAccessFile();
+  RandomAccessFile(const RandomAccessFile&) = delete;
+  RandomAccessFile& operator=(const RandomAccessFile&) = delete;
 
   std::size_t size() const { return size_; }  // bytes, when it was opened
   // Throws InputError if it cannot be read, or is too short.

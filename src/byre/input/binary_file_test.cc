@@ -36,7 +36,7 @@ class BinaryFile : public testing::Test {
 };
 
 TEST_F(BinaryFile, ReadsWrittenBytes) {
-  write_whole(folder_ / "file", bytes_of("a\0b"));
+  write_atomically(folder_ / "file", bytes_of("a\0b"));
   EXPECT_EQ(text_of(read_file(folder_ / "file")), text_of(bytes_of("a\0b")));
 }
 
@@ -47,30 +47,30 @@ TEST_F(BinaryFile, ThrowsIfUnreadable) {
 }
 
 TEST_F(BinaryFile, MapsTheBytesOfTheFile) {
-  write_whole(folder_ / "file", bytes_of("mapped"));
+  write_atomically(folder_ / "file", bytes_of("mapped"));
   EXPECT_EQ(text_of(MappedFile(folder_ / "file").bytes()), "mapped");
-  write_whole(folder_ / "empty", "");
+  write_atomically(folder_ / "empty", "");
   EXPECT_TRUE(MappedFile(folder_ / "empty").bytes().empty());
 }
 
 TEST_F(BinaryFile, ReadsPieces) {
-  write_whole(folder_ / "file", bytes_of("one two three"));
-  const PiecewiseFile file(folder_ / "file");
+  write_atomically(folder_ / "file", bytes_of("one two three"));
+  const RandomAccessFile file(folder_ / "file");
   EXPECT_EQ(file.size(), 13u);
   std::array<std::byte, 3> piece;
   file.read(4, piece);
   EXPECT_EQ(text_of(piece), "two");
-  write_whole(folder_ / "file", bytes_of("another"));
+  write_atomically(folder_ / "file", bytes_of("another"));
   file.read(0, piece);
   EXPECT_EQ(text_of(piece), "one") << "the opened file";
   EXPECT_THROW(file.read(11, piece), InputError);
-  EXPECT_THROW(PiecewiseFile(folder_ / "absent"), InputError);
-  EXPECT_THROW(PiecewiseFile{folder_}, InputError);
+  EXPECT_THROW(RandomAccessFile(folder_ / "absent"), InputError);
+  EXPECT_THROW(RandomAccessFile{folder_}, InputError);
 }
 
 TEST_F(BinaryFile, ReportsTruncationAfterOpening) {
-  write_whole(folder_ / "file", bytes_of("one two three"));
-  const PiecewiseFile file(folder_ / "file");
+  write_atomically(folder_ / "file", bytes_of("one two three"));
+  const RandomAccessFile file(folder_ / "file");
   fs::resize_file(folder_ / "file", 5);
   std::array<std::byte, 3> piece;
   try {

@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBytesLookedAt = 4096;
+constexpr std::size_t kProbeBytes = 4096;
 
 std::string first_bytes(std::ifstream& file) {
-  std::string bytes(kBytesLookedAt, '\0');
+  std::string bytes(kProbeBytes, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   return bytes;
@@ -155,7 +155,7 @@ std::string_view name_of(FileContent content) {
 
 FileContent content_of(std::span<const std::byte> bytes, const fs::path& name) {
   const auto* const begin = reinterpret_cast<const char*>(bytes.data());
-  return content_of_beginning({begin, std::min(bytes.size(), kBytesLookedAt)}, bytes.size(), name);
+  return content_of_beginning({begin, std::min(bytes.size(), kProbeBytes)}, bytes.size(), name);
 }
 
 std::optional<FileContent> content_of(const fs::path& path) {

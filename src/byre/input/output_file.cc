@@ -65,8 +65,8 @@ std::string_view remedy_of(int error) {
 
 // Temporary files of this process, for the signal handler. The memory of the names is never freed.
 struct Pending {
-  std::atomic<bool> is_taken = false;
-  std::atomic<bool> is_there = false;
+  std::atomic<bool> is_claimed = false;
+  std::atomic<bool> is_active = false;
   std::array<char, 1024> name{};
 };
 std::array<Pending, 16> pending_files;
@@ -74,23 +74,23 @@ static_assert(std::atomic<bool>::is_always_lock_free, "signal handlers may read 
 
 // Adds a file to the list and returns its index; -1 for a long name or a full list. Such a file stays if a signal ends
 // the program; the next run that writes the same path removes it.
-int note_pending(const fs::path& file) {
+int add_pending(const fs::path& file) {
   const std::string& name = file.native();
   if (name.size() >= Pending{}.name.size()) return -1;
   for (std::size_t i = 0; i < pending_files.size(); ++i) {
-    if (pending_files[i].is_taken.exchange(true)) continue;
+    if (pending_files[i].is_claimed.exchange(true)) continue;
     std::memcpy(pending_files[i].name.data(), name.c_str(), name.size() + 1);
-    pending_files[i].is_there = true;
+    pending_files[i].is_active = true;
     return static_cast<int>(i);
   }
   return -1;
 }
 
-void forget_pending(int& place) {
+void remove_pending(int& place) {
   if (place < 0) return;
   Pending& pending = pending_files[static_cast<std::size_t>(place)];
-  pending.is_there = false;
-  pending.is_taken = false;
+  pending.is_active = false;
+  pending.is_claimed = false;
   place = -1;
 }
 
@@ -165,12 +165,12 @@ Destination destination_of(const fs::path& path, std::optional<FileContent> cont
   struct stat status {};
   const bool is_link = lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
   Destination to{is_link ? target_of(path) : path};
-  const bool is_there = stat(to.target.c_str(), &status) == 0;
-  if (!is_there && errno == ELOOP) {
+  const bool is_active = stat(to.target.c_str(), &status) == 0;
+  if (!is_active && errno == ELOOP) {
     refuse(path, "is a circular link", "choose a regular file");
   }
-  if (is_there && S_ISDIR(status.st_mode)) refuse(path, "is a folder", "choose a file in it");
-  if (is_there && !S_ISREG(status.st_mode)) {
+  if (is_active && S_ISDIR(status.st_mode)) refuse(path, "is a folder", "choose a file in it");
+  if (is_active && !S_ISREG(status.st_mode)) {
     to.is_direct = !is_link && (S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode));
     if (!to.is_direct) refuse(path, "is a link to a device, a socket or a block device", "choose a regular file");
     if (access(path.c_str(), W_OK) != 0) refuse(path, "is not writable", "check its permissions");
@@ -180,7 +180,7 @@ Destination destination_of(const fs::path& path, std::optional<FileContent> cont
     refuse(path, "is in a system folder", "choose a file in another folder");
   }
   require_folder(path, to.target);
-  if (!is_there) return to;
+  if (!is_active) return to;
   to.there = status;
   if (content) require_replaceable(path, to.target, *content, status);
   return to;
@@ -188,8 +188,8 @@ Destination destination_of(const fs::path& path, std::optional<FileContent> cont
 
 // First part of a temporary name, short enough for the rest.
 std::string beginning_of(const fs::path& target) {
-  constexpr std::size_t kMost = 200;  // bytes, of the 255 of file systems
-  return target.filename().string().substr(0, kMost) + ".";
+  constexpr std::size_t kMaxPending = 200;  // bytes, of the 255 of file systems
+  return target.filename().string().substr(0, kMaxPending) + ".";
 }
 
 // Last part of a temporary name. The video library chooses the format by the extension.
@@ -197,7 +197,7 @@ std::string ending_of(const fs::path& target, FileContent content) {
   return std::string(kUnfinished) + (content == FileContent::video ? target.extension().string() : "");
 }
 
-fs::path temporary_beside(const fs::path& target, FileContent content) {
+fs::path temporary_path_for(const fs::path& target, FileContent content) {
   unsigned number = 0;
   while (getrandom(&number, sizeof(number), 0) != sizeof(number)) {
   }
@@ -224,7 +224,7 @@ bool lock(int descriptor) {
   return flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
 
-void remove_if_left(const fs::path& file) {
+void remove_if_stale(const fs::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
   struct stat status {};
@@ -237,7 +237,7 @@ void remove_if_left(const fs::path& file) {
 void remove_leftovers(const fs::path& target, FileContent content) {
   std::error_code error;
   for (fs::directory_iterator entry(folder_of(target), error), end; !error && entry != end; entry.increment(error)) {
-    if (is_temporary_of(entry->path(), target, content)) remove_if_left(entry->path());
+    if (is_temporary_of(entry->path(), target, content)) remove_if_stale(entry->path());
   }
 }
 
@@ -245,7 +245,7 @@ void remove_leftovers(const fs::path& target, FileContent content) {
 std::pair<int, fs::path> create_temporary(const fs::path& path, const Destination& to, FileContent content) {
   constexpr int kAttempts = 100;
   for (int i = 0; i < kAttempts; ++i) {
-    fs::path name = temporary_beside(to.target, content);
+    fs::path name = temporary_path_for(to.target, content);
     const int descriptor = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) fail_to_write(path, to.there.has_value(), errno);
@@ -259,7 +259,7 @@ std::pair<int, fs::path> create_temporary(const fs::path& path, const Destinatio
 }
 
 // Takes over owner and mode as far as the system allows.
-void take_over_owner_and_mode(int descriptor, const struct stat& there) {
+void copy_owner_and_mode(int descriptor, const struct stat& there) {
   constexpr mode_t kPermissions = 0777;
   const bool is_owner_kept = fchown(descriptor, there.st_uid, there.st_gid) == 0;
   if (is_owner_kept) fchmod(descriptor, there.st_mode & kPermissions);
@@ -281,9 +281,9 @@ void sync_folder_of(const fs::path& path, const fs::path& target) {
 }  // namespace
 
 fs::path target_of(fs::path path) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMaxLinks = 40;
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+  for (int i = 0; i < kMaxLinks && fs::is_symlink(path, error); ++i) {
     path = path.parent_path() / fs::read_symlink(path, error);
   }
   const fs::path target = fs::weakly_canonical(fs::absolute(path, error), error);
@@ -308,13 +308,13 @@ OutputFile::OutputFile(const fs::path& path, FileContent content, Durability dur
   }
   if (durability_ == Durability::synced) remove_leftovers(target_, content);
   std::tie(descriptor_, temporary_) = create_temporary(path_, to, content);
-  pending_ = note_pending(temporary_);
-  if (to.there) take_over_owner_and_mode(descriptor_, *to.there);
+  pending_ = add_pending(temporary_);
+  if (to.there) copy_owner_and_mode(descriptor_, *to.there);
 }
 
 OutputFile::~OutputFile() {
   if (!temporary_.empty()) unlink(temporary_.c_str());
-  forget_pending(pending_);
+  remove_pending(pending_);
   close(descriptor_);
 }
 
@@ -340,27 +340,27 @@ void OutputFile::publish() {
   sync();
   if (rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write(path_, replaces_, errno);
   temporary_.clear();
-  forget_pending(pending_);
+  remove_pending(pending_);
   if (durability_ == Durability::synced) sync_folder_of(path_, target_);
 }
 
-void write_whole(const fs::path& path, std::span<const std::byte> bytes, Durability durability) {
+void write_atomically(const fs::path& path, std::span<const std::byte> bytes, Durability durability) {
   OutputFile file(path, content_of(bytes, path), durability);
   file.append(bytes);
   file.publish();
 }
 
-void write_whole(const fs::path& path, std::string_view text) {
-  write_whole(path, std::as_bytes(std::span(text)));
+void write_atomically(const fs::path& path, std::string_view text) {
+  write_atomically(path, std::as_bytes(std::span(text)));
 }
 
-void keep_as(const fs::path& file, const fs::path& path) {
+void link_or_copy(const fs::path& file, const fs::path& path) {
   const FileContent content = content_of(file).value_or(FileContent::other);
   const Destination to = destination_of(path, content);
   if (to.is_direct) refuse(path, "is a device or a pipe", "choose a regular file");
   remove_leftovers(to.target, content);
-  const fs::path temporary = temporary_beside(to.target, content);
-  if (link(target_of(file).c_str(), temporary.c_str()) != 0) return write_whole(path, read_file(file));
+  const fs::path temporary = temporary_path_for(to.target, content);
+  if (link(target_of(file).c_str(), temporary.c_str()) != 0) return write_atomically(path, read_file(file));
   const bool is_renamed = rename(temporary.c_str(), to.target.c_str()) == 0;
   const int error = errno;
   unlink(temporary.c_str());  // still there if both paths were the same file, or renaming failed
@@ -370,7 +370,7 @@ void keep_as(const fs::path& file, const fs::path& path) {
 
 void remove_unpublished_files() noexcept {
   for (const Pending& pending : pending_files) {
-    if (pending.is_there) unlink(pending.name.data());
+    if (pending.is_active) unlink(pending.name.data());
   }
 }
 

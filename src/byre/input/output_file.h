@@ -25,13 +25,13 @@ void require_writable(const std::filesystem::path& path, std::optional<FileConte
 
 enum class Durability : std::uint8_t {
   synced,
-  left_to_system,  // not synced; for one of many files, such as images of a recording
+  unsynced,  // not synced; for one of many files, such as images of a recording
 };
 
 // Writes a file as a whole. Throws InputError on failure; the path is then unchanged.
-void write_whole(const std::filesystem::path& path, std::span<const std::byte> bytes,
-                 Durability durability = Durability::synced);
-void write_whole(const std::filesystem::path& path, std::string_view text);
+void write_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                      Durability durability = Durability::synced);
+void write_atomically(const std::filesystem::path& path, std::string_view text);
 
 // A file that is written piece by piece. All functions throw InputError on failure.
 class OutputFile {
@@ -63,8 +63,8 @@ class OutputFile {
 };
 
 // Keeps the content of a file under a second path, by a hard link if the file system has them, else by a copy. Replaces
-// that path as write_whole does.
-void keep_as(const std::filesystem::path& file, const std::filesystem::path& path);
+// that path as write_atomically does.
+void link_or_copy(const std::filesystem::path& file, const std::filesystem::path& path);
 
 // Removes all temporary files of this process. Safe in a signal handler that ends the program.
 void remove_unpublished_files() noexcept;

@@ -46,7 +46,7 @@ class OutputFileTest : public testing::Test {
   // The refusal of a write; empty if it was written. name: in the folder, or an absolute path.
   std::string refusal(const fs::path& name, const std::string& content) const {
     try {
-      write_whole(folder_ / name, content);
+      write_atomically(folder_ / name, content);
       return "";
     } catch (const InputError& error) {
       return error.what();
@@ -155,7 +155,7 @@ TEST_F(OutputFileTest, WritesToDevicesDirectlyButNotIntoSystemFolders) {
 TEST_F(OutputFileTest, ContinuesAFileThatOutputIsRedirectedTo) {
   const int log = open((folder_ / "log").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   EXPECT_EQ(write(log, "before\n", 7), 7);
-  write_whole("/dev/fd/" + std::to_string(log), "in between\n");
+  write_atomically("/dev/fd/" + std::to_string(log), "in between\n");
   EXPECT_EQ(write(log, "after\n", 6), 6);
   close(log);
   EXPECT_EQ(read("log"), "before\nin between\nafter\n");
@@ -230,14 +230,14 @@ TEST_F(OutputFileTest, AcceptsLongNames) {
 
 TEST_F(OutputFileTest, IsKeptUnderASecondName) {
   put("barn.byre", kMap);
-  keep_as(folder_ / "barn.byre", folder_ / "previous.byre");
+  link_or_copy(folder_ / "barn.byre", folder_ / "previous.byre");
   EXPECT_EQ(refusal("barn.byre", kNewMap), "");
   EXPECT_EQ(read("previous.byre"), kMap);
-  keep_as(folder_ / "barn.byre", folder_ / "previous.byre");
-  keep_as(folder_ / "barn.byre", folder_ / "previous.byre");  // already the same file
+  link_or_copy(folder_ / "barn.byre", folder_ / "previous.byre");
+  link_or_copy(folder_ / "barn.byre", folder_ / "previous.byre");  // already the same file
   EXPECT_EQ(read("previous.byre"), kNewMap);
   put("letter.txt", "Dear reader\n");
-  EXPECT_THROW(keep_as(folder_ / "barn.byre", folder_ / "letter.txt"), InputError);
+  EXPECT_THROW(link_or_copy(folder_ / "barn.byre", folder_ / "letter.txt"), InputError);
   EXPECT_EQ(read("letter.txt"), "Dear reader\n");
   EXPECT_EQ(entries(), 3);
 }

@@ -36,8 +36,8 @@ std::optional<KeyframeId> Mission::keyframe_near(const Pose& predicted_camera_fr
   return near.empty() ? std::nullopt : std::optional(near.front());
 }
 
-void Mission::append_candidates(std::span<const PointId> around, ReusedVector<PointId>& candidates) const {
-  make_room(candidates, candidates.size() + around.size());
+void Mission::append_candidates(std::span<const PointId> around, ScratchVector<PointId>& candidates) const {
+  reserve_pow2(candidates, candidates.size() + around.size());
   std::ranges::copy_if(around, std::back_inserter(candidates),
                        [this](PointId id) { return !moved_points_.is_suspended(id); });
 }
@@ -51,7 +51,7 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
                        moved_together(offline_->map(), track.offline_agreed, track.offline_moved));
   }
   reference_ = held ? track.offline_reference : std::nullopt;
-  if (held && (track.offline_stands || !track.maps_disagree)) {
+  if (held && (track.offline_prevails || !track.maps_disagree)) {
     distance_since_offline_ = 0.0;
     last_offline_time_ = time;
   } else {
@@ -59,8 +59,8 @@ void Mission::note(const HybridTrack& track, Timestamp time, double step, const 
   }
 }
 
-ReusedVector<PointId> Mission::due_again(std::span<const PointId> around) const {
-  ReusedVector<PointId> due;
+ScratchVector<PointId> Mission::due_for_retest(std::span<const PointId> around) const {
+  ScratchVector<PointId> due;
   if (moved_points_.count() == 0 || view_ != OfflineView::held || frames_ % kLookAgainEvery != 0) return due;
   std::ranges::copy_if(around, std::back_inserter(due), [this](PointId id) { return moved_points_.is_suspended(id); });
   return due;
@@ -79,7 +79,7 @@ std::optional<Pose> Mission::test_registration(const RegistrationEvidence& seen,
   registration_->offline_from_online = seen.offline_from_online;
   PlaceHypothesis& place = registration_->place;
   place.observe(seen.view, true);
-  if (!place.is_believed() || (!place.is_accepted() && place.log_odds() < 0.0)) return std::nullopt;
+  if (!place.is_confirmed() || (!place.is_accepted() && place.log_odds() < 0.0)) return std::nullopt;
   return std::exchange(registration_, std::nullopt)->offline_from_online;
 }
 

@@ -47,13 +47,13 @@ class Mission {
   // frame, otherwise the one nearest to the pose.
   std::optional<KeyframeId> keyframe_near(const Pose& predicted_camera_from_world) const;
   // Appends the points that are not suspended.
-  void append_candidates(std::span<const PointId> around, ReusedVector<PointId>& candidates) const;
+  void append_candidates(std::span<const PointId> around, ScratchVector<PointId>& candidates) const;
 
   // Adds a tracked frame. step: metres from the frame before.
   void note(const HybridTrack& track, Timestamp time, double step, const OfflineEvidence& evidence);
   // Suspended points in frames that search for them again; otherwise empty.
-  ReusedVector<PointId> due_again(std::span<const PointId> around) const;
-  void note_again(const PlacedPoints& placed) { moved_points_.note_again(placed.agreed, placed.moved); }
+  ScratchVector<PointId> due_for_retest(std::span<const PointId> around) const;
+  void note_retest(const SearchedPoints& points) { moved_points_.note_retest(points.agreed, points.moved); }
   // Offline points do not constrain the pose now.
   void forget_reference() { reference_.reset(); }
 

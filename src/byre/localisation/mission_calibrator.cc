@@ -29,7 +29,7 @@ std::optional<MissionCalibrator::Switch> MissionCalibrator::collect() {
   if (!finished) return std::nullopt;
   Outcome& outcome = finished->result;
   const Switch result{outcome.after_from_before, outcome.from_given.rig()};
-  calibrator_.take_over(outcome.refined, std::move(outcome.from_given));
+  calibrator_.apply_update(outcome.refined, std::move(outcome.from_given));
   return result;
 }
 

@@ -13,7 +13,7 @@ void Odometry::correct(const Pose& map_from_body) {
   map_from_body_ = map_from_body;
 }
 
-Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<Offset>& offset) {
+Odometry::Step Odometry::advance_to(const Pose& map_from_body, const std::optional<Offset>& offset) {
   if (!is_finite(map_from_body)) return {map_from_body_, 0.0};
   const Pose smooth = without_change_of(offset, map_from_body);
   const double metres = (map_from_body_.translation - smooth.translation).norm();
@@ -24,10 +24,10 @@ Odometry::Step Odometry::follow(const Pose& map_from_body, const std::optional<O
   return {smooth, metres};
 }
 
-void Odometry::go_by(const Pose& last_from_body, const Pose& map_from_body) {
+void Odometry::move_by_odometry(const Pose& last_from_body, const Pose& map_from_body) {
   if (!is_finite(last_from_body)) return correct(map_from_body);
   correct(map_from_body * inverse(last_from_body));
-  follow(map_from_body, {});
+  advance_to(map_from_body, {});
 }
 
 Pose Odometry::without_change_of(const std::optional<Offset>& offset, const Pose& map_from_body) const {

@@ -29,15 +29,15 @@ class Odometry {
     double metres = 0.0;  // length of the motion
   };
   // The body was tracked to a pose. A sudden change of the offset, beyond its uncertainty, is a jump by offline points
-  // and no motion: odometry does not follow it.
-  Step follow(const Pose& map_from_body, const std::optional<Offset>& offset);
+  // and no motion: odometry does not advance_to it.
+  Step advance_to(const Pose& map_from_body, const std::optional<Offset>& offset);
 
   // Sets a map pose that was not tracked from the last one, and moves the odometry by the measured motion since the
   // last frame.
-  void go_by(const Pose& last_from_body, const Pose& map_from_body);
+  void move_by_odometry(const Pose& last_from_body, const Pose& map_from_body);
 
   // Sets the offset that the next pose is compared with; empty: not comparable.
-  void remember_offset(const std::optional<Offset>& offset) { offset_ = offset; }
+  void set_offset(const std::optional<Offset>& offset) { offset_ = offset; }
 
  private:
   Pose without_change_of(const std::optional<Offset>& offset, const Pose& map_from_body) const;

@@ -20,7 +20,7 @@ class OfflineTrackerTest : public ::testing::Test {
   const std::shared_ptr<const OfflineMap> map_ = offline_map_of(mission_);
   Mapper mapper_{mission_.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), map_}};
   OfflineTracker tracker_{map_, {}, {make_inline_executor(), make_inline_executor()}};
-  Whereabouts whereabouts_{{}, {}, {}, true};
+  PoseFilter pose_filter_{{}, {}, {}, true};
 
   HybridTrack track_of(std::size_t frame, int inliers = 100, int expected = 100) const {
     HybridTrack track;
@@ -32,19 +32,19 @@ class OfflineTrackerTest : public ::testing::Test {
     return track;
   }
   void note_found(std::size_t frame, const PlaceView& view = view_of_room(10, 0, 2)) {
-    mapper_.begin_where_found(track_of(frame));
-    for (const bool from_nothing : {true, false, false, false}) {
-      whereabouts_.note({mission_.frames[frame], track_of(frame), from_nothing, true, 0, false, &view}, mission_.rig,
+    mapper_.begin_at_relocalisation(track_of(frame));
+    for (const bool is_relocalised : {true, false, false, false}) {
+      pose_filter_.note({mission_.frames[frame], track_of(frame), is_relocalised, true, 0, false, &view}, mission_.rig,
                         mapper_.map());
       ++frame;
     }
-    ASSERT_TRUE(whereabouts_.place().is_believed());
+    ASSERT_TRUE(pose_filter_.place().is_confirmed());
   }
-  OfflineTracker::Consequence note(std::size_t frame, int inliers) {
+  OfflineTracker::MissionUpdate note(std::size_t frame, int inliers) {
     return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}, {}},
-                         whereabouts_, mapper_);
+                         pose_filter_, mapper_);
   }
-  // A search that found the first frame so many metres off its believed pose.
+  // A search that found the first frame so many metres off its confirmed pose.
   PlaceSearch place_beside(double metres) const {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
     PlaceSearch search{.time = mission_.frames[0].time, .rig = mission_.rig};
@@ -59,20 +59,20 @@ class OfflineTrackerTest : public ::testing::Test {
     for (std::size_t i = begin; i < end; ++i) {
       HybridTrack track = track_of(i);
       track.tracked.camera_from_world = track.tracked.camera_from_world * beside;
-      if (i == 0) mapper_.begin_where_found(track);
+      if (i == 0) mapper_.begin_at_relocalisation(track);
       if (i == 0) tracker_.begin_place(mission_.frames[i].time, track.tracked.camera_from_world);
       const OfflineTracker::Seen seen{mission_.frames[i], track, mission_.rig, 0.1, false, {}, {}};
-      tracker_.test_rivals(seen, {}, whereabouts_, mapper_);
-      whereabouts_.note(
+      tracker_.test_rivals(seen, {}, pose_filter_, mapper_);
+      pose_filter_.note(
           {mission_.frames[i], track, i == 0, true, 0, false, &view, nullptr, tracker_.log_odds_of_rivals()},
           mission_.rig, mapper_.map());
-      tracker_.note(seen, whereabouts_, mapper_);
-      tracker_.search_beside({mission_.frames[i], mission_.rig}, whereabouts_, mapper_);
-      consequence_ = tracker_.consider(tracker_.collect_place(), whereabouts_, mapper_);
+      tracker_.note(seen, pose_filter_, mapper_);
+      tracker_.search_in_background({mission_.frames[i], mission_.rig}, pose_filter_, mapper_);
+      update_ = tracker_.process_search(tracker_.collect_place(), pose_filter_, mapper_);
     }
   }
 
-  OfflineTracker::Consequence consequence_;  // consequence of the last frame of track_beside()
+  OfflineTracker::MissionUpdate update_;  // update of the last frame of track_beside()
 };
 
 TEST_F(OfflineTrackerTest, ReportsEnteringTheMappedAreaOnce) {
@@ -100,11 +100,11 @@ TEST_F(OfflineTrackerTest, WidensItsLimitsWithTheTimeWithoutOfflinePoints) {
 
 TEST_F(OfflineTrackerTest, ReplacesAnUnacceptedPlaceByALikelierRival) {
   track_beside(0, 3);
-  EXPECT_FALSE(consequence_.refutes_pose) << "one search is not enough";
+  EXPECT_FALSE(update_.refutes_pose) << "one search is not enough";
   track_beside(3, 6);
-  ASSERT_FALSE(whereabouts_.place().is_accepted());
-  EXPECT_TRUE(consequence_.refutes_pose);
-  EXPECT_FALSE(consequence_.refutes_way);
+  ASSERT_FALSE(pose_filter_.place().is_accepted());
+  EXPECT_TRUE(update_.refutes_pose);
+  EXPECT_FALSE(update_.refutes_earlier_poses);
   const auto found = tracker_.find_at_rival(mission_.frames[6], mission_.rig, {});
   ASSERT_TRUE(found);
   EXPECT_THAT(found->camera_from_world, PoseNear(true_camera_from_world(mission_, 6), 0.05, 0.02));
@@ -113,31 +113,31 @@ TEST_F(OfflineTrackerTest, ReplacesAnUnacceptedPlaceByALikelierRival) {
 
 TEST_F(OfflineTrackerTest, KeepsAnAcceptedPlaceAfterOneContradictingSearch) {
   note_found(0);
-  ASSERT_TRUE(whereabouts_.place().is_accepted());
-  const OfflineTracker::Consequence consequence = tracker_.consider(place_beside(2.0), whereabouts_, mapper_);
-  EXPECT_FALSE(consequence.refutes_pose);
-  EXPECT_FALSE(consequence.correction);
+  ASSERT_TRUE(pose_filter_.place().is_accepted());
+  const OfflineTracker::MissionUpdate update = tracker_.process_search(place_beside(2.0), pose_filter_, mapper_);
+  EXPECT_FALSE(update.refutes_pose);
+  EXPECT_FALSE(update.correction);
 }
 
 TEST_F(OfflineTrackerTest, RequiresNoFurtherEvidenceForAConsistentHint) {
-  mapper_.begin_where_found(track_of(0));
+  mapper_.begin_at_relocalisation(track_of(0));
   for (std::size_t i = 0; i < 4; ++i) {
     const PlaceView view = view_of_room(2, 4);
-    whereabouts_.note({mission_.frames[i], track_of(i), i == 0, true, 0, true, &view}, mission_.rig, mapper_.map());
+    pose_filter_.note({mission_.frames[i], track_of(i), i == 0, true, 0, true, &view}, mission_.rig, mapper_.map());
   }
-  tracker_.search_beside({mission_.frames[3], mission_.rig, PoseHint{}}, whereabouts_, mapper_);
+  tracker_.search_in_background({mission_.frames[3], mission_.rig, PoseHint{}}, pose_filter_, mapper_);
   const std::optional<PlaceSearch> search = tracker_.collect_place();
   ASSERT_TRUE(search && search->found) << "in the whole map, as the hint is elsewhere";
-  EXPECT_TRUE(tracker_.consider(search, whereabouts_, mapper_).agrees_with_hint);
+  EXPECT_TRUE(tracker_.process_search(search, pose_filter_, mapper_).agrees_with_hint);
 }
 
 TEST_F(OfflineTrackerTest, CorrectsTheOnlineMapAfterEnoughConsistentPlaces) {
   note_found(0);
   const int confirmations = RegistrationOptions{}.confirmations;
   for (int i = 1; i < confirmations; ++i) {
-    EXPECT_FALSE(tracker_.consider(place_beside(0.005), whereabouts_, mapper_).correction);
+    EXPECT_FALSE(tracker_.process_search(place_beside(0.005), pose_filter_, mapper_).correction);
   }
-  const auto correction = tracker_.consider(place_beside(0.005), whereabouts_, mapper_).correction;
+  const auto correction = tracker_.process_search(place_beside(0.005), pose_filter_, mapper_).correction;
   ASSERT_TRUE(correction);
   EXPECT_EQ(correction->shape, CorrectionShape::spread);
   EXPECT_EQ(correction->frame, Submaps::kMapFrame);
@@ -146,7 +146,7 @@ TEST_F(OfflineTrackerTest, CorrectsTheOnlineMapAfterEnoughConsistentPlaces) {
 
 TEST_F(OfflineTrackerTest, SearchesPlacesWhileItsPlaceIsNotAccepted) {
   note_found(0, view_of_room(2, 8));
-  tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
+  tracker_.search_in_background({mission_.frames[4], mission_.rig}, pose_filter_, mapper_);
   const std::optional<PlaceSearch> search = tracker_.collect_place();
   ASSERT_TRUE(search && search->found);
   EXPECT_EQ(search->time, mission_.frames[4].time);
@@ -157,21 +157,21 @@ TEST_F(OfflineTrackerTest, SearchesPlacesOncePerSecondWithFewOfflinePoints) {
   note_found(0);
   const PlaceView view = view_of_room(4, 6);
   for (int i = 0; i < 6; ++i) {
-    whereabouts_.note({mission_.frames[4], track_of(4), false, true, 0, false, &view}, mission_.rig, mapper_.map());
+    pose_filter_.note({mission_.frames[4], track_of(4), false, true, 0, false, &view}, mission_.rig, mapper_.map());
   }
-  ASSERT_TRUE(whereabouts_.place().is_accepted());
+  ASSERT_TRUE(pose_filter_.place().is_accepted());
   note(4, 70);
-  tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
+  tracker_.search_in_background({mission_.frames[4], mission_.rig}, pose_filter_, mapper_);
   const std::optional<PlaceSearch> search = tracker_.collect_place();
   EXPECT_TRUE(search && search->found);
-  tracker_.search_beside({mission_.frames[5], mission_.rig}, whereabouts_, mapper_);
+  tracker_.search_in_background({mission_.frames[5], mission_.rig}, pose_filter_, mapper_);
   EXPECT_FALSE(tracker_.collect_place());
 }
 
 TEST_F(OfflineTrackerTest, SearchesNoPlacesWhileOfflinePointsHoldThePose) {
   note_found(0);
   note(4, 100);
-  tracker_.search_beside({mission_.frames[4], mission_.rig}, whereabouts_, mapper_);
+  tracker_.search_in_background({mission_.frames[4], mission_.rig}, pose_filter_, mapper_);
   EXPECT_FALSE(tracker_.collect_place());
 }
 
@@ -192,7 +192,7 @@ class OfflineTrackerInTwinRooms : public ::testing::Test {
   }();
   Mapper mapper_{mission_.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), rooms_}};
   OfflineTracker tracker_{rooms_, {}, {make_inline_executor(), make_inline_executor()}};
-  Whereabouts whereabouts_{{}, {}, {}, true};
+  PoseFilter pose_filter_{{}, {}, {}, true};
   HybridTrack track_ = [this] {
     HybridTrack track;
     track.tracked.camera_from_world = true_camera_from_world(mission_, 0);
@@ -207,7 +207,7 @@ TEST_F(OfflineTrackerInTwinRooms, CommonPointsAreNoEvidenceAgainstARival) {
   elsewhere.tracked.camera_from_world =
       track_.tracked.camera_from_world * Pose{Eigen::Quaterniond::Identity(), {-10.0, 0.0, 0.0}};
   tracker_.test_rivals({mission_.frames[0], track_, mission_.rig, 0.0, false, {}, {}}, std::span(&elsewhere, 1),
-                       whereabouts_, mapper_);
+                       pose_filter_, mapper_);
   EXPECT_EQ(points_alone(true), 0);
   EXPECT_GT(points_alone(false), 0) << "an accepted place is tested by all of its points";
 }

@@ -17,16 +17,16 @@ double largest_sigma(const Eigen::Matrix2d& covariance) {
 
 }  // namespace
 
-bool PlaceBounds::is_off_the_ground(const PlaceToJudge& place) const {
-  const DrivenGround::Stand stand = ground_->stand_of(place.map_from_body);
-  const Eigen::Vector3d& up = stand.up_in_body;
+bool PlaceBounds::is_off_the_ground(const PlaceCandidatePose& place) const {
+  const DrivenGround::GroundOffset offset = ground_->offset_from_ground(place.map_from_body);
+  const Eigen::Vector3d& up = offset.up_in_body;
   const double height_variance = up.dot(place.covariance.topLeftCorner<3, 3>() * up);
   const double tilt_variance = place.covariance.bottomRightCorner<3, 3>().trace();
   const double height_bound =
-      options_.plane_margin + kSigmasOfLine * std::hypot(stand.height_sigma, std::sqrt(height_variance));
+      options_.plane_margin + kSigmasOfLine * std::hypot(offset.height_sigma, std::sqrt(height_variance));
   const double tilt_bound =
-      options_.plane_margin_tilt + kSigmasOfPlane * std::hypot(stand.tilt_sigma, std::sqrt(tilt_variance));
-  return std::abs(stand.height) > height_bound || stand.tilt > tilt_bound;
+      options_.plane_margin_tilt + kSigmasOfPlane * std::hypot(offset.tilt_sigma, std::sqrt(tilt_variance));
+  return std::abs(offset.height) > height_bound || offset.tilt > tilt_bound;
 }
 
 PlanDisc PlaceBounds::disc_around(const Pose& map_from_body, const Matrix6& covariance) const {
@@ -38,27 +38,27 @@ PlanDisc PlaceBounds::disc_around(const Pose& map_from_body, const Matrix6& cova
           options_.wall_margin + kSigmasOfPlane * largest_sigma(of_position.topLeftCorner<2, 2>())};
 }
 
-// A way around a wall takes time. After kUntilItIsCarried without a pose help is called, and the robot may be carried.
-Doubt PlaceBounds::wall_against(const PlaceToJudge& place, const std::optional<Way>& way) const {
-  constexpr double kSlack = 1.0;            // metres, error of the length of the way
+// A path around a wall takes time. After kUntilItIsCarried without a pose help is called, and the robot may be carried.
+DistrustReason PlaceBounds::wall_rejection(const PlaceCandidatePose& place, const std::optional<Reach>& reach) const {
+  constexpr double kSlack = 1.0;            // metres, error of the length of the path
   constexpr double kUntilItIsCarried = 10;  // seconds
   const PlanWalls& walls = walls_->walls;
   const PlanDisc here = disc_around(place.map_from_body, place.covariance);
-  if (!walls.has_free_place(here)) return Doubt::in_wall;
-  if (!walls.has_place_to_drive_to(here)) return Doubt::outside;
-  if (!way) return Doubt::none;
-  const double seconds = to_seconds(place.time - way->before.time);
-  if (seconds >= kUntilItIsCarried) return Doubt::none;
-  const PlanDisc before = disc_around(way->before.map_from_body, Matrix6::Zero());
-  // The straight distance is always allowed: a place beyond the reach of max_speed needs more frames to be believed,
+  if (!walls.has_free_cell(here)) return DistrustReason::in_wall;
+  if (!walls.has_reachable_cell(here)) return DistrustReason::outside;
+  if (!reach) return DistrustReason::none;
+  const double seconds = to_seconds(place.time - reach->before.time);
+  if (seconds >= kUntilItIsCarried) return DistrustReason::none;
+  const PlanDisc before = disc_around(reach->before.map_from_body, Matrix6::Zero());
+  // The straight distance is always allowed: a place beyond the reach of max_speed needs more frames to be confirmed,
   // but is no evidence of a wall.
-  const double longest = kSlack + std::max(way->max_speed * seconds, (here.centre - before.centre).norm());
-  return walls.way_between(before, here, longest) ? Doubt::none : Doubt::behind_wall;
+  const double longest = kSlack + std::max(reach->max_speed * seconds, (here.centre - before.centre).norm());
+  return walls.path_length_between(before, here, longest) ? DistrustReason::none : DistrustReason::behind_wall;
 }
 
-Doubt PlaceBounds::reason_against(const PlaceToJudge& place, const std::optional<Way>& way) const {
-  if (ground_ != nullptr && is_off_the_ground(place)) return Doubt::off_the_plane;
-  return walls_ != nullptr ? wall_against(place, way) : Doubt::none;
+DistrustReason PlaceBounds::rejection_reason(const PlaceCandidatePose& place, const std::optional<Reach>& reach) const {
+  if (ground_ != nullptr && is_off_the_ground(place)) return DistrustReason::off_the_plane;
+  return walls_ != nullptr ? wall_rejection(place, reach) : DistrustReason::none;
 }
 
 }  // namespace byre

@@ -17,14 +17,14 @@ struct PlaceBoundsOptions {
   double wall_margin = 0.5;
 };
 
-struct PlaceToJudge {
+struct PlaceCandidatePose {
   Timestamp time{};
   Pose map_from_body;
   Matrix6 covariance = Matrix6::Zero();  // see FrameReport
 };
 
 // An earlier pose of the robot, beyond doubt.
-struct PlaceBefore {
+struct PreviousPlace {
   Timestamp time{};
   Pose map_from_body;
 };
@@ -38,17 +38,17 @@ class PlaceBounds {
       : ground_(options.is_on_ground_of_map ? map.ground() : nullptr), walls_(map.walls()), options_(options) {}
 
   // Motion since an earlier pose, at most max_speed metres per second.
-  struct Way {
-    PlaceBefore before;
+  struct Reach {
+    PreviousPlace before;
     double max_speed = 3.0;
   };
-  // Reason why the robot cannot be at a place; Doubt::none if it can.
-  Doubt reason_against(const PlaceToJudge& place, const std::optional<Way>& way) const;
+  // Reason why the robot cannot be at a place; DistrustReason::none if it can.
+  DistrustReason rejection_reason(const PlaceCandidatePose& place, const std::optional<Reach>& reach) const;
 
  private:
-  bool is_off_the_ground(const PlaceToJudge& place) const;
+  bool is_off_the_ground(const PlaceCandidatePose& place) const;
   PlanDisc disc_around(const Pose& map_from_body, const Matrix6& covariance) const;
-  Doubt wall_against(const PlaceToJudge& place, const std::optional<Way>& way) const;
+  DistrustReason wall_rejection(const PlaceCandidatePose& place, const std::optional<Reach>& reach) const;
 
   const DrivenGround* ground_;  // nullptr: no constraint by the ground
   const PlacedWalls* walls_;    // nullptr: no walls given

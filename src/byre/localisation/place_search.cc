@@ -1,6 +1,6 @@
 #include "byre/localisation/place_search.h"
 
-#include "byre/localisation/standing_hint.h"
+#include "byre/localisation/active_hint.h"
 #include "byre/slam/body_pose.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/place_hypothesis.h"
@@ -11,9 +11,9 @@
 namespace byre {
 namespace {
 
-PlaceToJudge place_of(const TrackedFrame& tracked, const SoughtFrame& sought) {
-  const Rig& rig = sought.rig;
-  return {sought.frame.time, body_pose(rig, tracked.camera_from_world),
+PlaceCandidatePose place_of(const TrackedFrame& tracked, const PlaceQuery& query) {
+  const Rig& rig = query.rig;
+  return {query.frame.time, body_pose(rig, tracked.camera_from_world),
           move_covariance(tracked.match_covariance, rig.body_from_camera)};
 }
 
@@ -28,9 +28,8 @@ PoseHint surroundings_of(const PoseHint& hint) {
 
 }  // namespace
 
-BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought,
-                                const PlaceSearchOptions& options) {
-  const auto& [frame, rig, hint, way, hidden] = sought;
+BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options) {
+  const auto& [frame, rig, hint, reach, hidden] = query;
   LocaliseOptions localise_options = options.localise;
   localise_options.hidden = hidden;
   const Map nothing_online(Origin::online);
@@ -39,14 +38,14 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
   BoundedLocalisation result;
   PlaceFilter filter;
   filter.is_impossible = [&](const TrackedFrame& tracked) {
-    const Doubt reason = bounds.reason_against(place_of(tracked, sought), sought.way);
-    if (reason != Doubt::none) result.refused = reason;
-    return reason != Doubt::none;
+    const DistrustReason reason = bounds.rejection_reason(place_of(tracked, query), query.reach);
+    if (reason != DistrustReason::none) result.refused = reason;
+    return reason != DistrustReason::none;
   };
   const Pose camera_from_body = inverse(rig.body_from_camera);
   if (hint) {
     filter.is_excluded = [&map, &camera_from_body, around = surroundings_of(*hint)](KeyframeId id) {
-      return !is_near(around, inverse(map.find_bare_keyframe(id)->camera_from_world) * camera_from_body);
+      return !is_near(around, inverse(map.keyframe_header(id)->camera_from_world) * camera_from_body);
     };
   }
   Localisation& found = result.found;
@@ -62,21 +61,20 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& so
   return result;
 }
 
-PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, const PlaceSearchOptions& options) {
-  const auto [found, refused] = localise_in(offline, sought, options);
-  PlaceSearch search{sought.frame.time, sought.rig, std::nullopt, refused};
+PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options) {
+  const auto [found, refused] = localise_in(offline, query, options);
+  PlaceSearch search{query.frame.time, query.rig, std::nullopt, refused};
   for (const TrackedFrame& place : found.places_found) search.places.push_back(place.camera_from_world);
   if (!found.tracked) return search;
   const Map nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
-  const ReusedVector<PointId> around =
+  const ScratchVector<PointId> around =
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
-  const ReusedVector<PointId> nearby =
+  const ScratchVector<PointId> nearby =
       points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
-  PlaceView view =
-      view_of_place({offline.map(), sought.rig, sought.frame, *found.tracked, nearby, around, sought.hidden});
+  PlaceView view = view_of_place({offline.map(), query.rig, query.frame, *found.tracked, nearby, around, query.hidden});
   search.found = FoundPlace{found.tracked->camera_from_world, depth, std::move(view)};
-  search.refused = Doubt::none;
+  search.refused = DistrustReason::none;
   return search;
 }
 

@@ -17,22 +17,21 @@ struct PlaceSearchOptions {
 };
 
 // A frame to localise without a prediction.
-struct SoughtFrame {
+struct PlaceQuery {
   const Frame& frame;
   const Rig& rig;
-  std::optional<PoseHint> hint{};         // limits the search; empty: the whole map
-  std::optional<PlaceBounds::Way> way{};  // motion since the last trusted pose
-  HiddenCells hidden{};                   // image cells without expected points
+  std::optional<PoseHint> hint{};             // limits the search; empty: the whole map
+  std::optional<PlaceBounds::Reach> reach{};  // motion since the last trusted pose
+  ImageMask hidden{};                         // image cells without expected points
 };
 
 // Localisation in the offline map alone, restricted to possible places.
 struct BoundedLocalisation {
   Localisation found;
-  Doubt refused = Doubt::none;  // why a place that shows the frame was rejected
+  DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
 };
 
-BoundedLocalisation localise_in(const OfflineMap& offline, const SoughtFrame& sought,
-                                const PlaceSearchOptions& options);
+BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);
 
 // Pose of a frame in the offline map.
 struct FoundPlace {
@@ -43,12 +42,12 @@ struct FoundPlace {
 
 // Result of localising a frame in the offline map without a prediction.
 struct PlaceSearch {
-  Timestamp time{};                   // time of the frame
-  Rig rig{};                          // cameras of the frame
-  std::optional<FoundPlace> found{};  // empty: not found
-  Doubt refused = Doubt::none;        // see BoundedLocalisation
-  std::vector<Pose> places{};         // camera_from_offline at each place that shows the frame
+  Timestamp time{};                               // time of the frame
+  Rig rig{};                                      // cameras of the frame
+  std::optional<FoundPlace> found{};              // empty: not found
+  DistrustReason refused = DistrustReason::none;  // see BoundedLocalisation
+  std::vector<Pose> places{};                     // camera_from_offline at each place that shows the frame
 };
-PlaceSearch search_place(const OfflineMap& offline, const SoughtFrame& sought, const PlaceSearchOptions& options);
+PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);
 
 }  // namespace byre

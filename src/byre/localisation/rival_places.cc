@@ -29,7 +29,7 @@ Pose RivalPlaces::offline_from_last(const Rival& rival) const {
   return rival.rival_from_place * inverse(last_->camera_from_place);
 }
 
-const PlaceHypothesis* RivalPlaces::known_at(Timestamp time, const Pose& camera_from_offline) const {
+const PlaceHypothesis* RivalPlaces::find_test(Timestamp time, const Pose& camera_from_offline) const {
   if (!is_recent(time)) return nullptr;
   const Eigen::Vector3d camera = inverse(camera_from_offline).translation;
   const auto is_near = [&](const Pose& offline_from_camera) {
@@ -42,7 +42,7 @@ const PlaceHypothesis* RivalPlaces::known_at(Timestamp time, const Pose& camera_
 }
 
 std::optional<PlaceHypothesis> RivalPlaces::begin(Timestamp time, const Pose& camera_from_place) {
-  const PlaceHypothesis* const known = known_at(time, camera_from_place);
+  const PlaceHypothesis* const known = find_test(time, camera_from_place);
   const std::optional<PlaceHypothesis> place = known != nullptr ? std::optional(*known) : std::nullopt;
   if (is_recent(time)) {
     const Eigen::Vector3d camera = inverse(camera_from_place).translation;

@@ -24,9 +24,9 @@ class RivalPlaces {
 
   // Test of the place or rival at which a frame is found: within reach of its pose in the last frame, and within a
   // second of it. nullptr: a new place.
-  const PlaceHypothesis* known_at(Timestamp time, const Pose& camera_from_offline) const;
+  const PlaceHypothesis* find_test(Timestamp time, const Pose& camera_from_offline) const;
   // Begins a place at camera_from_place, found without a prediction. Its rivals are the place before, unless accepted,
-  // and the rivals elsewhere. Returns the test of known_at(); empty for a new place.
+  // and the rivals elsewhere. Returns the test of find_test(); empty for a new place.
   std::optional<PlaceHypothesis> begin(Timestamp time, const Pose& camera_from_place);
   // Adds a rival with these prior log-odds. Both poses are of one frame. Ignored within half a metre of the place or of
   // a rival.

@@ -126,12 +126,12 @@ TEST_F(RivalPlaceTest, IsRecognisedAtALaterFrame) {
   observe(0.0, shown_);
   rivals_.note_place(Timestamp{0}, camera_at(0.0), open_place());
   const Timestamp next = from_seconds(0.1);
-  ASSERT_NE(rivals_.known_at(next, camera_at(5.1)), nullptr);
-  EXPECT_EQ(rivals_.known_at(next, camera_at(5.1))->log_odds(), open_place(shown_).log_odds());
-  ASSERT_NE(rivals_.known_at(next, camera_at(0.1)), nullptr);
-  EXPECT_EQ(rivals_.known_at(next, camera_at(0.1))->log_odds(), open_place().log_odds());
-  EXPECT_EQ(rivals_.known_at(next, camera_at(-5.0)), nullptr);
-  EXPECT_EQ(rivals_.known_at(from_seconds(2.0), camera_at(5.1)), nullptr) << "too long ago";
+  ASSERT_NE(rivals_.find_test(next, camera_at(5.1)), nullptr);
+  EXPECT_EQ(rivals_.find_test(next, camera_at(5.1))->log_odds(), open_place(shown_).log_odds());
+  ASSERT_NE(rivals_.find_test(next, camera_at(0.1)), nullptr);
+  EXPECT_EQ(rivals_.find_test(next, camera_at(0.1))->log_odds(), open_place().log_odds());
+  EXPECT_EQ(rivals_.find_test(next, camera_at(-5.0)), nullptr);
+  EXPECT_EQ(rivals_.find_test(from_seconds(2.0), camera_at(5.1)), nullptr) << "too long ago";
 }
 
 TEST_F(RivalPlaceTest, IsSwappedWithTheAdoptedPlace) {

@@ -2,15 +2,15 @@
 
 namespace byre {
 
-std::optional<PlaceBounds::Way> TrustedPlace::way_from_there() const {
+std::optional<PlaceBounds::Reach> TrustedPlace::reach_from_there() const {
   if (!place_) return std::nullopt;
-  return PlaceBounds::Way{*place_, max_speed_};
+  return PlaceBounds::Reach{*place_, max_speed_};
 }
 
-bool TrustedPlace::is_news(Doubt refused, Verdict verdict) {
-  if (verdict != Verdict::untrusted) told_ = Doubt::none;
-  if (refused == Doubt::none || refused == told_) return false;
-  told_ = refused;
+bool TrustedPlace::is_new_refusal(DistrustReason refused, Verdict verdict) {
+  if (verdict != Verdict::untrusted) reported_ = DistrustReason::none;
+  if (refused == DistrustReason::none || refused == reported_) return false;
+  reported_ = refused;
   return true;
 }
 

@@ -81,7 +81,7 @@ class HalfReader {
 };
 
 // Whether the half bytes exceed a descriptor, as they always do if more bits differ than half bytes fit.
-bool is_told_whole(const Descriptor& difference) {
+bool is_stored_whole(const Descriptor& difference) {
   std::size_t differing = 0;
   for (const std::uint64_t word : difference) differing += static_cast<std::size_t>(std::popcount(word));
   return differing > kMostHalves || halves_of(difference).is_full;
@@ -113,7 +113,7 @@ Descriptor read_difference(ByteReader& reader, const Descriptor& from) {
     reader.read_all<std::uint64_t>(descriptor);
     Descriptor difference;
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = descriptor[i] ^ from[i];
-    if (!is_told_whole(difference)) reader.fail("has a descriptor stored in full although its difference is shorter");
+    if (!is_stored_whole(difference)) reader.fail("has a descriptor stored in full although its difference is shorter");
     return descriptor;
   }
   HalfReader halves(reader);

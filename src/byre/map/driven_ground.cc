@@ -74,21 +74,21 @@ DrivingPlane DrivenGround::plane_around(const Eigen::Vector3d& position_in_map) 
   return fit_driving_plane(std::move(around), up.normalized());
 }
 
-DrivenGround::Stand DrivenGround::stand_of(const Pose& map_from_body) const {
+DrivenGround::GroundOffset DrivenGround::offset_from_ground(const Pose& map_from_body) const {
   const Pose& nearest = nearest_to(map_from_body.translation);
   const DrivingPlane plane = plane_around(nearest.translation);
   const Eigen::Vector3d from_middle = map_from_body.translation - plane.point_in_map;
-  Stand stand;
-  stand.distance = (nearest.translation - map_from_body.translation).norm();
-  stand.height = from_middle.dot(plane.up_in_map);
-  const Eigen::Vector3d beside = from_middle - stand.height * plane.up_in_map;
+  GroundOffset offset;
+  offset.distance = (nearest.translation - map_from_body.translation).norm();
+  offset.height = from_middle.dot(plane.up_in_map);
+  const Eigen::Vector3d beside = from_middle - offset.height * plane.up_in_map;
   const double by_tilt = beside.dot(plane.up_information.inverse() * beside);
-  stand.height_sigma = std::sqrt(std::pow(std::max(height_spread_, plane.thickness), 2) + by_tilt);
-  stand.up_in_map = plane.up_in_map;
-  stand.up_in_body = map_from_body.rotation.conjugate() * plane.up_in_map;
-  stand.tilt = angle_of(stand.up_in_body, up_in_body_);
-  stand.tilt_sigma = tilt_spread_;
-  return stand;
+  offset.height_sigma = std::sqrt(std::pow(std::max(height_spread_, plane.thickness), 2) + by_tilt);
+  offset.up_in_map = plane.up_in_map;
+  offset.up_in_body = map_from_body.rotation.conjugate() * plane.up_in_map;
+  offset.tilt = angle_of(offset.up_in_body, up_in_body_);
+  offset.tilt_sigma = tilt_spread_;
+  return offset;
 }
 
 // Alternates between local planes, at first by the up direction of the whole path, and the attitude of bodies on them.
@@ -98,7 +98,7 @@ std::optional<DrivenGround> DrivenGround::under(const Map& map) {
   const std::optional<DrivingPlane> whole = fit_driving_plane(map);
   if (!whole || whole->path_in_map.size() < kLeastPlaces || whole->length < kLeastLength) return std::nullopt;
   std::vector<Pose> path;
-  for (const KeyframeId id : map.keyframe_ids()) path.push_back(world_from_body(map, *map.find_bare_keyframe(id)));
+  for (const KeyframeId id : map.keyframe_ids()) path.push_back(world_from_body(map, *map.keyframe_header(id)));
   DrivenGround ground(std::move(path));
   constexpr int kRounds = 2;
   Eigen::Vector3d up_in_body = Eigen::Vector3d::Zero();
@@ -109,10 +109,10 @@ std::optional<DrivenGround> DrivenGround::under(const Map& map) {
     up_in_body.setZero();
     spread = {};
     for (const Pose& body : ground.path_) {
-      const Stand stand = ground.stand_of(body);
-      up_in_body += stand.up_in_body;
-      spread.heights.push_back(std::abs(stand.height));
-      spread.tilts.push_back(stand.tilt);
+      const GroundOffset offset = ground.offset_from_ground(body);
+      up_in_body += offset.up_in_body;
+      spread.heights.push_back(std::abs(offset.height));
+      spread.tilts.push_back(offset.tilt);
     }
   }
   if (!is_of_wheels(spread)) return std::nullopt;

@@ -17,7 +17,7 @@ class DrivenGround {
   static std::optional<DrivenGround> under(const Map& map);
 
   // A body relative to the ground nearest to it.
-  struct Stand {
+  struct GroundOffset {
     double height = 0.0;                                    // height of its origin above those of the path's bodies
     double height_sigma = 0.0;                              // standard deviation of the ground's height there
     Eigen::Vector3d up_in_body = Eigen::Vector3d::UnitZ();  // normal of the ground, unit length
@@ -26,7 +26,7 @@ class DrivenGround {
     double tilt_sigma = 0.0;                                // radians, per axis
     double distance = 0.0;                                  // to the nearest position of the path
   };
-  Stand stand_of(const Pose& map_from_body) const;
+  GroundOffset offset_from_ground(const Pose& map_from_body) const;
 
   // Attitude of the path's bodies: the up direction on level ground, in the body frame.
   const Eigen::Vector3d& up_in_body() const { return up_in_body_; }

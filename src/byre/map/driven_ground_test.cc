@@ -25,8 +25,8 @@ std::vector<Pose> shaken(double metres, double radians) {
   return path;
 }
 
-DrivenGround::Stand stand(const DrivenGround& ground, const Pose& level_from_body) {
-  return ground.stand_of(kMapFromLevel * level_from_body);
+DrivenGround::GroundOffset offset(const DrivenGround& ground, const Pose& level_from_body) {
+  return ground.offset_from_ground(kMapFromLevel * level_from_body);
 }
 
 TEST(DrivenGround, MeasuresHeightAndTiltOnALevelFloor) {
@@ -34,20 +34,20 @@ TEST(DrivenGround, MeasuresHeightAndTiltOnALevelFloor) {
   ASSERT_TRUE(ground);
   EXPECT_LT(ground->tilt_spread(), 0.5 * kDegree);
   Pose body = on_floor(14.2, 0.9, 1.0);
-  EXPECT_NEAR(stand(*ground, body).height, 0.0, 0.005);
-  EXPECT_LT(stand(*ground, body).tilt, 0.5 * kDegree);
+  EXPECT_NEAR(offset(*ground, body).height, 0.0, 0.005);
+  EXPECT_LT(offset(*ground, body).tilt, 0.5 * kDegree);
   body.translation.z() = -0.8;
-  EXPECT_NEAR(stand(*ground, body).height, -0.8, 0.01);
+  EXPECT_NEAR(offset(*ground, body).height, -0.8, 0.01);
   body.rotation = rotation_exp({0.0, 0.2, 0.0}) * body.rotation;
-  EXPECT_NEAR(stand(*ground, body).tilt, 0.2, 0.5 * kDegree);
-  EXPECT_LT(stand(*ground, body).height_sigma, 0.03);
+  EXPECT_NEAR(offset(*ground, body).tilt, 0.2, 0.5 * kDegree);
+  EXPECT_LT(offset(*ground, body).height_sigma, 0.03);
 }
 
 TEST(DrivenGround, IsLessCertainInHeightFarFromThePath) {
   const auto ground = DrivenGround::under(map_of(driven()));
   ASSERT_TRUE(ground);
-  EXPECT_GT(stand(*ground, on_floor(14.0, 12.0, 0.0)).height_sigma,
-            stand(*ground, on_floor(14.0, 3.0, 0.0)).height_sigma);
+  EXPECT_GT(offset(*ground, on_floor(14.0, 12.0, 0.0)).height_sigma,
+            offset(*ground, on_floor(14.0, 3.0, 0.0)).height_sigma);
 }
 
 TEST(DrivenGround, FindsTheNearestPathPositionAtAnyDistance) {
@@ -59,7 +59,7 @@ TEST(DrivenGround, FindsTheNearestPathPositionAtAnyDistance) {
       const Pose body = on_floor(x, y, 0.0);
       double nearest = 1e9;
       for (const Pose& place : path) nearest = std::min(nearest, (place.translation - body.translation).norm());
-      EXPECT_NEAR(stand(*ground, body).distance, nearest, 1e-9) << x << ", " << y;
+      EXPECT_NEAR(offset(*ground, body).distance, nearest, 1e-9) << x << ", " << y;
     }
   }
 }
@@ -69,12 +69,12 @@ TEST(DrivenGround, FollowsRamps) {
   const auto ground = DrivenGround::under(map_of(driven(slope)));
   ASSERT_TRUE(ground);
   for (const double x : {2.0, 9.0, 11.0, 13.0, 15.0, 20.0, 28.0}) {
-    const auto there = stand(*ground, on_floor(x, 1.0, 0.0, slope));
+    const auto there = offset(*ground, on_floor(x, 1.0, 0.0, slope));
     EXPECT_LT(std::abs(there.height), 0.15) << x;
     EXPECT_LT(there.tilt, 5.0 * kDegree) << x;
   }
-  EXPECT_GT(stand(*ground, on_floor(20.0, 1.0, 0.0)).height, -0.9);
-  EXPECT_LT(stand(*ground, on_floor(20.0, 1.0, 0.0)).height, -0.8) << "under the upper floor";
+  EXPECT_GT(offset(*ground, on_floor(20.0, 1.0, 0.0)).height, -0.9);
+  EXPECT_LT(offset(*ground, on_floor(20.0, 1.0, 0.0)).height, -0.8) << "under the upper floor";
 }
 
 TEST(DrivenGround, IsFoundForMapsOfSlightlyShakingWheels) {

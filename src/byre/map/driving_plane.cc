@@ -70,7 +70,7 @@ std::optional<DrivingPlane> fit_driving_plane(const Map& map) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> path;
   for (const KeyframeId id : map.keyframe_ids()) {
-    const Keyframe& keyframe = *map.find_bare_keyframe(id);
+    const Keyframe& keyframe = *map.keyframe_header(id);
     up -= keyframe.camera_from_world.rotation.conjugate() * Eigen::Vector3d::UnitY();
     path.push_back(body_at(map, keyframe));
   }

@@ -260,8 +260,8 @@ double residual_of(const PlanFit& fit) {
   return std::sqrt(squares / static_cast<double>(count));
 }
 
-bool is_far_off(const PlanFit& fit) {
-  return residual_of(fit) > kFarOffPlan;
+bool has_large_residual(const PlanFit& fit) {
+  return residual_of(fit) > kLargePlanResidual;
 }
 
 std::optional<PlanFit> register_on_plan(Correspondences correspondences, const DrivingPlane& plane, Scale scale,

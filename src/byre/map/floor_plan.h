@@ -53,8 +53,8 @@ struct PlanFit {
 double residual_of(const PlanFit& fit);
 
 // Limit of residual_of(), metres, above which a registration is stored only on the user's explicit request.
-inline constexpr double kFarOffPlan = 0.5;
-bool is_far_off(const PlanFit& fit);
+inline constexpr double kLargePlanResidual = 0.5;
+bool has_large_residual(const PlanFit& fit);
 
 // Registers a map on a plan: position and heading from correspondences seen from above, height and tilt from the
 // driving plane, and the scale if it is free. Outliers are removed by find_planar_consensus. The inliers are fitted by

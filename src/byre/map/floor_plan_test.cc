@@ -267,11 +267,11 @@ PlanFit fit_with(int inliers, int outliers) {
 TEST(ResidualOf, IncludesOutliersIfTheyMayBeRight) {
   EXPECT_EQ(residual_of(fit_with(6, 0)), 0.05);
   EXPECT_EQ(residual_of(fit_with(6, 2)), 0.05) << "two of eight are identified as outliers";
-  EXPECT_FALSE(is_far_off(fit_with(6, 2)));
+  EXPECT_FALSE(has_large_residual(fit_with(6, 2)));
   EXPECT_NEAR(residual_of(fit_with(2, 1)), std::sqrt((25.0 + 2 * 0.0025) / 3.0), 1e-12)
       << "one of three is not identified";
   EXPECT_NEAR(residual_of(fit_with(3, 3)), std::sqrt((25.0 + 0.0025) / 2.0), 1e-12);
-  EXPECT_TRUE(is_far_off(fit_with(3, 3)));
+  EXPECT_TRUE(has_large_residual(fit_with(3, 3)));
 }
 
 }  // namespace

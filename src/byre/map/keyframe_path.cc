@@ -12,7 +12,7 @@ Pose world_from_body(const Map& map, const Keyframe& keyframe) {
 Trajectory keyframe_path(const Map& map) {
   Trajectory path;
   for (const KeyframeId id : map.keyframe_ids()) {
-    const Keyframe& keyframe = *map.find_bare_keyframe(id);
+    const Keyframe& keyframe = *map.keyframe_header(id);
     path.push_back({keyframe.frame.time, world_from_body(map, keyframe)});
   }
   std::ranges::stable_sort(path, {}, &StampedPose::time);

@@ -71,13 +71,13 @@ KeyframeId Map::add_keyframe(Keyframe keyframe) {
 
 PointId Map::add_point(const MapPoint& point) {
   read_all();
-  const PointId id{origin_, static_cast<std::uint32_t>(place_of_point_.size())};
-  if (empty_places_.empty()) {
-    place_of_point_.push_back(static_cast<std::uint32_t>(points_.size()));
+  const PointId id{origin_, static_cast<std::uint32_t>(point_slots_.size())};
+  if (free_point_slots_.empty()) {
+    point_slots_.push_back(static_cast<std::uint32_t>(points_.size()));
     points_.emplace_back();
   } else {
-    place_of_point_.push_back(empty_places_.back());
-    empty_places_.pop_back();
+    point_slots_.push_back(free_point_slots_.back());
+    free_point_slots_.pop_back();
   }
   slot(id).point = point;
   ++point_count_;
@@ -140,7 +140,7 @@ void Map::remove_point(PointId id) {
   for (const ForeignView& view : foreign_views(id)) points_of_foreign_views_.erase(view.observation);
   foreign_views_.erase(id);
   slot(id) = {};
-  empty_places_.push_back(std::exchange(place_of_point_[id.number], kGone));
+  free_point_slots_.push_back(std::exchange(point_slots_[id.number], kGone));
   --point_count_;
 }
 
@@ -153,7 +153,7 @@ void Map::remove_keyframe(KeyframeId id) {
   for (std::size_t i = 0; i < keyframe->sightings.size(); ++i) remove_observation({id, static_cast<int>(i)});
 
   const int rig = keyframe->rig;
-  hand_children_to(id, parent);
+  reparent_children(id, parent);
   slot(id).keyframe.reset();
   slot(id).removed = RemovedKeyframe{rig, parent, camera_from_parent};
   --keyframe_count_;
@@ -181,7 +181,7 @@ void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matr
 }
 
 void Map::scale_removed_keyframe(KeyframeId id, double scale) {
-  if (!was_given_out(id) || !slot(id).removed) return;
+  if (!was_assigned(id) || !slot(id).removed) return;
   slot(id).removed->camera_from_parent.translation *= scale;
 }
 
@@ -193,12 +193,12 @@ void Map::update_point(PointId id, const MapPoint& point) {
 }
 
 const Keyframe* Map::find_keyframe(KeyframeId id) const {
-  const Keyframe* const bare = find_bare_keyframe(id);
-  return bare && source_ ? &source_->keyframe(id.number, *bare) : bare;
+  const Keyframe* const header = keyframe_header(id);
+  return header && source_ ? &source_->keyframe(id.number, *header) : header;
 }
 
-const Keyframe* Map::find_bare_keyframe(KeyframeId id) const {
-  if (!was_given_out(id) || !slot(id).keyframe) return nullptr;
+const Keyframe* Map::keyframe_header(KeyframeId id) const {
+  if (!was_assigned(id) || !slot(id).keyframe) return nullptr;
   return &*slot(id).keyframe;
 }
 
@@ -219,9 +219,9 @@ std::vector<KeyframeId> Map::keyframe_ids() const {
 std::vector<PointId> Map::point_ids() const {
   std::vector<PointId> ids;
   ids.reserve(static_cast<std::size_t>(point_count_));
-  const auto given_out = source_ ? static_cast<std::size_t>(point_count_) : place_of_point_.size();
+  const auto given_out = source_ ? static_cast<std::size_t>(point_count_) : point_slots_.size();
   for (std::uint32_t i = 0; i < given_out; ++i) {
-    if (source_ || place_of_point_[i] != kGone) ids.push_back({origin_, i});
+    if (source_ || point_slots_[i] != kGone) ids.push_back({origin_, i});
   }
   return ids;
 }
@@ -263,9 +263,9 @@ std::optional<PointId> Map::point_of_foreign_view(const Observation& observation
   return known->second;
 }
 
-ReusedVector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {
-  if (!find_bare_keyframe(id)) return {};
-  ReusedVector<Covisible> covisible;
+ScratchVector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {
+  if (!keyframe_header(id)) return {};
+  ScratchVector<Covisible> covisible;
   if (source_) {
     covisible = source_->covisible(id.number);
   } else {
@@ -278,7 +278,7 @@ ReusedVector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) c
 }
 
 Pose Map::camera_from_world(KeyframeId id) const {
-  assert(was_given_out(id));
+  assert(was_assigned(id));
   Pose camera_from_ancestor;
   while (!slot(id).keyframe) {
     camera_from_ancestor = camera_from_ancestor * slot(id).removed->camera_from_parent;
@@ -288,17 +288,17 @@ Pose Map::camera_from_world(KeyframeId id) const {
 }
 
 std::optional<KeyframeId> Map::living_ancestor(std::optional<KeyframeId> id) const {
-  if (!id || !was_given_out(*id)) return std::nullopt;
+  if (!id || !was_assigned(*id)) return std::nullopt;
   while (!slot(*id).keyframe) id = slot(*id).removed->parent;
   return id;
 }
 
-bool Map::was_given_out(KeyframeId id) const {
+bool Map::was_assigned(KeyframeId id) const {
   return id.origin == origin_ && id.number < keyframes_.size();
 }
 
 Keyframe* Map::find_own_keyframe(KeyframeId id) {
-  if (!was_given_out(id) || !slot(id).keyframe) return nullptr;
+  if (!was_assigned(id) || !slot(id).keyframe) return nullptr;
   return &*slot(id).keyframe;
 }
 
@@ -308,8 +308,8 @@ const ObservedPoint* Map::find_observed(PointId id) const {
 }
 
 const ObservedPoint* Map::find_slot(PointId id) const {
-  if (id.origin != origin_ || id.number >= place_of_point_.size()) return nullptr;
-  const std::uint32_t place = place_of_point_[id.number];
+  if (id.origin != origin_ || id.number >= point_slots_.size()) return nullptr;
+  const std::uint32_t place = point_slots_[id.number];
   return place == kGone ? nullptr : &points_[place];
 }
 
@@ -356,7 +356,7 @@ void Map::repair_reference(PointId id) {
   point_slot.point.reference = observers.front();
 }
 
-void Map::hand_children_to(KeyframeId id, KeyframeId parent) {
+void Map::reparent_children(KeyframeId id, KeyframeId parent) {
   std::vector<KeyframeId>& adopted = slot(id).children;
   for (const KeyframeId child : adopted) slot(child).keyframe->parent = parent;
 

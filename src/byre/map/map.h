@@ -5,7 +5,7 @@
 #include "byre/input_error.h"
 #include "byre/map/block_list.h"
 #include "byre/map/ids.h"
-#include "byre/workers/reused_memory.h"
+#include "byre/workers/scratch_memory.h"
 
 #include <cassert>
 #include <cstdint>
@@ -140,10 +140,10 @@ class MapSource {
   using WordVisitor = std::function<void(KeyframeId, std::span<const Word>)>;
 
   virtual ~MapSource() = default;
-  // bare: the keyframe without features, sightings and words.
-  virtual const Keyframe& keyframe(std::uint32_t number, const Keyframe& bare) const = 0;
+  // header: the keyframe without features, sightings and words.
+  virtual const Keyframe& keyframe(std::uint32_t number, const Keyframe& header) const = 0;
   virtual const ObservedPoint& point(std::uint32_t number) const = 0;
-  virtual ReusedVector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
+  virtual ScratchVector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
   // Like Map::visit_words. Throws InputError if the words are damaged.
   virtual void visit_words(const WordVisitor& visit) const = 0;
   // First damage found on access, with file, section and remedy; nullptr without damage.
@@ -163,8 +163,8 @@ class Map {
   // Builds all at once, many times faster than one by one. Preconditions: each keyframe has one sighting per feature,
   // observes no point twice, and comes after its parent; ids have this origin and are within the parts.
   Map(Origin origin, MapParts parts);
-  // Map with a source, of origin offline. Keyframes are bare: without features, sightings and words.
-  Map(std::vector<Rig> rigs, std::vector<Keyframe> bare, int point_count, std::shared_ptr<const MapSource> source);
+  // Map with a source, of origin offline. Keyframes are headers: without features, sightings and words.
+  Map(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count, std::shared_ptr<const MapSource> source);
 
   Origin origin() const { return origin_; }
 
@@ -218,7 +218,7 @@ class Map {
 
   const Keyframe* find_keyframe(KeyframeId id) const;
   // The keyframe without reading the source: features, sightings and words may be missing.
-  const Keyframe* find_bare_keyframe(KeyframeId id) const;
+  const Keyframe* keyframe_header(KeyframeId id) const;
   const MapPoint* find_point(PointId id) const;
   std::vector<KeyframeId> keyframe_ids() const;  // ascending
   std::vector<PointId> point_ids() const;        // ascending
@@ -239,7 +239,7 @@ class Map {
   std::optional<PointId> point_of_foreign_view(const Observation& observation) const;
 
   // Keyframes with points in common, most first (ties: lower id first). Maintained incrementally.
-  ReusedVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
+  ScratchVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
   // Current pose of a keyframe, also of a removed one, by its parents. Precondition: the id was once assigned.
   Pose camera_from_world(KeyframeId id) const;
@@ -254,9 +254,9 @@ class Map {
     std::vector<KeyframeId> children;  // ascending
   };
 
-  static constexpr std::uint32_t kGone = 0xFFFFFFFF;  // marks a removed point in place_of_point_
+  static constexpr std::uint32_t kGone = 0xFFFFFFFF;  // marks a removed point in point_slots_
 
-  bool was_given_out(KeyframeId id) const;
+  bool was_assigned(KeyframeId id) const;
   Keyframe* find_own_keyframe(KeyframeId id);
   KeyframeSlot& slot(KeyframeId id) { return keyframes_[id.number]; }
   const KeyframeSlot& slot(KeyframeId id) const { return keyframes_[id.number]; }
@@ -264,7 +264,7 @@ class Map {
   const ObservedPoint* find_observed(PointId id) const;
   // Like find_observed(), but nullptr for a point still in the source.
   const ObservedPoint* find_slot(PointId id) const;
-  ObservedPoint& slot(PointId id) { return points_[place_of_point_[id.number]]; }  // precondition: it exists
+  ObservedPoint& slot(PointId id) { return points_[point_slots_[id.number]]; }  // precondition: it exists
   // Observations of a point, also of an offline one; nullptr if it does not exist.
   std::vector<Observation>* find_observations(PointId id);
 
@@ -279,16 +279,16 @@ class Map {
     if (source_) read_from_source();
   }
   void read_from_source();
-  void hand_children_to(KeyframeId id, KeyframeId parent);
+  void reparent_children(KeyframeId id, KeyframeId parent);
 
   Origin origin_;
   std::vector<Rig> rigs_;
   std::shared_ptr<const MapSource> source_;  // nullptr if everything is in memory
-  std::vector<KeyframeSlot> keyframes_;      // bare with a source
+  std::vector<KeyframeSlot> keyframes_;      // header with a source
   // Existing points in any order, and free places. Places are reused, because most points are removed sooner or later.
   BlockList<ObservedPoint> points_;
-  std::vector<std::uint32_t> place_of_point_;  // index into points_ by the point's number, or kGone
-  std::vector<std::uint32_t> empty_places_;
+  std::vector<std::uint32_t> point_slots_;  // index into points_ by the point's number, or kGone
+  std::vector<std::uint32_t> free_point_slots_;
   std::vector<std::vector<Observation>> offline_observations_;  // by online keyframes, per offline point
   std::map<Observation, PointId> points_of_foreign_views_;
   std::map<PointId, std::vector<ForeignView>> foreign_views_;  // ascending by keyframe; only points with foreign views

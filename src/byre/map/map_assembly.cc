@@ -13,27 +13,27 @@ Map::Map(Origin origin, MapParts parts)
       rigs_(std::move(parts.rigs)),
       keyframes_(parts.keyframes.size()),
       points_(parts.points.size()),
-      place_of_point_(parts.points.size()),
+      point_slots_(parts.points.size()),
       keyframe_count_(static_cast<int>(parts.keyframes.size())),
       point_count_(static_cast<int>(parts.points.size())) {
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     if (const auto parent = parts.keyframes[i].parent) slot(*parent).children.push_back({origin_, i});
     keyframes_[i].keyframe = std::move(parts.keyframes[i]);
   }
-  std::iota(place_of_point_.begin(), place_of_point_.end(), 0);
+  std::iota(point_slots_.begin(), point_slots_.end(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) points_[i].point = parts.points[i];
   collect_observations();
   count_covisible_keyframes();
 }
 
-Map::Map(std::vector<Rig> rigs, std::vector<Keyframe> bare, int point_count, std::shared_ptr<const MapSource> source)
+Map::Map(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count, std::shared_ptr<const MapSource> source)
     : origin_(Origin::offline),
       rigs_(std::move(rigs)),
       source_(std::move(source)),
-      keyframes_(bare.size()),
-      keyframe_count_(static_cast<int>(bare.size())),
+      keyframes_(headers.size()),
+      keyframe_count_(static_cast<int>(headers.size())),
       point_count_(point_count) {
-  for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].keyframe = std::move(bare[i]);
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].keyframe = std::move(headers[i]);
 }
 
 void Map::read_from_source() {

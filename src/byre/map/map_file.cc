@@ -455,7 +455,7 @@ StoredMap load_map(const std::filesystem::path& path) {
 
 StoredMap open_map(const std::filesystem::path& path) {
   constexpr std::size_t kCheckedAtOnce = 32 << 20;  // bytes, checked in 10 ms
-  const auto file = std::make_shared<const PiecewiseFile>(path);
+  const auto file = std::make_shared<const RandomAccessFile>(path);
   const auto read_at = [file](std::size_t offset, std::span<std::byte> bytes) { file->read(offset, bytes); };
   if (file->size() <= kCheckedAtOnce) require_checksums(read_at, file->size(), path.string());
   return open_map(read_at, file->size(), path.string());
@@ -483,14 +483,14 @@ StoredMap reread(std::span<const std::byte> bytes, const std::filesystem::path& 
 void save_map(const StoredMap& stored, const std::filesystem::path& path) {
   const std::vector<std::byte> bytes = write_map(stored);
   reread(bytes, path);
-  write_whole(path, bytes);
+  write_atomically(path, bytes);
 }
 
 void save_and_reread(StoredMap& stored, const std::filesystem::path& path) {
   const std::vector<std::byte> bytes = write_map(stored);
   stored = {};
   stored = reread(bytes, path);
-  write_whole(path, bytes);
+  write_atomically(path, bytes);
 }
 
 }  // namespace byre

@@ -29,15 +29,15 @@ struct SourceRecording {
 
 // The newest refined calibration of recordings with this given calibration, if any. `given` may be the left camera
 // alone.
-std::optional<RefinedCalibration> known_calibration(const std::vector<SourceRecording>& recordings,
-                                                    const Calibration& given);
+std::optional<RefinedCalibration> stored_calibration(const std::vector<SourceRecording>& recordings,
+                                                     const Calibration& given);
 
 // Whether a recording has these cameras on this body, as given. `given` may be the left camera alone.
-bool is_by_cameras_of(const std::vector<SourceRecording>& recordings, const Calibration& given);
+bool has_same_cameras(const std::vector<SourceRecording>& recordings, const Calibration& given);
 
 // Body frame of the newest recording by these cameras, from the body frame of `given`: a monocular map may have the
 // camera as its body, a mission the robot. Empty if no recording is by these cameras.
-std::optional<Pose> known_body_from_body(const std::vector<SourceRecording>& recordings, const Calibration& given);
+std::optional<Pose> stored_body_from_body(const std::vector<SourceRecording>& recordings, const Calibration& given);
 
 // Unit of the positions in a map.
 enum class MapScale : std::uint8_t {
@@ -92,7 +92,7 @@ std::vector<std::byte> write_map(const StoredMap& stored);
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name);
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name);
 
-// Versions for files. Saving reads the bytes back before it replaces the file as a whole (write_whole). A map that
+// Versions for files. Saving reads the bytes back before it replaces the file as a whole (write_atomically). A map that
 // cannot be read back throws InputError and leaves the old file.
 StoredMap load_map(const std::filesystem::path& path);
 // Like read_map and load_map, but keyframes' features and sightings, and points, are read and checked on first access

@@ -16,9 +16,9 @@ constexpr std::array<std::string_view, kViewSections> kViewNames = {"features", 
                                                                     "descriptors", "words"};
 
 // A keyframe without sightings. It has the number of features to which readable points may refer.
-Keyframe unseeing(const Keyframe& bare, const Rig& rig, std::uint32_t features) {
+Keyframe blank_keyframe(const Keyframe& header, const Rig& rig, std::uint32_t features) {
   const Keypoint anywhere{.pixel = Eigen::Vector2f::Zero()};
-  Keyframe keyframe = bare;
+  Keyframe keyframe = header;
   keyframe.frame.features =
       std::make_shared<const Features>(rig.width, rig.height, std::vector<Keypoint>(features, anywhere),
                                        std::vector<Descriptor>(features), std::vector<Patch>());
@@ -26,7 +26,7 @@ Keyframe unseeing(const Keyframe& bare, const Rig& rig, std::uint32_t features) 
   return keyframe;
 }
 
-ObservedPoint unseen_point() {
+ObservedPoint blank_point() {
   ObservedPoint unseen;
   unseen.point.reference.keyframe = {Origin::offline, 0};
   return unseen;
@@ -50,11 +50,11 @@ auto MapFileSource::read_or(Read read, Substitute substitute) const {
   }
 }
 
-const Keyframe& MapFileSource::keyframe(std::uint32_t number, const Keyframe& bare) const {
+const Keyframe& MapFileSource::keyframe(std::uint32_t number, const Keyframe& header) const {
   const std::uint32_t features = lookup_.keyframes[number].features;
   return keyframes_.get(number, [&] {
-    return read_or([&] { return read_keyframe(number, bare); },
-                   [&] { return unseeing(bare, file_.rigs[static_cast<std::size_t>(bare.rig)], features); });
+    return read_or([&] { return read_keyframe(number, header); },
+                   [&] { return blank_keyframe(header, file_.rigs[static_cast<std::size_t>(header.rig)], features); });
   });
 }
 
@@ -62,16 +62,16 @@ const ObservedPoint& MapFileSource::point(std::uint32_t number) const {
   const std::uint32_t block = number / kPointsOfBlock;
   const std::uint32_t size = std::min(kPointsOfBlock, file_.point_count - block * kPointsOfBlock);
   return blocks_.get(block, [&] {
-    return read_or([&] { return read_block(block); }, [&] { return Block(size, unseen_point()); });
+    return read_or([&] { return read_block(block); }, [&] { return Block(size, blank_point()); });
   })[number % kPointsOfBlock];
 }
 
-ReusedVector<Covisible> MapFileSource::covisible(std::uint32_t number) const {
-  const PartPlace& place = lookup_.keyframes[number].covisible;
+ScratchVector<Covisible> MapFileSource::covisible(std::uint32_t number) const {
+  const ByteRange& place = lookup_.keyframes[number].covisible;
   const std::size_t first_byte = file_.lookup + lookup_.first_byte_of_covisible + place.begin;
   const ByteReader reader(Bytes(lookup_.covisible).subspan(place.begin, place.size), place_of("lookup"), first_byte);
   return read_or([&] { return read_covisible(reader, number, lookup_.keyframes.size()); },
-                 [] { return ReusedVector<Covisible>(); });
+                 [] { return ScratchVector<Covisible>(); });
 }
 
 void MapFileSource::visit_words(const WordVisitor& visit) const {
@@ -106,7 +106,7 @@ void MapFileSource::read_parts(std::span<const Part> parts, std::uint64_t expect
       .fail("has a part with a wrong checksum, here or in the matching part of a later section");
 }
 
-Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare) const {
+Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& header) const {
   const KeyframeParts& known = lookup_.keyframes[number];
   std::array<Part, kViewSections> parts;
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {file_.views[i], known.views[i], kViewNames[i]};
@@ -119,11 +119,11 @@ Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& bare
     readers.emplace_back(Bytes(bytes).subspan(begin, place.size), place_of(name), section + place.begin);
     begin += place.size;
   }
-  Keyframe keyframe = bare;
+  Keyframe keyframe = header;
   read_view(
       {readers[kFeaturesOfView], readers[kPatchesOfView], readers[kObservationsOfView], readers[kDescriptorsOfView],
        file_.has_packed_patches},
-      number, file_.rigs[static_cast<std::size_t>(bare.rig)], file_.point_count,
+      number, file_.rigs[static_cast<std::size_t>(header.rig)], file_.point_count,
       [this](std::uint32_t point_number) -> const ObservedPoint& { return point(point_number); }, keyframe);
   if (keyframe.sightings.size() != known.features) {
     readers[kFeaturesOfView].fail("has a number of features other than in the section lookup");

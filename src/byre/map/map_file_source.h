@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/map/map_sections.h"
-#include "byre/workers/made_once.h"
+#include "byre/workers/lazy_array.h"
 
 #include <array>
 #include <span>
@@ -29,9 +29,9 @@ class MapFileSource : public MapSource {
 
   MapFileSource(File file, Lookup lookup);
 
-  const Keyframe& keyframe(std::uint32_t number, const Keyframe& bare) const override;
+  const Keyframe& keyframe(std::uint32_t number, const Keyframe& header) const override;
   const ObservedPoint& point(std::uint32_t number) const override;
-  ReusedVector<Covisible> covisible(std::uint32_t number) const override;
+  ScratchVector<Covisible> covisible(std::uint32_t number) const override;
   void visit_words(const WordVisitor& visit) const override;
   const InputError* damage() const override { return damage_.find(0); }
 
@@ -39,14 +39,14 @@ class MapFileSource : public MapSource {
   using Block = std::vector<ObservedPoint>;
   struct Part {
     std::size_t section;  // offset of the section in the file
-    PartPlace place;
+    ByteRange place;
     std::string_view name;  // name of the section
   };
 
   // Reads the concatenated bytes of the parts. Fails if their checksum is not the expected one.
   void read_parts(std::span<const Part> parts, std::uint64_t expected, std::vector<std::byte>& bytes) const;
   std::string place_of(std::string_view section) const;
-  Keyframe read_keyframe(std::uint32_t number, const Keyframe& bare) const;
+  Keyframe read_keyframe(std::uint32_t number, const Keyframe& header) const;
   Block read_block(std::uint32_t number) const;
   // The result of read(); if that throws InputError, records the damage and returns the substitute.
   template <typename Read, typename Substitute>
@@ -54,9 +54,9 @@ class MapFileSource : public MapSource {
 
   File file_;
   Lookup lookup_;
-  MadeOnce<Keyframe> keyframes_;
-  MadeOnce<Block> blocks_;
-  MadeOnce<InputError> damage_{1};
+  LazyArray<Keyframe> keyframes_;
+  LazyArray<Block> blocks_;
+  LazyArray<InputError> damage_{1};
 };
 
 }  // namespace byre

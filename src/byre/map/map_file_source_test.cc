@@ -57,7 +57,7 @@ double look_at_all(const Map& map) {
       if (sighting.point) sum += map.find_point(*sighting.point)->position_in_world.x();
     }
     for (const Covisible& covisible : map.covisible_keyframes(id, 1000)) {
-      sum += map.find_bare_keyframe(covisible.keyframe)->camera_from_world.translation.x();
+      sum += map.keyframe_header(covisible.keyframe)->camera_from_world.translation.x();
     }
   }
   for (const PointId id : map.point_ids()) {
@@ -131,12 +131,12 @@ TEST(MapFileSource, ReturnsKeyframePosesWithoutReadingThem) {
   const StoredMap opened = file.open();
   const std::size_t before = file.read;
   for (const KeyframeId id : opened.map.keyframe_ids()) {
-    const Keyframe& bare = *opened.map.find_bare_keyframe(id);
-    EXPECT_THAT(bare.sightings, IsEmpty());
-    EXPECT_EQ(opened.map.camera_from_world(id).translation, bare.camera_from_world.translation);
+    const Keyframe& header = *opened.map.keyframe_header(id);
+    EXPECT_THAT(header.sightings, IsEmpty());
+    EXPECT_EQ(opened.map.camera_from_world(id).translation, header.camera_from_world.translation);
   }
   EXPECT_EQ(file.read, before);
-  EXPECT_EQ(opened.map.find_bare_keyframe({Origin::offline, 99}), nullptr);
+  EXPECT_EQ(opened.map.keyframe_header({Origin::offline, 99}), nullptr);
   EXPECT_EQ(opened.map.find_keyframe({Origin::online, 0}), nullptr);
   EXPECT_EQ(opened.map.find_point({Origin::offline, 1u << 20}), nullptr);
   EXPECT_EQ(opened.map.find_point({Origin::online, 0}), nullptr);

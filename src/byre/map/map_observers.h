@@ -13,7 +13,7 @@ namespace byre {
 // keyframe, and at the end for a point without observations.
 class PointObservers {
  public:
-  explicit PointObservers(std::size_t point_count) : last_observer_(point_count, kNobody) {}
+  explicit PointObservers(std::size_t point_count) : last_observer_(point_count, kNoObserver) {}
 
   std::size_t point_count() const { return last_observer_.size(); }
 
@@ -23,14 +23,15 @@ class PointObservers {
     last_observer_[point] = keyframe;
   }
 
-  void require_that_all_are_seen(const ByteReader& reader) const {
+  void require_all_observed(const ByteReader& reader) const {
     for (std::size_t point = 0; point < last_observer_.size(); ++point) {
-      if (last_observer_[point] == kNobody) require_no_fault(reader, "is not observed by any keyframe", "point", point);
+      if (last_observer_[point] == kNoObserver)
+        require_no_fault(reader, "is not observed by any keyframe", "point", point);
     }
   }
 
  private:
-  static constexpr auto kNobody = std::numeric_limits<std::uint32_t>::max();
+  static constexpr auto kNoObserver = std::numeric_limits<std::uint32_t>::max();
 
   std::vector<std::uint32_t> last_observer_;  // number of the last keyframe that observes each point
 };

@@ -47,7 +47,7 @@ Keyframe read_keyframe(ByteReader& reader, std::uint32_t number, std::size_t rig
   return keyframe;
 }
 
-void require_that_words_may_follow(const ByteReader& reader, std::size_t features, std::uint64_t vocabulary_checksum) {
+void require_word_flag(const ByteReader& reader, std::size_t features, std::uint64_t vocabulary_checksum) {
   if (features == 0) reader.fail("has words for a keyframe without features");
   if (vocabulary_checksum == 0) reader.fail("has words without a vocabulary");
 }
@@ -104,7 +104,7 @@ WordsHead read_words_head(ByteReader& reader) {
 std::vector<Word> read_narrow_words_of(ByteReader& reader, const WordsHead& head, std::size_t features) {
   std::vector<Word> words;
   if (!read_bool(reader)) return words;
-  require_that_words_may_follow(reader, features, head.vocabulary_checksum);
+  require_word_flag(reader, features, head.vocabulary_checksum);
   ByteReader part(reader.take(features * head.bytes_each), "", 0);
   words.reserve(features);
   for (std::size_t i = 0; i < features; ++i) words.push_back(static_cast<Word>(part.read_low_bytes(head.bytes_each)));
@@ -129,7 +129,7 @@ std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes) {
   const auto vocabulary_checksum = reader.read<std::uint64_t>();
   for (Keyframe& keyframe : keyframes) {
     if (!read_bool(reader)) continue;
-    require_that_words_may_follow(reader, keyframe.sightings.size(), vocabulary_checksum);
+    require_word_flag(reader, keyframe.sightings.size(), vocabulary_checksum);
     const std::span<const std::byte> bytes = reader.take(keyframe.sightings.size() * sizeof(Word));
     keyframe.words.resize(keyframe.sightings.size());
     std::memcpy(keyframe.words.data(), bytes.data(), bytes.size());

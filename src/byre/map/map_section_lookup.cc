@@ -68,7 +68,7 @@ void write_observers(const std::vector<Observation>& observations, ByteWriter& w
 }
 
 void write_covisible(const Map& map, KeyframeId id, ByteWriter& writer) {
-  ReusedVector<Covisible> all = map.covisible_keyframes(id, std::numeric_limits<int>::max());
+  ScratchVector<Covisible> all = map.covisible_keyframes(id, std::numeric_limits<int>::max());
   std::ranges::sort(all, {}, &Covisible::keyframe);
   writer.write_varint(static_cast<std::uint32_t>(all.size()));
   AscendingWriter keyframes(writer);
@@ -131,8 +131,8 @@ void write_point_blocks(const Map& map, const PartSizes& sizes, const PartSectio
 }
 
 // Reads the size of the next of consecutive parts; end: end of the previous part, updated.
-PartPlace read_place(ByteReader& reader, std::size_t& end) {
-  const PartPlace place{end, reader.read<std::uint32_t>()};
+ByteRange read_byte_range(ByteReader& reader, std::size_t& end) {
+  const ByteRange place{end, reader.read<std::uint32_t>()};
   end += place.size;
   return place;
 }
@@ -175,13 +175,13 @@ Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSecti
   for (KeyframeParts& parts : lookup.keyframes) {
     parts.features = reader.read<std::uint32_t>();
     features += parts.features;
-    for (std::size_t i = 0; i < kViewSections; ++i) parts.views[i] = read_place(reader, ends.views[i]);
-    parts.covisible = read_place(reader, end_of_covisible);
+    for (std::size_t i = 0; i < kViewSections; ++i) parts.views[i] = read_byte_range(reader, ends.views[i]);
+    parts.covisible = read_byte_range(reader, end_of_covisible);
     parts.checksum = reader.read<std::uint64_t>();
   }
   for (PointBlock& block : lookup.blocks) {
-    block.points = read_place(reader, ends.points);
-    block.observers = read_place(reader, ends.observers);
+    block.points = read_byte_range(reader, ends.points);
+    block.observers = read_byte_range(reader, ends.observers);
     block.checksum = reader.read<std::uint64_t>();
   }
   const bool is_used_up = ends.views == sizes.views && ends.points == sizes.points && ends.observers == sizes.observers;
@@ -193,10 +193,10 @@ Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSecti
   return lookup;
 }
 
-ReusedVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count) {
+ScratchVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count) {
   const std::uint32_t count = reader.read_varint();
   if (count > reader.remaining()) reader.fail("has more covisible keyframes than its bytes can hold");
-  ReusedVector<Covisible> all;
+  ScratchVector<Covisible> all;
   all.reserve(count);
   AscendingReader numbers(reader, keyframe_count);
   for (std::uint32_t i = 0; i < count; ++i) {

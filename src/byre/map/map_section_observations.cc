@@ -117,7 +117,7 @@ void read_observations(ByteReader reader, const std::vector<MapPoint>& points, s
   PointObservers observers(points.size());
   for (std::uint32_t i = 0; i < keyframes.size(); ++i) read_sightings(reader, i, observers, keyframes[i]);
   reader.require_end();
-  observers.require_that_all_are_seen(reader);
+  observers.require_all_observed(reader);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (observes(keyframes, points[i].reference, i)) continue;
     require_no_fault(reader, "has a reference keyframe that does not observe it", "point", i);

@@ -195,7 +195,7 @@ class ViewReader {
          {&sections_.features, &sections_.patches, &sections_.observations, &sections_.descriptors}) {
       section->require_end();
     }
-    observers_.require_that_all_are_seen(sections_.observations);
+    observers_.require_all_observed(sections_.observations);
   }
 
  private:

@@ -130,18 +130,18 @@ void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& 
                     ByteReader lookup);
 
 // Location of a part in its section, bytes.
-struct PartPlace {
+struct ByteRange {
   std::size_t begin = 0;
   std::size_t size = 0;
 };
 struct KeyframeParts {
   std::uint32_t features = 0;  // number of features
-  std::array<PartPlace, kViewSections> views;
-  PartPlace covisible;         // in Lookup::covisible
+  std::array<ByteRange, kViewSections> views;
+  ByteRange covisible;         // in Lookup::covisible
   std::uint64_t checksum = 0;  // XXH3 of its parts in the order of sections, without covisibility
 };
 struct PointBlock {
-  PartPlace points, observers;
+  ByteRange points, observers;
   std::uint64_t checksum = 0;  // XXH3 of both
 };
 struct Lookup {
@@ -156,7 +156,7 @@ struct PartSectionSizes {
   std::size_t points = 0, observers = 0;
 };
 Lookup read_lookup(ByteReader reader, const MapSummary& summary, const PartSectionSizes& sizes);
-ReusedVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count);
+ScratchVector<Covisible> read_covisible(ByteReader reader, std::uint32_t keyframe, std::size_t keyframe_count);
 // Reads the observations of the next point, with features within those of their keyframes.
 std::vector<Observation> read_observers(ByteReader& reader, const std::vector<KeyframeParts>& keyframes);
 

@@ -12,18 +12,18 @@ const Keyframe* MapView::find_keyframe(KeyframeId id) const {
   return map ? map->find_keyframe(id) : nullptr;
 }
 
-const Keyframe* MapView::find_bare_keyframe(KeyframeId id) const {
+const Keyframe* MapView::keyframe_header(KeyframeId id) const {
   const Map* map = of(id.origin);
-  return map ? map->find_bare_keyframe(id) : nullptr;
+  return map ? map->keyframe_header(id) : nullptr;
 }
 
 const Rig& MapView::rig_of(const Keyframe& keyframe, KeyframeId id) const {
   return of(id.origin)->rigs()[static_cast<std::size_t>(keyframe.rig)];
 }
 
-ReusedVector<Covisible> MapView::covisible_keyframes(KeyframeId id, int max_count) const {
+ScratchVector<Covisible> MapView::covisible_keyframes(KeyframeId id, int max_count) const {
   const Map* const map = of(id.origin);
-  return map == nullptr ? ReusedVector<Covisible>{} : map->covisible_keyframes(id, max_count);
+  return map == nullptr ? ScratchVector<Covisible>{} : map->covisible_keyframes(id, max_count);
 }
 
 }  // namespace byre

@@ -17,9 +17,9 @@ class MapView {
   const Map* offline() const { return offline_; }
   const Map& online() const { return *online_; }
 
-  const MapPoint* find_point(PointId id) const;             // nullptr if it does not exist
-  const Keyframe* find_keyframe(KeyframeId id) const;       // nullptr if it does not exist
-  const Keyframe* find_bare_keyframe(KeyframeId id) const;  // see Map
+  const MapPoint* find_point(PointId id) const;          // nullptr if it does not exist
+  const Keyframe* find_keyframe(KeyframeId id) const;    // nullptr if it does not exist
+  const Keyframe* keyframe_header(KeyframeId id) const;  // see Map
   const Rig& rig_of(const Keyframe& keyframe, KeyframeId id) const;
 
   // Calls visit(observation) for every observation of the point by keyframes of both maps.
@@ -37,7 +37,7 @@ class MapView {
   }
 
   // Keyframes of the same map with points in common, most first.
-  ReusedVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
+  ScratchVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
  private:
   const Map* of(Origin origin) const { return origin == Origin::offline ? offline_ : online_; }

@@ -33,22 +33,22 @@ const Sighting* nearest_sighting(const Keyframe& keyframe, const Eigen::Vector2d
 
 }  // namespace
 
-std::optional<MapPlace> place_of_point(const StoredMap& stored, PointId id) {
+std::optional<MapPosition> position_of_point(const StoredMap& stored, PointId id) {
   const MapPoint* const point = stored.map.find_point(id);
   if (point == nullptr) return std::nullopt;
   const bool is_metric = stored.scale == MapScale::metric;
-  return MapPlace{point->position_in_world, is_metric ? std::sqrt(point->covariance.trace() / 3.0) : 0.0};
+  return MapPosition{point->position_in_world, is_metric ? std::sqrt(point->covariance.trace() / 3.0) : 0.0};
 }
 
-std::optional<MapPlace> place_at_pixel(const StoredMap& stored, const Keyframe& keyframe,
-                                       const Eigen::Vector2d& pixel) {
+std::optional<MapPosition> position_at_pixel(const StoredMap& stored, const Keyframe& keyframe,
+                                             const Eigen::Vector2d& pixel) {
   const auto recording = static_cast<std::size_t>(keyframe.recording);
   if (recording >= stored.recordings.size()) return std::nullopt;
   const Rig& rig = stored.map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   const std::optional<Eigen::Vector2d> pixel_in_rig =
       rectified(pixel, stored.recordings[recording].present_calibration(), rig);
   const Sighting* const sighting = pixel_in_rig ? nearest_sighting(keyframe, *pixel_in_rig) : nullptr;
-  std::optional<MapPlace> place = sighting ? place_of_point(stored, *sighting->point) : std::nullopt;
+  std::optional<MapPosition> place = sighting ? position_of_point(stored, *sighting->point) : std::nullopt;
   if (!place || stored.scale != MapScale::metric) return place;
   const double depth = (keyframe.camera_from_world * place->point_in_map).z();
   const double distance = (sighting->pixel.cast<double>() - *pixel_in_rig).norm();
@@ -56,7 +56,7 @@ std::optional<MapPlace> place_at_pixel(const StoredMap& stored, const Keyframe& 
   return place;
 }
 
-PlanCorrespondence correspondence(std::string name, const MapPlace& place, const Eigen::Vector2d& point_in_plan,
+PlanCorrespondence correspondence(std::string name, const MapPosition& place, const Eigen::Vector2d& point_in_plan,
                                   double pick_sigma) {
   return {std::move(name), place.point_in_map, point_in_plan, std::hypot(pick_sigma, place.sigma)};
 }

@@ -47,38 +47,38 @@ class PlanPlaces : public testing::Test {
 };
 
 TEST_F(PlanPlaces, OfMapPointsHaveTheCovarianceOfTheMap) {
-  const std::optional<MapPlace> place = place_of_point(stored_, {Origin::offline, 0});
+  const std::optional<MapPosition> place = position_of_point(stored_, {Origin::offline, 0});
   ASSERT_TRUE(place.has_value());
   EXPECT_EQ(place->point_in_map, point_in_map_);
   EXPECT_NEAR(place->sigma, kPointSigma, 1e-12);
-  EXPECT_FALSE(place_of_point(stored_, {Origin::offline, 1}).has_value());
+  EXPECT_FALSE(position_of_point(stored_, {Origin::offline, 1}).has_value());
 }
 
 TEST_F(PlanPlaces, AreFoundAtARecordedPixel) {
-  const std::optional<MapPlace> place = place_at_pixel(stored_, keyframe(), pixel_as_recorded());
+  const std::optional<MapPosition> place = position_at_pixel(stored_, keyframe(), pixel_as_recorded());
   ASSERT_TRUE(place.has_value());
   EXPECT_THAT(place->point_in_map, PointNear(point_in_map_, 1e-9));
   EXPECT_NEAR(place->sigma, kPointSigma, 1e-4);
 }
 
 TEST_F(PlanPlaces, AreLessCertainFartherFromThePixel) {
-  const std::optional<MapPlace> place =
-      place_at_pixel(stored_, keyframe(), pixel_as_recorded() + Eigen::Vector2d(8.0, 0.0));
+  const std::optional<MapPosition> place =
+      position_at_pixel(stored_, keyframe(), pixel_as_recorded() + Eigen::Vector2d(8.0, 0.0));
   ASSERT_TRUE(place.has_value());
   EXPECT_NEAR(place->sigma, std::hypot(kPointSigma, 8.0 / 380.0 * kPointInCamera.z()), 0.01);
 }
 
 TEST_F(PlanPlaces, AreEmptyFarFromAllPointsOrWithoutCalibration) {
   const Eigen::Vector2d pixel = pixel_as_recorded();
-  EXPECT_FALSE(place_at_pixel(stored_, keyframe(), pixel + Eigen::Vector2d(30.0, 0.0)).has_value());
+  EXPECT_FALSE(position_at_pixel(stored_, keyframe(), pixel + Eigen::Vector2d(30.0, 0.0)).has_value());
   stored_.recordings.clear();
-  EXPECT_FALSE(place_at_pixel(stored_, keyframe(), pixel).has_value());
+  EXPECT_FALSE(position_at_pixel(stored_, keyframe(), pixel).has_value());
 }
 
 TEST_F(PlanPlaces, HaveNoSigmaInANonMetricMap) {
   stored_.scale = MapScale::unknown;
-  EXPECT_EQ(place_of_point(stored_, {Origin::offline, 0}).value().sigma, 0.0);
-  EXPECT_EQ(place_at_pixel(stored_, keyframe(), pixel_as_recorded()).value().sigma, 0.0);
+  EXPECT_EQ(position_of_point(stored_, {Origin::offline, 0}).value().sigma, 0.0);
+  EXPECT_EQ(position_at_pixel(stored_, keyframe(), pixel_as_recorded()).value().sigma, 0.0);
 }
 
 TEST_F(PlanPlaces, HaveCorrespondencesWithBothUncertainties) {

@@ -66,7 +66,7 @@ bool PlanWalls::is_inside(Cell cell) const {
 }
 
 // A diagonal step requires that both adjacent cells are free.
-bool PlanWalls::may_step(Cell from, int right, int down) const {
+bool PlanWalls::can_step(Cell from, int right, int down) const {
   const Cell to{from.column + right, from.row + down};
   if (!is_inside(to) || is_wall(to)) return false;
   if (right == 0 || down == 0) return true;
@@ -87,17 +87,17 @@ bool PlanWalls::any_in(const PlanDisc& disc, const Accept& accept) const {
   return false;
 }
 
-bool PlanWalls::has_free_place(const PlanDisc& disc) const {
+bool PlanWalls::has_free_cell(const PlanDisc& disc) const {
   return any_in(disc, [this](Cell cell) { return !is_wall(cell); });
 }
 
-bool PlanWalls::has_place_to_drive_to(const PlanDisc& disc) const {
+bool PlanWalls::has_reachable_cell(const PlanDisc& disc) const {
   return any_in(disc, [this](Cell cell) { return is_reached_[index(cell)] != 0; });
 }
 
-void PlanWalls::open_along(std::span<const std::vector<Eigen::Vector2d>> ways_in_plan) {
+void PlanWalls::clear_along_paths(std::span<const std::vector<Eigen::Vector2d>> paths_in_plan) {
   std::vector<Cell> driven;
-  for (const std::vector<Eigen::Vector2d>& way : ways_in_plan) {
+  for (const std::vector<Eigen::Vector2d>& way : paths_in_plan) {
     for (std::size_t i = 0; i < way.size(); ++i) {
       const Eigen::Vector2d& from = way[i > 0 ? i - 1 : 0];
       const int pieces = 1 + static_cast<int>(2.0 * (way[i] - from).norm() / cell_);
@@ -125,7 +125,7 @@ void PlanWalls::flood(std::vector<Cell> front) {
     front.pop_back();
     for (const auto& [right, down] : kNeighbours) {
       const Cell to{from.column + right, from.row + down};
-      if (!may_step(from, right, down) || is_reached_[index(to)] != 0) continue;
+      if (!can_step(from, right, down) || is_reached_[index(to)] != 0) continue;
       is_reached_[index(to)] = 1;
       front.push_back(to);
     }
@@ -133,7 +133,7 @@ void PlanWalls::flood(std::vector<Cell> front) {
 }
 
 // Dijkstra's algorithm from all free cells of the start disc, in the part of the grid that `longest` allows.
-std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDisc& end, double longest) const {
+std::optional<double> PlanWalls::path_length_between(const PlanDisc& start, const PlanDisc& end, double longest) const {
   const double reach = start.radius + longest + 2.0 * cell_;
   const Cell low = cell_at(start.centre.array() - reach), high = cell_at(start.centre.array() + reach);
   const int width = high.column - low.column + 1;
@@ -162,7 +162,7 @@ std::optional<double> PlanWalls::way_between(const PlanDisc& start, const PlanDi
     if (right_of * right_of + below * below <= goal_reach * goal_reach) return so_far;
     for (const auto& [right, down] : kNeighbours) {
       const Cell to{from.column + right, from.row + down};
-      if (!may_step(from, right, down)) continue;
+      if (!can_step(from, right, down)) continue;
       const float further = so_far + static_cast<float>(cell_ * std::hypot(right, down));
       const bool is_in_window =
           to.column >= low.column && to.row >= low.row && to.column <= high.column && to.row <= high.row;

@@ -27,14 +27,14 @@ class PlanWalls {
 
   // Frees the cells along driven paths, which may pass a door drawn closed, and marks all connected free cells
   // reachable.
-  void open_along(std::span<const std::vector<Eigen::Vector2d>> ways_in_plan);
+  void clear_along_paths(std::span<const std::vector<Eigen::Vector2d>> paths_in_plan);
 
   // Whether the disc contains a free cell; whether it contains a free, reachable cell.
-  bool has_free_place(const PlanDisc& disc) const;
-  bool has_place_to_drive_to(const PlanDisc& disc) const;
+  bool has_free_cell(const PlanDisc& disc) const;
+  bool has_reachable_cell(const PlanDisc& disc) const;
 
   // Length of the shortest path between two discs, metres; empty if it exceeds `longest`.
-  std::optional<double> way_between(const PlanDisc& start, const PlanDisc& end, double longest) const;
+  std::optional<double> path_length_between(const PlanDisc& start, const PlanDisc& end, double longest) const;
 
  private:
   struct Cell {
@@ -46,7 +46,7 @@ class PlanWalls {
   std::size_t index(Cell cell) const { return static_cast<std::size_t>(cell.row) * columns_ + cell.column; }
   bool is_inside(Cell cell) const;
   bool is_wall(Cell cell) const { return is_wall_[index(cell)] != 0; }
-  bool may_step(Cell from, int right, int down) const;
+  bool can_step(Cell from, int right, int down) const;
   template <typename Accept>
   bool any_in(const PlanDisc& disc, const Accept& accept) const;
   void flood(std::vector<Cell> front);

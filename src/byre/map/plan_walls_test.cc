@@ -46,7 +46,7 @@ const Eigen::Vector2d kWest(3.0, 3.0), kEast(7.0, 3.0);
 
 TEST(PlanWalls, LeaveAStraightPathBetweenUnobstructedPositions) {
   PlanOfRooms rooms;
-  const auto way = rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
+  const auto way = rooms.walls().path_length_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
   ASSERT_TRUE(way);
   EXPECT_NEAR(*way, 4.0, 0.2);
 }
@@ -54,8 +54,8 @@ TEST(PlanWalls, LeaveAStraightPathBetweenUnobstructedPositions) {
 TEST(PlanWalls, LeaveNoPathIntoAClosedRoom) {
   PlanOfRooms rooms;
   rooms.draw_two_rooms();
-  EXPECT_FALSE(rooms.walls().way_between({kWest, 0.5}, {kEast, 0.5}, 30.0));
-  EXPECT_TRUE(rooms.walls().way_between({kWest, 2.3}, {kEast, 2.3}, 30.0))
+  EXPECT_FALSE(rooms.walls().path_length_between({kWest, 0.5}, {kEast, 0.5}, 30.0));
+  EXPECT_TRUE(rooms.walls().path_length_between({kWest, 2.3}, {kEast, 2.3}, 30.0))
       << "if either position may be behind the wall";
 }
 
@@ -63,10 +63,11 @@ TEST(PlanWalls, LeaveAPathThroughADoor) {
   PlanOfRooms rooms;
   rooms.draw_two_rooms();
   rooms.draw_door();
-  const auto way = rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
+  const auto way = rooms.walls().path_length_between({kWest, 0.0}, {kEast, 0.0}, 10.0);
   ASSERT_TRUE(way);
   EXPECT_NEAR(*way, 2.0 * std::hypot(2.0, 0.9), 0.4);
-  EXPECT_FALSE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 4.1)) << "the path is too long for the time";
+  EXPECT_FALSE(rooms.walls().path_length_between({kWest, 0.0}, {kEast, 0.0}, 4.1))
+      << "the path is too long for the time";
 }
 
 TEST(PlanWalls, DoNotLeakIfThinAndSlanting) {
@@ -76,16 +77,16 @@ TEST(PlanWalls, DoNotLeakIfThinAndSlanting) {
     rooms.draw(x - 0.6 * kPixel, y - 0.6 * kPixel, x + 0.6 * kPixel, y + 0.6 * kPixel);
   }
   const PlanWalls walls = rooms.walls();
-  EXPECT_FALSE(walls.way_between({{2.0, 3.0}, 0.0}, {{8.0, 3.0}, 0.0}, 6.2));
+  EXPECT_FALSE(walls.path_length_between({{2.0, 3.0}, 0.0}, {{8.0, 3.0}, 0.0}, 6.2));
 }
 
 TEST(PlanWalls, DetectPositionsDeepInside) {
   PlanOfRooms rooms;
   rooms.draw(2.0, 2.0, 6.0, 5.0);
   const PlanWalls walls = rooms.walls();
-  EXPECT_FALSE(walls.has_free_place({{4.0, 3.5}, 0.5}));
-  EXPECT_TRUE(walls.has_free_place({{2.3, 3.5}, 0.5}));
-  EXPECT_TRUE(walls.has_free_place({{40.0, -30.0}, 0.1})) << "off the plan";
+  EXPECT_FALSE(walls.has_free_cell({{4.0, 3.5}, 0.5}));
+  EXPECT_TRUE(walls.has_free_cell({{2.3, 3.5}, 0.5}));
+  EXPECT_TRUE(walls.has_free_cell({{40.0, -30.0}, 0.1})) << "off the plan";
 }
 
 TEST(PlanWalls, DetectUnreachablePositions) {
@@ -93,11 +94,11 @@ TEST(PlanWalls, DetectUnreachablePositions) {
   rooms.draw_two_rooms();
   PlanWalls walls = rooms.walls();
   const std::vector<std::vector<Eigen::Vector2d>> ways = {{{2.0, 2.0}, {4.0, 2.0}, {4.0, 4.0}}};
-  walls.open_along(ways);
-  EXPECT_TRUE(walls.has_place_to_drive_to({{2.0, 4.0}, 0.3}));
-  EXPECT_FALSE(walls.has_place_to_drive_to({kEast, 0.5}));
-  EXPECT_FALSE(walls.has_place_to_drive_to({{0.4, 3.0}, 0.3})) << "outside of the building";
-  EXPECT_FALSE(walls.has_place_to_drive_to({{-20.0, 3.0}, 0.3})) << "off the plan";
+  walls.clear_along_paths(ways);
+  EXPECT_TRUE(walls.has_reachable_cell({{2.0, 4.0}, 0.3}));
+  EXPECT_FALSE(walls.has_reachable_cell({kEast, 0.5}));
+  EXPECT_FALSE(walls.has_reachable_cell({{0.4, 3.0}, 0.3})) << "outside of the building";
+  EXPECT_FALSE(walls.has_reachable_cell({{-20.0, 3.0}, 0.3})) << "off the plan";
 }
 
 TEST(PlanWalls, OpenAlongDrivenPaths) {
@@ -105,9 +106,9 @@ TEST(PlanWalls, OpenAlongDrivenPaths) {
   rooms.draw_two_rooms();
   PlanWalls walls = rooms.walls();
   const std::vector<std::vector<Eigen::Vector2d>> ways = {{kWest, {4.0, 3.0}, {6.0, 3.1}}};
-  walls.open_along(ways);
-  EXPECT_TRUE(walls.has_place_to_drive_to({kEast, 0.1}));
-  const auto way = walls.way_between({kWest, 0.0}, {kEast, 0.0}, 5.0);
+  walls.clear_along_paths(ways);
+  EXPECT_TRUE(walls.has_reachable_cell({kEast, 0.1}));
+  const auto way = walls.path_length_between({kWest, 0.0}, {kEast, 0.0}, 5.0);
   ASSERT_TRUE(way);
   EXPECT_NEAR(*way, 4.0, 0.3);
 }
@@ -116,7 +117,7 @@ TEST(PlanWalls, ConsistOfOccupiedPixelsOnly) {
   PlanOfRooms rooms;
   rooms.draw(4.9, 0.0, 5.0, 6.0, kUnknownPixel);
   rooms.draw(5.0, 0.0, 5.1, 6.0, 99);
-  EXPECT_TRUE(rooms.walls().way_between({kWest, 0.0}, {kEast, 0.0}, 5.0));
+  EXPECT_TRUE(rooms.walls().path_length_between({kWest, 0.0}, {kEast, 0.0}, 5.0));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "byre/map/scaled_copy.h"
 
 #include "byre/alignment.h"
-#include "byre/motion/known_mounting.h"
+#include "byre/motion/odometry_calibration.h"
 
 #include <cassert>
 #include <cmath>
@@ -53,12 +53,12 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
     recording.refined->calibration = byre::scaled(recording.refined->calibration, factor);
   }
   scaled.notes.erase(kMetresNote);  // the scale no longer comes from wheels
-  note_mounting(byre::scaled(mounting_in(stored.notes), factor), scaled.notes);
+  write_odometry_calibration(byre::scaled(read_odometry_calibration(stored.notes), factor), scaled.notes);
   if (scaled.plan) scaled.plan->plan_from_map.scale /= factor;
   return scaled;
 }
 
-void stretch(Map& map, double factor) {
+void rescale(Map& map, double factor) {
   assert(factor > 0.0);
   for (KeyframeId id{map.origin(), 0}; map.living_ancestor(id); ++id.number) {
     const Keyframe* const keyframe = map.find_keyframe(id);

@@ -13,7 +13,7 @@ Calibration scaled(const Calibration& calibration, double factor);
 StoredMap scaled_copy(const StoredMap& stored, double factor);
 
 // Scales all lengths of a map, also of removed keyframes. Rigs are unchanged. Precondition: a positive factor.
-void stretch(Map& map, double factor);
+void rescale(Map& map, double factor);
 
 // Ratio of the map's baseline to the given one of a stereo recording: 1 unless its scale was corrected. Also 1 for a
 // monocular recording and one without keyframes. Precondition: the recording exists.

@@ -96,7 +96,7 @@ TEST(ScaledCalibration, ScalesTheBaselineOnly) {
 TEST(KnownCalibration, IsEmptyWhileTheBaselineIsUnchanged) {
   const StoredMap stored = consistent_map();
   EXPECT_EQ(baseline_factor(stored, 0), 1.0);
-  EXPECT_FALSE(known_calibration(stored.recordings, stored.recordings[0].calibration));
+  EXPECT_FALSE(stored_calibration(stored.recordings, stored.recordings[0].calibration));
 }
 
 TEST(KnownCalibration, HasTheBaselineOfARescaledMap) {
@@ -104,7 +104,7 @@ TEST(KnownCalibration, HasTheBaselineOfARescaledMap) {
   const Calibration given = consistent_map().recordings[0].calibration;
   EXPECT_NEAR(baseline_factor(stored, 0), kFactor, 1e-12);
   EXPECT_EQ(baseline_factor(stored, 1), 1.0) << "one camera";
-  const auto known = known_calibration(stored.recordings, given);
+  const auto known = stored_calibration(stored.recordings, given);
   ASSERT_TRUE(known);
   EXPECT_NEAR(known->calibration.right->right_from_left.translation.norm(), stored.map.rigs()[0].baseline, 1e-12);
 }
@@ -113,17 +113,17 @@ TEST(KnownCalibration, IsEmptyForOtherCameras) {
   const StoredMap stored = scaled_copy(consistent_map(), kFactor);
   Calibration other = consistent_map().recordings[0].calibration;
   other.right->right_from_left.translation.x() += 1e-6;
-  EXPECT_FALSE(known_calibration(stored.recordings, other));
+  EXPECT_FALSE(stored_calibration(stored.recordings, other));
   other = consistent_map().recordings[0].calibration;
   other.left.fx += 1.0;
-  EXPECT_FALSE(known_calibration(stored.recordings, other));
+  EXPECT_FALSE(stored_calibration(stored.recordings, other));
 }
 
 TEST(KnownCalibration, OfAPairAppliesToItsLeftCamera) {
   const StoredMap stored = scaled_copy(consistent_map(), kFactor);
   Calibration left = consistent_map().recordings[0].calibration;
   left.right.reset();
-  const auto known = known_calibration(stored.recordings, left);
+  const auto known = stored_calibration(stored.recordings, left);
   ASSERT_TRUE(known);
   EXPECT_EQ(known->calibration.left, left.left);
   EXPECT_FALSE(known->calibration.right);
@@ -133,17 +133,17 @@ TEST(KnownCalibration, AppliesToTheSameCameraOnAnotherBody) {
   StoredMap stored = scaled_copy(consistent_map(), kFactor);
   Calibration given = consistent_map().recordings[0].calibration;
   const Pose map_body_from_body{rotation_exp({0.1, 0.2, 0.3}), {0.3, 0.2, 0.1}};
-  EXPECT_TRUE(is_by_cameras_of(stored.recordings, given));
+  EXPECT_TRUE(has_same_cameras(stored.recordings, given));
   given.body_from_left = inverse(map_body_from_body) * given.body_from_left;
-  EXPECT_FALSE(is_by_cameras_of(stored.recordings, given));
-  const auto change = known_body_from_body(stored.recordings, given);
+  EXPECT_FALSE(has_same_cameras(stored.recordings, given));
+  const auto change = stored_body_from_body(stored.recordings, given);
   ASSERT_TRUE(change);
   EXPECT_THAT(*change, PoseNear(map_body_from_body, 1e-9, 1e-9));
-  const auto known = known_calibration(stored.recordings, given);
+  const auto known = stored_calibration(stored.recordings, given);
   ASSERT_TRUE(known);
   EXPECT_EQ(known->calibration.body_from_left, given.body_from_left);
   given.left.fx += 1.0;
-  EXPECT_FALSE(known_body_from_body(stored.recordings, given));
+  EXPECT_FALSE(stored_body_from_body(stored.recordings, given));
 }
 
 TEST(Stretch, ScalesDistancesToRemovedKeyframesToo) {
@@ -152,7 +152,7 @@ TEST(Stretch, ScalesDistancesToRemovedKeyframesToo) {
   map.remove_keyframe(ids.back());
   ASSERT_EQ(map.keyframe_count(), static_cast<int>(ids.size()) - 1);
   const Map before = map;
-  stretch(map, 2.0);
+  rescale(map, 2.0);
   for (const KeyframeId id : ids) {
     EXPECT_THAT(map.camera_from_world(id), PoseNear(scale_lengths(before.camera_from_world(id), 2.0), 1e-9, 1e-9));
   }

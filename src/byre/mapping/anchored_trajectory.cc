@@ -11,7 +11,7 @@ Pose camera_from_world(const MapView& map, KeyframeId id) {
   return id.origin == Origin::offline ? map.offline()->camera_from_world(id) : map.online().camera_from_world(id);
 }
 
-Pose turn_of(const RigTurn& turn, KeyframeId id, const Map& online) {
+Pose rotation_of(const RigRotation& turn, KeyframeId id, const Map& online) {
   return id.origin == Origin::online && online.rig_of(id) == turn.rig ? turn.after_from_before : Pose{};
 }
 
@@ -36,30 +36,31 @@ Vector6 AnchoredTrajectory::velocity_to(Timestamp time, const Pose& camera_from_
 }
 
 void AnchoredTrajectory::keep_sightings(const Rig& rig, const Features& features, const TrackedFrame& tracked) {
-  hindsight_.note(number_of(poses_.size() - 1), rig, features, tracked);
+  deferred_.note(number_of(poses_.size() - 1), rig, features, tracked);
 }
 
 void AnchoredTrajectory::anchor_last_to(KeyframeId keyframe) {
   poses_.back().keyframe = keyframe;
   poses_.back().camera_from_keyframe = Pose{};
-  hindsight_.forget_from(number_of(poses_.size() - 1));
+  deferred_.forget_from(number_of(poses_.size() - 1));
 }
 
-void AnchoredTrajectory::drop_doubtful() {
-  poses_.resize(believed_end_);
-  hindsight_.forget_from(number_of(believed_end_));
+void AnchoredTrajectory::drop_unconfirmed() {
+  poses_.resize(confirmed_end_);
+  deferred_.forget_from(number_of(confirmed_end_));
 }
 
-void AnchoredTrajectory::bend(std::size_t first, std::size_t second, const Pose& told, const MapView& map) {
+void AnchoredTrajectory::distribute_drift(std::size_t first, std::size_t second, const Pose& measured,
+                                          const MapView& map) {
   const Pose first_from_world = byre::camera_from_world(map, poses_[first]);
   const Pose seen = first_from_world * inverse(byre::camera_from_world(map, poses_[second]));
-  const Pose correction = seen * inverse(told);
+  const Pose correction = seen * inverse(measured);
   const double seconds = to_seconds(poses_[second].time - poses_[first].time);
   for (std::size_t i = first + 1; i < second; ++i) {
     const double share = to_seconds(poses_[i].time - poses_[first].time) / seconds;
     const Pose camera_from_first = byre::camera_from_world(map, poses_[i]) * inverse(first_from_world);
-    const Pose bent = camera_from_first * inverse(interpolate(Pose{}, correction, share)) * first_from_world;
-    poses_[i].camera_from_keyframe = bent * inverse(byre::camera_from_world(map, poses_[i].keyframe));
+    const Pose corrected = camera_from_first * inverse(interpolate(Pose{}, correction, share)) * first_from_world;
+    poses_[i].camera_from_keyframe = corrected * inverse(byre::camera_from_world(map, poses_[i].keyframe));
   }
 }
 
@@ -71,8 +72,8 @@ std::size_t AnchoredTrajectory::recent_begin() const {
 
 std::size_t AnchoredTrajectory::thin_out(std::size_t end) {
   if (options_.max_poses == 0 || poses_.size() <= options_.max_poses) return 0;
-  end = std::min({end, believed_end_, recent_begin()});
-  if (const auto first = hindsight_.first()) end = std::min(end, *first - thinned_out_);
+  end = std::min({end, confirmed_end_, recent_begin()});
+  if (const auto first = deferred_.first()) end = std::min(end, *first - thinned_out_);
   const std::size_t most = std::max<std::size_t>(options_.max_poses / 4, 1);
   if (end <= most) return 0;
   const auto begin = poses_.begin(), middle = begin + static_cast<std::ptrdiff_t>(end);
@@ -85,47 +86,47 @@ std::size_t AnchoredTrajectory::thin_out(std::size_t end) {
   for (; kept - begin > static_cast<std::ptrdiff_t>(most); kept = thin(kept)) spacing_ *= 2;
   const auto removed = static_cast<std::size_t>(middle - kept);
   poses_.erase(kept, middle);
-  believed_end_ -= removed;
+  confirmed_end_ -= removed;
   thinned_out_ += removed;
   return removed;
 }
 
-void AnchoredTrajectory::follow(const LengthChanges& changes) {
+void AnchoredTrajectory::apply_length_changes(const LengthChanges& changes) {
   for (AnchoredPose& pose : poses_) {
     const auto change = changes.find(pose.keyframe);
     if (change != changes.end()) pose.camera_from_keyframe = scale_lengths(pose.camera_from_keyframe, change->second);
   }
 }
 
-void AnchoredTrajectory::turn(const RigTurn& turn, const Map& online) {
+void AnchoredTrajectory::rotate_rig(const RigRotation& turn, const Map& online) {
   for (AnchoredPose& pose : poses_) {
     pose.camera_from_keyframe =
-        turn.after_from_before * pose.camera_from_keyframe * inverse(turn_of(turn, pose.keyframe, online));
+        turn.after_from_before * pose.camera_from_keyframe * inverse(rotation_of(turn, pose.keyframe, online));
   }
 }
 
-void AnchoredTrajectory::turn_camera(const Pose& after_from_before) {
-  hindsight_.turn_rig(after_from_before);
+void AnchoredTrajectory::rotate_camera(const Pose& after_from_before) {
+  deferred_.rotate_rig(after_from_before);
   for (AnchoredPose& pose : poses_) pose.camera_from_keyframe = after_from_before * pose.camera_from_keyframe;
 }
 
-void AnchoredTrajectory::settle_overdue(const MapView& map, const TrackOptions& tracking) {
-  const auto first = hindsight_.first();
+void AnchoredTrajectory::refine_overdue(const MapView& map, const TrackOptions& tracking) {
+  const auto first = deferred_.first();
   const bool is_old = first && *first < number_of(recent_begin());
-  if (const auto overdue = is_old ? hindsight_.take_oldest() : hindsight_.take_overdue()) {
-    settle(*overdue, map, tracking);
+  if (const auto overdue = is_old ? deferred_.take_oldest() : deferred_.take_overdue()) {
+    refine_deferred(*overdue, map, tracking);
   }
 }
 
-void AnchoredTrajectory::settle_all(const MapView& map, const TrackOptions& tracking) {
-  while (const auto seen = hindsight_.take_oldest()) settle(*seen, map, tracking);
+void AnchoredTrajectory::refine_all_deferred(const MapView& map, const TrackOptions& tracking) {
+  while (const auto seen = deferred_.take_oldest()) refine_deferred(*seen, map, tracking);
 }
 
 // Precondition: mapping has settled the points on which the frame was tracked.
-void AnchoredTrajectory::settle(const RememberedFrame& seen, const MapView& map, const TrackOptions& tracking) {
+void AnchoredTrajectory::refine_deferred(const DeferredFrame& seen, const MapView& map, const TrackOptions& tracking) {
   AnchoredPose& anchored = poses_[seen.number - thinned_out_];
   const Pose keyframe_from_world = camera_from_world(map, anchored.keyframe);
-  const auto pose = pose_in_hindsight(seen, anchored.camera_from_keyframe * keyframe_from_world, map, tracking);
+  const auto pose = refine_deferred_pose(seen, anchored.camera_from_keyframe * keyframe_from_world, map, tracking);
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);
 }
 

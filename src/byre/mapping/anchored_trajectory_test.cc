@@ -19,7 +19,7 @@ class AnchoredFrames : public ::testing::Test {
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(9, 10.0, 2.0, 0.1), {});
   Map map_ = true_map(mission_, 8, Origin::online);
   const std::vector<KeyframeId> keyframes_ = map_.keyframe_ids();
-  AnchoredTrajectory trajectory_{HindsightOptions{}};
+  AnchoredTrajectory trajectory_{DeferredRefinementOptions{}};
   Submaps submaps_;
 
   void SetUp() override {
@@ -41,23 +41,23 @@ TEST_F(AnchoredFrames, MoveWithTheirKeyframes) {
 
 // Odometry reports straight motion while the robot turns to the left.
 TEST_F(AnchoredFrames, ShareTheErrorOfMeasuredMotion) {
-  AnchoredTrajectory trajectory{HindsightOptions{}};
+  AnchoredTrajectory trajectory{DeferredRefinementOptions{}};
   const Pose first = map_.camera_from_world(keyframes_[0]);
   const Timestamp step = std::chrono::milliseconds(100);
-  Pose told, seen;  // from the first pose
+  Pose measured, seen;  // from the first pose
   const auto camera = [&](const Pose& first_from_camera) { return inverse(first_from_camera) * first; };
   const auto anchored = [&](const Pose& camera_from_world) { return camera_from_world * inverse(first); };
-  trajectory.add({Timestamp(0), keyframes_[0], anchored(camera(told)), 0});
+  trajectory.add({Timestamp(0), keyframes_[0], anchored(camera(measured)), 0});
   std::vector<Pose> truth{seen};
   for (int i = 1; i < 10; ++i) {
-    told.translation.z() += 0.1;
+    measured.translation.z() += 0.1;
     truth.push_back(truth.back() * exp_pose((Vector6() << 0.0, 0.0, 0.1, 0.0, -0.02, 0.0).finished()));
-    trajectory.add({i * step, keyframes_[0], anchored(camera(told)), 0});
+    trajectory.add({i * step, keyframes_[0], anchored(camera(measured)), 0});
   }
-  told.translation.z() += 0.1;
+  measured.translation.z() += 0.1;
   seen = truth.back() * exp_pose((Vector6() << 0.0, 0.0, 0.1, 0.0, -0.02, 0.0).finished());
   trajectory.add({10 * step, keyframes_[0], anchored(camera(seen)), 0});
-  trajectory.bend(0, 10, told, map_);
+  trajectory.distribute_drift(0, 10, measured, map_);
   for (std::size_t i = 0; i < 10; ++i) {
     const Pose bent = first * inverse(byre::camera_from_world(map_, trajectory[i]));
     EXPECT_LT((bent.translation - truth[i].translation).norm(), 0.03) << i;  // metres; odometry is 0.1 m off
@@ -74,29 +74,29 @@ TEST_F(AnchoredFrames, AreReturnedOnceTheirSubmapJoinsTheMapFrame) {
 }
 
 TEST_F(AnchoredFrames, AreDroppedIfUnconfirmed) {
-  trajectory_.believe_all();
+  trajectory_.confirm_all();
   trajectory_.add({time_of(keyframes_[1]), keyframes_[1], Pose{}, 0});
-  EXPECT_TRUE(trajectory_.ends_in_doubt());
-  trajectory_.drop_doubtful();
+  EXPECT_TRUE(trajectory_.has_unconfirmed());
+  trajectory_.drop_unconfirmed();
   EXPECT_EQ(trajectory_.size(), 2u);
-  EXPECT_FALSE(trajectory_.ends_in_doubt());
+  EXPECT_FALSE(trajectory_.has_unconfirmed());
 }
 
 TEST_F(AnchoredFrames, FollowTheScaleOfTheirKeyframe) {
-  trajectory_.follow({{keyframes_[1], 2.0}});
+  trajectory_.apply_length_changes({{keyframes_[1], 2.0}});
   EXPECT_EQ(trajectory_[0].camera_from_keyframe, kAhead);
   EXPECT_THAT(trajectory_[1].camera_from_keyframe.translation, PointNear(2.0 * kAhead.translation, 1e-12));
   EXPECT_EQ(trajectory_[1].camera_from_keyframe.rotation.coeffs(), kAhead.rotation.coeffs());
 }
 
 TEST_F(AnchoredFrames, KeepTheirPoseInARotatedCameraFrame) {
-  const RigTurn turn{{rotation_exp({0.02, -0.01, 0.03}), Eigen::Vector3d::Zero()}, 0, mission_.rig};
+  const RigRotation turn{{rotation_exp({0.02, -0.01, 0.03}), Eigen::Vector3d::Zero()}, 0, mission_.rig};
   const Pose before = camera_from_world(map_, trajectory_[1]);
   AnchoredTrajectory together = trajectory_;
-  together.turn(turn, map_);
+  together.rotate_rig(turn, map_);
   EXPECT_THAT(together[1].camera_from_keyframe * turn.after_from_before * map_.camera_from_world(keyframes_[1]),
               PoseNear(turn.after_from_before * before, 1e-12, 1e-12));
-  trajectory_.turn_camera(turn.after_from_before);
+  trajectory_.rotate_camera(turn.after_from_before);
   EXPECT_THAT(camera_from_world(map_, trajectory_[1]), PoseNear(turn.after_from_before * before, 1e-12, 1e-12));
 }
 
@@ -115,7 +115,7 @@ TEST_F(AnchoredFrames, AreThinnedEvenlyExceptRecentOnes) {
   std::size_t left_out = 0;
   for (int i = 0; i < 1000; ++i) {
     trajectory.add({i * step, keyframes_[0], kAhead, 0});
-    trajectory.believe_all();
+    trajectory.confirm_all();
     left_out += trajectory.thin_out(trajectory.size());
     ASSERT_EQ(trajectory.size() + left_out, static_cast<std::size_t>(i + 1));
     ASSERT_LE(trajectory.size(), options.max_poses);
@@ -135,7 +135,7 @@ TEST_F(AnchoredFrames, AreKeptWhileIndexedOrUnconfirmed) {
   AnchoredTrajectory trajectory({}, {.max_poses = 40});
   for (int i = 0; i < 100; ++i) trajectory.add({std::chrono::milliseconds(50 * i), keyframes_[0], kAhead, 0});
   EXPECT_EQ(trajectory.thin_out(trajectory.size()), 0u);
-  trajectory.believe_all();
+  trajectory.confirm_all();
   const std::size_t left_out = trajectory.thin_out(30);
   EXPECT_GE(left_out, 20u);
   EXPECT_EQ(trajectory[30 - left_out].time, std::chrono::milliseconds(50 * 30));

@@ -33,7 +33,7 @@ Frame Calibrator::corrected(const Frame& frame) {
   return result;
 }
 
-void Calibrator::take_over(const RefinedCalibration& refined, RectifiedChange from_given) {
+void Calibrator::apply_update(const RefinedCalibration& refined, RectifiedChange from_given) {
   state_.change = refined.change;
   result_ = refined;
   from_given_.emplace(std::move(from_given));

@@ -4,7 +4,7 @@
 #include "byre/geometry/rectified_change.h"
 #include "byre/slam/self_calibration.h"
 #include "byre/workers/executor.h"
-#include "byre/workers/shared_pool.h"
+#include "byre/workers/object_pool.h"
 
 #include <memory>
 #include <optional>
@@ -41,12 +41,12 @@ class Calibrator {
   Frame corrected(const Frame& frame);
 
   // Called per frame: whether recent left and right images are inconsistent.
-  void note_images(bool are_at_odds) {
-    if (!from_given_) given_is_at_odds_ = are_at_odds;
+  void note_images(bool disagree) {
+    if (!from_given_) given_disagrees_ = disagree;
   }
   // Whether the result is not yet reliable. If images were inconsistent with the given calibration, a usual change that
   // explains a few keyframes is no proof: kCloseUntil keyframes are then required.
-  bool is_open() const { return !result_ || (given_is_at_odds_ && last_keyframes_.value_or(0) < kCloseUntil); }
+  bool is_open() const { return !result_ || (given_disagrees_ && last_keyframes_.value_or(0) < kCloseUntil); }
 
   // Whether the map has grown enough since the last refinement for another one. The first intervals are short, because
   // verdicts are wrong until a wrong calibration is detected.
@@ -56,13 +56,13 @@ class Calibrator {
     return keyframes >= (*last_keyframes_ < kCloseUntil ? *last_keyframes_ + kStep : 2 * *last_keyframes_);
   }
   // Whether a last refinement at the end pays off. A refinement stopped by the end of the session has no result.
-  bool is_worth_a_last_look(int keyframes) const {
+  bool is_final_run_useful(int keyframes) const {
     return !last_keyframes_ || !result_ || 4 * keyframes >= 5 * *last_keyframes_;
   }
   void note_attempt(int keyframes) { last_keyframes_ = keyframes; }
 
   // Makes refined the present calibration; from_given: its change of features from the given one.
-  void take_over(const RefinedCalibration& refined, RectifiedChange from_given);
+  void apply_update(const RefinedCalibration& refined, RectifiedChange from_given);
 
  private:
   static constexpr int kCloseUntil = 28;  // number of keyframes up to which intervals are short
@@ -71,9 +71,9 @@ class Calibrator {
   CalibrationState state_;
   std::optional<RefinedCalibration> result_;
   std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the given one
-  bool given_is_at_odds_ = false;              // with the images, while they were rectified by it
+  bool given_disagrees_ = false;               // with the images, while they were rectified by it
   std::optional<int> last_keyframes_;          // keyframes at the last refinement
-  SharedPool<Features> features_of_frames_;    // reused memory
+  ObjectPool<Features> features_of_frames_;    // reused memory
 };
 
 }  // namespace byre

@@ -17,7 +17,7 @@ class RefinedCalibrator : public ::testing::Test {
     calibrator_.note_attempt(keyframes);
     RefinedCalibration refined;
     refined.calibration = given();
-    calibrator_.take_over(refined, {given(), given()});
+    calibrator_.apply_update(refined, {given(), given()});
   }
 
   Calibrator calibrator_{given(), {}};

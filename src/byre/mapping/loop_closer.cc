@@ -2,11 +2,11 @@
 
 namespace byre {
 
-std::optional<LoopHypothesis> LoopCloser::look(const Look& now, const Map& online) {
-  asks_for_place_ = false;
+std::optional<LoopHypothesis> LoopCloser::check(const LoopFrame& now, const Map& online) {
+  is_search_requested_ = false;
   if (++frames_since_loop_ < kMinFramesBetweenLoops) return std::nullopt;
   if (!hypothesis_) {
-    asks_for_place_ = now.is_new;
+    is_search_requested_ = now.is_new;
     return std::nullopt;
   }
   hypothesis_ = check_loop(*hypothesis_, now.frame, now.camera_from_world, now.rig, online);
@@ -16,14 +16,14 @@ std::optional<LoopHypothesis> LoopCloser::look(const Look& now, const Map& onlin
   return std::exchange(hypothesis_, std::nullopt);
 }
 
-void LoopCloser::follow(const LengthChanges& changes) {
+void LoopCloser::apply_length_changes(const LengthChanges& changes) {
   for (LoopEdge& loop : loops_) loop = in_new_lengths(loop, changes);
 }
 
-void LoopCloser::turn(const RigTurn& turn, const Map& online) {
+void LoopCloser::rotate_rig(const RigRotation& turn, const Map& online) {
   for (LoopEdge& loop : loops_) {
-    loop.keyframe_from_place =
-        turn_of(turn, loop.keyframe, online) * loop.keyframe_from_place * inverse(turn_of(turn, loop.place, online));
+    loop.keyframe_from_place = rotation_of(turn, loop.keyframe, online) * loop.keyframe_from_place *
+                               inverse(rotation_of(turn, loop.place, online));
   }
   forget_hypothesis();
 }

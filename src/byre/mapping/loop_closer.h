@@ -16,7 +16,7 @@ class LoopCloser {
   const std::vector<LoopEdge>& loops() const { return loops_; }
 
   // A frame tracked in the newer part of the map.
-  struct Look {
+  struct LoopFrame {
     const Frame& frame;
     Pose camera_from_world;
     const Rig& rig;
@@ -24,20 +24,20 @@ class LoopCloser {
     bool is_new = false;  // the newest keyframe is this frame
   };
   // Called per frame while no correction of the whole map is in flight. Returns a loop once enough frames confirm it.
-  std::optional<LoopHypothesis> look(const Look& now, const Map& online);
-  // Called once after each look(): whether to search older parts of the map for the newest keyframe, see find_loop.
-  bool take_question() { return std::exchange(asks_for_place_, false); }
-  void suspect(const LoopHypothesis& found) { hypothesis_ = found; }  // result of that search
+  std::optional<LoopHypothesis> check(const LoopFrame& now, const Map& online);
+  // Called once after each check(): whether to search older parts of the map for the newest keyframe, see find_loop.
+  bool take_search_request() { return std::exchange(is_search_requested_, false); }
+  void set_hypothesis(const LoopHypothesis& found) { hypothesis_ = found; }  // result of that search
   void add(const LoopEdge& loop) { loops_.push_back(loop); }
 
   // Drops the hypothesis, whose measured pose is out of date.
   void forget_hypothesis() { hypothesis_.reset(); }
-  void follow(const LengthChanges& changes);
-  void turn(const RigTurn& turn, const Map& online);
+  void apply_length_changes(const LengthChanges& changes);
+  void rotate_rig(const RigRotation& turn, const Map& online);
 
  private:
   std::optional<LoopHypothesis> hypothesis_;  // not yet confirmed
-  bool asks_for_place_ = false;
+  bool is_search_requested_ = false;
   int frames_since_loop_ = 0;  // since the last confirmed loop
   std::vector<LoopEdge> loops_;
 };

@@ -16,8 +16,8 @@ class MapperOfAMission : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
 
-  Mapper mapper(std::unique_ptr<Executor> local, MapperKnowledge knowledge = {}) const {
-    return {mission_.rig, {}, {.local = std::move(local)}, std::move(knowledge)};
+  Mapper mapper(std::unique_ptr<Executor> local, MapperResources resources = {}) const {
+    return {mission_.rig, {}, {.local = std::move(local)}, std::move(resources)};
   }
   Pose true_pose(std::size_t frame) const {  // in the map of the first frame
     return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
@@ -116,11 +116,11 @@ TEST_F(MapperOfAMission, StoresTheFeaturesOfOlderKeyframesInAFile) {
   mapper.add_keyframe(mission_.frames[33], track(mapper, 33), mission_.rig);
   EXPECT_EQ(features(), in_memory) << "the result of the job is not applied yet";
   mapper.collect();
-  const auto before = in_memory->lists(), stowed = features()->lists();
-  for (std::size_t i = 0; i < Features::kLists; ++i) {
-    EXPECT_FALSE(stowed[i].empty());
-    EXPECT_NE(stowed[i].data(), before[i].data()) << i;
-    EXPECT_TRUE(std::ranges::equal(stowed[i], before[i])) << i;
+  const auto before = in_memory->arrays(), paged = features()->arrays();
+  for (std::size_t i = 0; i < Features::kArrays; ++i) {
+    EXPECT_FALSE(paged[i].empty());
+    EXPECT_NE(paged[i].data(), before[i].data()) << i;
+    EXPECT_TRUE(std::ranges::equal(paged[i], before[i])) << i;
   }
 }
 
@@ -143,15 +143,15 @@ TEST_F(MapperOfAMission, HasTheWordsOfAKeyframeAfterAJob) {
   EXPECT_GT(words_of(begun.keyframes[0]), 0u) << "at once, for relocalisation";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   mapper.start_reading();
-  EXPECT_TRUE(mapper.is_read());
+  EXPECT_TRUE(mapper.is_being_read());
   mapper.collect_reading();
   EXPECT_EQ(words_of(id), 0u);
   mapper.collect_reading();
-  EXPECT_FALSE(mapper.is_read());
+  EXPECT_FALSE(mapper.is_being_read());
   EXPECT_EQ(words_of(id), static_cast<std::size_t>(mission_.frames[4].features->size()));
   EXPECT_EQ(mapper.places()->size(), 2);
   mapper.start_reading();
-  EXPECT_FALSE(mapper.is_read()) << "no reading is needed";
+  EXPECT_FALSE(mapper.is_being_read()) << "no reading is needed";
 }
 
 TEST_F(MapperOfAMission, ReadsRemainingKeyframesAtTheEnd) {
@@ -214,14 +214,14 @@ TEST(MapperOfOneCamera, StartsAtTheGivenPose) {
   Mapper mapper(rig, {}, {.local = make_inline_executor()}, {});
   std::size_t frame = 0;
   Mapper::Beginning begun;
-  Pose told;
+  Pose measured;
   while (begun.keyframes.empty() && frame < mission.frames.size()) {
-    told = inverse(world_from_truth * mission.truth[frame].world_from_body);
-    begun = mapper.begin(mission.frames[frame++], rig, told, AnchoredTrajectory({}));
+    measured = inverse(world_from_truth * mission.truth[frame].world_from_body);
+    begun = mapper.begin(mission.frames[frame++], rig, measured, AnchoredTrajectory({}));
   }
   ASSERT_EQ(begun.keyframes.size(), 2u);
   const Map& map = mapper.online();
-  EXPECT_THAT(map.camera_from_world(begun.keyframes[1]), PoseNear(told, 1e-9, 1e-9));
+  EXPECT_THAT(map.camera_from_world(begun.keyframes[1]), PoseNear(measured, 1e-9, 1e-9));
   const Timestamp first_time = map.find_keyframe(begun.keyframes[0])->frame.time;
   const auto first = std::ranges::find(mission.truth, first_time, &StampedPose::time);
   const double way = (first->world_from_body.translation - mission.truth[frame - 1].world_from_body.translation).norm();

@@ -19,7 +19,7 @@ void Submaps::begin_in_own_frame(std::uint32_t first_keyframe) {
   submaps_.push_back({first_keyframe, next_frame_++});
 }
 
-void Submaps::begin_beside(KeyframeId online, std::uint32_t first_keyframe) {
+void Submaps::begin_in_frame_of(KeyframeId online, std::uint32_t first_keyframe) {
   submaps_.push_back({first_keyframe, frame(online)});
 }
 

@@ -31,7 +31,7 @@ class Submaps {
   void begin_in_map_frame(std::uint32_t first_keyframe);
   void begin_in_own_frame(std::uint32_t first_keyframe);
   // Begins a submap in the frame of an older keyframe, at which the camera was relocalised.
-  void begin_beside(KeyframeId online, std::uint32_t first_keyframe);
+  void begin_in_frame_of(KeyframeId online, std::uint32_t first_keyframe);
 
   // The contents of a frame were registered and moved to the map frame.
   void join_map_frame(Frame frame);

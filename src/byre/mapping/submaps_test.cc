@@ -35,7 +35,7 @@ TEST(Submaps, JoinTheMapFrameWithAllSubmapsOfTheirFrame) {
   Submaps submaps;
   submaps.begin_in_own_frame(0);
   submaps.begin_in_own_frame(4);
-  submaps.begin_beside(online(2), 7);
+  submaps.begin_in_frame_of(online(2), 7);
   submaps.join_map_frame(submaps.frame());
   EXPECT_EQ(submaps.frame(online(2)), Submaps::kMapFrame);
   EXPECT_NE(submaps.frame(online(5)), Submaps::kMapFrame);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "byre/body_motion.h"
-#include "byre/motion/wheel_mounting.h"
+#include "byre/motion/wheel_calibration.h"
 #include "byre/trajectory.h"
 
 #include <cmath>
@@ -36,7 +36,7 @@ struct Drive {
   StampedPose wheels(double seconds) const { return {from_seconds(seconds + wheel_delay), world_from_base(seconds)}; }
 
   // Velocity of the base, measured by its wheels.
-  BaseVelocity velocity(double seconds) const {
+  BaseTwist velocity(double seconds) const {
     constexpr double kStep = 1e-3;
     const Pose motion = inverse(world_from_base(seconds - kStep)) * world_from_base(seconds + kStep);
     return {from_seconds(seconds + wheel_delay), motion.translation.x() / (2.0 * kStep),

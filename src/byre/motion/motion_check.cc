@@ -220,23 +220,23 @@ MotionCheck::CheckedPoses MotionCheck::check(const StampedPose& wheels) {
   return result;
 }
 
-StampCheck::Order MotionCheck::check(const BaseVelocity& wheels) {
+StampCheck::Order MotionCheck::check(const BaseTwist& wheels) {
   constexpr auto kWheels = MotionSensor::wheels;
   const auto dropped = StampCheck::Order::dropped;
   if (are_wheels_ignored()) return dropped;
-  const double speed = std::hypot(wheels.ahead, wheels.left);
-  if (!std::isfinite(speed) || !std::isfinite(wheels.turning)) {
+  const double speed = std::hypot(wheels.vx, wheels.vy);
+  if (!std::isfinite(speed) || !std::isfinite(wheels.wz)) {
     warn_once(kWheels, Fault::not_finite, wheels.time, "a velocity is not finite; such velocities are dropped",
               "check the output of the base driver");
     return dropped;
   }
   note_speed(wheels.time, speed * kLeastRecent, kLeastRecent);
   if (are_wheels_ignored()) return dropped;
-  if (speed > limits_.max_speed || std::abs(wheels.turning) > limits_.max_turn_rate) {
+  if (speed > limits_.max_speed || std::abs(wheels.wz) > limits_.max_turn_rate) {
     warn_once(kWheels, Fault::too_large, wheels.time,
               fmt::format("a velocity of {:.3g} m/s and {:.3g} rad/s is above motion.max_speed_m_per_s ({:.3g}) or "
                           "motion.max_turn_rate_rad_per_s ({:.3g}); such velocities are dropped",
-                          speed, wheels.turning, limits_.max_speed, limits_.max_turn_rate),
+                          speed, wheels.wz, limits_.max_speed, limits_.max_turn_rate),
               "check the output of the base driver");
     return dropped;
   }

@@ -40,7 +40,7 @@ class MotionCheck {
   CheckedPoses check(const StampedPose& wheels);
 
   // dropped: the sample must not be used; restarted: it is the first to use after the clock was set back.
-  StampCheck::Order check(const BaseVelocity& wheels);
+  StampCheck::Order check(const BaseTwist& wheels);
   StampCheck::Order check(const AngularRate& rate);
   StampCheck::Order check(const Acceleration& acceleration);
   // The motion with a normalised rotation; empty if it is not finite, or too large for the time. seconds: its duration.

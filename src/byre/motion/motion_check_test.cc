@@ -55,7 +55,7 @@ Checked checked_drive(const Change& change, int samples = 500, const MotionLimit
   return result;
 }
 
-double way_error(const WheelTrack& track, double from, double until) {
+double translation_error(const WheelTrack& track, double from, double until) {
   const auto way = track.between(from_seconds(from), from_seconds(until));
   const Pose truth = inverse(Drive::world_from_base(from)) * Drive::world_from_base(until);
   return way ? (way->translation - truth.translation).norm() : std::numeric_limits<double>::infinity();
@@ -66,7 +66,7 @@ TEST(MotionCheck, PassesSoundWheelsUnchanged) {
   EXPECT_EQ(checked.used, 500);
   EXPECT_EQ(checked.segments, 1);
   EXPECT_THAT(checked.warnings, IsEmpty());
-  EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9);
+  EXPECT_LT(translation_error(checked.track, 1.0, 9.0), 1e-9);
 }
 
 TEST(MotionCheck, DropsSingleOutliersOfPoses) {
@@ -77,7 +77,7 @@ TEST(MotionCheck, DropsSingleOutliersOfPoses) {
     EXPECT_EQ(checked.used, 500 - 16) << away;
     EXPECT_EQ(checked.segments, 1) << away;
     EXPECT_THAT(checked.warnings, SizeIs(1)) << away;
-    EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9) << away;
+    EXPECT_LT(translation_error(checked.track, 1.0, 9.0), 1e-9) << away;
   }
 }
 
@@ -94,8 +94,8 @@ TEST(MotionCheck, StartsASegmentAtAJump) {
     EXPECT_FALSE(checked.track.between(from_seconds(at - 0.05), from_seconds(at + 0.05))) << reset;
     EXPECT_FALSE(checked.track.between(from_seconds(at - 0.01), from_seconds(at))) << reset;
     EXPECT_TRUE(checked.track.has_jump(from_seconds(at - 0.05), from_seconds(at + 0.05))) << reset;
-    EXPECT_LT(way_error(checked.track, at, at + 1.0), 1e-9) << reset;
-    EXPECT_LT(way_error(checked.track, 0.0, at - kPeriod), 1e-9) << reset;
+    EXPECT_LT(translation_error(checked.track, at, at + 1.0), 1e-9) << reset;
+    EXPECT_LT(translation_error(checked.track, 0.0, at - kPeriod), 1e-9) << reset;
   }
 }
 
@@ -108,14 +108,14 @@ TEST(MotionCheck, DropsPosesOfAStalledDriver) {
   EXPECT_EQ(checked.segments, 2);
   EXPECT_FALSE(checked.track.pose_at(from_seconds(5.0)));
   EXPECT_FALSE(checked.track.between(from_seconds(3.9), from_seconds(7.1)));
-  EXPECT_LT(way_error(checked.track, 7.1, 9.0), 1e-9);
+  EXPECT_LT(translation_error(checked.track, 7.1, 9.0), 1e-9);
 }
 
 TEST(MotionCheck, AcceptsRepeatedPoses) {
   const Checked checked = checked_drive(
       [](int i, StampedPose& sample) { sample.world_from_body = Drive::world_from_base(kPeriod * (i - i % 5)); });
   EXPECT_GT(checked.used, 495);
-  EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9);
+  EXPECT_LT(translation_error(checked.track, 1.0, 9.0), 1e-9);
 }
 
 TEST(MotionCheck, AcceptsPosesOfABaseThatStops) {
@@ -167,7 +167,7 @@ TEST(MotionCheck, DropsStampsFarAhead) {
     if (i == 300) sample.time = Timestamp::min();
   });
   EXPECT_EQ(checked.used, 497);
-  EXPECT_LT(way_error(checked.track, 1.0, 9.0), 1e-9);
+  EXPECT_LT(translation_error(checked.track, 1.0, 9.0), 1e-9);
 }
 
 TEST(MotionCheck, RestartsAfterTheClockIsSetBack) {
@@ -184,7 +184,7 @@ TEST(MotionCheck, RestartsAfterTheClockIsSetBack) {
 TEST(MotionCheck, DropsImpossibleVelocities) {
   MotionCheck check;
   const auto used = [&](double seconds, double ahead, double turning) {
-    return check.check(BaseVelocity{from_seconds(seconds), ahead, 0.0, turning}) != StampCheck::Order::dropped;
+    return check.check(BaseTwist{from_seconds(seconds), ahead, 0.0, turning}) != StampCheck::Order::dropped;
   };
   EXPECT_TRUE(used(0.0, 0.5, 0.1));
   for (const double value : {kNan, kHuge, -kHuge, 20.0}) EXPECT_FALSE(used(0.1, value, 0.0)) << value;
@@ -224,13 +224,13 @@ TEST(MotionCheck, RejectsZeroRatesDuringATurn) {
   ASSERT_THAT(check.warnings(), SizeIs(1));
   EXPECT_THAT(check.warnings().front().what, HasSubstr("all rates are zero"));
   EXPECT_TRUE(check.is_gyroscope_silent());
-  MotionCheck at_rest;
+  MotionCheck constrain_to_standstill;
   for (int i = 0; i < 200; ++i) {
-    EXPECT_EQ(at_rest.check(AngularRate{from_seconds(0.01 * i)}), StampCheck::Order::dropped);
-    at_rest.note({from_seconds(0.01 * i), Eigen::Vector3d(0.001, 0.0, 0.0), {}, true});
+    EXPECT_EQ(constrain_to_standstill.check(AngularRate{from_seconds(0.01 * i)}), StampCheck::Order::dropped);
+    constrain_to_standstill.note({from_seconds(0.01 * i), Eigen::Vector3d(0.001, 0.0, 0.0), {}, true});
   }
-  EXPECT_THAT(at_rest.warnings(), IsEmpty()) << "a gyroscope with a dead zone";
-  EXPECT_EQ(at_rest.check(AngularRate{from_seconds(3.0), {0.0, 0.0, 0.1}}), StampCheck::Order::next);
+  EXPECT_THAT(constrain_to_standstill.warnings(), IsEmpty()) << "a gyroscope with a dead zone";
+  EXPECT_EQ(constrain_to_standstill.check(AngularRate{from_seconds(3.0), {0.0, 0.0, 0.1}}), StampCheck::Order::next);
 }
 
 TEST(MotionCheck, RejectsEqualRatesDuringATurn) {

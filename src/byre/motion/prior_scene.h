@@ -3,7 +3,7 @@
 #pragma once
 
 #include "byre/motion/drive_scene.h"
-#include "byre/motion/motion_prior.h"
+#include "byre/motion/odometry_calibrator.h"
 
 #include <random>
 
@@ -30,9 +30,9 @@ struct DriveSensors {
 };
 
 // A prior after a drive. dark: time of the last tracked frame; end: of the last sample. known: from an earlier drive.
-inline MotionPrior followed(const Drive& drive, const DriveSensors& sensors, double dark, double end,
-                            const KnownMounting& known = {}) {
-  MotionPrior prior;
+inline OdometryCalibrator followed(const Drive& drive, const DriveSensors& sensors, double dark, double end,
+                                   const OdometryCalibration& known = {}) {
+  OdometryCalibrator prior;
   prior.begin_with(known);
   std::mt19937 random(5);
   Pose wheels;
@@ -66,7 +66,7 @@ inline Pose true_motion(const Drive& drive, double from, double to) {
 }
 
 // The product of the motions between frames, without images.
-inline BodyMotion over(const MotionPrior& prior, double from, double to) {
+inline BodyMotion over(const OdometryCalibrator& prior, double from, double to) {
   BodyMotion sum = *prior.between(from_seconds(from), from_seconds(from + 0.05));
   for (double t = from + 0.05; t < to - 0.01; t += 0.05) {
     sum = sum * *prior.between(from_seconds(t), from_seconds(t + 0.05));

@@ -41,7 +41,7 @@ std::vector<MotionWarning> check_motion(const MotionSamples& samples, Timestamp 
     if (beginning) wheels.begin_segment(*beginning);
     if (next) wheels.add(*next);
   }
-  for (const BaseVelocity& sample : samples.velocities) {
+  for (const BaseTwist& sample : samples.velocities) {
     const StampCheck::Order order = check.check(sample);
     if (order == StampCheck::Order::restarted) wheels = {};
     if (order != StampCheck::Order::dropped) wheels.add(sample);

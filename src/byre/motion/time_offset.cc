@@ -17,19 +17,19 @@ constexpr int kStepsAround = 2;         // either way of the earlier estimate
 constexpr double kMostError = 0.03;     // radians; larger errors, as by slip, are clipped
 constexpr double kLeastTurnSeen = 1.5;  // radians, sum of all turns
 
-double turn_of(const SeenMotion& motion, const Eigen::Vector3d& up) {
+double turn_of(const VisualMotion& motion, const Eigen::Vector3d& up) {
   return rotation_log(motion.body.rotation).dot(up);
 }
 
 // Mean squared difference between turns from images and from wheels; empty if wheels measure too few of them.
-std::optional<double> difference(const std::deque<SeenMotion>& seen, const Eigen::Vector3d& up,
+std::optional<double> difference(const std::deque<VisualMotion>& seen, const Eigen::Vector3d& up,
                                  const WheelTrack& wheels, Timestamp offset) {
   double sum = 0.0;
   std::size_t count = 0;
-  for (const SeenMotion& motion : seen) {
-    const auto told = wheels.between(motion.earlier + offset, motion.later + offset);
-    if (!told) continue;
-    const double error = std::abs(rotation_log(told->rotation).z() - turn_of(motion, up));
+  for (const VisualMotion& motion : seen) {
+    const auto measured = wheels.between(motion.earlier + offset, motion.later + offset);
+    if (!measured) continue;
+    const double error = std::abs(rotation_log(measured->rotation).z() - turn_of(motion, up));
     sum += std::pow(std::min(error, kMostError), 2);
     ++count;
   }
@@ -38,10 +38,10 @@ std::optional<double> difference(const std::deque<SeenMotion>& seen, const Eigen
 
 }  // namespace
 
-std::optional<double> find_time_offset(const std::deque<SeenMotion>& seen, const Eigen::Vector3d& up,
+std::optional<double> find_time_offset(const std::deque<VisualMotion>& seen, const Eigen::Vector3d& up,
                                        const WheelTrack& wheels, std::optional<double> known) {
   double turned = 0.0;
-  for (const SeenMotion& motion : seen) turned += std::abs(turn_of(motion, up));
+  for (const VisualMotion& motion : seen) turned += std::abs(turn_of(motion, up));
   if (turned < kLeastTurnSeen) return {};
   const int middle = known ? static_cast<int>(std::lround(*known / to_seconds(kStep))) : 0;
   const int reach = known ? kStepsAround : kSteps;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/motion/seen_motion.h"
+#include "byre/motion/visual_motion.h"
 #include "byre/motion/wheel_track.h"
 
 #include <deque>
@@ -14,7 +14,7 @@ namespace byre {
 // Searches the offset within 0.2 s either way at which turns from images and wheels agree best. Empty if the turns are
 // too small, or the best offset is at the end of the range. up: the base's axis in the body. known: earlier estimate;
 // only its neighbourhood is searched.
-std::optional<double> find_time_offset(const std::deque<SeenMotion>& seen, const Eigen::Vector3d& up,
+std::optional<double> find_time_offset(const std::deque<VisualMotion>& seen, const Eigen::Vector3d& up,
                                        const WheelTrack& wheels, std::optional<double> known = {});
 
 }  // namespace byre

@@ -15,16 +15,15 @@ constexpr Timestamp kMaxVelocityGap = 300ms;
 constexpr Timestamp kMaxAhead = 250ms;
 
 // earlier_from_later, along an arc.
-Pose arc_of(const BaseVelocity& velocity, double seconds) {
-  const double half = 0.5 * velocity.turning * seconds;
+Pose arc_of(const BaseTwist& velocity, double seconds) {
+  const double half = 0.5 * velocity.wz * seconds;
   const double chord = std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0;  // relative to the arc
   const Eigen::Quaterniond half_turn = rotation_exp({0.0, 0.0, half});
-  return {half_turn * half_turn, half_turn * Eigen::Vector3d(velocity.ahead, velocity.left, 0.0) * chord * seconds};
+  return {half_turn * half_turn, half_turn * Eigen::Vector3d(velocity.vx, velocity.vy, 0.0) * chord * seconds};
 }
 
-BaseVelocity mean_of(const BaseVelocity& one, const BaseVelocity& other) {
-  return {other.time, 0.5 * (one.ahead + other.ahead), 0.5 * (one.left + other.left),
-          0.5 * (one.turning + other.turning)};
+BaseTwist mean_of(const BaseTwist& one, const BaseTwist& other) {
+  return {other.time, 0.5 * (one.vx + other.vx), 0.5 * (one.vy + other.vy), 0.5 * (one.wz + other.wz)};
 }
 
 }  // namespace
@@ -43,7 +42,7 @@ void WheelTrack::begin_segment(const StampedPose& first) {
   samples_.push_back(first);
 }
 
-void WheelTrack::add(const BaseVelocity& sample) {
+void WheelTrack::add(const BaseTwist& sample) {
   if (!samples_.empty() && sample.time <= samples_.back().time) return;
   Pose base = samples_.empty() ? Pose{} : samples_.back().world_from_body;
   if (velocity_ && sample.time - velocity_->time <= kMaxVelocityGap) {

@@ -17,7 +17,7 @@ class WheelTrack {
   void begin_segment(const StampedPose& first);
   // Integrates the mean of two consecutive velocities along an arc. Velocities more than 0.3 s apart have no motion
   // between them.
-  void add(const BaseVelocity& sample);
+  void add(const BaseTwist& sample);
 
   // Samples before a time are no longer needed. They are erased once they are two minutes older.
   void forget_before(Timestamp time);
@@ -42,8 +42,8 @@ class WheelTrack {
   bool is_broken(Timestamp earlier, Timestamp later) const;
 
   Trajectory samples_;
-  std::optional<BaseVelocity> velocity_;  // velocity of the last sample, if it has one
-  std::vector<Timestamp> breaks_;         // times of samples without a motion from the previous one
+  std::optional<BaseTwist> velocity_;  // velocity of the last sample, if it has one
+  std::vector<Timestamp> breaks_;      // times of samples without a motion from the previous one
 };
 
 }  // namespace byre

@@ -15,7 +15,7 @@ template <typename Velocity>
 void add(WheelTrack& track, double from, double until, double step, const Velocity& velocity) {
   for (double t = from; t <= until + 1e-9; t += step) {
     const Eigen::Vector3d now = velocity(t);
-    track.add(BaseVelocity{from_seconds(t), now.x(), now.y(), now.z()});
+    track.add(BaseTwist{from_seconds(t), now.x(), now.y(), now.z()});
   }
 }
 

@@ -27,9 +27,9 @@ CalibrationSource::CalibrationSource(const NodeConfig& config, Participant& part
     graph.add(subscriber);
     return subscriber;
   };
-  if (config.used_mounting() == Mounting::tf) {
+  if (config.extrinsics_source() == ExtrinsicsSource::tf) {
     tf_static_ = subscribe("/tf_static", message_type<ros::TFMessage>(),
-                           {.is_latched = true, .depth = 100, .most_bytes = kMostBytesWithoutImage});
+                           {.is_latched = true, .depth = 100, .max_bytes = kMaxBytesWithoutImage});
   }
   if (config.calibration) {
     cameras_ = read_calibration(*config.calibration);
@@ -37,7 +37,7 @@ CalibrationSource::CalibrationSource(const NodeConfig& config, Participant& part
     if (!config.has_right()) cameras_->right.reset();
     return;
   }
-  const TopicQos qos{.is_reliable = false, .depth = 5, .most_bytes = kMostBytesWithoutImage};
+  const TopicQos qos{.is_reliable = false, .depth = 5, .max_bytes = kMaxBytesWithoutImage};
   left_info_ = subscribe(config.topic(config.left_info), message_type<ros::CameraInfo>(), qos);
   if (config.has_right()) {
     right_info_ = subscribe(config.topic(config.right_info), message_type<ros::CameraInfo>(), qos);
@@ -48,14 +48,14 @@ std::optional<Calibration> CalibrationSource::cameras() {
   if (cameras_) return cameras_;
   take_last(left_info_, config_.topic(config_.left_info), left_);
   take_last(right_info_, config_.topic(config_.right_info), right_);
-  if (!left_) awaited_ = "camera info on " + config_.topic(config_.left_info);
-  if (left_ && config_.has_right() && !right_) awaited_ = "camera info on " + config_.topic(config_.right_info);
+  if (!left_) missing_input_ = "camera info on " + config_.topic(config_.left_info);
+  if (left_ && config_.has_right() && !right_) missing_input_ = "camera info on " + config_.topic(config_.right_info);
   if (!left_ || (config_.has_right() && !right_)) return std::nullopt;
   // Each is processed once, as drivers repeat them.
   const auto placed = [&](std::optional<ros::CameraInfo>& info, const std::string& topic) {
-    return PlacedCameraInfo{*std::exchange(info, std::nullopt), config_.topic(topic), config_.is_rectified};
+    return CameraInfoWithSource{*std::exchange(info, std::nullopt), config_.topic(topic), config_.is_rectified};
   };
-  const PlacedCameraInfo left = placed(left_, config_.left_info);
+  const CameraInfoWithSource left = placed(left_, config_.left_info);
   Calibration calibration{camera_of(left), std::nullopt, {}};
   if (config_.has_right()) calibration.right = partner_of(left, placed(right_, config_.right_info), frames_);
   cameras_ = calibration;
@@ -70,12 +70,12 @@ std::optional<Calibration> CalibrationSource::take(const std::string& left_frame
   }
   std::optional<Calibration> calibration = cameras();
   if (!calibration) return std::nullopt;
-  if (config_.used_mounting() == Mounting::camera) calibration->body_from_left = {};
-  if (config_.used_mounting() != Mounting::tf) return calibration;
+  if (config_.extrinsics_source() == ExtrinsicsSource::camera) calibration->body_from_left = {};
+  if (config_.extrinsics_source() != ExtrinsicsSource::tf) return calibration;
   const auto base_from_left = frames_.between(config_.base_frame, left_frame);
   if (!base_from_left) {
-    awaited_ = "/tf_static from " + config_.base_frame + " to the frame of the left images" +
-               (left_frame.empty() ? "" : ", " + left_frame);
+    missing_input_ = "/tf_static from " + config_.base_frame + " to the frame of the left images" +
+                     (left_frame.empty() ? "" : ", " + left_frame);
     return std::nullopt;
   }
   calibration->body_from_left = *base_from_left;

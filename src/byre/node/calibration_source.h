@@ -10,7 +10,7 @@
 
 namespace byre {
 
-// Calibration of a node's cameras, from a file or from camera info, with their mounting on the robot. Body frame: the
+// Calibration of a node's cameras, from a file or from camera info, with their extrinsics on the robot. Body frame: the
 // base frame.
 class CalibrationSource {
  public:
@@ -21,7 +21,7 @@ class CalibrationSource {
   // first one. Throws InputError for unusable camera info.
   std::optional<Calibration> take(const std::string& left_frame);
 
-  const std::string& awaited() const { return awaited_; }  // missing input, as text
+  const std::string& missing_input() const { return missing_input_; }  // missing input, as text
 
  private:
   std::optional<Calibration> cameras();
@@ -34,7 +34,7 @@ class CalibrationSource {
   std::optional<ros::CameraInfo> right_;
   StaticFrames frames_;
   std::optional<Calibration> cameras_;  // empty until received
-  std::string awaited_;
+  std::string missing_input_;
 };
 
 }  // namespace byre

@@ -57,7 +57,7 @@ TEST(PoseFrames, ContinueOdometryAfterReinitialisation) {
   PoseFrames frames;
   frames.note(report_at(some_pose(1), some_pose(2)));
   const Pose before = *frames.odom_from_base();
-  frames.begin_anew();
+  frames.restart();
   EXPECT_FALSE(frames.map_from_odom());
   frames.note(report_at(some_pose(7), std::nullopt));
   EXPECT_LT(distance(*frames.odom_from_base(), before), 1e-9);

@@ -9,28 +9,28 @@
 #include <nlohmann/json.hpp>
 
 namespace byre {
-std::string advice_for(Doubt doubt) {
+std::string advice_for(DistrustReason doubt) {
   switch (doubt) {
-    case Doubt::no_pose:
+    case DistrustReason::no_pose:
       return "move the robot into the mapped area";
-    case Doubt::blinded:
+    case DistrustReason::blinded:
       return "check for covered lenses, darkness and glare";
-    case Doubt::frozen:
+    case DistrustReason::frozen:
       return "restart the camera's driver";
-    case Doubt::right_camera:
+    case DistrustReason::right_camera:
       return "check lens and exposure of the right camera";
-    case Doubt::cameras_disagree:
+    case DistrustReason::cameras_disagree:
       return "check whether the cameras are synchronised, swapped or displaced; calibrate them";
-    case Doubt::calibration:
+    case DistrustReason::calibration:
       return "calibrate the cameras";
-    case Doubt::map_damaged:
+    case DistrustReason::map_damaged:
       return "replace the map by a copy, then send load NAME or restart the node";
-    case Doubt::bridged:
+    case DistrustReason::bridged:
       return "check for covered lenses and darkness; dead reckoning by wheels is usable for some metres only";
-    case Doubt::off_the_plane:
-    case Doubt::in_wall:
-    case Doubt::outside:
-    case Doubt::behind_wall:
+    case DistrustReason::off_the_plane:
+    case DistrustReason::in_wall:
+    case DistrustReason::outside:
+    case DistrustReason::behind_wall:
       return "set the initial pose, move the robot to a distinctive place, or check the floor plan";
     default:
       return "";
@@ -72,8 +72,8 @@ void log_changes(const FrameReport& report, const std::optional<FrameReport>& la
     }
     log(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
   }
-  const bool was_damaged = last && last->health.doubt == Doubt::map_damaged;
-  if (health.doubt == Doubt::map_damaged && !was_damaged) {
+  const bool was_damaged = last && last->health.doubt == DistrustReason::map_damaged;
+  if (health.doubt == DistrustReason::map_damaged && !was_damaged) {
     log(LogLevel::error, map_damage.value_or("the map file is damaged"));
   }
   for (const MotionWarning& warning : report.warnings) {
@@ -87,7 +87,7 @@ std::string health_line(const FrameReport& report) {
   nlohmann::ordered_json line = {{"time_ns", report.time.count()}, {"state", to_string(report.state)}};
   line["pose"] = report.map_from_body ? pose_json(*report.map_from_body, report.covariance) : nlohmann::ordered_json();
   line["health"] = health_json(report.health);
-  return dumped(line);
+  return dump_json(line);
 }
 
 }  // namespace byre

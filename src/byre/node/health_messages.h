@@ -14,7 +14,7 @@ namespace byre {
 ros::DiagnosticStatus localisation_status(const FrameReport& report);
 
 // Remedy for a doubt; empty without one.
-std::string advice_for(Doubt doubt);
+std::string advice_for(DistrustReason doubt);
 
 // Logs events of a frame, new damage of the map, faults of motion inputs, and a change of the verdict.
 // last: report of the previous frame; map_damage: see Slam; source_of: topic of a sensor.

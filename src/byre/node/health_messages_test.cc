@@ -16,15 +16,15 @@ using testing::Pair;
 
 const std::string kDamage = "barn.byre: section 'points' is damaged (restore a copy)";
 
-FrameReport report_with(Verdict verdict, Doubt doubt) {
+FrameReport report_with(Verdict verdict, DistrustReason doubt) {
   FrameReport report;
   report.health.verdict = verdict;
   report.health.doubt = doubt;
   return report;
 }
 
-const FrameReport kSound = report_with(Verdict::trusted, Doubt::none);
-const FrameReport kDamaged = report_with(Verdict::untrusted, Doubt::map_damaged);
+const FrameReport kSound = report_with(Verdict::trusted, DistrustReason::none);
+const FrameReport kDamaged = report_with(Verdict::untrusted, DistrustReason::map_damaged);
 
 using LogLines = std::vector<std::pair<LogLevel, std::string>>;
 
@@ -47,7 +47,8 @@ TEST(LocalisationStatus, IsAnErrorWithARemedyIfTheMapIsDamaged) {
 TEST(LocalisationStatus, HasTheLevelOfTheVerdict) {
   EXPECT_EQ(localisation_status(kSound).level, ros::DiagnosticStatus::kOk);
   EXPECT_EQ(localisation_status(kSound).message, "trusted");
-  EXPECT_EQ(localisation_status(report_with(Verdict::degraded, Doubt::few_points)).level, ros::DiagnosticStatus::kWarn);
+  EXPECT_EQ(localisation_status(report_with(Verdict::degraded, DistrustReason::few_points)).level,
+            ros::DiagnosticStatus::kWarn);
 }
 
 TEST(HealthLine, ReportsDamageOfTheMap) {
@@ -65,7 +66,7 @@ TEST(LogChanges, ReportsDamageOfTheMapOnceAsAnError) {
 }
 
 TEST(LogChanges, ReportsDamageThatAnUntrustedFrameFinds) {
-  EXPECT_THAT(lines_of(kDamaged, report_with(Verdict::untrusted, Doubt::no_pose), kDamage),
+  EXPECT_THAT(lines_of(kDamaged, report_with(Verdict::untrusted, DistrustReason::no_pose), kDamage),
               ElementsAre(Pair(LogLevel::error, kDamage)));
 }
 

@@ -9,7 +9,7 @@
 namespace byre {
 
 std::optional<PoseHint> hint_of(const ros::PoseWithCovarianceStamped& message) {
-  constexpr double kLeastRadius = 3.0, kLeastTurn = 1.0;  // metres, radians
+  constexpr double kMinRadius = 3.0, kMinTurn = 1.0;  // metres, radians
   constexpr std::size_t kVarianceX = 0, kVarianceY = 7, kVarianceYaw = 35;
   const auto& position = message.pose.pose.position;
   const auto& covariance = message.pose.covariance;
@@ -18,8 +18,8 @@ std::optional<PoseHint> hint_of(const ros::PoseWithCovarianceStamped& message) {
   const auto pose = pose_of(message.pose.pose);  // empty without a direction
   PoseHint hint;
   hint.map_from_body = pose.value_or(Pose{Eigen::Quaterniond::Identity(), translation});
-  hint.radius = std::max(kLeastRadius, 3.0 * std::sqrt(std::max(covariance[kVarianceX], covariance[kVarianceY])));
-  hint.turn = pose ? std::max(kLeastTurn, 3.0 * std::sqrt(covariance[kVarianceYaw])) : std::numbers::pi;
+  hint.radius = std::max(kMinRadius, 3.0 * std::sqrt(std::max(covariance[kVarianceX], covariance[kVarianceY])));
+  hint.turn = pose ? std::max(kMinTurn, 3.0 * std::sqrt(covariance[kVarianceYaw])) : std::numbers::pi;
   return hint;
 }
 

@@ -46,9 +46,9 @@ constexpr std::array kEncodings = {
 };
 
 void require_size(const ros::Image& message, const Encoding& encoding, const std::string& place) {
-  constexpr std::uint32_t kMostSide = 1u << 16;
-  const bool is_of_a_size = message.width > 0 && message.height > 0 && message.width <= kMostSide &&
-                            message.height <= kMostSide && message.width * double(message.height) <= kMostPixels;
+  constexpr std::uint32_t kMaxSide = 1u << 16;
+  const bool is_of_a_size = message.width > 0 && message.height > 0 && message.width <= kMaxSide &&
+                            message.height <= kMaxSide && message.width * double(message.height) <= kMaxPixels;
   const std::size_t number = CV_ELEM_SIZE1(encoding.cv_type);
   const std::size_t row = message.width * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.cv_type));
   if (!is_of_a_size || message.step < row || message.step % number != 0 ||
@@ -64,9 +64,9 @@ void require_size(const ros::Image& message, const Encoding& encoding, const std
 ReceivedImage grey_image(ros::Header header, Image grey) {
   ReceivedImage image;
   image.header = std::move(header);
-  image.about = {.width = grey.width, .height = grey.height, .format = PixelFormat::grey8};
+  image.layout = {.width = grey.width, .height = grey.height, .format = PixelFormat::grey8};
   image.pixels = std::move(grey.pixels);
-  image.about.time = ros::to_nanoseconds(image.header.stamp);
+  image.layout.time = ros::to_nanoseconds(image.header.stamp);
   return image;
 }
 
@@ -97,8 +97,8 @@ ReceivedImage received_image(ros::Image message, const std::string& place) {
   }
   ReceivedImage image;
   image.header = std::move(message.header);
-  image.about = {.width = width, .height = height, .stride = message.step, .format = encoding->format};
-  image.about.time = ros::to_nanoseconds(image.header.stamp);
+  image.layout = {.width = width, .height = height, .stride = message.step, .format = encoding->format};
+  image.layout.time = ros::to_nanoseconds(image.header.stamp);
   image.pixels = std::move(message.data);
   return image;
 }

@@ -12,11 +12,11 @@ namespace byre {
 // Received image in a format for tracking.
 struct ReceivedImage {
   ros::Header header;
-  ImageView about{};  // format and size; data is null
+  ImageView layout{};  // format and size; data is null
   std::vector<std::uint8_t> pixels;
 
   ImageView view() const {
-    ImageView view = about;
+    ImageView view = layout;
     view.data = pixels.data();
     return view;
   }

@@ -17,7 +17,7 @@ struct PairingOptions {
 };
 
 struct PairingCounts {
-  int passed_over = 0;    // left images skipped for newer ones
+  int skipped = 0;        // left images skipped for newer ones
   int without_right = 0;  // left images returned without a right image
 };
 
@@ -40,7 +40,7 @@ class ImagePairs {
 
   // Older one of two complete pairs, newest one of more; else the newest left image whose waiting time is over.
   std::optional<Pair> next(Timestamp now) {
-    if (const auto left = next_whole()) return take(*left, partner_of(lefts_[*left].stamp));
+    if (const auto left = next_complete()) return take(*left, partner_of(lefts_[*left].stamp));
     for (std::size_t i = lefts_.size(); i-- > 0;) {
       if (now - lefts_[i].arrival < options_.wait) continue;
       ++counts_.without_right;
@@ -56,7 +56,7 @@ class ImagePairs {
   const PairingCounts& counts() const { return counts_; }
 
  private:
-  static constexpr std::size_t kMostWaiting = 8;
+  static constexpr std::size_t kMaxWaiting = 8;
   struct Waiting {
     Timestamp stamp{};
     Image image;
@@ -66,14 +66,14 @@ class ImagePairs {
 
   void add(Queue& queue, Timestamp stamp, Image image, Timestamp arrival) {
     queue.push_back({stamp, std::move(image), arrival});
-    if (queue.size() <= kMostWaiting) return;
+    if (queue.size() <= kMaxWaiting) return;
     queue.pop_front();
-    if (&queue == &lefts_) ++counts_.passed_over;
+    if (&queue == &lefts_) ++counts_.skipped;
   }
 
   // Index of the left image of the next complete pair; empty if there is none.
-  std::optional<std::size_t> next_whole() const {
-    constexpr std::size_t kCaughtUp = 2;  // complete pairs up to which none is skipped
+  std::optional<std::size_t> next_complete() const {
+    constexpr std::size_t kMaxBacklog = 2;  // complete pairs up to which none is skipped
     std::optional<std::size_t> newest, oldest;
     std::size_t count = 0;
     for (std::size_t i = lefts_.size(); i-- > 0;) {
@@ -82,7 +82,7 @@ class ImagePairs {
       oldest = i;
       ++count;
     }
-    return count <= kCaughtUp ? oldest : newest;
+    return count <= kMaxBacklog ? oldest : newest;
   }
 
   std::optional<std::size_t> nearest_to(Timestamp stamp) const {
@@ -103,7 +103,7 @@ class ImagePairs {
   Pair take(std::size_t left, std::optional<std::size_t> right) {
     Pair pair{lefts_[left].stamp, std::move(lefts_[left].image), std::nullopt};
     if (right) pair.right = std::move(rights_[*right].image);
-    counts_.passed_over += static_cast<int>(left);
+    counts_.skipped += static_cast<int>(left);
     lefts_.erase(lefts_.begin(), lefts_.begin() + static_cast<std::ptrdiff_t>(left) + 1);
     if (right) rights_.erase(rights_.begin(), rights_.begin() + static_cast<std::ptrdiff_t>(*right) + 1);
     return pair;

@@ -1,6 +1,6 @@
 // Image stream: pairing, and faults of cameras.
 
-#include "byre/node/camera_watch.h"
+#include "byre/node/camera_monitor.h"
 #include "byre/node/image_pairs.h"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ TEST(ImagePairs, ReturnsTheNewestCompletePairAndSkipsOlderOnes) {
   ASSERT_TRUE(pair.has_value());
   EXPECT_EQ(pair->left, 3);
   EXPECT_EQ(pair->right, 13);
-  EXPECT_EQ(pairs.counts().passed_over, 2);
+  EXPECT_EQ(pairs.counts().skipped, 2);
   EXPECT_FALSE(pairs.next(4ms)) << "the fourth waits for its right image";
   pairs.add_right(4s, 14, 5ms);
   EXPECT_EQ(pairs.next(5ms)->right, 14);
@@ -41,7 +41,7 @@ TEST(ImagePairs, SkipsNoneIfReadOneLate) {
   Pairs pairs = waiting_pairs(2);
   EXPECT_EQ(pairs.next(1ms)->left, 1);
   EXPECT_EQ(pairs.next(2ms)->left, 2);
-  EXPECT_EQ(pairs.counts().passed_over, 0);
+  EXPECT_EQ(pairs.counts().skipped, 0);
 }
 
 TEST(ImagePairs, ReturnsALeftImageAloneAfterTheTimeout) {
@@ -76,21 +76,21 @@ TEST(ImagePairs, ReturnsLeftImagesForOneCamera) {
 TEST(ImagePairs, LimitsStoredImages) {
   Pairs pairs({true, 0ms, 1s});
   for (int i = 0; i < 100; ++i) pairs.add_left(Timestamp(i * 50ms), i, 0ms);
-  EXPECT_EQ(pairs.counts().passed_over, 92);
+  EXPECT_EQ(pairs.counts().skipped, 92);
 }
 
 class CameraWatchTest : public testing::Test {
  protected:
   void frames(Timestamp from, int count, const CameraFrame& frame) {
     for (int i = 0; i < count; ++i) {
-      watch_.note_arrival(from + i * 50ms);
-      watch_.note_frame(frame, from + i * 50ms);
+      monitor_.note_arrival(from + i * 50ms);
+      monitor_.note_frame(frame, from + i * 50ms);
     }
   }
-  std::string said(Timestamp now) const { return watch_.status(now).message; }
-  std::byte level(Timestamp now) const { return watch_.status(now).level; }
+  std::string message(Timestamp now) const { return monitor_.status(now).message; }
+  std::byte level(Timestamp now) const { return monitor_.status(now).level; }
 
-  CameraWatch watch_{"/left", 0s};
+  CameraMonitor monitor_{"/left", 0s};
   CameraFrame good_;
   CameraFrame left_alone_ = [] {
     CameraFrame frame;
@@ -106,11 +106,11 @@ TEST_F(CameraWatchTest, ReportsNothingForAWorkingCamera) {
 
 TEST_F(CameraWatchTest, ReportsASilentCamera) {
   EXPECT_EQ(level(1500ms), ros::DiagnosticStatus::kStale);
-  EXPECT_THAT(said(1500ms), HasSubstr("no images on /left"));
+  EXPECT_THAT(message(1500ms), HasSubstr("no images on /left"));
   frames(2s, 20, good_);
   EXPECT_EQ(level(3s), ros::DiagnosticStatus::kOk);
   EXPECT_EQ(level(3600ms), ros::DiagnosticStatus::kStale) << "within a second";
-  EXPECT_THAT(said(3600ms), HasSubstr("no image for"));
+  EXPECT_THAT(message(3600ms), HasSubstr("no image for"));
 }
 
 TEST_F(CameraWatchTest, ReportsLostRightImages) {
@@ -119,10 +119,10 @@ TEST_F(CameraWatchTest, ReportsLostRightImages) {
   EXPECT_EQ(level(2200ms), ros::DiagnosticStatus::kWarn);
   frames(2200ms, 20, left_alone_);
   EXPECT_EQ(level(3200ms), ros::DiagnosticStatus::kError);
-  EXPECT_THAT(said(3200ms), HasSubstr("right images are missing"));
+  EXPECT_THAT(message(3200ms), HasSubstr("right images are missing"));
   left_alone_.nearest_right = 3ms;
   frames(3200ms, 1, left_alone_);
-  EXPECT_THAT(said(3200ms), HasSubstr("the nearest time stamp differs by 3.0 ms, see images.pair_tolerance"));
+  EXPECT_THAT(message(3200ms), HasSubstr("the nearest time stamp differs by 3.0 ms, see images.pair_tolerance"));
   frames(3200ms, 25, good_);
   EXPECT_EQ(level(4450ms), ros::DiagnosticStatus::kOk);
 }
@@ -131,22 +131,22 @@ TEST_F(CameraWatchTest, ReportsFrozenImagesJumpsAndUnusableImages) {
   CameraFrame frame = good_;
   frame.is_frozen = true;
   frames(1s, 1, frame);
-  EXPECT_THAT(said(1s), HasSubstr("repeated image"));
+  EXPECT_THAT(message(1s), HasSubstr("repeated image"));
   frame = good_;
   frame.jump = -3600s;
   frames(3s, 1, frame);
-  EXPECT_THAT(said(3s), HasSubstr("stamps jumped by -3600.000 s"));
+  EXPECT_THAT(message(3s), HasSubstr("stamps jumped by -3600.000 s"));
   frames(3500ms, 10, good_);
-  watch_.note_unusable(InputError("/left", "is odd", "mend it"), 4s);
-  EXPECT_THAT(said(4s), HasSubstr("/left: is odd (mend it); time stamps jumped")) << "all findings";
+  monitor_.note_unusable(InputError("/left", "is odd", "mend it"), 4s);
+  EXPECT_THAT(message(4s), HasSubstr("/left: is odd (mend it); time stamps jumped")) << "all findings";
   EXPECT_EQ(level(4s), ros::DiagnosticStatus::kError);
 }
 
 TEST_F(CameraWatchTest, CountsReplacedImages) {
   frames(1s, 20, good_);
-  watch_.note_passed_over(3, 1950ms);
+  monitor_.note_skipped(3, 1950ms);
   EXPECT_EQ(level(2s), ros::DiagnosticStatus::kWarn);
-  EXPECT_THAT(said(2s), HasSubstr("3 images of the last second"));
+  EXPECT_THAT(message(2s), HasSubstr("3 images of the last second"));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ fs::path previous_map(const fs::path& map) {
 }
 
 void keep_as_previous(const fs::path& map) {
-  if (content_of(map) == FileContent::map) keep_as(map, previous_map(map));
+  if (content_of(map) == FileContent::map) link_or_copy(map, previous_map(map));
 }
 
 }  // namespace byre

@@ -40,7 +40,7 @@ TEST_F(KeptMaps, AreTheSavedMapAndThePreviousOne) {
   EXPECT_FALSE(fs::exists(previous_map(map_))) << "there was none";
   for (const char* const day : {"monday", "tuesday", "wednesday"}) {
     keep_as_previous(map_);
-    write_whole(map_, kBegin + day);
+    write_atomically(map_, kBegin + day);
   }
   EXPECT_EQ(content(map_), kBegin + "wednesday");
   EXPECT_EQ(content(folder_ / "barn.previous.byre"), kBegin + "tuesday");
@@ -48,14 +48,14 @@ TEST_F(KeptMaps, AreTheSavedMapAndThePreviousOne) {
 }
 
 TEST_F(KeptMaps, LeaveNoFilesAfterASaveInterruptedBeforeReplacement) {
-  write_whole(map_, kBegin + "monday");
+  write_atomically(map_, kBegin + "monday");
   for (int save = 0; save < 2; ++save) keep_as_previous(map_);
   EXPECT_EQ(content(previous_map(map_)), kBegin + "monday");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
 }
 
 TEST_F(KeptMaps, SurviveLeftoversOfAnInterruptedSave) {
-  write_whole(map_, kBegin + "monday");
+  write_atomically(map_, kBegin + "monday");
   std::ofstream(folder_ / "barn.previous.byre.0123abcd.unfinished") << "half";
   keep_as_previous(map_);
   EXPECT_EQ(content(previous_map(map_)), kBegin + "monday");
@@ -67,7 +67,7 @@ TEST_F(KeptMaps, LeaveOtherFilesUnchanged) {
   keep_as_previous(map_);
   EXPECT_FALSE(fs::exists(previous_map(map_)));
   fs::remove(map_);
-  write_whole(map_, kBegin + "monday");
+  write_atomically(map_, kBegin + "monday");
   std::ofstream(previous_map(map_)) << "Dear reader";
   EXPECT_THROW(keep_as_previous(map_), InputError);
   EXPECT_EQ(content(previous_map(map_)), "Dear reader");
@@ -94,7 +94,7 @@ TEST_F(KeptMaps, AreRejectedForInputsOfTheNodeAndOtherFileTypes) {
   std::ofstream(*config.calibration) << "cam0:\n";
   std::ofstream(*config.plan) << "image: plan.png\n";
   for (const char* const image : {"plan.png", "photo.png"}) std::ofstream(folder_ / image) << "\x89PNG\r\n";
-  write_whole(*config.map, kBegin);
+  write_atomically(*config.map, kBegin);
   fs::create_hard_link(*config.map, folder_ / "same.byre");
   const auto with = [&config, this](const char* name) {
     config.save = folder_ / name;

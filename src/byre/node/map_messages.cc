@@ -14,9 +14,9 @@ namespace {
 // Side of a square, unmirrored pixel in metres; the rotation is left for the grid's origin.
 double side_of_pixel(const FloorPlan& plan) {
   const Eigen::Vector2d right = plan.metres_per_pixel.col(0), up = -plan.metres_per_pixel.col(1);
-  constexpr double kMostSkew = 1e-3;
+  constexpr double kMaxSkew = 1e-3;
   const double side = right.norm();
-  if ((Eigen::Vector2d(-right.y(), right.x()) - up).norm() > kMostSkew * side) {
+  if ((Eigen::Vector2d(-right.y(), right.x()) - up).norm() > kMaxSkew * side) {
     throw InputError(plan.image.string(), "has non-square pixels, which an occupancy grid cannot represent",
                      "scale the image to square pixels, or leave slam.plan empty");
   }
@@ -72,10 +72,10 @@ ros::PointCloud2 cloud_message(const ros::Header& header, const std::vector<Eige
 
 ros::Path path_message(const ros::Header& header, const Trajectory& trajectory,
                        const std::function<Pose(const Pose&)>& published) {
-  constexpr std::size_t kMostPoses = 5000;
+  constexpr std::size_t kMaxPoses = 5000;
   ros::Path path;
   path.header = header;
-  const std::size_t stride = trajectory.size() / kMostPoses + 1;
+  const std::size_t stride = trajectory.size() / kMaxPoses + 1;
   for (std::size_t i = 0; i < trajectory.size(); i += stride) {
     ros::Header stamped = header;
     stamped.stamp = ros::to_time(trajectory[i].time);

@@ -11,13 +11,13 @@ std::string metric(const char* name, const char* type, const char* help, double 
 
 }  // namespace
 
-std::string metrics_text(const NodeFigures& figures) {
-  std::string text = metric("byre_images_total", "counter", "Received left images", figures.images) +
+std::string metrics_text(const NodeCounters& counters) {
+  std::string text = metric("byre_images_total", "counter", "Received left images", counters.images) +
                      metric("byre_images_left_out_total", "counter",
-                            "Left images replaced by newer ones before tracking", figures.left_out) +
-                     metric("byre_frames_total", "counter", "Frames passed to tracking", figures.frames);
-  if (!figures.last) return text;
-  const FrameReport& report = *figures.last;
+                            "Left images replaced by newer ones before tracking", counters.skipped) +
+                     metric("byre_frames_total", "counter", "Frames passed to tracking", counters.frames);
+  if (!counters.last) return text;
+  const FrameReport& report = *counters.last;
   const Health& health = report.health;
   text += metric("byre_verdict", "gauge", "0 trusted, 1 degraded, 2 untrusted", static_cast<int>(health.verdict));
   text += metric("byre_has_pose", "gauge", "1: the pose in the map is available", report.map_from_body ? 1 : 0);

@@ -8,14 +8,14 @@
 namespace byre {
 
 // Counters of a node since its start.
-struct NodeFigures {
-  int images = 0;    // left images received
-  int left_out = 0;  // left images skipped for newer ones
-  int frames = 0;    // frames tracked
+struct NodeCounters {
+  int images = 0;   // left images received
+  int skipped = 0;  // left images skipped for newer ones
+  int frames = 0;   // frames tracked
   std::optional<FrameReport> last{};
 };
 
 // Prometheus text format, https://prometheus.io/docs/instrumenting/exposition_formats
-std::string metrics_text(const NodeFigures& figures);
+std::string metrics_text(const NodeCounters& counters);
 
 }  // namespace byre

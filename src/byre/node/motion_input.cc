@@ -10,13 +10,13 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kMostKept = 10'000;  // several seconds of the fastest sensor
+constexpr std::size_t kMaxKept = 10'000;  // several seconds of the fastest sensor
 
 // Adds a sample; drops the oldest one if no frame takes samples.
 template <typename Sample>
 void keep(const Sample& sample, std::deque<Sample>& samples) {
   samples.push_back(sample);
-  if (samples.size() > kMostKept) samples.pop_front();
+  if (samples.size() > kMaxKept) samples.pop_front();
 }
 
 template <ros::Message M, typename Use>
@@ -45,19 +45,19 @@ MotionInput::MotionInput(const NodeConfig& config, Participant& participant, Gra
 
 Subscriber MotionInput::subscribe(const std::string& topic, const MessageType& type) {
   // Best effort, as sensor drivers publish.
-  const TopicQos qos{.is_reliable = false, .depth = 1000, .most_bytes = kMostBytesWithoutImage};
+  const TopicQos qos{.is_reliable = false, .depth = 1000, .max_bytes = kMaxBytesWithoutImage};
   Subscriber subscriber = participant_.subscribe(config_.topic(topic), type, qos);
   graph_.add(subscriber);
   return subscriber;
 }
 
 // The publisher determines the type of the wheels topic.
-void MotionInput::look_for_wheels() {
+void MotionInput::find_wheels() {
   const auto type = wheels_type(participant_.published_types(config_.topic(config_.wheels)));
   if (!type) return;
   wheels_ = subscribe(config_.wheels, *type);
   wheels_type_ = type->name;
-  graph_.tell();
+  graph_.publish();
 }
 
 void MotionInput::take() {
@@ -65,7 +65,7 @@ void MotionInput::take() {
     take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& sample) { keep(sample, imu_); });
   }
   if (config_.wheels.empty()) return;
-  if (!wheels_) look_for_wheels();
+  if (!wheels_) find_wheels();
   if (!wheels_) return;
   const auto add = [&](const WheelSample& sample) { stream_.add(sample); };
   if (wheels_type_ == ros::Odometry::kType) take_samples<ros::Odometry>(*wheels_, config_.wheels, add);
@@ -76,27 +76,27 @@ void MotionInput::take() {
   for (const WheelSample& sample : stream_.take()) keep(sample, samples_);
 }
 
-void MotionInput::tell(const StampClock& clock, SlamRunner& runner) {
+void MotionInput::forward(const StampClock& clock, SlamRunner& runner) {
   for (const WheelSample& sample : samples_) {
     const Timestamp time = clock.without_jumps(sample.time);
-    if (sample.pose) runner.tell_wheels(StampedPose{time, *sample.pose});
+    if (sample.pose) runner.add_wheel_odometry(StampedPose{time, *sample.pose});
     if (!sample.velocity) continue;
-    BaseVelocity velocity = *sample.velocity;
+    BaseTwist velocity = *sample.velocity;
     velocity.time = time;
-    runner.tell_wheels(velocity);
+    runner.add_wheel_odometry(velocity);
   }
   for (const ImuSample& sample : imu_) {
     const Timestamp time = clock.without_jumps(sample.time);
-    if (sample.rate) runner.tell_gyroscope({time, sample.rate->rate});
-    if (!sample.rate) are_rates_unmeasured_ = true;
-    if (sample.acceleration) runner.tell_accelerometer({time, sample.acceleration->acceleration});
+    if (sample.rate) runner.add_gyro({time, sample.rate->rate});
+    if (!sample.rate) has_unmeasured_rates_ = true;
+    if (sample.acceleration) runner.add_accel({time, sample.acceleration->acceleration});
   }
   samples_.clear();
   imu_.clear();
 }
 
-std::string MotionInput::news() {
-  if (!are_rates_unmeasured_ || std::exchange(is_reported_, true)) return "";
+std::string MotionInput::take_fault() {
+  if (!has_unmeasured_rates_ || std::exchange(is_reported_, true)) return "";
   return config_.topic(config_.gyroscope) + ": " + kRatesNotMeasured;
 }
 

@@ -20,15 +20,15 @@ class MotionInput {
 
   void take();
   // Passes samples on. clock: of the images. Precondition: the runner is running.
-  void tell(const StampClock& clock, SlamRunner& runner);
+  void forward(const StampClock& clock, SlamRunner& runner);
   // New fault of a topic, reported once; empty without one.
-  std::string news();
+  std::string take_fault();
   // Topic of a sensor, for messages.
   std::string source_of(MotionSensor sensor) const;
 
  private:
   Subscriber subscribe(const std::string& topic, const MessageType& type);
-  void look_for_wheels();
+  void find_wheels();
 
   // Constant after construction.
   NodeConfig config_;
@@ -39,7 +39,7 @@ class MotionInput {
   std::string wheels_type_;
   std::optional<Subscriber> gyroscope_;
   WheelStream stream_;
-  bool are_rates_unmeasured_ = false;  // whether a message marked rates as not measured
+  bool has_unmeasured_rates_ = false;  // whether a message marked rates as not measured
   bool is_reported_ = false;
   std::deque<WheelSample> samples_;  // wheel samples of the last seconds, by their own stamps
   std::deque<ImuSample> imu_;        // samples of the last seconds, by their own stamps

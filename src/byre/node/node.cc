@@ -52,7 +52,7 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
       outputs_(config, participant_, graph_, watchers_.get()),
       motion_(config, participant_, graph_),
       pairs_(pairing_options(config)),
-      watch_(config.topic(config.left), steady_now()) {
+      monitor_(config.topic(config.left), steady_now()) {
   const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
     std::optional<Subscriber> subscriber;
     if (topic.empty()) return subscriber;
@@ -62,17 +62,17 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   };
   const MessageType image = config.is_compressed ? message_type<ros::CompressedImage>() : message_type<ros::Image>();
   const TopicQos images{.is_reliable = config.is_reliable, .depth = 5};
-  const TopicQos small{.most_bytes = kMostBytesWithoutImage};
+  const TopicQos small{.max_bytes = kMaxBytesWithoutImage};
   command_ = subscribe(config.command, message_type<ros::String>(), small);
   initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), small);
-  if (config.services.value_or(network.has_cyclone)) services_.emplace(config, participant_, graph_, log_);
+  if (config.services.value_or(network.uses_cyclone)) services_.emplace(config, participant_, graph_, log_);
   calibration_ = calibration_source_.take("");
   if (calibration_) start();
   require_plan_of_map(config_);
-  outputs_.tell_plan();
+  outputs_.publish_plan();
   left_ = subscribe(config.left, image, images);
   right_ = subscribe(config.right, image, images);
-  graph_.tell();
+  graph_.publish();
   if (const auto fleet = fleet_options(config)) fleet_.emplace(*fleet);
   if (config.http_port) {
     web_server_.emplace(WebServerOptions{config.http_address, *config.http_port, {}},
@@ -89,7 +89,7 @@ void Node::take_images(Timestamp now) {
   for (Message& message : left_->take()) {
     const auto header = stamp_of(message, config_.left);
     if (!header) continue;
-    watch_.note_arrival(now);
+    monitor_.note_arrival(now);
     left_frame_ = header->frame_id;
     pairs_.add_left(ros::to_nanoseconds(header->stamp), std::move(message), now);
   }
@@ -102,8 +102,8 @@ void Node::take_images(Timestamp now) {
 
 void Node::start() {
   manager_.busy(kLongestWithFiles);
-  const std::string said = runner_.start(*calibration_);
-  if (!said.empty()) log_(LogLevel::warning, said);
+  const std::string note = runner_.start(*calibration_);
+  if (!note.empty()) log_(LogLevel::warning, note);
 }
 
 void Node::take_calibration(Timestamp now) {
@@ -113,14 +113,14 @@ void Node::take_calibration(Timestamp now) {
     if (calibration_) start();
   } catch (const InputError& error) {
     calibration_.reset();
-    watch_.note_unusable(error, now);
+    monitor_.note_unusable(error, now);
     if (last_fault_ == error.what()) return;
     last_fault_ = error.what();
     log_(LogLevel::error, last_fault_);
   }
 }
 
-Outcome Node::answer(const std::string& asked, const std::function<std::string()>& done) {
+Outcome Node::answer(const std::string& request, const std::function<std::string()>& done) {
   Outcome outcome;
   manager_.busy(kLongestWithFiles);
   try {
@@ -128,16 +128,16 @@ Outcome Node::answer(const std::string& asked, const std::function<std::string()
   } catch (const InputError& error) {
     outcome = {false, error.what()};
   }
-  log_(outcome.is_done ? LogLevel::info : LogLevel::warning, asked + ": " + outcome.answer);
-  outputs_.tell_answer(asked, outcome.is_done, outcome.answer);
+  log_(outcome.is_done ? LogLevel::info : LogLevel::warning, request + ": " + outcome.answer);
+  outputs_.publish_answer(request, outcome.is_done, outcome.answer);
   return outcome;
 }
 
-Outcome Node::obey(const std::string& command) {
+Outcome Node::execute(const std::string& command) {
   return answer(printable(command, kShownOfText), [&] {
-    const Obeyed obeyed = byre::obey(runner_, command);
-    if (obeyed.begins_anew) begin_anew();
-    return obeyed.answer;
+    const CommandResult result = byre::execute(runner_, command);
+    if (result.restarts) restart();
+    return result.answer;
   });
 }
 
@@ -145,10 +145,10 @@ Outcome Node::take_hint(const ros::PoseWithCovarianceStamped& hint) {
   return answer("initial pose", [&] { return compare(hint); });
 }
 
-void Node::begin_anew() {
-  pose_frames_.begin_anew();
-  if (fleet_) fleet_->begin_anew();
-  outputs_.forget_points();
+void Node::restart() {
+  pose_frames_.restart();
+  if (fleet_) fleet_->restart();
+  outputs_.reset_points();
   map_from_body_.reset();
   last_report_.reset();
 }
@@ -169,9 +169,9 @@ std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
     if (distance <= kNear) return fmt::format("agrees with the current pose within {:.1f} m", distance);
     answer = fmt::format("{:.1f} m from the current pose; ", distance) + runner_.relocalise() + "; ";
     hint->map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has no height
-    begin_anew();
+    restart();
   }
-  if (!runner_.look_near(*hint)) return "not used: the search already covers the whole map";
+  if (!runner_.set_initial_pose(*hint)) return "not used: the search already covers the whole map";
   return answer + fmt::format("searching within {:.1f} m of it for {:.0f} s, then in the whole map", hint->radius,
                               hint->seconds);
 }
@@ -182,15 +182,15 @@ void Node::take_requests(Timestamp now) {
   };
   for (const Message& message : take(command_)) {
     const auto command = parsed_message<ros::String>(message, config_.command);
-    if (command) obey(command->data);
+    if (command) execute(command->data);
   }
   for (const Message& message : take(initial_pose_)) {
     const auto given = parsed_message<ros::PoseWithCovarianceStamped>(message, config_.initial_pose);
     if (given) take_hint(*given);
   }
   if (!services_) return;
-  services_->answer([this](const ServiceCall& call) { return call.hint ? take_hint(*call.hint) : obey(call.command); },
-                    now);
+  services_->answer(
+      [this](const ServiceCall& call) { return call.hint ? take_hint(*call.hint) : execute(call.command); }, now);
 }
 
 ReceivedImage Node::decoded(const Message& message, const std::string& topic) const {
@@ -209,39 +209,39 @@ void Node::process(const Pairs::Pair& pair) {
     std::optional<ReceivedImage> right;
     if (pair.right) right = decoded(*pair.right, config_.topic(config_.right));
     const auto [time, jump] = clock_.read(pair.stamp, begin);
-    if (right) right->about.time += time - left.about.time;
-    left.about.time = time;
+    if (right) right->layout.time += time - left.layout.time;
+    left.layout.time = time;
     CameraImages images{left.view()};
     if (right) images.right = right->view();
     motion_.take();
-    motion_.tell(clock_, runner_);
-    if (const std::string news = motion_.news(); !news.empty()) log_(LogLevel::warning, news);
+    motion_.forward(clock_, runner_);
+    if (const std::string fault = motion_.take_fault(); !fault.empty()) log_(LogLevel::warning, fault);
     const FrameReport report = runner_.process(images);
-    outputs_.tell_images(pair.stamp, pair.left.bytes(),
-                         pair.right ? pair.right->bytes() : std::span<const std::byte>());
-    if (!std::exchange(has_told_cameras_, true)) {
-      outputs_.tell_cameras(*calibration_, left.header.frame_id, right ? right->header.frame_id : "");
+    outputs_.publish_images(pair.stamp, pair.left.bytes(),
+                            pair.right ? pair.right->bytes() : std::span<const std::byte>());
+    if (!std::exchange(has_published_cameras_, true)) {
+      outputs_.publish_cameras(*calibration_, left.header.frame_id, right ? right->header.frame_id : "");
     }
     publish(left, report);
-    const CameraFrame told{right.has_value(),
-                           config_.has_right(),
-                           report.health.doubt == Doubt::frozen,
-                           to_seconds(steady_now() - begin),
-                           report.input,
-                           pair.nearest,
-                           jump};
-    watch_.note_frame(told, steady_now());
+    const CameraFrame camera_frame{right.has_value(),
+                                   config_.has_right(),
+                                   report.health.doubt == DistrustReason::frozen,
+                                   to_seconds(steady_now() - begin),
+                                   report.input,
+                                   pair.nearest,
+                                   jump};
+    monitor_.note_frame(camera_frame, steady_now());
   } catch (const InputError& error) {
-    watch_.note_unusable(error, begin);
+    monitor_.note_unusable(error, begin);
   }
-  watch_.note_passed_over(pairs_.counts().passed_over, begin);
+  monitor_.note_skipped(pairs_.counts().skipped, begin);
 }
 
 void Node::publish(const ReceivedImage& left, const FrameReport& report) {
   if (is_dropped(report.input)) return;  // without a pose
   map_from_body_ = report.map_from_body;
   pose_frames_.note(report);
-  outputs_.tell_frame(left.header, report, pose_frames_);
+  outputs_.publish_frame(left.header, report, pose_frames_);
   if (fleet_) fleet_->note(report, steady_now(), advice_for(report.health.doubt));
   last_image_time_ = ros::to_nanoseconds(left.header.stamp);
   const auto source_of = [this](MotionSensor sensor) { return motion_.source_of(sensor); };
@@ -255,45 +255,46 @@ ros::DiagnosticStatus Node::localisation() const {
   status.level = ros::DiagnosticStatus::kWarn;
   status.name = "byre: localisation";
   status.message =
-      runner_.is_running() ? "no frame has been tracked yet" : "waiting for " + calibration_source_.awaited();
+      runner_.is_running() ? "no frame has been tracked yet" : "waiting for " + calibration_source_.missing_input();
   return status;
 }
 
-void Node::tell_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras) {
+void Node::publish_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras) {
   const std::string summary = localisation.message + "; " + cameras.message;
   manager_.status(summary);
-  const bool is_well = last_report_ && std::max(localisation.level, cameras.level) <= ros::DiagnosticStatus::kWarn;
-  board_->put({is_well, summary, metrics_text({watch_.arrived(), pairs_.counts().passed_over, frames_, last_report_})});
+  const bool is_healthy = last_report_ && std::max(localisation.level, cameras.level) <= ros::DiagnosticStatus::kWarn;
+  board_->put(
+      {is_healthy, summary, metrics_text({monitor_.arrived(), pairs_.counts().skipped, frames_, last_report_})});
 }
 
 // Once a second, and immediately after a change.
-void Node::tell_state(Timestamp now) {
-  std::vector<ros::DiagnosticStatus> statuses = {localisation(), watch_.status(now)};
+void Node::publish_state(Timestamp now) {
+  std::vector<ros::DiagnosticStatus> statuses = {localisation(), monitor_.status(now)};
   const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message);
-  const bool is_news = diagnosis != last_diagnosis_ && now - last_told_ > 100ms;
-  if (is_news || now - last_told_ > 1s) {
-    tell_status(statuses[0], statuses[1]);
-    outputs_.tell_diagnostics(std::move(statuses));
-    last_told_ = now;
+  const bool has_changed = diagnosis != last_diagnosis_ && now - last_published_ > 100ms;
+  if (has_changed || now - last_published_ > 1s) {
+    publish_status(statuses[0], statuses[1]);
+    outputs_.publish_diagnostics(std::move(statuses));
+    last_published_ = now;
     last_diagnosis_ = diagnosis;
   }
-  if (runner_.is_running() && now - last_slow_told_ > 1s) {
-    outputs_.tell_path(runner_, last_image_time_);
-    outputs_.tell_points(runner_);
-    last_slow_told_ = now;
+  if (runner_.is_running() && now - last_slow_published_ > 1s) {
+    outputs_.publish_path(runner_, last_image_time_);
+    outputs_.publish_points(runner_);
+    last_slow_published_ = now;
   }
   // A running loop is not sufficient: while images arrive, some must be tracked.
-  const bool is_at_work = frames_ != frames_at_last_sign_ || watch_.arrived() == arrived_at_last_sign_;
-  if (!is_at_work && runner_.is_running()) return;
+  const bool is_working = frames_ != frames_at_last_keepalive_ || monitor_.arrived() == arrived_at_last_keepalive_;
+  if (!is_working && runner_.is_running()) return;
   manager_.alive();
-  frames_at_last_sign_ = frames_;
-  arrived_at_last_sign_ = watch_.arrived();
+  frames_at_last_keepalive_ = frames_;
+  arrived_at_last_keepalive_ = monitor_.arrived();
 }
 
-void Node::tell_fleet(Timestamp now) {
+void Node::publish_fleet(Timestamp now) {
   if (!fleet_) return;
-  if (const auto news = fleet_->news()) log_(LogLevel::notice, "mqtt: " + *news);
-  fleet_->tell({runner_.map_name(), config_.fleet.map_description}, now);
+  if (const auto change = fleet_->connection_change()) log_(LogLevel::notice, "mqtt: " + *change);
+  fleet_->publish({runner_.map_name(), config_.fleet.map_description}, now);
 }
 
 void Node::run(const std::function<bool()>& should_stop) {
@@ -309,12 +310,12 @@ void Node::run(const std::function<bool()>& should_stop) {
     if (runner_.is_running()) {
       if (const auto pair = pairs_.next(now)) process(*pair);
     }
-    tell_state(steady_now());
-    tell_fleet(steady_now());
+    publish_state(steady_now());
+    publish_fleet(steady_now());
     if (web_server_) web_server_->wake();
   }
   manager_.stopping();
-  if (runner_.has_anything_to_save()) log_(LogLevel::info, runner_.save());
+  if (runner_.can_save()) log_(LogLevel::info, runner_.save());
 }
 
 }  // namespace byre

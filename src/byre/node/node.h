@@ -5,7 +5,7 @@
 #include "byre/dds/ros_graph.h"
 #include "byre/fleet/fleet_link.h"
 #include "byre/node/calibration_source.h"
-#include "byre/node/camera_watch.h"
+#include "byre/node/camera_monitor.h"
 #include "byre/node/image_message.h"
 #include "byre/node/image_pairs.h"
 #include "byre/node/motion_input.h"
@@ -44,18 +44,18 @@ class Node {
   void start();
   void take_calibration(Timestamp now);
   void take_requests(Timestamp now);
-  Outcome answer(const std::string& asked, const std::function<std::string()>& done);
-  Outcome obey(const std::string& command);
+  Outcome answer(const std::string& request, const std::function<std::string()>& done);
+  Outcome execute(const std::string& command);
   Outcome take_hint(const ros::PoseWithCovarianceStamped& hint);
   std::string compare(const ros::PoseWithCovarianceStamped& message);
   ReceivedImage decoded(const Message& message, const std::string& topic) const;
   void process(const Pairs::Pair& pair);
   void publish(const ReceivedImage& left, const FrameReport& report);
-  void tell_state(Timestamp now);
-  void tell_fleet(Timestamp now);
-  void tell_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras);
+  void publish_state(Timestamp now);
+  void publish_fleet(Timestamp now);
+  void publish_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras);
   ros::DiagnosticStatus localisation() const;
-  void begin_anew();
+  void restart();
 
   NodeConfig config_;  // constant after construction
   NodeLog log_;        // constant after construction
@@ -70,7 +70,7 @@ class Node {
   MotionInput motion_;
   Pairs pairs_;
   StampClock clock_;
-  CameraWatch watch_;
+  CameraMonitor monitor_;
   PoseFrames pose_frames_;
   ServiceManager manager_;
   std::shared_ptr<StatusBoard> board_ = std::make_shared<StatusBoard>();
@@ -79,17 +79,17 @@ class Node {
 
   std::optional<Calibration> calibration_;  // empty until available
   std::string left_frame_;                  // frame of the left images; empty before the first one
-  bool has_told_cameras_ = false;
+  bool has_published_cameras_ = false;
   std::optional<FrameReport> last_report_;
   std::optional<Pose> map_from_body_;  // last published pose
   Timestamp last_image_time_{};
   std::string last_diagnosis_;
-  std::string last_fault_;      // last reported fault of the calibration
-  Timestamp last_told_{};       // time of the last diagnostics
-  Timestamp last_slow_told_{};  // time of the last path and points
-  int arrived_at_last_sign_ = 0;
+  std::string last_fault_;           // last reported fault of the calibration
+  Timestamp last_published_{};       // time of the last diagnostics
+  Timestamp last_slow_published_{};  // time of the last path and points
+  int arrived_at_last_keepalive_ = 0;
   int frames_ = 0;
-  int frames_at_last_sign_ = 0;
+  int frames_at_last_keepalive_ = 0;
 };
 
 }  // namespace byre

@@ -86,7 +86,7 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "is empty, and calibration.file is empty too", "set one of the two");
   consistency.require(!needs_info || !config.has_right() || !config.right_info.empty(), "calibration.right_info",
                       "is empty, and calibration.file is empty too", "set one of the two");
-  consistency.require(config.calibration || config.mounting != Mounting::file, "frames.mounting",
+  consistency.require(config.calibration || config.extrinsics != ExtrinsicsSource::file, "frames.mounting",
                       "is file, but calibration.file is empty", "set it to tf, or set calibration.file");
   consistency.require(config.name_space.empty() || config.name_space.starts_with('/'), "node.namespace",
                       "does not begin with a slash", "write it as /barn");
@@ -103,14 +103,14 @@ void check(const NodeConfig& config, Consistency consistency) {
 std::string yaml_scalar(const std::string& text) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./";
   const bool is_plain = !text.empty() && text.find_first_not_of(kPlain) == std::string::npos;
-  return is_plain ? text : dumped(text);
+  return is_plain ? text : dump_json(text);
 }
 
 }  // namespace
 
 std::string NodeConfig::topic(const std::string& given) const {
   // Relative names resolve within the node, such as "/byre/odometry".
-  return given.empty() ? "" : resolved(given, full_name());
+  return given.empty() ? "" : resolve_name(given, full_name());
 }
 
 NodeConfigReading read_node_config(const fs::path& path) {

@@ -23,7 +23,7 @@ enum class NodeTask : std::uint8_t { mission, extend, map };
 //   file    calibration file (T_BS, T_cam_imu); its body is the base frame
 //   tf      /tf_static, from the base frame to the frame of the left images
 //   camera  identity: the base frame is the camera frame, x right, y down, z forward
-enum class Mounting : std::uint8_t { file, tf, camera };
+enum class ExtrinsicsSource : std::uint8_t { file, tf, camera };
 
 // Interface to a fleet manager, docs/how-to/connect_a_fleet.md.
 struct FleetSettings {
@@ -74,8 +74,8 @@ struct NodeConfig {
   std::string map_frame = "map";
   std::string odom_frame = "odom";
   std::string base_frame = "base_link";
-  std::optional<Mounting> mounting;  // empty: file with a calibration file, else tf
-  bool in_plan = true;               // map frame is that of the floor plan on which the map is registered
+  std::optional<ExtrinsicsSource> extrinsics;  // empty: file with a calibration file, else tf
+  bool in_plan = true;                         // map frame is that of the floor plan on which the map is registered
   bool publishes_map_to_odom = true;
   bool publishes_odom_to_base = true;
   bool publishes_cameras = true;  // publishes base->camera if /tf_static does not contain it
@@ -99,7 +99,9 @@ struct NodeConfig {
 
   FleetSettings fleet;
 
-  Mounting used_mounting() const { return mounting.value_or(calibration ? Mounting::file : Mounting::tf); }
+  ExtrinsicsSource extrinsics_source() const {
+    return extrinsics.value_or(calibration ? ExtrinsicsSource::file : ExtrinsicsSource::tf);
+  }
   bool has_right() const { return !right.empty(); }
   std::string full_name() const { return name_space + (name_space == "/" ? "" : "/") + name; }
   // Full name of a topic; empty if it is disabled.

@@ -50,12 +50,12 @@ TEST_F(NodeConfigFile, ResolvesPathsInItsFolderAndTopicsInTheNode) {
 }
 
 TEST_F(NodeConfigFile, ReportsAllFaultsWithLineAndRemedy) {
-  const std::string told =
+  const std::string text =
       faults("slam:\n  map: barn.byre\n  worker: 3\nimages:\n  pair_wait: soon\n  left: two words\n");
-  EXPECT_THAT(told, AllOf(HasSubstr("robot.yaml:3: unknown setting slam.worker"),
+  EXPECT_THAT(text, AllOf(HasSubstr("robot.yaml:3: unknown setting slam.worker"),
                           HasSubstr("robot.yaml:5: images.pair_wait is 'soon' (give from 0 to 1 seconds)"),
                           HasSubstr("robot.yaml:6: images.left is 'two words'")));
-  EXPECT_EQ(std::ranges::count(told, '\n'), 3);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 3);
   EXPECT_THAT(faults("left: x\nslam:\n  map: m\n"), HasSubstr("is images.left meant?"));
 }
 
@@ -103,7 +103,7 @@ TEST_F(NodeConfigFile, IsReadAsPrinted) {
   const NodeConfigReading again = read(printed);
   EXPECT_THAT(again.faults, IsEmpty());
   EXPECT_EQ(node_config_file(again.config), printed);
-  EXPECT_EQ(again.config.mounting, Mounting::tf);
+  EXPECT_EQ(again.config.extrinsics, ExtrinsicsSource::tf);
   EXPECT_FALSE(again.config.has_right());
 }
 

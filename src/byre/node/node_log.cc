@@ -21,22 +21,22 @@ void NodeLogger::write(LogLevel level, const std::string& content) {
   }
 }
 
-void NodeLogger::tell(LogLevel level, const std::string& line, Timestamp now) {
-  allowed_ = std::min(kAtOnce, allowed_ + kPerSecond * to_seconds(now - std::exchange(last_, now)));
-  if (allowed_ < 1.0 && level != LogLevel::error) {
-    ++left_out_;
+void NodeLogger::log(LogLevel level, const std::string& line, Timestamp now) {
+  tokens_ = std::min(kBurst, tokens_ + kPerSecond * to_seconds(now - std::exchange(last_, now)));
+  if (tokens_ < 1.0 && level != LogLevel::error) {
+    ++dropped_;
     return;
   }
-  if (left_out_ > 0) write(LogLevel::notice, std::to_string(std::exchange(left_out_, 0)) + " log lines suppressed");
-  allowed_ = std::max(0.0, allowed_ - 1.0);
+  if (dropped_ > 0) write(LogLevel::notice, std::to_string(std::exchange(dropped_, 0)) + " log lines suppressed");
+  tokens_ = std::max(0.0, tokens_ - 1.0);
   write(level, line);
 }
 
-bool is_journal_read() {
-  const char* const told = std::getenv("JOURNAL_STREAM");
+bool is_connected_to_journal() {
+  const char* const journal_stream = std::getenv("JOURNAL_STREAM");
   struct stat stream {};
-  if (told == nullptr || fstat(STDERR_FILENO, &stream) != 0) return false;
-  return std::to_string(stream.st_dev) + ":" + std::to_string(stream.st_ino) == std::string_view(told);
+  if (journal_stream == nullptr || fstat(STDERR_FILENO, &stream) != 0) return false;
+  return std::to_string(stream.st_dev) + ":" + std::to_string(stream.st_ino) == std::string_view(journal_stream);
 }
 
 }  // namespace byre

@@ -16,18 +16,18 @@ enum class LogLevel : std::uint8_t { error = 3, warning = 4, notice = 5, info = 
 using NodeLog = std::function<void(LogLevel level, const std::string& line)>;
 
 // Writes lines for a terminal, or for systemd's journal with their level in front (sd-daemon(3)). Line breaks in text
-// are escaped. At most kAtOnce lines in a burst and kPerSecond on average; the rest is counted and dropped, as verdicts
+// are escaped. At most kBurst lines in a burst and kPerSecond on average; the rest is counted and dropped, as verdicts
 // may change at every frame.
 class NodeLogger {
  public:
-  static constexpr double kAtOnce = 30.0;
+  static constexpr double kBurst = 30.0;
   static constexpr double kPerSecond = 2.0;
 
   // stream outlives this.
   NodeLogger(std::ostream& stream, bool is_for_journal) : stream_(stream), is_for_journal_(is_for_journal) {}
 
   // now: of a steady clock. Errors are never dropped.
-  void tell(LogLevel level, const std::string& line, Timestamp now);
+  void log(LogLevel level, const std::string& line, Timestamp now);
 
  private:
   void write(LogLevel level, const std::string& content);
@@ -35,11 +35,11 @@ class NodeLogger {
   std::ostream& stream_;  // outlives this
   bool is_for_journal_;   // constant after construction
   Timestamp last_{};
-  double allowed_ = kAtOnce;  // lines that may be written now
-  int left_out_ = 0;
+  double tokens_ = kBurst;  // lines that may be written now
+  int dropped_ = 0;
 };
 
 // Whether standard error is connected to the journal, by JOURNAL_STREAM of systemd.
-bool is_journal_read();
+bool is_connected_to_journal();
 
 }  // namespace byre

@@ -32,7 +32,7 @@ NodeOutputs::OptionalOutput NodeOutputs::open(const std::string& topic, const To
   if (name.empty()) return std::nullopt;
   Output output{participant_.publish(name, message_type<T>(), qos), {}};
   graph_.add(output.publisher);
-  const auto durability = qos.is_latched ? ros::Durability::kept : ros::Durability::only_new;
+  const auto durability = qos.is_latched ? ros::Durability::latched : ros::Durability::only_new;
   if (watchers_ != nullptr) output.watched = watchers_->add(ros::topic_of<T>(name, durability));
   return output;
 }
@@ -53,7 +53,7 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, Gra
   odometry_ = open<ros::Odometry>(config.odometry, kReliable);
   pose_ = open<ros::PoseWithCovarianceStamped>(config.pose, kLatched);
   if (config.publishes_map_to_odom || config.publishes_odom_to_base) tf_ = open<ros::TFMessage>("/tf", kTransforms);
-  if (config.publishes_cameras && config.used_mounting() != Mounting::tf) {
+  if (config.publishes_cameras && config.extrinsics_source() != ExtrinsicsSource::tf) {
     tf_static_ = open<ros::TFMessage>("/tf_static", kLatched);
   }
   diagnostics_ = open<ros::DiagnosticArray>("/diagnostics", kReliable);
@@ -72,21 +72,21 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, Gra
   if (config.has_right()) right_ = watch_images(config.right);
 }
 
-void NodeOutputs::tell_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right) {
+void NodeOutputs::publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right) {
   stamp_ = stamp;
-  const auto tell = [&](const std::optional<ros::MessageSink::TopicId>& topic, std::span<const std::byte> image) {
+  const auto send_image = [&](const std::optional<ros::MessageSink::TopicId>& topic, std::span<const std::byte> image) {
     if (!topic || image.empty() || !watchers_->is_wanted(*topic)) return;
     watchers_->put(*topic, stamp, {image.begin(), image.end()});
   };
-  tell(left_, left);
-  tell(right_, right);
+  send_image(left_, left);
+  send_image(right_, right);
 }
 
 ros::Header NodeOutputs::in_map(const ros::Header& image) const {
   return {image.stamp, config_.map_frame};
 }
 
-void NodeOutputs::tell_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base) {
+void NodeOutputs::publish_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base) {
   ros::Odometry odometry;
   odometry.header = header;
   odometry.child_frame_id = config_.base_frame;
@@ -98,7 +98,7 @@ void NodeOutputs::tell_odometry(const ros::Header& header, const FrameReport& re
   send(odometry_, odometry);
 }
 
-void NodeOutputs::tell_transforms(const ros::Header& image, const PoseFrames& frames) {
+void NodeOutputs::publish_transforms(const ros::Header& image, const PoseFrames& frames) {
   ros::TFMessage message;
   if (config_.publishes_map_to_odom && frames.map_from_odom()) {
     const ros::Time later = ros::to_time(ros::to_nanoseconds(image.stamp) + from_seconds(config_.future));
@@ -112,7 +112,7 @@ void NodeOutputs::tell_transforms(const ros::Header& image, const PoseFrames& fr
   if (!message.transforms.empty()) send(tf_, message);
 }
 
-void NodeOutputs::tell_events(const FrameReport& report) {
+void NodeOutputs::publish_events(const FrameReport& report) {
   MappedFrame frame;
   frame.time = report.time;
   frame.report = report;
@@ -121,23 +121,23 @@ void NodeOutputs::tell_events(const FrameReport& report) {
   for (std::string line; std::getline(lines, line);) send_text(events_, line);
 }
 
-void NodeOutputs::tell_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames) {
+void NodeOutputs::publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames) {
   if (frames.odom_from_base()) {
-    tell_odometry({image.stamp, config_.odom_frame}, report, *frames.odom_from_base());
+    publish_odometry({image.stamp, config_.odom_frame}, report, *frames.odom_from_base());
   } else {
     last_.reset();
   }
   if (report.map_from_body && report.health.verdict != Verdict::untrusted) {
     send(pose_, pose_message(in_map(image), *report.map_from_body, report.covariance));
   }
-  tell_transforms(image, frames);
+  publish_transforms(image, frames);
   if (is_wanted(health_)) send_text(health_, health_line(report));
-  tell_events(report);
+  publish_events(report);
   ++frames_;
 }
 
-void NodeOutputs::tell_cameras(const Calibration& calibration, const std::string& left_frame,
-                               const std::string& right_frame) {
+void NodeOutputs::publish_cameras(const Calibration& calibration, const std::string& left_frame,
+                                  const std::string& right_frame) {
   if (!tf_static_) return;
   const ros::Header header{ros::to_time(wall_time()), config_.base_frame};
   ros::TFMessage message;
@@ -153,16 +153,17 @@ void NodeOutputs::tell_cameras(const Calibration& calibration, const std::string
   if (!message.transforms.empty()) send(tf_static_, message);
 }
 
-void NodeOutputs::tell_diagnostics(std::vector<ros::DiagnosticStatus> statuses) {
+void NodeOutputs::publish_diagnostics(std::vector<ros::DiagnosticStatus> statuses) {
   send(diagnostics_, ros::DiagnosticArray{{ros::to_time(wall_time()), ""}, std::move(statuses)});
 }
 
-void NodeOutputs::tell_answer(const std::string& asked, bool is_done, const std::string& answer) {
-  const nlohmann::ordered_json line = {{"event", "command"}, {"command", asked}, {"done", is_done}, {"answer", answer}};
-  send_text(events_, dumped(line));
+void NodeOutputs::publish_answer(const std::string& request, bool is_done, const std::string& answer) {
+  const nlohmann::ordered_json line = {
+      {"event", "command"}, {"command", request}, {"done", is_done}, {"answer", answer}};
+  send_text(events_, dump_json(line));
 }
 
-void NodeOutputs::tell_plan() {
+void NodeOutputs::publish_plan() {
   if (!grid_) return;
   ros::OccupancyGrid grid = grid_of(read_floor_plan(*config_.plan));
   grid.header = {ros::to_time(wall_time()), config_.map_frame};
@@ -170,16 +171,16 @@ void NodeOutputs::tell_plan() {
   send(grid_, grid);
 }
 
-void NodeOutputs::tell_path(const SlamRunner& runner, Timestamp image_time) {
+void NodeOutputs::publish_path(const SlamRunner& runner, Timestamp image_time) {
   if (!is_wanted(path_)) return;
   const ros::Header header{ros::to_time(image_time), config_.map_frame};
   send(path_,
        path_message(header, runner.trajectory(), [&runner](const Pose& pose) { return runner.published(pose); }));
 }
 
-void NodeOutputs::tell_points(const SlamRunner& runner) {
+void NodeOutputs::publish_points(const SlamRunner& runner) {
   if (!is_wanted(points_)) return;
-  if (std::exchange(has_told_points_, true) && !runner.makes_a_map()) return;
+  if (std::exchange(has_published_points_, true) && !runner.makes_map()) return;
   send(points_, cloud_message({ros::to_time(wall_time()), config_.map_frame}, runner.points()));
 }
 

@@ -24,17 +24,17 @@ class NodeOutputs {
   NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, ros::MessageSink* watchers);
 
   // Publishes all messages of a frame. image: header of its left image. The pose is in the published map frame.
-  void tell_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames);
-  void tell_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
+  void publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames);
+  void publish_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
   // Sends received images to watchers only.
-  void tell_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
-  void tell_diagnostics(std::vector<ros::DiagnosticStatus> statuses);
-  void tell_answer(const std::string& asked, bool is_done, const std::string& answer);
-  void tell_plan();
+  void publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
+  void publish_diagnostics(std::vector<ros::DiagnosticStatus> statuses);
+  void publish_answer(const std::string& request, bool is_done, const std::string& answer);
+  void publish_plan();
   // Only with subscribers.
-  void tell_path(const SlamRunner& runner, Timestamp image_time);
-  void tell_points(const SlamRunner& runner);
-  void forget_points() { has_told_points_ = false; }  // after loading another map
+  void publish_path(const SlamRunner& runner, Timestamp image_time);
+  void publish_points(const SlamRunner& runner);
+  void reset_points() { has_published_points_ = false; }  // after loading another map
 
  private:
   // Topic with DDS readers and watchers.
@@ -53,9 +53,9 @@ class NodeOutputs {
   }
   void send_bytes(Output& output, std::vector<std::byte> cdr);
   void send_text(OptionalOutput& output, const std::string& text) { send(output, ros::String{text}); }
-  void tell_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base);
-  void tell_transforms(const ros::Header& image, const PoseFrames& frames);
-  void tell_events(const FrameReport& report);
+  void publish_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base);
+  void publish_transforms(const ros::Header& image, const PoseFrames& frames);
+  void publish_events(const FrameReport& report);
   static Timestamp wall_time();
   ros::Header in_map(const ros::Header& image) const;
 
@@ -74,7 +74,7 @@ class NodeOutputs {
   std::ostringstream event_lines_;
   EventLog event_log_{event_lines_};
   int frames_ = 0;
-  bool has_told_points_ = false;  // whether the points of a constant map were published
+  bool has_published_points_ = false;  // whether the points of a constant map were published
 };
 
 }  // namespace byre

@@ -41,12 +41,12 @@ class NodeServices {
     ServiceServer server;
     // Bytes of the reply; empty if the request is not of this service's type.
     std::function<std::optional<std::vector<std::byte>>(const Message& request, const Act& act)> reply_to;
-    bool was_misunderstood = false;  // an invalid request was logged
+    bool has_logged_invalid = false;  // an invalid request was logged
   };
 
   template <typename Kind>
-  void offer(const std::string& name, std::function<ServiceCall(const typename Kind::Request&)> call_of,
-             std::function<typename Kind::Response(const Outcome&)> response_of);
+  void add_service(const std::string& name, std::function<ServiceCall(const typename Kind::Request&)> call_of,
+                   std::function<typename Kind::Response(const Outcome&)> response_of);
 
   NodeConfig config_;         // constant after construction
   Participant& participant_;  // outlives this

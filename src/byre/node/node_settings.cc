@@ -37,7 +37,7 @@ template <typename Place>
 NodeSetting topic(const char* name, Place place, const char* meaning) {
   return {name, "topic or empty", meaning, [=](const NodeConfig& config) -> std::string { return place(config); },
           [=](NodeConfig& config, std::string_view value) {
-            if (!value.empty() && !fault_in_name(resolved(value, "/")).empty()) return false;
+            if (!value.empty() && !fault_in_name(resolve_name(value, "/")).empty()) return false;
             place(config) = value;
             return true;
           }};
@@ -174,10 +174,13 @@ void add_frames(Table& table) {
       "frames.odom", [](auto& c) -> auto& { return c.odom_frame; }, "frame of odometry"));
   table.push_back(text(
       "frames.base", [](auto& c) -> auto& { return c.base_frame; }, "frame of the robot"));
-  table.push_back(choice<std::optional<Mounting>>(
+  table.push_back(choice<std::optional<ExtrinsicsSource>>(
       "frames.mounting",
-      {{"auto", std::nullopt}, {"file", Mounting::file}, {"tf", Mounting::tf}, {"camera", Mounting::camera}},
-      [](auto& c) -> auto& { return c.mounting; },
+      {{"auto", std::nullopt},
+       {"file", ExtrinsicsSource::file},
+       {"tf", ExtrinsicsSource::tf},
+       {"camera", ExtrinsicsSource::camera}},
+      [](auto& c) -> auto& { return c.extrinsics; },
       "pose of the left camera on the robot: from the calibration file, from /tf_static, or identity"));
   table.push_back(flag(
       "frames.in_plan", [](auto& c) -> auto& { return c.in_plan; },

@@ -2,7 +2,7 @@
 
 namespace byre {
 
-void PoseFrames::begin_anew() {
+void PoseFrames::restart() {
   odom_from_start_.reset();
   odom_from_base_.reset();
   map_from_odom_.reset();

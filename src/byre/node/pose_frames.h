@@ -12,7 +12,7 @@ namespace byre {
 class PoseFrames {
  public:
   // Starts a new run: its odometry has a new frame, and its map may be another one.
-  void begin_anew();
+  void restart();
 
   // Precondition: map_from_body of the report is in the published map frame.
   void note(const FrameReport& report);

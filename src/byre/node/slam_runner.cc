@@ -21,11 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // A node runs for weeks: a quarter of an hour at 20 Hz in full, older poses subsampled.
-constexpr const char* kMostPoses = "20000";
+constexpr const char* kMaxPoses = "20000";
 
 SlamOptions slam_options(const NodeConfig& config) {
   SlamOptions options;
-  options.settings.emplace_back("trajectory.max_poses", kMostPoses);
+  options.settings.emplace_back("trajectory.max_poses", kMaxPoses);
   options.workers = config.workers;
   options.vocabulary = config.vocabulary;
   options.baseline = config.baseline;
@@ -47,7 +47,7 @@ bool lies_on(const fs::path& map, const fs::path& plan) {
 
 // File in the folder of the loaded map. Other folders are rejected, as senders of commands may not read arbitrary
 // files.
-fs::path beside(const fs::path& map, const std::string& name) {
+fs::path sibling_path(const fs::path& map, const std::string& name) {
   if (name.empty() || name.starts_with('.') || name.find('/') != std::string::npos) {
     throw InputError("load", "'" + name.substr(0, 100) + "' is not a file name",
                      "give a file in the folder of the current map, without the folder");
@@ -126,7 +126,7 @@ std::string SlamRunner::start(const Calibration& calibration) {
   calibration_ =
       with_checked_baseline(calibration, config_.baseline,
                             config_.calibration ? config_.calibration->string() : "the calibration", kBaselineSetting);
-  std::string said;
+  std::string note;
   try {
     replace(make(map_ ? &*map_ : nullptr));
   } catch (const InputError& error) {
@@ -135,10 +135,10 @@ std::string SlamRunner::start(const Calibration& calibration) {
     const fs::path previous = previous_map(*map_);
     replace(make(&previous));
     map_ = previous;
-    is_map_sound_ = false;
-    said = std::string(error.what()) + "; the previous map is used, " + previous.string();
+    is_map_intact_ = false;
+    note = std::string(error.what()) + "; the previous map is used, " + previous.string();
   }
-  if (slam_->is_metric()) return said;
+  if (slam_->is_metric()) return note;
   slam_.reset();
   throw InputError("the calibration", "is of one camera, which has no metric scale without a map", "set slam.map");
 }
@@ -154,7 +154,7 @@ std::string SlamRunner::map_name() const {
 }
 
 std::vector<Eigen::Vector3f> SlamRunner::points() const {
-  if (!makes_a_map()) return points_of(*map_, config_.in_plan);
+  if (!makes_map()) return points_of(*map_, config_.in_plan);
   const Pose published_from_map = published(Pose{});
   std::vector<Eigen::Vector3f> points;
   for (const Eigen::Vector3d& point : slam_->point_positions())
@@ -170,9 +170,9 @@ std::string SlamRunner::save() {
   require_running();
   if (!config_.save) throw InputError("save", "has no output file", "set slam.save");
   require_safe_save(config_);
-  if (slam_->keyframes() > 0 && is_map_sound_ && !has_saved_) keep_as_previous(*config_.save);
+  if (slam_->keyframes() > 0 && is_map_intact_ && !has_saved_) keep_as_previous(*config_.save);
   slam_->save(*config_.save);
-  is_map_sound_ = true;
+  is_map_intact_ = true;
   has_saved_ = true;
   return "saved " + config_.save->string();
 }
@@ -182,7 +182,7 @@ std::string SlamRunner::load(const std::string& name) {
   if (config_.task != NodeTask::mission) {
     throw InputError("load", "would discard the map being made", "set slam.task to mission");
   }
-  const fs::path map = beside(*map_, name);
+  const fs::path map = sibling_path(*map_, name);
   replace(make(&map));
   map_ = map;
   return "loaded " + map.string();
@@ -197,11 +197,11 @@ std::string SlamRunner::relocalise() {
   return "relocalising in " + map_->string();
 }
 
-bool SlamRunner::look_near(PoseHint hint) {
+bool SlamRunner::set_initial_pose(PoseHint hint) {
   require_running();
   if (config_.task != NodeTask::mission) return false;
   hint.map_from_body = inverse(published(Pose{})) * hint.map_from_body;
-  slam_->look_near(hint);
+  slam_->set_initial_pose(hint);
   return true;
 }
 
@@ -211,7 +211,7 @@ std::string SlamRunner::pause_mapping(bool is_paused) {
   return is_paused ? "mapping is paused" : "mapping is resumed";
 }
 
-Obeyed obey(SlamRunner& runner, const std::string& line) {
+CommandResult execute(SlamRunner& runner, const std::string& line) {
   constexpr std::string_view kLoad = "load ";
   if (line.starts_with(kLoad)) return {runner.load(line.substr(kLoad.size())), true};
   if (line == "relocalise") return {runner.relocalise(), true};

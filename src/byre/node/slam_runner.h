@@ -23,10 +23,10 @@ class SlamRunner {
 
   bool is_running() const { return slam_.has_value(); }
   // Motion samples before the next frame. Precondition: is_running().
-  void tell_wheels(const StampedPose& odometry_from_base) { slam_->tell_wheels(odometry_from_base); }
-  void tell_wheels(const BaseVelocity& velocity) { slam_->tell_wheels(velocity); }
-  void tell_gyroscope(const AngularRate& rate) { slam_->tell_gyroscope(rate); }
-  void tell_accelerometer(const Acceleration& acceleration) { slam_->tell_accelerometer(acceleration); }
+  void add_wheel_odometry(const StampedPose& odometry_from_base) { slam_->add_wheel_odometry(odometry_from_base); }
+  void add_wheel_odometry(const BaseTwist& velocity) { slam_->add_wheel_odometry(velocity); }
+  void add_gyro(const AngularRate& rate) { slam_->add_gyro(rate); }
+  void add_accel(const Acceleration& acceleration) { slam_->add_accel(acceleration); }
   // Tracks the next frame. Map pose and covariance are in the published frame.
   FrameReport process(const CameraImages& images);
 
@@ -39,7 +39,7 @@ class SlamRunner {
   std::vector<Eigen::Vector3f> points() const;
   // File name of the current map without folder and extension.
   std::string map_name() const;
-  bool makes_a_map() const { return config_.task != NodeTask::mission; }
+  bool makes_map() const { return config_.task != NodeTask::mission; }
 
   // Commands throw InputError on failure, without any change. The first save of this Slam keeps the present file as its
   // previous version. All return a report.
@@ -48,8 +48,8 @@ class SlamRunner {
   std::string relocalise();                   // global relocalisation in the same map
   std::string pause_mapping(bool is_paused);  // see Slam::pause_mapping
   // hint: in the published frame. False if the task ignores hints.
-  bool look_near(PoseHint hint);
-  bool has_anything_to_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
+  bool set_initial_pose(PoseHint hint);
+  bool can_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
 
  private:
   Slam make(const std::filesystem::path* map) const;
@@ -62,16 +62,16 @@ class SlamRunner {
   std::optional<std::filesystem::path> map_;
   std::optional<Calibration> calibration_;
   std::optional<Slam> slam_;
-  bool is_map_sound_ = true;  // false after falling back to the previous version of the map
-  bool has_saved_ = false;    // whether slam_ has saved the file
-  bool had_pose_ = false;     // whether any frame of slam_ had a pose
+  bool is_map_intact_ = true;  // false after falling back to the previous version of the map
+  bool has_saved_ = false;     // whether slam_ has saved the file
+  bool had_pose_ = false;      // whether any frame of slam_ had a pose
 };
 
 // Executes a line of the command topic. Throws InputError for an unknown command, or one that is impossible now.
-struct Obeyed {
+struct CommandResult {
   std::string answer;
-  bool begins_anew = false;  // starts global relocalisation
+  bool restarts = false;  // starts global relocalisation
 };
-Obeyed obey(SlamRunner& runner, const std::string& line);
+CommandResult execute(SlamRunner& runner, const std::string& line);
 
 }  // namespace byre

@@ -11,7 +11,7 @@ namespace byre {
 
 namespace {
 
-BundleResult unmoved(const BundleProblem& problem) {
+BundleResult unchanged_result(const BundleProblem& problem) {
   BundleResult result;
   result.camera_from_world.reserve(problem.poses.size());
   result.points_in_world.reserve(problem.points.size());
@@ -21,12 +21,12 @@ BundleResult unmoved(const BundleProblem& problem) {
   return result;
 }
 
-BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
+BundleResult solve(const BundleProblem& problem, const BundleRoles& roles, const std::optional<FixedDistance>& scale,
                    const BundleOptions& options) {
-  if (roles.observations.empty()) return unmoved(problem);
+  if (roles.observations.empty()) return unchanged_result(problem);
   BundleSolution solution = solve_bundle(problem, roles, scale, options);
   BundleResult result;
-  if (!solution.usable) result = unmoved(problem);
+  if (!solution.usable) result = unchanged_result(problem);
   result.iterations = solution.iterations;
   result.usable = solution.usable;
   if (!result.usable) return result;
@@ -84,7 +84,7 @@ BundleProblem with_change(BundleProblem problem, const CalibrationVector& change
 
 BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& options) {
   const BundleRoles roles = choose_roles(problem);
-  const std::optional<HeldDistance> scale = choose_scale(problem, roles);
+  const std::optional<FixedDistance> scale = choose_scale(problem, roles);
   BundleResult result = solve(problem, roles, scale, options);
   std::optional<BundleProblem> changed;
   if (problem.calibration) changed = with_change(problem, result.calibration_change);

@@ -127,7 +127,7 @@ void add_point(ReducedMatrix& reduced, const std::vector<Block>& blocks, bool fi
 }
 
 // Information on the pose from the held distance.
-Matrix6 scale_information(const HeldDistance& scale, const Pose& camera_from_world) {
+Matrix6 scale_information(const FixedDistance& scale, const Pose& camera_from_world) {
   const Eigen::Vector3d place_in_camera = camera_from_world * scale.place_in_world;
   const Eigen::RowVector3d by_camera = place_in_camera.normalized().transpose() / scale.sigma();
   Eigen::Matrix<double, 1, 6> by_pose;
@@ -140,7 +140,7 @@ void add_motions(ReducedMatrix& reduced, const BundleProblem& solved, const std:
     const Pose& earlier = solved.poses[motion.earlier].camera_from_world;
     const Pose& later = solved.poses[motion.later].camera_from_world;
     const Matrix6 information = motion_error(motion, earlier, later).weight * motion.information;
-    const auto [by_earlier, by_later] = motion_slopes(earlier, later);
+    const auto [by_earlier, by_later] = motion_jacobians(earlier, later);
     const int first = slots[motion.earlier], second = slots[motion.later];
     if (first >= 0) reduced.add(first, by_earlier.transpose() * information * by_earlier);
     if (second >= 0) reduced.add(second, by_later.transpose() * information * by_later);
@@ -190,7 +190,7 @@ std::vector<int> observations_by_point(const BundleProblem& solved) {
   return indices;
 }
 
-std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<HeldDistance>& scale,
+std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<FixedDistance>& scale,
                                            int pose, double huber_width) {
   assert(pose >= 0 && pose < static_cast<int>(solved.poses.size()));
   const std::vector<int> observations = observations_by_point(solved);

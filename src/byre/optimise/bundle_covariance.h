@@ -7,7 +7,7 @@
 namespace byre {
 
 // Fixes the scale of a bundle in which nothing else determines it: the distance of a pose's camera from a given place.
-struct HeldDistance {
+struct FixedDistance {
   int pose = -1;  // index into BundleProblem::poses
   Eigen::Vector3d place_in_world = Eigen::Vector3d::Zero();
   double distance = 0.0;  // metres
@@ -18,7 +18,7 @@ struct HeldDistance {
 // Covariance of delta in exp_pose(delta) * camera_from_world of one pose, marginalised over all other moving poses and
 // points: inverse of the robustly weighted normal matrix, by Schur complement over points, then poses. Empty if the
 // observations do not determine the pose. Dense over the moving poses: cubic in their number, intended for windows.
-std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<HeldDistance>& scale,
+std::optional<Matrix6> marginal_covariance(const BundleProblem& solved, const std::optional<FixedDistance>& scale,
                                            int pose, double huber_width);
 
 // Indices of the observations in front of their cameras, grouped by point.

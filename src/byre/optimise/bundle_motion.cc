@@ -19,14 +19,14 @@ MotionError motion_error(const BundleMotion& motion, const Pose& earlier_from_wo
   return error;
 }
 
-MotionSlopes motion_slopes(const Pose& earlier_from_world, const Pose& later_from_world) {
+MotionJacobians motion_jacobians(const Pose& earlier_from_world, const Pose& later_from_world) {
   return {-adjoint(later_from_world * inverse(earlier_from_world)), Matrix6::Identity()};
 }
 
-Matrix6 by_turn_and_translation(const Matrix6& slope, const Pose& camera_from_world) {
+Matrix6 to_rotation_translation(const Matrix6& jacobian, const Pose& camera_from_world) {
   Matrix6 result;
-  result.leftCols<3>() = slope.rightCols<3>() + slope.leftCols<3>() * skew(camera_from_world.translation);
-  result.rightCols<3>() = slope.leftCols<3>();
+  result.leftCols<3>() = jacobian.rightCols<3>() + jacobian.leftCols<3>() * skew(camera_from_world.translation);
+  result.rightCols<3>() = jacobian.leftCols<3>();
   return result;
 }
 

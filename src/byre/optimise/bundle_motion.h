@@ -14,13 +14,13 @@ struct MotionError {
 MotionError motion_error(const BundleMotion& motion, const Pose& earlier_from_world, const Pose& later_from_world);
 
 // Derivatives of the residual by delta in exp_pose(delta) * camera_from_world, to first order.
-struct MotionSlopes {
+struct MotionJacobians {
   Matrix6 by_earlier;
   Matrix6 by_later;
 };
-MotionSlopes motion_slopes(const Pose& earlier_from_world, const Pose& later_from_world);
+MotionJacobians motion_jacobians(const Pose& earlier_from_world, const Pose& later_from_world);
 
 // Converts a derivative by delta to one by rotation, then translation, added to the pose's own (see Reprojection).
-Matrix6 by_turn_and_translation(const Matrix6& slope, const Pose& camera_from_world);
+Matrix6 to_rotation_translation(const Matrix6& jacobian, const Pose& camera_from_world);
 
 }  // namespace byre

@@ -17,15 +17,15 @@ TEST(MotionError, HasTheNumericJacobian) {
   constexpr double kStep = 1e-6;
   Draw draw(3);
   const Pose earlier = exp_pose(draw.motion(1.0, 1.0)), later = exp_pose(draw.motion(1.0, 1.0));
-  BundleMotion told;
-  told.later_from_earlier = later * inverse(earlier);
-  const MotionSlopes slopes = motion_slopes(earlier, later);
-  const Matrix6 by_earlier = by_turn_and_translation(slopes.by_earlier, earlier);
-  const Matrix6 by_later = by_turn_and_translation(slopes.by_later, later);
+  BundleMotion measured;
+  measured.later_from_earlier = later * inverse(earlier);
+  const MotionJacobians jacobians = motion_jacobians(earlier, later);
+  const Matrix6 by_earlier = to_rotation_translation(jacobians.by_earlier, earlier);
+  const Matrix6 by_later = to_rotation_translation(jacobians.by_later, later);
   for (int i = 0; i < 6; ++i) {
     const Vector6 step = kStep * Vector6::Unit(i);
     const auto slope_of = [&](const Vector6& ahead, const Vector6& behind) { return (ahead - behind) / (2.0 * kStep); };
-    const auto residual = [&](const Pose& from, const Pose& to) { return motion_error(told, from, to).residual; };
+    const auto residual = [&](const Pose& from, const Pose& to) { return motion_error(measured, from, to).residual; };
     const Vector6 first = slope_of(residual(moved(earlier, step), later), residual(moved(earlier, -step), later));
     const Vector6 second = slope_of(residual(earlier, moved(later, step)), residual(earlier, moved(later, -step)));
     EXPECT_LT((by_earlier.col(i) - first).norm(), 1e-5) << i;
@@ -42,11 +42,11 @@ BundleScene scene_of_one_camera(int moving_poses, int points) {
                                      .start_position = 0.01,
                                      .start_rotation = 0.005});
   for (int i = 1; i < static_cast<int>(scene.truth.poses.size()); ++i) {
-    BundleMotion told{.earlier = i - 1, .later = i, .later_from_earlier = {}};
-    told.later_from_earlier =
+    BundleMotion measured{.earlier = i - 1, .later = i, .later_from_earlier = {}};
+    measured.later_from_earlier =
         scene.truth.poses[i].camera_from_world * inverse(scene.truth.poses[i - 1].camera_from_world);
-    told.information = 1e4 * Matrix6::Identity();
-    scene.problem.motions.push_back(told);
+    measured.information = 1e4 * Matrix6::Identity();
+    scene.problem.motions.push_back(measured);
   }
   return scene;
 }
@@ -81,9 +81,9 @@ TEST(MeasuredMotions, FromUnobservedPosesHaveNoEffect) {
   away.x() = 0.3;
   scene.problem.poses.push_back({exp_pose(away) * scene.problem.poses[2].camera_from_world});
   scene.truth.poses.push_back(scene.problem.poses.back());
-  BundleMotion told{.earlier = 2, .later = 5, .later_from_earlier = {}};
-  told.information = 1e4 * Matrix6::Identity();
-  scene.problem.motions.push_back(told);
+  BundleMotion measured{.earlier = 2, .later = 5, .later_from_earlier = {}};
+  measured.information = 1e4 * Matrix6::Identity();
+  scene.problem.motions.push_back(measured);
   EXPECT_LT(worst_error(scene), 1e-5);
 }
 
@@ -93,7 +93,7 @@ TEST(MeasuredMotions, ReduceTheCovarianceOfAPose) {
   options.covariance_of_pose = 4;
   const auto sigma = [&] { return std::sqrt(bundle_adjust(scene.problem, options).pose_covariance->trace()); };
   const double well_told = sigma();
-  for (BundleMotion& told : scene.problem.motions) told.information *= 1e-2;
+  for (BundleMotion& measured : scene.problem.motions) measured.information *= 1e-2;
   EXPECT_GT(sigma(), 2.0 * well_told);
 }
 

@@ -29,8 +29,8 @@ struct LinearObservation {
   Eigen::Vector3d residual;
   double weight = 1.0;
   Eigen::Matrix3d by_point;
-  Eigen::Matrix<double, 3, 6> by_pose;      // set for a moving pose
-  CalibrationBorder::Slope by_calibration;  // set with self-calibration
+  Eigen::Matrix<double, 3, 6> by_pose;         // set for a moving pose
+  CalibrationBorder::Jacobian by_calibration;  // set with self-calibration
 };
 
 // Normal equations of one point, for its elimination and for its step once the steps of the poses are given.

@@ -44,8 +44,8 @@ std::optional<int> only_anchor(const BundleProblem& problem, const BundleRoles& 
 
 // Motions between two observed poses, not both fixed. An unobserved pose does not move, so its motions carry no
 // information.
-std::vector<int> motions_that_count(const BundleProblem& problem, const BundleRoles& roles,
-                                    const std::vector<bool>& is_observed) {
+std::vector<int> active_motions(const BundleProblem& problem, const BundleRoles& roles,
+                                const std::vector<bool>& is_observed) {
   std::vector<int> indices;
   for (int i = 0; i < static_cast<int>(problem.motions.size()); ++i) {
     const BundleMotion& motion = problem.motions[i];
@@ -76,16 +76,16 @@ BundleRoles choose_roles(const BundleProblem& problem) {
     if (first != roles.pose_moves.end()) *first = false;
   }
   std::erase_if(roles.observations, [&](int i) { return !roles.moves(problem.observations[i]); });
-  roles.motions = motions_that_count(problem, roles, is_observed);
+  roles.motions = active_motions(problem, roles, is_observed);
   // Points are eliminated one by one.
   std::ranges::stable_sort(roles.observations, {}, [&](int i) { return problem.observations[i].point; });
   return roles;
 }
 
-std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles) {
+std::optional<FixedDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles) {
   const auto anchor = only_anchor(problem, roles);
   if (!anchor || !roles.motions.empty()) return std::nullopt;
-  HeldDistance held{-1, camera_in_world(problem.poses[*anchor]), 0.0};
+  FixedDistance held{-1, camera_in_world(problem.poses[*anchor]), 0.0};
   for (std::size_t i = 0; i < problem.poses.size(); ++i) {
     if (!roles.pose_moves[i]) continue;
     const double distance = (camera_in_world(problem.poses[i]) - held.place_in_world).norm();

@@ -23,7 +23,7 @@ struct BundleRoles {
 BundleRoles choose_roles(const BundleProblem& problem);
 
 // The distance to hold if the scale is undetermined, else empty.
-std::optional<HeldDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles);
+std::optional<FixedDistance> choose_scale(const BundleProblem& problem, const BundleRoles& roles);
 
 struct BundleSolution {
   std::vector<Pose> camera_from_world;           // one per pose

@@ -26,7 +26,7 @@ constexpr std::size_t kMostKept = 100000;
 // State of the solver; lives for one call.
 class SchurBundle {
  public:
-  SchurBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<HeldDistance>& scale,
+  SchurBundle(const BundleProblem& problem, const BundleRoles& roles, const std::optional<FixedDistance>& scale,
               double huber_width)
       : problem_(problem), scale_(scale), huber_width_(huber_width) {
     give_slots(roles);
@@ -50,7 +50,7 @@ class SchurBundle {
   std::vector<Matrix6> covariances(const std::vector<int>& poses);
   BundleEstimate moved(const BundleStep& step) const;
   double cost_of(const BundleEstimate& estimate) const;
-  void take_over(BundleEstimate estimate) { estimate_ = std::move(estimate); }
+  void set_estimate(BundleEstimate estimate) { estimate_ = std::move(estimate); }
   double squared_length() const;  // sum over all moving parameters
 
  private:
@@ -77,7 +77,7 @@ class SchurBundle {
 
   const BundleProblem& problem_;  // owned by the caller
   std::vector<const Rig*> rigs_;  // one per pose; constant after construction, as are the next seven
-  std::optional<HeldDistance> scale_;
+  std::optional<FixedDistance> scale_;
   double huber_width_ = 0.0;
   std::vector<int> slots_;  // one per pose
   int slot_count_ = 0;
@@ -90,7 +90,7 @@ class SchurBundle {
   std::optional<ReducedSystem> reduced_;  // with the points eliminated
   std::vector<Matrix6> own_;              // one per pose: normal matrix before the points are eliminated
   Eigen::VectorXd gradient_;              // by the poses
-  Eigen::VectorXd used_up_;               // part of the gradient removed by the elimination of the points
+  Eigen::VectorXd eliminated_;            // part of the gradient removed by the elimination of the points
   Eigen::VectorXd damping_;               // added to the diagonal of reduced_
   double radius_ = 0.0;
   std::vector<PointEquations> kept_;         // one per track; empty with more than kMostKept tracks
@@ -173,7 +173,7 @@ LinearObservation SchurBundle::linearised(const BundleTerm& term, const Eigen::V
   LinearObservation linear;
   linear.residual = reprojection.residual(point_in_camera);
   if (border_) {
-    linear.by_calibration = border_->slope(seen, point_in_camera);
+    linear.by_calibration = border_->jacobian(seen, point_in_camera);
     linear.residual += linear.by_calibration * estimate_.calibration;
   }
   linear.weight = seen.weight * huber_weight(linear.residual.squaredNorm(), huber_width_);
@@ -219,7 +219,7 @@ void SchurBundle::eliminate(std::size_t index, const PointEquations& equations) 
     const int row = terms_[i].slot;
     if (row < 0) continue;
     const Matrix63 gain = between_[i - track.begin] * equations.covariance;
-    used_up_.segment<6>(6 * row).noalias() += gain * equations.gradient;
+    eliminated_.segment<6>(6 * row).noalias() += gain * equations.gradient;
     if (border_) border_->eliminate_pose(row, gain);
     for (std::size_t j = track.begin; j < track.end; ++j) {
       const int column = terms_[j].slot;
@@ -247,14 +247,14 @@ void SchurBundle::add_motion(const BundleMotion& motion) {
   const Pose& earlier_pose = estimate_.poses[earlier];
   const Pose& later_pose = estimate_.poses[later];
   const MotionError error = motion_error(motion, earlier_pose, later_pose);
-  const MotionSlopes slopes = motion_slopes(earlier_pose, later_pose);
-  const Matrix6 by_earlier = by_turn_and_translation(slopes.by_earlier, earlier_pose);
-  const Matrix6 by_later = by_turn_and_translation(slopes.by_later, later_pose);
+  const MotionJacobians jacobians = motion_jacobians(earlier_pose, later_pose);
+  const Matrix6 by_earlier = to_rotation_translation(jacobians.by_earlier, earlier_pose);
+  const Matrix6 by_later = to_rotation_translation(jacobians.by_later, later_pose);
   const Matrix6 information = error.weight * motion.information;
   const int earlier_slot = slots_[earlier], later_slot = slots_[later];
-  const auto add = [&](int slot, const Matrix6& slope) {
-    own_[static_cast<std::size_t>(slot)].noalias() += slope.transpose() * information * slope;
-    gradient_.segment<6>(6 * slot).noalias() += slope.transpose() * information * error.residual;
+  const auto add = [&](int slot, const Matrix6& jacobian) {
+    own_[static_cast<std::size_t>(slot)].noalias() += jacobian.transpose() * information * jacobian;
+    gradient_.segment<6>(6 * slot).noalias() += jacobian.transpose() * information * error.residual;
   };
   if (earlier_slot >= 0) add(earlier_slot, by_earlier);
   if (later_slot >= 0) add(later_slot, by_later);
@@ -281,7 +281,7 @@ double SchurBundle::linearise(double radius) {
   reduced_->set_zero();
   own_.assign(static_cast<std::size_t>(slot_count_), Matrix6::Zero());
   gradient_.setZero(size);
-  used_up_.setZero(size);
+  eliminated_.setZero(size);
   largest_slope_ = 0.0;
   radius_ = radius;
   if (border_) border_->begin(estimate_.calibration);
@@ -298,23 +298,23 @@ double SchurBundle::linearise(double radius) {
   }
   if (border_) {
     border_->damp(radius);
-    largest_slope_ = std::max(largest_slope_, border_->largest_slope());
+    largest_slope_ = std::max(largest_slope_, border_->max_abs_gradient());
   }
   return size == 0 ? largest_slope_ : std::max(largest_slope_, gradient_.cwiseAbs().maxCoeff());
 }
 
 // Steps of poses and calibration. False if the equations have no solution.
 bool SchurBundle::solve_poses(BundleStep& step) {
-  const Eigen::VectorXd pull = used_up_ - gradient_;
+  const Eigen::VectorXd right_side = eliminated_ - gradient_;
   if (border_) {
-    std::optional<CalibrationBorder::Step> solved = border_->solve(*reduced_, pull);
+    std::optional<CalibrationBorder::Step> solved = border_->solve(*reduced_, right_side);
     if (!solved) return false;
     step.poses = std::move(solved->poses);
     step.calibration = solved->calibration;
     step.expected_gain = solved->expected_gain;
     step.squared_length = step.calibration.squaredNorm();
   } else {
-    std::optional<Eigen::VectorXd> poses = reduced_->solve(pull);
+    std::optional<Eigen::VectorXd> poses = reduced_->solve(right_side);
     if (!poses) return false;
     step.poses = std::move(*poses);
   }
@@ -373,13 +373,13 @@ bool SchurBundle::solve_point(std::size_t index, BundleStep& step) {
     between_[i - track.begin].noalias() = weighted * linear.by_point;
   }
   if (!is_kept) equations.damp(radius_);
-  Eigen::Vector3d pull = -equations.gradient;
+  Eigen::Vector3d right_side = -equations.gradient;
   for (std::size_t i = track.begin; i < track.end; ++i) {
     const int slot = terms_[i].slot;
-    if (slot >= 0) pull.noalias() -= between_[i - track.begin].transpose() * step.poses.segment<6>(6 * slot);
+    if (slot >= 0) right_side.noalias() -= between_[i - track.begin].transpose() * step.poses.segment<6>(6 * slot);
   }
-  if (border_) pull -= border_->pull_on_point(step.calibration);
-  const Eigen::Vector3d move = equations.covariance * pull;
+  if (border_) right_side -= border_->point_right_side(step.calibration);
+  const Eigen::Vector3d move = equations.covariance * right_side;
   if (!move.allFinite()) return false;
   step.points.push_back(move);
   step.expected_gain += 0.5 * move.dot(equations.damping.cwiseProduct(move) - equations.gradient);
@@ -414,7 +414,7 @@ double SchurBundle::cost_of(const BundleEstimate& estimate) const {
       const auto pose = static_cast<std::size_t>(seen.pose);
       const Eigen::Vector3d point_in_camera = estimate.rotations[pose] * point + estimate.poses[pose].translation;
       Eigen::Vector3d residual = reprojection_of(seen).residual(point_in_camera);
-      if (border_) residual += border_->slope(seen, point_in_camera) * estimate.calibration;
+      if (border_) residual += border_->jacobian(seen, point_in_camera) * estimate.calibration;
       twice += seen.weight * huber_cost(residual.squaredNorm(), huber_width_);
     }
   }
@@ -459,7 +459,7 @@ Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
   const double gain = cost - new_cost;
   const bool is_last = std::abs(gain) <= kLeastGain * cost;
   if (gain > (is_last ? 0.0 : kLeastShare * step->expected_gain)) {
-    bundle.take_over(std::move(moved));
+    bundle.set_estimate(std::move(moved));
     cost = new_cost;
     region.widen(gain / step->expected_gain);
   } else {
@@ -471,7 +471,7 @@ Progress iterate(SchurBundle& bundle, TrustRegion& region, double& cost) {
 }  // namespace
 
 BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& roles,
-                            const std::optional<HeldDistance>& scale, const BundleOptions& options) {
+                            const std::optional<FixedDistance>& scale, const BundleOptions& options) {
   SchurBundle bundle(problem, roles, scale, options.huber_width);
   BundleSolution solution;
   double cost = bundle.cost();

@@ -10,6 +10,6 @@ namespace byre {
 // complement, Triggs 2000, section 6). Ceres' records per residual take more time and memory than the residual. Damping
 // and convergence criteria are those of Ceres' trust region. Precondition: roles are those of the problem.
 BundleSolution solve_bundle(const BundleProblem& problem, const BundleRoles& roles,
-                            const std::optional<HeldDistance>& scale, const BundleOptions& options);
+                            const std::optional<FixedDistance>& scale, const BundleOptions& options);
 
 }  // namespace byre

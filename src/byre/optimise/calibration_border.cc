@@ -9,10 +9,10 @@ namespace byre {
 CalibrationBorder::CalibrationBorder(const BundleProblem& problem, int poses)
     : problem_(problem), calibration_(*problem.calibration), with_poses_(6 * poses, kCalibrationParameters) {}
 
-CalibrationBorder::Slope CalibrationBorder::slope(const BundleObservation& seen,
-                                                  const Eigen::Vector3d& point_in_camera) const {
+CalibrationBorder::Jacobian CalibrationBorder::jacobian(const BundleObservation& seen,
+                                                        const Eigen::Vector3d& point_in_camera) const {
   const int rig = problem_.poses[static_cast<std::size_t>(seen.pose)].rig;
-  if (rig != calibration_.rig) return Slope::Zero();
+  if (rig != calibration_.rig) return Jacobian::Zero();
   StereoPixel pixel = point_in_camera.z() < kNearestDepth
                           ? seen.measured
                           : problem_.rigs[static_cast<std::size_t>(rig)].project(point_in_camera);
@@ -34,28 +34,29 @@ double CalibrationBorder::cost(const CalibrationVector& change) const {
 void CalibrationBorder::begin(const CalibrationVector& change) {
   own_ = calibration_.information;
   gradient_ = calibration_.information * (change - calibration_.expected);
-  used_up_own_.setZero();
-  used_up_gradient_.setZero();
+  eliminated_own_.setZero();
+  eliminated_gradient_.setZero();
   with_poses_.setZero();
 }
 
-void CalibrationBorder::add(const Slope& slope, double weight, const Eigen::Vector3d& residual) {
-  own_.noalias() += weight * slope.transpose() * slope;
-  gradient_.noalias() += weight * slope.transpose() * residual;
+void CalibrationBorder::add(const Jacobian& jacobian, double weight, const Eigen::Vector3d& residual) {
+  own_.noalias() += weight * jacobian.transpose() * jacobian;
+  gradient_.noalias() += weight * jacobian.transpose() * residual;
 }
 
-void CalibrationBorder::add_pose(int slot, const Eigen::Matrix<double, 6, 3>& weighted_by_pose, const Slope& slope) {
-  with_poses_.middleRows<6>(6 * slot).noalias() += weighted_by_pose * slope;
+void CalibrationBorder::add_pose(int slot, const Eigen::Matrix<double, 6, 3>& weighted_by_pose,
+                                 const Jacobian& jacobian) {
+  with_poses_.middleRows<6>(6 * slot).noalias() += weighted_by_pose * jacobian;
 }
 
-void CalibrationBorder::add_point(const Eigen::Matrix3d& weighted_by_point, const Slope& slope) {
-  with_point_.noalias() += weighted_by_point * slope;
+void CalibrationBorder::add_point(const Eigen::Matrix3d& weighted_by_point, const Jacobian& jacobian) {
+  with_point_.noalias() += weighted_by_point * jacobian;
 }
 
 void CalibrationBorder::eliminate(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& gradient) {
   const ByPoint gain = covariance * with_point_;
-  used_up_own_.noalias() += with_point_.transpose() * gain;
-  used_up_gradient_.noalias() += gain.transpose() * gradient;
+  eliminated_own_.noalias() += with_point_.transpose() * gain;
+  eliminated_gradient_.noalias() += gain.transpose() * gradient;
 }
 
 void CalibrationBorder::eliminate_pose(int slot, const Eigen::Matrix<double, 6, 3>& gain) {
@@ -63,19 +64,19 @@ void CalibrationBorder::eliminate_pose(int slot, const Eigen::Matrix<double, 6, 
 }
 
 std::optional<CalibrationBorder::Step> CalibrationBorder::solve(ReducedSystem& poses,
-                                                                const Eigen::VectorXd& pull) const {
+                                                                const Eigen::VectorXd& right_side) const {
   Eigen::MatrixXd sides(with_poses_.rows(), kCalibrationParameters + 1);
-  sides << with_poses_, pull;
+  sides << with_poses_, right_side;
   const std::optional<Eigen::MatrixXd> solved = poses.solve_several(sides);
   if (!solved) return std::nullopt;
   const auto by_calibration = solved->leftCols<kCalibrationParameters>();
-  CalibrationMatrix reduced = own_ - used_up_own_ - with_poses_.transpose() * by_calibration;
+  CalibrationMatrix reduced = own_ - eliminated_own_ - with_poses_.transpose() * by_calibration;
   reduced.diagonal() += damping_;
   const Eigen::LLT<CalibrationMatrix> factor(reduced);
   if (factor.info() != Eigen::Success) return std::nullopt;
   Step step;
   step.calibration =
-      factor.solve(used_up_gradient_ - gradient_ - with_poses_.transpose() * solved->col(kCalibrationParameters));
+      factor.solve(eliminated_gradient_ - gradient_ - with_poses_.transpose() * solved->col(kCalibrationParameters));
   if (!step.calibration.allFinite()) return std::nullopt;
   step.poses = solved->col(kCalibrationParameters) - by_calibration * step.calibration;
   step.expected_gain = 0.5 * step.calibration.dot(damping_.cwiseProduct(step.calibration) - gradient_);

@@ -86,7 +86,7 @@ class NoisyCalibratedBundle : public CalibratedBundle {
                                               result.points_in_world[static_cast<std::size_t>(seen.point)];
       const Reprojection reprojection(scene_.problem.rigs[0], seen.measured, seen.pixel_sigma, seen.disparity_sigma);
       const Eigen::Vector3d residual =
-          reprojection.residual(point_in_camera) + border.slope(seen, point_in_camera) * change;
+          reprojection.residual(point_in_camera) + border.jacobian(seen, point_in_camera) * change;
       cost += 0.5 * huber_cost(residual.squaredNorm(), huber_width);
     }
     return cost;

@@ -27,7 +27,7 @@ struct View {
 
 // Sums per lane, in an order independent of the vector width. Symmetric matrices as xx, xy, xz, yy, yz, zz.
 struct Sums {
-  using Lanes = WeighedPoints::Lanes;
+  using Lanes = WeightedPoints::Lanes;
 
   Lanes cost{};
   std::array<Lanes, 6> translation{};  // normal matrix
@@ -47,7 +47,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<double, WeighedPoints::kLanes>;
+using D = hn::CappedTag<double, WeightedPoints::kLanes>;
 using V = hn::Vec<D>;
 
 // Expansion of the cost in the position of the points in the camera.
@@ -57,7 +57,7 @@ struct ByPoint {
   V down_x, down_y, down_z;
 };
 
-HWY_INLINE void add_to(WeighedPoints::Lanes& sum, std::size_t lane, V term) {
+HWY_INLINE void add_to(WeightedPoints::Lanes& sum, std::size_t lane, V term) {
   const D d;
   hn::StoreU(hn::LoadU(d, sum.data() + lane) + term, d, sum.data() + lane);
 }
@@ -84,9 +84,9 @@ HWY_INLINE void add_by_pose(const ByPoint& p, std::size_t lane, Sums& sums) {
 }
 
 // Adds one vector of points of a block, from the given lane on.
-HWY_INLINE void add_points(const WeighedPoints::Block& block, std::size_t lane, const View& view, Sums& sums) {
+HWY_INLINE void add_points(const WeightedPoints::Block& block, std::size_t lane, const View& view, Sums& sums) {
   const D d;
-  const auto of = [&](const WeighedPoints::Lanes& lanes) { return hn::LoadU(d, lanes.data() + lane); };
+  const auto of = [&](const WeightedPoints::Lanes& lanes) { return hn::LoadU(d, lanes.data() + lane); };
   const auto all = [&](double value) { return hn::Set(d, value); };
   const V world_x = of(block.x), world_y = of(block.y), world_z = of(block.z);
   const auto in_camera = [&](std::size_t row) {
@@ -131,9 +131,9 @@ HWY_INLINE void add_points(const WeighedPoints::Block& block, std::size_t lane, 
   add_by_pose(p, lane, sums);
 }
 
-void add_blocks(const WeighedPoints::Block* blocks, std::size_t count, const View& view, Sums& sums) {
+void add_blocks(const WeightedPoints::Block* blocks, std::size_t count, const View& view, Sums& sums) {
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t lane = 0; lane < WeighedPoints::kLanes; lane += hn::Lanes(D())) {
+    for (std::size_t lane = 0; lane < WeightedPoints::kLanes; lane += hn::Lanes(D())) {
       add_points(blocks[i], lane, view, sums);
     }
   }
@@ -150,11 +150,11 @@ namespace {
 
 HWY_EXPORT(add_blocks);
 
-double sum_of(const WeighedPoints::Lanes& lanes) {
+double sum_of(const WeightedPoints::Lanes& lanes) {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
-Eigen::Matrix3d sum_of(const std::array<WeighedPoints::Lanes, 6>& upper) {
+Eigen::Matrix3d sum_of(const std::array<WeightedPoints::Lanes, 6>& upper) {
   Eigen::Matrix3d sum;
   sum << sum_of(upper[0]), sum_of(upper[1]), sum_of(upper[2]),  //
       sum_of(upper[1]), sum_of(upper[3]), sum_of(upper[4]),     //
@@ -181,12 +181,12 @@ PoseExpansion& PoseExpansion::operator+=(const PoseExpansion& other) {
   return *this;
 }
 
-void WeighedPoints::clear() {
+void WeightedPoints::clear() {
   blocks_.clear();
   size_ = 0;
 }
 
-void WeighedPoints::add(const WeighedPoint& point) {
+void WeightedPoints::add(const WeightedPoint& point) {
   const std::size_t lane = size_++ % kLanes;
   if (lane == 0) blocks_.emplace_back();
   Block& block = blocks_.back();
@@ -205,13 +205,13 @@ void WeighedPoints::add(const WeighedPoint& point) {
   block.weight[lane] = point.weight;
 }
 
-void WeighedPoints::square_weights() {
+void WeightedPoints::square_weights() {
   for (Block& block : blocks_) {
     for (double& weight : block.weight) weight *= weight;
   }
 }
 
-PoseExpansion WeighedPoints::expand(const Rig& rig, const Pose& camera_from_world, double huber_width) const {
+PoseExpansion WeightedPoints::expand(const Rig& rig, const Pose& camera_from_world, double huber_width) const {
   constexpr double kSquaredErrorBehind = 1e4;  // cost of a point that a step moves behind the camera
   View view{{}, {}, rig.focal, rig.cx, rig.cy, rig.baseline, huber_width, huber_cost(kSquaredErrorBehind, huber_width)};
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();

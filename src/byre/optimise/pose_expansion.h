@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/rig.h"
-#include "byre/workers/reused_memory.h"
+#include "byre/workers/scratch_memory.h"
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ struct PoseExpansion {
 };
 
 // A point observed by a frame, as a term of the pose's cost.
-struct WeighedPoint {
+struct WeightedPoint {
   Eigen::Vector3d point_in_world;
   StereoPixel measured;
   Eigen::Matrix3d information;  // inverse covariance, 1 / pixels^2; third row and column zero without a disparity
@@ -27,11 +27,11 @@ struct WeighedPoint {
 };
 
 // Points observed by a frame, in blocks of four for vector instructions.
-class WeighedPoints {
+class WeightedPoints {
  public:
   void clear();  // keeps the memory
-  void reserve(std::size_t points) { make_room(blocks_, (points + kLanes - 1) / kLanes); }
-  void add(const WeighedPoint& point);
+  void reserve(std::size_t points) { reserve_pow2(blocks_, (points + kLanes - 1) / kLanes); }
+  void add(const WeightedPoint& point);
   void square_weights();
 
   // Sum of the points' Huber losses, bit-identical on every processor. A point at or behind the camera has a constant

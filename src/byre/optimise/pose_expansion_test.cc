@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kWidth = 1.5;
 
-std::vector<WeighedPoint> some_points(int count, const Pose& camera_from_world) {
+std::vector<WeightedPoint> some_points(int count, const Pose& camera_from_world) {
   Draw draw(7);
-  std::vector<WeighedPoint> points;
+  std::vector<WeightedPoint> points;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d point_in_camera = draw.point_in_view(stereo_rig());
-    WeighedPoint& point = points.emplace_back();
+    WeightedPoint& point = points.emplace_back();
     point.point_in_world = inverse(camera_from_world) * point_in_camera;
     point.measured = stereo_rig().project(point_in_camera) + draw.normal3(2.0);
     const Eigen::Matrix3d root = Eigen::Matrix3d::Identity() + 0.1 * Eigen::Matrix3d::Ones() * draw.uniform(0.0, 1.0);
@@ -30,16 +30,16 @@ std::vector<WeighedPoint> some_points(int count, const Pose& camera_from_world) 
   return points;
 }
 
-WeighedPoints side_by_side(const std::vector<WeighedPoint>& points) {
-  WeighedPoints packed;
-  for (const WeighedPoint& point : points) packed.add(point);
+WeightedPoints side_by_side(const std::vector<WeightedPoint>& points) {
+  WeightedPoints packed;
+  for (const WeightedPoint& point : points) packed.add(point);
   return packed;
 }
 
 // Reference implementation, point by point.
-PoseExpansion expand_one_by_one(const std::vector<WeighedPoint>& points, const Pose& camera_from_world) {
+PoseExpansion expand_one_by_one(const std::vector<WeightedPoint>& points, const Pose& camera_from_world) {
   PoseExpansion sum;
-  for (const WeighedPoint& point : points) {
+  for (const WeightedPoint& point : points) {
     const Eigen::Vector3d point_in_camera = camera_from_world * point.point_in_world;
     const Eigen::Vector3d error = point.measured - stereo_rig().project(point_in_camera);
     const double squared_error = error.dot(point.information * error);
@@ -64,13 +64,13 @@ const Pose kPose{rotation_exp({0.1, -0.2, 0.3}), {1.0, 2.0, -0.5}};
 
 TEST(PoseCostExpansion, IsTheSumOfItsPoints) {
   for (const int count : {1, 3, 4, 5, 102}) {
-    const std::vector<WeighedPoint> points = some_points(count, kPose);
+    const std::vector<WeightedPoint> points = some_points(count, kPose);
     expect_alike(side_by_side(points).expand(stereo_rig(), kPose, kWidth), expand_one_by_one(points, kPose));
   }
 }
 
 TEST(PoseCostExpansion, IsZeroWithoutPoints) {
-  WeighedPoints points = side_by_side(some_points(9, kPose));
+  WeightedPoints points = side_by_side(some_points(9, kPose));
   points.clear();
   const PoseExpansion nothing = points.expand(stereo_rig(), kPose, kWidth);
   EXPECT_EQ(nothing.cost, 0.0);
@@ -79,7 +79,7 @@ TEST(PoseCostExpansion, IsZeroWithoutPoints) {
 }
 
 TEST(PoseCostExpansion, IgnoresPointsBehindTheCamera) {
-  std::vector<WeighedPoint> points = some_points(6, kPose);
+  std::vector<WeightedPoint> points = some_points(6, kPose);
   const PoseExpansion without = side_by_side(points).expand(stereo_rig(), kPose, kWidth);
   for (const double depth : {-1.0, 0.0}) {
     points.push_back(points.front());
@@ -92,15 +92,15 @@ TEST(PoseCostExpansion, IgnoresPointsBehindTheCamera) {
 }
 
 TEST(PoseCostExpansion, SquaresWeights) {
-  std::vector<WeighedPoint> points = some_points(9, kPose);
-  WeighedPoints squared = side_by_side(points);
+  std::vector<WeightedPoint> points = some_points(9, kPose);
+  WeightedPoints squared = side_by_side(points);
   squared.square_weights();
-  for (WeighedPoint& point : points) point.weight *= point.weight;
+  for (WeightedPoint& point : points) point.weight *= point.weight;
   expect_alike(squared.expand(stereo_rig(), kPose, kWidth), expand_one_by_one(points, kPose));
 }
 
 TEST(PoseCostExpansion, IsBitIdenticalForEveryInstructionSet) {
-  const WeighedPoints points = side_by_side(some_points(102, kPose));
+  const WeightedPoints points = side_by_side(some_points(102, kPose));
   const PoseExpansion usual = points.expand(stereo_rig(), kPose, kWidth);
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);

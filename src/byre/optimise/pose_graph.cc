@@ -36,7 +36,7 @@ std::vector<std::vector<int>> neighbours(const PoseGraph& graph) {
 }
 
 // The fixed nodes; without any, the first node with an edge.
-std::vector<bool> held_nodes(const PoseGraph& graph, const std::vector<std::vector<int>>& neighbours_of) {
+std::vector<bool> fixed_nodes(const PoseGraph& graph, const std::vector<std::vector<int>>& neighbours_of) {
   std::vector<bool> held;
   for (const PoseGraphNode& node : graph.nodes) held.push_back(node.fixed);
   if (std::ranges::find(held, true) != held.end()) return held;
@@ -65,7 +65,7 @@ std::vector<bool> joined_to(std::vector<bool> reached, const std::vector<std::ve
 
 GraphRoles choose_roles(const PoseGraph& graph) {
   const auto neighbours_of = neighbours(graph);
-  const std::vector<bool> held = held_nodes(graph, neighbours_of);
+  const std::vector<bool> held = fixed_nodes(graph, neighbours_of);
   GraphRoles roles{joined_to(held, neighbours_of), {}};
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (held[i]) roles.node_moves[i] = false;
@@ -117,7 +117,7 @@ class CeresGraph {
 
   ceres::Solver::Summary solve(const PoseGraph& graph, const GraphRoles& roles, RobustLoss robust_loss) {
     const auto loss = make_loss(robust_loss, options_.loss_width);
-    ceres::Problem problem(borrowing_problem());
+    ceres::Problem problem(non_owning_problem_options());
     auto cost = costs_.begin();
     for (const int i : roles.edges) {
       const auto first = nodes_[graph.edges[i].first].addresses();
@@ -163,7 +163,7 @@ class CeresGraph {
   RotationManifold manifold_;
 };
 
-PoseGraphResult unmoved(const PoseGraph& graph) {
+PoseGraphResult unchanged_result(const PoseGraph& graph) {
   PoseGraphResult result;
   for (const PoseGraphNode& node : graph.nodes) {
     result.camera_from_world.push_back(node.camera_from_world);
@@ -180,7 +180,7 @@ std::vector<RobustLoss> stages(RobustLoss loss) {
 }
 
 PoseGraphResult solve(const PoseGraph& graph, const GraphRoles& roles, const PoseGraphOptions& options) {
-  PoseGraphResult result = unmoved(graph);
+  PoseGraphResult result = unchanged_result(graph);
   if (roles.edges.empty()) return result;
   CeresGraph ceres_graph(graph, roles, options);
   for (const RobustLoss loss : stages(options.loss)) {

@@ -31,10 +31,10 @@ Matrix6 square_root(const Matrix6& information) {
   return diagonal.asDiagonal() * (factor.matrixU() * permutation);
 }
 
-Matrix7 whitening_of(const PoseGraphEdge& edge, bool scale_has_a_say) {
+Matrix7 whitening_of(const PoseGraphEdge& edge, bool constrains_scale) {
   Matrix7 whitening = Matrix7::Zero();
   whitening.topLeftCorner<6, 6>() = square_root(edge.information);
-  if (scale_has_a_say && !edge.is_in_world_lengths) whitening(6, 6) = 1.0 / edge.scale_sigma;
+  if (constrains_scale && !edge.is_in_world_lengths) whitening(6, 6) = 1.0 / edge.scale_sigma;
   return whitening;
 }
 
@@ -50,20 +50,19 @@ void write(const NodeJacobian& jacobian, double** blocks) {
 
 }  // namespace
 
-PoseGraphCost::PoseGraphCost(const PoseGraphEdge& edge, bool scale_has_a_say)
+PoseGraphCost::PoseGraphCost(const PoseGraphEdge& edge, bool constrains_scale)
     : second_from_first_(edge.second_from_first.rotation),
       second_in_first_(inverse(edge.second_from_first).translation / (edge.is_in_world_lengths ? 1.0 : edge.scale)),
       log_scale_(std::log(edge.scale)),
-      scales_have_a_part_(edge.is_in_world_lengths ? 0.0 : 1.0),
-      whitening_(whitening_of(edge, scale_has_a_say)) {}
+      scale_weight_(edge.is_in_world_lengths ? 0.0 : 1.0),
+      whitening_(whitening_of(edge, constrains_scale)) {}
 
 // Error for rotations R, positions c, scales s = exp(l) and the measured position m of the second camera in the first:
 //   s2 R2 (c1 - c2) + s2/s1 R2 R1^T m,   log(R2 R1^T measured^T),   l2 - l1 - measured.
 bool PoseGraphCost::Evaluate(const double* const* parameters, double* residual, double** jacobians) const {
   const NodeState first(parameters);
   const NodeState second(parameters + 3);
-  const double first_scale = scales_have_a_part_ * first.log_scale,
-               second_scale = scales_have_a_part_ * second.log_scale;
+  const double first_scale = scale_weight_ * first.log_scale, second_scale = scale_weight_ * second.log_scale;
   const Eigen::Matrix3d scaled_rotation = std::exp(second_scale) * second.rotation.toRotationMatrix();
   const Eigen::Quaterniond second_from_first = second.rotation * first.rotation.conjugate();
   const Eigen::Matrix3d rotation = second_from_first.toRotationMatrix();
@@ -82,13 +81,13 @@ bool PoseGraphCost::Evaluate(const double* const* parameters, double* residual, 
   NodeJacobian by_first = NodeJacobian::Zero();
   by_first.block<3, 3>(0, 0) = scale * rotation * skew(second_in_first_);
   by_first.block<3, 3>(0, 3) = scaled_rotation;
-  by_first.block<3, 1>(0, 6) = -scales_have_a_part_ * measured_arm;
+  by_first.block<3, 1>(0, 6) = -scale_weight_ * measured_arm;
   by_first.block<3, 3>(3, 0) = -turn_by_second * rotation;
   by_first(6, 6) = -1.0;
   NodeJacobian by_second = NodeJacobian::Zero();
   by_second.block<3, 3>(0, 0) = -skew(error.head<3>());
   by_second.block<3, 3>(0, 3) = -scaled_rotation;
-  by_second.block<3, 1>(0, 6) = scales_have_a_part_ * error.head<3>();
+  by_second.block<3, 1>(0, 6) = scale_weight_ * error.head<3>();
   by_second.block<3, 3>(3, 0) = turn_by_second;
   by_second(6, 6) = 1.0;
   write(whitening_ * by_first, jacobians);

@@ -15,8 +15,8 @@ using Matrix7 = Eigen::Matrix<double, 7, 7>;
 // scale. Positions, unlike translations, do not change when a camera far from the origin rotates.
 class PoseGraphCost final : public ceres::SizedCostFunction<7, 4, 3, 1, 4, 3, 1> {
  public:
-  // Without scale_has_a_say the scale's error is zero.
-  PoseGraphCost(const PoseGraphEdge& edge, bool scale_has_a_say);
+  // Without constrains_scale the scale's error is zero.
+  PoseGraphCost(const PoseGraphEdge& edge, bool constrains_scale);
   bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override;
 
  private:
@@ -24,7 +24,7 @@ class PoseGraphCost final : public ceres::SizedCostFunction<7, 4, 3, 1, 4, 3, 1>
   Eigen::Quaterniond second_from_first_;
   Eigen::Vector3d second_in_first_;  // position, in the first camera's lengths
   double log_scale_;
-  double scales_have_a_part_;  // 1, or 0 for an edge in world lengths
+  double scale_weight_;  // 1, or 0 for an edge in world lengths
   Matrix7 whitening_;
 };
 

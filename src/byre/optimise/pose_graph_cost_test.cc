@@ -121,8 +121,8 @@ class PoseGraphCostTest : public testing::TestWithParam<double> {
 TEST_P(PoseGraphCostTest, HasTheNumericJacobian) {
   for (const bool is_in_world_lengths : {false, true}) {
     edge_.is_in_world_lengths = is_in_world_lengths;
-    for (const bool scale_has_a_say : {false, true}) {
-      const PoseGraphCost cost(edge_, scale_has_a_say);
+    for (const bool constrains_scale : {false, true}) {
+      const PoseGraphCost cost(edge_, constrains_scale);
       const Jacobian14 analytic = analytic_jacobian(cost, nodes_);
       const Jacobian14 numeric = numeric_jacobian(cost, nodes_);
       EXPECT_LT((analytic - numeric).norm(), 1e-7 * (1.0 + numeric.norm())) << "analytic:\n"

@@ -197,12 +197,12 @@ TEST(OptimisePoseGraph, HoldsScalesToMetricEdges) {
   for (PoseGraphNode& node : truth.nodes) node.scale *= 1.1;
   PoseGraph drifted = as_odometry_thinks(truth);
   for (int i = 0; i < 39; ++i) {
-    PoseGraphEdge told = true_edge(truth, i, i + 1);
-    told.second_from_first.translation /= truth.nodes[static_cast<std::size_t>(i) + 1].scale;
-    told.scale = 1.0;
-    told.information = information_of(0.01, 0.01);
-    told.is_in_world_lengths = true;
-    drifted.edges.push_back(told);
+    PoseGraphEdge measured = true_edge(truth, i, i + 1);
+    measured.second_from_first.translation /= truth.nodes[static_cast<std::size_t>(i) + 1].scale;
+    measured.scale = 1.0;
+    measured.information = information_of(0.01, 0.01);
+    measured.is_in_world_lengths = true;
+    drifted.edges.push_back(measured);
   }
   const PoseGraphResult result = optimise_pose_graph(drifted, {.loss = RobustLoss::none, .scale_is_free = true});
   ASSERT_TRUE(result.usable);

@@ -111,7 +111,7 @@ void sight(std::span<const PoseObservation> observations, const Rig& rig, const 
            double systematic_sigma, std::vector<Sighting>& sightings) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   sightings.clear();
-  make_room(sightings, observations.size());
+  reserve_pow2(sightings, observations.size());
   for (const PoseObservation& observation : observations) {
     sightings.push_back(sight(observation, rig, camera_from_world, rotation, systematic_sigma));
   }
@@ -140,7 +140,7 @@ int count_inliers(const std::vector<Sighting>& sightings) {
   return static_cast<int>(std::ranges::count(sightings, true, &Sighting::inlier));
 }
 
-void gather_inliers(const std::vector<Sighting>& sightings, WeighedPoints& points) {
+void gather_inliers(const std::vector<Sighting>& sightings, WeightedPoints& points) {
   points.clear();
   points.reserve(sightings.size());
   for (const Sighting& sighting : sightings) {
@@ -152,7 +152,7 @@ void gather_inliers(const std::vector<Sighting>& sightings, WeighedPoints& point
 // Terms of the pose's cost.
 struct Evidence {
   const Rig& rig;
-  const WeighedPoints& points;
+  const WeightedPoints& points;
   const std::optional<KnownPose>& known;
   double huber_width;
 
@@ -256,7 +256,7 @@ Matrix6 systematic_covariance(const Regions& regions, const Matrix6& inverse_nor
 // Empty if inliers and prior leave a direction undetermined. points: reused memory.
 std::optional<PoseRefinement> with_covariance(PoseRefinement refined, const std::vector<Sighting>& sightings,
                                               const std::optional<KnownPose>& known, const Rig& rig,
-                                              const PoseRefinementOptions& options, WeighedPoints& points) {
+                                              const PoseRefinementOptions& options, WeightedPoints& points) {
   const Pose& pose = refined.camera_from_world;
   const double huber_width = options.huber_width * std::sqrt(refined.variance_factor);
   gather_inliers(sightings, points);
@@ -286,7 +286,7 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   result.camera_from_world = predicted_camera_from_world;
   // Kept between calls: a frame refines its pose several times.
   thread_local std::vector<Sighting> sightings;
-  thread_local WeighedPoints inliers;
+  thread_local WeightedPoints inliers;
   sight(observations, rig, predicted_camera_from_world, options.systematic_sigma, sightings);
   // Far from the solution all errors are large. Gates and loss follow the decrease of their median, so that a minority
   // that fits by chance does not capture the pose.

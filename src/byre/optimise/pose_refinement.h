@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/rig.h"
-#include "byre/workers/reused_memory.h"
+#include "byre/workers/scratch_memory.h"
 
 #include <optional>
 #include <span>
@@ -34,7 +34,7 @@ struct PoseRefinementOptions {
 struct PoseRefinement {
   Pose camera_from_world;
   Matrix6 covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * camera_from_world
-  ReusedVector<bool> inliers;            // one per observation; false at or behind the camera
+  ScratchVector<bool> inliers;           // one per observation; false at or behind the camera
   int inlier_count = 0;
   // Factor by which the residuals' variance exceeds the stated one, at least 1: in an unsettled map all errors are
   // larger than their sigmas. Widens gates, loss and covariance.

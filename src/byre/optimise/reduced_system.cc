@@ -67,7 +67,7 @@ struct ReducedSystem::Sparse {
 namespace {
 
 // At least a quarter of all pairs.
-bool are_most_pairs(int poses, const std::vector<std::vector<int>>& neighbours) {
+bool is_mostly_dense(int poses, const std::vector<std::vector<int>>& neighbours) {
   std::size_t pairs = 0;
   for (const std::vector<int>& columns : neighbours) pairs += columns.size();
   return 8 * pairs >= static_cast<std::size_t>(poses) * static_cast<std::size_t>(poses);
@@ -76,7 +76,7 @@ bool are_most_pairs(int poses, const std::vector<std::vector<int>>& neighbours) 
 }  // namespace
 
 ReducedSystem::ReducedSystem(int poses, std::vector<std::vector<int>> neighbours) : poses_(poses) {
-  if (poses <= kMaxDensePoses || are_most_pairs(poses, neighbours)) {
+  if (poses <= kMaxDensePoses || is_mostly_dense(poses, neighbours)) {
     dense_.resize(6 * poses, 6 * poses);
   } else {
     sparse_ = std::make_unique<Sparse>(std::move(neighbours));

@@ -71,7 +71,7 @@ Vocabulary Vocabulary::load(const std::filesystem::path& path) {
 }
 
 void Vocabulary::save(const std::filesystem::path& path) const {
-  write_whole(path, data_->bytes);
+  write_atomically(path, data_->bytes);
 }
 
 int Vocabulary::word_count() const {

@@ -9,11 +9,11 @@ bool Autosave::is_saving() const {
   return saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
 }
 
-void Autosave::offer(const Map& online, const KeptWithMap& kept) {
+void Autosave::update(const Map& online, const SavedEstimates& estimates) {
   if (since_last_.seconds() < interval_s_ || is_saving()) return;
   finish();
   since_last_ = {};
-  saving_ = std::async(std::launch::async, [this, map = online, kept] { save_(map, kept); });
+  saving_ = std::async(std::launch::async, [this, map = online, estimates] { save_(map, estimates); });
 }
 
 void Autosave::finish() {

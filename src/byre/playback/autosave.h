@@ -14,12 +14,12 @@ namespace byre {
 // save while one is running.
 class Autosave {
  public:
-  using Save = std::function<void(const Map& online, const KeptWithMap& kept)>;
+  using Save = std::function<void(const Map& online, const SavedEstimates& estimates)>;
 
   Autosave(double interval_s, Save save) : interval_s_(interval_s), save_(std::move(save)) {}
 
-  void offer(const Map& online, const KeptWithMap& kept);  // after each frame
-  void finish();                                           // waits for the thread
+  void update(const Map& online, const SavedEstimates& estimates);  // after each frame
+  void finish();                                                    // waits for the thread
 
   int saved() const { return saved_; }                                    // number of saves
   const std::vector<std::string>& failures() const { return failures_; }  // reasons of failed saves

@@ -20,10 +20,10 @@ TEST(Autosave, SavesTheMapAsOffered) {
   std::vector<int> saved;
   Autosave autosave(0.0, [&saved](const Map& map, const auto&) { saved.push_back(map.point_count()); });
   Map map = map_of(1);
-  autosave.offer(map, {});
+  autosave.update(map, {});
   map.add_point({});
   autosave.finish();
-  autosave.offer(map, {});
+  autosave.update(map, {});
   autosave.finish();
   EXPECT_THAT(saved, ElementsAre(1, 2));
   EXPECT_EQ(autosave.saved(), 2);
@@ -31,19 +31,20 @@ TEST(Autosave, SavesTheMapAsOffered) {
 
 TEST(Autosave, SavesWheelExtrinsics) {
   std::vector<double> saved;
-  Autosave autosave(
-      0.0, [&saved](const Map&, const KeptWithMap& kept) { saved.push_back(kept.mounting.wheels->metres_per_unit); });
-  KeptWithMap kept;
-  kept.mounting.wheels.emplace().metres_per_unit = 1.01;
-  autosave.offer(map_of(1), kept);
-  kept.mounting.wheels->metres_per_unit = 1.02;
+  Autosave autosave(0.0, [&saved](const Map&, const SavedEstimates& estimates) {
+    saved.push_back(estimates.extrinsics.wheels->metres_per_unit);
+  });
+  SavedEstimates estimates;
+  estimates.extrinsics.wheels.emplace().metres_per_unit = 1.01;
+  autosave.update(map_of(1), estimates);
+  estimates.extrinsics.wheels->metres_per_unit = 1.02;
   autosave.finish();
   EXPECT_THAT(saved, ElementsAre(1.01));
 }
 
 TEST(Autosave, WaitsForItsInterval) {
   Autosave autosave(3600.0, [](const Map&, const auto&) { FAIL() << "an hour too early"; });
-  autosave.offer(map_of(1), {});
+  autosave.update(map_of(1), {});
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 0);
 }
@@ -51,7 +52,7 @@ TEST(Autosave, WaitsForItsInterval) {
 TEST(Autosave, SkipsMapsOfferedWhileSaving) {
   std::promise<void> disk;
   Autosave autosave(0.0, [done = disk.get_future().share()](const Map&, const auto&) { done.wait(); });
-  for (int i = 0; i < 3; ++i) autosave.offer(map_of(1), {});
+  for (int i = 0; i < 3; ++i) autosave.update(map_of(1), {});
   disk.set_value();
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 1);
@@ -62,11 +63,11 @@ TEST(Autosave, ContinuesAfterAFailureAndReportsIt) {
   Autosave autosave(0.0, [&is_full](const Map&, const auto&) {
     if (is_full) throw std::runtime_error("the disk is full");
   });
-  autosave.offer(map_of(1), {});
+  autosave.update(map_of(1), {});
   autosave.finish();
   EXPECT_THAT(autosave.failures(), ElementsAre("the disk is full"));
   is_full = false;
-  autosave.offer(map_of(1), {});
+  autosave.update(map_of(1), {});
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 1);
 }

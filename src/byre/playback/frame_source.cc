@@ -9,7 +9,7 @@ const MotionSamples& FrameSource::motion() const {
   return none;
 }
 
-std::optional<FrameSource::SourceFrame> PlayedRecording::next(const std::function<bool()>& should_stop) {
+std::optional<FrameSource::SourceFrame> RecordingFrames::next(const std::function<bool()>& should_stop) {
   auto decoded = decoder_.next();
   if (!decoded) return std::nullopt;
   SourceFrame frame{std::move(*decoded)};

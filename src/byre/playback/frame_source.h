@@ -26,10 +26,10 @@ class FrameSource {
 };
 
 // Frames of a recording, on demand or in real time.
-class PlayedRecording final : public FrameSource {
+class RecordingFrames final : public FrameSource {
  public:
   // The recording must outlive it, and must not be read by others meanwhile.
-  PlayedRecording(Recording& recording, bool is_live) : recording_(recording), decoder_(recording), is_live_(is_live) {}
+  RecordingFrames(Recording& recording, bool is_live) : recording_(recording), decoder_(recording), is_live_(is_live) {}
 
   const Calibration& calibration() const override { return recording_.calibration(); }
   const MotionSamples& motion() const override { return recording_.motion(); }

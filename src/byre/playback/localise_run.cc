@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Calibration best_calibration(const std::vector<SourceRecording>& recordings, const Calibration& given) {
-  const auto known = known_calibration(recordings, given);
+  const auto known = stored_calibration(recordings, given);
   return known ? known->calibration : given;
 }
 
@@ -64,7 +64,7 @@ std::optional<Image> read_fitted(const fs::path& path, const Camera& camera, std
       path.string() +
       fmt::format(": is of {} x {} pixels, the camera of {} x {}: scaled and cropped to the size of the camera",
                   image->width, image->height, camera.width, camera.height));
-  return fit(*image, camera.width, camera.height);
+  return resize_to_cover(*image, camera.width, camera.height);
 }
 
 // Times from the names; one second apart if any name lacks a time.
@@ -72,7 +72,7 @@ std::vector<Timestamp> times_of(const std::vector<fs::path>& images) {
   std::vector<Timestamp> times;
   for (const fs::path& image : images) {
     const std::optional<Timestamp> time = time_in_name(image);
-    if (!time) return steady_times(images.size(), 1.0);
+    if (!time) return uniform_times(images.size(), 1.0);
     times.push_back(*time);
   }
   return times;

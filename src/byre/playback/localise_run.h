@@ -45,10 +45,10 @@ struct SearchableMap {
   bool is_metric;  // whether disparities are comparable with the map
   const Map& map;
   const std::vector<SourceRecording>& recordings;
-  Map nothing_online{Origin::online};
+  Map empty_online_map{Origin::online};
   PlaceIndex index;
 
-  MapView view() const { return {&map, nothing_online}; }
+  MapView view() const { return {&map, empty_online_map}; }
 };
 
 // Localises each frame of a recording. Throws InputError if its calibration cannot be rectified.

@@ -14,7 +14,7 @@ bool has_pose(const MappedFrame& frame) {
   return frame.report && frame.report->map_from_body;
 }
 
-MappedFrame mapped(Engine& engine, const DecodedFrame& decoded) {
+MappedFrame process_frame(Engine& engine, const DecodedFrame& decoded) {
   MappedFrame frame;
   frame.time = decoded.time;
   if (decoded.images) {
@@ -38,17 +38,17 @@ class MotionFeed {
 
   void feed(Engine& engine, Timestamp until) {
     for (; wheel_ < samples_.wheels.size() && samples_.wheels[wheel_].time <= until; ++wheel_) {
-      engine.tell_wheels(samples_.wheels[wheel_]);
+      engine.add_wheel_odometry(samples_.wheels[wheel_]);
     }
     for (; velocity_ < samples_.velocities.size() && samples_.velocities[velocity_].time <= until; ++velocity_) {
-      engine.tell_wheels(samples_.velocities[velocity_]);
+      engine.add_wheel_odometry(samples_.velocities[velocity_]);
     }
     for (; rate_ < samples_.rates.size() && samples_.rates[rate_].time <= until; ++rate_) {
-      engine.tell_gyroscope(samples_.rates[rate_]);
+      engine.add_gyro(samples_.rates[rate_]);
     }
-    for (const auto& told = samples_.accelerations; acceleration_ < told.size(); ++acceleration_) {
-      if (told[acceleration_].time > until) break;
-      engine.tell_accelerometer(told[acceleration_]);
+    for (const auto& samples = samples_.accelerations; acceleration_ < samples.size(); ++acceleration_) {
+      if (samples[acceleration_].time > until) break;
+      engine.add_accel(samples[acceleration_]);
     }
   }
 
@@ -66,32 +66,32 @@ void note_jobs(const Engine& engine, MapRun& run, std::size_t noted = 0) {
   run.job_seconds.insert(run.job_seconds.end(), seconds.begin() + static_cast<std::ptrdiff_t>(noted), seconds.end());
 }
 
-ToldMotion told_motion(const MotionPrior& prior, const Session& session) {
-  ToldMotion told;
-  told.is_told = !prior.is_empty();
-  told.wheels = prior.wheels();
-  told.gyroscope = prior.gyroscope();
-  told.time_offset = prior.time_offset();
-  told.slips = prior.slips();
-  told.is_mounted_otherwise = prior.is_mounted_otherwise();
-  told.to_keep = prior.to_keep();
-  told.stops = prior.standing().stops();
-  told.stood_s = prior.standing().seconds();
-  told.tilts_held = session.tilts_held();
-  return told;
+MotionEstimates motion_estimates(const OdometryCalibrator& prior, const Session& session) {
+  MotionEstimates motion;
+  motion.has_samples = !prior.is_empty();
+  motion.wheels = prior.wheels();
+  motion.gyroscope = prior.gyroscope();
+  motion.time_offset = prior.time_offset();
+  motion.slips = prior.slips();
+  motion.has_calibration_changed = prior.has_calibration_changed();
+  motion.calibration_to_store = prior.calibration_to_store();
+  motion.stops = prior.stationary().stops();
+  motion.standstill_s = prior.stationary().seconds();
+  motion.tilts_applied = session.tilts_applied();
+  return motion;
 }
 
-void take_over_result(Engine& engine, MapRun& run) {
+void collect_results(Engine& engine, MapRun& run) {
   const Trajectory seen = engine.session().final_trajectory();
-  run.final = engine.prior().completed(seen);
+  run.final = engine.prior().fill_gaps(seen);
   run.calibration = engine.calibration();
   run.row_error = engine.row_error().pixels();
-  run.told = told_motion(engine.prior(), engine.session());
-  run.told.metres_sigma = engine.wheel_scale_sigma();
+  run.motion = motion_estimates(engine.prior(), engine.session());
+  run.motion.scale_sigma = engine.wheel_scale_sigma();
   run.is_metric = engine.is_metric();
-  run.map = engine.take_kept_map();
+  run.map = engine.take_map_to_save();
   if (run.finishing) run.finishing->faults = find_faults(run.map);
-  run.told.led_afterwards = static_cast<int>(run.final.size() - seen.size());
+  run.motion.filled_poses = static_cast<int>(run.final.size() - seen.size());
   for (const MappedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
     if (frame.report && frame.report->odometry_from_body) {
@@ -101,7 +101,7 @@ void take_over_result(Engine& engine, MapRun& run) {
 }
 
 // Each step needs about as much memory as all earlier ones, in other block sizes.
-FinishHooks frugal(const MapRunHooks& hooks) {
+FinishHooks release_memory_between_steps(const MapRunHooks& hooks) {
   return {hooks.should_stop, [announce = hooks.before_finishing_step](const char* step) {
             release_free_memory();
             if (announce) announce(step);
@@ -113,7 +113,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
   const Stopwatch watch;
   Engine engine(frames.calibration(), options, std::move(before));
   MotionFeed feed(frames.motion());
-  if (const auto& axes = frames.motion().left_from_gyroscope) engine.tell_gyroscope_mounting(*axes);
+  if (const auto& axes = frames.motion().left_from_gyroscope) engine.set_gyro_extrinsics(*axes);
   MapRun run;
   bool is_begun = false;
   while (const auto frame = frames.next(hooks.should_stop)) {
@@ -122,18 +122,18 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     const DecodedFrame& decoded = frame->decoded;
     run.warnings.insert(run.warnings.end(), decoded.warnings.begin(), decoded.warnings.end());
     feed.feed(engine, decoded.time);
-    run.frames.push_back(mapped(engine, decoded));
+    run.frames.push_back(process_frame(engine, decoded));
     note_jobs(engine, run);
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
-    if (hooks.look && decoded.images) hooks.look({*decoded.images, run.frames.back(), engine.session()});
+    if (hooks.on_frame && decoded.images) hooks.on_frame({*decoded.images, run.frames.back(), engine.session()});
     is_begun = is_begun || (has_pose(run.frames.back()) && engine.online().keyframe_count() > 0);
-    if (is_begun && hooks.offer_map) hooks.offer_map(engine.online(), engine.kept_with_map());
+    if (is_begun && hooks.on_map_update) hooks.on_map_update(engine.online(), engine.saved_estimates());
     if (engine.map_damage() != nullptr) break;
   }
   const std::size_t noted_jobs = engine.log().job_seconds.size();
-  if (hooks.should_stop() || engine.map_damage() != nullptr) engine.hurry();
+  if (hooks.should_stop() || engine.map_damage() != nullptr) engine.finish_early();
   engine.finish();
-  const FinishHooks finish_hooks = frugal(hooks);
+  const FinishHooks finish_hooks = release_memory_between_steps(hooks);
   if (is_begun && !hooks.should_stop() && engine.map_damage() == nullptr) {
     if (options.offline) {
       run.mission_finishing_seconds = engine.finish_mission(finish_hooks);
@@ -147,7 +147,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     const auto clocks = clock_warnings(frames.motion(), run.frames.front().time, run.frames.back().time);
     run.motion_warnings.insert(run.motion_warnings.end(), clocks.begin(), clocks.end());
   }
-  take_over_result(engine, run);
+  collect_results(engine, run);
   if (const InputError* const damage = engine.map_damage()) run.map_damage = *damage;
   run.wall_seconds = watch.seconds();
   return run;
@@ -157,7 +157,7 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
 
 MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
                std::optional<Map> before) {
-  PlayedRecording frames(recording, options.pace == Pace::live);
+  RecordingFrames frames(recording, options.pace == Pace::live);
   return run_map(frames, options, hooks, std::move(before));
 }
 

@@ -23,19 +23,19 @@ struct MappedFrame {
 };
 
 // Estimates from wheels and inertial sensors.
-struct ToldMotion {
-  bool is_told = false;  // whether wheels or a gyroscope gave samples
-  std::optional<WheelMounting> wheels;
-  std::optional<GyroscopeMounting> gyroscope;
-  double time_offset = 0.0;            // delay of wheel stamps relative to the camera, seconds
-  int slips = 0;                       // number of rejections for wheel slip
-  bool is_mounted_otherwise = false;   // wheel mounting differs from that of the map
-  KnownMounting to_keep;               // mounting to save for later runs
-  int stops = 0;                       // standstills confirmed by the accelerometer
-  double stood_s = 0.0;                // duration of the standstills, seconds
-  int tilts_held = 0;                  // bridged frames with roll and pitch from the accelerometer
-  std::optional<double> metres_sigma;  // relative standard deviation of a scale measured by wheels only
-  int led_afterwards = 0;              // frames whose final pose is filled in by wheel odometry
+struct MotionEstimates {
+  bool has_samples = false;  // whether wheels or a gyroscope gave samples
+  std::optional<WheelCalibration> wheels;
+  std::optional<GyroscopeCalibration> gyroscope;
+  double time_offset = 0.0;                  // delay of wheel stamps relative to the camera, seconds
+  int slips = 0;                             // number of rejections for wheel slip
+  bool has_calibration_changed = false;      // wheel extrinsics differ from those of the map
+  OdometryCalibration calibration_to_store;  // extrinsics to save for later runs
+  int stops = 0;                             // standstills confirmed by the accelerometer
+  double standstill_s = 0.0;                 // duration of the standstills, seconds
+  int tilts_applied = 0;                     // bridged frames with roll and pitch from the accelerometer
+  std::optional<double> scale_sigma;         // relative standard deviation of a scale measured by wheels only
+  int filled_poses = 0;                      // frames whose final pose is filled in by wheel odometry
 };
 
 struct MapRun {
@@ -45,11 +45,11 @@ struct MapRun {
   Trajectory odometry;                            // smooth odometry as published, in its own frame
   Map map{Origin::offline};                       // saved map, without redundant keyframes
   std::optional<RefinedCalibration> calibration;  // calibration of the map; empty unless refined
-  std::optional<double> row_error;     // row error of the calibration in use, pixels; empty without stereo pairs
-  std::optional<Finishing> finishing;  // empty if skipped: stopped before, or without a vocabulary
+  std::optional<double> row_error;        // row error of the calibration in use, pixels; empty without stereo pairs
+  std::optional<FinishResult> finishing;  // empty if skipped: stopped before, or without a vocabulary
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map
   std::vector<double> job_seconds;                  // wall time of each mapping job
-  ToldMotion told;
+  MotionEstimates motion;
   bool is_metric = true;  // whether map and final poses are in metres
   // Damage of the offline map's file that ended the mission, see Engine::map_damage.
   std::optional<InputError> map_damage;
@@ -69,9 +69,9 @@ struct RunView {
 struct MapRunHooks {
   std::function<bool()> should_stop;                                    // called before each frame and while finishing
   std::function<void(int done, const MappedFrame& frame)> after_frame;  // not part of the frame's time
-  std::function<void(const RunView& view)> look;  // optional; after each readable frame, not part of its time
+  std::function<void(const RunView& view)> on_frame;  // optional; after each readable frame, not part of its time
   // Optional; after each frame from the first pose on.
-  std::function<void(const Map& online, const KeptWithMap& kept)> offer_map;
+  std::function<void(const Map& online, const SavedEstimates& estimates)> on_map_update;
   std::function<void(const char* step)> before_finishing_step;
 };
 

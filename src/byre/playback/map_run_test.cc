@@ -65,7 +65,7 @@ TEST(RunMap, ReportsEachFrameWithItsPoints) {
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
   int looks = 0;
-  hooks.look = [&looks](const RunView& view) {
+  hooks.on_frame = [&looks](const RunView& view) {
     ++looks;
     EXPECT_EQ(view.images.time, view.frame.time);
     const std::vector<SeenPoint>& seen = view.session.seen_points();
@@ -150,7 +150,7 @@ TEST(RunMap, OffersTheMapFromTheFirstPose) {
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
-  hooks.offer_map = [&keyframes](const Map& online, const auto&) { keyframes.push_back(online.keyframe_count()); };
+  hooks.on_map_update = [&keyframes](const Map& online, const auto&) { keyframes.push_back(online.keyframe_count()); };
   const MapRun mapped = run_map(*recording, {}, hooks);
   EXPECT_THAT(keyframes, SizeIs(6));
   EXPECT_THAT(keyframes, Each(Gt(0)));
@@ -160,13 +160,13 @@ TEST(RunMap, OffersTheMapFromTheFirstPose) {
 TEST(RunMap, OffersWheelExtrinsicsWithTheMap) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 2});
   EngineOptions options;
-  options.mounting.wheels.emplace().metres_per_unit = 1.02;  // from the map that is extended
+  options.extrinsics.wheels.emplace().metres_per_unit = 1.02;  // from the map that is extended
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
   std::vector<double> offered;
-  hooks.offer_map = [&offered](const Map&, const KeptWithMap& kept) {
-    offered.push_back(kept.mounting.wheels ? kept.mounting.wheels->metres_per_unit : 0.0);
+  hooks.on_map_update = [&offered](const Map&, const SavedEstimates& estimates) {
+    offered.push_back(estimates.extrinsics.wheels ? estimates.extrinsics.wheels->metres_per_unit : 0.0);
   };
   run_map(*recording, options, hooks);
   EXPECT_THAT(offered, AllOf(SizeIs(2), Each(1.02)));

@@ -37,7 +37,7 @@ ScaledRecording open_scaled(const std::filesystem::path& path, const FrameRange&
                             bool has_metric_map) {
   ScaledRecording opened;
   opened.recording = open_recording(path, range, options);
-  if (has_metric_map || opened.recording->calibration().tells_metres()) return opened;
+  if (has_metric_map || opened.recording->calibration().is_metric()) return opened;
   opened.is_metric = false;
   opened.body_from_camera = opened.recording->calibration().body_from_left;
   opened.recording = std::make_unique<OfCamera>(std::move(opened.recording));

@@ -14,7 +14,7 @@ namespace byre::ros {
 
 // Smallest size of a value in either encoding.
 template <typename T>
-std::size_t least_size();
+std::size_t min_size();
 
 // Parses the fields of a message within bounds; allocates no more than the remaining bytes justify. Borrows the bytes.
 // Throws InputError with the place "PLACE at byte N".
@@ -27,7 +27,7 @@ class MessageReader {
   void operator()(std::string_view /*name*/, T& value) {
     read(value);
   }
-  void in_ros1_alone(std::uint32_t& value) {
+  void ros1_only(std::uint32_t& value) {
     if (encoding_ == Encoding::ros1) read(value);
   }
 
@@ -48,7 +48,7 @@ class MessageReader {
   }
   template <typename T>
   void read(std::vector<T>& values) {
-    values.resize(read_count(least_size<T>()));
+    values.resize(read_count(min_size<T>()));
     if (!values.empty()) read_all(std::span<T>(values));
   }
 
@@ -89,13 +89,13 @@ T read_message(std::span<const std::byte> bytes, Encoding encoding, std::string 
 }
 
 // Sums the smallest sizes of fields.
-class LeastSize {
+class MinSize {
  public:
   template <typename T>
   void operator()(std::string_view /*name*/, const T& /*value*/) {
-    bytes_ += least_size<T>();
+    bytes_ += min_size<T>();
   }
-  void in_ros1_alone(const std::uint32_t& /*value*/) {}
+  void ros1_only(const std::uint32_t& /*value*/) {}
   std::size_t bytes() const { return bytes_; }
 
  private:
@@ -103,19 +103,19 @@ class LeastSize {
 };
 
 template <typename T>
-std::size_t least_size() {
+std::size_t min_size() {
   if constexpr (Number<T>) {
     return sizeof(T);
   } else if constexpr (Message<T>) {
     static const std::size_t bytes = [] {
       const T message;
-      LeastSize size;
+      MinSize size;
       T::fields(message, size);
       return size.bytes();
     }();
     return bytes;
   } else if constexpr (requires { std::tuple_size<T>::value; }) {
-    return std::tuple_size<T>::value * least_size<typename T::value_type>();
+    return std::tuple_size<T>::value * min_size<typename T::value_type>();
   } else {
     return sizeof(std::uint32_t);  // an empty string or sequence
   }

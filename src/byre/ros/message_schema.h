@@ -32,7 +32,7 @@ class SchemaWriter {
     current_.append(type_name<T>()).append(" ").append(name).append("\n");
     add_parts<T>();
   }
-  void in_ros1_alone(const std::uint32_t& /*value*/) {}
+  void ros1_only(const std::uint32_t& /*value*/) {}
 
   // Text of the first message, then of the others, each after a line of 80 "=" and a line with its name.
   std::string text() const;

@@ -13,7 +13,7 @@
 namespace byre::ros {
 
 // Whether late subscribers receive the last message of a topic.
-enum class Durability : std::uint8_t { only_new, kept };
+enum class Durability : std::uint8_t { only_new, latched };
 
 struct Topic {
   std::string name;    // begins with a slash

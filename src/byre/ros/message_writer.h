@@ -20,7 +20,7 @@ class MessageWriter {
   void operator()(std::string_view /*name*/, const T& value) {
     write(value);
   }
-  void in_ros1_alone(std::uint32_t value) {
+  void ros1_only(std::uint32_t value) {
     if (encoding_ == Encoding::ros1) write(value);
   }
   const std::vector<std::byte>& bytes() const { return writer_.bytes(); }

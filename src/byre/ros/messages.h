@@ -33,7 +33,7 @@ struct Header {
   std::string frame_id{};
   std::uint32_t seq = 0;  // message counter, ROS 1 only
   static void fields(auto& self, auto& visit) {
-    visit.in_ros1_alone(self.seq);
+    visit.ros1_only(self.seq);
     visit("stamp", self.stamp);
     visit("frame_id", self.frame_id);
   }

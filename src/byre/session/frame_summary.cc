@@ -49,7 +49,7 @@ Health measured(const HybridTrack& track, const Rig& rig) {
 }
 
 // Without an offline map the self-calibration detects a wrong calibration, after its first run.
-HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) {
+HealthEvidence add_calibration_evidence(const Calibrator& calibrator, HealthEvidence evidence) {
   const auto& result = calibrator.result();
   evidence.is_calibration_open = calibrator.is_open();
   evidence.is_calibration_doubtful = result && result->was_refused();
@@ -59,15 +59,15 @@ HealthEvidence judged_by(const Calibrator& calibrator, HealthEvidence evidence) 
 
 // Poses of a frame without a visual pose, by measured motion since the last visual one.
 FrameReport bridged(FrameReport report, const FrameSummary& summary) {
-  const Whereabouts& whereabouts = summary.whereabouts;
-  const BodyMotion bridge = *whereabouts.bridge();
+  const PoseFilter& pose_filter = summary.pose_filter;
+  const BodyMotion bridge = *pose_filter.bridge();
   if (summary.is_bridged_in_map()) {
-    report.map_from_body = whereabouts.odometry().map_from_body();
-    report.covariance = whereabouts.covariance_of_bridge();
+    report.map_from_body = pose_filter.odometry().map_from_body();
+    report.covariance = pose_filter.covariance_of_bridge();
   }
-  report.odometry_from_body = whereabouts.odometry().odometry_from_body();
+  report.odometry_from_body = pose_filter.odometry().odometry_from_body();
   report.odometry_covariance =
-      move_covariance(whereabouts.quality_before().odometry_covariance, inverse(bridge.last_from_body)) +
+      move_covariance(pose_filter.quality_before().odometry_covariance, inverse(bridge.last_from_body)) +
       bridge.covariance;
   return report;
 }
@@ -75,29 +75,29 @@ FrameReport bridged(FrameReport report, const FrameSummary& summary) {
 }  // namespace
 
 HealthEvidence evidence_of(const FrameSummary& summary) {
-  const PlaceHypothesis& place = summary.whereabouts.place();
-  HealthEvidence evidence{summary.whereabouts.has_pose(), summary.is_registered(),
-                          place.is_believed() && place.is_accepted()};
-  if (summary.is_bridged_in_map()) evidence.bridged_from = summary.whereabouts.quality_before().verdict;
+  const PlaceHypothesis& place = summary.pose_filter.place();
+  HealthEvidence evidence{summary.pose_filter.has_pose(), summary.is_registered(),
+                          place.is_confirmed() && place.is_accepted()};
+  if (summary.is_bridged_in_map()) evidence.bridged_from = summary.pose_filter.quality_before().verdict;
   evidence.refused_place = summary.refused_place;
-  evidence.maps_disagree = summary.track && summary.track->maps_disagree && !summary.track->offline_stands;
+  evidence.maps_disagree = summary.track && summary.track->maps_disagree && !summary.track->offline_prevails;
   evidence.image_fault = summary.input.fault;
   evidence.input = summary.input.evidence;
-  evidence.is_dirty = is_mostly_hidden(summary.lens.hidden().share());
+  evidence.is_dirty = is_mostly_hidden(summary.dirt.hidden().share());
   evidence.is_miscalibrated = summary.mission && summary.mission->is_focal_length_off();
   const Calibrator* const calibrator = summary.mapper.calibrator();
-  return calibrator ? judged_by(*calibrator, evidence) : evidence;
+  return calibrator ? add_calibration_evidence(*calibrator, evidence) : evidence;
 }
 
-FrameReport described(FrameReport report, const FrameSummary& summary) {
-  const Odometry& odometry = summary.whereabouts.odometry();
+FrameReport fill_poses(FrameReport report, const FrameSummary& summary) {
+  const Odometry& odometry = summary.pose_filter.odometry();
   report.features = summary.input.frame.features->size();
-  if (summary.whereabouts.has_pose()) {
+  if (summary.pose_filter.has_pose()) {
     if (summary.is_registered()) report.map_from_body = odometry.map_from_body();
     report.odometry_from_body = odometry.odometry_from_body();
   }
-  if (summary.whereabouts.bridge()) return bridged(std::move(report), summary);
-  report.covariance = summary.whereabouts.carried_covariance();
+  if (summary.pose_filter.bridge()) return bridged(std::move(report), summary);
+  report.covariance = summary.pose_filter.carried_covariance();
   if (!summary.track) return report;
   const TrackedFrame& tracked = summary.track->tracked;
   report.expected_points = tracked.expected;
@@ -106,7 +106,7 @@ FrameReport described(FrameReport report, const FrameSummary& summary) {
   report.covariance += body_covariance(covariance_in_map(tracked, summary.mission), summary.rig);
   report.odometry_covariance =
       odometry_covariance(body_covariance(tracked.match_covariance, summary.rig), odometry.travelled()) +
-      summary.whereabouts.bridged_odometry_covariance();
+      summary.pose_filter.bridged_odometry_covariance();
   return report;
 }
 
@@ -116,7 +116,7 @@ void withhold_non_finite(FrameReport& report) {
     report.map_from_body.reset();
     report.covariance.setZero();
     health.verdict = Verdict::untrusted;
-    health.doubt = Doubt::no_pose;
+    health.doubt = DistrustReason::no_pose;
   }
   if ((report.odometry_from_body && !is_finite(*report.odometry_from_body)) ||
       !report.odometry_covariance.allFinite()) {
@@ -138,13 +138,13 @@ Health health_of(const FrameSummary& summary, const Matrix6& covariance, const H
                  const HealthOptions& options) {
   const Frame& frame = summary.input.frame;
   Health health = summary.track ? measured(*summary.track, summary.rig) : Health{};
-  if (summary.mission) health = summary.mission->added_to(health, frame.time, summary.first_frame);
-  health.hidden_share = summary.lens.hidden().share();
-  health.hidden_share_right = summary.lens.hidden_right().share();
+  if (summary.mission) health = summary.mission->with_map_health(health, frame.time, summary.first_frame);
+  health.hidden_share = summary.dirt.hidden().share();
+  health.hidden_share_right = summary.dirt.hidden_right().share();
   health.image = frame.condition;
   health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-  return judged(health, evidence, options);
+  return assess(health, evidence, options);
 }
 
 }  // namespace byre

@@ -2,10 +2,10 @@
 
 #include "byre/frame_report.h"
 #include "byre/localisation/offline_tracker.h"
-#include "byre/localisation/whereabouts.h"
+#include "byre/localisation/pose_filter.h"
 #include "byre/mapping/mapper.h"
+#include "byre/slam/dirt_detector.h"
 #include "byre/slam/health.h"
-#include "byre/slam/lens_watch.h"
 
 namespace byre {
 
@@ -22,24 +22,24 @@ struct FrameSummary {
   const InputFrame& input;
   const HybridTrack* track = nullptr;  // nullptr: not tracked
   const Rig& rig;
-  const Whereabouts& whereabouts;
+  const PoseFilter& pose_filter;
   const Mapper& mapper;
   const OfflineTracker* mission = nullptr;  // nullptr without an offline map
-  const LensWatch& lens;
+  const DirtDetector& dirt;
   Timestamp first_frame{};
-  Doubt refused_place = Doubt::none;  // see FrameReport
+  DistrustReason refused_place = DistrustReason::none;  // see FrameReport
 
   bool is_registered() const { return mapper.submaps().is_registered(); }
   // The pose is dead-reckoned from a pose in the map's frame.
   bool is_bridged_in_map() const {
-    if (!whereabouts.bridge()) return false;
-    const AnchoredTrajectory& trajectory = whereabouts.trajectory();
+    if (!pose_filter.bridge()) return false;
+    const AnchoredTrajectory& trajectory = pose_filter.trajectory();
     return trajectory.empty() || mapper.submaps().frame(trajectory.back().submap) == Submaps::kMapFrame;
   }
 };
 
 // Adds the frame's poses, their covariances and the counts of points to a report.
-FrameReport described(FrameReport report, const FrameSummary& summary);
+FrameReport fill_poses(FrameReport report, const FrameSummary& summary);
 
 // Evidence of this frame alone, without lasting doubts.
 HealthEvidence evidence_of(const FrameSummary& summary);

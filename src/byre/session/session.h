@@ -1,20 +1,20 @@
 #pragma once
 
 #include "byre/frame_report.h"
+#include "byre/localisation/active_hint.h"
 #include "byre/localisation/offline_tracker.h"
-#include "byre/localisation/standing_hint.h"
+#include "byre/localisation/pose_filter.h"
 #include "byre/localisation/trusted_place.h"
-#include "byre/localisation/whereabouts.h"
-#include "byre/mapping/keyframe_watch.h"
+#include "byre/mapping/keyframe_policy.h"
 #include "byre/mapping/mapper.h"
-#include "byre/mapping/shutter.h"
+#include "byre/mapping/rolling_shutter_corrector.h"
 #include "byre/session/frame_summary.h"
 #include "byre/session/session_options.h"
 #include "byre/session/tracker.h"
+#include "byre/slam/dirt_detector.h"
 #include "byre/slam/frame_budget.h"
 #include "byre/slam/health.h"
-#include "byre/slam/input_watch.h"
-#include "byre/slam/lens_watch.h"
+#include "byre/slam/image_monitor.h"
 #include "byre/slam/state.h"
 #include "byre/workers/executor.h"
 
@@ -27,15 +27,16 @@ namespace byre {
 
 // Executors of jobs. local: mapping around new keyframes. global: corrections of the whole map; in a mission on an
 // offline map, place searches.
-struct Lanes {
-  // NOLINTNEXTLINE(google-explicit-constructor): a session without loop closing needs one lane
-  Lanes(std::unique_ptr<Executor> local_lane, std::unique_ptr<Executor> global_lane = make_inline_executor(),
-        std::unique_ptr<Executor> calibration_lane = make_inline_executor(),
-        std::unique_ptr<Executor> reading_lane = make_inline_executor())
-      : local(std::move(local_lane)),
-        global(std::move(global_lane)),
-        calibration(std::move(calibration_lane)),
-        reading(std::move(reading_lane)) {}
+struct SessionExecutors {
+  // NOLINTNEXTLINE(google-explicit-constructor): a session without loop closing needs one executor
+  SessionExecutors(std::unique_ptr<Executor> local_executor,
+                   std::unique_ptr<Executor> global_executor = make_inline_executor(),
+                   std::unique_ptr<Executor> calibration_executor = make_inline_executor(),
+                   std::unique_ptr<Executor> reading_executor = make_inline_executor())
+      : local(std::move(local_executor)),
+        global(std::move(global_executor)),
+        calibration(std::move(calibration_executor)),
+        reading(std::move(reading_executor)) {}
 
   std::unique_ptr<Executor> local;
   std::unique_ptr<Executor> global;
@@ -44,18 +45,18 @@ struct Lanes {
 };
 
 // Tracks frames in order of time and maps the scene. The tracker localises each frame, the mapper makes keyframes of
-// some, and whereabouts hold the pose state. Call every method from one thread; only executors use others.
+// some, and the pose filter holds the pose. Call every method from one thread; only executors use others.
 class Session {
  public:
   // A vocabulary enables place recognition: loop closing and relocalisation. An offline map makes the session a
   // mission: it localises in that map, and its poses are in the map's frame.
-  Session(const Rig& rig, const SessionOptions& options, Lanes lanes, std::optional<Vocabulary> vocabulary = {},
-          std::shared_ptr<const OfflineMap> offline = nullptr);
+  Session(const Rig& rig, const SessionOptions& options, SessionExecutors executors,
+          std::optional<Vocabulary> vocabulary = {}, std::shared_ptr<const OfflineMap> offline = nullptr);
 
   // Sets the sources of measured motion between keyframes and of the robot's reach. Call it before the first frame.
-  void hear(TellMotion tell, TellReach reach) {
-    mapper_.hear(std::move(tell));
-    whereabouts_.hear(std::move(reach));
+  void set_odometry(OdometryQuery odometry, ReachQuery reach) {
+    mapper_.set_odometry(std::move(odometry));
+    pose_filter_.set_odometry(std::move(reach));
   }
 
   // Continues an online map of another recording: the session is lost until it relocalises in it, and extends it. Call
@@ -73,8 +74,8 @@ class Session {
   std::optional<RefinedCalibration> self_calibration() const;
 
   // Limits localisation in the offline map to the hint until it expires.
-  void look_near(const PoseHint& hint) {
-    hint_.give(hint);
+  void set_initial_pose(const PoseHint& hint) {
+    hint_.set_hint(hint);
     trusted_place_.forget();
   }
 
@@ -83,15 +84,15 @@ class Session {
   bool is_mapping_paused() const { return is_mapping_paused_; }
 
   // Tilt of the body at the next frame, measured by accelerations; empty: unknown. Constrains dead reckoning.
-  void tell_tilt(const std::optional<BodyTilt>& tilt) { whereabouts_.tell_tilt(tilt); }
-  int tilts_held() const { return whereabouts_.tilts_held(); }  // number of frames that a tilt constrained
+  void set_tilt(const std::optional<BodyTilt>& tilt) { pose_filter_.set_tilt(tilt); }
+  int tilts_applied() const { return pose_filter_.tilts_applied(); }  // number of frames that a tilt constrained
   // motion: of the body since the last frame; empty: unknown. budget: time limit of the frame; nullptr: none. The
   // caller calls its begin() before and its end() after.
   FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {},
                       FrameBudget* budget = nullptr);
 
   // Ends a running correction of the whole map early, with its present result.
-  void hurry() { mapper_.hurry(); }
+  void finish_early() { mapper_.finish_early(); }
 
   // Applies the results of running jobs. Call it once, after the last frame.
   void finish();
@@ -101,7 +102,7 @@ class Session {
   Map take_online() { return mapper_.take_online(); }  // see Mapper
 
   // Scales all lengths. Call it after finish_map().
-  void stretch(double factor) { whereabouts_.follow(mapper_.stretch(factor)); }
+  void rescale(double factor) { pose_filter_.apply_length_changes(mapper_.rescale(factor)); }
 
   // Adjusts the whole online map around the fixed offline map. Call it after finish().
   void finish_mission(const FinishHooks& hooks);
@@ -122,27 +123,27 @@ class Session {
   struct Located {
     std::optional<HybridTrack> track;
     std::vector<HybridTrack> elsewhere;  // other places that show the frame
-    bool from_nothing = false;
+    bool is_relocalised = false;
     bool is_by_hint = false;     // the search was limited to a hint
     bool begins_submap = false;  // the frame became the first keyframe of a submap
     TwoViewFailure start_failure = TwoViewFailure::none;
-    Doubt refused = Doubt::none;  // why a place that shows the frame was rejected
+    DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
   };
 
-  void take_over_results(FrameReport& report);
-  void take_over_place(FrameReport& report);
-  bool take_over_camera();
-  void take_turn(const RigTurn& turn);
+  void apply_finished_jobs(FrameReport& report);
+  void apply_place_search(FrameReport& report);
+  bool apply_camera_change();
+  void apply_rig_rotation(const RigRotation& turn);
   InputFrame input_of(const Frame& rectified, const std::optional<BodyMotion>& motion);
-  void put_most_likely_first(std::vector<HybridTrack>& places, const Frame& frame);
+  void sort_by_log_odds(std::vector<HybridTrack>& places, const Frame& frame);
   Located locate(const InputFrame& input);
   bool may_begin_submap(const InputFrame& input) const;
   Located begin_submap(const Frame& frame);
   void remember(const InputFrame& input, const Located& located, FrameReport& report);
-  void look_for_dirt(const InputFrame& input, const Located& located, FrameReport& report);
+  void update_dirt_mask(const InputFrame& input, const Located& located, FrameReport& report);
   void extend_map(const InputFrame& input, const HybridTrack& track, FrameReport& report);
   bool may_add_keyframe(const InputFrame& input, const HybridTrack& track);
-  bool look_for_loop(const Frame& frame, bool keyframe_added);
+  bool search_loop(const Frame& frame, bool keyframe_added);
   void lose_pose(ImageFault fault, FrameReport& report);
   void note_quality(const FrameReport& report);
 
@@ -153,17 +154,17 @@ class Session {
   Mapper mapper_;
   Tracker tracker_;
   std::optional<OfflineTracker> mission_;
-  StandingHint hint_;
-  Whereabouts whereabouts_;
-  KeyframeWatch keyframe_watch_;
-  InputWatch input_watch_;
-  LastingDoubts doubts_;
-  LensWatch lens_watch_;
-  Shutter shutter_;
+  ActiveHint hint_;
+  PoseFilter pose_filter_;
+  KeyframePolicy keyframe_policy_;
+  ImageMonitor image_monitor_;
+  FaultLatches fault_latches_;
+  DirtDetector dirt_detector_;
+  RollingShutterCorrector rolling_shutter_;
   State state_ = State::initialising;
   std::optional<Timestamp> first_frame_;
   TrustedPlace trusted_place_;
-  bool is_error_told_ = false;  // a navigation error was reported
+  bool is_error_reported_ = false;  // a navigation error was reported
   bool is_mapping_paused_ = false;
   std::vector<SeenPoint> seen_;  // points of the last frame
 };

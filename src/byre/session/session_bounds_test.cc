@@ -77,8 +77,8 @@ std::shared_ptr<const OfflineMap> map_with(const SimulatedMission& visit, std::o
 Session session_within(std::shared_ptr<const OfflineMap> offline, bool map_online) {
   SessionOptions options;
   options.map_online = map_online;
-  return {simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
-          std::move(offline)};
+  return {simulated_rig(), options, SessionExecutors(make_inline_executor(), make_inline_executor()),
+          simulated_vocabulary(), std::move(offline)};
 }
 
 // Some frames on one side of the room, then frames of the other side, to and fro.
@@ -106,7 +106,7 @@ TEST(PlaceBounds, RejectALookalikePlaceBehindAWall) {
   EXPECT_EQ(reports[kFramesOnOneSide - 1].health.verdict, Verdict::trusted);
   for (std::size_t i = kFramesOnOneSide; i < reports.size(); ++i) {
     EXPECT_FALSE(reports[i].map_from_body) << i;
-    EXPECT_EQ(reports[i].health.doubt, Doubt::behind_wall) << i;
+    EXPECT_EQ(reports[i].health.doubt, DistrustReason::behind_wall) << i;
   }
   EXPECT_EQ(count_refusals(reports), 1) << "reported once";
 }
@@ -123,7 +123,8 @@ TEST(PlaceBounds, AllowAPlaceNearAHint) {
   Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), false);
   const std::vector<Frame> frames = as_if_across(lap, 60);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (i == 20) session.look_near({.map_from_body = lap.truth[kFramesOfLap / 2].world_from_body, .radius = 2.0});
+    if (i == 20)
+      session.set_initial_pose({.map_from_body = lap.truth[kFramesOfLap / 2].world_from_body, .radius = 2.0});
     const FrameReport report = session.process(frames[i]);
     if (i >= 20) {
       EXPECT_TRUE(report.map_from_body) << i;
@@ -144,8 +145,8 @@ TEST(PlaceBounds, RejectRegistrationOfASubmapBehindAWall) {
   Session session = session_within(map_with(parts_beside_the_wall(lap_at(1)), wall_across()), true);
   const auto reports = reports_of(session, as_if_across(lap, 100));
   for (std::size_t i = kFramesOnOneSide; i < reports.size(); ++i) EXPECT_FALSE(reports[i].map_from_body) << i;
-  EXPECT_EQ(reports.back().health.doubt, Doubt::not_registered);
-  EXPECT_EQ(reports.back().refused_place, Doubt::behind_wall) << "found by the search during tracking";
+  EXPECT_EQ(reports.back().health.doubt, DistrustReason::not_registered);
+  EXPECT_EQ(reports.back().refused_place, DistrustReason::behind_wall) << "found by the search during tracking";
   EXPECT_EQ(count_refusals(reports), 1);
 }
 
@@ -155,7 +156,7 @@ TEST(PlaceBounds, RejectALookalikePlaceOffTheGround) {
   const auto reports = reports_of(session, {lifted.frames.begin(), lifted.frames.begin() + 20});
   for (const FrameReport& report : reports) {
     EXPECT_FALSE(report.map_from_body);
-    EXPECT_EQ(report.health.doubt, Doubt::off_the_plane);
+    EXPECT_EQ(report.health.doubt, DistrustReason::off_the_plane);
   }
   EXPECT_EQ(count_refusals(reports), 1);
 }
@@ -175,7 +176,7 @@ TEST(PlaceBounds, ApplyNoGroundConstraintToOtherCameras) {
   const SimulatedMission lifted = lap_at(2, 0.6);
   SessionOptions options;
   options.mission.bounds.is_on_ground_of_map = false;
-  Session session(simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()),
+  Session session(simulated_rig(), options, SessionExecutors(make_inline_executor(), make_inline_executor()),
                   simulated_vocabulary(), map_with(lap_at(1)));
   const auto reports = reports_of(session, {lifted.frames.begin(), lifted.frames.begin() + 20});
   EXPECT_EQ(reports.back().health.verdict, Verdict::trusted);
@@ -192,15 +193,15 @@ Agreement worst_off_the_ground(bool is_planar) {
   const SimulatedMission mission = simulate_mission(rig, way, options);
   SessionOptions session_options;
   session_options.is_planar = is_planar;
-  Session session(rig, session_options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
-                  offline);
+  Session session(rig, session_options, SessionExecutors(make_inline_executor(), make_inline_executor()),
+                  simulated_vocabulary(), offline);
   const Pose wrong = exp_pose((Vector6() << 0.0, 0.0, 0.005, 0.003, 0.0, 0.0).finished());
   Agreement worst;
   for (std::size_t i = 0; i < kLight; ++i) {
-    std::optional<BodyMotion> told;
-    if (i > 0) told = (inverse(way[i - 1].world_from_body) * way[i].world_from_body) * wrong;
+    std::optional<BodyMotion> odometry;
+    if (i > 0) odometry = (inverse(way[i - 1].world_from_body) * way[i].world_from_body) * wrong;
     const FrameReport report =
-        session.process(i < kDark ? mission.frames[i] : without_features(mission.frames[i]), told);
+        session.process(i < kDark ? mission.frames[i] : without_features(mission.frames[i]), odometry);
     if (i < kDark) continue;
     const Pose error = inverse(way[i].world_from_body) * report.map_from_body.value();
     worst.translation = std::max(worst.translation, std::abs(error.translation.z()));
@@ -221,7 +222,7 @@ TEST(PlanarMotion, KeepsTrackedPoses) {
   const SimulatedMission mission = lap_at(2);
   SessionOptions options;
   options.is_planar = true;
-  Session session(simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()),
+  Session session(simulated_rig(), options, SessionExecutors(make_inline_executor(), make_inline_executor()),
                   simulated_vocabulary(), map_with(lap_at(1)));
   const auto reports = reports_of(session, mission.frames);
   for (std::size_t i = 5; i < reports.size(); ++i) {

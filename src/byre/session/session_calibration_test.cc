@@ -87,14 +87,14 @@ CalibrationOutcome mission_outcome(bool map_online, const SeenError& error) {
   const SimulatedMission mission = visit(2);
   SessionOptions options;
   options.map_online = map_online;
-  return outcome_of({mission.rig, options, Lanes(make_inline_executor()), simulated_vocabulary(), offline}, mission,
-                    error);
+  return outcome_of({mission.rig, options, SessionExecutors(make_inline_executor()), simulated_vocabulary(), offline},
+                    mission, error);
 }
 
 // SLAM without an offline map, aligned with the truth.
 double error_without_map(const SeenError& error) {
   const SimulatedMission mission = visit(2);
-  Session session(mission.rig, {}, Lanes(make_inline_executor()));
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor()));
   std::vector<Eigen::Vector3d> estimated, truth;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     const FrameReport report = session.process(seen_through(error, mission.frames[i], mission.rig));
@@ -138,14 +138,14 @@ Calibration calibration_of(const Rig& rig) {
 
 TEST(MappingWithACalibration, IsTrustedOnceTheCalibrationIsChecked) {
   const SimulatedMission mission = visit(2);
-  Session session(mission.rig, {}, Lanes(make_inline_executor()));
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor()));
   session.refine_calibration(calibration_of(mission.rig), {});
   bool was_looked_at = false;
   for (const Frame& frame : mission.frames) {
     const FrameReport report = session.process(frame);
     was_looked_at = was_looked_at || report.has(SessionEvent::recalibrated);
     EXPECT_EQ(report.health.verdict == Verdict::trusted, was_looked_at) << to_seconds(report.time) << " s";
-    EXPECT_TRUE(was_looked_at || report.health.doubt == Doubt::unconfirmed);
+    EXPECT_TRUE(was_looked_at || report.health.doubt == DistrustReason::unconfirmed);
   }
   EXPECT_TRUE(was_looked_at);
 }

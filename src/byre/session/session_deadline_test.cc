@@ -44,8 +44,8 @@ int count_pressed(const std::vector<FrameReport>& reports) {
 TEST(Deadline, KeepsOfflinePointsInAMission) {
   const auto offline = offline_map_of(timed_lap(1));
   const SimulatedMission mission = timed_lap(2);
-  Session session(simulated_rig(), {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
-                  offline);
+  Session session(simulated_rig(), {}, SessionExecutors(make_inline_executor(), make_inline_executor()),
+                  simulated_vocabulary(), offline);
   FrameBudget budget = budget_always_spent();
   const auto reports = reports_in_time(session, budget, mission.frames);
   EXPECT_GT(count_pressed(reports), kFramesInTime - 10);

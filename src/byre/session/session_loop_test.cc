@@ -24,7 +24,7 @@ SimulatedMission laps(double count, std::uint64_t noise_seed = 1) {
 }
 
 Session recognising_session(const Rig& rig) {
-  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary()};
+  return {rig, {}, SessionExecutors(make_inline_executor(), make_inline_executor()), simulated_vocabulary()};
 }
 
 // Metres from the true position in the frame of the first pose.
@@ -132,7 +132,8 @@ TEST(SessionWithVocabulary, ContinuesAnEarlierMap) {
 
   SessionOptions options;
   options.recording = 1;
-  Session later(second.rig, options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary());
+  Session later(second.rig, options, SessionExecutors(make_inline_executor(), make_inline_executor()),
+                simulated_vocabulary());
   later.continue_map(online_copy(offline_copy(earlier.map().online())));
   for (std::size_t i = 10; i < second.frames.size(); ++i) {
     const FrameReport report = later.process(second.frames[i]);
@@ -151,7 +152,8 @@ TEST(SessionWithVocabulary, ContinuesAnEarlierMap) {
 TEST(SessionWithVocabulary, IsDeterministic) {
   const SimulatedMission mission = laps(1.3);
   const auto bytes = [&] {
-    Session session(mission.rig, {}, Lanes(make_paced_executor(3), make_paced_executor(7)), simulated_vocabulary());
+    Session session(mission.rig, {}, SessionExecutors(make_paced_executor(3), make_paced_executor(7)),
+                    simulated_vocabulary());
     for (const Frame& frame : mission.frames) session.process(frame);
     session.finish();
     session.finish_map({});
@@ -166,9 +168,10 @@ TEST(SessionWithVocabulary, IsDeterministic) {
 TEST(SessionWithVocabulary, ReturnsTheSameMapWithInlineAndConcurrentReading) {
   const SimulatedMission mission = laps(1.3);
   const auto bytes = [&](std::unique_ptr<Executor> reading) {
-    Session session(mission.rig, {},
-                    Lanes(make_inline_executor(), make_inline_executor(), make_inline_executor(), std::move(reading)),
-                    simulated_vocabulary());
+    Session session(
+        mission.rig, {},
+        SessionExecutors(make_inline_executor(), make_inline_executor(), make_inline_executor(), std::move(reading)),
+        simulated_vocabulary());
     EXPECT_EQ(run(session, mission).loops, 1);
     StoredMap stored;
     stored.map = offline_copy(session.map().online());
@@ -180,10 +183,10 @@ TEST(SessionWithVocabulary, ReturnsTheSameMapWithInlineAndConcurrentReading) {
 TEST(SessionWithVocabulary, LeavesTheMapWhileAJobReadsIt) {
   constexpr int kReading = 3;  // frames
   const SimulatedMission mission = laps(1.4);
-  Session session(
-      mission.rig, {},
-      Lanes(make_inline_executor(), make_inline_executor(), make_inline_executor(), make_paced_executor(kReading)),
-      simulated_vocabulary());
+  Session session(mission.rig, {},
+                  SessionExecutors(make_inline_executor(), make_inline_executor(), make_inline_executor(),
+                                   make_paced_executor(kReading)),
+                  simulated_vocabulary());
   int frames_since_keyframe = kReading, keyframes = 0, loops = 0;
   int points = 0;
   for (const Frame& frame : mission.frames) {
@@ -207,7 +210,8 @@ TEST(SessionWithVocabulary, MovesKeyframesAddedDuringACorrection) {
   const SimulatedMission mission = laps(1.6);
   SessionOptions options;
   options.max_drift_to_fuse = 0.0;  // corrects the whole map after any drift
-  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(15)), simulated_vocabulary());
+  Session session(mission.rig, options, SessionExecutors(make_paced_executor(2), make_paced_executor(15)),
+                  simulated_vocabulary());
   const MissionResult closed = run(session, mission);
   EXPECT_GE(closed.corrections, 1);
   EXPECT_LT(closed.last_error, 0.05);  // noise level; a keyframe left behind would exceed it
@@ -218,10 +222,10 @@ TEST(SessionWithVocabulary, FinishesEarlyWithAValidMapWhenHurried) {
   const SimulatedMission mission = laps(1.2);
   SessionOptions options;
   options.max_drift_to_fuse = 0.0;
-  Session session(mission.rig, options, Lanes(make_paced_executor(2), make_paced_executor(1000)),
+  Session session(mission.rig, options, SessionExecutors(make_paced_executor(2), make_paced_executor(1000)),
                   simulated_vocabulary());
   for (const Frame& frame : mission.frames) session.process(frame);
-  session.hurry();
+  session.finish_early();
   session.finish();
   EXPECT_FALSE(session.loops().empty());
   EXPECT_THAT(find_faults(session.map().online()), testing::IsEmpty());

@@ -29,8 +29,8 @@ std::shared_ptr<const OfflineMap> mapped(double laps, std::uint64_t room = 1) {
 }
 
 Session session_on(std::shared_ptr<const OfflineMap> offline, const SessionOptions& options = {}) {
-  return {simulated_rig(), options, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(),
-          std::move(offline)};
+  return {simulated_rig(), options, SessionExecutors(make_inline_executor(), make_inline_executor()),
+          simulated_vocabulary(), std::move(offline)};
 }
 
 Frame frame_of(Timestamp time, std::vector<Keypoint> keypoints, std::vector<Descriptor> descriptors) {
@@ -116,7 +116,7 @@ TEST(Mission, LocalisesInTheFirstFrameAndIsTrustedOnceConfirmed) {
   ASSERT_TRUE(reports[0].map_from_body);
   EXPECT_THAT(*reports[0].map_from_body, PoseNear(mission.truth[0].world_from_body, 0.03, 0.3 * kDegree));
   EXPECT_EQ(reports[0].health.verdict, Verdict::untrusted);
-  EXPECT_EQ(reports[0].health.doubt, Doubt::unconfirmed);
+  EXPECT_EQ(reports[0].health.doubt, DistrustReason::unconfirmed);
   EXPECT_TRUE(reports[3].has(SessionEvent::localised));
   EXPECT_EQ(count_trusted(reports), static_cast<int>(reports.size()) - 3);
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
@@ -133,7 +133,7 @@ TEST(Mission, IsNotTrustedBeforeEnoughEvidence) {
   const auto reports = reports_of(session, frames);
   for (std::size_t i = 0; i < 20; ++i) {
     EXPECT_TRUE(reports[i].map_from_body) << i;
-    EXPECT_EQ(reports[i].health.doubt, Doubt::unconfirmed) << i;
+    EXPECT_EQ(reports[i].health.doubt, DistrustReason::unconfirmed) << i;
   }
   EXPECT_EQ(reports[30].health.verdict, Verdict::trusted);
 }
@@ -192,7 +192,7 @@ TEST(Mission, LocalisesNearAHintDespiteAMoreSimilarPlace) {
   const Pose most_alike = inverse(found.places_found.front().camera_from_world);
   EXPECT_GT((most_alike.translation - truth.translation).norm(), 3.0);
   Session hinted = session_on(offline);
-  hinted.look_near({.map_from_body = truth * exp_pose((Vector6() << 0.5, 0.5, 0.0, 0.0, 0.0, 0.3).finished())});
+  hinted.set_initial_pose({.map_from_body = truth * exp_pose((Vector6() << 0.5, 0.5, 0.0, 0.0, 0.0, 0.3).finished())});
   const auto reports = reports_of(hinted, frames);
   ASSERT_TRUE(reports[0].map_from_body);
   EXPECT_THAT(*reports[0].map_from_body, PoseNear(truth, 0.05, kDegree));
@@ -202,7 +202,7 @@ TEST(Mission, LocalisesNearAHintDespiteAMoreSimilarPlace) {
 TEST(Mission, SearchesTheWholeMapAfterAWrongHint) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(1.0));
-  session.look_near(
+  session.set_initial_pose(
       {.map_from_body = mission.truth[kLapFrames / 2].world_from_body, .radius = 1.0, .turn = 1.0, .seconds = 1.0});
   const auto reports = reports_of(session, mission.frames);
   for (std::size_t i = 0; i < 10; ++i) EXPECT_FALSE(reports[i].map_from_body) << i;
@@ -250,7 +250,7 @@ TEST(Mission, LimitsStoredPosesWithoutChangingReports) {
 TEST(Mission, AddsFewKeyframesInAMappedPlace) {
   const SimulatedMission mission = circling(1.0, 2);
   Session on_map = session_on(mapped(1.0));
-  Session plain(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  Session plain(mission.rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary());
   const auto count_keyframes = [](const std::vector<FrameReport>& reports) {
     return std::ranges::count(reports, true, &FrameReport::keyframe_added);
   };
@@ -293,7 +293,7 @@ TEST(Mission, NeverTrustsTheMapOfAnotherBuilding) {
   EXPECT_EQ(count(reports, SessionEvent::navigation_error), 1);
   EXPECT_TRUE(reports.back().odometry_from_body);
   EXPECT_FALSE(reports.back().map_from_body);
-  EXPECT_EQ(reports.back().health.doubt, Doubt::not_registered);
+  EXPECT_EQ(reports.back().health.doubt, DistrustReason::not_registered);
   EXPECT_LT(worst_step(reports, mission.truth), 0.05);
   EXPECT_TRUE(session.final_trajectory().empty());
 }
@@ -361,7 +361,7 @@ struct BlindedDrive {
 };
 
 std::vector<FrameReport> reports_of(Session& session, const BlindedDrive& drive) {
-  session.hear({}, [](Timestamp, Timestamp) { return std::optional(100.0); });
+  session.set_odometry({}, [](Timestamp, Timestamp) { return std::optional(100.0); });
   std::vector<FrameReport> reports;
   for (std::size_t i = 0; i < drive.frames.size(); ++i) {
     std::optional<BodyMotion> motion;

@@ -37,7 +37,11 @@ SimulatedMission turning_in_place(const Rig& rig) {
 }
 
 Session session_of(const Rig& rig, std::shared_ptr<const OfflineMap> offline = nullptr) {
-  return {rig, {}, Lanes(make_inline_executor(), make_inline_executor()), simulated_vocabulary(), std::move(offline)};
+  return {rig,
+          {},
+          SessionExecutors(make_inline_executor(), make_inline_executor()),
+          simulated_vocabulary(),
+          std::move(offline)};
 }
 
 std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
@@ -106,7 +110,7 @@ TEST(Monocular, ClosesItsLoopsAndMovesItsFramesAlong) {
   SimulationOptions options = noisy_visit(2);
   options.landmarks = 5000;
   const SimulatedMission mission = simulate_mission(one_camera(), circling_trajectory(160, 10.0, 2.0, 1.33), options);
-  Session open(one_camera(), {}, Lanes(make_inline_executor()));
+  Session open(one_camera(), {}, SessionExecutors(make_inline_executor()));
   reports_of(open, mission.frames);
   open.finish();
   Session session = session_of(one_camera());

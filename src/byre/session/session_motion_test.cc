@@ -29,11 +29,12 @@ Frame dark(const Frame& frame, const Rig& rig) {
 }
 
 // Reports of a robot without features for an eighth of a lap.
-std::vector<FrameReport> fly(Session& session, const SimulatedMission& mission, bool is_told) {
+std::vector<FrameReport> fly(Session& session, const SimulatedMission& mission, bool has_odometry) {
   std::vector<FrameReport> reports;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     std::optional<BodyMotion> motion;
-    if (is_told && i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+    if (has_odometry && i > 0)
+      motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
     const bool is_dark = i >= kDark && i < kLight;
     reports.push_back(session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion));
   }
@@ -41,13 +42,13 @@ std::vector<FrameReport> fly(Session& session, const SimulatedMission& mission, 
 }
 
 // Same drive without relocalisation.
-std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool is_told, bool has_vocabulary) {
+std::vector<FrameReport> reports_of(const SimulatedMission& mission, bool has_odometry, bool has_vocabulary) {
   SessionOptions options;
   options.min_kept_share = 0.0;  // no fallback if the prediction is wrong
   options.relocalise.min_inliers = 1000000;
-  Session session(mission.rig, options, Lanes(make_inline_executor()),
+  Session session(mission.rig, options, SessionExecutors(make_inline_executor()),
                   has_vocabulary ? std::optional(simulated_vocabulary()) : std::nullopt);
-  return fly(session, mission, is_told);
+  return fly(session, mission, has_odometry);
 }
 
 double error_of(const FrameReport& report, const SimulatedMission& mission, std::size_t frame) {
@@ -58,34 +59,34 @@ double error_of(const FrameReport& report, const SimulatedMission& mission, std:
 TEST(MeasuredMotion, RelocalisesAfterTheDark) {
   const SimulatedMission mission = lap();
   for (const bool has_vocabulary : {true, false}) {
-    const std::vector<FrameReport> told = reports_of(mission, true, has_vocabulary);
+    const std::vector<FrameReport> odometry = reports_of(mission, true, has_vocabulary);
     const std::vector<FrameReport> untold = reports_of(mission, false, has_vocabulary);
-    ASSERT_TRUE(told[kLight].map_from_body);
-    EXPECT_NE(told[kLight].health.doubt, Doubt::bridged);
-    EXPECT_LT(error_of(told[kLight], mission, kLight), 0.05);
+    ASSERT_TRUE(odometry[kLight].map_from_body);
+    EXPECT_NE(odometry[kLight].health.doubt, DistrustReason::bridged);
+    EXPECT_LT(error_of(odometry[kLight], mission, kLight), 0.05);
     EXPECT_FALSE(untold[kLight].map_from_body && error_of(untold[kLight], mission, kLight) < 0.05);
   }
 }
 
 TEST(MeasuredMotion, PropagatesInTheDarkWithGrowingCovariance) {
   const SimulatedMission mission = lap();
-  const std::vector<FrameReport> told = reports_of(mission, true, true);
+  const std::vector<FrameReport> odometry = reports_of(mission, true, true);
   const std::vector<FrameReport> untold = reports_of(mission, false, true);
-  double sigma = told[kDark - 1].health.position_sigma;
+  double sigma = odometry[kDark - 1].health.position_sigma;
   for (std::size_t i = kDark; i < kLight; ++i) {
-    ASSERT_TRUE(told[i].map_from_body && told[i].odometry_from_body) << i;
+    ASSERT_TRUE(odometry[i].map_from_body && odometry[i].odometry_from_body) << i;
     EXPECT_FALSE(untold[i].map_from_body) << i;
-    EXPECT_LT(error_of(told[i], mission, i), 0.02) << i;
-    EXPECT_EQ(told[i].health.doubt, Doubt::bridged) << i;
-    EXPECT_NE(told[i].health.verdict, Verdict::trusted) << i;
-    EXPECT_GT(told[i].health.position_sigma, sigma) << i;
-    sigma = told[i].health.position_sigma;
+    EXPECT_LT(error_of(odometry[i], mission, i), 0.02) << i;
+    EXPECT_EQ(odometry[i].health.doubt, DistrustReason::bridged) << i;
+    EXPECT_NE(odometry[i].health.verdict, Verdict::trusted) << i;
+    EXPECT_GT(odometry[i].health.position_sigma, sigma) << i;
+    sigma = odometry[i].health.position_sigma;
   }
 }
 
 TEST(MeasuredMotion, KeepsBridgedPosesInTheTrajectory) {
   const SimulatedMission mission = lap();
-  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary());
   fly(session, mission, true);
   session.finish();
   EXPECT_EQ(session.final_trajectory().size(), mission.frames.size());
@@ -95,7 +96,7 @@ TEST(MeasuredMotion, BridgesWhileTheTrajectoryIsThinned) {
   const SimulatedMission mission = lap();
   SessionOptions options;
   options.trajectory.max_poses = 16;
-  Session session(mission.rig, options, Lanes(make_inline_executor()), simulated_vocabulary());
+  Session session(mission.rig, options, SessionExecutors(make_inline_executor()), simulated_vocabulary());
   fly(session, mission, true);
   session.finish();
   const Trajectory kept = session.final_trajectory();
@@ -110,7 +111,7 @@ TEST(MeasuredMotion, BridgesWhileTheTrajectoryIsThinned) {
 
 TEST(MeasuredMotion, EndsABridgeAtAGap) {
   const SimulatedMission mission = lap();
-  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary());
   for (std::size_t i = 0; i < kLight; ++i) {
     std::optional<BodyMotion> motion;
     if (i > 0 && i != kDark + 4) {
@@ -129,30 +130,31 @@ TEST(MeasuredMotion, JoinsANewSubmapToTheMap) {
   SessionOptions options;
   options.relocalise.min_inliers = 1000000;
   options.min_kept_share = 0.0;
-  for (const bool is_told : {true, false}) {
-    Session session(mission.rig, options, Lanes(make_inline_executor()), simulated_vocabulary());
+  for (const bool has_odometry : {true, false}) {
+    Session session(mission.rig, options, SessionExecutors(make_inline_executor()), simulated_vocabulary());
     FrameReport report;
     for (std::size_t i = 0; i < mission.frames.size(); ++i) {
       std::optional<BodyMotion> motion;
-      if (is_told && i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+      if (has_odometry && i > 0)
+        motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
       const bool is_dark = i >= kDark && i < kDark + kLongDark;
       report = session.process(is_dark ? dark(mission.frames[i], mission.rig) : mission.frames[i], motion);
     }
-    const bool is_joined = report.map_from_body && report.health.doubt != Doubt::bridged &&
+    const bool is_joined = report.map_from_body && report.health.doubt != DistrustReason::bridged &&
                            error_of(report, mission, mission.frames.size() - 1) < 0.1;
-    EXPECT_EQ(is_joined, is_told);
+    EXPECT_EQ(is_joined, has_odometry);
   }
 }
 
 TEST(MeasuredMotion, RejectsAPlaceBeyondTheReachOfWheels) {
   const SimulatedMission mission = lap();
-  for (const bool is_told : {true, false}) {
-    Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
-    if (is_told) session.hear({}, [](Timestamp, Timestamp) { return std::optional(0.5); });
+  for (const bool has_odometry : {true, false}) {
+    Session session(mission.rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary());
+    if (has_odometry) session.set_odometry({}, [](Timestamp, Timestamp) { return std::optional(0.5); });
     for (std::size_t i = 0; i < kDark; ++i) EXPECT_TRUE(session.process(mission.frames[i]).map_from_body) << i;
     Frame elsewhere = mission.frames[2];
     elsewhere.time = mission.frames[kDark].time;
-    EXPECT_EQ(session.process(elsewhere).map_from_body.has_value(), !is_told);
+    EXPECT_EQ(session.process(elsewhere).map_from_body.has_value(), !has_odometry);
     EXPECT_TRUE(session.process(mission.frames[kDark + 1]).map_from_body);
   }
 }
@@ -161,7 +163,8 @@ TEST(MeasuredMotion, RejectsAPlaceBeyondTheReachOfWheels) {
 double metres_per_unit(const std::vector<FrameReport>& reports, const SimulatedMission& mission) {
   double seen = 0.0, true_way = 0.0;
   for (std::size_t i = 1; i < reports.size(); ++i) {
-    if (!reports[i - 1].map_from_body || !reports[i].map_from_body || reports[i].health.doubt == Doubt::bridged)
+    if (!reports[i - 1].map_from_body || !reports[i].map_from_body ||
+        reports[i].health.doubt == DistrustReason::bridged)
       continue;
     seen += (inverse(*reports[i - 1].map_from_body) * *reports[i].map_from_body).translation.norm();
     true_way +=
@@ -186,7 +189,7 @@ TEST(MeasuredMotion, StartsANewMonocularSubmap) {
   SessionOptions options;
   options.relocalise.min_inliers = 1000000;
   options.min_kept_share = 0.0;
-  Session session(rig, options, Lanes(make_inline_executor()), simulated_vocabulary());
+  Session session(rig, options, SessionExecutors(make_inline_executor()), simulated_vocabulary());
   std::vector<FrameReport> reports;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
     std::optional<BodyMotion> motion;
@@ -199,7 +202,7 @@ TEST(MeasuredMotion, StartsANewMonocularSubmap) {
     reports.push_back(session.process(is_dark ? dark(mission.frames[i], rig) : mission.frames[i], motion));
   }
   EXPECT_TRUE(std::ranges::any_of(reports, [](const FrameReport& r) { return r.has(SessionEvent::restarted); }));
-  EXPECT_NE(reports.back().health.doubt, Doubt::bridged);
+  EXPECT_NE(reports.back().health.doubt, DistrustReason::bridged);
   session.finish();
   const auto error = absolute_trajectory_error(associate(session.final_trajectory(), mission.truth, {}), Scale::free);
   ASSERT_TRUE(error);
@@ -211,12 +214,13 @@ TEST(MeasuredMotion, StartsANewMonocularSubmap) {
 TEST(MeasuredMotion, PropagatesOneCameraUntilItsMapStarts) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;
-  for (const bool is_told : {true, false}) {
-    Session session(rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  for (const bool has_odometry : {true, false}) {
+    Session session(rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary());
     std::vector<FrameReport> reports;
     for (std::size_t i = 0; i < mission.frames.size(); ++i) {
       std::optional<BodyMotion> motion;
-      if (is_told && i > 0) motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
+      if (has_odometry && i > 0)
+        motion = inverse(mission.truth[i - 1].world_from_body) * mission.truth[i].world_from_body;
       reports.push_back(session.process(mission.frames[i], motion));
     }
     const auto begun = std::ranges::find_if(reports, [](const auto& r) { return r.has(SessionEvent::initialised); });
@@ -224,10 +228,10 @@ TEST(MeasuredMotion, PropagatesOneCameraUntilItsMapStarts) {
     ASSERT_GT(begun - reports.begin(), 3);
     for (std::size_t i = 1; i < reports.size(); ++i) {
       const bool is_before = i < static_cast<std::size_t>(begun - reports.begin());
-      EXPECT_EQ(reports[i].map_from_body.has_value(), is_told || !is_before) << i;
-      EXPECT_EQ(reports[i].health.doubt == Doubt::bridged, is_told && is_before) << i;
+      EXPECT_EQ(reports[i].map_from_body.has_value(), has_odometry || !is_before) << i;
+      EXPECT_EQ(reports[i].health.doubt == DistrustReason::bridged, has_odometry && is_before) << i;
       EXPECT_EQ(reports[i].state == State::initialising, is_before) << i;
-      if (!is_told) continue;
+      if (!has_odometry) continue;
       EXPECT_LT(error_of(reports[i], mission, i), 0.05) << i << ", in metres from the first frame on";
     }
   }
@@ -236,7 +240,7 @@ TEST(MeasuredMotion, PropagatesOneCameraUntilItsMapStarts) {
 // A gap in the measured motion makes the pose relative to the first frame unknown.
 TEST(MeasuredMotion, DoesNotPropagateAcrossAGapBeforeTheMapStarts) {
   const SimulatedMission mission = lap();
-  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary());
   constexpr std::size_t kUntold = 5, kSeen = 8;
   for (std::size_t i = 0; i <= kSeen; ++i) {
     std::optional<BodyMotion> motion;
@@ -255,7 +259,7 @@ TEST(MeasuredMotion, DoesNotPropagateAcrossAGapBeforeTheMapStarts) {
 
 TEST(MeasuredMotion, StartsAStereoMapAfterADarkStart) {
   const SimulatedMission mission = lap();
-  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary());
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary());
   constexpr std::size_t kSeen = 8;
   for (std::size_t i = 0; i < kSeen + 5; ++i) {
     std::optional<BodyMotion> motion;
@@ -275,7 +279,7 @@ TEST(MeasuredMotion, KeepsATrackedPoseDespiteWrongMotion) {
   const SimulatedMission mission = lap();
   for (const bool has_vocabulary : {true, false}) {
     for (const double metres : {-2.7, 1.0, 30.0}) {
-      Session session(mission.rig, {}, Lanes(make_inline_executor()),
+      Session session(mission.rig, {}, SessionExecutors(make_inline_executor()),
                       has_vocabulary ? std::optional(simulated_vocabulary()) : std::nullopt);
       for (std::size_t i = 0; i < mission.frames.size(); ++i) {
         std::optional<BodyMotion> motion;
@@ -287,7 +291,7 @@ TEST(MeasuredMotion, KeepsATrackedPoseDespiteWrongMotion) {
         const FrameReport report = session.process(mission.frames[i], motion);
         ASSERT_TRUE(report.map_from_body) << i << " " << metres;
         EXPECT_FALSE(report.has(SessionEvent::pose_lost)) << i << " " << metres;
-        EXPECT_NE(report.health.doubt, Doubt::bridged) << i << " " << metres;
+        EXPECT_NE(report.health.doubt, DistrustReason::bridged) << i << " " << metres;
         EXPECT_LT(error_of(report, mission, i), 0.05) << i << " " << metres;
       }
     }
@@ -297,8 +301,8 @@ TEST(MeasuredMotion, KeepsATrackedPoseDespiteWrongMotion) {
 // After a dark stretch the odometry keeps the uncertainty of the measured motion.
 TEST(MeasuredMotion, KeepsItsUncertaintyInTheOdometryAfterTheDark) {
   const SimulatedMission mission = lap();
-  const std::vector<FrameReport> told = reports_of(mission, true, true);
-  const auto variance = [&](std::size_t i) { return told[i].odometry_covariance.topLeftCorner<3, 3>().trace(); };
+  const std::vector<FrameReport> odometry = reports_of(mission, true, true);
+  const auto variance = [&](std::size_t i) { return odometry[i].odometry_covariance.topLeftCorner<3, 3>().trace(); };
   EXPECT_GT(variance(kLight), 0.5 * variance(kLight - 1));
   EXPECT_GT(variance(kLight + 5), 0.5 * variance(kLight - 1));
 }

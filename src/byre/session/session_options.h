@@ -4,8 +4,8 @@
 #include "byre/localisation/mission.h"
 #include "byre/mapping/anchored_trajectory.h"
 #include "byre/mapping/mapper_options.h"
+#include "byre/slam/deferred_refinement.h"
 #include "byre/slam/health.h"
-#include "byre/slam/hindsight.h"
 #include "byre/slam/keyframes.h"
 #include "byre/slam/localisation.h"
 #include "byre/slam/state.h"
@@ -34,7 +34,7 @@ struct SessionOptions {
   HealthOptions health;
   ImageConditionOptions image;
   StateOptions state;
-  HindsightOptions hindsight;
+  DeferredRefinementOptions deferred_refinement;
   TrajectoryOptions trajectory;
 };
 

@@ -27,15 +27,16 @@ RefinedCalibration given() {
   return calibration;
 }
 
-struct ShutterOutcome {
+struct RollingShutterOutcome {
   double error = 0.0;  // metres, root mean square over the second half
   double readout_time = 0.0;
 };
 
 // A mission on the map of another visit, or SLAM aligned with the truth.
-ShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refined) {
+RollingShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, bool is_refined) {
   static const std::shared_ptr<const OfflineMap> offline = offline_map_of(visit_by_rolling_shutter(1));
-  Session session(mission.rig, {}, Lanes(make_inline_executor()), simulated_vocabulary(), has_map ? offline : nullptr);
+  Session session(mission.rig, {}, SessionExecutors(make_inline_executor()), simulated_vocabulary(),
+                  has_map ? offline : nullptr);
   if (is_refined) session.refine_readout(given());
   std::vector<Eigen::Vector3d> estimated, truth;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {
@@ -44,7 +45,7 @@ ShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, bool is
     estimated.push_back(report.map_from_body->translation);
     truth.push_back(mission.truth[i].world_from_body.translation);
   }
-  ShutterOutcome outcome;
+  RollingShutterOutcome outcome;
   if (const auto calibration = session.self_calibration()) outcome.readout_time = calibration->calibration.readout_time;
   const Similarity truth_from_map = has_map ? Similarity{} : align(estimated, truth, Scale::fixed).value();
   for (std::size_t i = 0; i < truth.size(); ++i)
@@ -55,15 +56,15 @@ ShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, bool is
 
 TEST(SessionShutter, EstimatesTheReadoutTimeInAMission) {
   const SimulatedMission mission = rolling(visit_by_rolling_shutter(2), kReadoutTime);
-  const ShutterOutcome refined = outcome_of(mission, true, true), as_given = outcome_of(mission, true, false);
+  const RollingShutterOutcome refined = outcome_of(mission, true, true), as_given = outcome_of(mission, true, false);
   EXPECT_NEAR(refined.readout_time, kReadoutTime, 2e-3);
   EXPECT_LT(refined.error, 0.5 * as_given.error);
 }
 
 TEST(SessionShutter, IsZeroForAGlobalShutter) {
   for (const bool has_map : {true, false}) {
-    const ShutterOutcome refined = outcome_of(visit_by_rolling_shutter(2), has_map, true),
-                         as_given = outcome_of(visit_by_rolling_shutter(2), has_map, false);
+    const RollingShutterOutcome refined = outcome_of(visit_by_rolling_shutter(2), has_map, true),
+                                as_given = outcome_of(visit_by_rolling_shutter(2), has_map, false);
     EXPECT_EQ(refined.readout_time, 0.0);
     EXPECT_EQ(refined.error, as_given.error);
   }

@@ -44,7 +44,7 @@ bool Tracker::is_usable(const std::optional<KeyframeId>& reference, const Mapper
          mapper.submaps().is_in_present_frame(*reference);
 }
 
-const ReusedVector<PointId>& Tracker::points_around_reference(const Mapper& mapper) {
+const ScratchVector<PointId>& Tracker::points_around_reference(const Mapper& mapper) {
   if (online_.keyframe && online_.keyframe == reference_ && online_.revision == mapper.revision()) {
     return online_.points;
   }
@@ -54,7 +54,7 @@ const ReusedVector<PointId>& Tracker::points_around_reference(const Mapper& mapp
   return online_.points;
 }
 
-const ReusedVector<PointId>& Tracker::offline_points_around(const Pose& predicted, const Mission& mission) {
+const ScratchVector<PointId>& Tracker::offline_points_around(const Pose& predicted, const Mission& mission) {
   const std::optional<KeyframeId> around = mission.keyframe_near(predicted);
   if (around == offline_.keyframe) return offline_.points;
   const Map nothing_online(Origin::online);
@@ -65,10 +65,10 @@ const ReusedVector<PointId>& Tracker::offline_points_around(const Pose& predicte
 }
 
 // Few online points if time is short; none if offline points constrain the pose.
-const ReusedVector<PointId>& Tracker::online_points(const Scene& scene) {
+const ScratchVector<PointId>& Tracker::online_points(const Scene& scene) {
   if (!scene.is_pressed) return points_around_reference(scene.mapper);
   few_.clear();
-  const bool is_held = scene.mission && scene.is_place_proven && scene.mapper.submaps().is_registered() &&
+  const bool is_held = scene.mission && scene.is_place_accepted && scene.mapper.submaps().is_registered() &&
                        scene.mission->view() == OfflineView::held;
   if (is_held || !reference_) return few_;
   constexpr int kFewKeyframes = 4;
@@ -79,7 +79,7 @@ const ReusedVector<PointId>& Tracker::online_points(const Scene& scene) {
 
 std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
                                                const HybridLimits& limits) {
-  const ReusedVector<PointId>& online = online_points(scene);
+  const ScratchVector<PointId>& online = online_points(scene);
   const MapView map = scene.mapper.map();
   TrackOptions options = options_.track;
   options.hidden = scene.hidden;
@@ -92,7 +92,7 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
     scene.mission->append_candidates(offline_points_around(predicted, *scene.mission), candidates_);
   }
   candidates_.insert(candidates_.end(), online.begin(), online.end());
-  return track_hybrid(frame, predicted, scene.rig, map, candidates_, options, limits, scene.weigh_focal_lengths);
+  return track_hybrid(frame, predicted, scene.rig, map, candidates_, options, limits, scene.compare_focal_lengths);
 }
 
 std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene, const LastPose& last,
@@ -101,7 +101,7 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   if (!is_usable(reference_, scene.mapper)) reference_ = newest;
   const double seconds = to_seconds(frame.time - last.time);
   const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
-  const bool is_limited = scene.mission && scene.is_place_proven;
+  const bool is_limited = scene.mission && scene.is_place_accepted;
   HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
   const auto track_around = [&](const Pose& pose) {
     HybridLimits held = limits;
@@ -113,7 +113,8 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   // A sudden loss of matches may be due to a wrong prediction: try others.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
   // Faulty wheels must not lose a pose: the camera's own velocity is tried, then the last pose.
-  const auto by_velocity = motion.told() ? motion.predict_by_velocity(last.camera_from_world, seconds) : std::nullopt;
+  const auto by_velocity =
+      motion.measured() ? motion.predict_by_velocity(last.camera_from_world, seconds) : std::nullopt;
   for (const std::optional<Pose>& pose :
        {by_velocity, by_velocity ? std::optional(last.camera_from_world) : by_velocity}) {
     if (!pose || static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) break;
@@ -135,7 +136,7 @@ Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
   Find result;
   if (scene.mission) {
     const auto [found, refused] =
-        localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint, scene.way, scene.hidden},
+        localise_in(scene.mission->offline(), {frame, scene.rig, scene.hint, scene.reach, scene.hidden},
                     {options_.relocalise, options_.mission.bounds});
     for (const TrackedFrame& place : found.places_found) result.places.push_back(found_in(Origin::offline, place));
     if (!result.places.empty()) return result;
@@ -153,7 +154,7 @@ Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
 }
 
 bool Tracker::is_doubtful(const HybridTrack& track, const Scene& scene) const {
-  return reason_to_doubt(track.tracked, scene.rig, scene.mapper.map(), options_.relocalise) !=
+  return rejection_reason(track.tracked, scene.rig, scene.mapper.map(), options_.relocalise) !=
          LocalisationFailure::none;
 }
 

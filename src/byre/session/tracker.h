@@ -30,14 +30,14 @@ class Tracker {
   struct Scene {
     const Rig& rig;
     const Mapper& mapper;
-    const Mission* mission = nullptr;       // nullptr without an offline map
-    bool weigh_focal_lengths = false;       // see FocalCheck
-    std::optional<PoseHint> hint{};         // limits localisation in the offline map
-    bool is_place_proven = false;           // limits the pose from offline points
-    std::optional<PlaceBounds::Way> way{};  // motion since the last trusted pose
-    const DrivenGround* ground = nullptr;   // ground that constrains the body; nullptr: none
-    bool is_pressed = false;                // few online points are matched, see FrameCuts
-    HiddenCells hidden{};                   // image cells without expected points
+    const Mission* mission = nullptr;           // nullptr without an offline map
+    bool compare_focal_lengths = false;         // see FocalCheck
+    std::optional<PoseHint> hint{};             // limits localisation in the offline map
+    bool is_place_accepted = false;             // limits the pose from offline points
+    std::optional<PlaceBounds::Reach> reach{};  // motion since the last trusted pose
+    const DrivenGround* ground = nullptr;       // ground that constrains the body; nullptr: none
+    bool is_pressed = false;                    // few online points are matched, see FrameCuts
+    ImageMask hidden{};                         // image cells without expected points
   };
   // The last frame that had a pose.
   struct LastPose {
@@ -52,7 +52,7 @@ class Tracker {
   struct Find {
     // Places that show the frame, most inliers first. Online or offline by their references; several only offline.
     std::vector<HybridTrack> places;
-    Doubt refused = Doubt::none;  // why a place that shows the frame was rejected
+    DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
   };
   // Localises in all of the maps, the offline one first.
   Find find(const Frame& frame, const Scene& scene) const;
@@ -64,20 +64,20 @@ class Tracker {
   // The frame has become a keyframe.
   void restart_from(KeyframeId newest) { reference_ = newest; }
   // Offline points around the last prediction, suspended points included.
-  const ReusedVector<PointId>& offline_points() const { return offline_.points; }
+  const ScratchVector<PointId>& offline_points() const { return offline_.points; }
 
  private:
   // Points around a keyframe, cached until the keyframe or the map changes.
   struct PointsAround {
     std::optional<KeyframeId> keyframe;
     int revision = 0;  // revision of the map
-    ReusedVector<PointId> points;
+    ScratchVector<PointId> points;
   };
 
   bool is_usable(const std::optional<KeyframeId>& reference, const Mapper& mapper) const;
-  const ReusedVector<PointId>& points_around_reference(const Mapper& mapper);
-  const ReusedVector<PointId>& online_points(const Scene& scene);
-  const ReusedVector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
+  const ScratchVector<PointId>& points_around_reference(const Mapper& mapper);
+  const ScratchVector<PointId>& online_points(const Scene& scene);
+  const ScratchVector<PointId>& offline_points_around(const Pose& predicted, const Mission& mission);
   std::optional<HybridTrack> track_from(const Frame& frame, const Scene& scene, const Pose& predicted,
                                         const HybridLimits& limits);
 
@@ -87,8 +87,8 @@ class Tracker {
   int last_inliers_ = 0;                 // inliers of the last tracked frame
   PointsAround online_;
   PointsAround offline_;
-  ReusedVector<PointId> few_;         // online points matched if time is short
-  ReusedVector<PointId> candidates_;  // buffer
+  ScratchVector<PointId> few_;         // online points matched if time is short
+  ScratchVector<PointId> candidates_;  // buffer
 };
 
 }  // namespace byre

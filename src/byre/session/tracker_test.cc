@@ -27,8 +27,8 @@ class TrackerOnAMap : public ::testing::Test {
   // Motion up to a frame.
   MotionModel motion_to(std::size_t frame) const {
     MotionModel motion;
-    motion.reach(log_pose(true_pose(frame) * inverse(true_pose(frame - 1))) / 0.1);
-    motion.tell({});
+    motion.set_velocity(log_pose(true_pose(frame) * inverse(true_pose(frame - 1))) / 0.1);
+    motion.add_odometry({});
     return motion;
   }
 };
@@ -55,7 +55,7 @@ TEST_F(TrackerOnAMap, TracksWithoutPredictionAfterAWrongOne) {
   ASSERT_TRUE(before);
   tracker_.note(*before);
   MotionModel astray;
-  astray.tell(Pose{rotation_exp({0.0, 0.0, 0.6}), {0.5, 0.5, 0.0}});
+  astray.add_odometry(Pose{rotation_exp({0.0, 0.0, 0.6}), {0.5, 0.5, 0.0}});
   const auto track = tracker_.track(mission_.frames[2], scene(), last(1), astray);
   ASSERT_TRUE(track);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(true_pose(2), 0.02, 0.01));

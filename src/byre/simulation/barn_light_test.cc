@@ -13,7 +13,7 @@ using Eigen::Vector3f;
 QuadMesh floor_with_wall() {
   QuadMesh mesh;
   add_panel(mesh, {-2.0f, -2.0f, 0.0f}, {4.0f, 0.0f, 0.0f}, {0.0f, 4.0f, 0.0f}, {});
-  add_box(mesh, placed({0.0f, 0.0f, 1.0f}), {0.05f, 2.0f, 1.0f}, {});
+  add_box(mesh, make_isometry({0.0f, 0.0f, 1.0f}), {0.05f, 2.0f, 1.0f}, {});
   return mesh;
 }
 
@@ -66,7 +66,7 @@ TEST(LitMesh, MapsItsPictureToEachFacet) {
   QuadMesh mesh;
   const Vector3f right = Vector3f(1.0f, 2.0f, 0.5f).normalized();
   const Vector3f up = right.cross(Vector3f(0.3f, -0.2f, 1.0f)).normalized();
-  add_panel(mesh, {1.0f, 1.0f, 1.0f}, 2.0f * right, up, {.picture_width = 0.5f});
+  add_panel(mesh, {1.0f, 1.0f, 1.0f}, 2.0f * right, up, {.texture_width = 0.5f});
   const LitMesh lit(mesh, std::vector<float>(mesh.vertices.size(), 0.7f), 0);
   for (unsigned i = 0; i < mesh.quads.size(); ++i) {
     EXPECT_LT((lit.facet(i).u_slope - 2.0f * right).norm(), 1e-4f);

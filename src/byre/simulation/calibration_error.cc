@@ -54,8 +54,8 @@ Camera perturbed(Camera camera, const CameraError& error) {
 CalibrationError draw_calibration_error(double level, std::uint64_t seed) {
   NormalDraws normal(level, seed);
   CalibrationError error{draw_camera_error(normal), draw_camera_error(normal)};
-  for (double& radians : error.right_turned) radians = normal(kTurnSigma);
-  for (double& metres : error.right_moved) metres = normal(kMoveSigma);
+  for (double& radians : error.right_rotation) radians = normal(kTurnSigma);
+  for (double& metres : error.right_translation) metres = normal(kMoveSigma);
   return error;
 }
 
@@ -63,9 +63,9 @@ Calibration perturbed(const Calibration& calibration, const CalibrationError& er
   Calibration result = calibration;
   result.left = perturbed(calibration.left, error.left);
   if (calibration.right) {
-    const Pose true_from_told{rotation_exp(error.right_turned), error.right_moved};  // right camera's frames
+    const Pose true_from_nominal{rotation_exp(error.right_rotation), error.right_translation};  // right camera's frames
     result.right = StereoPartner{perturbed(calibration.right->camera, error.right),
-                                 inverse(true_from_told) * calibration.right->right_from_left};
+                                 inverse(true_from_nominal) * calibration.right->right_from_left};
   }
   return result;
 }

@@ -16,8 +16,8 @@ struct CameraError {
 struct CalibrationError {
   CameraError left;
   CameraError right;
-  Eigen::Vector3d right_turned = Eigen::Vector3d::Zero();  // radians about the right camera's axes
-  Eigen::Vector3d right_moved = Eigen::Vector3d::Zero();   // metres along the right camera's axes
+  Eigen::Vector3d right_rotation = Eigen::Vector3d::Zero();     // radians about the right camera's axes
+  Eigen::Vector3d right_translation = Eigen::Vector3d::Zero();  // metres along the right camera's axes
 };
 
 // Draws a typical calibration error from normal distributions. Standard deviations at level 1, a good calibration (0.1

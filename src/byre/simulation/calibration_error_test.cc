@@ -34,7 +34,7 @@ TEST(CalibrationError, IsZeroAtLevelZero) {
   EXPECT_EQ(told.left.fx, calibration.left.fx);
   EXPECT_EQ(told.left.distortion, calibration.left.distortion);
   EXPECT_EQ(told.right->right_from_left.rotation.coeffs(), calibration.right->right_from_left.rotation.coeffs());
-  EXPECT_EQ(draw_calibration_error(0.0, 7).right_turned.norm(), 0.0);
+  EXPECT_EQ(draw_calibration_error(0.0, 7).right_rotation.norm(), 0.0);
 }
 
 TEST(CalibrationError, HasTheStandardDeviationsOfItsLevel) {
@@ -47,18 +47,18 @@ TEST(CalibrationError, HasTheStandardDeviationsOfItsLevel) {
   expect_sigma(0.15, [](const CalibrationError& error) { return error.right.centre.y(); });
   expect_sigma(1e-3, [](const CalibrationError& error) { return error.left.distortion[1]; });
   expect_sigma(1e-4, [](const CalibrationError& error) { return error.right.distortion[3]; });
-  expect_sigma(0.01 * std::numbers::pi / 180.0, [](const CalibrationError& error) { return error.right_turned.z(); });
-  expect_sigma(1e-4, [](const CalibrationError& error) { return error.right_moved.x(); });
+  expect_sigma(0.01 * std::numbers::pi / 180.0, [](const CalibrationError& error) { return error.right_rotation.z(); });
+  expect_sigma(1e-4, [](const CalibrationError& error) { return error.right_translation.x(); });
 }
 
 TEST(CalibrationError, IsDeterministicAndProportionalToItsLevel) {
   const CalibrationError good = draw_calibration_error(1.0, 5), again = draw_calibration_error(1.0, 5);
   const CalibrationError worn = draw_calibration_error(3.0, 5), other = draw_calibration_error(1.0, 6);
   EXPECT_EQ(good.left.focal, again.left.focal);
-  EXPECT_EQ(good.right_turned, again.right_turned);
+  EXPECT_EQ(good.right_rotation, again.right_rotation);
   EXPECT_NE(good.left.focal, other.left.focal);
   EXPECT_NEAR(worn.left.focal, 3.0 * good.left.focal, 1e-15);
-  EXPECT_THAT(worn.right_turned, PointNear(Eigen::Vector3d(3.0 * good.right_turned), 1e-15));
+  EXPECT_THAT(worn.right_rotation, PointNear(Eigen::Vector3d(3.0 * good.right_rotation), 1e-15));
 }
 
 TEST(CalibrationError, IsTheSameInAllRecordingsOfARobot) {
@@ -69,9 +69,10 @@ TEST(CalibrationError, IsTheSameInAllRecordingsOfARobot) {
     EXPECT_NEAR(told.left.fy / calibration.left.fy, 1.0 + error.left.focal, 1e-12);
     EXPECT_NEAR(told.right->camera.cx - calibration.right->camera.cx, error.right.centre.x(), 1e-12);
     EXPECT_NEAR(told.left.distortion[0] - calibration.left.distortion[0], error.left.distortion[0], 1e-12);
-    const Pose true_from_told =
+    const Pose true_from_nominal =
         calibration.right->right_from_left * inverse(told.right->right_from_left);  // right camera's frames
-    EXPECT_THAT(true_from_told, PoseNear(Pose{rotation_exp(error.right_turned), error.right_moved}, 1e-12, 1e-12));
+    EXPECT_THAT(true_from_nominal,
+                PoseNear(Pose{rotation_exp(error.right_rotation), error.right_translation}, 1e-12, 1e-12));
     EXPECT_THAT(told.body_from_left, PoseNear(calibration.body_from_left, 1e-12, 1e-12));
   }
 }

@@ -53,7 +53,7 @@ CameraImperfection imperfection_of(CameraCondition condition) {
   return imperfection;
 }
 
-void require_sensible(const CameraImperfection& imperfection) {
+void require_valid(const CameraImperfection& imperfection) {
   const auto require = [](bool holds, const char* reason) {
     if (!holds) throw InputError("simulated camera", reason);
   };
@@ -75,7 +75,7 @@ LensBlurOptions lens_blur_of(const CameraImperfection& imperfection, StereoSide 
   return {1.5f * sigma, {-0.07f, 0.02f}};
 }
 
-Image jpeg_kept(const Image& image, int quality) {
+Image jpeg_compressed(const Image& image, int quality) {
   assert(quality >= 1 && quality <= 100);
   cv::Mat pixels(image.height, image.width, CV_8UC1);
   std::ranges::copy(image.pixels, pixels.data);

@@ -32,13 +32,13 @@ std::optional<CameraCondition> camera_condition_of(std::string_view name);  // e
 CameraImperfection imperfection_of(CameraCondition condition);
 
 // Throws InputError for values out of range.
-void require_sensible(const CameraImperfection& imperfection);
+void require_valid(const CameraImperfection& imperfection);
 
 // The right lens blurs 1.5 times as much as the left one and is sharpest elsewhere.
 enum class StereoSide : std::uint8_t { left, right };
 LensBlurOptions lens_blur_of(const CameraImperfection& imperfection, StereoSide side);
 
 // JPEG round trip of an image; quality 1 to 100.
-Image jpeg_kept(const Image& image, int quality);
+Image jpeg_compressed(const Image& image, int quality);
 
 }  // namespace byre

@@ -20,7 +20,7 @@ TEST(CameraImperfection, GrowsFromExactOverGoodToWorn) {
   EXPECT_EQ(exact.lens_blur, 0.0);
   EXPECT_LT(good.lens_blur, worn.lens_blur);
   EXPECT_LT(good.gain, worn.gain);
-  for (const CameraImperfection& imperfection : {exact, good, worn}) require_sensible(imperfection);
+  for (const CameraImperfection& imperfection : {exact, good, worn}) require_valid(imperfection);
 }
 
 TEST(CameraImperfection, HasConditionsWithNames) {
@@ -34,7 +34,7 @@ TEST(CameraImperfection, RejectsInvalidValues) {
   const auto refused = [](const std::function<void(CameraImperfection&)>& change) {
     CameraImperfection imperfection;
     change(imperfection);
-    EXPECT_THROW(require_sensible(imperfection), InputError);
+    EXPECT_THROW(require_valid(imperfection), InputError);
   };
   refused([](CameraImperfection& camera) { camera.calibration_level = -1.0; });
   refused([](CameraImperfection& camera) { camera.rolling_shutter_s = 0.5; });
@@ -60,9 +60,9 @@ TEST(JpegKept, DegradesWithLowerQuality) {
   Image image{64, 48, {}};
   for (int i = 0; i < 64 * 48; ++i) image.pixels.push_back(static_cast<std::uint8_t>((i * 37 + i / 64 * 91) % 200));
   const auto loss = [&](int quality) {
-    const Image kept = jpeg_kept(image, quality);
+    const Image kept = jpeg_compressed(image, quality);
     EXPECT_EQ(kept.width, image.width);
-    EXPECT_EQ(kept.pixels, jpeg_kept(image, quality).pixels);
+    EXPECT_EQ(kept.pixels, jpeg_compressed(image, quality).pixels);
     double sum = 0.0;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) sum += std::abs(int{kept.pixels[i]} - int{image.pixels[i]});
     return sum / static_cast<double>(image.pixels.size());

@@ -41,8 +41,8 @@ Cowshed build_cowshed(const CowshedOptions& options) {
   add_fittings(barn, options.seed);
   add_lamps(barn, time);
   add_feed(barn, options);
-  barn.things = things_of(options);
-  for (const MovableThing& thing : barn.things) add_thing(barn.still, thing);
+  barn.objects = make_objects(options);
+  for (const MovableObject& object : barn.objects) add_object(barn.still, object);
   barn.cows = cows_of(options, options.cows.value_or(options.mission == 1 ? 3 : 8));
   return barn;
 }

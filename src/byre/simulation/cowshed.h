@@ -18,7 +18,7 @@ enum class BarnGate : std::uint8_t { closed, open };  // gate of the feed store,
 struct CowshedOptions {
   std::uint64_t seed = 1;          // draws the building
   int mission = 1;                 // from 1; draws the changes between visits
-  double change = 0.25;            // share of movable things that later missions find moved
+  double change = 0.25;            // share of movable objects that later missions find moved
   std::optional<BarnTime> time{};  // empty: day, in even missions dusk
   std::optional<int> cows{};       // empty: 3 in the first mission, 8 in later ones
   std::optional<BarnGate> gate{};  // empty: closed in the first mission, open in later ones
@@ -50,11 +50,11 @@ struct NamedPoint {
   Eigen::Vector3d point_in_world;
 };
 
-enum class ThingKind : std::uint8_t { bucket, wheelbarrow, pallet, broom, bale, crate };
-inline constexpr int kThingKinds = 6;
+enum class ObjectKind : std::uint8_t { bucket, wheelbarrow, pallet, broom, bale, crate };
+inline constexpr int kObjectKinds = 6;
 
-struct MovableThing {
-  ThingKind kind = ThingKind::bucket;
+struct MovableObject {
+  ObjectKind kind = ObjectKind::bucket;
   Eigen::Vector3f position;  // position of its foot in the world
   float yaw = 0.0f;          // radians
 };
@@ -76,7 +76,7 @@ struct Cowshed {
   Air air;
   std::vector<PlanOutline> outlines;
   std::vector<NamedPoint> marks;
-  std::vector<MovableThing> things;
+  std::vector<MovableObject> objects;
   std::vector<Cow> cows;
 };
 

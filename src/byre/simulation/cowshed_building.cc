@@ -17,18 +17,18 @@ constexpr float kCurbInside = kCowshedSize.alley_half_width - 0.15f;
 constexpr float kCurbOutside = kCowshedSize.alley_half_width + 0.15f;
 constexpr float kPlinth = 1.2f;  // height of concrete walls, metres
 
-const SurfaceLook kConcrete{.picture = BarnPicture::concrete, .picture_width = 2.2f};
-const SurfaceLook kPlanks{.picture = BarnPicture::planks, .picture_width = 1.7f};
-const SurfaceLook kTimber{.picture = BarnPicture::timber, .picture_width = 1.3f};
-const SurfaceLook kRoof{.picture = BarnPicture::roof_sheet, .brightness = 1.1f, .picture_width = 2.6f};
+const Material kConcrete{.texture = BarnTexture::concrete, .texture_width = 2.2f};
+const Material kPlanks{.texture = BarnTexture::planks, .texture_width = 1.7f};
+const Material kTimber{.texture = BarnTexture::timber, .texture_width = 1.3f};
+const Material kRoof{.texture = BarnTexture::roof_sheet, .brightness = 1.1f, .texture_width = 2.6f};
 
 void add_floor(Cowshed& barn, SeededDraws& draws) {
   constexpr float kSlab = 2.5f;  // metres along the alley
-  const SurfaceLook dung{.picture = BarnPicture::dung, .picture_width = 1.9f};
+  const Material dung{.texture = BarnTexture::dung, .texture_width = 1.9f};
   for (float x = 0.0f; x < kLength - 0.1f; x += kSlab) {
-    const auto add_slab = [&](float from_y, float to_y, const SurfaceLook& look) {
-      add_panel(barn.still, {x, from_y, 0.0f}, {kSlab, 0.0f, 0.0f}, {0.0f, to_y - from_y, 0.0f}, varied(look, draws),
-                0.4f);
+    const auto add_slab = [&](float from_y, float to_y, const Material& material) {
+      add_panel(barn.still, {x, from_y, 0.0f}, {kSlab, 0.0f, 0.0f}, {0.0f, to_y - from_y, 0.0f},
+                varied(material, draws), 0.4f);
     };
     add_slab(-kCurbInside, 0.0f, kConcrete);
     add_slab(0.0f, kCurbInside, kConcrete);
@@ -39,7 +39,7 @@ void add_floor(Cowshed& barn, SeededDraws& draws) {
 
 // Part of a gable between two heights and two y, seen from inside. to_roof: the roof is its upper edge.
 void add_gable_part(QuadMesh& mesh, float x, const Vector2f& y_range, const Vector2f& z_range, bool to_roof,
-                    const SurfaceLook& look) {
+                    const Material& material) {
   const auto point_at = [&](float u, float v) -> Vector3f {
     const float y = y_range.x() + u * (y_range.y() - y_range.x());
     const float top = to_roof ? roof_height(y) : z_range.y();
@@ -48,7 +48,7 @@ void add_gable_part(QuadMesh& mesh, float x, const Vector2f& y_range, const Vect
   const float width = std::abs(y_range.y() - y_range.x());
   const float height = z_range.y() - z_range.x();
   add_grid(mesh, static_cast<int>(std::ceil(width / 0.4f)), static_cast<int>(std::ceil(height / 0.4f)), point_at,
-           {width, height}, look);
+           {width, height}, material);
 }
 
 // A gable of concrete below and planks above, with an opening for a gate. inward: x direction of the barn's interior, 1
@@ -62,7 +62,7 @@ void add_gable(Cowshed& barn, float x, float inward, SeededDraws& draws) {
     add_gable_part(barn.still, x, y_range, {0.0f, kPlinth}, false, varied(kConcrete, draws));
     add_gable_part(barn.still, x, y_range, {kPlinth, kCowshedSize.gate_height}, false, varied(kPlanks, draws));
     const float middle = 0.5f * (kGate + kHalfWidth);
-    add_outline_of_box(barn, placed({x, side * middle, 0.0f}), {0.1f, kHalfWidth - middle, 1.0f});
+    add_outline_of_box(barn, make_isometry({x, side * middle, 0.0f}), {0.1f, kHalfWidth - middle, 1.0f});
   }
   add_gable_part(barn.still, x, inward * Vector2f(-kHalfWidth, kHalfWidth),
                  {kCowshedSize.gate_height, kCowshedSize.ridge}, true, varied(kPlanks, draws));
@@ -70,13 +70,13 @@ void add_gable(Cowshed& barn, float x, float inward, SeededDraws& draws) {
 
 // Two steel leaves with wooden bars that open away from the barn. inward: as for add_gable.
 void add_gate(QuadMesh& mesh, float x, float inward, BarnGate state) {
-  const SurfaceLook steel{.picture = BarnPicture::rust, .brightness = 0.8f, .picture_width = 1.1f};
+  const Material steel{.texture = BarnTexture::rust, .brightness = 0.8f, .texture_width = 1.1f};
   constexpr float kLeaf = 0.5f * kCowshedSize.gate_half_width;  // half of a leaf's width
   for (const float side : {-1.0f, 1.0f}) {
     const float swing = state == BarnGate::open ? -0.5f * std::numbers::pi_v<float> * side * inward : 0.0f;
-    const Eigen::Isometry3f hinge = placed({x + 0.08f * inward, side * 2.0f * kLeaf, 0.0f}, swing);
+    const Eigen::Isometry3f hinge = make_isometry({x + 0.08f * inward, side * 2.0f * kLeaf, 0.0f}, swing);
     const auto in_leaf = [&](float out_of_leaf, float z) {
-      return hinge * placed({out_of_leaf * inward, -side * kLeaf, z});
+      return hinge * make_isometry({out_of_leaf * inward, -side * kLeaf, z});
     };
     add_box(mesh, in_leaf(0.0f, 1.55f), {0.05f, kLeaf - 0.02f, 1.5f}, steel);
     for (const float z : {0.35f, 1.4f, 2.5f}) add_box(mesh, in_leaf(0.07f, z), {0.03f, kLeaf - 0.05f, 0.06f}, kTimber);
@@ -88,20 +88,20 @@ void add_side_bay(Cowshed& barn, float x, float side, float daylight, SeededDraw
   const float y = side * kHalfWidth;
   constexpr float kSill = 1.75f;
   constexpr float kLintel = 2.9f;
-  const auto add_band = [&](float from_z, float to_z, const SurfaceLook& look) {
+  const auto add_band = [&](float from_z, float to_z, const Material& material) {
     const Vector3f along(side > 0.0f ? kCowshedSize.bay : -kCowshedSize.bay, 0.0f, 0.0f);
     add_panel(barn.still, {side > 0.0f ? x : x + kCowshedSize.bay, y, from_z}, along, {0.0f, 0.0f, to_z - from_z},
-              look);
+              material);
   };
   add_band(0.0f, kPlinth, varied(kConcrete, draws));
   add_band(kPlinth, kSill, varied(kPlanks, draws));
   add_band(kLintel, kCowshedSize.eaves, varied(kPlanks, draws));
-  SurfaceLook sky = kPlanks;
+  Material sky = kPlanks;
   sky.glow = daylight;
   add_band(kSill, kLintel, sky);
   for (int i = 1; i < 5; ++i) {  // slats in front of the opening
     const float slat_x = x + kCowshedSize.bay * static_cast<float>(i) / 5.0f;
-    add_box(barn.still, placed({slat_x, y - 0.05f * side, 0.5f * (kSill + kLintel)}), {0.05f, 0.03f, 0.6f},
+    add_box(barn.still, make_isometry({slat_x, y - 0.05f * side, 0.5f * (kSill + kLintel)}), {0.05f, 0.03f, 0.6f},
             varied(kTimber, draws));
   }
   barn.light.windows.push_back({{x + 0.5f * kCowshedSize.bay, y, 0.5f * (kSill + kLintel)},
@@ -115,16 +115,16 @@ void add_side_bay(Cowshed& barn, float x, float side, float daylight, SeededDraw
 void add_roof_bay(Cowshed& barn, float x, float side, float daylight, SeededDraws& draws) {
   const Vector3f eaves(0.0f, side * kHalfWidth, kCowshedSize.eaves);
   const Vector3f slope = Vector3f(0.0f, 0.0f, kCowshedSize.ridge) - eaves;
-  const auto add_sheet = [&](float from_x, float to_x, const SurfaceLook& look) {  // normal points down
+  const auto add_sheet = [&](float from_x, float to_x, const Material& material) {  // normal points down
     const float begin = side > 0.0f ? from_x : to_x;
     add_panel(barn.still, eaves + Vector3f(begin, 0.0f, 0.0f),
-              {side > 0.0f ? to_x - from_x : from_x - to_x, 0.0f, 0.0f}, slope, look, 0.6f);
+              {side > 0.0f ? to_x - from_x : from_x - to_x, 0.0f, 0.0f}, slope, material, 0.6f);
   };
   const float sheet_from = x + 0.39f * kCowshedSize.bay;
   const float sheet_to = x + 0.61f * kCowshedSize.bay;
   add_sheet(x, sheet_from, varied(kRoof, draws));
   add_sheet(sheet_to, x + kCowshedSize.bay, varied(kRoof, draws));
-  SurfaceLook sheet = kRoof;
+  Material sheet = kRoof;
   sheet.glow = daylight;
   add_sheet(sheet_from, sheet_to, sheet);
   const Vector3f inward = Vector3f(0.0f, -side * slope.z(), -std::abs(slope.y())).normalized();
@@ -136,21 +136,21 @@ void add_roof_bay(Cowshed& barn, float x, float side, float daylight, SeededDraw
 }
 
 void add_beam(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float half_width, float half_height,
-              const SurfaceLook& look) {
+              const Material& material) {
   const Vector3f along = (to - from).normalized();
   const Vector3f sideways = Vector3f::UnitZ().cross(along).normalized();
   Eigen::Isometry3f world_from_beam = Eigen::Isometry3f::Identity();
   world_from_beam.linear() << sideways, along.cross(sideways), along;  // grain runs along the beam
   world_from_beam.translation() = 0.5f * (from + to);
-  add_box(mesh, world_from_beam, {half_width, half_height, 0.5f * (to - from).norm()}, look);
+  add_box(mesh, world_from_beam, {half_width, half_height, 0.5f * (to - from).norm()}, material);
 }
 
-void add_column(Cowshed& barn, float x, float y, const SurfaceLook& post, const SurfaceLook& foot) {
+void add_column(Cowshed& barn, float x, float y, const Material& post, const Material& foot) {
   const float height = 0.5f * roof_height(y);
   const Vector3f half_size(0.1f, 0.1f, height);
-  add_box(barn.still, placed({x, y, height}), half_size, post);
-  add_box(barn.still, placed({x, y, 0.3f}), {0.19f, 0.19f, 0.3f}, foot);
-  add_outline_of_box(barn, placed({x, y, 0.0f}), {0.19f, 0.19f, 1.0f});
+  add_box(barn.still, make_isometry({x, y, height}), half_size, post);
+  add_box(barn.still, make_isometry({x, y, 0.3f}), {0.19f, 0.19f, 0.3f}, foot);
+  add_outline_of_box(barn, make_isometry({x, y, 0.0f}), {0.19f, 0.19f, 1.0f});
 }
 
 void add_truss(Cowshed& barn, float x, SeededDraws& draws) {
@@ -163,17 +163,18 @@ void add_truss(Cowshed& barn, float x, SeededDraws& draws) {
     add_beam(barn.still, {x, inner_y, kTie}, {x, 0.4f * inner_y, roof_height(0.4f * inner_y) - 0.2f}, 0.05f, 0.07f,
              varied(kTimber, draws));
     add_column(barn, x, inner_y, varied(kTimber, draws), varied(kConcrete, draws));
-    add_box(barn.still, placed({x, side * (kHalfWidth - 0.12f), 1.7f}), {0.1f, 0.1f, 1.7f}, varied(kTimber, draws));
+    add_box(barn.still, make_isometry({x, side * (kHalfWidth - 0.12f), 1.7f}), {0.1f, 0.1f, 1.7f},
+            varied(kTimber, draws));
   }
   add_beam(barn.still, {x, -kHalfWidth, kTie}, {x, kHalfWidth, kTie}, 0.07f, 0.12f, varied(kTimber, draws));
 }
 
 }  // namespace
 
-SurfaceLook varied(SurfaceLook look, SeededDraws& draws) {
-  look.picture_offset = {draws.between(0.0f, 1.0f), draws.between(0.0f, 1.0f)};
-  look.brightness *= draws.between(0.8f, 1.15f);
-  return look;
+Material varied(Material material, SeededDraws& draws) {
+  material.texture_offset = {draws.between(0.0f, 1.0f), draws.between(0.0f, 1.0f)};
+  material.brightness *= draws.between(0.8f, 1.15f);
+  return material;
 }
 
 float roof_height(float y) {
@@ -208,7 +209,7 @@ void add_shell(Cowshed& barn, BarnTime time, std::uint64_t seed) {
     add_roof_bay(barn, x, -1.0f, is_day ? 3.8f : 0.14f, draws);
   }
   for (const float side : {-1.0f, 1.0f}) {
-    add_outline_of_box(barn, placed({0.5f * kLength, side * kHalfWidth, 0.0f}), {0.5f * kLength, 0.1f, 1.0f});
+    add_outline_of_box(barn, make_isometry({0.5f * kLength, side * kHalfWidth, 0.0f}), {0.5f * kLength, 0.1f, 1.0f});
   }
 }
 

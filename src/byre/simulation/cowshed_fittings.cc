@@ -14,16 +14,16 @@ using Eigen::Vector3f;
 constexpr float kAlleyLength = kCowshedSize.length;
 constexpr float kFence = kCowshedSize.alley_half_width;
 
-const SurfaceLook kSteel{.picture = BarnPicture::rust, .picture_width = 0.7f};
-const SurfaceLook kFloorConcrete{.picture = BarnPicture::concrete, .picture_width = 1.5f};
+const Material kSteel{.texture = BarnTexture::rust, .texture_width = 0.7f};
+const Material kFloorConcrete{.texture = BarnTexture::concrete, .texture_width = 1.5f};
 
 // A feeding place: two bars leaning towards each other, one with a shackle.
 void add_feeding_place(QuadMesh& mesh, float x, float y, SeededDraws& draws) {
-  const SurfaceLook look = varied(kSteel, draws);
+  const Material material = varied(kSteel, draws);
   const float lean = draws.between(0.06f, 0.17f);
-  add_bar(mesh, {x, y, 0.5f}, {x, y, 1.35f}, 0.022f, look, 6);
-  add_bar(mesh, {x + 0.28f, y, 0.5f}, {x + 0.28f + lean, y, 1.35f}, 0.022f, look, 6);
-  add_box(mesh, placed({x + 0.28f + lean, y, 1.28f}), {0.04f, 0.03f, 0.05f}, look);
+  add_bar(mesh, {x, y, 0.5f}, {x, y, 1.35f}, 0.022f, material, 6);
+  add_bar(mesh, {x + 0.28f, y, 0.5f}, {x + 0.28f + lean, y, 1.35f}, 0.022f, material, 6);
+  add_box(mesh, make_isometry({x + 0.28f + lean, y, 1.28f}), {0.04f, 0.03f, 0.05f}, material);
 }
 
 void add_fence(Cowshed& barn, float side, SeededDraws& draws) {
@@ -31,9 +31,9 @@ void add_fence(Cowshed& barn, float side, SeededDraws& draws) {
   const float y = side * kFence;
   constexpr float kCurb = 2.5f;  // length of a curb piece, metres
   for (float x = 0.5f * kCurb; x < kAlleyLength; x += kCurb) {
-    add_box(mesh, placed({x, y, 0.24f}), {0.5f * kCurb, 0.15f, 0.24f}, varied(kFloorConcrete, draws), 0.4f);
+    add_box(mesh, make_isometry({x, y, 0.24f}), {0.5f * kCurb, 0.15f, 0.24f}, varied(kFloorConcrete, draws), 0.4f);
   }
-  add_outline_of_box(barn, placed({0.5f * kAlleyLength, y, 0.0f}), {0.5f * kAlleyLength, 0.15f, 0.24f});
+  add_outline_of_box(barn, make_isometry({0.5f * kAlleyLength, y, 0.0f}), {0.5f * kAlleyLength, 0.15f, 0.24f});
   for (const float z : {0.52f, 1.36f}) add_bar(mesh, {0.0f, y, z}, {kAlleyLength, y, z}, 0.03f, varied(kSteel, draws));
   for (float x = 1.25f; x < kAlleyLength; x += 2.5f) {
     const float post_x = x + draws.between(-0.08f, 0.08f);
@@ -48,24 +48,24 @@ void add_fence(Cowshed& barn, float side, SeededDraws& draws) {
 
 // Bent tubes between two cubicles.
 void add_divider(QuadMesh& mesh, float x, float side, SeededDraws& draws) {
-  const SurfaceLook look = varied(kSteel, draws);
+  const Material material = varied(kSteel, draws);
   const auto at = [&](float y, float z) { return Vector3f(x, side * y, z); };
-  add_bar(mesh, at(5.6f, 1.05f), at(8.3f, 1.15f), 0.03f, look);
-  add_bar(mesh, at(5.6f, 0.55f), at(8.0f, 0.5f), 0.03f, look);
-  add_bar(mesh, at(5.6f, 0.55f), at(5.6f, 1.05f), 0.03f, look);
-  add_bar(mesh, at(8.0f, 0.2f), at(8.0f, 1.15f), 0.04f, look);
+  add_bar(mesh, at(5.6f, 1.05f), at(8.3f, 1.15f), 0.03f, material);
+  add_bar(mesh, at(5.6f, 0.55f), at(8.0f, 0.5f), 0.03f, material);
+  add_bar(mesh, at(5.6f, 0.55f), at(5.6f, 1.05f), 0.03f, material);
+  add_bar(mesh, at(8.0f, 0.2f), at(8.0f, 1.15f), 0.04f, material);
 }
 
 void add_sign(Cowshed& barn, const Eigen::Isometry3f& world_from_sign, float half_size, int number,
               const std::string& name) {
-  SurfaceLook look{.picture = BarnPicture::signs};
-  look.picture_width = 2.0f * half_size * kSignsPerSide;
-  look.picture_offset = {static_cast<float>(number % kSignsPerSide) / kSignsPerSide,
-                         static_cast<float>(number / kSignsPerSide % kSignsPerSide) / kSignsPerSide};
+  Material material{.texture = BarnTexture::signs};
+  material.texture_width = 2.0f * half_size * kSignsPerSide;
+  material.texture_offset = {static_cast<float>(number % kSignsPerSide) / kSignsPerSide,
+                             static_cast<float>(number / kSignsPerSide % kSignsPerSide) / kSignsPerSide};
   const Vector3f right = half_size * world_from_sign.linear().col(0);
   const Vector3f up = half_size * world_from_sign.linear().col(1);
   const Vector3f centre = world_from_sign.translation();
-  add_panel(barn.still, centre - right - up, 2.0f * right, 2.0f * up, look);
+  add_panel(barn.still, centre - right - up, 2.0f * right, 2.0f * up, material);
   barn.marks.push_back({name, centre.cast<double>()});
 }
 
@@ -106,16 +106,16 @@ void add_pile(QuadMesh& mesh, float from_x, float to_x, float side, SeededDraws&
     const float reach = width * (1.0f + 0.18f * std::sin(1.7f * x + phases[2]) + 0.07f * std::sin(7.7f * x));
     return {x, side * (kFence - 0.15f - v * reach), std::max(height * end * across * uneven, 0.0f) + 0.004f};
   };
-  const SurfaceLook look{.picture = BarnPicture::feed,
-                         .brightness = draws.between(0.75f, 1.1f),
-                         .picture_width = 1.2f,
-                         .picture_offset = {draws.between(0.0f, 1.0f), draws.between(0.0f, 1.0f)}};
+  const Material material{.texture = BarnTexture::feed,
+                          .brightness = draws.between(0.75f, 1.1f),
+                          .texture_width = 1.2f,
+                          .texture_offset = {draws.between(0.0f, 1.0f), draws.between(0.0f, 1.0f)}};
   const int columns = std::max(4, static_cast<int>(length / 0.12f));
   if (side > 0.0f) {
     add_grid(
-        mesh, columns, 8, [&](float u, float v) { return point_at(1.0f - u, v); }, {length, 0.9f}, look);
+        mesh, columns, 8, [&](float u, float v) { return point_at(1.0f - u, v); }, {length, 0.9f}, material);
   } else {
-    add_grid(mesh, columns, 8, point_at, {length, 0.9f}, look);
+    add_grid(mesh, columns, 8, point_at, {length, 0.9f}, material);
   }
 }
 
@@ -128,15 +128,15 @@ void add_fences(Cowshed& barn, std::uint64_t seed) {
 
 void add_cubicles(Cowshed& barn, std::uint64_t seed) {
   SeededDraws draws(seed, 22);
-  const SurfaceLook straw{.picture = BarnPicture::straw, .brightness = 0.9f, .picture_width = 1.6f};
+  const Material straw{.texture = BarnTexture::straw, .brightness = 0.9f, .texture_width = 1.6f};
   for (const float side : {-1.0f, 1.0f}) {
-    const Eigen::Isometry3f bed = placed({0.5f * kAlleyLength, side * 6.95f, 0.1f});
+    const Eigen::Isometry3f bed = make_isometry({0.5f * kAlleyLength, side * 6.95f, 0.1f});
     const Vector3f half_size(0.5f * kAlleyLength - 1.0f, 1.5f, 0.1f);
     add_box(barn.still, bed, half_size, straw);
-    add_outline_of_box(barn, placed({0.5f * kAlleyLength, side * 5.5f, 0.0f}), {half_size.x(), 0.05f, 0.1f});
+    add_outline_of_box(barn, make_isometry({0.5f * kAlleyLength, side * 5.5f, 0.0f}), {half_size.x(), 0.05f, 0.1f});
     for (float x = 1.2f; x < kAlleyLength - 1.0f; x += 1.2f) {
       add_divider(barn.still, x, side, draws);
-      add_outline_of_box(barn, placed({x, side * 6.95f, 0.0f}), {0.03f, 1.4f, 1.0f});
+      add_outline_of_box(barn, make_isometry({x, side * 6.95f, 0.0f}), {0.03f, 1.4f, 1.0f});
     }
   }
 }
@@ -147,25 +147,25 @@ void add_fittings(Cowshed& barn, std::uint64_t seed) {
   for (const float side : {-1.0f, 1.0f}) {
     add_bar(barn.still, {0.0f, side * 2.85f, 2.6f}, {kAlleyLength, side * 2.85f, 2.6f}, 0.035f, varied(kSteel, draws));
     for (const float x : {5.4f, 14.8f, 24.1f}) {  // drinking troughs
-      const Eigen::Isometry3f trough = placed({x, side * 3.6f, 0.4f});
+      const Eigen::Isometry3f trough = make_isometry({x, side * 3.6f, 0.4f});
       add_box(barn.still, trough, {0.6f, 0.25f, 0.4f}, varied(kFloorConcrete, draws));
       add_outline_of_box(barn, trough, {0.6f, 0.25f, 0.4f});
     }
     for (const float x : {0.55f, kAlleyLength - 0.55f}) {  // barrels in the corners of the alley
       const Vector3f foot(x, side * draws.between(1.95f, 2.05f), 0.0f);
-      const SurfaceLook look =
-          varied({.picture = BarnPicture::plastic, .brightness = 0.6f, .picture_width = 1.0f}, draws);
-      add_drum(barn.still, foot, foot + Vector3f(0.0f, 0.0f, 0.9f), 0.29f, 0.29f, look);
-      add_outline_of_box(barn, placed(foot), {0.29f, 0.29f, 0.9f});
+      const Material material =
+          varied({.texture = BarnTexture::plastic, .brightness = 0.6f, .texture_width = 1.0f}, draws);
+      add_drum(barn.still, foot, foot + Vector3f(0.0f, 0.0f, 0.9f), 0.29f, 0.29f, material);
+      add_outline_of_box(barn, make_isometry(foot), {0.29f, 0.29f, 0.9f});
     }
   }
 }
 
 void add_lamp(Cowshed& barn, const Vector3f& middle, float ceiling, BarnTime time) {
   const bool is_lit = time == BarnTime::dusk;
-  SurfaceLook tube{.picture = BarnPicture::plastic};
+  Material tube{.texture = BarnTexture::plastic};
   tube.glow = is_lit ? 6.0f : 0.0f;
-  add_box(barn.still, placed(middle + Vector3f(0.0f, 0.0f, 0.1f)), {0.65f, 0.08f, 0.05f}, kSteel);
+  add_box(barn.still, make_isometry(middle + Vector3f(0.0f, 0.0f, 0.1f)), {0.65f, 0.08f, 0.05f}, kSteel);
   add_bar(barn.still, middle - Vector3f(0.6f, 0.0f, 0.0f), middle + Vector3f(0.6f, 0.0f, 0.0f), 0.03f, tube);
   for (const float end : {-0.5f, 0.5f}) {
     const Vector3f hook = middle + Vector3f(end, 0.0f, 0.1f);

@@ -12,8 +12,8 @@ float roof_height(float y);
 // x of columns and trusses, metres.
 std::vector<float> bay_lines();
 
-// The look with another picture offset and slightly different brightness.
-SurfaceLook varied(SurfaceLook look, SeededDraws& draws);
+// The material with another texture offset and slightly different brightness.
+Material varied(Material material, SeededDraws& draws);
 
 void add_outline_of_box(Cowshed& barn, const Eigen::Isometry3f& world_from_box, const Eigen::Vector3f& half_size);
 
@@ -29,8 +29,8 @@ void add_lamp(Cowshed& barn, const Eigen::Vector3f& middle, float ceiling, BarnT
 void add_lamps(Cowshed& barn, BarnTime time);
 void add_feed(Cowshed& barn, const CowshedOptions& options);  // piles along the fence, different in each mission
 
-std::vector<MovableThing> things_of(const CowshedOptions& options);
-void add_thing(QuadMesh& mesh, const MovableThing& thing);
+std::vector<MovableObject> make_objects(const CowshedOptions& options);
+void add_object(QuadMesh& mesh, const MovableObject& object);
 
 std::vector<Cow> cows_of(const CowshedOptions& options, int count);
 

@@ -25,7 +25,7 @@ void write_fixed_text(const fs::path& path, Write write) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(6);
   write(text);
-  write_whole(path, text.view());
+  write_atomically(path, text.view());
 }
 
 void write_plan_image(const fs::path& path, const Image& image) {

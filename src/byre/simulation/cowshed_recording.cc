@@ -2,7 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/simulation/calibration_error.h"
-#include "byre/simulation/divided_camera.h"
+#include "byre/simulation/downscaled_camera.h"
 #include "byre/simulation/euroc_writer.h"
 #include "byre/simulation/seeded_draws.h"
 
@@ -30,7 +30,7 @@ const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
   require(options.dirt >= 0.0 && options.dirt <= 4.0, "dirt must be from 0 to 4");
   require(options.night.light > 0.0 && options.night.light <= 10.0, "the share of light must be from 0 to 10");
   require(options.night.headlight >= 0.0 && options.night.headlight <= 100.0, "the headlight must be from 0 to 100");
-  require_sensible(options.camera);
+  require_valid(options.camera);
   return options;
 }
 
@@ -102,11 +102,11 @@ struct CowshedRecording::RobotCamera {
 struct CowshedRecording::Scene {
   explicit Scene(const CowshedRecordingOptions& options)
       : barn(build_cowshed(options.barn)),
-        pictures(draw_barn_pictures(options.barn.seed, options.threads)),
+        textures(draw_barn_textures(options.barn.seed, options.threads)),
         still(lit(barn, options.threads)),
-        renderer(still, pictures, barn.air, options.threads),
+        renderer(still, textures, barn.air, options.threads),
         calibration(calibration_of(options)),
-        told_calibration(perturbed(calibration, options.camera.calibration_level, options.camera.calibration_seed)) {
+        nominal_calibration(perturbed(calibration, options.camera.calibration_level, options.camera.calibration_seed)) {
     const Pose body_from_right = calibration.body_from_left * inverse(calibration.right->right_from_left);
     add_camera(options, calibration.left, calibration.body_from_left, StereoSide::left);
     add_camera(options, calibration.right->camera, body_from_right, StereoSide::right);
@@ -128,11 +128,11 @@ struct CowshedRecording::Scene {
   }
 
   const Cowshed barn;
-  const BarnPictures pictures;
+  const BarnTextures textures;
   const LitMesh still;
   const SceneRenderer renderer;
   const Calibration calibration;
-  const Calibration told_calibration;
+  const Calibration nominal_calibration;
   std::vector<RobotCamera> cameras;  // left, right
 };
 
@@ -149,8 +149,8 @@ const Calibration& CowshedRecording::calibration() const {
   return scene_->calibration;
 }
 
-const Calibration& CowshedRecording::told_calibration() const {
-  return scene_->told_calibration;
+const Calibration& CowshedRecording::nominal_calibration() const {
+  return scene_->nominal_calibration;
 }
 
 const Cowshed& CowshedRecording::barn() const {
@@ -180,7 +180,7 @@ std::optional<MotionSamples> CowshedRecording::motion() const {
   if (!options_.motion) return std::nullopt;
   MotionSensorOptions sensors = *options_.motion;
   sensors.seed = hash(options_.barn.seed, static_cast<std::uint64_t>(options_.barn.mission), 5);
-  return simulated_motion(truth(), sensors);
+  return simulate_motion(truth(), sensors);
 }
 
 // Exposure time of a row relative to the middle row, seconds.
@@ -228,8 +228,8 @@ double CowshedRecording::motion_during_exposure(double time_s) const {
 // Mean radiance of the left and right image over the exposure.
 std::array<std::vector<float>, 2> CowshedRecording::exposed_radiance(double middle_s) const {
   constexpr double kPixelsPerInstant = 1.6;
-  constexpr int kMostInstants = 4;
-  const int count = std::min(1 + static_cast<int>(motion_during_exposure(middle_s) / kPixelsPerInstant), kMostInstants);
+  constexpr int kMaxInstants = 4;
+  const int count = std::min(1 + static_cast<int>(motion_during_exposure(middle_s) / kPixelsPerInstant), kMaxInstants);
   std::array<std::vector<float>, 2> mean;
   for (int i = 0; i < count; ++i) {
     const double instant_s = middle_s + ((i + 0.5) / count - 0.5) * static_cast<double>(exposure_.time_s);
@@ -254,7 +254,7 @@ ImageFrame CowshedRecording::render_next() {
   const auto image_of = [&](std::size_t camera) {
     const std::uint64_t noise_seed = hash(noise_seed_, static_cast<std::uint64_t>(time.count()), camera);
     Image image = scene_->cameras[camera].sensor.expose(radiance[camera], exposure_, noise_seed, options_.threads);
-    return options_.camera.jpeg_quality > 0 ? jpeg_kept(image, options_.camera.jpeg_quality) : image;
+    return options_.camera.jpeg_quality > 0 ? jpeg_compressed(image, options_.camera.jpeg_quality) : image;
   };
   if (next_ == 0) {  // lets automatic exposure settle, as if the camera had been on before the recording
     constexpr int kFramesToSettle = 12;
@@ -318,8 +318,8 @@ std::vector<MarkSighting> CowshedRecording::sightings() const {
 }
 
 void write_cowshed_recording(CowshedRecording& recording, const std::filesystem::path& folder,
-                             const std::function<bool(int frames_done)>& go_on) {
-  const EurocWriter writer(recording.told_calibration(), recording.times(), recording.truth(), folder);
+                             const std::function<bool(int frames_done)>& should_continue) {
+  const EurocWriter writer(recording.nominal_calibration(), recording.times(), recording.truth(), folder);
   if (!recording.is_calibration_exact()) write_true_calibration(recording.calibration(), recording.times(), folder);
   if (const auto motion = recording.motion()) write_motion(*motion, folder);
   const Pose world_from_first_body = recording.world_from_body(recording.times().front());
@@ -331,7 +331,7 @@ void write_cowshed_recording(CowshedRecording& recording, const std::filesystem:
     ImageFrame frame = recording.render_next();
     if (writing.valid()) writing.get();
     writing = std::async(std::launch::async, [&writer, rendered = std::move(frame)] { writer.write(rendered); });
-    if (!go_on(i + 1)) break;
+    if (!should_continue(i + 1)) break;
   }
   if (writing.valid()) writing.get();
 }

@@ -49,7 +49,8 @@ class CowshedRecording {
   ~CowshedRecording();
 
   const Calibration& calibration() const;
-  const Calibration& told_calibration() const;  // calibration written to the recording, with the error of the options
+  const Calibration& nominal_calibration()
+      const;  // calibration written to the recording, with the error of the options
   const Cowshed& barn() const;
   const std::vector<Timestamp>& times() const;
 
@@ -99,9 +100,9 @@ class CowshedRecording {
 };
 
 // Renders a whole visit into a folder: an EuRoC recording, and plan/ with the floor plan and points for registration.
-// Calls go_on after each frame and stops when it returns false; the remaining images are then missing. Throws
+// Calls should_continue after each frame and stops when it returns false; the remaining images are then missing. Throws
 // InputError when a file cannot be written. Precondition: no frame has been rendered yet.
 void write_cowshed_recording(CowshedRecording& recording, const std::filesystem::path& folder,
-                             const std::function<bool(int frames_done)>& go_on);
+                             const std::function<bool(int frames_done)>& should_continue);
 
 }  // namespace byre

@@ -92,7 +92,7 @@ TEST_F(CowshedVisit, DiffersBetweenMissions) {
 }
 
 TEST_F(CowshedVisit, IsWellExposedFromTheFirstFrame) {
-  for (const ImageFrame& frame : frames) EXPECT_NEAR(mean_grey(frame.left), ExposureLimits{}.wanted_grey, 12.0);
+  for (const ImageFrame& frame : frames) EXPECT_NEAR(mean_grey(frame.left), ExposureLimits{}.target_grey, 12.0);
 }
 
 TEST(CowshedVisits, AreNoisierInDimLightAndBlackInDarkness) {
@@ -177,37 +177,37 @@ TEST_F(CowshedVisit, ProvidesPicksInTheFrameOfItsFirstPose) {
   }
 }
 
-CowshedRecordingOptions erring_visit(const CameraImperfection& camera) {
+CowshedRecordingOptions miscalibrated_visit(const CameraImperfection& camera) {
   CowshedRecordingOptions options = small_visit(1, 0);
   options.camera = camera;
   return options;
 }
 
 TEST_F(CowshedVisit, IsRenderedByTheTrueCalibration) {
-  CowshedRecording erring(erring_visit({.calibration_level = 1.0, .calibration_seed = 3}));
+  CowshedRecording erring(miscalibrated_visit({.calibration_level = 1.0, .calibration_seed = 3}));
   EXPECT_EQ(erring.render_next().left.pixels, frames[0].left.pixels);
   EXPECT_EQ(erring.calibration().left.fx, recording.calibration().left.fx);
-  EXPECT_NE(erring.told_calibration().left.fx, erring.calibration().left.fx);
-  EXPECT_EQ(recording.told_calibration().left.fx, recording.calibration().left.fx);
+  EXPECT_NE(erring.nominal_calibration().left.fx, erring.calibration().left.fx);
+  EXPECT_EQ(recording.nominal_calibration().left.fx, recording.calibration().left.fx);
   EXPECT_TRUE(recording.is_calibration_exact());
   EXPECT_FALSE(erring.is_calibration_exact());
 }
 
 TEST_F(CowshedVisit, IsRenderedLaterByTheRightCameraWithATimeOffset) {
-  CowshedRecording late(erring_visit({.time_offset_s = 0.1}));
+  CowshedRecording late(miscalibrated_visit({.time_offset_s = 0.1}));
   const std::vector<ImageFrame> seen = first_frames(late, 2);
   EXPECT_EQ(seen[1].left.pixels, frames[1].left.pixels);
   EXPECT_NE(seen[1].right->pixels, frames[1].right->pixels);
 }
 
 TEST_F(CowshedVisit, IsBrighterBlurredAndCompressedByTheCameras) {
-  CowshedRecording bright(erring_visit({.gain = 1.2, .offset = 5.0}));
+  CowshedRecording bright(miscalibrated_visit({.gain = 1.2, .offset = 5.0}));
   const ImageFrame seen = bright.render_next();
   EXPECT_EQ(seen.left.pixels, frames[0].left.pixels);
   EXPECT_NEAR(mean_grey(*seen.right), 1.2f * mean_grey(*frames[0].right) + 5.0f, 5.0f);
-  CowshedRecording lossy(erring_visit({.jpeg_quality = 60}));
+  CowshedRecording lossy(miscalibrated_visit({.jpeg_quality = 60}));
   EXPECT_NE(lossy.render_next().left.pixels, frames[0].left.pixels);
-  CowshedRecording soft(erring_visit({.lens_blur = 2.0}));
+  CowshedRecording soft(miscalibrated_visit({.lens_blur = 2.0}));
   EXPECT_NE(soft.render_next().left.pixels, frames[0].left.pixels);
 }
 
@@ -364,9 +364,10 @@ TEST_F(WrittenCowshed, HasTheErroneousAndTheTrueCalibration) {
   options.camera.calibration_level = 1.0;
   CowshedRecording recording(options);
   write_cowshed_recording(recording, folder, [](int) { return true; });
-  const Calibration told = open_recording(folder, {})->calibration();
-  EXPECT_NEAR(told.left.fx, recording.told_calibration().left.fx, 1e-9);
-  EXPECT_THAT(told.right->right_from_left, PoseNear(recording.told_calibration().right->right_from_left, 1e-9, 1e-9));
+  const Calibration nominal = open_recording(folder, {})->calibration();
+  EXPECT_NEAR(nominal.left.fx, recording.nominal_calibration().left.fx, 1e-9);
+  EXPECT_THAT(nominal.right->right_from_left,
+              PoseNear(recording.nominal_calibration().right->right_from_left, 1e-9, 1e-9));
   const Calibration& truth = recording.calibration();
   EXPECT_NEAR(read_calibration(folder / "mav0" / "cam0" / "true_sensor.yaml").left.fx, truth.left.fx, 1e-9);
   const Calibration right = read_calibration(folder / "mav0" / "cam1" / "true_sensor.yaml");

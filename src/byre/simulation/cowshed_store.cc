@@ -16,9 +16,9 @@ constexpr float kStoreHalfWidth = kCowshedSize.store_half_width;
 constexpr float kHeight = kCowshedSize.store_height;
 constexpr float kStorePlinth = 1.2f;  // height of concrete walls, metres
 
-const SurfaceLook kStoreConcrete{.picture = BarnPicture::concrete, .brightness = 0.9f, .picture_width = 1.9f};
-const SurfaceLook kStorePlanks{.picture = BarnPicture::planks, .brightness = 0.9f, .picture_width = 1.5f};
-const SurfaceLook kStoreTimber{.picture = BarnPicture::timber, .picture_width = 1.1f};
+const Material kStoreConcrete{.texture = BarnTexture::concrete, .brightness = 0.9f, .texture_width = 1.9f};
+const Material kStorePlanks{.texture = BarnTexture::planks, .brightness = 0.9f, .texture_width = 1.5f};
+const Material kStoreTimber{.texture = BarnTexture::timber, .texture_width = 1.1f};
 
 // A wall between two points on the floor, seen from its right; concrete up to the plinth, planks above.
 void add_wall(QuadMesh& mesh, const Vector3f& from, const Vector3f& to) {
@@ -38,9 +38,9 @@ void add_walls(Cowshed& barn) {
   const float lintel = kCowshedSize.gate_height;
   add_panel(mesh, {kWest, -kGate, lintel}, {0.0f, 2.0f * kGate, 0.0f}, {0.0f, 0.0f, kHeight - lintel}, kStorePlanks);
   const float middle = 0.5f * (kWest + kEast);
-  add_outline_of_box(barn, placed({kEast, 0.0f, 0.0f}), {0.1f, kStoreHalfWidth, 1.0f});
+  add_outline_of_box(barn, make_isometry({kEast, 0.0f, 0.0f}), {0.1f, kStoreHalfWidth, 1.0f});
   for (const float y : {-kStoreHalfWidth, kStoreHalfWidth}) {
-    add_outline_of_box(barn, placed({middle, y, 0.0f}), {0.5f * (kEast - kWest), 0.1f, 1.0f});
+    add_outline_of_box(barn, make_isometry({middle, y, 0.0f}), {0.5f * (kEast - kWest), 0.1f, 1.0f});
   }
 }
 
@@ -48,17 +48,17 @@ void add_walls(Cowshed& barn) {
 void add_ceiling(Cowshed& barn, float daylight, SeededDraws& draws) {
   constexpr float kStrip = 0.5f;  // half of the strip's width, metres
   const float length = kEast - kWest;
-  const auto add_part = [&](float from_y, float to_y, const SurfaceLook& look) {
-    add_panel(barn.still, {kWest, to_y, kHeight}, {length, 0.0f, 0.0f}, {0.0f, from_y - to_y, 0.0f}, look);
+  const auto add_part = [&](float from_y, float to_y, const Material& material) {
+    add_panel(barn.still, {kWest, to_y, kHeight}, {length, 0.0f, 0.0f}, {0.0f, from_y - to_y, 0.0f}, material);
   };
-  const SurfaceLook sheet{.picture = BarnPicture::roof_sheet, .picture_width = 2.2f};
+  const Material sheet{.texture = BarnTexture::roof_sheet, .texture_width = 2.2f};
   add_part(-kStoreHalfWidth, -kStrip, sheet);
   add_part(kStrip, kStoreHalfWidth, sheet);
-  SurfaceLook sky = sheet;
+  Material sky = sheet;
   sky.glow = daylight;
   add_part(-kStrip, kStrip, sky);
   for (float x = kWest + 1.2f; x < kEast; x += 2.1f) {
-    add_box(barn.still, placed({x, 0.0f, kHeight - 0.13f}), {0.07f, kStoreHalfWidth, 0.12f},
+    add_box(barn.still, make_isometry({x, 0.0f, kHeight - 0.13f}), {0.07f, kStoreHalfWidth, 0.12f},
             varied(kStoreTimber, draws));
   }
   barn.light.windows.push_back({{0.5f * (kWest + kEast), 0.0f, kHeight},
@@ -71,15 +71,15 @@ void add_ceiling(Cowshed& barn, float daylight, SeededDraws& draws) {
 // Stacked bales along the northern wall, each slightly rotated.
 void add_bales(Cowshed& barn, SeededDraws& draws) {
   const Vector3f half_size(0.45f, 0.24f, 0.21f);
-  const SurfaceLook straw{.picture = BarnPicture::straw, .brightness = 0.9f, .picture_width = 1.0f};
+  const Material straw{.texture = BarnTexture::straw, .brightness = 0.9f, .texture_width = 1.0f};
   for (float x = kWest + 3.0f; x < kEast - 0.6f; x += 2.05f * half_size.x()) {
     const int layers = 2 + draws.below(5);
     for (int layer = 0; layer < layers; ++layer) {
       const float z = (2.0f * static_cast<float>(layer) + 1.0f) * half_size.z();
       const Vector3f place(x + draws.between(-0.05f, 0.05f), kStoreHalfWidth - 0.4f - draws.between(0.0f, 0.3f), z);
-      add_box(barn.still, placed(place, draws.between(-0.12f, 0.12f)), half_size, varied(straw, draws));
+      add_box(barn.still, make_isometry(place, draws.between(-0.12f, 0.12f)), half_size, varied(straw, draws));
     }
-    add_outline_of_box(barn, placed({x, kStoreHalfWidth - 0.5f, 0.0f}), half_size);
+    add_outline_of_box(barn, make_isometry({x, kStoreHalfWidth - 0.5f, 0.0f}), half_size);
   }
 }
 
@@ -93,31 +93,31 @@ void add_heap(QuadMesh& mesh, float x, float length, SeededDraws& draws) {
                          0.06f * std::sin(31.0f * u + 19.0f * v + phases[1]);
     return {x + u * length, -kStoreHalfWidth + v * (0.6f + 1.4f * end), 1.7f * end * slope * uneven + 0.004f};
   };
-  const SurfaceLook feed{.picture = BarnPicture::feed, .brightness = 0.9f, .picture_width = 1.1f};
+  const Material feed{.texture = BarnTexture::feed, .brightness = 0.9f, .texture_width = 1.1f};
   add_grid(
       mesh, 40, 16, [&](float u, float v) { return point_at(1.0f - u, 1.0f - v); }, {length, 2.0f}, feed);
 }
 
 // Barrels and crates in front of the eastern wall, boards above them.
 void add_stock(Cowshed& barn, SeededDraws& draws) {
-  const SurfaceLook plastic{.picture = BarnPicture::plastic, .brightness = 0.7f, .picture_width = 1.0f};
-  const SurfaceLook wood{.picture = BarnPicture::planks, .picture_width = 1.3f};
+  const Material plastic{.texture = BarnTexture::plastic, .brightness = 0.7f, .texture_width = 1.0f};
+  const Material wood{.texture = BarnTexture::planks, .texture_width = 1.3f};
   for (float y = -2.2f; y < 3.0f; y += 0.85f) {
     const Vector3f foot(kEast - draws.between(0.4f, 0.7f), y, 0.0f);
     if (draws.below(2) == 0) {
       add_drum(barn.still, foot, foot + Vector3f(0.0f, 0.0f, 0.9f), 0.29f, 0.29f, varied(plastic, draws));
     } else {
-      add_box(barn.still, placed(foot + Vector3f(0.0f, 0.0f, 0.35f), draws.between(-0.2f, 0.2f)), {0.3f, 0.33f, 0.35f},
-              varied(wood, draws));
+      add_box(barn.still, make_isometry(foot + Vector3f(0.0f, 0.0f, 0.35f), draws.between(-0.2f, 0.2f)),
+              {0.3f, 0.33f, 0.35f}, varied(wood, draws));
     }
-    add_outline_of_box(barn, placed(foot), {0.29f, 0.29f, 0.9f});
+    add_outline_of_box(barn, make_isometry(foot), {0.29f, 0.29f, 0.9f});
   }
   for (const float z : {1.5f, 2.1f}) {
-    add_box(barn.still, placed({kEast - 0.2f, 0.4f, z}), {0.2f, 2.8f, 0.02f}, varied(kStoreTimber, draws));
+    add_box(barn.still, make_isometry({kEast - 0.2f, 0.4f, z}), {0.2f, 2.8f, 0.02f}, varied(kStoreTimber, draws));
     for (float y = -2.2f; y < 3.0f; y += 0.3f) {
       const float height = draws.between(0.05f, 0.2f);
-      add_box(barn.still, placed({kEast - 0.2f, y, z + height}, draws.between(-0.4f, 0.4f)), {0.1f, 0.1f, height},
-              varied(draws.below(2) == 0 ? plastic : wood, draws));
+      add_box(barn.still, make_isometry({kEast - 0.2f, y, z + height}, draws.between(-0.4f, 0.4f)),
+              {0.1f, 0.1f, height}, varied(draws.below(2) == 0 ? plastic : wood, draws));
     }
   }
 }

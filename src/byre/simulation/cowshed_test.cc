@@ -15,10 +15,10 @@ namespace {
 using Eigen::Vector2f;
 using ::testing::SizeIs;
 
-int moved_things(const Cowshed& first, const Cowshed& second) {
+int moved_objects(const Cowshed& first, const Cowshed& second) {
   int moved = 0;
-  for (std::size_t i = 0; i < first.things.size(); ++i) {
-    moved += first.things[i].position != second.things[i].position ? 1 : 0;
+  for (std::size_t i = 0; i < first.objects.size(); ++i) {
+    moved += first.objects[i].position != second.objects[i].position ? 1 : 0;
   }
   return moved;
 }
@@ -32,29 +32,29 @@ TEST(Cowshed, IsDeterministicForSeedAndMission) {
 
 TEST(Cowshed, ChangesOnlyTheGivenShareOfItsObjects) {
   const Cowshed first = build_cowshed({.mission = 1, .change = 0.5});
-  ASSERT_FALSE(first.things.empty());
-  const int all = static_cast<int>(first.things.size());
-  EXPECT_EQ(moved_things(first, build_cowshed({.mission = 2, .change = 0.0})), 0);
-  EXPECT_EQ(moved_things(first, build_cowshed({.mission = 2, .change = 0.25})), all / 4);
-  EXPECT_EQ(moved_things(first, build_cowshed({.mission = 3, .change = 1.0})), all);
-  EXPECT_EQ(moved_things(first, build_cowshed({.mission = 1, .change = 1.0})), 0);
+  ASSERT_FALSE(first.objects.empty());
+  const int all = static_cast<int>(first.objects.size());
+  EXPECT_EQ(moved_objects(first, build_cowshed({.mission = 2, .change = 0.0})), 0);
+  EXPECT_EQ(moved_objects(first, build_cowshed({.mission = 2, .change = 0.25})), all / 4);
+  EXPECT_EQ(moved_objects(first, build_cowshed({.mission = 3, .change = 1.0})), all);
+  EXPECT_EQ(moved_objects(first, build_cowshed({.mission = 1, .change = 1.0})), 0);
 }
 
 TEST(Cowshed, ChangesOtherObjectsInOtherMissions) {
-  EXPECT_GT(moved_things(build_cowshed({.mission = 2}), build_cowshed({.mission = 3})), 0);
+  EXPECT_GT(moved_objects(build_cowshed({.mission = 2}), build_cowshed({.mission = 3})), 0);
 }
 
 TEST(Cowshed, KeepsThePathOfTheRobotFree) {
   constexpr float kFarthestLane = 1.25f;  // metres from the centre line of the alley, over all missions
   constexpr float kRobot = 0.35f;         // half of the robot's width, metres
-  constexpr float kThing = 0.3f;          // half of a usual thing's width, metres
+  constexpr float kObject = 0.3f;         // half of a usual object's width, metres
   for (const int mission : {1, 2, 3}) {
-    for (const MovableThing& thing : build_cowshed({.mission = mission, .change = 1.0}).things) {
-      const bool is_in_alley = std::abs(thing.position.y()) < kCowshedSize.alley_half_width;
-      const bool is_beyond_turns = thing.position.x() < 2.0f;
+    for (const MovableObject& object : build_cowshed({.mission = mission, .change = 1.0}).objects) {
+      const bool is_in_alley = std::abs(object.position.y()) < kCowshedSize.alley_half_width;
+      const bool is_beyond_turns = object.position.x() < 2.0f;
       if (!is_in_alley || is_beyond_turns) continue;
-      EXPECT_GT(std::abs(thing.position.y()), kFarthestLane + kRobot + kThing)
-          << "object at " << thing.position.transpose();
+      EXPECT_GT(std::abs(object.position.y()), kFarthestLane + kRobot + kObject)
+          << "object at " << object.position.transpose();
     }
   }
 }
@@ -146,10 +146,10 @@ TEST(Cows, StandAtTheFeedAndMoveTheirHeads) {
   EXPECT_NE(before.vertices, after.vertices);
 }
 
-TEST(BarnPictures, DependOnTheSeedButNotOnTheNumberOfThreads) {
-  const BarnPictures one = draw_barn_pictures(1, 1);
-  const BarnPictures many = draw_barn_pictures(1, 4);
-  const BarnPictures other = draw_barn_pictures(2, 4);
+TEST(BarnTextures, DependOnTheSeedButNotOnTheNumberOfThreads) {
+  const BarnTextures one = draw_barn_textures(1, 1);
+  const BarnTextures many = draw_barn_textures(1, 4);
+  const BarnTextures other = draw_barn_textures(2, 4);
   const Vector2f place(0.31f, 0.62f);
   const float width = 1.0f / 1024.0f;
   int different = 0;
@@ -157,7 +157,7 @@ TEST(BarnPictures, DependOnTheSeedButNotOnTheNumberOfThreads) {
     EXPECT_EQ(one[i].sample(place, width), many[i].sample(place, width));
     different += one[i].sample(place, width) != other[i].sample(place, width) ? 1 : 0;
   }
-  EXPECT_GT(different, kBarnPictures / 2);
+  EXPECT_GT(different, kBarnTextures / 2);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "byre/simulation/divided_camera.h"
+#include "byre/simulation/downscaled_camera.h"
 #include "byre/simulation/rendered_room.h"
 
 namespace byre {
@@ -36,8 +36,8 @@ Calibration euroc_like_calibration(int divisor) {
   body_from_right << 0.0125552670891, -0.999755099723, 0.0182237714554, -0.0198435579556,  //
       0.999598781151, 0.0130119051815, 0.0251588363115, 0.0453689425024,                   //
       -0.0253898008918, 0.0179005838253, 0.999517347078, 0.00786212447038;
-  return {.left = divided_camera(left, divisor),
-          .right = StereoPartner{divided_camera(right, divisor),
+  return {.left = downscaled_camera(left, divisor),
+          .right = StereoPartner{downscaled_camera(right, divisor),
                                  inverse(to_pose(body_from_right)) * to_pose(body_from_left)},
           .body_from_left = to_pose(body_from_left)};
 }

@@ -33,7 +33,7 @@ std::ostringstream exact_text() {
 
 void write_text(const fs::path& path, const std::ostringstream& text) {
   make_folder_of(path);
-  write_whole(path, text.view());
+  write_atomically(path, text.view());
 }
 
 // Precondition: a stereo calibration.
@@ -48,7 +48,7 @@ double mean_rate_hz(const std::vector<Timestamp>& times) {
 
 void write_sensor(const fs::path& path, const Camera& camera, const Pose& body_from_camera, double rate_hz) {
   make_folder_of(path);
-  write_whole(path, write_euroc_sensor({camera, body_from_camera}, rate_hz, "rendered"));
+  write_atomically(path, write_euroc_sensor({camera, body_from_camera}, rate_hz, "rendered"));
 }
 
 std::string image_name(Timestamp time) {
@@ -122,9 +122,9 @@ void write_motion(const MotionSamples& motion, const fs::path& folder) {
   write_trajectory(motion.wheels, folder / "wheel.txt");
   const fs::path imu = folder / "mav0" / "imu0", path = imu / "data.csv", axes = imu / "sensor.yaml";
   make_folder_of(axes);
-  write_whole(axes,
-              "sensor_type: imu\ncomment: rendered\nT_BS:\n  cols: 4\n  rows: 4\n"
-              "  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n");
+  write_atomically(axes,
+                   "sensor_type: imu\ncomment: rendered\nT_BS:\n  cols: 4\n  rows: 4\n"
+                   "  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\n");
   std::ostringstream file = exact_text();
   file << "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
           "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";

@@ -1,6 +1,6 @@
 #include "byre/simulation/feeding_robot.h"
 
-#include "byre/simulation/divided_camera.h"
+#include "byre/simulation/downscaled_camera.h"
 #include "byre/simulation/seeded_draws.h"
 
 #include <algorithm>
@@ -68,9 +68,10 @@ Calibration feeding_robot_calibration(int divisor) {
   const Pose body_from_left{Eigen::Quaterniond(body_from_level_camera) * rotation_exp({-0.02, 0.004, 0.003}),
                             {0.35, 0.075, 0.9}};
   const Pose right_from_left{rotation_exp({0.002, -0.0035, 0.0015}), {-0.15, 0.0006, -0.0009}};
-  return {.left = divided_camera(robot_camera(456.2, 371.4, 243.7, -0.2871), divisor),
-          .right = StereoPartner{divided_camera(robot_camera(457.1, 378.9, 238.2, -0.2884), divisor), right_from_left},
-          .body_from_left = body_from_left};
+  return {
+      .left = downscaled_camera(robot_camera(456.2, 371.4, 243.7, -0.2871), divisor),
+      .right = StereoPartner{downscaled_camera(robot_camera(457.1, 378.9, 238.2, -0.2884), divisor), right_from_left},
+      .body_from_left = body_from_left};
 }
 
 FeedingCourse::FeedingCourse(const FeedingCourseOptions& options) : options_(options), turn_(unit_turn()) {
@@ -93,7 +94,7 @@ FeedingCourse::FeedingCourse(const FeedingCourseOptions& options) : options_(opt
 }
 
 // Target speed, metres per second. A robot that turns on the spot nearly stops before and after.
-double FeedingCourse::wanted_speed(double along_half_lap, double straight) const {
+double FeedingCourse::target_speed(double along_half_lap, double straight) const {
   constexpr double kSlowing = 1.5;                                             // metres
   constexpr double kStopping = 0.5;                                            // metres
   constexpr double kCrawling = 0.1;                                            // metres per second
@@ -113,7 +114,7 @@ std::vector<double> FeedingCourse::drive(double straight) const {
   std::vector<double> travelled{0.0};
   for (int i = 0; i < steps; ++i) {
     const double along = std::fmod(first + travelled.back(), half_lap);
-    const double speed = wanted_speed(along, straight);
+    const double speed = target_speed(along, straight);
     travelled.push_back(travelled.back() + kStep_s * speed * eased((i + 0.5) * kStep_s / kStart_s));
   }
   return travelled;
@@ -141,14 +142,14 @@ FeedingCourse::PathPoint FeedingCourse::turn_point(double along_turn) const {
 FeedingCourse::PathPoint FeedingCourse::path_point(double along_lap) const {
   const double half_lap = straight_ + turn_length_;
   const double along = std::fmod(along_lap, half_lap);
-  const bool is_way_back = std::fmod(along_lap, 2.0 * half_lap) >= half_lap;
+  const bool is_returning = std::fmod(along_lap, 2.0 * half_lap) >= half_lap;
   PathPoint point{{along, 0.0}, 0.0};
   if (along > straight_) {
     point = turn_point(along - straight_);
     point.position.x() += straight_;
   }
   point.position -= Eigen::Vector2d(0.5 * straight_, 0.5 * lane_distance());
-  if (is_way_back) point = {-point.position, point.heading + std::numbers::pi};
+  if (is_returning) point = {-point.position, point.heading + std::numbers::pi};
   point.position += Eigen::Vector2d(far_x() - 0.5 * straight_, options_.shift_y);
   return point;
 }

@@ -57,7 +57,7 @@ class FeedingCourse {
   double lane_distance() const { return options_.turn == TurnKind::spot ? 0.0 : options_.lane_distance; }  // metres
   PathPoint turn_point(double along_turn) const;
   PathPoint path_point(double along_lap) const;
-  double wanted_speed(double along_half_lap, double straight) const;
+  double target_speed(double along_half_lap, double straight) const;
   std::vector<double> drive(double straight) const;
   double travelled(double time_s) const;
 

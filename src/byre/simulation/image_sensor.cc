@@ -25,7 +25,7 @@ float normal_from(std::uint64_t bits) {
 }  // namespace
 
 Exposure next_exposure(const Exposure& exposure, float mean, const ExposureLimits& limits) {
-  const float factor = std::sqrt(std::clamp(limits.wanted_grey / std::max(mean, 1.0f), 0.25f, 4.0f));
+  const float factor = std::sqrt(std::clamp(limits.target_grey / std::max(mean, 1.0f), 0.25f, 4.0f));
   const float wanted = exposure.time_s * exposure.gain * factor;
   const float time_s = std::clamp(wanted, limits.min_time_s, limits.max_time_s);
   return {time_s, std::clamp(wanted / time_s, 1.0f, limits.max_gain)};
@@ -83,12 +83,12 @@ void ImageSensor::add_spot(float x, float y, float radius, float strength, std::
 
 Image ImageSensor::expose(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
                           int threads) const {
-  if (!blur_.is_sharp()) return sensed(blur_.blurred(radiance, threads), exposure, noise_seed, threads);
-  return sensed(radiance, exposure, noise_seed, threads);
+  if (!blur_.is_sharp()) return read_out(blur_.blurred(radiance, threads), exposure, noise_seed, threads);
+  return read_out(radiance, exposure, noise_seed, threads);
 }
 
-Image ImageSensor::sensed(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
-                          int threads) const {
+Image ImageSensor::read_out(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
+                            int threads) const {
   const float gain = exposure.gain * gain_;
   const float scale = kGreyPerLight * exposure.time_s * gain;
   double sum = 0.0;

@@ -18,7 +18,7 @@ struct ExposureLimits {
   float min_time_s = 0.0002f;
   float max_time_s = 0.010f;
   float max_gain = 8.0f;
-  float wanted_grey = 105.0f;  // target mean of the image
+  float target_grey = 105.0f;  // target mean of the image
 };
 
 // Automatic exposure: the setting for the next frame from this frame's mean grey value. Corrects half of the error, by
@@ -46,8 +46,8 @@ class ImageSensor {
                int threads) const;
 
  private:
-  Image sensed(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
-               int threads) const;
+  Image read_out(const std::vector<float>& radiance, const Exposure& exposure, std::uint64_t noise_seed,
+                 int threads) const;
   void add_spot(float x, float y, float radius, float strength, std::uint64_t seed);
 
   int width_;

@@ -91,14 +91,14 @@ TEST(Exposure, SettlesAtTheTargetBrightness) {
     for (int i = 0; i < 20; ++i) {
       exposure = next_exposure(exposure, mean_grey(sensor.expose(even_light(radiance), exposure, 1, 1)), limits);
     }
-    EXPECT_NEAR(mean_grey(sensor.expose(even_light(radiance), exposure, 1, 1)), limits.wanted_grey, 4.0f);
+    EXPECT_NEAR(mean_grey(sensor.expose(even_light(radiance), exposure, 1, 1)), limits.target_grey, 4.0f);
   }
 }
 
 TEST(Exposure, IncreasesTimeBeforeGainWithinItsLimits) {
   const ExposureLimits limits;
   Exposure exposure{0.004f, 1.0f};
-  exposure = next_exposure(exposure, 0.5f * limits.wanted_grey, limits);
+  exposure = next_exposure(exposure, 0.5f * limits.target_grey, limits);
   EXPECT_GT(exposure.time_s, 0.004f);
   EXPECT_EQ(exposure.gain, 1.0f);
   for (int i = 0; i < 20; ++i) exposure = next_exposure(exposure, 1.0f, limits);

@@ -9,7 +9,7 @@ namespace byre {
 namespace {
 
 // Largest variance of one pass over neighbours: weights 1/4, 1/2, 1/4.
-constexpr float kMostVariancePerStep = 0.5f;
+constexpr float kMaxVariancePerStep = 0.5f;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ LensBlur::LensBlur(int width, int height, const LensBlurOptions& options) : widt
     }
   }
   const float largest = *std::ranges::max_element(variances_);
-  steps_ = static_cast<int>(std::ceil(largest / kMostVariancePerStep));
+  steps_ = static_cast<int>(std::ceil(largest / kMaxVariancePerStep));
   step_variance_ = largest / static_cast<float>(steps_);
   for (float& variance : variances_) variance /= step_variance_;
 }

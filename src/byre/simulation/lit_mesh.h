@@ -21,22 +21,22 @@ class LitMesh {
 
   // Appearance of a facet. Arrays are by corner, in mesh order.
   struct Facet {
-    std::array<Eigen::Vector2f, 4> picture_places;
+    std::array<Eigen::Vector2f, 4> texture_coordinates;
     std::array<float, 4> light;
     Eigen::Vector3f normal;            // unit length
-    Eigen::Vector3f u_slope, v_slope;  // derivatives of the picture coordinates over the surface, pictures per metre
+    Eigen::Vector3f u_slope, v_slope;  // derivatives of the texture coordinates over the surface, textures per metre
     std::uint32_t surface = 0;
   };
 
   const RayScene& rays() const { return rays_; }
   const Facet& facet(unsigned index) const { return facets_[index]; }
-  const SurfaceLook& look(const Facet& facet) const { return looks_[facet.surface]; }
+  const Material& material(const Facet& facet) const { return materials_[facet.surface]; }
   float mean_light() const { return mean_light_; }
 
  private:
   RayScene rays_;
   std::vector<Facet> facets_;
-  std::vector<SurfaceLook> looks_;
+  std::vector<Material> materials_;
   float mean_light_;
 };
 

@@ -97,7 +97,7 @@ float MipTexture::sample(const Eigen::Vector2f& place, float width) const {
   return bilinear(place, nearest_level(width));
 }
 
-// Fractional level whose texels are as wide as the footprint, in pictures.
+// Fractional level whose texels are as wide as the footprint, in textures.
 float MipTexture::level_of(float width) const {
   return rough_log2(std::max(width, 1e-9f)) + static_cast<float>(size_log2_);
 }

@@ -7,13 +7,13 @@
 
 namespace byre {
 
-// Texture area of a pixel: steps to the next pixel to the right and below, in picture widths.
+// Texture area of a pixel: steps to the next pixel to the right and below, in texture widths.
 struct TextureFootprint {
   Eigen::Vector2f right;
   Eigen::Vector2f down;
 };
 
-// A square picture of reflectances that repeats in both directions, in halving resolutions (Williams 1983).
+// A square texture of reflectances that repeats in both directions, in halving resolutions (Williams 1983).
 class MipTexture {
  public:
   // texels: size x size, row-major, 0 to 1; size is a power of two.
@@ -23,7 +23,7 @@ class MipTexture {
   // are sampled at several places.
   float sample(const Eigen::Vector2f& place, const TextureFootprint& footprint) const;
 
-  // Mean over a round footprint, its width in pictures, from the nearest level only: for smooth pictures.
+  // Mean over a round footprint, its width in textures, from the nearest level only: for smooth textures.
   float sample(const Eigen::Vector2f& place, float width) const;
 
  private:

@@ -23,30 +23,30 @@ double normal(SeededDraws& draws) {
 
 class Wheel {
  public:
-  Wheel(double told_per_true, const MotionSensorOptions& options) : told_per_true_(told_per_true), options_(options) {}
+  Wheel(double scale, const MotionSensorOptions& options) : scale_(scale), options_(options) {}
 
   // Odometry increment in whole encoder ticks for a rolled distance, both in metres.
   double roll(double metres, SeededDraws& draws) {
-    way_ += told_per_true_ * metres * (1.0 + options_.slip * normal(draws));
-    const double ticks = std::floor(way_ / options_.tick);
-    const double told = (ticks - ticks_) * options_.tick;
+    distance_ += scale_ * metres * (1.0 + options_.slip * normal(draws));
+    const double ticks = std::floor(distance_ / options_.tick);
+    const double measured = (ticks - ticks_) * options_.tick;
     ticks_ = ticks;
-    return told;
+    return measured;
   }
 
  private:
-  double told_per_true_;
+  double scale_;
   MotionSensorOptions options_;
-  double way_ = 0.0;  // metres of odometry
+  double distance_ = 0.0;  // metres of odometry
   double ticks_ = 0.0;
 };
 
 // Differential-drive odometry: an arc between samples.
-Trajectory told_by_wheels(const Trajectory& truth, const MotionSensorOptions& options) {
+Trajectory simulate_wheel_odometry(const Trajectory& truth, const MotionSensorOptions& options) {
   constexpr double kFreeSpeed = 1.0;  // metres per second of a spinning wheel
   SeededDraws draws(options.seed, kWheelStream);
-  const double told = 1.0 / (1.0 - options.radius_error), half = 0.5 * options.radius_difference;
-  Wheel left(told * (1.0 - half), options), right(told * (1.0 + half), options);
+  const double measured = 1.0 / (1.0 - options.radius_error), half = 0.5 * options.radius_difference;
+  Wheel left(measured * (1.0 - half), options), right(measured * (1.0 + half), options);
   const Timestamp start = truth.front().time, end = truth.back().time, step = from_seconds(1.0 / options.wheel_rate_hz);
   Trajectory wheels;
   Pose pose;
@@ -55,16 +55,18 @@ Trajectory told_by_wheels(const Trajectory& truth, const MotionSensorOptions& op
     if (!before || !after) continue;
     wheels.push_back({time + from_seconds(options.wheel_delay), pose});
     const Pose motion = inverse(*before) * *after;
-    const double turn = rotation_log(motion.rotation).z(), way = motion.translation.x();
+    const double turn = rotation_log(motion.rotation).z(), displacement = motion.translation.x();
     const double seconds = to_seconds(time - start);
     const bool is_lifted = seconds >= options.lifted_from && seconds < options.lifted_to;
-    const double left_way = is_lifted ? kFreeSpeed * to_seconds(step) : way - 0.5 * options.wheel_distance * turn;
-    const double left_told = left.roll(left_way, draws);
-    const double right_told = right.roll(way + 0.5 * options.wheel_distance * turn, draws);
-    const double told_turn = (right_told - left_told) / options.wheel_distance;
-    const double told_way = 0.5 * (left_told + right_told);
-    const Eigen::Vector3d arc(told_way * std::cos(0.5 * told_turn), told_way * std::sin(0.5 * told_turn), 0.0);
-    pose = pose * Pose{rotation_exp({0.0, 0.0, told_turn}), arc};
+    const double left_distance =
+        is_lifted ? kFreeSpeed * to_seconds(step) : displacement - 0.5 * options.wheel_distance * turn;
+    const double left_measured = left.roll(left_distance, draws);
+    const double right_measured = right.roll(displacement + 0.5 * options.wheel_distance * turn, draws);
+    const double measured_turn = (right_measured - left_measured) / options.wheel_distance;
+    const double measured_distance = 0.5 * (left_measured + right_measured);
+    const Eigen::Vector3d arc(measured_distance * std::cos(0.5 * measured_turn),
+                              measured_distance * std::sin(0.5 * measured_turn), 0.0);
+    pose = pose * Pose{rotation_exp({0.0, 0.0, measured_turn}), arc};
   }
   return wheels;
 }
@@ -75,7 +77,7 @@ Eigen::Vector3d normal_vector(double sigma, SeededDraws& draws) {
   return vector;
 }
 
-std::vector<AngularRate> told_by_gyroscope(const Trajectory& truth, const MotionSensorOptions& options) {
+std::vector<AngularRate> simulate_gyroscope(const Trajectory& truth, const MotionSensorOptions& options) {
   SeededDraws draws(options.seed, kRateStream);
   const Eigen::Vector3d bias = normal_vector(options.rate_bias, draws);
   std::vector<AngularRate> rates;
@@ -92,11 +94,11 @@ std::vector<AngularRate> told_by_gyroscope(const Trajectory& truth, const Motion
 
 // Velocity from pose i to the next, metres per second.
 Eigen::Vector3d velocity_after(const Trajectory& truth, std::size_t i) {
-  const Eigen::Vector3d way = truth[i + 1].world_from_body.translation - truth[i].world_from_body.translation;
-  return way / to_seconds(truth[i + 1].time - truth[i].time);
+  const Eigen::Vector3d displacement = truth[i + 1].world_from_body.translation - truth[i].world_from_body.translation;
+  return displacement / to_seconds(truth[i + 1].time - truth[i].time);
 }
 
-std::vector<Acceleration> told_by_accelerometer(const Trajectory& truth, const MotionSensorOptions& options) {
+std::vector<Acceleration> simulate_accelerometer(const Trajectory& truth, const MotionSensorOptions& options) {
   SeededDraws draws(options.seed, kAccelerationStream);
   const Eigen::Vector3d bias = normal_vector(options.acceleration_bias, draws);
   std::vector<Acceleration> accelerations;
@@ -107,23 +109,23 @@ std::vector<Acceleration> told_by_accelerometer(const Trajectory& truth, const M
       const double between = 0.5 * to_seconds(truth[i + 1].time - truth[i - 1].time);
       in_world += (velocity_after(truth, i) - velocity_after(truth, i - 1)) / between;
     }
-    Acceleration told{truth[i].time, truth[i].world_from_body.rotation.conjugate() * in_world + bias};
+    Acceleration measured{truth[i].time, truth[i].world_from_body.rotation.conjugate() * in_world + bias};
     const double sigma = options.acceleration_noise / std::sqrt(seconds);
-    for (int axis = 0; axis < 3; ++axis) told.acceleration[axis] += sigma * normal(draws);
-    accelerations.push_back(told);
+    for (int axis = 0; axis < 3; ++axis) measured.acceleration[axis] += sigma * normal(draws);
+    accelerations.push_back(measured);
   }
   return accelerations;
 }
 
 }  // namespace
 
-MotionSamples simulated_motion(const Trajectory& world_from_body, const MotionSensorOptions& options) {
+MotionSamples simulate_motion(const Trajectory& world_from_body, const MotionSensorOptions& options) {
   if (world_from_body.size() < 2) return {};
-  MotionSamples told;
-  told.wheels = told_by_wheels(world_from_body, options);
-  told.rates = told_by_gyroscope(world_from_body, options);
-  told.accelerations = told_by_accelerometer(world_from_body, options);
-  return told;
+  MotionSamples measured;
+  measured.wheels = simulate_wheel_odometry(world_from_body, options);
+  measured.rates = simulate_gyroscope(world_from_body, options);
+  measured.accelerations = simulate_accelerometer(world_from_body, options);
+  return measured;
 }
 
 }  // namespace byre

@@ -27,6 +27,6 @@ struct MotionSensorOptions {
 
 // Simulates sensors along a true trajectory. The body's origin is on the floor between the wheels; gyroscope and
 // accelerometer are sampled at each pose, in the body's axes, at its origin.
-MotionSamples simulated_motion(const Trajectory& world_from_body, const MotionSensorOptions& options);
+MotionSamples simulate_motion(const Trajectory& world_from_body, const MotionSensorOptions& options);
 
 }  // namespace byre

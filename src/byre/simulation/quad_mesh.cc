@@ -36,7 +36,7 @@ std::pair<Vector3f, Vector3f> across(const Vector3f& axis) {
 
 // Lateral surface of a bar with linearly changing radius.
 void add_mantle(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float from_radius, float to_radius,
-                const SurfaceLook& look, int facets) {
+                const Material& material, int facets) {
   const Vector3f bar = to - from;
   const auto [first, second] = across(bar.normalized());
   const auto point_at = [&, first = first, second = second](float u, float v) -> Vector3f {
@@ -44,22 +44,22 @@ void add_mantle(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float 
     return from + v * bar + radius * (std::cos(kRound * u) * first + std::sin(kRound * u) * second);
   };
   add_grid(mesh, facets, facets_along(bar.norm(), 1.0f), point_at,
-           {kRound * std::max(from_radius, to_radius), bar.norm()}, look);
+           {kRound * std::max(from_radius, to_radius), bar.norm()}, material);
 }
 
-void add_disc(QuadMesh& mesh, const Vector3f& centre, const Vector3f& normal, float radius, const SurfaceLook& look) {
+void add_disc(QuadMesh& mesh, const Vector3f& centre, const Vector3f& normal, float radius, const Material& material) {
   const auto [first, second] = across(normal);
   const auto point_at = [&, first = first, second = second](float u, float v) -> Vector3f {
     const float distance = radius * std::max(1.0f - v, 1e-3f);
     return centre + distance * (std::cos(kRound * u) * first + std::sin(kRound * u) * second);
   };
-  add_grid(mesh, 12, 1, point_at, {kRound * radius, radius}, look);
+  add_grid(mesh, 12, 1, point_at, {kRound * radius, radius}, material);
 }
 
 }  // namespace
 
 void add_grid(QuadMesh& mesh, int columns, int rows, const std::function<Vector3f(float u, float v)>& point_at,
-              const Vector2f& size, const SurfaceLook& look) {
+              const Vector2f& size, const Material& material) {
   const std::size_t first_vertex = mesh.vertices.size();
   const std::size_t first_quad = mesh.quads.size();
   const auto surface = static_cast<std::uint32_t>(mesh.surfaces.size());
@@ -72,7 +72,7 @@ void add_grid(QuadMesh& mesh, int columns, int rows, const std::function<Vector3
                           static_cast<float>(row) / static_cast<float>(rows));
       mesh.vertices.push_back(point_at(part.x(), part.y()));
       mesh.normals.emplace_back(Vector3f::Zero());
-      mesh.picture_places.push_back(look.picture_offset + part.cwiseProduct(size) / look.picture_width);
+      mesh.texture_coordinates.push_back(material.texture_offset + part.cwiseProduct(size) / material.texture_width);
     }
   }
   for (int row = 0; row < rows; ++row) {
@@ -82,28 +82,28 @@ void add_grid(QuadMesh& mesh, int columns, int rows, const std::function<Vector3
       mesh.surface_of_quad.push_back(surface);
     }
   }
-  mesh.surfaces.push_back(look);
+  mesh.surfaces.push_back(material);
   add_normals(mesh, first_vertex, first_quad);
 }
 
 void add_panel(QuadMesh& mesh, const Vector3f& corner, const Vector3f& along_x, const Vector3f& along_y,
-               const SurfaceLook& look, float max_facet) {
+               const Material& material, float max_facet) {
   add_grid(
       mesh, facets_along(along_x.norm(), max_facet), facets_along(along_y.norm(), max_facet),
       [&](float u, float v) -> Vector3f { return corner + u * along_x + v * along_y; },
-      {along_x.norm(), along_y.norm()}, look);
+      {along_x.norm(), along_y.norm()}, material);
 }
 
 void add_box(QuadMesh& mesh, const Eigen::Isometry3f& world_from_box, const Vector3f& half_size,
-             const SurfaceLook& look, float max_facet) {
+             const Material& material, float max_facet) {
   const Vector3f centre = world_from_box.translation();
   const Vector3f x = world_from_box.linear().col(0) * half_size.x();
   const Vector3f y = world_from_box.linear().col(1) * half_size.y();
   const Vector3f z = world_from_box.linear().col(2) * half_size.z();
   const auto add_side = [&](const Vector3f& outward, const Vector3f& right, const Vector3f& up) {
-    SurfaceLook side_look = look;
-    side_look.picture_offset.x() += 0.37f * static_cast<float>(mesh.surfaces.size() % 16);
-    add_panel(mesh, centre + outward - right - up, 2.0f * right, 2.0f * up, side_look, max_facet);
+    Material side_material = material;
+    side_material.texture_offset.x() += 0.37f * static_cast<float>(mesh.surfaces.size() % 16);
+    add_panel(mesh, centre + outward - right - up, 2.0f * right, 2.0f * up, side_material, max_facet);
   };
   add_side(-y, x, z);
   add_side(x, y, z);
@@ -113,22 +113,22 @@ void add_box(QuadMesh& mesh, const Eigen::Isometry3f& world_from_box, const Vect
   add_side(-z, x, -y);
 }
 
-void add_bar(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float radius, const SurfaceLook& look,
+void add_bar(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float radius, const Material& material,
              int facets) {
-  add_mantle(mesh, from, to, radius, radius, look, facets);
+  add_mantle(mesh, from, to, radius, radius, material, facets);
 }
 
 void add_drum(QuadMesh& mesh, const Vector3f& from, const Vector3f& to, float from_radius, float to_radius,
-              const SurfaceLook& look) {
+              const Material& material) {
   constexpr int kFacets = 16;
   const Vector3f axis = (to - from).normalized();
-  add_mantle(mesh, from, to, from_radius, to_radius, look, kFacets);
-  add_disc(mesh, from, -axis, from_radius, look);
-  add_disc(mesh, to, axis, to_radius, look);
+  add_mantle(mesh, from, to, from_radius, to_radius, material, kFacets);
+  add_disc(mesh, from, -axis, from_radius, material);
+  add_disc(mesh, to, axis, to_radius, material);
 }
 
 void add_ellipsoid(QuadMesh& mesh, const Eigen::Isometry3f& world_from_ellipsoid, const Vector3f& radii,
-                   const SurfaceLook& look, int facets) {
+                   const Material& material, int facets) {
   const auto point_at = [&](float u, float v) -> Vector3f {
     const float height = std::numbers::pi_v<float> * (v - 0.5f) * 0.998f;  // leaves the poles a small width
     const Vector3f direction(std::cos(height) * std::cos(kRound * u), std::cos(height) * std::sin(kRound * u),
@@ -136,10 +136,10 @@ void add_ellipsoid(QuadMesh& mesh, const Eigen::Isometry3f& world_from_ellipsoid
     return world_from_ellipsoid * Vector3f(radii.cwiseProduct(direction));
   };
   const Vector2f size(kRound * std::max(radii.x(), radii.y()), std::numbers::pi_v<float> * radii.z());
-  add_grid(mesh, 2 * facets, facets, point_at, size, look);
+  add_grid(mesh, 2 * facets, facets, point_at, size, material);
 }
 
-Eigen::Isometry3f placed(const Vector3f& position, float yaw) {
+Eigen::Isometry3f make_isometry(const Vector3f& position, float yaw) {
   return Eigen::Translation3f(position) * Eigen::AngleAxisf(yaw, Vector3f::UnitZ());
 }
 

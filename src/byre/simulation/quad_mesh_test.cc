@@ -7,7 +7,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-const SurfaceLook kLook{.picture_width = 0.5f};
+const Material kMaterial{.texture_width = 0.5f};
 
 // Normal from a facet's corners, counter-clockwise.
 Vector3f facet_normal(const QuadMesh& mesh, std::size_t quad) {
@@ -31,26 +31,26 @@ void expect_to_face_away_from(const QuadMesh& mesh, const Vector3f& inside) {
 
 TEST(QuadMesh, ShowsTheOutsideOfABox) {
   QuadMesh mesh;
-  add_box(mesh, placed({1.0f, 2.0f, 3.0f}, 0.7f), {0.5f, 0.3f, 0.2f}, kLook);
+  add_box(mesh, make_isometry({1.0f, 2.0f, 3.0f}, 0.7f), {0.5f, 0.3f, 0.2f}, kMaterial);
   expect_to_face_away_from(mesh, {1.0f, 2.0f, 3.0f});
   EXPECT_EQ(mesh.surfaces.size(), 6u);
 }
 
 TEST(QuadMesh, ShowsTheOutsideOfADrum) {
   QuadMesh mesh;
-  add_drum(mesh, {0.0f, 0.0f, 0.0f}, {0.2f, 0.1f, 1.0f}, 0.3f, 0.2f, kLook);
+  add_drum(mesh, {0.0f, 0.0f, 0.0f}, {0.2f, 0.1f, 1.0f}, 0.3f, 0.2f, kMaterial);
   expect_to_face_away_from(mesh, {0.1f, 0.05f, 0.5f});
 }
 
 TEST(QuadMesh, ShowsTheOutsideOfAnEllipsoid) {
   QuadMesh mesh;
-  add_ellipsoid(mesh, placed({0.0f, 1.0f, 0.0f}), {0.5f, 0.3f, 0.2f}, kLook);
+  add_ellipsoid(mesh, make_isometry({0.0f, 1.0f, 0.0f}), {0.5f, 0.3f, 0.2f}, kMaterial);
   expect_to_face_away_from(mesh, {0.0f, 1.0f, 0.0f});
 }
 
 TEST(QuadMesh, HasABarOfTheGivenWidth) {
   QuadMesh mesh;
-  add_bar(mesh, {0.0f, 0.0f, 1.0f}, {2.0f, 0.0f, 1.0f}, 0.1f, kLook);
+  add_bar(mesh, {0.0f, 0.0f, 1.0f}, {2.0f, 0.0f, 1.0f}, 0.1f, kMaterial);
   for (const Vector3f& vertex : mesh.vertices) {
     EXPECT_NEAR((vertex - Vector3f(vertex.x(), 0.0f, 1.0f)).norm(), 0.1f, 1e-5f);
   }
@@ -58,16 +58,16 @@ TEST(QuadMesh, HasABarOfTheGivenWidth) {
 
 TEST(QuadMesh, MapsPicturesToTheirWidth) {
   QuadMesh mesh;
-  add_panel(mesh, Vector3f::Zero(), {2.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, kLook);
+  add_panel(mesh, Vector3f::Zero(), {2.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, kMaterial);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    EXPECT_NEAR(mesh.picture_places[i].x(), mesh.vertices[i].x() / kLook.picture_width, 1e-5f);
-    EXPECT_NEAR(mesh.picture_places[i].y(), mesh.vertices[i].y() / kLook.picture_width, 1e-5f);
+    EXPECT_NEAR(mesh.texture_coordinates[i].x(), mesh.vertices[i].x() / kMaterial.texture_width, 1e-5f);
+    EXPECT_NEAR(mesh.texture_coordinates[i].y(), mesh.vertices[i].y() / kMaterial.texture_width, 1e-5f);
   }
 }
 
 TEST(QuadMesh, LimitsTheSizeOfFacets) {
   QuadMesh mesh;
-  add_panel(mesh, Vector3f::Zero(), {2.0f, 0.0f, 0.0f}, {0.0f, 0.9f, 0.0f}, kLook, 0.25f);
+  add_panel(mesh, Vector3f::Zero(), {2.0f, 0.0f, 0.0f}, {0.0f, 0.9f, 0.0f}, kMaterial, 0.25f);
   EXPECT_EQ(mesh.quads.size(), 8u * 4u);
 }
 

@@ -85,20 +85,20 @@ struct SceneRenderer::Packet {
 
 float SceneRenderer::radiance_of(const LitMesh& mesh, const LitMesh::Facet& facet, const Vector2f& in_facet,
                                  const RayFan& fan, float depth, const Illumination& illumination) const {
-  const SurfaceLook& look = mesh.look(facet);
-  if (look.glow > 0.0f) return illumination.share * look.glow;
-  const Vector2f place = across_facet(facet.picture_places, in_facet);
+  const Material& material = mesh.material(facet);
+  if (material.glow > 0.0f) return illumination.share * material.glow;
+  const Vector2f place = across_facet(facet.texture_coordinates, in_facet);
   const float facing = fan.ray.dot(facet.normal);
   const float slant = std::copysign(std::max(std::abs(facing), 0.02f), facing);
   const Vector3f right = depth * (fan.to_right - fan.ray * (fan.to_right.dot(facet.normal) / slant));
   const Vector3f down = depth * (fan.to_below - fan.ray * (fan.to_below.dot(facet.normal) / slant));
   const TextureFootprint footprint{{facet.u_slope.dot(right), facet.v_slope.dot(right)},
                                    {facet.u_slope.dot(down), facet.v_slope.dot(down)}};
-  constexpr float kStainWidth = 7.3f;  // metres per picture of stains
-  const float to_stains = look.picture_width / kStainWidth;
-  const float stain = picture_of(pictures_, BarnPicture::stains)
+  constexpr float kStainWidth = 7.3f;  // metres per texture of stains
+  const float to_stains = material.texture_width / kStainWidth;
+  const float stain = texture_of(textures_, BarnTexture::stains)
                           .sample(to_stains * place, to_stains * (footprint.right + footprint.down).norm());
-  const float reflectance = look.brightness * picture_of(pictures_, look.picture).sample(place, footprint);
+  const float reflectance = material.brightness * texture_of(textures_, material.texture).sample(place, footprint);
   float light = illumination.share * across_facet(facet.light, in_facet);
   if (illumination.headlight > 0.0f) light += headlight_on(fan.ray, depth, facet.normal, illumination.headlight);
   return reflectance * (0.4f + 1.2f * stain) * light;

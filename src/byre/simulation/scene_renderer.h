@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/pose.h"
-#include "byre/simulation/barn_pictures.h"
+#include "byre/simulation/barn_textures.h"
 #include "byre/simulation/lit_mesh.h"
 #include "byre/simulation/pixel_rays.h"
 
@@ -41,8 +41,8 @@ struct ExposureInstant {
 // (0: one per core).
 class SceneRenderer {
  public:
-  SceneRenderer(const LitMesh& still, const BarnPictures& pictures, const Air& air, int threads)
-      : still_(still), pictures_(pictures), air_(air), threads_(threads) {}
+  SceneRenderer(const LitMesh& still, const BarnTextures& textures, const Air& air, int threads)
+      : still_(still), textures_(textures), air_(air), threads_(threads) {}
 
   // Radiance of each pixel at an instant, in the unit of the mesh's light, row-major; pixels without a surface get the
   // air's. moving: moving meshes at this instant.
@@ -71,7 +71,7 @@ class SceneRenderer {
                                 const Eigen::Vector2f& offset) const;
 
   const LitMesh& still_;
-  const BarnPictures& pictures_;
+  const BarnTextures& textures_;
   Air air_;
   int threads_;
 };

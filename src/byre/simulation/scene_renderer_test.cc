@@ -21,10 +21,10 @@ constexpr float kMarker = 3.0f;  // radiance
 constexpr float kMarkerDepth = 2.0f;
 constexpr float kWallDepth = 4.0f;
 
-SurfaceLook glowing(float radiance) {
-  SurfaceLook look;
-  look.glow = radiance;
-  return look;
+Material glowing(float radiance) {
+  Material material;
+  material.glow = radiance;
+  return material;
 }
 
 // View of a camera at the origin along z: a wall, and before it a marker from (-0.5, -0.3) to (0.3, 0.4) metres.
@@ -42,7 +42,7 @@ LitMesh unlit(const QuadMesh& mesh, unsigned id) {
 class RenderedMarker : public ::testing::Test {
  protected:
   std::vector<float> render(const ExposureInstant& instant, const Air& air = {}, int threads = 1) const {
-    return SceneRenderer(still, pictures, air, threads).radiance({pixels, {}}, nothing, instant);
+    return SceneRenderer(still, textures, air, threads).radiance({pixels, {}}, nothing, instant);
   }
 
   // Sub-pixel position along a row of the step between wall and marker radiance.
@@ -54,7 +54,7 @@ class RenderedMarker : public ::testing::Test {
 
   const Camera camera = feeding_robot_calibration(2).left;
   const PixelRays pixels{camera};
-  const BarnPictures pictures{kBarnPictures, MipTexture(1, {0.5f})};  // no surface here shows a picture
+  const BarnTextures textures{kBarnTextures, MipTexture(1, {0.5f})};  // no surface here shows a texture
   const LitMesh still = unlit(wall_and_marker(), 0);
   const LitMesh nothing = unlit({}, 1);
 };
@@ -75,7 +75,7 @@ TEST_F(RenderedMarker, EndsAtItsEdgesProjectedThroughTheLens) {
 }
 
 TEST_F(RenderedMarker, HasTheDepthAlongTheOpticalAxis) {
-  const std::vector<float> depths = SceneRenderer(still, pictures, {}, 1).depths({pixels, {}}, nothing);
+  const std::vector<float> depths = SceneRenderer(still, textures, {}, 1).depths({pixels, {}}, nothing);
   const auto at = [&](const Vector3d& point) {
     const Vector2d pixel = camera.project(point).value();
     return depths[static_cast<std::size_t>(std::lround(pixel.y()) * camera.width + std::lround(pixel.x()))];
@@ -99,7 +99,7 @@ TEST_F(RenderedMarker, FadesInDust) {
 
 TEST_F(RenderedMarker, IsDarkerInDimLight) {
   const SceneView half{pixels, {}, {.share = 0.5f}};
-  const std::vector<float> radiance = SceneRenderer(still, pictures, {}, 1).radiance(half, nothing, {});
+  const std::vector<float> radiance = SceneRenderer(still, textures, {}, 1).radiance(half, nothing, {});
   const std::vector<float> full = render({});
   for (std::size_t i = 0; i < full.size(); ++i) ASSERT_FLOAT_EQ(radiance[i], 0.5f * full[i]) << i;
 }
@@ -112,7 +112,7 @@ TEST_F(RenderedMarker, IsLitByAHeadlightWithInverseSquareFalloff) {
     const LitMesh unlit_wall(wall, std::vector<float>(wall.vertices.size(), 0.0f), 0);
     const SceneView view{pixels, {}, {.headlight = 2.0f}};
     const Vector2d pixel = camera.project({0.0, 0.0, distance}).value();
-    return SceneRenderer(unlit_wall, pictures, {}, 1)
+    return SceneRenderer(unlit_wall, textures, {}, 1)
         .radiance(view, nothing,
                   {})[static_cast<std::size_t>(std::lround(pixel.y()) * camera.width + std::lround(pixel.x()))];
   };
@@ -124,7 +124,7 @@ TEST_F(RenderedMarker, IsOccludedByMovingObjects) {
   QuadMesh curtain;
   add_panel(curtain, {-9.0f, 9.0f, 1.0f}, {18.0f, 0.0f, 0.0f}, {0.0f, -18.0f, 0.0f}, glowing(2.0f), 20.0f);
   const LitMesh moving = unlit(curtain, 1);
-  EXPECT_THAT(SceneRenderer(still, pictures, {}, 1).radiance({pixels, {}}, moving, {}), Each(FloatEq(2.0f)));
+  EXPECT_THAT(SceneRenderer(still, textures, {}, 1).radiance({pixels, {}}, moving, {}), Each(FloatEq(2.0f)));
 }
 
 // Row poses decide, not their times: the first row looks from the start of the motion, the last one from its end.
@@ -134,7 +134,7 @@ TEST_F(RenderedMarker, IsRenderedPerRowFromTheMovingCamera) {
   };
   SceneView view{pixels, {}};
   for (int row = 0; row < camera.height; ++row) view.world_from_camera_by_row.push_back(camera_at(row));
-  const SceneRenderer renderer(still, pictures, {}, 1);
+  const SceneRenderer renderer(still, textures, {}, 1);
   const std::vector<float> radiance = renderer.radiance(view, nothing, {});
   double above = 0.0, below = 0.0;
   for (const int row : {camera.height / 2 - 25, camera.height / 2 + 25}) {
@@ -161,7 +161,7 @@ TEST_F(RenderedMarker, ShowsMovingObjectsPerRow) {
   const std::vector<float> light(begin.vertices.size(), 1.0f);
   const LitMesh moving(begin, end, light, 1, RayScene::Build::quick);
   const SceneView view{pixels, {}, {}, std::vector<Pose>(static_cast<std::size_t>(camera.height))};
-  const std::vector<float> depths = SceneRenderer(still, pictures, {}, 1).depths(view, moving);
+  const std::vector<float> depths = SceneRenderer(still, textures, {}, 1).depths(view, moving);
   for (int row = 0; row < camera.height; row += 30) {
     const double edge = 0.5 * row / (camera.height - 1.0);  // right end of the panel
     for (int column = 0; column < camera.width; ++column) {

@@ -125,10 +125,10 @@ Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& ra
 
 // The keypoint moved to a random pixel and disparity: an outlier.
 Keypoint displace(Keypoint keypoint, const Rig& rig, const SimulationOptions& options, Random& random) {
-  constexpr double kLeastDepth = 0.5;  // metres
+  constexpr double kNearestDepth = 0.5;  // metres
   keypoint.pixel.x() = static_cast<float>(draw_uniform(random, 0.0, rig.width - 1.0));
   keypoint.pixel.y() = static_cast<float>(draw_uniform(random, 0.0, rig.height - 1.0));
-  const double max_disparity = std::max(options.min_disparity, rig.focal * rig.baseline / kLeastDepth);
+  const double max_disparity = std::max(options.min_disparity, rig.focal * rig.baseline / kNearestDepth);
   const double disparity = draw_uniform(random, options.min_disparity, max_disparity);
   if (keypoint.has_disparity()) keypoint.disparity = static_cast<float>(disparity);
   return keypoint;

@@ -7,7 +7,7 @@
 
 namespace byre {
 
-// A square picture of reflectances that tiles: strokes wrap around its borders. Units: texels.
+// A square texture of reflectances that tiles: strokes wrap around its borders. Units: texels.
 class TilingCanvas {
  public:
   TilingCanvas(int size, float reflectance);

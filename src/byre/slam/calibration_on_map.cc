@@ -124,7 +124,7 @@ RefinedCalibration CalibrationOnMap::estimate() const {
   const CalibrationMatrix posterior = information_ + CalibrationMatrix::Identity() / (prior_sigmas_ * prior_sigmas_);
   const CalibrationVector expected = posterior.ldlt().solve(right_side_);
   RefinedCalibration result = determined_calibration(given_, posterior, expected, prior_sigmas_);
-  refuse_implausible(result, expected, given_, prior_sigmas_);
+  reject_implausible(result, expected, given_, prior_sigmas_);
   result.keyframes = frames_;
   result.observations = observations_;
   return result;

@@ -34,7 +34,7 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
   return result;
 }
 
-void refuse_implausible(RefinedCalibration& refined, const CalibrationVector& expected, const Calibration& given,
+void reject_implausible(RefinedCalibration& refined, const CalibrationVector& expected, const Calibration& given,
                         double prior_sigmas) {
   constexpr double kImplausible = 5.0;  // sigmas of the prior
   const double largest = std::max(refined.change.cwiseAbs().maxCoeff(), expected.cwiseAbs().maxCoeff());

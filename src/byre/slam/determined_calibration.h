@@ -14,7 +14,7 @@ RefinedCalibration determined_calibration(const Calibration& given, const Calibr
 // Resets a change that exceeds five prior sigmas in any parameter, or is part of one that does: the measurements do not
 // fit the model, and no part of the change is reliable. expected: the full change, also along directions that are
 // hardly better known than by the prior.
-void refuse_implausible(RefinedCalibration& refined, const CalibrationVector& expected, const Calibration& given,
+void reject_implausible(RefinedCalibration& refined, const CalibrationVector& expected, const Calibration& given,
                         double prior_sigmas);
 
 }  // namespace byre

@@ -16,7 +16,7 @@ RefinedCalibration plausible_part(const CalibrationVector& expected) {
   information(kKnown, kKnown) = 100.0;
   const Calibration given = scene_calibration();
   RefinedCalibration found = determined_calibration(given, information, expected, kPriorSigmas);
-  refuse_implausible(found, expected, given, kPriorSigmas);
+  reject_implausible(found, expected, given, kPriorSigmas);
   return found;
 }
 

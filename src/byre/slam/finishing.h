@@ -2,7 +2,7 @@
 
 #include "byre/slam/global_mapping.h"
 #include "byre/slam/loop_closing.h"
-#include "byre/slam/told_motions.h"
+#include "byre/slam/odometry_motions.h"
 
 #include <cstdint>
 #include <functional>
@@ -13,7 +13,7 @@ namespace byre {
 struct FinishOptions {
   LoopOptions loops;
   GlobalMappingOptions global;
-  std::vector<KeyframeMotion> motions;  // see told_motions
+  std::vector<KeyframeMotion> motions;  // see odometry_motions
   PlaceNoise noise;                     // noise of the place candidates of the loop search
   // Number of the first new keyframe, added since the map was last finished. Parts far from new keyframes do not
   // change, see recent_map. 0: the whole map is new.

@@ -37,13 +37,13 @@ struct Parabola {
 
   explicit Parabola(const FocalEvidence& evidence)
       : slope(0.5 * (evidence.longer - evidence.shorter)),
-        curvature(std::max(evidence.shorter + evidence.longer - 2.0 * evidence.as_it_is, 0.1 * evidence.as_it_is)) {}
+        curvature(std::max(evidence.shorter + evidence.longer - 2.0 * evidence.present, 0.1 * evidence.present)) {}
 };
 
 }  // namespace
 
-std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, const Rig& rig,
-                                                 std::span<const PoseObservation> observations) {
+std::optional<FocalEvidence> compare_focal_lengths(const Pose& camera_from_world, const Rig& rig,
+                                                   std::span<const PoseObservation> observations) {
   const auto cost_with = [&](double factor) -> std::optional<double> {
     Rig other = rig;
     other.focal *= factor;
@@ -58,15 +58,15 @@ std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, 
 
 bool FocalCheck::is_due() {
   const int frame = frames_++;
-  return asked_ < options_.asked_first || frame % options_.asked_every == 0;
+  return checked_ < options_.first_frames || frame % options_.frame_interval == 0;
 }
 
 void FocalCheck::note(const FocalEvidence& evidence) {
   if (evidence.points < kMinFramePoints) return;
-  ++asked_;
+  ++checked_;
   const auto blend = [](double& sum, double now) { sum = kFocalMemory * sum + now; };
   blend(sum_.shorter, evidence.shorter);
-  blend(sum_.as_it_is, evidence.as_it_is);
+  blend(sum_.present, evidence.present);
   blend(sum_.longer, evidence.longer);
   blend(sum_.points, evidence.points);
   blend(weight_, 1.0);
@@ -81,8 +81,8 @@ double FocalCheck::error() const {
 
 double FocalCheck::sigmas() const {
   const Parabola cost(sum_);
-  if (cost.curvature <= 0.0 || sum_.as_it_is <= 0.0) return 0.0;
-  const double variance = sum_.as_it_is / sum_.points;  // variance of a point's error
+  if (cost.curvature <= 0.0 || sum_.present <= 0.0) return 0.0;
+  const double variance = sum_.present / sum_.points;  // variance of a point's error
   return cost.slope / std::sqrt(cost.curvature * variance * weight_);
 }
 

@@ -11,7 +11,7 @@ namespace byre {
 // shorter or longer by the share kFocalStep. Square pixels, bounded for each point.
 struct FocalEvidence {
   double shorter = 0.0;
-  double as_it_is = 0.0;
+  double present = 0.0;
   double longer = 0.0;
   double points = 0.0;
 };
@@ -20,12 +20,12 @@ constexpr double kFocalStep = 0.05;
 
 // camera_from_world: refined with the present focal length; initial value for the other two. Empty if a refinement
 // fails.
-std::optional<FocalEvidence> weigh_focal_lengths(const Pose& camera_from_world, const Rig& rig,
-                                                 std::span<const PoseObservation> observations);
+std::optional<FocalEvidence> compare_focal_lengths(const Pose& camera_from_world, const Rig& rig,
+                                                   std::span<const PoseObservation> observations);
 
 struct FocalCheckOptions {
-  int asked_first = 5;   // first frames, consecutive
-  int asked_every = 20;  // interval afterwards, frames
+  int first_frames = 5;     // first frames, consecutive
+  int frame_interval = 20;  // interval afterwards, frames
 };
 
 // Detects a wrong focal length of the calibration from points of a correct map. A pose alone compensates a wrong focal
@@ -50,7 +50,7 @@ class FocalCheck {
   double weight_ = 0.0;  // number of frames in the sum, with decay
   bool is_off_ = false;
   int frames_ = 0;
-  int asked_ = 0;
+  int checked_ = 0;
 };
 
 }  // namespace byre

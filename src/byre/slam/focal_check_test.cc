@@ -36,7 +36,7 @@ FocalCheck checked(double focal_factor, double noise_pixels, unsigned seed) {
     const auto observations = seen_with(focal_factor, noise_pixels, 10 * seed + frame);
     const auto refined = refine_pose({}, simulated_rig(), observations, {});
     if (!refined) continue;
-    const auto evidence = weigh_focal_lengths(refined->camera_from_world, simulated_rig(), observations);
+    const auto evidence = compare_focal_lengths(refined->camera_from_world, simulated_rig(), observations);
     if (evidence) check.note(*evidence);
   }
   return check;
@@ -97,8 +97,8 @@ TEST(FocalCheck, KeepsAnErrorUntilItIsClearlyGone) {
 
 TEST(FocalCheck, EvaluatesTheFirstFramesThenOccasionalOnes) {
   FocalCheckOptions options;
-  options.asked_first = 2;
-  options.asked_every = 10;
+  options.first_frames = 2;
+  options.frame_interval = 10;
   FocalCheck check(options);
   int asked = 0;
   for (int frame = 0; frame < 41; ++frame) {
@@ -111,7 +111,7 @@ TEST(FocalCheck, EvaluatesTheFirstFramesThenOccasionalOnes) {
 
 TEST(FocalCheck, RequiresEnoughPointsForAPose) {
   const auto observations = seen_with(1.0, 0.0, 1);
-  EXPECT_FALSE(weigh_focal_lengths({}, simulated_rig(), std::span(observations).first(2)));
+  EXPECT_FALSE(compare_focal_lengths({}, simulated_rig(), std::span(observations).first(2)));
 }
 
 }  // namespace

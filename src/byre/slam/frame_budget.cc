@@ -24,7 +24,7 @@ void ExpectedTime::note(double seconds) {
 }
 
 // Halves the expectation within 280 frames, 14 s at 20 Hz.
-void ExpectedTime::fade() {
+void ExpectedTime::decay() {
   constexpr double kKept = 0.9975;
   if (mean_) *mean_ *= kKept;
   deviation_ *= kKept;
@@ -37,7 +37,7 @@ std::optional<double> ExpectedTime::seconds() const {
 
 void FrameBudget::Stage::note(double seconds, bool is_cut) {
   (is_cut ? cut : whole).note(seconds);
-  if (is_cut) whole.fade();
+  if (is_cut) whole.decay();
 }
 
 double FrameBudget::Stage::expected_when_cut() const {

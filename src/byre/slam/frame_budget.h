@@ -13,7 +13,7 @@ class ExpectedTime {
  public:
   void note(double seconds);
   // The stage was skipped: the expectation decays, so that it is tried again.
-  void fade();
+  void decay();
   // Seldom exceeded; empty before the first measurement.
   std::optional<double> seconds() const;
   double mean() const { return mean_.value_or(0.0); }

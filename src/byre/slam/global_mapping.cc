@@ -179,18 +179,18 @@ void grow(MapPoint& point, double growth, const Pose& camera_from_world) {
 }
 
 // Moves the keyframes, and each point with its reference keyframe, in the scale of that keyframe.
-void take_over(MapWindow& window, const IndexOfKeyframe& index_of, const PoseGraphResult& bent) {
+void write_back(MapWindow& window, const IndexOfKeyframe& index_of, const PoseGraphResult& optimised) {
   for (WindowPoint& point : window.points) {
     const auto reference = index_of.find(point.point.reference.keyframe);
     if (point.removed || reference == index_of.end()) continue;
     const Pose& before = pose_of(window, reference->second);
-    const Pose& after = bent.camera_from_world[static_cast<std::size_t>(reference->second)];
-    const double scale = bent.scales[static_cast<std::size_t>(reference->second)];
+    const Pose& after = optimised.camera_from_world[static_cast<std::size_t>(reference->second)];
+    const double scale = optimised.scales[static_cast<std::size_t>(reference->second)];
     if (scale != 1.0) grow(point.point, 1.0 / scale, before);
     point.point.position_in_world = inverse(after) * (before * point.point.position_in_world);
   }
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
-    pose_of(window, static_cast<int>(i)) = bent.camera_from_world[i];
+    pose_of(window, static_cast<int>(i)) = optimised.camera_from_world[i];
   }
 }
 
@@ -213,8 +213,8 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Ma
   PoseGraphOptions graph_options;
   graph_options.scale_is_free = scale_may_drift(window);
   if (graph_options.scale_is_free) graph_options.loss = RobustLoss::none;  // gaps of many sigmas are expected
-  const PoseGraphResult bent = optimise_pose_graph(make_pose_graph(window, index_of, loops), graph_options);
-  if (bent.usable) take_over(window, index_of, bent);
+  const PoseGraphResult optimised = optimise_pose_graph(make_pose_graph(window, index_of, loops), graph_options);
+  if (optimised.usable) write_back(window, index_of, optimised);
   for (const LoopEdge& loop : loops) {
     const auto place = index_of.find(loop.place), keyframe = index_of.find(loop.keyframe);
     if (place == index_of.end() || keyframe == index_of.end()) continue;
@@ -224,12 +224,12 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Ma
 
 // Places parts by all measured motions between them, such as a loop from the last to the first, and limits the drift of
 // scale by these motions. Bundle adjustment would converge slowly, since the images hardly constrain either.
-void settle_by_motions(MapWindow& window) {
+void optimise_with_motions(MapWindow& window) {
   const IndexOfKeyframe index_of = index_keyframes(window);
   PoseGraphOptions options;
   options.scale_is_free = scale_may_drift(window);
   const PoseGraphResult settled = optimise_pose_graph(make_pose_graph(window, index_of, {}), options);
-  if (settled.usable) take_over(window, index_of, settled);
+  if (settled.usable) write_back(window, index_of, settled);
 }
 
 }  // namespace
@@ -265,7 +265,7 @@ void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const 
                    const std::function<bool()>& should_stop) {
   const bool has_parts = place_parts(window);
   const bool may_drift = scale_may_drift(window);
-  if (has_parts || (may_drift && !window.motions.empty())) settle_by_motions(window);
+  if (has_parts || (may_drift && !window.motions.empty())) optimise_with_motions(window);
   if (!loops.empty()) close_loops(window, loops, options.mapping);
   MappingOptions mapping = options.mapping;
   mapping.first_bundle_iterations = options.first_bundle_iterations;

@@ -75,7 +75,7 @@ void project_points(const MapView& map, std::span<const PointId> points, const P
                     std::vector<ExpectedPoint>& expected) {
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
   expected.clear();
-  make_room(expected, points.size());
+  reserve_pow2(expected, points.size());
   for (const PointId id : points) {
     const MapPoint* const point = map.find_point(id);
     if (point == nullptr) continue;
@@ -91,7 +91,7 @@ void match_expected(const Features& features, const MapView& map, const std::vec
     int distance = std::numeric_limits<int>::max();
   };
   thread_local std::vector<Claim> claims;
-  make_room(claims, static_cast<std::size_t>(features.size()));
+  reserve_pow2(claims, static_cast<std::size_t>(features.size()));
   claims.assign(static_cast<std::size_t>(features.size()), {});
   for (const ExpectedPoint& candidate : expected) {
     const MapPoint* const point = map.find_point(candidate.id);
@@ -102,7 +102,7 @@ void match_expected(const Features& features, const MapView& map, const std::vec
     if (found->distance < claim.distance) claim = {candidate.id, found->distance};
   }
   matches.clear();
-  make_room(matches, claims.size());
+  reserve_pow2(matches, claims.size());
   for (int feature = 0; feature < features.size(); ++feature) {
     const Claim& claim = claims[static_cast<std::size_t>(feature)];
     if (claim.distance <= options.max_distance) matches.push_back({feature, claim.point, claim.distance});

@@ -19,37 +19,38 @@ double uncertainty_of(const Health& health, const HealthOptions& options) {
 }
 
 // Fault of the input that may explain a lost pose; none without one.
-Doubt fault_of_input(const HealthEvidence& evidence) {
-  if (evidence.image_fault != ImageFault::none) return Doubt::blinded;
-  if (evidence.input.is_repeated || evidence.input.is_frozen) return Doubt::frozen;
-  if (evidence.is_miscalibrated) return Doubt::calibration;
-  if (evidence.input.right_fault != ImageFault::none) return Doubt::right_camera;
-  return evidence.input.cameras_disagree ? Doubt::cameras_disagree : Doubt::none;
+DistrustReason fault_of_input(const HealthEvidence& evidence) {
+  if (evidence.image_fault != ImageFault::none) return DistrustReason::blinded;
+  if (evidence.input.is_repeated || evidence.input.is_frozen) return DistrustReason::frozen;
+  if (evidence.is_miscalibrated) return DistrustReason::calibration;
+  if (evidence.input.right_fault != ImageFault::none) return DistrustReason::right_camera;
+  return evidence.input.cameras_disagree ? DistrustReason::cameras_disagree : DistrustReason::none;
 }
 
 // Reason against a dead-reckoned pose; none while its error is bounded.
-Doubt reason_against_bridge(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+DistrustReason distrust_of_bridge(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
   const bool is_open = options.sigmas * health.position_sigma > options.trusted_error ||
                        options.sigmas * health.rotation_sigma > options.max_bridged_rotation;
-  return is_open || *evidence.bridged_from == Verdict::untrusted ? Doubt::bridged : Doubt::none;
+  return is_open || *evidence.bridged_from == Verdict::untrusted ? DistrustReason::bridged : DistrustReason::none;
 }
 
 // Reason why the pose is untrusted; none otherwise.
-Doubt reason_against(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
-  if (evidence.bridged_from) return reason_against_bridge(health, evidence, options);
+DistrustReason distrust_reason(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (evidence.bridged_from) return distrust_of_bridge(health, evidence, options);
   if (!evidence.pose_found || !evidence.registered) {
-    const Doubt cause = fault_of_input(evidence);
-    if (cause != Doubt::none && !(evidence.pose_found && cause == Doubt::blinded)) return cause;
-    if (evidence.pose_found) return Doubt::not_registered;
-    return evidence.refused_place != Doubt::none ? evidence.refused_place : Doubt::no_pose;
+    const DistrustReason cause = fault_of_input(evidence);
+    if (cause != DistrustReason::none && !(evidence.pose_found && cause == DistrustReason::blinded)) return cause;
+    if (evidence.pose_found) return DistrustReason::not_registered;
+    return evidence.refused_place != DistrustReason::none ? evidence.refused_place : DistrustReason::no_pose;
   }
-  if (evidence.input.frozen_seconds > options.max_frozen) return Doubt::frozen;
-  if (evidence.is_miscalibrated) return Doubt::calibration;
-  if (!evidence.confirmed) return Doubt::unconfirmed;
+  if (evidence.input.frozen_seconds > options.max_frozen) return DistrustReason::frozen;
+  if (evidence.is_miscalibrated) return DistrustReason::calibration;
+  if (!evidence.confirmed) return DistrustReason::unconfirmed;
   if (position_error(health, options) > options.trusted_error) {
-    return drift_of(health, options) > uncertainty_of(health, options) ? Doubt::off_the_map : Doubt::uncertain;
+    return drift_of(health, options) > uncertainty_of(health, options) ? DistrustReason::off_the_map
+                                                                       : DistrustReason::uncertain;
   }
-  return Doubt::none;
+  return DistrustReason::none;
 }
 
 bool misses_offline_points(const Health& health, const HealthOptions& options) {
@@ -62,22 +63,22 @@ bool misses_offline_points(const Health& health, const HealthOptions& options) {
 }
 
 // Reason why the pose is degraded; none otherwise.
-Doubt reason_for_care(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
-  if (evidence.bridged_from) return Doubt::bridged;
-  const Doubt input = fault_of_input(evidence);
-  if (input != Doubt::none && input != Doubt::blinded) return input;
-  if (evidence.is_calibration_doubtful) return Doubt::calibration;
-  if (evidence.is_calibration_open) return Doubt::unconfirmed;
+DistrustReason caution_reason(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (evidence.bridged_from) return DistrustReason::bridged;
+  const DistrustReason input = fault_of_input(evidence);
+  if (input != DistrustReason::none && input != DistrustReason::blinded) return input;
+  if (evidence.is_calibration_doubtful) return DistrustReason::calibration;
+  if (evidence.is_calibration_open) return DistrustReason::unconfirmed;
   if (evidence.maps_disagree && health.agreement && health.agreement->translation > options.max_disagreement) {
-    return Doubt::maps_disagree;
+    return DistrustReason::maps_disagree;
   }
   if (health.offline_inliers + health.online_inliers < options.min_points) {
-    return evidence.image_fault == ImageFault::none ? Doubt::few_points : Doubt::blinded;
+    return evidence.image_fault == ImageFault::none ? DistrustReason::few_points : DistrustReason::blinded;
   }
-  if (evidence.is_dirty || is_mostly_hidden(health.hidden_share)) return Doubt::dirty;
-  if (health.spread < options.min_spread) return Doubt::clustered;
-  if (health.rotation_sigma > options.max_rotation_sigma) return Doubt::uncertain;
-  return misses_offline_points(health, options) ? Doubt::few_offline_points : Doubt::none;
+  if (evidence.is_dirty || is_mostly_hidden(health.hidden_share)) return DistrustReason::dirty;
+  if (health.spread < options.min_spread) return DistrustReason::clustered;
+  if (health.rotation_sigma > options.max_rotation_sigma) return DistrustReason::uncertain;
+  return misses_offline_points(health, options) ? DistrustReason::few_offline_points : DistrustReason::none;
 }
 
 }  // namespace
@@ -94,51 +95,51 @@ std::string_view to_string(Verdict verdict) {
   return "";
 }
 
-std::string_view to_string(Doubt doubt) {
+std::string_view to_string(DistrustReason doubt) {
   switch (doubt) {
-    case Doubt::none:
+    case DistrustReason::none:
       return "none";
-    case Doubt::no_pose:
+    case DistrustReason::no_pose:
       return "no pose";
-    case Doubt::blinded:
+    case DistrustReason::blinded:
       return "blinded";
-    case Doubt::not_registered:
+    case DistrustReason::not_registered:
       return "not registered in the map";
-    case Doubt::unconfirmed:
+    case DistrustReason::unconfirmed:
       return "not confirmed yet";
-    case Doubt::off_the_map:
+    case DistrustReason::off_the_map:
       return "far outside the mapped area";
-    case Doubt::few_points:
+    case DistrustReason::few_points:
       return "too few points";
-    case Doubt::few_offline_points:
+    case DistrustReason::few_offline_points:
       return "too few offline points";
-    case Doubt::clustered:
+    case DistrustReason::clustered:
       return "points are clustered";
-    case Doubt::uncertain:
+    case DistrustReason::uncertain:
       return "pose is uncertain";
-    case Doubt::maps_disagree:
+    case DistrustReason::maps_disagree:
       return "offline and online points disagree";
-    case Doubt::frozen:
+    case DistrustReason::frozen:
       return "camera repeats its image";
-    case Doubt::right_camera:
+    case DistrustReason::right_camera:
       return "right camera is blinded";
-    case Doubt::cameras_disagree:
+    case DistrustReason::cameras_disagree:
       return "left and right images do not fit";
-    case Doubt::calibration:
+    case DistrustReason::calibration:
       return "calibration does not fit the map";
-    case Doubt::bridged:
+    case DistrustReason::bridged:
       return "bridged by wheels or a gyroscope";
-    case Doubt::dirty:
+    case DistrustReason::dirty:
       return "dirt hides most of the image";
-    case Doubt::map_damaged:
+    case DistrustReason::map_damaged:
       return "map file is damaged";
-    case Doubt::off_the_plane:
+    case DistrustReason::off_the_plane:
       return "place found is off the driving plane";
-    case Doubt::in_wall:
+    case DistrustReason::in_wall:
       return "place found is inside a wall";
-    case Doubt::outside:
+    case DistrustReason::outside:
       return "place found is outside of the building";
-    case Doubt::behind_wall:
+    case DistrustReason::behind_wall:
       return "place found is behind a wall";
   }
   return "";
@@ -161,8 +162,8 @@ bool is_mostly_hidden(double hidden_share) {
   return hidden_share > kMostHidden;
 }
 
-HealthEvidence LastingDoubts::held(Timestamp time, const HealthEvidence& evidence) {
-  const auto note = [time](LastingDoubt& doubt, Sign sign) {
+HealthEvidence FaultLatches::latch(Timestamp time, const HealthEvidence& evidence) {
+  const auto note = [time](FaultLatch& doubt, Sign sign) {
     doubt.note(time, sign);
     return doubt.is_raised();
   };
@@ -174,9 +175,9 @@ HealthEvidence LastingDoubts::held(Timestamp time, const HealthEvidence& evidenc
   const Sign still_or_frozen = input.is_frozen ? Sign::present : input.is_still ? Sign::unclear : Sign::absent;
   const bool is_right_faulty = input.right_fault != ImageFault::none;
   if (is_right_faulty) right_fault_ = input.right_fault;
-  const bool is_at_odds = input.cameras_disagree || input.out_of_step == Sign::present;
+  const bool is_at_odds = input.cameras_disagree || input.out_of_sync == Sign::present;
   if (is_at_odds) may_be_timing_ = !input.is_still || (may_be_timing_ && cameras_disagree_.is_raised());
-  const Sign in_agreement = may_be_timing_ || !is_seen ? input.out_of_step : Sign::absent;
+  const Sign in_agreement = may_be_timing_ || !is_seen ? input.out_of_sync : Sign::absent;
   HealthEvidence result = evidence;
   result.input.is_repeated = note(repeated_, sign_of(input.is_repeated));
   result.input.is_frozen = note(frozen_, is_seen ? still_or_frozen : Sign::unclear);
@@ -191,13 +192,13 @@ double position_error(const Health& measured, const HealthOptions& options) {
   return uncertainty_of(measured, options) + drift_of(measured, options);
 }
 
-Health judged(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options) {
+Health assess(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options) {
   Health health = measured;
-  health.doubt = reason_against(measured, evidence, options);
+  health.doubt = distrust_reason(measured, evidence, options);
   health.verdict = Verdict::untrusted;
-  if (health.doubt != Doubt::none) return health;
-  health.doubt = reason_for_care(measured, evidence, options);
-  health.verdict = health.doubt == Doubt::none ? Verdict::trusted : Verdict::degraded;
+  if (health.doubt != DistrustReason::none) return health;
+  health.doubt = caution_reason(measured, evidence, options);
+  health.verdict = health.doubt == DistrustReason::none ? Verdict::trusted : Verdict::degraded;
   return health;
 }
 

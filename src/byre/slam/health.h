@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/health.h"
-#include "byre/slam/input_watch.h"
+#include "byre/slam/image_monitor.h"
 
 #include <optional>
 
@@ -26,7 +26,7 @@ struct HealthOptions {
 struct HealthEvidence {
   bool pose_found = false;
   bool registered = true;      // the pose is in the offline map's frame
-  bool confirmed = true;       // the place is believed and accepted
+  bool confirmed = true;       // the place is confirmed and accepted
   bool maps_disagree = false;  // beyond the uncertainty of both poses
   ImageFault image_fault = ImageFault::none;
   InputEvidence input{};
@@ -36,23 +36,23 @@ struct HealthEvidence {
   bool is_calibration_open = false;
   // Verdict of the last visual pose; set for a dead-reckoned pose.
   std::optional<Verdict> bridged_from{};
-  Doubt refused_place = Doubt::none;  // why a place that shows the frame was rejected
-  bool is_dirty = false;              // dirt hides most of the left image
+  DistrustReason refused_place = DistrustReason::none;  // why a place that shows the frame was rejected
+  bool is_dirty = false;                                // dirt hides most of the left image
 };
 
-// The doubts about images and calibration, each a LastingDoubt.
-class LastingDoubts {
+// The doubts about images and calibration, each a FaultLatch.
+class FaultLatches {
  public:
   // Adds causes of earlier frames whose doubts have not ended yet to the evidence of a frame.
-  HealthEvidence held(Timestamp time, const HealthEvidence& evidence);
+  HealthEvidence latch(Timestamp time, const HealthEvidence& evidence);
 
  private:
-  LastingDoubt repeated_;
-  LastingDoubt frozen_;
-  LastingDoubt right_camera_;
-  LastingDoubt cameras_disagree_;
-  LastingDoubt miscalibrated_;
-  LastingDoubt dirty_;
+  FaultLatch repeated_;
+  FaultLatch frozen_;
+  FaultLatch right_camera_;
+  FaultLatch cameras_disagree_;
+  FaultLatch miscalibrated_;
+  FaultLatch dirty_;
   ImageFault right_fault_ = ImageFault::none;  // last fault of the right image
   bool may_be_timing_ = false;                 // the images disagreed in motion: only a pair in step ends that doubt
 };
@@ -65,6 +65,6 @@ bool is_mostly_hidden(double hidden_share);
 
 // Sets verdict and doubt. Untrusted if uncertainty plus drift exceed the error bound of a trusted pose. Degraded while
 // few, clustered or contradicting points constrain the pose.
-Health judged(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options);
+Health assess(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options);
 
 }  // namespace byre

@@ -9,7 +9,7 @@ namespace byre {
 void PrintTo(Verdict verdict, std::ostream* out) {
   *out << to_string(verdict);
 }
-void PrintTo(Doubt doubt, std::ostream* out) {
+void PrintTo(DistrustReason doubt, std::ostream* out) {
   *out << to_string(doubt);
 }
 
@@ -37,7 +37,7 @@ struct Judgement {
   Health health;
   HealthEvidence evidence;
   Verdict verdict;
-  Doubt doubt;
+  DistrustReason doubt;
 };
 
 void PrintTo(const Judgement& judgement, std::ostream* out) {
@@ -53,7 +53,7 @@ Health with(void (*change)(Health&)) {
 class JudgedHealth : public ::testing::TestWithParam<Judgement> {};
 
 TEST_P(JudgedHealth, FollowsTheTable) {
-  const Health health = judged(GetParam().health, GetParam().evidence, {});
+  const Health health = assess(GetParam().health, GetParam().evidence, {});
   EXPECT_EQ(health.verdict, GetParam().verdict);
   EXPECT_EQ(health.doubt, GetParam().doubt);
 }
@@ -61,51 +61,52 @@ TEST_P(JudgedHealth, FollowsTheTable) {
 INSTANTIATE_TEST_SUITE_P(
     Table, JudgedHealth,
     ::testing::Values(
-        Judgement{"mapped place", good(), kPose, Verdict::trusted, Doubt::none},
-        Judgement{"no pose", {}, {}, Verdict::untrusted, Doubt::no_pose},
-        Judgement{"no pose in the dark", {}, {.image_fault = ImageFault::dark}, Verdict::untrusted, Doubt::blinded},
+        Judgement{"mapped place", good(), kPose, Verdict::trusted, DistrustReason::none},
+        Judgement{"no pose", {}, {}, Verdict::untrusted, DistrustReason::no_pose},
+        Judgement{
+            "no pose in the dark", {}, {.image_fault = ImageFault::dark}, Verdict::untrusted, DistrustReason::blinded},
         Judgement{"unregistered online map",
                   good(),
                   {.pose_found = true, .registered = false},
                   Verdict::untrusted,
-                  Doubt::not_registered},
+                  DistrustReason::not_registered},
         Judgement{"just relocalised",
                   good(),
                   {.pose_found = true, .confirmed = false},
                   Verdict::untrusted,
-                  Doubt::unconfirmed},
+                  DistrustReason::unconfirmed},
         Judgement{"near the map", with([](Health& h) {
                     h.offline_expected = h.offline_inliers = 0;
                     h.online_inliers = 300;
                     h.distance_since_offline = 20.0;
                   }),
-                  kPose, Verdict::trusted, Doubt::none},
+                  kPose, Verdict::trusted, DistrustReason::none},
         Judgement{"far off the map", with([](Health& h) {
                     h.offline_expected = h.offline_inliers = 0;
                     h.online_inliers = 300;
                     h.distance_since_offline = 60.0;
                   }),
-                  kPose, Verdict::untrusted, Doubt::off_the_map},
+                  kPose, Verdict::untrusted, DistrustReason::off_the_map},
         Judgement{"uncertain position", with([](Health& h) { h.position_sigma = 0.1; }), kPose, Verdict::untrusted,
-                  Doubt::uncertain},
+                  DistrustReason::uncertain},
         Judgement{"uncertain rotation", with([](Health& h) { h.rotation_sigma = 0.05; }), kPose, Verdict::degraded,
-                  Doubt::uncertain},
+                  DistrustReason::uncertain},
         Judgement{"moved objects",
                   with([](Health& h) {
                     h.agreement = Agreement{0.3, 0.01};
                   }),
                   {.pose_found = true, .maps_disagree = true},
                   Verdict::degraded,
-                  Doubt::maps_disagree},
+                  DistrustReason::maps_disagree},
         Judgement{"few distant online points without position information", with([](Health& h) {
                     h.agreement = Agreement{0.3, 0.01};
                   }),
-                  kPose, Verdict::trusted, Doubt::none},
+                  kPose, Verdict::trusted, DistrustReason::none},
         Judgement{"few points", with([](Health& h) {
                     h.offline_inliers = 20;
                     h.online_inliers = 10;
                   }),
-                  kPose, Verdict::degraded, Doubt::few_points},
+                  kPose, Verdict::degraded, DistrustReason::few_points},
         Judgement{"few points due to blur",
                   with([](Health& h) {
                     h.offline_inliers = 20;
@@ -113,91 +114,91 @@ INSTANTIATE_TEST_SUITE_P(
                   }),
                   {.pose_found = true, .image_fault = ImageFault::blurred},
                   Verdict::degraded,
-                  Doubt::blinded},
+                  DistrustReason::blinded},
         Judgement{"points in a corner", with([](Health& h) { h.spread = 0.01; }), kPose, Verdict::degraded,
-                  Doubt::clustered},
+                  DistrustReason::clustered},
         Judgement{"a third of the image hidden by dirt", with([](Health& h) { h.hidden_share = 0.33; }), kPose,
-                  Verdict::trusted, Doubt::none},
+                  Verdict::trusted, DistrustReason::none},
         Judgement{"most of the image hidden by dirt", with([](Health& h) { h.hidden_share = 0.7; }), kPose,
-                  Verdict::degraded, Doubt::dirty},
+                  Verdict::degraded, DistrustReason::dirty},
         Judgement{"a lookalike place", with([](Health& h) {
                     h.offline_expected = 1800;
                     h.offline_inliers = 50;
                     h.online_inliers = 300;
                   }),
-                  kPose, Verdict::degraded, Doubt::few_offline_points},
+                  kPose, Verdict::degraded, DistrustReason::few_offline_points},
         Judgement{"a changed place, short", with([](Health& h) {
                     h.offline_inliers = 5;
                     h.online_inliers = 200;
                     h.distance_since_offline = 2.0;
                   }),
-                  kPose, Verdict::trusted, Doubt::none},
+                  kPose, Verdict::trusted, DistrustReason::none},
         Judgement{"a changed place, long", with([](Health& h) {
                     h.offline_inliers = 5;
                     h.online_inliers = 200;
                     h.distance_since_offline = 8.0;
                   }),
-                  kPose, Verdict::degraded, Doubt::few_offline_points},
+                  kPose, Verdict::degraded, DistrustReason::few_offline_points},
         Judgement{"a repeated image",
                   good(),
                   {.pose_found = true, .input = {.is_repeated = true, .frozen_seconds = 0.05}},
                   Verdict::degraded,
-                  Doubt::frozen},
+                  DistrustReason::frozen},
         Judgement{"a frozen camera",
                   good(),
                   {.pose_found = true, .input = {.is_repeated = true, .frozen_seconds = 0.3}},
                   Verdict::untrusted,
-                  Doubt::frozen},
+                  DistrustReason::frozen},
         Judgement{"a dark right camera",
                   good(),
                   {.pose_found = true, .input = {.right_fault = ImageFault::dark}},
                   Verdict::degraded,
-                  Doubt::right_camera},
+                  DistrustReason::right_camera},
         Judgement{"unsynchronised cameras",
                   good(),
                   {.pose_found = true, .input = {.cameras_disagree = true}},
                   Verdict::degraded,
-                  Doubt::cameras_disagree},
+                  DistrustReason::cameras_disagree},
         Judgement{"no pose with unsynchronised cameras",
                   {},
                   {.input = {.cameras_disagree = true}},
                   Verdict::untrusted,
-                  Doubt::cameras_disagree},
+                  DistrustReason::cameras_disagree},
         Judgement{"another focal length",
                   good(),
                   {.pose_found = true, .is_miscalibrated = true},
                   Verdict::untrusted,
-                  Doubt::calibration},
+                  DistrustReason::calibration},
         Judgement{"an implausible calibration error",
                   good(),
                   {.pose_found = true, .is_calibration_doubtful = true},
                   Verdict::degraded,
-                  Doubt::calibration},
+                  DistrustReason::calibration},
         Judgement{"a short path in the dark",
                   with([](Health& h) { h.position_sigma = 0.03; }),
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::trusted},
                   Verdict::degraded,
-                  Doubt::bridged},
+                  DistrustReason::bridged},
         Judgement{"a long path in the dark",
                   with([](Health& h) { h.position_sigma = 0.1; }),
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::trusted},
                   Verdict::untrusted,
-                  Doubt::bridged},
+                  DistrustReason::bridged},
         Judgement{"a long turn in the dark",
                   with([](Health& h) { h.rotation_sigma = 0.05; }),
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::trusted},
                   Verdict::untrusted,
-                  Doubt::bridged},
+                  DistrustReason::bridged},
         Judgement{"a path in the dark from an untrusted pose",
                   good(),
                   {.image_fault = ImageFault::dark, .bridged_from = Verdict::untrusted},
                   Verdict::untrusted,
-                  Doubt::bridged},
+                  DistrustReason::bridged},
         Judgement{"an unchecked calibration",
                   good(),
                   {.pose_found = true, .is_calibration_open = true},
                   Verdict::degraded,
-                  Doubt::unconfirmed}));
+                  DistrustReason::unconfirmed}));
 
 TEST(NoteOnDirt, ReportsTheLensesToClean) {
   Health health;
@@ -212,10 +213,10 @@ TEST(NoteOnDirt, ReportsTheLensesToClean) {
 
 // Notes a number of frames, 20 per second, with the same evidence. Returns the number of frames with a doubt.
 template <typename IsRaised>
-int raised_frames(LastingDoubts& doubts, int first, int count, const HealthEvidence& evidence, IsRaised is_raised) {
+int raised_frames(FaultLatches& doubts, int first, int count, const HealthEvidence& evidence, IsRaised is_raised) {
   int raised = 0;
   for (int i = first; i < first + count; ++i) {
-    if (is_raised(doubts.held(from_seconds(0.05 * i), evidence))) ++raised;
+    if (is_raised(doubts.latch(from_seconds(0.05 * i), evidence))) ++raised;
   }
   return raised;
 }
@@ -228,10 +229,10 @@ bool is_frozen(const HealthEvidence& evidence) {
   return evidence.input.is_frozen;
 }
 
-constexpr HealthEvidence kInStep{.pose_found = true, .input = {.out_of_step = Sign::absent}};
+constexpr HealthEvidence kInStep{.pose_found = true, .input = {.out_of_sync = Sign::absent}};
 
-TEST(LastingDoubts, OfAPairDetectedInMotionEndOnlyInMotion) {
-  LastingDoubts doubts;
+TEST(FaultLatches, OfAPairDetectedInMotionEndOnlyInMotion) {
+  FaultLatches doubts;
   constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.cameras_disagree = true}};
   EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
   EXPECT_EQ(raised_frames(doubts, 1, 200, kPose, are_cameras_at_odds), 200);
@@ -240,46 +241,46 @@ TEST(LastingDoubts, OfAPairDetectedInMotionEndOnlyInMotion) {
   EXPECT_LE(raised, 25);
 }
 
-TEST(LastingDoubts, OfAPairDetectedAtAStandstillEndThere) {
-  LastingDoubts doubts;
+TEST(FaultLatches, OfAPairDetectedAtAStandstillEndThere) {
+  FaultLatches doubts;
   constexpr HealthEvidence kAtOdds{.pose_found = true, .input = {.is_still = true, .cameras_disagree = true}};
   EXPECT_EQ(raised_frames(doubts, 0, 1, kAtOdds, are_cameras_at_odds), 1);
   EXPECT_LE(raised_frames(doubts, 1, 200, {.pose_found = true, .input = {.is_still = true}}, are_cameras_at_odds), 25);
 }
 
-TEST(LastingDoubts, OfAPairAreRaisedByItsTimingAlone) {
-  LastingDoubts doubts;
+TEST(FaultLatches, OfAPairAreRaisedByItsTimingAlone) {
+  FaultLatches doubts;
   EXPECT_EQ(
-      raised_frames(doubts, 0, 1, {.pose_found = true, .input = {.out_of_step = Sign::present}}, are_cameras_at_odds),
+      raised_frames(doubts, 0, 1, {.pose_found = true, .input = {.out_of_sync = Sign::present}}, are_cameras_at_odds),
       1);
 }
 
-TEST(LastingDoubts, OfAFrozenImageDoNotEndAtAStandstill) {
-  LastingDoubts doubts;
+TEST(FaultLatches, OfAFrozenImageDoNotEndAtAStandstill) {
+  FaultLatches doubts;
   EXPECT_EQ(raised_frames(doubts, 0, 1, {.input = {.is_still = true, .is_frozen = true}}, is_frozen), 1);
   EXPECT_EQ(raised_frames(doubts, 1, 200, {.pose_found = true, .input = {.is_still = true}}, is_frozen), 200);
   EXPECT_LE(raised_frames(doubts, 201, 200, kPose, is_frozen), 25);
 }
 
-TEST(LastingDoubts, OfTheCalibrationNeedFramesWithAPose) {
-  LastingDoubts doubts;
+TEST(FaultLatches, OfTheCalibrationNeedFramesWithAPose) {
+  FaultLatches doubts;
   const auto is_off = [](const HealthEvidence& evidence) { return evidence.is_miscalibrated; };
   EXPECT_EQ(raised_frames(doubts, 0, 1, {.pose_found = true, .is_miscalibrated = true}, is_off), 1);
   EXPECT_EQ(raised_frames(doubts, 1, 200, {}, is_off), 200);
   EXPECT_LE(raised_frames(doubts, 201, 200, kPose, is_off), 25);
 }
 
-TEST(LastingDoubts, KeepTheFaultOfTheRightCamera) {
-  LastingDoubts doubts;
+TEST(FaultLatches, KeepTheFaultOfTheRightCamera) {
+  FaultLatches doubts;
   const auto fault = [](const HealthEvidence& evidence) { return evidence.input.right_fault == ImageFault::dark; };
   EXPECT_EQ(raised_frames(doubts, 0, 1, {.input = {.right_fault = ImageFault::dark}}, fault), 1);
   EXPECT_GE(raised_frames(doubts, 1, 100, kPose, fault), 10);
 }
 
-TEST(LastingDoubts, AreEmptyForSoundFrames) {
-  LastingDoubts doubts;
-  const HealthEvidence held = doubts.held(from_seconds(1.0), kInStep);
-  EXPECT_EQ(judged(good(), held, {}).verdict, Verdict::trusted);
+TEST(FaultLatches, AreEmptyForSoundFrames) {
+  FaultLatches doubts;
+  const HealthEvidence held = doubts.latch(from_seconds(1.0), kInStep);
+  EXPECT_EQ(assess(good(), held, {}).verdict, Verdict::trusted);
 }
 
 }  // namespace

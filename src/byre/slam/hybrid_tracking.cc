@@ -96,7 +96,7 @@ std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::
 
 void project(const Query& query, const ByMap<Pose>& camera_from_world, ByMap<std::vector<ExpectedPoint>>& expected) {
   const ByMap<std::vector<PointId>>& points = query.memory.points;
-  const HiddenCells& hidden = query.options.hidden;
+  const ImageMask& hidden = query.options.hidden;
   project_visible(query.map, points.offline, camera_from_world.offline, query.rig, hidden, expected.offline);
   project_visible(query.map, points.online, camera_from_world.online, query.rig, hidden, expected.online);
 }
@@ -150,8 +150,8 @@ const Found& look_for(const Query& query, const ByMap<Pose>& guesses) {
 
 // A feature that matches points of both maps is left to the offline one.
 void join(const MeasuredPoints& offline, const MeasuredPoints& online, double offline_weight, MeasuredPoints& both) {
-  make_room(both.observations, offline.observations.size() + online.observations.size());
-  make_room(both.features, offline.features.size() + online.features.size());
+  reserve_pow2(both.observations, offline.observations.size() + online.observations.size());
+  reserve_pow2(both.features, offline.features.size() + online.features.size());
   both = offline;
   for (PoseObservation& observation : both.observations) observation.weight = offline_weight;
   for (std::size_t i = 0; i < online.features.size(); ++i) {
@@ -199,7 +199,7 @@ Support support_of(const Query& query, const PoseRefinement& refined, const Meas
 }
 
 // A moved object fits a pose of its own as well, but does not fill the image. Precondition: the pose is sound.
-bool stands(const Query& query, const PoseRefinement& offline, const MeasuredPoints& measured) {
+bool prevails(const Query& query, const PoseRefinement& offline, const MeasuredPoints& measured) {
   constexpr int kMinParts = 4;       // image regions with fitting points, a third of all
   constexpr double kMinShare = 0.6;  // share of the regions with evidence that must fit
   const Support support = support_of(query, offline, measured);
@@ -231,15 +231,15 @@ std::optional<Solution> solve_together(const Query& query, const Pose& camera_fr
 }
 
 // Pose by the points of one map, refined on those and on the points of the other map that agree with it.
-Solution solve_led(const Query& query, const PoseRefinement& leader, Origin leading,
-                   const ByMap<MeasuredPoints>& measured) {
-  const bool offline_leads = leading == Origin::offline;
-  const MeasuredPoints& of_leader = offline_leads ? measured.offline : measured.online;
+Solution solve_guided(const Query& query, const PoseRefinement& leader, Origin leading,
+                      const ByMap<MeasuredPoints>& measured) {
+  const bool offline_guides = leading == Origin::offline;
+  const MeasuredPoints& of_leader = offline_guides ? measured.offline : measured.online;
   PartedPoints& followers = query.memory.parted;
-  part_by_agreement(leader.camera_from_world, query.rig, offline_leads ? measured.online : measured.offline,
+  part_by_agreement(leader.camera_from_world, query.rig, offline_guides ? measured.online : measured.offline,
                     leader.variance_factor, followers);
-  auto solution = offline_leads ? solve_together(query, leader.camera_from_world, of_leader, followers.agreeing)
-                                : solve_together(query, leader.camera_from_world, followers.agreeing, of_leader);
+  auto solution = offline_guides ? solve_together(query, leader.camera_from_world, of_leader, followers.agreeing)
+                                 : solve_together(query, leader.camera_from_world, followers.agreeing, of_leader);
   if (!solution) solution = Solution{leader, &of_leader, {}};
   solution->left_out = followers.disagreeing;
   return *std::move(solution);
@@ -249,38 +249,38 @@ Solution solve_led(const Query& query, const PoseRefinement& leader, Origin lead
 struct Opinions {
   std::optional<PoseRefinement> offline;
   std::optional<PoseRefinement> online;
-  bool offline_stands = false;
+  bool offline_prevails = false;
   bool maps_disagree = false;
 };
 
-Opinions ask_each(const Query& query, const ByMap<Pose>& guesses, const Found& found) {
+Opinions solve_each(const Query& query, const ByMap<Pose>& guesses, const Found& found) {
   Opinions opinions;
   opinions.offline = refine_alone(query, guesses.offline, found.measured.offline);
   opinions.online = refine_alone(query, guesses.online, found.measured.online);
-  opinions.offline_stands = opinions.offline && stands(query, *opinions.offline, found.measured.offline);
+  opinions.offline_prevails = opinions.offline && prevails(query, *opinions.offline, found.measured.offline);
   if (!opinions.offline || !opinions.online) return opinions;
   const double depth = median_depth(query, found.expected.offline, opinions.offline->camera_from_world);
   opinions.maps_disagree = disagree(*opinions.offline, *opinions.online, depth, query.rig);
   // A compromise between static and moved points fits fewer offline points than the online pose does. Against an online
   // map the inliers must also exceed chance agreement, which is frequent if walls hide expected points.
-  if (opinions.maps_disagree && opinions.offline_stands) {
+  if (opinions.maps_disagree && opinions.offline_prevails) {
     constexpr double kMinShare = 0.04;  // share of the offline points in the frustum
     const MeasuredPoints& points = found.measured.offline;
     const auto inliers = static_cast<double>(std::ranges::count(opinions.offline->inliers, true));
     if (inliers < kMinShare * static_cast<double>(found.expected.offline.size())) {
-      opinions.offline_stands = false;
+      opinions.offline_prevails = false;
       return opinions;
     }
-    opinions.offline_stands = count_fitting(query, opinions.offline->camera_from_world, points) >=
-                              count_fitting(query, opinions.online->camera_from_world, points);
+    opinions.offline_prevails = count_fitting(query, opinions.offline->camera_from_world, points) >=
+                                count_fitting(query, opinions.online->camera_from_world, points);
   }
   return opinions;
 }
 
 std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, const Opinions& opinions,
                               const ByMap<MeasuredPoints>& measured) {
-  if (opinions.offline_stands) return solve_led(query, *opinions.offline, Origin::offline, measured);
-  if (opinions.maps_disagree) return solve_led(query, *opinions.online, Origin::online, measured);
+  if (opinions.offline_prevails) return solve_guided(query, *opinions.offline, Origin::offline, measured);
+  if (opinions.maps_disagree) return solve_guided(query, *opinions.online, Origin::online, measured);
   auto together =
       solve_together(query, opinions.offline ? guesses.offline : guesses.online, measured.offline, measured.online);
   if (together) return together;
@@ -291,8 +291,8 @@ std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, co
 
 // Splits the offline matches by the solution. A point has moved only if its own patch was found elsewhere, not just a
 // similar corner.
-void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
-  ReusedVector<PointId>& inliers = result.offline_agreed;
+void add_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
+  ScratchVector<PointId>& inliers = result.offline_agreed;
   inliers.reserve(result.tracked.features.size());
   for (const TrackedFeature& feature : result.tracked.features) {
     if (feature.point.origin == Origin::offline) inliers.push_back(feature.point);
@@ -306,7 +306,7 @@ void tell_offline_points(const Query& query, const ByMap<MeasuredPoints>& measur
   }
 }
 
-HybridTrack told(const Query& query, const Found& found, const Opinions& opinions, const Solution& solution) {
+HybridTrack to_result(const Query& query, const Found& found, const Opinions& opinions, const Solution& solution) {
   HybridTrack result;
   if (opinions.offline) result.from_offline = opinions.offline->camera_from_world;
   if (opinions.online) {
@@ -314,9 +314,9 @@ HybridTrack told(const Query& query, const Found& found, const Opinions& opinion
     result.from_online_covariance = opinions.online->covariance;
   }
   result.maps_disagree = opinions.maps_disagree;
-  result.offline_stands = opinions.offline_stands;
+  result.offline_prevails = opinions.offline_prevails;
 
-  ReusedVector<TrackedFeature> inliers = inliers_of(solution.refined, *solution.measured);
+  ScratchVector<TrackedFeature> inliers = inliers_of(solution.refined, *solution.measured);
   std::ranges::sort(inliers, {}, &TrackedFeature::feature);
   SharedPoints& shared = query.memory.shared;
   count_shared_points(query.map, inliers, shared);
@@ -324,7 +324,7 @@ HybridTrack told(const Query& query, const Found& found, const Opinions& opinion
   result.online_reference = most_shared(shared, Origin::online);
   result.tracked =
       tracked_frame(solution.refined, std::move(inliers), most_shared(shared).value_or(KeyframeId{}), query.map);
-  ReusedVector<TrackedFeature>& outliers = result.tracked.outliers;
+  ScratchVector<TrackedFeature>& outliers = result.tracked.outliers;
   outliers = outliers_of(solution.refined, *solution.measured);
   outliers.insert(outliers.end(), solution.left_out.begin(), solution.left_out.end());
 
@@ -332,7 +332,7 @@ HybridTrack told(const Query& query, const Found& found, const Opinions& opinion
   result.offline_matches = static_cast<int>(found.measured.offline.features.size());
   result.tracked.expected = result.offline_expected + static_cast<int>(found.expected.online.size());
   result.tracked.matches = result.offline_matches + static_cast<int>(found.measured.online.features.size());
-  tell_offline_points(query, found.measured, result);
+  add_offline_points(query, found.measured, result);
   return result;
 }
 
@@ -349,25 +349,25 @@ bool is_within(const Agreement& agreement, const DriftBound& drift) {
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, std::span<const PointId> candidates,
                                         const TrackOptions& options, const HybridLimits& limits,
-                                        bool weighs_focal_lengths) {
+                                        bool compares_focal_lengths) {
   const Query query{frame, rig, map, options, limits};
   split(candidates, query.memory.points);
   const auto guesses = guess_poses(query, predicted_camera_from_world);
   if (!guesses) return std::nullopt;
   const Found& found = look_for(query, *guesses);
-  const Opinions opinions = ask_each(query, *guesses, found);
+  const Opinions opinions = solve_each(query, *guesses, found);
   const auto solution = solve(query, *guesses, opinions, found.measured);
   if (!solution) return std::nullopt;
-  HybridTrack result = told(query, found, opinions, *solution);
-  if (weighs_focal_lengths) {
+  HybridTrack result = to_result(query, found, opinions, *solution);
+  if (compares_focal_lengths) {
     const std::vector<PoseObservation>& seen = found.measured.offline.observations;
     const auto refined = opinions.offline ? opinions.offline : refine_pose(guesses->offline, rig, seen, {});
-    if (refined) result.focal = weigh_focal_lengths(refined->camera_from_world, rig, seen);
+    if (refined) result.focal = compare_focal_lengths(refined->camera_from_world, rig, seen);
   }
   return result;
 }
 
-PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+SearchedPoints search_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                              std::span<const PointId> points, const TrackOptions& options) {
   const Query query{frame, rig, map, options};
   Found& found = query.memory.found;
@@ -375,12 +375,12 @@ PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, 
   match_and_measure(query, found.expected.offline, camera_from_world, found.measured.offline);
   PartedPoints& parted = query.memory.parted;
   part_by_agreement(camera_from_world, rig, found.measured.offline, 1.0, parted);
-  PlacedPoints placed;
-  for (const TrackedFeature& feature : parted.agreeing.features) placed.agreed.push_back(feature.point);
+  SearchedPoints searched;
+  for (const TrackedFeature& feature : parted.agreeing.features) searched.agreed.push_back(feature.point);
   for (const TrackedFeature& feature : parted.disagreeing) {
-    if (shows_patch(feature, *frame.features)) placed.moved.push_back(feature.point);
+    if (shows_patch(feature, *frame.features)) searched.moved.push_back(feature.point);
   }
-  return placed;
+  return searched;
 }
 
 }  // namespace byre

@@ -35,13 +35,13 @@ struct HybridTrack {
   Matrix6 from_online_covariance = Matrix6::Zero();  // covariance of delta in exp_pose(delta) * from_online
   bool maps_disagree = false;                        // the poses differ by more than their covariances explain
   // One rigid pose fits most offline points by their patches, all over the image: it takes precedence.
-  bool offline_stands = false;
-  std::optional<FocalEvidence> focal;    // evidence of offline points on the focal length, if weighed
-  ReusedVector<PointId> offline_agreed;  // offline points that fit the pose
-  ReusedVector<PointId> offline_moved;   // offline points found away from their predictions
+  bool offline_prevails = false;
+  std::optional<FocalEvidence> focal;     // evidence of offline points on the focal length, if weighed
+  ScratchVector<PointId> offline_agreed;  // offline points that fit the pose
+  ScratchVector<PointId> offline_moved;   // offline points found away from their predictions
 
   // The online map is displaced.
-  bool is_online_off() const { return maps_disagree && offline_stands; }
+  bool is_online_displaced() const { return maps_disagree && offline_prevails; }
   int online_inliers() const { return static_cast<int>(tracked.features.size()) - offline_inliers; }
 };
 
@@ -56,21 +56,21 @@ struct HybridLimits {
 // Same as track(), for candidates of both maps. The points of each map give a pose. If one pose fits offline points all
 // over the image, it takes precedence over the online map within the limits, and online points that agree with it are
 // used. Offline points that fit one pose only in a part of the image may be on a moved object: if the maps disagree,
-// the online pose is used, with the offline points that agree with it. weighs_focal_lengths: sets `focal`, see
+// the online pose is used, with the offline points that agree with it. compares_focal_lengths: sets `focal`, see
 // FocalCheck.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, std::span<const PointId> candidates,
                                         const TrackOptions& options, const HybridLimits& limits = {},
-                                        bool weighs_focal_lengths = false);
+                                        bool compares_focal_lengths = false);
 
 // Points found at their predictions from a given pose, and points found elsewhere.
-struct PlacedPoints {
-  ReusedVector<PointId> agreed;
-  ReusedVector<PointId> moved;
+struct SearchedPoints {
+  ScratchVector<PointId> agreed;
+  ScratchVector<PointId> moved;
 };
 
 // Matches points around their predictions without changing the pose. Points not found are in neither list.
-PlacedPoints look_for_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+SearchedPoints search_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                              std::span<const PointId> points, const TrackOptions& options);
 
 }  // namespace byre

@@ -122,7 +122,7 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapDespiteADisplacedOnlineMap) {
     const auto track = track_frame(predicted, OfflinePolicy::first);
     ASSERT_TRUE(track) << metres;
     EXPECT_TRUE(track->maps_disagree) << metres;
-    EXPECT_TRUE(track->offline_stands) << metres;
+    EXPECT_TRUE(track->offline_prevails) << metres;
     EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
     EXPECT_GT(track->offline_inliers, 50) << metres;
     ASSERT_TRUE(track->from_online) << metres;
@@ -141,7 +141,7 @@ TEST_F(TrackHybrid, StaysOnTheOnlineMapIfTheOffsetExceedsTheDrift) {
   const auto track = track_frame(predicted, OfflinePolicy::first, {.drift = {0.3, 0.1}});
   ASSERT_TRUE(track);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(predicted, 0.01, 0.2 * kDegree));
-  EXPECT_FALSE(track->is_online_off());
+  EXPECT_FALSE(track->is_online_displaced());
 }
 
 TEST_F(TrackHybrid, IsLostIfOfflinePointsImplyAnImpossibleMotion) {
@@ -165,7 +165,7 @@ TEST_F(TrackHybridInClutter, FollowsTheOnlineMapIfFewOfflinePointsAgree) {
   ASSERT_TRUE(track->from_offline) << "they are enough for a pose";
   EXPECT_LT(track->offline_matches, 0.04 * track->offline_expected);
   EXPECT_TRUE(track->maps_disagree);
-  EXPECT_FALSE(track->offline_stands);
+  EXPECT_FALSE(track->offline_prevails);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(predicted, 0.01, 0.2 * kDegree));
 }
 
@@ -204,9 +204,9 @@ TEST_F(TrackHybrid, ClassifiesGivenPointsAsAgreedOrMoved) {
   std::vector<PointId> shelf;
   for (std::size_t i = 0; i < all.size(); i += 5) shelf.push_back(all[i]);
   const auto look = [&] {
-    return look_for_points(now_.frames[kFrameTracked], truth_, now_.rig, {&offline_, online_}, shelf, {});
+    return search_points(now_.frames[kFrameTracked], truth_, now_.rig, {&offline_, online_}, shelf, {});
   };
-  const PlacedPoints before = look();
+  const SearchedPoints before = look();
   EXPECT_GT(before.agreed.size(), 10U);
   EXPECT_LT(before.moved.size(), before.agreed.size() / 4);
   for (const PointId id : shelf) {
@@ -214,7 +214,7 @@ TEST_F(TrackHybrid, ClassifiesGivenPointsAsAgreedOrMoved) {
     point.position_in_world.z() += 0.04;
     offline_.update_point(id, point);
   }
-  const PlacedPoints after = look();
+  const SearchedPoints after = look();
   EXPECT_GT(after.moved.size(), after.agreed.size());
   EXPECT_LT(after.agreed.size(), before.agreed.size() / 2);
 }

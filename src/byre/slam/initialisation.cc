@@ -142,7 +142,7 @@ int count_spread_points(const Keyframe& keyframe, const Rig& rig, int max_per_ce
   return spread;
 }
 
-TwoViewFailure reason_to_doubt(const MonocularStart& start, const Rig& rig) {
+TwoViewFailure rejection_reason(const MonocularStart& start, const Rig& rig) {
   const int points = count_spread_points(*start.map.find_keyframe(start.second), rig, kMaxPointsPerCell);
   if (points < kMinPoints) return TwoViewFailure::too_few_points;
   if (start.median_parallax < kMinParallax) return TwoViewFailure::small_parallax;
@@ -205,7 +205,7 @@ std::vector<Match> MonocularInitialiser::match_with_reference(const Features& fe
 }
 
 // Features that were not found are predicted by the median shift of the others.
-void MonocularInitialiser::follow(const std::vector<Match>& matches, const Features& features) {
+void MonocularInitialiser::update_expected(const std::vector<Match>& matches, const Features& features) {
   std::vector<float> right, down;
   for (const Match& match : matches) {
     const Eigen::Vector2f shift =
@@ -228,14 +228,14 @@ MonocularAttempt MonocularInitialiser::try_start(const Frame& frame) {
     begin_with(frame);
     return attempt;
   }
-  follow(matches, *frame.features);
+  update_expected(matches, *frame.features);
   const Features& first = *reference_->features;
   const auto estimate = estimate_two_view_motion(rays_of(matches, first, *frame.features, rig_));
   attempt.failure = estimate.failure;
   if (!estimate.motion) return attempt;
   MonocularStart start =
       start_from(*estimate.motion, matches, *reference_, frame, rig_, options_.median_depth, mapping_);
-  attempt.failure = reason_to_doubt(start, rig_);
+  attempt.failure = rejection_reason(start, rig_);
   if (attempt.failure != TwoViewFailure::none) return attempt;
   attempt.start = std::move(start);
   reference_.reset();

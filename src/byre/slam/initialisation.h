@@ -50,7 +50,7 @@ class MonocularInitialiser {
  private:
   void begin_with(const Frame& frame);
   std::vector<Match> match_with_reference(const Features& features) const;
-  void follow(const std::vector<Match>& matches, const Features& features);
+  void update_expected(const std::vector<Match>& matches, const Features& features);
 
   // Constant after construction.
   Rig rig_;

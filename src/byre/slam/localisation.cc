@@ -87,7 +87,7 @@ Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   }
   const std::optional<TrackedFrame> tracked = refine(query, pose->camera_from_world, place.keyframe);
   if (!tracked) return failed(Failure::too_few_inliers, match_count, static_cast<std::size_t>(agreeing));
-  const Failure doubt = reason_to_doubt(*tracked, query.rig, query.map, options);
+  const Failure doubt = rejection_reason(*tracked, query.rig, query.map, options);
   if (doubt != Failure::none) return failed(doubt, match_count, tracked->features.size());
   if (query.filter.is_impossible && query.filter.is_impossible(*tracked)) {
     return failed(Failure::impossible, match_count, tracked->features.size());
@@ -163,8 +163,8 @@ double spread_of(std::span<const TrackedFeature> features, const Rig& rig) {
   return std::sqrt(std::max(0.0, symmetric_eigenvalues(covariance)[0])) / std::hypot(rig.width, rig.height);
 }
 
-LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
-                                    const LocaliseOptions& options) {
+LocalisationFailure rejection_reason(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
+                                     const LocaliseOptions& options) {
   if (static_cast<int>(tracked.features.size()) < options.min_inliers) return Failure::too_few_inliers;
   if (spread_of(tracked.features, rig) < options.min_spread) return Failure::clustered;
   const double position_sigma = std::sqrt(tracked.match_covariance.topLeftCorner<3, 3>().trace());

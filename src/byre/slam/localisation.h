@@ -38,7 +38,7 @@ struct LocaliseOptions {
   double min_spread = 0.05;
   double max_position_sigma = 0.02;  // sigma of the position over the median depth of the inliers
   double max_rotation_sigma = 0.02;  // radians
-  HiddenCells hidden{};              // image cells without expected points
+  ImageMask hidden{};                // image cells without expected points
 };
 
 struct Localisation {
@@ -72,7 +72,7 @@ Localisation localise_at(const Frame& frame, std::span<const Word> words, const 
 double spread_of(std::span<const TrackedFeature> features, const Rig& rig);
 
 // Reason why a pose, however estimated, is unreliable; none if it is reliable.
-LocalisationFailure reason_to_doubt(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
-                                    const LocaliseOptions& options);
+LocalisationFailure rejection_reason(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
+                                     const LocaliseOptions& options);
 
 }  // namespace byre

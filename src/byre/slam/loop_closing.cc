@@ -125,8 +125,8 @@ PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& fram
                              const Rig& rig, const Map& map) {
   constexpr int kKeyframesNearby = 3;
   constexpr double kDepth = 5.0;  // metres
-  const ReusedVector<PointId> nearby = local_points(map, there.reference, kKeyframesNearby);
-  const ReusedVector<PointId> around = local_points(map, there.reference, kKeyframesOfPlace);
+  const ScratchVector<PointId> nearby = local_points(map, there.reference, kKeyframesNearby);
+  const ScratchVector<PointId> around = local_points(map, there.reference, kKeyframesOfPlace);
   const double share = hypothesis.median_depth / kDepth;
   const double metre = rig.is_stereo() ? std::min(1.0, share) : share;
   return view_of_place({map, rig, frame, there, nearby, around, {}, {}, {}, metre});

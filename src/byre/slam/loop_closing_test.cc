@@ -167,7 +167,7 @@ TEST_F(LookalikeGate, IsRefutedThoughFramesAreTrackedThere) {
   const auto found = find_loop(map_, index_, newest(), options_);
   ASSERT_TRUE(found);
   const LoopHypothesis loop = checked(*found, {66, 67, 68});
-  EXPECT_TRUE(loop.test.is_believed());
+  EXPECT_TRUE(loop.test.is_confirmed());
   EXPECT_EQ(loop.untracked, 0);
   EXPECT_FALSE(is_confirmed(loop));
   EXPECT_TRUE(is_refuted(loop)) << "log-odds " << loop.test.log_odds();

@@ -99,7 +99,7 @@ void add_pose_errors(MapWindow& window, double pose_sigma) {
 }
 
 // Refines all points together: with fixed poses they are independent.
-void settle_points(Map& map, const KnownPoseOptions& options) {
+void refine_points(Map& map, const KnownPoseOptions& options) {
   if (map.keyframe_count() == 0) return;
   const MapWindow window = window_of(map, map.keyframe_ids());
   MapWindow settled = window;
@@ -146,7 +146,7 @@ Map map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& 
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   const auto neighbours = overlapping_keyframes(map, options);
   for (std::size_t i = 0; i < ids.size(); ++i) connect(map, ids[i], neighbours[i], options);
-  settle_points(map, options);
+  refine_points(map, options);
   return map;
 }
 

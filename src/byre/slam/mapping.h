@@ -2,7 +2,7 @@
 
 #include "byre/optimise/bundle_adjustment.h"
 #include "byre/slam/delta.h"
-#include "byre/slam/hidden_cells.h"
+#include "byre/slam/image_mask.h"
 
 namespace byre {
 
@@ -19,7 +19,7 @@ struct MappingOptions {
   double offline_weight = 2.0;
   int first_bundle_iterations = 5;   // iterations before outlier removal
   int second_bundle_iterations = 8;  // iterations after outlier removal
-  HiddenCells hidden{};              // cells of the newest keyframe without expected points
+  ImageMask hidden{};                // cells of the newest keyframe without expected points
 };
 
 // One mapping job: triangulates new points between the new keyframes and their neighbours of both maps, fuses

@@ -45,18 +45,19 @@ BundleObservation weighted_observation(const MapWindow& window, const WindowPoin
   return observation;
 }
 
-BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& told) {
+BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& motion) {
   const auto rig_at = [&](int keyframe) {
     return window.rig_of(window.keyframes[static_cast<std::size_t>(keyframe)]).body_from_camera;
   };
-  const Pose earlier_camera_from_body = inverse(rig_at(told.earlier)), camera_from_body = inverse(rig_at(told.later));
-  return {told.earlier, told.later,
-          camera_from_body * inverse(told.motion.last_from_body) * inverse(earlier_camera_from_body),
-          move_covariance(told.motion.covariance, camera_from_body).inverse()};
+  const Pose earlier_camera_from_body = inverse(rig_at(motion.earlier)),
+             camera_from_body = inverse(rig_at(motion.later));
+  return {motion.earlier, motion.later,
+          camera_from_body * inverse(motion.motion.last_from_body) * inverse(earlier_camera_from_body),
+          move_covariance(motion.motion.covariance, camera_from_body).inverse()};
 }
 
 // Reserves memory: growing lists would take twice as much in maps with millions of observations.
-void make_room(const MapWindow& window, WindowBundle& bundle) {
+void reserve_for(const MapWindow& window, WindowBundle& bundle) {
   std::size_t observations = 0;
   for (const WindowPoint& point : window.points) observations += point.observations.size();
   bundle.problem.poses.reserve(window.keyframes.size());
@@ -68,12 +69,12 @@ void make_room(const MapWindow& window, WindowBundle& bundle) {
 // Anchors' observations of offline points are left out, since both are fixed.
 WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   WindowBundle bundle;
-  make_room(window, bundle);
+  reserve_for(window, bundle);
   bundle.problem.rigs = window.rigs;
   for (const WindowKeyframe& keyframe : window.keyframes) {
     bundle.problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, !keyframe.movable});
   }
-  for (const WindowMotion& told : window.motions) bundle.problem.motions.push_back(bundle_motion(window, told));
+  for (const WindowMotion& motion : window.motions) bundle.problem.motions.push_back(bundle_motion(window, motion));
   for (std::size_t p = 0; p < window.points.size(); ++p) {
     const WindowPoint& point = window.points[p];
     bundle.problem.points.push_back({point.point.position_in_world, is_offline(point)});
@@ -103,7 +104,7 @@ bool is_outlier(const BundleObservation& observation, bool of_offline_point, dou
   return !(squared_error <= gate * (of_offline_point ? tolerance_of(observation) : 1.0));
 }
 
-void take_over(MapWindow& window, const BundleResult& result) {
+void write_back(MapWindow& window, const BundleResult& result) {
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
     if (window.keyframes[i].movable) window.keyframes[i].keyframe.camera_from_world = result.camera_from_world[i];
   }
@@ -166,7 +167,7 @@ void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options, cons
     const WindowBundle bundle = make_bundle(window, options.offline_weight);
     const BundleResult result = bundle_adjust(bundle.problem, bundle_options);
     if (!result.usable) return;
-    take_over(window, result);
+    write_back(window, result);
     if (result.pose_covariance) {
       window.keyframes.front().keyframe.covariance = *result.pose_covariance + anchor_covariance(window);
     }

@@ -81,7 +81,7 @@ void fuse(MapWindow& window, int removed, int kept) {
   }
 }
 
-void settle(MapWindow& window, const Meeting& meeting) {
+void merge(MapWindow& window, const Meeting& meeting) {
   const WindowPoint& point = window.points[static_cast<std::size_t>(meeting.point)];
   if (point.removed || sees(point, meeting.seen.keyframe)) return;
   const int other = window.keyframes[static_cast<std::size_t>(meeting.seen.keyframe)]
@@ -122,11 +122,11 @@ void fuse_duplicates(MapWindow& window, int keyframe, const MappingOptions& opti
 
 void fuse_between(MapWindow& window, int keyframe, const std::vector<int>& neighbours, const MappingOptions& options) {
   for (const Meeting& meeting : look_for(window, points_seen_by(window, neighbours), keyframe, options)) {
-    settle(window, meeting);
+    merge(window, meeting);
   }
   const std::vector<int> own_points = points_seen_by(window, {keyframe});
   for (const int neighbour : neighbours) {
-    for (const Meeting& meeting : look_for(window, own_points, neighbour, options)) settle(window, meeting);
+    for (const Meeting& meeting : look_for(window, own_points, neighbour, options)) merge(window, meeting);
   }
 }
 

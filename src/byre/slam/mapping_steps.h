@@ -52,7 +52,7 @@ void refresh_points(MapWindow& window);
 
 // Removes points that later keyframes should have confirmed and did not. newest: reference for the age of points.
 // hidden: of the window's first keyframe; points behind dirt there are kept until they leave it.
-void remove_weak_points(MapWindow& window, KeyframeId newest, const HiddenCells& hidden = {});
+void remove_weak_points(MapWindow& window, KeyframeId newest, const ImageMask& hidden = {});
 
 // Removes keyframes nearly all of whose points are offline or seen by at least three other online keyframes.
 void remove_redundant_keyframes(MapWindow& window, const MappingOptions& options);

@@ -243,8 +243,8 @@ TEST_F(MappingOnNoisyFeatures, KeepsOldPointsHiddenByDirt) {
   const std::uint32_t next = map_.point_ids().back().number + 1;
   const int old_points = add_stereo_points(map_, {Origin::online, 14});
   MapWindow window = cut_window(MapView(nullptr, map_), {kNewest}, {});
-  HiddenCells hidden;
-  for (std::size_t cell = 0; cell < HiddenCells::kCells; ++cell) hidden.set(cell, true);
+  ImageMask hidden;
+  for (std::size_t cell = 0; cell < ImageMask::kCells; ++cell) hidden.set(cell, true);
   remove_weak_points(window, kNewest, hidden);
   const WindowKeyframe& newest = window.keyframes.front();
   int waiting = 0, in_view = 0;

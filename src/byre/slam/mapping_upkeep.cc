@@ -114,7 +114,7 @@ void remove_keyframe(MapWindow& window, int index) {
 }
 
 // Whether dirt hides the point in the window's first keyframe.
-bool is_behind_dirt(const MapWindow& window, const WindowPoint& point, const HiddenCells& hidden) {
+bool is_behind_dirt(const MapWindow& window, const WindowPoint& point, const ImageMask& hidden) {
   if (!hidden.any()) return false;
   const WindowKeyframe& keyframe = window.keyframes.front();
   const Eigen::Vector3d in_camera = keyframe.keyframe.camera_from_world * point.point.position_in_world;
@@ -135,7 +135,7 @@ void refresh_points(MapWindow& window) {
   }
 }
 
-void remove_weak_points(MapWindow& window, KeyframeId newest, const HiddenCells& hidden) {
+void remove_weak_points(MapWindow& window, KeyframeId newest, const ImageMask& hidden) {
   constexpr std::uint32_t kKeyframesToConfirm = 3;
   for (int i = 0; i < static_cast<int>(window.points.size()); ++i) {
     const WindowPoint& point = window.points[static_cast<std::size_t>(i)];

@@ -42,8 +42,8 @@ std::vector<ModelView> find_candidates(const SfmModel& model, const ModelPoint& 
 }
 
 // The most similar candidate of each image.
-std::vector<ModelView> most_alike(const SfmModel& model, const std::vector<ModelView>& candidates,
-                                  const Descriptor& descriptor, int max_distance) {
+std::vector<ModelView> most_similar_views(const SfmModel& model, const std::vector<ModelView>& candidates,
+                                          const Descriptor& descriptor, int max_distance) {
   std::vector<ModelView> chosen;
   int best = 0;
   for (const ModelView& candidate : candidates) {
@@ -59,7 +59,7 @@ std::vector<ModelView> most_alike(const SfmModel& model, const std::vector<Model
 }
 
 // Sum over the images of the distance of the best candidate to the descriptor, bits.
-int unlikeness(const SfmModel& model, const std::vector<ModelView>& candidates, const Descriptor& descriptor) {
+int descriptor_distance(const SfmModel& model, const std::vector<ModelView>& candidates, const Descriptor& descriptor) {
   int sum = 0;
   for (std::size_t i = 0; i < candidates.size();) {
     int best = kUnlike;
@@ -73,7 +73,7 @@ int unlikeness(const SfmModel& model, const std::vector<ModelView>& candidates, 
 }
 
 // Leaves each feature to one point: the one that projects nearest to it.
-void settle_claims(std::vector<ModelSightings>& sightings) {
+void resolve_claims(std::vector<ModelSightings>& sightings) {
   std::map<std::pair<int, int>, std::pair<float, int>> owners;  // by image and feature
   for (const ModelSightings& point : sightings) {
     for (const ModelView& view : point.views) {
@@ -114,7 +114,7 @@ std::optional<PixelMeasurement> measure_against(const ViewedFeature& reference, 
 
 const ModelView& most_central(const SfmModel& model, const std::vector<ModelView>& views) {
   return *std::ranges::min_element(views, {}, [&](const ModelView& view) {
-    return std::pair(unlikeness(model, views, descriptor_of(model, view)), view.offset);
+    return std::pair(descriptor_distance(model, views, descriptor_of(model, view)), view.offset);
   });
 }
 
@@ -125,9 +125,9 @@ std::vector<ModelSightings> find_sightings(const SfmModel& model, const ModelMap
         find_candidates(model, model.points[static_cast<std::size_t>(i)], options.search_radius);
     if (candidates.empty()) continue;
     const Descriptor& central = descriptor_of(model, most_central(model, candidates));
-    sightings.push_back({i, most_alike(model, candidates, central, options.max_distance)});
+    sightings.push_back({i, most_similar_views(model, candidates, central, options.max_distance)});
   }
-  settle_claims(sightings);
+  resolve_claims(sightings);
   std::erase_if(sightings, [](const ModelSightings& point) { return point.views.size() < 2; });
   return sightings;
 }

@@ -11,7 +11,7 @@ namespace {
 
 // Whether the translation may be off by its whole length, for example with spinning wheels or after a jump of their
 // pose.
-bool is_way_open(const BodyMotion& motion) {
+bool is_translation_unknown(const BodyMotion& motion) {
   constexpr double kShare = 0.9;  // share of the length
   constexpr double kLeast = 0.1;  // metres
   const double sigma = std::sqrt(motion.covariance.topLeftCorner<3, 3>().trace());
@@ -20,24 +20,24 @@ bool is_way_open(const BodyMotion& motion) {
 
 }  // namespace
 
-void MotionModel::tell(const std::optional<BodyMotion>& motion) {
-  told_ = told_ && motion ? std::optional(*told_ * *motion) : std::nullopt;
+void MotionModel::add_odometry(const std::optional<BodyMotion>& motion) {
+  measured_ = measured_ && motion ? std::optional(*measured_ * *motion) : std::nullopt;
 }
 
-void MotionModel::reach(const Vector6& velocity) {
+void MotionModel::set_velocity(const Vector6& velocity) {
   velocity_ = velocity;
-  told_ = no_motion();
+  measured_ = no_motion();
 }
 
-void MotionModel::turn_camera(const Pose& after_from_before) {
+void MotionModel::rotate_camera(const Pose& after_from_before) {
   if (velocity_) velocity_ = adjoint(after_from_before) * *velocity_;
 }
 
 void MotionModel::scale_lengths(double change) {
   if (velocity_) velocity_->head<3>() *= change;
-  if (told_)
-    told_ =
-        BodyMotion{byre::scale_lengths(told_->last_from_body, change), byre::scale_lengths(told_->covariance, change)};
+  if (measured_)
+    measured_ = BodyMotion{byre::scale_lengths(measured_->last_from_body, change),
+                           byre::scale_lengths(measured_->covariance, change)};
 }
 
 std::optional<Pose> MotionModel::predict_by_velocity(const Pose& last_camera_from_world, double seconds) const {
@@ -46,8 +46,9 @@ std::optional<Pose> MotionModel::predict_by_velocity(const Pose& last_camera_fro
 }
 
 Pose MotionModel::predict(const Pose& last_camera_from_world, const Rig& rig, double seconds) const {
-  if (told_ && velocity_ && is_way_open(*told_)) return *predict_by_velocity(last_camera_from_world, seconds);
-  if (told_) return camera_pose(rig, body_pose(rig, last_camera_from_world) * told_->last_from_body);
+  if (measured_ && velocity_ && is_translation_unknown(*measured_))
+    return *predict_by_velocity(last_camera_from_world, seconds);
+  if (measured_) return camera_pose(rig, body_pose(rig, last_camera_from_world) * measured_->last_from_body);
   if (velocity_) return exp_pose(*velocity_ * seconds) * last_camera_from_world;
   return last_camera_from_world;
 }

@@ -12,23 +12,23 @@ namespace byre {
 class MotionModel {
  public:
   // Begins a frame. motion: of the body since the last frame; empty: unknown.
-  void tell(const std::optional<BodyMotion>& motion);
+  void add_odometry(const std::optional<BodyMotion>& motion);
   // Sets a pose. velocity: of the camera, per second.
-  void reach(const Vector6& velocity);
+  void set_velocity(const Vector6& velocity);
   // Loses the pose; measured motion still predicts from the last one.
-  void lose() { velocity_.reset(); }
+  void mark_lost() { velocity_.reset(); }
   // The last poses were wrong: predicts from an earlier one by the measured motion since.
-  void go_back_to(const std::optional<BodyMotion>& told) { told_ = told; }
+  void restore_measured(const std::optional<BodyMotion>& measured) { measured_ = measured; }
   // Dead reckoning: the last pose was predicted by measured motion.
-  void go_on() { told_ = no_motion(); }
+  void reset_measured() { measured_ = no_motion(); }
 
   // The camera is turned from here on.
-  void turn_camera(const Pose& after_from_before);
+  void rotate_camera(const Pose& after_from_before);
   // Lengths change by a factor from here on.
   void scale_lengths(double change);
 
   // Measured motion of the body since the last pose; empty if unknown, or after a gap.
-  const std::optional<BodyMotion>& told() const { return told_; }
+  const std::optional<BodyMotion>& measured() const { return measured_; }
   // Velocity of the camera, per second: exp_pose(velocity * dt) * camera_from_world. Zero if unknown.
   Vector6 velocity() const { return velocity_.value_or(Vector6::Zero()); }
 
@@ -40,7 +40,7 @@ class MotionModel {
 
  private:
   std::optional<Vector6> velocity_;
-  std::optional<BodyMotion> told_ = no_motion();  // since the last pose
+  std::optional<BodyMotion> measured_ = no_motion();  // since the last pose
 };
 
 }  // namespace byre

@@ -14,9 +14,9 @@ struct JudgedPoint {
   bool moved = false;
 };
 
-ReusedVector<JudgedPoint> judged_points(const Map& offline, std::span<const PointId> agreed,
-                                        std::span<const PointId> moved) {
-  ReusedVector<JudgedPoint> judged;
+ScratchVector<JudgedPoint> judged_points(const Map& offline, std::span<const PointId> agreed,
+                                         std::span<const PointId> moved) {
+  ScratchVector<JudgedPoint> judged;
   judged.reserve(agreed.size() + moved.size());
   for (const PointId id : moved) judged.push_back({offline.find_point(id)->position_in_world, true});
   for (const PointId id : agreed) judged.push_back({offline.find_point(id)->position_in_world, false});
@@ -41,11 +41,11 @@ double share_around(std::span<const JudgedPoint> judged, std::size_t point) {
 
 }  // namespace
 
-ReusedVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
-                                     std::span<const PointId> moved) {
+ScratchVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+                                      std::span<const PointId> moved) {
   if (moved.empty()) return {};  // in most frames
-  const ReusedVector<JudgedPoint> judged = judged_points(offline, agreed, moved);
-  ReusedVector<PointId> together;
+  const ScratchVector<JudgedPoint> judged = judged_points(offline, agreed, moved);
+  ScratchVector<PointId> together;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     if (share_around(judged, i) >= kMinShareMoved) {
       together.push_back(moved[i]);
@@ -72,7 +72,7 @@ void MovedPoints::note(std::span<const PointId> agreed, std::span<const PointId>
   }
 }
 
-void MovedPoints::note_again(std::span<const PointId> agreed, std::span<const PointId> moved) {
+void MovedPoints::note_retest(std::span<const PointId> agreed, std::span<const PointId> moved) {
   for (const PointId id : moved) record_of(id).in_place = 0;
   for (const PointId id : agreed) {
     Record& record = record_of(id);

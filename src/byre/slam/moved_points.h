@@ -2,7 +2,7 @@
 
 #include "byre/map/ids.h"
 #include "byre/map/map.h"
-#include "byre/workers/reused_memory.h"
+#include "byre/workers/scratch_memory.h"
 
 #include <cstdint>
 #include <span>
@@ -17,8 +17,8 @@ struct MovedPointsOptions {
 
 // Points found elsewhere that lie among others found elsewhere: a moved object is a cluster in space, and a single
 // point among neighbours in place is a wrong match. All ascending.
-ReusedVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
-                                     std::span<const PointId> moved);
+ScratchVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+                                      std::span<const PointId> moved);
 
 // Offline points on objects that were moved. They are suspended until found in place again; the map does not change.
 class MovedPoints {
@@ -28,7 +28,7 @@ class MovedPoints {
   // Adds a frame whose pose offline points constrain: points found in place, and points found elsewhere.
   void note(std::span<const PointId> agreed, std::span<const PointId> moved);
   // Adds the result of a new search of suspended points.
-  void note_again(std::span<const PointId> agreed, std::span<const PointId> moved);
+  void note_retest(std::span<const PointId> agreed, std::span<const PointId> moved);
 
   bool is_suspended(PointId id) const;
   int count() const { return count_; }

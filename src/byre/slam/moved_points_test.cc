@@ -33,12 +33,12 @@ TEST(MovedPoints, RequiresSeveralFramesInPlaceToRestoreAPoint) {
   MovedPoints moved_points({.frames = 1, .frames_to_return = 3});
   moved_points.note({}, std::vector{kShelf});
   for (int look = 0; look < 20; ++look) {
-    moved_points.note_again(std::vector{kShelf}, {});
-    moved_points.note_again(std::vector{kShelf}, {});
-    moved_points.note_again({}, std::vector{kShelf});
+    moved_points.note_retest(std::vector{kShelf}, {});
+    moved_points.note_retest(std::vector{kShelf}, {});
+    moved_points.note_retest({}, std::vector{kShelf});
   }
   EXPECT_TRUE(moved_points.is_suspended(kShelf));
-  for (int look = 0; look < 3; ++look) moved_points.note_again(std::vector{kShelf}, {});
+  for (int look = 0; look < 3; ++look) moved_points.note_retest(std::vector{kShelf}, {});
   EXPECT_FALSE(moved_points.is_suspended(kShelf));
   EXPECT_EQ(moved_points.count(), 0);
 }
@@ -68,7 +68,7 @@ TEST(MovedTogether, KeepsClustersAndDropsSinglePoints) {
     const bool alone = id.number == 5 || id.number == 12;
     (in_thing || alone ? moved : agreed).push_back(id);
   }
-  const ReusedVector<PointId> together = moved_together(map, agreed, moved);
+  const ScratchVector<PointId> together = moved_together(map, agreed, moved);
   EXPECT_THAT(together, testing::SizeIs(testing::Ge(9U)));
   EXPECT_THAT(together, testing::Each(testing::Field(&PointId::number, testing::Ge(20U))));
 }

@@ -14,7 +14,7 @@ namespace {
 Matrix6 median_covariance(const Map& map) {
   std::vector<double> position_variances, rotation_variances;
   for (const KeyframeId id : map.keyframe_ids()) {
-    const Matrix6& covariance = map.find_bare_keyframe(id)->covariance;
+    const Matrix6& covariance = map.keyframe_header(id)->covariance;
     position_variances.push_back(covariance.topLeftCorner<3, 3>().trace() / 3.0);
     rotation_variances.push_back(covariance.bottomRightCorner<3, 3>().trace() / 3.0);
   }
@@ -37,34 +37,34 @@ std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& r
     if (ways.empty() || (ways.back().back() - place).norm() > kMostApart) ways.emplace_back();
     ways.back().push_back(place);
     ++places;
-    if (!walls.has_free_place({place, kDeep})) ++in_walls;
+    if (!walls.has_free_cell({place, kDeep})) ++in_walls;
   }
   if (in_walls > kMostInWalls * places) return std::nullopt;
-  walls.open_along(ways);
+  walls.clear_along_paths(ways);
   return PlacedWalls{registration, std::move(walls)};
 }
 
 OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
-                       std::optional<PlacedWalls> walls, const KnownMounting& mounting)
+                       std::optional<PlacedWalls> walls, const OdometryCalibration& extrinsics)
     : map_(std::move(map)),
       places_(index_of(map_, vocabulary)),
       recordings_(std::move(recordings)),
       frame_covariance_(median_covariance(map_)),
       ground_(DrivenGround::under(map_)),
       walls_(std::move(walls)),
-      mounting_(mounting) {
+      extrinsics_(extrinsics) {
   for (const KeyframeId id : map_.keyframe_ids()) {
-    const Pose world_from_camera = inverse(map_.find_bare_keyframe(id)->camera_from_world);
+    const Pose world_from_camera = inverse(map_.keyframe_header(id)->camera_from_world);
     views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});
   }
 }
 
-ReusedVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
-                                                    int max_count) const {
+ScratchVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
+                                                     int max_count) const {
   constexpr double kMaxAngle = 1.0;  // radians; views farther apart share hardly any points
   const Pose world_from_camera = inverse(camera_from_world);
   const Eigen::Vector3d direction = world_from_camera.rotation * Eigen::Vector3d::UnitZ();
-  ReusedVector<std::pair<double, KeyframeId>> near;
+  ScratchVector<std::pair<double, KeyframeId>> near;
   for (const View& view : views_) {
     const double distance = (view.camera_in_world - world_from_camera.translation).norm();
     if (distance > max_distance) continue;
@@ -72,7 +72,7 @@ ReusedVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_worl
     if (angle <= kMaxAngle) near.emplace_back(distance + angle, view.keyframe);
   }
   std::ranges::sort(near);
-  ReusedVector<KeyframeId> nearest;
+  ScratchVector<KeyframeId> nearest;
   for (const auto& [distance, id] : near) {
     if (static_cast<int>(nearest.size()) >= max_count) break;
     nearest.push_back(id);

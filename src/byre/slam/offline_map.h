@@ -3,7 +3,7 @@
 #include "byre/map/driven_ground.h"
 #include "byre/map/map_file.h"
 #include "byre/map/plan_walls.h"
-#include "byre/motion/known_mounting.h"
+#include "byre/motion/odometry_calibration.h"
 #include "byre/place/place_index.h"
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class OfflineMap {
  public:
   // Preconditions: the map is offline and has keyframes, with words of the vocabulary (see add_words).
   OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings = {},
-             std::optional<PlacedWalls> walls = {}, const KnownMounting& mounting = {});
+             std::optional<PlacedWalls> walls = {}, const OdometryCalibration& extrinsics = {});
 
   const Map& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
@@ -35,7 +35,9 @@ class OfflineMap {
   // Recordings that the map was made from.
   const std::vector<SourceRecording>& recordings() const { return recordings_; }
 
-  const KnownMounting& mounting() const { return mounting_; }  // mounting of the motion sensors of these recordings
+  const OdometryCalibration& extrinsics() const {
+    return extrinsics_;
+  }  // extrinsics of the motion sensors of these recordings
 
   // Driven ground; nullptr if the map was not driven.
   const DrivenGround* ground() const { return ground_ ? &*ground_ : nullptr; }
@@ -47,7 +49,7 @@ class OfflineMap {
 
   // Keyframes near a camera with a similar viewing direction, nearest first, by the distance in metres plus the angle
   // between the directions in radians.
-  ReusedVector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
+  ScratchVector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
   // Metres from a camera to the nearest keyframe of any direction.
   double distance_to_keyframes(const Eigen::Vector3d& camera_in_world) const;
 
@@ -64,7 +66,7 @@ class OfflineMap {
   Matrix6 frame_covariance_ = Matrix6::Zero();
   std::optional<DrivenGround> ground_;
   std::optional<PlacedWalls> walls_;
-  KnownMounting mounting_;
+  OdometryCalibration extrinsics_;
 };
 
 }  // namespace byre

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/map/map_view.h"
-#include "byre/slam/lasting_doubt.h"
+#include "byre/slam/fault_latch.h"
 #include "byre/slam/tracking.h"
 
 #include <optional>

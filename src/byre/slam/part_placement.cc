@@ -2,7 +2,7 @@
 
 #include "byre/alignment.h"
 #include "byre/slam/body_pose.h"
-#include "byre/slam/told_lengths.h"
+#include "byre/slam/odometry_lengths.h"
 
 #include <algorithm>
 #include <map>

@@ -34,7 +34,7 @@ struct AgreeingCell {
   Eigen::Vector3d centre;  // metres, in the map
   double evidence = 0.0;
 };
-using Cells = ReusedVector<AgreeingCell>;
+using Cells = ScratchVector<AgreeingCell>;
 
 Cells cells_around(const Eigen::Vector3d& middle, const Cells& cells) {
   constexpr double kReach = 2.0;  // metres, half the size of a large object
@@ -101,7 +101,7 @@ double PlaceHypothesis::evidence(Count Cell::*points) const {
 }
 
 void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals) {
-  if (is_tracked) frames_to_believe_ = std::max(0, frames_to_believe_ - 1);
+  if (is_tracked) confirmations_left_ = std::max(0, confirmations_left_ - 1);
   ++frame_;
   // If no keyframe saw the map from nearby, walls may hide expected points. Missing points then count against a place
   // that is not accepted, but not against an accepted one.
@@ -121,7 +121,7 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log
   std::erase_if(cells_, [this](const Cell& cell) { return frame_ - cell.last_frame > kFramesToForget; });
   log_odds_ = prior_ + evidence(&Cell::all);
   log_odds_to_rivals_ = prior_ + evidence(&Cell::alone);
-  if (is_believed() && log_odds_ >= accept_ && log_odds_to_rivals_ - log_odds_of_rivals >= accept_) {
+  if (is_confirmed() && log_odds_ >= accept_ && log_odds_to_rivals_ - log_odds_of_rivals >= accept_) {
     is_accepted_ = true;
     prior_ = std::max(prior_, 0.0);  // the cells that outweighed it may be forgotten earlier
   }

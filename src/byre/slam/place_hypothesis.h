@@ -11,7 +11,7 @@
 namespace byre {
 
 // Prior log-odds of a place that contradicts the measured motion: one such find in a hundred is of a carried robot.
-inline const double kLogOddsOfCarried = -std::log(100.0);
+inline const double kLogOddsOfKidnapping = -std::log(100.0);
 
 inline constexpr double kNoRivals = -std::numeric_limits<double>::infinity();
 
@@ -28,23 +28,23 @@ class PlaceHypothesis {
  public:
   // Accepted without a test: the pose is right by definition, as in the frame of a map that is being made.
   PlaceHypothesis() = default;
-  // A pose found without a prediction. prior: log-odds by other evidence than map points. frames_to_believe:
+  // A pose found without a prediction. prior: log-odds by other evidence than map points. confirmations:
   // tracked frames until mapping uses it. accept: log-odds from which it is accepted.
-  PlaceHypothesis(double prior, int frames_to_believe, double accept = RegistrationOptions{}.accept_log_odds)
-      : prior_(prior), accept_(accept), frames_to_believe_(frames_to_believe), is_accepted_(false) {}
+  PlaceHypothesis(double prior, int confirmations, double accept = RegistrationOptions{}.accept_log_odds)
+      : prior_(prior), accept_(accept), confirmations_left_(confirmations), is_accepted_(false) {}
 
   // Adds a frame. is_tracked: at a pose that continues the one before; false: the first pose. log_odds_of_rivals: log
   // of the sum of the odds of the look-alike places that it is tested against, see RivalPlaces.
   void observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals = kNoRivals);
 
   // The pose was lost for a short time and found again within reach.
-  void find_again(int frames_to_believe) { frames_to_believe_ = frames_to_believe; }
+  void require_confirmations(int confirmations) { confirmations_left_ = confirmations; }
 
   double log_odds() const { return log_odds_; }  // against all places but look-alikes
   // Against a look-alike place, by points that it does not have.
   double log_odds_to_rivals() const { return log_odds_to_rivals_; }
   // Enough frames were tracked for mapping to use the pose.
-  bool is_believed() const { return frames_to_believe_ == 0; }
+  bool is_confirmed() const { return confirmations_left_ == 0; }
   // The test has accepted it, and not rejected it since.
   bool is_accepted() const { return is_accepted_; }
   bool is_rejected() const;
@@ -66,7 +66,7 @@ class PlaceHypothesis {
 
   double prior_ = 0.0;
   double accept_ = RegistrationOptions{}.accept_log_odds;
-  int frames_to_believe_ = 0;
+  int confirmations_left_ = 0;
   bool is_accepted_ = true;
   double log_odds_ = 0.0;
   double log_odds_to_rivals_ = 0.0;

@@ -23,14 +23,14 @@ PlaceView view_of_gate() {
 
 TEST(PlaceHypothesis, IsAcceptedByDefault) {
   EXPECT_TRUE(PlaceHypothesis().is_accepted());
-  EXPECT_TRUE(PlaceHypothesis().is_believed());
+  EXPECT_TRUE(PlaceHypothesis().is_confirmed());
 }
 
 TEST(PlaceHypothesis, IsAcceptedAfterItsFramesAreTracked) {
   PlaceHypothesis place(0.0, 2);
   place.observe(view_of_room(10, 0), false);
-  EXPECT_FALSE(observed(place, view_of_room(10, 0), 1).is_believed());
-  EXPECT_TRUE(observed(place, view_of_room(10, 0), 2).is_believed());
+  EXPECT_FALSE(observed(place, view_of_room(10, 0), 1).is_confirmed());
+  EXPECT_TRUE(observed(place, view_of_room(10, 0), 2).is_confirmed());
 }
 
 TEST(PlaceHypothesis, IsAcceptedIfTheMapIsVisibleAllAround) {
@@ -127,8 +127,8 @@ TEST(PlaceHypothesis, IgnoresCellsWithFewPoints) {
 
 TEST(PlaceHypothesis, IsKeptIfThePoseIsFoundAgain) {
   PlaceHypothesis place = observed(PlaceHypothesis(0.0, 0), view_of_room(10, 0), 5);
-  place.find_again(3);
-  EXPECT_FALSE(place.is_believed());
+  place.require_confirmations(3);
+  EXPECT_FALSE(place.is_confirmed());
   EXPECT_TRUE(place.is_accepted());
 }
 

@@ -8,8 +8,8 @@
 namespace byre {
 namespace {
 
-ReusedVector<PointId> points_shown(const TrackedFrame& tracked, Origin origin, const Features& features) {
-  ReusedVector<PointId> shown;
+ScratchVector<PointId> points_shown(const TrackedFrame& tracked, Origin origin, const Features& features) {
+  ScratchVector<PointId> shown;
   for (const TrackedFeature& feature : tracked.features) {
     if (feature.point.origin == origin && shows_patch(feature, features)) shown.push_back(feature.point);
   }
@@ -25,21 +25,21 @@ std::array<int, 3> cell_at(const Eigen::Vector3d& position) {
 
 }  // namespace
 
-ReusedVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world) {
+ScratchVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world) {
   constexpr double kNear = 1.0;     // metres, plus a metre per radian between viewing directions
   constexpr double kMaxTurn = 0.6;  // radians
   constexpr int kKeyframes = 3;
-  ReusedVector<KeyframeId> keyframes = offline.keyframes_near(camera_from_world, kNear, kKeyframes);
+  ScratchVector<KeyframeId> keyframes = offline.keyframes_near(camera_from_world, kNear, kKeyframes);
   std::erase_if(keyframes, [&](KeyframeId id) {
-    const Pose& pose = offline.map().find_bare_keyframe(id)->camera_from_world;
+    const Pose& pose = offline.map().keyframe_header(id)->camera_from_world;
     return angle_between(pose.rotation, camera_from_world.rotation) > kMaxTurn;
   });
   std::ranges::sort(keyframes);
   return keyframes;
 }
 
-ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes) {
-  ReusedVector<PointId> points;
+ScratchVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes) {
+  ScratchVector<PointId> points;
   for (const KeyframeId id : keyframes) {
     for (const Sighting& sighting : offline.map().find_keyframe(id)->sightings) {
       if (sighting.point) points.push_back(*sighting.point);
@@ -61,11 +61,11 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   project_visible(map, query.nearby, pose, query.rig, query.hidden, expected);
   view.is_near_keyframe = expected.size() >= kEnough;
   if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
-  const ReusedVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
+  const ScratchVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
   const auto position_of = [&](PointId id) -> Eigen::Vector3d {
     return map.find_point(id)->position_in_world / query.metre;
   };
-  ReusedVector<std::pair<std::array<int, 3>, PointId>> points;  // by cell
+  ScratchVector<std::pair<std::array<int, 3>, PointId>> points;  // by cell
   for (const ExpectedPoint& point : expected) {
     if (query.is_left_out && query.is_left_out(point.id)) continue;
     points.emplace_back(cell_at(position_of(point.id)), point.id);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/slam/hidden_cells.h"
+#include "byre/slam/image_mask.h"
 #include "byre/slam/offline_map.h"
 #include "byre/slam/tracking.h"
 
@@ -27,12 +27,12 @@ struct PlaceView {
   // True: the expected points were seen by keyframes near the pose, so only covering, moving or another light can hide
   // them. False: all points in the frustum are expected, though walls may hide them.
   bool is_near_keyframe = false;
-  ReusedVector<CellInView> cells;  // ascending
+  ScratchVector<CellInView> cells;  // ascending
 };
 
 // Keyframes near a pose with a similar viewing direction, ascending, and the points that they saw, ascending.
-ReusedVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world);
-ReusedVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
+ScratchVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world);
+ScratchVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
 
 struct PlaceViewQuery {
   const Map& map;
@@ -41,7 +41,7 @@ struct PlaceViewQuery {
   const TrackedFrame& tracked;                  // pose and inliers, in the map's frame
   std::span<const PointId> nearby;              // points of keyframes near the pose
   std::span<const PointId> candidates;          // points around the pose, used if nearby ones are too few
-  HiddenCells hidden{};                         // image cells without expected points
+  ImageMask hidden{};                           // image cells without expected points
   std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
   std::function<bool(PointId)> is_in_common{};  // points that a look-alike place has as well; empty: none
   double metre = 1.0;                           // one metre in lengths of the map

@@ -42,7 +42,7 @@ class ViewOfAPlace : public ::testing::Test {
   const SimulatedMission mission_ = quarter_circle({});
   const std::shared_ptr<const OfflineMap> offline_ = offline_map_of(mission_);
   const Pose pose_ = true_camera_from_world(mission_, kFrame);
-  const ReusedVector<PointId> nearby_ = points_of_place(*offline_, keyframes_of_place(*offline_, pose_));
+  const ScratchVector<PointId> nearby_ = points_of_place(*offline_, keyframes_of_place(*offline_, pose_));
 };
 
 TEST_F(ViewOfAPlace, ExpectsPointsOfNearbyKeyframes) {

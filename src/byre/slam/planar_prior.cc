@@ -20,11 +20,11 @@ Eigen::Matrix3d covariance_about(const Eigen::Vector3d& direction, double along,
   return along * along * projector + across * across * (Eigen::Matrix3d::Identity() - projector);
 }
 
-bool is_explained(const DrivenGround::Stand& stand) {
+bool is_explained(const DrivenGround::GroundOffset& offset) {
   constexpr double kFar = 3.0;  // metres, from the path
   constexpr double kSigmas = 4.0;
-  return stand.distance <= kFar && std::abs(stand.height) <= kSigmas * stand.height_sigma &&
-         stand.tilt <= kSigmas * stand.tilt_sigma;
+  return offset.distance <= kFar && std::abs(offset.height) <= kSigmas * offset.height_sigma &&
+         offset.tilt <= kSigmas * offset.tilt_sigma;
 }
 
 }  // namespace
@@ -32,14 +32,14 @@ bool is_explained(const DrivenGround::Stand& stand) {
 std::optional<PosePrior> planar_prior(const DrivenGround& ground, const Rig& rig,
                                       const Pose& predicted_camera_from_world) {
   const Pose body = body_pose(rig, predicted_camera_from_world);
-  const DrivenGround::Stand stand = ground.stand_of(body);
-  if (!is_explained(stand)) return std::nullopt;
+  const DrivenGround::GroundOffset offset = ground.offset_from_ground(body);
+  if (!is_explained(offset)) return std::nullopt;
   const Eigen::Vector3d& up = ground.up_in_body();
-  const Pose placed{(body.rotation * rotation_between(up, stand.up_in_body)).normalized(),
-                    body.translation - stand.height * stand.up_in_map};
+  const Pose placed{(body.rotation * rotation_between(up, offset.up_in_body)).normalized(),
+                    body.translation - offset.height * offset.up_in_map};
   Matrix6 covariance = Matrix6::Zero();
-  covariance.topLeftCorner<3, 3>() = covariance_about(up, stand.height_sigma, kOpenMetres);
-  covariance.bottomRightCorner<3, 3>() = covariance_about(up, kOpenRadians, stand.tilt_sigma);
+  covariance.topLeftCorner<3, 3>() = covariance_about(up, offset.height_sigma, kOpenMetres);
+  covariance.bottomRightCorner<3, 3>() = covariance_about(up, kOpenRadians, offset.tilt_sigma);
   return PosePrior{camera_pose(rig, placed), move_covariance(covariance, inverse(rig.body_from_camera))};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/map/driven_ground.h"
-#include "byre/motion/standing.h"
+#include "byre/motion/stationary_detector.h"
 #include "byre/optimise/pose_refinement.h"
 
 #include <optional>

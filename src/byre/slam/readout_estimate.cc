@@ -94,7 +94,7 @@ ReadoutEvidence readout_evidence(const Frame& frame, const Rig& rig, const Track
   constexpr double kMinTurn = 0.3;  // radians per second; in straight motion errors look the same in each frame
   if (velocity.tail<3>().norm() < kMinTurn) return {};
   FrameEquations equations;
-  for (const ReusedVector<TrackedFeature>* const features : {&tracked.features, &tracked.outliers}) {
+  for (const ScratchVector<TrackedFeature>* const features : {&tracked.features, &tracked.outliers}) {
     for (const TrackedFeature& feature : *features) {
       const MapPoint* const point = map.find_point(feature.point);
       if (point == nullptr || (tracked.camera_from_world * point->position_in_world).z() <= 0.0) continue;
@@ -123,7 +123,7 @@ double ReadoutEstimator::Blocks::effect() const {
   return std::abs(change()) * std::sqrt(sum.information / std::max(1, sum.points));
 }
 
-bool ReadoutEstimator::is_sure() const {
+bool ReadoutEstimator::is_significant() const {
   if (blocks_.count < kMinBlocks || blocks_.sum.information <= 0.0) return false;
   const double size = std::abs(blocks_.change());
   const bool is_first = readout_time_ == 0.0;
@@ -138,7 +138,7 @@ void ReadoutEstimator::note(const ReadoutEvidence& evidence) {
   blocks_.add(block_);
   block_ = {};
   frames_in_block_ = 0;
-  if (!is_sure()) return;
+  if (!is_significant()) return;
   const double changed = readout_time_ + blocks_.change();
   readout_time_ = std::abs(changed) < kLeastReadout ? 0.0 : changed;
   blocks_ = {};

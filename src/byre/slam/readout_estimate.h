@@ -48,7 +48,7 @@ class ReadoutEstimator {
     double effect() const;  // effect on measurements, without the part that the pose absorbs; sigmas, root mean square
   };
 
-  bool is_sure() const;
+  bool is_significant() const;
 
   double readout_time_;
   ReadoutEvidence block_;  // present block

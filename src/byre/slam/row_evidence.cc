@@ -76,9 +76,9 @@ struct Misfit {
   double freedom = 1.0;
 };
 
-Misfit misfit_of(const std::vector<PartMean>& means, double own_variance, const CalibrationKnowledge& prior) {
+Misfit misfit_of(const std::vector<PartMean>& means, double own_variance, const CalibrationEstimate& prior) {
   const CalibrationEquations told = equations_of(means, own_variance);
-  const CalibrationKnowledge known = joined(prior, told);
+  const CalibrationEstimate known = joined(prior, told);
   const double used_up = known.information.ldlt().solve(told.information).trace();
   Misfit misfit{0.0, std::max(1.0, static_cast<double>(means.size()) - used_up)};
   for (const PartMean& mean : means) {
@@ -89,7 +89,7 @@ Misfit misfit_of(const std::vector<PartMean>& means, double own_variance, const 
 }
 
 // Additional variance of the means that explains their differences; 0 if noise explains them.
-double own_variance_of(const std::vector<PartMean>& means, const CalibrationKnowledge& prior) {
+double own_variance_of(const std::vector<PartMean>& means, const CalibrationEstimate& prior) {
   constexpr double kLeast = 1e-6, kMost = 1.0;  // squared pixels
   constexpr int kHalvings = 12;
   constexpr double kSigmas = 2.0;
@@ -114,9 +114,9 @@ std::size_t part_of_image(const Eigen::Vector2f& pixel, const Rig& rig) {
   return static_cast<std::size_t>(row * kPartColumns + column);
 }
 
-CalibrationKnowledge learn_from_rows(const std::vector<RowMeasurement>& rows, const CalibrationKnowledge& prior) {
+CalibrationEstimate learn_from_rows(const std::vector<RowMeasurement>& rows, const CalibrationEstimate& prior) {
   constexpr int kRounds = 5;
-  CalibrationKnowledge knowledge = prior;
+  CalibrationEstimate knowledge = prior;
   for (int round = 0; round < kRounds; ++round) {
     const WeighedRows now = weighed(rows, knowledge.expected);
     const double own_variance = own_variance_of(now.means, prior);

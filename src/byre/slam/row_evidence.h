@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/rig.h"
-#include "byre/slam/calibration_knowledge.h"
+#include "byre/slam/calibration_estimate.h"
 
 #include <vector>
 
@@ -22,6 +22,6 @@ std::size_t part_of_image(const Eigen::Vector2f& pixel, const Rig& rig);
 // image, and their row errors are alike, however many they are. If parts differ by more than noise and calibration
 // explain, each part counts as one measurement, the mean of its rows, with an additional error estimated from the parts
 // (Mandel and Paule 1970). Otherwise rows count individually. Sigmas of rows are scaled by their residuals.
-CalibrationKnowledge learn_from_rows(const std::vector<RowMeasurement>& rows, const CalibrationKnowledge& prior);
+CalibrationEstimate learn_from_rows(const std::vector<RowMeasurement>& rows, const CalibrationEstimate& prior);
 
 }  // namespace byre

@@ -14,8 +14,8 @@ namespace {
 constexpr float kRowSigma = 0.1f;  // pixels
 constexpr double kSigmasOfPrior = 2.0;
 
-const CalibrationKnowledge kPrior{CalibrationMatrix::Identity() / (kSigmasOfPrior * kSigmasOfPrior),
-                                  CalibrationVector::Zero()};
+const CalibrationEstimate kPrior{CalibrationMatrix::Identity() / (kSigmasOfPrior * kSigmasOfPrior),
+                                 CalibrationVector::Zero()};
 
 using OffsetAt = std::function<double(const Eigen::Vector2f& pixel)>;  // pixels
 
@@ -51,19 +51,19 @@ constexpr int kTurn = kRightRotation + 2;
 TEST(RowEvidence, EstimatesTheRelativeRotationOfTheCameras) {
   CalibrationVector error = CalibrationVector::Zero();
   error[kTurn] = 3.0;
-  const CalibrationKnowledge known = learn_from_rows(rows_of(error, no_error, 20000), kPrior);
+  const CalibrationEstimate known = learn_from_rows(rows_of(error, no_error, 20000), kPrior);
   const double sigma = std::sqrt(known.information.inverse()(kTurn, kTurn));
   EXPECT_LT(sigma, 0.3);
   EXPECT_NEAR(known.expected[kTurn], 3.0, 4.0 * sigma);
 }
 
 // Largest deviation of a parameter from zero, in its sigmas.
-double most_sigmas(const CalibrationKnowledge& known) {
+double most_sigmas(const CalibrationEstimate& known) {
   const CalibrationVector sigmas = known.information.inverse().diagonal().cwiseSqrt();
   return known.expected.cwiseQuotient(sigmas).cwiseAbs().maxCoeff();
 }
 
-CalibrationKnowledge learn_one_by_one(const std::vector<RowMeasurement>& rows) {
+CalibrationEstimate learn_one_by_one(const std::vector<RowMeasurement>& rows) {
   CalibrationEquations told;
   for (const RowMeasurement& row : rows) {
     const CalibrationVector by_calibration = row.by_calibration.cast<double>().transpose() / row.sigma;
@@ -95,7 +95,7 @@ TEST(RowEvidence, IsMoreCertainWithMoreRows) {
 }
 
 TEST(RowEvidence, IsEmptyWithoutRows) {
-  const CalibrationKnowledge known = learn_from_rows({}, kPrior);
+  const CalibrationEstimate known = learn_from_rows({}, kPrior);
   EXPECT_TRUE(known.information.isApprox(kPrior.information));
   EXPECT_TRUE(known.expected.isZero());
 }

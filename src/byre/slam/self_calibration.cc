@@ -157,10 +157,10 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   const std::vector<int> keyframes = choose_keyframes(whole, rig, options.max_keyframes);
   if (static_cast<int>(keyframes.size()) < kMinKeyframes) return std::nullopt;
   const CalibrationSensitivity sensitivity(state.present());
-  const CalibrationKnowledge prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas),
-                                   -state.change};
+  const CalibrationEstimate prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas),
+                                  -state.change};
   const Rig& present = whole.rigs[static_cast<std::size_t>(rig)];
-  const CalibrationKnowledge with_rows = learn_from_rows(measure_rows(whole, keyframes, present, sensitivity), prior);
+  const CalibrationEstimate with_rows = learn_from_rows(measure_rows(whole, keyframes, present, sensitivity), prior);
 
   BundleProblem problem = bundle_of(whole, keyframes);
   problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
@@ -175,14 +175,14 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
   if (!information) return std::nullopt;
   CalibrationEquations of_motion = difference({*information, solved.calibration_change}, with_rows);
   of_motion /= variance_factor(problem, solved.squared_errors);
-  const CalibrationKnowledge posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
+  const CalibrationEstimate posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
   const CalibrationVector expected = state.change + posterior.expected;
   RefinedCalibration result =
       determined_calibration(state.given, posterior.information, expected, options.prior_sigmas);
   result.keyframes = static_cast<int>(keyframes.size());
   result.observations = static_cast<int>(problem.observations.size());
   result.shift = image_shift(problem, sensitivity, result.change);
-  refuse_implausible(result, expected, state.given, options.prior_sigmas);
+  reject_implausible(result, expected, state.given, options.prior_sigmas);
   return result;
 }
 

@@ -20,7 +20,7 @@ struct StateOptions {
 State next_state(State state, const Evidence& evidence, const StateOptions& options);
 
 // Relocalising or lost: there was a pose, and there is no reliable one now.
-inline bool has_lost_its_way(State state) {
+inline bool needs_relocalisation(State state) {
   return state == State::relocalising || state == State::lost;
 }
 

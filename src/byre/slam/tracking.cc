@@ -16,7 +16,7 @@ namespace {
 
 // Appends the distinct points of one map, ascending, by a bit for each point. Numbers of neighbouring points are close:
 // this takes a tenth of the time of sorting.
-void append_distinct(Origin origin, std::span<const PointId> points, ReusedVector<PointId>& distinct) {
+void append_distinct(Origin origin, std::span<const PointId> points, ScratchVector<PointId>& distinct) {
   std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
   for (const PointId id : points) {
     if (id.origin != origin) continue;
@@ -27,7 +27,7 @@ void append_distinct(Origin origin, std::span<const PointId> points, ReusedVecto
   constexpr std::size_t kBits = 64;
   thread_local std::vector<std::uint64_t> marks;
   const std::size_t words = std::size_t{last - first} / kBits + 1;
-  make_room(marks, words);
+  reserve_pow2(marks, words);
   marks.assign(words, 0);
   for (const PointId id : points) {
     if (id.origin != origin) continue;
@@ -43,8 +43,8 @@ void append_distinct(Origin origin, std::span<const PointId> points, ReusedVecto
 }
 
 // Distinct points, ascending.
-ReusedVector<PointId> distinct(std::span<const PointId> points) {
-  ReusedVector<PointId> once;
+ScratchVector<PointId> distinct(std::span<const PointId> points) {
+  ScratchVector<PointId> once;
   once.reserve(points.size());
   append_distinct(Origin::offline, points, once);
   append_distinct(Origin::online, points, once);
@@ -59,7 +59,7 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
   measure_matches(frame, camera_from_world, rig, map, matches, measured);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
   if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
-  ReusedVector<TrackedFeature> inliers = inliers_of(*refined, measured);
+  ScratchVector<TrackedFeature> inliers = inliers_of(*refined, measured);
   count_shared_points(map, inliers, shared);
   const KeyframeId reference = most_shared(shared).value_or(KeyframeId{});
   TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
@@ -80,12 +80,12 @@ std::vector<int> contradicting_features(const TrackedFrame& tracked, const Featu
 }
 
 void append_seen_points(const TrackedFrame& tracked, std::vector<SeenPoint>& seen) {
-  make_room(seen, seen.size() + tracked.features.size() + tracked.outliers.size());
+  reserve_pow2(seen, seen.size() + tracked.features.size() + tracked.outliers.size());
   for (const TrackedFeature& feature : tracked.features) seen.push_back({feature.point, feature.pixel, true});
   for (const TrackedFeature& feature : tracked.outliers) seen.push_back({feature.point, feature.pixel, false});
 }
 
-ReusedVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
+ScratchVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
   thread_local std::vector<PointId> points;  // buffer
   points.clear();
   const auto append = [&](KeyframeId id) {

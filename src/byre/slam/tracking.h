@@ -2,8 +2,8 @@
 
 #include "byre/map/map_view.h"
 #include "byre/optimise/pose_refinement.h"
-#include "byre/slam/hidden_cells.h"
-#include "byre/workers/reused_memory.h"
+#include "byre/slam/image_mask.h"
+#include "byre/workers/scratch_memory.h"
 
 #include <cstdint>
 #include <optional>
@@ -26,8 +26,8 @@ struct TrackedFrame {
   Matrix6 covariance = Matrix6::Zero();
   Matrix6 match_covariance = Matrix6::Zero();  // covariance of the matches, relative to the map around the camera
   KeyframeId reference;                        // the keyframe that shares most points
-  ReusedVector<TrackedFeature> features;       // inliers only, ascending
-  ReusedVector<TrackedFeature> outliers;       // matches that contradict the pose
+  ScratchVector<TrackedFeature> features;      // inliers only, ascending
+  ScratchVector<TrackedFeature> outliers;      // matches that contradict the pose
   int expected = 0;                            // map points in the frustum
   int matches = 0;                             // expected points matched, before outlier removal
 };
@@ -56,11 +56,11 @@ struct TrackOptions {
   int min_inliers = 25;
   OfflinePolicy offline_policy = OfflinePolicy::first;
   double offline_weight = 2.0;  // weight of a measured offline point; an online one has 1
-  HiddenCells hidden{};         // image cells without expected points
+  ImageMask hidden{};           // image cells without expected points
 };
 
 // Points seen by a keyframe and by its most covisible keyframes; ascending, bounded for any size of the map.
-ReusedVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes);
+ScratchVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes);
 
 // Projects the candidates from the predicted pose, matches them nearby, refines the pose, matches the rest around it,
 // refines all matches in the image, and refines the pose on those. A first search with too few matches or too many

@@ -23,8 +23,9 @@ PixelMeasurement measure(const MapView& map, const MapPoint& point, const Camera
   return measure_pixel({view, point.reference.feature, sighting.pixel}, point.position_in_world, frame, feature);
 }
 
-ReusedVector<TrackedFeature> matches_by(const PoseRefinement& refined, const MeasuredPoints& measured, bool agreement) {
-  ReusedVector<TrackedFeature> matches;
+ScratchVector<TrackedFeature> matches_by(const PoseRefinement& refined, const MeasuredPoints& measured,
+                                         bool agreement) {
+  ScratchVector<TrackedFeature> matches;
   matches.reserve(measured.features.size());
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
     if (static_cast<bool>(refined.inliers[i]) == agreement) matches.push_back(measured.features[i]);
@@ -46,7 +47,7 @@ PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measu
 }
 
 void project_visible(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
-                     const HiddenCells& hidden, std::vector<ExpectedPoint>& expected) {
+                     const ImageMask& hidden, std::vector<ExpectedPoint>& expected) {
   project_points(map, points, camera_from_world, rig, expected);
   if (!hidden.any()) return;
   std::erase_if(expected,
@@ -58,8 +59,8 @@ void measure_matches(const Frame& frame, const Pose& camera_from_world, const Ri
   const CameraView view{*frame.features, rig, camera_from_world};
   measured.observations.clear();
   measured.features.clear();
-  make_room(measured.observations, matches.size());
-  make_room(measured.features, matches.size());
+  reserve_pow2(measured.observations, matches.size());
+  reserve_pow2(measured.features, matches.size());
   for (const GuidedMatch& match : matches) {
     const MapPoint& point = *map.find_point(match.point);
     const PixelMeasurement pixel = measure(map, point, view, match.feature);
@@ -99,7 +100,7 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
   thread_local std::vector<PoseObservation> observations;
   match_expected(*frame.features, map, expected, {radius}, matches);
   observations.clear();
-  make_room(observations, matches.size());
+  reserve_pow2(observations, matches.size());
   for (const GuidedMatch& match : matches) {
     const Keypoint& keypoint = frame.features->keypoint(match.feature);
     observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
@@ -134,11 +135,11 @@ std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<
   return best;
 }
 
-ReusedVector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
+ScratchVector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
   return matches_by(refined, measured, true);
 }
 
-ReusedVector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
+ScratchVector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
   return matches_by(refined, measured, false);
 }
 
@@ -147,7 +148,7 @@ bool shows_patch(const TrackedFeature& feature, const Features& features) {
          feature.pixel_sigma < corner_measurement(features.keypoint(feature.feature)).sigma;
 }
 
-TrackedFrame tracked_frame(const PoseRefinement& refined, ReusedVector<TrackedFeature> inliers, KeyframeId reference,
+TrackedFrame tracked_frame(const PoseRefinement& refined, ScratchVector<TrackedFeature> inliers, KeyframeId reference,
                            const MapView& map) {
   TrackedFrame tracked;
   tracked.camera_from_world = refined.camera_from_world;

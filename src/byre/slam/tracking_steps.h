@@ -19,7 +19,7 @@ PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measu
 
 // Same as project_points(), without hidden points. Refills `expected`.
 void project_visible(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
-                     const HiddenCells& hidden, std::vector<ExpectedPoint>& expected);
+                     const ImageMask& hidden, std::vector<ExpectedPoint>& expected);
 
 // Matches measured in the image: observations, and the features that inliers become; equal indices.
 struct MeasuredPoints {
@@ -58,14 +58,14 @@ void count_shared_points(const MapView& map, std::span<const TrackedFeature> fea
 // The keyframe that sees most of them; of one map only if origin is given.
 std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin = {});
 
-ReusedVector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
-ReusedVector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+ScratchVector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+ScratchVector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
 
 // Whether the feature shows the point itself by its patch, not only a similar corner.
 bool shows_patch(const TrackedFeature& feature, const Features& features);
 
 // Counts of expected points and of matches are left to the caller.
-TrackedFrame tracked_frame(const PoseRefinement& refined, ReusedVector<TrackedFeature> inliers, KeyframeId reference,
+TrackedFrame tracked_frame(const PoseRefinement& refined, ScratchVector<TrackedFeature> inliers, KeyframeId reference,
                            const MapView& map);
 
 }  // namespace byre

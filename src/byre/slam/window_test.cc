@@ -73,7 +73,7 @@ TEST_F(WindowOfATrueMap, StartsWithTheNewestAndEndsWithTheAnchors) {
 
 TEST_F(WindowOfATrueMap, MovesTheKeyframesMostCovisibleWithTheNewest) {
   const MapWindow window = cut_window(map_, {newest_}, kSmall);
-  const ReusedVector<Covisible> covisible = map_.covisible_keyframes(newest_, kSmall.movable - 1);
+  const ScratchVector<Covisible> covisible = map_.covisible_keyframes(newest_, kSmall.movable - 1);
   for (std::size_t i = 0; i < covisible.size(); ++i) EXPECT_EQ(window.keyframes[i + 1].id, covisible[i].keyframe);
 }
 

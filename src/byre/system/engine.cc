@@ -1,6 +1,6 @@
 #include "byre/system/engine.h"
 
-#include "byre/map/known_calibration.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/workers/stopwatch.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr double kMillisecondsPerSecond = 1e3;
 
 // The second lane of a mission searches places in the offline map. Paced reading of the map ends before the next frame
 // modifies it.
-Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
+SessionExecutors make_lanes(Pace pace, bool is_mission, JobLog& log) {
   switch (pace) {
     case Pace::same_thread:
       return {make_logged_executor(make_inline_executor(), log), make_inline_executor()};
@@ -30,22 +30,22 @@ Lanes make_lanes(Pace pace, bool is_mission, JobLog& log) {
   return {nullptr, nullptr};
 }
 
-std::optional<RefinedCalibration> known_before(const Calibration& given, const EngineOptions& options) {
-  if (options.known || !options.offline) return options.known;
-  return known_calibration(options.offline->recordings(), given);
+std::optional<RefinedCalibration> initial_calibration(const Calibration& given, const EngineOptions& options) {
+  if (options.refined_calibration || !options.offline) return options.refined_calibration;
+  return stored_calibration(options.offline->recordings(), given);
 }
 
-KnownMounting mounting_before(const Calibration& given, const EngineOptions& options) {
-  if (!options.use_known_mounting) return {};
-  if (!options.offline) return options.mounting;
-  return mounting_for(options.offline->mounting(), options.offline->recordings(), given);
+OdometryCalibration initial_extrinsics(const Calibration& given, const EngineOptions& options) {
+  if (!options.use_saved_extrinsics) return {};
+  if (!options.offline) return options.extrinsics;
+  return odometry_calibration_for(options.offline->extrinsics(), options.offline->recordings(), given);
 }
 
 // Other cameras than those of the map may be mounted at another height or tilt.
 SessionOptions session_options(const Calibration& given, const EngineOptions& options) {
   SessionOptions session = options.session;
-  const bool is_told = options.offline && !options.offline->recordings().empty();
-  if (is_told && !is_by_cameras_of(options.offline->recordings(), given)) {
+  const bool has_recordings = options.offline && !options.offline->recordings().empty();
+  if (has_recordings && !has_same_cameras(options.offline->recordings(), given)) {
     session.mission.bounds.is_on_ground_of_map = false;
   }
   return session;
@@ -78,31 +78,31 @@ std::string_view name_of(OfflinePolicy policy) {
 Engine::Engine(const Calibration& given, const EngineOptions& options, std::optional<Map> before)
     : offline_(options.offline),
       body_from_left_(given.body_from_left.rotation),
-      known_(known_before(given, options)),
-      extractor_(known_ ? known_->calibration : given, options.extract),
+      initial_calibration_(initial_calibration(given, options)),
+      extractor_(initial_calibration_ ? initial_calibration_->calibration : given, options.extract),
       prior_(options.motion_limits),
-      is_metric_(given.tells_metres() || options.offline || before),
-      least_scale_sigma_(options.wheel_scale_sigma),
+      is_metric_(given.is_metric() || options.offline || before),
+      min_scale_sigma_(options.wheel_scale_sigma),
       budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
       session_(extractor_.rig(), session_options(given, options),
                make_lanes(options.pace, options.offline != nullptr, log_), options.vocabulary, options.offline) {
-  prior_.begin_with(mounting_before(given, options));
+  prior_.begin_with(initial_extrinsics(given, options));
   const Eigen::Quaterniond& body_from_left = given.body_from_left.rotation;
-  prior_.presume_upright(body_from_left * -Eigen::Vector3d::UnitY(), body_from_left * Eigen::Vector3d::UnitZ());
-  if (!options.offline) prior_.serve_mapping();
-  if (is_metric_) prior_.expect_metres();
-  session_.hear([this](Timestamp earlier, Timestamp later) { return prior_.way_between(earlier, later); },
-                [this, is_metric = given.tells_metres()](Timestamp earlier, Timestamp later) {
-                  return prior_.reach(earlier, later, is_metric);
-                });
+  prior_.assume_upright(body_from_left * -Eigen::Vector3d::UnitY(), body_from_left * Eigen::Vector3d::UnitZ());
+  if (!options.offline) prior_.enable_mapping_mode();
+  if (is_metric_) prior_.set_metric();
+  session_.set_odometry([this](Timestamp earlier, Timestamp later) { return prior_.path_between(earlier, later); },
+                        [this, is_metric = given.is_metric()](Timestamp earlier, Timestamp later) {
+                          return prior_.reach(earlier, later, is_metric);
+                        });
   if (options.self_calibrate) refine_calibration(given, options, before.has_value());
   if (before) session_.continue_map(std::move(*before));
 }
 
 // Refines only the readout time if the calibration is refined already, or an extended map depends on it.
 void Engine::refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended) {
-  if (known_ || is_extended) {
-    session_.refine_readout(known_.value_or(RefinedCalibration{given}));
+  if (initial_calibration_ || is_extended) {
+    session_.refine_readout(initial_calibration_.value_or(RefinedCalibration{given}));
   } else {
     session_.refine_calibration(given, options.self_calibration);
   }
@@ -121,10 +121,10 @@ std::optional<BodyMotion> Engine::checked(const std::optional<BodyMotion>& motio
 FrameReport Engine::process_in_time(const Frame& frame, const std::optional<BodyMotion>& given) {
   log_.job_seconds.clear();
   const std::optional<BodyMotion> motion = checked(given, frame.time);
-  const bool is_told = !given && last_frame_ && !prior_.is_empty();
-  const auto known_motion = is_told ? prior_.between(*last_frame_, frame.time) : motion;
-  session_.tell_tilt(is_told ? prior_.tilt(frame.time) : std::nullopt);
-  FrameReport report = session_.process(frame, known_motion, &budget_);
+  const bool uses_samples = !given && last_frame_ && !prior_.is_empty();
+  const auto measured_motion = uses_samples ? prior_.between(*last_frame_, frame.time) : motion;
+  session_.set_tilt(uses_samples ? prior_.tilt(frame.time) : std::nullopt);
+  FrameReport report = session_.process(frame, measured_motion, &budget_);
   last_frame_ = frame.time;
   const bool is_seen = report.inliers > 0;
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
@@ -133,7 +133,7 @@ FrameReport Engine::process_in_time(const Frame& frame, const std::optional<Body
   }
   if (map_damage() != nullptr) {
     report.health.verdict = Verdict::untrusted;
-    report.health.doubt = Doubt::map_damaged;
+    report.health.doubt = DistrustReason::map_damaged;
   }
   budget_.end();
   report.cuts = budget_.cuts();
@@ -162,20 +162,20 @@ Engine::Processed Engine::process(const ImageFrame& images, const std::optional<
   return processed;
 }
 
-Finishing Engine::finish_map(const FinishHooks& hooks) {
+FinishResult Engine::finish_map(const FinishHooks& hooks) {
   const Stopwatch watch;
   extractor_.rest();
-  Finishing finishing;
+  FinishResult finishing;
   finishing.report = session_.finish_map(hooks);
-  prior_.look_again(session_.final_trajectory());
-  if (!is_metric_) measure_by_wheels();
+  prior_.reestimate(session_.final_trajectory());
+  if (!is_metric_) scale_by_wheels();
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
   return finishing;
 }
 
 // Keeps the map's own unit if motions do not determine the scale.
-void Engine::measure_by_wheels() {
+void Engine::scale_by_wheels() {
   constexpr double kMaxSigma = 0.02;     // share
   constexpr double kMaxTurnScale = 0.1;  // natural logarithm
   const auto& wheels = prior_.wheels();
@@ -191,9 +191,9 @@ void Engine::measure_by_wheels() {
     return;
   }
   const double factor = wheels->metres_per_unit;
-  session_.stretch(factor);
-  metres_sigma_ = std::hypot(wheels->scale_sigma, least_scale_sigma_);
-  prior_.stretch(factor);
+  session_.rescale(factor);
+  scale_sigma_ = std::hypot(wheels->scale_sigma, min_scale_sigma_);
+  prior_.rescale(factor);
   is_metric_ = true;
 }
 
@@ -205,16 +205,16 @@ double Engine::finish_mission(const FinishHooks& hooks) {
 
 std::optional<RefinedCalibration> Engine::calibration() const {
   const auto refined = session_.self_calibration();
-  return refined ? refined : known_;
+  return refined ? refined : initial_calibration_;
 }
 
-Map Engine::kept_map() const {
+Map Engine::map_to_save() const {
   const MapView map = session_.map();
   return map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(map.online());
 }
 
-Map Engine::take_kept_map() {
-  return session_.map().offline() ? kept_map() : offline_copy(session_.take_online());
+Map Engine::take_map_to_save() {
+  return session_.map().offline() ? map_to_save() : offline_copy(session_.take_online());
 }
 
 }  // namespace byre

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "byre/features/extract.h"
-#include "byre/features/stereo_fit.h"
-#include "byre/motion/motion_prior.h"
+#include "byre/features/stereo_quality.h"
+#include "byre/motion/odometry_calibrator.h"
 #include "byre/session/session.h"
 #include "byre/system/logged_executor.h"
 
@@ -35,12 +35,12 @@ struct EngineOptions {
   SessionOptions session;
   bool self_calibrate = true;  // refine the given calibration from the map
   // Refined calibration to keep; only its readout time is refined further. Empty: that of the offline map, if any.
-  std::optional<RefinedCalibration> known;
+  std::optional<RefinedCalibration> refined_calibration;
   SelfCalibrationOptions self_calibration;
   std::optional<Vocabulary> vocabulary;  // for place recognition; without it neither loop closing nor finish_map()
   // Mounting of wheels and gyroscope, from the map that is extended; a mission takes that of its offline map.
-  KnownMounting mounting;
-  bool use_known_mounting = true;
+  OdometryCalibration extrinsics;
+  bool use_saved_extrinsics = true;
   MotionLimits motion_limits;
   // Lower bound of the relative standard deviation of a monocular map's scale, if measured by wheels only.
   double wheel_scale_sigma = 0.02;
@@ -49,10 +49,10 @@ struct EngineOptions {
 };
 
 // Estimates saved with a map.
-struct KeptWithMap {
+struct SavedEstimates {
   std::optional<RefinedCalibration> calibration;  // calibration of the map; empty unless refined
-  KnownMounting mounting;                         // mounting of wheels and gyroscope
-  std::optional<double> metres_sigma{};           // see Engine::wheel_scale_sigma
+  OdometryCalibration extrinsics;                 // extrinsics of wheels and gyroscope
+  std::optional<double> scale_sigma{};            // see Engine::wheel_scale_sigma
 };
 
 // Wall times of the stages of a frame, seconds. All except decode run sequentially on the frame thread.
@@ -68,7 +68,7 @@ struct StageSeconds {
 };
 
 // Result of finishing a map.
-struct Finishing {
+struct FinishResult {
   FinishReport report;
   bool cut_short = false;           // stopped early on request
   double seconds = 0.0;             // wall time
@@ -90,12 +90,12 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   // Samples of wheels and gyroscope, each in order of time, before the frame that they lead to.
-  void tell_wheels(const StampedPose& odometry_from_base) { prior_.add(odometry_from_base); }
-  void tell_wheels(const BaseVelocity& velocity) { prior_.add(velocity); }
-  void tell_gyroscope(const AngularRate& rate) { prior_.add(rate); }
-  void tell_accelerometer(const Acceleration& acceleration) { prior_.add(acceleration); }
-  void tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope) {
-    prior_.presume_gyroscope(body_from_left_ * left_from_gyroscope);
+  void add_wheel_odometry(const StampedPose& odometry_from_base) { prior_.add(odometry_from_base); }
+  void add_wheel_odometry(const BaseTwist& velocity) { prior_.add(velocity); }
+  void add_gyro(const AngularRate& rate) { prior_.add(rate); }
+  void add_accel(const Acceleration& acceleration) { prior_.add(acceleration); }
+  void set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope) {
+    prior_.set_gyroscope_extrinsics(body_from_left_ * left_from_gyroscope);
   }
 
   // Checks a motion of the body from the last frame to a time; empty if faulty.
@@ -107,12 +107,12 @@ class Engine {
   Processed process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& motion = {});
 
-  void look_near(const PoseHint& hint) { session_.look_near(hint); }  // see Slam
+  void set_initial_pose(const PoseHint& hint) { session_.set_initial_pose(hint); }  // see Slam
   void pause_mapping(bool is_paused) { session_.pause_mapping(is_paused); }
-  void hurry() { session_.hurry(); }  // see Session
+  void finish_early() { session_.finish_early(); }  // see Session
   void finish() { session_.finish(); }
-  // Call after finish(). Needs a vocabulary, and no offline map. Does not fill in Finishing::faults.
-  Finishing finish_map(const FinishHooks& hooks);
+  // Call after finish(). Needs a vocabulary, and no offline map. Does not fill in FinishResult::faults.
+  FinishResult finish_map(const FinishHooks& hooks);
   // Finishes the online map of a mission, after finish(). Returns the wall time in seconds.
   double finish_mission(const FinishHooks& hooks);
   // Damage of the offline map's file, with section and remedy; nullptr if undamaged. Parts already read stay in use;
@@ -123,40 +123,40 @@ class Engine {
   const Map& online() const { return session_.map().online(); }
   const Session& session() const { return session_; }
   const JobLog& log() const { return log_; }
-  const MotionPrior& prior() const { return prior_; }
+  const OdometryCalibrator& prior() const { return prior_; }
   // Current poses of all tracked frames, with gaps filled by wheel odometry.
-  Trajectory trajectory() const { return prior_.completed(session_.final_trajectory()); }
+  Trajectory trajectory() const { return prior_.fill_gaps(session_.final_trajectory()); }
   // Calibration of the map; empty if only the given one is available.
   std::optional<RefinedCalibration> calibration() const;
   // Row error of the rectification in use, over all stereo pairs so far.
   const CommonRowError& row_error() const { return row_error_; }
-  KeptWithMap kept_with_map() const { return {calibration(), prior_.to_keep(), metres_sigma_}; }
+  SavedEstimates saved_estimates() const { return {calibration(), prior_.calibration_to_store(), scale_sigma_}; }
   // Whether lengths are metres. Monocular maps become metric in finish_map() if wheels determine the scale.
   bool is_metric() const { return is_metric_; }
   // Relative standard deviation of the scale if measured by wheels only; empty if the scale is unknown, or measured by
   // cameras or a map.
-  std::optional<double> wheel_scale_sigma() const { return metres_sigma_; }
+  std::optional<double> wheel_scale_sigma() const { return scale_sigma_; }
   // Copy of the map to save.
-  Map kept_map() const;
-  // Same map as kept_map(), without copying; the session's map is empty afterwards.
-  Map take_kept_map();
+  Map map_to_save() const;
+  // Same map as map_to_save(), without copying; the session's map is empty afterwards.
+  Map take_map_to_save();
 
  private:
   void refine_calibration(const Calibration& given, const EngineOptions& options, bool is_extended);
-  void measure_by_wheels();
+  void scale_by_wheels();
   // Precondition: the frame's budget has begun.
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
 
   JobLog log_;
-  std::shared_ptr<const OfflineMap> offline_;  // nullptr without a mission
-  Eigen::Quaterniond body_from_left_;          // constant after construction
-  std::optional<RefinedCalibration> known_;    // before any frame
+  std::shared_ptr<const OfflineMap> offline_;              // nullptr without a mission
+  Eigen::Quaterniond body_from_left_;                      // constant after construction
+  std::optional<RefinedCalibration> initial_calibration_;  // before any frame
   Extractor extractor_;
   CommonRowError row_error_;
-  MotionPrior prior_;
+  OdometryCalibrator prior_;
   bool is_metric_;
-  double least_scale_sigma_;            // constant after construction
-  std::optional<double> metres_sigma_;  // see wheel_scale_sigma
+  double min_scale_sigma_;             // constant after construction
+  std::optional<double> scale_sigma_;  // see wheel_scale_sigma
   std::optional<Timestamp> last_frame_;
   std::size_t warnings_reported_ = 0;
   FrameBudget budget_;

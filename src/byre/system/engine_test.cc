@@ -38,7 +38,7 @@ TEST(Engine, ScalesAMonocularMapByWheels) {
     const Pose camera_from_robot = inverse(robot_from_camera());
     for (std::size_t i = 0; i < mission.frames.size(); ++i) {
       const StampedPose& truth = mission.truth[i];
-      if (has_wheels) engine.tell_wheels({truth.time, truth.world_from_body * camera_from_robot});
+      if (has_wheels) engine.add_wheel_odometry({truth.time, truth.world_from_body * camera_from_robot});
       engine.process(mission.frames[i]);
     }
     engine.finish();

@@ -17,7 +17,7 @@ InputFault fault_of_picture(const ImageView& view, const Camera& camera, bool wa
   return fits ? InputFault::none : InputFault::wrong_size;
 }
 
-bool is_there(const std::optional<ImageView>& view) {
+bool has_data(const std::optional<ImageView>& view) {
   return view && view->data != nullptr;
 }
 
@@ -40,24 +40,24 @@ InputFault InputCheck::fault_of_time(Timestamp time) const {
 }
 
 // Compares seconds, as the difference of invalid times may overflow.
-bool InputCheck::is_beside(const ImageView& view, const ImageView& left) const {
+bool InputCheck::is_simultaneous(const ImageView& view, const ImageView& left) const {
   return view.time == Timestamp{} ||
          std::abs(to_seconds(view.time) - to_seconds(left.time)) <= options_.max_pair_difference;
 }
 
 InputFault InputCheck::fault_of_right(const CameraImages& images) const {
   if (!calibration_.right) return InputFault::none;
-  if (!is_there(images.right)) return InputFault::missing_right;
+  if (!has_data(images.right)) return InputFault::missing_right;
   const InputFault fault = fault_of_picture(*images.right, calibration_.right->camera);
-  return fault != InputFault::none || is_beside(*images.right, images.left) ? fault : InputFault::late_right;
+  return fault != InputFault::none || is_simultaneous(*images.right, images.left) ? fault : InputFault::late_right;
 }
 
 InputFault InputCheck::fault_of_depth(const CameraImages& images) const {
   if (!calibration_.depth) return InputFault::none;
-  if (!is_there(images.depth)) return InputFault::missing_depth;
+  if (!has_data(images.depth)) return InputFault::missing_depth;
   const InputFault fault =
       fault_of_picture(*images.depth, calibration_.depth->camera.value_or(calibration_.left), true);
-  return fault != InputFault::none || is_beside(*images.depth, images.left) ? fault : InputFault::late_depth;
+  return fault != InputFault::none || is_simultaneous(*images.depth, images.left) ? fault : InputFault::late_depth;
 }
 
 InputFault InputCheck::fault_of(const Frame& frame) const {
@@ -69,8 +69,8 @@ InputFault InputCheck::fault_of(const Frame& frame) const {
 
 InputFault InputCheck::note(const CameraImages& images) {
   const InputFault right = fault_of_right(images), depth = fault_of_depth(images);
-  is_right_sound_ = calibration_.right && right == InputFault::none;
-  is_depth_sound_ = calibration_.depth && depth == InputFault::none;
+  is_right_valid_ = calibration_.right && right == InputFault::none;
+  is_depth_valid_ = calibration_.depth && depth == InputFault::none;
   const InputFault left = fault_of_picture(images.left, calibration_.left);
   const InputFault fault = note(worst_of({left, right, depth, fault_of_time(images.left.time)}));
   if (!is_dropped(fault)) last_time_ = images.left.time;

@@ -30,8 +30,8 @@ class InputCheck {
 
   InputFault last() const { return last_; }
   // Whether right image and depths of the last frame are usable.
-  bool may_use_right() const { return is_right_sound_; }
-  bool may_use_depth() const { return is_depth_sound_; }
+  bool may_use_right() const { return is_right_valid_; }
+  bool may_use_depth() const { return is_depth_valid_; }
 
   int frames() const { return frames_; }
   int frames(InputFault fault) const { return counts_[static_cast<std::size_t>(fault)]; }
@@ -41,7 +41,7 @@ class InputCheck {
   InputFault fault_of_depth(const CameraImages& images) const;
   InputFault fault_of_time(Timestamp time) const;
   InputFault fault_of(const Frame& frame) const;
-  bool is_beside(const ImageView& view, const ImageView& left) const;
+  bool is_simultaneous(const ImageView& view, const ImageView& left) const;
 
   // Constant after construction.
   Calibration calibration_;
@@ -50,8 +50,8 @@ class InputCheck {
 
   std::optional<Timestamp> last_time_;  // time of the last frame not dropped
   InputFault last_ = InputFault::none;
-  bool is_right_sound_ = false;
-  bool is_depth_sound_ = false;
+  bool is_right_valid_ = false;
+  bool is_depth_valid_ = false;
   int frames_ = 0;
   std::array<int, static_cast<std::size_t>(InputFault::after_finishing) + 1> counts_{};
 };

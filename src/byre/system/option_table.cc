@@ -334,7 +334,8 @@ void add_mission(Table& table) {
       [](auto& o) -> auto& { return o.session.mission.moved_points.frames_to_return; },
       "consecutive frames with a suspended point in its place after which it is used again"));
   table.push_back(number(
-      "mission.hindsight_frames", "frames", 0, kMany, [](auto& o) -> auto& { return o.session.hindsight.frames; },
+      "mission.hindsight_frames", "frames", 0, kMany,
+      [](auto& o) -> auto& { return o.session.deferred_refinement.frames; },
       "maximum number of frames refined in hindsight; 10 kB each"));
 }
 
@@ -343,7 +344,7 @@ void add_motion(Table& table) {
       "motion.planar", [](auto& o) -> auto& { return o.session.is_planar; },
       "height, roll and pitch constrained to the driving plane of the offline map"));
   table.push_back(flag(
-      "motion.known_mounting", [](auto& o) -> auto& { return o.use_known_mounting; },
+      "motion.known_mounting", [](auto& o) -> auto& { return o.use_saved_extrinsics; },
       "extrinsics of wheels and gyroscope initialised from the offline map, until measurements contradict them"));
   table.push_back(number(
       "motion.max_speed_m_per_s", "metres a second", 0.01, 1e3,

@@ -52,15 +52,15 @@ constexpr std::size_t kHiddenCells = 2;
 
 TEST(OptionTable, ListsEveryLeaf) {
   const EngineOptions options;
-  [[maybe_unused]] const auto& [pace, extract, session, self_calibrate, known, self_calibration, vocabulary, mounting,
-                                use_known_mounting, motion_limits, wheel_scale_sigma, frame_deadline_ms, offline] =
-      options;
-  // pace, self_calibrate, use_known_mounting, wheel_scale_sigma, frame_deadline_ms
+  [[maybe_unused]] const auto& [pace, extract, session, self_calibrate, refined_calibration, self_calibration,
+                                vocabulary, extrinsics, use_saved_extrinsics, motion_limits, wheel_scale_sigma,
+                                frame_deadline_ms, offline] = options;
+  // pace, self_calibrate, use_saved_extrinsics, wheel_scale_sigma, frame_deadline_ms
   const std::size_t in_engine = 5;
   const std::size_t in_session = member_count<SessionOptions>() - 1 - 11;  // without the recording and the groups
   const std::size_t in_groups =
       members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
-                 HealthOptions, ImageConditionOptions, StateOptions, HindsightOptions>() -
+                 HealthOptions, ImageConditionOptions, StateOptions, DeferredRefinementOptions>() -
       1 - kHiddenCells;  // without the unit of length of a monocular map
   const std::size_t in_mission = member_count<MissionOptions>() - 4 +
                                  members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>() +

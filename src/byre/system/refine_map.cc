@@ -1,7 +1,7 @@
 #include "byre/system/refine_map.h"
 
 #include "byre/slam/online_copy.h"
-#include "byre/slam/stowed_features.h"
+#include "byre/slam/paged_features.h"
 #include "byre/system/resources.h"
 #include "byre/system/stored_map.h"
 #include "byre/workers/stopwatch.h"
@@ -10,15 +10,15 @@
 
 namespace byre {
 
-Finishing refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
+FinishResult refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
   const Stopwatch watch;
   Map online = online_copy(stored.map);
   stored.map = Map(Origin::offline);  // frees hundreds of megabytes
-  ScratchFile stowed;
-  stow_features(online, stowed);
-  Finishing finishing;
+  ScratchFile page_file;
+  page_out_features(online, page_file);
+  FinishResult finishing;
   // Memory freed by reading and by each step does not fit the allocations of the next step.
-  const FinishHooks frugal{forgetting_looks(stowed, hooks.should_stop), [&hooks](const char* step) {
+  const FinishHooks frugal{releasing_pages(page_file, hooks.should_stop), [&hooks](const char* step) {
                              release_free_memory();
                              if (hooks.before_step) hooks.before_step(step);
                            }};

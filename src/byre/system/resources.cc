@@ -15,7 +15,7 @@ double seconds_of(const timeval& time) {
 
 }  // namespace
 
-ResourceUse resources_used_so_far() {
+ResourceUsage resource_usage() {
   constexpr double kMegabytesPerKibibyte = 1024.0 / 1e6;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -33,7 +33,7 @@ double resident_memory_mb() {
   return 1e-6 * static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-void allow_many_descriptors() {
+void raise_descriptor_limit() {
   constexpr rlim_t kMany = 1024;  // limit of select()
   rlimit descriptors{};
   if (getrlimit(RLIMIT_NOFILE, &descriptors) != 0 || descriptors.rlim_cur >= kMany) return;

@@ -7,8 +7,8 @@
 namespace byre {
 namespace {
 
-TEST(ResourceUse, ArePositive) {
-  const ResourceUse resources = resources_used_so_far();
+TEST(ResourceUsage, ArePositive) {
+  const ResourceUsage resources = resource_usage();
   EXPECT_GT(resources.cpu_seconds, 0.0);
   EXPECT_GT(resources.peak_memory_mb, 1.0);
 }
@@ -16,7 +16,7 @@ TEST(ResourceUse, ArePositive) {
 TEST(ResidentMemory, IsAtMostThePeak) {
   const double now = resident_memory_mb();
   EXPECT_GT(now, 1.0);
-  EXPECT_LE(now, 1.1 * resources_used_so_far().peak_memory_mb);
+  EXPECT_LE(now, 1.1 * resource_usage().peak_memory_mb);
 }
 
 #ifndef BYRE_SANITIZED  // sanitizers keep freed memory

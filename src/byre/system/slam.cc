@@ -3,9 +3,9 @@
 #include "byre/features/image_view.h"
 #include "byre/geometry/baseline.h"
 #include "byre/geometry/finite.h"
-#include "byre/map/known_calibration.h"
 #include "byre/map/map_file.h"
 #include "byre/map/map_values.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/slam/online_copy.h"
 #include "byre/system/engine.h"
 #include "byre/system/input_check.h"
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kGivenCalibration = "the calibration given to Slam";
 
 // Throws InputError for an invalid calibration. Those from files were checked on reading; others were not.
-void require_sense(const Calibration& calibration, const SlamOptions& options) {
+void require_valid(const Calibration& calibration, const SlamOptions& options) {
   const auto refuse = [](std::string_view reason) {
     throw InputError(kGivenCalibration, reason, "see byre/calibration.h");
   };
@@ -41,7 +41,7 @@ void require_sense(const Calibration& calibration, const SlamOptions& options) {
 
 // Calibration with the baseline of the options. Throws InputError if invalid.
 Calibration checked(const Calibration& calibration, const SlamOptions& options) {
-  require_sense(calibration, options);
+  require_valid(calibration, options);
   return with_checked_baseline(calibration, options.baseline, kGivenCalibration, "SlamOptions::baseline = ");
 }
 
@@ -81,34 +81,34 @@ EngineOptions engine_options(const SlamOptions& options, const Vocabulary& vocab
 
 struct Slam::Parts {
   Parts(const Calibration& given_calibration, const SlamOptions& slam_options, const Vocabulary& used_vocabulary,
-        const EngineOptions& engine_options, StoredMap beside, std::optional<Map> before = {})
+        const EngineOptions& engine_options, StoredMap map_metadata, std::optional<Map> before = {})
       : given(given_calibration),
         options(slam_options),
         vocabulary(used_vocabulary),
-        about(std::move(beside)),
+        metadata(std::move(map_metadata)),
         offline(engine_options.offline),
         is_extended(before.has_value()),
         engine(given, engine_options, std::move(before)),
         input(given, engine.rig(), {options.max_pair_difference, options.max_gap}) {}
-  ~Parts() { engine.hurry(); }
+  ~Parts() { engine.finish_early(); }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
   // Images for the engine; empty if dropped, see input.
   const ImageFrame* take(const CameraImages& images);
   // Motion of the body since the last frame processed by the engine.
-  std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& told, Timestamp time, bool is_dropped);
-  FrameReport noted(FrameReport report);
+  std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& body_motion, Timestamp time, bool is_dropped);
+  FrameReport completed(FrameReport report);
   // Whether the map is not empty; for an extended map, whether anything was added.
   bool has_mapped() const { return engine.online().keyframe_count() > 0 && (had_pose || !is_extended); }
   FrameReport dropped(Timestamp time) const;
-  StoredMap kept() const;
+  StoredMap stored_map() const;
 
   // Constant after construction.
   Calibration given;
   SlamOptions options;
   Vocabulary vocabulary;
-  StoredMap about;  // saved data besides the map and the current recording
+  StoredMap metadata;  // saved data besides the map and the current recording
   std::shared_ptr<const OfflineMap> offline;
   bool is_extended = false;
   std::optional<fs::path> mission_map;   // map file of a mission
@@ -116,10 +116,10 @@ struct Slam::Parts {
 
   Engine engine;
   InputCheck input;
-  ImageFrame buffer;                                      // holds the images during a call
-  std::optional<BodyMotion> unseen_motion = no_motion();  // motion over dropped frames; empty: unknown
-  State state = State::initialising;                      // state after the last frame
-  std::optional<Timestamp> first_time;                    // time of the first frame not dropped
+  ImageFrame buffer;                                       // holds the images during a call
+  std::optional<BodyMotion> dropped_motion = no_motion();  // motion over dropped frames; empty: unknown
+  State state = State::initialising;                       // state after the last frame
+  std::optional<Timestamp> first_time;                     // time of the first frame not dropped
   Timestamp last_time{};
   bool had_pose = false;  // whether any frame had a map pose
   bool is_finished = false;
@@ -141,16 +141,16 @@ const ImageFrame* Slam::Parts::take(const CameraImages& images) {
   return &buffer;
 }
 
-std::optional<BodyMotion> Slam::Parts::take_motion(const std::optional<BodyMotion>& told, Timestamp time,
+std::optional<BodyMotion> Slam::Parts::take_motion(const std::optional<BodyMotion>& body_motion, Timestamp time,
                                                    bool is_dropped) {
-  const std::optional<BodyMotion> motion = engine.checked(told, time);
-  const bool is_of_use = engine.is_metric();  // metric priors need a metric map
-  const auto since = is_of_use && unseen_motion && motion ? std::optional(*unseen_motion * *motion) : std::nullopt;
-  unseen_motion = is_dropped ? since : no_motion();
+  const std::optional<BodyMotion> motion = engine.checked(body_motion, time);
+  const bool is_metric = engine.is_metric();  // metric priors need a metric map
+  const auto since = is_metric && dropped_motion && motion ? std::optional(*dropped_motion * *motion) : std::nullopt;
+  dropped_motion = is_dropped ? since : no_motion();
   return since;
 }
 
-FrameReport Slam::Parts::noted(FrameReport report) {
+FrameReport Slam::Parts::completed(FrameReport report) {
   report.input = input.last();
   state = report.state;
   had_pose = had_pose || report.map_from_body;
@@ -167,13 +167,13 @@ FrameReport Slam::Parts::dropped(Timestamp time) const {
   return report;
 }
 
-StoredMap Slam::Parts::kept() const {
-  StoredMap stored = about;
-  stored.map = engine.kept_map();
+StoredMap Slam::Parts::stored_map() const {
+  StoredMap stored = metadata;
+  stored.map = engine.map_to_save();
   stored.scale = engine.is_metric() ? MapScale::metric : MapScale::unknown;
   stored.recordings.push_back(
       {options.recording, given, first_time.value_or(Timestamp{}), last_time, engine.calibration()});
-  note_mounting(engine.prior().to_keep(), stored.notes);
+  write_odometry_calibration(engine.prior().calibration_to_store(), stored.notes);
   if (const auto sigma = engine.wheel_scale_sigma()) stored.notes[kMetresNote] = metres_note(*sigma);
   return stored;
 }
@@ -186,23 +186,23 @@ Slam::~Slam() = default;
 Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
   Calibration given = checked(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
-  if (!given.tells_metres()) given.body_from_left = {};  // a lever arm in metres needs a metric map
+  if (!given.is_metric()) given.body_from_left = {};  // a lever arm in metres needs a metric map
   return Slam(std::make_unique<Parts>(given, options, vocabulary, engine_options(options, vocabulary), StoredMap{}));
 }
 
 Slam Slam::extending(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
   const Calibration given = checked(calibration, options);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
-  StoredMap about = load_for_mapping(map, vocabulary);
-  about.pose_source = PoseSource::slam;
-  Map before = online_copy(about.map);
-  about.map = Map(Origin::offline);
-  const auto plan = about.plan;
+  StoredMap metadata = load_for_mapping(map, vocabulary);
+  metadata.pose_source = PoseSource::slam;
+  Map before = online_copy(metadata.map);
+  metadata.map = Map(Origin::offline);
+  const auto plan = metadata.plan;
   EngineOptions engine = engine_options(options, vocabulary);
-  engine.known = known_calibration(about.recordings, given);
-  engine.mounting = mounting_for(mounting_in(about.notes), about.recordings, given);
-  engine.session.recording = static_cast<int>(about.recordings.size());
-  auto parts = std::make_unique<Parts>(given, options, vocabulary, engine, std::move(about), std::move(before));
+  engine.refined_calibration = stored_calibration(metadata.recordings, given);
+  engine.extrinsics = odometry_calibration_for(read_odometry_calibration(metadata.notes), metadata.recordings, given);
+  engine.session.recording = static_cast<int>(metadata.recordings.size());
+  auto parts = std::make_unique<Parts>(given, options, vocabulary, engine, std::move(metadata), std::move(before));
   parts->plan = plan;
   return Slam(std::move(parts));
 }
@@ -218,39 +218,39 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   return Slam(std::move(parts));
 }
 
-FrameReport Slam::process(const CameraImages& images, const std::optional<BodyMotion>& told) {
+FrameReport Slam::process(const CameraImages& images, const std::optional<BodyMotion>& body_motion) {
   const ImageFrame* const taken = parts_->take(images);
-  const auto motion = parts_->take_motion(told, images.left.time, taken == nullptr);
+  const auto motion = parts_->take_motion(body_motion, images.left.time, taken == nullptr);
   if (taken == nullptr) return parts_->dropped(images.left.time);
-  return parts_->noted(parts_->engine.process(*taken, motion).report);
+  return parts_->completed(parts_->engine.process(*taken, motion).report);
 }
 
-FrameReport Slam::process(const Frame& frame, const std::optional<BodyMotion>& told) {
+FrameReport Slam::process(const Frame& frame, const std::optional<BodyMotion>& body_motion) {
   const InputFault fault =
       parts_->is_finished ? parts_->input.note(InputFault::after_finishing) : parts_->input.note(frame);
-  const auto motion = parts_->take_motion(told, frame.time, is_dropped(fault));
+  const auto motion = parts_->take_motion(body_motion, frame.time, is_dropped(fault));
   if (is_dropped(fault)) return parts_->dropped(frame.time);
-  return parts_->noted(parts_->engine.process(frame, motion));
+  return parts_->completed(parts_->engine.process(frame, motion));
 }
 
-void Slam::tell_wheels(const StampedPose& odometry_from_base) {
-  parts_->engine.tell_wheels(odometry_from_base);
+void Slam::add_wheel_odometry(const StampedPose& odometry_from_base) {
+  parts_->engine.add_wheel_odometry(odometry_from_base);
 }
 
-void Slam::tell_wheels(const BaseVelocity& velocity) {
-  parts_->engine.tell_wheels(velocity);
+void Slam::add_wheel_odometry(const BaseTwist& velocity) {
+  parts_->engine.add_wheel_odometry(velocity);
 }
 
-void Slam::tell_gyroscope(const AngularRate& rate) {
-  parts_->engine.tell_gyroscope(rate);
+void Slam::add_gyro(const AngularRate& rate) {
+  parts_->engine.add_gyro(rate);
 }
 
-void Slam::tell_accelerometer(const Acceleration& acceleration) {
-  parts_->engine.tell_accelerometer(acceleration);
+void Slam::add_accel(const Acceleration& acceleration) {
+  parts_->engine.add_accel(acceleration);
 }
 
-void Slam::tell_gyroscope_mounting(const Eigen::Quaterniond& left_from_gyroscope) {
-  parts_->engine.tell_gyroscope_mounting(left_from_gyroscope);
+void Slam::set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope) {
+  parts_->engine.set_gyro_extrinsics(left_from_gyroscope);
 }
 
 void Slam::pause_mapping(bool is_paused) {
@@ -261,10 +261,10 @@ bool Slam::is_mapping_paused() const {
   return parts_->engine.session().is_mapping_paused();
 }
 
-void Slam::look_near(const PoseHint& hint) {
-  constexpr double kMostOff = 0.1;  // tolerance of the quaternion's length 1
-  const bool is_sound = is_finite(hint.map_from_body) && std::abs(hint.map_from_body.rotation.norm() - 1.0) < kMostOff;
-  if (is_sound) parts_->engine.look_near(hint);
+void Slam::set_initial_pose(const PoseHint& hint) {
+  constexpr double kMaxOff = 0.1;  // tolerance of the quaternion's length 1
+  const bool is_sound = is_finite(hint.map_from_body) && std::abs(hint.map_from_body.rotation.norm() - 1.0) < kMaxOff;
+  if (is_sound) parts_->engine.set_initial_pose(hint);
 }
 
 std::optional<std::string> Slam::map_damage() const {
@@ -275,7 +275,7 @@ std::optional<std::string> Slam::map_damage() const {
 void Slam::finish(const std::function<bool()>& should_stop) {
   if (std::exchange(parts_->is_finished, true)) return;
   const FinishHooks hooks{should_stop ? should_stop : [] { return false; }, {}};
-  if (hooks.should_stop()) parts_->engine.hurry();
+  if (hooks.should_stop()) parts_->engine.finish_early();
   parts_->engine.finish();
   if (hooks.should_stop() || !parts_->has_mapped() || map_damage()) return;
   if (parts_->offline) {
@@ -294,7 +294,7 @@ void Slam::save(const fs::path& path) const {
   if (parts_->mission_map && fs::equivalent(path, *parts_->mission_map, none_there)) {
     throw InputError(path.string(), "is the offline map of the mission and must not be replaced", "name another file");
   }
-  save_for_use(parts_->kept(), parts_->vocabulary, parts_->options.site, path);
+  save_for_missions(parts_->stored_map(), parts_->vocabulary, parts_->options.site, path);
 }
 
 Trajectory Slam::trajectory() const {

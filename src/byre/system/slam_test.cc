@@ -139,7 +139,7 @@ TEST_F(SlamFileTest, ReportsDamageOfItsMapAndLosesNothing) {
         if (i == good_frames) damage(map_);
         const bool was_damaged = slam.map_damage().has_value();  // a background search may detect the damage first
         const FrameReport report = slam.process(view_of(frames[i]));
-        const bool is_damaged = report.health.doubt == Doubt::map_damaged;
+        const bool is_damaged = report.health.doubt == DistrustReason::map_damaged;
         EXPECT_TRUE(is_damaged || !was_damaged) << i;
         EXPECT_TRUE(!is_damaged || report.health.verdict == Verdict::untrusted) << i;
       }
@@ -411,7 +411,7 @@ Pose hostile_pose(std::mt19937& random) {
 }
 
 // Adds samples of each motion input before a frame: valid or invalid, also with times out of order or range.
-void tell_hostile(Slam& slam, Timestamp time, std::mt19937& random) {
+void feed_hostile(Slam& slam, Timestamp time, std::mt19937& random) {
   const auto value = [&] { return hostile_values()[random() % hostile_values().size()]; };
   const std::vector<Timestamp> times = {
       time,  time - std::chrono::hours(1),       time + std::chrono::hours(24), {}, Timestamp::max(), Timestamp::min(),
@@ -419,13 +419,12 @@ void tell_hostile(Slam& slam, Timestamp time, std::mt19937& random) {
   for (int i = 0; i < 20; ++i) {
     const Timestamp at = random() % 2 == 0 ? time - std::chrono::milliseconds(20 - i) : times[random() % times.size()];
     const bool is_hostile = random() % 2 == 0;
-    slam.tell_wheels(StampedPose{at, is_hostile ? hostile_pose(random) : Pose{}});
-    if (is_hostile) slam.tell_wheels(BaseVelocity{at, value(), value(), value()});
-    slam.tell_gyroscope(
-        {at, is_hostile ? Eigen::Vector3d(value(), value(), value()) : Eigen::Vector3d(0.0, 0.01, 0.1)});
-    slam.tell_accelerometer({at, is_hostile ? Eigen::Vector3d(value(), value(), value()) : Eigen::Vector3d(0, 0, 9.8)});
+    slam.add_wheel_odometry(StampedPose{at, is_hostile ? hostile_pose(random) : Pose{}});
+    if (is_hostile) slam.add_wheel_odometry(BaseTwist{at, value(), value(), value()});
+    slam.add_gyro({at, is_hostile ? Eigen::Vector3d(value(), value(), value()) : Eigen::Vector3d(0.0, 0.01, 0.1)});
+    slam.add_accel({at, is_hostile ? Eigen::Vector3d(value(), value(), value()) : Eigen::Vector3d(0, 0, 9.8)});
   }
-  slam.look_near({hostile_pose(random), value(), value(), value()});
+  slam.set_initial_pose({hostile_pose(random), value(), value(), value()});
 }
 
 std::optional<BodyMotion> hostile_motion(std::mt19937& random) {
@@ -447,10 +446,10 @@ TEST_F(SlamFileTest, StaysFiniteWhateverMotionInputsReport) {
       std::mt19937 random(seed);
       Slam slam = is_mission ? Slam::on_map(open_shared()->calibration(), map_, repeatable())
                              : Slam::mapping(open_shared()->calibration(), repeatable());
-      slam.tell_gyroscope_mounting(Eigen::Quaterniond(0.0, 0.0, 0.0, seed == 1U ? 0.0 : hostile_values().front()));
+      slam.set_gyro_extrinsics(Eigen::Quaterniond(0.0, 0.0, 0.0, seed == 1U ? 0.0 : hostile_values().front()));
       int poses = 0;
       for (const ImageFrame& frame : frames) {
-        tell_hostile(slam, frame.time, random);
+        feed_hostile(slam, frame.time, random);
         const FrameReport report = slam.process(view_of(frame), hostile_motion(random));
         expect_finite(report);
         poses += report.map_from_body ? 1 : 0;
@@ -473,7 +472,7 @@ TEST(Slam, ReportsEachFaultOfAMotionInputOnce) {
   Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
   std::vector<MotionWarning> warnings;
   for (const ImageFrame& frame : frames) {
-    slam.tell_gyroscope({frame.time, Eigen::Vector3d(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0)});
+    slam.add_gyro({frame.time, Eigen::Vector3d(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0)});
     const FrameReport report = slam.process(view_of(frame));
     warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
   }

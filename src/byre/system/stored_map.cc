@@ -54,7 +54,7 @@ std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const V
   std::optional<PlacedWalls> walls;
   if (plan) walls = walls_of(stored, path, *plan);
   auto offline = std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
-                                                    std::move(walls), mounting_in(stored.notes));
+                                                    std::move(walls), read_odometry_calibration(stored.notes));
   if (const InputError* const damage = offline->map().damage()) throw InputError(*damage);
   return offline;
 }
@@ -62,16 +62,16 @@ std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const V
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {
   std::vector<int> counts(recordings, 0);
   for (const KeyframeId id : map.keyframe_ids())
-    ++counts.at(static_cast<std::size_t>(map.find_bare_keyframe(id)->recording));
+    ++counts.at(static_cast<std::size_t>(map.keyframe_header(id)->recording));
   return counts;
 }
 
-void save_for_use(StoredMap stored, const Vocabulary& vocabulary, const std::string& site, const fs::path& path) {
-  save_for_use_and_reread(stored, vocabulary, site, path);
+void save_for_missions(StoredMap stored, const Vocabulary& vocabulary, const std::string& site, const fs::path& path) {
+  save_for_missions_and_reload(stored, vocabulary, site, path);
 }
 
-void save_for_use_and_reread(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
-                             const fs::path& path) {
+void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
+                                  const fs::path& path) {
   stored.notes["software"] = "byre " BYRE_VERSION;
   if (!site.empty()) stored.notes["site"] = site;
   add_words(stored, vocabulary);

@@ -29,10 +29,10 @@ std::shared_ptr<const OfflineMap> load_offline_map(const std::filesystem::path& 
 std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings);
 
 // Saves the map with the data that missions need: words of the vocabulary, site name unless empty, version of byre.
-void save_for_use(StoredMap stored, const Vocabulary& vocabulary, const std::string& site,
-                  const std::filesystem::path& path);
+void save_for_missions(StoredMap stored, const Vocabulary& vocabulary, const std::string& site,
+                       const std::filesystem::path& path);
 // Also updates `stored` to the map as read back from the file.
-void save_for_use_and_reread(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
-                             const std::filesystem::path& path);
+void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
+                                  const std::filesystem::path& path);
 
 }  // namespace byre

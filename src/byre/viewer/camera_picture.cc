@@ -104,9 +104,9 @@ Picture camera_picture(const FrameScene& scene, const CameraPictureOptions& opti
   Picture picture = picture_of(image_pane(scene));
   if (!options.panel) return picture;
   const FrameReport& report = scene.report;
-  Picture panel = below(picture_of(health_panel(options.title, report.state, report.health, options.health)),
-                        picture_of(seen_legend(kHealthPanelWidth)));
-  return filled_up(beside(std::move(picture), panel));
+  Picture panel = vconcat(picture_of(health_panel(options.title, report.state, report.health, options.health)),
+                          picture_of(seen_legend(kHealthPanelWidth)));
+  return filled_up(hconcat(std::move(picture), panel));
 }
 
 }  // namespace byre

@@ -23,7 +23,7 @@ FrameScene four_points(int width = 752, int height = 480) {
                 {{Origin::online, 2}, {200.0f, 100.0f}, false}};
   scene.report.state = State::tracking;
   scene.report.health.verdict = Verdict::degraded;
-  scene.report.health.doubt = Doubt::clustered;
+  scene.report.health.doubt = DistrustReason::clustered;
   scene.report.health.offline_inliers = 118;
   scene.report.health.offline_expected = 240;
   scene.report.health.online_inliers = 57;
@@ -95,7 +95,7 @@ TEST(CameraPicture, WarnsOfMeasuresPastTheirLimits) {
     FrameScene scene = four_points();
     scene.report.health = {};
     scene.report.health.verdict = Verdict::trusted;
-    scene.report.health.doubt = Doubt::none;
+    scene.report.health.doubt = DistrustReason::none;
     scene.report.health.spread = 0.2;
     scene.report.health.position_sigma = sigma;
     cv::Mat warned;

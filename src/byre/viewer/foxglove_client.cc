@@ -14,36 +14,36 @@ FoxgloveClient::~FoxgloveClient() {
 
 bool FoxgloveClient::receive(std::string_view bytes, bool is_binary) {
   const FoxgloveRequest request = read_foxglove_request(bytes, is_binary);
-  if (!request.fault.empty()) refuse(request.fault);
+  if (!request.fault.empty()) send_error(request.fault);
   for (const FoxgloveRequest::Subscription& wanted : request.subscribe) subscribe(wanted);
   for (const std::uint32_t id : request.unsubscribe) unsubscribe(id);
-  return answers_.size() <= limits_.most_answers;
+  return answers_.size() <= limits_.max_answers;
 }
 
-void FoxgloveClient::refuse(std::string_view reason) {
-  if (answers_.size() <= limits_.most_answers) answers_.push_back(status_text(StatusLevel::error, reason));
+void FoxgloveClient::send_error(std::string_view reason) {
+  if (answers_.size() <= limits_.max_answers) answers_.push_back(status_text(StatusLevel::error, reason));
 }
 
 void FoxgloveClient::subscribe(const FoxgloveRequest::Subscription& wanted) {
   const auto topic = static_cast<ros::MessageSink::TopicId>(wanted.channel);
   const auto has_topic = [topic](const auto& each) { return each.second == topic; };
-  if (!topics_.is_known(wanted.channel)) {
-    refuse("unknown channel " + std::to_string(wanted.channel));
+  if (!topics_.has_topic(wanted.channel)) {
+    send_error("unknown channel " + std::to_string(wanted.channel));
   } else if (subscribed_.contains(wanted.id)) {
-    refuse("subscription " + std::to_string(wanted.id) + " is in use");
+    send_error("subscription " + std::to_string(wanted.id) + " is in use");
   } else if (std::ranges::any_of(subscribed_, has_topic)) {
-    refuse("channel " + std::to_string(wanted.channel) + " is subscribed already");
+    send_error("channel " + std::to_string(wanted.channel) + " is subscribed already");
   } else {
     subscribed_[wanted.id] = topic;
     topics_.subscribe(topic);
-    if (auto kept = topics_.kept(topic)) add({wanted.id, false, std::move(*kept)});
+    if (auto latched = topics_.latched(topic)) add({wanted.id, false, std::move(*latched)});
   }
 }
 
 void FoxgloveClient::unsubscribe(std::uint32_t id) {
   const auto found = subscribed_.find(id);
   if (found == subscribed_.end()) {
-    refuse("unknown subscription " + std::to_string(id));
+    send_error("unknown subscription " + std::to_string(id));
     return;
   }
   topics_.unsubscribe(found->second);
@@ -62,19 +62,19 @@ void FoxgloveClient::offer(const LiveMessage& message) {
 void FoxgloveClient::add(Waiting waiting) {
   waiting_bytes_ += waiting.message.cdr->size();
   waiting_.push_back(std::move(waiting));
-  while (waiting_.size() > limits_.most_messages || (waiting_bytes_ > limits_.most_bytes && waiting_.size() > 1)) {
+  while (waiting_.size() > limits_.max_messages || (waiting_bytes_ > limits_.max_bytes && waiting_.size() > 1)) {
     drop_oldest();
   }
 }
 
-// Keeps the last message of kept topics while other messages can be dropped.
+// Keeps the last message of latched topics while other messages can be dropped.
 void FoxgloveClient::drop_oldest() {
-  const auto passes = [this](const Waiting& each) { return !topics_.kept(each.message.topic); };
+  const auto passes = [this](const Waiting& each) { return !topics_.latched(each.message.topic); };
   const auto found = std::ranges::find_if(waiting_, passes);
   const auto dropped = found == waiting_.end() ? waiting_.begin() : found;
   waiting_bytes_ -= dropped->message.cdr->size();
   waiting_.erase(dropped);
-  if (std::exchange(leaves_out_, true) || answers_.size() > limits_.most_answers) return;
+  if (std::exchange(has_dropped_, true) || answers_.size() > limits_.max_answers) return;
   answers_.push_back(status_text(StatusLevel::warning, "messages are dropped, because the client reads too slowly"));
 }
 
@@ -89,7 +89,7 @@ std::optional<FoxgloveOutput> FoxgloveClient::next() {
     return FoxgloveOutput{advertise_text(first, topics), false, nullptr};
   }
   if (waiting_.empty()) {
-    leaves_out_ = false;
+    has_dropped_ = false;
     return std::nullopt;
   }
   Waiting& oldest = waiting_.front();

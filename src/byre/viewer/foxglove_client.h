@@ -21,9 +21,9 @@ struct FoxgloveOutput {
 };
 
 struct FoxgloveLimits {
-  std::size_t most_bytes = std::size_t{32} << 20;  // bytes of queued messages
-  std::size_t most_messages = 500;                 // number of queued messages
-  std::size_t most_answers = 64;  // number of queued answers; above, the client is disconnected as it never reads
+  std::size_t max_bytes = std::size_t{32} << 20;  // bytes of queued messages
+  std::size_t max_messages = 500;                 // number of queued messages
+  std::size_t max_answers = 64;  // number of queued answers; above, the client is disconnected as it never reads
 };
 
 // Subscriptions and output queue of a Foxglove client. For a slow client the oldest messages are dropped, with a status
@@ -54,7 +54,7 @@ class FoxgloveClient {
 
   void subscribe(const FoxgloveRequest::Subscription& wanted);
   void unsubscribe(std::uint32_t id);
-  void refuse(std::string_view reason);
+  void send_error(std::string_view reason);
   void add(Waiting waiting);
   void drop_oldest();
 
@@ -65,8 +65,8 @@ class FoxgloveClient {
   std::map<std::uint32_t, ros::MessageSink::TopicId> subscribed_;  // topics by subscription id
   std::deque<Waiting> waiting_;
   std::size_t waiting_bytes_ = 0;
-  bool leaves_out_ = false;  // whether messages were dropped since the queue was empty
-  Timestamp time_{};         // last time sent
+  bool has_dropped_ = false;  // whether messages were dropped since the queue was empty
+  Timestamp time_{};          // last time sent
 };
 
 }  // namespace byre

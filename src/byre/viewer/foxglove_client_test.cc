@@ -19,14 +19,14 @@ using Json = nlohmann::json;
 
 class FoxgloveClientTest : public testing::Test {
  protected:
-  static constexpr FoxgloveLimits kLimits{.most_bytes = 1000, .most_messages = 4, .most_answers = 3};
+  static constexpr FoxgloveLimits kLimits{.max_bytes = 1000, .max_messages = 4, .max_answers = 3};
 
-  void SetUp() override { said(); }  // drains the initial messages
+  void SetUp() override { received(); }  // drains the initial messages
 
   void subscribe(std::uint32_t id, std::uint32_t channel) {
-    ask({{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel}}}}});
+    request({{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel}}}}});
   }
-  bool ask(const Json& request) { return client_.receive(request.dump(), false); }
+  bool request(const Json& request) { return client_.receive(request.dump(), false); }
 
   // Offers a message of a topic to the client.
   void put(LiveTopics::TopicId topic, int time, std::size_t size = 4) {
@@ -35,7 +35,7 @@ class FoxgloveClientTest : public testing::Test {
   }
 
   // Output of the client: "status ...", "time T" or "message SUBSCRIPTION T".
-  std::vector<std::string> said() {
+  std::vector<std::string> received() {
     std::vector<std::string> all;
     while (const auto output = client_.next()) all.push_back(summary(*output));
     return all;
@@ -51,7 +51,7 @@ class FoxgloveClientTest : public testing::Test {
 
   LiveTopics topics_;
   LiveTopics::TopicId passing_ = topics_.add(ros::topic_of<ros::String>("/passing"));
-  LiveTopics::TopicId kept_ = topics_.add(ros::topic_of<ros::String>("/kept", ros::Durability::kept));
+  LiveTopics::TopicId latched_ = topics_.add(ros::topic_of<ros::String>("/kept", ros::Durability::latched));
   FoxgloveClient client_{topics_, "session", kLimits};
 };
 
@@ -66,36 +66,36 @@ TEST_F(FoxgloveClientTest, ReceivesServerInfoAndChannelsFirst) {
 
 TEST_F(FoxgloveClientTest, ReceivesSubscribedTopicsUntilItUnsubscribes) {
   put(passing_, 1);
-  EXPECT_THAT(said(), IsEmpty());
+  EXPECT_THAT(received(), IsEmpty());
   subscribe(9, passing_);
   put(passing_, 2);
   put(passing_, 2);
   put(passing_, 3);
-  EXPECT_THAT(said(), ElementsAre("time 2", "message 9 2", "message 9 2", "time 3", "message 9 3"));
+  EXPECT_THAT(received(), ElementsAre("time 2", "message 9 2", "message 9 2", "time 3", "message 9 3"));
   put(passing_, 4);
-  ask({{"op", "unsubscribe"}, {"subscriptionIds", {9}}});
+  request({{"op", "unsubscribe"}, {"subscriptionIds", {9}}});
   EXPECT_FALSE(topics_.is_wanted(passing_));
-  EXPECT_THAT(said(), IsEmpty());
+  EXPECT_THAT(received(), IsEmpty());
 }
 
 TEST_F(FoxgloveClientTest, ReceivesTheLastMessageOfALatchedTopic) {
-  put(kept_, 1);
-  put(kept_, 2);
-  subscribe(5, kept_);
-  EXPECT_THAT(said(), ElementsAre("message 5 2"));
+  put(latched_, 1);
+  put(latched_, 2);
+  subscribe(5, latched_);
+  EXPECT_THAT(received(), ElementsAre("message 5 2"));
 }
 
 TEST_F(FoxgloveClientTest, ReceivesErrors) {
   subscribe(1, 7);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("unknown channel 7")));
+  EXPECT_THAT(received(), ElementsAre(HasSubstr("unknown channel 7")));
   subscribe(1, passing_);
-  subscribe(1, kept_);
+  subscribe(1, latched_);
   subscribe(2, passing_);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("1 is in use"), HasSubstr("0 is subscribed already")));
-  ask({{"op", "unsubscribe"}, {"subscriptionIds", {3}}});
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("unknown subscription 3")));
-  EXPECT_TRUE(ask({{"op", "getParameters"}}));
-  EXPECT_THAT(said(), ElementsAre(StartsWith("status ")));
+  EXPECT_THAT(received(), ElementsAre(HasSubstr("1 is in use"), HasSubstr("0 is subscribed already")));
+  request({{"op", "unsubscribe"}, {"subscriptionIds", {3}}});
+  EXPECT_THAT(received(), ElementsAre(HasSubstr("unknown subscription 3")));
+  EXPECT_TRUE(request({{"op", "getParameters"}}));
+  EXPECT_THAT(received(), ElementsAre(StartsWith("status ")));
 }
 
 TEST_F(FoxgloveClientTest, IsDisconnectedIfItNeverReads) {
@@ -107,18 +107,18 @@ TEST_F(FoxgloveClientTest, IsDisconnectedIfItNeverReads) {
 TEST_F(FoxgloveClientTest, SkipsTheOldestMessagesWhenSlowAndIsWarnedOnce) {
   subscribe(1, passing_);
   for (int time = 1; time <= 9; ++time) put(passing_, time);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("dropped"), "time 6", "message 1 6", "time 7", "message 1 7", "time 8",
-                                  "message 1 8", "time 9", "message 1 9"));
+  EXPECT_THAT(received(), ElementsAre(HasSubstr("dropped"), "time 6", "message 1 6", "time 7", "message 1 7", "time 8",
+                                      "message 1 8", "time 9", "message 1 9"));
   for (int time = 1; time <= 3; ++time) put(passing_, time, 600);
-  EXPECT_THAT(said(), ElementsAre(HasSubstr("dropped"), "time 3", "message 1 3"));
+  EXPECT_THAT(received(), ElementsAre(HasSubstr("dropped"), "time 3", "message 1 3"));
 }
 
 TEST_F(FoxgloveClientTest, KeepsALatchedMapDespiteImages) {
   subscribe(1, passing_);
-  subscribe(2, kept_);
-  put(kept_, 1);
+  subscribe(2, latched_);
+  put(latched_, 1);
   for (int time = 2; time <= 9; ++time) put(passing_, time);
-  EXPECT_THAT(said(), testing::Contains("message 2 1"));
+  EXPECT_THAT(received(), testing::Contains("message 2 1"));
 }
 
 TEST_F(FoxgloveClientTest, HasNoSubscriptionsAfterDisconnecting) {

@@ -12,7 +12,7 @@ constexpr std::size_t kMaxClientMessageBytes = 64 << 10;  // largest client mess
 }  // namespace
 
 void FoxgloveListener::start(const WebUpgrade& request, std::string_view protocol) {
-  socket_.accept(request, {.protocol = protocol, .most_bytes = kMaxClientMessageBytes},
+  socket_.accept(request, {.protocol = protocol, .max_bytes = kMaxClientMessageBytes},
                  [self = shared_from_this()](bool is_open) {
                    if (!is_open) return;
                    self->is_open_ = true;
@@ -21,7 +21,7 @@ void FoxgloveListener::start(const WebUpgrade& request, std::string_view protoco
                  });
 }
 
-void FoxgloveListener::tell(const std::vector<LiveMessage>& messages) {
+void FoxgloveListener::notify(const std::vector<LiveMessage>& messages) {
   if (!is_open_) return;
   for (const LiveMessage& message : messages) client_.offer(message);
   send();

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/viewer/connection_slot.h"
 #include "byre/viewer/foxglove_client.h"
-#include "byre/viewer/web_seat.h"
 #include "byre/viewer/web_socket.h"
 
 #include <memory>
@@ -15,21 +15,21 @@ namespace byre {
 class FoxgloveListener : public std::enable_shared_from_this<FoxgloveListener> {
  public:
   // session: see server_info_text
-  FoxgloveListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<WebSeat> seat, LiveTopics& topics,
+  FoxgloveListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<ConnectionSlot> slot, LiveTopics& topics,
                    const std::string& session)
-      : seat_(std::move(seat)), socket_(std::move(socket)), client_(topics, session) {}
+      : slot_(std::move(slot)), socket_(std::move(socket)), client_(topics, session) {}
 
   // protocol: chosen sub-protocol
   void start(const WebUpgrade& request, std::string_view protocol);
 
   // Queues messages of subscribed topics, and starts sending unless busy.
-  void tell(const std::vector<LiveMessage>& messages);
+  void notify(const std::vector<LiveMessage>& messages);
 
  private:
   void read();
   void send();
 
-  std::unique_ptr<WebSeat> seat_;
+  std::unique_ptr<ConnectionSlot> slot_;
   WebSocket socket_;
   FoxgloveClient client_;
   FoxgloveOutput output_;  // message being sent

@@ -30,11 +30,11 @@ class FoxgloveServerTest : public testing::Test {
     return LiveClient(server.port(), "/", {{"Sec-WebSocket-Protocol", offered}});
   }
   static void subscribe(LiveClient& client) {
-    client.say(R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":0}]})");
+    client.send(R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":0}]})");
   }
 
   std::shared_ptr<LiveTopics> topics_ = std::make_shared<LiveTopics>();
-  LiveTopics::TopicId words_ = topics_->add(ros::topic_of<ros::String>("/words", ros::Durability::kept));
+  LiveTopics::TopicId words_ = topics_->add(ros::topic_of<ros::String>("/words", ros::Durability::latched));
 };
 
 TEST_F(FoxgloveServerTest, SelectsTheRequestedProtocol) {
@@ -68,9 +68,9 @@ TEST_F(FoxgloveServerTest, AnswersInvalidRequestsAndContinues) {
   LiveClient client = connect(server);
   client.next();
   client.next();
-  client.say("nonsense");
+  client.send("nonsense");
   EXPECT_THAT(client.next().bytes, HasSubstr("not a JSON object"));
-  client.say("\x01nonsense", true);
+  client.send("\x01nonsense", true);
   EXPECT_THAT(client.next().bytes, HasSubstr("accepts no messages"));
 }
 
@@ -80,7 +80,7 @@ TEST_F(FoxgloveServerTest, ClosesOnTooLongMessages) {
   client.next();
   client.next();
   const auto talk = [&client] {  // the server may close before everything is sent
-    client.say(std::string(100'000, ' '));
+    client.send(std::string(100'000, ' '));
     client.next();
   };
   EXPECT_THROW(talk(), boost::system::system_error);

@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 constexpr std::array<std::string_view, 2> kProtocols = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
 constexpr std::uint8_t kMessageData = 1;
 constexpr std::uint8_t kTime = 2;
-constexpr std::size_t kMostQuoted = 40;  // bytes of client text quoted in a status message
+constexpr std::size_t kMaxQuoted = 40;  // bytes of client text quoted in a status message
 
 std::string text_of(const ByteWriter& writer) {
   return {reinterpret_cast<const char*>(writer.bytes().data()), writer.size()};
@@ -88,11 +88,11 @@ std::string_view foxglove_protocol(std::string_view offered) {
 }
 
 std::string server_info_text(std::string_view session) {
-  return dumped({{"op", "serverInfo"},
-                 {"name", "byre " BYRE_VERSION},
-                 {"capabilities", {"time"}},
-                 {"metadata", Json::object()},
-                 {"sessionId", session}});
+  return dump_json({{"op", "serverInfo"},
+                    {"name", "byre " BYRE_VERSION},
+                    {"capabilities", {"time"}},
+                    {"metadata", Json::object()},
+                    {"sessionId", session}});
 }
 
 std::string advertise_text(std::size_t first, std::span<const ros::Topic> topics) {
@@ -105,11 +105,11 @@ std::string advertise_text(std::size_t first, std::span<const ros::Topic> topics
                         {"schemaEncoding", "ros2msg"},
                         {"schema", topic.schema}});
   }
-  return dumped({{"op", "advertise"}, {"channels", channels}});
+  return dump_json({{"op", "advertise"}, {"channels", channels}});
 }
 
 std::string status_text(StatusLevel level, std::string_view message) {
-  return dumped({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+  return dump_json({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
 }
 
 std::string message_head(std::uint32_t subscription, Timestamp time) {
@@ -136,7 +136,7 @@ FoxgloveRequest read_foxglove_request(std::string_view bytes, bool is_binary) {
   const auto& name = op->get_ref<const std::string&>();
   if (name == "subscribe") return read_subscribe(message);
   if (name == "unsubscribe") return read_unsubscribe(message);
-  return fault("only subscribe and unsubscribe are supported, not " + name.substr(0, kMostQuoted));
+  return fault("only subscribe and unsubscribe are supported, not " + name.substr(0, kMaxQuoted));
 }
 
 }  // namespace byre

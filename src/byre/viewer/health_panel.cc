@@ -111,8 +111,8 @@ std::vector<PictureMark> verdict_marks(const Health& health, double top) {
       "verdict", symbol_of(health.verdict), {{kMargin + 18.0, top + 0.5 * kHeight}}, 13.0, palette::kPaper});
   marks.emplace_back(PictureText{
       {kMargin + 36.0, top + 22.5}, std::string(to_string(health.verdict)), 16.0, palette::kPaper, Align::left, true});
-  const std::string doubt(health.doubt == Doubt::none ? "no doubt" : to_string(health.doubt));
-  const Colour colour = health.doubt == Doubt::none ? palette::kFaint : palette::kInk;
+  const std::string doubt(health.doubt == DistrustReason::none ? "no doubt" : to_string(health.doubt));
+  const Colour colour = health.doubt == DistrustReason::none ? palette::kFaint : palette::kInk;
   marks.emplace_back(text(kMargin, top + kHeight + 19.0, doubt, colour));
   return marks;
 }

@@ -55,8 +55,8 @@ Pane legend(const std::vector<LegendEntry>& entries, const std::string& note, in
   return pane;
 }
 
-double round_length(double pixels_per_unit, double most_pixels) {
-  const double most = most_pixels / pixels_per_unit;
+double round_length(double pixels_per_unit, double max_pixels) {
+  const double most = max_pixels / pixels_per_unit;
   const double power = std::pow(10.0, std::floor(std::log10(most)));
   for (const double factor : {5.0, 2.0}) {
     if (factor * power <= most) return factor * power;
@@ -65,8 +65,8 @@ double round_length(double pixels_per_unit, double most_pixels) {
 }
 
 std::vector<PictureMark> scale_bar(const Vector2d& right_end, double pixels_per_unit, bool is_metric) {
-  constexpr double kMost = 140.0, kTick = 5.0;
-  const double length = round_length(pixels_per_unit, kMost);
+  constexpr double kMax = 140.0, kTick = 5.0;
+  const double length = round_length(pixels_per_unit, kMax);
   const Vector2d left = right_end - Vector2d(length * pixels_per_unit, 0.0);
   const Vector2d up(0.0, -kTick);
   const int decimals = length < 1.0 ? static_cast<int>(std::ceil(-std::log10(length) - 1e-9)) : 0;

@@ -22,7 +22,7 @@ Pane legend(const std::vector<LegendEntry>& entries, const std::string& note, in
 // Scale bar of a round length with its right end at a point, labelled on the left. Without metric scale in map units.
 std::vector<PictureMark> scale_bar(const Eigen::Vector2d& right_end, double pixels_per_unit, bool is_metric);
 
-// Length of a bar of at most most_pixels: 1, 2 or 5 times a power of ten.
-double round_length(double pixels_per_unit, double most_pixels);
+// Length of a bar of at most max_pixels: 1, 2 or 5 times a power of ten.
+double round_length(double pixels_per_unit, double max_pixels);
 
 }  // namespace byre

@@ -21,18 +21,18 @@ bool LiveTopics::is_wanted(TopicId topic) const {
 void LiveTopics::put(TopicId topic, Timestamp time, std::vector<std::byte> cdr) {
   LiveMessage message{topic, time, std::make_shared<const std::vector<std::byte>>(std::move(cdr))};
   const std::lock_guard lock(mutex_);
-  if (subscribers_[topic] == 0 && !is_kept(topic)) return;
+  if (subscribers_[topic] == 0 && !is_latched(topic)) return;
   waiting_bytes_ += message.cdr->size();
   waiting_.push_back(std::move(message));
-  make_room();
+  drop_oldest();
 }
 
-// Drops the oldest messages; of kept topics only those followed by a newer one.
-void LiveTopics::make_room() {
-  for (std::size_t i = 0; i + 1 < waiting_.size() && waiting_bytes_ > most_bytes_;) {
+// Drops the oldest messages; of latched topics only those followed by a newer one.
+void LiveTopics::drop_oldest() {
+  for (std::size_t i = 0; i + 1 < waiting_.size() && waiting_bytes_ > max_bytes_;) {
     const TopicId topic = waiting_[i].topic;
     const auto newer = std::next(waiting_.begin(), static_cast<std::ptrdiff_t>(i) + 1);
-    if (is_kept(topic) && std::ranges::find(newer, waiting_.end(), topic, &LiveMessage::topic) == waiting_.end()) {
+    if (is_latched(topic) && std::ranges::find(newer, waiting_.end(), topic, &LiveMessage::topic) == waiting_.end()) {
       ++i;
       continue;
     }
@@ -46,7 +46,7 @@ std::vector<ros::Topic> LiveTopics::topics_from(std::size_t first) const {
   return {topics_.begin() + static_cast<std::ptrdiff_t>(std::min(first, topics_.size())), topics_.end()};
 }
 
-bool LiveTopics::is_known(std::size_t topic) const {
+bool LiveTopics::has_topic(std::size_t topic) const {
   const std::lock_guard lock(mutex_);
   return topic < topics_.size();
 }
@@ -68,15 +68,15 @@ std::vector<LiveMessage> LiveTopics::take() {
     taken.swap(waiting_);
     waiting_bytes_ = 0;
     for (const LiveMessage& message : taken) {
-      if (is_kept(message.topic)) kept_[message.topic] = message;
+      if (is_latched(message.topic)) latched_[message.topic] = message;
     }
   }
   return {std::make_move_iterator(taken.begin()), std::make_move_iterator(taken.end())};
 }
 
-std::optional<LiveMessage> LiveTopics::kept(TopicId topic) const {
-  const auto found = kept_.find(topic);
-  return found == kept_.end() ? std::nullopt : std::optional(found->second);
+std::optional<LiveMessage> LiveTopics::latched(TopicId topic) const {
+  const auto found = latched_.find(topic);
+  return found == latched_.end() ? std::nullopt : std::optional(found->second);
 }
 
 }  // namespace byre

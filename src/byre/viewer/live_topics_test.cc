@@ -24,7 +24,7 @@ class LiveTopicsTest : public testing::Test {
 
   LiveTopics topics_{100};
   LiveTopics::TopicId passing_ = topics_.add(ros::topic_of<ros::String>("/passing"));
-  LiveTopics::TopicId kept_ = topics_.add(ros::topic_of<ros::String>("/kept", ros::Durability::kept));
+  LiveTopics::TopicId latched_ = topics_.add(ros::topic_of<ros::String>("/kept", ros::Durability::latched));
 };
 
 TEST_F(LiveTopicsTest, AcceptMessagesOnlyWhileSubscribed) {
@@ -32,7 +32,7 @@ TEST_F(LiveTopicsTest, AcceptMessagesOnlyWhileSubscribed) {
   topics_.put(passing_, Timestamp(1), bytes(4));
   topics_.subscribe(passing_);
   EXPECT_TRUE(topics_.is_wanted(passing_));
-  EXPECT_FALSE(topics_.is_wanted(kept_));
+  EXPECT_FALSE(topics_.is_wanted(latched_));
   topics_.put(passing_, Timestamp(2), bytes(4));
   EXPECT_THAT(taken(topics_), ElementsAre(2));
   EXPECT_THAT(taken(topics_), IsEmpty());
@@ -42,13 +42,13 @@ TEST_F(LiveTopicsTest, AcceptMessagesOnlyWhileSubscribed) {
 }
 
 TEST_F(LiveTopicsTest, KeepTheLastMessageOfLatchedTopics) {
-  EXPECT_FALSE(topics_.kept(kept_));
-  topics_.put(kept_, Timestamp(1), bytes(4));
-  topics_.put(kept_, Timestamp(2), bytes(4));
+  EXPECT_FALSE(topics_.latched(latched_));
+  topics_.put(latched_, Timestamp(1), bytes(4));
+  topics_.put(latched_, Timestamp(2), bytes(4));
   topics_.take();
-  ASSERT_TRUE(topics_.kept(kept_));
-  EXPECT_EQ(topics_.kept(kept_)->time, Timestamp(2));
-  EXPECT_FALSE(topics_.kept(passing_));
+  ASSERT_TRUE(topics_.latched(latched_));
+  EXPECT_EQ(topics_.latched(latched_)->time, Timestamp(2));
+  EXPECT_FALSE(topics_.latched(passing_));
 }
 
 TEST_F(LiveTopicsTest, DropTheOldestMessages) {
@@ -59,8 +59,8 @@ TEST_F(LiveTopicsTest, DropTheOldestMessages) {
 
 TEST_F(LiveTopicsTest, NeverDropTheLastMessageOfALatchedTopic) {
   topics_.subscribe(passing_);
-  topics_.put(kept_, Timestamp(1), bytes(40));
-  topics_.put(kept_, Timestamp(2), bytes(40));
+  topics_.put(latched_, Timestamp(1), bytes(40));
+  topics_.put(latched_, Timestamp(2), bytes(40));
   topics_.put(passing_, Timestamp(3), bytes(40));
   topics_.put(passing_, Timestamp(4), bytes(40));
   EXPECT_THAT(taken(topics_), ElementsAre(2, 4));
@@ -71,8 +71,8 @@ TEST_F(LiveTopicsTest, ListTopicsFromAnIndex) {
   EXPECT_EQ(topics_.topics_from(1)[0].name, "/kept");
   EXPECT_THAT(topics_.topics_from(2), IsEmpty());
   EXPECT_THAT(topics_.topics_from(3), IsEmpty());
-  EXPECT_TRUE(topics_.is_known(1));
-  EXPECT_FALSE(topics_.is_known(2));
+  EXPECT_TRUE(topics_.has_topic(1));
+  EXPECT_FALSE(topics_.has_topic(2));
 }
 
 }  // namespace

@@ -36,32 +36,32 @@ MissionPainter::MissionPainter(const MissionPainting& painting, const Recording&
   mission_.rig = view_.rig();
 }
 
-void MissionPainter::look(const RunView& run) {
+void MissionPainter::add(const RunView& run) {
   const FrameReport& report = *run.frame.report;
-  PlanPath& way = scene_.paths.back();
+  PlanPath& path = scene_.paths.back();
   if (report.map_from_body) {
-    way.map_from_body.push_back({report.time, *report.map_from_body});
-    way.verdicts.push_back(report.health.verdict);
+    path.map_from_body.push_back({report.time, *report.map_from_body});
+    path.verdicts.push_back(report.health.verdict);
   }
-  const bool is_asked_for = painting_.keeps_frame || painting_.at_s;
+  const bool is_asked_for = painting_.keep_frame || painting_.at_s;
   const bool is_in_time = !painting_.at_s || report.time <= first_ + from_seconds(*painting_.at_s);
   const bool is_wanted = is_asked_for && is_in_time;
   const bool is_filmed = painting_.video && frames_++ % every_ == 0;
   if (!is_wanted && !is_filmed) return;
   FrameScene frame = view_.scene_of(run.images.left, report, run.session.seen_points());
-  if (is_filmed) film(frame, run.session);
+  if (is_filmed) add_to_video(frame, run.session);
   if (!is_wanted) return;
   mission_.frame_s = to_seconds(report.time - first_);
   mission_.frame = std::move(frame);
 }
 
 PaintedMission MissionPainter::finish() {
-  mission_.way = std::move(scene_.paths.back());
+  mission_.path = std::move(scene_.paths.back());
   if (video_) video_->finish();
   return std::move(mission_);
 }
 
-void MissionPainter::film(const FrameScene& frame, const Session& session) {
+void MissionPainter::add_to_video(const FrameScene& frame, const Session& session) {
   scene_.map.points.resize(offline_points_);
   std::ranges::move(scene_of(session.map().online()).points, std::back_inserter(scene_.map.points));
   scene_.camera.reset();

@@ -13,7 +13,7 @@ namespace byre {
 
 // Outputs to draw of a mission besides its path.
 struct MissionPainting {
-  bool keeps_frame = false;    // whether to keep a frame for a camera picture
+  bool keep_frame = false;     // whether to keep a frame for a camera picture
   std::optional<double> at_s;  // time of that frame since the start of the recording, seconds; empty: the last frame
   std::optional<std::filesystem::path> video;
   double speed = 1.0;  // playback speed of the video
@@ -22,7 +22,7 @@ struct MissionPainting {
 
 // Data for pictures of a mission.
 struct PaintedMission {
-  PlanPath way;                     // poses as published, with verdicts
+  PlanPath path;                    // poses as published, with verdicts
   std::optional<FrameScene> frame;  // empty if no frame was readable up to that time
   std::optional<double> frame_s;    // time of the frame since the start of the recording, seconds
   std::optional<Rig> rig;           // rig of the frame
@@ -37,11 +37,11 @@ class MissionPainter {
   MissionPainter(const MissionPainting& painting, const Recording& recording, Timestamp first,
                  const PlanScene& background);
 
-  void look(const RunView& run);
+  void add(const RunView& run);
   PaintedMission finish();
 
  private:
-  void film(const FrameScene& frame, const Session& session);
+  void add_to_video(const FrameScene& frame, const Session& session);
 
   // Constant after construction.
   const MissionPainting painting_;

@@ -22,20 +22,20 @@ Picture joined(Picture first, const Picture& second, int left, int top) {
 
 }  // namespace
 
-Picture beside(Picture first, const Picture& second) {
+Picture hconcat(Picture first, const Picture& second) {
   const int left = first.width;
   return joined(std::move(first), second, left, 0);
 }
 
-Picture below(Picture first, const Picture& second) {
+Picture vconcat(Picture first, const Picture& second) {
   const int top = first.height;
   return joined(std::move(first), second, 0, top);
 }
 
 void write_picture(const Picture& picture, const std::filesystem::path& file) {
-  if (file.extension() == ".svg" || file.extension() == ".SVG") return write_whole(file, to_svg(picture));
+  if (file.extension() == ".svg" || file.extension() == ".SVG") return write_atomically(file, to_svg(picture));
   const std::vector<std::byte> png = to_png(picture);
-  write_whole(file, png);
+  write_atomically(file, png);
 }
 
 std::vector<Eigen::Vector2d> corners_of(Symbol symbol, double size) {

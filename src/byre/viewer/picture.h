@@ -90,8 +90,8 @@ struct Picture {
 };
 
 // Places the second picture to the right of the first one, or below it.
-Picture beside(Picture first, const Picture& second);
-Picture below(Picture first, const Picture& second);
+Picture hconcat(Picture first, const Picture& second);
+Picture vconcat(Picture first, const Picture& second);
 
 // Self-contained SVG with embedded images; text in the viewer's sans serif font.
 std::string to_svg(const Picture& picture);

@@ -132,11 +132,11 @@ TEST(Picture, WritesText) {
 }
 
 TEST(Picture, FitsTwoPanes) {
-  const Picture wide = beside(picture_of({}, 100, 80), picture_of({}, 50, 120));
+  const Picture wide = hconcat(picture_of({}, 100, 80), picture_of({}, 50, 120));
   EXPECT_EQ(wide.width, 150);
   EXPECT_EQ(wide.height, 120);
   EXPECT_EQ(wide.panes[1].left, 100);
-  const Picture high = below(picture_of({}, 100, 80), picture_of({}, 50, 120));
+  const Picture high = vconcat(picture_of({}, 100, 80), picture_of({}, 50, 120));
   EXPECT_EQ(high.width, 100);
   EXPECT_EQ(high.height, 200);
   EXPECT_EQ(high.panes[1].top, 80);

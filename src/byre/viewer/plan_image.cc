@@ -12,7 +12,7 @@
 namespace byre {
 
 std::string plan_png(const FloorPlan& plan, int max_side) {
-  cv::Mat image = shown_plan(plan);
+  cv::Mat image = render_plan(plan);
   if (image.empty()) throw InputError(plan.image.string(), "is not a readable image", "give a PNG, JPEG or PGM");
   const int longest = std::max(image.cols, image.rows);
   if (longest > max_side) {

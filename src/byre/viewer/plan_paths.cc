@@ -72,28 +72,28 @@ Stroke stroke_of(Verdict verdict) {
 }
 
 // Legend entry of a path or of a verdict.
-LegendEntry look_of(const PlanPath& path, const std::optional<Verdict>& verdict, std::size_t number) {
+LegendEntry legend_entry(const PlanPath& path, const std::optional<Verdict>& verdict, std::size_t number) {
   if (!verdict) return {path.name, palette::kPaths[number % palette::kPaths.size()], {}, Stroke::solid};
-  LegendEntry look = verdict_entry(*verdict);
-  if (!path.name.empty()) look.meaning = path.name + ", " + look.meaning;
-  return look;
+  LegendEntry entry = verdict_entry(*verdict);
+  if (!path.name.empty()) entry.meaning = path.name + ", " + entry.meaning;
+  return entry;
 }
 
-ExplainedMarks way(const PlanPath& path, std::size_t number, const PlanView& view) {
+MarksWithLegend path_marks_of(const PlanPath& path, std::size_t number, const PlanView& view) {
   assert(path.verdicts.empty() || path.verdicts.size() == path.map_from_body.size());
   constexpr double kWidth = 3.0;
-  ExplainedMarks all;
+  MarksWithLegend all;
   const std::vector<Piece> pieces = pieces_of(path, view);
   for (const Piece& piece : pieces) {
     all.marks.emplace_back(PictureLine{piece.pixels, palette::kPaper, kWidth + 2.0 * kCasing});
   }
   for (const Piece& piece : pieces) {
-    const LegendEntry look = look_of(path, piece.verdict, number);
-    all.marks.emplace_back(PictureLine{piece.pixels, look.colour, kWidth, look.stroke});
+    const LegendEntry entry = legend_entry(path, piece.verdict, number);
+    all.marks.emplace_back(PictureLine{piece.pixels, entry.colour, kWidth, entry.stroke});
   }
-  if (path.verdicts.empty()) all.legend = {look_of(path, {}, number)};
+  if (path.verdicts.empty()) all.legend = {legend_entry(path, {}, number)};
   for (const Verdict verdict : kVerdicts) {
-    if (std::ranges::count(path.verdicts, verdict) > 0) all.legend.push_back(look_of(path, verdict, number));
+    if (std::ranges::count(path.verdicts, verdict) > 0) all.legend.push_back(legend_entry(path, verdict, number));
   }
   return all;
 }
@@ -109,7 +109,7 @@ PictureSymbols start_symbols(const std::vector<Vector2d>& pixels) {
   return symbols;
 }
 
-void append(ExplainedMarks more, ExplainedMarks& all) {
+void append(MarksWithLegend more, MarksWithLegend& all) {
   std::ranges::move(more.marks, std::back_inserter(all.marks));
   std::ranges::move(more.legend, std::back_inserter(all.legend));
 }
@@ -120,7 +120,7 @@ LegendEntry verdict_entry(Verdict verdict) {
   return {std::string(to_string(verdict)), palette::of(verdict), {}, stroke_of(verdict)};
 }
 
-ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view) {
+MarksWithLegend keyframe_marks(const MapScene& map, const PlanView& view) {
   constexpr double kFarthest = 6.0;  // in usual distances between keyframes
   constexpr double kWidth = 0.75;
   std::vector<SceneKeyframe> keyframes = map.keyframes;
@@ -134,7 +134,7 @@ ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view) {
     symbols.centres.push_back(view.pixel_of(keyframe.map_from_body.translation));
   }
   if (keyframes.empty()) return {};
-  ExplainedMarks all;
+  MarksWithLegend all;
   const double farthest = kFarthest * median_pixel_step(symbols.centres);
   for (std::size_t i = 1; i < keyframes.size(); ++i) {
     const std::vector<Vector2d> step = {symbols.centres[i - 1], symbols.centres[i]};
@@ -146,12 +146,12 @@ ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view) {
   return all;
 }
 
-ExplainedMarks path_marks(const std::vector<PlanPath>& paths, const PlanView& view) {
-  ExplainedMarks all;
+MarksWithLegend path_marks(const std::vector<PlanPath>& paths, const PlanView& view) {
+  MarksWithLegend all;
   std::vector<Vector2d> starts;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (paths[i].map_from_body.empty()) continue;
-    append(way(paths[i], i, view), all);
+    append(path_marks_of(paths[i], i, view), all);
     starts.push_back(view.pixel_of(paths[i].map_from_body.front().world_from_body.translation));
   }
   if (starts.empty()) return all;
@@ -160,14 +160,14 @@ ExplainedMarks path_marks(const std::vector<PlanPath>& paths, const PlanView& vi
   return all;
 }
 
-ExplainedMarks camera_marks(const PlanCamera& camera, const PlanView& view) {
+MarksWithLegend camera_marks(const PlanCamera& camera, const PlanView& view) {
   constexpr double kReach = 70.0;    // pixels
   constexpr double kSteepest = 0.2;  // least horizontal part of the unit viewing direction; below, no heading is drawn
   constexpr int kParts = 12;
   const Vector2d at = view.pixel_of(camera.map_from_camera.translation);
   const Eigen::Vector3d ahead =
       view.ground_from_map.target_from_source.rotation * (camera.map_from_camera.rotation * Eigen::Vector3d::UnitZ());
-  ExplainedMarks all;
+  MarksWithLegend all;
   if (ahead.head<2>().norm() > kSteepest) {
     const double heading = std::atan2(-ahead.y(), ahead.x());  // heading in the picture, y down
     std::vector<Vector2d> wedge = {at};

@@ -47,14 +47,14 @@ std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map) 
 double accepted_residual(const std::string& json) {
   const nlohmann::json fields = nlohmann::json::parse(json, nullptr, false);
   const auto found = fields.is_object() ? fields.find("accepted_residual_m") : fields.end();
-  return found != fields.end() && found->is_number() ? found->get<double>() : kFarOffPlan;
+  return found != fields.end() && found->is_number() ? found->get<double>() : kLargePlanResidual;
 }
 
 std::vector<PlanCorrespondence> correspondences_of(const std::vector<PlanPick>& picks, const StoredMap& stored,
                                                    double pick_sigma) {
   std::vector<PlanCorrespondence> correspondences;
   for (const PlanPick& pick : picks) {
-    const MapPlace place = *place_of_point(stored, {stored.map.origin(), pick.point});
+    const MapPosition place = *position_of_point(stored, {stored.map.origin(), pick.point});
     correspondences.push_back(correspondence(pick.name, place, pick.point_in_plan, pick_sigma));
   }
   return correspondences;

@@ -19,7 +19,7 @@ struct PlanPick {
 // in names become spaces. Throws InputError for other input, and for points missing in the map.
 std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map);
 
-// Residual in metres that the user has accepted ("accepted_residual_m" in the JSON); default kFarOffPlan.
+// Residual in metres that the user has accepted ("accepted_residual_m" in the JSON); default kLargePlanResidual.
 double accepted_residual(const std::string& json);
 
 // pick_sigma: standard deviation of x and y of the picks, metres. Precondition: the map has the points.

@@ -90,8 +90,8 @@ AlignedBox2d box_of_map(const PlanScene& scene, const HeightBand& heights) {
 }
 
 AlignedBox2d with_margin(const AlignedBox2d& box, double share) {
-  constexpr double kLeast = 0.5;  // metres
-  const double margin = std::max(kLeast, share * box.sizes().maxCoeff());
+  constexpr double kMin = 0.5;  // metres
+  const double margin = std::max(kMin, share * box.sizes().maxCoeff());
   return {box.min() - Vector2d::Constant(margin), box.max() + Vector2d::Constant(margin)};
 }
 
@@ -150,15 +150,15 @@ std::vector<PictureMark> grid(const PlanView& view, const Pane& pane) {
   return lines;
 }
 
-void append(ExplainedMarks more, Pane& pane, std::vector<LegendEntry>& entries) {
+void append(MarksWithLegend more, Pane& pane, std::vector<LegendEntry>& entries) {
   std::ranges::move(more.marks, std::back_inserter(pane.marks));
   std::ranges::move(more.legend, std::back_inserter(entries));
 }
 
 // Ground and content; later marks cover earlier ones.
-ExplainedMarks ground_marks(const PlanScene& scene, const PlanPictureOptions& options, const PlanView& view,
-                            const Pane& pane) {
-  ExplainedMarks all;
+MarksWithLegend ground_marks(const PlanScene& scene, const PlanPictureOptions& options, const PlanView& view,
+                             const Pane& pane) {
+  MarksWithLegend all;
   if (scene.ground.image) all.marks.emplace_back(plan_image(scene.ground, view));
   if (!scene.ground.image) all.marks = grid(view, pane);
   for (const Origin origin : {Origin::offline, Origin::online}) {

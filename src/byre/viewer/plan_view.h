@@ -25,20 +25,20 @@ struct PlanView {
 };
 
 // Marks with their legend.
-struct ExplainedMarks {
+struct MarksWithLegend {
   std::vector<PictureMark> marks;
   std::vector<LegendEntry> legend;
 };
 
 // Keyframes, joined by lines; unusually long gaps are left open.
-ExplainedMarks keyframe_marks(const MapScene& map, const PlanView& view);
+MarksWithLegend keyframe_marks(const MapScene& map, const PlanView& view);
 
 // Paths with their starts. Verdicts are drawn as strokes: solid for trusted, dashed for degraded, dotted for untrusted;
 // no line without a pose.
-ExplainedMarks path_marks(const std::vector<PlanPath>& paths, const PlanView& view);
+MarksWithLegend path_marks(const std::vector<PlanPath>& paths, const PlanView& view);
 
 LegendEntry verdict_entry(Verdict verdict);
 
-ExplainedMarks camera_marks(const PlanCamera& camera, const PlanView& view);
+MarksWithLegend camera_marks(const PlanCamera& camera, const PlanView& view);
 
 }  // namespace byre

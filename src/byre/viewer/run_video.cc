@@ -28,7 +28,7 @@ Picture frame_and_plan(const FrameScene& frame, const CameraPictureOptions& came
   plan_options.height = is_wide ? camera.height : camera.height - kLegend;
   plan_options.whole_legend = true;
   const Picture ground = plan_picture(plan, plan_options);
-  return is_wide ? below(std::move(camera), ground) : beside(std::move(camera), ground);
+  return is_wide ? vconcat(std::move(camera), ground) : hconcat(std::move(camera), ground);
 }
 
 RunVideo::RunVideo(const std::filesystem::path& file, double frame_rate_hz, int width, int height)

@@ -8,7 +8,7 @@ void append(const Map& map, MapScene& scene) {
     scene.points.push_back({map.find_point(id)->position_in_world.cast<float>(), id.origin});
   }
   for (const KeyframeId id : map.keyframe_ids()) {
-    const Keyframe& keyframe = *map.find_bare_keyframe(id);
+    const Keyframe& keyframe = *map.keyframe_header(id);
     const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
     scene.keyframes.push_back(
         {keyframe.frame.time, inverse(rig.body_from_camera * keyframe.camera_from_world), id.origin});

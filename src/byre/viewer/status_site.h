@@ -11,7 +11,7 @@ namespace byre {
 
 // Status of a program for HTTP clients.
 struct ProgramStatus {
-  bool is_well = false;
+  bool is_healthy = false;
   std::string summary;  // one line
   std::string metrics;  // Prometheus text format
 };

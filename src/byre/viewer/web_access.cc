@@ -76,7 +76,7 @@ std::string make_token() {
   return token;
 }
 
-std::string_view refusal(const WebAccess& access, const WebOrigin& from) {
+std::string_view rejection_reason(const WebAccess& access, const WebOrigin& from) {
   if (!access.host_names.empty() && std::ranges::find(access.host_names, name_in(from.host)) == access.host_names.end())
     return "requests are answered only from this machine, under the name localhost";
   if (!may_ask(access, from)) return "requests are answered only from byre's own page";

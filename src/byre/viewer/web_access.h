@@ -33,7 +33,7 @@ struct WebOrigin {
 // Reason for rejecting a request; empty if accepted. Requests of pages must come from byre's own page. Foxglove's
 // protocol is also accepted from Foxglove's applications, local servers and files; over the network with the token.
 // Tokens are compared in constant time.
-std::string_view refusal(const WebAccess& access, const WebOrigin& from);
+std::string_view rejection_reason(const WebAccess& access, const WebOrigin& from);
 
 // Parts of a target: path before the "?", and value of a query parameter or empty.
 std::string_view path_of(std::string_view target);

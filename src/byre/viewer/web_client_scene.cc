@@ -8,8 +8,8 @@ namespace asio = boost::asio;
 namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
 
-WebClient::Answer WebClient::ask(const std::string& method, const std::string& target, const std::string& body,
-                                 const Headers& headers) const {
+WebClient::Answer WebClient::request(const std::string& method, const std::string& target, const std::string& body,
+                                     const Headers& headers) const {
   asio::io_context context;
   asio::ip::tcp::socket socket = connected(context, port_);
   http::request<http::string_body> request(http::string_to_verb(method), target, 11, body);
@@ -39,7 +39,7 @@ LiveClient::LiveClient(int port, const std::string& target, const WebClient::Hea
   protocol_ = std::string(response[http::field::sec_websocket_protocol]);
 }
 
-void LiveClient::say(const std::string& bytes, bool is_binary) {
+void LiveClient::send(const std::string& bytes, bool is_binary) {
   stream_.binary(is_binary);
   stream_.write(asio::buffer(bytes));
 }

@@ -25,11 +25,13 @@ class WebClient {
 
   explicit WebClient(int port) : port_(static_cast<std::uint16_t>(port)) {}
 
-  Answer get(const std::string& target, const Headers& headers = {}) const { return ask("GET", target, "", headers); }
-  Answer post(const std::string& target, const std::string& body) const { return ask("POST", target, body, {}); }
+  Answer get(const std::string& target, const Headers& headers = {}) const {
+    return request("GET", target, "", headers);
+  }
+  Answer post(const std::string& target, const std::string& body) const { return request("POST", target, body, {}); }
 
-  Answer ask(const std::string& method, const std::string& target, const std::string& body,
-             const Headers& headers) const;
+  Answer request(const std::string& method, const std::string& target, const std::string& body,
+                 const Headers& headers) const;
 
   static boost::asio::ip::tcp::socket connected(boost::asio::io_context& context, std::uint16_t port);
 
@@ -45,7 +47,7 @@ class LiveClient {
 
   const std::string& protocol() const { return protocol_; }  // sub-protocol chosen by the server
 
-  void say(const std::string& bytes, bool is_binary = false);
+  void send(const std::string& bytes, bool is_binary = false);
 
   struct Message {
     std::string bytes;

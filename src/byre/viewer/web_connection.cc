@@ -71,20 +71,20 @@ std::vector<std::shared_ptr<Listener>> alive(std::vector<std::weak_ptr<Listener>
 
 }  // namespace
 
-void WebService::tell_listeners() {
-  for (const auto& listener : alive(listeners)) listener->tell();
+void WebService::notify_listeners() {
+  for (const auto& listener : alive(listeners)) listener->notify();
   if (!topics) return;
   const std::vector<LiveMessage> messages = topics->take();
-  for (const auto& listener : alive(foxglove_listeners)) listener->tell(messages);
+  for (const auto& listener : alive(foxglove_listeners)) listener->notify(messages);
 }
 
-void WebConnection::read_head(std::chrono::milliseconds patience) {
+void WebConnection::read_head(std::chrono::milliseconds request_timeout) {
   parser_.emplace();
   parser_->header_limit(kMaxHeadBytes);
   parser_->body_limit(kMaxRequestBytes);
-  stream_.expires_after(patience);
+  stream_.expires_after(request_timeout);
   http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
-    if (!error) self->judge();
+    if (!error) self->check_access();
   });
 }
 
@@ -94,19 +94,19 @@ std::string_view WebConnection::protocol_of(const Request& request) const {
   return foxglove_protocol(view(request[http::field::sec_websocket_protocol]));
 }
 
-void WebConnection::judge() {
+void WebConnection::check_access() {
   const Request& request = parser_->get();
   const WebOrigin origin = {view(request[http::field::host]), view(request[http::field::origin]),
                             view(request.target()), !protocol_of(request).empty()};
-  if (const std::string_view reason = refusal(service_.access, origin); !reason.empty()) {
-    respond(refused(403, reason), is_known_);
+  if (const std::string_view reason = rejection_reason(service_.access, origin); !reason.empty()) {
+    respond(refused(403, reason), is_accepted_);
     return;
   }
-  if (!is_known_ && !seat_->introduce()) {
+  if (!is_accepted_ && !slot_->accept()) {
     respond(refused(503, "too many pages are open"), false);
     return;
   }
-  is_known_ = true;
+  is_accepted_ = true;
   stream_.expires_after(kIdleTime);
   http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
     if (!error) self->answer_request();
@@ -124,22 +124,22 @@ void WebConnection::answer_request() {
   stream_.expires_never();
   tcp::socket socket = stream_.release_socket();
   if (protocol.empty()) {
-    const auto listener = std::make_shared<WebListener>(std::move(socket), std::move(seat_), *service_.site);
+    const auto listener = std::make_shared<WebListener>(std::move(socket), std::move(slot_), *service_.site);
     service_.listeners.push_back(listener);
     listener->start(request);
   } else {
     const auto listener =
-        std::make_shared<FoxgloveListener>(std::move(socket), std::move(seat_), *service_.topics, service_.session);
+        std::make_shared<FoxgloveListener>(std::move(socket), std::move(slot_), *service_.topics, service_.session);
     service_.foxglove_listeners.push_back(listener);
     listener->start(request, protocol);
   }
 }
 
-void WebConnection::respond(const WebResponse& response, bool may_go_on) {
+void WebConnection::respond(const WebResponse& response, bool may_keep_alive) {
   const Request& request = parser_->get();
   response_ = finished(response, request);
   // The rest of a rejected request would be parsed as the next request.
-  if (!may_go_on || !parser_->is_done()) response_.keep_alive(false);
+  if (!may_keep_alive || !parser_->is_done()) response_.keep_alive(false);
   stream_.expires_after(kIdleTime);
   http::async_write(stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {
     if (error) return;

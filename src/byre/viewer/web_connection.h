@@ -1,9 +1,9 @@
 #pragma once
 
+#include "byre/viewer/connection_slot.h"
 #include "byre/viewer/foxglove_listener.h"
 #include "byre/viewer/web_access.h"
 #include "byre/viewer/web_listener.h"
-#include "byre/viewer/web_seat.h"
 #include "byre/viewer/web_site.h"
 #include "byre/viewer/web_socket.h"
 
@@ -28,7 +28,7 @@ struct WebService {
   std::vector<std::weak_ptr<WebListener>> listeners;
   std::vector<std::weak_ptr<FoxgloveListener>> foxglove_listeners;
 
-  void tell_listeners();
+  void notify_listeners();
 };
 
 // HTTP connection: serves requests in turn until one upgrades to a WebSocket. A connection without an accepted request
@@ -36,30 +36,30 @@ struct WebService {
 class WebConnection : public std::enable_shared_from_this<WebConnection> {
  public:
   // The service outlives this.
-  WebConnection(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<WebSeat> seat, WebService& service)
-      : seat_(std::move(seat)), stream_(std::move(socket)), service_(service) {}
+  WebConnection(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<ConnectionSlot> slot, WebService& service)
+      : slot_(std::move(slot)), stream_(std::move(socket)), service_(service) {}
 
-  void welcome(std::chrono::milliseconds patience) { read_head(patience); }
+  void start(std::chrono::milliseconds request_timeout) { read_head(request_timeout); }
 
   void close() { stream_.close(); }
 
  private:
   using Request = WebUpgrade;
 
-  void read_head(std::chrono::milliseconds patience);
+  void read_head(std::chrono::milliseconds request_timeout);
   std::string_view protocol_of(const Request& request) const;
-  void judge();
+  void check_access();
   void answer_request();
-  void respond(const WebResponse& response, bool may_go_on);
+  void respond(const WebResponse& response, bool may_keep_alive);
   void end();
 
-  std::unique_ptr<WebSeat> seat_;
+  std::unique_ptr<ConnectionSlot> slot_;
   boost::beast::tcp_stream stream_;
   WebService& service_;
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;  // current request
   boost::beast::http::response<boost::beast::http::string_body> response_;                     // response being sent
-  bool is_known_ = false;  // whether a request was accepted
+  bool is_accepted_ = false;  // whether a request was accepted
 };
 
 }  // namespace byre

@@ -82,7 +82,7 @@ Json registration_fields(const PlanRegistration& registration) {
   return {{"plan", registration.plan}, {"scale", registration.plan_from_map.scale}, {"pose", pose_fields(placed)}};
 }
 
-std::string dumped(const Json& json) {
+std::string dump_json(const Json& json) {
   return printable_json(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -30,6 +30,6 @@ nlohmann::json fields_or_null(const std::optional<Value>& value, Fields fields) 
 }
 
 // JSON text; invalid UTF-8, possible in file names, is replaced.
-std::string dumped(const nlohmann::json& json);
+std::string dump_json(const nlohmann::json& json);
 
 }  // namespace byre

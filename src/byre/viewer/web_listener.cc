@@ -11,16 +11,16 @@ constexpr std::size_t kMaxPageMessageBytes = 1 << 10;  // largest message from a
 }  // namespace
 
 void WebListener::start(const WebUpgrade& request) {
-  socket_.accept(request, {.protocol = {}, .most_bytes = kMaxPageMessageBytes},
+  socket_.accept(request, {.protocol = {}, .max_bytes = kMaxPageMessageBytes},
                  [self = shared_from_this()](bool is_open) {
                    if (!is_open) return;
                    self->is_open_ = true;
                    self->read();
-                   self->tell();
+                   self->notify();
                  });
 }
 
-void WebListener::tell() {
+void WebListener::notify() {
   if (!is_open_ || is_sending_) return;
   std::optional<WebMessage> message = site_.next_message(progress_);
   if (!message) return;
@@ -29,7 +29,7 @@ void WebListener::tell() {
   socket_.write({message_.bytes, message_.is_binary}, {}, [self = shared_from_this()](bool is_open) {
     self->is_sending_ = false;
     if (is_open) {
-      self->tell();
+      self->notify();
     } else {
       self->is_open_ = false;
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/viewer/web_seat.h"
+#include "byre/viewer/connection_slot.h"
 #include "byre/viewer/web_site.h"
 #include "byre/viewer/web_socket.h"
 
@@ -13,18 +13,18 @@ namespace byre {
 // server's thread only.
 class WebListener : public std::enable_shared_from_this<WebListener> {
  public:
-  WebListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<WebSeat> seat, WebSite& site)
-      : seat_(std::move(seat)), socket_(std::move(socket)), site_(site) {}
+  WebListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<ConnectionSlot> slot, WebSite& site)
+      : slot_(std::move(slot)), socket_(std::move(socket)), site_(site) {}
 
   void start(const WebUpgrade& request);
 
   // Starts sending new messages unless busy.
-  void tell();
+  void notify();
 
  private:
   void read();
 
-  std::unique_ptr<WebSeat> seat_;
+  std::unique_ptr<ConnectionSlot> slot_;
   WebSocket socket_;
   WebSite& site_;
   ListenerProgress progress_;

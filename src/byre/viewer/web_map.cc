@@ -1,6 +1,6 @@
 #include "byre/viewer/web_map.h"
 
-#include "byre/dataset/files_read.h"
+#include "byre/dataset/input_files.h"
 #include "byre/input/output_file.h"
 #include "byre/input_error.h"
 #include "byre/viewer/plan_image.h"
@@ -23,7 +23,7 @@ Json fit_fields(const PlanFit& fit) {
   Json fields = {{"registration", registration_fields(fit.registration)},
                  {"rms_m", fit.rms},
                  {"residual_m", residual_of(fit)},
-                 {"is_far_off", is_far_off(fit)},
+                 {"is_far_off", has_large_residual(fit)},
                  {"residuals", Json::array()},
                  {"doubts", Json::array()}};
   for (const PlanResidual& residual : fit.residuals) {
@@ -35,7 +35,7 @@ Json fit_fields(const PlanFit& fit) {
 }
 
 WebResponse json_response(const Json& fields) {
-  return {200, "application/json", dumped(fields)};
+  return {200, "application/json", dump_json(fields)};
 }
 
 class MapSite : public WebSite {
@@ -104,7 +104,7 @@ class MapSite : public WebSite {
     map_.stored.plan = found.registration;
     save_map(map_.stored, *map_.output);
     const std::filesystem::path csv_path = picks_path(*map_.output);
-    write_whole(csv_path, picks_csv(picks));
+    write_atomically(csv_path, picks_csv(picks));
     return {map_.output->string(), csv_path.string()};
   }
 

@@ -32,14 +32,14 @@ std::optional<std::size_t> parse_count(std::string_view text) {
 std::string scene_text(const RunDescription& run, const Rig& rig) {
   Json map;
   if (!run.map_name.empty()) map = run.map_name;
-  return dumped({{"mode", "run"},
-                 {"name", run.name},
-                 {"map", map},
-                 {"frames", run.frames},
-                 {"camera", camera_fields(rig)},
-                 {"up_in_map", fields_or_null(run.up_in_map, vector_fields)},
-                 {"plan", fields_or_null(run.plan, plan_fields)},
-                 {"registration", fields_or_null(run.registration, registration_fields)}});
+  return dump_json({{"mode", "run"},
+                    {"name", run.name},
+                    {"map", map},
+                    {"frames", run.frames},
+                    {"camera", camera_fields(rig)},
+                    {"up_in_map", fields_or_null(run.up_in_map, vector_fields)},
+                    {"plan", fields_or_null(run.plan, plan_fields)},
+                    {"registration", fields_or_null(run.registration, registration_fields)}});
 }
 
 // Keeps the history of a run for pages opened later.
@@ -67,7 +67,7 @@ class RunSite : public WebSite {
 
   void refresh() override {
     RunMailbox::Content content = mailbox_->take();
-    for (const ShownFrame& frame : content.frames) frames_.push_back(dumped(frame_fields(frame)));
+    for (const ShownFrame& frame : content.frames) frames_.push_back(dump_json(frame_fields(frame)));
     if (content.newest) add_image(*content.newest);
     if (content.online) {
       online_ = map_bytes(*content.online);
@@ -86,8 +86,8 @@ class RunSite : public WebSite {
       progress.images = image_count_;
       return WebMessage{*images_.find_nearest(frames_.size()), true};
     }
-    if (has_ended_ && !progress.end_is_known) {
-      progress.end_is_known = true;
+    if (has_ended_ && !progress.end_sent) {
+      progress.end_sent = true;
       return WebMessage{R"({"ended":true})"};
     }
     return std::nullopt;
@@ -147,11 +147,11 @@ void RunViewer::show(const Image& recorded_left, const FrameReport& report, cons
   const Map& online = session.map().online();
   mailbox_->put({report, online.keyframe_count(), online.point_count()},
                 {report, recorded_left, session.seen_points()});
-  if (report.time == last_time_ || std::chrono::steady_clock::now() >= next_map_) hand_over_map(online);
+  if (report.time == last_time_ || std::chrono::steady_clock::now() >= next_map_) copy_map(online);
   server_.wake();
 }
 
-void RunViewer::hand_over_map(const Map& online) {
+void RunViewer::copy_map(const Map& online) {
   const auto start = std::chrono::steady_clock::now();
   mailbox_->put(scene_of(online));
   const auto end = std::chrono::steady_clock::now();

@@ -53,7 +53,7 @@ class RunViewer {
   void end_run();
 
  private:
-  void hand_over_map(const Map& online);
+  void copy_map(const Map& online);
 
   // Constant after construction.
   std::chrono::milliseconds map_interval_;

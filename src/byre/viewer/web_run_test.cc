@@ -65,25 +65,25 @@ class RunViewerTest : public testing::Test {
 };
 
 // Messages up to the end of the run.
-struct Told {
+struct Received {
   Json frames = Json::array();
   std::string last_image;
   bool has_map = false;
 };
 
-Told listen_to_the_end(LiveClient& client) {
-  Told told;
+Received receive_until_end(LiveClient& client) {
+  Received received;
   for (;;) {
     const LiveClient::Message message = client.next();
     if (message.is_binary) {
-      told.last_image = message.bytes;
+      received.last_image = message.bytes;
       continue;
     }
     const Json fields = message.json();
     if (fields.contains("frames"))
-      told.frames.insert(told.frames.end(), fields["frames"].begin(), fields["frames"].end());
-    told.has_map = told.has_map || fields.contains("online_map");
-    if (fields.contains("ended")) return told;
+      received.frames.insert(received.frames.end(), fields["frames"].begin(), fields["frames"].end());
+    received.has_map = received.has_map || fields.contains("online_map");
+    if (fields.contains("ended")) return received;
   }
 }
 
@@ -91,28 +91,28 @@ TEST_F(RunViewerTest, SendsEveryFrameTheNewestImageAndTheMap) {
   RunViewer viewer = view();
   LiveClient client(port_of(viewer));
   show_all(viewer);
-  const Told told = listen_to_the_end(client);
-  ASSERT_THAT(told.frames, SizeIs(kFrames));
-  EXPECT_EQ(told.frames.back().at("state"), "tracking");
-  EXPECT_THAT(told.frames.back().at("pose"), SizeIs(7));
-  EXPECT_THAT(told.frames.front().at("events"), Contains(Json(to_string(SessionEvent::initialised))));
-  EXPECT_GT(told.frames.back().at("online_points"), 100);
-  EXPECT_TRUE(told.has_map);
-  EXPECT_EQ(number_at(told.last_image, 0), static_cast<std::uint32_t>(kFrames - 1));
+  const Received received = receive_until_end(client);
+  ASSERT_THAT(received.frames, SizeIs(kFrames));
+  EXPECT_EQ(received.frames.back().at("state"), "tracking");
+  EXPECT_THAT(received.frames.back().at("pose"), SizeIs(7));
+  EXPECT_THAT(received.frames.front().at("events"), Contains(Json(to_string(SessionEvent::initialised))));
+  EXPECT_GT(received.frames.back().at("online_points"), 100);
+  EXPECT_TRUE(received.has_map);
+  EXPECT_EQ(number_at(received.last_image, 0), static_cast<std::uint32_t>(kFrames - 1));
 }
 
 TEST_F(RunViewerTest, SendsTheWholeRunToALatePage) {
   RunViewer viewer = view();
   show_all(viewer);
   LiveClient late(port_of(viewer));
-  EXPECT_THAT(listen_to_the_end(late).frames, SizeIs(kFrames));
+  EXPECT_THAT(receive_until_end(late).frames, SizeIs(kFrames));
 }
 
 TEST_F(RunViewerTest, SendsImagesAsRectifiedJpegWithTheirPoints) {
   RunViewer viewer = view();
   LiveClient client(port_of(viewer));
   show_all(viewer);
-  listen_to_the_end(client);
+  receive_until_end(client);
   const std::string bytes = WebClient(port_of(viewer)).get("/images/99").body;
   const std::size_t seen = number_at(bytes, 4);
   EXPECT_EQ(seen, session_.seen_points().size());
@@ -128,7 +128,7 @@ TEST_F(RunViewerTest, ServesThePageTheSceneAndTheMaps) {
   RunViewer viewer = view();
   LiveClient client(port_of(viewer));
   show_all(viewer);
-  listen_to_the_end(client);
+  receive_until_end(client);
   const WebClient web(port_of(viewer));
   EXPECT_THAT(web.get("/").body, StartsWith("<!doctype html>"));
   EXPECT_EQ(web.get("/scene").json().at("name"), "evening \"round\"");

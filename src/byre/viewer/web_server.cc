@@ -80,14 +80,14 @@ class WebServer::Core {
       : service_{std::move(site), std::move(topics), access_to(options.address), make_token(), {}, {}},
         limits_(options.limits),
         end_of_descriptors_(end_of_descriptors(limits_)),
-        guests_(limits_),
+        table_(limits_),
         rate_(limits_, std::chrono::steady_clock::now()),
         acceptor_(listen(context_, options)),
         port_(acceptor_.local_endpoint().port()),
         urls_(urls_of(acceptor_.local_endpoint(), service_.access.token)) {
     accept();
     thread_ = std::thread([this] {
-      give_way_to_frames();
+      lower_thread_priority();
       context_.run();
     });
   }
@@ -103,7 +103,7 @@ class WebServer::Core {
   void wake() {
     asio::post(context_, [this] {
       service_.site->refresh();
-      service_.tell_listeners();
+      service_.notify_listeners();
     });
   }
 
@@ -124,7 +124,7 @@ class WebServer::Core {
         return;
       }
       rate_.count(std::chrono::steady_clock::now());
-      welcome(std::move(socket));
+      start(std::move(socket));
       accept();
     });
   }
@@ -136,21 +136,21 @@ class WebServer::Core {
     });
   }
 
-  void welcome(tcp::socket&& socket) {
+  void start(tcp::socket&& socket) {
     if (socket.native_handle() >= end_of_descriptors_) return;  // closes the socket
     error_code error;
     const tcp::endpoint peer = socket.remote_endpoint(error);
     if (error) return;  // already disconnected
-    const WebGuests::Arrival arrival = guests_.arrive(peer.address().to_string());
-    const auto connection =
-        std::make_shared<WebConnection>(std::move(socket), std::make_unique<WebSeat>(guests_, arrival.id), service_);
-    connections_[arrival.id] = connection;
-    connection->welcome(limits_.patience);
-    if (arrival.to_close) close(*arrival.to_close);
+    const ConnectionTable::Admission admission = table_.open(peer.address().to_string());
+    const auto connection = std::make_shared<WebConnection>(
+        std::move(socket), std::make_unique<ConnectionSlot>(table_, admission.id), service_);
+    connections_[admission.id] = connection;
+    connection->start(limits_.request_timeout);
+    if (admission.to_close) close(*admission.to_close);
     std::erase_if(connections_, [](const auto& each) { return each.second.expired(); });
   }
 
-  void close(WebGuests::Id id) {
+  void close(ConnectionTable::Id id) {
     const auto found = connections_.find(id);
     if (found == connections_.end()) return;
     if (const std::shared_ptr<WebConnection> connection = found->second.lock()) connection->close();
@@ -163,9 +163,9 @@ class WebServer::Core {
   int end_of_descriptors_;
 
   // Owned by the server's thread. Queued operations use the members above, so the context is destroyed first.
-  WebGuests guests_;
-  ArrivalRate rate_;
-  std::map<WebGuests::Id, std::weak_ptr<WebConnection>> connections_;
+  ConnectionTable table_;
+  AcceptLimiter rate_;
+  std::map<ConnectionTable::Id, std::weak_ptr<WebConnection>> connections_;
   asio::io_context context_{1};
   tcp::acceptor acceptor_;
   asio::steady_timer pause_{context_};

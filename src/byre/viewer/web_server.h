@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/viewer/connection_table.h"
 #include "byre/viewer/live_topics.h"
-#include "byre/viewer/web_guests.h"
 #include "byre/viewer/web_site.h"
 
 #include <memory>
@@ -17,7 +17,7 @@ struct WebServerOptions {
 };
 
 // Serves a site over HTTP, and WebSocket at /live, on its own thread. Destruction closes all connections without
-// waiting for clients. Access rules: web_access.h; limits: web_guests.h.
+// waiting for clients. Access rules: web_access.h; limits: connection_table.h.
 class WebServer {
  public:
   // topics: served with Foxglove's protocol at any path; null: not served. Throws InputError if the address is not of

@@ -69,7 +69,7 @@ TEST_F(WebServerTest, ConvertsExceptionsToResponses) {
   EXPECT_EQ(client.get("/bad").json().at("problem"), "the input: is bad");
   EXPECT_EQ(client.get("/broken").status, 500);
   EXPECT_EQ(client.get("/broken").json().at("problem"), "it broke");
-  EXPECT_EQ(client.ask("DELETE", "/", "", {}).status, 405);
+  EXPECT_EQ(client.request("DELETE", "/", "", {}).status, 405);
 }
 
 TEST_F(WebServerTest, RejectsOtherNamesAndOtherPages) {
@@ -166,9 +166,9 @@ class Crowd {
 
 WebLimits impatient() {
   WebLimits limits;
-  limits.patience = std::chrono::milliseconds(150);
-  limits.arrivals_per_second = 1e4;
-  limits.arrivals_at_once = 1000;
+  limits.request_timeout = std::chrono::milliseconds(150);
+  limits.accepts_per_second = 1e4;
+  limits.accept_burst = 1000;
   return limits;
 }
 
@@ -194,7 +194,7 @@ TEST_F(WebServerTest, ReadsOnlyTheHeaderOfRejectedRequests) {
 
 TEST_F(WebServerTest, AnswersTokenHoldersAmongHundredsOfOthers) {
   WebLimits limits = impatient();
-  limits.patience = std::chrono::seconds(30);
+  limits.request_timeout = std::chrono::seconds(30);
   const WebServer server = serve("0.0.0.0", limits);
   const std::string url = server.urls().back();
   const std::string target = url.substr(url.rfind('/'));
@@ -209,7 +209,7 @@ TEST_F(WebServerTest, AnswersTokenHoldersAmongHundredsOfOthers) {
     Crowd(server.port()).add(5, "");
     EXPECT_EQ(client.get(target).status, 200);
   }
-  EXPECT_LE(crowd.still_open(), limits.strangers);
+  EXPECT_LE(crowd.still_open(), limits.pending);
 }
 
 TEST_F(WebServerTest, ReportsAnUnusableAddressOrPort) {

@@ -16,7 +16,7 @@ WebResponse bytes_response(std::string bytes, const char* content_type) {
 }
 
 WebResponse problem_response(int status, std::string_view problem) {
-  return {status, "application/json", dumped({{"problem", problem}})};
+  return {status, "application/json", dump_json({{"problem", problem}})};
 }
 
 WebResponse not_found(const WebRequest& request) {

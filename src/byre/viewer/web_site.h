@@ -35,10 +35,10 @@ struct WebMessage {
 
 // Progress of the messages sent to a listener (an open page).
 struct ListenerProgress {
-  std::size_t frames = 0;     // reports sent
-  std::size_t images = 0;     // number of the newest image sent, from 1
-  std::size_t maps = 0;       // number of the newest map announced, from 1
-  bool end_is_known = false;  // whether the end of the run was sent
+  std::size_t frames = 0;  // reports sent
+  std::size_t images = 0;  // number of the newest image sent, from 1
+  std::size_t maps = 0;    // number of the newest map announced, from 1
+  bool end_sent = false;   // whether the end of the run was sent
 };
 
 // Content of a web server. All functions are called from the server's thread.

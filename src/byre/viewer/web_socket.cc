@@ -17,7 +17,7 @@ void WebSocket::accept(const WebUpgrade& request, const Terms& terms, Done done)
       websocket::stream_base::decorator([protocol = std::string(terms.protocol)](websocket::response_type& response) {
         if (!protocol.empty()) response.set(beast::http::field::sec_websocket_protocol, protocol);
       }));
-  stream_.read_message_max(terms.most_bytes);
+  stream_.read_message_max(terms.max_bytes);
   stream_.async_accept(request, [done = std::move(done)](error_code error) { done(!error); });
 }
 

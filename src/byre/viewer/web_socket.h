@@ -29,8 +29,8 @@ class WebSocket {
   explicit WebSocket(boost::asio::ip::tcp::socket&& socket) : stream_(std::move(socket)) {}
 
   struct Terms {
-    std::string_view protocol;   // chosen sub-protocol; empty: none
-    std::size_t most_bytes = 0;  // largest message from the client, bytes
+    std::string_view protocol;  // chosen sub-protocol; empty: none
+    std::size_t max_bytes = 0;  // largest message from the client, bytes
   };
   void accept(const WebUpgrade& request, const Terms& terms, Done done);
 

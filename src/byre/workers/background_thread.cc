@@ -7,7 +7,7 @@
 namespace byre {
 
 // On Linux both settings are per thread; POSIX defines them per process.
-void give_way_to_frames() {
+void lower_thread_priority() {
   constexpr int kNiceness = 5;
   const auto self = static_cast<id_t>(gettid());
   setpriority(PRIO_PROCESS, self, getpriority(PRIO_PROCESS, self) + kNiceness);

@@ -138,7 +138,7 @@ class PacedExecutor final : public WorkerExecutor {
 // Frames never wait for a job, so the job thread has lower priority.
 class LiveExecutor final : public WorkerExecutor {
  public:
-  LiveExecutor() : WorkerExecutor(give_way_to_frames) {}
+  LiveExecutor() : WorkerExecutor(lower_thread_priority) {}
 
   std::optional<FinishedJob> collect() override {
     if (idle() || !is_done()) return std::nullopt;

@@ -83,26 +83,26 @@ class ScratchFile::File {
 };
 
 // A mapped part of the file; mapped for as long as a piece of it is held.
-class ScratchFile::Stretch {
+class ScratchFile::Extent {
  public:
   // Null without free address space.
-  static std::shared_ptr<const Stretch> make(std::shared_ptr<const File> file, std::size_t begin, std::size_t size) {
+  static std::shared_ptr<const Extent> make(std::shared_ptr<const File> file, std::size_t begin, std::size_t size) {
     void* const address =
         mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_NORESERVE, file->descriptor(), static_cast<off_t>(begin));
     if (address == MAP_FAILED) return nullptr;
     munlock(address, size);  // undoes mlockall(), which would lock these pages
-    return std::make_shared<const Stretch>(std::move(file), begin, std::span(static_cast<std::byte*>(address), size));
+    return std::make_shared<const Extent>(std::move(file), begin, std::span(static_cast<std::byte*>(address), size));
   }
 
-  Stretch(std::shared_ptr<const File> file, std::size_t begin, std::span<std::byte> bytes)
+  Extent(std::shared_ptr<const File> file, std::size_t begin, std::span<std::byte> bytes)
       : file_(std::move(file)), begin_(begin), bytes_(bytes) {}
-  ~Stretch() { munmap(bytes_.data(), bytes_.size()); }
-  Stretch(const Stretch&) = delete;
-  Stretch& operator=(const Stretch&) = delete;
+  ~Extent() { munmap(bytes_.data(), bytes_.size()); }
+  Extent(const Extent&) = delete;
+  Extent& operator=(const Extent&) = delete;
 
   std::size_t end() const { return begin_ + bytes_.size(); }
   const std::byte* at(std::size_t offset) const { return bytes_.data() + (offset - begin_); }
-  void forget_looks() const { madvise(bytes_.data(), bytes_.size(), MADV_DONTNEED); }
+  void release_pages() const { madvise(bytes_.data(), bytes_.size(), MADV_DONTNEED); }
   void give_back(std::size_t begin, std::size_t end) const { file_->give_back(begin, end); }
 
   bool holds(const std::byte* byte) const {
@@ -121,27 +121,27 @@ std::shared_ptr<const std::byte> ScratchFile::put(std::span<const std::byte> byt
   if (!file_ || is_full_) return nullptr;
   const std::size_t begin = end_;
   const std::size_t end = (begin + bytes.size() + kPage - 1) / kPage * kPage;
-  is_full_ = !make_room(end) || !file_->write(bytes, begin);
+  is_full_ = !extend_to(end) || !file_->write(bytes, begin);
   if (is_full_) return nullptr;
   end_ = end;
-  return {newest_->at(begin), [stretch = newest_, begin, end](const void*) { stretch->give_back(begin, end); }};
+  return {newest_->at(begin), [extent = newest_, begin, end](const void*) { extent->give_back(begin, end); }};
 }
 
 // Makes newest_ cover the range from end_ to end.
-bool ScratchFile::make_room(std::size_t end) {
+bool ScratchFile::extend_to(std::size_t end) {
   if (newest_ && end <= newest_->end()) return true;
-  newest_ = Stretch::make(file_, end_, std::max(kStretch, end - end_));
+  newest_ = Extent::make(file_, end_, std::max(kStretch, end - end_));
   const std::lock_guard lock(mutex_);
-  std::erase_if(stretches_, [](const auto& stretch) { return stretch.expired(); });
-  stretches_.push_back(newest_);
+  std::erase_if(extents_, [](const auto& extent) { return extent.expired(); });
+  extents_.push_back(newest_);
   return newest_ != nullptr;
 }
 
 bool ScratchFile::holds(const void* address) const {
   const std::lock_guard lock(mutex_);
-  return std::ranges::any_of(stretches_, [byte = static_cast<const std::byte*>(address)](const auto& held) {
-    const auto stretch = held.lock();
-    return stretch && stretch->holds(byte);
+  return std::ranges::any_of(extents_, [byte = static_cast<const std::byte*>(address)](const auto& held) {
+    const auto extent = held.lock();
+    return extent && extent->holds(byte);
   });
 }
 
@@ -149,10 +149,10 @@ std::size_t ScratchFile::bytes_on_disk() const {
   return file_ ? file_->bytes_on_disk() : 0;
 }
 
-void ScratchFile::forget_looks() const {
+void ScratchFile::release_pages() const {
   const std::lock_guard lock(mutex_);
-  for (const auto& held : stretches_) {
-    if (const auto stretch = held.lock()) stretch->forget_looks();
+  for (const auto& held : extents_) {
+    if (const auto extent = held.lock()) extent->release_pages();
   }
 }
 

@@ -23,20 +23,20 @@ class ScratchFile {
   std::size_t bytes_on_disk() const;
 
   // Drops mapped pages from memory until they are read again.
-  void forget_looks() const;
+  void release_pages() const;
 
  private:
   class File;
-  class Stretch;
+  class Extent;
 
-  bool make_room(std::size_t end);
+  bool extend_to(std::size_t end);
 
-  std::shared_ptr<const File> file_;       // constant after construction; null if no file could be created
-  std::shared_ptr<const Stretch> newest_;  // the last stretch; null before the first
-  std::size_t end_ = 0;                    // bytes in the file
+  std::shared_ptr<const File> file_;      // constant after construction; null if no file could be created
+  std::shared_ptr<const Extent> newest_;  // the last stretch; null before the first
+  std::size_t end_ = 0;                   // bytes in the file
   bool is_full_ = false;
-  mutable std::mutex mutex_;                             // guards stretches_
-  std::vector<std::weak_ptr<const Stretch>> stretches_;  // some may have expired
+  mutable std::mutex mutex_;                          // guards extents_
+  std::vector<std::weak_ptr<const Extent>> extents_;  // some may have expired
 };
 
 }  // namespace byre

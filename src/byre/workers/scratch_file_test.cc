@@ -55,7 +55,7 @@ TEST(ScratchFile, ReturnsStoredContent) {
   ScratchFile file;
   std::vector<std::shared_ptr<const std::byte>> pieces;
   for (unsigned i = 0; i < 400; ++i) pieces.push_back(file.put(pattern(200000 + i, i)));
-  file.forget_looks();
+  file.release_pages();
   for (unsigned i = 0; i < 400; ++i) {
     ASSERT_NE(pieces[i], nullptr);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pieces[i].get()) % alignof(std::max_align_t), 0u);
@@ -91,7 +91,7 @@ TEST(ScratchFile, UsesNoMemoryForUnaccessedPieces) {
   EXPECT_LT(resident_mb(), before + 20.0);
   for (const auto& piece : pieces) ASSERT_TRUE(are(bytes, piece));
   EXPECT_GT(resident_mb(), before + 40.0);
-  file.forget_looks();
+  file.release_pages();
   EXPECT_LT(resident_mb(), before + 20.0);
 }
 
@@ -105,7 +105,7 @@ TEST(ScratchFile, UsesNoMemoryInAProgramWithLockedMemory) {
     const double before = resident_mb();
     const auto piece = file.put(bytes);
     EXPECT_TRUE(piece && are(bytes, piece));
-    file.forget_looks();
+    file.release_pages();
     EXPECT_LT(resident_mb(), before + 20.0);
   }
   munlockall();
@@ -153,7 +153,7 @@ TEST(ScratchFile, IsReadableDuringWrites) {
     });
     for (int i = 0; i < 100; ++i) {
       file.put(bytes);
-      file.forget_looks();
+      file.release_pages();
     }
   }
   EXPECT_TRUE(are_same);

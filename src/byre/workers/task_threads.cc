@@ -37,22 +37,22 @@ void TaskThreads::run_all(int count, const std::function<void(int)>& task) {
   }
   begun_.notify_all();
   work();
-  wait_awake(kForHelpers, [this] { return helping_ == 0; });
+  spin_wait(kForHelpers, [this] { return helping_ == 0; });
   std::unique_lock lock(mutex_);
   ended_.wait(lock, [this] { return helping_ == 0; });
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 template <typename Condition>
-void TaskThreads::wait_awake(std::chrono::microseconds longest, Condition condition) const {
+void TaskThreads::spin_wait(std::chrono::microseconds longest, Condition condition) const {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + longest;
-  while (is_on_shift_ && !condition() && Clock::now() < end) continue;
+  while (is_spinning_ && !condition() && Clock::now() < end) continue;
 }
 
 void TaskThreads::help(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (begun_.wait(lock, stop, [this] { return is_left(); })) {
+  while (begun_.wait(lock, stop, [this] { return has_task_left(); })) {
     ++helping_;
     lock.unlock();
     work();
@@ -60,14 +60,14 @@ void TaskThreads::help(const std::stop_token& stop) {
     const int runs = runs_;
     if (--helping_ == 0) ended_.notify_one();
     lock.unlock();
-    wait_awake(kForCaller, [&] { return runs_ != runs; });
+    spin_wait(kForCaller, [&] { return runs_ != runs; });
     lock.lock();
   }
 }
 
 void TaskThreads::work() {
   std::unique_lock lock(mutex_);
-  while (is_left()) {
+  while (has_task_left()) {
     const int mine = next_++;
     lock.unlock();
     try {

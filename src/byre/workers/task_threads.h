@@ -19,13 +19,13 @@ int processor_count();
 // Helper threads for short parallel tasks; they sleep between runs. run() is called from one thread at a time.
 class TaskThreads {
  public:
-  // While a Shift lives, waiting threads spin for some microseconds, because waking a thread takes tens of them.
-  class Shift {
+  // While a SpinScope lives, waiting threads spin for some microseconds, because waking a thread takes tens of them.
+  class SpinScope {
    public:
-    explicit Shift(TaskThreads& threads) : threads_(threads) { threads_.is_on_shift_ = true; }
-    ~Shift() { threads_.is_on_shift_ = false; }
-    Shift(const Shift&) = delete;
-    Shift& operator=(const Shift&) = delete;
+    explicit SpinScope(TaskThreads& threads) : threads_(threads) { threads_.is_spinning_ = true; }
+    ~SpinScope() { threads_.is_spinning_ = false; }
+    SpinScope(const SpinScope&) = delete;
+    SpinScope& operator=(const SpinScope&) = delete;
 
    private:
     TaskThreads& threads_;
@@ -46,12 +46,12 @@ class TaskThreads {
   void run_all(int count, const std::function<void(int)>& task);
   void help(const std::stop_token& stop);
   void work();  // until no task is left
-  bool is_left() const { return next_ < count_; }
+  bool has_task_left() const { return next_ < count_; }
   // Returns when the condition holds, the shift ends, or `longest` has passed.
   template <typename Condition>
-  void wait_awake(std::chrono::microseconds longest, Condition condition) const;
+  void spin_wait(std::chrono::microseconds longest, Condition condition) const;
 
-  std::atomic<bool> is_on_shift_ = false;
+  std::atomic<bool> is_spinning_ = false;
   std::mutex mutex_;  // guards all members below
   std::condition_variable_any begun_;
   std::condition_variable_any ended_;

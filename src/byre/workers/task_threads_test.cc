@@ -37,7 +37,7 @@ TEST_P(TaskThreadsOf, ThrowTheExceptionOfATaskAndContinue) {
 TEST_P(TaskThreadsOf, RunEachTaskOnceOnAShift) {
   TaskThreads threads(GetParam());
   for (int repetition = 0; repetition < 50; ++repetition) {
-    const TaskThreads::Shift shift(threads);
+    const TaskThreads::SpinScope shift(threads);
     for (const int count : {1, 2, 30}) {
       std::vector<int> calls(static_cast<std::size_t>(count), 0);
       threads.run(count, [&](int i) { ++calls[static_cast<std::size_t>(i)]; });

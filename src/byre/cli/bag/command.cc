@@ -35,7 +35,7 @@ ExitCode run_info(const InfoOptions& options, std::ostream& result) {
   const auto bag = open_bag(options.bag, [](std::string_view) { return false; });
   const BagContent& content = bag->content();
   if (options.json) {
-    result << dumped(bag_json(content, options.bag), 2) << "\n";
+    result << dump_json(bag_json(content, options.bag), 2) << "\n";
   } else {
     result << describe(content, options.bag);
   }

@@ -35,13 +35,13 @@ TEST_F(BagProgram, PrintsTheContentsOfABag) {
 
 TEST_F(BagProgram, PrintsTheContentsAsJson) {
   write_scene("walk.mcap");
-  const json told = json::parse(run("bag info walk.mcap --json").output);
-  EXPECT_EQ(told.at("program"), "byre bag info");
-  EXPECT_EQ(told.at("topics").size(), 3u);
-  EXPECT_EQ(told.at("topics")[0].at("messages"), 6);
-  EXPECT_EQ(told.at("images").at("left"), "/left/image_raw");
-  EXPECT_EQ(told.at("first_ns"), 1'003'000'000);
-  EXPECT_THAT(told.at("damage"), IsEmpty());
+  const json report = json::parse(run("bag info walk.mcap --json").output);
+  EXPECT_EQ(report.at("program"), "byre bag info");
+  EXPECT_EQ(report.at("topics").size(), 3u);
+  EXPECT_EQ(report.at("topics")[0].at("messages"), 6);
+  EXPECT_EQ(report.at("images").at("left"), "/left/image_raw");
+  EXPECT_EQ(report.at("first_ns"), 1'003'000'000);
+  EXPECT_THAT(report.at("damage"), IsEmpty());
 }
 
 TEST_F(BagProgram, ReportsDamageWithExitCodeOne) {

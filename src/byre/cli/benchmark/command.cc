@@ -70,8 +70,8 @@ std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
   for (const CaseResult& one : result.cases) {
     if (one.arms.empty()) continue;
     const std::string name = file_name_of(one.what.name);
-    write_whole(folder / (name + "_path.svg"), to_svg(path_chart(one)));
-    write_whole(folder / (name + "_error.svg"), to_svg(error_chart(one)));
+    write_atomically(folder / (name + "_path.svg"), to_svg(path_chart(one)));
+    write_atomically(folder / (name + "_error.svg"), to_svg(error_chart(one)));
     markdown += "\n![Path of " + one.what.name + "](" + name + "_path.svg)\n";
     markdown += "\n![Error of " + one.what.name + "](" + name + "_error.svg)\n";
   }
@@ -81,8 +81,8 @@ std::string write_plots(const BenchmarkResult& result, const fs::path& folder) {
 void write_results(const BenchmarkResult& result, const BenchmarkProtocol& protocol, const BenchmarkSetting& setting,
                    const fs::path& folder) {
   const std::string plots = write_plots(result, folder);
-  write_whole(folder / "benchmark.md", to_markdown(result, protocol, setting) + plots);
-  write_whole(folder / "benchmark.json", to_json(result, protocol, setting));
+  write_atomically(folder / "benchmark.md", to_markdown(result, protocol, setting) + plots);
+  write_atomically(folder / "benchmark.json", to_json(result, protocol, setting));
 }
 
 // Prints the current case and its progress to stderr.
@@ -115,8 +115,8 @@ class BenchmarkProgress {
 };
 
 void write_speed(const SpeedCase& what, const std::vector<SpeedMeasures>& runs, const fs::path& folder) {
-  write_whole(folder / "speed.md", speed_markdown(what, runs));
-  write_whole(folder / "speed.json", speed_json(what, runs));
+  write_atomically(folder / "speed.md", speed_markdown(what, runs));
+  write_atomically(folder / "speed.json", speed_json(what, runs));
 }
 
 ExitCode measure_speed_command(BenchmarkCommandOptions options, std::ostream& result) {
@@ -196,7 +196,7 @@ CLI::Option* declare_speed(CLI::App& command, SpeedCase& speed) {
 }
 
 Action declare_benchmark(CLI::App& command) {
-  constexpr int kMostRuns = 1000;
+  constexpr int kMaxRuns = 1000;
   const auto options = std::make_shared<BenchmarkCommandOptions>();
   CLI::Option* const speed = declare_speed(command, options->speed);
   add_input(command, Input::file, "PROTOCOL", options->protocol,
@@ -213,7 +213,7 @@ Action declare_benchmark(CLI::App& command) {
       .add_option("--runs", options->runs,
                   "Runs of each arm, replaces the protocol's number; with --speed runs of the recording (1)")
       ->type_name("N")
-      ->check(between(1, kMostRuns));
+      ->check(between(1, kMaxRuns));
   add_text(command, "--only", options->run.only, "Run only these cases")->type_name("CASE...")->excludes(speed);
   declare_pace(command, options->pace);
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
@@ -223,7 +223,7 @@ Action declare_benchmark(CLI::App& command) {
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kBenchmarkFooter);
   check_when_parsed(command, [options = options.get()] {
-    require_sense(options->speed.range);
+    require_valid(options->speed.range);
     if (options->protocol.empty() && !options->is_of_speed()) throw CLI::RequiredError("PROTOCOL or --speed");
   });
   return [options](std::ostream& result) {

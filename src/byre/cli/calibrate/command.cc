@@ -59,7 +59,7 @@ std::string to_json_text(const CalibrateOptions& options, const RefinedCalibrati
                                        {"recording", options.recording.string()},
                                        {"written", options.output.string()},
                                        {"calibration", calibration_json(refined)}};
-  return dumped(json, 2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
@@ -80,7 +80,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   if (const auto warning = calibration_warning(run.calibration, run.row_error)) show_warnings(std::cerr, {*warning});
   Calibration calibration = run.calibration->calibration;
   if (!is_metric) calibration.body_from_left = body_from_camera;
-  write_whole(options.output, write_calibration(calibration));
+  write_atomically(options.output, write_calibration(calibration));
   result << (options.json ? to_json_text(options, *run.calibration) : to_text(options, *run.calibration));
   return ExitCode::done;
 }

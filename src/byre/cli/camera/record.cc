@@ -48,8 +48,8 @@ to 0.)";
 std::unique_ptr<CaptureThread> open_cameras(const RecordOptions& options,
                                             const std::optional<Calibration>& calibration) {
   LiveCameraOptions live = options.cameras.live();
-  if (calibration) ask_for_size(*calibration, live);
-  auto capture = std::make_unique<CaptureThread>(live, KeptFrames::all);
+  if (calibration) request_calibrated_size(*calibration, live);
+  auto capture = std::make_unique<CaptureThread>(live, FrameRetention::all);
   if (calibration) require_fit(*calibration, *capture, options.calibration->string());
   return capture;
 }
@@ -62,7 +62,7 @@ std::string describe_frames(const RecordedFrames& recorded, bool has_right) {
     text += fmt::format(", {:.1f} s", seconds);
     if (seconds > 0.0) text += fmt::format(", {:.2f} Hz", (recorded.frames - 1) / seconds);
   }
-  if (recorded.passed_over > 0) text += fmt::format("; {} could not be written in time", recorded.passed_over);
+  if (recorded.skipped > 0) text += fmt::format("; {} could not be written in time", recorded.skipped);
   return text;
 }
 
@@ -77,7 +77,7 @@ ExitCode run_record(const RecordOptions& options, std::ostream& result) {
   double shown_s = 0.0;
   RecordHooks hooks;
   hooks.should_stop = [&] { return interrupt.caught(); };
-  hooks.tell = [](const std::string& note) { show_warnings(std::cerr, {note}); };
+  hooks.on_note = [](const std::string& note) { show_warnings(std::cerr, {note}); };
   hooks.after_frame = [&](int frames, const ImageFrame&) {
     constexpr double kInterval_s = 5.0;
     if (options.quiet || (frames > 1 && watch.seconds() - shown_s < kInterval_s)) return;

@@ -61,7 +61,7 @@ std::string describe_image(const char* name, const Image& image) {
                         condition.brightness, condition.contrast, condition.sharpness, 100.0 * condition.clipped) +
                 (fault == ImageFault::none ? "" : "; " + std::string(to_string(fault))));
   const CornerGrid grid = count_corners(image);
-  text += row("corners", fmt::format("{}; {} of {} parts without corners:", grid.total(), grid.cells_without(),
+  text += row("corners", fmt::format("{}; {} of {} parts without corners:", grid.total(), grid.empty_cells(),
                                      static_cast<int>(grid.corners.size())));
   for (int y = 0; y < CornerGrid::kRows; ++y) {
     std::string line;
@@ -89,7 +89,7 @@ Shown look(CaptureThread& capture, double duration_s, const InterruptCatcher& in
 
 ExitCode run_show(const CameraShowOptions& options, std::ostream& result) {
   const InterruptCatcher interrupt;
-  CaptureThread capture(options.cameras.live(), KeptFrames::all);
+  CaptureThread capture(options.cameras.live(), FrameRetention::all);
   const Shown shown = look(capture, options.duration_s, interrupt);
   result << to_text(capture.report());
   if (!shown.newest) {
@@ -102,7 +102,7 @@ ExitCode run_show(const CameraShowOptions& options, std::ostream& result) {
   if (options.still) {
     const ImageFrame& frame = *shown.newest;
     const std::vector<std::uint8_t> png = png_of(frame.right ? side_by_side(frame.left, *frame.right) : frame.left);
-    write_whole(*options.still, std::as_bytes(std::span(png)));
+    write_atomically(*options.still, std::as_bytes(std::span(png)));
     result << row("written", options.still->string());
   }
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;

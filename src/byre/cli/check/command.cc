@@ -52,11 +52,11 @@ ExitCode run_check(const CheckOptions& options, std::ostream& result) {
     nlohmann::ordered_json json = {
         {"program", "byre check"}, {"version", BYRE_VERSION}, {"recording", options.recording.string()}};
     json.update(check_json(check, findings));
-    result << dumped(json, 2) << "\n";
+    result << dump_json(json, 2) << "\n";
   } else {
     result << describe(check, findings);
   }
-  return std::ranges::any_of(findings, &Finding::is_grave) ? ExitCode::failed : ExitCode::done;
+  return std::ranges::any_of(findings, &Finding::is_critical) ? ExitCode::failed : ExitCode::done;
 }
 
 }  // namespace

@@ -23,17 +23,17 @@ TEST_F(CheckProgram, FindsNoProblemInASoundRecording) {
 
 TEST_F(CheckProgram, PrintsTheReportAsJson) {
   const Outcome outcome = run("check " + rendered_room() + " --samples 3 --json");
-  const json told = json::parse(outcome.output);
-  EXPECT_EQ(told.at("program"), "byre check");
-  EXPECT_EQ(told.at("looked_at"), 6);
-  EXPECT_GT(told.at("pair").at("matched_percent"), 40.0);
-  EXPECT_LT(told.at("pair").at("calibration_error_px"), 0.2);
+  const json report = json::parse(outcome.output);
+  EXPECT_EQ(report.at("program"), "byre check");
+  EXPECT_EQ(report.at("looked_at"), 6);
+  EXPECT_GT(report.at("pair").at("matched_percent"), 40.0);
+  EXPECT_LT(report.at("pair").at("calibration_error_px"), 0.2);
 }
 
 TEST_F(CheckProgram, OmitsThePairForOneCamera) {
-  const json told = json::parse(run("check " + rendered_room() + " --camera left --samples 3 --json").output);
-  EXPECT_TRUE(told.at("pair").is_null());
-  EXPECT_EQ(told.at("without_right"), 0);
+  const json report = json::parse(run("check " + rendered_room() + " --camera left --samples 3 --json").output);
+  EXPECT_TRUE(report.at("pair").is_null());
+  EXPECT_EQ(report.at("without_right"), 0);
 }
 
 TEST_F(CheckProgram, ReplacesTheBaselineOfTheCalibration) {

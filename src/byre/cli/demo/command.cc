@@ -62,9 +62,9 @@ ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& resul
   };
   const std::optional<DemoFindings> findings = run_demo(options.demo, hooks);
   if (!findings) return ExitCode::interrupted;
-  write_whole(folder / "plan.svg", findings->plan_picture);
-  if (findings->camera_s) write_whole(folder / "camera.svg", findings->camera_picture);
-  write_whole(page, demo_page(*findings));
+  write_atomically(folder / "plan.svg", findings->plan_picture);
+  if (findings->camera_s) write_atomically(folder / "camera.svg", findings->camera_picture);
+  write_atomically(page, demo_page(*findings));
   result << to_text(demo_table(findings->arms), findings->arms) << "\n" << row("page", page.string());
   return ExitCode::done;
 }

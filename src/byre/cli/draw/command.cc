@@ -67,13 +67,13 @@ void write_plan_picture(const PlanScene& scene, const DrawOptions& options) {
 void add_mission(const DrawnMission& mission, PlanScene& scene) {
   std::ranges::copy(mission.online.points, std::back_inserter(scene.map.points));
   std::ranges::copy(mission.online.keyframes, std::back_inserter(scene.map.keyframes));
-  scene.paths.push_back(mission.way);
+  scene.paths.push_back(mission.path);
   if (!mission.frame || !mission.frame->report.map_from_body) return;
   scene.camera = plan_camera(*mission.frame->report.map_from_body, *mission.rig);
 }
 
-std::string story_of(const DrawnMission& mission, const DrawOptions& options) {
-  std::string text = row("mission", fmt::format("{} poses", mission.way.map_from_body.size()));
+std::string describe_pictures(const DrawnMission& mission, const DrawOptions& options) {
+  std::string text = row("mission", fmt::format("{} poses", mission.path.map_from_body.size()));
   if (mission.frame_s && options.camera_picture) text += row("camera at", fmt::format("{:.2f} s", *mission.frame_s));
   if (!options.video) return text;
   const char* const codec = mission.plays_in_browsers ? "H.264" : "MPEG-4, which browsers do not play";
@@ -96,7 +96,7 @@ ExitCode run_and_draw(const DrawOptions& options, StoredMap stored, PlanScene sc
   const DrawnMission mission = draw_mission(options, std::move(stored), scene);
   if (!options.quiet) show_warnings(std::cerr, mission.warnings);
   require_frames(mission, options);
-  result << story_of(mission, options);
+  result << describe_pictures(mission, options);
   if (options.camera_picture) write_camera_picture(mission, *options.camera_picture);
   add_mission(mission, scene);
   if (options.plan_picture) write_plan_picture(scene, options);

@@ -33,7 +33,7 @@ EngineOptions run_options(const DrawOptions& options, StoredMap stored) {
   return run;
 }
 
-MapScene scene_beside(const Map& mapped) {
+MapScene online_scene(const Map& mapped) {
   MapScene online = scene_of(mapped);
   for (ScenePoint& point : online.points) point.origin = Origin::online;
   for (SceneKeyframe& keyframe : online.keyframes) keyframe.origin = Origin::online;
@@ -54,11 +54,11 @@ DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const Pl
                                  options.heights};
   MissionPainter painter(painting, *recording, first, background);
   MapRunHooks hooks;
-  hooks.look = [&painter](const RunView& run) { painter.look(run); };
+  hooks.on_frame = [&painter](const RunView& run) { painter.add(run); };
   limit_image_threads(1);
   const InterruptCatcher interrupt;
   MapRun run = run_with_progress(*recording, run_options(options, std::move(stored)), hooks, interrupt, options.quiet);
-  return {painter.finish(), scene_beside(run.map), std::move(run.warnings), interrupt.caught()};
+  return {painter.finish(), online_scene(run.map), std::move(run.warnings), interrupt.caught()};
 }
 
 }  // namespace byre::cli

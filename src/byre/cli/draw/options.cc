@@ -119,7 +119,7 @@ void require_extension(const std::optional<fs::path>& file, const char* option,
 }
 
 void require_consistent(const DrawOptions& options) {
-  require_sense(options.range);
+  require_valid(options.range);
   if (options.outputs().empty()) {
     throw CLI::ValidationError("draw", "give a file to draw: --plan-picture (-o), --camera-picture or --video");
   }
@@ -131,7 +131,7 @@ void require_consistent(const DrawOptions& options) {
 }  // namespace
 
 std::vector<fs::path> DrawOptions::outputs() const {
-  return asked_for({plan_picture, camera_picture, video});
+  return given_paths({plan_picture, camera_picture, video});
 }
 
 void declare_draw_options(CLI::App& command, DrawOptions& options) {

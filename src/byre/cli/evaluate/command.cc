@@ -93,7 +93,7 @@ bool is_of_kitti(const fs::path& truth) {
 void write_plot(const EvaluateOptions& options, const EvaluationReport& report, const Trajectory& estimate,
                 const Trajectory& truth) {
   if (!report.ate) throw std::runtime_error("the estimate cannot be aligned, so it is not drawn");
-  write_whole(*options.plot, evaluation_plot(report, estimate, truth, is_of_kitti(options.truth)));
+  write_atomically(*options.plot, evaluation_plot(report, estimate, truth, is_of_kitti(options.truth)));
 }
 
 void run_evaluate(const EvaluateOptions& options, std::ostream& result) {

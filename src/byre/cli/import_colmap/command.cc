@@ -72,7 +72,7 @@ ExitCode run_import(const ImportCommandOptions& options, std::ostream& result) {
   const ColmapImport imported = run_with_progress(model, options, interrupt);
   if (!options.quiet) show_warnings(std::cerr, imported.warnings);
   if (interrupt.caught()) return ExitCode::interrupted;  // no incomplete model
-  save_for_use(imported.stored, vocabulary, options.site, options.map);
+  save_for_missions(imported.stored, vocabulary, options.site, options.map);
   result << to_text(imported) << "map                " << printable(options.map.string()) << "\n";
   return ExitCode::done;
 }

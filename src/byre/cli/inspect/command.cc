@@ -35,7 +35,7 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
   const std::string name = options.map.string();
   const std::vector<std::byte> bytes = read_file(options.map);
   const StoredMap stored = read_map(bytes, name);
-  if (options.points) write_whole(*options.points, point_cloud(stored.map));
+  if (options.points) write_atomically(*options.points, point_cloud(stored.map));
   const MapInspection inspection = inspect(stored);
   const InspectedFile file{name, bytes.size(), section_sizes(bytes, name)};
   result << (options.json ? to_json(stored, inspection, file) : to_text(stored, inspection, file));

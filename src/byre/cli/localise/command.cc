@@ -187,7 +187,7 @@ Action declare_localise(CLI::App& command) {
       ->type_name("FILE");
   command.add_flag("--json", options->json, "Print the result as JSON, with every frame");
   command.add_flag("--quiet", options->quiet, "Show no progress");
-  check_when_parsed(command, [options] { require_sense(options->range); });
+  check_when_parsed(command, [options] { require_valid(options->range); });
   command.footer(kLocaliseFooter);
   return [options](std::ostream& result) { return run_localise(*options, result); };
 }

@@ -10,8 +10,8 @@
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/input/output_file.h"
-#include "byre/map/known_calibration.h"
 #include "byre/map/map_file.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/playback/autosave.h"
 #include "byre/slam/online_copy.h"
 #include "byre/system/stored_map.h"
@@ -35,15 +35,15 @@ struct MapRecord {
 };
 
 // Saves the map; then `offline` equals the map read from the file.
-void save(Map& offline, const KeptWithMap& kept, const MapRecord& record) {
-  const auto& [calibration, mounting, metres_sigma] = kept;
+void save(Map& offline, const SavedEstimates& estimates, const MapRecord& record) {
+  const auto& [calibration, extrinsics, scale_sigma] = estimates;
   StoredMap stored = record.about;
-  note_mounting(mounting, stored.notes);
-  if (metres_sigma) stored.notes[kMetresNote] = metres_note(*metres_sigma);
+  write_odometry_calibration(extrinsics, stored.notes);
+  if (scale_sigma) stored.notes[kMetresNote] = metres_note(*scale_sigma);
   if (calibration) stored.recordings.back().refined = calibration;
   stored.map = std::exchange(offline, Map(Origin::offline));
   try {
-    save_for_use_and_reread(stored, *record.vocabulary, record.site, record.path);
+    save_for_missions_and_reload(stored, *record.vocabulary, record.site, record.path);
   } catch (...) {
     offline = std::move(stored.map);
     throw;
@@ -54,17 +54,19 @@ void save(Map& offline, const KeptWithMap& kept, const MapRecord& record) {
 MapRun run_and_autosave(RunInput& input, const EngineOptions& run_options, const MapOptions& options,
                         const MapRecord& record, std::optional<Map> before, RecordFile& messages,
                         const InterruptCatcher& interrupt) {
-  Autosave autosave(options.autosave_s.value_or(0.0), [&record](const Map& online, const KeptWithMap& kept) {
+  Autosave autosave(options.autosave_s.value_or(0.0), [&record](const Map& online, const SavedEstimates& estimates) {
     Map offline = offline_copy(online);
-    save(offline, kept, record);
+    save(offline, estimates, record);
   });
   MapRunHooks hooks;
-  if (messages.is_wanted()) hooks.look = [&messages](const RunView& view) { messages.note(view); };
+  if (messages.is_wanted()) hooks.on_frame = [&messages](const RunView& view) { messages.note(view); };
   hooks.after_frame = [&messages](int, const MappedFrame& frame) {
-    if (!frame.report) messages.note_unread(frame);
+    if (!frame.report) messages.note_unreadable(frame);
   };
   if (options.autosave_s) {
-    hooks.offer_map = [&autosave](const Map& online, const KeptWithMap& kept) { autosave.offer(online, kept); };
+    hooks.on_map_update = [&autosave](const Map& online, const SavedEstimates& estimates) {
+      autosave.update(online, estimates);
+    };
   }
   MapRun run = input.run(run_options, hooks, interrupt, std::move(before));
   autosave.finish();
@@ -73,11 +75,11 @@ MapRun run_and_autosave(RunInput& input, const EngineOptions& run_options, const
 }
 
 void write_results(const MapOptions& options, const MapRun& run, const MapProtocol& protocol,
-                   const ResourceUse& resources, OutputWriter& outputs) {
+                   const ResourceUsage& resources, OutputWriter& outputs) {
   outputs.attempt(options.trajectory, run.final, options.trajectory_format);
   outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
   outputs.attempt([&] {
-    if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources));
+    if (options.stats) write_atomically(*options.stats, to_json(run, protocol, resources));
   });
 }
 
@@ -93,7 +95,7 @@ std::optional<Map> take_extended(const MapOptions& options, MapRecord& record) {
 
 // A recording with the calibration of an earlier recording shares its refined calibration.
 void take_known_calibration(std::vector<SourceRecording>& recordings) {
-  recordings.back().refined = known_calibration(recordings, recordings.back().calibration);
+  recordings.back().refined = stored_calibration(recordings, recordings.back().calibration);
 }
 
 MapRecord record_of(const MapOptions& options) {
@@ -109,10 +111,10 @@ MapProtocol protocol_of(const MapOptions& options, const MapRecord& record, cons
   MapProtocol protocol;
   input.describe(protocol);
   protocol.options = options.engine_options();
-  protocol.options.known = record.about.recordings.back().refined;
+  protocol.options.refined_calibration = record.about.recordings.back().refined;
   const std::vector<SourceRecording>& all = record.about.recordings;
-  protocol.options.mounting =
-      mounting_for(mounting_in(record.about.notes), {all.begin(), all.end() - 1}, all.back().calibration);
+  protocol.options.extrinsics = odometry_calibration_for(read_odometry_calibration(record.about.notes),
+                                                         {all.begin(), all.end() - 1}, all.back().calibration);
   protocol.options.session.recording = static_cast<int>(record.about.recordings.size()) - 1;
   if (!options.no_loops) protocol.options.vocabulary = record.vocabulary;
   if (options.extended) protocol.extended = options.extended->string();
@@ -141,14 +143,14 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   messages.finish(run);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (const auto warning = calibration_warning(run.calibration, run.row_error)) show_warnings(std::cerr, {*warning});
-  const ResourceUse resources = resources_used_so_far();
+  const ResourceUsage resources = resource_usage();
   input.note_times(run, record.about.recordings.back());
   input.note_frames(run, protocol);
   record.about.scale = run.is_metric ? MapScale::metric : MapScale::unknown;
   if (run.final.empty()) options.map.reset();  // nothing to save
   OutputWriter outputs;
   outputs.attempt([&] {
-    if (options.map) save(run.map, {run.calibration, run.told.to_keep, run.told.metres_sigma}, record);
+    if (options.map) save(run.map, {run.calibration, run.motion.calibration_to_store, run.motion.scale_sigma}, record);
   });
   write_results(options, run, protocol, resources, outputs);
   outputs.require_written();

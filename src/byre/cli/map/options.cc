@@ -82,7 +82,7 @@ void require_consistent_extension(const MapOptions& options) {
 }
 
 void require_consistent(const MapOptions& options) {
-  require_sense(options.range);
+  require_valid(options.range);
   require_one_input(options.recording, options.live, options.open);
   if (options.live.is_wanted() && options.given_poses) {
     throw CLI::ValidationError("--poses", "are of a recording, which excludes --live");
@@ -110,7 +110,7 @@ void require_consistent(const MapOptions& options) {
 }  // namespace
 
 std::vector<fs::path> MapOptions::outputs() const {
-  return asked_for({map, trajectory, causal_trajectory, stats, record});
+  return given_paths({map, trajectory, causal_trajectory, stats, record});
 }
 
 EngineOptions MapOptions::engine_options() const {

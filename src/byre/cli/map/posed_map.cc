@@ -56,7 +56,7 @@ ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
   stored.map = run.map;
   stored.recordings = {describe_source(options.recording, *recording)};
   stored.pose_source = PoseSource::given;
-  save_for_use(std::move(stored), vocabulary, options.site, *options.map);
+  save_for_missions(std::move(stored), vocabulary, options.site, *options.map);
   result << to_text(run, options);
   if (interrupt.caught()) return ExitCode::interrupted;
   require_frames(run.unreadable, run.frames, run.warnings);

@@ -67,9 +67,9 @@ ExitCode run_node(const NodeOptions& options, std::ostream& result) {
   const NodeConfig config = sound_config(options);
   limit_image_threads(1);
   const InterruptCatcher interrupt;
-  NodeLogger logger(std::cerr, is_journal_read());
+  NodeLogger logger(std::cerr, is_connected_to_journal());
   const NodeLog log = [&logger, is_quiet = options.quiet](LogLevel level, const std::string& line) {
-    if (!is_quiet) logger.tell(level, line, std::chrono::steady_clock::now().time_since_epoch());
+    if (!is_quiet) logger.log(level, line, std::chrono::steady_clock::now().time_since_epoch());
   };
   apply_process_settings(config, log);
   Node node(config, network_of(options), program_environment()("CYCLONEDDS_URI").value_or(""), log);

@@ -39,19 +39,19 @@ Repeats the last step of "byre map": searches for loops, adjusts all keyframes a
 points and redundant keyframes. Without -o the map is replaced, completely or not at all. Given or imported poses are
 adjusted too. Ctrl-C keeps the result so far, with exit code 130.)";
 
-std::string to_text(const RefineOptions& options, const Finishing& finishing) {
+std::string to_text(const RefineOptions& options, const FinishResult& finishing) {
   const MapQuality& after = finishing.report.after;
   return row("map", fmt::format("{}: {} keyframes, {} points", options.map.string(), after.keyframes, after.points)) +
          byre::to_text(finishing) + row("written", options.written().string());
 }
 
-std::string to_json(const RefineOptions& options, const Finishing& finishing) {
+std::string to_json(const RefineOptions& options, const FinishResult& finishing) {
   nlohmann::ordered_json json = {{"program", "byre refine"},
                                  {"version", BYRE_VERSION},
                                  {"map", options.map.string()},
                                  {"written", options.written().string()}};
   json["finishing"] = byre::to_json(finishing);
-  return dumped(json, 2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
@@ -60,8 +60,8 @@ ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
   StoredMap stored = load_for_mapping(options.map, vocabulary);
 
   const InterruptCatcher interrupt;
-  const Finishing finishing = refine_map(stored, vocabulary, finish_hooks(interrupt, options.quiet));
-  save_for_use(std::move(stored), vocabulary, "", options.written());
+  const FinishResult finishing = refine_map(stored, vocabulary, finish_hooks(interrupt, options.quiet));
+  save_for_missions(std::move(stored), vocabulary, "", options.written());
   result << (options.json ? to_json(options, finishing) : to_text(options, finishing));
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }

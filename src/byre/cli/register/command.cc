@@ -26,7 +26,7 @@ struct RegisterCommandOptions {
   fs::path picks;
   std::optional<fs::path> output;
   RegisterOptions registering;
-  std::optional<double> accepted_residual;  // metres; empty: kFarOffPlan
+  std::optional<double> accepted_residual;  // metres; empty: kLargePlanResidual
   bool fix_scale = false;
   bool json = false;
 };
@@ -46,15 +46,15 @@ baseline: --fix-scale corrects both, if the plan is to scale. Doubts are reporte
 is off its plan by more than half a metre is not written unless --accept-residual allows it.
 docs/reference/floor_plan.md describes the files and the figures.)";
 
-MendedMap register_as_asked(const RegisterCommandOptions& options, const FloorPlan& plan) {
+ScaleCorrectedMap register_with_options(const RegisterCommandOptions& options, const FloorPlan& plan) {
   StoredMap stored = load_map(options.map);
-  if (options.fix_scale) return mend_scale(std::move(stored), options.map, plan, options.picks, options.registering);
+  if (options.fix_scale) return correct_scale(std::move(stored), options.map, plan, options.picks, options.registering);
   Registering registering = register_map(stored, options.map, plan, options.picks, options.registering);
   return {std::move(stored), std::move(registering), 1.0};
 }
 
 bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) {
-  return residual_of(fit) <= options.accepted_residual.value_or(kFarOffPlan);
+  return residual_of(fit) <= options.accepted_residual.value_or(kLargePlanResidual);
 }
 
 [[noreturn]] void refuse_to_write(const PlanFit& fit, const RegisterCommandOptions& options) {
@@ -72,7 +72,7 @@ bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) 
 ExitCode run_register(const RegisterCommandOptions& options, std::ostream& result) {
   if (options.output) require_writable(*options.output);
   const FloorPlan plan = read_floor_plan(options.plan);
-  const MendedMap registered = register_as_asked(options, plan);
+  const ScaleCorrectedMap registered = register_with_options(options, plan);
   const PlanFit& fit = registered.registering.fit;
   const bool is_kept = options.output && is_close_enough(fit, options);
   if (is_kept) {

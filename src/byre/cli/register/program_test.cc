@@ -108,19 +108,19 @@ TEST_F(RegisterProgram, CorrectsTheScaleOfAStereoMapOnce) {
   EXPECT_THAT(once.output,
               ContainsRegex("scale        the map was 1\\.6. % \\+- 0\\.0. % too large: lengths and baseline are "
                             "scaled by 0\\.98.*\n"));
-  const StoredMap mended = load_map(folder_ / "mended.byre");
-  EXPECT_NEAR(mended.map.rigs()[0].baseline * 1.016, before.map.rigs()[0].baseline, 1e-4);
-  EXPECT_EQ(mended.plan.value().plan_from_map.scale, 1.0);
-  EXPECT_EQ(mended.recordings[0].calibration.right->right_from_left.translation.x(), -0.11) << "as it was given";
-  const Eigen::Vector3d far = body_at(mended.map, *mended.map.find_keyframe({Origin::offline, 39}));
-  EXPECT_THAT(mended.plan->plan_from_map * far, PointNear(Eigen::Vector3d(40.0, -1.0, 0.0), 0.03));
+  const StoredMap corrected = load_map(folder_ / "mended.byre");
+  EXPECT_NEAR(corrected.map.rigs()[0].baseline * 1.016, before.map.rigs()[0].baseline, 1e-4);
+  EXPECT_EQ(corrected.plan.value().plan_from_map.scale, 1.0);
+  EXPECT_EQ(corrected.recordings[0].calibration.right->right_from_left.translation.x(), -0.11) << "as it was given";
+  const Eigen::Vector3d far = body_at(corrected.map, *corrected.map.find_keyframe({Origin::offline, 39}));
+  EXPECT_THAT(corrected.plan->plan_from_map * far, PointNear(Eigen::Vector3d(40.0, -1.0, 0.0), 0.03));
 
   const Outcome twice = run("register mended.byre" + arguments + " --fix-scale --json -o again.byre");
   const json report = json::parse(twice.output);
   EXPECT_EQ(report.at("scaled_by"), 1.0);
   EXPECT_LT(std::abs(report.at("measured_scale").at("too_large_percent").get<double>()), 0.1);
   EXPECT_FALSE(report.at("measured_scale").at("differs").get<bool>());
-  EXPECT_EQ(load_map(folder_ / "again.byre").map.rigs()[0].baseline, mended.map.rigs()[0].baseline);
+  EXPECT_EQ(load_map(folder_ / "again.byre").map.rigs()[0].baseline, corrected.map.rigs()[0].baseline);
   EXPECT_THAT(run("register mended.byre" + arguments + " --fix-scale -o again.byre").output,
               HasSubstr("scale        no correction needed: "));
   EXPECT_EQ(run("validate mended.byre").exit_code, 0);

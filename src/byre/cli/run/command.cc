@@ -1,5 +1,5 @@
 #include "byre/assessment/event_log.h"
-#include "byre/assessment/mission_judge.h"
+#include "byre/assessment/mission_evaluation.h"
 #include "byre/assessment/record_file.h"
 #include "byre/assessment/run_report.h"
 #include "byre/cli/commands.h"
@@ -39,8 +39,8 @@ std::optional<MissionTruth> load_truths(const RunOptions& options) {
   if (!options.truth) return std::nullopt;
   const Timestamp offset = from_seconds(options.time_offset_s);
   MissionTruth truth;
-  truth.of_frames = load_truth_later_by(*options.truth, offset);
-  truth.of_map = options.map_truth ? load_truth_later_by(*options.map_truth, offset) : truth.of_frames;
+  truth.frames = load_truth_later_by(*options.truth, offset);
+  truth.map = options.map_truth ? load_truth_later_by(*options.map_truth, offset) : truth.frames;
   if (options.map_trajectory) truth.map_run = load_trajectory(*options.map_trajectory, {});
   if (options.align_scale) truth.map_scale = Scale::free;
   return truth;
@@ -107,7 +107,7 @@ MapRun run_and_log(RunInput& input, const MapProtocol& protocol, WatchedRunViewe
                    RecordFile& record, const InterruptCatcher& interrupt) {
   MapRunHooks hooks;
   if (viewer != nullptr || record.is_wanted()) {
-    hooks.look = [&record, viewer](const RunView& view) {
+    hooks.on_frame = [&record, viewer](const RunView& view) {
       if (viewer != nullptr) viewer->note(view);
       record.note(view);
     };
@@ -115,8 +115,8 @@ MapRun run_and_log(RunInput& input, const MapProtocol& protocol, WatchedRunViewe
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     events.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
     if (frame.report) return;
-    record.note_unread(frame);
-    if (viewer != nullptr) viewer->note_unread(frame);
+    record.note_unreadable(frame);
+    if (viewer != nullptr) viewer->note_unreadable(frame);
   };
   return input.run(protocol.options, hooks, interrupt);
 }
@@ -128,18 +128,18 @@ void save_online_map(const MapRun& run, const RunOptions& options, const RunInpu
   stored.recordings = {input.source()};
   input.note_times(run, stored.recordings.back());
   stored.recordings.back().refined = run.calibration;
-  note_mounting(run.told.to_keep, stored.notes);
+  write_odometry_calibration(run.motion.calibration_to_store, stored.notes);
   stored.scale = input.scaled().is_metric ? MapScale::metric : MapScale::unknown;
-  save_for_use(std::move(stored), vocabulary, "", *options.online_map);
+  save_for_missions(std::move(stored), vocabulary, "", *options.online_map);
 }
 
 void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol,
-                   const MissionOutcome& mission, const ResourceUse& resources, OutputWriter& outputs) {
+                   const MissionOutcome& mission, const ResourceUsage& resources, OutputWriter& outputs) {
   outputs.attempt(options.trajectory, run.final, options.trajectory_format);
   outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
   outputs.attempt(options.odometry, run.odometry, options.trajectory_format);
   outputs.attempt([&] {
-    if (options.stats) write_whole(*options.stats, to_json(run, protocol, resources, mission));
+    if (options.stats) write_atomically(*options.stats, to_json(run, protocol, resources, mission));
   });
 }
 
@@ -170,8 +170,8 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   outputs.attempt([&] {
     if (options.online_map) save_online_map(run, options, input, *protocol.options.vocabulary);
   });
-  const ResourceUse resources = resources_used_so_far();
-  const MissionOutcome mission = judge_mission(run, protocol.options, truth, input.scaled());
+  const ResourceUsage resources = resource_usage();
+  const MissionOutcome mission = evaluate_mission(run, protocol.options, truth, input.scaled());
   input.note_frames(run, protocol);
   if (protocol.plan) run = on_plan(std::move(run), *protocol.plan);
   write_results(options, run, protocol, mission, resources, outputs);

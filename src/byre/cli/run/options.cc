@@ -102,7 +102,7 @@ void declare_outputs(CLI::App& command, RunOptions& options) {
 }
 
 void require_consistent(const RunOptions& options) {
-  require_sense(options.range);
+  require_valid(options.range);
   require_one_input(options.recording, options.live, options.open);
   if (options.live.is_wanted() && options.truth) {
     throw CLI::ValidationError("--truth",
@@ -132,7 +132,7 @@ void declare_tracking(CLI::App& command, RunOptions& options) {
 }  // namespace
 
 std::vector<fs::path> RunOptions::outputs() const {
-  return asked_for({online_map, events, trajectory, causal_trajectory, odometry, stats, record});
+  return given_paths({online_map, events, trajectory, causal_trajectory, odometry, stats, record});
 }
 
 EngineOptions RunOptions::engine_options() const {
@@ -153,7 +153,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_live_options(command, options.live);
   declare_pace(command, options.pace);
   declare_tracking(command, options);
-  declare_watching(command, options.view);
+  declare_run_viewer_options(command, options.view);
   declare_trajectory_format(command, options.trajectory_format);
   declare_recording(command, options.record, options.record_images);
   declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });

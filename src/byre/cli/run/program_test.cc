@@ -4,7 +4,7 @@
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/scaled_copy.h"
-#include "byre/motion/known_mounting.h"
+#include "byre/motion/odometry_calibration.h"
 #include "byre/simulation/rendered_fixture.h"
 #include "byre/slam/state.h"
 #include "byre/trajectory_file.h"
@@ -280,9 +280,9 @@ TEST_F(MissionProgram, SavesTheOnlineMap) {
 TEST_F(MissionProgram, StoresWheelExtrinsicsInTheSavedMap) {
   map_room("--frames 0:6", "corner.byre");
   StoredMap stored = load_map(folder_ / "corner.byre");
-  KnownMounting known;
+  OdometryCalibration known;
   known.wheels.emplace().metres_per_unit = 1.02;
-  note_mounting(known, stored.notes);
+  write_odometry_calibration(known, stored.notes);
   save_map(stored, folder_ / "corner.byre");
   ASSERT_EQ(run_room("--map corner.byre --frames 3: --save-online online.byre").exit_code, 0);
   EXPECT_EQ(load_map(folder_ / "online.byre").notes, stored.notes);

@@ -49,7 +49,7 @@ int exit_code_of_interrupt() {
   return kSignalled + (noted_signal == 0 ? SIGINT : noted_signal.load());
 }
 
-void let_writing_fail() {
+void ignore_write_signals() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 

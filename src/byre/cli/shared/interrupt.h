@@ -27,6 +27,6 @@ int exit_code_of_interrupt();
 
 // From now on, writing to a closed pipe or beyond the file size limit fails, instead of ending the program before its
 // other outputs are written.
-void let_writing_fail();
+void ignore_write_signals();
 
 }  // namespace byre::cli

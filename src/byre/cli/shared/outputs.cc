@@ -24,7 +24,7 @@ void OutputWriter::require_written() const {
   if (first_failure_) std::rethrow_exception(first_failure_);
 }
 
-std::vector<std::filesystem::path> asked_for(std::initializer_list<std::optional<std::filesystem::path>> files) {
+std::vector<std::filesystem::path> given_paths(std::initializer_list<std::optional<std::filesystem::path>> files) {
   std::vector<std::filesystem::path> asked;
   for (const auto& file : files) {
     if (file) asked.push_back(*file);

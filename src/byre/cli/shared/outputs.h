@@ -25,7 +25,7 @@ class OutputWriter {
 };
 
 // Files with a given path, in order.
-std::vector<std::filesystem::path> asked_for(std::initializer_list<std::optional<std::filesystem::path>> files);
+std::vector<std::filesystem::path> given_paths(std::initializer_list<std::optional<std::filesystem::path>> files);
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
 

@@ -3,7 +3,7 @@
 #include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
-#include "byre/dataset/recording_words.h"
+#include "byre/dataset/recording_options.h"
 #include "byre/geometry/baseline.h"
 #include "byre/input/text_file.h"
 
@@ -96,7 +96,7 @@ void declare_frame_range(CLI::App& command, FrameRange& range) {
       ->capture_default_str();
 }
 
-void require_sense(const FrameRange& range) {
+void require_valid(const FrameRange& range) {
   if (range.start_s && range.end_s && *range.start_s >= *range.end_s) {
     throw CLI::ValidationError("--start", "must be less than --end");
   }

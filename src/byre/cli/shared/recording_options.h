@@ -23,7 +23,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options);
 void declare_frame_range(CLI::App& command, FrameRange& range);
 
 // Throws CLI::ValidationError for an empty range.
-void require_sense(const FrameRange& range);
+void require_valid(const FrameRange& range);
 
 // --pace. The pace must outlive the parsing of the command line.
 void declare_pace(CLI::App& command, std::optional<Pace>& pace);

@@ -24,7 +24,7 @@ constexpr const char* kLiveName = "live";
 
 // Monocular mapping uses the camera as the body, as open_scaled does for recordings.
 Calibration scaled_calibration(Calibration calibration, bool has_metric_map, ScaledRecording& scaled) {
-  if (has_metric_map || calibration.tells_metres()) return calibration;
+  if (has_metric_map || calibration.is_metric()) return calibration;
   scaled.is_metric = false;
   scaled.body_from_camera = calibration.body_from_left;
   calibration.body_from_left = {};
@@ -67,14 +67,14 @@ RunInput::RunInput(Choice choice) : choice_(std::move(choice)) {
   }
   const std::filesystem::path& file = *choice_.open.calibration;
   // Shown even if quiet, as it needs attention.
-  const auto tell = [](const std::string& note) {
+  const auto on_note = [](const std::string& note) {
     show_warnings(std::cerr, {note});
   };  // shown even if quiet, as it needs attention
   const Calibration calibration =
       with_checked_baseline(read_calibration(file), choice_.open.baseline, file.string(), "--baseline ");
   live_ = std::make_unique<LiveFrames>(choice_.live.cameras.live(),
                                        scaled_calibration(calibration, choice_.has_metric_map, scaled_), file.string(),
-                                       choice_.live.duration_s, tell);
+                                       choice_.live.duration_s, on_note);
 }
 
 const Calibration& RunInput::calibration() const {
@@ -146,7 +146,7 @@ MapRun RunInput::run(const EngineOptions& options, const MapRunHooks& hooks, con
 std::string RunInput::report() {
   if (!live_) return "";
   const LiveCameraReport cameras = live_->finish();
-  return to_text(cameras) + row("skipped", fmt::format("{} frames, replaced by newer ones", live_->passed_over()));
+  return to_text(cameras) + row("skipped", fmt::format("{} frames, replaced by newer ones", live_->skipped()));
 }
 
 }  // namespace byre::cli

@@ -52,8 +52,8 @@ MapRun run_source(Source& source, int frames, const EngineOptions& options, cons
   const FinishHooks finishing = finish_hooks(interrupt, quiet);
   MapRunHooks hooks;
   hooks.should_stop = finishing.should_stop;
-  hooks.look = more_hooks.look;
-  hooks.offer_map = more_hooks.offer_map;
+  hooks.on_frame = more_hooks.on_frame;
+  hooks.on_map_update = more_hooks.on_map_update;
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     if (more_hooks.after_frame) more_hooks.after_frame(done, frame);
     const bool is_mission = options.offline != nullptr;

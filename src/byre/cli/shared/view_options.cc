@@ -29,7 +29,7 @@ CLI::Option* declare_plan(CLI::App& command, ViewOptions& options, const std::st
 
 }  // namespace
 
-void declare_watching(CLI::App& command, ViewOptions& options) {
+void declare_run_viewer_options(CLI::App& command, ViewOptions& options) {
   CLI::Option* const view =
       declare_port(command, "--view", options.server.port, "Show the run in a browser, served at this port")
           ->expected(0, 1)
@@ -47,7 +47,7 @@ void declare_watching(CLI::App& command, ViewOptions& options) {
                "--view shows it below the map");
 }
 
-void declare_viewing(CLI::App& command, ViewOptions& options) {
+void declare_viewer_options(CLI::App& command, ViewOptions& options) {
   options.is_wanted = true;
   declare_port(command, "--port", options.server.port, "Port to serve the page at");
   declare_address(command, options);

@@ -22,9 +22,9 @@ struct ViewOptions {
 // The options must outlive the parsing of the command line.
 
 // --view [PORT], --view-for, --bind and --plan of a command with a run.
-void declare_watching(CLI::App& command, ViewOptions& options);
+void declare_run_viewer_options(CLI::App& command, ViewOptions& options);
 
 // --port, --bind and --plan of "byre view".
-void declare_viewing(CLI::App& command, ViewOptions& options);
+void declare_viewer_options(CLI::App& command, ViewOptions& options);
 
 }  // namespace byre::cli

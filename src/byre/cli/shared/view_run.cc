@@ -45,7 +45,7 @@ bool has_terminal() {
 RunViewer start_viewer(const ViewOptions& options, const WatchedRun& run) {
   RunViewerOptions viewer_options;
   viewer_options.server = options.server;
-  allow_many_descriptors();
+  raise_descriptor_limit();
   return RunViewer(describe(options, run), viewer_options);
 }
 
@@ -69,8 +69,8 @@ void WatchedRunViewer::note(const RunView& view) {
   viewer_.show(view.images.left, *view.frame.report, view.session);
 }
 
-void WatchedRunViewer::note_unread(const MappedFrame& frame) {
-  messages_.note_unread(frame);
+void WatchedRunViewer::note_unreadable(const MappedFrame& frame) {
+  messages_.note_unreadable(frame);
 }
 
 void WatchedRunViewer::finish(const MapRun& run) {

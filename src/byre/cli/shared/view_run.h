@@ -31,8 +31,8 @@ class WatchedRunViewer {
   WatchedRunViewer(const ViewOptions& options, const WatchedRun& run);
 
   // Call one of both after each frame, in order.
-  void note(const RunView& view);              // frame with readable images
-  void note_unread(const MappedFrame& frame);  // frame with unreadable images
+  void note(const RunView& view);                  // frame with readable images
+  void note_unreadable(const MappedFrame& frame);  // frame with unreadable images
 
   void finish(const MapRun& run);  // no more frames follow
 

@@ -73,20 +73,20 @@ nlohmann::ordered_json imperfection_json(const CameraImperfection& camera) {
 }
 
 std::string to_json(const SimulateOptions& options, const Rendering& rendering) {
-  return dumped({{"program", "byre simulate"},
-                 {"version", BYRE_VERSION},
-                 {"scene", "cowshed"},
-                 {"recording", options.output.string()},
-                 {"seed", options.recording.barn.seed},
-                 {"mission", options.recording.barn.mission},
-                 {"turn", options.recording.turn == TurnKind::spot ? "spot" : "arc"},
-                 {"light", options.recording.night.light},
-                 {"headlight", options.recording.night.headlight},
-                 {"imperfection", imperfection_json(options.recording.camera)},
-                 {"frames", rendering.frames},
-                 {"preparing_s", rendering.preparing_s},
-                 {"rendering_s", rendering.rendering_s}},
-                2) +
+  return dump_json({{"program", "byre simulate"},
+                    {"version", BYRE_VERSION},
+                    {"scene", "cowshed"},
+                    {"recording", options.output.string()},
+                    {"seed", options.recording.barn.seed},
+                    {"mission", options.recording.barn.mission},
+                    {"turn", options.recording.turn == TurnKind::spot ? "spot" : "arc"},
+                    {"light", options.recording.night.light},
+                    {"headlight", options.recording.night.headlight},
+                    {"imperfection", imperfection_json(options.recording.camera)},
+                    {"frames", rendering.frames},
+                    {"preparing_s", rendering.preparing_s},
+                    {"rendering_s", rendering.rendering_s}},
+                   2) +
          "\n";
 }
 
@@ -231,7 +231,7 @@ Action declare_simulate(CLI::App& command) {
   cowshed.add_flag("--quiet", options->quiet, "Show no progress");
   cowshed.footer(kSimulateFooter);
   return [options](std::ostream& result) {
-    options->recording.camera = asked_for(options->imperfection);
+    options->recording.camera = make_imperfection(options->imperfection);
     if (options->has_motion) options->recording.motion = options->motion;
     return run_simulate(*options, result);
   };

@@ -57,7 +57,7 @@ void declare_imperfection(CLI::App& command, ImperfectionOptions& options) {
   add_number(command, "--jpeg", options.jpeg_quality, {1, 100}, "QUALITY", "Store images as JPEG of this quality");
 }
 
-CameraImperfection asked_for(const ImperfectionOptions& options) {
+CameraImperfection make_imperfection(const ImperfectionOptions& options) {
   constexpr double kSecondsPerMillisecond = 1e-3;
   CameraImperfection imperfection = imperfection_of(options.condition.value_or(CameraCondition::exact));
   replace(imperfection.calibration_level, options.calibration_level);

@@ -27,6 +27,6 @@ struct ImperfectionOptions {
 // --imperfection, --calibration-level and so on. The options must outlive the parsing of the command line.
 void declare_imperfection(CLI::App& command, ImperfectionOptions& options);
 
-CameraImperfection asked_for(const ImperfectionOptions& options);
+CameraImperfection make_imperfection(const ImperfectionOptions& options);
 
 }  // namespace byre::cli

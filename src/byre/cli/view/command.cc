@@ -3,7 +3,7 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/view_run.h"
-#include "byre/dataset/files_read.h"
+#include "byre/dataset/input_files.h"
 #include "byre/input/output_file.h"
 #include "byre/viewer/web_map.h"
 
@@ -54,7 +54,7 @@ ExitCode view(const ViewCommandOptions& options) {
   for (const fs::path& output : outputs_of(options)) require_writable(output);
   viewed.pick_sigma = options.pick_sigma;
   viewed.registration = options.registration;
-  allow_many_descriptors();
+  raise_descriptor_limit();
   const MapViewer viewer(std::move(viewed), options.view.server);
   announce(viewer.urls());
   serve_until_interrupted(interrupt, options.quiet);
@@ -77,7 +77,7 @@ void require_consistent(const ViewCommandOptions& options) {
 Action declare_view(CLI::App& command) {
   const auto options = std::make_shared<ViewCommandOptions>();
   add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
-  declare_viewing(command, options->view);
+  declare_viewer_options(command, options->view);
   CLI::Option* const output = add_output(command, Output::viewed_map, "-o,--output", options->output,
                                          "File to which the page saves the map with its registration on the plan")
                                   ->type_name("MAP")
