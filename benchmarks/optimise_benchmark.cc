@@ -4,7 +4,7 @@
 #include "byre/optimise/pose_graph_scene.h"
 #include "byre/optimise/pose_refinement.h"
 #include "byre/simulation/simulated_mission.h"
-#include "byre/slam/mission_scene.h"
+#include "byre/slam/tracking/mission_scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "hot_loop.h"
 
-#include "byre/session/session.h"
 #include "byre/simulation/simulated_mission.h"
+#include "byre/slam/session/session.h"
 
 #include <map>
 #include <memory>

@@ -2,11 +2,11 @@
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/session/session.h"
 #include "byre/simulation/rendered_room.h"
 #include "byre/simulation/simulated_mission.h"
-#include "byre/slam/guided_matching.h"
-#include "byre/slam/mission_scene.h"
+#include "byre/slam/session/session.h"
+#include "byre/slam/tracking/guided_matching.h"
+#include "byre/slam/tracking/mission_scene.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,6 +1,6 @@
 #include "byre/simulation/rendered_room.h"
 #include "byre/simulation/simulated_mission.h"
-#include "byre/viewer/web_run.h"
+#include "byre/viewer/web/web_run.h"
 
 #include <utility>
 #include <vector>

@@ -31,12 +31,12 @@ function(byre_install_library)
           DESTINATION ${package_dir} COMPONENT development)
 endfunction()
 
-# byre's own data, vocabulary and benchmark protocols, at the location where input/data_file.cc searches for it.
+# byre's own data, vocabulary and benchmark protocols, at the location where base/data_file.cc searches for it.
 function(byre_install_data)
   set(folder share/byre)
   install(FILES ${folder}/default.vocabulary DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT data)
   install(DIRECTORY ${folder}/protocols DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT data)
-  set_source_files_properties(src/byre/input/data_file.cc PROPERTIES COMPILE_DEFINITIONS
+  set_source_files_properties(src/byre/base/data_file.cc PROPERTIES COMPILE_DEFINITIONS
     "BYRE_DATA_IN_PREFIX=\"${CMAKE_INSTALL_DATADIR}/byre\";BYRE_INSTALLED_DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/byre\";BYRE_SOURCE_DATA=\"${CMAKE_CURRENT_SOURCE_DIR}/${folder}\"")
 endfunction()
 

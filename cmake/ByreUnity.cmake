@@ -16,8 +16,8 @@ set(BYRE_FILES_BY_PROCESSOR features/downscale.cc features/remap.cc features/gau
     features/block_differences.cc features/align_sums.cc features/descriptor.cc features/row_costs.cc
     optimise/pose_expansion.cc)
 # Files whose objects are linked individually.
-set(BYRE_FILES_PICKED dataset/calibration_file.cc dataset/calibration_fields.cc dataset/camera_fields.cc
-    viewer/web_library.cc)
+set(BYRE_FILES_PICKED io/calibration/calibration_file.cc io/calibration/calibration_fields.cc io/calibration/camera_fields.cc
+    viewer/web/web_library.cc)
 # Files with many Eigen types, which GCC compiles twice as slowly together with others as alone.
 set(BYRE_FILES_LARGE geometry/essential.cc)
 list(TRANSFORM BYRE_FILES_BY_PROCESSOR PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)

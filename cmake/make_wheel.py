@@ -13,7 +13,7 @@ import tempfile
 
 PACKAGE_FILES = ("__init__.py", "__init__.pyi", "py.typed", "_byre.*.so")
 VOCABULARY = "default.vocabulary"
-DATA_FOLDER = pathlib.Path("share") / "byre"  # next to the module, where input/data_file.cc searches for it
+DATA_FOLDER = pathlib.Path("share") / "byre"  # next to the module, where base/data_file.cc searches for it
 
 METADATA = """\
 Metadata-Version: 2.1

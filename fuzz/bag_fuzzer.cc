@@ -1,10 +1,10 @@
 // Reads any bytes as a bag or a message, chosen by the first byte: damage must be reported in the bag's content or by
 // an InputError.
 
-#include "byre/bag/bag_scene.h"
-#include "byre/bag/mcap_bag.h"
-#include "byre/bag/ros1_bag.h"
 #include "byre/input_error.h"
+#include "byre/io/bag/bag_scene.h"
+#include "byre/io/bag/mcap_bag.h"
+#include "byre/io/bag/ros1_bag.h"
 
 #include <cstdint>
 

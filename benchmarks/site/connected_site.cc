@@ -1,6 +1,6 @@
 #include "connected_site.h"
 
-#include "byre/slam/mission_scene.h"
+#include "byre/slam/tracking/mission_scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,17 +4,17 @@
 #include "connected_site.h"
 #include "tiled_map.h"
 
+#include "byre/base/stopwatch.h"
 #include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/peak_memory.h"
-#include "byre/evaluation/distribution.h"
 #include "byre/features/image_threads.h"
+#include "byre/geometry/evaluation/distribution.h"
 #include "byre/input_error.h"
 #include "byre/recording.h"
-#include "byre/slam/localisation.h"
-#include "byre/system/engine.h"
-#include "byre/system/resources.h"
-#include "byre/system/stored_map.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/slam/places/localisation.h"
+#include "byre/slam/system/engine.h"
+#include "byre/slam/system/resources.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <charconv>
 #include <cstdio>

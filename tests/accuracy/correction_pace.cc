@@ -7,7 +7,7 @@
 #include "byre/features/image_threads.h"
 #include "byre/place/vocabulary.h"
 #include "byre/recording.h"
-#include "byre/session/session.h"
+#include "byre/slam/session/session.h"
 
 #include <algorithm>
 #include <chrono>

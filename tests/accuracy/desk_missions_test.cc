@@ -4,12 +4,12 @@
 
 #include "mapped_recording.h"
 
-#include "byre/dataset/trajectory_input.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
-#include "byre/slam/offline_map.h"
+#include "byre/slam/places/offline_map.h"
 
 #include <algorithm>
 #include <memory>

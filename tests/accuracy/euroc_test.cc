@@ -2,7 +2,7 @@
 
 #include "mapped_recording.h"
 
-#include "byre/dataset/trajectory_input.h"
+#include "byre/io/recording/trajectory_input.h"
 
 #include <gmock/gmock.h>
 

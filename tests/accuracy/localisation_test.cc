@@ -3,15 +3,15 @@
 
 #include "mapped_recording.h"
 
-#include "byre/dataset/image_file.h"
-#include "byre/dataset/image_fit.h"
-#include "byre/dataset/trajectory_input.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
+#include "byre/io/image/image_file.h"
+#include "byre/io/image/image_fit.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
-#include "byre/slam/localisation.h"
-#include "byre/slam/map_from_poses.h"
+#include "byre/slam/places/localisation.h"
+#include "byre/slam/window/map_from_poses.h"
 
 #include <algorithm>
 

@@ -6,11 +6,11 @@
 
 #include "mapped_recording.h"
 
-#include "byre/dataset/trajectory_input.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
-#include "byre/slam/finishing.h"
-#include "byre/slam/online_copy.h"
+#include "byre/slam/loops/finishing.h"
+#include "byre/slam/window/online_copy.h"
 #include "byre/trajectory_file.h"
 
 #include <cstdio>

@@ -2,7 +2,7 @@
 
 #include "byre/place/vocabulary.h"
 #include "byre/recording.h"
-#include "byre/session/session.h"
+#include "byre/slam/session/session.h"
 #include "byre/trajectory_error.h"
 
 #include <filesystem>

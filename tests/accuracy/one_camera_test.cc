@@ -3,8 +3,8 @@
 
 #include "mapped_recording.h"
 
-#include "byre/dataset/trajectory_input.h"
 #include "byre/features/extract.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/place/map_words.h"
 #include "byre/place/vocabulary.h"
 #include "byre/simulation/rendered_room.h"

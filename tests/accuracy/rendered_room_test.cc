@@ -3,7 +3,7 @@
 
 #include "mapped_recording.h"
 
-#include "byre/dataset/trajectory_input.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/simulation/rendered_room.h"
 #include "byre/simulation/simulated_trajectory.h"
 

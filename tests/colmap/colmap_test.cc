@@ -1,8 +1,8 @@
 // Round trip of a map through a COLMAP model and COLMAP's own programs.
 
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/dataset/colmap_model.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/io/colmap/colmap_model.h"
 #include "byre/map/map_file.h"
 #include "byre/simulation/rendered_room.h"
 #include "byre/simulation/simulated_trajectory.h"

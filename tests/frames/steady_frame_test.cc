@@ -3,8 +3,8 @@
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/session/session.h"
 #include "byre/simulation/simulated_mission.h"
+#include "byre/slam/session/session.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,16 +2,16 @@
 
 #include "mapped_recording.h"
 
-#include "byre/dataset/trajectory_input.h"
-#include "byre/evaluation/map_frame_error.h"
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
+#include "byre/geometry/evaluation/map_frame_error.h"
 #include "byre/input_error.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/map/keyframe_path.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
-#include "byre/slam/map_from_poses.h"
-#include "byre/system/engine.h"
+#include "byre/slam/system/engine.h"
+#include "byre/slam/window/map_from_poses.h"
 
 #include <algorithm>
 #include <cstdlib>

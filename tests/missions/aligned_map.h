@@ -4,7 +4,7 @@
 
 #include "byre/alignment.h"
 #include "byre/recording.h"
-#include "byre/slam/offline_map.h"
+#include "byre/slam/places/offline_map.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "mission_case.h"
 
 #include "byre/features/image_threads.h"
-#include "byre/system/engine.h"
+#include "byre/slam/system/engine.h"
 
 #include <filesystem>
 #include <map>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/alignment.h"
-#include "byre/session/session.h"
+#include "byre/slam/session/session.h"
 
 #include <optional>
 #include <span>

@@ -5,9 +5,9 @@
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/map/stored_calibration.h"
-#include "byre/slam/body_pose.h"
-#include "byre/slam/place_view.h"
-#include "byre/system/engine.h"
+#include "byre/slam/places/place_view.h"
+#include "byre/slam/system/engine.h"
+#include "byre/slam/tracking/body_pose.h"
 
 #include <algorithm>
 

@@ -19,12 +19,12 @@
 #include "start_cases.h"
 #include "start_run.h"
 
-#include "byre/dataset/trajectory_input.h"
-#include "byre/evaluation/map_frame_error.h"
+#include "byre/geometry/evaluation/map_frame_error.h"
 #include "byre/input_error.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/map/keyframe_path.h"
 #include "byre/recording.h"
-#include "byre/system/stored_map.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <algorithm>
 #include <cstdint>

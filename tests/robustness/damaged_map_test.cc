@@ -4,7 +4,7 @@
 #include "../allocations.h"
 #include "mutate_map.h"
 
-#include "byre/input/binary_file.h"
+#include "byre/base/binary_file.h"
 #include "byre/input_error.h"
 #include "byre/map/stored_map_scene.h"
 

@@ -2,7 +2,7 @@
 
 #include "system_calls.h"
 
-#include "byre/input/binary_file.h"
+#include "byre/base/binary_file.h"
 #include "byre/input_error.h"
 #include "byre/map/stored_map_scene.h"
 

@@ -1,7 +1,7 @@
 // Files of every format that byre ever wrote stay readable, and are saved in the newest. Files here never change; each
 // new format adds one.
 
-#include "byre/input/binary_file.h"
+#include "byre/base/binary_file.h"
 #include "byre/map/map_bytes_scene.h"
 #include "byre/map/map_file.h"
 #include "byre/map/stored_map_scene.h"

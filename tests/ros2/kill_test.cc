@@ -1,6 +1,6 @@
 // byre node keeps its maps intact and relocalises, whenever it is killed: BYRE_NODE_KILLS, docs/reference/ros2.md.
 
-#include "byre/input/binary_file.h"
+#include "byre/base/binary_file.h"
 #include "byre/map/map_file.h"
 #include "staying_up_scene.h"
 

@@ -1,8 +1,8 @@
 // byre node watched by a Foxglove client, on the port of /healthz and /metrics.
 
-#include "byre/ros/message_reader.h"
-#include "byre/ros/messages.h"
-#include "byre/viewer/web_client_scene.h"
+#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/messages.h"
+#include "byre/viewer/web/web_client_scene.h"
 #include "node_fixture.h"
 
 #include <map>

@@ -5,8 +5,8 @@
 // otherwise, 2 wrong usage.
 
 #include "byre/place/map_words.h"
-#include "byre/session/session.h"
-#include "byre/slam/place_scene.h"
+#include "byre/slam/places/place_scene.h"
+#include "byre/slam/session/session.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-// What byre sends as bytes, little-endian: src/byre/viewer/web_bytes.h says how they lie.
+// What byre sends as bytes, little-endian: src/byre/viewer/web/web_bytes.h says how they lie.
 
 export interface MapData {
   /** x, y, z of each point, in the map's frame. */

@@ -1,4 +1,4 @@
-// What byre sends as text: src/byre/viewer/web_json.cc and the sites (web_run.cc, web_map.cc) write these fields.
+// What byre sends as text: src/byre/viewer/web/web_json.cc and the sites (web_run.cc, web_map.cc) write these fields.
 
 /** x, y, z in metres and a quaternion x, y, z, w. */
 export type PoseFields = [number, number, number, number, number, number, number];

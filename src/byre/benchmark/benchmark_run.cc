@@ -1,12 +1,12 @@
 #include "byre/benchmark/benchmark_run.h"
 
 #include "byre/benchmark/peak_memory.h"
-#include "byre/dataset/trajectory_input.h"
 #include "byre/input_error.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/scaled_recording.h"
 #include "byre/playback/source_recording.h"
-#include "byre/system/resources.h"
-#include "byre/system/stored_map.h"
+#include "byre/slam/system/resources.h"
+#include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_file.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "byre/benchmark/chart.h"
 
-#include "byre/input/markup.h"
+#include "byre/base/markup.h"
 
 #include <algorithm>
 #include <cmath>

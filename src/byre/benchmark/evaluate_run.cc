@@ -1,8 +1,8 @@
 #include "byre/benchmark/evaluate_run.h"
 
-#include "byre/assessment/map_statistics.h"
-#include "byre/assessment/mission_errors.h"
-#include "byre/assessment/mission_statistics.h"
+#include "byre/playback/report/map_statistics.h"
+#include "byre/playback/report/mission_errors.h"
+#include "byre/playback/report/mission_statistics.h"
 
 #include <chrono>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/benchmark/measures.h"
-#include "byre/evaluation/map_frame_error.h"
+#include "byre/geometry/evaluation/map_frame_error.h"
 #include "byre/playback/map_run.h"
 
 #include <optional>

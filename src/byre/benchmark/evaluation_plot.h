@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/evaluation/evaluate.h"
+#include "byre/geometry/evaluation/evaluate.h"
 
 #include <string>
 

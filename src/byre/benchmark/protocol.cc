@@ -1,9 +1,9 @@
 #include "byre/benchmark/protocol.h"
 
+#include "byre/base/data_file.h"
 #include "byre/benchmark/yaml_value.h"
-#include "byre/dataset/recording_options.h"
-#include "byre/input/data_file.h"
 #include "byre/input_error.h"
+#include "byre/io/recording/recording_options.h"
 
 #include <algorithm>
 #include <array>

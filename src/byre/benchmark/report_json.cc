@@ -1,4 +1,4 @@
-#include "byre/assessment/report_json.h"
+#include "byre/playback/report/report_json.h"
 #include "byre/benchmark/report.h"
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
+#include "byre/base/printable.h"
 #include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/report.h"
-#include "byre/input/printable.h"
 
 #include <algorithm>
 #include <sstream>

@@ -1,11 +1,11 @@
 #include "byre/benchmark/speed.h"
 
+#include "byre/base/stopwatch.h"
 #include "byre/benchmark/event_counter.h"
 #include "byre/benchmark/peak_memory.h"
 #include "byre/playback/scaled_recording.h"
-#include "byre/system/resources.h"
-#include "byre/system/stored_map.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/slam/system/resources.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <array>
 

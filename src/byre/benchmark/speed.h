@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/assessment/map_statistics.h"
 #include "byre/playback/map_run.h"
+#include "byre/playback/report/map_statistics.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
-#include "byre/assessment/report_json.h"
+#include "byre/base/printable.h"
 #include "byre/benchmark/markdown_table.h"
 #include "byre/benchmark/speed.h"
-#include "byre/input/printable.h"
+#include "byre/playback/report/report_json.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,7 +1,7 @@
 #include "byre/benchmark/yaml_value.h"
 
-#include "byre/input/regular_file.h"
-#include "byre/input/text_file.h"
+#include "byre/base/regular_file.h"
+#include "byre/base/text_file.h"
 #include "byre/input_error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/base/newest_queue.h"
 #include "byre/camera/live_cameras.h"
-#include "byre/workers/newest_queue.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,11 +1,11 @@
 #include "byre/camera/frame_sink.h"
 
-#include "byre/assessment/ros_report.h"
-#include "byre/bag/mcap_writer.h"
+#include "byre/base/output_file.h"
 #include "byre/camera/still_image.h"
-#include "byre/dataset/euroc_sensor.h"
-#include "byre/input/output_file.h"
 #include "byre/input_error.h"
+#include "byre/io/bag/mcap_writer.h"
+#include "byre/io/recording/euroc_sensor.h"
+#include "byre/playback/report/ros_report.h"
 
 #include <cassert>
 #include <optional>

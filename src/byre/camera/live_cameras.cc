@@ -1,6 +1,6 @@
 #include "byre/camera/live_cameras.h"
 
-#include "byre/input/report_row.h"
+#include "byre/base/report_row.h"
 #include "byre/input_error.h"
 
 #include <algorithm>

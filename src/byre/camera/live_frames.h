@@ -1,8 +1,8 @@
 #pragma once
 
+#include "byre/base/stopwatch.h"
 #include "byre/camera/capture_thread.h"
 #include "byre/playback/frame_source.h"
-#include "byre/workers/stopwatch.h"
 
 #include <functional>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "byre/camera/pixel_layout.h"
 
-#include "byre/dataset/image_file.h"
 #include "byre/features/image_view.h"
+#include "byre/io/image/image_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "byre/camera/record_run.h"
 
-#include "byre/workers/stopwatch.h"
+#include "byre/base/stopwatch.h"
 
 namespace byre {
 namespace {

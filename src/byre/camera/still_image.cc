@@ -1,6 +1,6 @@
 #include "byre/camera/still_image.h"
 
-#include "byre/dataset/image_codec.h"
+#include "byre/io/image/image_codec.h"
 
 #include <algorithm>
 #include <cassert>

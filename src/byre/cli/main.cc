@@ -1,7 +1,7 @@
+#include "byre/base/printable.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
-#include "byre/input/printable.h"
 #include "byre/input_error.h"
 
 #include <exception>

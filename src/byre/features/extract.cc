@@ -1,5 +1,8 @@
 #include "byre/features/extract.h"
 
+#include "byre/base/byte_stream.h"
+#include "byre/base/object_pool.h"
+#include "byre/base/task_threads.h"
 #include "byre/features/descriptor.h"
 #include "byre/features/detect.h"
 #include "byre/features/enhance.h"
@@ -8,10 +11,7 @@
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
 #include "byre/image_condition.h"
-#include "byre/input/byte_stream.h"
 #include "byre/input_error.h"
-#include "byre/workers/object_pool.h"
-#include "byre/workers/task_threads.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
+#include "byre/base/object_pool.h"
 #include "byre/features.h"
-#include "byre/workers/object_pool.h"
 
 #include <algorithm>
 #include <set>

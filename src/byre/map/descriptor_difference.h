@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/base/byte_stream.h"
 #include "byre/features.h"
-#include "byre/input/byte_stream.h"
 
 namespace byre {
 

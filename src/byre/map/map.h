@@ -1,11 +1,11 @@
 #pragma once
 
+#include "byre/base/scratch_memory.h"
 #include "byre/features.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/input_error.h"
 #include "byre/map/block_list.h"
 #include "byre/map/ids.h"
-#include "byre/workers/scratch_memory.h"
 
 #include <cassert>
 #include <cstdint>

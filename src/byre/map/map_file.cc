@@ -1,7 +1,7 @@
 #include "byre/map/map_file.h"
 
-#include "byre/input/binary_file.h"
-#include "byre/input/output_file.h"
+#include "byre/base/binary_file.h"
+#include "byre/base/output_file.h"
 #include "byre/input_error.h"
 #include "byre/map/map_file_source.h"
 #include "byre/map/map_sections.h"

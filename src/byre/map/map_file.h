@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/base/byte_stream.h"
 #include "byre/geometry/calibration_change.h"
-#include "byre/input/byte_stream.h"
 #include "byre/map/map.h"
 #include "byre/map/plan_registration.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/base/lazy_array.h"
 #include "byre/map/map_sections.h"
-#include "byre/workers/lazy_array.h"
 
 #include <array>
 #include <span>

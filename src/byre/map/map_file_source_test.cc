@@ -1,6 +1,6 @@
 // Maps that are read from their files on access.
 
-#include "byre/input/binary_file.h"
+#include "byre/base/binary_file.h"
 #include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
 #include "byre/map/stored_map_scene.h"

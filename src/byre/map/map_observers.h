@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/input/byte_stream.h"
+#include "byre/base/byte_stream.h"
 #include "byre/map/map_numbers.h"
 
 #include <cstdint>

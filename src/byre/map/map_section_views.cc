@@ -1,5 +1,6 @@
 // Reads keypoints, descriptors, patches and measurements of keyframes since format 5, rounded to quanta.
 
+#include "byre/base/task_threads.h"
 #include "byre/input_error.h"
 #include "byre/map/descriptor_difference.h"
 #include "byre/map/map_numbers.h"
@@ -9,7 +10,6 @@
 #include "byre/map/map_values.h"
 #include "byre/map/map_view_layout.h"
 #include "byre/map/packed_steps.h"
-#include "byre/workers/task_threads.h"
 
 #include <algorithm>
 #include <memory>

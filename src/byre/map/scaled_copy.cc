@@ -1,7 +1,7 @@
 #include "byre/map/scaled_copy.h"
 
 #include "byre/alignment.h"
-#include "byre/motion/odometry_calibration.h"
+#include "byre/odometry/odometry_calibration.h"
 
 #include <cassert>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/map/map_file.h"
-#include "byre/motion/odometry_calibration.h"
+#include "byre/odometry/odometry_calibration.h"
 
 #include <vector>
 

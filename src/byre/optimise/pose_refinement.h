@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/base/scratch_memory.h"
 #include "byre/rig.h"
-#include "byre/workers/scratch_memory.h"
 
 #include <optional>
 #include <span>

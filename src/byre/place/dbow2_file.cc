@@ -1,6 +1,6 @@
 #include "byre/place/dbow2_file.h"
 
-#include "byre/input/text_file.h"
+#include "byre/base/text_file.h"
 #include "byre/input_error.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "byre/input/data_file.h"
+#include "byre/base/data_file.h"
 #include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
 

@@ -1,7 +1,7 @@
 #include "byre/place/vocabulary.h"
 
-#include "byre/input/binary_file.h"
-#include "byre/input/output_file.h"
+#include "byre/base/binary_file.h"
+#include "byre/base/output_file.h"
 #include "byre/place/dbow2_file.h"
 #include "byre/place/k_majority.h"
 #include "byre/place/vocabulary_file.h"

@@ -1,6 +1,6 @@
 #include "byre/place/vocabulary_file.h"
 
-#include "byre/input/byte_stream.h"
+#include "byre/base/byte_stream.h"
 #include "byre/input_error.h"
 
 #include <algorithm>

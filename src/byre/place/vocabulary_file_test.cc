@@ -1,6 +1,6 @@
 #include "byre/place/vocabulary_file.h"
 
-#include "byre/input/binary_file.h"
+#include "byre/base/binary_file.h"
 #include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
 #include "byre/place/vocabulary_scene.h"

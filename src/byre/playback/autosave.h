@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/system/engine.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/base/stopwatch.h"
+#include "byre/slam/system/engine.h"
 
 #include <functional>
 #include <future>

@@ -1,6 +1,6 @@
 #include "byre/playback/decode_ahead.h"
 
-#include "byre/workers/stopwatch.h"
+#include "byre/base/stopwatch.h"
 
 #include <exception>
 #include <string>

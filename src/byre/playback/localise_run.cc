@@ -1,10 +1,10 @@
 #include "byre/playback/localise_run.h"
 
-#include "byre/dataset/image_file.h"
-#include "byre/dataset/image_fit.h"
-#include "byre/dataset/image_names.h"
+#include "byre/base/stopwatch.h"
+#include "byre/io/image/image_file.h"
+#include "byre/io/image/image_fit.h"
+#include "byre/io/image/image_names.h"
 #include "byre/playback/decode_ahead.h"
-#include "byre/workers/stopwatch.h"
 
 #include <utility>
 

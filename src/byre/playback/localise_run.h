@@ -4,7 +4,7 @@
 #include "byre/map/map_file.h"
 #include "byre/place/place_index.h"
 #include "byre/recording.h"
-#include "byre/slam/localisation.h"
+#include "byre/slam/places/localisation.h"
 
 #include <filesystem>
 #include <functional>

@@ -2,7 +2,7 @@
 
 #include "byre/features/extract.h"
 #include "byre/recording.h"
-#include "byre/slam/map_from_poses.h"
+#include "byre/slam/window/map_from_poses.h"
 
 #include <functional>
 #include <string>

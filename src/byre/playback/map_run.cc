@@ -1,9 +1,9 @@
 #include "byre/playback/map_run.h"
 
-#include "byre/motion/recorded_motion.h"
+#include "byre/base/stopwatch.h"
+#include "byre/odometry/recorded_motion.h"
 #include "byre/playback/frame_source.h"
-#include "byre/system/resources.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/slam/system/resources.h"
 
 #include <utility>
 

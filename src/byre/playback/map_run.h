@@ -2,7 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/recording.h"
-#include "byre/system/engine.h"
+#include "byre/slam/system/engine.h"
 
 #include <functional>
 #include <optional>

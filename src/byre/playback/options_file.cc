@@ -1,8 +1,8 @@
 #include "byre/playback/options_file.h"
 
-#include "byre/dataset/settings_file.h"
 #include "byre/input_error.h"
-#include "byre/system/option_table.h"
+#include "byre/io/recording/settings_file.h"
+#include "byre/slam/system/option_table.h"
 
 namespace byre {
 

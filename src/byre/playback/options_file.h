@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/system/engine.h"
+#include "byre/slam/system/engine.h"
 
 #include <filesystem>
 #include <string>

@@ -1,7 +1,7 @@
 #include "byre/playback/options_file.h"
 
-#include "byre/dataset/test_folder.h"
-#include "byre/system/option_table.h"
+#include "byre/io/recording/test_folder.h"
+#include "byre/slam/system/option_table.h"
 
 #include <algorithm>
 

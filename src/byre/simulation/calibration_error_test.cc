@@ -1,7 +1,7 @@
 #include "byre/simulation/calibration_error.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/simulation/feeding_robot.h"
+#include "byre/simulation/cowshed/feeding_robot.h"
 #include "byre/simulation/rendered_room.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "byre/simulation/camera_imperfection.h"
 
-#include "byre/dataset/image_codec.h"
 #include "byre/input_error.h"
+#include "byre/io/image/image_codec.h"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 
 #include "byre/simulation/euroc_writer.h"
 
-#include "byre/dataset/euroc_sensor.h"
-#include "byre/dataset/image_codec.h"
-#include "byre/input/output_file.h"
+#include "byre/base/output_file.h"
+#include "byre/io/image/image_codec.h"
+#include "byre/io/recording/euroc_sensor.h"
 #include "byre/trajectory_file.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "byre/simulation/motion_sensors.h"
 
-#include "byre/simulation/feeding_robot.h"
+#include "byre/simulation/cowshed/feeding_robot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "byre/simulation/row_workers.h"
 
-#include "byre/workers/task_threads.h"
+#include "byre/base/task_threads.h"
 
 #include <algorithm>
 #include <atomic>

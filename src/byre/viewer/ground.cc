@@ -1,7 +1,7 @@
 #include "byre/viewer/ground.h"
 
 #include "byre/geometry/decompositions.h"
-#include "byre/map/driving_plane.h"
+#include "byre/map/plan/driving_plane.h"
 
 #include <cassert>
 

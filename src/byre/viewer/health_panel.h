@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/slam/health.h"
-#include "byre/slam/state.h"
+#include "byre/slam/frame/health.h"
+#include "byre/slam/frame/state.h"
 #include "byre/viewer/picture.h"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "byre/viewer/mission_input.h"
 
-#include "byre/input/regular_file.h"
+#include "byre/base/regular_file.h"
 #include "byre/input_error.h"
 
 #include <array>

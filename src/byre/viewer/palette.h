@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/map/ids.h"
-#include "byre/slam/health.h"
+#include "byre/slam/frame/health.h"
 #include "byre/viewer/picture.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 #include "byre/viewer/picture.h"
 
-#include "byre/input/output_file.h"
+#include "byre/base/output_file.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <algorithm>

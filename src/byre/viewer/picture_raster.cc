@@ -1,6 +1,6 @@
 // Raster rendering: drawn at twice the size and halved, so that lines and small text stay sharp.
 
-#include "byre/dataset/image_codec.h"
+#include "byre/io/image/image_codec.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <algorithm>

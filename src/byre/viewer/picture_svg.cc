@@ -1,7 +1,7 @@
 // SVG rendering. Equal symbols form one path, which keeps the file of a building's map small.
 
-#include "byre/dataset/image_codec.h"
-#include "byre/input/markup.h"
+#include "byre/base/markup.h"
+#include "byre/io/image/image_codec.h"
 #include "byre/viewer/fixed_point.h"
 #include "byre/viewer/picture_shapes.h"
 

@@ -1,8 +1,8 @@
 #include "byre/viewer/plan_image.h"
 
-#include "byre/dataset/image_codec.h"
-#include "byre/dataset/plan_pixels.h"
 #include "byre/input_error.h"
+#include "byre/io/image/image_codec.h"
+#include "byre/io/image/plan_pixels.h"
 
 #include <algorithm>
 #include <vector>

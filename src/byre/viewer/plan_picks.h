@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/map/floor_plan.h"
 #include "byre/map/map_file.h"
+#include "byre/map/plan/floor_plan.h"
 
 #include <string>
 #include <vector>

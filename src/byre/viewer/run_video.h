@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/input/output_file.h"
+#include "byre/base/output_file.h"
 #include "byre/viewer/camera_picture.h"
 #include "byre/viewer/plan_picture.h"
 

@@ -2,7 +2,7 @@
 
 #include "byre/image.h"
 #include "byre/map/map_view.h"
-#include "byre/session/session.h"
+#include "byre/slam/session/session.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
-#include "byre/bag/bag.h"
+#include "byre/io/bag/bag.h"
 
-#include "byre/assessment/bag_report.h"
-#include "byre/assessment/report_json.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/playback/report/bag_report.h"
+#include "byre/playback/report/report_json.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,7 +1,7 @@
 // "byre bag", and bags as recordings of other commands.
 
-#include "byre/bag/bag_scene.h"
 #include "byre/cli/shared/program_fixture.h"
+#include "byre/io/bag/bag_scene.h"
 #include "byre/simulation/rendered_fixture.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,7 @@
+#include "byre/base/output_file.h"
+#include "byre/base/printable.h"
+#include "byre/base/stopwatch.h"
+#include "byre/base/task_threads.h"
 #include "byre/benchmark/benchmark_run.h"
 #include "byre/benchmark/plots.h"
 #include "byre/benchmark/report.h"
@@ -11,12 +15,8 @@
 #include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/output_file.h"
-#include "byre/input/printable.h"
-#include "byre/system/option_table.h"
-#include "byre/system/stored_map.h"
-#include "byre/workers/stopwatch.h"
-#include "byre/workers/task_threads.h"
+#include "byre/slam/system/option_table.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

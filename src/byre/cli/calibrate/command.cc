@@ -1,5 +1,5 @@
-#include "byre/assessment/calibration_report.h"
-#include "byre/assessment/report_json.h"
+#include "byre/base/output_file.h"
+#include "byre/base/report_row.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
@@ -9,11 +9,11 @@
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/output_file.h"
-#include "byre/input/report_row.h"
 #include "byre/input_error.h"
+#include "byre/playback/report/calibration_report.h"
+#include "byre/playback/report/report_json.h"
 #include "byre/playback/scaled_recording.h"
-#include "byre/system/stored_map.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

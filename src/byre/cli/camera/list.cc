@@ -1,8 +1,8 @@
+#include "byre/base/report_row.h"
 #include "byre/camera/video_devices.h"
 #include "byre/cli/camera/commands.h"
 #include "byre/cli/shared/camera_options.h"
 #include "byre/cli/shared/file_arguments.h"
-#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <memory>

@@ -1,3 +1,5 @@
+#include "byre/base/report_row.h"
+#include "byre/base/stopwatch.h"
 #include "byre/calibration_file.h"
 #include "byre/camera/camera_fit.h"
 #include "byre/camera/record_run.h"
@@ -7,9 +9,7 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/input/report_row.h"
 #include "byre/input_error.h"
-#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <memory>

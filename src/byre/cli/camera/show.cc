@@ -1,3 +1,6 @@
+#include "byre/base/output_file.h"
+#include "byre/base/report_row.h"
+#include "byre/base/stopwatch.h"
 #include "byre/camera/camera_measure.h"
 #include "byre/camera/capture_thread.h"
 #include "byre/camera/still_image.h"
@@ -8,9 +11,6 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/image_condition.h"
-#include "byre/input/output_file.h"
-#include "byre/input/report_row.h"
-#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <memory>

@@ -1,12 +1,12 @@
-#include "byre/assessment/recording_check_report.h"
-#include "byre/assessment/report_json.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/dataset/motion_files.h"
 #include "byre/features/image_threads.h"
+#include "byre/io/recording/motion_files.h"
+#include "byre/playback/report/recording_check_report.h"
+#include "byre/playback/report/report_json.h"
 
 #include <algorithm>
 #include <iostream>

@@ -1,3 +1,8 @@
+#include "byre/base/output_file.h"
+#include "byre/base/report_row.h"
+#include "byre/benchmark/demo/demo_run.h"
+#include "byre/benchmark/demo/page.h"
+#include "byre/benchmark/demo/table.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
@@ -5,11 +10,6 @@
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/render_with_progress.h"
 #include "byre/cli/shared/run_with_progress.h"
-#include "byre/demo/demo_run.h"
-#include "byre/demo/page.h"
-#include "byre/demo/table.h"
-#include "byre/input/output_file.h"
-#include "byre/input/report_row.h"
 #include "byre/input_error.h"
 
 #include <iostream>

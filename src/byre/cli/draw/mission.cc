@@ -5,7 +5,7 @@
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"
 #include "byre/place/map_words.h"
-#include "byre/system/stored_map.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <algorithm>
 #include <memory>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "byre/cli/draw/mission_painter.h"
 #include "byre/cli/draw/options.h"
 #include "byre/map/map_file.h"
-#include "byre/viewer/mission_painter.h"
 
 #include <string>
 #include <vector>

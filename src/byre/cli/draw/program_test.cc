@@ -1,7 +1,7 @@
 // "byre draw": exit codes, messages, and content of the pictures.
 
-#include "byre/archive/register_scene.h"
 #include "byre/cli/shared/program_fixture.h"
+#include "byre/playback/archive/register_scene.h"
 #include "byre/simulation/rendered_fixture.h"
 
 #include <string>

@@ -1,4 +1,4 @@
-#include "byre/assessment/evaluation_report.h"
+#include "byre/base/output_file.h"
 #include "byre/benchmark/evaluation_plot.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/choice.h"
@@ -6,9 +6,9 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/recording_options.h"
-#include "byre/dataset/trajectory_input.h"
-#include "byre/input/output_file.h"
 #include "byre/input_error.h"
+#include "byre/io/recording/trajectory_input.h"
+#include "byre/playback/report/evaluation_report.h"
 #include "byre/recording.h"
 #include "byre/trajectory_file.h"
 

@@ -1,10 +1,10 @@
-#include "byre/archive/colmap_export.h"
+#include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/recording_options.h"
-#include "byre/input/report_row.h"
 #include "byre/input_error.h"
+#include "byre/playback/archive/colmap_export.h"
 
 #include <memory>
 #include <optional>

@@ -1,4 +1,6 @@
-#include "byre/archive/colmap_import.h"
+#include "byre/base/output_file.h"
+#include "byre/base/printable.h"
+#include "byre/base/stopwatch.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
@@ -7,11 +9,9 @@
 #include "byre/cli/shared/recording_options.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/output_file.h"
-#include "byre/input/printable.h"
+#include "byre/playback/archive/colmap_import.h"
 #include "byre/recording.h"
-#include "byre/system/stored_map.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

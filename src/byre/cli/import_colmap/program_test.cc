@@ -1,8 +1,8 @@
 // "byre export-colmap" and "byre import-colmap".
 
-#include "byre/archive/colmap_scene.h"
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/dataset/colmap_model.h"
+#include "byre/io/colmap/colmap_model.h"
+#include "byre/playback/archive/colmap_scene.h"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>

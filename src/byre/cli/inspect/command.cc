@@ -1,9 +1,9 @@
-#include "byre/archive/point_cloud.h"
-#include "byre/assessment/inspection_report.h"
+#include "byre/base/binary_file.h"
+#include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
-#include "byre/input/binary_file.h"
-#include "byre/input/output_file.h"
+#include "byre/playback/archive/point_cloud.h"
+#include "byre/playback/report/inspection_report.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,6 +1,4 @@
-#include "byre/assessment/calibration_report.h"
-#include "byre/assessment/record_file.h"
-#include "byre/assessment/run_report.h"
+#include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/map/options.h"
 #include "byre/cli/map/posed_map.h"
@@ -9,12 +7,14 @@
 #include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/output_file.h"
 #include "byre/map/map_file.h"
 #include "byre/map/stored_calibration.h"
 #include "byre/playback/autosave.h"
-#include "byre/slam/online_copy.h"
-#include "byre/system/stored_map.h"
+#include "byre/playback/report/calibration_report.h"
+#include "byre/playback/report/record_file.h"
+#include "byre/playback/report/run_report.h"
+#include "byre/slam/system/stored_map.h"
+#include "byre/slam/window/online_copy.h"
 
 #include <algorithm>
 #include <iostream>

@@ -1,16 +1,16 @@
 #include "byre/cli/map/posed_map.h"
 
-#include "byre/assessment/run_report.h"
+#include "byre/base/report_row.h"
+#include "byre/base/stopwatch.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/dataset/trajectory_input.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/report_row.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/map_from_poses_run.h"
+#include "byre/playback/report/run_report.h"
 #include "byre/playback/source_recording.h"
-#include "byre/system/stored_map.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

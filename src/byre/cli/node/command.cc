@@ -1,10 +1,10 @@
+#include "byre/base/printable.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/printable.h"
-#include "byre/node/node.h"
-#include "byre/node/process_settings.h"
+#include "byre/ros2/node/node.h"
+#include "byre/ros2/node/process_settings.h"
 
 #include <chrono>
 #include <iostream>

@@ -1,13 +1,13 @@
-#include "byre/assessment/finish_report.h"
-#include "byre/assessment/report_json.h"
+#include "byre/base/output_file.h"
+#include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/run_with_progress.h"
-#include "byre/input/output_file.h"
-#include "byre/input/report_row.h"
-#include "byre/system/refine_map.h"
-#include "byre/system/stored_map.h"
+#include "byre/playback/report/finish_report.h"
+#include "byre/playback/report/report_json.h"
+#include "byre/slam/system/refine_map.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <memory>
 #include <ostream>

@@ -1,10 +1,10 @@
-#include "byre/archive/register_map.h"
-#include "byre/assessment/registration_report.h"
+#include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
-#include "byre/input/output_file.h"
 #include "byre/input_error.h"
+#include "byre/playback/archive/register_map.h"
+#include "byre/playback/report/registration_report.h"
 
 #include <cmath>
 #include <memory>

@@ -1,7 +1,7 @@
 
-#include "byre/archive/register_scene.h"
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/playback/archive/register_scene.h"
 
 #include <cmath>
 

@@ -1,7 +1,4 @@
-#include "byre/assessment/event_log.h"
-#include "byre/assessment/mission_evaluation.h"
-#include "byre/assessment/record_file.h"
-#include "byre/assessment/run_report.h"
+#include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/run/options.h"
 #include "byre/cli/shared/interrupt.h"
@@ -9,13 +6,16 @@
 #include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/dataset/trajectory_input.h"
 #include "byre/features/image_threads.h"
 #include "byre/floor_plan.h"
-#include "byre/input/output_file.h"
 #include "byre/input_error.h"
+#include "byre/io/recording/trajectory_input.h"
+#include "byre/playback/report/event_log.h"
+#include "byre/playback/report/mission_evaluation.h"
+#include "byre/playback/report/record_file.h"
+#include "byre/playback/report/run_report.h"
 #include "byre/playback/run_on_plan.h"
-#include "byre/system/stored_map.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

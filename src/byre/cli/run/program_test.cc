@@ -4,9 +4,9 @@
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/scaled_copy.h"
-#include "byre/motion/odometry_calibration.h"
+#include "byre/odometry/odometry_calibration.h"
 #include "byre/simulation/rendered_fixture.h"
-#include "byre/slam/state.h"
+#include "byre/slam/frame/state.h"
 #include "byre/trajectory_file.h"
 
 #include <sstream>

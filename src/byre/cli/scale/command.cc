@@ -1,9 +1,9 @@
-#include "byre/archive/scale_by_distance.h"
+#include "byre/base/output_file.h"
+#include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
-#include "byre/input/output_file.h"
-#include "byre/input/report_row.h"
+#include "byre/playback/archive/scale_by_distance.h"
 
 #include <filesystem>
 #include <memory>

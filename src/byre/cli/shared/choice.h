@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/input/printable.h"
+#include "byre/base/printable.h"
 
 #include <initializer_list>
 #include <map>

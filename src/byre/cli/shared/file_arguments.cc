@@ -1,6 +1,6 @@
 #include "byre/cli/shared/file_arguments.h"
 
-#include "byre/input/regular_file.h"
+#include "byre/base/regular_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/dataset/file_safety.h"
+#include "byre/io/recording/file_safety.h"
 
 #include <functional>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "byre/cli/shared/interrupt.h"
 
-#include "byre/input/output_file.h"
+#include "byre/base/output_file.h"
 
 #include <array>
 #include <atomic>

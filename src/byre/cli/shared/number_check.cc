@@ -1,6 +1,6 @@
 #include "byre/cli/shared/number_check.h"
 
-#include "byre/input/text_file.h"
+#include "byre/base/text_file.h"
 
 #include <functional>
 #include <optional>

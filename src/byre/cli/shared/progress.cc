@@ -1,6 +1,6 @@
 #include "byre/cli/shared/progress.h"
 
-#include "byre/input/report_row.h"
+#include "byre/base/report_row.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,11 +1,11 @@
 #include "byre/cli/shared/recording_options.h"
 
+#include "byre/base/text_file.h"
 #include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
-#include "byre/dataset/recording_options.h"
 #include "byre/geometry/baseline.h"
-#include "byre/input/text_file.h"
+#include "byre/io/recording/recording_options.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/cli/shared/interrupt.h"
-#include "byre/simulation/cowshed_rendering.h"
+#include "byre/simulation/cowshed/cowshed_rendering.h"
 
 #include <filesystem>
 

@@ -1,14 +1,14 @@
 #include "byre/cli/shared/run_input.h"
 
-#include "byre/assessment/recording_check_report.h"
+#include "byre/base/report_row.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/dataset/motion_files.h"
 #include "byre/geometry/baseline.h"
-#include "byre/input/report_row.h"
+#include "byre/io/recording/motion_files.h"
+#include "byre/playback/report/recording_check_report.h"
 #include "byre/playback/source_recording.h"
 
 #include <iostream>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "byre/assessment/run_report.h"
 #include "byre/camera/live_frames.h"
 #include "byre/cli/shared/camera_options.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/map/map_file.h"
+#include "byre/playback/report/run_report.h"
 #include "byre/playback/scaled_recording.h"
 
 #include <filesystem>

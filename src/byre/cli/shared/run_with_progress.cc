@@ -1,7 +1,7 @@
 #include "byre/cli/shared/run_with_progress.h"
 
+#include "byre/base/stopwatch.h"
 #include "byre/cli/shared/progress.h"
-#include "byre/workers/stopwatch.h"
 
 #include <iostream>
 #include <utility>

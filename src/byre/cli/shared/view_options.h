@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/viewer/web_server.h"
+#include "byre/viewer/web/web_server.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,9 +1,9 @@
 #include "byre/cli/shared/view_run.h"
 
+#include "byre/base/stopwatch.h"
 #include "byre/cli/shared/pose_options.h"
-#include "byre/map/driving_plane.h"
-#include "byre/system/resources.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/map/plan/driving_plane.h"
+#include "byre/slam/system/resources.h"
 
 #include <algorithm>
 #include <chrono>

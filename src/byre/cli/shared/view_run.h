@@ -1,10 +1,10 @@
 #pragma once
 
-#include "byre/assessment/run_messages.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/view_options.h"
 #include "byre/playback/map_run.h"
-#include "byre/viewer/web_run.h"
+#include "byre/playback/report/run_messages.h"
+#include "byre/viewer/web/web_run.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "byre/cli/shared/warnings.h"
 
-#include "byre/input/printable.h"
+#include "byre/base/printable.h"
 
 #include <algorithm>
 #include <ostream>

@@ -1,4 +1,5 @@
-#include "byre/assessment/report_json.h"
+#include "byre/base/printable.h"
+#include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
@@ -6,8 +7,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/render_with_progress.h"
 #include "byre/cli/simulate/imperfection_options.h"
-#include "byre/input/printable.h"
-#include "byre/input/report_row.h"
+#include "byre/playback/report/report_json.h"
 
 #include <array>
 #include <charconv>

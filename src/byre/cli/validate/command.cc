@@ -1,6 +1,6 @@
+#include "byre/base/printable.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
-#include "byre/input/printable.h"
 #include "byre/map/map_file.h"
 
 #include <filesystem>

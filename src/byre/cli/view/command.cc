@@ -1,11 +1,11 @@
+#include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/view_run.h"
-#include "byre/dataset/input_files.h"
-#include "byre/input/output_file.h"
-#include "byre/viewer/web_map.h"
+#include "byre/io/recording/input_files.h"
+#include "byre/viewer/web/web_map.h"
 
 #include <memory>
 #include <optional>

@@ -1,15 +1,15 @@
 #include "byre/place/vocabulary.h"
 
+#include "byre/base/output_file.h"
+#include "byre/base/report_row.h"
+#include "byre/base/stopwatch.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/warnings.h"
-#include "byre/dataset/image_descriptors.h"
 #include "byre/features/image_threads.h"
-#include "byre/input/output_file.h"
-#include "byre/input/report_row.h"
-#include "byre/workers/stopwatch.h"
+#include "byre/io/image/image_descriptors.h"
 
 #include <iostream>
 #include <memory>

@@ -1,0 +1,217 @@
+#include "byre/benchmark/demo/demo_run.h"
+
+#include "byre/base/stopwatch.h"
+#include "byre/benchmark/demo/painter.h"
+#include "byre/benchmark/demo/table.h"
+#include "byre/benchmark/evaluate_run.h"
+#include "byre/features/image_threads.h"
+#include "byre/io/recording/trajectory_input.h"
+#include "byre/playback/archive/register_map.h"
+#include "byre/playback/report/mission_errors.h"
+#include "byre/playback/source_recording.h"
+#include "byre/slam/system/stored_map.h"
+#include "byre/trajectory_file.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kStages = 6;
+
+// Result of the first visit.
+struct FirstVisit {
+  StoredMap stored;  // registered on the plan
+  FloorPlan plan;
+  Trajectory path;
+};
+
+CowshedRecordingOptions visit_options(const DemoOptions& options, int mission) {
+  constexpr double kMoved = 0.5;         // share of things moved between visits
+  constexpr double kSecondVisit = 1.25;  // duration relative to the first visit, for the way into the store
+  CowshedRecordingOptions visit;
+  visit.barn.seed = options.seed;
+  visit.barn.mission = mission;
+  visit.barn.change = kMoved;
+  visit.duration_s = mission == 1 ? options.duration_s : kSecondVisit * options.duration_s;
+  visit.frame_rate_hz = options.frame_rate_hz;
+  visit.image_divisor = options.image_divisor;
+  return visit;
+}
+
+// Time spans in the store, which the first visit did not see; from the first frame.
+std::vector<TimeSpan> spans_off_the_map(const Trajectory& truth) {
+  std::vector<TimeSpan> spans;
+  bool was_off = false;
+  for (const StampedPose& sample : truth) {
+    const double time_s = to_seconds(sample.time - truth.front().time);
+    const bool is_off = sample.world_from_body.translation.x() > kCowshedSize.length;
+    if (is_off && !was_off) spans.push_back({time_s, time_s});
+    if (is_off) spans.back().end_s = time_s;
+    was_off = is_off;
+  }
+  return spans;
+}
+
+// Alignment of a run by its true first pose alone.
+MapAlignment alignment_at_start(const Trajectory& published, const Trajectory& truth) {
+  const std::vector<PosePair> pairs = associate(published, truth, {});
+  if (pairs.empty()) return {};
+  const PosePair& start = pairs.front();
+  return {{1.0, start.true_world_from_body * inverse(start.estimated_world_from_body)}, 1};
+}
+
+std::vector<DemoMoment> moments_of(const MapRun& run, const std::vector<PoseError>& errors) {
+  std::vector<DemoMoment> moments;
+  for (const MappedFrame& frame : run.frames) {
+    if (!frame.report) continue;
+    const Health& health = frame.report->health;
+    const PoseError* const error = find_error(errors, frame.time);
+    moments.push_back({.time_s = to_seconds(frame.time - run.frames.front().time),
+                       .has_pose = frame.report->map_from_body.has_value(),
+                       .verdict = health.verdict,
+                       .offline_inliers = health.offline_inliers,
+                       .online_inliers = health.online_inliers,
+                       .position_sigma = health.position_sigma,
+                       .error = error != nullptr ? std::optional(error->position()) : std::nullopt});
+  }
+  return moments;
+}
+
+DemoArm evaluate_arm(Arm arm, const MapRun& run, const MapAlignment& alignment, const Trajectory& truth) {
+  DemoArm result{.arm = arm, .measures = evaluate_run(run, {truth, alignment}), .close_share = 0.0, .moments = {}};
+  const std::vector<PoseError> errors = errors_in_map(run.causal, truth, alignment);
+  const auto close =
+      std::ranges::count_if(errors, [](const PoseError& error) { return error.position() <= kCloseMetres; });
+  if (!run.frames.empty()) result.close_share = static_cast<double>(close) / static_cast<double>(run.frames.size());
+  result.moments = moments_of(run, errors);
+  return result;
+}
+
+class DemoRunner {
+ public:
+  DemoRunner(const DemoOptions& options, const DemoHooks& hooks)
+      : options_(options), hooks_(hooks), vocabulary_(open_vocabulary(options.vocabulary)) {}
+
+  std::optional<DemoFindings> run() {
+    const Stopwatch watch;
+    for (const int mission : {1, 2}) {
+      if (!hooks_.should_stop()) render(mission);
+    }
+    if (!hooks_.should_stop()) map_first_visit();
+    for (const Arm arm : {Arm::no_map, Arm::localise_only, Arm::hybrid}) {
+      if (!hooks_.should_stop()) run_arm(arm);
+    }
+    if (hooks_.should_stop()) return std::nullopt;
+    findings_.total_s = watch.seconds();
+    return std::move(findings_);
+  }
+
+ private:
+  fs::path visit(int mission) const { return options_.output / (mission == 1 ? "first_visit" : "second_visit"); }
+
+  void tell(const std::string& what) { hooks_.before_stage(fmt::format("{} of {}: ", ++stage_, kStages) + what); }
+
+  void render(int mission) {
+    tell(mission == 1 ? "rendering the first visit, by day" : "rendering the second visit, at dusk");
+    const Rendering rendering = hooks_.render(visit_options(options_, mission), visit(mission));
+    findings_.rendering_s += rendering.preparing_s + rendering.rendering_s;
+  }
+
+  EngineOptions run_options(Arm arm) const {
+    EngineOptions run_options;
+    run_options.vocabulary = vocabulary_;
+    run_options.session.map_online = arm != Arm::localise_only;
+    if (arm != Arm::no_map) run_options.offline = load_offline_map(map_file(), vocabulary_);
+    return run_options;
+  }
+
+  void map_first_visit() {
+    tell("mapping the first visit, and registering the map on the floor plan");
+    const std::unique_ptr<Recording> recording = open_recording(visit(1), {});
+    MapRun run = hooks_.run(*recording, run_options(Arm::no_map), {});
+    if (hooks_.should_stop()) return;
+    if (run.causal.empty()) throw std::runtime_error("no frame of the first visit got a pose");
+    write_trajectories(run, "first_visit");
+    findings_.map_frames = static_cast<int>(run.frames.size());
+    findings_.map_ate = evaluate_run(run, {load_truth(visit(1)), {}}).final_poses.ate.value_or(0.0);
+    barn_.path = run.final;
+    barn_.stored.recordings = {describe_source(visit(1), *recording, run.calibration)};
+    barn_.stored.map = std::move(run.map);
+    lay_on_plan();
+  }
+
+  void lay_on_plan() {
+    const fs::path folder = visit(1) / "plan";
+    barn_.plan = read_floor_plan(folder / "plan.yaml");
+    const Registering registering = register_map(barn_.stored, map_file(), barn_.plan, folder / "picks.csv", {});
+    barn_.stored.plan = registering.fit.registration;
+    save_for_missions(barn_.stored, vocabulary_, "simulated cowshed", map_file());
+    findings_.map_keyframes = barn_.stored.map.keyframe_count();
+    findings_.map_points = barn_.stored.map.point_count();
+    findings_.picks = static_cast<int>(registering.correspondences.size());
+  }
+
+  void run_arm(Arm arm) {
+    tell("the second visit: " + shown_name(arm));
+    const std::unique_ptr<Recording> recording = open_recording(visit(2), {});
+    const Trajectory truth = load_truth(visit(2));
+    DemoPainter painter(recording->calibration());
+    MapRunHooks hooks;
+    if (arm == Arm::hybrid) hooks.on_frame = [&painter](const RunView& view) { painter.add(view); };
+    const MapRun run = hooks_.run(*recording, run_options(arm), hooks);
+    if (hooks_.should_stop()) return;
+    write_trajectories(run, std::string(name_of(arm)));
+    const MapAlignment alignment =
+        arm == Arm::no_map ? alignment_at_start(run.causal, truth) : MapAlignment{barn_.stored.plan->plan_from_map, 0};
+    findings_.arms.push_back(evaluate_arm(arm, run, alignment, truth));
+    if (arm != Arm::hybrid) return;
+    findings_.off_the_map = spans_off_the_map(truth);
+    draw(painter);
+  }
+
+  void draw(const DemoPainter& painter) {
+    PlanScene scene;
+    scene.title = "simulated cowshed";
+    scene.ground = ground_of(barn_.stored, barn_.plan);
+    scene.map = scene_of(barn_.stored.map);
+    scene.paths.push_back({"first visit", barn_.path, {}});
+    findings_.plan_picture = painter.plan_picture(std::move(scene));
+    findings_.camera_s = painter.camera_s();
+    if (findings_.camera_s) findings_.camera_picture = painter.camera_picture();
+  }
+
+  void write_trajectories(const MapRun& run, const std::string& name) const {
+    const fs::path folder = options_.output / "trajectories";
+    fs::create_directories(folder);
+    write_trajectory(run.causal, folder / (name + ".published.txt"));
+    write_trajectory(run.final, folder / (name + ".final.txt"));
+  }
+
+  fs::path map_file() const { return options_.output / "barn.byre"; }
+
+  // Constant after construction; options and hooks are borrowed.
+  const DemoOptions& options_;
+  const DemoHooks& hooks_;
+  const Vocabulary vocabulary_;
+
+  int stage_ = 0;
+  FirstVisit barn_;  // set once the first visit is mapped
+  DemoFindings findings_;
+};
+
+}  // namespace
+
+std::optional<DemoFindings> run_demo(const DemoOptions& options, const DemoHooks& hooks) {
+  limit_image_threads(1);
+  return DemoRunner(options, hooks).run();
+}
+
+}  // namespace byre

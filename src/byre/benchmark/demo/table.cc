@@ -1,0 +1,129 @@
+#include "byre/benchmark/demo/table.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/core.h>
+
+namespace byre {
+namespace {
+
+// A table row: the figure that arms are compared by, and its text.
+struct RowKind {
+  std::string measure;
+  std::function<Figure(const DemoArm&)> figure;
+  std::function<std::string(const DemoArm&)> text;  // for non-empty figures
+  bool more_is_better = false;
+};
+
+std::string percent(double share) {
+  return fmt::format("{:.1f}", 1e2 * share);
+}
+
+// One decimal below a metre, none above.
+std::string centimetres(double metres) {
+  return fmt::format("{:.{}f}", 1e2 * metres, metres < 1.0 ? 1 : 0);
+}
+
+RowKind share_row(const char* measure, const std::function<Figure(const DemoArm&)>& share) {
+  return {measure, share, [share](const DemoArm& arm) { return percent(*share(arm)); }, true};
+}
+
+RowKind error_row(const char* measure, TrajectoryMeasures RunMeasures::*poses) {
+  const auto rmse = [poses](const DemoArm& arm) { return (arm.measures.*poses).map_error; };
+  return {measure, rmse, [poses](const DemoArm& arm) {
+            const TrajectoryMeasures& measures = arm.measures.*poses;
+            return centimetres(*measures.map_error) + ", max " + centimetres(*measures.map_error_max);
+          }};
+}
+
+RowKind shape_row() {
+  return {"Path after alignment (ATE, RMSE), cm: published, final",
+          [](const DemoArm& arm) { return arm.measures.causal_poses.ate; },
+          [](const DemoArm& arm) {
+            const Figure final_ate = arm.measures.final_poses.ate;
+            return centimetres(*arm.measures.causal_poses.ate) + ", " + (final_ate ? centimetres(*final_ate) : "-");
+          }};
+}
+
+RowKind time_row() {
+  return {"Time per frame, ms: mean, 99th percentile",
+          [](const DemoArm& arm) { return arm.measures.cost.frame_ms_mean; },
+          [](const DemoArm& arm) {
+            const CostMeasures& cost = arm.measures.cost;
+            return fmt::format("{:.0f}, {:.0f}", *cost.frame_ms_mean, *cost.frame_ms_p99);
+          }};
+}
+
+// A figure of verdicts. Empty without a map: verdicts then concern the run's own frame, not the plan.
+std::function<Figure(const DemoArm&)> on_the_plan(Figure BehaviourMeasures::*figure) {
+  return [figure](const DemoArm& arm) { return arm.arm == Arm::no_map ? Figure() : arm.measures.behaviour.*figure; };
+}
+
+std::vector<RowKind> row_kinds() {
+  const auto wrong = on_the_plan(&BehaviourMeasures::wrongly_trusted);
+  return {share_row("Frames with a position, %", [](const DemoArm& arm) { return arm.measures.causal_poses.coverage; }),
+          share_row("Frames with a position within 10 cm of the truth, %",
+                    [](const DemoArm& arm) { return Figure(arm.close_share); }),
+          error_row("Error of published positions (RMSE), cm", &RunMeasures::causal_poses),
+          error_row("Error of final positions (RMSE), cm", &RunMeasures::final_poses),
+          shape_row(),
+          share_row("Frames reported as trusted, %", on_the_plan(&BehaviourMeasures::trusted_share)),
+          {"Frames trusted with an error above 20 cm", wrong,
+           [wrong](const DemoArm& arm) { return fmt::format("{:.0f}", *wrong(arm)); }},
+          time_row()};
+}
+
+// Marks the best arm and those with the same text.
+DemoRow row_of(const RowKind& kind, const std::vector<DemoArm>& arms) {
+  DemoRow row{kind.measure, {}};
+  const DemoArm* best = nullptr;
+  for (const DemoArm& arm : arms) {
+    const Figure figure = kind.figure(arm);
+    row.cells.push_back({figure ? kind.text(arm) : "-", false});
+    if (!figure) continue;
+    const bool is_better =
+        best == nullptr || (kind.more_is_better ? *figure > *kind.figure(*best) : *figure < *kind.figure(*best));
+    if (is_better) best = &arm;
+  }
+  if (best == nullptr) return row;
+  const std::string best_text = kind.text(*best);
+  for (DemoCell& cell : row.cells) cell.is_best = cell.text == best_text;
+  return row;
+}
+
+}  // namespace
+
+std::vector<DemoRow> demo_table(const std::vector<DemoArm>& arms) {
+  std::vector<DemoRow> rows;
+  for (const RowKind& kind : row_kinds()) rows.push_back(row_of(kind, arms));
+  return rows;
+}
+
+std::string shown_name(Arm arm) {
+  switch (arm) {
+    case Arm::no_map:
+      return "No map";
+    case Arm::localise_only:
+      return "Localise only";
+    case Arm::hybrid:
+      break;
+  }
+  return "Hybrid";
+}
+
+std::string to_text(const std::vector<DemoRow>& rows, const std::vector<DemoArm>& arms) {
+  constexpr const char* kCell = "  {:>18}";
+  constexpr const char* kMeasure = "{:60}";
+  std::string text = fmt::format(kMeasure, "");
+  for (const DemoArm& arm : arms) text += fmt::format(kCell, shown_name(arm.arm));
+  text += "\n";
+  for (const DemoRow& row : rows) {
+    text += fmt::format(kMeasure, row.measure);
+    for (const DemoCell& cell : row.cells) text += fmt::format(kCell, cell.text);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace byre

@@ -1,0 +1,124 @@
+#include "byre/io/calibration/calibration_fields.h"
+
+#include "byre/base/regular_file.h"
+#include "byre/base/text_file.h"
+#include "byre/input_error.h"
+
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+namespace byre {
+namespace {
+
+// OpenCV writes "%YAML:1.0" in the first line, which is an invalid directive; a comment keeps the line numbers.
+std::string readable_yaml(const std::filesystem::path& path) {
+  refuse_pipe(path);
+  std::ifstream file(path);
+  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
+  std::ostringstream text;
+  text << file.rdbuf();
+  std::string yaml = text.str();
+  if (yaml.starts_with("%YAML:")) yaml.front() = '#';
+  return yaml;
+}
+
+void append_numbers(const YAML::Node& list, const std::string& place, std::vector<double>& numbers) {
+  for (const YAML::Node& entry : list) {
+    if (entry.IsSequence()) {
+      append_numbers(entry, place, numbers);
+      continue;
+    }
+    const std::optional<double> number = entry.IsScalar() ? parse_number(entry.Scalar()) : std::nullopt;
+    if (!number) throw InputError(place, "contains a value that is not a number");
+    numbers.push_back(*number);
+  }
+}
+
+}  // namespace
+
+CalibrationFields CalibrationFields::load(const std::filesystem::path& path) {
+  try {
+    CalibrationFields fields(path.string() + ": ", YAML::Load(readable_yaml(path)));
+    if (!fields.node_.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
+    return fields;
+  } catch (const YAML::Exception& error) {
+    throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
+  }
+}
+
+std::string CalibrationFields::place(const std::string& field) const {
+  return place_ + field;
+}
+
+YAML::Node CalibrationFields::find(const std::string& field) const {
+  const YAML::Node& fields = node_;  // constant, because looking up a missing name would add it
+  return fields[field];
+}
+
+bool CalibrationFields::has(const std::string& field) const {
+  const YAML::Node node = find(field);
+  return node && !node.IsNull();
+}
+
+CalibrationFields CalibrationFields::group(const std::string& field) const {
+  if (!has(field)) throw InputError(place(field), "is missing");
+  if (!find(field).IsMap()) throw InputError(place(field), "has no named fields");
+  return {place(field) + ".", find(field)};
+}
+
+std::string CalibrationFields::text(const std::string& field) const {
+  if (!has(field)) throw InputError(place(field), "is missing");
+  if (!find(field).IsScalar()) throw InputError(place(field), "is not a scalar");
+  return find(field).Scalar();
+}
+
+std::vector<double> CalibrationFields::numbers(const std::string& field) const {
+  if (!has(field)) throw InputError(place(field), "is missing");
+  const YAML::Node node = find(field);
+  const YAML::Node list = node.IsMap() ? node["data"] : node;
+  if (!list) throw InputError(place(field), "has no data");
+  if (!list.IsSequence()) throw InputError(place(field), "is not a list of numbers");
+  std::vector<double> numbers;
+  append_numbers(list, place(field), numbers);
+  return numbers;
+}
+
+std::vector<double> CalibrationFields::numbers(const std::string& field, std::size_t count) const {
+  std::vector<double> result = numbers(field);
+  if (result.size() == count) return result;
+  throw InputError(place(field),
+                   "has " + std::to_string(result.size()) + " numbers instead of " + std::to_string(count));
+}
+
+Pose CalibrationFields::pose(const std::string& field) const {
+  const std::vector<double> values = numbers(field, 16);
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(values.data());
+  const std::optional<Eigen::Quaterniond> rotation = rotation_from_matrix(matrix.topLeftCorner<3, 3>());
+  if (!rotation) throw InputError(place(field), "the 3x3 part is not a rotation", "give the matrix row by row");
+  if (matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+    throw InputError(place(field), "the last row is not 0 0 0 1", "give the matrix row by row");
+  }
+  return {*rotation, matrix.topRightCorner<3, 1>()};
+}
+
+double CalibrationFields::positive(const std::string& field) const {
+  const std::optional<double> number = parse_number(text(field));
+  if (number && *number > 0.0) return *number;
+  throw InputError(place(field), "is not a positive number");
+}
+
+int CalibrationFields::pixels(const std::string& field) const {
+  const std::optional<double> number = parse_number(text(field));
+  if (!number) throw InputError(place(field), "is not a number");
+  return to_image_side(*number, place(field));
+}
+
+int to_image_side(double pixels, const std::string& place) {
+  constexpr int kMaxSide = 20000;
+  if (pixels >= 1.0 && pixels <= kMaxSide && pixels == std::floor(pixels)) return static_cast<int>(pixels);
+  throw InputError(place, "is not a width and height in pixels");
+}
+
+}  // namespace byre

@@ -1,0 +1,131 @@
+#include "byre/io/image/grey_png.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+
+#include <libdeflate.h>
+
+namespace byre {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+struct Header {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t bytes_a_pixel = 0;
+
+  std::size_t stride() const { return width * bytes_a_pixel; }  // bytes
+};
+
+// Empty for kinds that are not decoded here.
+std::optional<Header> header_of(Bytes data) {
+  constexpr std::uint8_t kGrey = 0;
+  if (data.size() != 13) return std::nullopt;
+  const auto number = [&](std::size_t at) {
+    return std::size_t{data[at]} << 24U | std::size_t{data[at + 1]} << 16U | std::size_t{data[at + 2]} << 8U |
+           std::size_t{data[at + 3]};
+  };
+  const Header header{number(0), number(4), data[8] / std::size_t{8}};
+  const bool is_plain = data[9] == kGrey && data[10] == 0 && data[11] == 0 && data[12] == 0;
+  if (!is_plain || (data[8] != 8 && data[8] != 16) || header.width == 0 || header.height == 0) return std::nullopt;
+  return header;
+}
+
+// Filtered rows, each after the number of its filter; empty if the size differs.
+std::vector<std::uint8_t> inflate(Bytes compressed, std::size_t size) {
+  const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(
+      libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+  std::vector<std::uint8_t> rows(size);
+  const bool is_whole = inflater && libdeflate_zlib_decompress(inflater.get(), compressed.data(), compressed.size(),
+                                                               rows.data(), rows.size(), nullptr) == LIBDEFLATE_SUCCESS;
+  return is_whole ? rows : std::vector<std::uint8_t>();
+}
+
+// The one of three neighbours that is nearest to left + above - corner.
+int paeth(int left, int above, int corner) {
+  const int from_corner_up = above - corner, from_corner_left = left - corner;
+  const int by_left = std::abs(from_corner_up), by_above = std::abs(from_corner_left);
+  const int by_corner = std::abs(from_corner_up + from_corner_left);
+  const int nearer = by_above <= by_corner ? above : corner;
+  return by_left <= std::min(by_above, by_corner) ? left : nearer;
+}
+
+// Reconstructs a row pixel by pixel from the pixels to the left, above, and above left; zero outside the image.
+template <std::size_t BytesAPixel, typename Prediction>
+void predict(Bytes differences, const std::uint8_t* above, Prediction prediction, std::uint8_t* row) {
+  std::array<int, BytesAPixel> left{}, corner{};
+  for (std::size_t i = 0; i + BytesAPixel <= differences.size(); i += BytesAPixel) {
+    for (std::size_t byte = 0; byte < BytesAPixel; ++byte) {
+      const int up = above[i + byte];
+      left[byte] = (differences[i + byte] + prediction(left[byte], up, corner[byte])) & 0xff;
+      corner[byte] = up;
+      row[i + byte] = static_cast<std::uint8_t>(left[byte]);
+    }
+  }
+}
+
+// Reconstructs one row from its differences and its filter; false for an unknown filter.
+template <std::size_t BytesAPixel>
+bool unfilter(std::uint8_t filter, Bytes differences, const std::uint8_t* above, std::uint8_t* row) {
+  switch (filter) {
+    case 0:
+      std::ranges::copy(differences, row);
+      return true;
+    case 1:
+      predict<BytesAPixel>(
+          differences, above, [](int left, int, int) { return left; }, row);
+      return true;
+    case 2:
+      for (std::size_t i = 0; i < differences.size(); ++i) {
+        row[i] = static_cast<std::uint8_t>(differences[i] + above[i]);
+      }
+      return true;
+    case 3:
+      predict<BytesAPixel>(
+          differences, above, [](int left, int up, int) { return (left + up) / 2; }, row);
+      return true;
+    case 4:
+      predict<BytesAPixel>(
+          differences, above, [](int left, int up, int corner) { return paeth(left, up, corner); }, row);
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+std::optional<GreyPng> decode_grey_png(std::span<const PngChunk> chunks) {
+  std::optional<Header> header;
+  std::vector<std::uint8_t> compressed;
+  for (const PngChunk& chunk : chunks) {
+    const Bytes data = chunk.data();
+    if (chunk.type() == "IHDR") header = header_of(data);
+    if (chunk.type() == "tRNS") return std::nullopt;
+    if (chunk.type() == "IDAT") compressed.insert(compressed.end(), data.begin(), data.end());
+  }
+  if (!header) return std::nullopt;
+  const std::size_t stride = header->stride();
+  const std::vector<std::uint8_t> rows = inflate(compressed, header->height * (stride + 1));
+  if (rows.empty()) return std::nullopt;
+  GreyPng image{
+      static_cast<int>(header->width), static_cast<int>(header->height), static_cast<int>(header->bytes_a_pixel), {}};
+  image.values.resize(header->height * stride);
+  const std::vector<std::uint8_t> nothing(stride, 0);
+  for (std::size_t y = 0; y < header->height; ++y) {
+    const Bytes differences = Bytes(rows).subspan(y * (stride + 1) + 1, stride);
+    std::uint8_t* const row = image.values.data() + y * stride;
+    const std::uint8_t* const above = y == 0 ? nothing.data() : row - stride;
+    const std::uint8_t filter = rows[y * (stride + 1)];
+    const bool is_known = header->bytes_a_pixel == 1 ? unfilter<1>(filter, differences, above, row)
+                                                     : unfilter<2>(filter, differences, above, row);
+    if (!is_known) return std::nullopt;
+  }
+  return image;
+}
+
+}  // namespace byre

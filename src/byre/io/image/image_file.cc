@@ -1,0 +1,127 @@
+#include "byre/io/image/image_file.h"
+
+#include "byre/io/image/grey_png.h"
+#include "byre/io/image/image_codec.h"
+#include "byre/io/image/image_size.h"
+#include "byre/io/image/png_chunks.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include <opencv2/imgcodecs.hpp>
+#include <sys/stat.h>
+
+namespace byre {
+namespace {
+
+using OwnBytes = std::vector<std::uint8_t>;
+
+// Content of a file, or the reason of failure. Distinguishes an existing file that cannot be opened, such as when too
+// many others are open, from a missing or damaged one.
+struct FileBytes {
+  OwnBytes bytes;
+  std::string failure;
+};
+
+FileBytes failed(const char* what) {
+  if (errno == ENOENT) return {{}, "does not exist"};
+  return {{}, std::string(what) + ": " + std::strerror(errno)};
+}
+
+FileBytes read_bytes(const std::filesystem::path& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), std::fclose);
+  if (!file) return failed("cannot be opened");
+  struct stat status {};
+  if (fstat(fileno(file.get()), &status) != 0) return failed("cannot be read");
+  OwnBytes bytes(status.st_size > 0 ? static_cast<std::size_t>(status.st_size) : 0);
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  if (std::ferror(file.get()) != 0) return failed("cannot be read");
+  return {std::move(bytes), {}};
+}
+
+// The decoder silently fills the missing part of a JPEG with grey; the end marker shows whether it is complete.
+bool is_cut_jpeg(const OwnBytes& bytes) {
+  constexpr std::array<std::uint8_t, 2> kStart = {0xFF, 0xD8};
+  constexpr std::array<std::uint8_t, 2> kEnd = {0xFF, 0xD9};
+  constexpr std::size_t kTrailer = 1024;  // some cameras pad their files
+  if (bytes.size() < kStart.size() || !std::equal(kStart.begin(), kStart.end(), bytes.begin())) return false;
+  const auto tail = bytes.end() - static_cast<std::ptrdiff_t>(std::min(bytes.size(), kTrailer));
+  return std::search(tail, bytes.end(), kEnd.begin(), kEnd.end()) == bytes.end();
+}
+
+// Empty for kinds that are left to OpenCV.
+cv::Mat decode_grey(std::span<const PngChunk> chunks) {
+  const std::optional<GreyPng> image = decode_grey_png(chunks);
+  if (!image) return {};
+  cv::Mat grey(image->height, image->width, image->bytes_a_pixel == 1 ? CV_8U : CV_16U);
+  if (image->bytes_a_pixel == 1) {
+    std::ranges::copy(image->values, grey.data);
+    return grey;
+  }
+  auto* const values = grey.ptr<std::uint16_t>();
+  for (std::size_t i = 0; i < grey.total(); ++i) {
+    values[i] = static_cast<std::uint16_t>(image->values[2 * i] << 8U | image->values[2 * i + 1]);
+  }
+  return grey;
+}
+
+cv::Mat decode(const OwnBytes& bytes, int flags) {
+  const std::optional<ImageSize> size = stated_size(bytes);
+  if (size && size->pixels() > kMaxPixels) return {};
+  std::optional<OwnBytes> png;
+  if (is_png(bytes)) {
+    const std::optional<std::vector<PngChunk>> chunks = png_chunks(bytes);
+    if (!chunks) return {};
+    const cv::Mat grey = decode_grey(*chunks);
+    if (!grey.empty() && (flags == cv::IMREAD_UNCHANGED || grey.type() == CV_8U)) return grey;
+    png = png_of_pixels(*chunks);
+  }
+  try {
+    return decode_image(png ? *png : bytes, flags | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception&) {  // sizes beyond the decoder's limits
+    return {};
+  }
+}
+
+}  // namespace
+
+ImageReading<Image> try_image(const std::filesystem::path& path) {
+  const auto [bytes, failure] = read_bytes(path);
+  if (!failure.empty()) return {std::nullopt, failure};
+  return decoded_image(bytes);
+}
+
+ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes) {
+  const ImageReading<Image> broken{std::nullopt, "is not a complete image"};
+  if (bytes.empty() || is_cut_jpeg(bytes)) return broken;
+  const cv::Mat grey = decode(bytes, cv::IMREAD_GRAYSCALE);
+  if (grey.empty()) return broken;
+  assert(grey.isContinuous());
+  return {Image{grey.cols, grey.rows, OwnBytes(grey.data, grey.data + grey.total())}, {}};
+}
+
+ImageReading<DepthImage> try_depth_image(const std::filesystem::path& path) {
+  const ImageReading<DepthImage> broken{std::nullopt, "is not a complete 16-bit image"};
+  const auto [bytes, failure] = read_bytes(path);
+  if (!failure.empty()) return {std::nullopt, failure};
+  if (bytes.empty()) return broken;
+  const cv::Mat depth = decode(bytes, cv::IMREAD_UNCHANGED);
+  if (depth.empty() || depth.type() != CV_16U) return broken;
+  return {DepthImage{depth.cols, depth.rows, {depth.begin<std::uint16_t>(), depth.end<std::uint16_t>()}}, {}};
+}
+
+std::optional<Image> read_image(const std::filesystem::path& path) {
+  return try_image(path).image;
+}
+
+std::optional<DepthImage> read_depth_image(const std::filesystem::path& path) {
+  return try_depth_image(path).image;
+}
+
+}  // namespace byre

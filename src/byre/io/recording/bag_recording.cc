@@ -1,0 +1,249 @@
+#include "byre/io/recording/bag_recording.h"
+
+#include "byre/calibration_file.h"
+#include "byre/geometry/baseline.h"
+#include "byre/input_error.h"
+#include "byre/io/bag/bag.h"
+#include "byre/io/recording/bag_frames.h"
+#include "byre/io/recording/bag_image.h"
+#include "byre/io/recording/bag_motion.h"
+#include "byre/io/recording/bag_topics.h"
+#include "byre/io/recording/camera_info.h"
+#include "byre/io/recording/frame_selection.h"
+#include "byre/io/recording/timed_files.h"
+#include "byre/io/ros/message_reader.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_transform_topic(const BagTopic& topic) {
+  return holds<ros::TFMessage>(topic) || topic.type == "tf/tfMessage";
+}
+
+bool is_wanted(std::string_view type) {
+  const BagTopic topic{"", std::string(type), ""};
+  return holds<ros::Image>(topic) || holds<ros::CompressedImage>(topic) || holds<ros::CameraInfo>(topic) ||
+         is_transform_topic(topic);
+}
+
+class BagRecording final : public Recording {
+ public:
+  BagRecording(std::unique_ptr<Bag> bag, CalibrationWithSource calibration, std::vector<BagFrame> frames,
+               MotionSamples motion, TimeCorrections corrections, std::string place, std::vector<std::string> warnings)
+      : bag_(std::move(bag)),
+        calibration_(std::move(calibration)),
+        frames_(std::move(frames)),
+        motion_(std::move(motion)),
+        corrections_(std::move(corrections)),
+        place_(std::move(place)),
+        warnings_(std::move(warnings)) {
+    for (const BagFrame& frame : frames_) times_.push_back(frame.time);
+  }
+
+  const Calibration& calibration() const override { return calibration_.cameras; }
+  const std::vector<Timestamp>& times() const override { return times_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  std::optional<ImageFrame> read(int index) override;
+  const MotionSamples& motion() const override { return motion_; }
+  const TimeCorrections& time_corrections() const override { return corrections_; }
+
+ private:
+  std::optional<Image> read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera);
+  void warn(const BagFrame& frame, const BagMessage& message, const std::string& what);
+
+  std::unique_ptr<Bag> bag_;
+  CalibrationWithSource calibration_;  // constant after construction
+  std::vector<BagFrame> frames_;       // constant after construction
+  std::vector<Timestamp> times_;       // constant after construction
+  MotionSamples motion_;               // constant after construction
+  TimeCorrections corrections_;        // constant after construction
+  std::string place_;                  // constant after construction
+  std::vector<std::string> warnings_;  // grows with read
+};
+
+void BagRecording::warn(const BagFrame& frame, const BagMessage& message, const std::string& what) {
+  warnings_.push_back(place_ + ": " + bag_->content().topics[message.topic].name + " at " +
+                      std::to_string(frame.time.count()) + ": " + what);
+}
+
+std::optional<Image> BagRecording::read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera) {
+  ImageReading<Image> read = image_of(*bag_, message);
+  if (!read.image) {
+    warn(frame, message, read.failure);
+    return std::nullopt;
+  }
+  if (read.image->width == camera.width && read.image->height == camera.height) return std::move(read.image);
+  warn(frame, message,
+       "is " + std::to_string(read.image->width) + "x" + std::to_string(read.image->height) + " instead of " +
+           std::to_string(camera.width) + "x" + std::to_string(camera.height));
+  return std::nullopt;
+}
+
+std::optional<ImageFrame> BagRecording::read(int index) {
+  assert(index >= 0 && index < size());
+  const BagFrame& frame = frames_[static_cast<std::size_t>(index)];
+  std::optional<Image> left = read_image(frame, frame.left, calibration().left);
+  if (!left) return std::nullopt;
+  ImageFrame images{frame.time, std::move(*left), std::nullopt};
+  if (!calibration().right) return images;
+  if (frame.right) {
+    images.right = read_image(frame, *frame.right, calibration().right->camera);
+  } else {
+    warn(frame, frame.left, "has no right image with the same time stamp");
+  }
+  return images;
+}
+
+// Calibration of the cameras from a bag.
+class BagCalibration {
+ public:
+  BagCalibration(Bag& bag, std::string place) : bag_(bag), place_(std::move(place)) {}
+
+  // Empty without camera info for the left images.
+  std::optional<CalibrationWithSource> read(const ImageTopics& topics) const {
+    const std::optional<CameraInfoWithSource> left = info_of(topics.left);
+    if (!left) return std::nullopt;
+    const StaticFrames frames = tree();
+    CalibrationWithSource calibration{
+        {camera_of(*left), std::nullopt, body_from_camera(left->info.header.frame_id, frames)}, left->place, ""};
+    if (!topics.right) return calibration;
+    const std::optional<CameraInfoWithSource> right = info_of(*topics.right);
+    if (!right) {
+      throw InputError(place_, "has no camera info for " + bag_.content().topics[*topics.right].name,
+                       "give a stereo calibration with --calibration FILE, or use one camera with --camera left");
+    }
+    calibration.cameras.right = partner_of(*left, *right, frames);
+    calibration.right_size = right->place;
+    return calibration;
+  }
+
+ private:
+  // Empty if it is damaged.
+  template <ros::Message M>
+  std::optional<M> message(const BagMessage& message) const {
+    const BagTopic& topic = bag_.content().topics[message.topic];
+    try {
+      return ros::read_message<M>(bag_.read(message), *encoding_of(topic), place_ + ": " + topic.name);
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  }
+
+  // The first camera info for the topic of images.
+  std::optional<CameraInfoWithSource> info_of(std::size_t images) const {
+    const BagContent& content = bag_.content();
+    const std::string wanted = camera_info_topic(content.topics[images].name);
+    for (const BagMessage& each : content.messages) {
+      const BagTopic& topic = content.topics[each.topic];
+      if (topic.name != wanted || !holds<ros::CameraInfo>(topic) || !encoding_of(topic)) continue;
+      if (auto info = message<ros::CameraInfo>(each)) {
+        return CameraInfoWithSource{std::move(*info), place_ + ": " + wanted, is_rectified(content.topics[images])};
+      }
+    }
+    return std::nullopt;
+  }
+
+  StaticFrames tree() const {
+    StaticFrames frames;
+    const BagContent& content = bag_.content();
+    for (const BagMessage& each : content.messages) {
+      const BagTopic& topic = content.topics[each.topic];
+      if (!topic.name.ends_with("tf_static") || !is_transform_topic(topic) || !encoding_of(topic)) continue;
+      if (const auto transforms = message<ros::TFMessage>(each)) frames.take(*transforms);
+    }
+    return frames;
+  }
+
+  Bag& bag_;
+  std::string place_;
+};
+
+CalibrationWithSource calibration_of(Bag& bag, const fs::path& path, const ImageTopics& topics,
+                                     const OpenOptions& options) {
+  const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
+  if (options.calibration) return calibration_for(folder, options);
+  if (auto calibration = BagCalibration(bag, path.string()).read(topics)) return std::move(*calibration);
+  if (find_calibration(folder)) return calibration_for(folder, options);
+  throw InputError(path.string(),
+                   "has no camera info on topic " + camera_info_topic(bag.content().topics[topics.left].name) +
+                       ", and its folder contains no calibration file",
+                   "give one with --calibration FILE");
+}
+
+// Throws InputError if the size of the first readable image differs from the calibration, or none is readable.
+void require_calibrated_size(Bag& bag, const std::vector<BagMessage>& messages, const Camera& camera,
+                             const std::string& size, const fs::path& path) {
+  std::string first_failure;
+  for (const BagMessage& message : messages) {
+    const ImageReading<Image> read = image_of(bag, message);
+    if (read.image) return require_calibrated_size(read.image->width, read.image->height, camera, size);
+    if (first_failure.empty()) first_failure = bag.content().topics[message.topic].name + " " + read.failure;
+  }
+  throw InputError(path.string(), "no image can be read: " + first_failure, "select another topic with --left TOPIC");
+}
+
+void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, const CalibrationWithSource& calibration,
+                              const fs::path& path) {
+  std::vector<BagMessage> left, right;
+  for (const BagFrame& frame : frames) {
+    left.push_back(frame.left);
+    if (frame.right) right.push_back(*frame.right);
+  }
+  const auto& [cameras, left_size, right_size, depth_size] = calibration;
+  require_calibrated_size(bag, left, cameras.left, left_size, path);
+  if (cameras.right) require_calibrated_size(bag, right, cameras.right->camera, right_size, path);
+}
+
+// Frames with the images of the chosen cameras.
+std::vector<BagFrame> frames_of_choice(std::vector<BagFrame> frames, const CalibrationWithSource& calibration,
+                                       const std::optional<CameraChoice>& choice) {
+  if (calibration.cameras.right) return frames;
+  if (choice == CameraChoice::right) {
+    std::erase_if(frames, [](const BagFrame& frame) { return !frame.right; });
+    for (BagFrame& frame : frames) frame.left = *frame.right;
+  }
+  for (BagFrame& frame : frames) frame.right.reset();
+  return frames;
+}
+
+}  // namespace
+
+std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameRange& range,
+                                              const OpenOptions& options) {
+  std::unique_ptr<Bag> bag =
+      open_bag(path, [&](std::string_view type) { return is_wanted(type) || is_motion_type(type, options); });
+  const BagContent& content = bag->content();
+  const std::string place = path.string();
+  std::vector<std::string> warnings = content.damage;
+  ImageTopics topics = choose_image_topics(content, options, path);
+  if (options.camera == CameraChoice::left) topics.right.reset();
+  auto [frames, corrections, clock, frame_warnings] = bag_frames(content, topics, place, pair_tolerance(options));
+  warnings.insert(warnings.end(), frame_warnings.begin(), frame_warnings.end());
+
+  CalibrationWithSource calibration = calibration_of(*bag, path, topics, options);
+  if (topics.right && !calibration.cameras.right && !options.camera) {
+    warnings.push_back(place + ": the calibration has one camera only; right images are ignored");
+  }
+  calibration = choose_calibration(calibration, {.right = topics.right.has_value()}, options.camera, path);
+  calibration.cameras =
+      with_checked_baseline(calibration.cameras, options.baseline, place_of_calibration(path, options), "--baseline ");
+  frames = frames_of_choice(std::move(frames), calibration, options.camera);
+  require_calibrated_sizes(*bag, frames, calibration, path);
+  auto [motion, motion_warnings] = read_bag_motion(*bag, options, place, clock);
+  warnings.insert(warnings.end(), motion_warnings.begin(), motion_warnings.end());
+
+  std::vector<Timestamp> times;
+  for (const BagFrame& frame : frames) times.push_back(frame.time);
+  std::vector<BagFrame> selected;
+  for (const std::size_t i : frames_in_range(times, range, path)) selected.push_back(frames[i]);
+  return std::make_unique<BagRecording>(std::move(bag), std::move(calibration), std::move(selected), std::move(motion),
+                                        std::move(corrections), place, std::move(warnings));
+}
+
+}  // namespace byre

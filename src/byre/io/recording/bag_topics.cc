@@ -1,0 +1,157 @@
+#include "byre/io/recording/bag_topics.h"
+
+#include "byre/input_error.h"
+#include "byre/io/ros/messages.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using Numbers = std::vector<std::size_t>;
+
+constexpr std::string_view kCompressed = "/compressed";
+
+std::string without_compressed(const std::string& name) {
+  return name.ends_with(kCompressed) ? name.substr(0, name.size() - kCompressed.size()) : name;
+}
+
+std::string parent_of(const std::string& name) {
+  const std::string raw = without_compressed(name);
+  return raw.substr(0, raw.rfind('/') == std::string::npos ? 0 : raw.rfind('/'));
+}
+
+// Processing stage of the images: raw, grey, colour, rectified.
+int processing(const std::string& name) {
+  const std::string raw = without_compressed(name);
+  const std::string kind = raw.substr(raw.rfind('/') + 1);
+  int steps = 0;
+  if (kind.find("mono") != std::string::npos) steps = 1;
+  if (kind.find("color") != std::string::npos) steps = 2;
+  if (kind.find("rect") != std::string::npos) steps += 4;
+  return 2 * steps + (raw == name ? 0 : 1);
+}
+
+// Possible names of the right camera's topic for a left one.
+std::set<std::string> names_of_right(const std::string& left) {
+  using Words = std::pair<std::string_view, std::string_view>;
+  constexpr std::array kWords = {Words{"left", "right"},        Words{"Left", "Right"},    Words{"LEFT", "RIGHT"},
+                                 Words{"cam0", "cam1"},         Words{"cam_0", "cam_1"},   Words{"camera0", "camera1"},
+                                 Words{"camera_0", "camera_1"}, Words{"infra1", "infra2"}, Words{"image_0", "image_1"},
+                                 Words{"fisheye1", "fisheye2"}};
+  std::set<std::string> names;
+  for (const auto& [from, to] : kWords) {
+    std::string all = left;
+    for (std::size_t at = all.find(from); at != std::string::npos; at = all.find(from, at + to.size())) {
+      all.replace(at, from.size(), to);
+    }
+    for (std::size_t at = left.find(from); at != std::string::npos; at = left.find(from, at + 1)) {
+      names.insert(std::string(left).replace(at, from.size(), to));
+    }
+    if (all != left) names.insert(all);
+  }
+  return names;
+}
+
+std::string listing(const BagContent& content) {
+  std::string text;
+  for (const BagTopic& topic : content.topics) {
+    if (!is_image_topic(topic)) continue;
+    text += (text.empty() ? "" : ", ") + topic.name + " (" + std::to_string(topic.messages) + ")";
+  }
+  return text.empty() ? "none" : text;
+}
+
+[[noreturn]] void fail(const fs::path& bag, const std::string& reason, const BagContent& content) {
+  throw InputError(bag.string(), reason + "; available image topics: " + listing(content),
+                   "select topics with --left TOPIC and --right TOPIC, or with --left TOPIC alone");
+}
+
+class Chooser {
+ public:
+  Chooser(const BagContent& content, const fs::path& bag) : content_(content), bag_(bag) {
+    for (std::size_t i = 0; i < content.topics.size(); ++i) {
+      if (is_image_topic(content.topics[i])) images_.push_back(i);
+    }
+  }
+
+  std::size_t named(const std::string& name) const {
+    for (const std::size_t i : images_) {
+      if (this->name(i) == name || this->name(i) == "/" + name) return i;
+    }
+    fail(bag_, "has no images on topic " + name, content_);
+  }
+
+  std::optional<std::size_t> right_of(std::size_t left) const {
+    const std::set<std::string> names = names_of_right(name(left));
+    for (const std::size_t i : images_) {
+      if (names.contains(name(i))) return i;
+    }
+    return std::nullopt;
+  }
+
+  ImageTopics guessed() const {
+    std::vector<ImageTopics> pairs;
+    for (const std::size_t i : images_) {
+      if (const std::optional<std::size_t> right = right_of(i)) pairs.push_back({i, right});
+    }
+    if (!pairs.empty()) return least_processed(std::move(pairs));
+    if (images_.empty()) fail(bag_, "contains no images of a supported type", content_);
+    for (const std::size_t i : images_) pairs.push_back({i});
+    return least_processed(std::move(pairs));
+  }
+
+ private:
+  const std::string& name(std::size_t topic) const { return content_.topics[topic].name; }
+
+  // Precondition: choices are kinds of the images of one camera.
+  ImageTopics least_processed(std::vector<ImageTopics> choices) const {
+    for (const ImageTopics& choice : choices) {
+      if (parent_of(name(choice.left)) != parent_of(name(choices.front().left))) {
+        fail(bag_, "contains images of several cameras; the choice is ambiguous", content_);
+      }
+    }
+    return *std::ranges::min_element(
+        choices, {}, [&](const ImageTopics& choice) { return std::pair(processing(name(choice.left)), choice.left); });
+  }
+
+  const BagContent& content_;
+  const fs::path& bag_;
+  Numbers images_;
+};
+
+}  // namespace
+
+bool is_image_topic(const BagTopic& topic) {
+  if (!holds<ros::Image>(topic) && !holds<ros::CompressedImage>(topic)) return false;
+  return topic.messages > 0 && encoding_of(topic) && topic.name.find("depth") == std::string::npos &&
+         topic.name.find("Depth") == std::string::npos;
+}
+
+bool is_rectified(const BagTopic& topic) {
+  const std::string raw = without_compressed(topic.name);
+  return raw.find("rect", raw.rfind('/') == std::string::npos ? 0 : raw.rfind('/')) != std::string::npos;
+}
+
+ImageTopics choose_image_topics(const BagContent& content, const OpenOptions& options, const fs::path& bag) {
+  const Chooser chooser(content, bag);
+  if (!options.left_topic && options.right_topic) {
+    throw InputError(bag.string(), "the topic of the right camera is given without that of the left camera",
+                     "give both: --left TOPIC --right TOPIC");
+  }
+  if (!options.left_topic) return chooser.guessed();
+  const std::size_t left = chooser.named(*options.left_topic);
+  if (options.right_topic) return {left, chooser.named(*options.right_topic)};
+  return {left, chooser.right_of(left)};
+}
+
+std::string camera_info_topic(const std::string& images) {
+  return parent_of(images) + "/camera_info";
+}
+
+}  // namespace byre

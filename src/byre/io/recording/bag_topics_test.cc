@@ -1,0 +1,94 @@
+#include "byre/io/recording/bag_topics.h"
+
+#include "byre/io/recording/test_folder.h"
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::HasSubstr;
+
+BagContent bag_of(const std::vector<std::string>& images) {
+  BagContent content;
+  content.topics.push_back({"/imu", "sensor_msgs/msg/Imu", "cdr", 100});
+  for (const std::string& name : images) {
+    const bool is_compressed = name.ends_with("/compressed");
+    content.topics.push_back(
+        {name, is_compressed ? "sensor_msgs/msg/CompressedImage" : "sensor_msgs/msg/Image", "cdr", 7});
+  }
+  return content;
+}
+
+// "left right", or the error.
+std::string chosen(const std::vector<std::string>& images, const OpenOptions& options = {}) {
+  const BagContent content = bag_of(images);
+  std::string names;
+  const std::string error = error_of([&] {
+    const ImageTopics topics = choose_image_topics(content, options, "walk.bag");
+    names = content.topics[topics.left].name;
+    if (topics.right) names += " " + content.topics[*topics.right].name;
+  });
+  return names.empty() ? error : names;
+}
+
+TEST(BagTopics, SelectALeftAndRightPair) {
+  EXPECT_EQ(chosen({"/right/image_raw", "/left/image_raw"}), "/left/image_raw /right/image_raw");
+  EXPECT_EQ(chosen({"/cam0/image_raw", "/cam1/image_raw"}), "/cam0/image_raw /cam1/image_raw");
+  EXPECT_EQ(chosen({"/d435/infra1/image_rect_raw", "/d435/infra2/image_rect_raw", "/d435/depth/image_rect_raw"}),
+            "/d435/infra1/image_rect_raw /d435/infra2/image_rect_raw");
+  EXPECT_EQ(chosen({"/stereo/left/image", "/stereo/right/image", "/rear/image"}),
+            "/stereo/left/image /stereo/right/image");
+}
+
+TEST(BagTopics, PreferRawAndUnrectifiedImages) {
+  EXPECT_EQ(
+      chosen({"/left/image_raw/compressed", "/right/image_raw/compressed", "/left/image_raw", "/right/image_raw"}),
+      "/left/image_raw /right/image_raw");
+  EXPECT_EQ(chosen({"/left/image_rect_color", "/right/image_rect_color", "/left/image_rect", "/right/image_rect"}),
+            "/left/image_rect /right/image_rect");
+  EXPECT_EQ(chosen({"/camera/image_color", "/camera/image_raw"}), "/camera/image_raw");
+}
+
+TEST(BagTopics, AcceptCompressedImagesAlone) {
+  EXPECT_EQ(chosen({"/left/image_raw/compressed", "/right/image_raw/compressed"}),
+            "/left/image_raw/compressed /right/image_raw/compressed");
+}
+
+TEST(BagTopics, SelectTheOnlyCamera) {
+  EXPECT_EQ(chosen({"/camera/image_raw"}), "/camera/image_raw");
+}
+
+TEST(BagTopics, RequireAChoiceAmongSeveralCameras) {
+  const std::string front_and_rear = chosen({"/front/image", "/rear/image"});
+  EXPECT_THAT(front_and_rear, HasSubstr("walk.bag: contains images of several cameras"));
+  EXPECT_THAT(front_and_rear, HasSubstr("/front/image (7), /rear/image (7)"));
+  EXPECT_THAT(front_and_rear, HasSubstr("--left TOPIC"));
+  EXPECT_THAT(chosen({"/front/left/image", "/front/right/image", "/rear/left/image", "/rear/right/image"}),
+              HasSubstr("several cameras"));
+  EXPECT_THAT(chosen({}), HasSubstr("contains no images of a supported type; available image topics: none"));
+}
+
+TEST(BagTopics, SelectTheGivenTopics) {
+  const std::vector<std::string> images = {"/front/image", "/rear/image", "/rig/left/image", "/rig/right/image"};
+  EXPECT_EQ(chosen(images, {.left_topic = "/rear/image"}), "/rear/image");
+  EXPECT_EQ(chosen(images, {.left_topic = "front/image", .right_topic = "/rear/image"}), "/front/image /rear/image");
+  EXPECT_EQ(chosen(images, {.left_topic = "/rig/left/image"}), "/rig/left/image /rig/right/image");
+  EXPECT_THAT(chosen(images, {.left_topic = "/imu"}), HasSubstr("has no images on topic /imu; available image topics"));
+  EXPECT_THAT(chosen(images, {.right_topic = "/rear/image"}), HasSubstr("without that of the left camera"));
+}
+
+TEST(BagTopics, FindTheirCameraInfo) {
+  EXPECT_EQ(camera_info_topic("/cam0/image_raw"), "/cam0/camera_info");
+  EXPECT_EQ(camera_info_topic("/cam0/image_raw/compressed"), "/cam0/camera_info");
+  EXPECT_EQ(camera_info_topic("image"), "/camera_info");
+}
+
+TEST(BagTopics, DetectRectifiedImages) {
+  EXPECT_TRUE(is_rectified({"/left/image_rect", "", ""}));
+  EXPECT_TRUE(is_rectified({"/left/image_rect_color/compressed", "", ""}));
+  EXPECT_FALSE(is_rectified({"/direct/image_raw", "", ""}));
+}
+
+}  // namespace
+}  // namespace byre

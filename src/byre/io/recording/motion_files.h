@@ -1,0 +1,37 @@
+#pragma once
+
+#include "byre/body_motion.h"
+#include "byre/io/recording/restored_times.h"
+#include "byre/motion_warning.h"
+#include "byre/recording.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// Wheel and gyroscope samples recorded with the images of a folder:
+//   wheel.txt               poses of the base in the odometry frame, "time_s tx ty tz qx qy qz qw" (TUM)
+//   mav0/imu0/data.csv      EuRoC: time in nanoseconds, angular rates in radians per second, and accelerations in m/s^2
+//                           if available
+//   mav0/imu0/sensor.yaml   EuRoC: rotation of the sensor relative to the body (T_BS)
+// Wheels are used if the file exists or the options name one; the gyroscope if the options request it. Throws
+// InputError with file and line if a named file is missing or cannot be parsed.
+struct FileMotion {
+  MotionSamples samples;
+  std::vector<std::string> warnings;  // corrections of times and dropped lines, with counts
+};
+
+// body_from_left: from the recording's own calibration. images: clock of the left images.
+FileMotion read_motion(const std::filesystem::path& recording, const OpenOptions& options,
+                       const Pose& body_from_left = {}, const SensorClock& images = {});
+
+// Poses of a wheel file, with continuous times (restore_times).
+Trajectory read_wheel_file(const std::filesystem::path& path, const SensorClock& images,
+                           std::vector<std::string>& warnings);
+
+// File or topic that a sensor's samples were read from.
+std::string motion_source(const std::filesystem::path& recording, const OpenOptions& options, MotionSensor sensor);
+
+}  // namespace byre

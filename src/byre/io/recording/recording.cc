@@ -1,0 +1,299 @@
+#include "byre/recording.h"
+
+#include "byre/calibration_file.h"
+#include "byre/geometry/baseline.h"
+#include "byre/input_error.h"
+#include "byre/io/bag/bag.h"
+#include "byre/io/image/image_file.h"
+#include "byre/io/recording/bag_recording.h"
+#include "byre/io/recording/frame_selection.h"
+#include "byre/io/recording/motion_files.h"
+#include "byre/io/recording/recording_index.h"
+#include "byre/io/recording/video.h"
+#include "byre/trajectory_file.h"
+
+#include <cassert>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The camera of the depth images' pixels.
+const Camera& depth_lens(const Calibration& calibration) {
+  return calibration.depth->camera ? *calibration.depth->camera : calibration.left;
+}
+
+class ImageFiles final : public Recording {
+ public:
+  ImageFiles(RecordingIndex index, MotionSamples motion)
+      : index_(std::move(index)), motion_(std::move(motion)), warnings_(index_.warnings) {
+    for (const FrameFiles& frame : index_.frames) times_.push_back(frame.time);
+  }
+
+  const Calibration& calibration() const override { return index_.calibration.cameras; }
+  const std::vector<Timestamp>& times() const override { return times_; }
+  std::optional<ImageFrame> read(int index) override;
+  const MotionSamples& motion() const override { return motion_; }
+  const TimeCorrections& time_corrections() const override { return index_.corrections; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+
+ private:
+  template <typename AnyImage>
+  std::optional<AnyImage> read_calibrated(const fs::path& path, ImageReading<AnyImage> read, const Camera& camera);
+  std::optional<Image> read_right(const FrameFiles& files);
+  std::optional<DepthImage> read_depth(const FrameFiles& files);
+
+  RecordingIndex index_;               // constant after construction
+  MotionSamples motion_;               // constant after construction
+  std::vector<Timestamp> times_;       // constant after construction
+  std::vector<std::string> warnings_;  // grows with read
+};
+
+std::optional<ImageFrame> ImageFiles::read(int index) {
+  assert(index >= 0 && index < size());
+  const FrameFiles& files = index_.frames[static_cast<std::size_t>(index)];
+  std::optional<Image> left = read_calibrated(files.left, try_image(files.left), calibration().left);
+  if (!left) return std::nullopt;
+  return ImageFrame{files.time, std::move(*left), read_right(files), read_depth(files)};
+}
+
+std::optional<Image> ImageFiles::read_right(const FrameFiles& files) {
+  if (!calibration().right) return std::nullopt;
+  if (files.right) return read_calibrated(*files.right, try_image(*files.right), calibration().right->camera);
+  warnings_.push_back(files.left.string() + ": has no right image with the same time stamp");
+  return std::nullopt;
+}
+
+std::optional<DepthImage> ImageFiles::read_depth(const FrameFiles& files) {
+  if (!calibration().depth || !files.depth) return std::nullopt;
+  return read_calibrated(*files.depth, try_depth_image(*files.depth), depth_lens(calibration()));
+}
+
+template <typename AnyImage>
+std::optional<AnyImage> ImageFiles::read_calibrated(const fs::path& path, ImageReading<AnyImage> read,
+                                                    const Camera& camera) {
+  std::optional<AnyImage>& image = read.image;
+  if (!image) {
+    warnings_.push_back(path.string() + ": " + read.failure);
+    return std::nullopt;
+  }
+  if (image->width == camera.width && image->height == camera.height) return std::move(image);
+  warnings_.push_back(path.string() + ": is " + std::to_string(image->width) + "x" + std::to_string(image->height) +
+                      " instead of " + std::to_string(camera.width) + "x" + std::to_string(camera.height));
+  return std::nullopt;
+}
+
+// Keeps only the frames in range.
+RecordingIndex select(RecordingIndex index, const FrameRange& range, const fs::path& path) {
+  std::vector<Timestamp> times;
+  for (const FrameFiles& frame : index.frames) times.push_back(frame.time);
+  std::vector<FrameFiles> selected;
+  for (const std::size_t i : frames_in_range(times, range, path)) selected.push_back(index.frames[i]);
+  index.frames = std::move(selected);
+  return index;
+}
+
+// The first readable depth image; throws InputError with its name if there is none.
+DepthImage first_readable_depth(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    if (std::optional<DepthImage> image = read_depth_image(file)) return std::move(*image);
+  }
+  throw InputError(files.front().string(), "is not a complete 16-bit image, and neither is any other depth image",
+                   "store depths in one 16-bit channel, or select the camera alone: left");
+}
+
+// Throws InputError if the size of the first readable images differs from the calibration.
+void require_calibrated_sizes(const RecordingIndex& index) {
+  std::vector<fs::path> left, right, depth;
+  for (const FrameFiles& frame : index.frames) {
+    left.push_back(frame.left);
+    if (frame.right) right.push_back(*frame.right);
+    if (frame.depth) depth.push_back(*frame.depth);
+  }
+  const auto& [cameras, left_size, right_size, depth_size] = index.calibration;
+  const Image first_left = first_readable(left);
+  require_calibrated_size(first_left.width, first_left.height, cameras.left, left_size);
+  if (cameras.depth && !depth.empty()) {
+    const DepthImage first_depth = first_readable_depth(depth);
+    require_calibrated_size(first_depth.width, first_depth.height, depth_lens(cameras), depth_size);
+  }
+  if (!cameras.right || right.empty()) return;
+  const Image first_right = first_readable(right);
+  require_calibrated_size(first_right.width, first_right.height, cameras.right->camera, right_size);
+}
+
+void require_untimed(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
+  if (!options.frame_rate_hz || format == RecordingFormat::images || format == RecordingFormat::video) return;
+  throw InputError(path.string(), "has time stamps; a frame rate is not accepted",
+                   "omit the frame rate, or give the folder of the images");
+}
+
+void require_no_topics(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
+  const bool is_any_named = options.left_topic || options.right_topic || options.wheels_topic || options.imu_topic;
+  if (format == RecordingFormat::bag || !is_any_named) return;
+  throw InputError(path.string(), "is not a bag and has no topics", "omit the topics");
+}
+
+void require_no_motion(const fs::path& path, const OpenOptions& options) {
+  if (!options.wheels && !options.use_gyroscope) return;
+  throw InputError(path.string(), "is a video; wheel and gyroscope samples are read from bags and folders only",
+                   "omit them, or extract the images");
+}
+
+fs::path calibration_file_for(const fs::path& folder, const OpenOptions& options) {
+  if (options.calibration) return *options.calibration;
+  if (const std::optional<fs::path> file = find_calibration(folder)) return *file;
+  throw InputError(folder.empty() ? "." : folder.string(), "contains no camera calibration",
+                   "give one with --calibration FILE, or add it as calibration.yaml, camera.yaml or sensor.yaml");
+}
+
+}  // namespace
+
+Image first_readable(const std::vector<fs::path>& files) {
+  std::string first_failure;
+  for (const fs::path& file : files) {
+    ImageReading<Image> read = try_image(file);
+    if (read.image) return std::move(*read.image);
+    if (first_failure.empty()) first_failure = file.filename().string() + " " + read.failure;
+  }
+  throw InputError(files.front().parent_path().string(), "no listed image can be read: " + first_failure,
+                   "check that the folder is complete");
+}
+
+std::string place_of_calibration(const fs::path& recording, const OpenOptions& options) {
+  return options.calibration.value_or(recording).string();
+}
+
+CalibrationWithSource calibration_for(const fs::path& folder, const OpenOptions& options) {
+  const fs::path file = calibration_file_for(folder, options);
+  return {read_calibration(file), file.string(), file.string()};
+}
+
+DepthCameraWithSource depth_camera_for(const fs::path& folder, const OpenOptions& options) {
+  const fs::path camera_file = calibration_file_for(folder, options);
+  const fs::path extra = folder / "depth.yaml";
+  const bool has_extra = !has_depth_camera_fields(camera_file) && fs::is_regular_file(extra);
+  const fs::path file = has_extra ? extra : camera_file;
+  return {read_depth_camera(file), file.string()};
+}
+
+const MotionSamples& Recording::motion() const {
+  static const MotionSamples none;
+  return none;
+}
+
+const TimeCorrections& Recording::time_corrections() const {
+  static const TimeCorrections none;
+  return none;
+}
+
+std::string_view to_string(RecordingFormat format) {
+  switch (format) {
+    case RecordingFormat::euroc:
+      return "euroc";
+    case RecordingFormat::kitti:
+      return "kitti";
+    case RecordingFormat::tum:
+      return "tum";
+    case RecordingFormat::images:
+      return "images";
+    case RecordingFormat::video:
+      return "video";
+    case RecordingFormat::bag:
+      return "bag";
+  }
+  return "";
+}
+
+std::string_view to_string(CameraChoice choice) {
+  switch (choice) {
+    case CameraChoice::stereo:
+      return "stereo";
+    case CameraChoice::left:
+      return "left";
+    case CameraChoice::right:
+      return "right";
+    case CameraChoice::rgbd:
+      return "rgbd";
+  }
+  return "";
+}
+
+RecordingFormat guess_format(const fs::path& path) {
+  if (is_video_file(path)) return RecordingFormat::video;
+  if (!fs::is_directory(path)) {
+    if (is_bag(path)) return RecordingFormat::bag;
+    throw InputError(path.string(), "is not a folder, video or bag",
+                     "give the folder of a recording, a video file or a bag");
+  }
+  if (find_mav_folder(path)) return RecordingFormat::euroc;
+  if (fs::exists(path / "rgb.txt")) return RecordingFormat::tum;
+  if (fs::exists(path / "calib.txt") || fs::is_directory(path / "image_0")) return RecordingFormat::kitti;
+  if (is_bag(path)) return RecordingFormat::bag;
+  if (has_images(path)) return RecordingFormat::images;
+  throw InputError(path.string(), "contains no recording in a supported format",
+                   "supported: mav0/cam0 or cam0 (EuRoC), calib.txt or image_0 (KITTI odometry), rgb.txt (TUM RGB-D), "
+                   "image files, also in folders left and right");
+}
+
+RecordingIndex index_recording(const fs::path& path, const OpenOptions& options) {
+  const RecordingFormat format = guess_format(path);
+  require_untimed(format, path, options);
+  switch (format) {
+    case RecordingFormat::euroc:
+      return index_euroc(path, options);
+    case RecordingFormat::kitti:
+      return index_kitti(path, options);
+    case RecordingFormat::tum:
+      return index_tum(path, options);
+    case RecordingFormat::images:
+      return index_images(path, options);
+    case RecordingFormat::video:
+    case RecordingFormat::bag:
+      break;
+  }
+  throw InputError(path.string(), "is a " + std::string(to_string(format)) + ", which has no image files",
+                   "extract its images into a folder");
+}
+
+std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
+  const RecordingFormat format = guess_format(path);
+  require_no_topics(format, path, options);
+  if (format == RecordingFormat::video) {
+    require_no_motion(path, options);
+    return open_video(path, range, options);
+  }
+  if (format == RecordingFormat::bag) {
+    require_untimed(format, path, options);
+    return open_bag_recording(path, range, options);
+  }
+  const RecordingIndex whole = index_recording(path, options);
+  const ExtraImages extra = extra_images_of(whole);
+  require_calibrated_sizes(choose_camera(whole, extra, options.camera, path));
+  RecordingIndex chosen = choose_camera(select(whole, range, path), extra, options.camera, path);
+  chosen.calibration.cameras = with_checked_baseline(chosen.calibration.cameras, options.baseline,
+                                                     place_of_calibration(path, options), "--baseline ");
+  FileMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);
+  chosen.warnings.insert(chosen.warnings.end(), motion.warnings.begin(), motion.warnings.end());
+  return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples));
+}
+
+CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {
+  if (recording.calibration().right) return CameraChoice::stereo;
+  return recording.calibration().depth ? CameraChoice::rgbd : options.camera.value_or(CameraChoice::left);
+}
+
+std::optional<fs::path> find_ground_truth(const fs::path& path) {
+  const RecordingFormat format = guess_format(path);
+  if (format == RecordingFormat::euroc) return find_euroc_ground_truth(path);
+  fs::path truth = path / "groundtruth.txt";
+  if (format == RecordingFormat::kitti) {
+    const fs::path sequence = fs::canonical(path);
+    truth = sequence.parent_path().parent_path() / "poses" / (sequence.filename().string() + ".txt");
+  }
+  return fs::exists(truth) ? std::optional(truth) : std::nullopt;
+}
+
+}  // namespace byre

@@ -1,0 +1,208 @@
+#include "byre/odometry/odometry_calibration.h"
+
+#include "byre/base/text_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+namespace byre {
+namespace {
+
+constexpr const char* kWheels = "wheels";
+constexpr const char* kGyroscope = "gyroscope";
+constexpr const char* kGravity = "gravity";
+
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+// Format: "name number number, name number ..."
+class NumbersByName {
+ public:
+  NumbersByName() = default;
+  explicit NumbersByName(std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t end = text.find(';');
+      take(text.substr(0, end));
+      if (end == std::string_view::npos) break;
+      text.remove_prefix(end + 1);
+    }
+  }
+
+  void add(const std::string& name, std::span<const double> values) {
+    text_ += (text_.empty() ? "" : "; ") + name;
+    for (const double value : values) text_ += " " + text_of(value);
+  }
+  void add(const std::string& name, double value) { add(name, std::span(&value, 1)); }
+  const std::string& text() const { return text_; }
+
+  // Copies the numbers to values; false unless the counts match.
+  bool get(const std::string& name, std::span<double> values) const {
+    const auto found = numbers_.find(name);
+    if (found == numbers_.end() || found->second.size() != values.size()) return false;
+    std::ranges::copy(found->second, values.begin());
+    return true;
+  }
+  bool get(const std::string& name, double& value) const { return get(name, std::span(&value, 1)); }
+
+ private:
+  void take(std::string_view part) {
+    const std::vector<std::string_view> fields = split_fields(part);
+    if (fields.empty()) return;
+    std::vector<double>& numbers = numbers_[std::string(fields.front())];
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+      if (const auto number = parse_number(fields[i])) numbers.push_back(*number);
+    }
+  }
+
+  std::string text_;
+  std::map<std::string, std::vector<double>> numbers_;
+};
+
+void add_rotation(NumbersByName& numbers, const std::string& name, const Eigen::Quaterniond& rotation) {
+  numbers.add(name, std::array{rotation.w(), rotation.x(), rotation.y(), rotation.z()});
+}
+
+bool get_rotation(const NumbersByName& numbers, const std::string& name, Eigen::Quaterniond& rotation) {
+  constexpr double kUnit = 1e-3;
+  std::array<double, 4> values{};
+  if (!numbers.get(name, values)) return false;
+  const Eigen::Quaterniond read(values[0], values[1], values[2], values[3]);
+  if (!(std::abs(read.norm() - 1.0) < kUnit)) return false;
+  rotation = read.normalized();
+  return true;
+}
+
+std::string note_of(const WheelCalibration& wheels, double time_offset) {
+  NumbersByName numbers;
+  add_rotation(numbers, "base_from_body_wxyz", wheels.base_from_body.rotation);
+  numbers.add("arm_m", std::array{wheels.base_from_body.translation.x(), wheels.base_from_body.translation.y()});
+  numbers.add("metres_per_unit", wheels.metres_per_unit);
+  numbers.add("scale_sigma", wheels.scale_sigma);
+  numbers.add("way_error", wheels.translation_error);
+  numbers.add("turn_error", wheels.rotation_error);
+  numbers.add("turn_scale", wheels.turn_errors.scale);
+  numbers.add("turn_per_metre", wheels.turn_errors.per_metre);
+  numbers.add("covariance", std::span(wheels.covariance.data(), 16));
+  numbers.add("delay_s", time_offset);
+  return numbers.text();
+}
+
+bool read_note(const NumbersByName& numbers, WheelCalibration& wheels, double& time_offset) {
+  std::array<double, 2> arm{};
+  const bool is_whole =
+      get_rotation(numbers, "base_from_body_wxyz", wheels.base_from_body.rotation) && numbers.get("arm_m", arm) &&
+      numbers.get("metres_per_unit", wheels.metres_per_unit) && numbers.get("scale_sigma", wheels.scale_sigma) &&
+      numbers.get("way_error", wheels.translation_error) && numbers.get("turn_error", wheels.rotation_error) &&
+      numbers.get("turn_scale", wheels.turn_errors.scale) &&
+      numbers.get("turn_per_metre", wheels.turn_errors.per_metre) &&
+      numbers.get("covariance", std::span(wheels.covariance.data(), 16)) && numbers.get("delay_s", time_offset);
+  wheels.base_from_body.translation = {arm[0], arm[1], 0.0};
+  const bool is_sound = wheels.metres_per_unit > 0.0 && wheels.scale_sigma >= 0.0 &&
+                        wheels.covariance.ldlt().isPositive() &&
+                        wheels.covariance.isApprox(wheels.covariance.transpose());
+  return is_whole && is_sound;
+}
+
+}  // namespace
+
+void write_odometry_calibration(const OdometryCalibration& calibration, std::map<std::string, std::string>& notes) {
+  if (calibration.wheels) notes[kWheels] = note_of(*calibration.wheels, calibration.time_offset);
+  if (calibration.up) {
+    NumbersByName numbers;
+    numbers.add("up_in_map", std::span(calibration.up->up_in_map.data(), 3));
+    numbers.add("sigma_rad", calibration.up->sigma);
+    notes[kGravity] = numbers.text();
+  }
+  if (!calibration.gyroscope) return;
+  NumbersByName numbers;
+  add_rotation(numbers, "body_from_gyroscope_wxyz", calibration.gyroscope->body_from_gyroscope);
+  numbers.add("error_rad_per_s", calibration.gyroscope->error);
+  numbers.add("covariance", std::span(calibration.gyroscope->covariance.data(), 9));
+  notes[kGyroscope] = numbers.text();
+}
+
+OdometryCalibration read_odometry_calibration(const std::map<std::string, std::string>& notes) {
+  OdometryCalibration calibration;
+  if (const auto note = notes.find(kWheels); note != notes.end()) {
+    WheelCalibration wheels;
+    double time_offset = 0.0;
+    if (read_note(NumbersByName(note->second), wheels, time_offset)) {
+      calibration.wheels = wheels;
+      calibration.time_offset = time_offset;
+    }
+  }
+  if (const auto note = notes.find(kGyroscope); note != notes.end()) {
+    GyroscopeCalibration gyroscope;
+    const NumbersByName numbers(note->second);
+    if (get_rotation(numbers, "body_from_gyroscope_wxyz", gyroscope.body_from_gyroscope) &&
+        numbers.get("error_rad_per_s", gyroscope.error)) {
+      Eigen::Matrix3d covariance;  // missing in notes of older versions
+      const bool is_noted = numbers.get("covariance", std::span(covariance.data(), 9));
+      if (is_noted && covariance.ldlt().isPositive() && covariance.isApprox(covariance.transpose())) {
+        gyroscope.covariance = covariance;
+      }
+      calibration.gyroscope = gyroscope;
+    }
+  }
+  if (const auto note = notes.find(kGravity); note != notes.end()) {
+    UpInMap up;
+    const NumbersByName numbers(note->second);
+    const bool is_whole =
+        numbers.get("up_in_map", std::span(up.up_in_map.data(), 3)) && numbers.get("sigma_rad", up.sigma);
+    if (is_whole && std::abs(up.up_in_map.norm() - 1.0) < 1e-3 && up.sigma > 0.0) calibration.up = up;
+  }
+  return calibration;
+}
+
+OdometryCalibration scaled(OdometryCalibration calibration, double factor) {
+  if (!calibration.wheels) return calibration;
+  calibration.wheels->metres_per_unit /= factor;
+  calibration.wheels->covariance.topRows<2>() /= factor;
+  calibration.wheels->covariance.leftCols<2>() /= factor;
+  return calibration;
+}
+
+OdometryCalibration moved(OdometryCalibration calibration, const Pose& before_from_after) {
+  if (calibration.wheels) {
+    Pose arm = before_from_after;
+    arm.translation *= calibration.wheels->metres_per_unit;
+    calibration.wheels->base_from_body = calibration.wheels->base_from_body * arm;
+    calibration.wheels->base_from_body.translation.z() = 0.0;
+  }
+  if (calibration.gyroscope) {
+    Eigen::Quaterniond& turned = calibration.gyroscope->body_from_gyroscope;
+    turned = before_from_after.rotation.conjugate() * turned;
+    Eigen::Matrix3d& covariance = calibration.gyroscope->covariance;
+    const Eigen::Matrix3d after_from_before = before_from_after.rotation.conjugate().toRotationMatrix();
+    covariance = after_from_before * covariance * after_from_before.transpose();
+  }
+  return calibration;
+}
+
+bool is_contradicted(const WheelCalibration& known, const WheelCalibration& found) {
+  constexpr double kMostTilt = 0.06;         // radians between the axes
+  constexpr double kMostSquaredSigmas = 18;  // sum over four parameters; probability 1/800 to exceed it
+  constexpr double kNeglected = 9.0;         // factor for errors that motions have in common
+  const auto up = [](const WheelCalibration& calibration) -> Eigen::Vector3d {
+    return calibration.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  };
+  if (std::acos(std::clamp(up(known).dot(up(found)), -1.0, 1.0)) > kMostTilt) return true;
+  const Eigen::Vector4d apart = constrained_parameters(found, up(known)) - constrained_parameters(known, up(known));
+  const Eigen::Matrix4d covariance = kNeglected * (known.covariance + found.covariance) + day_to_day_covariance(known);
+  return apart.dot(covariance.ldlt().solve(apart)) > kMostSquaredSigmas;
+}
+
+std::string metres_note(double sigma) {
+  return fmt::format("sigma_by_wheels {:.4f}", sigma);
+}
+
+}  // namespace byre

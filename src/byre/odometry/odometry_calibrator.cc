@@ -1,0 +1,495 @@
+#include "byre/odometry/odometry_calibrator.h"
+
+#include "byre/odometry/motion_covariance.h"
+#include "byre/odometry/time_offset.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace byre {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Timestamp kStride = 500ms;  // length of the compared motions
+constexpr std::size_t kMostMotions = 240;
+constexpr int kMotionsPerEstimate = 4;
+constexpr int kEstimatesUntilUsed = 24;   // the first estimates determine delay and bias badly
+constexpr int kConfirmed = 4;             // motions until the calibration of an earlier drive counts as confirmed
+constexpr double kUnprovenFactor = 9.0;   // factor of the covariance until kConfirmed
+constexpr int kEstimatesUntilStored = 8;  // estimates of a calibration until it is kept
+constexpr int kEstimatesPerOffset =
+    8;  // estimates of a calibration per estimate of the delay: costly, and it changes least
+
+// Whether wheels and gyroscope disagree about a turn, such as when a wheel spins or is lifted.
+bool is_slip(const Eigen::Quaterniond& by_wheels, const Eigen::Quaterniond& by_gyroscope, double seconds) {
+  constexpr double kRate = 0.1;   // radians per second
+  constexpr double kShare = 0.2;  // share of the turn
+  return angle_between(by_wheels, by_gyroscope) > kRate * seconds + kShare * rotation_log(by_gyroscope).norm();
+}
+
+}  // namespace
+
+void OdometryCalibrator::begin_with(const OdometryCalibration& known) {
+  prior_ = known;
+  wheel_calibration_ = known.wheels;
+  stationary_.begin_with(known.up);
+  if (known.wheels) time_offset_ = known.time_offset;
+}
+
+// Forgets old samples also while no frame arrives.
+void OdometryCalibrator::add(const StampedPose& wheels) {
+  const bool was_ignored = check_.are_wheels_ignored();
+  const auto [is_clock_set_back, beginning, sample] = check_.check(wheels);
+  if (is_clock_set_back || (!was_ignored && check_.are_wheels_ignored())) drop_wheels();
+  if (beginning) wheels_.begin_segment(*beginning);
+  if (!sample) return;
+  wheels_.add(*sample);
+  wheels_.forget_before(sample->time - kMostKept);
+}
+
+void OdometryCalibrator::add(const BaseTwist& wheels) {
+  const bool was_ignored = check_.are_wheels_ignored();
+  const StampCheck::Order order = check_.check(wheels);
+  if (order == StampCheck::Order::restarted || (!was_ignored && check_.are_wheels_ignored())) drop_wheels();
+  if (order == StampCheck::Order::dropped) return;
+  wheels_.add(wheels);
+  wheels_.forget_before(wheels.time - kMostKept);
+}
+
+void OdometryCalibrator::add(const Acceleration& acceleration) {
+  const StampCheck::Order order = check_.check(acceleration);
+  if (order != StampCheck::Order::dropped) stationary_.add(acceleration);
+}
+
+// Forgets the samples of wheels; once wheels are ignored, also the calibration found on this drive.
+void OdometryCalibrator::drop_wheels() {
+  wheels_ = {};
+  if (check_.are_wheels_ignored()) {
+    wheel_calibration_.reset();
+    initial_.reset();
+  }
+}
+
+void OdometryCalibrator::drop_gyroscope() {
+  rates_ = {};
+  gyroscope_.reset();
+  given_gyroscope_.reset();
+  measured_up_.reset();
+  for (VisualMotion& motion : seen_) motion.gyroscope_turn.reset();
+}
+
+void OdometryCalibrator::add(const AngularRate& rate) {
+  const StampCheck::Order order = check_.check(rate);
+  if (order == StampCheck::Order::dropped) return;
+  if (order == StampCheck::Order::restarted) rates_ = {};
+  rates_.add(rate);
+  stationary_.add(rate);
+  rates_.forget_before(rate.time - kMostKept);
+}
+
+void OdometryCalibrator::set_gyroscope_extrinsics(const Eigen::Quaterniond& body_from_gyroscope) {
+  constexpr double kSigma = 0.03;   // radians
+  constexpr double kMostOff = 0.1;  // largest error of the length 1
+  if (!(std::abs(body_from_gyroscope.norm() - 1.0) < kMostOff)) {
+    return warn({MotionSensor::gyroscope,
+                 {},
+                 "the rotation of the mounting is not finite or not of length 1; it is ignored",
+                 "give a unit quaternion"});
+  }
+  given_gyroscope_ = GyroscopeCalibration{.body_from_gyroscope = body_from_gyroscope.normalized(),
+                                          .covariance = kSigma * kSigma * Eigen::Matrix3d::Identity()};
+}
+
+std::optional<bool> OdometryCalibrator::are_wheels_stationary(Timestamp time) const {
+  constexpr double kMostMetres = 0.0025;  // in the window: ticks of encoders
+  constexpr double kMostRadians = 0.004;  // in the window
+  if (is_slipping_) return {};
+  const Timestamp end = wheel_time(time);
+  const auto distance = wheels_.distance(end - SteadyWindow::kWindow, end);
+  if (!distance) return {};
+  return distance->metres <= kMostMetres && distance->radians <= kMostRadians;
+}
+
+void OdometryCalibrator::update_standstill(Timestamp time, const std::optional<Pose>& seen) {
+  constexpr double kMostSigma = 0.1;  // radians
+  stationary_.note_visual_pose(time, seen);
+  const auto bias = gyroscope_ ? std::optional(gyroscope_->bias) : std::nullopt;
+  const double metres_per_unit = wheel_calibration_ ? wheel_calibration_->metres_per_unit : 1.0;
+  const auto steady =
+      stationary_.at(time, {are_wheels_stationary(time), stationary_.are_poses_stationary(metres_per_unit)}, bias);
+  stationary_.note(time, steady);
+  if (!steady) return;
+  if (!seen && gyroscope_) gyroscope_->bias = steady->rate;
+  const auto& gyroscope = gyroscope_ ? gyroscope_ : prior_.gyroscope ? prior_.gyroscope : given_gyroscope_;
+  if (!gyroscope) return;
+  const UpInBody up = up_in_body(*steady, *gyroscope);
+  if (up.sigma > kMostSigma) return;
+  measured_up_ = up.up;
+}
+
+std::optional<SteadyWindow::Steady> OdometryCalibrator::standstill_by_wheels(Timestamp time) const {
+  if (!gyroscope_) return {};
+  return stationary_.at(time, {are_wheels_stationary(time), std::nullopt}, gyroscope_->bias);
+}
+
+std::optional<BodyTilt> OdometryCalibrator::tilt(Timestamp time) const {
+  return stationary_.tilt(time, standstill_by_wheels(time), gyroscope_);
+}
+
+// Compares the gyroscope with turns in images, else with turns of wheels. Drops it if it is faulty.
+void OdometryCalibrator::compare_turns(Timestamp time, const std::optional<VisualMotion>& seen) {
+  MotionCheck::Turn turn{time, Eigen::Vector3d::Zero(), {}, seen.has_value()};
+  const Timestamp begin = seen ? seen->earlier : turns_compared_.value_or(time);
+  if (!turns_compared_ || seen) turns_compared_ = time;
+  if (time - begin < kStride) return;
+  turns_compared_ = time;
+  if (seen) {
+    turn.reference = rotation_log(seen->body.rotation);
+  } else {
+    const auto base = base_between(begin, time);
+    if (!base) return;
+    turn.reference = rotation_log(base->rotation);
+  }
+  turn.measured = rates_.integral(begin, time);
+  if (check_.note(turn)) drop_gyroscope();
+}
+
+void OdometryCalibrator::note(Timestamp time, const std::optional<Pose>& odometry_from_body) {
+  if (is_empty() && !check_.is_gyroscope_silent()) return;
+  update_standstill(time, odometry_from_body);
+  gaps_.note(time, odometry_from_body.has_value());
+  forget_old_samples();
+  if (!odometry_from_body) {
+    begin_.reset();
+    last_.reset();
+    compare_turns(time, {});
+    return;
+  }
+  const StampedPose now{time, *odometry_from_body};
+  predicts_before_tracking_ = false;
+  if (last_ && time - last_->time <= kMaxFrameGap) {
+    velocity_ = log_pose(inverse(last_->world_from_body) * now.world_from_body) / to_seconds(time - last_->time);
+  } else {
+    begin_.reset();
+  }
+  last_ = now;
+  if (!begin_) begin_ = now;
+  if (time - begin_->time < kStride) return;
+  const VisualMotion motion{begin_->time, time, inverse(begin_->world_from_body) * now.world_from_body};
+  begin_ = now;
+  compare_turns(time, motion);
+  detect_slip(motion);
+  seen_.push_back(motion);
+  if (seen_.size() > kMostMotions) seen_.pop_front();
+  if (++motions_since_estimate_ >= kMotionsPerEstimate) estimate_calibrations();
+  update_initial_calibration();
+}
+
+// Keeps the samples of untracked frames until the calibration of wheels is estimated.
+void OdometryCalibrator::forget_old_samples() {
+  if (!gaps_.last()) return;
+  const Timestamp now = *gaps_.last();
+  const Timestamp pending = wheels_.empty() ? now : gaps_.first_pending().value_or(now);
+  const Timestamp oldest = std::max(std::min(now - samples_kept_, pending - 1s), now - kMostKept);
+  wheels_.forget_before(oldest);
+  rates_.forget_before(oldest);
+}
+
+std::optional<Pose> OdometryCalibrator::base_between(Timestamp earlier, Timestamp later) const {
+  return wheels_.between(wheel_time(earlier), wheel_time(later));
+}
+
+std::vector<MotionPair> OdometryCalibrator::pairs() const {
+  std::vector<MotionPair> pairs;
+  for (const VisualMotion& motion : seen_) {
+    if (const auto base = base_between(motion.earlier, motion.later)) pairs.push_back({*base, motion.body});
+  }
+  return pairs;
+}
+
+// Stores the gyroscope's turns of the motions since the last estimation.
+void OdometryCalibrator::add_gyroscope_rotations() {
+  for (auto motion = seen_.rbegin(); motion != seen_.rend() && !motion->gyroscope_turn; ++motion) {
+    const auto turn = rates_.between(motion->earlier, motion->later, Eigen::Vector3d::Zero());
+    if (turn) motion->gyroscope_turn = rotation_log(*turn);
+  }
+}
+
+void OdometryCalibrator::estimate_calibrations() {
+  motions_since_estimate_ = 0;
+  if (!rates_.empty()) {
+    add_gyroscope_rotations();
+    auto found = estimate_gyroscope_calibration(seen_, prior_.gyroscope);
+    if (!found && prior_.gyroscope) found = estimate_gyroscope_calibration(seen_);
+    if (found) gyroscope_ = found;
+  }
+  if (wheels_.empty()) return;
+  estimate_wheels();
+  if (!wheel_calibration_) return;
+  if (estimates_++ % kEstimatesPerOffset == 0) {
+    const Eigen::Vector3d up = wheel_calibration_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) time_offset_ = *offset;
+  }
+  if (estimates_ >= kEstimatesUntilUsed || prior_.wheels) gaps_.integrate(base_odometry());
+}
+
+void OdometryCalibrator::reestimate(const Trajectory& seen) {
+  stationary_.reestimate(seen);
+  if (!wheel_calibration_ || seen.empty()) return;
+  std::vector<MotionPair> pairs;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    const bool is_gap = seen[i].time - seen[i - 1].time > kMaxFrameGap;
+    if (is_gap || !gaps_.is_seen(seen[i - 1].time, seen[i].time)) begin = i;
+    if (seen[i].time - seen[begin].time < kStride) continue;
+    if (const auto base = base_between(seen[begin].time, seen[i].time)) {
+      pairs.push_back({*base, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
+    }
+    begin = i;
+  }
+  if (const auto found = estimate_wheel_calibration(pairs, prior_.wheels)) wheel_calibration_ = found;
+}
+
+void OdometryCalibrator::rescale(double factor) {
+  OdometryCalibration found;
+  found.wheels = wheel_calibration_;
+  wheel_calibration_ = scaled(std::move(found), factor).wheels;
+  prior_ = scaled(prior_, factor);
+}
+
+// Motions that determine the calibration without the prior are compared with it.
+void OdometryCalibrator::estimate_wheels() {
+  constexpr int kLooks = 3;  // consecutive contradictions
+  const std::vector<MotionPair> all = pairs();
+  const auto alone = estimate_wheel_calibration(all);
+  if (prior_.wheels && alone) {
+    contradicting_estimates_ = is_contradicted(*prior_.wheels, *alone) ? contradicting_estimates_ + 1 : 0;
+    if (contradicting_estimates_ >= kLooks) discard_prior_wheels();
+  }
+  const auto found = prior_.wheels ? estimate_wheel_calibration(all, prior_.wheels) : alone;
+  if (found) wheel_calibration_ = found;
+  if (!is_metric_ || !alone || seen_.empty()) return;
+  if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma, seen_.back().later)) drop_wheels();
+}
+
+// Derived from the first seconds, and updated with each motion until the calibration is estimated.
+void OdometryCalibrator::update_initial_calibration() {
+  constexpr std::size_t kLeastMotions = 2;
+  initial_.reset();
+  if (wheel_calibration_ || seen_.size() < kLeastMotions) return;
+  const std::vector<MotionPair> all = pairs();
+  if (measured_up_) initial_ = estimate_initial_wheel_calibration(all, *measured_up_, UpSource::measured);
+  if (!initial_ && up_in_body_) initial_ = estimate_initial_wheel_calibration(all, *up_in_body_);
+}
+
+const WheelCalibration* OdometryCalibrator::active_calibration() const {
+  if (wheel_calibration_) return &*wheel_calibration_;
+  if (initial_) return &*initial_;
+  return predicts_before_tracking_ && assumed_forward_ ? &*assumed_forward_ : nullptr;
+}
+
+// An earlier calibration that most motions contradict from the start is wrong. Slip does not last as long.
+void OdometryCalibrator::check_prior(double disagreement, const VisualMotion& motion) {
+  constexpr double kMinPath = 0.1;      // metres
+  constexpr double kMinRotation = 0.1;  // radians
+  constexpr int kContradicting = 12;    // motions
+  const double way = wheel_calibration_->metres_per_unit * motion.body.translation.norm();
+  if (way < kMinPath && rotation_log(motion.body.rotation).norm() < kMinRotation) return;
+  ++(disagreement > 1.0 ? contradicting_ : confirming_);
+  if (contradicting_ >= kContradicting && contradicting_ > 2 * confirming_) discard_prior_wheels();
+}
+
+void OdometryCalibrator::discard_prior_wheels() {
+  prior_.wheels.reset();
+  wheel_calibration_.reset();
+  time_offset_.reset();
+  estimates_ = 0;
+  is_slipping_ = false;
+  has_calibration_changed_ = true;
+}
+
+OdometryCalibration OdometryCalibrator::calibration_to_store() const {
+  OdometryCalibration keep = prior_;
+  const bool is_well_known = estimates_ >= kEstimatesUntilStored || prior_.wheels;
+  if (wheel_calibration_ && is_well_known) {
+    keep.wheels = wheel_calibration_;
+    keep.time_offset = time_offset();
+  }
+  if (gyroscope_) keep.gyroscope = gyroscope_;
+  keep.up = stationary_.up_in_map(gyroscope_);
+  return keep;
+}
+
+// Precondition: the calibration of wheels is estimated or assumed.
+GapTrajectory::BaseOdometry OdometryCalibrator::base_odometry() const {
+  return [this](Timestamp earlier, Timestamp later) {
+    const auto measured = base_motion(earlier, later, gyroscope_rotation(earlier, later));
+    return measured ? std::optional(measured->motion) : std::nullopt;
+  };
+}
+
+Trajectory OdometryCalibrator::fill_gaps(Trajectory seen) const {
+  const WheelCalibration* const calibration = active_calibration();
+  if (calibration == nullptr) return seen;
+  GapTrajectory gaps = gaps_;
+  gaps.integrate(base_odometry());
+  const auto body_motion_of = [&](const Pose& base) { return body_motion(*calibration, base); };
+  return gaps.fill_gaps(std::move(seen), body_motion_of, old_poses_);
+}
+
+void OdometryCalibrator::detect_slip(const VisualMotion& motion) {
+  constexpr int kAgreeing = 2;  // agreeing motions that end the slip
+  if (!wheel_calibration_) return;
+  const auto base = base_between(motion.earlier, motion.later);
+  if (!base) return;
+  const Pose measured = body_motion(*wheel_calibration_, without_turn_errors(wheel_calibration_->turn_errors, *base));
+  const double difference = disagreement(measured, motion, wheel_calibration_->metres_per_unit);
+  if (prior_.wheels) check_prior(difference, motion);
+  if (!wheel_calibration_) return;
+  if (difference > 1.0) {
+    if (!is_slipping_) ++slips_;
+    is_slipping_ = true;
+    agreeing_ = 0;
+  } else if (++agreeing_ >= kAgreeing) {
+    is_slipping_ = false;
+  }
+}
+
+std::optional<Eigen::Quaterniond> OdometryCalibrator::gyroscope_rotation(Timestamp earlier, Timestamp later) const {
+  if (!gyroscope_) return {};
+  const auto measured = rates_.between(earlier, later, gyroscope_->bias);
+  if (!measured) return {};
+  return gyroscope_->body_from_gyroscope * *measured * gyroscope_->body_from_gyroscope.conjugate();
+}
+
+// turn: rotation of the body from the gyroscope; replaces that of the wheels. Precondition: the calibration of wheels
+// is estimated or assumed.
+std::optional<OdometryCalibrator::BaseMotion> OdometryCalibrator::base_motion(
+    Timestamp earlier, Timestamp later, const std::optional<Eigen::Quaterniond>& turn) const {
+  const auto measured = base_between(earlier, later);
+  if (!measured) return {};
+  BaseMotion base{without_turn_errors(active_calibration()->turn_errors, *measured)};
+  if (turn) {
+    const Eigen::Quaterniond& base_from_body = active_calibration()->base_from_body.rotation;
+    const Eigen::Quaterniond base_turn = base_from_body * *turn * base_from_body.conjugate();
+    base.is_translation_valid = !is_slip(base.motion.rotation, base_turn, to_seconds(later - earlier));
+    base.motion.rotation = base_turn;
+  }
+  if (exceeds_acceleration(earlier, later, *measured)) {
+    base.is_translation_valid = false;
+    base.is_rotation_valid = turn.has_value();
+  }
+  return base;
+}
+
+std::optional<BodyMotion> OdometryCalibrator::wheel_motion(Timestamp earlier, Timestamp later,
+                                                           const std::optional<Eigen::Quaterniond>& turn) const {
+  const WheelCalibration* const calibration = active_calibration();
+  if (calibration == nullptr) return {};
+  const auto base = base_motion(earlier, later, turn);
+  if (!base) return {};
+  const Pose body = body_motion(*calibration, base->motion);
+  BodyMotion motion{body, wheel_covariance(body, base->motion, *calibration)};
+  if (prior_.wheels && confirming_ < kConfirmed) motion.covariance *= kUnprovenFactor;
+  if (!base->is_translation_valid) set_translation_unknown(motion);
+  if (!base->is_rotation_valid) set_rotation_unknown(motion);
+  return motion;
+}
+
+// Whether the motion of the base changes from the previous span by more than a body can: wheels spin, or are faulty.
+bool OdometryCalibrator::exceeds_acceleration(Timestamp earlier, Timestamp later, const Pose& base) const {
+  constexpr double kMostAcceleration = 15.0;  // m/s^2
+  constexpr double kLeast = 0.02;             // metres, for encoder ticks
+  constexpr double kMostTurning = 30.0;       // radians per second squared
+  constexpr double kLeastTurn = 0.05;         // radians
+  const Timestamp span = later - earlier;
+  if (span > kMaxFrameGap) return false;
+  if (wheels_.has_jump(wheel_time(earlier) - span, wheel_time(earlier))) return true;
+  const auto before = base_between(earlier - span, earlier);
+  if (!before) return false;
+  const double squared = to_seconds(span) * to_seconds(span);
+  return (base.translation - before->translation).norm() > kLeast + kMostAcceleration * squared ||
+         angle_between(base.rotation, before->rotation) > kLeastTurn + kMostTurning * squared;
+}
+
+// Whether the turns by gyroscope and wheels differ by more than a spinning wheel explains. Then one of both is faulty.
+bool OdometryCalibrator::contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const {
+  constexpr double kMostRate = 3.0;   // radians per second
+  constexpr double kLeastTurn = 0.1;  // radians
+  const auto base = base_between(earlier, later);
+  if (!base) return false;
+  const double apart = std::abs(rotation_log(turn).norm() - rotation_log(base->rotation).norm());
+  return apart > kLeastTurn + kMostRate * to_seconds(later - earlier);
+}
+
+// Motion across a jump of the wheel pose: that of the previous span, with a standard deviation as large as itself.
+std::optional<BodyMotion> OdometryCalibrator::bridge_jump(Timestamp earlier, Timestamp later,
+                                                          const std::optional<Eigen::Quaterniond>& turn) const {
+  const Timestamp span = later - earlier;
+  if (span > kMaxFrameGap || !wheels_.has_jump(wheel_time(earlier), wheel_time(later))) return {};
+  auto motion = wheel_motion(earlier - span, earlier, {});
+  if (!motion) motion = wheel_motion(earlier - 2 * span, earlier - span, {});  // if the jump is right after the frame
+  if (!motion) return {};
+  set_translation_unknown(*motion);
+  set_rotation_unknown(*motion);
+  if (turn) motion->last_from_body.rotation = *turn;
+  return motion;
+}
+
+std::optional<BodyMotion> OdometryCalibrator::predict_from_images(Timestamp earlier, Timestamp later) const {
+  constexpr Timestamp kLongest = 1s;
+  constexpr double kShare = 0.3;         // share of the path length
+  constexpr double kAcceleration = 1.0;  // lengths of the map per second squared
+  if (!velocity_ || seen_.empty() || later - seen_.back().later > kLongest + kStride) return {};
+  const double seconds = to_seconds(later - earlier);
+  const Pose motion = exp_pose(*velocity_ * seconds);
+  const double sigma = kShare * motion.translation.norm() + 0.5 * kAcceleration * seconds * seconds;
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal().head<3>().setConstant(sigma * sigma);
+  return BodyMotion{motion, covariance};
+}
+
+std::optional<BodyMotion> OdometryCalibrator::between(Timestamp earlier, Timestamp later) const {
+  auto turn = gyroscope_rotation(earlier, later);
+  const bool is_contradicted = turn && !is_slipping_ && contradicts_wheels(earlier, later, *turn);
+  if (is_contradicted) turn.reset();
+  auto motion = is_slipping_ ? std::nullopt : wheel_motion(earlier, later, turn);
+  if (motion && is_contradicted) {
+    set_translation_unknown(*motion);
+    set_rotation_unknown(*motion);
+  }
+  if (!motion && !is_slipping_) motion = bridge_jump(earlier, later, turn);
+  if (!turn) return motion;
+  if (motion && standstill_by_wheels(later)) return constrain_to_standstill(*motion, to_seconds(later - earlier));
+  if (!motion && (motion = predict_from_images(earlier, later))) motion->last_from_body.rotation = *turn;
+  if (!motion) return {};
+  set_turn_covariance(*motion, *gyroscope_, to_seconds(later - earlier));
+  return motion;
+}
+
+std::optional<double> OdometryCalibrator::reach(Timestamp earlier, Timestamp later, bool is_metric) const {
+  constexpr double kShare = 1.2;       // factor of the measured distance: wheels may slide
+  constexpr double kLeast = 0.5;       // metres
+  constexpr double kUnmeasured = 1.5;  // metres in the first second: failed encoders must not reject a tracked frame
+  constexpr double kUsualArm = 1.0;    // metres, before it is estimated
+  constexpr double kHalfTurns = 2.0;   // radii that turns on the spot can displace the body
+  const WheelCalibration* const calibration = active_calibration();
+  if (calibration == nullptr && !is_metric) return {};
+  const auto distance = wheels_.distance(wheel_time(earlier), wheel_time(later));
+  if (!distance) return {};
+  const double arm = wheel_calibration_ ? wheel_calibration_->base_from_body.translation.norm() : kUsualArm;
+  const double metres = kShare * distance->metres + std::min(distance->radians, kHalfTurns) * arm + kLeast +
+                        kUnmeasured * std::clamp(to_seconds(later - earlier), 0.0, 1.0);
+  return metres / (calibration != nullptr ? calibration->metres_per_unit : 1.0);
+}
+
+std::optional<BodyMotion> OdometryCalibrator::path_between(Timestamp earlier, Timestamp later) const {
+  const auto turn = gyroscope_rotation(earlier, later);
+  auto motion = wheel_motion(earlier, later, turn);
+  if (motion && turn) set_turn_covariance(*motion, *gyroscope_, to_seconds(later - earlier));
+  return motion;
+}
+
+}  // namespace byre

@@ -1,0 +1,117 @@
+#include "byre/odometry/stationary_detector.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace byre {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Timestamp kMaxStopGap = 1500ms;    // between frames of one stop: vibration may interrupt it
+constexpr Timestamp kMaxPoseGap = 500ms;     // between poses around a stop
+constexpr Timestamp kBetweenPlaces = 500ms;  // between recorded poses of one stop
+constexpr std::size_t kMostPlaces = 2000;
+constexpr double kLeastSigma = 0.005;  // radians: the bias is the same at all stops
+
+}  // namespace
+
+void StationaryDetector::note_visual_pose(Timestamp time, const std::optional<Pose>& seen) {
+  constexpr Timestamp kSpan = SteadyWindow::kWindow + kMaxFrameGap;
+  if (!seen || (!seen_.empty() && time - seen_.back().time > kMaxFrameGap)) seen_.clear();
+  if (seen) seen_.push_back({time, *seen});
+  while (!seen_.empty() && seen_.front().time + kSpan < time) seen_.pop_front();
+}
+
+std::optional<bool> StationaryDetector::are_poses_stationary(double metres_per_unit) const {
+  constexpr double kMostMetres = 0.01;    // in the window
+  constexpr double kMostRadians = 0.006;  // in the window
+  if (seen_.empty() || seen_.front().time > seen_.back().time - SteadyWindow::kWindow) return {};
+  return std::ranges::all_of(seen_, [&](const StampedPose& pose) {
+    const Pose motion = inverse(pose.world_from_body) * seen_.back().world_from_body;
+    return metres_per_unit * motion.translation.norm() <= kMostMetres &&
+           rotation_log(motion.rotation).norm() <= kMostRadians;
+  });
+}
+
+std::optional<SteadyWindow::Steady> StationaryDetector::at(Timestamp time, const StationaryEvidence& evidence,
+                                                           const std::optional<Eigen::Vector3d>& bias) const {
+  constexpr double kMostTurning = 0.02;  // radians per second
+  const bool any_stationary =
+      evidence.are_wheels_stationary.value_or(false) || evidence.are_poses_stationary.value_or(false);
+  const bool none_moving =
+      evidence.are_wheels_stationary.value_or(true) && evidence.are_poses_stationary.value_or(true);
+  if (!any_stationary || !none_moving) return {};
+  const auto steady = track_.until(time);
+  if (!steady || (bias && (steady->rate - *bias).norm() > kMostTurning)) return {};
+  return steady;
+}
+
+int StationaryDetector::stop_at(Timestamp time) const {
+  return last_stationary_ && time - *last_stationary_ <= kMaxStopGap ? stops_ : stops_ + 1;
+}
+
+void StationaryDetector::note(Timestamp time, const std::optional<SteadyWindow::Steady>& steady) {
+  now_ = steady;
+  if (!steady) return;
+  const bool continues = stop_at(time) == stops_;
+  seconds_ += to_seconds(continues ? time - *last_stationary_ : SteadyWindow::kWindow);
+  if (!continues) ++stops_;
+  last_stationary_ = time;
+}
+
+void StationaryDetector::note_place(const Eigen::Quaterniond& map_from_body) {
+  if (!now_ || places_.size() >= kMostPlaces) return;
+  if (!places_.empty() && *last_stationary_ - places_.back().time < kBetweenPlaces) return;
+  places_.push_back({*last_stationary_, now_->up, map_from_body});
+}
+
+void StationaryDetector::reestimate(const Trajectory& seen) {
+  for (Place& place : places_) {
+    if (const auto pose = pose_at(seen, place.time, kMaxPoseGap)) place.map_from_body = pose->rotation;
+  }
+}
+
+std::optional<UpInMap> StationaryDetector::up_in_map(const std::optional<GyroscopeCalibration>& calibration) const {
+  constexpr double kKnown = 20.0;  // weight of the earlier map, in stops of half a second
+  if (!calibration || places_.empty()) return prior_;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  if (prior_) sum = kKnown * prior_->up_in_map;
+  for (const Place& place : places_)
+    sum += place.map_from_body * (calibration->body_from_gyroscope * place.up_in_sensor);
+  if (!(sum.norm() > 0.0)) return {};
+  UpInMap up{sum.normalized(), 0.0};
+  double squares = 0.0;
+  for (const Place& place : places_) {
+    const Eigen::Vector3d one = place.map_from_body * (calibration->body_from_gyroscope * place.up_in_sensor);
+    squares += (one - up.up_in_map).squaredNorm() / static_cast<double>(places_.size());
+  }
+  up.sigma = std::hypot(kLeastSigma, std::sqrt(squares));
+  return up;
+}
+
+UpInBody up_in_body(const SteadyWindow::Steady& steady, const GyroscopeCalibration& calibration) {
+  UpInBody result{calibration.body_from_gyroscope * steady.up, 0.0};
+  const Eigen::Matrix3d across = skew(result.up);
+  const Eigen::Matrix3d covariance = across * calibration.covariance * across.transpose();
+  const double variance = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues().maxCoeff();
+  result.sigma = std::hypot(steady.sigma, std::sqrt(std::max(0.0, variance)));
+  return result;
+}
+
+std::optional<BodyTilt> StationaryDetector::tilt(Timestamp time, const std::optional<SteadyWindow::Steady>& steady,
+                                                 const std::optional<GyroscopeCalibration>& calibration) const {
+  constexpr double kMostSigma = 0.03;  // radians
+  if (!steady || !calibration) return {};
+  const auto in_map = up_in_map(calibration);
+  if (!in_map) return {};
+  const UpInBody up = up_in_body(*steady, *calibration);
+  const double sigma = std::hypot(up.sigma, in_map->sigma);
+  if (sigma > kMostSigma) return {};
+  return BodyTilt{up.up, in_map->up_in_map, sigma, stop_at(time)};
+}
+
+}  // namespace byre

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "byre/geometry/evaluation/distribution.h"
+#include "byre/map/map_file.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+struct MapCounts {
+  int keyframes = 0;
+  int keyframes_with_words = 0;
+  std::vector<int> keyframes_of_recordings;
+  int points = 0;
+  int features = 0;
+  int observations = 0;
+  int patches = 0;
+};
+
+// Distances between observations and projections of their points.
+struct ReprojectionErrors {
+  Distribution pixel;      // pixels, of all observations
+  Distribution disparity;  // pixels, of observations with a disparity
+  int behind_camera = 0;   // observations of a point not in front of its camera; excluded from both distributions
+};
+
+struct BoundingBox {
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();
+};
+
+struct PartSize {
+  std::string name;
+  std::size_t bytes = 0;
+};
+
+struct MapInspection {
+  MapCounts counts;
+  std::vector<std::string> cameras_of_recordings;  // stereo, rgbd or mono
+  Distribution observations_per_point;
+  ReprojectionErrors errors;
+  std::optional<BoundingBox> points_in_world;  // empty without points
+  double path_length = 0.0;                    // metres along the keyframes' body poses, summed over recordings
+  std::vector<PartSize> memory;                // size of the loaded map, per kind of data
+  std::vector<std::string> faults;
+};
+
+MapInspection inspect(const StoredMap& stored);
+
+}  // namespace byre

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "byre/floor_plan.h"
+#include "byre/map/map_file.h"
+#include "byre/map/plan/plan_scale.h"
+#include "byre/playback/archive/register_picks.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+struct RegisterOptions {
+  PickOptions picks;
+  PlanRegistrationOptions registration;
+};
+
+// Result of the registration of a map on a floor plan.
+struct Registering {
+  std::vector<PlanCorrespondence> correspondences;
+  PlanFit fit;
+  double largest_path_sigma = 0.0;          // metres, position on the plan; largest along the path
+  std::optional<PlanScale> measured_scale;  // scale by the picks, for a metric map
+  bool has_baseline = false;                // whether the map's scale comes from a stereo baseline
+};
+
+// A map after correction of its scale, and its registration.
+struct ScaleCorrectedMap {
+  StoredMap stored;
+  Registering registering;  // result for the corrected map; measured_scale is that before the correction
+  double factor = 1.0;      // new over old length; 1 without a correction
+};
+
+// Throws InputError naming the file of the picks or of the map if the registration is impossible.
+Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
+                         const std::filesystem::path& picks, const RegisterOptions& options);
+
+// Registers the map and corrects its scale and baselines by the picks if the difference is significant. Throws
+// InputError also if the map's scale does not come from a baseline, or the picks do not determine it.
+ScaleCorrectedMap correct_scale(StoredMap stored, const std::filesystem::path& map, const FloorPlan& plan,
+                                const std::filesystem::path& picks, const RegisterOptions& options);
+
+// Text line with the position of the map's origin on the plan.
+std::string describe_origin(const PlanRegistration& registration);
+
+}  // namespace byre

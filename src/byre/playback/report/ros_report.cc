@@ -1,0 +1,168 @@
+#include "byre/playback/report/ros_report.h"
+
+#include "byre/playback/report/pose_messages.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/core.h>
+
+namespace byre {
+namespace {
+
+ros::Header header(const char* frame, Timestamp time) {
+  return {ros::to_time(time), frame};
+}
+
+bool is_usable(const FrameReport& report) {
+  return report.map_from_body && report.health.verdict != Verdict::untrusted;
+}
+
+ros::KeyValue number(const char* name, double value) {
+  return {name, fmt::format("{:.6g}", value)};
+}
+
+std::vector<ros::KeyValue> values_of(const FrameReport& report) {
+  const Health& health = report.health;
+  return {{"state", std::string(to_string(report.state))},
+          {"verdict", std::string(to_string(health.verdict))},
+          {"doubt", std::string(to_string(health.doubt))},
+          number("features", report.features),
+          number("matches", report.matches),
+          number("inliers", report.inliers),
+          number("offline_expected", health.offline_expected),
+          number("offline_inliers", health.offline_inliers),
+          number("online_inliers", health.online_inliers),
+          number("suspended", health.suspended),
+          number("inlier_share", health.inlier_share),
+          number("spread", health.spread),
+          number("position_sigma_m", health.position_sigma),
+          number("rotation_sigma_rad", health.rotation_sigma),
+          number("distance_since_offline_m", health.distance_since_offline),
+          number("seconds_since_offline", health.seconds_since_offline),
+          number("hidden_share", health.hidden_share),
+          number("hidden_share_right", health.hidden_share_right),
+          number("track_seconds", report.track_seconds)};
+}
+
+void put(std::vector<std::uint8_t>& bytes, const void* value, std::size_t size) {
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + size);
+  std::memcpy(bytes.data() + begin, value, size);
+}
+
+}  // namespace
+
+std::byte diagnostic_level(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::trusted:
+      return ros::DiagnosticStatus::kOk;
+    case Verdict::degraded:
+      return ros::DiagnosticStatus::kWarn;
+    case Verdict::untrusted:
+      break;
+  }
+  return ros::DiagnosticStatus::kError;
+}
+
+std::string verdict_and_doubt(const Health& health) {
+  std::string text(to_string(health.verdict));
+  if (health.doubt != DistrustReason::none) text.append(": ").append(to_string(health.doubt));
+  return text;
+}
+
+ros::TFMessage ros_transforms(const FrameReport& report) {
+  ros::TFMessage message;
+  if (!report.odometry_from_body) return message;
+  if (is_usable(report)) {
+    const Pose map_from_odometry = *report.map_from_body * inverse(*report.odometry_from_body);
+    message.transforms.push_back(transform_message(header(kMapFrame, report.time), kOdometryFrame, map_from_odometry));
+  }
+  message.transforms.push_back(
+      transform_message(header(kOdometryFrame, report.time), kBodyFrame, *report.odometry_from_body));
+  return message;
+}
+
+ros::Odometry ros_odometry(const FrameReport& report, const std::optional<StampedPose>& before) {
+  const ros::Header stamped = header(kOdometryFrame, report.time);
+  ros::Odometry odometry{stamped, kBodyFrame,
+                         pose_message(stamped, *report.odometry_from_body, report.odometry_covariance).pose};
+  if (!before || before->time >= report.time) return odometry;
+  const double seconds = to_seconds(report.time - before->time);
+  const Vector6 motion = log_pose(inverse(before->world_from_body) * *report.odometry_from_body) / seconds;
+  odometry.twist.twist = {{motion[0], motion[1], motion[2]}, {motion[3], motion[4], motion[5]}};
+  return odometry;
+}
+
+std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report) {
+  if (!is_usable(report)) return std::nullopt;
+  return pose_message(header(kMapFrame, report.time), *report.map_from_body, report.covariance);
+}
+
+ros::DiagnosticArray ros_diagnostics(int number_of_frame, const MappedFrame& frame) {
+  ros::DiagnosticStatus status{ros::DiagnosticStatus::kStale, "byre: localisation", "no image", "camera", {}};
+  if (frame.report) {
+    status.level = diagnostic_level(frame.report->health.verdict);
+    status.message = verdict_and_doubt(frame.report->health);
+    status.values = values_of(*frame.report);
+  }
+  status.values.push_back({"frame", std::to_string(number_of_frame)});
+  status.values.push_back({"keyframes", std::to_string(frame.keyframes)});
+  status.values.push_back({"map_points", std::to_string(frame.points)});
+  return {header("", frame.time), {std::move(status)}};
+}
+
+ros::Path ros_path(const Trajectory& trajectory, Timestamp time) {
+  ros::Path path{header(kMapFrame, time), {}};
+  for (const StampedPose& sample : trajectory) {
+    path.poses.push_back({header(kMapFrame, sample.time), ros_pose(sample.world_from_body)});
+  }
+  return path;
+}
+
+ros::PointCloud2 ros_cloud(const Map& map, Timestamp time) {
+  constexpr std::uint32_t kStep = 16;
+  ros::PointCloud2 cloud{header(kMapFrame, time), 1, 0, {{"x", 0}, {"y", 4}, {"z", 8}}};
+  cloud.point_fields.push_back({"observations", 12, ros::PointField::kUint32, 1});
+  for (const PointId id : map.point_ids()) {
+    const Eigen::Vector3f position = map.find_point(id)->position_in_world.cast<float>();
+    const auto observations = static_cast<std::uint32_t>(map.observations(id).size());
+    put(cloud.data, position.data(), 3 * sizeof(float));
+    put(cloud.data, &observations, sizeof(observations));
+    ++cloud.width;
+  }
+  cloud.point_step = kStep;
+  cloud.row_step = kStep * cloud.width;
+  cloud.is_dense = true;
+  return cloud;
+}
+
+ros::TFMessage ros_camera_extrinsics(const Calibration& calibration, Timestamp time) {
+  ros::TFMessage mounts{{transform_message(header(kBodyFrame, time), kLeftFrame, calibration.body_from_left)}};
+  if (calibration.right) {
+    const Pose left_from_right = inverse(calibration.right->right_from_left);
+    mounts.transforms.push_back(transform_message(header(kLeftFrame, time), kRightFrame, left_from_right));
+  }
+  return mounts;
+}
+
+ros::CameraInfo ros_camera_info(const Camera& camera, const std::string& frame, Timestamp time) {
+  ros::CameraInfo info{.header = header(frame.c_str(), time),
+                       .height = static_cast<std::uint32_t>(camera.height),
+                       .width = static_cast<std::uint32_t>(camera.width)};
+  const bool is_fisheye = camera.model == CameraModel::equidistant;
+  info.distortion_model = is_fisheye ? "equidistant" : "plumb_bob";
+  info.d.assign(camera.distortion.begin(), camera.distortion.begin() + (is_fisheye ? 4 : 5));
+  info.k = {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+  info.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  info.p = {camera.fx, 0.0, camera.cx, 0.0, 0.0, camera.fy, camera.cy, 0.0, 0.0, 0.0, 1.0, 0.0};
+  return info;
+}
+
+ros::Image ros_image(const Image& image, const std::string& frame, Timestamp time) {
+  const auto width = static_cast<std::uint32_t>(image.width);
+  return {
+      header(frame.c_str(), time), static_cast<std::uint32_t>(image.height), width, "mono8", 0, width, image.pixels};
+}
+
+}  // namespace byre

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "byre/calibration.h"
+#include "byre/io/ros/messages.h"
+#include "byre/map/map.h"
+#include "byre/playback/map_run.h"
+
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// Conversion of byre's results to ROS messages. Frames follow REP-105: map -> odom -> base_link, byre's body.
+
+inline constexpr const char* kMapFrame = "map";
+inline constexpr const char* kOdometryFrame = "odom";
+inline constexpr const char* kBodyFrame = "base_link";
+inline constexpr const char* kLeftFrame = "left_camera";  // optical frame: x right, y down, z forward
+inline constexpr const char* kRightFrame = "right_camera";
+
+// OK for trusted, WARN for degraded, ERROR for untrusted.
+std::byte diagnostic_level(Verdict verdict);
+// "untrusted: pose is uncertain", or the verdict alone without a doubt.
+std::string verdict_and_doubt(const Health& health);
+
+// odom -> base_link if there is odometry; map -> odom if the map pose is not untrusted. Subscribers keep the last
+// transform otherwise.
+ros::TFMessage ros_transforms(const FrameReport& report);
+
+// Velocity is the mean since the previous frame; none without one.
+ros::Odometry ros_odometry(const FrameReport& report, const std::optional<StampedPose>& before);
+
+// Empty if the pose is untrusted or missing.
+std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report);
+
+// Verdict as level, doubt as message, health and state as values. Frames without images are STALE.
+ros::DiagnosticArray ros_diagnostics(int number, const MappedFrame& frame);
+
+ros::Path ros_path(const Trajectory& trajectory, Timestamp time);
+
+// Points in the map frame: x, y, z and number of observations.
+ros::PointCloud2 ros_cloud(const Map& map, Timestamp time);
+
+// Camera extrinsics in the body frame.
+ros::TFMessage ros_camera_extrinsics(const Calibration& calibration, Timestamp time);
+
+ros::CameraInfo ros_camera_info(const Camera& camera, const std::string& frame, Timestamp time);
+ros::Image ros_image(const Image& image, const std::string& frame, Timestamp time);
+
+}  // namespace byre

@@ -1,0 +1,135 @@
+#include "byre/playback/report/run_record.h"
+
+#include "byre/io/bag/bag.h"
+#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/messages.h"
+#include "byre/playback/map_run.h"
+#include "byre/recording.h"
+#include "byre/simulation/rendered_fixture.h"
+
+#include <filesystem>
+#include <map>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFramesRecorded = 6;
+
+// A recorded run of a few frames, made once.
+class RecordedRun {
+ public:
+  RecordedRun() : path_(fs::path(testing::TempDir()) / ("run_record." + std::to_string(getpid()) + ".mcap")) {
+    const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFramesRecorded});
+    EngineOptions options;
+    options.pace = Pace::same_thread;
+    RunRecord record(McapWriter(path_), recording->calibration(), true);
+    MapRunHooks hooks;
+    hooks.should_stop = [] { return false; };
+    hooks.after_frame = [](int, const MappedFrame&) {};
+    hooks.on_frame = [&record](const RunView& view) { record.note(view); };
+    run_ = run_map(*recording, options, hooks);
+    MappedFrame unread;
+    unread.time = run_.frames.back().time + Timestamp(1);
+    record.note_unreadable(unread);
+    record.finish(run_);
+  }
+  ~RecordedRun() { fs::remove(path_); }
+  RecordedRun(const RecordedRun&) = delete;
+  RecordedRun& operator=(const RecordedRun&) = delete;
+
+  static const RecordedRun& shared() {
+    static const RecordedRun recorded;
+    return recorded;
+  }
+
+  const fs::path& path() const { return path_; }
+  const MapRun& run() const { return run_; }
+
+  // All messages of a topic, read back as a bag.
+  template <ros::Message M>
+  std::vector<M> messages(const std::string& topic) const {
+    const auto bag = open_bag(path_, [](std::string_view) { return true; });
+    std::vector<M> messages;
+    for (const BagMessage& each : bag->content().messages) {
+      if (bag->content().topics[each.topic].name != topic) continue;
+      messages.push_back(ros::read_message<M>(bag->read(each), ros::Encoding::cdr, topic));
+    }
+    return messages;
+  }
+
+ private:
+  fs::path path_;
+  MapRun run_;
+};
+
+TEST(RunRecord, IsACompleteBag) {
+  const auto bag = open_bag(RecordedRun::shared().path(), [](std::string_view) { return false; });
+  EXPECT_THAT(bag->content().damage, testing::IsEmpty());
+  std::map<std::string, std::uint64_t> counts;
+  for (const BagTopic& topic : bag->content().topics) counts[topic.name] = topic.messages;
+  EXPECT_EQ(counts["/tf_static"], 1u);
+  EXPECT_EQ(counts["/map_points"], 2u);
+  EXPECT_EQ(counts["/path"], 2u);
+  EXPECT_EQ(counts["/diagnostics"], kFramesRecorded + 1u);
+  for (const char* const topic : {"/tf", "/odometry", "/left/image_raw", "/right/camera_info"}) {
+    EXPECT_EQ(counts[topic], static_cast<std::uint64_t>(kFramesRecorded)) << topic;
+  }
+}
+
+TEST(RunRecord, ContainsThePosesOfTheReports) {
+  const RecordedRun& recorded = RecordedRun::shared();
+  const auto odometry = recorded.messages<ros::Odometry>("/odometry");
+  ASSERT_EQ(odometry.size(), recorded.run().frames.size());
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    const FrameReport& report = *recorded.run().frames[i].report;
+    EXPECT_EQ(ros::to_nanoseconds(odometry[i].header.stamp), report.time);
+    EXPECT_EQ(odometry[i].pose.pose.position.x, report.odometry_from_body->translation.x());
+  }
+}
+
+TEST(RunRecord, ReportsUnreadableFrames) {
+  const auto diagnostics = RecordedRun::shared().messages<ros::DiagnosticArray>("/diagnostics");
+  EXPECT_NE(diagnostics.front().status.at(0).level, ros::DiagnosticStatus::kStale);
+  EXPECT_EQ(diagnostics.back().status.at(0).level, ros::DiagnosticStatus::kStale);
+}
+
+TEST(RunRecord, EndsWithTheFinalPathAndMap) {
+  const RecordedRun& recorded = RecordedRun::shared();
+  const ros::Path path = recorded.messages<ros::Path>("/path").back();
+  ASSERT_EQ(path.poses.size(), recorded.run().final.size());
+  EXPECT_EQ(path.poses.back().pose.position.y, recorded.run().final.back().world_from_body.translation.y());
+  const ros::PointCloud2 cloud = recorded.messages<ros::PointCloud2>("/map_points").back();
+  EXPECT_EQ(cloud.width, static_cast<std::uint32_t>(recorded.run().map.point_count()));
+  EXPECT_EQ(cloud.data.size(), 16u * cloud.width);
+}
+
+TEST(RunRecord, CanBeRunAgainWithImages) {
+  const RecordedRun& recorded = RecordedRun::shared();
+  const auto original = open_recording(RenderedFixture::shared().folder(), {.last = kFramesRecorded});
+  const auto again = open_recording(recorded.path(), {});
+  EXPECT_EQ(again->times(), original->times());
+  EXPECT_EQ(again->calibration().left, original->calibration().left);
+  const Pose& expected = original->calibration().right->right_from_left;
+  const Pose& found = again->calibration().right->right_from_left;
+  EXPECT_LT((found.translation - expected.translation).norm(), 1e-12);
+  EXPECT_LT(angle_between(found.rotation, expected.rotation), 1e-7);
+  EXPECT_EQ(again->read(3)->left.pixels, original->read(3)->left.pixels);
+  EXPECT_EQ(again->read(3)->right->pixels, original->read(3)->right->pixels);
+}
+
+TEST(RunRecord, CanBeReadWhenTruncated) {
+  const fs::path cut = RecordedRun::shared().path().string() + ".cut.mcap";
+  fs::copy_file(RecordedRun::shared().path(), cut, fs::copy_options::overwrite_existing);
+  fs::resize_file(cut, fs::file_size(cut) * 3 / 4);
+  const auto bag = open_bag(cut, [](std::string_view) { return true; });
+  EXPECT_GT(bag->content().message_count, 10u);
+  EXPECT_FALSE(bag->content().damage.empty());
+  fs::remove(cut);
+}
+
+}  // namespace
+}  // namespace byre

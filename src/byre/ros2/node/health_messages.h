@@ -1,0 +1,28 @@
+#pragma once
+
+#include "byre/frame_report.h"
+#include "byre/io/ros/messages.h"
+#include "byre/ros2/node/node_log.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// Diagnostic of the pose: OK for trusted, WARN for degraded, ERROR for untrusted.
+ros::DiagnosticStatus localisation_status(const FrameReport& report);
+
+// Remedy for a doubt; empty without one.
+std::string advice_for(DistrustReason doubt);
+
+// Logs events of a frame, new damage of the map, faults of motion inputs, and a change of the verdict.
+// last: report of the previous frame; map_damage: see Slam; source_of: topic of a sensor.
+void log_changes(const FrameReport& report, const std::optional<FrameReport>& last,
+                 const std::optional<std::string>& map_damage,
+                 const std::function<std::string(MotionSensor sensor)>& source_of, const NodeLog& log);
+
+// Time, state, health and map pose as one line of JSON.
+std::string health_line(const FrameReport& report);
+
+}  // namespace byre

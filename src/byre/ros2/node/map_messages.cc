@@ -1,0 +1,87 @@
+#include "byre/ros2/node/map_messages.h"
+
+#include "byre/input_error.h"
+#include "byre/map/map_file.h"
+#include "byre/playback/report/pose_messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace byre {
+namespace {
+
+// Side of a square, unmirrored pixel in metres; the rotation is left for the grid's origin.
+double side_of_pixel(const FloorPlan& plan) {
+  const Eigen::Vector2d right = plan.metres_per_pixel.col(0), up = -plan.metres_per_pixel.col(1);
+  constexpr double kMaxSkew = 1e-3;
+  const double side = right.norm();
+  if ((Eigen::Vector2d(-right.y(), right.x()) - up).norm() > kMaxSkew * side) {
+    throw InputError(plan.image.string(), "has non-square pixels, which an occupancy grid cannot represent",
+                     "scale the image to square pixels, or leave slam.plan empty");
+  }
+  return side;
+}
+
+}  // namespace
+
+ros::OccupancyGrid grid_of(const FloorPlan& plan) {
+  const std::vector<std::int8_t> occupancy = read_plan_pixels(plan).occupancy;
+  ros::OccupancyGrid grid;
+  grid.info.resolution = static_cast<float>(side_of_pixel(plan));
+  grid.info.width = static_cast<std::uint32_t>(plan.width);
+  grid.info.height = static_cast<std::uint32_t>(plan.height);
+  const Eigen::Vector2d corner = plan.point_at({-0.5, plan.height - 0.5});
+  const Eigen::Vector2d right = plan.metres_per_pixel.col(0);
+  const Eigen::AngleAxisd turn(std::atan2(right.y(), right.x()), Eigen::Vector3d::UnitZ());
+  grid.info.origin = ros_pose({Eigen::Quaterniond(turn), {corner.x(), corner.y(), 0.0}});
+  grid.data.reserve(occupancy.size());
+  for (int row = plan.height - 1; row >= 0; --row) {  // from the bottom row up
+    const auto begin = occupancy.begin() + static_cast<std::ptrdiff_t>(row) * plan.width;
+    grid.data.insert(grid.data.end(), begin, begin + plan.width);
+  }
+  return grid;
+}
+
+std::vector<Eigen::Vector3f> points_of(const std::filesystem::path& map, bool in_plan) {
+  const StoredMap stored = load_map(map);
+  std::vector<Eigen::Vector3f> points;
+  for (const PointId id : stored.map.point_ids()) {
+    const Eigen::Vector3d point = stored.map.find_point(id)->position_in_world;
+    const Eigen::Vector3d placed = in_plan && stored.plan ? stored.plan->plan_from_map * point : point;
+    points.push_back(placed.cast<float>());
+  }
+  return points;
+}
+
+ros::PointCloud2 cloud_message(const ros::Header& header, const std::vector<Eigen::Vector3f>& points) {
+  ros::PointCloud2 cloud;
+  cloud.header = header;
+  cloud.height = 1;
+  cloud.width = static_cast<std::uint32_t>(points.size());
+  cloud.point_fields = {{"x", 0, ros::PointField::kFloat32, 1},
+                        {"y", 4, ros::PointField::kFloat32, 1},
+                        {"z", 8, ros::PointField::kFloat32, 1}};
+  cloud.point_step = 12;
+  cloud.row_step = cloud.point_step * cloud.width;
+  cloud.data.resize(cloud.row_step);
+  for (std::size_t i = 0; i < points.size(); ++i) std::memcpy(cloud.data.data() + 12 * i, points[i].data(), 12);
+  cloud.is_dense = true;
+  return cloud;
+}
+
+ros::Path path_message(const ros::Header& header, const Trajectory& trajectory,
+                       const std::function<Pose(const Pose&)>& published) {
+  constexpr std::size_t kMaxPoses = 5000;
+  ros::Path path;
+  path.header = header;
+  const std::size_t stride = trajectory.size() / kMaxPoses + 1;
+  for (std::size_t i = 0; i < trajectory.size(); i += stride) {
+    ros::Header stamped = header;
+    stamped.stamp = ros::to_time(trajectory[i].time);
+    path.poses.push_back({stamped, ros_pose(published(trajectory[i].world_from_body))});
+  }
+  return path;
+}
+
+}  // namespace byre

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "byre/io/recording/stamp_clock.h"
+#include "byre/io/recording/wheel_stream.h"
+#include "byre/ros2/dds/ros_graph.h"
+#include "byre/ros2/node/node_config.h"
+#include "byre/ros2/node/slam_runner.h"
+
+#include <deque>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// Samples from the topics of wheels and gyroscope. Held until the next frame, whose stamp reveals whether the clock was
+// set.
+class MotionInput {
+ public:
+  MotionInput(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph);
+
+  void take();
+  // Passes samples on. clock: of the images. Precondition: the runner is running.
+  void forward(const StampClock& clock, SlamRunner& runner);
+  // New fault of a topic, reported once; empty without one.
+  std::string take_fault();
+  // Topic of a sensor, for messages.
+  std::string source_of(MotionSensor sensor) const;
+
+ private:
+  Subscriber subscribe(const std::string& topic, const MessageType& type);
+  void find_wheels();
+
+  // Constant after construction.
+  NodeConfig config_;
+  Participant& participant_;
+  GraphAnnouncement& graph_;
+
+  std::optional<Subscriber> wheels_;  // empty until the topic has a publisher
+  std::string wheels_type_;
+  std::optional<Subscriber> gyroscope_;
+  WheelStream stream_;
+  bool has_unmeasured_rates_ = false;  // whether a message marked rates as not measured
+  bool is_reported_ = false;
+  std::deque<WheelSample> samples_;  // wheel samples of the last seconds, by their own stamps
+  std::deque<ImuSample> imu_;        // samples of the last seconds, by their own stamps
+};
+
+}  // namespace byre

@@ -1,0 +1,321 @@
+#include "byre/ros2/node/node.h"
+
+#include "byre/base/printable.h"
+#include "byre/ros2/dds/type_hashes.h"
+#include "byre/ros2/node/health_messages.h"
+#include "byre/ros2/node/hint_message.h"
+#include "byre/ros2/node/message_parsing.h"
+#include "byre/ros2/node/metrics.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace byre {
+namespace {
+
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+// Monotonic clock, unrelated to the time of day.
+Timestamp steady_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+constexpr std::size_t kShownOfText = 100;  // bytes of external text quoted in an answer or a log line
+
+// Bound for reading or writing a building's map on a slow disk; tracking pauses meanwhile.
+constexpr std::chrono::minutes kLongestWithFiles{5};
+
+// Texts are compared without numbers, which change all the time.
+std::string without_digits(std::string text) {
+  std::erase_if(text, [](char letter) { return letter >= '0' && letter <= '9'; });
+  return text;
+}
+
+PairingOptions pairing_options(const NodeConfig& config) {
+  return {config.has_right(), from_seconds(config.pair_tolerance), from_seconds(config.pair_wait)};
+}
+
+}  // namespace
+
+Node::Node(const NodeConfig& config, const RosNetwork& network, const std::string& cyclone_settings, NodeLog log)
+    : config_(config),
+      log_(std::move(log)),
+      participant_(network, cyclone_settings),
+      graph_(participant_, {config.name, config.name_space.empty() ? "/" : config.name_space}),
+      calibration_source_(config, participant_, graph_),
+      runner_(config),
+      watchers_(config.http_port ? std::make_shared<LiveTopics>() : nullptr),
+      outputs_(config, participant_, graph_, watchers_.get()),
+      motion_(config, participant_, graph_),
+      pairs_(pairing_options(config)),
+      monitor_(config.topic(config.left), steady_now()) {
+  const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
+    std::optional<Subscriber> subscriber;
+    if (topic.empty()) return subscriber;
+    subscriber = participant_.subscribe(config_.topic(topic), type, qos);
+    graph_.add(*subscriber);
+    return subscriber;
+  };
+  const MessageType image = config.is_compressed ? message_type<ros::CompressedImage>() : message_type<ros::Image>();
+  const TopicQos images{.is_reliable = config.is_reliable, .depth = 5};
+  const TopicQos small{.max_bytes = kMaxBytesWithoutImage};
+  command_ = subscribe(config.command, message_type<ros::String>(), small);
+  initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), small);
+  if (config.services.value_or(network.uses_cyclone)) services_.emplace(config, participant_, graph_, log_);
+  calibration_ = calibration_source_.take("");
+  if (calibration_) start();
+  require_plan_of_map(config_);
+  outputs_.publish_plan();
+  left_ = subscribe(config.left, image, images);
+  right_ = subscribe(config.right, image, images);
+  graph_.publish();
+  if (const auto fleet = fleet_options(config)) fleet_.emplace(*fleet);
+  if (config.http_port) {
+    web_server_.emplace(WebServerOptions{config.http_address, *config.http_port, {}},
+                        std::make_unique<StatusSite>(board_), watchers_);
+    for (const std::string& url : web_server_->urls())
+      log_(LogLevel::info, "healthz, metrics and Foxglove are served at " + url);
+  }
+}
+
+void Node::take_images(Timestamp now) {
+  const auto stamp_of = [](const Message& message, const std::string& topic) -> std::optional<ros::Header> {
+    return parsed_message<ros::Header>(message, topic);  // both image types begin with a header
+  };
+  for (Message& message : left_->take()) {
+    const auto header = stamp_of(message, config_.left);
+    if (!header) continue;
+    monitor_.note_arrival(now);
+    left_frame_ = header->frame_id;
+    pairs_.add_left(ros::to_nanoseconds(header->stamp), std::move(message), now);
+  }
+  if (!right_) return;
+  for (Message& message : right_->take()) {
+    const auto header = stamp_of(message, config_.right);
+    if (header) pairs_.add_right(ros::to_nanoseconds(header->stamp), std::move(message), now);
+  }
+}
+
+void Node::start() {
+  manager_.busy(kLongestWithFiles);
+  const std::string note = runner_.start(*calibration_);
+  if (!note.empty()) log_(LogLevel::warning, note);
+}
+
+void Node::take_calibration(Timestamp now) {
+  if (calibration_) return;
+  try {
+    calibration_ = calibration_source_.take(left_frame_);
+    if (calibration_) start();
+  } catch (const InputError& error) {
+    calibration_.reset();
+    monitor_.note_unusable(error, now);
+    if (last_fault_ == error.what()) return;
+    last_fault_ = error.what();
+    log_(LogLevel::error, last_fault_);
+  }
+}
+
+Outcome Node::answer(const std::string& request, const std::function<std::string()>& done) {
+  Outcome outcome;
+  manager_.busy(kLongestWithFiles);
+  try {
+    outcome = {true, done()};
+  } catch (const InputError& error) {
+    outcome = {false, error.what()};
+  }
+  log_(outcome.is_done ? LogLevel::info : LogLevel::warning, request + ": " + outcome.answer);
+  outputs_.publish_answer(request, outcome.is_done, outcome.answer);
+  return outcome;
+}
+
+Outcome Node::execute(const std::string& command) {
+  return answer(printable(command, kShownOfText), [&] {
+    const CommandResult result = byre::execute(runner_, command);
+    if (result.restarts) restart();
+    return result.answer;
+  });
+}
+
+Outcome Node::take_hint(const ros::PoseWithCovarianceStamped& hint) {
+  return answer("initial pose", [&] { return compare(hint); });
+}
+
+void Node::restart() {
+  pose_frames_.restart();
+  if (fleet_) fleet_->restart();
+  outputs_.reset_points();
+  map_from_body_.reset();
+  last_report_.reset();
+}
+
+// A pose set by hand is a hint. If it contradicts a reliable pose, relocalisation restarts, near the hint first.
+std::string Node::compare(const ros::PoseWithCovarianceStamped& message) {
+  constexpr double kNear = 2.0;  // metres
+  const std::string& frame = message.header.frame_id;
+  if (!frame.empty() && frame != config_.map_frame) {
+    throw InputError(config_.initial_pose, "is in frame '" + printable(frame, kShownOfText) + "'",
+                     "publish it in '" + config_.map_frame + "', the fixed frame of RViz");
+  }
+  auto hint = hint_of(message);
+  if (!hint) throw InputError(config_.initial_pose, "has a non-finite position", "set the pose again");
+  std::string answer;
+  if (map_from_body_) {
+    const double distance = (map_from_body_->translation - hint->map_from_body.translation).head<2>().norm();
+    if (distance <= kNear) return fmt::format("agrees with the current pose within {:.1f} m", distance);
+    answer = fmt::format("{:.1f} m from the current pose; ", distance) + runner_.relocalise() + "; ";
+    hint->map_from_body.translation.z() = map_from_body_->translation.z();  // a click on a map has no height
+    restart();
+  }
+  if (!runner_.set_initial_pose(*hint)) return "not used: the search already covers the whole map";
+  return answer + fmt::format("searching within {:.1f} m of it for {:.0f} s, then in the whole map", hint->radius,
+                              hint->seconds);
+}
+
+void Node::take_requests(Timestamp now) {
+  const auto take = [](std::optional<Subscriber>& subscriber) {
+    return subscriber ? subscriber->take() : std::vector<Message>();
+  };
+  for (const Message& message : take(command_)) {
+    const auto command = parsed_message<ros::String>(message, config_.command);
+    if (command) execute(command->data);
+  }
+  for (const Message& message : take(initial_pose_)) {
+    const auto given = parsed_message<ros::PoseWithCovarianceStamped>(message, config_.initial_pose);
+    if (given) take_hint(*given);
+  }
+  if (!services_) return;
+  services_->answer(
+      [this](const ServiceCall& call) { return call.hint ? take_hint(*call.hint) : execute(call.command); }, now);
+}
+
+ReceivedImage Node::decoded(const Message& message, const std::string& topic) const {
+  const auto bytes = message.bytes();
+  if (config_.is_compressed) {
+    return received_image(ros::read_message<ros::CompressedImage>(bytes, ros::Encoding::cdr, topic), topic);
+  }
+  return received_image(ros::read_message<ros::Image>(bytes, ros::Encoding::cdr, topic), topic);
+}
+
+void Node::process(const Pairs::Pair& pair) {
+  const Timestamp begin = steady_now();
+  ++frames_;
+  try {
+    ReceivedImage left = decoded(pair.left, config_.topic(config_.left));
+    std::optional<ReceivedImage> right;
+    if (pair.right) right = decoded(*pair.right, config_.topic(config_.right));
+    const auto [time, jump] = clock_.read(pair.stamp, begin);
+    if (right) right->layout.time += time - left.layout.time;
+    left.layout.time = time;
+    CameraImages images{left.view()};
+    if (right) images.right = right->view();
+    motion_.take();
+    motion_.forward(clock_, runner_);
+    if (const std::string fault = motion_.take_fault(); !fault.empty()) log_(LogLevel::warning, fault);
+    const FrameReport report = runner_.process(images);
+    outputs_.publish_images(pair.stamp, pair.left.bytes(),
+                            pair.right ? pair.right->bytes() : std::span<const std::byte>());
+    if (!std::exchange(has_published_cameras_, true)) {
+      outputs_.publish_cameras(*calibration_, left.header.frame_id, right ? right->header.frame_id : "");
+    }
+    publish(left, report);
+    const CameraFrame camera_frame{right.has_value(),
+                                   config_.has_right(),
+                                   report.health.doubt == DistrustReason::frozen,
+                                   to_seconds(steady_now() - begin),
+                                   report.input,
+                                   pair.nearest,
+                                   jump};
+    monitor_.note_frame(camera_frame, steady_now());
+  } catch (const InputError& error) {
+    monitor_.note_unusable(error, begin);
+  }
+  monitor_.note_skipped(pairs_.counts().skipped, begin);
+}
+
+void Node::publish(const ReceivedImage& left, const FrameReport& report) {
+  if (is_dropped(report.input)) return;  // without a pose
+  map_from_body_ = report.map_from_body;
+  pose_frames_.note(report);
+  outputs_.publish_frame(left.header, report, pose_frames_);
+  if (fleet_) fleet_->note(report, steady_now(), advice_for(report.health.doubt));
+  last_image_time_ = ros::to_nanoseconds(left.header.stamp);
+  const auto source_of = [this](MotionSensor sensor) { return motion_.source_of(sensor); };
+  log_changes(report, last_report_, runner_.map_damage(), source_of, log_);
+  last_report_ = report;
+}
+
+ros::DiagnosticStatus Node::localisation() const {
+  if (last_report_) return localisation_status(*last_report_);
+  ros::DiagnosticStatus status;
+  status.level = ros::DiagnosticStatus::kWarn;
+  status.name = "byre: localisation";
+  status.message =
+      runner_.is_running() ? "no frame has been tracked yet" : "waiting for " + calibration_source_.missing_input();
+  return status;
+}
+
+void Node::publish_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras) {
+  const std::string summary = localisation.message + "; " + cameras.message;
+  manager_.status(summary);
+  const bool is_healthy = last_report_ && std::max(localisation.level, cameras.level) <= ros::DiagnosticStatus::kWarn;
+  board_->put(
+      {is_healthy, summary, metrics_text({monitor_.arrived(), pairs_.counts().skipped, frames_, last_report_})});
+}
+
+// Once a second, and immediately after a change.
+void Node::publish_state(Timestamp now) {
+  std::vector<ros::DiagnosticStatus> statuses = {localisation(), monitor_.status(now)};
+  const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message);
+  const bool has_changed = diagnosis != last_diagnosis_ && now - last_published_ > 100ms;
+  if (has_changed || now - last_published_ > 1s) {
+    publish_status(statuses[0], statuses[1]);
+    outputs_.publish_diagnostics(std::move(statuses));
+    last_published_ = now;
+    last_diagnosis_ = diagnosis;
+  }
+  if (runner_.is_running() && now - last_slow_published_ > 1s) {
+    outputs_.publish_path(runner_, last_image_time_);
+    outputs_.publish_points(runner_);
+    last_slow_published_ = now;
+  }
+  // A running loop is not sufficient: while images arrive, some must be tracked.
+  const bool is_working = frames_ != frames_at_last_keepalive_ || monitor_.arrived() == arrived_at_last_keepalive_;
+  if (!is_working && runner_.is_running()) return;
+  manager_.alive();
+  frames_at_last_keepalive_ = frames_;
+  arrived_at_last_keepalive_ = monitor_.arrived();
+}
+
+void Node::publish_fleet(Timestamp now) {
+  if (!fleet_) return;
+  if (const auto change = fleet_->connection_change()) log_(LogLevel::notice, "mqtt: " + *change);
+  fleet_->publish({runner_.map_name(), config_.fleet.map_description}, now);
+}
+
+void Node::run(const std::function<bool()>& should_stop) {
+  log_(LogLevel::info, "node " + config_.full_name() + " is ready");
+  manager_.ready();
+  while (!should_stop()) {
+    participant_.wait(20ms);
+    const Timestamp now = steady_now();
+    take_calibration(now);
+    take_requests(now);
+    take_images(now);
+    motion_.take();
+    if (runner_.is_running()) {
+      if (const auto pair = pairs_.next(now)) process(*pair);
+    }
+    publish_state(steady_now());
+    publish_fleet(steady_now());
+    if (web_server_) web_server_->wake();
+  }
+  manager_.stopping();
+  if (runner_.can_save()) log_(LogLevel::info, runner_.save());
+}
+
+}  // namespace byre

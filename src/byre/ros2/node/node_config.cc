@@ -1,0 +1,150 @@
+#include "byre/ros2/node/node_config.h"
+
+#include "byre/io/recording/settings_file.h"
+#include "byre/playback/report/report_json.h"
+#include "byre/ros2/dds/ros_names.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Setting whose last part shares the longest prefix with the unknown one.
+std::string remedy_for_unknown(std::string_view name) {
+  const std::string_view word = name.substr(name.rfind('.') + 1);
+  for (const NodeSetting& setting : node_settings()) {
+    if (setting.name.substr(setting.name.rfind('.') + 1) == word) return "is " + setting.name + " meant?";
+  }
+  return "see byre node --print-config";
+}
+
+// Paths relative to the configuration file.
+std::array<std::optional<fs::path>*, 7> paths_of(NodeConfig& config) {
+  return {&config.map,
+          &config.save,
+          &config.options,
+          &config.vocabulary,
+          &config.plan,
+          &config.calibration,
+          &config.fleet.password_file};
+}
+
+// Constraints between settings; faults are reported at the first line involved.
+class Consistency {
+ public:
+  Consistency(const fs::path& path, const std::vector<Setting>& given, std::vector<InputError>& faults)
+      : path_(path), given_(given), faults_(faults) {}
+
+  void require(bool holds, std::string_view setting, std::string_view reason, std::string_view remedy) {
+    if (holds) return;
+    const auto found = std::ranges::find(given_, setting, &Setting::name);
+    std::string place = path_.string();
+    if (found != given_.end()) place.append(":").append(std::to_string(found->line));
+    faults_.emplace_back(place, std::string(setting).append(" ").append(reason), remedy);
+  }
+
+ private:
+  const fs::path& path_;
+  const std::vector<Setting>& given_;
+  std::vector<InputError>& faults_;
+};
+
+void check_fleet(const FleetSettings& fleet, Consistency& consistency) {
+  const char* const remedy = "use letters, digits and _ . : -";
+  const auto require_sound = [&](const char* name, const std::string& text) {
+    const std::string_view fault = fault_in_identity(text);
+    consistency.require(fault.empty(), name, fault, remedy);
+  };
+  require_sound("mqtt.interface", fleet.interface_name);
+  require_sound("mqtt.manufacturer", fleet.manufacturer);
+  if (!fleet.serial_number.empty()) require_sound("mqtt.serial_number", fleet.serial_number);
+  consistency.require(!fleet.password_file || !fleet.user.empty(), "mqtt.password_file",
+                      "is set, but mqtt.user is empty", "set mqtt.user, or leave this empty");
+}
+
+void check(const NodeConfig& config, Consistency consistency) {
+  const bool is_mission = config.task == NodeTask::mission;
+  consistency.require(config.task == NodeTask::map || config.map.has_value(), "slam.map", "is missing",
+                      "set the map of the building, or set slam.task to map");
+  consistency.require(config.task != NodeTask::map || !config.map, "slam.map", "is not used by the task map",
+                      "leave it empty, or set slam.task to extend");
+  consistency.require(is_mission || config.save.has_value(), "slam.save", "is missing, so the map would be lost",
+                      "give a file");
+  consistency.require(config.has_right() || config.task != NodeTask::map, "images.right",
+                      "is empty, but a map of one camera has no metric scale",
+                      "set the topic of the right images, or map first with byre map and byre scale");
+  consistency.require(!config.left.empty(), "images.left", "is empty", "set the topic of the left images");
+  const bool needs_info = !config.calibration;
+  consistency.require(!needs_info || !config.left_info.empty(), "calibration.left_info",
+                      "is empty, and calibration.file is empty too", "set one of the two");
+  consistency.require(!needs_info || !config.has_right() || !config.right_info.empty(), "calibration.right_info",
+                      "is empty, and calibration.file is empty too", "set one of the two");
+  consistency.require(config.calibration || config.extrinsics != ExtrinsicsSource::file, "frames.mounting",
+                      "is file, but calibration.file is empty", "set it to tf, or set calibration.file");
+  consistency.require(config.name_space.empty() || config.name_space.starts_with('/'), "node.namespace",
+                      "does not begin with a slash", "write it as /barn");
+  consistency.require(!config.plan || (config.map && config.in_plan), "slam.plan",
+                      "needs a map registered on it, and frames.in_plan", "set both, or leave slam.plan empty");
+  consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
+                      "is the offline map, which a mission must not replace", "name another file");
+  check_fleet(config.fleet, consistency);
+  consistency.require(fault_in_name("/" + config.name).empty(), "node.name", "is not a valid node name",
+                      "use letters, digits and underscores");
+}
+
+// YAML scalar. Text with characters beyond those of numbers, paths and topics is quoted with JSON escapes.
+std::string yaml_scalar(const std::string& text) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+./";
+  const bool is_plain = !text.empty() && text.find_first_not_of(kPlain) == std::string::npos;
+  return is_plain ? text : dump_json(text);
+}
+
+}  // namespace
+
+std::string NodeConfig::topic(const std::string& given) const {
+  // Relative names resolve within the node, such as "/byre/odometry".
+  return given.empty() ? "" : resolve_name(given, full_name());
+}
+
+NodeConfigReading read_node_config(const fs::path& path) {
+  NodeConfigReading reading;
+  reading.config.file = path;
+  const std::vector<Setting> given = read_settings(path);
+  for (const Setting& setting : given) {
+    const std::string place = path.string() + ":" + std::to_string(setting.line);
+    const auto known = std::ranges::find(node_settings(), setting.name, &NodeSetting::name);
+    if (known == node_settings().end()) {
+      reading.faults.emplace_back(place, "unknown setting " + setting.name, remedy_for_unknown(setting.name));
+    } else if (!known->set(reading.config, setting.text)) {
+      reading.faults.emplace_back(place, setting.name + " is '" + setting.text + "'", "give " + known->range);
+    }
+  }
+  for (std::optional<fs::path>* const named : paths_of(reading.config)) {
+    if (*named) **named = path.parent_path() / **named;  // absolute paths are kept
+  }
+  check(reading.config, {path, given, reading.faults});
+  return reading;
+}
+
+std::string node_config_file(const NodeConfig& config) {
+  std::string written;
+  std::string group;
+  for (const NodeSetting& setting : node_settings()) {
+    const std::size_t dot = setting.name.find('.');
+    const std::string its_group = setting.name.substr(0, dot);
+    if (its_group != group) written += its_group + ":\n";
+    group = its_group;
+    written += "  " + setting.name.substr(dot + 1) + ": " + yaml_scalar(setting.get(config)) + "  # " +
+               setting.meaning + " (" + setting.range + ")\n";
+  }
+  return written;
+}
+
+}  // namespace byre

@@ -1,0 +1,138 @@
+#include "byre/ros2/node/node_config.h"
+
+#include "byre/calibration_file.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class NodeConfigFile : public testing::Test {
+ protected:
+  NodeConfigFile() { fs::create_directories(folder_); }
+  ~NodeConfigFile() override { fs::remove_all(folder_); }
+
+  NodeConfigReading read(const std::string& text) const {
+    std::ofstream(folder_ / "robot.yaml") << text;
+    return read_node_config(folder_ / "robot.yaml");
+  }
+  // All faults, one per line.
+  std::string faults(const std::string& text) const {
+    std::string lines;
+    for (const InputError& fault : read(text).faults) lines += std::string(fault.what()) + "\n";
+    return lines;
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("byre_node_config." + std::to_string(getpid()));
+};
+
+TEST_F(NodeConfigFile, ResolvesPathsInItsFolderAndTopicsInTheNode) {
+  const NodeConfig config =
+      read(
+          "node:\n  name: eyes\n  namespace: /barn\nslam:\n  map: barn.byre\n  save: /var/lib/byre/new.byre\n"
+          "topics:\n  pose: /amcl_pose\n")
+          .config;
+  EXPECT_EQ(config.map, folder_ / "barn.byre");
+  EXPECT_EQ(config.save, fs::path("/var/lib/byre/new.byre"));
+  EXPECT_EQ(config.topic(config.odometry), "/barn/eyes/odometry");
+  EXPECT_EQ(config.topic(config.pose), "/amcl_pose");
+  EXPECT_EQ(config.topic(""), "");
+}
+
+TEST_F(NodeConfigFile, ReportsAllFaultsWithLineAndRemedy) {
+  const std::string text =
+      faults("slam:\n  map: barn.byre\n  worker: 3\nimages:\n  pair_wait: soon\n  left: two words\n");
+  EXPECT_THAT(text, AllOf(HasSubstr("robot.yaml:3: unknown setting slam.worker"),
+                          HasSubstr("robot.yaml:5: images.pair_wait is 'soon' (give from 0 to 1 seconds)"),
+                          HasSubstr("robot.yaml:6: images.left is 'two words'")));
+  EXPECT_EQ(std::ranges::count(text, '\n'), 3);
+  EXPECT_THAT(faults("left: x\nslam:\n  map: m\n"), HasSubstr("is images.left meant?"));
+}
+
+TEST_F(NodeConfigFile, RejectsContradictingSettings) {
+  EXPECT_THAT(faults("images:\n  left: /a\n"), HasSubstr("slam.map is missing"));
+  EXPECT_THAT(faults("slam:\n  task: map\n"), HasSubstr("robot.yaml: slam.save is missing"));
+  EXPECT_THAT(faults("slam:\n  task: map\n  save: s\n  map: m\n"), HasSubstr("robot.yaml:4: slam.map is not used"));
+  EXPECT_THAT(faults("slam:\n  map: m\n  save: m\n"), HasSubstr("slam.save is the offline map"));
+  EXPECT_THAT(faults("slam:\n  task: map\n  save: s\nimages:\n  right: ''\n"), HasSubstr("no metric scale"));
+  EXPECT_THAT(faults("slam:\n  map: m\nframes:\n  mounting: file\n"),
+              HasSubstr("robot.yaml:4: frames.mounting is file"));
+  EXPECT_THAT(faults("slam:\n  map: m\nnode:\n  name: my-node\n"), HasSubstr("robot.yaml:4: node.name"));
+  EXPECT_THAT(faults("slam:\n  map: m\n  plan: p\nframes:\n  in_plan: false\n"),
+              HasSubstr("robot.yaml:3: slam.plan needs"));
+  EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
+}
+
+TEST_F(NodeConfigFile, ReportsFaultsOfFleetSettings) {
+  const std::string sound = "slam:\n  map: m\nmqtt:\n  host: broker\n";
+  EXPECT_THAT(faults(sound + "  port: 0\n"), HasSubstr("robot.yaml:5: mqtt.port is '0'"));
+  EXPECT_THAT(faults(sound + "  rate: 100\n"), HasSubstr("robot.yaml:5: mqtt.rate is '100'"));
+  EXPECT_THAT(faults(sound + "  serial_number: robot 7\n"),
+              HasSubstr("robot.yaml:5: mqtt.serial_number contains characters other"));
+  EXPECT_THAT(faults(sound + "  manufacturer: a/b\n"),
+              HasSubstr("robot.yaml:5: mqtt.manufacturer contains characters other"));
+  EXPECT_THAT(faults(sound + "  password_file: p\n"), HasSubstr("mqtt.password_file is set, but mqtt.user is empty"));
+  EXPECT_THAT(faults(sound), IsEmpty());
+}
+
+TEST_F(NodeConfigFile, EnablesTheFleetLinkOnlyWithABroker) {
+  EXPECT_FALSE(fleet_options(read("slam:\n  map: m\n").config));
+  std::ofstream(folder_ / "password") << "secret\nmore\n";
+  const std::string text = "slam:\n  map: m\nnode:\n  name: eyes\nmqtt:\n  host: broker\n  user: me\n  password_file: ";
+  const auto options = fleet_options(read(text + "password\n").config);
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->broker.password, "secret");
+  EXPECT_EQ(options->identity.serial_number, "eyes");
+  EXPECT_THROW(fleet_options(read(text + "absent\n").config), InputError);
+}
+
+TEST_F(NodeConfigFile, IsReadAsPrinted) {
+  NodeConfig config =
+      read("slam:\n  map: /m\n  workers: repeatable\nimages:\n  right: ''\nframes:\n  mounting: tf\n").config;
+  const std::string printed = node_config_file(config);
+  const NodeConfigReading again = read(printed);
+  EXPECT_THAT(again.faults, IsEmpty());
+  EXPECT_EQ(node_config_file(again.config), printed);
+  EXPECT_EQ(again.config.extrinsics, ExtrinsicsSource::tf);
+  EXPECT_FALSE(again.config.has_right());
+}
+
+TEST_F(NodeConfigFile, QuotesTextWithoutControlCharacters) {
+  const NodeConfig config = read("slam:\n  map: \"/barn \\u009b2J: #1\\n.byre\"\n").config;
+  const std::string printed = node_config_file(config);
+  EXPECT_THAT(printed, HasSubstr(R"(map: "/barn \u009b2J: #1\n.byre"  # )"));
+  EXPECT_EQ(read(printed).config.map, config.map);
+}
+
+TEST_F(NodeConfigFile, ReportsUnusableFiles) {
+  const NodeConfig config =
+      read("slam:\n  map: absent.byre\n  plan: absent.yaml\ncalibration:\n  file: absent.yml\n").config;
+  const std::vector<InputError> found = faults_in_files(config);
+  EXPECT_THAT(found, SizeIs(3));
+  for (const InputError& fault : found) EXPECT_THAT(fault.what(), HasSubstr("absent"));
+}
+
+TEST_F(NodeConfigFile, ReportsACalibrationWithAnUnusualBaseline) {
+  Calibration calibration;
+  calibration.left = {.width = 752, .height = 480, .fx = 400.0, .fy = 400.0, .cx = 376.0, .cy = 240.0};
+  calibration.right = {calibration.left, {Eigen::Quaterniond::Identity(), {-7.5, 0.0, 0.0}}};
+  std::ofstream(folder_ / "pair.yaml") << write_calibration(calibration);
+  const std::string settings = "images:\n  left: left\n  right: right\ncalibration:\n  file: pair.yaml\n";
+  const std::vector<InputError> found = faults_in_files(read(settings).config);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_THAT(found[0].what(), AllOf(HasSubstr("pair.yaml"), HasSubstr("calibration.baseline: 0.075")));
+  EXPECT_THAT(faults_in_files(read(settings + "  baseline: 0.075\n").config), IsEmpty());
+}
+
+}  // namespace
+}  // namespace byre

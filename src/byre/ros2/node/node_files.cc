@@ -1,0 +1,80 @@
+#include "byre/calibration_file.h"
+#include "byre/floor_plan.h"
+#include "byre/geometry/baseline.h"
+#include "byre/map/map_file.h"
+#include "byre/ros2/node/map_messages.h"
+#include "byre/ros2/node/node_config.h"
+#include "byre/ros2/node/slam_runner.h"
+#include "byre/slam/system/stored_map.h"
+
+#include <fstream>
+#include <functional>
+
+namespace byre {
+
+std::vector<InputError> faults_in_files(const NodeConfig& config) {
+  std::vector<InputError> faults;
+  const auto look = [&faults](const std::function<void()>& open) {
+    try {
+      open();
+    } catch (const InputError& error) {
+      faults.push_back(error);
+    }
+  };
+  look([&] { SlamRunner runner(config); });
+  if (config.plan) look([&] { grid_of(read_floor_plan(*config.plan)); });
+  look([&] {
+    const Vocabulary vocabulary = open_vocabulary(config.vocabulary);
+    if (config.map) load_for_mapping(*config.map, vocabulary);
+    require_plan_of_map(config);
+  });
+  look([&] { fleet_options(config); });
+  if (config.calibration) {
+    look([&] {
+      const Calibration given = read_calibration(*config.calibration);
+      require_cameras(with_checked_baseline(given, config.baseline, config.calibration->string(), kBaselineSetting),
+                      config);
+    });
+  }
+  return faults;
+}
+
+std::optional<FleetOptions> fleet_options(const NodeConfig& config) {
+  const FleetSettings& fleet = config.fleet;
+  if (fleet.host.empty()) return std::nullopt;
+  FleetOptions options;
+  options.broker = {fleet.host, fleet.port, fleet.user, "", ""};
+  if (fleet.password_file) {
+    std::ifstream file(*fleet.password_file);
+    if (!std::getline(file, options.broker.password)) {
+      throw InputError(fleet.password_file->string(), "has no readable password",
+                       "write it into the first line, and give byre read permission");
+    }
+  }
+  options.identity = {fleet.interface_name, fleet.manufacturer,
+                      fleet.serial_number.empty() ? config.name : fleet.serial_number};
+  options.rate = fleet.rate;
+  return options;
+}
+
+void require_plan_of_map(const NodeConfig& config) {
+  if (!config.plan) return;
+  const auto registration = load_plan_registration(*config.map);
+  const std::string name = config.plan->filename().string();
+  if (!registration) {
+    throw InputError(config.map->string(), "is not registered on a floor plan, but slam.plan is set",
+                     "register it on the plan with byre register or byre view, or leave slam.plan empty");
+  }
+  if (registration->plan != name) {
+    throw InputError(config.plan->string(), "is not the floor plan of the map, " + registration->plan,
+                     "give that plan, or register the map on this one");
+  }
+}
+
+void require_cameras(const Calibration& calibration, const NodeConfig& config) {
+  if (!config.has_right() || calibration.right) return;
+  throw InputError(config.calibration->string(), "is of one camera, but images.right gives a second one",
+                   "give the calibration of the pair (Kalibr camchain), or leave images.right empty");
+}
+
+}  // namespace byre

@@ -1,0 +1,52 @@
+#include "byre/ros2/node/service_manager.h"
+
+#include "byre/base/printable.h"
+
+#include <cstdint>
+#include <utility>
+
+#include <systemd/sd-daemon.h>
+
+namespace byre {
+
+ServiceManager::ServiceManager() {
+  std::uint64_t microseconds = 0;
+  // Half of the timeout, as recommended by sd_watchdog_enabled(3).
+  if (sd_watchdog_enabled(0, &microseconds) > 0) interval_ = std::chrono::microseconds(microseconds / 2);
+}
+
+void ServiceManager::ready() {
+  sd_notify(0, "READY=1");
+}
+
+void ServiceManager::stopping() {
+  sd_notify(0, "STOPPING=1");
+}
+
+void ServiceManager::status(const std::string& text) {
+  if (text == last_status_) return;
+  last_status_ = text;
+  std::string line = text;
+  for (char& letter : line) letter = letter == '\n' ? ' ' : letter;
+  sd_notify(0, ("STATUS=" + printable(line)).c_str());
+}
+
+void ServiceManager::alive() {
+  const auto now = std::chrono::steady_clock::now();
+  if (!interval_ || (!is_busy_ && last_alive_ && now - *last_alive_ < *interval_)) return;
+  last_alive_ = now;
+  if (std::exchange(is_busy_, false)) set_watchdog(2 * *interval_);
+  sd_notify(0, "WATCHDOG=1");
+}
+
+void ServiceManager::busy(std::chrono::seconds longest) {
+  if (!interval_ || longest <= 2 * *interval_) return;
+  is_busy_ = true;
+  set_watchdog(longest);  // starting now
+}
+
+void ServiceManager::set_watchdog(std::chrono::microseconds time) {
+  sd_notify(0, ("WATCHDOG_USEC=" + std::to_string(time.count())).c_str());
+}
+
+}  // namespace byre

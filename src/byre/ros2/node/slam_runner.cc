@@ -1,0 +1,225 @@
+#include "byre/ros2/node/slam_runner.h"
+
+#include "byre/base/output_file.h"
+#include "byre/base/printable.h"
+#include "byre/floor_plan.h"
+#include "byre/geometry/baseline.h"
+#include "byre/io/recording/file_safety.h"
+#include "byre/io/recording/settings_file.h"
+#include "byre/map/map_file.h"
+#include "byre/playback/options_file.h"
+#include "byre/ros2/node/kept_maps.h"
+#include "byre/ros2/node/map_messages.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A node runs for weeks: a quarter of an hour at 20 Hz in full, older poses subsampled.
+constexpr const char* kMaxPoses = "20000";
+
+SlamOptions slam_options(const NodeConfig& config) {
+  SlamOptions options;
+  options.settings.emplace_back("trajectory.max_poses", kMaxPoses);
+  options.workers = config.workers;
+  options.vocabulary = config.vocabulary;
+  options.baseline = config.baseline;
+  options.max_pair_difference = std::max(options.max_pair_difference, config.pair_tolerance);
+  if (!config.options) return options;
+  EngineOptions checked;
+  read_options(*config.options, checked);  // its messages name the line
+  for (const Setting& setting : read_settings(*config.options)) {
+    if (setting.name != "pace") options.settings.emplace_back(setting.name, setting.text);  // replaced by workers
+  }
+  return options;
+}
+
+// Whether the map is registered on the plan; another map need not be.
+bool lies_on(const fs::path& map, const fs::path& plan) {
+  const auto registration = load_plan_registration(map);
+  return registration && registration->plan == plan.filename().string();
+}
+
+// File in the folder of the loaded map. Other folders are rejected, as senders of commands may not read arbitrary
+// files.
+fs::path sibling_path(const fs::path& map, const std::string& name) {
+  if (name.empty() || name.starts_with('.') || name.find('/') != std::string::npos) {
+    throw InputError("load", "'" + name.substr(0, 100) + "' is not a file name",
+                     "give a file in the folder of the current map, without the folder");
+  }
+  return map.parent_path() / name;
+}
+
+// Throws InputError if slam.save may not be written, or if it or its previous version is an input of the node, other
+// than the map to extend.
+void require_safe_save(const NodeConfig& config) {
+  if (!config.save) return;
+  NamedFiles files;
+  const auto add = [&files](InputKind kind, const char* name, const std::optional<fs::path>& file) {
+    if (file) files.inputs.push_back({kind, name, *file});
+  };
+  add(InputKind::file, "the settings", config.file);
+  if (config.task != NodeTask::extend) add(InputKind::file, "slam.map", config.map);
+  add(InputKind::file, "slam.options", config.options);
+  add(InputKind::file, "slam.vocabulary", config.vocabulary);
+  add(InputKind::plan, "slam.plan", config.plan);
+  add(InputKind::file, "calibration.file", config.calibration);
+  add(InputKind::file, "mqtt.password_file", config.fleet.password_file);
+  for (const fs::path& written : {*config.save, previous_map(*config.save)}) {
+    files.outputs.push_back({OutputKind::map, "slam.save", written});
+  }
+  try {
+    require_not_read(files);
+  } catch (const FileConflict& conflict) {
+    throw InputError(conflict.argument(), conflict.what());
+  }
+  require_writable(*config.save, FileContent::map);
+}
+
+}  // namespace
+
+SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(slam_options(config)), map_(config.map) {
+  require_safe_save(config);
+}
+
+FrameReport SlamRunner::process(const CameraImages& images) {
+  FrameReport report = slam_->process(images);
+  had_pose_ = had_pose_ || report.map_from_body;
+  if (!config_.in_plan || !report.map_from_body) return report;
+  const auto covariance = slam_->plan_covariance(*report.map_from_body, report.covariance);
+  report.covariance = covariance.value_or(report.covariance);
+  report.map_from_body = published(*report.map_from_body);
+  return report;
+}
+
+void SlamRunner::replace(Slam slam) {
+  slam.pause_mapping(slam_ && slam_->is_mapping_paused());
+  slam_.emplace(std::move(slam));
+  had_pose_ = false;
+  has_saved_ = false;
+}
+
+SlamOptions SlamRunner::options_for(const fs::path& map) const {
+  SlamOptions options = options_;
+  if (config_.plan && lies_on(map, *config_.plan)) options.plan = read_drawn_floor_plan(*config_.plan);
+  return options;
+}
+
+Slam SlamRunner::make(const fs::path* map) const {
+  switch (config_.task) {
+    case NodeTask::mission:
+      return Slam::on_map(*calibration_, *map, options_for(*map));
+    case NodeTask::extend:
+      return Slam::extending(*calibration_, *map, options_);
+    case NodeTask::map:
+      break;
+  }
+  return Slam::mapping(*calibration_, options_);
+}
+
+std::string SlamRunner::start(const Calibration& calibration) {
+  calibration_ =
+      with_checked_baseline(calibration, config_.baseline,
+                            config_.calibration ? config_.calibration->string() : "the calibration", kBaselineSetting);
+  std::string note;
+  try {
+    replace(make(map_ ? &*map_ : nullptr));
+  } catch (const InputError& error) {
+    const bool is_kept = map_ && fs::exists(previous_map(*map_));
+    if (!is_kept) throw;
+    const fs::path previous = previous_map(*map_);
+    replace(make(&previous));
+    map_ = previous;
+    is_map_intact_ = false;
+    note = std::string(error.what()) + "; the previous map is used, " + previous.string();
+  }
+  if (slam_->is_metric()) return note;
+  slam_.reset();
+  throw InputError("the calibration", "is of one camera, which has no metric scale without a map", "set slam.map");
+}
+
+Pose SlamRunner::published(const Pose& map_from_body) const {
+  const auto on_plan = config_.in_plan ? slam_->plan_from_body(map_from_body) : std::nullopt;
+  return on_plan.value_or(map_from_body);
+}
+
+std::string SlamRunner::map_name() const {
+  const std::optional<fs::path>& file = map_ ? map_ : config_.save;
+  return file ? file->stem().string() : "";
+}
+
+std::vector<Eigen::Vector3f> SlamRunner::points() const {
+  if (!makes_map()) return points_of(*map_, config_.in_plan);
+  const Pose published_from_map = published(Pose{});
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3d& point : slam_->point_positions())
+    points.push_back((published_from_map * point).cast<float>());
+  return points;
+}
+
+void SlamRunner::require_running() const {
+  if (!slam_) throw InputError("byre node", "has no calibration yet", "wait for camera info");
+}
+
+std::string SlamRunner::save() {
+  require_running();
+  if (!config_.save) throw InputError("save", "has no output file", "set slam.save");
+  require_safe_save(config_);
+  if (slam_->keyframes() > 0 && is_map_intact_ && !has_saved_) keep_as_previous(*config_.save);
+  slam_->save(*config_.save);
+  is_map_intact_ = true;
+  has_saved_ = true;
+  return "saved " + config_.save->string();
+}
+
+std::string SlamRunner::load(const std::string& name) {
+  require_running();
+  if (config_.task != NodeTask::mission) {
+    throw InputError("load", "would discard the map being made", "set slam.task to mission");
+  }
+  const fs::path map = sibling_path(*map_, name);
+  replace(make(&map));
+  map_ = map;
+  return "loaded " + map.string();
+}
+
+std::string SlamRunner::relocalise() {
+  require_running();
+  if (config_.task != NodeTask::mission) {
+    throw InputError("relocalise", "would discard the map being made", "set slam.task to mission");
+  }
+  replace(make(&*map_));
+  return "relocalising in " + map_->string();
+}
+
+bool SlamRunner::set_initial_pose(PoseHint hint) {
+  require_running();
+  if (config_.task != NodeTask::mission) return false;
+  hint.map_from_body = inverse(published(Pose{})) * hint.map_from_body;
+  slam_->set_initial_pose(hint);
+  return true;
+}
+
+std::string SlamRunner::pause_mapping(bool is_paused) {
+  require_running();
+  slam_->pause_mapping(is_paused);
+  return is_paused ? "mapping is paused" : "mapping is resumed";
+}
+
+CommandResult execute(SlamRunner& runner, const std::string& line) {
+  constexpr std::string_view kLoad = "load ";
+  if (line.starts_with(kLoad)) return {runner.load(line.substr(kLoad.size())), true};
+  if (line == "relocalise") return {runner.relocalise(), true};
+  if (line == "save") return {runner.save()};
+  if (line == "pause mapping") return {runner.pause_mapping(true)};
+  if (line == "resume mapping") return {runner.pause_mapping(false)};
+  throw InputError("'" + printable(line, 100) + "'", "is not a command",
+                   "send save, load NAME, relocalise, pause mapping or resume mapping");
+}
+
+}  // namespace byre

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "byre/ros2/node/node_config.h"
+#include "byre/slam.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// The node's Slam. Made once the calibration is available, and again for another map or for global relocalisation.
+class SlamRunner {
+ public:
+  // Throws InputError for unreadable options, and for an output file that may not be written (base/output_file.h) or
+  // that the node reads.
+  explicit SlamRunner(const NodeConfig& config);
+
+  // Throws InputError as Slam does, and for a stereo pair without metric scale. If the map cannot be used, its previous
+  // version is loaded. Returns a note on that, else empty text.
+  std::string start(const Calibration& calibration);
+
+  bool is_running() const { return slam_.has_value(); }
+  // Motion samples before the next frame. Precondition: is_running().
+  void add_wheel_odometry(const StampedPose& odometry_from_base) { slam_->add_wheel_odometry(odometry_from_base); }
+  void add_wheel_odometry(const BaseTwist& velocity) { slam_->add_wheel_odometry(velocity); }
+  void add_gyro(const AngularRate& rate) { slam_->add_gyro(rate); }
+  void add_accel(const Acceleration& acceleration) { slam_->add_accel(acceleration); }
+  // Tracks the next frame. Map pose and covariance are in the published frame.
+  FrameReport process(const CameraImages& images);
+
+  // Body pose in the published frame: the floor plan's if configured.
+  Pose published(const Pose& map_from_body) const;
+  std::optional<std::string> map_damage() const { return slam_->map_damage(); }
+  Trajectory trajectory() const { return slam_->trajectory(); }
+  // Points of the new map, or of a mission's offline map, in the published frame. The offline map is read from its file
+  // again, which takes as long as loading.
+  std::vector<Eigen::Vector3f> points() const;
+  // File name of the current map without folder and extension.
+  std::string map_name() const;
+  bool makes_map() const { return config_.task != NodeTask::mission; }
+
+  // Commands throw InputError on failure, without any change. The first save of this Slam keeps the present file as its
+  // previous version. All return a report.
+  std::string save();
+  std::string load(const std::string& name);  // map in the same folder, by file name
+  std::string relocalise();                   // global relocalisation in the same map
+  std::string pause_mapping(bool is_paused);  // see Slam::pause_mapping
+  // hint: in the published frame. False if the task ignores hints.
+  bool set_initial_pose(PoseHint hint);
+  bool can_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
+
+ private:
+  Slam make(const std::filesystem::path* map) const;
+  SlamOptions options_for(const std::filesystem::path& map) const;
+  void replace(Slam slam);
+  void require_running() const;
+
+  NodeConfig config_;    // constant after construction
+  SlamOptions options_;  // constant after construction
+  std::optional<std::filesystem::path> map_;
+  std::optional<Calibration> calibration_;
+  std::optional<Slam> slam_;
+  bool is_map_intact_ = true;  // false after falling back to the previous version of the map
+  bool has_saved_ = false;     // whether slam_ has saved the file
+  bool had_pose_ = false;      // whether any frame of slam_ had a pose
+};
+
+// Executes a line of the command topic. Throws InputError for an unknown command, or one that is impossible now.
+struct CommandResult {
+  std::string answer;
+  bool restarts = false;  // starts global relocalisation
+};
+CommandResult execute(SlamRunner& runner, const std::string& line);
+
+}  // namespace byre

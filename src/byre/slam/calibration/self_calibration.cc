@@ -1,0 +1,189 @@
+#include "byre/slam/calibration/self_calibration.h"
+
+#include "byre/geometry/calibration_sensitivity.h"
+#include "byre/geometry/median.h"
+#include "byre/optimise/calibration_covariance.h"
+#include "byre/optimise/huber.h"
+#include "byre/slam/calibration/determined_calibration.h"
+#include "byre/slam/calibration/row_evidence.h"
+#include "byre/slam/window/mapping_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace byre {
+namespace {
+
+constexpr int kMinKeyframes = 6;  // keyframes needed
+constexpr int kIterations = 12;   // iterations of bundle adjustment
+// Common error of measurements in real images, which looks like a focal length error for any number of measurements. In
+// sigmas of a good calibration.
+constexpr double kFocalSigmas = 0.25;
+
+constexpr double kHuberWidth = 2.0;  // sigmas
+// Disparities of one corner in several keyframes, and those of its neighbours, are measured on the same surface, so
+// their errors are correlated.
+constexpr double kSharedDisparityError = 3.0;  // factor on the sigma of each disparity
+constexpr double kMedianOfChiSquare2 = 1.386;
+constexpr double kMedianOfChiSquare3 = 2.366;
+
+// All keyframes of the rig, or blocks of neighbours spread over the run.
+std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
+  std::vector<int> all;
+  for (int i = 0; i < static_cast<int>(whole.keyframes.size()); ++i) {
+    const WindowKeyframe& keyframe = whole.keyframes[static_cast<std::size_t>(i)];
+    if (!keyframe.removed && keyframe.keyframe.rig == rig) all.push_back(i);
+  }
+  const auto count = static_cast<int>(all.size());
+  if (count <= limit) return all;
+  constexpr int kBlock = 25;
+  const int blocks = std::max(1, limit / kBlock);
+  std::vector<int> chosen;
+  for (int i = 0; i < count; ++i) {
+    const int begin = (i * blocks / count) * count / blocks;
+    if (i - begin < kBlock) chosen.push_back(all[static_cast<std::size_t>(i)]);
+  }
+  return chosen;
+}
+
+// Measurements of the points that at least two of the keyframes see.
+BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframes) {
+  BundleProblem problem;
+  problem.rigs = whole.rigs;
+  std::vector<int> pose_of(whole.keyframes.size(), -1);
+  for (const int i : keyframes) {
+    const WindowKeyframe& keyframe = whole.keyframes[static_cast<std::size_t>(i)];
+    pose_of[static_cast<std::size_t>(i)] = static_cast<int>(problem.poses.size());
+    problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, false});
+  }
+  for (const WindowPoint& point : whole.points) {
+    if (point.removed) continue;
+    const auto takes_part = [&](const WindowObservation& seen) {
+      return pose_of[static_cast<std::size_t>(seen.keyframe)] >= 0;
+    };
+    if (std::ranges::count_if(point.observations, takes_part) < 2) continue;
+    for (const WindowObservation& seen : point.observations) {
+      if (!takes_part(seen)) continue;
+      BundleObservation observation =
+          bundle_observation(whole.keyframes[static_cast<std::size_t>(seen.keyframe)], seen.feature);
+      observation.pose = pose_of[static_cast<std::size_t>(seen.keyframe)];
+      if (observation.is_stereo()) observation.disparity_sigma *= kSharedDisparityError;
+      observation.point = static_cast<int>(problem.points.size());
+      problem.observations.push_back(observation);
+    }
+    problem.points.push_back({point.point.position_in_world, false});
+  }
+  return problem;
+}
+
+std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes, const Rig& rig,
+                                         const CalibrationSensitivity& sensitivity) {
+  const auto keypoints_of = [&](int keyframe) {
+    return whole.keyframes[static_cast<std::size_t>(keyframe)].keyframe.frame.features->keypoints();
+  };
+  std::ptrdiff_t count = 0;
+  for (const int i : keyframes) count += std::ranges::count_if(keypoints_of(i), &Keypoint::has_disparity);
+  std::vector<RowMeasurement> rows;
+  rows.reserve(static_cast<std::size_t>(count));  // hundreds of thousands
+  for (const int i : keyframes) {
+    for (const Keypoint& keypoint : keypoints_of(i)) {
+      if (!keypoint.has_disparity()) continue;
+      const StereoPixel pixel(keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity);
+      rows.push_back({keypoint.row_offset, keypoint.disparity_sigma, part_of_image(keypoint.pixel, rig),
+                      sensitivity.at(pixel).row(3).cast<float>()});
+    }
+  }
+  return rows;
+}
+
+// Squared ratio of residuals to their sigmas; at least 1.
+double variance_factor(const BundleProblem& problem, const std::vector<double>& squared_errors) {
+  std::vector<double> ratios;
+  ratios.reserve(squared_errors.size());
+  for (std::size_t i = 0; i < squared_errors.size(); ++i) {
+    ratios.push_back(squared_errors[i] /
+                     (problem.observations[i].is_stereo() ? kMedianOfChiSquare3 : kMedianOfChiSquare2));
+  }
+  return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
+}
+
+// The problem with measurements, poses and points at the solution.
+BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solved) {
+  BundleProblem moved = with_change(problem, solved.calibration_change);
+  moved.calibration = problem.calibration;
+  for (std::size_t i = 0; i < moved.poses.size(); ++i) moved.poses[i].camera_from_world = solved.camera_from_world[i];
+  for (std::size_t i = 0; i < moved.points.size(); ++i) moved.points[i].position_in_world = solved.points_in_world[i];
+  return moved;
+}
+
+// Equations with an error common to all measurements that looks like a calibration change along this vector, one sigma
+// long (Sherman and Morrison's formula).
+CalibrationEquations with_shared_error(const CalibrationEquations& learned, const CalibrationVector& error) {
+  const CalibrationVector told = learned.information * error;
+  const double scale = 1.0 / (1.0 + error.dot(told));
+  return {learned.information - scale * told * told.transpose(),
+          learned.right_side - scale * told * error.dot(learned.right_side)};
+}
+
+// Equal error of both focal lengths.
+CalibrationVector focal_error(double sigmas) {
+  CalibrationVector error = CalibrationVector::Zero();
+  error[kLeftCamera] = error[kRightCamera] = sigmas;
+  return error;
+}
+
+// Root mean square of the image motion by the change, without the part that a camera rotation explains: the mean of u
+// and of v.
+double image_shift(const BundleProblem& problem, const CalibrationSensitivity& sensitivity,
+                   const CalibrationVector& change) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sum_of_squares = 0.0;
+  for (const BundleObservation& observation : problem.observations) {
+    const Eigen::Vector3d shift = sensitivity.at(observation.measured).topRows<3>() * change;
+    sum += shift;
+    sum_of_squares += shift.squaredNorm();
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(1, problem.observations.size()));
+  return std::sqrt(std::max(0.0, sum_of_squares / count - (sum.head<2>() / count).squaredNorm()));
+}
+
+}  // namespace
+
+std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
+                                                 const SelfCalibrationOptions& options,
+                                                 const std::function<bool()>& should_stop) {
+  const std::vector<int> keyframes = choose_keyframes(whole, rig, options.max_keyframes);
+  if (static_cast<int>(keyframes.size()) < kMinKeyframes) return std::nullopt;
+  const CalibrationSensitivity sensitivity(state.present());
+  const CalibrationEstimate prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas),
+                                  -state.change};
+  const Rig& present = whole.rigs[static_cast<std::size_t>(rig)];
+  const CalibrationEstimate with_rows = learn_from_rows(measure_rows(whole, keyframes, present, sensitivity), prior);
+
+  BundleProblem problem = bundle_of(whole, keyframes);
+  problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
+  BundleOptions bundle_options;
+  bundle_options.max_iterations = kIterations;
+  bundle_options.huber_width = kHuberWidth;
+  bundle_options.should_stop = should_stop;
+  const BundleResult solved = bundle_adjust(problem, bundle_options);
+  if (!solved.usable || (should_stop && should_stop())) return std::nullopt;
+
+  const auto information = calibration_information(at_solution(problem, solved), kHuberWidth);
+  if (!information) return std::nullopt;
+  CalibrationEquations of_motion = difference({*information, solved.calibration_change}, with_rows);
+  of_motion /= variance_factor(problem, solved.squared_errors);
+  const CalibrationEstimate posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
+  const CalibrationVector expected = state.change + posterior.expected;
+  RefinedCalibration result =
+      determined_calibration(state.given, posterior.information, expected, options.prior_sigmas);
+  result.keyframes = static_cast<int>(keyframes.size());
+  result.observations = static_cast<int>(problem.observations.size());
+  result.shift = image_shift(problem, sensitivity, result.change);
+  reject_implausible(result, expected, state.given, options.prior_sigmas);
+  return result;
+}
+
+}  // namespace byre

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "byre/geometry/calibration_change.h"
+#include "byre/slam/window/window.h"
+
+#include <functional>
+#include <optional>
+
+namespace byre {
+
+struct SelfCalibrationOptions {
+  int max_keyframes = 250;    // keyframes used; the time grows with their cube
+  double prior_sigmas = 2.0;  // standard deviation of a calibration before refinement, in sigmas of a good one
+};
+
+// The calibration before any refinement, and its change so far.
+struct CalibrationState {
+  Calibration given;
+  CalibrationVector change = CalibrationVector::Zero();  // in the parameters' sigmas
+
+  Calibration present() const { return changed(given, change); }
+};
+
+// Estimates the calibration error of a rig (index into whole.rigs) from a whole map: bundle adjustment with a free
+// calibration, together with the rows of corners matched between both images. The length of the baseline is fixed.
+// Directions that the data do not determine, as in degenerate motion, stay as given. Empty if too little was seen.
+// Precondition: the rig's images are rectified by state.present().
+std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
+                                                 const SelfCalibrationOptions& options,
+                                                 const std::function<bool()>& should_stop = {});
+
+}  // namespace byre

@@ -1,0 +1,205 @@
+#include "byre/slam/frame/health.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace byre {
+namespace {
+
+constexpr int kManyOfflinePoints = 80;     // expected offline points, from which some must be found
+constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; one moved object may fill the rest
+constexpr double kMinOfflineShare = 0.04;  // share of expected points; fewer agree by chance in repetitive buildings
+
+double drift_of(const Health& health, const HealthOptions& options) {
+  return options.drift_share * health.distance_since_offline;
+}
+
+double uncertainty_of(const Health& health, const HealthOptions& options) {
+  return options.sigmas * health.position_sigma;
+}
+
+// Fault of the input that may explain a lost pose; none without one.
+DistrustReason fault_of_input(const HealthEvidence& evidence) {
+  if (evidence.image_fault != ImageFault::none) return DistrustReason::blinded;
+  if (evidence.input.is_repeated || evidence.input.is_frozen) return DistrustReason::frozen;
+  if (evidence.is_miscalibrated) return DistrustReason::calibration;
+  if (evidence.input.right_fault != ImageFault::none) return DistrustReason::right_camera;
+  return evidence.input.cameras_disagree ? DistrustReason::cameras_disagree : DistrustReason::none;
+}
+
+// Reason against a dead-reckoned pose; none while its error is bounded.
+DistrustReason distrust_of_bridge(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  const bool is_open = options.sigmas * health.position_sigma > options.trusted_error ||
+                       options.sigmas * health.rotation_sigma > options.max_bridged_rotation;
+  return is_open || *evidence.bridged_from == Verdict::untrusted ? DistrustReason::bridged : DistrustReason::none;
+}
+
+// Reason why the pose is untrusted; none otherwise.
+DistrustReason distrust_reason(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (evidence.bridged_from) return distrust_of_bridge(health, evidence, options);
+  if (!evidence.pose_found || !evidence.registered) {
+    const DistrustReason cause = fault_of_input(evidence);
+    if (cause != DistrustReason::none && !(evidence.pose_found && cause == DistrustReason::blinded)) return cause;
+    if (evidence.pose_found) return DistrustReason::not_registered;
+    return evidence.refused_place != DistrustReason::none ? evidence.refused_place : DistrustReason::no_pose;
+  }
+  if (evidence.input.frozen_seconds > options.max_frozen) return DistrustReason::frozen;
+  if (evidence.is_miscalibrated) return DistrustReason::calibration;
+  if (!evidence.confirmed) return DistrustReason::unconfirmed;
+  if (position_error(health, options) > options.trusted_error) {
+    return drift_of(health, options) > uncertainty_of(health, options) ? DistrustReason::off_the_map
+                                                                       : DistrustReason::uncertain;
+  }
+  return DistrustReason::none;
+}
+
+bool misses_offline_points(const Health& health, const HealthOptions& options) {
+  if (health.offline_expected < kManyOfflinePoints) return false;
+  const bool held_by_chance = health.offline_inliers >= options.min_offline_points &&
+                              health.offline_inliers < kMinOfflineShare * health.offline_expected;
+  const bool not_held =
+      health.offline_inliers < options.min_offline_points && health.distance_since_offline > options.max_changed_path;
+  return held_by_chance || not_held;
+}
+
+// Reason why the pose is degraded; none otherwise.
+DistrustReason caution_reason(const Health& health, const HealthEvidence& evidence, const HealthOptions& options) {
+  if (evidence.bridged_from) return DistrustReason::bridged;
+  const DistrustReason input = fault_of_input(evidence);
+  if (input != DistrustReason::none && input != DistrustReason::blinded) return input;
+  if (evidence.is_calibration_doubtful) return DistrustReason::calibration;
+  if (evidence.is_calibration_open) return DistrustReason::unconfirmed;
+  if (evidence.maps_disagree && health.agreement && health.agreement->translation > options.max_disagreement) {
+    return DistrustReason::maps_disagree;
+  }
+  if (health.offline_inliers + health.online_inliers < options.min_points) {
+    return evidence.image_fault == ImageFault::none ? DistrustReason::few_points : DistrustReason::blinded;
+  }
+  if (evidence.is_dirty || is_mostly_hidden(health.hidden_share)) return DistrustReason::dirty;
+  if (health.spread < options.min_spread) return DistrustReason::clustered;
+  if (health.rotation_sigma > options.max_rotation_sigma) return DistrustReason::uncertain;
+  return misses_offline_points(health, options) ? DistrustReason::few_offline_points : DistrustReason::none;
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::trusted:
+      return "trusted";
+    case Verdict::degraded:
+      return "degraded";
+    case Verdict::untrusted:
+      return "untrusted";
+  }
+  return "";
+}
+
+std::string_view to_string(DistrustReason doubt) {
+  switch (doubt) {
+    case DistrustReason::none:
+      return "none";
+    case DistrustReason::no_pose:
+      return "no pose";
+    case DistrustReason::blinded:
+      return "blinded";
+    case DistrustReason::not_registered:
+      return "not registered in the map";
+    case DistrustReason::unconfirmed:
+      return "not confirmed yet";
+    case DistrustReason::off_the_map:
+      return "far outside the mapped area";
+    case DistrustReason::few_points:
+      return "too few points";
+    case DistrustReason::few_offline_points:
+      return "too few offline points";
+    case DistrustReason::clustered:
+      return "points are clustered";
+    case DistrustReason::uncertain:
+      return "pose is uncertain";
+    case DistrustReason::maps_disagree:
+      return "offline and online points disagree";
+    case DistrustReason::frozen:
+      return "camera repeats its image";
+    case DistrustReason::right_camera:
+      return "right camera is blinded";
+    case DistrustReason::cameras_disagree:
+      return "left and right images do not fit";
+    case DistrustReason::calibration:
+      return "calibration does not fit the map";
+    case DistrustReason::bridged:
+      return "bridged by wheels or a gyroscope";
+    case DistrustReason::dirty:
+      return "dirt hides most of the image";
+    case DistrustReason::map_damaged:
+      return "map file is damaged";
+    case DistrustReason::off_the_plane:
+      return "place found is off the driving plane";
+    case DistrustReason::in_wall:
+      return "place found is inside a wall";
+    case DistrustReason::outside:
+      return "place found is outside of the building";
+    case DistrustReason::behind_wall:
+      return "place found is behind a wall";
+  }
+  return "";
+}
+
+std::string note_on_dirt(const Health& health) {
+  const auto hidden = [](double share, const char* image) {
+    return std::to_string(std::max(1L, std::lround(100.0 * share))) + " % of the " + image + " image";
+  };
+  const bool is_left = health.hidden_share > 0.0, is_right = health.hidden_share_right > 0.0;
+  if (!is_left && !is_right) return "";
+  std::string text = "dirt hides ";
+  if (is_left) text += hidden(health.hidden_share, "left");
+  if (is_left && is_right) text += " and ";
+  if (is_right) text += hidden(health.hidden_share_right, "right");
+  return text + (is_left && is_right ? ": clean the lenses" : ": clean the lens");
+}
+
+bool is_mostly_hidden(double hidden_share) {
+  return hidden_share > kMostHidden;
+}
+
+HealthEvidence FaultLatches::latch(Timestamp time, const HealthEvidence& evidence) {
+  const auto note = [time](FaultLatch& doubt, Sign sign) {
+    doubt.note(time, sign);
+    return doubt.is_raised();
+  };
+  const auto where_seen = [&](bool is_present) {
+    return is_present || evidence.pose_found ? sign_of(is_present) : Sign::unclear;
+  };
+  const InputEvidence& input = evidence.input;
+  const bool is_seen = evidence.image_fault == ImageFault::none;
+  const Sign still_or_frozen = input.is_frozen ? Sign::present : input.is_still ? Sign::unclear : Sign::absent;
+  const bool is_right_faulty = input.right_fault != ImageFault::none;
+  if (is_right_faulty) right_fault_ = input.right_fault;
+  const bool is_at_odds = input.cameras_disagree || input.out_of_sync == Sign::present;
+  if (is_at_odds) may_be_timing_ = !input.is_still || (may_be_timing_ && cameras_disagree_.is_raised());
+  const Sign in_agreement = may_be_timing_ || !is_seen ? input.out_of_sync : Sign::absent;
+  HealthEvidence result = evidence;
+  result.input.is_repeated = note(repeated_, sign_of(input.is_repeated));
+  result.input.is_frozen = note(frozen_, is_seen ? still_or_frozen : Sign::unclear);
+  if (note(right_camera_, is_seen ? sign_of(is_right_faulty) : Sign::unclear)) result.input.right_fault = right_fault_;
+  result.input.cameras_disagree = note(cameras_disagree_, is_at_odds ? Sign::present : in_agreement);
+  result.is_miscalibrated = note(miscalibrated_, where_seen(evidence.is_miscalibrated));
+  result.is_dirty = note(dirty_, where_seen(evidence.is_dirty));
+  return result;
+}
+
+double position_error(const Health& measured, const HealthOptions& options) {
+  return uncertainty_of(measured, options) + drift_of(measured, options);
+}
+
+Health assess(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options) {
+  Health health = measured;
+  health.doubt = distrust_reason(measured, evidence, options);
+  health.verdict = Verdict::untrusted;
+  if (health.doubt != DistrustReason::none) return health;
+  health.doubt = caution_reason(measured, evidence, options);
+  health.verdict = health.doubt == DistrustReason::none ? Verdict::trusted : Verdict::degraded;
+  return health;
+}
+
+}  // namespace byre

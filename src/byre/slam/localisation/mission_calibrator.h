@@ -1,0 +1,45 @@
+#pragma once
+
+#include "byre/base/worker.h"
+#include "byre/slam/calibration/calibration_on_map.h"
+#include "byre/slam/mapping/calibrator.h"
+
+#include <memory>
+#include <optional>
+
+namespace byre {
+
+// Refines the calibration of a mission's cameras on the points of the offline map, frame by frame. The change of
+// rectified features takes long to compute and runs as a job. Called from the session's thread.
+class MissionCalibrator {
+ public:
+  MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor);
+
+  Frame corrected(const Frame& frame) { return calibrator_.corrected(frame); }
+  const std::optional<RefinedCalibration>& result() const { return calibrator_.result(); }
+
+  // Adds a corrected frame whose pose is beyond doubt.
+  void note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map);
+
+  // Change of the rectified camera from this frame on.
+  struct Switch {
+    Pose after_from_before;  // rotation only
+    Rig rig;
+  };
+  std::optional<Switch> collect();  // once per frame; empty without a better calibration
+  void finish() { worker_.finish(); }
+
+ private:
+  struct Outcome {
+    RefinedCalibration refined;
+    RectifiedChange from_given;
+    Pose after_from_before;
+  };
+
+  CalibrationOnMap on_map_;
+  Calibrator calibrator_;
+  Worker<Outcome> worker_;
+  int next_frames_ = 60;  // frames noted before the next estimate
+};
+
+}  // namespace byre

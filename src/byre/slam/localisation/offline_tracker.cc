@@ -1,0 +1,355 @@
+#include "byre/slam/localisation/offline_tracker.h"
+
+#include "byre/slam/places/localisation.h"
+#include "byre/slam/tracking/body_pose.h"
+#include "byre/slam/tracking/keyframes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace byre {
+namespace {
+
+// Accepted, and the map cells in view do not contradict the pose.
+bool is_certain(const PoseFilter& pose_filter) {
+  return pose_filter.place().is_accepted() && pose_filter.place().log_odds() >= 0.0;
+}
+
+// camera_from_offline at the look-alike place.
+Pose camera_at(const LookAlikePlace& place, const Pose& camera_from_place) {
+  return camera_from_place * Pose{Eigen::Quaterniond::Identity(), -place.shift};
+}
+
+}  // namespace
+
+OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options,
+                               Executors executors)
+    : options_(options),
+      offline_(std::move(offline)),
+      mission_(offline_, options.mission),
+      rivals_(options.mission.registration),
+      search_(std::move(executors.search)),
+      calibration_executor_(std::move(executors.calibration)) {}
+
+void OfflineTracker::refine_calibration(const Calibration& given, double prior_sigmas) {
+  calibrator_.emplace(given, prior_sigmas, std::move(calibration_executor_));
+}
+
+const DrivenGround* OfflineTracker::ground_under(const PoseFilter& pose_filter, const Mapper& mapper) const {
+  const AnchoredTrajectory& trajectory = pose_filter.trajectory();
+  if (!options_.is_planar || !options_.mission.bounds.is_on_ground_of_map || trajectory.empty()) return nullptr;
+  const bool is_in_map = mapper.submaps().frame(trajectory.back().submap) == Submaps::kMapFrame;
+  return is_in_map ? offline_->ground() : nullptr;
+}
+
+std::optional<MissionCalibrator::Switch> OfflineTracker::collect_camera() {
+  return calibrator_ ? calibrator_->collect() : std::nullopt;
+}
+
+std::optional<PlaceSearch> OfflineTracker::collect_place() {
+  auto finished = search_.collect();
+  return finished ? std::optional(std::move(finished->result)) : std::nullopt;
+}
+
+bool OfflineTracker::is_view_due(const PoseFilter& pose_filter) {
+  constexpr int kFramesOfKnownPlace = 3;
+  constexpr double kBeyondDoubt = 5.0;  // log-odds
+  const PlaceHypothesis& place = pose_filter.place();
+  const bool is_known = pose_filter.has_pose() && place.is_accepted() && place.log_odds() >= kBeyondDoubt;
+  if (is_known && ++frames_since_view_ < kFramesOfKnownPlace) return false;
+  frames_since_view_ = 0;
+  return true;
+}
+
+PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const ImageMask& hidden,
+                                  bool finds_rivals) {
+  const Pose& pose = track.tracked.camera_from_world;
+  ScratchVector<KeyframeId> keyframes = keyframes_of_place(*offline_, pose);
+  if (keyframes != nearby_keyframes_) {
+    nearby_points_ = points_of_place(*offline_, keyframes);
+    nearby_keyframes_ = std::move(keyframes);
+  }
+  ScratchVector<PointId> around;
+  constexpr std::size_t kFew = 200;  // nearby points; with fewer, too few may be in view
+  if (nearby_points_.size() < kFew) {
+    const Map nothing_online(Origin::online);
+    auto reference = track.offline_reference;
+    if (!reference) reference = mission_.keyframe_near(pose);
+    if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
+  }
+  const std::vector<PointId> in_common = finds_rivals ? points_in_common(pose) : std::vector<PointId>();
+  return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden,
+                        [this](PointId id) { return mission_.moved_points().is_suspended(id); },
+                        [&](PointId id) { return std::ranges::binary_search(in_common, id); }});
+}
+
+double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
+                                   const ImageMask& hidden) {
+  return byre::log_odds_of(view_of(frame, track, rig, hidden, false));
+}
+
+std::optional<PlaceHypothesis> OfflineTracker::begin_place(Timestamp time, const Pose& camera_from_place) {
+  is_refuted_ = false;
+  return rivals_.begin(time, camera_from_place);
+}
+
+std::optional<TrackedFrame> OfflineTracker::find_at_rival(const Frame& frame, const Rig& rig, const ImageMask& hidden) {
+  const std::optional<Pose> predicted = rivals_.camera_from_likeliest();
+  if (!std::exchange(is_refuted_, false) || !predicted) return std::nullopt;
+  return track_at(frame, *predicted, points_around(*predicted), rig, hidden);
+}
+
+std::optional<TrackedFrame> OfflineTracker::track_at(const Frame& frame, const Pose& predicted,
+                                                     std::span<const PointId> points, const Rig& rig,
+                                                     const ImageMask& hidden) const {
+  const Map nothing_online(Origin::online);
+  TrackOptions options = options_.track;
+  options.hidden = hidden;
+  return track(frame, predicted, rig, {&offline_->map(), nothing_online}, points, options);
+}
+
+ScratchVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offline) const {
+  constexpr double kNear = 10.0;  // metres; keyframes far from a place may have seen its points
+  constexpr int kKeyframes = 5;
+  const Map nothing_online(Origin::online);
+  ScratchVector<PointId> around;
+  for (const KeyframeId id : offline_->keyframes_near(camera_from_offline, kNear, kKeyframes)) {
+    const ScratchVector<PointId> points = local_points({&offline_->map(), nothing_online}, id, kKeyframesOfPlace);
+    around.insert(around.end(), points.begin(), points.end());
+  }
+  std::ranges::sort(around);
+  around.erase(std::ranges::unique(around).begin(), around.end());
+  return around;
+}
+
+// Points that look alike proposed the rival, so they are no evidence for it.
+RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
+                                                const ImageMask& hidden) const {
+  const ScratchVector<PointId> around = points_around(predicted);
+  const auto tracked = track_at(frame, predicted, around, rig, hidden);
+  TrackedFrame there;
+  there.camera_from_world = predicted;
+  if (tracked) there = *tracked;
+  const Pose& pose = there.camera_from_world;
+  const ScratchVector<PointId> nearby = points_of_place(*offline_, keyframes_of_place(*offline_, pose));
+  const auto is_repeated = [this](PointId id) {
+    return std::ranges::any_of(
+        look_alikes_, [id](const LookAlikePlace& place) { return std::ranges::binary_search(place.repeated, id); });
+  };
+  return {pose, view_of_place({offline_->map(), rig, frame, there, nearby, around, hidden, is_repeated}),
+          tracked.has_value()};
+}
+
+void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere,
+                                 const PoseFilter& pose_filter, const Mapper& mapper) {
+  constexpr int kFramesOfAcceptedPlace = 3;  // to save time
+  const Pose& camera_from_place = seen.track.tracked.camera_from_world;
+  const bool is_accepted = pose_filter.place().is_accepted() && elsewhere.empty();
+  if (is_accepted && ++frames_since_rivals_ < kFramesOfAcceptedPlace) return;
+  frames_since_rivals_ = 0;
+  std::vector<Pose> rivals;  // camera_from_offline
+  for (const HybridTrack& other : elsewhere) rivals.push_back(other.tracked.camera_from_world);
+  if (!is_accepted) {
+    for (const LookAlikePlace& place : look_alikes_at(camera_from_place)) {
+      rivals.push_back(camera_at(place, camera_from_place));
+    }
+  }
+  propose_rivals({seen.frame.time, camera_from_place}, rivals, seen.rig, pose_filter, mapper);
+  rivals_.observe(camera_from_place,
+                  [&](const Pose& predicted) { return view_at_rival(seen.frame, predicted, seen.rig, seen.hidden); });
+}
+
+void OfflineTracker::propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
+                                    const PoseFilter& pose_filter, const Mapper& mapper) {
+  for (const Pose& camera_from_rival : rivals) {
+    const Pose body = body_pose(rig, camera_from_rival);
+    rivals_.propose(place.camera_from_offline, camera_from_rival,
+                    pose_filter.log_odds_of_relocalisation(place.time, body, rig, mapper.map()));
+  }
+}
+
+std::span<const LookAlikePlace> OfflineTracker::look_alikes_at(const Pose& camera_from_place) {
+  ScratchVector<KeyframeId> keyframes = keyframes_of_place(*offline_, camera_from_place);
+  if (keyframes != keyframes_of_look_alikes_) {
+    look_alikes_ = look_alike_places(*offline_, camera_from_place);
+    keyframes_of_look_alikes_ = std::move(keyframes);
+  }
+  return look_alikes_;
+}
+
+// The robot may be at a look-alike place, but frames cannot be tested there: the map was driven nearby, and no keyframe
+// has this viewing direction.
+bool OfflineTracker::is_untestable(const Pose& camera_from_look_alike) const {
+  constexpr double kNear = 3.0;  // metres
+  return keyframes_of_place(*offline_, camera_from_look_alike).empty() &&
+         offline_->distance_to_keyframes(inverse(camera_from_look_alike).translation) <= kNear;
+}
+
+// Points of a place, ascending, that may be those of a look-alike place.
+std::vector<PointId> OfflineTracker::points_in_common(const Pose& camera_from_place) {
+  std::vector<PointId> in_common;
+  untestable_ = 0;
+  for (const LookAlikePlace& place : look_alikes_at(camera_from_place)) {
+    const Pose camera_from_look_alike = camera_at(place, camera_from_place);
+    const bool is_rival = rivals_.has_at(camera_from_place, camera_from_look_alike);
+    if (!is_rival && !is_untestable(camera_from_look_alike)) continue;
+    untestable_ += !is_rival;
+    in_common.insert(in_common.end(), place.repeated.begin(), place.repeated.end());
+  }
+  std::ranges::sort(in_common);
+  return in_common;
+}
+
+double OfflineTracker::log_odds_of_rivals() const {
+  return std::log(untestable_ + std::exp(rivals_.log_odds()));
+}
+
+OfflineTracker::MissionUpdate OfflineTracker::note(const Seen& seen, const PoseFilter& pose_filter,
+                                                   const Mapper& mapper) {
+  MissionUpdate update{.events = note_view(seen, mapper)};
+  if (is_certain(pose_filter)) rivals_.forget();
+  rivals_.note_place(seen.frame.time, seen.track.tracked.camera_from_world, pose_filter.place());
+  if (!pose_filter.place().is_confirmed()) return update;
+  if (!mapper.has_correction()) update.correction = correction_by(seen.track, pose_filter, mapper);
+  if (calibrator_ && pose_filter.place().is_accepted() && !seen.track.maps_disagree) {
+    calibrator_->note(seen.frame, seen.rig, seen.track.tracked, mapper.map());
+  }
+  return update;
+}
+
+std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapper& mapper) {
+  const HybridTrack& track = seen.track;
+  const OfflineView before = mission_.view();
+  mission_.note(track, seen.frame.time, seen.step,
+                {track.offline_expected, track.offline_inliers, seen.image_is_faulty, seen.frame.features->size()});
+  const OfflineView now = mission_.view();
+  const bool is_held = now == OfflineView::held && !track.maps_disagree && track.offline_inliers >= kOfflineThatHolds;
+  if (is_held && mapper.newest_keyframe()) last_held_keyframe_ = mapper.newest_keyframe()->number;
+  const ScratchVector<PointId> due = mission_.due_for_retest(seen.offline_around);
+  if (!due.empty()) {
+    TrackOptions options = options_.track;
+    options.hidden = seen.hidden;
+    mission_.note_retest(
+        search_points(seen.frame, track.tracked.camera_from_world, seen.rig, mapper.map(), due, options));
+  }
+  if (now == before || now == OfflineView::changed) return {};
+  if (now == OfflineView::off_the_map) return {SessionEvent::left_mapped_area};
+  return {now == OfflineView::blinded ? SessionEvent::blinded : SessionEvent::entered_mapped_area};
+}
+
+void OfflineTracker::mark_lost() {
+  mission_.forget_reference();
+  mission_.forget_registration();
+}
+
+void OfflineTracker::search_in_background(const PlaceQuery& query, const PoseFilter& pose_filter,
+                                          const Mapper& mapper) {
+  constexpr double kVerifyEvery = 1.0;  // seconds
+  const PlaceHypothesis& place = pose_filter.place();
+  if (!search_.idle() || mapper.has_correction() || (place.is_accepted() && !place.is_confirmed())) return;
+  const bool is_due = !last_search_ || to_seconds(query.frame.time - *last_search_) >= kVerifyEvery;
+  is_verifying_search_ = !is_search_needed(pose_filter, mapper);
+  if (is_verifying_search_ && (is_certain(pose_filter) || !is_due)) return;
+  last_search_ = query.frame.time;
+  const bool is_hint_to_be_checked = pose_filter.is_by_hint() && mapper.submaps().is_registered();
+  // A find elsewhere refutes an accepted pose, so the motion measured from that pose must not constrain the search.
+  const bool is_reach_uncertain = pose_filter.place().is_accepted() && mapper.submaps().is_registered();
+  search_.start([frame = query.frame, rig = query.rig, hint = is_hint_to_be_checked ? std::nullopt : query.hint,
+                 reach = is_reach_uncertain ? std::nullopt : query.reach, hidden = query.hidden, offline = offline_,
+                 options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds}] {
+    return search_place(*offline, {frame, rig, hint, reach, hidden}, options);
+  });
+}
+
+bool OfflineTracker::is_search_needed(const PoseFilter& pose_filter, const Mapper& mapper) const {
+  return !mapper.submaps().is_registered() || !pose_filter.place().is_accepted() ||
+         mission_.distance_since_offline() > options_.mission.search_after;
+}
+
+// A much more likely rival replaces the place. The online map is corrected if offline points do not constrain it.
+OfflineTracker::MissionUpdate OfflineTracker::process_search(const std::optional<PlaceSearch>& search,
+                                                             const PoseFilter& pose_filter, const Mapper& mapper) {
+  const PlaceHypothesis& place = pose_filter.place();
+  is_refuted_ =
+      pose_filter.has_pose() && mapper.submaps().is_registered() && rivals_.refute(place, pose_filter.is_by_hint());
+  if (is_refuted_)
+    return {.refutes_pose = true, .refutes_earlier_poses = place.is_accepted() || pose_filter.is_by_hint()};
+  if (!search) return {};
+  const Submaps& submaps = mapper.submaps();
+  if (!pose_filter.has_pose() || mapper.has_correction()) return {};
+  const AnchoredPose* const then = pose_filter.trajectory().find(search->time);
+  if (then == nullptr || submaps.frame(then->submap) != submaps.frame()) return {};
+  const Pose camera_from_online = camera_from_world(mapper.map(), *then);
+  const bool is_in_place = then->submap == submaps.present() && submaps.is_registered();
+  if (is_in_place) {
+    propose_rivals({search->time, camera_from_online}, search->places, search->rig, pose_filter, mapper);
+  }
+  if (!search->found || !place.is_confirmed()) return {};
+  const FoundPlace& found = *search->found;
+  if (is_in_place && (place.is_accepted() || pose_filter.is_by_hint())) {
+    constexpr double kElsewhere = 0.5;  // metres
+    if (pose_filter.is_by_hint() &&
+        agreement_of(found.camera_from_offline, camera_from_online).translation <= kElsewhere) {
+      return {.agrees_with_hint = true};
+    }
+    if (is_verifying_search_) return {};
+  }
+  return {.correction = correction_by(found, camera_from_online, submaps.frame(), pose_filter)};
+}
+
+// Tracking was continuous, so the robot was not carried: a find beyond the drift bound is a look-alike place.
+std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& found, const Pose& camera_from_online,
+                                                              Submaps::Frame frame, const PoseFilter& pose_filter) {
+  const bool is_registered = frame == Submaps::kMapFrame;
+  if (is_registered && !is_within(agreement_of(found.camera_from_offline, camera_from_online), mission_.drift())) {
+    return std::nullopt;
+  }
+  const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
+  const auto confirmed = mission_.test_registration(
+      {offline_from_online, inverse(camera_from_online).translation, found.median_depth, found.view},
+      begun_registration(offline_from_online, is_registered, pose_filter));
+  if (!confirmed) return std::nullopt;
+  if (is_registered) return OnlineCorrection{frame, last_held_keyframe_, *confirmed, CorrectionShape::spread};
+  return OnlineCorrection{frame, 0, *confirmed, CorrectionShape::rigid};
+}
+
+std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack& track, const PoseFilter& pose_filter,
+                                                              const Mapper& mapper) {
+  if (!track.is_online_displaced()) return std::nullopt;
+  const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
+  const PlaceView tested_already;
+  const auto confirmed = mission_.test_registration({offline_from_online, inverse(*track.from_online).translation,
+                                                     median_depth(track.tracked, mapper.map()), tested_already},
+                                                    begun_registration(offline_from_online, true, pose_filter));
+  if (!confirmed) return std::nullopt;
+  return OnlineCorrection{mapper.submaps().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
+}
+
+// In the map's frame the test of the present place continues; otherwise a new test begins.
+PlaceHypothesis OfflineTracker::begun_registration(const Pose& offline_from_online, bool is_registered,
+                                                   const PoseFilter& pose_filter) const {
+  const RegistrationOptions& options = options_.mission.registration;
+  if (!is_registered) {
+    const double prior = pose_filter.log_odds_of_registration(offline_from_online);
+    return PlaceHypothesis(prior, options.confirmations, options.accept_log_odds);
+  }
+  PlaceHypothesis place = pose_filter.place();
+  place.require_confirmations(options.confirmations);
+  return place;
+}
+
+Health OfflineTracker::with_map_health(Health health, Timestamp now, Timestamp first_frame) const {
+  health.focal_error = focal_check_.error();
+  health.suspended = mission_.moved_points().count();
+  health.distance_since_offline = mission_.distance_since_offline();
+  health.seconds_since_offline = to_seconds(now - mission_.last_offline_time().value_or(first_frame));
+  return health;
+}
+
+void OfflineTracker::finish() {
+  search_.finish();
+  if (calibrator_) calibrator_->finish();
+}
+
+}  // namespace byre

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "byre/health.h"
+#include "byre/slam/places/offline_map.h"
+#include "byre/trajectory.h"
+
+#include <optional>
+
+namespace byre {
+
+struct PlaceBoundsOptions {
+  // The mission's cameras are those of the map, at the same height.
+  bool is_on_ground_of_map = true;
+  double plane_margin = 0.3;       // metres of height off the driven ground, beyond its uncertainty
+  double plane_margin_tilt = 0.1;  // radians of tilt against that ground, beyond its uncertainty
+  // Error of walls on the plan, metres, beyond the uncertainty of the registration.
+  double wall_margin = 0.5;
+};
+
+struct PlaceCandidatePose {
+  Timestamp time{};
+  Pose map_from_body;
+  Matrix6 covariance = Matrix6::Zero();  // see FrameReport
+};
+
+// An earlier pose of the robot, beyond doubt.
+struct PreviousPlace {
+  Timestamp time{};
+  Pose map_from_body;
+};
+
+// Poses that are possible for the robot: on the ground that the map was driven on, and between the walls of the floor
+// plan. Each bound is the 95 % quantile of all uncertainty plus a margin. Constant after construction.
+class PlaceBounds {
+ public:
+  // The map must outlive it.
+  PlaceBounds(const OfflineMap& map, const PlaceBoundsOptions& options)
+      : ground_(options.is_on_ground_of_map ? map.ground() : nullptr), walls_(map.walls()), options_(options) {}
+
+  // Motion since an earlier pose, at most max_speed metres per second.
+  struct Reach {
+    PreviousPlace before;
+    double max_speed = 3.0;
+  };
+  // Reason why the robot cannot be at a place; DistrustReason::none if it can.
+  DistrustReason rejection_reason(const PlaceCandidatePose& place, const std::optional<Reach>& reach) const;
+
+ private:
+  bool is_off_the_ground(const PlaceCandidatePose& place) const;
+  PlanDisc disc_around(const Pose& map_from_body, const Matrix6& covariance) const;
+  DistrustReason wall_rejection(const PlaceCandidatePose& place, const std::optional<Reach>& reach) const;
+
+  const DrivenGround* ground_;  // nullptr: no constraint by the ground
+  const PlacedWalls* walls_;    // nullptr: no walls given
+  PlaceBoundsOptions options_;
+};
+
+}  // namespace byre

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "byre/pose_hint.h"
+#include "byre/slam/localisation/place_bounds.h"
+#include "byre/slam/places/localisation.h"
+#include "byre/slam/places/offline_map.h"
+#include "byre/slam/places/place_view.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+struct PlaceSearchOptions {
+  LocaliseOptions localise;
+  PlaceBoundsOptions bounds;
+};
+
+// A frame to localise without a prediction.
+struct PlaceQuery {
+  const Frame& frame;
+  const Rig& rig;
+  std::optional<PoseHint> hint{};             // limits the search; empty: the whole map
+  std::optional<PlaceBounds::Reach> reach{};  // motion since the last trusted pose
+  ImageMask hidden{};                         // image cells without expected points
+};
+
+// Localisation in the offline map alone, restricted to possible places.
+struct BoundedLocalisation {
+  Localisation found;
+  DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
+};
+
+BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);
+
+// Pose of a frame in the offline map.
+struct FoundPlace {
+  Pose camera_from_offline;
+  double median_depth = 0.0;  // metres, of the matched points
+  PlaceView view{};           // part of the map in view
+};
+
+// Result of localising a frame in the offline map without a prediction.
+struct PlaceSearch {
+  Timestamp time{};                               // time of the frame
+  Rig rig{};                                      // cameras of the frame
+  std::optional<FoundPlace> found{};              // empty: not found
+  DistrustReason refused = DistrustReason::none;  // see BoundedLocalisation
+  std::vector<Pose> places{};                     // camera_from_offline at each place that shows the frame
+};
+PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);
+
+}  // namespace byre

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "byre/slam/loops/loop_closing.h"
+#include "byre/slam/window/delta.h"
+#include "byre/slam/window/mapping.h"
+
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace byre {
+
+struct GlobalMappingOptions {
+  MappingOptions mapping;
+  int first_bundle_iterations = 8;  // iterations before outlier removal
+};
+
+// Scale changes around keyframes, removed ones included: length after over length before. Others are unchanged.
+using LengthChanges = std::map<KeyframeId, double>;
+
+// Whether only the map itself determines the scale around some keyframes: no stereo, and no offline map in view.
+bool scale_may_drift(const MapWindow& window);
+
+// Copy of a whole online map and the offline points that it sees. All keyframes but the gauge are movable.
+MapWindow whole_map(const MapView& map);
+
+// Closes loops: a pose graph over covisibility and loops moves the keyframes with their points, points on both sides of
+// a loop are fused, and bundle adjustment refines everything. Without loops, bundle adjustment alone. First, parts that
+// share no points are placed by measured motion. Keyframes without stereo move as similarities (Strasdat 2010, Scale
+// drift-aware large scale monocular SLAM), since their scale has drifted; lengths around them change. should_stop,
+// unless empty, is polled and ends with the present result.
+MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                    const std::function<bool()>& should_stop = {});
+
+// Same, consuming the copy. before: the copy, or its outline.
+MapDelta adjust_map(MapWindow&& window, const MapWindow& before, const std::vector<LoopEdge>& loops,
+                    const GlobalMappingOptions& options, const std::function<bool()>& should_stop = {});
+
+// Same, on the copy itself.
+void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                   const std::function<bool()>& should_stop = {});
+
+// Same, on a map that does not change meanwhile and of which the window is a copy; makes no second copy. Returns the
+// result of apply_correction.
+LengthChanges adjust_at_once(MapWindow window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
+                             Map& online, const std::function<bool()>& should_stop = {});
+
+// Applies a correction of an earlier state of the map (before, or its outline) to the present map. Keyframes and points
+// added since move with the keyframes that they depend on; motion since then is kept. Returns the scale changes that
+// poses relative to keyframes must follow, such as those of frames; none with stereo.
+LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, Map& online);
+
+// A measured loop in the present lengths of the map.
+LoopEdge in_new_lengths(const LoopEdge& loop, const LengthChanges& changes);
+
+}  // namespace byre

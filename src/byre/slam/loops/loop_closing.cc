@@ -1,0 +1,237 @@
+#include "byre/slam/loops/loop_closing.h"
+
+#include "byre/slam/loops/scale_drift.h"
+#include "byre/slam/tracking/keyframes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace byre {
+namespace {
+
+constexpr PlaceQueryOptions kLoopPlaces{.max_candidates = 3, .group_size = 10, .min_score_share = 0.6f};
+// Independent of the options for relocalisation: a wrong loop spoils the map.
+constexpr LocaliseOptions kStrictness{};
+constexpr float kMinScoreShare = 0.5f;   // similarity of a place, share of that of a covisible neighbour
+constexpr double kMaxDriftTurn = 0.2;    // radians of drift
+constexpr double kMaxDriftDepths = 0.1;  // median depths of drift; replaces max_drift without stereo
+
+// The newest keyframe, those that share points with it, and those that share points with the nearest of these.
+std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
+  constexpr int kAll = 1 << 20;
+  constexpr int kNearest = 15;
+  std::set<KeyframeId> surroundings = {id};
+  for (const Covisible& neighbour : map.covisible_keyframes(id, kAll)) surroundings.insert(neighbour.keyframe);
+  for (const Covisible& neighbour : map.covisible_keyframes(id, kNearest)) {
+    for (const Covisible& next : map.covisible_keyframes(neighbour.keyframe, kAll)) surroundings.insert(next.keyframe);
+  }
+  return surroundings;
+}
+
+// Similarity of neighbouring views around a keyframe.
+float usual_similarity(const Map& map, const PlaceIndex& index, KeyframeId id, const BagOfWords& bag) {
+  constexpr int kNeighbours = 5;
+  float best = 0.0f;
+  for (const Covisible& neighbour : map.covisible_keyframes(id, kNeighbours)) {
+    const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
+    best = std::max(best, similarity(bag, index.vocabulary().bag_of(keyframe.words)));
+  }
+  return best;
+}
+
+void disturb(std::vector<PlaceCandidate>& places, const PlaceNoise& noise, KeyframeId id) {
+  if (noise.seed == 0) return;
+  std::mt19937_64 random(noise.seed ^ (std::uint64_t{id.number} << 32));
+  const auto draw = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
+  for (std::size_t i = places.size(); i > 1; --i) std::swap(places[i - 1], places[draw(i)]);
+  constexpr std::size_t kResolution = 1000;
+  std::erase_if(places, [&](const PlaceCandidate&) {
+    return static_cast<double>(draw(kResolution)) < noise.dropped_share * static_cast<double>(kResolution);
+  });
+}
+
+std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
+                                            std::span<const Word> words, const LoopOptions& options,
+                                            const PlaceNoise& noise) {
+  const Map& map = view.online();
+  const std::set<KeyframeId> surroundings = surroundings_of(map, id);
+  const auto is_near = [&](KeyframeId other) {
+    return other.number + options.min_gap > id.number || surroundings.contains(other);
+  };
+  std::vector<PlaceCandidate> places = find_places(index, view, words, kLoopPlaces, is_near);
+  if (places.empty()) return places;
+  disturb(places, noise, id);
+  const float usual = usual_similarity(map, index, id, index.vocabulary().bag_of(words));
+  std::erase_if(places, [&](const PlaceCandidate& place) { return place.score < kMinScoreShare * usual; });
+  return places;
+}
+
+// Path of the camera between two keyframes, metres.
+double path_between(const Map& map, KeyframeId from, KeyframeId to) {
+  double length = 0.0;
+  std::optional<Eigen::Vector3d> last;
+  for (std::uint32_t number = from.number; number <= to.number; ++number) {
+    const Keyframe* const keyframe = map.find_keyframe({map.origin(), number});
+    if (keyframe == nullptr) continue;
+    const Eigen::Vector3d camera_in_world = inverse(keyframe->camera_from_world).translation;
+    if (last) length += (camera_in_world - *last).norm();
+    last = camera_in_world;
+  }
+  return length;
+}
+
+// Motion of the camera by the drift, metres and radians.
+struct CameraShift {
+  double distance = 0.0;
+  double turn = 0.0;
+};
+
+CameraShift camera_shift(const Pose& camera_from_world, const Similarity& old_from_new) {
+  const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
+  return {(old_from_new * camera_in_world - camera_in_world).norm(),
+          rotation_log(old_from_new.target_from_source.rotation).norm()};
+}
+
+bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOptions& options) {
+  const Keyframe& keyframe = *map.find_keyframe(hypothesis.keyframe);
+  const CameraShift shift = camera_shift(keyframe.camera_from_world, drift_of(hypothesis));
+  const double path = path_between(map, hypothesis.place, hypothesis.keyframe);
+  const double scale_drift = std::abs(std::log(hypothesis.scale));
+  const double on_top =
+      rig_of(map, keyframe).is_stereo() ? options.max_drift : kMaxDriftDepths * hypothesis.median_depth;
+  return shift.turn <= kMaxDriftTurn && scale_drift <= options.max_scale_drift &&
+         shift.distance <= on_top + (options.max_drift_share + scale_drift) * path;
+}
+
+bool is_same_pose(const TrackedFrame& tracked, const Pose& predicted_camera_from_old, const Map& map) {
+  constexpr double kMaxDisagreement = 0.01;  // share of the median depth, and radians
+  const Pose motion = tracked.camera_from_world * inverse(predicted_camera_from_old);
+  return motion.translation.norm() <= kMaxDisagreement * median_depth(tracked, map) &&
+         rotation_log(motion.rotation).norm() <= kMaxDisagreement;
+}
+
+// Drift between the poses of a camera in the newer and in the older part.
+Pose drift_between(const Pose& camera_from_old, const Pose& camera_from_new, double scale) {
+  return inverse(camera_from_old) * scale_lengths(camera_from_new, scale);
+}
+
+// View of the older part from a pose there. Monocular lengths are not metric, so they are scaled to a median depth of 5
+// m. Stereo lengths are scaled likewise if the depth is less, since there would be too few cells.
+PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& frame, const TrackedFrame& there,
+                             const Rig& rig, const Map& map) {
+  constexpr int kKeyframesNearby = 3;
+  constexpr double kDepth = 5.0;  // metres
+  const ScratchVector<PointId> nearby = local_points(map, there.reference, kKeyframesNearby);
+  const ScratchVector<PointId> around = local_points(map, there.reference, kKeyframesOfPlace);
+  const double share = hypothesis.median_depth / kDepth;
+  const double metre = rig.is_stereo() ? std::min(1.0, share) : share;
+  return view_of_place({map, rig, frame, there, nearby, around, {}, {}, {}, metre});
+}
+
+// Stereo measures the scale. Otherwise points in both parts determine it, at best as precisely as the camera's position
+// in the older part is known.
+std::optional<ScaleDrift> find_scale_drift(const Map& map, const Keyframe& keyframe, const TrackedFrame& in_older_part,
+                                           double depth, const LoopOptions& options) {
+  if (rig_of(map, keyframe).is_stereo()) return ScaleDrift{};
+  auto drift = estimate_scale_drift(depth_pairs(map, keyframe, in_older_part), options.min_scale_points);
+  if (!drift) return std::nullopt;
+  drift->sigma = std::hypot(drift->sigma, std::sqrt(in_older_part.match_covariance(2, 2)) / depth);
+  if (drift->sigma > options.max_scale_sigma) return std::nullopt;
+  return drift;
+}
+
+}  // namespace
+
+const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
+  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
+}
+
+std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
+                                        const LoopOptions& options, const PlaceNoise& noise) {
+  const Keyframe* const keyframe = map.find_keyframe(newest);
+  if (keyframe == nullptr) return std::nullopt;
+  return find_loop_by_words(map, index, newest, keyframe->words, options, noise);
+}
+
+std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceIndex& index, KeyframeId newest,
+                                                 std::span<const Word> words, const LoopOptions& options,
+                                                 const PlaceNoise& noise) {
+  const Keyframe* const keyframe = map.find_keyframe(newest);
+  if (keyframe == nullptr || words.empty()) return std::nullopt;
+  const MapView view(nullptr, map);
+  const std::vector<PlaceCandidate> places = find_old_places(view, index, newest, words, options, noise);
+  if (places.empty()) return std::nullopt;
+  const Localisation found = localise_at(keyframe->frame, words, view.rig_of(*keyframe, newest), view,
+                                         index.vocabulary(), places, kStrictness);
+  if (!found.tracked) return std::nullopt;
+
+  LoopHypothesis hypothesis;
+  hypothesis.keyframe = newest;
+  hypothesis.place = found.tracked->reference;
+  hypothesis.covariance = found.tracked->match_covariance;
+  hypothesis.median_depth = median_depth(*found.tracked, view);
+  const auto drift = find_scale_drift(map, *keyframe, *found.tracked, hypothesis.median_depth, options);
+  if (!drift) return std::nullopt;
+  hypothesis.scale = drift->old_per_new;
+  hypothesis.scale_sigma = drift->sigma;
+  hypothesis.old_from_new =
+      drift_between(found.tracked->camera_from_world, keyframe->camera_from_world, hypothesis.scale);
+  if (!is_plausible(hypothesis, map, options)) return std::nullopt;
+  const Rig& rig = rig_of(map, *keyframe);
+  hypothesis.test.observe(view_of_older_part(hypothesis, keyframe->frame, *found.tracked, rig, map), false);
+  return hypothesis;
+}
+
+LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
+                          const Rig& rig, const Map& map) {
+  LoopHypothesis checked = hypothesis;
+  TrackedFrame there;
+  there.camera_from_world = move_camera(drift_of(hypothesis), camera_from_world);
+  there.reference = hypothesis.place;
+  const auto tracked =
+      track(frame, there.camera_from_world, rig, map, local_points(map, hypothesis.place, kKeyframesOfPlace), {});
+  const bool agrees = tracked && is_same_pose(*tracked, there.camera_from_world, map);
+  if (agrees) there = *tracked;
+  checked.test.observe(view_of_older_part(hypothesis, frame, there, rig, map), agrees);
+  if (!agrees) {
+    ++checked.untracked;
+    return checked;
+  }
+  checked.place = there.reference;
+  checked.old_from_new = drift_between(there.camera_from_world, camera_from_world, hypothesis.scale);
+  checked.covariance = there.match_covariance;
+  return checked;
+}
+
+bool is_refuted(const LoopHypothesis& hypothesis) {
+  constexpr int kMaxUntracked = 3;  // frames
+  return hypothesis.test.is_rejected() || hypothesis.untracked >= kMaxUntracked;
+}
+
+std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map) {
+  const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
+  const Keyframe* const place = map.find_keyframe(hypothesis.place);
+  if (keyframe == nullptr || place == nullptr) return std::nullopt;
+  const Pose camera_from_old = move_camera(drift_of(hypothesis), keyframe->camera_from_world);
+  const double new_per_old = 1.0 / hypothesis.scale;
+  return LoopEdge{hypothesis.keyframe,
+                  hypothesis.place,
+                  scale_lengths(camera_from_old * inverse(place->camera_from_world), new_per_old),
+                  scale_lengths(hypothesis.covariance, new_per_old),
+                  new_per_old,
+                  hypothesis.scale_sigma};
+}
+
+double apparent_drift(const LoopHypothesis& hypothesis, const Map& map) {
+  const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
+  if (keyframe == nullptr) return 0.0;
+  const CameraShift shift = camera_shift(keyframe->camera_from_world, drift_of(hypothesis));
+  const double shift_share = shift.distance / std::max(1e-3, hypothesis.median_depth);
+  return rig_of(map, *keyframe).focal * (shift.turn + shift_share + std::abs(std::log(hypothesis.scale)));
+}
+
+}  // namespace byre

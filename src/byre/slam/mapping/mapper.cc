@@ -1,0 +1,438 @@
+#include "byre/slam/mapping/mapper.h"
+
+#include "byre/map/scaled_copy.h"
+#include "byre/slam/loops/recent_map.h"
+#include "byre/slam/tracking/keyframes.h"
+#include "byre/slam/window/monocular_submap.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr std::uint32_t kNewKeyframes = 32;  // the size of a window, whose features stay in memory
+
+}  // namespace
+
+Mapper::Mapper(const Rig& rig, const MapperOptions& options, MapperExecutors executors, MapperResources resources)
+    : options_(options),
+      offline_(std::move(resources.offline)),
+      local_(std::move(executors.local)),
+      global_(std::move(executors.global), {options.mapping}, page_file_),
+      reading_(std::move(executors.reading)) {
+  if (resources.vocabulary) places_.emplace(*std::move(resources.vocabulary));
+  if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
+}
+
+std::optional<KeyframeId> Mapper::newest_in_present_frame() const {
+  return newest_ && submaps_.is_in_present_frame(*newest_) ? newest_ : std::nullopt;
+}
+
+void Mapper::continue_map(Map online) {
+  assert(places_ && !offline_ && online.keyframe_count() > 0);
+  online_ = std::move(online);
+  initialiser_.reset();
+  for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
+  newest_ = online_.keyframe_ids().back();
+  first_new_ = next_keyframe_number();
+  submaps_.begin_in_map_frame(0);
+  page_out_all();
+}
+
+void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationOptions& options) {
+  calibrator_.emplace(given, options);
+}
+
+Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
+                                const AnchoredTrajectory& trajectory) {
+  assert(!is_being_read());
+  Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world, trajectory)
+                                    : begin_monocular(frame, rig, camera_from_world, trajectory);
+  if (begun.keyframes.empty()) return begun;
+  newest_ = begun.keyframes.back();
+  if (places_) {
+    for (const KeyframeId id : begun.keyframes) store(index_keyframe(id, false));
+  }
+  ++revision_;
+  return begun;
+}
+
+// In a mission the place in the offline map is not yet determined.
+Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
+                                       const AnchoredTrajectory& trajectory) {
+  auto first = initialise_stereo(frame, rig, options_.min_initial_points);
+  if (!first) return {};
+  offline_ ? submaps_.begin_in_own_frame(next_keyframe_number()) : submaps_.begin_in_map_frame(next_keyframe_number());
+  if (online_.keyframe_count() == 0 && !camera_from_world) {
+    online_ = *std::move(first);
+    return {{online_.keyframe_ids().front()}};
+  }
+  TrackedFrame tracked;
+  tracked.camera_from_world = camera_from_world.value_or(inverse(rig.body_from_camera));
+  Keyframe keyframe = make_keyframe(frame, tracked, online_.add_rig(rig));
+  keyframe.parent = parent_of_bridge(trajectory);
+  const KeyframeId id = online_.add_keyframe(std::move(keyframe));
+  add_stereo_points(online_, id);
+  return {{id}};
+}
+
+// The keyframe from which odometry leads to a new submap; empty in a mission, whose submaps have separate frames.
+std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& trajectory) const {
+  return offline_ || trajectory.empty() ? std::nullopt : std::optional(trajectory.back().keyframe);
+}
+
+Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Rig& rig,
+                                          const std::optional<Pose>& camera_from_world,
+                                          const AnchoredTrajectory& trajectory) {
+  MonocularAttempt attempt = initialiser_->try_start(frame);
+  if (!attempt.start) {
+    if (initialiser_->reference_time() == frame.time) {
+      odometry_reference_ = camera_from_world.value_or(inverse(rig.body_from_camera));
+    }
+    return {{}, attempt.failure};
+  }
+  std::vector<KeyframeId> keyframes;
+  if (online_.keyframe_count() > 0) {
+    keyframes = add_submap_by_odometry(*attempt.start, *camera_from_world, trajectory);
+    if (keyframes.empty()) return {};
+  } else {
+    MonocularStart start = camera_from_world
+                               ? align_to_odometry(*attempt.start, {odometry_reference_, *camera_from_world})
+                               : std::move(*attempt.start);
+    keyframes = {start.first, start.second};
+    online_ = std::move(start.map);
+    submaps_.begin_in_map_frame(0);
+  }
+  initialiser_.reset();
+  pending_.push_back(keyframes.back());
+  return {keyframes, attempt.failure};
+}
+
+std::vector<KeyframeId> Mapper::add_submap_by_odometry(const MonocularStart& start, const Pose& camera_from_world,
+                                                       const AnchoredTrajectory& trajectory) {
+  const Timestamp first_time = start.map.find_keyframe(start.first)->frame.time;
+  const auto first = trajectory.camera_at(first_time, map());
+  if (!first) return {};
+  const std::uint32_t first_number = next_keyframe_number();
+  auto keyframes = add_monocular_submap(start, {*first, camera_from_world}, parent_of_bridge(trajectory),
+                                        options_.recording, online_);
+  if (!keyframes.empty()) submaps_.begin_in_map_frame(first_number);
+  return keyframes;
+}
+
+void Mapper::allow_monocular_submap(const Rig& rig, bool has_odometry) {
+  if (rig.is_stereo() || offline_ || online_.keyframe_count() == 0) return;
+  if (!has_odometry) {
+    initialiser_.reset();
+  } else if (!initialiser_) {
+    initialiser_.emplace(rig, options_.monocular_start, options_.mapping);
+  }
+}
+
+void Mapper::begin_at_relocalisation(const HybridTrack& found) {
+  if (found.online_reference) {
+    submaps_.begin_in_frame_of(*found.online_reference, next_keyframe_number());
+  } else {
+    submaps_.begin_in_map_frame(next_keyframe_number());
+  }
+}
+
+KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig) {
+  assert(!is_being_read());
+  Keyframe keyframe = make_keyframe(frame, track.tracked, online_.add_rig(rig));
+  keyframe.recording = options_.recording;
+  keyframe.parent = track.online_reference;
+  const KeyframeId id = online_.add_keyframe(std::move(keyframe));
+  add_stereo_points(online_, id, contradicting_features(track.tracked, *frame.features));
+  newest_ = id;
+  if (places_) unindexed_ = id;
+  ++revision_;
+  pending_.push_back(id);
+  start_job();
+  page_out_old_keyframe();
+  return id;
+}
+
+// Moves features of old keyframes to the scratch file. Patches of features without a point are dropped: they serve only
+// to triangulate new points among the newest keyframes. The other patches are needed as long as the map grows, to fuse
+// points and to change their reference view; without them errors of maps with loops grow by some percent. Few are
+// needed at a time, hence the file. Jobs write it, because the disk may be busy.
+void Mapper::page_out_old_keyframe() {
+  if (newest_->number < kNewKeyframes) return;
+  const KeyframeId old{newest_->origin, newest_->number - kNewKeyframes};
+  const Keyframe* const keyframe = online_.find_keyframe(old);
+  if (keyframe == nullptr) return;
+  std::vector<int> kept;
+  for (int i = 0; i < static_cast<int>(keyframe->sightings.size()); ++i) {
+    if (keyframe->sightings[static_cast<std::size_t>(i)].point) kept.push_back(i);
+  }
+  online_.keep_patches(old, kept);
+  page_out_later(old);
+}
+
+void Mapper::page_out_later(KeyframeId id) {
+  const Keyframe* const keyframe = online_.find_keyframe(id);
+  if (keyframe != nullptr) to_page_out_.push_back({id, keyframe->frame.features});
+}
+
+// A loaded map has all features in memory, and features that moved have new keypoints.
+void Mapper::page_out_all() {
+  to_page_out_.clear();
+  for (const KeyframeId id : online_.keyframe_ids()) {
+    if (id.number + kNewKeyframes <= newest_->number) page_out_later(id);
+  }
+}
+
+// Searches older parts of the map for new keyframes. A match must be confirmed by the frames after it.
+bool Mapper::search_loop(const LoopCloser::LoopFrame& now) {
+  if (!places_ || !is_global_free()) return false;
+  const auto loop = loop_closer_.check(now, online_);
+  if (loop) close_loop(*loop);
+  return loop.has_value();
+}
+
+// In a mission large drift is corrected by the offline map, not by loops.
+void Mapper::close_loop(const LoopHypothesis& loop) {
+  const std::optional<LoopEdge> edge = edge_of(loop, online_);
+  if (!edge) return;  // removed as redundant meanwhile
+  const bool fusing_will_do = apparent_drift(loop, online_) <= options_.max_drift_to_fuse;
+  if (!fusing_will_do && offline_) return;
+  loop_closer_.add(*edge);
+  if (fusing_will_do) {
+    pending_.insert(pending_.begin(), {loop.place, loop.keyframe});
+  } else {
+    to_copy_ = ToCopy::to_correct;
+  }
+}
+
+// Empty in a mission: the offline map fixes lengths, and motions would add nothing.
+std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId>& keyframes) const {
+  if (offline_) return {};
+  return odometry_motions(online_, keyframes, options_.recording, odometry_);
+}
+
+std::vector<KeyframeMotion> Mapper::all_motions() const {
+  return in_lengths_of(online_, motions_between(online_.keyframe_ids()));
+}
+
+std::optional<double> Mapper::collect() {
+  assert(!is_being_read());
+  const auto finished = local_.collect();
+  if (finished) apply_update(finished->result);
+  global_.collect();
+  if (!finished) return std::nullopt;
+  return finished->seconds;
+}
+
+void Mapper::apply_update(const LocalOutcome& outcome) {
+  apply(outcome.delta, online_);
+  ++revision_;
+  forget_places(outcome.delta);
+  for (const KeyframeFeatures& of : outcome.paged) {
+    const Keyframe* const keyframe = online_.find_keyframe(of.keyframe);
+    if (keyframe != nullptr && keyframe->frame.features == of.features) online_.replace_features(of.keyframe, of.paged);
+  }
+}
+
+// A new readout time changes keyframe poses. In a mission the offline map corrects them, else a global adjustment does.
+bool Mapper::apply_readout_change(RollingShutterCorrector& corrector, const Rig& rig) {
+  assert(!is_being_read());
+  if (!corrector.has_change() || !local_.idle() || !is_global_free()) return false;
+  corrector.apply_update(rig, online_);
+  page_out_all();
+  ++revision_;
+  loop_closer_.forget_hypothesis();
+  if (!offline_ && online_.keyframe_count() > 1) to_copy_ = ToCopy::to_correct;
+  return true;
+}
+
+// Waits for the local job, whose data are by the previous calibration.
+std::optional<RigRotation> Mapper::apply_calibration(const Rig& rig) {
+  assert(!is_being_read());
+  if (!calibrator_ || !local_.idle()) return std::nullopt;
+  if (auto by = global_.take_calibration()) {
+    constexpr double kToAdjust = 0.5;  // sigmas of the parameters; smaller changes move the map by less than its noise
+    const bool is_large = (by->refined.change - calibrator_->state().change).norm() > kToAdjust;
+    const RigRotation turn = recalibrate(*std::move(by), rig);
+    page_out_all();
+    if (is_large && is_global_free()) to_copy_ = ToCopy::to_correct;
+    return turn;
+  }
+  if (!is_global_free() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
+  calibrator_->note_attempt(online_.keyframe_count());
+  rig_to_calibrate_ = online_.add_rig(rig);
+  to_copy_ = ToCopy::to_calibrate;
+  return std::nullopt;
+}
+
+// The rectified camera rotates, because the rectification depends on the calibration.
+RigRotation Mapper::recalibrate(Recalibration by, const Rig& rig) {
+  const int index = online_.add_rig(rig);
+  online_.recalibrate(index, by.from_present, by.features);
+  calibrator_->apply_update(by.refined, std::move(by.from_given));
+  RigRotation turn{by.from_present.after_from_before(), index, by.from_present.rig()};
+  loop_closer_.rotate_rig(turn, online_);
+  ++revision_;
+  return turn;
+}
+
+std::optional<LengthChanges> Mapper::apply_map_optimisation() {
+  assert(!is_being_read());
+  if (!global_.is_waiting() || !local_.idle()) return std::nullopt;
+  AppliedCorrection applied = global_.apply(online_);
+  forget_places(applied.delta);
+  loop_closer_.apply_length_changes(applied.length_changes);
+  ++revision_;
+  return std::move(applied.length_changes);
+}
+
+void Mapper::correct_later(const OnlineCorrection& correction) {
+  assert(!waiting_correction_);
+  waiting_correction_ = correction;
+}
+
+std::optional<Pose> Mapper::correct_online() {
+  assert(!is_being_read());
+  if (!waiting_correction_ || !local_.idle()) return std::nullopt;
+  const OnlineCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
+  std::vector<KeyframeId> path = online_.keyframe_ids();
+  std::erase_if(path, [&](KeyframeId id) {
+    return id.number < correction.first_keyframe || submaps_.frame(id) != correction.frame;
+  });
+  apply(correction_of(online_, path, correction.offline_from_online, correction.shape), online_);
+  submaps_.join_map_frame(correction.frame);
+  ++revision_;
+  if (newest_ && pending_.empty()) pending_.push_back(*newest_);
+  return correction.offline_from_online;
+}
+
+// Not before a waiting correction, which moves the job's keyframes.
+void Mapper::start_job() {
+  if (pending_.empty() || !local_.idle() || global_.is_waiting() || waiting_correction_) return;
+  MapWindow window = cut_window(map(), pending_, options_.mapping.window);
+  pending_.clear();
+  if (window.keyframes.empty()) return;
+  std::vector<KeyframeId> online;
+  for (const WindowKeyframe& keyframe : window.keyframes) {
+    if (!is_offline(keyframe)) online.push_back(keyframe.id);
+  }
+  add_motions(window, motions_between(online));
+  MappingOptions mapping = options_.mapping;
+  mapping.hidden = hidden_;
+  local_.start([window = std::move(window), options = mapping, to_page_out = std::exchange(to_page_out_, {}),
+                file = page_file_] {
+    LocalOutcome outcome{extend_map(window, options), to_page_out};
+    for (KeyframeFeatures& of : outcome.paged) of.paged = page_out(of.features, *file);
+    file->release_pages();
+    return outcome;
+  });
+}
+
+// Requests wait while a job reads the map.
+void Mapper::start_reading() {
+  if (is_being_read()) return;
+  std::optional<KeyframeId> id = std::exchange(unindexed_, std::nullopt);
+  if (id && online_.find_keyframe(*id) == nullptr) id.reset();
+  const bool corrects = to_copy_ == ToCopy::to_correct, calibrates = to_copy_ == ToCopy::to_calibrate;
+  if (!id && !corrects && !calibrates) return;
+  reading_.start([this, id, searches_loop = loop_closer_.take_search_request(), corrects, calibrates,
+                  motions = corrects ? all_motions() : std::vector<KeyframeMotion>()] {
+    MapReading reading;
+    if (id) reading.newest = index_keyframe(*id, searches_loop);
+    if (corrects) reading.to_correct = copy_for_loop_closure(online_, first_new_, loops(), motions);
+    if (calibrates) reading.whole = std::make_shared<const MapWindow>(whole_map(map()));
+    return reading;
+  });
+}
+
+// Preconditions: places_, and the keyframe exists.
+KeyframeReading Mapper::index_keyframe(KeyframeId id, bool searches_loop) const {
+  KeyframeReading reading{id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features)};
+  if (searches_loop) reading.loop = find_loop_by_words(online_, *places_, id, reading.words, options_.loops);
+  return reading;
+}
+
+void Mapper::collect_reading() {
+  if (auto finished = reading_.collect()) store(std::move(finished->result));
+}
+
+void Mapper::store(MapReading reading) {
+  if (reading.newest) store(*std::move(reading.newest));
+  if (reading.to_correct || reading.whole) to_copy_ = ToCopy::nothing;
+  if (reading.to_correct) global_.close_loops(*std::move(reading.to_correct));
+  if (reading.whole) {
+    global_.calibrate(std::move(reading.whole), calibrator_->state(), rig_to_calibrate_, calibrator_->options());
+  }
+}
+
+void Mapper::store(KeyframeReading reading) {
+  places_->add(reading.keyframe, reading.words);
+  online_.set_words(reading.keyframe, std::move(reading.words));
+  if (reading.loop) loop_closer_.set_hypothesis(*reading.loop);
+}
+
+void Mapper::forget_places(const MapDelta& delta) {
+  if (!places_) return;
+  for (const OnlineKeyframeId id : delta.removed_keyframes) places_->remove(id);
+}
+
+LengthChanges Mapper::finish() {
+  if (auto finished = reading_.finish()) store(std::move(finished->result));
+  start_reading();
+  if (auto finished = reading_.finish()) store(std::move(finished->result));
+  LengthChanges lengths;  // by the one correction that may be in flight
+  while (true) {
+    if (const auto finished = local_.finish()) apply_update(finished->result);
+    global_.finish();
+    if (auto changes = apply_map_optimisation()) lengths = *std::move(changes);
+    correct_online();
+    if (pending_.empty()) return lengths;
+    start_job();
+  }
+}
+
+std::optional<RigRotation> Mapper::calibrate_finally(const Rig& rig, const std::function<bool()>& should_stop) {
+  if (!calibrator_ || !calibrator_->is_final_run_useful(online_.keyframe_count())) return std::nullopt;
+  // The copy of the map is freed before the features are converted, because it would store the old ones.
+  const auto refined = self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig),
+                                      calibrator_->options(), releasing_pages(*page_file_, should_stop));
+  if (!refined) return std::nullopt;
+  return recalibrate(recalibration_by(*refined, calibrator_->state()), rig);
+}
+
+FinishReport Mapper::finish_map(const FinishHooks& hooks) {
+  assert(places_);
+  const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
+  const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
+  to_page_out_.clear();  // no more jobs
+  if (first_new == 0) page_out_features(online_, *page_file_);
+  const FinishHooks frugal{releasing_pages(*page_file_, hooks.should_stop), hooks.before_step};
+  FinishReport report =
+      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, frugal);
+  loop_closer_.apply_length_changes(report.length_changes);
+  return report;
+}
+
+LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
+  assert(offline_);
+  MapWindow whole = whole_map(map());
+  const MapWindow before = outline_of(whole);
+  const MapDelta adjusted =
+      adjust_map(std::move(whole), before, {}, {options_.mapping}, releasing_pages(*page_file_, hooks.should_stop));
+  LengthChanges changes = apply_correction(adjusted, before, online_);
+  loop_closer_.apply_length_changes(changes);
+  return changes;
+}
+
+LengthChanges Mapper::rescale(double factor) {
+  assert(!offline_);
+  byre::rescale(online_, factor);
+  LengthChanges changes;
+  for (KeyframeId id{Origin::online, 0}; online_.living_ancestor(id); ++id.number) changes[id] = factor;
+  loop_closer_.apply_length_changes(changes);
+  return changes;
+}
+
+}  // namespace byre

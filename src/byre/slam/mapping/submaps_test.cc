@@ -1,0 +1,60 @@
+#include "byre/slam/mapping/submaps.h"
+
+#include <gtest/gtest.h>
+
+namespace byre {
+namespace {
+
+KeyframeId online(std::uint32_t number) {
+  return {Origin::online, number};
+}
+
+// A submap with keyframes 0 to 3 and one from 4 on.
+Submaps two_in_map_frame() {
+  Submaps submaps;
+  submaps.begin_in_map_frame(0);
+  submaps.begin_in_map_frame(4);
+  return submaps;
+}
+
+TEST(Submaps, StartingInTheMapFrameShareIt) {
+  const Submaps submaps = two_in_map_frame();
+  EXPECT_EQ(submaps.frame(online(3)), Submaps::kMapFrame);
+  EXPECT_EQ(submaps.frame(online(4)), Submaps::kMapFrame);
+}
+
+TEST(Submaps, StartingInTheirOwnFrameAreSeparate) {
+  Submaps submaps;
+  submaps.begin_in_own_frame(0);
+  submaps.begin_in_own_frame(4);
+  EXPECT_NE(submaps.frame(online(3)), submaps.frame(online(4)));
+  EXPECT_EQ(submaps.frame(online(9)), submaps.frame());
+}
+
+TEST(Submaps, JoinTheMapFrameWithAllSubmapsOfTheirFrame) {
+  Submaps submaps;
+  submaps.begin_in_own_frame(0);
+  submaps.begin_in_own_frame(4);
+  submaps.begin_in_frame_of(online(2), 7);
+  submaps.join_map_frame(submaps.frame());
+  EXPECT_EQ(submaps.frame(online(2)), Submaps::kMapFrame);
+  EXPECT_NE(submaps.frame(online(5)), Submaps::kMapFrame);
+  EXPECT_EQ(submaps.frame(online(8)), Submaps::kMapFrame);
+}
+
+TEST(Submaps, LeaveTheMapFrameSeparately) {
+  Submaps submaps = two_in_map_frame();
+  submaps.leave_map_frame();
+  EXPECT_EQ(submaps.frame(online(3)), Submaps::kMapFrame);
+  EXPECT_NE(submaps.frame(online(4)), Submaps::kMapFrame);
+}
+
+TEST(Submaps, WithoutKeyframeAreRemoved) {
+  Submaps submaps;
+  submaps.begin_in_own_frame(4);
+  submaps.begin_in_map_frame(4);
+  EXPECT_EQ(submaps.frame(online(4)), Submaps::kMapFrame);
+}
+
+}  // namespace
+}  // namespace byre

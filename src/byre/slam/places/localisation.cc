@@ -1,0 +1,208 @@
+#include "byre/slam/places/localisation.h"
+
+#include "byre/geometry/absolute_pose.h"
+#include "byre/geometry/decompositions.h"
+#include "byre/slam/places/place_matching.h"
+#include "byre/slam/tracking/keyframes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace byre {
+namespace {
+
+constexpr PlaceQueryOptions kPlaces{.max_candidates = 10, .group_size = 10, .min_score_share = 0.3f};
+constexpr int kMinFeatures = 50;        // corners in a frame
+constexpr int kMinMatches = 10;         // matches by words
+constexpr int kMinPoseInliers = 8;      // inliers of a first pose
+constexpr int kMaxDraws = 2000;         // RANSAC iterations
+constexpr double kMaxMatchError = 6.0;  // pixels, largest error of an inlier of a first pose
+constexpr double kRivalShare = 0.7;     // share of the best place's inliers from which a second place is a rival
+// Search around a first pose: default options, since it is no motion prediction.
+TrackOptions around_first_pose(const LocaliseOptions& options) {
+  TrackOptions around;
+  around.hidden = options.hidden;
+  return around;
+}
+
+using Failure = LocalisationFailure;
+
+// Inputs common to all places.
+struct FrameQuery {
+  const Frame& frame;
+  const Rig& rig;
+  const MapView& map;
+  const Vocabulary& vocabulary;
+  std::span<const Word> words;
+  const LocaliseOptions& options;
+  const PlaceFilter& filter;
+};
+
+Localisation failed(Failure failure, int matches, std::size_t inliers) {
+  return {std::nullopt, {}, failure, 0, matches, static_cast<int>(inliers)};
+}
+
+PointSighting sighting_of(const FrameQuery& query, const PointMatch& match) {
+  const Keypoint& keypoint = query.frame.features->keypoint(match.feature);
+  PointSighting sighting{query.map.find_point(match.point)->position_in_world, keypoint.pixel.cast<double>()};
+  if (keypoint.has_disparity()) sighting.disparity = keypoint.disparity;
+  return sighting;
+}
+
+std::optional<AbsolutePose> pose_from_matches(const FrameQuery& query, const std::vector<PointMatch>& matches) {
+  std::vector<PointSighting> sightings;
+  sightings.reserve(matches.size());
+  for (const PointMatch& match : matches) sightings.push_back(sighting_of(query, match));
+  const RansacOptions ransac{
+      .max_iterations = kMaxDraws, .confidence = 0.999, .max_error = kMaxMatchError, .seed = query.options.seed};
+  return estimate_absolute_pose(sightings, query.rig, ransac);
+}
+
+// Matches points around a first pose, then points around the keyframe that shares most of these.
+std::optional<TrackedFrame> refine(const FrameQuery& query, const Pose& camera_from_world, KeyframeId place) {
+  const auto track_near = [&](const Pose& predicted, KeyframeId reference) {
+    return track(query.frame, predicted, query.rig, query.map, local_points(query.map, reference, kKeyframesOfPlace),
+                 around_first_pose(query.options));
+  };
+  const std::optional<TrackedFrame> first = track_near(camera_from_world, place);
+  if (!first || first->reference == place) return first;
+  const std::optional<TrackedFrame> second = track_near(first->camera_from_world, first->reference);
+  return second && second->features.size() > first->features.size() ? second : first;
+}
+
+Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
+  const LocaliseOptions& options = query.options;
+  const std::vector<PointMatch> matches =
+      match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, {});
+  const int match_count = static_cast<int>(matches.size());
+  if (match_count < kMinMatches) return failed(Failure::too_few_matches, match_count, matches.size());
+
+  const std::optional<AbsolutePose> pose = pose_from_matches(query, matches);
+  const int agreeing = pose ? pose->inlier_count : 0;
+  if (agreeing < kMinPoseInliers) {
+    return failed(Failure::geometry_disagrees, match_count, static_cast<std::size_t>(agreeing));
+  }
+  const std::optional<TrackedFrame> tracked = refine(query, pose->camera_from_world, place.keyframe);
+  if (!tracked) return failed(Failure::too_few_inliers, match_count, static_cast<std::size_t>(agreeing));
+  const Failure doubt = rejection_reason(*tracked, query.rig, query.map, options);
+  if (doubt != Failure::none) return failed(doubt, match_count, tracked->features.size());
+  if (query.filter.is_impossible && query.filter.is_impossible(*tracked)) {
+    return failed(Failure::impossible, match_count, tracked->features.size());
+  }
+  return {tracked, {}, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
+}
+
+// Whether at most one of two poses can be right.
+bool contradict(const TrackedFrame& one, const TrackedFrame& other, const MapView& map) {
+  constexpr double kMaxShift = 0.05;  // share of the median depth
+  constexpr double kMaxTurn = 0.05;   // radians
+  const Pose motion = one.camera_from_world * inverse(other.camera_from_world);
+  return motion.translation.norm() > kMaxShift * median_depth(one, map) ||
+         rotation_log(motion.rotation).norm() > kMaxTurn;
+}
+
+// Attempts with a pose rank above those without, by inliers; the others by progress.
+std::pair<bool, int> rank_of(const Localisation& attempt) {
+  return {attempt.tracked.has_value(), attempt.tracked ? attempt.inliers : static_cast<int>(attempt.failure)};
+}
+
+// Places that contradict each other, most inliers first; the first one of places that agree.
+std::vector<TrackedFrame> distinct_places(std::vector<TrackedFrame> found, const MapView& map) {
+  std::ranges::stable_sort(found, std::greater{}, [](const TrackedFrame& place) { return place.features.size(); });
+  std::vector<TrackedFrame> places;
+  for (TrackedFrame& place : found) {
+    const bool is_known =
+        std::ranges::any_of(places, [&](const TrackedFrame& better) { return !contradict(better, place, map); });
+    if (!is_known) places.push_back(std::move(place));
+  }
+  return places;
+}
+
+}  // namespace
+
+std::string_view to_string(LocalisationFailure failure) {
+  switch (failure) {
+    case Failure::none:
+      return "none";
+    case Failure::too_few_features:
+      return "too few features";
+    case Failure::no_similar_keyframe:
+      return "no similar keyframe";
+    case Failure::too_few_matches:
+      return "too few matches";
+    case Failure::geometry_disagrees:
+      return "geometry does not agree";
+    case Failure::too_few_inliers:
+      return "too few inliers";
+    case Failure::clustered:
+      return "inliers are clustered";
+    case Failure::uncertain:
+      return "pose is uncertain";
+    case Failure::impossible:
+      return "place is impossible";
+    case Failure::ambiguous:
+      return "two places fit";
+  }
+  return "";
+}
+
+double spread_of(std::span<const TrackedFeature> features, const Rig& rig) {
+  if (features.empty()) return 0.0;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const TrackedFeature& feature : features) mean += feature.pixel.cast<double>();
+  mean /= static_cast<double>(features.size());
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const TrackedFeature& feature : features) {
+    const Eigen::Vector2d offset = feature.pixel.cast<double>() - mean;
+    covariance += offset * offset.transpose();
+  }
+  covariance /= static_cast<double>(features.size());
+  return std::sqrt(std::max(0.0, symmetric_eigenvalues(covariance)[0])) / std::hypot(rig.width, rig.height);
+}
+
+LocalisationFailure rejection_reason(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
+                                     const LocaliseOptions& options) {
+  if (static_cast<int>(tracked.features.size()) < options.min_inliers) return Failure::too_few_inliers;
+  if (spread_of(tracked.features, rig) < options.min_spread) return Failure::clustered;
+  const double position_sigma = std::sqrt(tracked.match_covariance.topLeftCorner<3, 3>().trace());
+  const double rotation_sigma = std::sqrt(tracked.match_covariance.bottomRightCorner<3, 3>().trace());
+  const bool determined = position_sigma <= options.max_position_sigma * median_depth(tracked, map) &&
+                          rotation_sigma <= options.max_rotation_sigma;
+  return determined ? Failure::none : Failure::uncertain;
+}
+
+Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
+                      const LocaliseOptions& options, const PlaceFilter& filter) {
+  if (frame.features->size() < kMinFeatures) return failed(Failure::too_few_features, 0, 0);
+  const std::vector<Word> words = index.vocabulary().words_of(*frame.features);
+  const std::vector<PlaceCandidate> places = find_places(index, map, words, kPlaces, filter.is_excluded);
+  return localise_at(frame, words, rig, map, index.vocabulary(), places, options, filter);
+}
+
+Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
+                         const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
+                         const LocaliseOptions& options, const PlaceFilter& filter) {
+  const FrameQuery query{frame, rig, map, vocabulary, words, options, filter};
+  Localisation best = failed(Failure::no_similar_keyframe, 0, 0);
+  std::vector<TrackedFrame> found;
+  for (const PlaceCandidate& place : places) {
+    const Localisation attempt = try_place(place, query);
+    if (attempt.tracked) found.push_back(*attempt.tracked);
+    if (rank_of(attempt) > rank_of(best)) best = attempt;
+  }
+  best.places = static_cast<int>(places.size());
+  best.places_found = distinct_places(std::move(found), map);
+  const auto fits_as_well = [&](const TrackedFrame& other) {
+    return static_cast<double>(other.features.size()) >= kRivalShare * best.inliers;
+  };
+  if (best.places_found.size() > 1 && fits_as_well(best.places_found[1])) {
+    best.tracked.reset();
+    best.failure = Failure::ambiguous;
+  }
+  return best;
+}
+
+}  // namespace byre

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "byre/map/map_view.h"
+#include "byre/place/place_index.h"
+#include "byre/slam/tracking/tracking.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+// Reasons why localisation failed, ordered by the progress of the attempt.
+enum class LocalisationFailure : std::uint8_t {
+  none,
+  too_few_features,     // the image is dark, blurred or blank
+  no_similar_keyframe,  // no keyframe of the map looks similar
+  too_few_matches,      // too few features match points of similar places
+  geometry_disagrees,   // no pose explains the matches
+  too_few_inliers,      // too few points around the pose are found
+  clustered,            // the inliers lie in a small part of the image
+  uncertain,            // the inliers do not constrain the pose enough
+  impossible,           // the camera cannot be at the place found
+  ambiguous             // two places fit the image
+};
+
+std::string_view to_string(LocalisationFailure failure);
+
+inline constexpr int kKeyframesOfPlace = 20;  // keyframes whose points are matched around a first pose
+
+struct LocaliseOptions {
+  std::uint64_t seed = 0;  // seed of RANSAC
+  int min_inliers = 40;    // final inliers
+  // Standard deviation of the inliers in their narrowest direction, share of the image diagonal.
+  double min_spread = 0.05;
+  double max_position_sigma = 0.02;  // sigma of the position over the median depth of the inliers
+  double max_rotation_sigma = 0.02;  // radians
+  ImageMask hidden{};                // image cells without expected points
+};
+
+struct Localisation {
+  std::optional<TrackedFrame> tracked;  // empty: not localised
+  // Places that show the frame, most inliers first, contradicting each other. Not empty if two places fit.
+  std::vector<TrackedFrame> places_found{};
+  LocalisationFailure failure = LocalisationFailure::too_few_features;
+  int places = 0;   // places tried
+  int matches = 0;  // word matches at the place with most progress; 0 before any was tried
+  int inliers = 0;  // inliers of the last step reached
+};
+
+// Constraints on places besides the image. Empty functions: no constraint.
+struct PlaceFilter {
+  std::function<bool(KeyframeId)> is_excluded{};             // the keyframe is not searched
+  std::function<bool(const TrackedFrame&)> is_impossible{};  // the camera cannot be at the tracked pose
+};
+
+// Localises a frame without a prediction: candidate places by visual words, matches with their points, RANSAC with
+// three points, guided matching around that pose, and refinement. Succeeds only if many points agree, are spread over
+// the image and constrain the pose, and no other place fits as well.
+Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, const PlaceIndex& index,
+                      const LocaliseOptions& options, const PlaceFilter& filter = {});
+
+// Same at given candidate places, for a frame with given words.
+Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
+                         const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
+                         const LocaliseOptions& options, const PlaceFilter& filter = {});
+
+// Standard deviation of the pixels in their narrowest direction, share of the image diagonal.
+double spread_of(std::span<const TrackedFeature> features, const Rig& rig);
+
+// Reason why a pose, however estimated, is unreliable; none if it is reliable.
+LocalisationFailure rejection_reason(const TrackedFrame& tracked, const Rig& rig, const MapView& map,
+                                     const LocaliseOptions& options);
+
+}  // namespace byre

@@ -1,0 +1,89 @@
+#include "byre/slam/places/offline_map.h"
+
+#include "byre/geometry/median.h"
+#include "byre/map/keyframe_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace byre {
+namespace {
+
+Matrix6 median_covariance(const Map& map) {
+  std::vector<double> position_variances, rotation_variances;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Matrix6& covariance = map.keyframe_header(id)->covariance;
+    position_variances.push_back(covariance.topLeftCorner<3, 3>().trace() / 3.0);
+    rotation_variances.push_back(covariance.bottomRightCorner<3, 3>().trace() / 3.0);
+  }
+  Matrix6 result = Matrix6::Zero();
+  result.topLeftCorner<3, 3>().diagonal().setConstant(median(position_variances));
+  result.bottomRightCorner<3, 3>().diagonal().setConstant(median(rotation_variances));
+  return result;
+}
+
+}  // namespace
+
+std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls) {
+  constexpr double kMostApart = 2.0;    // metres between keyframes of one path
+  constexpr double kDeep = 0.5;         // metres inside a wall
+  constexpr double kMostInWalls = 0.1;  // share of the path
+  std::vector<std::vector<Eigen::Vector2d>> ways;
+  int places = 0, in_walls = 0;
+  for (const StampedPose& body : keyframe_path(map)) {
+    const Eigen::Vector2d place = (registration.plan_from_map * body.world_from_body.translation).head<2>();
+    if (ways.empty() || (ways.back().back() - place).norm() > kMostApart) ways.emplace_back();
+    ways.back().push_back(place);
+    ++places;
+    if (!walls.has_free_cell({place, kDeep})) ++in_walls;
+  }
+  if (in_walls > kMostInWalls * places) return std::nullopt;
+  walls.clear_along_paths(ways);
+  return PlacedWalls{registration, std::move(walls)};
+}
+
+OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
+                       std::optional<PlacedWalls> walls, const OdometryCalibration& extrinsics)
+    : map_(std::move(map)),
+      places_(index_of(map_, vocabulary)),
+      recordings_(std::move(recordings)),
+      frame_covariance_(median_covariance(map_)),
+      ground_(DrivenGround::under(map_)),
+      walls_(std::move(walls)),
+      extrinsics_(extrinsics) {
+  for (const KeyframeId id : map_.keyframe_ids()) {
+    const Pose world_from_camera = inverse(map_.keyframe_header(id)->camera_from_world);
+    views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});
+  }
+}
+
+ScratchVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_world, double max_distance,
+                                                     int max_count) const {
+  constexpr double kMaxAngle = 1.0;  // radians; views farther apart share hardly any points
+  const Pose world_from_camera = inverse(camera_from_world);
+  const Eigen::Vector3d direction = world_from_camera.rotation * Eigen::Vector3d::UnitZ();
+  ScratchVector<std::pair<double, KeyframeId>> near;
+  for (const View& view : views_) {
+    const double distance = (view.camera_in_world - world_from_camera.translation).norm();
+    if (distance > max_distance) continue;
+    const double angle = std::acos(std::clamp(view.viewing_direction.dot(direction), -1.0, 1.0));
+    if (angle <= kMaxAngle) near.emplace_back(distance + angle, view.keyframe);
+  }
+  std::ranges::sort(near);
+  ScratchVector<KeyframeId> nearest;
+  for (const auto& [distance, id] : near) {
+    if (static_cast<int>(nearest.size()) >= max_count) break;
+    nearest.push_back(id);
+  }
+  return nearest;
+}
+
+double OfflineMap::distance_to_keyframes(const Eigen::Vector3d& camera_in_world) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const View& view : views_) least = std::min(least, (view.camera_in_world - camera_in_world).norm());
+  return least;
+}
+
+}  // namespace byre

@@ -1,0 +1,88 @@
+#include "byre/slam/places/place_view.h"
+
+#include "byre/slam/tracking/tracking_steps.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace byre {
+namespace {
+
+ScratchVector<PointId> points_shown(const TrackedFrame& tracked, Origin origin, const Features& features) {
+  ScratchVector<PointId> shown;
+  for (const TrackedFeature& feature : tracked.features) {
+    if (feature.point.origin == origin && shows_patch(feature, features)) shown.push_back(feature.point);
+  }
+  std::ranges::sort(shown);
+  return shown;
+}
+
+std::array<int, 3> cell_at(const Eigen::Vector3d& position) {
+  constexpr double kSide = 2.0;  // metres
+  const Eigen::Vector3d along = (position / kSide).array().max(-1e6).min(1e6).floor();
+  return {static_cast<int>(along.x()), static_cast<int>(along.y()), static_cast<int>(along.z())};
+}
+
+}  // namespace
+
+ScratchVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world) {
+  constexpr double kNear = 1.0;     // metres, plus a metre per radian between viewing directions
+  constexpr double kMaxTurn = 0.6;  // radians
+  constexpr int kKeyframes = 3;
+  ScratchVector<KeyframeId> keyframes = offline.keyframes_near(camera_from_world, kNear, kKeyframes);
+  std::erase_if(keyframes, [&](KeyframeId id) {
+    const Pose& pose = offline.map().keyframe_header(id)->camera_from_world;
+    return angle_between(pose.rotation, camera_from_world.rotation) > kMaxTurn;
+  });
+  std::ranges::sort(keyframes);
+  return keyframes;
+}
+
+ScratchVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes) {
+  ScratchVector<PointId> points;
+  for (const KeyframeId id : keyframes) {
+    for (const Sighting& sighting : offline.map().find_keyframe(id)->sightings) {
+      if (sighting.point) points.push_back(*sighting.point);
+    }
+  }
+  std::ranges::sort(points);
+  points.erase(std::ranges::unique(points).begin(), points.end());
+  return points;
+}
+
+PlaceView view_of_place(const PlaceViewQuery& query) {
+  constexpr std::size_t kEnough = 60;  // points of nearby keyframes in view
+  const Map nothing_online(Origin::online);
+  const bool is_offline = query.map.origin() == Origin::offline;
+  const MapView map = is_offline ? MapView(&query.map, nothing_online) : MapView(query.map);
+  const Pose& pose = query.tracked.camera_from_world;
+  PlaceView view;
+  thread_local std::vector<ExpectedPoint> expected;
+  project_visible(map, query.nearby, pose, query.rig, query.hidden, expected);
+  view.is_near_keyframe = expected.size() >= kEnough;
+  if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
+  const ScratchVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
+  const auto position_of = [&](PointId id) -> Eigen::Vector3d {
+    return map.find_point(id)->position_in_world / query.metre;
+  };
+  ScratchVector<std::pair<std::array<int, 3>, PointId>> points;  // by cell
+  for (const ExpectedPoint& point : expected) {
+    if (query.is_left_out && query.is_left_out(point.id)) continue;
+    points.emplace_back(cell_at(position_of(point.id)), point.id);
+  }
+  std::ranges::sort(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i == 0 || points[i].first != points[i - 1].first) view.cells.push_back({points[i].first});
+    CellInView& cell = view.cells.back();
+    const bool is_alone = !query.is_in_common || !query.is_in_common(points[i].second);
+    ++cell.expected;
+    cell.expected_alone += is_alone;
+    if (!std::ranges::binary_search(shown, points[i].second)) continue;
+    ++cell.seen;
+    cell.seen_alone += is_alone;
+    cell.centre_of_seen += (position_of(points[i].second) - cell.centre_of_seen) / cell.seen;
+  }
+  return view;
+}
+
+}  // namespace byre

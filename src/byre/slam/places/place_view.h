@@ -1,0 +1,52 @@
+#pragma once
+
+#include "byre/slam/places/offline_map.h"
+#include "byre/slam/tracking/image_mask.h"
+#include "byre/slam/tracking/tracking.h"
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace byre {
+
+// Points of one map cell (2 m cube) that should be in view, and those that are seen.
+struct CellInView {
+  std::array<int, 3> cell{};  // index along x, y and z
+  int expected = 0;
+  int seen = 0;  // inliers with the same image patch, not only a similar corner
+  Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
+  // Points that no look-alike place has, see PlaceViewQuery.
+  int expected_alone = 0;
+  int seen_alone = 0;
+};
+
+// The part of a map that a frame shows from a pose.
+struct PlaceView {
+  // True: the expected points were seen by keyframes near the pose, so only covering, moving or another light can hide
+  // them. False: all points in the frustum are expected, though walls may hide them.
+  bool is_near_keyframe = false;
+  ScratchVector<CellInView> cells;  // ascending
+};
+
+// Keyframes near a pose with a similar viewing direction, ascending, and the points that they saw, ascending.
+ScratchVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Pose& camera_from_world);
+ScratchVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
+
+struct PlaceViewQuery {
+  const Map& map;
+  const Rig& rig;
+  const Frame& frame;
+  const TrackedFrame& tracked;                  // pose and inliers, in the map's frame
+  std::span<const PointId> nearby;              // points of keyframes near the pose
+  std::span<const PointId> candidates;          // points around the pose, used if nearby ones are too few
+  ImageMask hidden{};                           // image cells without expected points
+  std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
+  std::function<bool(PointId)> is_in_common{};  // points that a look-alike place has as well; empty: none
+  double metre = 1.0;                           // one metre in lengths of the map
+};
+
+PlaceView view_of_place(const PlaceViewQuery& query);
+
+}  // namespace byre

@@ -1,0 +1,81 @@
+#include "byre/slam/system/stored_map.h"
+
+#include "byre/input_error.h"
+#include "byre/place/map_words.h"
+
+#include <utility>
+
+namespace byre {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Empty if the plan does not define walls.
+std::optional<PlacedWalls> walls_of(const StoredMap& stored, const fs::path& map, const DrawnFloorPlan& drawn) {
+  const FloorPlan& plan = drawn.plan;
+  if (!stored.plan) {
+    throw InputError(map.string(), "is not registered on a floor plan, but a plan is given",
+                     "register it on the plan with byre register or byre view");
+  }
+  if (stored.plan->plan != plan.name) {
+    throw InputError(plan.name, "is not the floor plan of the map, " + stored.plan->plan,
+                     "give that plan, or register the map on this one");
+  }
+  if (!plan.occupied_threshold) return std::nullopt;
+  return place_walls(stored.map, *stored.plan, PlanWalls(plan, drawn.occupancy));
+}
+
+// Adds words. Throws InputError for a map without metric scale.
+StoredMap made_ready(StoredMap stored, const fs::path& path, const Vocabulary& vocabulary) {
+  if (stored.scale != MapScale::metric) {
+    throw InputError(path.string(), "has no metric scale, which missions need",
+                     "set it with byre scale, or --scale when importing a model");
+  }
+  if (stored.map.keyframe_count() == 0)
+    throw InputError(path.string(), "contains no keyframes", "map a recording first");
+  add_words(stored, vocabulary);
+  return stored;
+}
+
+}  // namespace
+
+Vocabulary open_vocabulary(const std::optional<fs::path>& path) {
+  return Vocabulary::load(path ? *path : default_vocabulary_path());
+}
+
+StoredMap load_for_mapping(const fs::path& path, const Vocabulary& vocabulary) {
+  return made_ready(load_map(path), path, vocabulary);
+}
+
+std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const Vocabulary& vocabulary,
+                                                   const std::optional<DrawnFloorPlan>& plan) {
+  StoredMap stored = made_ready(open_map(path), path, vocabulary);
+  std::optional<PlacedWalls> walls;
+  if (plan) walls = walls_of(stored, path, *plan);
+  auto offline = std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
+                                                    std::move(walls), read_odometry_calibration(stored.notes));
+  if (const InputError* const damage = offline->map().damage()) throw InputError(*damage);
+  return offline;
+}
+
+std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {
+  std::vector<int> counts(recordings, 0);
+  for (const KeyframeId id : map.keyframe_ids())
+    ++counts.at(static_cast<std::size_t>(map.keyframe_header(id)->recording));
+  return counts;
+}
+
+void save_for_missions(StoredMap stored, const Vocabulary& vocabulary, const std::string& site, const fs::path& path) {
+  save_for_missions_and_reload(stored, vocabulary, site, path);
+}
+
+void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
+                                  const fs::path& path) {
+  stored.notes["software"] = "byre " BYRE_VERSION;
+  if (!site.empty()) stored.notes["site"] = site;
+  add_words(stored, vocabulary);
+  save_and_reread(stored, path);
+}
+
+}  // namespace byre

@@ -1,0 +1,166 @@
+#include "byre/slam/tracking/tracking_steps.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace byre {
+namespace {
+
+constexpr double kMinInlierShare = 0.5;  // share of the matches; with fewer the prediction was wrong
+
+PoseObservation observation_of(const MapPoint& point, const Keypoint& keypoint, const PixelMeasurement& pixel) {
+  const StereoPixel measured(pixel.pixel.x(), pixel.pixel.y(), keypoint.disparity);
+  return pose_observation(point, measured, pixel.sigma, keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0);
+}
+
+// Measures the pixel of the point in the frame.
+PixelMeasurement measure(const MapView& map, const MapPoint& point, const CameraView& frame, int feature) {
+  const Keyframe* const keyframe = map.find_keyframe(point.reference.keyframe);
+  if (keyframe == nullptr) return corner_measurement(frame.features.keypoint(feature));
+  const CameraView view{*keyframe->frame.features, map.rig_of(*keyframe, point.reference.keyframe),
+                        keyframe->camera_from_world};
+  const Sighting& sighting = keyframe->sightings[static_cast<std::size_t>(point.reference.feature)];
+  return measure_pixel({view, point.reference.feature, sighting.pixel}, point.position_in_world, frame, feature);
+}
+
+ScratchVector<TrackedFeature> matches_by(const PoseRefinement& refined, const MeasuredPoints& measured,
+                                         bool agreement) {
+  ScratchVector<TrackedFeature> matches;
+  matches.reserve(measured.features.size());
+  for (std::size_t i = 0; i < measured.features.size(); ++i) {
+    if (static_cast<bool>(refined.inliers[i]) == agreement) matches.push_back(measured.features[i]);
+  }
+  return matches;
+}
+
+}  // namespace
+
+PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measured, double pixel_sigma,
+                                 double disparity_sigma) {
+  PoseObservation observation;
+  observation.point_in_world = point.position_in_world;
+  observation.point_covariance = point.covariance;
+  observation.measured = measured;
+  observation.pixel_sigma = pixel_sigma;
+  observation.disparity_sigma = disparity_sigma;
+  return observation;
+}
+
+void project_visible(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
+                     const ImageMask& hidden, std::vector<ExpectedPoint>& expected) {
+  project_points(map, points, camera_from_world, rig, expected);
+  if (!hidden.any()) return;
+  std::erase_if(expected,
+                [&](const ExpectedPoint& point) { return hidden.hides(point.projection.predicted.head<2>(), rig); });
+}
+
+void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                     const std::vector<GuidedMatch>& matches, MeasuredPoints& measured) {
+  const CameraView view{*frame.features, rig, camera_from_world};
+  measured.observations.clear();
+  measured.features.clear();
+  reserve_pow2(measured.observations, matches.size());
+  reserve_pow2(measured.features, matches.size());
+  for (const GuidedMatch& match : matches) {
+    const MapPoint& point = *map.find_point(match.point);
+    const PixelMeasurement pixel = measure(map, point, view, match.feature);
+    measured.observations.push_back(observation_of(point, frame.features->keypoint(match.feature), pixel));
+    measured.features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
+  }
+}
+
+void part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
+                       double max_variance_factor, PartedPoints& parted) {
+  PoseRefinementOptions at_pose;
+  at_pose.rounds = 0;
+  at_pose.max_variance_factor = max_variance_factor;
+  parted.agreeing.observations.clear();
+  parted.agreeing.features.clear();
+  parted.disagreeing.clear();
+  const auto judged = refine_pose(camera_from_world, rig, measured.observations, at_pose);
+  for (std::size_t i = 0; i < measured.features.size(); ++i) {
+    if (!judged || !judged->inliers[i]) {
+      parted.disagreeing.push_back(measured.features[i]);
+      continue;
+    }
+    parted.agreeing.observations.push_back(measured.observations[i]);
+    parted.agreeing.features.push_back(measured.features[i]);
+  }
+}
+
+bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
+  return refined.inlier_count >= options.min_inliers &&
+         refined.inlier_count >= kMinInlierShare * static_cast<double>(matches);
+}
+
+std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
+                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
+                               const TrackOptions& options) {
+  thread_local std::vector<GuidedMatch> matches;  // buffer
+  thread_local std::vector<PoseObservation> observations;
+  match_expected(*frame.features, map, expected, {radius}, matches);
+  observations.clear();
+  reserve_pow2(observations, matches.size());
+  for (const GuidedMatch& match : matches) {
+    const Keypoint& keypoint = frame.features->keypoint(match.feature);
+    observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
+  }
+  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, {});
+  if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
+  return refined->camera_from_world;
+}
+
+void count_shared_points(const MapView& map, std::span<const TrackedFeature> features, SharedPoints& shared) {
+  shared.clear();
+  for (const TrackedFeature& feature : features) {
+    map.visit_observations(feature.point, [&](const Observation& observation) {
+      const auto at = std::ranges::lower_bound(shared, observation.keyframe, {}, &std::pair<KeyframeId, int>::first);
+      if (at != shared.end() && at->first == observation.keyframe) {
+        ++at->second;
+      } else {
+        shared.insert(at, {observation.keyframe, 1});
+      }
+    });
+  }
+}
+
+std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin) {
+  std::optional<KeyframeId> best;
+  int most = 0;
+  for (const auto& [keyframe, count] : shared) {
+    if (count <= most || (origin && keyframe.origin != *origin)) continue;
+    best = keyframe;
+    most = count;
+  }
+  return best;
+}
+
+ScratchVector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
+  return matches_by(refined, measured, true);
+}
+
+ScratchVector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured) {
+  return matches_by(refined, measured, false);
+}
+
+bool shows_patch(const TrackedFeature& feature, const Features& features) {
+  return features.find_patch(feature.feature) == nullptr ||
+         feature.pixel_sigma < corner_measurement(features.keypoint(feature.feature)).sigma;
+}
+
+TrackedFrame tracked_frame(const PoseRefinement& refined, ScratchVector<TrackedFeature> inliers, KeyframeId reference,
+                           const MapView& map) {
+  TrackedFrame tracked;
+  tracked.camera_from_world = refined.camera_from_world;
+  tracked.covariance = refined.covariance;
+  tracked.match_covariance = refined.covariance;
+  tracked.features = std::move(inliers);
+  tracked.reference = reference;
+  if (const Keyframe* const keyframe = map.find_keyframe(reference)) {
+    tracked.covariance +=
+        move_covariance(keyframe->covariance, tracked.camera_from_world * inverse(keyframe->camera_from_world));
+  }
+  return tracked;
+}
+
+}  // namespace byre

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "byre/slam/tracking/guided_matching.h"
+#include "byre/slam/tracking/measurement.h"
+#include "byre/slam/tracking/tracking.h"
+
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+// Steps shared by tracking on one map and on two.
+namespace byre {
+
+inline constexpr float kNarrowRadius = 4.0f;  // pixels at octave 0, around the projection from a first pose
+
+PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measured, double pixel_sigma,
+                                 double disparity_sigma);
+
+// Same as project_points(), without hidden points. Refills `expected`.
+void project_visible(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
+                     const ImageMask& hidden, std::vector<ExpectedPoint>& expected);
+
+// Matches measured in the image: observations, and the features that inliers become; equal indices.
+struct MeasuredPoints {
+  std::vector<PoseObservation> observations;
+  std::vector<TrackedFeature> features;
+};
+
+// Measures each match by its point's reference patch if that keyframe still exists, else by its corner. Refills
+// `measured`.
+void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                     const std::vector<GuidedMatch>& matches, MeasuredPoints& measured);
+
+// Matches split by agreement with a given pose.
+struct PartedPoints {
+  MeasuredPoints agreeing;
+  std::vector<TrackedFeature> disagreeing;
+};
+
+// max_variance_factor: factor on the variances of the measurements, that of the points that gave the pose. Refills
+// `parted`.
+void part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
+                       double max_variance_factor, PartedPoints& parted);
+
+// Whether enough of the matches agree on the pose.
+bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options);
+
+// First pose from detected corners, matched within a radius (pixels) around the predictions. Empty if it is not sound.
+std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
+                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
+                               const TrackOptions& options);
+
+// Number of the points that each keyframe sees, by keyframe. Refills `shared`.
+using SharedPoints = std::vector<std::pair<KeyframeId, int>>;
+void count_shared_points(const MapView& map, std::span<const TrackedFeature> features, SharedPoints& shared);
+
+// The keyframe that sees most of them; of one map only if origin is given.
+std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin = {});
+
+ScratchVector<TrackedFeature> inliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+ScratchVector<TrackedFeature> outliers_of(const PoseRefinement& refined, const MeasuredPoints& measured);
+
+// Whether the feature shows the point itself by its patch, not only a similar corner.
+bool shows_patch(const TrackedFeature& feature, const Features& features);
+
+// Counts of expected points and of matches are left to the caller.
+TrackedFrame tracked_frame(const PoseRefinement& refined, ScratchVector<TrackedFeature> inliers, KeyframeId reference,
+                           const MapView& map);
+
+}  // namespace byre

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "byre/viewer/web/foxglove_protocol.h"
+#include "byre/viewer/web/live_topics.h"
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace byre {
+
+// Message to send: head, then rest.
+struct FoxgloveOutput {
+  std::string head;
+  bool is_binary = false;
+  std::shared_ptr<const std::vector<std::byte>> rest;  // null: head only
+};
+
+struct FoxgloveLimits {
+  std::size_t max_bytes = std::size_t{32} << 20;  // bytes of queued messages
+  std::size_t max_messages = 500;                 // number of queued messages
+  std::size_t max_answers = 64;  // number of queued answers; above, the client is disconnected as it never reads
+};
+
+// Subscriptions and output queue of a Foxglove client. For a slow client the oldest messages are dropped, with a status
+// message. Owned by the server's thread.
+class FoxgloveClient {
+ public:
+  // The topics outlive this.
+  FoxgloveClient(LiveTopics& topics, std::string_view session, const FoxgloveLimits& limits = {});
+  ~FoxgloveClient();
+  FoxgloveClient(const FoxgloveClient&) = delete;
+  FoxgloveClient& operator=(const FoxgloveClient&) = delete;
+
+  // Handles a request. False: disconnect the client.
+  bool receive(std::string_view bytes, bool is_binary);
+
+  // Queues a message if its topic is subscribed.
+  void offer(const LiveMessage& message);
+
+  // Next message to send.
+  std::optional<FoxgloveOutput> next();
+
+ private:
+  struct Waiting {
+    std::uint32_t subscription = 0;
+    bool is_new = false;  // accept no message older than the subscription
+    LiveMessage message;
+  };
+
+  void subscribe(const FoxgloveRequest::Subscription& wanted);
+  void unsubscribe(std::uint32_t id);
+  void send_error(std::string_view reason);
+  void add(Waiting waiting);
+  void drop_oldest();
+
+  LiveTopics& topics_;
+  FoxgloveLimits limits_;  // constant after construction
+  std::deque<std::string> answers_;
+  std::size_t advertised_ = 0;                                     // topics advertised so far
+  std::map<std::uint32_t, ros::MessageSink::TopicId> subscribed_;  // topics by subscription id
+  std::deque<Waiting> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  bool has_dropped_ = false;  // whether messages were dropped since the queue was empty
+  Timestamp time_{};          // last time sent
+};
+
+}  // namespace byre

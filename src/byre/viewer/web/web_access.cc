@@ -1,0 +1,104 @@
+#include "byre/viewer/web/web_access.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <sys/random.h>
+
+namespace byre {
+namespace {
+
+// Host name in "name:port", "[::1]:port" or "name".
+std::string_view name_in(std::string_view host) {
+  const std::size_t closing = host.find(']');
+  if (closing != std::string_view::npos) return host.substr(0, closing + 1);
+  return host.substr(0, host.find(':'));
+}
+
+bool is_own_page(const WebOrigin& from) {
+  constexpr std::string_view kScheme = "http://";
+  return from.origin.empty() || (from.origin.starts_with(kScheme) && from.origin.substr(kScheme.size()) == from.host);
+}
+
+// Host name in "http://name:port" or "https://name".
+std::string_view machine_of(std::string_view origin) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (origin.starts_with(scheme)) return name_in(origin.substr(scheme.size()));
+  }
+  return {};
+}
+
+bool is_application_of_foxglove(std::string_view origin) {
+  constexpr std::array<std::string_view, 3> kPages = {"https://app.foxglove.dev", "https://studio.foxglove.dev",
+                                                      "file://"};
+  constexpr std::array<std::string_view, 3> kOwnNames = {"localhost", "127.0.0.1", "[::1]"};
+  return std::ranges::find(kPages, origin) != kPages.end() ||
+         std::ranges::find(kOwnNames, machine_of(origin)) != kOwnNames.end();
+}
+
+bool may_ask(const WebAccess& access, const WebOrigin& from) {
+  if (is_own_page(from)) return true;
+  return from.is_foxglove && (!access.token.empty() || is_application_of_foxglove(from.origin));
+}
+
+bool equal_in_constant_time(std::string_view given, std::string_view secret) {
+  unsigned difference = given.size() == secret.size() ? 0 : 1;
+  for (std::size_t i = 0; i < secret.size(); ++i) {
+    const char character = i < given.size() ? given[i] : '\0';
+    difference |= static_cast<unsigned char>(character ^ secret[i]);
+  }
+  return difference == 0;
+}
+
+}  // namespace
+
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1" || address == "localhost";
+}
+
+WebAccess access_to(const std::string& bound_address) {
+  if (!is_loopback(bound_address)) return {{}, make_token()};
+  return {{"localhost", "127.0.0.1", "[::1]", bound_address}, ""};
+}
+
+std::string make_token() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw std::runtime_error("the system provides no random numbers for a token");
+  }
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    token += kDigits[byte >> 4];
+    token += kDigits[byte & 15];
+  }
+  return token;
+}
+
+std::string_view rejection_reason(const WebAccess& access, const WebOrigin& from) {
+  if (!access.host_names.empty() && std::ranges::find(access.host_names, name_in(from.host)) == access.host_names.end())
+    return "requests are answered only from this machine, under the name localhost";
+  if (!may_ask(access, from)) return "requests are answered only from byre's own page";
+  if (!access.token.empty() && !equal_in_constant_time(query_value(from.target, "token"), access.token))
+    return "the token is missing or wrong: open the address printed at the start of byre";
+  return {};
+}
+
+std::string_view path_of(std::string_view target) {
+  return target.substr(0, target.find('?'));
+}
+
+std::string_view query_value(std::string_view target, std::string_view name) {
+  const std::size_t question = target.find('?');
+  if (question == std::string_view::npos) return {};
+  std::string_view rest = target.substr(question + 1);
+  while (!rest.empty()) {
+    const std::string_view field = rest.substr(0, rest.find('&'));
+    if (field.starts_with(name) && field.substr(name.size()).starts_with('=')) return field.substr(name.size() + 1);
+    rest.remove_prefix(std::min(rest.size(), field.size() + 1));
+  }
+  return {};
+}
+
+}  // namespace byre

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "byre/floor_plan.h"
+#include "byre/map/map_file.h"
+#include "byre/map/plan/floor_plan.h"
+#include "byre/viewer/web/web_server.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// Map to view and, with a plan, to register on it.
+struct ViewedMap {
+  std::string name;
+  StoredMap stored;
+  std::optional<FloorPlan> plan;
+  std::optional<std::filesystem::path> output;     // file for the registered copy; empty: saving is disabled
+  double pick_sigma = PlanCorrespondence{}.sigma;  // metres
+  PlanRegistrationOptions registration;
+};
+
+// Shows a map in a browser, and registers it on a plan by picked points.
+class MapViewer {
+ public:
+  // Throws InputError as WebServer does, and if the plan's image cannot be read.
+  MapViewer(ViewedMap map, const WebServerOptions& server);
+
+  const std::vector<std::string>& urls() const { return server_.urls(); }
+
+ private:
+  WebServer server_;  // constant after construction
+};
+
+}  // namespace byre

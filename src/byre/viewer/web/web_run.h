@@ -1,0 +1,69 @@
+#pragma once
+
+#include "byre/calibration.h"
+#include "byre/floor_plan.h"
+#include "byre/map/plan_registration.h"
+#include "byre/viewer/web/run_mailbox.h"
+#include "byre/viewer/web/web_server.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace byre {
+
+// Description of a run before its first frame.
+struct RunDescription {
+  std::string name;
+  Calibration calibration;
+  int frames = 0;                            // frames in the recording
+  Timestamp last_time{};                     // time of the recording's last frame
+  std::string map_name;                      // name of the offline map; empty without one
+  MapScene offline;                          // points and keyframes of the offline map
+  std::optional<Eigen::Vector3d> up_in_map;  // unit vector; empty if the offline map does not provide it
+  std::optional<FloorPlan> plan;
+  std::optional<PlanRegistration> registration;  // registration of the offline map on a plan
+};
+
+struct RunViewerOptions {
+  WebServerOptions server;
+  std::size_t max_image_bytes = 200'000'000;     // memory for image history; older images are thinned out
+  int jpeg_quality = 80;                         // percent
+  std::chrono::milliseconds map_interval{1000};  // least time between copies of the online map, see RunViewer
+};
+
+// Shows a run in a browser, live and afterwards for its own lifetime. The run's thread only copies: left image and seen
+// points of each frame, the online map at intervals. The viewer's thread rectifies, compresses and sends; it skips
+// images if they come too fast, but no reports.
+class RunViewer {
+ public:
+  // Throws InputError as WebServer does, and if the plan's image cannot be read or the calibration cannot be rectified.
+  RunViewer(RunDescription description, const RunViewerOptions& options);
+
+  const std::vector<std::string>& urls() const { return server_.urls(); }
+
+  // Call it after each frame, from the session's thread.
+  void show(const Image& recorded_left, const FrameReport& report, const Session& session);
+
+  // Sink for messages to Foxglove clients. Put the messages of a frame before show().
+  ros::MessageSink& messages() { return *topics_; }
+
+  // No more frames follow.
+  void end_run();
+
+ private:
+  void copy_map(const Map& online);
+
+  // Constant after construction.
+  std::chrono::milliseconds map_interval_;
+  Timestamp last_time_;
+  std::shared_ptr<RunMailbox> mailbox_;
+  std::shared_ptr<LiveTopics> topics_;
+  WebServer server_;
+
+  // Owned by the calling thread.
+  std::chrono::steady_clock::time_point next_map_{};  // time of the next copy of the online map
+};
+
+}  // namespace byre
