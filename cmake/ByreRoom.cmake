@@ -1,5 +1,5 @@
-# Builds the library from rooms: one object library per room, so that a room and the floors below it build and test
-# alone.
+# Builds the library from rooms: one object library per folder of a room, so that a room and the floors below it build
+# and test alone.
 
 # Compiler flags of every target of this project; not exported to consumers.
 add_library(byre_flags INTERFACE)
@@ -34,9 +34,9 @@ if(BYRE_BUILD_TESTS)
   add_custom_target(byre_unit_tests)
 endif()
 
-# Rooms without hot code but with many library templates: -O1 saves a third of their compile time. Excludes what robots
-# link and what produces figures; see also cli/CMakeLists.txt.
-set(BYRE_ROOMS_COLD ros bag viewer benchmark demo dds fleet node)
+# Folders without hot code but with many library templates: -O1 saves a third of their compile time. Excludes what
+# robots link and what produces figures; see also cli/CMakeLists.txt.
+set(BYRE_FOLDERS_COLD io/ros io/bag viewer viewer/web benchmark benchmark/demo ros2/dds ros2/fleet ros2/node)
 
 # Compiles a target for short build time instead of speed.
 function(byre_compile_quickly target)
@@ -51,68 +51,118 @@ function(byre_compile_test target)
   endif()
 endfunction()
 
-# Rooms with the slowest tests, started first so that none of them runs alone at the end.
-set(BYRE_ROOMS_TESTED_FIRST session slam playback simulation)
+# Folders whose tests are programs of their own, byre_<room>_<folder>_tests. The others share the program of their room.
+set(BYRE_FOLDERS_TESTED_ALONE slam/mapping slam/localisation slam/session slam/system ros2/dds ros2/fleet ros2/node)
 
-# Rooms whose tests read files of the source tree. All others must not depend on its path, so that clones in several
+# The slowest tests, started first so that none of them runs alone at the end.
+set(BYRE_TESTED_FIRST slam_session slam playback simulation)
+
+# Folders whose tests read files of the source tree. All others must not depend on its path, so that clones in several
 # folders share the compiler cache.
-set(BYRE_ROOMS_WITH_DATA dataset evaluation place)
+set(BYRE_FOLDERS_WITH_DATA io/recording geometry/evaluation place)
 
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
     ${BYRE_FMT} ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
-# Adds src/byre/<room>: its objects as byre_<room>, its tests as byre_<room>_tests. LINKS: libraries in addition to
-# those of all rooms.
-function(byre_add_room room)
+# Sets a variable to the objects of rooms.
+function(byre_objects_of variable)
+  set(objects)
+  foreach(room IN LISTS ARGN)
+    get_property(in_room GLOBAL PROPERTY BYRE_OBJECTS_${room})
+    list(APPEND objects ${in_room})
+  endforeach()
+  set(${variable} ${objects} PARENT_SCOPE)
+endfunction()
+
+# Adds the test program byre_<name>_tests of the room and of the rooms before it. TEST_FILES: targets with its tests.
+function(byre_add_test_program name room)
+  cmake_parse_arguments(PARSE_ARGV 2 its "" "" "TEST_FILES;LINKS")
+  get_property(rooms_below GLOBAL PROPERTY BYRE_ROOMS_ADDED)
+  byre_objects_of(objects ${room} ${rooms_below})
+  # Test objects are linked last, so that template instances of the library take precedence.
+  foreach(target IN LISTS its_TEST_FILES)
+    list(APPEND objects $<TARGET_OBJECTS:${target}>)
+  endforeach()
+  add_executable(byre_${name}_tests ${objects})
+  target_link_libraries(byre_${name}_tests PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS} GTest::gmock_main)
+  set_target_properties(byre_${name}_tests PROPERTIES LINKER_LANGUAGE CXX)
+  add_dependencies(byre_unit_tests byre_${name}_tests)
+  add_test(NAME ${name} COMMAND byre_${name}_tests)
+  set_tests_properties(${name} PROPERTIES LABELS unit)
+  if(name IN_LIST BYRE_TESTED_FIRST)
+    set_tests_properties(${name} PROPERTIES COST 70)
+  endif()
+endfunction()
+
+# Adds the objects of src/byre/<folder> as byre_<folder>, those of its tests as byre_<folder>_test_files; in names of
+# targets "_" replaces "/".
+function(byre_add_folder folder)
   cmake_parse_arguments(PARSE_ARGV 1 its "" "" "LINKS")
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/${room}/*.cc)
+  string(REPLACE "/" "_" name ${folder})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/${folder}/*.cc)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_(test|scene)\\.cc$")
   list(FILTER tests INCLUDE REGEX "_(test|scene)\\.cc$")
-  if(NOT sources)
-    return()
-  endif()
-  add_library(byre_${room} OBJECT ${sources})
-  target_link_libraries(byre_${room} PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS})
-  set_target_properties(byre_${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  if(room IN_LIST BYRE_ROOMS_COLD)
-    byre_compile_quickly(byre_${room})
-    byre_precompile(cold_room byre_${room})
-  else()
-    byre_precompile(room byre_${room})
-  endif()
-  byre_unite(byre_${room})
-
-  get_property(rooms_below GLOBAL PROPERTY BYRE_ROOMS_ADDED)
-  set_property(GLOBAL APPEND PROPERTY BYRE_ROOMS_ADDED ${room})
-  if(tests AND BYRE_BUILD_TESTS)
-    add_library(byre_${room}_test_files OBJECT ${tests})
-    target_link_libraries(byre_${room}_test_files PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS} GTest::gmock)
-    if(room IN_LIST BYRE_ROOMS_WITH_DATA)
-      target_compile_definitions(byre_${room}_test_files PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
-    endif()
-    if(room IN_LIST BYRE_TESTS_APART)
-      byre_precompile(test_apart byre_${room}_test_files)
+  if(sources)
+    add_library(byre_${name} OBJECT ${sources})
+    target_link_libraries(byre_${name} PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS})
+    set_target_properties(byre_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    if(folder IN_LIST BYRE_FOLDERS_COLD)
+      byre_compile_quickly(byre_${name})
+      byre_precompile(cold_room byre_${name})
     else()
-      byre_compile_test(byre_${room}_test_files)
-      byre_precompile(test byre_${room}_test_files)
-      byre_unite(byre_${room}_test_files)
+      byre_precompile(room byre_${name})
     endif()
-    # Test objects are linked last, so that template instances of the library take precedence.
-    add_executable(byre_${room}_tests $<TARGET_OBJECTS:byre_${room}>)
-    foreach(below IN LISTS rooms_below)
-      target_sources(byre_${room}_tests PRIVATE $<TARGET_OBJECTS:byre_${below}>)
-    endforeach()
-    target_sources(byre_${room}_tests PRIVATE $<TARGET_OBJECTS:byre_${room}_test_files>)
-    target_link_libraries(byre_${room}_tests PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS} GTest::gmock_main)
-    set_target_properties(byre_${room}_tests PROPERTIES LINKER_LANGUAGE CXX)
-    add_dependencies(byre_unit_tests byre_${room}_tests)
-    add_test(NAME ${room} COMMAND byre_${room}_tests)
-    set_tests_properties(${room} PROPERTIES LABELS unit)
-    if(room IN_LIST BYRE_ROOMS_TESTED_FIRST)
-      set_tests_properties(${room} PROPERTIES COST 70)
+    byre_unite(byre_${name})
+  endif()
+  if(tests AND BYRE_BUILD_TESTS)
+    add_library(byre_${name}_test_files OBJECT ${tests})
+    target_link_libraries(byre_${name}_test_files PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS} GTest::gmock)
+    if(folder IN_LIST BYRE_FOLDERS_WITH_DATA)
+      target_compile_definitions(byre_${name}_test_files PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+    endif()
+    if(folder IN_LIST BYRE_TESTS_APART)
+      byre_precompile(test_apart byre_${name}_test_files)
+    else()
+      byre_compile_test(byre_${name}_test_files)
+      byre_precompile(test byre_${name}_test_files)
+      byre_unite(byre_${name}_test_files)
     endif()
   endif()
+endfunction()
+
+# Adds the room src/byre/<room> with its folders and its tests, byre_<room>_tests. LINKS: libraries in addition to those
+# of all rooms.
+function(byre_add_room room)
+  cmake_parse_arguments(PARSE_ARGV 1 its "" "" "LINKS")
+  set(source ${CMAKE_CURRENT_SOURCE_DIR}/src/byre)
+  file(GLOB folders CONFIGURE_DEPENDS RELATIVE ${source} ${source}/${room}/*)
+  list(FILTER folders EXCLUDE REGEX "\\.")
+  list(PREPEND folders ${room})
+  set(test_files)
+  set(programs)
+  foreach(folder IN LISTS folders)
+    byre_add_folder(${folder} LINKS ${its_LINKS})
+    string(REPLACE "/" "_" name ${folder})
+    if(TARGET byre_${name})
+      set_property(GLOBAL APPEND PROPERTY BYRE_OBJECTS_${room} $<TARGET_OBJECTS:byre_${name}>)
+    endif()
+    if(NOT TARGET byre_${name}_test_files)
+      continue()
+    endif()
+    if(folder IN_LIST BYRE_FOLDERS_TESTED_ALONE)
+      list(APPEND programs ${name})
+    else()
+      list(APPEND test_files byre_${name}_test_files)
+    endif()
+  endforeach()
+  if(test_files)
+    byre_add_test_program(${room} ${room} TEST_FILES ${test_files} LINKS ${its_LINKS})
+  endif()
+  foreach(program IN LISTS programs)
+    byre_add_test_program(${program} ${room} TEST_FILES byre_${program}_test_files LINKS ${its_LINKS})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY BYRE_ROOMS_ADDED ${room})
 endfunction()
 
 # Consumers need C++20, Eigen and the same alignment; see ByreInstall.cmake for the headers.
@@ -130,9 +180,8 @@ function(byre_add_component component)
   add_library(${library} STATIC)
   add_library(byre::${component} ALIAS ${library})
   set_target_properties(${library} PROPERTIES OUTPUT_NAME byre_${component} EXPORT_NAME ${component})
-  foreach(room IN LISTS part_ROOMS)
-    target_sources(${library} PRIVATE $<TARGET_OBJECTS:byre_${room}>)
-  endforeach()
+  byre_objects_of(objects ${part_ROOMS})
+  target_sources(${library} PRIVATE ${objects})
   list(TRANSFORM part_NEEDS PREPEND byre_component_)
   byre_set_usage(${library})
   target_link_libraries(${library} PUBLIC ${part_NEEDS} PRIVATE ${part_LINKS})
@@ -142,9 +191,7 @@ endfunction()
 # libbyre.so, byre::shared: the objects of core and those that read calibrations, without readers of image files and
 # videos. Exports the functions of the public headers, except recordings and floor plans.
 function(byre_add_shared_library)
-  add_library(byre_shared SHARED)
-  target_sources(byre_shared PRIVATE
-    "$<FILTER:$<TARGET_OBJECTS:byre_dataset>,INCLUDE,/(calibration_file|calibration_fields|camera_fields)[.]cc>")
+  add_library(byre_shared SHARED $<TARGET_OBJECTS:byre_io_calibration>)
   add_library(byre::shared ALIAS byre_shared)
   get_target_property(objects byre_component_core SOURCES)
   get_target_property(links byre_component_core LINK_LIBRARIES)

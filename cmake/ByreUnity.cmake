@@ -1,11 +1,11 @@
 # Unity builds: several files compile as one, so that common includes, which dominate the compile time of tests and
-# commands, are parsed once. Names in anonymous namespaces must therefore be unique in a room, see
+# commands, are parsed once. Names in anonymous namespaces must therefore be unique in a folder, in cli in the room, see
 # tools/check_floors.py.
-option(BYRE_UNITY "Compile several files of a room as one: a build from scratch has half the objects" ON)
+option(BYRE_UNITY "Compile several files of a folder as one" ON)
 
-# Rooms whose tests compile separately, with the optimisation of the library. In large files, or with less optimisation,
-# the compiler does not inline Eigen's allocation functions, see tools/check_allocations.sh, which checks only this
-# build.
+# Folders whose tests compile separately, with the optimisation of the library. In large files, or with less
+# optimisation, the compiler does not inline Eigen's allocation functions, see tools/check_allocations.sh, which checks
+# only this build.
 if(NOT BYRE_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
   set(BYRE_TESTS_APART optimise)
 endif()
@@ -16,8 +16,7 @@ set(BYRE_FILES_BY_PROCESSOR features/downscale.cc features/remap.cc features/gau
     features/block_differences.cc features/align_sums.cc features/descriptor.cc features/row_costs.cc
     optimise/pose_expansion.cc)
 # Files whose objects are linked individually.
-set(BYRE_FILES_PICKED io/calibration/calibration_file.cc io/calibration/calibration_fields.cc io/calibration/camera_fields.cc
-    viewer/web/web_library.cc)
+set(BYRE_FILES_PICKED viewer/web/web_library.cc)
 # Files with many Eigen types, which GCC compiles twice as slowly together with others as alone.
 set(BYRE_FILES_LARGE geometry/essential.cc)
 list(TRANSFORM BYRE_FILES_BY_PROCESSOR PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)
