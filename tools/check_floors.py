@@ -3,11 +3,12 @@
 
 Usage: check_floors.py [SOURCE]        SOURCE: folder of rooms, default: src/byre of this project.
 
-A room may include only rooms on lower floors. Some headers and calls are restricted, see KEPT_IN and FORBIDDEN. A type
-is defined by one header only: two types of one name in one program violate the one-definition rule. Names local to a
-file are unique in its room, because several files compile as one (unity builds). File-local functions may overload by
-types of byre. They may not overload by convertible types such as numbers, or another file could call them instead of a
-function that a header declares.
+A room is a folder of SOURCE with the folders in it. It may include only rooms on lower floors. Folders of a room must
+not include each other in a circle. Some headers and calls are restricted, see KEPT_IN and FORBIDDEN. A type is defined
+by one header only: two types of one name in one program violate the one-definition rule.
+Names local to a file are unique in its folder, because files of a folder compile as one (unity builds, BYRE_UNITY); in
+cli they are unique in the room. File-local functions may overload by types of byre. They may not overload by
+convertible types such as numbers, or another file could call them instead of a function that a header declares.
 Prints one line per fault, "file:line: what is wrong". Exit code: 0 all rules hold, 1 faults found, 2 no source files.
 """
 import functools
@@ -18,67 +19,60 @@ from typing import Iterator, NamedTuple
 
 # From the ground up; ARCHITECTURE.md describes the rooms.
 FLOORS = [
-    {"input", "workers"},
-    {"geometry", "ros"},
-    {"bag", "motion", "features", "optimise", "evaluation", "dds"},
-    {"dataset"},
-    {"map"},
+    {"base"},
+    {"geometry"},
+    {"features", "optimise", "odometry"},
+    {"map", "io"},
     {"place", "simulation"},
     {"slam"},
-    {"mapping"},
-    {"localisation"},
-    {"session"},
-    {"system"},
-    {"playback"},
-    {"archive"},
-    {"assessment", "viewer", "fleet"},
-    {"benchmark", "camera"},
-    {"demo", "node"},
+    {"playback", "viewer"},
+    {"benchmark", "camera", "ros2"},
     {"cli"},
 ]
-# Room of each header of include/byre.
+# Room of each header of include/byre. Its functions may be defined in a higher room, as those of floor_plan.h in io.
 PUBLIC = {
-    "input_error.h": "input",
+    "input_error.h": "base",
     "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "pose_hint.h": "geometry",
-    "rig.h": "geometry",
-    "trajectory.h": "geometry", "two_view_failure.h": "geometry",
-    "body_motion.h": "motion", "motion_warning.h": "motion",
-    "features.h": "features", "image.h": "features", "image_condition.h": "features",
-    "trajectory_error.h": "evaluation", "trajectory_file.h": "evaluation",
-    "calibration_file.h": "dataset", "floor_plan.h": "dataset", "recording.h": "dataset",
-    "frame_cuts.h": "slam", "health.h": "slam", "session_event.h": "slam", "state.h": "slam",
-    "frame_report.h": "session",
-    "byre.h": "system", "slam.h": "system",
+    "rig.h": "geometry", "trajectory.h": "geometry", "trajectory_error.h": "geometry",
+    "trajectory_file.h": "geometry", "two_view_failure.h": "geometry",
+    "features.h": "features", "floor_plan.h": "features", "image.h": "features", "image_condition.h": "features",
+    "body_motion.h": "odometry", "motion_warning.h": "odometry",
+    "calibration_file.h": "io", "recording.h": "io",
+    "byre.h": "slam", "frame_cuts.h": "slam", "frame_report.h": "slam", "health.h": "slam", "session_event.h": "slam",
+    "slam.h": "slam", "state.h": "slam",
 }
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 EVERY_ROOM = frozenset(FLOOR)
 
-# Headers that only some rooms may include. Tests may include all.
+# Headers that only some places may include: "room" with all its folders, "room/folder", or "room/" without its folders.
+# Tests may include all.
 KEPT_IN = {
     r"thread|condition_variable|future|stop_token|semaphore|latch|barrier": {
-        "workers", "simulation", "mapping", "playback", "viewer", "camera", "fleet", "cli"},
-    r"atomic": {"input", "workers", "simulation", "mapping", "playback", "viewer", "camera", "fleet", "cli"},
-    r"mutex|shared_mutex": {"workers", "viewer"},
-    r"filesystem|fstream": {"input", "bag", "evaluation", "dataset", "map", "place", "simulation", "system", "playback",
-                            "archive", "viewer", "benchmark", "camera", "demo", "node", "cli"},
+        "base", "simulation", "playback/", "viewer/web", "camera", "ros2/fleet", "cli"},
+    r"atomic": {"base", "simulation", "slam/mapping", "playback/", "viewer/web", "camera", "ros2/fleet", "cli"},
+    r"mutex|shared_mutex": {"base", "viewer/web"},
+    r"filesystem|fstream": {"base", "geometry/evaluation", "map", "io", "place", "simulation", "slam/system",
+                            "playback/", "playback/archive", "viewer", "benchmark", "camera", "ros2/node", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"ceres/.*": {"optimise"},
     r"embree3/.*": {"simulation"},
-    r"boost/.*": {"dataset", "viewer"},
-    r"dds/.*": {"dds"},
-    r"opencv2/.*": {"features", "dataset", "simulation", "viewer", "camera", "node"},
-    r"yaml-cpp/.*": {"bag", "dataset", "benchmark"},
-    r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"bag"},
-    r"nlohmann/.*": {"assessment", "viewer", "fleet", "benchmark", "node", "cli"},
-    r"mosquitto\.h": {"fleet"},
-    r"systemd/.*": {"node"},
+    r"boost/.*": {"viewer/web"},
+    r"dds/.*": {"ros2/dds"},
+    r"opencv2/.*": {"features", "io/image", "io/recording", "simulation", "viewer", "camera", "ros2/node"},
+    r"yaml-cpp/.*": {"io", "benchmark"},
+    r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"io/bag"},
+    r"nlohmann/.*": {"playback/report", "viewer", "ros2/fleet", "ros2/node", "benchmark", "cli"},
+    r"mosquitto\.h": {"ros2/fleet"},
+    r"systemd/.*": {"ros2/node"},
     r"linux/videodev2\.h|poll\.h|sys/(ioctl|poll)\.h": {"camera"},
 }
+# Rooms whose folders compile together.
+COMPILED_WHOLE = {"cli"}
 
 
 class Rule(NamedTuple):
     pattern: str
-    rooms: frozenset  # exempt from the rule
+    places: frozenset  # exempt from the rule, in the form of KEPT_IN
     reason: str
 
 
@@ -88,8 +82,8 @@ FORBIDDEN = [
          frozenset({"cli"}), "only cli prints: return what is to be told, or throw InputError"),
     Rule(r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(", frozenset({"cli"}),
          "only cli ends the program: throw InputError for bad input, assert what cannot be"),
-    Rule(r"\.dump\s*\(", frozenset({"assessment", "viewer", "fleet"}),
-         "JSON text needs printable_json(): call dumped() of assessment/report_json.h"),
+    Rule(r"\.dump\s*\(", frozenset({"playback/report", "viewer/web", "ros2/fleet"}),
+         "JSON text needs printable_json(): call dumped() of playback/report/report_json.h"),
     Rule(r"\brandom_device\b|(?<![\w.>:])(std::)?s?rand\s*\(", frozenset(),
          "the same seed must give the same result: take the seed as an option"),
 ]
@@ -104,8 +98,16 @@ class Fault(NamedTuple):
         return f"{self.path}:{self.line}: {self.message}"
 
 
-def listing(rooms) -> str:
-    return ", ".join(sorted(rooms, key=lambda room: (FLOOR[room], room)))
+def room_of(folder: str) -> str:
+    return folder.split("/")[0]
+
+
+def listing(places) -> str:
+    return ", ".join(sorted(places, key=lambda place: (FLOOR[room_of(place)], place)))
+
+
+def is_in(folder: str, places) -> bool:
+    return room_of(folder) in places or folder in places or folder + "/" in places
 
 
 TOKEN = re.compile(
@@ -139,41 +141,82 @@ def room_fault(room: str, other: str) -> str | None:
     return None
 
 
-def fence_fault(room: str, header: str) -> str | None:
-    for pattern, rooms in KEPT_IN.items():
-        if re.fullmatch(pattern, header) and room not in rooms:
-            return f"{room} must not include <{header}>: it is kept in {listing(rooms)}"
+def fence_fault(folder: str, header: str) -> str | None:
+    for pattern, places in KEPT_IN.items():
+        if re.fullmatch(pattern, header) and not is_in(folder, places):
+            return f"{folder} must not include <{header}>: it is kept in {listing(places)}"
     return None
 
 
-def include_fault(room: str, header: str, is_test: bool) -> str | None:
+def include_fault(folder: str, header: str, exempt: str) -> str | None:
     if found := re.match(r"byre/(\w+)/", header):
-        return room_fault(room, found[1])
+        return room_fault(room_of(folder), found[1])
     if found := re.fullmatch(r"byre/(\w+\.h)", header):
         known = PUBLIC.get(found[1])
-        return room_fault(room, known) if known else f"'{header}' belongs to no room: see PUBLIC"
-    return None if is_test else fence_fault(room, header)
+        return room_fault(room_of(folder), known) if known else f"'{header}' belongs to no room: see PUBLIC"
+    return None if re.fullmatch(exempt, header) else fence_fault(folder, header)
 
 
-def line_messages(room: str, line: str, is_test: bool) -> Iterator[str]:
-    if found := re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line):
-        if message := include_fault(room, found[1], is_test):
+INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')
+
+
+def line_messages(folder: str, line: str, exempt: str) -> Iterator[str]:
+    if found := INCLUDE.match(line):
+        if message := include_fault(folder, found[1], exempt):
             yield message
         return
     for rule in FORBIDDEN:
-        if room not in rule.rooms and (call := re.search(rule.pattern, without_strings(line))):
-            yield f"'{call[0].rstrip('( ')}' in {room}: {rule.reason}"
+        if not is_in(folder, rule.places) and (call := re.search(rule.pattern, without_strings(line))):
+            yield f"'{call[0].rstrip('( ')}' in {folder}: {rule.reason}"
 
 
 def is_of_tests(path: pathlib.Path) -> bool:
     return re.search("_(test|scene|fixture|matchers|images)$", path.stem) is not None
 
 
-def file_faults(path: pathlib.Path, room: str) -> Iterator[Fault]:
-    is_test = is_of_tests(path)
-    for number, line in enumerate(without_comments(path.read_text(encoding="utf-8")).split("\n"), start=1):
-        for message in line_messages(room, line, is_test):
+def numbered_lines(path: pathlib.Path) -> Iterator[tuple[int, str]]:
+    return enumerate(without_comments(path.read_text(encoding="utf-8")).split("\n"), start=1)
+
+
+# exempt: pattern of headers that KEPT_IN does not apply to.
+def file_faults(path: pathlib.Path, folder: str, exempt: str) -> Iterator[Fault]:
+    for number, line in numbered_lines(path):
+        for message in line_messages(folder, line, exempt):
             yield Fault(path, number, message)
+
+
+class Arrow(NamedTuple):
+    folder: str
+    included: str
+    path: pathlib.Path
+    line: int
+
+
+# Includes from one folder of a room to another one, without those of tests and of files directly in the room.
+def folder_arrows(source: pathlib.Path) -> Iterator[Arrow]:
+    for path in source_files(source):
+        folder = path.parent.relative_to(source).as_posix()
+        if "/" not in folder or is_of_tests(path):
+            continue
+        for number, line in numbered_lines(path):
+            found = INCLUDE.match(line)
+            included = re.match(rf"byre/({room_of(folder)}/.+)/", found[1]) if found else None
+            if included and included[1] != folder:
+                yield Arrow(folder, included[1], path, number)
+
+
+def circle_faults(source: pathlib.Path) -> Iterator[Fault]:
+    arrows = list(folder_arrows(source))
+    reached = {}
+    for arrow in arrows:
+        reached.setdefault(arrow.folder, set()).add(arrow.included)
+    for through in list(reached):
+        for folder, included in reached.items():
+            if through in included:
+                included |= reached[through]
+    for folder, included, path, line in arrows:
+        if folder in reached.get(included, ()):
+            yield Fault(path, line, f"{folder} must not include {included}, which depends on {folder}")
 
 
 OPENING = re.compile(
@@ -211,52 +254,70 @@ def definitions_in(path: pathlib.Path) -> tuple[tuple[str, int], ...]:
     return tuple(definitions(path.read_text(encoding="utf-8")))
 
 
-def faults_of_names(paths: list[pathlib.Path], is_wanted, first: dict[str, pathlib.Path]) -> Iterator[Fault]:
+def faults_of_names(paths: list[pathlib.Path], is_wanted, first: dict[str, pathlib.Path],
+                    reason: str) -> Iterator[Fault]:
     for path in paths:
         for name, line in definitions_in(path):
             if is_wanted(name) and first.setdefault(name, path) != path:
-                yield Fault(path, line, f"{name} is defined by {first[name]} too: name one of them otherwise")
+                yield Fault(path, line, f"{name} is defined by {first[name]} too: {reason}")
 
 
 def twice_defined_faults(headers: list[pathlib.Path]) -> Iterator[Fault]:
-    return faults_of_names(headers, lambda name: ANONYMOUS not in name and not name.endswith("()"), {})
+    return faults_of_names(headers, lambda name: ANONYMOUS not in name and not name.endswith("()"), {},
+                           "rename one of them")
 
 
-# Declarations of the headers on the floors up to a room's, in the form of file-local names.
-def declared_names(headers: list[tuple[str, pathlib.Path]], room: str) -> dict[str, pathlib.Path]:
+# Headers of byre that files include, directly or through others.
+def headers_of(paths: list[pathlib.Path], source: pathlib.Path, public: pathlib.Path) -> list[pathlib.Path]:
+    reached, waiting = {}, list(paths)
+    while waiting:
+        for header in included_headers(waiting.pop()):
+            path = (source if "/" in header else public) / header
+            if path not in reached and path.is_file():
+                reached[path] = None
+                waiting.append(path)
+    return list(reached)
+
+
+@functools.cache
+def included_headers(path: pathlib.Path) -> tuple[str, ...]:
+    found = [INCLUDE.match(line) for _, line in numbered_lines(path)]
+    return tuple(include[1].removeprefix("byre/") for include in found if include and include[1].startswith("byre/"))
+
+
+# Declarations of headers, in the form of file-local names.
+def declared_names(headers: list[pathlib.Path]) -> dict[str, pathlib.Path]:
     names = {}
-    for other, path in headers:
-        if not is_of_tests(path) and (other == room or FLOOR[other] < FLOOR[room]):
+    for path in headers:
+        if not is_of_tests(path):
             for full_name, _ in definitions_in(path):
                 scope, _, name = full_name.rpartition("::")
                 names[f"{scope}::{ANONYMOUS}::{name}"] = path
     return names
 
 
-# Name clashes of files that compile as one: those of a room; its tests separately.
+# Name clashes of files that compile as one: those of a folder; its tests separately.
 def clash_faults(source: pathlib.Path, public: pathlib.Path) -> Iterator[Fault]:
     together = {}
-    headers = [(PUBLIC[path.name], path) for path in source_files(public) if path.name in PUBLIC]
     for path in source_files(source):
-        room = path.relative_to(source).parts[0]
-        if path.suffix == ".cc":
-            together.setdefault((room, is_of_tests(path)), []).append(path)
-        elif room in EVERY_ROOM:
-            headers.append((room, path))
-    for (room, _), paths in together.items():
-        if room in EVERY_ROOM:
-            yield from faults_of_names(paths, lambda name: ANONYMOUS in name, declared_names(headers, room))
+        folder = path.parent.relative_to(source).as_posix()
+        if path.suffix == ".cc" and room_of(folder) in EVERY_ROOM:
+            unit = room_of(folder) if room_of(folder) in COMPILED_WHOLE else folder
+            together.setdefault((unit, is_of_tests(path)), []).append(path)
+    for (unit, _), paths in together.items():
+        yield from faults_of_names(paths, lambda name: ANONYMOUS in name,
+                                   declared_names(headers_of(paths, source, public)),
+                                   f"files of {unit} compile as one (BYRE_UNITY); rename one of them")
 
 
 def source_files(source: pathlib.Path) -> list[pathlib.Path]:
     return sorted(path for path in source.rglob("*") if path.suffix in {".h", ".cc"} and path.is_file())
 
 
-# A public header may include public headers, the standard library and Eigen.
+# A public header may include public headers, the standard library and Eigen; paths are part of interfaces.
 def public_faults(path: pathlib.Path) -> Iterator[Fault]:
-    for fault in file_faults(path, PUBLIC[path.name]):
-        yield fault
-    for number, line in enumerate(without_comments(path.read_text(encoding="utf-8")).split("\n"), start=1):
+    yield from file_faults(path, PUBLIC[path.name], exempt="filesystem")
+    for number, line in numbered_lines(path):
         found = re.match(r'\s*#\s*include\s*([<"][^>"]+)[>"]', line)
         if found and not re.fullmatch(r'"byre/\w+\.h|<\w+|<Eigen/\w+', found[1]):
             yield Fault(path, number, f"a public header must not include {found[1][1:]}")
@@ -272,13 +333,13 @@ def all_public_faults(folder: pathlib.Path) -> Iterator[Fault]:
 
 def faults(source: pathlib.Path) -> Iterator[Fault]:
     for path in source_files(source):
-        room = path.relative_to(source).parts[0]
-        if room == path.name:
+        folder = path.parent.relative_to(source).as_posix()
+        if folder == ".":
             yield Fault(path, 1, f"lies in no room; the rooms are {listing(FLOOR)}")
-        elif room not in EVERY_ROOM:
-            yield Fault(path, 1, f"'{room}' has no floor; the rooms are {listing(FLOOR)}")
+        elif room_of(folder) not in EVERY_ROOM:
+            yield Fault(path, 1, f"'{room_of(folder)}' has no floor; the rooms are {listing(FLOOR)}")
         else:
-            yield from file_faults(path, room)
+            yield from file_faults(path, folder, exempt=".*" if is_of_tests(path) else "")
 
 
 def main(arguments: list[str]) -> int:
@@ -292,7 +353,7 @@ def main(arguments: list[str]) -> int:
         print(f"{source}: no .h or .cc file in it", file=sys.stderr)
         return 2
     public = source.parent.parent / "include" / "byre"
-    found = list(faults(source)) + list(all_public_faults(public))
+    found = list(faults(source)) + list(circle_faults(source)) + list(all_public_faults(public))
     files += source_files(public)
     found += twice_defined_faults([path for path in files if path.suffix == ".h"])
     found += clash_faults(source, public)

@@ -49,36 +49,48 @@ class Types(CheckFloorsTest):
                 "int f(Map map) {\n struct C {}; }\n}\n")
         self.assertEqual([("byre::A", 2)], self.defined(text))
 
-    def test_files_of_a_room_keep_nothing_of_one_name_to_themselves(self):
+    def clashes(self):
+        return list(check_floors.clash_faults(self.source, self.source / "no_public"))
+
+    def test_local_names_are_unique_in_a_folder(self):
         kept = "namespace byre {\nnamespace {\n\n%s\n}\nvoid f() {\n  constexpr int kTwo = 2;\n}\n}\n"
         self.write("map/a.cc", kept % "constexpr double kLeast = 1;")
         self.write("map/b.cc", kept % "const int kLeast = 2;")
         self.write("map/c_test.cc", kept % "constexpr int kLeast = 3;\nstruct Scene {\n};")
-        self.write("slam/a.cc", kept % "constexpr int kLeast = 4;")
-        found = list(check_floors.clash_faults(self.source, self.source / "no_public"))
+        self.write("map/plan/a.cc", kept % "constexpr int kLeast = 4;")
+        self.write("slam/loops/a.cc", kept % "constexpr int kLeast = 5;")
+        found = self.clashes()
         self.assertEqual([("b.cc", 4)], [(fault.path.name, fault.line) for fault in found])
         self.assertIn("kLeast is defined by", found[0].message)
+        self.assertIn("files of map compile as one (BYRE_UNITY); rename one of them", found[0].message)
 
-    def test_a_function_that_is_kept_has_a_name_of_its_own(self):
-        kept = "namespace byre {\nnamespace {\n\n%s {\n}\n}\n}\n"
+    def test_local_names_of_cli_are_unique_in_the_room(self):
+        kept = "namespace byre {\nnamespace {\n\nconstexpr double kLeast = 1;\n}\n}\n"
+        self.write("cli/map/command.cc", kept)
+        self.write("cli/run/command.cc", kept)
+        self.assertEqual([self.source / "cli/run/command.cc"], [fault.path for fault in self.clashes()])
+
+    def test_a_local_function_must_not_overload_a_function_of_an_included_header(self):
+        kept = '#include "byre/features/image.h"\nnamespace byre {\nnamespace {\n\n%s {\n}\n}\n}\n'
+        self.write("features/image.h", '#include "byre/geometry/pose.h"\n')
         self.write("geometry/pose.h",
                    "namespace byre {\nstruct Pose {\n  int size() const;\n};\nPose inverse(int x);\n}\n")
-        self.write("map/map.h", "namespace byre {\nint far(int x);\n}\n")
-        self.write("dataset/a.cc", kept % "int inverse(int x)")
-        self.write("dataset/b.cc", kept % "int far(int x)")  # on a floor above
-        self.write("dataset/c.cc", kept % "int size(int x)")
-        self.write("dataset/d.cc", kept % "double size(double x)")
-        self.write("dataset/overload.cc", kept % "Pose inverse(const Pose& pose)")
-        self.write("dataset/d_test.cc", kept % "double size(double x)")
-        found = list(check_floors.clash_faults(self.source, self.source / "no_public"))
-        self.assertEqual([("a.cc", 4), ("d.cc", 4)], [(fault.path.name, fault.line) for fault in found])
+        self.write("geometry/camera.h", "namespace byre {\nint far(int x);\n}\n")
+        self.write("io/image/a.cc", kept % "int inverse(int x)")
+        self.write("io/image/b.cc", kept % "int far(int x)")  # its header is not included
+        self.write("io/image/c.cc", kept % "int size(int x)")
+        self.write("io/image/d.cc", kept % "double size(double x)")
+        self.write("io/image/overload.cc", kept % "Pose inverse(const Pose& pose)")
+        self.write("io/image/d_test.cc", kept % "double size(double x)")
+        found = self.clashes()
+        self.assertEqual([("a.cc", 5), ("d.cc", 5)], [(fault.path.name, fault.line) for fault in found])
         self.assertIn("pose.h", found[0].message)
 
-    def test_what_a_header_declares_is_not_hidden(self):
+    def test_a_local_name_must_not_hide_a_name_of_an_included_header(self):
         self.write("map/trust.h", "namespace byre {\n\ninline constexpr double kFar = 0.2;\n}\n")
-        self.write("map/a.cc", "namespace byre {\nnamespace {\n\nconstexpr double kFar = 0.5;\n}\n}\n")
-        found = list(check_floors.clash_faults(self.source, self.source / "no_public"))
-        self.assertEqual([("a.cc", 4)], [(fault.path.name, fault.line) for fault in found])
+        self.write("map/a.cc", '#include "byre/map/trust.h"\nnamespace byre {\nnamespace {\n'
+                               "constexpr double kFar = 0.5;\n}\n}\n")
+        self.assertEqual([("a.cc", 4)], [(fault.path.name, fault.line) for fault in self.clashes()])
 
     def test_declared_types_are_not_defined(self):
         self.assertEqual([("byre::f()", 3)],
@@ -87,7 +99,7 @@ class Types(CheckFloorsTest):
     def test_two_headers_that_define_one_name_are_a_fault(self):
         self.write("camera/exposure.h", "namespace byre {\nstruct Exposure {\n};\n}\n")
         self.write("simulation/sensor.h", "namespace byre {\n\nstruct Exposure {\n};\n}\n")
-        self.write("ros/types.h", "namespace byre::ros {\nstruct Exposure {\n};\n}\n")
+        self.write("io/ros/types.h", "namespace byre::ros {\nstruct Exposure {\n};\n}\n")
         self.write("camera/exposure.cc", "namespace byre {\nnamespace {\nstruct Local {\n};\n}\n}\n")
         found = list(check_floors.twice_defined_faults(sorted(self.source.rglob("*.h"))))
         self.assertEqual([("sensor.h", 3)], [(fault.path.name, fault.line) for fault in found])
@@ -100,24 +112,25 @@ class Types(CheckFloorsTest):
 class Floors(CheckFloorsTest):
     def test_lower_floors_and_the_own_room_may_be_included(self):
         self.write("map/map.cc", '#include "byre/map/map.h"\n#include "byre/features/features.h"\n')
-        self.write("geometry/camera.cc", '#include "byre/input/input_error.h"\n')
-        self.write("dataset/euroc.cc", '#include "byre/input/input_error.h"\n#include "byre/geometry/camera.h"\n')
+        self.write("geometry/camera.cc", '#include "byre/base/text_file.h"\n')
+        self.write("io/recording/euroc.cc", '#include "byre/io/image/image_file.h"\n'
+                                            '#include "byre/geometry/evaluation/evaluate.h"\n')
         self.assertEqual([], self.found())
 
     def test_a_higher_floor_is_a_fault_with_its_line(self):
-        self.write("geometry/pose.cc", '#include "byre/geometry/pose.h"\n\n#include "byre/map/map.h"\n')
-        self.assert_one_fault("geometry/pose.cc", 3, "geometry (floor 1) must not include map (floor 4)")
+        self.write("geometry/evaluation/error.cc", '#include "byre/geometry/pose.h"\n\n#include "byre/map/map.h"\n')
+        self.assert_one_fault("geometry/evaluation/error.cc", 3, "geometry (floor 1) must not include map (floor 3)")
 
     def test_a_neighbour_on_the_same_floor_is_a_fault(self):
         self.write("optimise/bundle.cc", '#include "byre/features/image.h"\n')
         self.assert_one_fault("optimise/bundle.cc", 1, "both are on floor 2")
 
-    def test_input_lies_below_everything(self):
-        self.write("input/input_error.h", '#include "byre/geometry/pose.h"\n')
-        self.assert_one_fault("input/input_error.h", 1, "must not include geometry")
+    def test_base_lies_below_everything(self):
+        self.write("base/input_error.h", '#include "byre/geometry/pose.h"\n')
+        self.assert_one_fault("base/input_error.h", 1, "must not include geometry")
 
     def test_tests_keep_to_the_floors_too(self):
-        self.write("geometry/pose_test.cc", '#include "byre/slam/tracking.h"\n')
+        self.write("geometry/pose_test.cc", '#include "byre/slam/tracking/tracking.h"\n')
         self.assert_one_fault("geometry/pose_test.cc", 1, "must not include slam")
 
     def test_an_include_of_an_unknown_room_is_a_fault(self):
@@ -133,28 +146,67 @@ class Floors(CheckFloorsTest):
         self.assert_one_fault("version.h", 1, "lies in no room")
 
 
+class Circles(CheckFloorsTest):
+    def circles(self):
+        return [fault.path.relative_to(self.source).as_posix() for fault in check_floors.circle_faults(self.source)]
+
+    def test_folders_of_a_room_must_not_include_each_other_through_others(self):
+        self.write("slam/a/a.cc", '#include "byre/slam/b/b.h"\n')
+        self.write("slam/b/b.cc", '#include "byre/slam/c/c.h"\n')
+        self.assertEqual([], self.circles())
+        self.write("slam/c/c.cc", '#include "byre/slam/a/a.h"\n')
+        self.assertEqual(["slam/a/a.cc", "slam/b/b.cc", "slam/c/c.cc"], self.circles())
+        code, output, _ = self.run_main(self.source)
+        self.assertEqual(1, code)
+        self.assertIn("slam/a must not include slam/b", output)
+
+    def test_tests_and_files_directly_in_the_room_may_include_any_of_its_folders(self):
+        self.write("slam/a/a.cc", '#include "byre/slam/b/b.h"\n#include "byre/slam/options.h"\n')
+        self.write("slam/b/b_test.cc", '#include "byre/slam/a/a.h"\n')
+        self.write("slam/options.cc", '#include "byre/slam/a/a.h"\n')
+        self.assertEqual([], self.circles())
+
+
 class Fences(CheckFloorsTest):
     def test_fenced_headers_are_faults_outside_their_rooms(self):
         for header in ("thread", "mutex", "ceres/ceres.h", "opencv2/core.hpp", "iostream", "nlohmann/json.hpp",
                        "yaml-cpp/yaml.h", "fstream", "CLI/CLI.hpp"):
             with self.subTest(header=header):
-                self.write("slam/tracking.cc", f"#include <{header}>\n")
-                self.assert_one_fault("slam/tracking.cc", 1, f"must not include <{header}>")
+                self.write("slam/tracking/tracking.cc", f"#include <{header}>\n")
+                self.assert_one_fault("slam/tracking/tracking.cc", 1, f"must not include <{header}>")
 
     def test_fenced_headers_are_allowed_in_their_rooms(self):
-        self.write("workers/executor.cc", "#include <thread>\n#include <mutex>\n")
+        self.write("base/executor.cc", "#include <thread>\n#include <mutex>\n")
         self.write("optimise/bundle.cc", "#include <ceres/ceres.h>\n")
         self.write("features/extract.cc", "#include <opencv2/imgproc.hpp>\n")
         self.write("cli/main.cc", "#include <iostream>\n#include <CLI/CLI.hpp>\n")
+        self.write("cli/map/command.cc", "#include <CLI/CLI.hpp>\n")
+        self.write("playback/report/report_json.h", "#include <nlohmann/json.hpp>\n")
+        self.write("playback/map_run.cc", "#include <thread>\n")
         self.assertEqual([], self.found())
 
+    def test_a_header_of_one_folder_is_a_fault_elsewhere_in_the_room(self):
+        self.write("playback/archive/register_map.cc", "#include <nlohmann/json.hpp>\n")
+        self.assert_one_fault("playback/archive/register_map.cc", 1, "playback/archive must not include <nlohmann")
+
+    def test_a_header_of_files_directly_in_the_room_is_a_fault_in_its_folders(self):
+        self.write("playback/archive/register_map.cc", "#include <thread>\n")
+        self.assert_one_fault("playback/archive/register_map.cc", 1, "it is kept in base")
+
+    def test_public_headers_may_include_paths_but_no_threads(self):
+        header = self.source / "slam.h"
+        for name, count in (("filesystem", 0), ("thread", 1), ("fstream", 1), ("opencv2/core.hpp", 2)):
+            with self.subTest(name=name):
+                self.write("slam.h", f"#include <{name}>\n")
+                self.assertEqual(count, len(list(check_floors.public_faults(header))))
+
     def test_quotes_do_not_get_round_a_fence(self):
-        self.write("slam/tracking.cc", '#include "opencv2/core.hpp"\n')
-        self.assert_one_fault("slam/tracking.cc", 1, "opencv2/core.hpp")
+        self.write("slam/tracking/tracking.cc", '#include "opencv2/core.hpp"\n')
+        self.assert_one_fault("slam/tracking/tracking.cc", 1, "opencv2/core.hpp")
 
     def test_spaces_do_not_get_round_a_fence(self):
-        self.write("slam/tracking.cc", "#  include  <thread>\n")
-        self.assert_one_fault("slam/tracking.cc", 1, "thread")
+        self.write("slam/tracking/tracking.cc", "#  include  <thread>\n")
+        self.assert_one_fault("slam/tracking/tracking.cc", 1, "thread")
 
     def test_tests_may_include_fenced_headers(self):
         self.write("geometry/camera_test.cc", "#include <opencv2/calib3d.hpp>\n#include <fstream>\n")
@@ -185,9 +237,9 @@ class ForbiddenCalls(CheckFloorsTest):
                 self.assert_one_fault("cli/main.cc", 1, "seed")
 
     def test_json_text_with_control_characters_is_a_fault(self):
-        self.write("node/node.cc", "auto text = json.dump(2);\n")
-        self.assert_one_fault("node/node.cc", 1, "printable_json")
-        self.write("node/node.cc", "auto text = dumped(json, 2);\n")
+        self.write("ros2/node/node.cc", "auto text = json.dump(2);\n")
+        self.assert_one_fault("ros2/node/node.cc", 1, "printable_json")
+        self.write("ros2/node/node.cc", "auto text = dumped(json, 2);\n")
         self.assertEqual([], self.found())
 
     def test_names_that_only_resemble_a_call_are_no_fault(self):
