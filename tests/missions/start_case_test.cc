@@ -8,7 +8,7 @@
 namespace byre {
 namespace {
 
-// Share of starts. The target is 0; with images of 376x240 at dusk 6 of 20 starts are late.
+// Share of starts. The target is 0; with images of 320x240 at dusk 7 of 20 starts are late.
 constexpr double kMaxLocalisedLate = 0.35;
 
 class Starts : public testing::TestWithParam<StartCase> {
