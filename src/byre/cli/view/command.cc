@@ -5,6 +5,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/io/recording/input_files.h"
+#include "byre/slam/system/resources.h"
 #include "byre/viewer/web/web_map.h"
 
 #include <memory>
