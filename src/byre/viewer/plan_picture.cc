@@ -192,13 +192,13 @@ std::vector<LegendEntry> whole_legend() {
 
 // Title and size of the scene.
 Pane head(const PlanScene& scene, const PlanView& view, int width) {
-  constexpr double kMargin = 16.0, kLine = 25.0, kTitle = 16.0;  // pixels
+  constexpr double kBorder = 16.0, kLine = 25.0, kTitle = 16.0;  // pixels
   Pane pane;
   pane.width = width;
   pane.height = 38;
-  pane.marks.emplace_back(PictureText{{kMargin, kLine}, scene.title, kTitle, palette::kInk, Align::left, true});
+  pane.marks.emplace_back(PictureText{{kBorder, kLine}, scene.title, kTitle, palette::kInk, Align::left, true});
   const std::vector<PictureMark> bar =
-      scale_bar({width - kMargin, kLine}, view.pixels_per_metre, scene.ground.is_metric);
+      scale_bar({width - kBorder, kLine}, view.pixels_per_metre, scene.ground.is_metric);
   pane.marks.insert(pane.marks.end(), bar.begin(), bar.end());
   return pane;
 }
@@ -221,11 +221,11 @@ PlanCamera plan_camera(const Pose& map_from_body, const Rig& rig) {
 }
 
 AlignedBox2d shown_ground(const PlanScene& scene, const HeightBand& heights) {
-  constexpr double kMargin = 0.04;     // margin as a share of the larger side
-  constexpr double kSiteMargin = 0.2;  // margin around a part of a large plan, as a share of the larger side
-  constexpr double kSite = 4.0;        // smallest large plan, in lengths of the map
+  constexpr double kMarginShare = 0.04;  // margin as a share of the larger side
+  constexpr double kSiteMargin = 0.2;    // margin around a part of a large plan, as a share of the larger side
+  constexpr double kSite = 4.0;          // smallest large plan, in lengths of the map
   const AlignedBox2d of_map = box_of_map(scene, heights);
-  if (!scene.ground.plan) return with_margin(of_map, kMargin);
+  if (!scene.ground.plan) return with_margin(of_map, kMarginShare);
   const AlignedBox2d of_plan = box_of_plan(*scene.ground.plan);
   if (of_plan.sizes().maxCoeff() > kSite * of_map.sizes().maxCoeff()) return with_margin(of_map, kSiteMargin);
   AlignedBox2d both = of_plan;
