@@ -22,7 +22,7 @@ Camera make_camera(int width, int height, double fx, double fy, double cx, doubl
   Camera camera{model, width, height, fx, fy, cx, cy, {}};
   if (distortion.size() > camera.distortion.size()) throw py::value_error("distortion has at most five coefficients");
   const bool is_distorted = std::ranges::any_of(distortion, [](double value) { return value != 0.0; });
-  if (is_distorted && model == CameraModel::pinhole) throw py::value_error("distortion needs a model that has it");
+  if (is_distorted && model == CameraModel::pinhole) throw py::value_error("distortion needs a model with distortion");
   std::ranges::copy(distortion, camera.distortion.begin());
   return camera;
 }
@@ -32,7 +32,7 @@ Calibration make_calibration(const Camera& left, const std::optional<Camera>& ri
                              const std::optional<Eigen::Matrix4d>& body_from_left,
                              const std::optional<DepthCamera>& depth, double readout_time) {
   if (right.has_value() != right_from_left.has_value()) {
-    throw py::value_error("right and right_from_left belong together");
+    throw py::value_error("right and right_from_left must be given together");
   }
   Calibration calibration;
   calibration.left = left;
@@ -44,22 +44,26 @@ Calibration make_calibration(const Camera& left, const std::optional<Camera>& ri
 }
 
 void bind_camera(py::module_& module) {
-  py::class_<Camera>(module, "Camera", "Calibrated camera. The centre of the top left pixel is (0, 0).")
+  py::class_<Camera>(module, "Camera",
+                     "Intrinsics of a camera. Pixels: origin at the centre of the top left pixel, u right, v down.")
       .def(py::init(&make_camera), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
-           py::arg("cy"), py::arg("model") = CameraModel::pinhole, py::arg("distortion") = std::vector<double>{})
+           py::arg("cy"), py::arg("model") = CameraModel::pinhole, py::arg("distortion") = std::vector<double>{},
+           "distortion: at most five coefficients, see CameraModel. Raises ValueError for more coefficients, and for "
+           "distortion of a pinhole camera.")
       .def_readonly("model", &Camera::model)
-      .def_readonly("width", &Camera::width)
-      .def_readonly("height", &Camera::height)
-      .def_readonly("fx", &Camera::fx)
-      .def_readonly("fy", &Camera::fy)
-      .def_readonly("cx", &Camera::cx)
-      .def_readonly("cy", &Camera::cy)
-      .def_readonly("distortion", &Camera::distortion)
+      .def_readonly("width", &Camera::width, "Pixels.")
+      .def_readonly("height", &Camera::height, "Pixels.")
+      .def_readonly("fx", &Camera::fx, "Pixels.")
+      .def_readonly("fy", &Camera::fy, "Pixels.")
+      .def_readonly("cx", &Camera::cx, "Pixels.")
+      .def_readonly("cy", &Camera::cy, "Pixels.")
+      .def_readonly("distortion", &Camera::distortion, "Five coefficients, see CameraModel; unused ones are zero.")
       .def("__eq__", [](const Camera& camera, const Camera& other) { return camera == other; });
 }
 
 void bind_calibration(py::module_& module) {
-  py::class_<DepthCamera>(module, "DepthCamera", "Camera with images of depths along the optical axis.")
+  py::class_<DepthCamera>(module, "DepthCamera",
+                          "Depth camera next to the left camera. Its images hold depths along its optical axis.")
       .def(py::init([](double units_per_metre, double sigma_at_one_metre, const std::optional<Camera>& camera,
                        const std::optional<Eigen::Matrix4d>& left_from_depth) {
              DepthCamera depth;
@@ -71,34 +75,47 @@ void bind_calibration(py::module_& module) {
            }),
            py::arg("units_per_metre") = DepthCamera{}.units_per_metre,
            py::arg("sigma_at_one_metre") = DepthCamera{}.sigma_at_one_metre, py::arg("camera") = py::none(),
-           py::arg("left_from_depth") = py::none(), "Without `camera`, depth images are registered to the left camera.")
-      .def_readonly("units_per_metre", &DepthCamera::units_per_metre)
-      .def_readonly("sigma_at_one_metre", &DepthCamera::sigma_at_one_metre)
-      .def_readonly("camera", &DepthCamera::camera)
-      .def_property_readonly("left_from_depth",
-                             [](const DepthCamera& depth) { return matrix_of(depth.left_from_depth); });
-  py::class_<Calibration>(module, "Calibration", "Calibration of a robot's unrectified cameras.")
+           py::arg("left_from_depth") = py::none(),
+           "Without camera the depth images are registered to the left camera's pixels. Raises InputError if "
+           "left_from_depth is not a rigid motion.")
+      .def_readonly("units_per_metre", &DepthCamera::units_per_metre, "Units of uint16 depth images per metre.")
+      .def_readonly("sigma_at_one_metre", &DepthCamera::sigma_at_one_metre,
+                    "Standard deviation of a depth of one metre, metres; grows with the square of depth.")
+      .def_readonly("camera", &DepthCamera::camera, "None if depth images are registered to the left camera's pixels.")
+      .def_property_readonly(
+          "left_from_depth", [](const DepthCamera& depth) { return matrix_of(depth.left_from_depth); },
+          "4x4 pose of the depth camera in the left camera, metres.");
+  py::class_<Calibration>(module, "Calibration",
+                          "Cameras before rectification: one camera, a stereo pair, or a camera with a depth camera.")
       .def(py::init(&make_calibration), py::arg("left"), py::arg("right") = py::none(),
            py::arg("right_from_left") = py::none(), py::arg("body_from_left") = py::none(),
-           py::arg("depth") = py::none(), py::arg("readout_time") = 0.0)
+           py::arg("depth") = py::none(), py::arg("readout_time") = 0.0,
+           "Raises ValueError if only one of right and right_from_left is given, and InputError if a matrix is not a "
+           "rigid motion.")
       .def_readonly("left", &Calibration::left)
-      .def_property_readonly("right",
-                             [](const Calibration& calibration) {
-                               return calibration.right ? std::optional(calibration.right->camera) : std::nullopt;
-                             })
-      .def_property_readonly("right_from_left",
-                             [](const Calibration& calibration) {
-                               return calibration.right ? std::optional(matrix_of(calibration.right->right_from_left))
-                                                        : std::nullopt;
-                             })
-      .def_property_readonly("body_from_left",
-                             [](const Calibration& calibration) { return matrix_of(calibration.body_from_left); })
-      .def_readonly("depth", &Calibration::depth)
+      .def_property_readonly(
+          "right",
+          [](const Calibration& calibration) {
+            return calibration.right ? std::optional(calibration.right->camera) : std::nullopt;
+          },
+          "Right camera of a stereo pair, or None.")
+      .def_property_readonly(
+          "right_from_left",
+          [](const Calibration& calibration) {
+            return calibration.right ? std::optional(matrix_of(calibration.right->right_from_left)) : std::nullopt;
+          },
+          "4x4 pose of the left camera in the right camera, metres; None without a right camera.")
+      .def_property_readonly(
+          "body_from_left", [](const Calibration& calibration) { return matrix_of(calibration.body_from_left); },
+          "4x4 pose of the left camera in the body, metres; identity by default.")
+      .def_readonly("depth", &Calibration::depth, "Depth camera, or None.")
       .def_readonly("readout_time", &Calibration::readout_time,
-                    "Rolling shutter: seconds from the first to the last row.")
+                    "Rolling-shutter readout time from the first row to the last, seconds; negative if the last row is "
+                    "read first; zero for a global shutter.")
       .def("__eq__", [](const Calibration& calibration, const Calibration& other) { return calibration == other; });
   module.def("read_calibration", &read_calibration, py::arg("path"),
-             "Reads a calibration file: EuRoC sensor.yaml, Kalibr camchain, OpenCV or ROS.");
+             "Reads the calibration of one camera or a stereo pair: EuRoC sensor.yaml, Kalibr camchain, OpenCV or ROS. "
+             "Raises InputError with the field for an unsupported model and for a missing or invalid value.");
 }
 
 // A view of the pixels; keeps the frame alive.
@@ -185,24 +202,34 @@ struct FrameIterator {
 };
 
 void bind_images(py::module_& module) {
-  py::class_<ImageFrame>(module, "Images", "Images of one frame.")
-      .def_property_readonly("time_ns", [](const ImageFrame& frame) { return frame.time.count(); })
-      .def_property_readonly("left",
-                             [](const py::object& self) {
-                               const Image& image = self.cast<const ImageFrame&>().left;
-                               return array_of(image.pixels, image.width, image.height, self);
-                             })
-      .def_property_readonly("right",
-                             [](const py::object& self) -> py::object {
-                               const auto& image = self.cast<const ImageFrame&>().right;
-                               if (!image) return py::none();
-                               return array_of(image->pixels, image->width, image->height, self);
-                             })
-      .def_property_readonly("depth", [](const py::object& self) -> py::object {
-        const auto& image = self.cast<const ImageFrame&>().depth;
-        if (!image) return py::none();
-        return array_of(image->units, image->width, image->height, self);
-      });
+  py::class_<ImageFrame>(module, "Images",
+                         "Decoded images of one frame of a recording. Arrays are views and keep the frame alive.")
+      .def_property_readonly(
+          "time_ns", [](const ImageFrame& frame) { return frame.time.count(); }, "Time stamp, nanoseconds.")
+      .def_property_readonly(
+          "left",
+          [](const py::object& self) {
+            const Image& image = self.cast<const ImageFrame&>().left;
+            return array_of(image.pixels, image.width, image.height, self);
+          },
+          "Grey values, height x width, uint8.")
+      .def_property_readonly(
+          "right",
+          [](const py::object& self) -> py::object {
+            const auto& image = self.cast<const ImageFrame&>().right;
+            if (!image) return py::none();
+            return array_of(image->pixels, image->width, image->height, self);
+          },
+          "Grey values, height x width, uint8; None without a right image.")
+      .def_property_readonly(
+          "depth",
+          [](const py::object& self) -> py::object {
+            const auto& image = self.cast<const ImageFrame&>().depth;
+            if (!image) return py::none();
+            return array_of(image->units, image->width, image->height, self);
+          },
+          "Depths in units of DepthCamera.units_per_metre, zero if invalid, height x width, uint16; None without a "
+          "depth image.");
 }
 
 void bind_recording(py::module_& module) {
@@ -210,22 +237,35 @@ void bind_recording(py::module_& module) {
       .def("__iter__", [](FrameIterator& iterator) -> FrameIterator& { return iterator; })
       .def("__next__", &FrameIterator::take);
   py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
-      module, "Recording", "Recording: a sequence of frames that are read on access.")
+      module, "Recording", "Recorded sequence of frames, decoded on access. Access from several threads is safe.")
       .def(py::init(&open), py::arg("path"), py::kw_only(), py::arg("camera") = py::none(),
            py::arg("calibration") = py::none(), py::arg("frame_rate_hz") = py::none(), py::arg("start_s") = py::none(),
            py::arg("end_s") = py::none(), py::arg("stride") = 1, py::arg("left_topic") = py::none(),
            py::arg("right_topic") = py::none(), py::arg("baseline") = py::none(),
-           "EuRoC, KITTI, TUM RGB-D, a folder of images, a video or a ROS bag. Raises InputError.")
-      .def_property_readonly("calibration",
-                             [](const SharedRecording& recording) { return recording.constant().calibration(); })
-      .def_property_readonly("warnings", &warnings_of)
-      .def_property_readonly("times_ns", &times_of)
+           "Opens a EuRoC, KITTI or TUM RGB-D folder, a folder of images, a video or a ROS bag.\n"
+           "camera: cameras to use; default: a stereo pair if available, with depth if available.\n"
+           "calibration: calibration file; replaces that of the recording.\n"
+           "frame_rate_hz: frame rate of images and videos, Hz.\n"
+           "start_s, end_s: limits in seconds from the first frame; end_s is exclusive.\n"
+           "stride: every n-th frame is read.\n"
+           "left_topic, right_topic: image topics of a bag; default: detected.\n"
+           "baseline: baseline of the stereo pair, metres; replaces that of the calibration.\n"
+           "Raises InputError for missing files, an invalid calibration, an absent camera and a range without frames, "
+           "and ValueError for a stride below one.")
+      .def_property_readonly(
+          "calibration", [](const SharedRecording& recording) { return recording.constant().calibration(); },
+          "Calibration of the cameras used.")
+      .def_property_readonly("warnings", &warnings_of, "Warnings of opening, then of reading.")
+      .def_property_readonly("times_ns", &times_of, "Times of the frames, nanoseconds, int64, strictly increasing.")
       .def("__len__", &SharedRecording::size)
-      .def("__getitem__", &frame_of, "Images of a frame; None if they cannot be read, see warnings.")
+      .def("__getitem__", &frame_of,
+           "Images of a frame; a negative index counts from the end. None if the left image cannot be read, with a "
+           "warning. Raises IndexError.")
       .def(
           "__iter__", [](const std::shared_ptr<SharedRecording>& recording) { return FrameIterator{recording}; },
-          "Iterates over the readable frames.");
-  module.def("find_ground_truth", &find_ground_truth, py::arg("path"), "Ground truth file of a recording, or None.");
+          "Iterates over the frames, without unreadable ones.");
+  module.def("find_ground_truth", &find_ground_truth, py::arg("path"),
+             "Path of the ground truth of a recording, or None.");
 }
 
 }  // namespace

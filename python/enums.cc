@@ -18,21 +18,27 @@ void bind_enum(py::module_& module, const char* name, const char* doc,
 }
 
 void bind_enums_of_input(py::module_& module) {
-  bind_enum<CameraModel>(module, "CameraModel", "Lens models as EuRoC, Kalibr and OpenCV define them.",
+  bind_enum<CameraModel>(module, "CameraModel",
+                         "Lens models as defined by EuRoC, Kalibr and OpenCV. Distortion: k1, k2, p1, p2, k3 for "
+                         "radial_tangential, k1 to k4 for equidistant.",
                          {{"pinhole", CameraModel::pinhole},
                           {"radial_tangential", CameraModel::radial_tangential},
                           {"equidistant", CameraModel::equidistant}});
-  bind_enum<CameraChoice>(module, "CameraChoice", "Cameras of a recording to use.",
-                          {{"stereo", CameraChoice::stereo},
-                           {"left", CameraChoice::left},
-                           {"right", CameraChoice::right},
-                           {"rgbd", CameraChoice::rgbd}});
-  bind_enum<PixelFormat>(module, "PixelFormat", "Pixel format of an image.",
+  bind_enum<CameraChoice>(
+      module, "CameraChoice",
+      "Cameras of a recording to use: both of a stereo pair, one of them, or the left one with the depth camera.",
+      {{"stereo", CameraChoice::stereo},
+       {"left", CameraChoice::left},
+       {"right", CameraChoice::right},
+       {"rgbd", CameraChoice::rgbd}});
+  bind_enum<PixelFormat>(module, "PixelFormat",
+                         "Pixel format of an image. grey8, bgr8 and rgb8: uint8; grey16: uint16.",
                          {{"grey8", PixelFormat::grey8},
                           {"grey16", PixelFormat::grey16},
                           {"bgr8", PixelFormat::bgr8},
                           {"rgb8", PixelFormat::rgb8}});
-  bind_enum<InputFault>(module, "InputFault", "Fault of the input of a frame.",
+  bind_enum<InputFault>(module, "InputFault",
+                        "Fault of the input of a frame. From no_image on the frame is dropped without processing.",
                         {{"none", InputFault::none},
                          {"after_gap", InputFault::after_gap},
                          {"missing_right", InputFault::missing_right},
@@ -49,15 +55,19 @@ void bind_enums_of_input(py::module_& module) {
 }
 
 void bind_enums_of_reports(py::module_& module) {
-  bind_enum<State>(module, "State", "Tracking state.",
-                   {{"initialising", State::initialising},
-                    {"tracking", State::tracking},
-                    {"relocalising", State::relocalising},
-                    {"lost", State::lost}});
+  bind_enum<State>(
+      module, "State",
+      "State of tracking. relocalising: pose lost, or not confirmed yet; lost: no confirmed pose for 10 s.",
+      {{"initialising", State::initialising},
+       {"tracking", State::tracking},
+       {"relocalising", State::relocalising},
+       {"lost", State::lost}});
   bind_enum<Verdict>(
-      module, "Verdict", "Reliability of the pose in the map.",
+      module, "Verdict",
+      "Reliability of the pose in the map. trusted: error below 0.2 m; degraded: weakly supported, drive slowly; "
+      "untrusted: do not use it.",
       {{"trusted", Verdict::trusted}, {"degraded", Verdict::degraded}, {"untrusted", Verdict::untrusted}});
-  bind_enum<DistrustReason>(module, "DistrustReason", "Main reason of a verdict other than trusted.",
+  bind_enum<DistrustReason>(module, "DistrustReason", "Main reason against trusting a pose; none for a trusted one.",
                             {{"none", DistrustReason::none},
                              {"no_pose", DistrustReason::no_pose},
                              {"blinded", DistrustReason::blinded},
@@ -80,7 +90,7 @@ void bind_enums_of_reports(py::module_& module) {
                              {"in_wall", DistrustReason::in_wall},
                              {"outside", DistrustReason::outside},
                              {"behind_wall", DistrustReason::behind_wall}});
-  bind_enum<SessionEvent>(module, "Event", "Event of a frame.",
+  bind_enum<SessionEvent>(module, "Event", "Event in a frame, for logs and operators.",
                           {{"initialised", SessionEvent::initialised},
                            {"localised", SessionEvent::localised},
                            {"pose_lost", SessionEvent::pose_lost},
@@ -105,10 +115,14 @@ void bind_enums_of_reports(py::module_& module) {
 void bind_enums(py::module_& module) {
   bind_enums_of_input(module);
   bind_enums_of_reports(module);
-  bind_enum<Workers>(module, "Workers", "Threads of mapping.",
+  bind_enum<Workers>(module, "Workers",
+                     "Threads of mapping. live: worker threads, for robots; repeatable: worker threads, equal images "
+                     "yield equal poses; none: mapping inside process().",
                      {{"live", Workers::live}, {"repeatable", Workers::repeatable}, {"none", Workers::none}});
   bind_enum<TrajectoryFormat>(
-      module, "TrajectoryFormat", "File formats of trajectories.",
+      module, "TrajectoryFormat",
+      "Trajectory file formats. tum: time_s tx ty tz qx qy qz qw; euroc: time_ns,px,py,pz,qw,qx,qy,qz; kitti: twelve "
+      "numbers of the 3x4 pose, without times.",
       {{"tum", TrajectoryFormat::tum}, {"euroc", TrajectoryFormat::euroc}, {"kitti", TrajectoryFormat::kitti}});
 }
 

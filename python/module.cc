@@ -38,7 +38,9 @@ namespace {
 void bind_input_error(py::module_& module) {
   static py::handle type;  // never released
   type = py::exception<InputError>(module, "InputError", PyExc_ValueError).release();
-  type.attr("__doc__") = "Bad input: a file, a calibration, an argument; with place, reason and remedy.";
+  type.attr("__doc__") =
+      "Bad input, such as a file, a calibration or a matrix. place: file, line or field; reason: fault; remedy: advice "
+      "to the user, may be empty.";
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(std::move(thrown));

@@ -29,63 +29,78 @@ std::vector<std::string> texts_of(const std::vector<MotionWarning>& warnings) {
 }
 
 void bind_reports(py::module_& module) {
-  py::class_<Health>(module, "Health", "Localisation quality of a frame.")
-      .def_readonly("verdict", &Health::verdict)
-      .def_readonly("doubt", &Health::doubt)
-      .def_readonly("offline_expected", &Health::offline_expected)
-      .def_readonly("offline_matches", &Health::offline_matches)
-      .def_readonly("offline_inliers", &Health::offline_inliers)
-      .def_readonly("online_inliers", &Health::online_inliers)
-      .def_readonly("suspended", &Health::suspended)
-      .def_readonly("inlier_share", &Health::inlier_share)
-      .def_readonly("spread", &Health::spread)
-      .def_readonly("position_sigma", &Health::position_sigma, "Metres.")
-      .def_readonly("rotation_sigma", &Health::rotation_sigma, "Radians.")
-      .def_readonly("distance_since_offline", &Health::distance_since_offline, "Metres.")
-      .def_readonly("seconds_since_offline", &Health::seconds_since_offline)
-      .def_readonly("hidden_share", &Health::hidden_share, "Share of the left image covered by dirt.")
-      .def_readonly("hidden_share_right", &Health::hidden_share_right, "Share of the right image covered by dirt.")
-      .def_property_readonly("note_on_dirt", &note_on_dirt, "Remedy for dirt on the lenses; empty without dirt.");
-  py::class_<FrameReport>(module, "FrameReport", "Result of a frame. Poses are 4x4 matrices.")
-      .def_property_readonly("time_ns", [](const FrameReport& report) { return report.time.count(); })
-      .def_readonly("state", &FrameReport::state)
-      .def_readonly("input", &FrameReport::input)
+  py::class_<Health>(module, "Health", "Quality measures of one frame. Counts are of map points.")
+      .def_readonly("verdict", &Health::verdict, "Reliability of the pose in the map.")
+      .def_readonly("doubt", &Health::doubt, "Main reason against trusting the pose.")
+      .def_readonly("offline_expected", &Health::offline_expected,
+                    "Offline points in the frustum, without suspended ones and those hidden by dirt.")
+      .def_readonly("offline_matches", &Health::offline_matches, "Offline points matched.")
+      .def_readonly("offline_inliers", &Health::offline_inliers, "Offline points that fit the pose.")
+      .def_readonly("online_inliers", &Health::online_inliers, "Online points that fit the pose.")
+      .def_readonly("suspended", &Health::suspended, "Offline points excluded for this mission, as they have moved.")
+      .def_readonly("inlier_share", &Health::inlier_share, "Inliers as a share of matches.")
+      .def_readonly("spread", &Health::spread,
+                    "Standard deviation of inliers in the direction of least spread, as a share of the image diagonal.")
+      .def_readonly("position_sigma", &Health::position_sigma, "Metres, root of the trace of the position covariance.")
+      .def_readonly("rotation_sigma", &Health::rotation_sigma, "Radians, root of the trace of the rotation covariance.")
+      .def_readonly("distance_since_offline", &Health::distance_since_offline,
+                    "Path length since offline points last held the pose, metres.")
+      .def_readonly("seconds_since_offline", &Health::seconds_since_offline,
+                    "Time since offline points last held the pose, seconds.")
+      .def_readonly("hidden_share", &Health::hidden_share, "Share of the left image hidden by dirt, 0 to 1.")
+      .def_readonly("hidden_share_right", &Health::hidden_share_right,
+                    "Share of the right image hidden by dirt, 0 to 1.")
+      .def_property_readonly("note_on_dirt", &note_on_dirt, "Advice on dirt on the lenses; empty without dirt.");
+  py::class_<FrameReport>(module, "FrameReport",
+                          "Result of one frame. Poses are 4x4, in metres. A dropped frame has no pose.")
+      .def_property_readonly(
+          "time_ns", [](const FrameReport& report) { return report.time.count(); }, "Time stamp, nanoseconds.")
+      .def_readonly("state", &FrameReport::state, "State of tracking.")
+      .def_readonly("input", &FrameReport::input, "Fault of the input.")
       .def_property_readonly(
           "map_from_body", [](const FrameReport& report) { return matrix_of(report.map_from_body); },
-          "Pose in the map, which may jump by corrections; None without a pose.")
+          "Pose in the offline map, or in the session's own map; jumps when the map is corrected. None while unknown.")
       .def_property_readonly(
           "covariance",
           [](const FrameReport& report) { return covariance_of(report.map_from_body, report.covariance); },
-          "6x6, translation first, of a small motion in the body frame; None without a pose.")
+          "Covariance of map_from_body, 6x6: small motion in the body frame, translation before rotation, metres and "
+          "radians. None without a pose.")
       .def_property_readonly(
           "correction", [](const FrameReport& report) { return matrix_of(report.correction); },
-          "Jump of the pose by a map correction since the previous frame, or None.")
+          "Correction of the map since the previous frame, applied to the pose: after_from_before in the map frame; or "
+          "None.")
       .def_property_readonly(
           "odometry_from_body", [](const FrameReport& report) { return matrix_of(report.odometry_from_body); },
-          "Pose without jumps, in the odometry frame.")
-      .def_property_readonly("odometry_covariance",
-                             [](const FrameReport& report) {
-                               return covariance_of(report.odometry_from_body, report.odometry_covariance);
-                             })
-      .def_readonly("health", &FrameReport::health)
-      .def_property_readonly("verdict", [](const FrameReport& report) { return report.health.verdict; })
-      .def_readonly("events", &FrameReport::events)
+          "Pose in the odometry frame, which is that of the body at the start: drifts, never jumps. None while "
+          "unknown.")
+      .def_property_readonly(
+          "odometry_covariance",
+          [](const FrameReport& report) {
+            return covariance_of(report.odometry_from_body, report.odometry_covariance);
+          },
+          "Covariance of odometry_from_body, 6x6 as covariance; None without that pose.")
+      .def_readonly("health", &FrameReport::health, "Quality measures of the frame.")
+      .def_property_readonly(
+          "verdict", [](const FrameReport& report) { return report.health.verdict; }, "Verdict of health.")
+      .def_readonly("events", &FrameReport::events, "Events in order.")
       .def_property_readonly(
           "warnings", [](const FrameReport& report) { return texts_of(report.warnings); },
-          "Faults of wheels, gyroscope and accelerometer since the last frame, as text; each kind once.")
-      .def_readonly("features", &FrameReport::features)
-      .def_readonly("matches", &FrameReport::matches)
-      .def_readonly("inliers", &FrameReport::inliers)
-      .def_readonly("keyframe_added", &FrameReport::keyframe_added)
+          "Faults of wheels, gyroscope and accelerometer since the previous frame, as text; each kind once.")
+      .def_readonly("features", &FrameReport::features, "Features detected.")
+      .def_readonly("matches", &FrameReport::matches, "Map points matched.")
+      .def_readonly("inliers", &FrameReport::inliers, "Matches that fit the pose.")
+      .def_readonly("keyframe_added", &FrameReport::keyframe_added,
+                    "Whether the frame was added to the map as a keyframe.")
       .def_property_readonly(
           "online_points_left_out", [](const FrameReport& report) { return report.cuts.online_points; },
-          "Whether online points were limited to meet the deadline.")
+          "Whether fewer online points were searched to keep the deadline.")
       .def_property_readonly(
           "right_image_left_out", [](const FrameReport& report) { return report.cuts.right_image; },
-          "Whether only the left image was tracked, to meet the deadline.")
-      .def_readonly("is_late", &FrameReport::is_late, "Whether the frame exceeded its deadline.")
+          "Whether the right image was skipped to keep the deadline.")
+      .def_readonly("is_late", &FrameReport::is_late, "Whether the frame exceeded its deadline despite the cuts.")
       .def_readonly("refused_place", &FrameReport::refused_place,
-                    "Reason for rejecting a place in the offline map; DistrustReason.none without a rejection.")
+                    "Reason for rejecting the place found in the offline map, in this or a recent frame; "
+                    "DistrustReason.none without a rejection.")
       .def("__repr__", [](const FrameReport& report) {
         return "<FrameReport " + std::to_string(to_seconds(report.time)) + " s, " +
                std::string(to_string(report.state)) + ", " + std::string(to_string(report.health.verdict)) + ">";
@@ -93,8 +108,9 @@ void bind_reports(py::module_& module) {
 }
 
 constexpr const char* kPictures =
-    "an image is an array of uint8 or uint16, height x width, or of uint8, height x width x 3";
-constexpr const char* kDepths = "depth is an array of uint16 (units) or float32 (metres), height x width";
+    "an image needs uint8 or uint16, height x width, or uint8, height x width x 3, in native byte order";
+constexpr const char* kDepths =
+    "a depth image needs uint16 (units) or float32 (metres), height x width, in native byte order";
 
 bool is_of(const py::array& image, char kind, py::ssize_t size) {
   return image.dtype().kind() == kind && image.itemsize() == size && image.dtype().byteorder() != '>';
@@ -121,7 +137,7 @@ ImageView view_of(const py::array& image, PixelFormat format, Timestamp time, in
   const py::ssize_t channels = image.ndim() == 3 ? image.shape(2) : 1;
   const bool is_packed = image.strides(1) == channels * image.itemsize() && image.strides(0) > 0 &&
                          (channels == 1 || image.strides(2) == image.itemsize());
-  if (!is_packed) throw py::value_error("the pixels of a row are not contiguous; use numpy.ascontiguousarray");
+  if (!is_packed) throw py::value_error("pixels within a row must be contiguous: use numpy.ascontiguousarray");
   ImageView view{image.data(), static_cast<int>(image.shape(1)), static_cast<int>(image.shape(0))};
   view.stride = static_cast<std::size_t>(image.strides(0));
   view.format = format;
@@ -156,7 +172,7 @@ FrameReport process_images(Slam& slam, const ImageFrame& images, const std::opti
   return slam.process(view_of(images), motion);
 }
 
-// Ctrl-C stops finishing; the adjustments so far are kept.
+// Ctrl-C stops finishing; the map keeps the steps done.
 void finish(Slam& slam) {
   bool is_interrupted = false;
   {
@@ -198,22 +214,29 @@ py::dict settings_of(const SlamOptions& options) {
 }
 
 void bind_options(py::module_& module) {
-  py::class_<SlamOptions>(module, "SlamOptions", "Options of a Slam; all have defaults.")
-      .def(py::init(&options_of))
+  py::class_<SlamOptions>(module, "SlamOptions",
+                          "Options of a Slam. The constructor takes fields by name; all have defaults.")
+      .def(py::init(&options_of), "Raises TypeError for an unknown field.")
       .def_property(
           "workers", [](const SlamOptions& options) { return options.workers; },
-          [](SlamOptions& options, Workers workers) { options.workers = workers; })
-      .def_readwrite("refine_calibration", &SlamOptions::refine_calibration)
-      .def_readwrite("map_online", &SlamOptions::map_online)
-      .def_readwrite("max_pair_difference", &SlamOptions::max_pair_difference, "Seconds.")
-      .def_readwrite("max_gap", &SlamOptions::max_gap, "Seconds.")
-      .def_readwrite("max_features", &SlamOptions::max_features)
-      .def_readwrite("image_threads", &SlamOptions::image_threads)
+          [](SlamOptions& options, Workers workers) { options.workers = workers; }, "Threads of mapping.")
+      .def_readwrite("refine_calibration", &SlamOptions::refine_calibration,
+                     "Whether to refine the calibration from the images.")
+      .def_readwrite("map_online", &SlamOptions::map_online,
+                     "Whether a mission maps; False: localises on the offline map only.")
+      .def_readwrite("max_pair_difference", &SlamOptions::max_pair_difference,
+                     "Largest time difference between left and right or depth image, seconds.")
+      .def_readwrite("max_gap", &SlamOptions::max_gap,
+                     "Largest time difference between frames without InputFault.after_gap, seconds.")
+      .def_readwrite("max_features", &SlamOptions::max_features, "Features per frame.")
+      .def_readwrite("image_threads", &SlamOptions::image_threads,
+                     "Threads for the images of a frame; no effect on poses.")
       .def_readwrite("baseline", &SlamOptions::baseline,
-                     "Metres, replaces that of the calibration; required to confirm one outside 2 mm to 1 m.")
-      .def_readwrite("recording", &SlamOptions::recording)
-      .def_readwrite("site", &SlamOptions::site)
-      .def_readwrite("vocabulary", &SlamOptions::vocabulary)
+                     "Baseline of a stereo pair, metres; replaces that of the calibration. Required to confirm one "
+                     "outside 2 mm to 1 m.")
+      .def_readwrite("recording", &SlamOptions::recording, "Name of this session in a saved map.")
+      .def_readwrite("site", &SlamOptions::site, "Place where the map was made, stored in it unless empty.")
+      .def_readwrite("vocabulary", &SlamOptions::vocabulary, "Vocabulary file; None: the installed one.")
       .def_property(
           "plan",
           [](const SlamOptions& options) {
@@ -222,105 +245,147 @@ void bind_options(py::module_& module) {
           [](SlamOptions& options, const std::optional<std::filesystem::path>& file) {
             options.plan = file ? std::optional(read_drawn_floor_plan(*file)) : std::nullopt;
           },
-          "Floor plan on which the mission's map is registered: set to a file, reads as its name.")
-      .def_property("settings", &settings_of, &set_settings, "Options of docs/reference/options.md by name.");
+          "Floor plan on which the mission's map is registered; places behind its walls are rejected. Takes the path "
+          "of the plan, returns its name; None: no walls. Raises InputError for an unreadable plan.")
+      .def_property("settings", &settings_of, &set_settings,
+                    "Options of docs/reference/options.md, as dict of name and value. They override the fields above.");
 }
 
 using SlamClass = py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>;
 
 void bind_making(SlamClass& type) {
   const auto released = py::call_guard<py::gil_scoped_release>();
-  type.def_static("mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
-                  "Makes a new map.")
-      .def_static("extending", &Slam::extending, py::arg("calibration"), py::arg("map"),
-                  py::arg("options") = SlamOptions{}, released, "Extends a stored map.")
+  type.def_static(
+          "mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
+          "Makes a new map. One camera without depth has an arbitrary scale, and poses are those of the camera. Raises "
+          "InputError for an invalid calibration, vocabulary or setting.")
+      .def_static(
+          "extending", &Slam::extending, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
+          released,
+          "Continues a saved map: relocalises in it first, then adds to it. Raises InputError as mapping(), and if the "
+          "map cannot be loaded.")
       .def_static("on_map", &Slam::on_map, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
-                  released, "Mission on an offline map.");
+                  released,
+                  "Mission on an offline map, which is not modified. Poses are in its frame, with verdicts. Raises "
+                  "InputError as mapping(), and if the map cannot be loaded.");
 }
 
 void bind_input(SlamClass& type) {
   type.def("process", &process_images, py::arg("images"), py::arg("last_from_body") = py::none(),
-           "Processes the next frame of a Recording.")
+           "Tracks the next frame, with images of a Recording. last_from_body: measured motion of the body since the "
+           "previous call, 4x4, metres; None: wheel and gyroscope samples are used, if any. Raises InputError if it is "
+           "not a rigid motion.")
       .def("process", &process, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
            py::arg("depth") = py::none(), py::arg("last_from_body") = py::none(), py::arg("format") = py::none(),
            py::arg("bits") = 16, py::arg("right_time_ns") = py::none(), py::arg("depth_time_ns") = py::none(),
-           "Processes the next frame: arrays height x width of uint8 or uint16 (with `bits` bits), or height x width x "
-           "3 of uint8 (BGR unless format is rgb8); depth of uint16 (units) or float32 (metres). Arrays are borrowed "
-           "for the call.")
+           "Tracks the next frame. Arrays are borrowed for the call; rows may be padded.\n"
+           "time_ns: middle of the exposure, nanoseconds, by any monotonic clock.\n"
+           "left, right: uint8, height x width; uint16, height x width, with bits significant bits; or uint8, height x "
+           "width x 3.\n"
+           "depth: height x width, uint16 in units of DepthCamera.units_per_metre, or float32 in metres; zero is "
+           "invalid.\n"
+           "last_from_body: measured motion of the body since the previous call, 4x4, metres. Ignored while the scale "
+           "is unknown.\n"
+           "format: order of colours, bgr8 by default.\n"
+           "right_time_ns, depth_time_ns: default time_ns.\n"
+           "Raises TypeError for other arrays, ValueError for pixels that are not contiguous, and InputError if "
+           "last_from_body is not a rigid motion. Faults of the frame are reported in FrameReport.input.")
       .def(
           "add_wheel_odometry",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Matrix4d& odometry_from_base) {
             slam.add_wheel_odometry({Timestamp(time_ns), pose_of(odometry_from_base, "odometry_from_base")});
           },
           py::arg("time_ns"), py::arg("odometry_from_base"),
-          "Adds wheel odometry, before the frames that follow it: base pose in the drifting odometry frame.")
+          "Adds wheel odometry at any rate: pose of the base in a drifting odometry frame, 4x4, metres. Samples are in "
+          "order of time, by the clock of the images, and precede the frame that they lead to. Raises InputError if "
+          "the matrix is not a rigid motion.")
       .def(
           "add_wheel_velocity",
           [](Slam& slam, std::int64_t time_ns, double vx, double vy, double wz) {
             slam.add_wheel_odometry(BaseTwist{Timestamp(time_ns), vx, vy, wz});
           },
           py::arg("time_ns"), py::arg("vx"), py::arg("vy"), py::arg("wz"),
-          "Adds wheel odometry without poses: velocity of the base in its own axes, metres and radians per second.")
+          "Adds wheel odometry as velocity of the base in its own axes, x ahead, y left: vx and vy in metres per "
+          "second, wz in radians per second, positive to the left. Give either poses or velocities.")
       .def(
           "add_gyro",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& rate) {
             slam.add_gyro({Timestamp(time_ns), rate});
           },
           py::arg("time_ns"), py::arg("rate"),
-          "Adds a gyroscope sample, before the frames that follow it: radians per second.")
+          "Adds a gyroscope sample: rate about its axes, radians per second. Order and clock as for wheels. Bias and "
+          "rotation to the body are estimated.")
       .def(
           "add_accel",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& acceleration) {
             slam.add_accel({Timestamp(time_ns), acceleration});
           },
           py::arg("time_ns"), py::arg("acceleration"),
-          "Adds an accelerometer sample of the same IMU: m/s^2 including gravity, along the same axes.")
+          "Adds an accelerometer sample: specific force along the axes of the gyroscope, m/s^2. Order and clock as for "
+          "wheels. Only used at standstill, as the direction of gravity.")
       .def(
           "set_initial_pose",
           [](Slam& slam, const Eigen::Matrix4d& map_from_body, double radius, double turn, double seconds) {
             slam.set_initial_pose({pose_of(map_from_body, "map_from_body"), radius, turn, seconds});
           },
           py::arg("map_from_body"), py::arg("radius") = 2.0, py::arg("turn") = 1.0, py::arg("seconds") = 10.0,
-          "Initial pose by an operator: a mission without a pose searches the offline map only near it for the given "
-          "seconds, then everywhere. Metres, radians.")
+          "Limits relocalisation to the surroundings of a pose. Does not affect tracking. Replaces an earlier hint. "
+          "Only for on_map().\n"
+          "radius: largest position error, metres; turn: largest rotation error, radians.\n"
+          "seconds: lifetime from the next frame on, seconds of frame time.\n"
+          "Raises InputError if map_from_body is not a rigid motion.")
       .def("pause_mapping", &Slam::pause_mapping, py::arg("is_paused"),
-           "Pauses mapping: frames are tracked on the existing maps, which do not grow.")
-      .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused);
+           "While paused, frames are tracked, but the map is neither initialised nor extended.")
+      .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused, "Whether mapping is paused.");
 }
 
 void bind_results(SlamClass& type) {
   const auto released = py::call_guard<py::gil_scoped_release>();
-  type.def("finish", &finish, "Closes the last loops and adjusts the whole map. Later frames are dropped.")
-      .def("save", &Slam::save, py::arg("path"), released, "Saves the map.")
-      .def("trajectory", &Slam::trajectory, "Poses of all localised frames, as corrected by the map so far.")
+  type.def("finish", &finish,
+           "Waits for mapping jobs, closes remaining loops and adjusts the whole map; takes seconds to minutes. Later "
+           "frames are dropped. Ctrl-C stops it and keeps the steps done.")
+      .def("save", &Slam::save, py::arg("path"), released,
+           "Writes the map, for a mission the online map. Replaces the file atomically. Raises InputError if nothing "
+           "was mapped yet, or if the file cannot be written, exists and is no map, or is the mission's offline map.")
+      .def("trajectory", &Slam::trajectory,
+           "map_from_body of all tracked frames, with all corrections so far. Gaps are filled by wheel odometry.")
       .def(
           "plan_from_body",
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body) {
             return matrix_of(slam.plan_from_body(pose_of(map_from_body, "map_from_body")));
           },
-          py::arg("map_from_body"), "Pose on the floor plan of the map, or None.")
+          py::arg("map_from_body"),
+          "Pose on the floor plan of a pose in the map, 4x4, metres; None if the map is not registered on a plan. "
+          "Raises InputError if map_from_body is not a rigid motion.")
       .def(
           "plan_covariance",
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body, const Matrix6& covariance) {
             return slam.plan_covariance(pose_of(map_from_body, "map_from_body"), covariance);
           },
           py::arg("map_from_body"), py::arg("covariance"),
-          "Covariance of the pose on the floor plan, including that of the registration, or None.")
-      .def_property_readonly("calibration", &Slam::calibration, "Current calibration, with refinements.")
-      .def_property_readonly("is_metric", &Slam::is_metric)
+          "Covariance of plan_from_body(), 6x6 as FrameReport.covariance: the given covariance in the map plus that of "
+          "the registration. None if the map is not registered on a plan.")
+      .def_property_readonly("calibration", &Slam::calibration, "Calibration with all refinements so far.")
+      .def_property_readonly("is_metric", &Slam::is_metric, "Whether lengths are metres.")
       .def_property_readonly("map_damage", &Slam::map_damage,
-                             "Damage of the mission's map file, as text; None without damage.")
-      .def_property_readonly("keyframes", &Slam::keyframes)
-      .def_property_readonly("points", &Slam::points)
+                             "Damage of the offline map's file: file, section, reason and remedy; None if undamaged.")
+      .def_property_readonly("keyframes", &Slam::keyframes,
+                             "Keyframes of the map being made; without the offline map of a mission.")
+      .def_property_readonly("points", &Slam::points,
+                             "Points of the map being made; without the offline map of a mission.")
       .def_property_readonly(
           "motion_warnings", [](const Slam& slam) { return texts_of(slam.motion_warnings()); },
           "Faults of wheels, gyroscope and accelerometer so far, as text; each kind once.")
-      .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_), "Number of processed frames.")
-      .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"));
+      .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_),
+                             "Number of frames, including dropped ones.")
+      .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"),
+           "Number of frames with this fault.");
 }
 
 void bind_slam_itself(py::module_& module) {
-  SlamClass slam(module, "Slam", "One robot's SLAM: images in, poses out. Call it from one thread.");
+  SlamClass slam(
+      module, "Slam",
+      "Visual SLAM of one robot: images in, poses out. Call it from one thread; mapping has its own threads.");
   bind_making(slam);
   bind_input(slam);
   bind_results(slam);

@@ -10,8 +10,9 @@
     slam.finish()
     slam.save("hall.byre")
 
-Robots pass their own images as numpy arrays: slam.process(time_ns, left, right).
-Poses are 4x4 matrices named a_from_b: point_in_a = a_from_b @ point_in_b. Metres, radians, nanoseconds.
+Live images are numpy arrays: slam.process(time_ns, left, right).
+Poses are 4x4 matrices named a_from_b: point_in_a = a_from_b @ point_in_b. Covariances are 6x6, translation before
+rotation. Units: metres, radians, nanoseconds. Unknown values are None. Bad input raises InputError, a ValueError.
 """
 from ._byre import (
     AbsoluteTrajectoryError,

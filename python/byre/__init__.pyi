@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 __version__: str
 
 _Path = Union[str, PathLike[str]]
-_Matrix4 = NDArray[np.float64]  # 4 x 4
-_Matrix6 = NDArray[np.float64]  # 6 x 6
+_Matrix4 = NDArray[np.float64]  # pose, 4 x 4, metres
+_Matrix6 = NDArray[np.float64]  # covariance, 6 x 6, translation before rotation, metres and radians
 
 class InputError(ValueError):
     place: str

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Maps a recording, reports the trajectory error if there is ground truth, and plots the trajectory from above.
+"""Maps a recording, reports the trajectory error if ground truth exists, and plots the trajectory from above.
 
     map_and_plot.py MH_01_easy -o trajectory.svg [--map hall.byre]
 
@@ -24,7 +24,7 @@ def run(path: str) -> byre.Slam:
 def tell_error(estimate: byre.Trajectory, path: str) -> None:
     found = byre.find_ground_truth(path)
     if found is None:
-        print("the recording has no truth")
+        print("no trajectory error: the recording has no ground truth")
         return
     try:
         truth = byre.read_trajectory(found)
@@ -51,9 +51,9 @@ def plot(estimate: byre.Trajectory, path: str) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Maps a recording and plots where the robot went.")
-    parser.add_argument("recording")
-    parser.add_argument("-o", "--plot", help="picture to write; its suffix selects the format")
+    parser = argparse.ArgumentParser(description="Maps a recording and plots the trajectory.")
+    parser.add_argument("recording", help="folder or file of the recording")
+    parser.add_argument("-o", "--plot", help="plot to write; the suffix selects the format")
     parser.add_argument("--map", help="map to write")
     arguments = parser.parse_args()
     slam = run(arguments.recording)

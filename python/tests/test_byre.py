@@ -269,7 +269,7 @@ def test_calibrations_can_be_constructed():
     assert pair == byre.Calibration(camera, camera, right_from_left) and pair != byre.Calibration(camera)
     with pytest.raises(ValueError, match="needs a model"):
         byre.Camera(640, 480, 400.0, 400.0, 319.5, 239.5, distortion=[0.1])
-    with pytest.raises(ValueError, match="belong together"):
+    with pytest.raises(ValueError, match="must be given together"):
         byre.Calibration(camera, camera)
     with pytest.raises(byre.InputError, match="right_from_left"):
         byre.Calibration(camera, camera, 2 * right_from_left)
