@@ -1,16 +1,16 @@
-// Starts byre and a browser, and ends both.
+// Starts and stops byre and a browser.
 import { spawn, spawnSync } from "node:child_process";
 import { chromium } from "playwright-core";
 
 const kPatience = 60_000; // milliseconds
 
-/** A byre that serves a page, at its url, until it is interrupted. */
+/** Process of byre that serves a page at its url until interrupted. */
 export class Viewer {
   #process;
   #said = "";
   #exitCode;
 
-  /** Starts "byre ARGUMENTS"; resolves once it serves. */
+  /** Starts "byre ARGUMENTS"; resolves when the address is printed. */
   static async start(...commandLine) {
     const viewer = new Viewer();
     viewer.#process = spawn(process.env.BYRE, commandLine, { stdio: ["ignore", "ignore", "pipe"] });
@@ -21,7 +21,7 @@ export class Viewer {
     return viewer;
   }
 
-  /** Nothing moves while it is looked at, however slowly that goes. */
+  /** Calls look while byre is stopped, so that slow checks see one state. */
   async whileStopped(look) {
     this.#process.kill("SIGSTOP");
     const seen = await look();
@@ -29,7 +29,7 @@ export class Viewer {
     return seen;
   }
 
-  /** As Ctrl-C does; gives the exit code. */
+  /** Sends SIGINT, as Ctrl-C; resolves to the exit code. */
   interrupt() {
     this.#process.kill("SIGINT");
     return this.#exitCode;
@@ -40,7 +40,7 @@ export class Viewer {
   }
 }
 
-/** What "byre ARGUMENTS" prints. */
+/** Standard output of "byre ARGUMENTS". Throws if it fails. */
 export function outputOf(...commandLine) {
   const { status, stdout, stderr } = spawnSync(process.env.BYRE, commandLine, { encoding: "utf8" });
   if (status !== 0) throw new Error(`byre ${commandLine.join(" ")}: ${stderr}`);
@@ -48,8 +48,8 @@ export function outputOf(...commandLine) {
 }
 
 /**
- * Chromium that draws without a graphics card; with "webgl: false" it draws nothing in three dimensions. No watchdog ends
- * it where that takes long.
+ * Chromium with software rendering; "webgl: false" disables WebGL. Without the watchdog of the GPU process, which ends
+ * slow rendering.
  */
 export function startBrowser({ webgl = true } = {}) {
   const drawing = webgl ? ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"];
@@ -59,7 +59,7 @@ export function startBrowser({ webgl = true } = {}) {
   });
 }
 
-/** A page that remembers what went wrong in it, in "problems". */
+/** Opens a page that collects console errors and exceptions in "problems". */
 export async function openPage(browser, url, options = {}) {
   const page = await browser.newPage({ viewport: { width: 1360, height: 820 }, colorScheme: "light", ...options });
   page.setDefaultTimeout(kPatience);
@@ -72,12 +72,12 @@ export async function openPage(browser, url, options = {}) {
   return page;
 }
 
-/** Waits until it is so; what: gives what was waited for, for the error. */
+/** Polls until isSo() holds. Throws after a minute; what: description of the condition, for the error. */
 export async function eventually(isSo, what) {
   const end = Date.now() + kPatience;
   while (Date.now() < end) {
     if (await isSo()) return;
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  throw new Error(`waited in vain for ${what()}`);
+  throw new Error(`timeout: ${what()}`);
 }

@@ -1,15 +1,15 @@
-// Compares what is on the screen.
+// Screenshots and their comparison.
 
-const kHeadOfStage = 60; // pixels at the top, where buttons lie over the map
+const kHeadOfStage = 60; // height of the buttons over the map, pixels
 
-/** A picture of the map, or of another element, as it is shown: a PNG file in base64. */
+/** Screenshot of an element without the buttons at its top: PNG in base64. */
 export async function pictureOf(page, selector) {
   const { x, y, width, height } = await page.locator(selector).boundingBox();
   const clip = { x, y: y + kHeadOfStage, width, height: height - kHeadOfStage };
   return (await page.screenshot({ clip })).toString("base64");
 }
 
-/** The same, once it does not change any more. */
+/** Screenshot as by pictureOf, after it has stopped changing. Throws after 20 attempts. */
 export async function settledPictureOf(page, selector) {
   let before = await pictureOf(page, selector);
   for (let tries = 0; tries < 20; ++tries) {
@@ -18,10 +18,10 @@ export async function settledPictureOf(page, selector) {
     if (now === before) return now;
     before = now;
   }
-  throw new Error(`${selector} never comes to rest`);
+  throw new Error(`${selector} keeps changing`);
 }
 
-/** How many pixels of two pictures of the same size are not alike; the page itself decodes them. */
+/** Number of pixels that differ between two screenshots of the same size; decoded by the page. */
 export function differentPixels(page, a, b) {
   return page.evaluate(async (pictures) => {
     const pixelsOf = async (picture) => {

@@ -1,12 +1,12 @@
-// A floor plan of nowhere, and where on it the points of a map are to be clicked so that the map comes to lie there.
+// Synthetic floor plan, and the pixels to click so that a map is registered on it.
 import { writeFileSync } from "node:fs";
 
 const kWidth = 480;
 const kHeight = 360;
-const kResolution = 0.025; // metres a pixel
-const kOrigin = [-6, -4.5]; // of the lower left corner
+const kResolution = 0.025; // metres per pixel
+const kOrigin = [-6, -4.5]; // lower left corner, metres
 
-const kTurn = -2.32; // radians, of the room that the tests render, so that its walls lie along the plan's
+const kTurn = -2.32; // rotation that aligns the rendered room with the walls of the plan, radians
 
 /** Draws a room of 8 x 6 m with a door as "NAME.pgm" and describes it in "NAME.yaml". */
 export function writePlan(name) {
@@ -32,7 +32,7 @@ function turned([x, y]) {
   return [cosine * x - sine * y, sine * x + cosine * y];
 }
 
-/** Where on the plan's canvas a point of the map is: the map's points lie around the plan's origin, seen from above. */
+/** Canvas pixel of a map point seen from above, with the map origin at the plan origin. */
 function pixelOf({ up, points }, point, { width, height }) {
   const right = unit(cross(up, Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
   const ahead = cross(up, right);

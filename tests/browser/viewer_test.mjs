@@ -1,4 +1,4 @@
-// What a person does with the viewer, done by a browser. Screenshots stay in the folder "screenshots".
+// End-to-end tests of the viewer in a browser. Screenshots are written to the folder "screenshots".
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, rmSync } from "node:fs";
 import { afterEach, beforeEach, describe, test } from "node:test";
@@ -21,7 +21,7 @@ function screenshot(page, name) {
   return page.screenshot({ path: `screenshots/${name}.png` });
 }
 
-/** Attribute of the timeline: valuenow and valuemax are numbers of frames. */
+/** ARIA attribute of the timeline; valuenow and valuemax are frame numbers. */
 async function frameOf(page, attribute) {
   return Number(await page.locator(kTrack).getAttribute(`aria-${attribute}`));
 }
@@ -44,7 +44,7 @@ describe("A map", () => {
     const withPoints = await settledPictureOf(page, kStage);
     await page.getByRole("button", { name: "Known map" }).click();
     const without = await settledPictureOf(page, kStage);
-    assert.ok((await differentPixels(page, withPoints, without)) > 500, "hiding the points changes the picture");
+    assert.ok((await differentPixels(page, withPoints, without)) > 500, "hiding the points changes the view");
     await page.getByRole("button", { name: "Known map" }).click();
     assert.equal(await differentPixels(page, withPoints, await settledPictureOf(page, kStage)), 0);
     await screenshot(page, "map");
@@ -74,7 +74,7 @@ describe("A map", () => {
     viewer = await Viewer.start("view", "room.byre", "--port", "0");
     const plain = await startBrowser({ webgl: false });
     const page = await openPage(plain, viewer.url);
-    await page.getByText("cannot draw in three dimensions").waitFor();
+    await page.getByText("WebGL 2 is not available").waitFor();
     await screenshot(page, "without_webgl");
     await plain.close();
   });
@@ -100,8 +100,8 @@ describe("A run", () => {
     for (const name of await page.locator(".health dt").all()) {
       assert.ok((await name.getAttribute("title")).length > 20, await name.innerText());
     }
-    const said = await page.locator(".health dl").innerText();
-    assert.doesNotMatch(said, /inlier|keyframe|covariance|sigma|offline|online/i);
+    const text = await page.locator(".health dl").innerText();
+    assert.doesNotMatch(text, /inlier|keyframe|covariance|sigma|offline|online/i);
   });
 
   async function openRun() {
@@ -120,11 +120,11 @@ describe("A run", () => {
       await frameOf(page, "valuenow"),
     ]);
     await eventually(async () => (await frameOf(page, "valuenow")) > frame + 5, () => "later frames");
-    assert.ok((await differentPixels(page, early, await pictureOf(page, kStage))) > 100, "the map's picture moves");
+    assert.ok((await differentPixels(page, early, await pictureOf(page, kStage))) > 100, "the 3D view changes");
     const later = await pictureOf(page, "canvas.image");
-    assert.ok((await differentPixels(page, image, later)) > 1000, "the camera's picture moves");
+    assert.ok((await differentPixels(page, image, later)) > 1000, "the camera image changes");
     await screenshot(page, "run_live");
-    await eventually(hasEnded(page), () => "the end");
+    await eventually(hasEnded(page), () => "the end of the run");
     assert.equal(await frameOf(page, "valuemax"), 59);
     assert.match(await page.locator(".verdict").innerText(), /trusted/i);
     await screenshot(page, "run_ended");
@@ -140,7 +140,7 @@ describe("A run", () => {
       await page.locator(".timeline[data-state=paused]").waitFor();
       return [await frameOf(page, "valuenow"), await settledPictureOf(page, "canvas.image")];
     });
-    await eventually(async () => (await frameOf(page, "valuemax")) > paused + 5, () => "frames behind the pause");
+    await eventually(async () => (await frameOf(page, "valuemax")) > paused + 5, () => "frames after the pause");
     assert.equal(await frameOf(page, "valuenow"), paused);
     await page.locator(kTrack).click({ position: { x: 3, y: 20 } });
     await eventually(async () => (await frameOf(page, "valuenow")) < 3, () => "the first frame");
@@ -151,29 +151,29 @@ describe("A run", () => {
     await page.keyboard.press("ArrowRight");
     await page.keyboard.press("l");
     await eventually(async () => (await frameOf(page, "valuenow")) > paused + 5, () => "the newest frame");
-    await eventually(hasEnded(page), () => "the end");
+    await eventually(hasEnded(page), () => "the end of the run");
     await page.keyboard.press("Home");
     await eventually(async () => (await frameOf(page, "valuenow")) === 0, () => "the first frame");
     await page.keyboard.press(" ");
-    await eventually(async () => (await frameOf(page, "valuenow")) > 20, () => "frames that are played");
+    await eventually(async () => (await frameOf(page, "valuenow")) > 20, () => "replayed frames");
     await screenshot(page, "run_played");
     assert.deepEqual(page.problems, []);
   });
 
   test("is sent from its start to a page opened late, dark and narrow", async () => {
     const first = await openRun();
-    await eventually(hasEnded(first), () => "the end");
+    await eventually(hasEnded(first), () => "the end of the run");
     await first.close();
     const page = await openPage(browser, viewer.url, { colorScheme: "dark", viewport: { width: 420, height: 860 } });
     await eventually(async () => (await frameOf(page, "valuemax")) === 59, () => "all frames");
-    await eventually(hasEnded(page), () => "the end");
+    await eventually(hasEnded(page), () => "the end of the run");
     await eventually(async () => /fit/.test(await page.locator("figcaption").innerText()), () => "an image");
     await page.screenshot({ path: "screenshots/run_dark_narrow.png", fullPage: true });
   });
 });
 
 describe("Picking", () => {
-  /** Clicks here and there until a point of the map is hit. */
+  /** Clicks along a spiral until a map point is hit. */
   async function pickInMap(page, { x, y }) {
     const box = await page.locator(kStage).boundingBox();
     for (let turn = 0; turn < 40; ++turn) {
@@ -202,11 +202,11 @@ describe("Picking", () => {
       const [x, y] = plan.pixelOf(map, point, canvas);
       await page.mouse.click(canvas.x + x, canvas.y + y);
     }
-    await page.getByText(/3 picks fit to/).waitFor();
+    await page.getByText(/3 picks fit, rms/).waitFor();
     await screenshot(page, "picking");
-    const [, centimetres] = /fit to ([\d.]+) cm/.exec(await page.locator(".fit").innerText());
-    assert.ok(Number(centimetres) < 10, `fits to ${centimetres} cm`);
-    await page.getByRole("button", { name: "Save the map" }).click();
+    const [, centimetres] = /rms ([\d.]+) cm/.exec(await page.locator(".fit").innerText());
+    assert.ok(Number(centimetres) < 10, `rms error of ${centimetres} cm`);
+    await page.getByRole("button", { name: "Save the registered map" }).click();
     await page.getByText(/Written: .*room-plan.byre/).waitFor();
     assert.equal(JSON.parse(outputOf("inspect", "room-plan.byre", "--json")).plan.plan, "room-plan.yaml");
     assert.match(readFileSync("room-plan.picks.csv", "utf8"), /^name,point,plan_x_m,plan_y_m\nplace 1,\d+,/);
@@ -225,16 +225,16 @@ describe("Picking", () => {
       await pickInMap(page, place);
       await page.mouse.click(canvas.x + wrong[i][0] * canvas.width, canvas.y + wrong[i][1] * canvas.height);
     }
-    await page.getByText(/the map is off its plan by \d+\.\d+ m/).waitFor();
-    await page.getByRole("button", { name: "Save the map" }).click();
+    await page.getByText(/residual of the map \d+\.\d+ m/).waitFor();
+    await page.getByRole("button", { name: "Save the registered map" }).click();
     const dialog = page.getByRole("dialog");
-    assert.match(await dialog.innerText(), /places picked are \d+\.\d+ m off/);
+    assert.match(await dialog.innerText(), /residual of \d+\.\d+ m/);
     await screenshot(page, "confirm");
     await page.getByRole("button", { name: "Do not save" }).click();
     await dialog.waitFor({ state: "detached" });
     assert.ok(!existsSync("wrong-plan.byre"));
-    await page.getByRole("button", { name: "Save the map" }).click();
-    await page.getByRole("button", { name: "Save all the same" }).click();
+    await page.getByRole("button", { name: "Save the registered map" }).click();
+    await page.getByRole("button", { name: "Save anyway" }).click();
     await page.getByText(/Written: .*wrong-plan.byre/).waitFor();
     assert.deepEqual(page.problems, []);
   });
@@ -264,12 +264,12 @@ describe("Figures", () => {
     await crowded.goto(viewer.url);
     await eventually(async () => (await pointCount(crowded)) === 100_000, () => "100,000 points");
     const rate = await crowded.evaluate(() => window.byreFramesPerSecond(3));
-    context.diagnostic(`${rate.toFixed(1)} frames a second with 100,000 points, drawn without a graphics card`);
+    context.diagnostic(`${rate.toFixed(1)} frames per second with 100,000 points, software rendering`);
     await screenshot(crowded, "crowd");
     assert.ok(rate > 0);
   });
 
-  /** Bytes of a map of so many points on the walls of a hall. */
+  /** Binary message of a map with points on the walls of a hall. */
   function crowdOf(count) {
     const bytes = Buffer.alloc(8 + 13 * count);
     bytes.writeUInt32LE(count, 0);

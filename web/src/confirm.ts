@@ -1,12 +1,12 @@
 import { element } from "./dom";
 
-/** Asks before something that is hard to undo; nothing is chosen by hitting Enter at once. */
+/** Dialog before a step that is hard to undo; Enter selects "Do not save". True if confirmed. */
 export function isConfirmed(question: string, yes: string): Promise<boolean> {
   const refuse = element("button", { type: "button", autofocus: true }, "Do not save");
   const accept = element("button", { type: "button", class: "danger" }, yes);
   const dialog = element(
     "dialog",
-    { class: "confirm", ariaLabel: "Please confirm" },
+    { class: "confirm", ariaLabel: "Confirmation" },
     element("p", {}, question),
     element("p", { class: "buttons" }, refuse, accept),
   );

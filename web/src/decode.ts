@@ -1,18 +1,18 @@
-// What byre sends as bytes, little-endian: src/byre/viewer/web/web_bytes.h says how they lie.
+// Binary messages of byre, little-endian; layout: src/byre/viewer/web/web_bytes.h.
 
 export interface MapData {
-  /** x, y, z of each point, in the map's frame. */
+  /** x, y, z of each point in the map frame, metres. */
   points: Float32Array;
-  /** x, y, z and a quaternion x, y, z, w of each keyframe: map_from_body. */
+  /** map_from_body of each keyframe: x, y, z in metres and quaternion x, y, z, w. */
   keyframes: Float32Array;
 }
 
 export interface SeenImage {
-  /** Number of its frame. */
+  /** Frame number in the run, from 0. */
   frame: number;
-  /** u, v of each point seen, in pixels. */
+  /** u, v of each matched map point, pixels. */
   pixels: Float32Array;
-  /** 1 online, 2 inlier, or both. */
+  /** Flags of each point: 1 online, 2 inlier. */
   kinds: Uint8Array;
   jpeg: Blob;
 }

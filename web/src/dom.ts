@@ -1,4 +1,4 @@
-/** The element of index.html with this id. */
+/** Element of index.html with this id. Throws if it is missing. */
 export function byId(id: string): HTMLElement {
   const found = document.getElementById(id);
   if (!found) throw new Error(`the page has no element ${id}`);
@@ -9,7 +9,7 @@ type Properties<Tag extends keyof HTMLElementTagNameMap> = Partial<
   Omit<HTMLElementTagNameMap[Tag], "style" | "dataset">
 > & { class?: string };
 
-/** A new element with properties and content; texts are set as text, never as HTML. */
+/** New element with properties and content; strings are set as text, never as HTML. */
 export function element<Tag extends keyof HTMLElementTagNameMap>(
   tag: Tag,
   { class: className, ...properties }: Properties<Tag> = {},
@@ -21,7 +21,7 @@ export function element<Tag extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
-/** Fits a canvas to its size on the page in device pixels; gives a context in CSS pixels. */
+/** Resizes a canvas to its size on the page in device pixels; returns a context in CSS pixels. */
 export function fittedContext(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
   const ratio = window.devicePixelRatio || 1;
   const width = Math.round(canvas.clientWidth * ratio);
@@ -32,7 +32,7 @@ export function fittedContext(canvas: HTMLCanvasElement): CanvasRenderingContext
   return context;
 }
 
-/** Calls draw once before the next frame, however often it was asked for. */
+/** Function that schedules one call of draw before the next animation frame, for any number of calls. */
 export function onceAFrame(draw: () => void): () => void {
   let isAsked = false;
   return () => {

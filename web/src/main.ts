@@ -9,7 +9,7 @@ import { startTheme } from "./theme";
 
 declare global {
   interface Window {
-    /** For measurements: draws for so many seconds as often as can be, and gives the frames a second. */
+    /** For measurements: draws continuously for the given seconds; returns frames per second. */
     byreFramesPerSecond?: (seconds: number) => number;
   }
 }
@@ -31,5 +31,5 @@ async function start(): Promise<void> {
 }
 
 start().catch((error: Error) => {
-  byId("notice").textContent = `This page cannot be shown: ${error.message}`;
+  byId("notice").textContent = `The page cannot be loaded: ${error.message}`;
 });

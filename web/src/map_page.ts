@@ -13,10 +13,10 @@ import { pointAt } from "./space/point_picking";
 import type { Stage } from "./space/stage";
 import type { MapScene, Pick, PlanFields, PlanFit, RegistrationFields, Vector2Fields } from "./types";
 
-const kClick = 4; // pixels that the pointer may move between press and release of a click
+const kClick = 4; // largest motion of the pointer during a click, pixels
 const kPointsOnPlan = 20000;
 
-/** A map alone and, with a plan, picking of points in both. */
+/** Page of a map; with a plan also for picking points in both. */
 export async function startMapPage(scene: MapScene, space: MapSpace): Promise<void> {
   const map = await loadMap("offline");
   space.showOffline(map);
@@ -30,8 +30,8 @@ export async function startMapPage(scene: MapScene, space: MapSpace): Promise<vo
 
 function farOffWarning({ residual_m }: PlanFit): string {
   return (
-    `The map and the plan do not fit: the places picked are ${residual_m.toFixed(2)} m off. A robot that uses this ` +
-    "plan would be shown, or sent, as far from where it is. Check the picks, and whether the plan is to scale."
+    `The picks have a residual of ${residual_m.toFixed(2)} m. Poses and goals on this plan would be wrong by about ` +
+    "as much. Check the picks and the scale of the plan."
   );
 }
 
@@ -43,8 +43,8 @@ class Picking {
   readonly #list: PickList;
   readonly #labels: PickLabels | null = null;
   readonly #picks: Pick[] = [];
-  #count = 0; // of picks ever made, for their names
-  #pending: number | null = null; // point picked in the map, not yet on the plan
+  #count = 0; // picks made so far, including removed ones; numbers their names
+  #pending: number | null = null; // map point picked, its place on the plan not yet
   #hovered: number | null = null;
   #fit: PlanFit | null = null;
 
@@ -100,7 +100,7 @@ class Picking {
   #pickInMap(stage: Stage, x: number, y: number): void {
     const point = this.#pointAt(stage, x, y);
     if (point === null) {
-      this.#list.tellStep("There is no point so close to that place. Click a point of the map.");
+      this.#list.tellStep("No map point at this position. Click a point of the map.");
       return;
     }
     this.#pending = point;
@@ -109,7 +109,7 @@ class Picking {
 
   #pickOnPlan(point: Vector2Fields): void {
     if (this.#pending === null) {
-      this.#list.tellStep("First click a point of the map.");
+      this.#list.tellStep("Click a point of the map first.");
       return;
     }
     this.#picks.push({ name: `place ${++this.#count}`, point: this.#pending, plan: point });
@@ -136,7 +136,7 @@ class Picking {
     const asked = [...this.#picks];
     try {
       const fit = await register(asked);
-      if (asked.length !== this.#picks.length) return; // answered too late
+      if (asked.length !== this.#picks.length) return; // outdated answer
       this.#fit = fit;
       this.#showOnPlan(fit.registration);
       this.#show();
@@ -148,12 +148,12 @@ class Picking {
   async #save(): Promise<void> {
     const fit = this.#fit;
     if (!fit) return;
-    if (fit.is_far_off && !(await isConfirmed(farOffWarning(fit), "Save all the same"))) return;
+    if (fit.is_far_off && !(await isConfirmed(farOffWarning(fit), "Save anyway"))) return;
     try {
       const written = await save(this.#picks, fit.is_far_off ? fit.residual_m : undefined);
       this.#list.tellSaved(`Written: ${written.join(", ")}`);
     } catch (error) {
-      this.#list.tellSaved(`Not saved. ${(error as Error).message}`);
+      this.#list.tellSaved(`Not saved: ${(error as Error).message}`);
     }
   }
 
@@ -161,7 +161,7 @@ class Picking {
     this.#list.show(this.#picks, this.#fit, problem);
     this.#list.tellStep(
       this.#pending === null
-        ? `Pick ${this.#count + 1}: click a point of the map that you know on the plan.`
+        ? `Pick ${this.#count + 1}: click a map point whose place on the plan is known.`
         : "Now click the same place on the plan.",
     );
     this.#showMarks();
@@ -195,7 +195,7 @@ class Picking {
     this.#labels?.set(labels);
   }
 
-  /** The plan under the map, and the map on the plan. */
+  /** Shows the plan below the map, and the map on the plan. */
   #showOnPlan(registration: RegistrationFields): void {
     this.#space.place({ ...this.#scene, registration });
     const toPlan = planFromMap(registration);

@@ -19,17 +19,17 @@ function makeStage(): Stage | null {
     return new Stage(byId("stage"));
   } catch {
     byId("notice").replaceChildren(
-      element("strong", {}, "This browser cannot draw in three dimensions."),
-      " WebGL 2 is switched off or not supported, so the map is not shown; everything else works.",
+      element("strong", {}, "WebGL 2 is not available in this browser."),
+      " The map is not shown. The rest of the page works.",
     );
     byId("stage").classList.add("without-map");
     return null;
   }
 }
 
-/** Both maps, the plan under them, and the buttons that show and hide them. */
+/** Both maps, the plan below them, and the buttons of the layers. */
 export class MapSpace {
-  /** Null where the browser has no WebGL. */
+  /** Null without WebGL. */
   readonly stage: Stage | null = makeStage();
   readonly #offline = new Markers([{ colour: "offline", form: kDisc }], kPointPixels);
   readonly #online = new Markers([{ colour: "online", form: kDiamond }], kPointPixels + 0.8);
@@ -45,7 +45,7 @@ export class MapSpace {
     this.place(scene);
   }
 
-  /** Buttons of the things to see; a run has more of them. */
+  /** Adds the buttons of the layers; more: further buttons of a run. */
   addButtons(...more: HTMLElement[]): void {
     const { stage } = this;
     if (!stage) return;
@@ -62,22 +62,22 @@ export class MapSpace {
         },
       });
     byId("layers").append(
-      shown("Known map", "Points of the map made before. Show or hide", "●", "offline", [this.#offline.points]),
-      shown("Ways", "Where the camera was when the points were found. Show or hide", "—", "path", [
+      shown("Known map", "Show or hide the points of the saved map", "●", "offline", [this.#offline.points]),
+      shown("Camera paths", "Show or hide the camera paths of mapping", "—", "path", [
         this.#offlinePath.lines,
         this.#onlinePath.lines,
       ]),
       ...more,
-      actionButton("All", "A", "See the whole map", () => stage.showAll()),
-      actionButton("From above", "T", "Look straight down, as on a floor plan", () => stage.showFromAbove()),
+      actionButton("All", "A", "Show the whole map", () => stage.showAll()),
+      actionButton("From above", "T", "View from above, as on a floor plan", () => stage.showFromAbove()),
     );
   }
 
   onlineButton(): HTMLElement {
     const things = [this.#online.points];
     return layerButton({
-      name: "New on this drive",
-      title: "Points found on this drive. Show or hide",
+      name: "New map",
+      title: "Show or hide the points mapped during this run",
       mark: "◆",
       colour: "online",
       isOn: true,
@@ -88,7 +88,7 @@ export class MapSpace {
     });
   }
 
-  /** Puts the map where the scene says, on its plan if it has one. */
+  /** Places the map as in the scene: on its plan if registered, otherwise upright. */
   place(scene: SceneFields): void {
     const { stage } = this;
     const placed = viewFromMap(scene);
@@ -97,7 +97,7 @@ export class MapSpace {
     if (scene.plan && scene.registration && !this.#floor) {
       this.#floor = planFloor(scene.plan, address("/plan.png"), viewFromPlan(scene.plan), stage.redraw);
       stage.add(this.#floor);
-      stage.showAll(); // what was looked at is elsewhere now
+      stage.showAll(); // the plan moves the map in the view frame
     }
     this.#fitView();
   }
@@ -121,7 +121,7 @@ export class MapSpace {
     this.#fitView();
   }
 
-  /** What "All" shows: both maps, as they grow. */
+  /** Updates the extent of "All": both maps. */
   #fitView(): void {
     const { stage } = this;
     byId("stage").dataset.points = String(this.#pointCount());

@@ -1,22 +1,22 @@
 import type { FrameFields } from "./types";
 
-/** live: at the newest frame; playing: later frames follow at the recording's own pace; paused: stays. */
+/** live: shows the newest frame; playing: advances at the recorded pace; paused: stays at a frame. */
 export type PlaybackState = "live" | "playing" | "paused";
 
-/** Which frame of a run is shown. The run goes on, whatever is shown. */
+/** Frames of a run and the one shown. Does not affect the run. */
 export class Playback {
   readonly frames: FrameFields[] = [];
   #state: PlaybackState = "live";
   #shown = -1;
   #hasEnded = false;
-  #startedAt = 0; // of playing: milliseconds of the page's clock,
-  #startedFrom = 0; // and seconds of the recording
+  #startedAt = 0; // start of playing, milliseconds of the page's clock
+  #startedFrom = 0; // start of playing, seconds of the recording
   readonly #listeners: (() => void)[] = [];
 
   get state(): PlaybackState {
     return this.#state;
   }
-  /** Number of the frame shown, -1 before the first. */
+  /** Index of the frame shown, -1 before the first. */
   get shown(): number {
     return this.#shown;
   }
@@ -35,7 +35,7 @@ export class Playback {
     this.#listeners.push(listener);
   }
 
-  /** Forgets everything: it is told anew. */
+  /** Removes all frames, before the server sends them again. */
   clear(): void {
     this.frames.length = 0;
     this.#shown = -1;
@@ -56,7 +56,7 @@ export class Playback {
     this.#changed();
   }
 
-  /** Shows a frame and stays there. */
+  /** Pauses at a frame. */
   seek(frame: number): void {
     this.#state = "paused";
     this.#show(frame);

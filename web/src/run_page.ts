@@ -13,9 +13,9 @@ import { MissionPath } from "./space/mission_path";
 import { Robot } from "./space/robot";
 import type { RunScene } from "./types";
 
-/** A run as it goes on, or as it went. */
+/** Page of a run, during and after it. */
 export async function startRunPage(scene: RunScene, space: MapSpace): Promise<void> {
-  byId("subtitle").textContent = scene.map ? `on ${scene.map}` : "mapped from nothing";
+  byId("subtitle").textContent = scene.map ? `Mission on ${scene.map}` : "New map";
   const page = new RunPage(scene, space);
   if (scene.map) space.showOffline(await loadMap("offline"));
   page.listen();
@@ -31,12 +31,12 @@ class RunPage {
   readonly #path = new MissionPath();
   readonly #follow: Layer = {
     name: "Follow",
-    title: "Keep the robot in the middle",
+    title: "Keep the robot in the centre of the view",
     key: "F",
     isOn: false,
     set: () => this.#followRobot(),
   };
-  #isPlaced: boolean; // it is known which way is up
+  #isPlaced: boolean; // the up direction of the map is known
   #shownImage = -1;
 
   constructor(scene: RunScene, space: MapSpace) {
@@ -90,7 +90,8 @@ class RunPage {
         this.#shownImage = image.frame;
         this.#image.show(image);
       },
-      lost: () => byId("connection").replaceChildren(element("span", { class: "lost" }, "byre does not answer")),
+      lost: () =>
+        byId("connection").replaceChildren(element("span", { class: "lost" }, "No connection to byre; reconnecting")),
     });
   }
 

@@ -3,7 +3,7 @@ import type { LiveMessage, Pick, PlanFit, SceneFields } from "./types";
 
 const kRetryMilliseconds = 2000;
 
-/** A path on the server, with the token that this page was opened with. */
+/** URL of a path on the server, with this page's token. */
 export function address(path: string): string {
   const token = new URLSearchParams(location.search).get("token");
   return token === null ? path : `${path}?token=${encodeURIComponent(token)}`;
@@ -36,7 +36,7 @@ export async function loadMap(which: "offline" | "online"): Promise<MapData> {
   return decodeMap(await (await answerOf(await fetch(address(`/map/${which}`)))).arrayBuffer());
 }
 
-/** Of the frame or, where that was not kept, of one near it. */
+/** Image of the frame, or of the nearest frame with a stored image. */
 export async function loadImage(frame: number): Promise<SeenImage> {
   return decodeImage(await (await answerOf(await fetch(address(`/images/${frame}`)))).arrayBuffer());
 }
@@ -45,21 +45,21 @@ export function register(picks: Pick[]): Promise<PlanFit> {
   return post("/registration", { picks });
 }
 
-/** Gives the names of the files written. The residual is what somebody was told and accepts, in metres. */
+/** Saves the registered map. accepted: residual confirmed by the user, metres. Returns the files written. */
 export async function save(picks: Pick[], accepted?: number): Promise<string[]> {
   return (await post<{ written: string[] }>("/save", { picks, accepted_residual_m: accepted })).written;
 }
 
 export interface LiveListener {
-  /** A connection begins: everything is told from the start. */
+  /** New connection: the server sends the whole run again. */
   opened(): void;
   told(message: LiveMessage): void;
   sawImage(image: SeenImage): void;
-  /** It was lost, and is tried again now and then. */
+  /** Connection lost; it is retried every kRetryMilliseconds. */
   lost(): void;
 }
 
-/** Listens to a run until the page is left. */
+/** Receives the messages of a run until the page is closed. */
 export function listen(listener: LiveListener): void {
   const url = new URL(address("/live"), location.href);
   url.protocol = "ws:";

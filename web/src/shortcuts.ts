@@ -1,4 +1,4 @@
-/** Keys of the whole page, unless something is being typed or what has the focus uses them itself. */
+/** Keyboard shortcuts of the page, except while text is entered or the focused element uses the key. */
 export function listenToKeys(actions: Record<string, () => void>): void {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || isUsedBy(event.target as HTMLElement, event.key)) return;

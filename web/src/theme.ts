@@ -13,7 +13,7 @@ export function currentTheme(): Theme {
   return document.documentElement.dataset.theme === "dark" ? "dark" : "light";
 }
 
-/** A colour of style.css, by the name of its variable. */
+/** Colour of style.css, by the name of its variable without dashes. */
 export function colour(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
@@ -29,7 +29,7 @@ function apply(theme: Theme): void {
   for (const listener of listeners) listener();
 }
 
-/** As chosen on this page before, else as the system has it. */
+/** Applies the stored theme, by default that of the system. */
 export function startTheme(): void {
   const stored = localStorage.getItem(kStored);
   apply(stored === "light" || stored === "dark" ? stored : systemTheme());

@@ -1,6 +1,6 @@
-// What byre sends as text: src/byre/viewer/web/web_json.cc and the sites (web_run.cc, web_map.cc) write these fields.
+// JSON messages of byre, written by web_json.cc, web_run.cc and web_map.cc in src/byre/viewer/web.
 
-/** x, y, z in metres and a quaternion x, y, z, w. */
+/** x, y, z in metres and quaternion x, y, z, w. */
 export type PoseFields = [number, number, number, number, number, number, number];
 export type Vector3Fields = [number, number, number];
 export type Vector2Fields = [number, number];
@@ -16,7 +16,7 @@ export interface CameraFields {
   body_from_camera: PoseFields;
 }
 
-/** Steps are metres on the plan for a pixel; top_left is the centre of the top left pixel. */
+/** Steps are plan metres per pixel; top_left is the centre of the top left pixel, plan metres. */
 export interface PlanFields {
   name: string;
   width: number;
@@ -26,7 +26,7 @@ export interface PlanFields {
   top_left: Vector2Fields;
 }
 
-/** plan_from_map: scales first, then the pose. */
+/** plan_from_map: scale, then pose. */
 export interface RegistrationFields {
   plan: string;
   scale: number;
@@ -94,8 +94,8 @@ export interface Pick {
 export interface PlanFit {
   registration: RegistrationFields;
   rms_m: number;
-  residual_m: number; // what the map is off by, also where outliers may be the right ones
-  is_far_off: boolean; // not to be saved unless somebody was told the figure
+  residual_m: number; // root mean square; over all picks if the outliers may be correct
+  is_far_off: boolean; // saving requires confirmation of the residual
   residuals: { error_m: Vector2Fields; is_outlier: boolean }[];
   doubts: string[];
 }

@@ -1,18 +1,18 @@
 import type { FrameFields, Verdict } from "./types";
 
-/** In the order of their numbers, from good to bad. */
+/** Verdicts from good to bad; the index is the number of the verdict. */
 export const kVerdicts: Verdict[] = ["trusted", "degraded", "untrusted"];
 
-/** Each has a sign of its own, for those who cannot tell the colours apart. */
+/** Distinct signs, for colour-blind users. */
 export const kSigns: Record<Verdict, string> = { trusted: "●", degraded: "◆", untrusted: "✕" };
 
 const kMeanings: Record<Verdict, string> = {
-  trusted: "Steer by this pose",
-  degraded: "Likely right, but held by less than it should be",
-  untrusted: "Do not steer by this pose",
+  trusted: "Steer by the pose",
+  degraded: "Weakly supported, drive slowly",
+  untrusted: "Do not use the pose",
 };
 
-/** A sentence for people. */
+/** Advice of the verdict, with the reason of distrust. */
 export function meaning(frame: FrameFields): string {
   const why = frame.doubt === "none" ? "" : `: ${frame.doubt}`;
   return kMeanings[frame.verdict] + why;

@@ -3,16 +3,16 @@ import { element } from "../dom";
 import { loadImage } from "../server";
 import { colour, onThemeChange } from "../theme";
 
-const kRadius = 2.3; // pixels of the page
+const kRadius = 2.3; // of a point, CSS pixels
 
-/** The left image with the map points seen in it: offline ones round, online ones square, outliers crossed. */
+/** Left image with the matched map points: offline inliers round, online inliers square, outliers crossed. */
 export class CameraImage {
   readonly panel: HTMLElement;
   readonly #canvas = element("canvas", { class: "image" });
   readonly #caption = element("figcaption");
   #image: SeenImage | null = null;
   #bitmap: ImageBitmap | null = null;
-  #wanted: number | null = null; // number of a frame whose image is asked for
+  #wanted: number | null = null; // frame number of the image to load next
   #isLoading = false;
 
   constructor(width: number, height: number) {
@@ -26,15 +26,16 @@ export class CameraImage {
       element(
         "p",
         { class: "legend" },
-        element("span", { class: "key offline", title: "Of the map made before, and in its place" }, "● known point"),
-        element("span", { class: "key online", title: "Found on this drive, and in its place" }, "■ new point"),
-        element("span", { class: "key", title: "Not where it should be: moved, or mistaken for another" }, "✕ does not fit"),
+        element("span", { class: "key offline", title: "Point of the saved map that fits the pose" }, "● known point"),
+        element("span", { class: "key online", title: "Point mapped during this run that fits the pose" }, "■ new point"),
+        element("span", { class: "key", title: "Matched point that does not fit the pose: moved object or wrong match" },
+          "✕ does not fit"),
       ),
     );
     onThemeChange(() => this.#draw());
   }
 
-  /** Shows an image that came by itself. */
+  /** Shows a received image. */
   async show(image: SeenImage): Promise<void> {
     const bitmap = await createImageBitmap(image.jpeg);
     this.#bitmap?.close();
@@ -43,7 +44,7 @@ export class CameraImage {
     this.#draw();
   }
 
-  /** Asks for the image of a frame; of many asked for at once, the last is shown. */
+  /** Loads and shows the image of a frame. Of concurrent requests the last one is shown. */
   async request(frame: number): Promise<void> {
     this.#wanted = frame;
     if (this.#isLoading) return;
@@ -54,7 +55,7 @@ export class CameraImage {
       try {
         await this.show(await loadImage(next));
       } catch {
-        this.#caption.textContent = "No image was kept of this frame.";
+        this.#caption.textContent = "No image of this frame is stored.";
       }
     }
     this.#isLoading = false;

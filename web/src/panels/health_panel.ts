@@ -17,54 +17,57 @@ const kRows: Row[] = [
     name: "Known points",
     value: ({ offline_inliers, offline_expected }) => `${offline_inliers} of ${offline_expected}`,
     title:
-      "Points of the map made before that the camera sees in their place, of those that should be in view. " +
-      "Few of many: things were moved, or the robot is not where it believes to be.",
+      "Points of the saved map that fit the pose, of those expected in view. " +
+      "A small share indicates moved objects or a wrong pose.",
   },
   {
     name: "New points",
     value: ({ online_inliers }) => `${online_inliers}`,
-    title: "Points found during this drive that the camera sees again in their place",
+    title: "Points mapped during this run that fit the pose",
   },
   {
-    name: "Points that agree",
+    name: "Matches that fit",
     value: ({ inlier_share, matches }) => `${percent(inlier_share)} of ${matches}`,
-    title: "Of the points recognised in this image, how many fit the position. Below about a half it is doubtful.",
+    title: "Share of the points matched in this image that fit the pose. Below one half the pose is doubtful.",
   },
   {
     name: "Spread in the image",
     value: ({ spread }) => percent(spread),
-    title: "How far the points spread over the image. Points in one corner hold the position badly.",
+    title:
+      "Standard deviation of the fitting points in the direction of least spread, as a share of the image diagonal. " +
+      "Points in one corner constrain the pose badly.",
   },
   {
-    name: "Position known to",
+    name: "Position uncertainty",
     value: ({ sigma_mm }) => `± ${sigma_mm.toFixed(1)} mm`,
-    title: "The true position is within this in two of three cases, as far as the program can tell",
+    title: "Estimated standard deviation of the position",
   },
   {
-    name: "Known and new differ",
+    name: "Known–new distance",
     value: ({ disagreement_mm }) => (disagreement_mm === undefined ? "–" : `${disagreement_mm.toFixed(1)} mm`),
-    title: "How far apart the positions are by the known points alone and by the new points alone",
+    title: "Distance between the positions estimated from known points alone and from new points alone",
   },
   {
-    name: "Way since a known place",
+    name: "Path without known points",
     value: ({ since_offline_m }) => `${since_offline_m.toFixed(1)} m`,
-    title: "Driven since known points last held the position. The error grows with it.",
+    title: "Path length since known points last held the pose. Drift grows with it.",
   },
   {
-    name: "Things moved",
-    value: ({ suspended }) => `${suspended} points`,
-    title: "Known points that are no longer where the map has them, as on things that were moved; they are left out",
+    name: "Moved points",
+    value: ({ suspended }) => `${suspended}`,
+    title: "Known points excluded for this run, as they have moved",
   },
   {
-    name: "Mapped on this drive",
+    name: "New map",
     value: ({ online_points, online_keyframes }) => `${online_points} points, ${online_keyframes} views`,
-    title: "Points found on this drive, and the images that were kept to find them",
+    title: "Points and camera views mapped during this run",
   },
 ];
 
-const kVerdictHelp = "Trusted: steer by it. Degraded: likely right, be careful. Untrusted: do not steer by it.";
+const kVerdictHelp =
+  "Trusted: steer by the pose. Degraded: weakly supported, drive slowly. Untrusted: do not use the pose.";
 
-/** How far the pose of the frame shown may be trusted, and why. */
+/** Verdict, reason and quality measures of the frame shown, and the latest events. */
 export class HealthPanel {
   readonly panel: HTMLElement;
   readonly #verdict = element("p", { class: "verdict", title: kVerdictHelp });
@@ -83,7 +86,7 @@ export class HealthPanel {
       this.#verdict,
       this.#meaning,
       element("dl", {}, ...rows),
-      element("h2", { title: "What happened so far, the newest first; click one to go there" }, "Events"),
+      element("h2", { title: "Events up to the frame shown, newest first. Click an event to show its frame." }, "Events"),
       this.#events,
     );
     this.#events.addEventListener("click", ({ target }) => {

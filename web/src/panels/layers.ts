@@ -1,19 +1,19 @@
 import { element } from "../dom";
 
-/** Something that can be shown or not, or done or not. */
+/** Layer or mode that can be switched on and off. */
 export interface Layer {
   name: string;
-  /** Mark before the name, with the class of its colour. */
+  /** Sign before the name; colour: class of its colour. */
   mark?: string;
   colour?: string;
   key?: string;
-  /** What it is, for whoever points at it. */
+  /** Tooltip. */
   title?: string;
   isOn: boolean;
   set: (isOn: boolean) => void;
 }
 
-/** A button for it, that stays pressed while it is on. */
+/** Toggle button of a layer; pressed while the layer is on. */
 export function layerButton(layer: Layer): HTMLButtonElement {
   const content: (Node | string)[] = [layer.name];
   if (layer.mark) content.unshift(element("span", { class: `mark ${layer.colour ?? ""}`, ariaHidden: "true" }, layer.mark));
@@ -29,7 +29,7 @@ export function layerButton(layer: Layer): HTMLButtonElement {
   return button;
 }
 
-/** A button that does something once. */
+/** Button of an action; what: tooltip. */
 export function actionButton(name: string, key: string, what: string, act: () => void): HTMLButtonElement {
   const button = element("button", { type: "button", class: "layer", title: `${what}. Key ${key}` }, name);
   button.addEventListener("click", act);

@@ -8,21 +8,25 @@ export interface PickListActions {
 }
 
 const kHeadTitles: Record<string, string> = {
-  Name: "Any name that you know the place by",
-  "Off by": "How far the map has the place from where it was clicked on the plan. One far larger than the others is wrong.",
+  Name: "Name of the place, stored in the file of picks",
+  Error: "Distance between the place on the plan and the registered map point. A much larger error indicates a wrong pick.",
 };
 
 const centimetres = (metres: number) => `${(100 * metres).toFixed(1)} cm`;
 
-/** The picks, how well they fit, and what to do with them. */
+/** Picks with their residuals, and the button that saves the registered map. */
 export class PickList {
   readonly panel: HTMLElement;
   readonly #step = element("p", { class: "step", role: "status" });
   readonly #rows = element("tbody");
   readonly #table: HTMLTableElement;
-  readonly #fit = element("p", { class: "fit", title: "The smaller, the better: a few centimetres are good" });
+  readonly #fit = element("p", { class: "fit", title: "Root mean square error without outliers. A few centimetres are good." });
   readonly #doubts = element("ul", { class: "doubts" });
-  readonly #save = element("button", { type: "button", class: "primary", id: "save", title: "Writes a copy of the map that knows its place on the plan" }, "Save the map on the plan");
+  readonly #save = element(
+    "button",
+    { type: "button", class: "primary", id: "save", title: "Writes a copy of the map with its registration on the plan" },
+    "Save the registered map",
+  );
   readonly #saved = element("p", { class: "saved", role: "status" });
   readonly #actions: PickListActions;
   readonly #output: string | null;
@@ -30,7 +34,7 @@ export class PickList {
   constructor(output: string | null, actions: PickListActions) {
     this.#actions = actions;
     this.#output = output;
-    const heads = ["", "Name", "Off by", ""].map((name) => element("th", { scope: "col", title: kHeadTitles[name] ?? "" }, name));
+    const heads = ["", "Name", "Error", ""].map((name) => element("th", { scope: "col", title: kHeadTitles[name] ?? "" }, name));
     this.#table = element("table", { class: "picks" }, element("thead", {}, element("tr", {}, ...heads)), this.#rows);
     this.#save.addEventListener("click", () => actions.save());
     this.panel = element(
@@ -43,7 +47,7 @@ export class PickList {
       this.#save,
       this.#saved,
     );
-    if (!output) this.#saved.textContent = "To save, start byre view with -o FILE.";
+    if (!output) this.#saved.textContent = "Saving needs the option -o FILE of byre view.";
   }
 
   tellStep(text: string): void {
@@ -58,9 +62,9 @@ export class PickList {
     this.#rows.replaceChildren(...picks.map((pick, i) => this.#row(pick, i, fit)));
     this.#table.hidden = picks.length === 0;
     const took = fit?.residuals.filter(({ is_outlier }) => !is_outlier).length;
-    const scale = fit && Math.abs(fit.registration.scale - 1) > 1e-9 ? `, ${fit.registration.scale.toFixed(3)} m a unit` : "";
-    const farOff = fit?.is_far_off ? `; the map is off its plan by ${fit.residual_m.toFixed(2)} m` : "";
-    this.#fit.textContent = fit ? `${took} picks fit to ${centimetres(fit.rms_m)}${scale}${farOff}` : problem;
+    const scale = fit && Math.abs(fit.registration.scale - 1) > 1e-9 ? `, scale ${fit.registration.scale.toFixed(3)} m per unit` : "";
+    const farOff = fit?.is_far_off ? `; residual of the map ${fit.residual_m.toFixed(2)} m` : "";
+    this.#fit.textContent = fit ? `${took} picks fit, rms ${centimetres(fit.rms_m)}${scale}${farOff}` : problem;
     this.#doubts.replaceChildren(...(fit?.doubts ?? []).map((doubt) => element("li", {}, doubt)));
     this.#save.disabled = !fit || !this.#output;
   }
@@ -80,7 +84,7 @@ export class PickList {
       element("td", { class: "number" }, residual?.is_outlier ? `✕ ${off}` : off),
       element("td", {}, remove),
     );
-    row.title = `Point ${pick.point} of the map${residual?.is_outlier ? ": does not fit the other picks, and was left out" : ""}`;
+    row.title = `Map point ${pick.point}${residual?.is_outlier ? ": outlier, excluded from the fit" : ""}`;
     return row;
   }
 }

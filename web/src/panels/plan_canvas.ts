@@ -2,31 +2,31 @@ import { element, fittedContext, onceAFrame } from "../dom";
 import { colour, onThemeChange } from "../theme";
 import type { PlanFields, Vector2Fields } from "../types";
 
-const kClick = 4; // pixels that the pointer may move between press and release of a click
-const kKeyStep = 10; // pixels that an arrow key moves the cross by
+const kClick = 4; // largest motion of the pointer during a click, pixels
+const kKeyStep = 10; // step of the cross per arrow key, pixels
 
-/** Something to show on the plan, at x and y of the plan. */
+/** Mark on the plan; at: x and y on the plan, metres. */
 export interface PlanMark {
   at: Vector2Fields;
   label: string;
-  /** Where the map has it, once that is known. */
+  /** Position of the registered map point on the plan; undefined before a fit. */
   fitted?: Vector2Fields;
   isOutlier?: boolean;
 }
 
-/** The plan's image to click on: the wheel zooms, dragging moves it, arrow keys move a cross and Enter picks there. */
+/** Plan image for picking: click picks, wheel zooms, dragging pans, arrow keys move a cross and Enter picks at it. */
 export class PlanCanvas {
   readonly panel: HTMLElement;
   readonly #canvas = element("canvas", { class: "plan", tabIndex: 0 });
   readonly #image = new Image();
   readonly #plan: PlanFields;
   readonly #picked: (point: Vector2Fields) => void;
-  #scale = 1; // pixels of the page for one of the image
-  #left = 0; // of the image on the canvas, pixels of the page
+  #scale = 1; // CSS pixels per pixel of the image
+  #left = 0; // of the image on the canvas, CSS pixels
   #top = 0;
-  #cross: { x: number; y: number } | null = null; // moved by keys, pixels of the page
+  #cross: { x: number; y: number } | null = null; // moved by keys, CSS pixels
   #marks: PlanMark[] = [];
-  #path: Vector2Fields[] = []; // both ends of each line
+  #path: Vector2Fields[] = []; // end points of line segments
   #points: Vector2Fields[] = [];
   readonly redraw = onceAFrame(() => this.#draw());
 
@@ -34,7 +34,7 @@ export class PlanCanvas {
     this.#plan = plan;
     this.#picked = picked;
     this.#canvas.setAttribute("role", "img");
-    this.#canvas.setAttribute("aria-label", "Floor plan. Arrow keys move a cross, Enter picks there.");
+    this.#canvas.setAttribute("aria-label", "Floor plan. Arrow keys move the cross, Enter picks its position.");
     this.panel = element("div", { class: "plan-box" }, this.#canvas);
     this.#image.addEventListener("load", () => this.#fit());
     this.#image.src = url;
@@ -48,7 +48,7 @@ export class PlanCanvas {
     this.redraw();
   }
 
-  /** Where the map is on the plan: its path, both ends of each line, and some of its points. */
+  /** Shows the map on the plan. path: end points of line segments; points: a sample of the map points; metres. */
   showMap(path: Vector2Fields[], points: Vector2Fields[]): void {
     this.#path = path;
     this.#points = points;
@@ -64,7 +64,7 @@ export class PlanCanvas {
     this.redraw();
   }
 
-  /** x and y on the plan of a pixel of the page, and back. Whole numbers of the image are centres of pixels. */
+  /** Converts CSS pixels to plan metres; onPage is the inverse. Integer coordinates of the image are pixel centres. */
   #onPlan(x: number, y: number): Vector2Fields {
     const column = (x - this.#left) / this.#scale - 0.5;
     const row = (y - this.#top) / this.#scale - 0.5;

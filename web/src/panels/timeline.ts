@@ -4,14 +4,14 @@ import { colour, onThemeChange } from "../theme";
 import type { FrameFields, Verdict } from "../types";
 import { kVerdicts, numberOf } from "../verdicts";
 
-const kBand = 14; // pixels, the verdicts' height at the bottom
+const kBand = 14; // height of the verdicts at the bottom, pixels
 const kHeightOfVerdict: Record<Verdict, number> = { trusted: 1, degraded: 0.66, untrusted: 0.33 };
 
-/** What there is to draw in one column of pixels. */
+/** Frames of one column of pixels. */
 interface Column {
-  verdict: Verdict; // the worst
-  offline: number; // means of inliers
-  online: number;
+  verdict: Verdict; // worst of the frames
+  offline: number; // mean count of offline inliers
+  online: number; // mean count of online inliers
 }
 
 function columnOf(frames: FrameFields[], begin: number, end: number): Column {
@@ -26,18 +26,18 @@ function columnOf(frames: FrameFields[], begin: number, end: number): Column {
   return { verdict: kVerdicts[worst], offline: offline / (end - begin), online: online / (end - begin) };
 }
 
-/** The whole run from left to right: inliers above, verdicts below. It is a slider over the frames. */
+/** Slider over the frames of the run: inliers at the top, verdicts at the bottom. */
 export class Timeline {
   readonly panel: HTMLElement;
   readonly #canvas: HTMLCanvasElement;
   readonly #play = element("button", { type: "button", class: "play" });
-  readonly #live = element("button", { type: "button", class: "live", title: "Back to the newest image" }, "Live");
+  readonly #live = element("button", { type: "button", class: "live", title: "Show the newest frame" }, "Live");
   readonly #time = element("output", { class: "time" });
   readonly #playback: Playback;
   readonly #expected: number;
   readonly redraw = onceAFrame(() => this.#draw());
 
-  /** expected: how many frames the run will have. */
+  /** expected: number of frames of the whole run. */
   constructor(playback: Playback, expected: number) {
     this.#playback = playback;
     this.#expected = expected;
@@ -45,8 +45,8 @@ export class Timeline {
     this.#canvas.setAttribute("role", "slider");
     this.#canvas.setAttribute("aria-label", "Frame of the run");
     this.#canvas.title =
-      "The whole drive. Above: how many points held the position, known ones green, new ones purple. " +
-      "Below: how far it may be trusted. Click to go there.";
+      "Timeline of the run. Top: number of points that hold the pose, known in green, new in purple. " +
+      "Bottom: verdict. Click to show a frame.";
     this.panel = element("div", { class: "timeline" }, this.#play, this.#live, this.#canvas, this.#time);
     this.#play.addEventListener("click", () => playback.togglePlay());
     this.#live.addEventListener("click", () => playback.goLive());

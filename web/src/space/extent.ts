@@ -1,7 +1,7 @@
 import { Box3, Matrix4, Vector3 } from "three";
 
 const kSamples = 5000;
-const kOutside = 0.02; // share of points on each side that may lie outside: a few are always far off
+const kOutside = 0.02; // share of points cut off on each side of an axis: outliers
 
 function quantiles(values: number[]): [number, number] {
   values.sort((a, b) => a - b);
@@ -9,7 +9,7 @@ function quantiles(values: number[]): [number, number] {
   return [values[Math.floor(kOutside * last)], values[Math.ceil((1 - kOutside) * last)]];
 }
 
-/** The box that holds nearly all of the points, in the view's frame; empty without points. */
+/** Bounding box of the points in the view frame, without the farthest ones; empty without points. */
 export function extentOf(points: Float32Array, viewFromMap: Matrix4): Box3 {
   const count = points.length / 3;
   const step = Math.max(1, Math.floor(count / kSamples));

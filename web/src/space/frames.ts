@@ -1,8 +1,8 @@
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { PlanFields, PoseFields, RegistrationFields, SceneFields, Vector3Fields } from "../types";
 
-// What is drawn lies in a frame of its own, "view": metres, z up, its origin near the map. On a plan that may mean
-// millions of metres away from the plan's own origin, more than the graphics card can tell apart.
+// View frame, in which everything is drawn: metres, z up, origin near the map. Plan coordinates may be millions of
+// metres, beyond the float precision of the graphics card.
 
 export function matrixOf([x, y, z, qx, qy, qz, qw]: PoseFields, scale = 1): Matrix4 {
   return new Matrix4().compose(new Vector3(x, y, z), new Quaternion(qx, qy, qz, qw), new Vector3(scale, scale, scale));
@@ -30,13 +30,13 @@ export function viewFromUp(up: Vector3Fields): Matrix4 {
   return new Matrix4().makeRotationFromQuaternion(turn);
 }
 
-/** Where the map is drawn; null while nothing tells which way is up. */
+/** Pose of the map in the view, with scale; null while the up direction is unknown. */
 export function viewFromMap(scene: SceneFields): Matrix4 | null {
   if (scene.plan && scene.registration) return viewFromPlan(scene.plan).multiply(planFromMap(scene.registration));
   return scene.up_in_map ? viewFromUp(scene.up_in_map) : null;
 }
 
-/** Up as a camera that is held upright sees it: against its y axis. */
+/** Up direction in the map frame, from an upright camera: its negative y axis. */
 export function upOfCamera(mapFromBody: PoseFields, bodyFromCamera: PoseFields): Vector3Fields {
   const mapFromCamera = matrixOf(mapFromBody).multiply(matrixOf(bodyFromCamera));
   const [x, y, z] = new Vector3(0, -1, 0).transformDirection(mapFromCamera).toArray();

@@ -1,8 +1,7 @@
 import { Box3, GridHelper, LineBasicMaterial, Vector3 } from "three";
 import { colour, onThemeChange } from "../theme";
 
-/** Lines a metre apart at the height of the lowest points, so that there is a floor and a measure; farther apart under
- * large maps. */
+/** Floor grid at the height of the lowest points: cells of 1 m, of 5 or 10 m for large maps. */
 export class Grid {
   lines: GridHelper | null = null;
 
@@ -10,7 +9,7 @@ export class Grid {
     onThemeChange(() => this.#recolour());
   }
 
-  /** Gives the new lines, in the view's frame. */
+  /** Returns the grid for an extent in the view frame. */
   fit(extent: Box3): GridHelper {
     const size = extent.getSize(new Vector3());
     const longest = Math.max(size.x, size.y, 2);

@@ -2,7 +2,7 @@ import { BufferGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments
 import { kPoseLength } from "../decode";
 import { colour, onThemeChange } from "../theme";
 
-const kJump = 8; // times the usual step: there the path was interrupted
+const kJump = 8; // times the median step: longer steps are gaps in the path
 
 function positionsOf(keyframes: Float32Array): Vector3[] {
   const positions: Vector3[] = [];
@@ -17,7 +17,7 @@ function usualStep(positions: Vector3[]): number {
   return steps.sort((a, b) => a - b)[Math.floor(steps.length / 2)] ?? 0;
 }
 
-/** Positions of both ends of each line between keyframes that follow each other. */
+/** End points of the line segments between consecutive keyframes, x, y, z each. */
 export function pathLines(keyframes: Float32Array): number[] {
   const positions = positionsOf(keyframes);
   const longest = kJump * usualStep(positions);
@@ -29,7 +29,7 @@ export function pathLines(keyframes: Float32Array): number[] {
   return ends;
 }
 
-/** The path of a map's keyframes, as lines. */
+/** Keyframe path of a map, as line segments. */
 export class KeyframePath {
   readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
 

@@ -8,7 +8,7 @@ import {
 } from "three";
 import { colour, onThemeChange } from "../theme";
 
-/** Forms that can be told apart without their colours. */
+/** Shapes, distinct without colours. */
 export const kDisc = 0;
 export const kDiamond = 1;
 export const kCross = 2;
@@ -39,13 +39,13 @@ const kFragmentShader = `
     gl_FragColor = vec4(colour, opacity);
   }`;
 
-/** What markers of one kind look like: the name of a colour in style.css, and a form. */
+/** Appearance of a kind of markers: name of a colour in style.css, and a shape. */
 export interface MarkerKind {
   colour: string;
   form: number;
 }
 
-/** Points drawn as marks of a few pixels, of up to three kinds. */
+/** Points drawn as markers of constant size in pixels, of up to three kinds. */
 export class Markers {
   readonly points: Points<BufferGeometry, ShaderMaterial>;
   readonly #kinds: MarkerKind[];
@@ -70,7 +70,7 @@ export class Markers {
     onThemeChange(() => this.#recolour());
   }
 
-  /** x, y, z of each, and the number of its kind; all are of the first without numbers. */
+  /** Replaces all markers. positions: x, y, z each; kinds: index of the kind each, by default 0. */
   set(positions: Float32Array | number[], kinds?: Uint8Array | number[]): void {
     const count = positions.length / 3;
     const geometry = new BufferGeometry();
@@ -80,13 +80,13 @@ export class Markers {
     this.points.geometry = geometry;
   }
 
-  /** Room for so many, none of which is drawn yet. */
+  /** Replaces all markers by reserved ones that are not drawn. */
   reserve(count: number): void {
     this.set(new Float32Array(3 * count));
     this.limit(0);
   }
 
-  /** Changes one that there is room for. */
+  /** Changes a reserved marker. */
   put(index: number, position: [number, number, number], kind: number): void {
     const { position: positions, kind: kinds } = this.points.geometry.attributes as Record<string, BufferAttribute>;
     positions.setXYZ(index, ...position);
@@ -97,7 +97,7 @@ export class Markers {
     kinds.needsUpdate = true;
   }
 
-  /** Draws only the first so many. */
+  /** Draws the first markers only. */
   limit(count: number): void {
     this.points.geometry.setDrawRange(0, count);
   }
@@ -105,7 +105,7 @@ export class Markers {
   #recolour(): void {
     this.points.material.uniforms.colours.value.forEach((value: Color, i: number) => {
       const kind = this.#kinds[Math.min(i, this.#kinds.length - 1)];
-      // Colours are put out as they are, without a conversion from linear light.
+      // The shader writes colours without conversion from linear light.
       value.set(colour(kind.colour)).convertLinearToSRGB();
     });
   }

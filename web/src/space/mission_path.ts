@@ -4,7 +4,7 @@ import { kCross, kDiamond, kDisc, Markers } from "./markers";
 
 const kPixels = 6;
 
-/** Where the robot was in each frame, marked with the verdict it had then. Lies in the map's frame. */
+/** Positions of the robot in the map frame, one marker per pose with the verdict of its frame. */
 export class MissionPath {
   readonly #markers = new Markers(
     [
@@ -14,8 +14,8 @@ export class MissionPath {
     ],
     kPixels,
   );
-  #room = 0; // for so many marks
-  /** How many marks there are up to each frame, it included. */
+  #room = 0; // number of reserved markers
+  /** Number of markers up to and including each frame. */
   readonly #marksUntil: number[] = [];
 
   get points() {
@@ -27,7 +27,7 @@ export class MissionPath {
     this.#markers.limit(0);
   }
 
-  /** Marks the frames that were not there the last time. */
+  /** Adds markers of the frames since the last call. */
   extend(frames: FrameFields[]): void {
     let marks = this.#marksUntil.at(-1) ?? 0;
     let begin = this.#marksUntil.length;

@@ -2,7 +2,7 @@ import { Vector3 } from "three";
 import { element } from "../dom";
 import type { Stage } from "./stage";
 
-/** Numbers that lie over the picture where picked points are. */
+/** Labels over the 3D view, at picked points. */
 export class PickLabels {
   readonly #stage: Stage;
   readonly #layer = element("div", { class: "labels", ariaHidden: "true" });
@@ -14,7 +14,7 @@ export class PickLabels {
     stage.afterDrawing(() => this.#place());
   }
 
-  /** point: its number in the map. */
+  /** Replaces all labels. point: index in the map. */
   set(labels: { text: string; point: number; pointInMap: Vector3; class?: string }[]): void {
     this.#labels = labels.map(({ text, point, pointInMap, class: kind }) => {
       const label = element("span", { class: `label ${kind ?? ""}` }, text);

@@ -12,7 +12,7 @@ import {
 import { currentTheme, onThemeChange } from "../theme";
 import type { PlanFields } from "../types";
 
-/** x and y on the plan of the image's corners: top left, top right, bottom right, bottom left. */
+/** Corners of the plan image in plan metres: top left, top right, bottom right, bottom left. */
 export function planCorners(plan: PlanFields): [number, number][] {
   const at = (column: number, row: number): [number, number] => [
     plan.top_left[0] + column * plan.step_right[0] + row * plan.step_down[0],
@@ -22,7 +22,7 @@ export function planCorners(plan: PlanFields): [number, number][] {
   return [at(-0.5, -0.5), at(right, -0.5), at(right, bottom), at(-0.5, bottom)];
 }
 
-/** The plan's image on the floor, in the view's frame. */
+/** Plan image on the floor, in the view frame. changed: called when the image is loaded. */
 export function planFloor(plan: PlanFields, url: string, viewFromPlan: Matrix4, changed: () => void): Mesh {
   const corners = planCorners(plan).map(([x, y]) => new Vector3(x, y, 0).applyMatrix4(viewFromPlan));
   const geometry = new BufferGeometry();
@@ -32,7 +32,7 @@ export function planFloor(plan: PlanFields, url: string, viewFromPlan: Matrix4, 
   const map = new TextureLoader().load(url, changed);
   map.colorSpace = SRGBColorSpace;
   map.anisotropy = 8;
-  // Drawn before everything else, so that it hides nothing, not even what lies under the floor.
+  // Drawn first and without depth, so that it hides nothing, including points below the floor.
   const material = new MeshBasicMaterial({ map, side: DoubleSide, depthTest: false, depthWrite: false });
   const dim = () => material.color.setScalar(currentTheme() === "dark" ? 0.07 : 1);
   dim();

@@ -1,11 +1,11 @@
 import { Matrix4, Vector4 } from "three";
 
-const kReach = 12; // pixels from the pointer within which a point is found
-const kSlack = 3; // pixels by which a nearer point may be farther from the pointer than one behind it
+const kReach = 12; // largest distance of a point from the pointer, pixels
+const kSlack = 3; // points this much farther from the pointer than the closest one are candidates too, pixels
 
 /**
- * Number of the point that is meant by a place in the picture: of those close to it, the one nearest to the camera.
- * Null where there is none. clipFromMap: see Stage; x, y, width and height in pixels.
+ * Index of the map point at a pixel of the view: the candidate nearest to the camera; null without one.
+ * clipFromMap: see Stage; x, y, width and height in pixels.
  */
 export function pointAt(
   points: Float32Array,

@@ -13,9 +13,9 @@ import { colour, onThemeChange } from "../theme";
 import type { CameraFields, PoseFields } from "../types";
 import { matrixOf } from "./frames";
 
-const kDepth = 0.6; // metres, of the frustum that is drawn
+const kDepth = 0.6; // of the drawn frustum, metres
 
-/** The corners of the image at the frustum's depth, in the camera's frame. */
+/** Image corners at the depth of the frustum, in the camera frame. */
 function corners({ width, height, focal, cx, cy }: CameraFields): number[][] {
   const at = (u: number, v: number) => [((u - cx) / focal) * kDepth, ((v - cy) / focal) * kDepth, kDepth];
   return [at(-0.5, -0.5), at(width - 0.5, -0.5), at(width - 0.5, height - 0.5), at(-0.5, height - 0.5)];
@@ -37,7 +37,7 @@ function geometryOf(positions: number[]): BufferGeometry {
   return new BufferGeometry().setAttribute("position", new Float32BufferAttribute(positions, 3));
 }
 
-/** The camera's frustum where the robot is. Lies in the map's frame. */
+/** Camera frustum at the pose of the robot, in the map frame. */
 export class Robot {
   readonly group = new Group();
   readonly #bodyFromCamera: Matrix4;
@@ -57,7 +57,7 @@ export class Robot {
     this.group.visible = false;
   }
 
-  /** Hides it without a pose. */
+  /** Moves the frustum; hides it without a pose. */
   place(mapFromBody: PoseFields | null): void {
     this.group.visible = mapFromBody !== null;
     if (!mapFromBody) return;

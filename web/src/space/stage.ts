@@ -13,10 +13,10 @@ import { onceAFrame } from "../dom";
 import { onThemeChange } from "../theme";
 
 const kUp = new Vector3(0, 0, 1);
-const kOrbitStep = 0.12; // radians a key press
+const kOrbitStep = 0.12; // radians per key press
 const kZoomStep = 1.15;
 
-/** Without a graphics card smooth edges take most of the time. */
+/** Whether WebGL is rendered in software, where antialiasing takes most of the time. */
 function isDrawnInSoftware(): boolean {
   const context = document.createElement("canvas").getContext("webgl2");
   const names = context?.getExtension("WEBGL_debug_renderer_info");
@@ -25,12 +25,12 @@ function isDrawnInSoftware(): boolean {
   return /swiftshader|llvmpipe|software/i.test(name);
 }
 
-/** The picture in three dimensions, drawn anew only when something has changed. */
+/** 3D view, redrawn only after changes. */
 export class Stage {
   readonly camera = new PerspectiveCamera(50, 1, 0.05, 5000);
-  /** In the view's frame. */
+  /** Objects in the view frame. */
   readonly room = new Group();
-  /** In the map's frame. */
+  /** Objects in the map frame. */
   readonly map = new Group();
   readonly canvas: HTMLCanvasElement;
   readonly #renderer: WebGLRenderer;
@@ -38,17 +38,17 @@ export class Stage {
   readonly #controls: OrbitControls;
   readonly #afterDrawing: (() => void)[] = [];
   readonly redraw = onceAFrame(() => this.#draw());
-  #isOwnView = false; // somebody has turned to what he wants to see
+  #isOwnView = false; // the user has changed the view
   #home = new Box3(new Vector3(-5, -5, 0), new Vector3(5, 5, 2));
 
-  /** Throws when the browser gives no WebGL. */
+  /** Throws without WebGL. */
   constructor(host: HTMLElement) {
     this.#renderer = new WebGLRenderer({ antialias: !isDrawnInSoftware(), alpha: true });
     this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.canvas = this.#renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "The map. Arrow keys turn it, plus and minus zoom, Home shows all of it.");
+    this.canvas.setAttribute("aria-label", "Map. Arrow keys rotate, plus and minus zoom, Home shows all.");
     host.prepend(this.canvas);
     this.camera.up.copy(kUp);
     this.map.matrixAutoUpdate = false;
@@ -70,7 +70,7 @@ export class Stage {
     return controls;
   }
 
-  /** Places everything that is in the map's frame. */
+  /** Sets the pose of the map frame in the view. */
   placeMap(viewFromMap: Matrix4): void {
     this.map.matrix.copy(viewFromMap);
     this.map.updateMatrixWorld(true);
@@ -85,7 +85,7 @@ export class Stage {
     this.room.add(thing);
   }
 
-  /** What "show all" shows, in the view's frame: at once, unless something else is being looked at. */
+  /** Sets the extent of showAll in the view frame; shows it unless the user has changed the view. */
   setExtent(extent: Box3): void {
     this.#home = extent.clone();
     if (!this.#isOwnView) this.showAll();
@@ -112,7 +112,7 @@ export class Stage {
     this.redraw();
   }
 
-  /** Moves along with something, so that it comes to lie in the middle, from the side it is looked at from. */
+  /** Centres the view on a point, without rotation or zoom. */
   follow(pointInView: Vector3): void {
     this.#isOwnView = true;
     const step = pointInView.clone().sub(this.#controls.target);
@@ -122,19 +122,19 @@ export class Stage {
     this.redraw();
   }
 
-  /** Calls back after each drawing, for what lies over the picture. */
+  /** Calls back after each drawing, for overlays. */
   afterDrawing(callback: () => void): void {
     this.#afterDrawing.push(callback);
   }
 
-  /** Pixels of the canvas on the page; null for what lies behind the camera. */
+  /** Position on the canvas, CSS pixels; null behind the camera. */
   onPage(pointInMap: Vector3): { x: number; y: number } | null {
     const { x, y, z } = pointInMap.clone().applyMatrix4(this.map.matrixWorld).project(this.camera);
     if (z > 1) return null;
     return { x: ((x + 1) / 2) * this.canvas.clientWidth, y: ((1 - y) / 2) * this.canvas.clientHeight };
   }
 
-  /** From the map's frame to the frustum as a cube from -1 to 1. */
+  /** Projection from the map frame to clip space, -1 to 1. */
   clipFromMap(): Matrix4 {
     this.camera.updateMatrixWorld();
     return new Matrix4()
@@ -142,7 +142,7 @@ export class Stage {
       .multiply(this.map.matrixWorld);
   }
 
-  /** Draws as often as can be, and gives the number of frames a second. */
+  /** Draws continuously; returns frames per second. */
   measure(seconds: number): number {
     const context = this.#renderer.getContext();
     const pixel = new Uint8Array(4);
@@ -150,7 +150,7 @@ export class Stage {
     let frames = 0;
     while (performance.now() - start < 1000 * seconds) {
       this.#draw();
-      context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel); // waits until it is drawn
+      context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel); // waits for the end of drawing
       ++frames;
     }
     return (1000 * frames) / (performance.now() - start);
