@@ -10,7 +10,7 @@ function(byre_add_manual)
     COMMAND byre_cli completion bash > ${folder}/byre.bash
     COMMAND byre_cli completion zsh > ${folder}/byre.zsh
     DEPENDS byre_cli ${pages_script}
-    COMMENT "Making manual pages and completions of byre")
+    COMMENT "Generating manual pages and shell completions")
   add_custom_target(byre_manual ALL DEPENDS ${folder}/man1/byre.1.gz)
 
   install(DIRECTORY ${folder}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)

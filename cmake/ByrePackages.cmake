@@ -26,12 +26,12 @@ string(TIMESTAMP byre_date "%a, %d %b %Y %H:%M:%S +0000" UTC) # SOURCE_DATE_EPOC
 set(byre_debian_dir ${CMAKE_CURRENT_BINARY_DIR}/debian)
 configure_file(cmake/debian/copyright.in ${byre_debian_dir}/copyright @ONLY)
 configure_file(cmake/debian/changelog.in ${byre_debian_dir}/changelog @ONLY)
-find_program(BYRE_GZIP gzip DOC "gzip, which packs the change log of packages")
+find_program(BYRE_GZIP gzip DOC "gzip, compression of the packages' change log")
 if(BYRE_GZIP)
   execute_process(COMMAND ${BYRE_GZIP} -9nkf ${byre_debian_dir}/changelog)
 endif()
 
-# A package of one component. PACKAGE: its name; SECTION: Debian section; NEEDS: components; DEPENDS and RECOMMENDS:
+# Package of one component. PACKAGE: its name; SECTION: Debian section; NEEDS: components; DEPENDS and RECOMMENDS:
 # packages in addition to the shared libraries found in it. Maintainer scripts are in cmake/debian/<component>.
 function(byre_add_package component)
   cmake_parse_arguments(PARSE_ARGV 1 debian "" "PACKAGE;SECTION;SUMMARY;DESCRIPTION;DEPENDS;RECOMMENDS;ARCHITECTURE" "NEEDS")
@@ -57,9 +57,9 @@ function(byre_add_package component)
   set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} PARENT_SCOPE)
 endfunction()
 
-set(about "byre follows a stereo camera, or one camera alone, maps what it sees, and\ntells at each frame where the robot is and how well it knows.")
+set(about "byre is visual SLAM with one camera, a stereo camera or a depth camera. Each\nframe yields a pose with covariance and a trust verdict.")
 if(BYRE_ARCH)
-  set(processors "\nIt is made for processors with the instructions of ${BYRE_ARCH}.")
+  set(processors "\nIt needs a processor with the instruction set ${BYRE_ARCH}.")
 endif()
 
 # Libraries loaded by dlopen on first use, which dpkg-shlibdeps cannot find.
@@ -75,28 +75,28 @@ list(JOIN byre_loaded ", " byre_loaded)
 set(CPACK_COMPONENTS_ALL)
 byre_add_package(data PACKAGE byre-data SECTION science ARCHITECTURE all
   SUMMARY "visual SLAM for robots - data"
-  DESCRIPTION "${about}\n.\nThis package holds the visual vocabulary by which places are recognised,\nand the protocols of benchmarks.")
+  DESCRIPTION "${about}\n.\nThis package contains the visual vocabulary for place recognition and the\nprotocols of benchmarks.")
 if(BYRE_BUILD_CLI)
   byre_add_package(program PACKAGE byre SECTION science NEEDS data DEPENDS "${byre_loaded}"
     SUMMARY "visual SLAM for robots - program"
-    DESCRIPTION "${about}${processors}\n.\nThis package holds the program, its manual pages, and completion for\nbash and zsh.")
+    DESCRIPTION "${about}${processors}\n.\nThis package contains the program, its manual pages, and completions for\nbash and zsh.")
 endif()
 byre_add_package(runtime PACKAGE libbyre${PROJECT_VERSION_MAJOR} SECTION libs NEEDS data
   SUMMARY "visual SLAM for robots - shared library"
-  DESCRIPTION "${about}${processors}\n.\nThis package holds the library for robots' own programs.")
+  DESCRIPTION "${about}${processors}\n.\nThis package contains the shared library for programs on robots.")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=") # before 1.0 a minor version may break the interface
 byre_add_package(development PACKAGE libbyre-dev SECTION libdevel NEEDS runtime DEPENDS libeigen3-dev
   RECOMMENDS "libceres-dev, libopencv-dev, libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libxxhash-dev, libhwy-dev, libdeflate-dev, libembree-dev, libsqlite3-dev, libzstd-dev, liblz4-dev, libbz2-dev, zlib1g-dev"
   SUMMARY "visual SLAM for robots - development files"
-  DESCRIPTION "${about}\n.\nThis package holds the headers, the package for CMake, and the static\nlibraries. Programs that are linked with those need the recommended packages.")
+  DESCRIPTION "${about}\n.\nThis package contains the headers, the CMake package, and the static\nlibraries, which need the recommended packages at link time.")
 if(BYRE_BUILD_PYTHON)
   find_package(Python3 COMPONENTS Interpreter REQUIRED)
   math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
   byre_add_package(python PACKAGE python3-byre SECTION python NEEDS data
     DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, ${byre_loaded}"
     SUMMARY "visual SLAM for robots - Python 3"
-    DESCRIPTION "${about}${processors}\n.\nThis package holds the library for Python, with arrays of numpy in and out.")
+    DESCRIPTION "${about}${processors}\n.\nThis package contains the Python library, with numpy arrays for images and\nposes.")
 endif()
 
 # All targets that packages contain.

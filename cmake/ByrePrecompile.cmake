@@ -1,6 +1,6 @@
 # Precompiled headers of the most used libraries, because parsing them dominates compile time. They hide missing
 # includes.
-option(BYRE_PRECOMPILE "Precompile the headers of libraries, for a faster build from scratch" ON)
+option(BYRE_PRECOMPILE "Precompile the headers of libraries, which shortens a full build" ON)
 
 set(BYRE_PRECOMPILED_room <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits>
     <map> <memory> <numeric> <optional> <random> <span> <sstream> <string> <string_view> <tuple> <unordered_map>

@@ -1,5 +1,5 @@
-# Builds the library from rooms: one object library per folder of a room, so that a room and the floors below it build
-# and test alone.
+# Builds the library from rooms: one object library per folder of a room, so that a room can be built and tested with
+# the floors below it only.
 
 # Compiler flags of every target of this project; not exported to consumers.
 add_library(byre_flags INTERFACE)
@@ -34,8 +34,8 @@ if(BYRE_BUILD_TESTS)
   add_custom_target(byre_unit_tests)
 endif()
 
-# Folders without hot code but with many library templates: -O1 saves a third of their compile time. Excludes what
-# robots link and what produces figures; see also cli/CMakeLists.txt.
+# Folders without hot code but with many library templates: -O1 saves a third of their compile time. Excludes code
+# that robots link or that produces figures; see also cli/CMakeLists.txt.
 set(BYRE_FOLDERS_COLD io/ros io/bag viewer viewer/web benchmark benchmark/demo ros2/dds ros2/fleet ros2/node)
 
 # Compiles a target for short build time instead of speed.
@@ -51,7 +51,7 @@ function(byre_compile_test target)
   endif()
 endfunction()
 
-# Folders whose tests are programs of their own, byre_<room>_<folder>_tests. The others share the program of their room.
+# Folders with a separate test program, byre_<room>_<folder>_tests. The others share the program of their room.
 set(BYRE_FOLDERS_TESTED_ALONE slam/mapping slam/localisation slam/session slam/system ros2/dds ros2/fleet ros2/node)
 
 # The slowest tests, started first so that none of them runs alone at the end.
@@ -172,7 +172,7 @@ function(byre_set_usage library)
   target_link_libraries(${library} PUBLIC Eigen3::Eigen PRIVATE $<BUILD_INTERFACE:byre_flags>)
 endfunction()
 
-# A separately linkable part of the library, byre::<component>: the objects of its rooms, the components it needs and
+# Separately linkable part of the library, byre::<component>: the objects of its rooms, the components it needs and
 # the libraries it links. Always static, see byre_add_shared_library.
 function(byre_add_component component)
   cmake_parse_arguments(PARSE_ARGV 1 part "" "" "ROOMS;NEEDS;LINKS")

@@ -1,7 +1,7 @@
 # Unity builds: several files compile as one, so that common includes, which dominate the compile time of tests and
 # commands, are parsed once. Names in anonymous namespaces must therefore be unique in a folder, in cli in the room, see
 # tools/check_floors.py. A fresh build of byre_cli on two cores takes 4 minutes, without unity builds about 22.
-option(BYRE_UNITY "Compile several files of a folder as one" ON)
+option(BYRE_UNITY "Compile several files of a folder as one (unity build)" ON)
 
 # Folders whose tests compile separately, with the optimisation of the library. In large files, or with less
 # optimisation, the compiler does not inline Eigen's allocation functions, see tools/check_allocations.sh, which checks
@@ -17,7 +17,7 @@ set(BYRE_FILES_BY_PROCESSOR features/downscale.cc features/remap.cc features/gau
     optimise/pose_expansion.cc)
 # Files whose objects are linked individually.
 set(BYRE_FILES_PICKED viewer/web/web_library.cc)
-# Files with many Eigen types, which GCC compiles twice as slowly together with others as alone.
+# Files with many Eigen types, which GCC compiles twice as slowly in a unity build as alone.
 set(BYRE_FILES_LARGE geometry/essential.cc)
 list(TRANSFORM BYRE_FILES_BY_PROCESSOR PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)
 list(TRANSFORM BYRE_FILES_PICKED PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/byre/)

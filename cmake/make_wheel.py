@@ -2,7 +2,7 @@
 """Builds a wheel of the Python package for pip, including the vocabulary.
 
 Usage: make_wheel.py PACKAGE DATA LICENSE WHEEL
-PACKAGE is the built folder byre, DATA the folder of default.vocabulary. The name of WHEEL gives version, Python and
+PACKAGE is the built folder byre, DATA the folder of default.vocabulary. The name of WHEEL contains version, Python and
 platform of the module, as in byre-0.1.0-cp311-cp311-linux_x86_64.whl.
 """
 import pathlib
@@ -38,7 +38,7 @@ def lay_out(package: pathlib.Path, data: pathlib.Path, folder: pathlib.Path) -> 
     for pattern in PACKAGE_FILES:
         found = list(package.glob(pattern))
         if len(found) != 1:
-            sys.exit(f"make_wheel: {package} holds {len(found)} files {pattern} and not one: build byre_python anew")
+            sys.exit(f"make_wheel: {package} contains {len(found)} files {pattern} instead of one: rebuild byre_python")
         folder.mkdir(parents=True, exist_ok=True)
         shutil.copy2(found[0], folder)
     (folder / DATA_FOLDER).mkdir(parents=True)
