@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the viewer's page, web/dist/index.html, from web/src. Only needed after changes, as the page is in the
+# Builds the viewer's page, web/dist/index.html, from web/src. Only needed after changes, as the built page is in the
 # repository. Needs Node 20.19 or newer with npm.
-# Usage: build-web.sh [--check]        --check changes nothing; fails if the page differs from its source
+# Usage: build-web.sh [--check]        --check compares the page with its source, changes nothing, fails on a difference
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../web"
 
@@ -18,7 +18,10 @@ if $check; then
   built=$(mktemp -d)
   trap 'rm -rf "$built"' EXIT
   npm run build -- --outDir "$built" --emptyOutDir
-  cmp "$built/index.html" dist/index.html || { echo "build-web.sh: run it, and commit web/dist" >&2; exit 1; }
+  cmp "$built/index.html" dist/index.html || {
+    echo "build-web.sh: web/dist/index.html is outdated: run scripts/build-web.sh and commit it" >&2
+    exit 1
+  }
 else
   npm run build
 fi

@@ -42,7 +42,7 @@ if ((${#missing[@]})) || [[ ! -e $BYRE_SYSROOT/complete ]]; then
   /usr/lib/apt/apt-helper -o Acquire::Retries=1 -o Acquire::http::Timeout=20 \
     download-file "$mirror/dists/$release/Release" "$reached" >/dev/null 2>&1 || {
     rm -f "$reached"
-    echo "cross-build.sh: $mirror cannot be reached, and packages for arm64 are to be fetched from there" >&2
+    echo "cross-build.sh: $mirror is unreachable, packages for arm64 cannot be downloaded" >&2
     exit 77
   }
   rm -f "$reached"
@@ -55,7 +55,7 @@ if ((${#missing[@]})); then
 fi
 
 if [[ ! -e $BYRE_SYSROOT/complete ]]; then
-  echo "Unpacking Debian's packages for arm64 into $BYRE_SYSROOT"
+  echo "Unpacking Debian packages for arm64 into $BYRE_SYSROOT"
   rm -rf "$BYRE_SYSROOT"
   mkdir -p "$(dirname "$BYRE_SYSROOT")"
   mmdebstrap --quiet --variant=extract --architectures=arm64 --include="$(IFS=,; echo "${packages[*]}")" \

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Demonstrates byre. Without a recording: two visits to a simulated cowshed, as an HTML page (byre demo). With one: maps
-# it, saves and inspects the map, localises frames in it and, with ground truth, evaluates the accuracy.
+# Demonstrates byre. Without a recording: two visits to a simulated cowshed, as an HTML page (byre demo). With a
+# recording: maps it, saves and inspects the map, localises frames in it, and evaluates the accuracy with ground truth.
 # Usage: demo.sh [RECORDING]
 # RECORDING is a folder in EuRoC or KITTI format. Results go to $BYRE_DEMO_DIR, or to ~/.cache/byre/demo.
 set -euo pipefail
@@ -23,7 +23,7 @@ scripts/build.sh release byre_cli
 byre=build/release/src/byre/cli/byre
 
 if [[ -z $recording ]]; then
-  rm -rf "$results/cowshed" # always ours: made below
+  rm -rf "$results/cowshed" # written only by the command below
   exec "$byre" demo --output "$results/cowshed"
 fi
 
@@ -31,10 +31,10 @@ echo "Mapping $recording"
 "$byre" map "$recording" -o "$results/map.byre" --trajectory "$results/trajectory.txt" \
   --causal-trajectory "$results/causal_trajectory.txt" --stats "$results/stats.json"
 
-echo "Looking into the map"
+echo "Inspecting the map"
 "$byre" inspect "$results/map.byre" --points "$results/points.ply" | tee "$results/map.txt"
 
-echo "Finding every twentieth frame in it, without tracking"
+echo "Localising every twentieth frame in the map, without tracking"
 "$byre" localise "$results/map.byre" "$recording" --stride 20 --trajectory "$results/found.txt" |
   tee "$results/localisation.txt"
 
@@ -44,17 +44,17 @@ for truth in "$recording"/{mav0/,}state_groundtruth_estimate0/data.csv "$recordi
   [[ ! -f $truth ]] || has_truth=true
 done
 if $has_truth; then
-  echo "Comparing with the ground truth"
+  echo "Evaluating against ground truth"
   "$byre" evaluate --estimate "$results/trajectory.txt" --truth "$recording" --frames-of "$recording" --label final |
     tee "$results/evaluation.txt"
 fi
 
 echo
 echo "Map:                                $results/map.byre"
-echo "What it holds:                      $results/map.txt"
-echo "Its points, for any PLY viewer:     $results/points.ply"
-echo "Frames found in it:                 $results/found.txt, $results/localisation.txt"
-echo "Trajectory, after all corrections:  $results/trajectory.txt"
-echo "Trajectory, as known at the time:   $results/causal_trajectory.txt"
+echo "Contents of the map:                $results/map.txt"
+echo "Map points, PLY file:               $results/points.ply"
+echo "Localised frames:                   $results/found.txt, $results/localisation.txt"
+echo "Final trajectory:                   $results/trajectory.txt"
+echo "Causal trajectory:                  $results/causal_trajectory.txt"
 echo "Statistics of the run:              $results/stats.json"
 ! $has_truth || echo "Accuracy:                           $results/evaluation.txt"

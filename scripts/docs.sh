@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the site of docs/ in build/site, by mkdocs.yml. Needs mkdocs and installs nothing; uses no network.
-# Usage: docs.sh [--check]        --check fails if a link of the repository is broken or a page of the navigation missing
+# Builds the site of docs/ in build/site, as configured in mkdocs.yml. Needs mkdocs; installs nothing, uses no network.
+# Usage: docs.sh [--check]        --check fails on a broken link in the repository or a missing page of the navigation
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

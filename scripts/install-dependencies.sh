@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the dependencies for building and testing byre, on Debian 12 or systems with the same package names.
-# Installed packages are not touched; with all present the script does nothing. Otherwise it needs root or sudo.
+# Keeps installed packages; does nothing if none is missing. Installation needs root or sudo.
 set -euo pipefail
 
 packages=(
@@ -23,12 +23,12 @@ packages=(
   dpkg-dev file
   # tests, fuzzing, benchmarks, rules
   libgtest-dev libgmock-dev libbenchmark-dev valgrind clang-format zsh
-  # sanitizers, whose tests run in less than half the time of g++ 12, and fuzzing
+  # sanitizers and fuzzing; sanitized tests take less than half the time of those by g++ 12
   clang-16 libclang-rt-16-dev
   # tests of bags written by other software
   python3-rosbag python3-sensor-msgs python3-tf2-msgs
 )
-# For browser tests, which are skipped without. Node may come from another source: Debian's npm conflicts with other
+# Packages for browser tests, which are skipped without them. Node may come from another source: Debian's npm conflicts with other
 # Node packages.
 browser_packages=(chromium)
 command -v node >/dev/null || browser_packages+=(nodejs)
@@ -39,7 +39,7 @@ is_installed() {
 }
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  echo "install-dependencies: this is no Debian system; install by hand what corresponds to: ${packages[*]}" >&2
+  echo "install-dependencies: not a Debian system; install packages equivalent to: ${packages[*]}" >&2
   exit 1
 fi
 
@@ -56,7 +56,7 @@ done
 as_root=()
 if ((EUID != 0)); then
   command -v sudo >/dev/null || {
-    echo "install-dependencies: neither root nor sudo at hand; ask an administrator for:" \
+    echo "install-dependencies: neither root nor sudo available; missing packages:" \
       "${missing[@]}" "${missing_for_browser[@]}" >&2
     ((${#missing[@]})) && exit 1 || exit 0
   }
@@ -71,4 +71,4 @@ install() {
 "${as_root[@]}" apt-get update --quiet
 ((${#missing[@]} == 0)) || install "${missing[@]}"
 ((${#missing_for_browser[@]} == 0)) || install "${missing_for_browser[@]}" ||
-  echo "install-dependencies: going on without ${missing_for_browser[*]}: tests in a browser will be skipped" >&2
+  echo "install-dependencies: cannot install ${missing_for_browser[*]}: browser tests will be skipped" >&2

@@ -51,7 +51,7 @@ print_slowest() {
     sort -rn | head -n 8 | sed '1s/^/Slowest: /; 2,$s/^/         /'
 }
 
-# Stores names and last output of a preset's failed tests, for a summary at the end, far below ctest's own output.
+# Stores names and last output of a preset's failed tests, for the summary at the end.
 keep_failures() {
   local preset=$1 name reason
   while read -r name reason; do
@@ -87,7 +87,7 @@ check_format() {
     xargs -0 -P "$(nproc)" -n 50 clang-format --dry-run --Werror; then
     passed=$((passed + 1))
   else
-    echo "Mend with: clang-format -i FILE..."
+    echo "Fix the formatting: clang-format -i FILE..."
     failed=$((failed + 1))
     failures+=("formatting")
   fi
@@ -95,9 +95,9 @@ check_format() {
 
 headline "Release: all tests"
 scripts/build.sh release
-end_part "building the release"
+end_part "release: build"
 run_tests release
-end_part "all tests of the release"
+end_part "release: all tests"
 
 headline "Formatting"
 check_format
@@ -106,17 +106,17 @@ end_part "formatting"
 if ! $quick; then
   headline "Address and undefined-behaviour sanitizers: unit tests of the library"
   scripts/build.sh dev byre_unit_tests
-  end_part "building with address and undefined-behaviour sanitizers"
+  end_part "address and undefined-behaviour sanitizers: build"
   run_tests dev
-  end_part "unit tests under them"
+  end_part "address and undefined-behaviour sanitizers: unit tests"
 
   headline "Thread sanitizer: tests of rooms with threads"
   scripts/build.sh tsan
-  end_part "building with the thread sanitizer"
+  end_part "thread sanitizer: build"
   run_tests tsan
-  end_part "tests of threads under it"
+  end_part "thread sanitizer: tests"
 
-  headline "Fuzzing: map files and bags, for 20 s each"
+  headline "Fuzzing: map files and bags, 20 s each"
   if scripts/fuzz.sh 20 >build/fuzz.log 2>&1; then
     grep -E 'stat::number_of_executed_units' build/fuzz.log || true
     passed=$((passed + 1))
@@ -132,21 +132,21 @@ test_arm64() {
   local status=0
   export BYRE_SYSROOT=${BYRE_SYSROOT:-$PWD/build/sysroot-aarch64}
   scripts/cross-build.sh --processor || status=$?
-  end_part "building for 64-bit ARM"
+  end_part "64-bit ARM: build"
   if ((status == 77)); then
-    echo "SKIPPED: nothing was tested for 64-bit ARM, as Debian's mirror cannot be reached"
+    echo "Skipped: tests for 64-bit ARM, because the Debian mirror is unreachable"
     skipped=$((skipped + 1))
   elif ((status)); then
     failed=$((failed + 1))
-    failures+=("building for 64-bit ARM")
+    failures+=("build for 64-bit ARM")
   else
     run_tests aarch64_tests
-    end_part "unit tests for 64-bit ARM by QEMU"
+    end_part "64-bit ARM: unit tests in QEMU"
   fi
 }
 
 if $arm64; then
-  headline "64-bit ARM: unit tests of rooms with code for each processor, by QEMU"
+  headline "64-bit ARM: unit tests of rooms with processor-specific code, in QEMU"
   test_arm64
 fi
 
@@ -157,7 +157,7 @@ done
 echo
 printf '%s\n' "${parts[@]}"
 python3 tools/product_size.py
-$arm64 || echo "Left out: the unit tests for 64-bit ARM, which scripts/test.sh --arm64 runs too"
+$arm64 || echo "Not run: unit tests for 64-bit ARM (scripts/test.sh --arm64)"
 ((failed == 0)) || printf 'Failed: %s\n' "${failures[@]}"
 ((skipped == 0)) || echo "$skipped skipped"
 echo "$passed passed, $failed failed"
