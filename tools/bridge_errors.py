@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Prints the error of dead reckoning by wheels or gyroscope, one line per gap of a run.
 
-Usage: bridge_errors.py STATS RECORDING      STATS: output of byre map or byre run --stats; RECORDING: EuRoC, with truth
+Usage: bridge_errors.py STATS RECORDING
+  STATS       file of byre map or byre run --stats
+  RECORDING   EuRoC folder with ground truth
 
-Errors are at the last frame of a gap, after alignment with the truth at the last frame before it. The bound is the 95 %
-bound of the run's covariance. Needs numpy.
+Errors are those of the last frame of a gap, after alignment with the truth at the last frame before it. in_95_%:
+whether the error is within the 95 % bound of the covariance of the run. Needs numpy.
 """
 import json
 import pathlib

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Checks that comments stand alone: each can be read without the line of code above it.
+"""Checks that comments are self-contained: each is understood without the line of code above it.
 
-Usage: check_comments.py [FOLDER...]        default: include and src of this project.
+Usage: check_comments.py [FOLDER...]        default: include and src of this project
 
-A comment behind code must neither begin with a word that ties it to the line above ("of those", "likewise") nor
-continue on the next line: longer comments go on lines of their own above the code. Comments on lines of their own are
-prose; they only must not begin with "Of", "Likewise" or "Ditto".
-Prints one line per fault, "file:line: what is wrong". Exit code: 0 all comments stand alone, 1 faults found, 2 no
-source files.
+A comment behind code must neither begin with a word that refers to the line above ("of those", "likewise") nor
+continue on the next line: longer comments stand on separate lines above the code. Comments on separate lines must not
+begin with "Of", "Likewise" or "Ditto".
+Prints one line per fault, "file:line: fault". Exit code: 0 no faults, 1 faults, 2 wrong usage or no source files.
 """
 import pathlib
 import re
@@ -58,15 +57,15 @@ def comments(text: str) -> dict[int, Comment]:
 
 def messages_behind_code(comment: Comment, following: Comment | None) -> Iterator[str]:
     if leaning := LEANING.match(comment.text):
-        yield f"begins with '{leaning[0]}', which leans on the line above"
+        yield f"begins with '{leaning[0]}', which refers to the line above"
     elif pointing := POINTING.search(comment.text):
         yield f"'{pointing[0]}' points to another line"
     if following is None:
         return
     if not following.is_behind_code and following.column == comment.column:
-        yield "goes on in the next line: put it on lines of its own above the code"
+        yield "continues on the next line: move it to separate lines above the code"
     elif following.is_behind_code and UNFINISHED.search(comment.text):
-        yield "runs on into the comment of the next line"
+        yield "continues in the comment of the next line"
 
 
 def messages(comment: Comment, preceding: Comment | None, following: Comment | None) -> Iterator[str]:
@@ -75,7 +74,7 @@ def messages(comment: Comment, preceding: Comment | None, following: Comment | N
         return
     is_first = preceding is None or preceding.is_behind_code
     if is_first and (leaning := LEANING_PROSE.match(comment.text)):
-        yield f"begins with '{leaning[0]}', which leans on the code below: name the noun"
+        yield f"begins with '{leaning[0]}', which refers to the code below: name the noun"
 
 
 def file_faults(path: pathlib.Path) -> Iterator[Fault]:
@@ -94,13 +93,13 @@ def main(arguments: list[str]) -> int:
     for folder in [pathlib.Path(argument) for argument in arguments] or [root / "include", root / "src"]:
         in_folder = source_files(folder)
         if not in_folder:
-            print(f"{folder}: no .h or .cc file in it", file=sys.stderr)
+            print(f"{folder}: contains no .h or .cc file", file=sys.stderr)
             return 2
         files += in_folder
     faults = [fault for path in files for fault in file_faults(path)]
     for fault in faults:
         print(fault)
-    print(f"{len(files)} files, {len(faults)} faults" if faults else f"comments stand alone in {len(files)} files")
+    print(f"{len(files)} files, {len(faults)} faults" if faults else f"{len(files)} files, no faults")
     return 1 if faults else 0
 
 

@@ -45,7 +45,7 @@ class FirstWords(CheckCommentsTest):
                         "else whole pixels", "which closes it", "they lie on a line", "by which it is late",
                         "the same with a sigma", "same", "both", "too", "Of the lens"):
             with self.subTest(comment=comment):
-                self.assert_one_fault(f"int a = 1;\nint b = 2;  // {comment}\n", 2, "leans on the line above")
+                self.assert_one_fault(f"int a = 1;\nint b = 2;  // {comment}\n", 2, "refers to the line above")
 
     def test_a_noun_phrase_may_begin_with_a_word_like_them(self):
         for comment in ("both cameras' gain, ratio", "too few points hold the pose", "which of the recordings",
@@ -72,10 +72,12 @@ class RunningOn(CheckCommentsTest):
     def test_a_comment_that_is_finished_behind_the_next_line_of_code_is_a_fault(self):
         for end in ("sizes,", "sizes and", "seen in the"):
             with self.subTest(end=end):
-                self.assert_one_fault(f"int a = 1;  // height in {end}\nint b = 2;  // pixels\n", 1, "runs on")
+                text = f"int a = 1;  // height in {end}\nint b = 2;  // pixels\n"
+                self.assert_one_fault(text, 1, "continues in the comment")
 
     def test_a_comment_that_goes_on_in_the_column_below_is_a_fault(self):
-        self.assert_one_fault("int a = 1;  // one per edge:\n            // squared sigmas\n", 1, "goes on")
+        text = "int a = 1;  // one per edge:\n            // squared sigmas\n"
+        self.assert_one_fault(text, 1, "continues on the next line")
 
     def test_comments_one_below_the_other_are_none(self):
         self.assertEqual([], self.found("int a = 1;  // metres\nint b = 2;  // pixels\n// A sentence.\nint c = 3;\n"))
@@ -103,7 +105,7 @@ class Main(CheckCommentsTest):
         self.write("int a = 1;  // metres\n")
         code, output, _ = self.run_main(self.source)
         self.assertEqual(0, code)
-        self.assertIn("stand alone in 1 files", output)
+        self.assertIn("1 files, no faults", output)
 
     def test_returns_one_and_names_file_and_line_of_each_fault_in_all_folders(self):
         self.write("int a = 1;  // of those\n", "map/map.h")

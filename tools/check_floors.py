@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Checks rules beyond the compiler: which rooms a room may include, and calls forbidden in library code.
+"""Checks architecture rules: includes allowed between rooms, and calls forbidden in library code.
 
-Usage: check_floors.py [SOURCE]        SOURCE: folder of rooms, default: src/byre of this project.
+Usage: check_floors.py [SOURCE]        SOURCE: folder of rooms, default: src/byre of this project
 
-A room is a folder of SOURCE with the folders in it. It may include only rooms on lower floors. Folders of a room must
-not include each other in a circle. Some headers and calls are restricted, see KEPT_IN and FORBIDDEN. A type is defined
+A room is a folder of SOURCE with the folders in it. It may include only rooms on lower floors. Includes between folders
+of a room must not be circular. Some headers and calls are restricted, see KEPT_IN and FORBIDDEN. A type is defined
 by one header only: two types of one name in one program violate the one-definition rule.
 Names local to a file are unique in its folder, because files of a folder compile as one (unity builds, BYRE_UNITY); in
 cli they are unique in the room. File-local functions may overload by types of byre. They may not overload by
 convertible types such as numbers, or another file could call them instead of a function that a header declares.
-Prints one line per fault, "file:line: what is wrong". Exit code: 0 all rules hold, 1 faults found, 2 no source files.
+Prints one line per fault, "file:line: fault". Exit code: 0 no faults, 1 faults, 2 wrong usage or no source files.
 """
 import functools
 import pathlib
@@ -79,13 +79,13 @@ class Rule(NamedTuple):
 # Calls forbidden in library code and its tests.
 FORBIDDEN = [
     Rule(r"\bstd::(cout|cerr|clog)\b|(?<![\w.>])(std::)?(printf|fprintf|puts|fputs|putchar|perror)\s*\(",
-         frozenset({"cli"}), "only cli prints: return what is to be told, or throw InputError"),
+         frozenset({"cli"}), "only cli prints: return a result, or throw InputError"),
     Rule(r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(", frozenset({"cli"}),
-         "only cli ends the program: throw InputError for bad input, assert what cannot be"),
+         "only cli ends the program: throw InputError for bad input, assert for bugs"),
     Rule(r"\.dump\s*\(", frozenset({"playback/report", "viewer/web", "ros2/fleet"}),
          "JSON text needs printable_json(): call dumped() of playback/report/report_json.h"),
     Rule(r"\brandom_device\b|(?<![\w.>:])(std::)?s?rand\s*\(", frozenset(),
-         "the same seed must give the same result: take the seed as an option"),
+         "equal seeds must yield equal results: take the seed as an option"),
 ]
 
 
@@ -133,7 +133,7 @@ def room_fault(room: str, other: str) -> str | None:
     if other == room:
         return None
     if other not in FLOOR:
-        return f"there is no room '{other}'; the rooms are {listing(FLOOR)}"
+        return f"unknown room '{other}'; the rooms are {listing(FLOOR)}"
     if FLOOR[other] == FLOOR[room]:
         return f"{room} must not include {other}: both are on floor {FLOOR[room]}"
     if FLOOR[other] > FLOOR[room]:
@@ -144,7 +144,7 @@ def room_fault(room: str, other: str) -> str | None:
 def fence_fault(folder: str, header: str) -> str | None:
     for pattern, places in KEPT_IN.items():
         if re.fullmatch(pattern, header) and not is_in(folder, places):
-            return f"{folder} must not include <{header}>: it is kept in {listing(places)}"
+            return f"{folder} must not include <{header}>: only allowed in {listing(places)}"
     return None
 
 
@@ -192,7 +192,7 @@ class Arrow(NamedTuple):
     line: int
 
 
-# Includes from one folder of a room to another one, without those of tests and of files directly in the room.
+# Includes between folders of a room, except those of tests and of files directly in the room.
 def folder_arrows(source: pathlib.Path) -> Iterator[Arrow]:
     for path in source_files(source):
         folder = path.parent.relative_to(source).as_posix()
@@ -259,7 +259,7 @@ def faults_of_names(paths: list[pathlib.Path], is_wanted, first: dict[str, pathl
     for path in paths:
         for name, line in definitions_in(path):
             if is_wanted(name) and first.setdefault(name, path) != path:
-                yield Fault(path, line, f"{name} is defined by {first[name]} too: {reason}")
+                yield Fault(path, line, f"{name} is also defined in {first[name]}: {reason}")
 
 
 def twice_defined_faults(headers: list[pathlib.Path]) -> Iterator[Fault]:
@@ -335,7 +335,7 @@ def faults(source: pathlib.Path) -> Iterator[Fault]:
     for path in source_files(source):
         folder = path.parent.relative_to(source).as_posix()
         if folder == ".":
-            yield Fault(path, 1, f"lies in no room; the rooms are {listing(FLOOR)}")
+            yield Fault(path, 1, f"is in no room; the rooms are {listing(FLOOR)}")
         elif room_of(folder) not in EVERY_ROOM:
             yield Fault(path, 1, f"'{room_of(folder)}' has no floor; the rooms are {listing(FLOOR)}")
         else:
@@ -350,7 +350,7 @@ def main(arguments: list[str]) -> int:
     source = pathlib.Path(arguments[0]) if arguments else default
     files = source_files(source)
     if not files:
-        print(f"{source}: no .h or .cc file in it", file=sys.stderr)
+        print(f"{source}: contains no .h or .cc file", file=sys.stderr)
         return 2
     public = source.parent.parent / "include" / "byre"
     found = list(faults(source)) + list(circle_faults(source)) + list(all_public_faults(public))
@@ -359,7 +359,7 @@ def main(arguments: list[str]) -> int:
     found += clash_faults(source, public)
     for fault in found:
         print(fault)
-    print(f"{len(files)} files, {len(found)} faults" if found else f"floors hold in {len(files)} files")
+    print(f"{len(files)} files, {len(found)} faults" if found else f"{len(files)} files, no faults")
     return 1 if found else 0
 
 

@@ -44,7 +44,7 @@ class Types(CheckFloorsTest):
         text = "namespace byre {\n// struct No {\nstruct Light { double s; };\nenum class Kind : int { a };\n}\n"
         self.assertEqual([("byre::Light", 3), ("byre::Kind", 4)], self.defined(text))
 
-    def test_what_is_defined_within_a_type_or_a_function_is_its_own(self):
+    def test_definitions_inside_types_and_functions_are_ignored(self):
         text = ("namespace byre {\nclass A final : public B {\n struct Impl { int x; };\n};\n"
                 "int f(Map map) {\n struct C {}; }\n}\n")
         self.assertEqual([("byre::A", 2)], self.defined(text))
@@ -61,7 +61,7 @@ class Types(CheckFloorsTest):
         self.write("slam/loops/a.cc", kept % "constexpr int kLeast = 5;")
         found = self.clashes()
         self.assertEqual([("b.cc", 4)], [(fault.path.name, fault.line) for fault in found])
-        self.assertIn("kLeast is defined by", found[0].message)
+        self.assertIn("kLeast is also defined in", found[0].message)
         self.assertIn("files of map compile as one (BYRE_UNITY); rename one of them", found[0].message)
 
     def test_local_names_of_cli_are_unique_in_the_room(self):
@@ -103,7 +103,7 @@ class Types(CheckFloorsTest):
         self.write("camera/exposure.cc", "namespace byre {\nnamespace {\nstruct Local {\n};\n}\n}\n")
         found = list(check_floors.twice_defined_faults(sorted(self.source.rglob("*.h"))))
         self.assertEqual([("sensor.h", 3)], [(fault.path.name, fault.line) for fault in found])
-        self.assertIn("byre::Exposure is defined by", found[0].message)
+        self.assertIn("byre::Exposure is also defined in", found[0].message)
         code, output, _ = self.run_main(self.source)
         self.assertEqual(1, code)
         self.assertIn("Exposure", output)
@@ -135,7 +135,7 @@ class Floors(CheckFloorsTest):
 
     def test_an_include_of_an_unknown_room_is_a_fault(self):
         self.write("map/map.cc", '#include "byre/util/strings.h"\n')
-        self.assert_one_fault("map/map.cc", 1, "there is no room 'util'")
+        self.assert_one_fault("map/map.cc", 1, "unknown room 'util'")
 
     def test_a_folder_that_is_no_room_is_a_fault(self):
         self.write("common/strings.cc", "int x;\n")
@@ -143,7 +143,7 @@ class Floors(CheckFloorsTest):
 
     def test_a_file_outside_all_rooms_is_a_fault(self):
         self.write("version.h", "int x;\n")
-        self.assert_one_fault("version.h", 1, "lies in no room")
+        self.assert_one_fault("version.h", 1, "is in no room")
 
 
 class Circles(CheckFloorsTest):
@@ -191,7 +191,7 @@ class Fences(CheckFloorsTest):
 
     def test_a_header_of_files_directly_in_the_room_is_a_fault_in_its_folders(self):
         self.write("playback/archive/register_map.cc", "#include <thread>\n")
-        self.assert_one_fault("playback/archive/register_map.cc", 1, "it is kept in base")
+        self.assert_one_fault("playback/archive/register_map.cc", 1, "only allowed in base")
 
     def test_public_headers_may_include_paths_but_no_threads(self):
         header = self.source / "slam.h"
@@ -265,7 +265,7 @@ class Main(CheckFloorsTest):
         self.write("geometry/pose.h", "#include <vector>\n")
         code, output, _ = self.run_main(self.source)
         self.assertEqual(0, code)
-        self.assertIn("floors hold in 1 files", output)
+        self.assertIn("1 files, no faults", output)
 
     def test_returns_one_and_names_file_and_line_of_each_fault(self):
         self.write("geometry/pose.h", "#include <thread>\n#include <iostream>\n")

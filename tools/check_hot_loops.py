@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Compares the cost of the hot loops with stored values, in instructions and allocated memory.
+"""Compares instructions and allocated memory of the hot loops with stored values.
 
-Unlike times, both are the same on every machine with the same instruction set, at any load. Valgrind (callgrind)
-counts the instructions of one pass of the loop.
+Unlike times, both are independent of the load, and equal on all machines with the same instruction set. Valgrind
+(callgrind) counts the instructions of one pass of the loop.
 
 Usage: check_hot_loops.py BENCHMARKS KEPT.json [--write]
-  BENCHMARKS is the program byre_benchmarks, KEPT.json stores figures by benchmark name. --write replaces them by the
-  measured ones.
-Exit code: 0 no cost exceeds its stored value by more than 10 %, 1 some do, 2 wrong usage, 77 valgrind is not installed.
+  BENCHMARKS  program byre_benchmarks
+  KEPT.json   stored figures by benchmark name
+  --write     replaces the stored figures by the measured ones
+Exit code: 0 no figure exceeds its stored value by more than 10 %, 1 at least one does, 2 wrong usage, 77 valgrind is
+not installed.
 """
 
 import json
@@ -57,7 +59,7 @@ def measured(program, names):
         sys.exit(f"check_hot_loops.py: {program} has no benchmark {', '.join(sorted(missing))}")
     instructions = measured_instructions(program, names)
     if len(instructions) != len(figures):
-        sys.exit(f"check_hot_loops.py: {len(instructions)} loops were counted, not {len(figures)}")
+        sys.exit(f"check_hot_loops.py: valgrind counted {len(instructions)} loops instead of {len(figures)}")
     return {name: {"instructions": count, **figures[name]} for name, count in zip(figures, instructions)}
 
 
@@ -80,7 +82,7 @@ def main():
         print(__doc__, file=sys.stderr)
         return 2
     if not shutil.which("valgrind"):
-        print("Skipped: valgrind is not installed, which counts instructions")
+        print("Skipped: valgrind, which counts instructions, is not installed")
         return SKIPPED
     program, file = arguments[0], pathlib.Path(arguments[1])
     kept = json.loads(file.read_text())
@@ -91,8 +93,8 @@ def main():
     lines, too_much = compare(kept, now)
     print("\n".join(lines))
     if too_much:
-        print(f"\nWhat is marked (!) costs more than {ALLOWED:.2f} times what {file.name} says. If that is worth it, "
-              f"say why, and keep the new figures: check_hot_loops.py {program} {file} --write")
+        print(f"\nFigures with (!) exceed {ALLOWED:.2f} times their values in {file.name}. If justified, state the "
+              f"reason and store the new figures: check_hot_loops.py {program} {file} --write")
     return 1 if too_much else 0
 
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Checks the relative links and anchors of all Markdown files below a folder. Uses no network.
 
-Usage: check_links.py [FOLDER]        FOLDER is the repository, the parent of this script's folder unless given
+Usage: check_links.py [FOLDER]        FOLDER: repository, default: the parent of this script's folder
 
-Checked are inline links and images, reference definitions, and href, src of HTML tags. A relative link names a file or
+Checks inline links and images, reference definitions, and href, src of HTML tags. A relative link names a file or
 folder below FOLDER; an anchor into a Markdown file names a heading, by GitHub's rule, or the id or name of an HTML tag.
-Links with a scheme (https:, mailto:) are not checked, nor is text in code. Folders named build, node_modules or with a
-leading dot are left out. Exit code: 0 all links are sound, 1 some are not (one line each), 2 wrong usage.
+Ignores links with a scheme (https:, mailto:), code, and folders named build, node_modules or with a leading dot.
+Exit code: 0 no broken link, 1 broken links (one line each), 2 wrong usage.
 """
 import pathlib
 import re
@@ -60,7 +60,7 @@ def prose_of(text: str) -> Iterator[tuple[int, str]]:
 
 
 def without_code(lines: list[tuple[int, str]]) -> Iterator[tuple[int, str]]:
-    """The same lines without code spans, which may go on from line to line of a paragraph."""
+    """Lines without code spans, which may continue over the lines of a paragraph."""
     paragraph: list[tuple[int, str]] = []
     for number, line in [*lines, (0, "")]:
         if line.strip():
@@ -72,7 +72,7 @@ def without_code(lines: list[tuple[int, str]]) -> Iterator[tuple[int, str]]:
 
 
 def slug_of(heading: str) -> str:
-    """The anchor that GitHub gives a heading."""
+    """Anchor of a heading by GitHub's rule."""
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading)  # a link's text
     text = re.sub(r"[`*]|<[^<>]*>", "", text)
     return re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", "-")

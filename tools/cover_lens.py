@@ -3,7 +3,7 @@
 
 Usage: cover_lens.py RECORDING COPY FROM:TO [FROM:TO ...]      seconds from the first frame
 
-All other files are links to the recording, which stays unchanged. Exit code: 0 done, 1 not possible.
+All other files are links to the recording, which stays unchanged. Exit code: 0 done, 1 wrong usage or input.
 """
 import csv
 import os
@@ -60,14 +60,14 @@ def main(arguments: list[str]) -> int:
     recording, copy = pathlib.Path(arguments[0]), pathlib.Path(arguments[1])
     gaps = [tuple(float(number) for number in gap.split(":")) for gap in arguments[2:]]
     if copy.exists() or not (recording / "mav0" / "cam0" / "data.csv").exists():
-        print(f"cover_lens: {recording} is no EuRoC recording, or {copy} is there already", file=sys.stderr)
+        print(f"cover_lens: {recording} is no EuRoC recording, or {copy} exists already", file=sys.stderr)
         return 1
     link_all(recording, copy)
     (copy / "mav0").unlink()
     link_all(recording / "mav0", copy / "mav0")
     for camera in ("cam0", "cam1"):
         if (recording / "mav0" / camera).exists():
-            print(f"{camera}: {cover(recording / 'mav0' / camera, copy / 'mav0' / camera, gaps)} images are black")
+            print(f"{camera}: {cover(recording / 'mav0' / camera, copy / 'mav0' / camera, gaps)} images covered")
     return 0
 
 

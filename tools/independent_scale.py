@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Estimates the scale of a KITTI sequence independently of byre, and compares it with byre's and the truth's.
+"""Estimates the scale of a KITTI sequence independently of byre; compares it with byre and the ground truth.
 
 Per frame: corners are tracked from left to right and forward in time by pyramidal Lucas-Kanade with a backward check;
 depths follow from the given baseline, motion from points and pixels (solvePnPRansac, refined). Step lengths are summed
-over each range of frames and compared with the truth's. If both estimates deviate equally from the truth, the given
-baseline or the truth is wrong. Needs python3-opencv and python3-numpy.
+over each range of frames and compared with those of the truth. If both estimates deviate equally from the truth, the
+given baseline or the truth is wrong. Needs python3-opencv and python3-numpy.
 
 Usage: independent_scale.py SEQUENCE POSES TRAJECTORY FIRST:LAST...
        independent_scale.py kitti/sequences/00 kitti/poses/00.txt out.txt 17:38 17:27 27:38 46:59
-       TRAJECTORY is the output of `byre map SEQUENCE --trajectory`
+       TRAJECTORY: file of `byre map SEQUENCE --trajectory`
 """
 
 import argparse
@@ -74,7 +74,7 @@ def main():
     truth = np.loadtxt(arguments.poses)[:, [3, 7, 11]]
     estimate = np.loadtxt(arguments.trajectory)[:, 1:4]
     cv2.setRNGSeed(1)
-    print("frames   independent   byre     of the truth's length")
+    print("frames   independent   byre     (length error)")
     for stretch in arguments.stretches:
         first, last = (int(frame) for frame in stretch.split(":"))
         true_m = np.linalg.norm(np.diff(truth[first : last + 1], axis=0), axis=1).sum()

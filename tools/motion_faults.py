@@ -5,17 +5,17 @@ Usage: motion_faults.py RECORDING --map MAP --map-truth RECORDING [options]     
        motion_faults.py RECORDING --task map [options]                           mapping (byre map)
 
 RECORDING is an EuRoC folder with ground truth, wheel.txt and mav0/imu0/data.csv, as written by
-byre simulate cowshed --motion. Each fault is made in a copy whose images are links. Columns:
+byre simulate cowshed --motion. Each fault is applied to a copy whose images are links. Columns:
 
   frames     frames of the run
   trusted    frames with the verdict "trusted" (missions)
   wrong      trusted frames more than 0.2 m off (missions); limit 0
   worst m    largest error of a trusted frame, and of any frame (missions)
   jump mm    largest error of an odometry step from frame to frame
-  of bound   jump as a multiple of the odometry's own 95 % bound; limit 1
+  of bound   jump as a multiple of the 95 % bound of the odometry; limit 1
   RMSE mm    root mean square error of frames with a pose (missions), or ATE of the final trajectory (mapping)
   ratio      RMSE relative to a run without wheels and IMU; over frames with a pose in both runs (missions)
-  warnings   warnings of the run about wheels, gyroscope or accelerometer
+  warnings   number of warnings about wheels, gyroscope or accelerometer
 
 Exit code: 0 within the limits (wrong, of bound), 1 beyond them, 2 a run failed. Needs numpy.
 """
@@ -312,9 +312,9 @@ def main() -> int:
     parser.add_argument("--map-truth", type=pathlib.Path)
     parser.add_argument("--camera")
     parser.add_argument("--frames")
-    parser.add_argument("--dark", help="FROM:TO in seconds, where the lens of the recording is covered (cover_lens.py)")
+    parser.add_argument("--dark", help="FROM:TO, time in which the lens is covered (cover_lens.py), seconds")
     parser.add_argument("--resets", type=float, nargs="*", default=[0.5, 1, 2, 3, 5, 7, 9, 12, 15, 18])
-    parser.add_argument("--only", help="faults whose names match this regular expression")
+    parser.add_argument("--only", help="run only faults whose names match this regular expression")
     parser.add_argument("--byre", default="build/release/src/byre/cli/byre")
     parser.add_argument("--show-warnings", action="store_true")
     options = parser.parse_args()

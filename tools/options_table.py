@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Writes a table into a page: the options of "byre map --print-options", or with --node the settings of the node.
+"""Updates the table of a page: options of "byre map --print-options", or with --node settings of the node.
 
-Usage: options_table.py PROGRAM PAGE [--node] [--check]        PROGRAM is byre, PAGE docs/reference/options.md
-                                                               --node: "byre node --print-config",
-                                                               PAGE docs/reference/ros2_settings.md
+Usage: options_table.py PROGRAM PAGE [--node] [--check]
+  PROGRAM   byre
+  PAGE      docs/reference/options.md; with --node docs/reference/ros2_settings.md
+  --node    settings of "byre node --print-config"
+  --check   does not write the page
 
-The table is between the lines BEGIN and END (below) of the page. Exit code: 0 the page was up to date, 1 it was not and
-was updated unless --check is given, 2 the page has no such lines, or the program's output cannot be parsed.
+The table is between the lines BEGIN and END (below) of the page. Exit code: 0 the page was up to date, 1 it was
+outdated (updated without --check), 2 wrong usage, a page without these lines, or output that cannot be parsed.
 """
 import pathlib
 import re
@@ -43,13 +45,13 @@ def options_in(text: str) -> Iterator[Option]:
             name = (group if found["indent"] else "") + found["word"]
             yield Option(name, "".join(unit), accepted, found["value"], found["meaning"])
         else:
-            raise ValueError(f"not an option: {line}")
+            raise ValueError(f"line is no option: {line}")
 
 
 def table_of(text: str) -> str:
     options = list(options_in(text))
     if not options:
-        raise ValueError("no options")
+        raise ValueError("the program prints no options")
     has_units = any(option.unit for option in options)
     head = ["option", *(["unit"] if has_units else []), "default", "accepted", "meaning"]
     rows = [option.row(has_units) for option in options]
@@ -81,7 +83,7 @@ def main(arguments: list[str]) -> int:
         return 0
     if "--check" in arguments:
         node = " --node" if "--node" in arguments else ""
-        print(f"{path}: the table is not up to date: run tools/options_table.py {program} {path}{node}")
+        print(f"{path}: the table is outdated: run tools/options_table.py {program} {path}{node}")
     else:
         path.write_text(wanted, encoding="utf-8")
     return 1

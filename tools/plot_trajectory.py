@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Plots an estimated trajectory over the truth, seen from above, and its error over time.
+"""Plots an estimated trajectory and the ground truth from above, and the position error over time.
 
     tools/plot_trajectory.py --estimate out.txt --truth data.csv --time-offset -0.0075 -o plot.svg
 
-Both files are in TUM format, the truth alternatively as EuRoC's state_groundtruth_estimate0/data.csv. Needs
-python3-numpy and python3-matplotlib. Errors are after rigid alignment, like those of `byre evaluate`.
+Both files are in TUM format; the truth may be EuRoC's state_groundtruth_estimate0/data.csv. Errors are after rigid
+alignment, as those of `byre evaluate`. Needs python3-numpy and python3-matplotlib.
 """
 import argparse
 import sys
@@ -38,7 +38,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--estimate", required=True)
     parser.add_argument("--truth", required=True)
-    parser.add_argument("--time-offset", type=float, default=0.0, help="seconds, added to the truth's time stamps")
+    parser.add_argument("--time-offset", type=float, default=0.0, help="added to the time stamps of the truth, seconds")
     parser.add_argument("--title", default="")
     parser.add_argument("-o", "--output", required=True, help="SVG file")
     arguments = parser.parse_args()
@@ -48,7 +48,7 @@ def main():
     true_times = true_times + arguments.time_offset
     inside = (times >= true_times[0]) & (times <= true_times[-1])
     if inside.sum() < 3:
-        sys.exit("estimate and truth have fewer than three times in common")
+        sys.exit("estimate and truth have fewer than three common times")
     times, estimate = times[inside], estimate[inside]
     truth = np.stack([np.interp(times, true_times, truth[:, axis]) for axis in range(3)], axis=1)
     rotation, translation = align(estimate, truth)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints the size of the product: lines of C++ without tests, and types per 1,000 of these lines.
 
-Usage: product_size.py [FOLDER]      the project's folder, default: the current one
+Usage: product_size.py [FOLDER]      FOLDER: project, default: the current folder
 
 Counts .h and .cc files in include, src and python, except tests (*_test.cc) and their helpers (*_scene.h,
 *_matchers.h). A type is a class, struct or enum with a body.

@@ -1,4 +1,4 @@
-"""A hook of mkdocs (mkdocs.yml): a link to a file outside of docs/ becomes its text, as the site has no such file."""
+"""Hook of mkdocs (mkdocs.yml): replaces links to files outside of docs/ by their text; the site lacks these files."""
 import pathlib
 import re
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Copies an EuRoC recording with dirt on its lenses: spots that dim and blur the image.
 
-Usage: soil_lens.py RECORDING COPY SHARE [SEED]     share of the image behind spots, such as 0.3
+Usage: soil_lens.py RECORDING COPY SHARE [SEED]     SHARE: share of the image behind spots, 0 to 0.9, such as 0.3
 
 The spots are fixed during the recording, and differ between the cameras. All other files are links to the recording,
-which stays unchanged. Needs python3-numpy and python3-pil. Exit code: 0 done, 1 not possible.
+which stays unchanged. Needs python3-numpy and python3-pil. Exit code: 0 done, 1 wrong usage or input.
 """
 import csv
 import pathlib
@@ -59,8 +59,8 @@ def main(arguments: list[str]) -> int:
     recording, copy, share = pathlib.Path(arguments[0]), pathlib.Path(arguments[1]), float(arguments[2])
     seed = int(arguments[3]) if len(arguments) == 4 else 1
     if copy.exists() or not (recording / "mav0" / "cam0" / "data.csv").exists() or not 0.0 < share < 0.9:
-        print(f"soil_lens: {recording} is no EuRoC recording, {copy} is there already, or {share} is no such share",
-              file=sys.stderr)
+        print(f"soil_lens: {recording} is no EuRoC recording, {copy} exists already, or {share} is not between 0 and "
+              "0.9", file=sys.stderr)
         return 1
     link_all(recording, copy)
     (copy / "mav0").unlink()
@@ -68,7 +68,7 @@ def main(arguments: list[str]) -> int:
     for number, camera in enumerate(("cam0", "cam1")):
         if (recording / "mav0" / camera).exists():
             images = soil(recording / "mav0" / camera, copy / "mav0" / camera, share, 2 * seed + number)
-            print(f"{camera}: {images} images have blots")
+            print(f"{camera}: {images} images soiled")
     return 0
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Starts a mission at many times with pose hints that are wrong by some metres, and reports the results.
+"""Starts a mission at many times with pose hints that are wrong by some metres; reports the poses found.
 
     PYTHONPATH=build/release/python tools/wrong_hints.py MISSION MAP [--shifts -10 -5 5 10] [--frames 220] [--every 120]
 
@@ -47,7 +47,7 @@ def fly(slam: byre.Slam, recording: byre.Recording, frames: range, poses: dict[i
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Flies a mission with hints that are wrong.")
+    parser = argparse.ArgumentParser(description="Starts a mission at many times with wrong pose hints.")
     parser.add_argument("mission")
     parser.add_argument("map")
     parser.add_argument("--shifts", type=float, nargs="+", default=[-10.0, -5.0, 5.0, 10.0], metavar="METRES")
