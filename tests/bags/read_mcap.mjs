@@ -1,5 +1,5 @@
-// Reads an MCAP file with the reader of those who made the format, by its index and from front to back, and decodes
-// every message by the definition in the file.
+// Reads an MCAP file with the reference reader of the format, by index and sequentially. Decodes all messages by the
+// definitions in the file.
 
 import {McapIndexedReader, McapStreamReader} from "@mcap/core";
 import zstd from "@foxglove/wasm-zstd";
@@ -10,7 +10,7 @@ import {readFileSync} from "node:fs";
 await zstd.isLoaded;
 const decompressHandlers = {zstd: (packed, size) => zstd.decompress(packed, Number(size))};
 
-// Messages counted from front to back; checksums are compared.
+// Counts messages sequentially and verifies checksums.
 function streamed(bytes) {
   const reader = new McapStreamReader({decompressHandlers, validateCrcs: true});
   reader.append(bytes);
@@ -22,7 +22,7 @@ function streamed(bytes) {
   return {profile, messages, isDone: reader.done()};
 }
 
-// What the file holds: by topic its type, whether its quality of service is told, and all messages decoded.
+// Contents of the file by topic: type, whether its quality of service is stated, and all messages decoded.
 export async function readMcap(file) {
   const bytes = readFileSync(file);
   const readable = {

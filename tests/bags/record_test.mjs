@@ -1,4 +1,4 @@
-// What byre records, read by others: RECORD is the file of a run with images, TRAJECTORY that run's causal poses.
+// MCAP records of byre in other readers. RECORD: file of a run with images; TRAJECTORY: causal poses of that run.
 
 import assert from "node:assert";
 import {readFileSync} from "node:fs";
@@ -10,7 +10,7 @@ const poses = readFileSync(process.env.TRAJECTORY, "utf8").trim().split("\n").fi
   .map((line) => line.split(" ").map(Number));
 const messages = (topic) => found.topics[topic].messages;
 
-test("the file is whole, indexed and of the profile ros2", () => {
+test("the file is complete, indexed and has the profile ros2", () => {
   assert.equal(found.streamed.profile, "ros2");
   assert.ok(found.streamed.isDone && found.isAscending);
   assert.equal(found.streamed.messages, found.counted);
@@ -19,7 +19,7 @@ test("the file is whole, indexed and of the profile ros2", () => {
   assert.ok(Object.values(found.topics).every((topic) => topic.hasQos));
 });
 
-test("topics have the types that others expect", () => {
+test("topics have the standard message types", () => {
   const types = Object.fromEntries(Object.entries(found.topics).map(([name, topic]) => [name, topic.type]));
   assert.equal(types["/tf"], "tf2_msgs/msg/TFMessage");
   assert.equal(types["/odometry"], "nav_msgs/msg/Odometry");
@@ -30,7 +30,7 @@ test("topics have the types that others expect", () => {
   assert.equal(types["/left/camera_info"], "sensor_msgs/msg/CameraInfo");
 });
 
-test("poses are those of the trajectory", () => {
+test("poses equal those of the trajectory", () => {
   const byTime = new Map(poses.map((pose) => [pose[0].toFixed(4), pose]));
   assert.ok(messages("/pose").length > 0.8 * poses.length);
   for (const {header, pose} of messages("/pose")) {
@@ -40,7 +40,7 @@ test("poses are those of the trajectory", () => {
     assert.equal(header.frame_id, "map");
     assert.equal(pose.covariance.length, 36);
   }
-  const {covariance} = messages("/pose").at(-1).pose; // the first pose is the origin, and without error
+  const {covariance} = messages("/pose").at(-1).pose; // the first pose is the origin, without uncertainty
   assert.ok(covariance[0] > 0 && covariance[35] > 0);
 });
 
@@ -51,7 +51,7 @@ test("transforms lead from the map to the cameras", () => {
     ["base_link left_camera", "left_camera right_camera", "map odom", "odom base_link"]);
 });
 
-test("diagnostics tell the verdict", () => {
+test("diagnostics contain the verdict", () => {
   for (const {status: [{level, message, values}]} of messages("/diagnostics")) {
     const told = Object.fromEntries(values.map(({key, value}) => [key, value]));
     assert.equal(told.verdict, ["trusted", "degraded", "untrusted"][level]);
@@ -60,7 +60,7 @@ test("diagnostics tell the verdict", () => {
   assert.ok(messages("/diagnostics").at(-1).status[0].level < 2);
 });
 
-test("points and images have the sizes that they state", () => {
+test("sizes of points and images match their headers", () => {
   const cloud = messages("/map_points").at(-1);
   assert.ok(cloud.width > 100);
   assert.equal(cloud.data.length, cloud.width * cloud.point_step);

@@ -1,4 +1,4 @@
-// A run that is watched: BYRE is the program, the folder "room" a recording.
+// Foxglove clients of a run. BYRE: path of the program; the folder "room" is a recording.
 
 import assert from "node:assert";
 import {spawn} from "node:child_process";
@@ -41,7 +41,7 @@ before(async () => {
   url = /viewer: (http\S+)/.exec(said)[1].replace("http", "ws");
 
   watcher = await Watcher.connect(url, () => true);
-  const slow = new WebSocket(url, ["foxglove.sdk.v1"]);  // asks for everything, and never reads
+  const slow = new WebSocket(url, ["foxglove.sdk.v1"]);  // subscribes to all topics, never reads
   slow.on("error", () => {});
   slow.on("open", () => {
     const subscriptions = [...Array(13).keys()].map((id) => ({id, channelId: id}));
@@ -54,7 +54,7 @@ before(async () => {
   const hasMap = (each) => each.messages.get("/map_points").at(-1)?.time >= last;
   await eventually(() => hasMap(watcher), () => "the final map");
   late = await Watcher.connect(url, (topic) => topic.includes("map") || topic.startsWith("/tf"));
-  await eventually(() => hasMap(late) && late.messages.get("/tf_static").length > 0, () => "what is kept");
+  await eventually(() => hasMap(late) && late.messages.get("/tf_static").length > 0, () => "the latched messages");
 });
 
 after(() => byre.kill("SIGKILL"));
@@ -74,7 +74,7 @@ test("messages and schemas equal the record byte by byte", async () => {
   for (const [topic, received] of watcher.messages) {
     assert.equal(watcher.channels.get(topic).schema, schemas.get(topic));
     assert.equal(watcher.channels.get(topic).encoding, "cdr");
-    const isPaced = topic === "/path" || topic === "/map_points";  // as often as there is time
+    const isPaced = topic === "/path" || topic === "/map_points";  // sent at a limited rate
     for (const {time, data} of isPaced ? received.slice(-1) : received) {
       const expected = messages.get(`${topic} ${time}`);
       assert.ok(expected?.some((bytes) => bytes.equals(data)), `${topic} at ${time}`);
@@ -100,7 +100,7 @@ test("messages of each topic decode to the expected content", () => {
 });
 
 test("times equal those of the frames", async () => {
-  const {messages} = await recorded(); // of every frame: times come before anything is subscribed
+  const {messages} = await recorded(); // all frames: times are sent without subscription
   assert.ok(watcher.times.length > 5);
   for (const time of watcher.times) assert.ok(messages.has(`/diagnostics ${time}`), String(time));
 });

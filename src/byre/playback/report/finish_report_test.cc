@@ -34,10 +34,11 @@ TEST(FinishText, ContainsChangesAndFaults) {
 TEST(FinishText, ReportsNoLoopsAndInterruption) {
   FinishResult finishing;
   finishing.cut_short = true;
-  finishing.faults = {"point 7 is seen by nobody", "point 8 is seen by nobody"};
+  finishing.faults = {"point online 7 is not observed by any keyframe",
+                      "point online 8 is not observed by any keyframe"};
   const std::string text = to_text(finishing);
   EXPECT_THAT(text, HasSubstr("last loops   none\n"));
-  EXPECT_THAT(text, HasSubstr("faults       2; the first: point 7 is seen by nobody\n"));
+  EXPECT_THAT(text, HasSubstr("faults       2; the first: point online 7 is not observed by any keyframe\n"));
   EXPECT_THAT(text, HasSubstr("interrupted; continue with \"byre refine\"\n"));
 }
 
