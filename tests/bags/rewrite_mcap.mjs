@@ -1,5 +1,5 @@
-// Writes the messages of an MCAP file anew with the writer of those who made the format, beside an attachment and
-// metadata that are nothing to byre.
+// Rewrites the messages of an MCAP file with the reference writer of the format, and adds an attachment and metadata,
+// which byre ignores.
 // Usage: rewrite_mcap.mjs FROM TO
 
 import {McapIndexedReader, McapWriter} from "@mcap/core";

@@ -1,4 +1,4 @@
-// Watches byre by the client of those who made the protocol.
+// Client of byre, based on the reference client of Foxglove's protocol.
 
 import protocol from "@foxglove/ws-protocol";
 import {parse} from "@foxglove/rosmsg";
@@ -7,17 +7,17 @@ import {WebSocket} from "ws";
 
 const kPatience = 120_000; // milliseconds
 
-/** Waits until it is so; what: gives what was waited for, for the error. */
+/** Polls until isSo() holds. Throws after two minutes; what: description of the condition, for the error. */
 export async function eventually(isSo, what) {
   const end = Date.now() + kPatience;
   while (Date.now() < end) {
     if (isSo()) return;
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
-  throw new Error(`waited in vain for ${what()}`);
+  throw new Error(`timeout: ${what()}`);
 }
 
-/** A client that keeps all that it is sent. */
+/** Client that stores everything it receives. */
 export class Watcher {
   channels = new Map();   // by topic
   messages = new Map();   // by topic: {time, data}
@@ -31,7 +31,7 @@ export class Watcher {
     const socket = new WebSocket(url, [protocol.FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
     const client = new protocol.FoxgloveClient({ws: socket});
     watcher.client = client;
-    const topics = new Map(); // by the id of the subscription
+    const topics = new Map(); // by subscription id
     client.on("error", (error) => watcher.problems.push(String(error)));
     client.on("serverInfo", (info) => (watcher.info = info));
     client.on("status", (status) => watcher.statuses.push(status));
@@ -51,7 +51,7 @@ export class Watcher {
     return watcher;
   }
 
-  /** The messages of a topic, by the schema that was advertised. */
+  /** Messages of a topic, decoded by the advertised schema. */
   decoded(topic) {
     const {schema} = this.channels.get(topic);
     const reader = new MessageReader(parse(schema, {ros2: true}));
