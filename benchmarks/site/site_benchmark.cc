@@ -12,8 +12,8 @@
 #include "byre/input_error.h"
 #include "byre/recording.h"
 #include "byre/slam/places/localisation.h"
-#include "byre/slam/system/engine.h"
 #include "byre/slam/system/resources.h"
+#include "byre/slam/system/slam_impl.h"
 #include "byre/slam/system/stored_map.h"
 
 #include <charconv>
@@ -185,22 +185,20 @@ void measure_places(const OfflineMap& offline, Recording& recording, Use& use) {
 // Runs the recording as a mission.
 void measure_frames(const Inputs& inputs, const std::shared_ptr<const OfflineMap>& offline, Recording& recording,
                     Use& use) {
-  EngineOptions options;
+  MethodOptions options;
   options.extract.threads = 1;
-  options.vocabulary = inputs.vocabulary;
-  options.offline = offline;
-  Engine engine(recording.calibration(), options);
+  SlamImpl slam(recording.calibration(), options, {.vocabulary = inputs.vocabulary, .offline = offline});
   std::vector<double> wall, cpu;
   for (int i = 0; i < recording.size(); ++i) {
     const std::optional<ImageFrame> images = recording.read(i);
     if (!images) continue;
     const ThreadStopwatch watch;
-    const Engine::Processed processed = engine.process(*images);
+    const FrameReport report = slam.process(*images);
     cpu.push_back(kMilliseconds * watch.seconds());
-    wall.push_back(kMilliseconds * processed.seconds.total);
-    if (processed.report.map_from_body) ++use.with_pose;
+    wall.push_back(kMilliseconds * slam.seconds().total);
+    if (report.map_from_body) ++use.with_pose;
   }
-  engine.finish();
+  slam.finish({[] { return true; }, {}});
   use.frame_ms = distribution_of(wall);
   use.frame_cpu_ms = distribution_of(cpu);
 }

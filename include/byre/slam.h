@@ -24,6 +24,8 @@
 
 namespace byre {
 
+class SlamImpl;
+
 // Threads of mapping.
 //   live        worker threads; results are applied when ready: for robots
 //   repeatable  worker threads; results are applied after a fixed number of frames: equal images yield equal poses
@@ -144,10 +146,13 @@ class Slam {
   int frames() const;                  // all frames, including dropped ones
   int frames(InputFault fault) const;  // frames with this fault
 
+  // Internals for the programs of byre; their type is not public.
+  SlamImpl& impl() { return *impl_; }
+  const SlamImpl& impl() const { return *impl_; }
+
  private:
-  struct Parts;
-  explicit Slam(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
+  explicit Slam(std::unique_ptr<SlamImpl> impl);
+  std::unique_ptr<SlamImpl> impl_;
 };
 
 }  // namespace byre

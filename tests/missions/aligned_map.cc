@@ -10,7 +10,7 @@
 #include "byre/map/keyframe_path.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 #include "byre/slam/window/map_from_poses.h"
 
 #include <algorithm>
@@ -80,16 +80,15 @@ struct BuiltMap {
 
 BuiltMap map_by_session(Recording& recording, const Imperfection& imperfection) {
   MapFrames frames(recording, imperfection);
-  EngineOptions options;
+  MethodOptions options;
   options.pace = Pace::same_thread;
-  options.vocabulary = mission_vocabulary();
-  Engine engine(nominal_calibration(recording.calibration(), imperfection), options);
+  SlamImpl slam(nominal_calibration(recording.calibration(), imperfection), options,
+                {.vocabulary = mission_vocabulary()});
   for (int i = 0; i < recording.size(); ++i) {
-    if (const auto frame = frames.read(i)) engine.process(*frame);
+    if (const auto frame = frames.read(i)) slam.process(*frame);
   }
-  engine.finish();
-  engine.finish_map({[] { return false; }, [](const char*) {}});
-  return {engine.online(), engine.calibration()};
+  slam.finish({[] { return false; }, {}});
+  return {slam.online(), slam.calibration()};
 }
 
 BuiltMap map_by_true_poses(Recording& recording, const Trajectory& truth, const Imperfection& imperfection) {

@@ -1,7 +1,7 @@
 #include "mission_case.h"
 
 #include "byre/features/image_threads.h"
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 
 #include <filesystem>
 #include <map>
@@ -34,18 +34,17 @@ std::vector<MissionFrame> run(const MissionPlan& plan, const MissionCase& missio
   const Trajectory truth = truth_of(mission_case.recording);
   limit_image_threads(1);
   const Degradation cameras = imperfect_cameras(imperfection);
-  EngineOptions options;
+  MethodOptions options;
   options.pace = Pace::same_thread;
-  options.vocabulary = mission_vocabulary();
-  options.offline = std::move(map);
-  Engine engine(nominal_calibration(recording.calibration(), imperfection), options);
+  SlamImpl slam(nominal_calibration(recording.calibration(), imperfection), options,
+                {.vocabulary = mission_vocabulary(), .offline = std::move(map)});
   std::vector<MissionFrame> frames;
   for (const MissionStep& step : plan.steps) {
     const std::optional<ImageFrame> recorded = read_once(folder, recording, step.frame);
     if (!recorded) continue;
     ImageFrame images = cameras(step.disturb ? step.disturb(*recorded) : *recorded, step.frame);
     images.time = step.time;
-    frames.push_back({engine.process(images).report, pose_at(truth, recorded->time, std::chrono::milliseconds(60))});
+    frames.push_back({slam.process(images), pose_at(truth, recorded->time, std::chrono::milliseconds(60))});
   }
   return frames;
 }

@@ -6,7 +6,7 @@
 #include "byre/features/image_threads.h"
 #include "byre/map/stored_calibration.h"
 #include "byre/slam/places/place_view.h"
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 #include "byre/slam/tracking/body_pose.h"
 
 #include <algorithm>
@@ -54,28 +54,26 @@ void feed(const std::vector<Sample>& samples, std::size_t& next, Timestamp begin
 }
 
 std::vector<MissionFrame> run_from(const Visit& visit, std::size_t first) {
-  EngineOptions options;
+  MethodOptions options;
   options.pace = Pace::paced;
-  options.vocabulary = mission_vocabulary();
-  options.offline = visit.map;
-  Engine engine(visit.calibration, options);
+  SlamImpl slam(visit.calibration, options, {.vocabulary = mission_vocabulary(), .offline = visit.map});
   const std::vector<Timestamp>& times = visit.recording.times();
   const MotionSamples& motion = visit.recording.motion();
-  if (const auto& axes = motion.left_from_gyroscope) engine.set_gyro_extrinsics(*axes);
+  if (const auto& axes = motion.left_from_gyroscope) slam.set_gyro_extrinsics(*axes);
   const Timestamp begin = times[first];
   std::vector<MissionFrame> frames;
   std::size_t wheel = 0, velocity = 0, rate = 0, acceleration = 0;
   for (std::size_t i = first; i < times.size() && to_seconds(times[i] - begin) < visit.plan.length_s; ++i) {
     if (!visit.frames[i]) continue;
-    feed(motion.wheels, wheel, begin, times[i], [&](const auto& sample) { engine.add_wheel_odometry(sample); });
-    feed(motion.velocities, velocity, begin, times[i], [&](const auto& sample) { engine.add_wheel_odometry(sample); });
-    feed(motion.rates, rate, begin, times[i], [&](const auto& sample) { engine.add_gyro(sample); });
-    feed(motion.accelerations, acceleration, begin, times[i], [&](const auto& sample) { engine.add_accel(sample); });
+    feed(motion.wheels, wheel, begin, times[i], [&](const auto& sample) { slam.add_wheel_odometry(sample); });
+    feed(motion.velocities, velocity, begin, times[i], [&](const auto& sample) { slam.add_wheel_odometry(sample); });
+    feed(motion.rates, rate, begin, times[i], [&](const auto& sample) { slam.add_gyro(sample); });
+    feed(motion.accelerations, acceleration, begin, times[i], [&](const auto& sample) { slam.add_accel(sample); });
     const double seconds = to_seconds(times[i] - begin);
     const auto& cover = visit.plan.cover_s;
     const bool is_covered = cover && seconds >= cover->first && seconds < cover->second;
     const Frame frame = is_covered ? covered(*visit.frames[i]) : *visit.frames[i];
-    frames.push_back({engine.process(frame), pose_at(visit.truth, frame.time, std::chrono::milliseconds(60))});
+    frames.push_back({slam.process(frame), pose_at(visit.truth, frame.time, std::chrono::milliseconds(60))});
   }
   return frames;
 }

@@ -5,6 +5,7 @@
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/scaled_recording.h"
 #include "byre/playback/source_recording.h"
+#include "byre/slam/system/option_table.h"
 #include "byre/slam/system/resources.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_file.h"
@@ -105,11 +106,11 @@ struct TimedRun {
   CostMeasures cost;
 };
 
-TimedRun run_and_time(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks) {
+TimedRun play_and_time(Slam slam, Recording& recording, const MapRunHooks& hooks) {
   const bool is_reset = reset_peak_memory();
   const double cpu_before = resource_usage().cpu_seconds;
   TimedRun timed;
-  timed.run = run_map(recording, options, hooks);
+  timed.run = play(slam, recording, hooks);
   if (timed.run.map_damage) throw InputError(*timed.run.map_damage);
   timed.cost.cpu_seconds = resource_usage().cpu_seconds - cpu_before;
   if (is_reset) timed.cost.peak_memory_mb = peak_memory_mb();
@@ -118,9 +119,8 @@ TimedRun run_and_time(Recording& recording, const EngineOptions& options, const 
 
 class BenchmarkRunner {
  public:
-  BenchmarkRunner(const BenchmarkProtocol& protocol, const BenchmarkOptions& options, const Vocabulary& vocabulary,
-                  const BenchmarkHooks& hooks)
-      : protocol_(protocol), options_(options), vocabulary_(vocabulary), hooks_(hooks) {}
+  BenchmarkRunner(const BenchmarkProtocol& protocol, const BenchmarkOptions& options, const BenchmarkHooks& hooks)
+      : protocol_(protocol), options_(options), hooks_(hooks) {}
 
   BenchmarkResult run() {
     std::vector<BenchmarkCase> cases = chosen_cases(protocol_, options_.only);
@@ -175,10 +175,12 @@ class BenchmarkRunner {
     ArmResult result;
     result.arm = arm;
     for (int i = 0; i < protocol_.runs; ++i) {
-      EngineOptions run_options = options_for(arm, i);
-      if (map != nullptr) run_options.offline = load_offline_map(map->file, vocabulary_);
+      const SlamOptions slam = options_for(arm, i, source);
+      const Calibration& calibration = recording.calibration();
       hooks_.before_run(what + fmt::format(", run {} of {}", i + 1, protocol_.runs), recording.size());
-      const TimedRun timed = run_and_time(recording, run_options, run_hooks());
+      const TimedRun timed =
+          play_and_time(map != nullptr ? Slam::on_map(calibration, map->file, slam) : Slam::mapping(calibration, slam),
+                        recording, run_hooks());
       if (hooks_.should_stop()) return;
       write_trajectories(timed.run, file_name_of(benchmark_case.name) + "." + std::string(name_of(arm)), i);
       if (i == 0) {
@@ -214,7 +216,8 @@ class BenchmarkRunner {
     const Source& source = sources_.at(name);
     const auto recording = source.open_frames(false).recording;
     hooks_.before_run("map of " + name, recording->size());
-    MapRun run = run_map(*recording, options_for(Arm::no_map, 0), run_hooks());
+    Slam slam = Slam::mapping(recording->calibration(), options_for(Arm::no_map, 0, source));
+    MapRun run = play(slam, *recording, run_hooks());
     if (hooks_.should_stop()) return;
     if (run.final.empty()) {
       failed_maps_.insert(name);
@@ -222,24 +225,24 @@ class BenchmarkRunner {
     }
     BuiltMap made{name,
                   options_.output / (file_name_of(name) + ".byre"),
-                  run.map.keyframe_count(),
-                  run.map.point_count(),
+                  run.stored.map.keyframe_count(),
+                  run.stored.map.point_count(),
                   align_to_truth(run.final, Scale::fixed, source.truth),
                   run.wall_seconds};
-    StoredMap stored;
-    stored.recordings.push_back(describe_source(source.folder, *recording, run.calibration));
-    stored.map = std::move(run.map);
-    save_for_missions(std::move(stored), vocabulary_, "", made.file);
+    save_for_missions(std::move(run.stored), *slam.impl().inputs().vocabulary, "", made.file);
     write_trajectories(run, file_name_of(name) + ".map", 0);
     result_.maps.push_back(std::move(made));
   }
 
-  EngineOptions options_for(Arm arm, int run) const {
-    EngineOptions run_options = options_.engine;
-    run_options.vocabulary = vocabulary_;
-    run_options.session.map_online = arm != Arm::localise_only;
-    run_options.session.relocalise.seed = protocol_.seed_of_run(run);
-    return run_options;
+  SlamOptions options_for(Arm arm, int run, const Source& source) const {
+    MethodOptions method = options_.method;
+    method.session.map_online = arm != Arm::localise_only;
+    method.session.relocalise.seed = protocol_.seed_of_run(run);
+    SlamOptions slam = slam_options(method);
+    slam.recording = source_name(source.folder);
+    slam.vocabulary = options_.vocabulary;
+    slam.baseline = source.open.baseline;
+    return slam;
   }
 
   MapRunHooks run_hooks() const {
@@ -260,7 +263,6 @@ class BenchmarkRunner {
   // Constant after construction; borrowed.
   const BenchmarkProtocol& protocol_;
   const BenchmarkOptions& options_;
-  const Vocabulary& vocabulary_;
   const BenchmarkHooks& hooks_;
 
   Sources sources_;
@@ -277,8 +279,8 @@ std::vector<RunMeasures> ArmResult::measures() const {
 }
 
 BenchmarkResult run_benchmark(const BenchmarkProtocol& protocol, const BenchmarkOptions& options,
-                              const Vocabulary& vocabulary, const BenchmarkHooks& hooks) {
-  return BenchmarkRunner(protocol, options, vocabulary, hooks).run();
+                              const BenchmarkHooks& hooks) {
+  return BenchmarkRunner(protocol, options, hooks).run();
 }
 
 std::string file_name_of(const std::string& name) {

@@ -15,10 +15,11 @@
 namespace byre {
 
 struct BenchmarkOptions {
-  std::filesystem::path data;     // folder of the recordings
-  std::filesystem::path output;   // folder for maps and trajectories
-  std::vector<std::string> only;  // names of cases; empty: all
-  EngineOptions engine;           // options of every run except maps and seeds
+  std::filesystem::path data;                       // folder of the recordings
+  std::filesystem::path output;                     // folder for maps and trajectories
+  std::vector<std::string> only;                    // names of cases; empty: all
+  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
+  MethodOptions method;                             // options of every run except seeds
 };
 
 // An offline map, built once for all cases on it.
@@ -78,7 +79,7 @@ struct BenchmarkHooks {
 // recording or map. Throws InputError before the first run if a requested case does not exist, no recording is present,
 // or a recording is broken or has no right camera or truth.
 BenchmarkResult run_benchmark(const BenchmarkProtocol& protocol, const BenchmarkOptions& options,
-                              const Vocabulary& vocabulary, const BenchmarkHooks& hooks);
+                              const BenchmarkHooks& hooks);
 
 // A name made safe for file names: "mh_02*" becomes "mh_02-star".
 std::string file_name_of(const std::string& name);

@@ -4,8 +4,8 @@
 #include "byre/benchmark/event_counter.h"
 #include "byre/benchmark/peak_memory.h"
 #include "byre/playback/scaled_recording.h"
+#include "byre/slam/system/option_table.h"
 #include "byre/slam/system/resources.h"
-#include "byre/slam/system/stored_map.h"
 
 #include <array>
 
@@ -48,9 +48,12 @@ SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
   const EventCounter instructions(EventCounter::Event::instructions);
   const Stopwatch watch;
 
-  EngineOptions engine = what.engine;
   const ScaledRecording opened = open_scaled(what.recording, what.range, what.open, what.map.has_value());
-  if (what.map) engine.offline = load_offline_map(*what.map, *engine.vocabulary);
+  SlamOptions options = slam_options(what.method);
+  options.vocabulary = what.vocabulary;
+  options.baseline = what.open.baseline;
+  const Calibration& calibration = opened.recording->calibration();
+  Slam slam = what.map ? Slam::on_map(calibration, *what.map, options) : Slam::mapping(calibration, options);
   std::optional<double> first_pose_seconds;
   MapRunHooks watched = hooks;
   watched.after_frame = [&](int done, const MappedFrame& frame) {
@@ -58,7 +61,7 @@ SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
     if (has_pose && !first_pose_seconds) first_pose_seconds = watch.seconds();
     hooks.after_frame(done, frame);
   };
-  const MapRun run = run_map(*opened.recording, engine, watched);
+  const MapRun run = play(slam, *opened.recording, watched);
   if (run.map_damage) throw InputError(*run.map_damage);
 
   SpeedMeasures measures = measures_of(run);

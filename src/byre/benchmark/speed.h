@@ -25,8 +25,9 @@ struct SpeedCase {
   std::filesystem::path recording;
   FrameRange range;
   OpenOptions open;
-  std::optional<std::filesystem::path> map;  // offline map of a mission; empty: plain SLAM
-  EngineOptions engine;                      // with a vocabulary and without a map
+  std::optional<std::filesystem::path> map;         // offline map of a mission; empty: plain SLAM
+  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
+  MethodOptions method;
   int cores = 0;
 };
 

@@ -72,7 +72,7 @@ std::string cost_table(const SpeedCase& what, const std::vector<SpeedMeasures>& 
       1);
   add(
       "keyframes", [](const SpeedMeasures& run) { return run.keyframes; }, 0);
-  if (what.engine.frame_deadline_ms > 0.0) {
+  if (what.method.frame_deadline_ms > 0.0) {
     add(
         "frames late", [](const SpeedMeasures& run) { return run.late; }, 0);
     add(
@@ -125,7 +125,7 @@ std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> run
   const SpeedMeasures& median = runs[(runs.size() - 1) / 2];
   text += fmt::format("{} frames, {} with a pose; {}; pace {}; {} cores", median.frames, median.with_pose,
                       what.map ? ("on the map " + what.map->string()).c_str() : "without a map",
-                      std::string(name_of(what.engine.pace)), what.cores);
+                      std::string(name_of(what.method.pace)), what.cores);
   if (runs.size() > 1) {
     text += fmt::format(". Run with the median frame time of {} runs, with the range of all runs", runs.size());
   }
@@ -137,7 +137,7 @@ std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> run
 std::string speed_json(const SpeedCase& what, const std::vector<SpeedMeasures>& runs) {
   Json json = {{"recording", what.recording.string()},
                {"map", what.map ? Json(what.map->string()) : Json()},
-               {"pace", name_of(what.engine.pace)},
+               {"pace", name_of(what.method.pace)},
                {"cores", what.cores},
                {"runs", Json::array()}};
   for (const SpeedMeasures& run : runs) json["runs"].push_back(run_json(run));

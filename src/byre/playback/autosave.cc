@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <exception>
+#include <utility>
 
 namespace byre {
 
@@ -9,11 +10,14 @@ bool Autosave::is_saving() const {
   return saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
 }
 
-void Autosave::update(const Map& online, const SavedEstimates& estimates) {
+void Autosave::update(const Map& online, const std::function<StoredMap()>& metadata) {
   if (since_last_.seconds() < interval_s_ || is_saving()) return;
   finish();
   since_last_ = {};
-  saving_ = std::async(std::launch::async, [this, map = online, estimates] { save_(map, estimates); });
+  saving_ = std::async(std::launch::async, [this, map = online, stored = metadata()]() mutable {
+    stored.map = offline_copy(std::move(map));
+    save_(std::move(stored));
+  });
 }
 
 void Autosave::finish() {

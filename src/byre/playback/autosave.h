@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/base/stopwatch.h"
-#include "byre/slam/system/engine.h"
+#include "byre/map/map_file.h"
 
 #include <functional>
 #include <future>
@@ -14,12 +14,13 @@ namespace byre {
 // save while one is running.
 class Autosave {
  public:
-  using Save = std::function<void(const Map& online, const SavedEstimates& estimates)>;
+  using Save = std::function<void(StoredMap stored)>;
 
   Autosave(double interval_s, Save save) : interval_s_(interval_s), save_(std::move(save)) {}
 
-  void update(const Map& online, const SavedEstimates& estimates);  // after each frame
-  void finish();                                                    // waits for the thread
+  // Call it after each frame. metadata: StoredMap without keyframes and points, asked for only when saving.
+  void update(const Map& online, const std::function<StoredMap()>& metadata);
+  void finish();  // waits for the thread
 
   int saved() const { return saved_; }                                    // number of saves
   const std::vector<std::string>& failures() const { return failures_; }  // reasons of failed saves

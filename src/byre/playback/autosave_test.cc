@@ -18,41 +18,39 @@ Map map_of(int points) {
 
 TEST(Autosave, SavesTheMapAsOffered) {
   std::vector<int> saved;
-  Autosave autosave(0.0, [&saved](const Map& map, const auto&) { saved.push_back(map.point_count()); });
+  Autosave autosave(0.0, [&saved](const StoredMap& stored) { saved.push_back(stored.map.point_count()); });
   Map map = map_of(1);
-  autosave.update(map, {});
+  autosave.update(map, no_metadata);
   map.add_point({});
   autosave.finish();
-  autosave.update(map, {});
+  autosave.update(map, no_metadata);
   autosave.finish();
   EXPECT_THAT(saved, ElementsAre(1, 2));
   EXPECT_EQ(autosave.saved(), 2);
 }
 
-TEST(Autosave, SavesWheelExtrinsics) {
-  std::vector<double> saved;
-  Autosave autosave(0.0, [&saved](const Map&, const SavedEstimates& estimates) {
-    saved.push_back(estimates.extrinsics.wheels->metres_per_unit);
-  });
-  SavedEstimates estimates;
-  estimates.extrinsics.wheels.emplace().metres_per_unit = 1.01;
-  autosave.update(map_of(1), estimates);
-  estimates.extrinsics.wheels->metres_per_unit = 1.02;
+TEST(Autosave, SavesTheMetadataOfItsFrame) {
+  std::vector<std::string> saved;
+  Autosave autosave(0.0, [&saved](const StoredMap& stored) { saved.push_back(stored.notes.at("site")); });
+  StoredMap metadata;
+  metadata.notes["site"] = "barn";
+  autosave.update(map_of(1), [&metadata] { return metadata; });
+  metadata.notes["site"] = "hall";
   autosave.finish();
-  EXPECT_THAT(saved, ElementsAre(1.01));
+  EXPECT_THAT(saved, ElementsAre("barn"));
 }
 
 TEST(Autosave, WaitsForItsInterval) {
-  Autosave autosave(3600.0, [](const Map&, const auto&) { FAIL() << "an hour too early"; });
-  autosave.update(map_of(1), {});
+  Autosave autosave(3600.0, [](const StoredMap&) { FAIL() << "an hour too early"; });
+  autosave.update(map_of(1), no_metadata);
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 0);
 }
 
 TEST(Autosave, SkipsMapsOfferedWhileSaving) {
   std::promise<void> disk;
-  Autosave autosave(0.0, [done = disk.get_future().share()](const Map&, const auto&) { done.wait(); });
-  for (int i = 0; i < 3; ++i) autosave.update(map_of(1), {});
+  Autosave autosave(0.0, [done = disk.get_future().share()](const StoredMap&) { done.wait(); });
+  for (int i = 0; i < 3; ++i) autosave.update(map_of(1), no_metadata);
   disk.set_value();
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 1);
@@ -60,20 +58,20 @@ TEST(Autosave, SkipsMapsOfferedWhileSaving) {
 
 TEST(Autosave, ContinuesAfterAFailureAndReportsIt) {
   bool is_full = true;
-  Autosave autosave(0.0, [&is_full](const Map&, const auto&) {
+  Autosave autosave(0.0, [&is_full](const StoredMap&) {
     if (is_full) throw std::runtime_error("the disk is full");
   });
-  autosave.update(map_of(1), {});
+  autosave.update(map_of(1), no_metadata);
   autosave.finish();
   EXPECT_THAT(autosave.failures(), ElementsAre("the disk is full"));
   is_full = false;
-  autosave.update(map_of(1), {});
+  autosave.update(map_of(1), no_metadata);
   autosave.finish();
   EXPECT_EQ(autosave.saved(), 1);
 }
 
 TEST(Autosave, WaitsForNothingBeforeTheFirstSave) {
-  Autosave autosave(0.0, [](const Map&, const auto&) {});
+  Autosave autosave(0.0, [](const StoredMap&) {});
   autosave.finish();
   EXPECT_THAT(autosave.failures(), IsEmpty());
 }

@@ -2,7 +2,6 @@
 
 #include "byre/playback/decode_ahead.h"
 #include "byre/playback/live_clock.h"
-#include "byre/playback/map_run.h"
 
 #include <functional>
 #include <optional>
@@ -41,9 +40,5 @@ class RecordingFrames final : public FrameSource {
   LiveClock clock_;
   const bool is_live_;
 };
-
-// Same as run_map of map_run.h, for any source of frames.
-MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks,
-               std::optional<Map> before = {});
 
 }  // namespace byre

@@ -14,19 +14,18 @@ bool has_pose(const MappedFrame& frame) {
   return frame.report && frame.report->map_from_body;
 }
 
-MappedFrame process_frame(Engine& engine, const DecodedFrame& decoded) {
+MappedFrame process_frame(SlamImpl& slam, const DecodedFrame& decoded) {
   MappedFrame frame;
   frame.time = decoded.time;
   if (decoded.images) {
-    Engine::Processed processed = engine.process(*decoded.images);
+    frame.report = slam.process(*decoded.images);
     frame.has_right = decoded.images->right.has_value();
     frame.has_depth = decoded.images->depth.has_value();
-    frame.report = std::move(processed.report);
-    frame.seconds = processed.seconds;
+    frame.seconds = slam.seconds();
   }
   frame.seconds.decode = decoded.seconds;
-  frame.keyframes = engine.online().keyframe_count();
-  frame.points = engine.online().point_count();
+  frame.keyframes = slam.online().keyframe_count();
+  frame.points = slam.online().point_count();
   frame.memory_mb = resident_memory_mb();
   return frame;
 }
@@ -36,19 +35,19 @@ class MotionFeed {
  public:
   explicit MotionFeed(const MotionSamples& samples) : samples_(samples) {}
 
-  void feed(Engine& engine, Timestamp until) {
+  void feed(SlamImpl& slam, Timestamp until) {
     for (; wheel_ < samples_.wheels.size() && samples_.wheels[wheel_].time <= until; ++wheel_) {
-      engine.add_wheel_odometry(samples_.wheels[wheel_]);
+      slam.add_wheel_odometry(samples_.wheels[wheel_]);
     }
     for (; velocity_ < samples_.velocities.size() && samples_.velocities[velocity_].time <= until; ++velocity_) {
-      engine.add_wheel_odometry(samples_.velocities[velocity_]);
+      slam.add_wheel_odometry(samples_.velocities[velocity_]);
     }
     for (; rate_ < samples_.rates.size() && samples_.rates[rate_].time <= until; ++rate_) {
-      engine.add_gyro(samples_.rates[rate_]);
+      slam.add_gyro(samples_.rates[rate_]);
     }
     for (const auto& samples = samples_.accelerations; acceleration_ < samples.size(); ++acceleration_) {
       if (samples[acceleration_].time > until) break;
-      engine.add_accel(samples[acceleration_]);
+      slam.add_accel(samples[acceleration_]);
     }
   }
 
@@ -61,8 +60,8 @@ class MotionFeed {
 };
 
 // Adds jobs finished since the current frame began, except those noted before.
-void note_jobs(const Engine& engine, MapRun& run, std::size_t noted = 0) {
-  const std::vector<double>& seconds = engine.log().job_seconds;
+void note_jobs(const SlamImpl& slam, MapRun& run, std::size_t noted = 0) {
+  const std::vector<double>& seconds = slam.log().job_seconds;
   run.job_seconds.insert(run.job_seconds.end(), seconds.begin() + static_cast<std::ptrdiff_t>(noted), seconds.end());
 }
 
@@ -81,16 +80,17 @@ MotionEstimates motion_estimates(const OdometryCalibrator& prior, const Session&
   return motion;
 }
 
-void collect_results(Engine& engine, MapRun& run) {
-  const Trajectory seen = engine.session().final_trajectory();
-  run.final = engine.prior().fill_gaps(seen);
-  run.calibration = engine.calibration();
-  run.row_error = engine.row_error().pixels();
-  run.motion = motion_estimates(engine.prior(), engine.session());
-  run.motion.scale_sigma = engine.wheel_scale_sigma();
-  run.is_metric = engine.is_metric();
-  run.map = engine.take_map_to_save();
-  if (run.finishing) run.finishing->faults = find_faults(run.map);
+void collect_results(SlamImpl& slam, MapRun& run) {
+  const Trajectory seen = slam.session().final_trajectory();
+  run.final = slam.prior().fill_gaps(seen);
+  run.offline = slam.inputs().offline;
+  run.calibration = slam.calibration();
+  run.row_error = slam.row_error().pixels();
+  run.motion = motion_estimates(slam.prior(), slam.session());
+  run.motion.scale_sigma = slam.wheel_scale_sigma();
+  run.is_metric = slam.is_metric();
+  run.stored = slam.take_stored_map();
+  if (run.finishing) run.finishing->faults = find_faults(run.stored.map);
   run.motion.filled_poses = static_cast<int>(run.final.size() - seen.size());
   for (const MappedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
@@ -108,12 +108,10 @@ FinishHooks release_memory_between_steps(const MapRunHooks& hooks) {
           }};
 }
 
-MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks,
-                   std::optional<Map> before) {
+MapRun run_through(SlamImpl& slam, FrameSource& frames, const MapRunHooks& hooks) {
   const Stopwatch watch;
-  Engine engine(frames.calibration(), options, std::move(before));
   MotionFeed feed(frames.motion());
-  if (const auto& axes = frames.motion().left_from_gyroscope) engine.set_gyro_extrinsics(*axes);
+  if (const auto& axes = frames.motion().left_from_gyroscope) slam.set_gyro_extrinsics(*axes);
   MapRun run;
   bool is_begun = false;
   while (const auto frame = frames.next(hooks.should_stop)) {
@@ -121,50 +119,42 @@ MapRun run_through(FrameSource& frames, const EngineOptions& options, const MapR
     if (hooks.should_stop()) break;
     const DecodedFrame& decoded = frame->decoded;
     run.warnings.insert(run.warnings.end(), decoded.warnings.begin(), decoded.warnings.end());
-    feed.feed(engine, decoded.time);
-    run.frames.push_back(process_frame(engine, decoded));
-    note_jobs(engine, run);
+    feed.feed(slam, decoded.time);
+    run.frames.push_back(process_frame(slam, decoded));
+    note_jobs(slam, run);
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
-    if (hooks.on_frame && decoded.images) hooks.on_frame({*decoded.images, run.frames.back(), engine.session()});
-    is_begun = is_begun || (has_pose(run.frames.back()) && engine.online().keyframe_count() > 0);
-    if (is_begun && hooks.on_map_update) hooks.on_map_update(engine.online(), engine.saved_estimates());
-    if (engine.map_damage() != nullptr) break;
+    if (hooks.on_frame && decoded.images) hooks.on_frame({*decoded.images, run.frames.back(), slam.session()});
+    is_begun = is_begun || (has_pose(run.frames.back()) && slam.online().keyframe_count() > 0);
+    if (is_begun && hooks.on_map_update) hooks.on_map_update(slam);
+    if (slam.map_damage() != nullptr) break;
   }
-  const std::size_t noted_jobs = engine.log().job_seconds.size();
-  if (hooks.should_stop() || engine.map_damage() != nullptr) engine.finish_early();
-  engine.finish();
-  const FinishHooks finish_hooks = release_memory_between_steps(hooks);
-  if (is_begun && !hooks.should_stop() && engine.map_damage() == nullptr) {
-    if (options.offline) {
-      run.mission_finishing_seconds = engine.finish_mission(finish_hooks);
-    } else if (options.vocabulary) {
-      run.finishing = engine.finish_map(finish_hooks);
-    }
-  }
-  note_jobs(engine, run, noted_jobs);
-  run.motion_warnings = engine.warnings();
+  const std::size_t noted_jobs = slam.log().job_seconds.size();
+  const std::optional<FinishResult> finishing = slam.finish(release_memory_between_steps(hooks));
+  if (finishing && slam.inputs().offline) run.mission_finishing_seconds = finishing->seconds;
+  if (finishing && !slam.inputs().offline) run.finishing = finishing;
+  note_jobs(slam, run, noted_jobs);
+  run.motion_warnings = slam.warnings();
   if (!run.frames.empty()) {
     const auto clocks = clock_warnings(frames.motion(), run.frames.front().time, run.frames.back().time);
     run.motion_warnings.insert(run.motion_warnings.end(), clocks.begin(), clocks.end());
   }
-  collect_results(engine, run);
-  if (const InputError* const damage = engine.map_damage()) run.map_damage = *damage;
+  collect_results(slam, run);
+  if (const InputError* const damage = slam.map_damage()) run.map_damage = *damage;
   run.wall_seconds = watch.seconds();
   return run;
 }
 
 }  // namespace
 
-MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
-               std::optional<Map> before) {
-  RecordingFrames frames(recording, options.pace == Pace::live);
-  return run_map(frames, options, hooks, std::move(before));
-}
-
-MapRun run_map(FrameSource& frames, const EngineOptions& options, const MapRunHooks& hooks, std::optional<Map> before) {
-  MapRun run = run_through(frames, options, hooks, std::move(before));
+MapRun play(Slam& slam, FrameSource& frames, const MapRunHooks& hooks) {
+  MapRun run = run_through(slam.impl(), frames, hooks);
   release_free_memory();
   return run;
+}
+
+MapRun play(Slam& slam, Recording& recording, const MapRunHooks& hooks) {
+  RecordingFrames frames(recording, slam.impl().options().pace == Pace::live);
+  return play(slam, frames, hooks);
 }
 
 }  // namespace byre

@@ -2,7 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/recording.h"
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 
 #include <functional>
 #include <optional>
@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace byre {
+
+class FrameSource;
 
 struct MappedFrame {
   Timestamp time{};
@@ -43,15 +45,16 @@ struct MapRun {
   Trajectory causal;                              // poses as published at their frames
   Trajectory final;                               // poses after the last frame, with all corrections
   Trajectory odometry;                            // smooth odometry as published, in its own frame
-  Map map{Origin::offline};                       // saved map, without redundant keyframes
+  StoredMap stored;                               // map to save, without redundant keyframes
+  std::shared_ptr<const OfflineMap> offline;      // offline map of a mission; null otherwise
   std::optional<RefinedCalibration> calibration;  // calibration of the map; empty unless refined
   std::optional<double> row_error;        // row error of the calibration in use, pixels; empty without stereo pairs
-  std::optional<FinishResult> finishing;  // empty if skipped: stopped before, or without a vocabulary
+  std::optional<FinishResult> finishing;  // finishing of a map; empty if skipped, see SlamImpl::finish
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map
   std::vector<double> job_seconds;                  // wall time of each mapping job
   MotionEstimates motion;
   bool is_metric = true;  // whether map and final poses are in metres
-  // Damage of the offline map's file that ended the mission, see Engine::map_damage.
+  // Damage of the offline map's file that ended the mission, see SlamImpl::map_damage.
   std::optional<InputError> map_damage;
   std::vector<std::string> warnings;           // warnings of the recording
   std::vector<MotionWarning> motion_warnings;  // faults of wheels, gyroscope and accelerometer
@@ -69,15 +72,15 @@ struct RunView {
 struct MapRunHooks {
   std::function<bool()> should_stop;                                    // called before each frame and while finishing
   std::function<void(int done, const MappedFrame& frame)> after_frame;  // not part of the frame's time
-  std::function<void(const RunView& view)> on_frame;  // optional; after each readable frame, not part of its time
-  // Optional; after each frame from the first pose on.
-  std::function<void(const Map& online, const SavedEstimates& estimates)> on_map_update;
+  std::function<void(const RunView& view)> on_frame;        // optional; after each readable frame, not part of its time
+  std::function<void(const SlamImpl& slam)> on_map_update;  // optional; after each frame from the first pose on
   std::function<void(const char* step)> before_finishing_step;
 };
 
-// Maps a recording and finishes the map. Skips unreadable frames. before: map to extend, an online copy with words of
-// the vocabulary, which options must contain. Throws InputError if the calibration cannot be rectified.
-MapRun run_map(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks,
-               std::optional<Map> before = {});
+// Feeds all frames and motion samples of a source to slam, then finishes it. Skips unreadable frames. The map moves to
+// the result; slam is finished and without a map afterwards.
+MapRun play(Slam& slam, FrameSource& frames, const MapRunHooks& hooks);
+// Recordings are played as fast as possible, at live pace in real time.
+MapRun play(Slam& slam, Recording& recording, const MapRunHooks& hooks);
 
 }  // namespace byre

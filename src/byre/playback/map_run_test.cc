@@ -18,14 +18,14 @@ using testing::SizeIs;
 
 MapRun run(const RenderedFixture& rendered, Pace pace, int stop_after = 1000) {
   const auto recording = open_recording(rendered.folder(), {});
-  EngineOptions options;
-  options.vocabulary = Vocabulary::load(default_vocabulary_path());
-  options.pace = pace;
+  SlamOptions options;
+  options.settings = {{"pace", std::string(name_of(pace))}};
+  Slam slam = Slam::mapping(recording->calibration(), options);
   int frames_done = 0;
   MapRunHooks hooks;
   hooks.should_stop = [&] { return frames_done == stop_after; };
   hooks.after_frame = [&frames_done](int done, const MappedFrame&) { frames_done = done; };
-  return run_map(*recording, options, hooks);
+  return play(slam, *recording, hooks);
 }
 
 double error_m(const Trajectory& estimate, const Trajectory& truth) {
@@ -49,13 +49,13 @@ TEST(RunMap, TracksARecordingInEveryPace) {
     EXPECT_THAT(mapped.final, SizeIs(rendered.truth().size()));
     EXPECT_LT(error_m(mapped.causal, rendered.truth()), 0.1);
     EXPECT_LT(error_m(mapped.final, rendered.truth()), 0.1);
-    EXPECT_GT(mapped.map.keyframe_count(), 1);
-    EXPECT_GT(mapped.map.point_count(), 100);
+    EXPECT_GT(mapped.stored.map.keyframe_count(), 1);
+    EXPECT_GT(mapped.stored.map.point_count(), 100);
     EXPECT_FALSE(mapped.job_seconds.empty());
     ASSERT_TRUE(mapped.finishing);
     EXPECT_FALSE(mapped.finishing->cut_short);
     EXPECT_THAT(mapped.finishing->faults, SizeIs(0));
-    EXPECT_EQ(mapped.finishing->report.after.keyframes, mapped.map.keyframe_count());
+    EXPECT_EQ(mapped.finishing->report.after.keyframes, mapped.stored.map.keyframe_count());
   }
 }
 
@@ -71,7 +71,8 @@ TEST(RunMap, ReportsEachFrameWithItsPoints) {
     const std::vector<SeenPoint>& seen = view.session.seen_points();
     EXPECT_EQ(std::ranges::count_if(seen, &SeenPoint::is_inlier), view.frame.report->inliers);
   };
-  const MapRun mapped = run_map(*recording, {}, hooks);
+  Slam slam = Slam::mapping(recording->calibration());
+  const MapRun mapped = play(slam, *recording, hooks);
   EXPECT_EQ(looks, static_cast<int>(mapped.frames.size()));
 }
 
@@ -103,8 +104,8 @@ TEST(RunMap, EqualsThePosesOfSlam) {
   slam.finish();
   EXPECT_TRUE(same(causal, mapped.causal));
   EXPECT_TRUE(same(slam.trajectory(), mapped.final));
-  EXPECT_EQ(slam.keyframes(), mapped.map.keyframe_count());
-  EXPECT_EQ(slam.points(), mapped.map.point_count());
+  EXPECT_EQ(slam.keyframes(), mapped.stored.map.keyframe_count());
+  EXPECT_EQ(slam.points(), mapped.stored.map.point_count());
 }
 
 TEST(RunMap, ReportsTheFrameOfAJobOnTheSameThread) {
@@ -131,14 +132,13 @@ TEST(RunMap, StopsAfterTheCurrentFrame) {
 
 TEST(RunMap, InterruptsFinishingWhenStopped) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
-  EngineOptions options;
-  options.vocabulary = Vocabulary::load(default_vocabulary_path());
+  Slam slam = Slam::mapping(recording->calibration(), {.workers = Workers::repeatable});
   bool stopped = false;
   MapRunHooks hooks;
   hooks.should_stop = [&stopped] { return stopped; };
   hooks.after_frame = [](int, const MappedFrame&) {};
   hooks.before_finishing_step = [&stopped](const char*) { stopped = true; };
-  const MapRun mapped = run_map(*recording, options, hooks);
+  const MapRun mapped = play(slam, *recording, hooks);
   ASSERT_TRUE(mapped.finishing);
   EXPECT_TRUE(mapped.finishing->cut_short);
   EXPECT_THAT(mapped.final, SizeIs(6));
@@ -150,26 +150,13 @@ TEST(RunMap, OffersTheMapFromTheFirstPose) {
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
-  hooks.on_map_update = [&keyframes](const Map& online, const auto&) { keyframes.push_back(online.keyframe_count()); };
-  const MapRun mapped = run_map(*recording, {}, hooks);
+  hooks.on_map_update = [&keyframes](const SlamImpl& slam) { keyframes.push_back(slam.online().keyframe_count()); };
+  Slam slam =
+      Slam::mapping(recording->calibration(), {.workers = Workers::repeatable, .settings = {{"loops.close", "false"}}});
+  const MapRun mapped = play(slam, *recording, hooks);
   EXPECT_THAT(keyframes, SizeIs(6));
   EXPECT_THAT(keyframes, Each(Gt(0)));
   EXPECT_FALSE(mapped.finishing) << "no places were recognised";
-}
-
-TEST(RunMap, OffersWheelExtrinsicsWithTheMap) {
-  const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 2});
-  EngineOptions options;
-  options.extrinsics.wheels.emplace().metres_per_unit = 1.02;  // from the map that is extended
-  MapRunHooks hooks;
-  hooks.should_stop = [] { return false; };
-  hooks.after_frame = [](int, const MappedFrame&) {};
-  std::vector<double> offered;
-  hooks.on_map_update = [&offered](const Map&, const SavedEstimates& estimates) {
-    offered.push_back(estimates.extrinsics.wheels ? estimates.extrinsics.wheels->metres_per_unit : 0.0);
-  };
-  run_map(*recording, options, hooks);
-  EXPECT_THAT(offered, AllOf(SizeIs(2), Each(1.02)));
 }
 
 TEST(RunMap, ContinuesAfterDamagedOrMissingImages) {

@@ -6,7 +6,7 @@
 
 namespace byre {
 
-void read_options(const std::filesystem::path& path, EngineOptions& options) {
+void read_options(const std::filesystem::path& path, MethodOptions& options) {
   for (const Setting& setting : read_settings(path)) {
     if (const auto fault = set_option(options, setting.name, setting.text)) {
       throw InputError(path.string() + ":" + std::to_string(setting.line), fault->reason, fault->remedy);
@@ -15,10 +15,10 @@ void read_options(const std::filesystem::path& path, EngineOptions& options) {
 }
 
 // Precondition: at most one level of groups, options of a group adjacent.
-std::string options_file(const EngineOptions& options) {
+std::string options_file(const MethodOptions& options) {
   std::string text;
   std::string group;
-  for (const EngineOption& option : option_table()) {
+  for (const MethodOption& option : option_table()) {
     const std::size_t dot = option.name.find('.');
     const std::string its_group = dot == std::string::npos ? "" : option.name.substr(0, dot);
     if (its_group != group && !its_group.empty()) text += its_group + ":\n";

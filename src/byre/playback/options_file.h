@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 
 #include <filesystem>
 #include <string>
@@ -9,9 +9,9 @@ namespace byre {
 
 // Sets the options in a YAML file (docs/reference/options.md); others are unchanged. Throws InputError with the line
 // for an unknown option or an invalid value.
-void read_options(const std::filesystem::path& path, EngineOptions& options);
+void read_options(const std::filesystem::path& path, MethodOptions& options);
 
 // File for read_options with all options, their meanings, units and ranges.
-std::string options_file(const EngineOptions& options);
+std::string options_file(const MethodOptions& options);
 
 }  // namespace byre

@@ -14,9 +14,9 @@ using testing::HasSubstr;
 
 class OptionsFile : public TestFolder {
  protected:
-  EngineOptions read(const std::string& text) const {
+  MethodOptions read(const std::string& text) const {
     write("options.yaml", text);
-    EngineOptions options;
+    MethodOptions options;
     read_options(folder_ / "options.yaml", options);
     return options;
   }
@@ -26,9 +26,9 @@ class OptionsFile : public TestFolder {
 };
 
 // All options at another value: the other end of the range, or another choice.
-EngineOptions all_changed() {
-  EngineOptions options;
-  for (const EngineOption& option : option_table()) {
+MethodOptions all_changed() {
+  MethodOptions options;
+  for (const MethodOption& option : option_table()) {
     const std::string before = option.get(options);
     std::string words = option.range;
     std::ranges::replace(words, '|', ' ');
@@ -40,17 +40,17 @@ EngineOptions all_changed() {
 }
 
 TEST_F(OptionsFile, SetsOnlyItsOptions) {
-  const EngineOptions options = read("pace: live\ntracking:\n  search_radius_px: 20.5\n");
+  const MethodOptions options = read("pace: live\ntracking:\n  search_radius_px: 20.5\n");
   EXPECT_EQ(options.pace, Pace::live);
   EXPECT_EQ(options.session.track.search_radius, 20.5f);
-  EngineOptions back = options;
-  back.pace = EngineOptions{}.pace;
-  back.session.track.search_radius = EngineOptions{}.session.track.search_radius;
+  MethodOptions back = options;
+  back.pace = MethodOptions{}.pace;
+  back.session.track.search_radius = MethodOptions{}.session.track.search_radius;
   EXPECT_EQ(options_file(back), options_file({}));
 }
 
 TEST_F(OptionsFile, IsReadAsWritten) {
-  const EngineOptions options = all_changed();
+  const MethodOptions options = all_changed();
   EXPECT_NE(options_file(options), options_file({}));
   EXPECT_EQ(options_file(read(options_file(options))), options_file(options));
   EXPECT_EQ(options_file(read(options_file({}))), options_file({}));

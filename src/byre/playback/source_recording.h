@@ -1,15 +1,11 @@
 #pragma once
 
-#include "byre/map/map_file.h"
-#include "byre/recording.h"
-
 #include <filesystem>
-#include <optional>
+#include <string>
 
 namespace byre {
 
-// Description of a recording for a map made from it. Contains no path, so that equal maps are equal.
-SourceRecording describe_source(const std::filesystem::path& folder, const Recording& recording,
-                                const std::optional<RefinedCalibration>& refined = {});
+// Name of a recording in maps: that of its folder or file.
+std::string source_name(const std::filesystem::path& recording);
 
 }  // namespace byre

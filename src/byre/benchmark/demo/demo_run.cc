@@ -8,7 +8,7 @@
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/archive/register_map.h"
 #include "byre/playback/report/mission_errors.h"
-#include "byre/playback/source_recording.h"
+#include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_file.h"
 
@@ -125,26 +125,29 @@ class DemoRunner {
     findings_.rendering_s += rendering.preparing_s + rendering.rendering_s;
   }
 
-  EngineOptions run_options(Arm arm) const {
-    EngineOptions run_options;
-    run_options.vocabulary = vocabulary_;
-    run_options.session.map_online = arm != Arm::localise_only;
-    if (arm != Arm::no_map) run_options.offline = load_offline_map(map_file(), vocabulary_);
-    return run_options;
+  Slam make_slam(Arm arm, const Recording& recording) const {
+    MethodOptions method;
+    method.session.map_online = arm != Arm::localise_only;
+    SlamOptions slam = slam_options(method);
+    slam.vocabulary = options_.vocabulary;
+    slam.recording = "first_visit";
+    slam.site = "simulated cowshed";
+    return arm == Arm::no_map ? Slam::mapping(recording.calibration(), slam)
+                              : Slam::on_map(recording.calibration(), map_file(), slam);
   }
 
   void map_first_visit() {
     tell("mapping the first visit, and registering the map on the floor plan");
     const std::unique_ptr<Recording> recording = open_recording(visit(1), {});
-    MapRun run = hooks_.run(*recording, run_options(Arm::no_map), {});
+    Slam slam = make_slam(Arm::no_map, *recording);
+    MapRun run = hooks_.play(slam, *recording, {});
     if (hooks_.should_stop()) return;
     if (run.causal.empty()) throw std::runtime_error("no frame of the first visit got a pose");
     write_trajectories(run, "first_visit");
     findings_.map_frames = static_cast<int>(run.frames.size());
     findings_.map_ate = evaluate_run(run, {load_truth(visit(1)), {}}).final_poses.ate.value_or(0.0);
     barn_.path = run.final;
-    barn_.stored.recordings = {describe_source(visit(1), *recording, run.calibration)};
-    barn_.stored.map = std::move(run.map);
+    barn_.stored = std::move(run.stored);
     lay_on_plan();
   }
 
@@ -166,7 +169,8 @@ class DemoRunner {
     DemoPainter painter(recording->calibration());
     MapRunHooks hooks;
     if (arm == Arm::hybrid) hooks.on_frame = [&painter](const RunView& view) { painter.add(view); };
-    const MapRun run = hooks_.run(*recording, run_options(arm), hooks);
+    Slam slam = make_slam(arm, *recording);
+    const MapRun run = hooks_.play(slam, *recording, hooks);
     if (hooks_.should_stop()) return;
     write_trajectories(run, std::string(name_of(arm)));
     const MapAlignment alignment =

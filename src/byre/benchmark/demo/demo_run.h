@@ -26,7 +26,7 @@ struct DemoHooks {
   std::function<bool()> should_stop;
   std::function<void(const std::string& stage)> before_stage;  // "1 of 6: rendering the first visit, by day"
   std::function<Rendering(const CowshedRecordingOptions& options, const std::filesystem::path& folder)> render;
-  std::function<MapRun(Recording& recording, const EngineOptions& options, const MapRunHooks& hooks)> run;
+  std::function<MapRun(Slam& slam, Recording& recording, const MapRunHooks& hooks)> play;
 };
 
 // Renders two visits to the simulated cowshed, maps the first, registers its map on the floor plan, and runs the second

@@ -9,8 +9,8 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/number_check.h"
-#include "byre/cli/shared/options_file.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/recording_options.h"
@@ -33,19 +33,13 @@ namespace fs = std::filesystem;
 struct BenchmarkCommandOptions {
   std::string protocol;
   SpeedCase speed;  // measured instead of a protocol if it names a recording
-  BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .engine = {}};
-  OptionsFile options_file;
-  std::optional<Pace> pace;
+  BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .vocabulary = {}, .method = {}};
+  MethodArguments method;
   std::optional<int> runs;
   std::optional<fs::path> vocabulary;
   bool quiet = false;
 
   bool is_of_speed() const { return !speed.recording.empty(); }
-  EngineOptions engine_options() const {
-    EngineOptions engine = read_engine_options(options_file);
-    if (pace) engine.pace = *pace;
-    return engine;
-  }
 };
 
 constexpr const char* kBenchmarkFooter = R"(Examples:
@@ -121,9 +115,9 @@ void write_speed(const SpeedCase& what, const std::vector<SpeedMeasures>& runs, 
 
 ExitCode measure_speed_command(BenchmarkCommandOptions options, std::ostream& result) {
   SpeedCase& what = options.speed;
-  what.engine = options.engine_options();
-  what.engine.pace = options.pace.value_or(Pace::live);
-  what.engine.vocabulary = open_vocabulary(options.vocabulary);
+  options.method.is_live = true;
+  what.method = options.method.options();
+  what.vocabulary = options.vocabulary;
   what.cores = processor_count();
   const fs::path& folder = options.run.output;
   if (!folder.empty()) make_folder(folder);
@@ -152,11 +146,11 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
   BenchmarkProtocol protocol = read_benchmark_protocol(file);
   if (options.runs) protocol.runs = *options.runs;
   if (options.run.output.empty()) options.run.output = "benchmark_" + protocol.name;
-  options.run.engine = options.engine_options();
-  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  options.run.method = options.method.options();
+  options.run.vocabulary = options.vocabulary;
   make_folder(options.run.output);
-  const BenchmarkSetting setting{file.filename().string(), options.run.data.string(), options.run.engine.pace,
-                                 processor_count(), changed_options(options.run.engine)};
+  const BenchmarkSetting setting{file.filename().string(), options.run.data.string(), options.run.method.pace,
+                                 processor_count(), changed_options(options.run.method)};
 
   limit_image_threads(1);
   const fs::path& folder = options.run.output;
@@ -171,7 +165,7 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
     progress.end();
     progress.say("skipped " + skipped.name + ": " + skipped.reason);
   };
-  const BenchmarkResult measured = run_benchmark(protocol, options.run, vocabulary, hooks);
+  const BenchmarkResult measured = run_benchmark(protocol, options.run, hooks);
   progress.end();
   write_results(measured, protocol, setting, folder);
   result << to_markdown(measured, protocol, setting);
@@ -215,11 +209,11 @@ Action declare_benchmark(CLI::App& command) {
       ->type_name("N")
       ->check(between(1, kMaxRuns));
   add_text(command, "--only", options->run.only, "Run only these cases")->type_name("CASE...")->excludes(speed);
-  declare_pace(command, options->pace);
+  declare_pace(command, options->method);
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
             "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
-  declare_options_file(command, options->options_file, [options = options.get()] { return options->engine_options(); });
+  declare_options_file(command, options->method);
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kBenchmarkFooter);
   check_when_parsed(command, [options = options.get()] {

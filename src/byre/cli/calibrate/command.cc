@@ -4,7 +4,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/options_file.h"
+#include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/recording_options.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
@@ -13,7 +13,7 @@
 #include "byre/playback/report/calibration_report.h"
 #include "byre/playback/report/report_json.h"
 #include "byre/playback/scaled_recording.h"
-#include "byre/slam/system/stored_map.h"
+#include "byre/slam/system/option_table.h"
 
 #include <iostream>
 #include <memory>
@@ -32,7 +32,7 @@ struct CalibrateOptions {
   OpenOptions open;
   FrameRange range;
   fs::path output;
-  OptionsFile options_file;
+  MethodArguments method;
   bool json = false;
   bool quiet = false;
 };
@@ -67,11 +67,12 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   const auto [recording, is_metric, body_from_camera] =
       open_scaled(options.recording, options.range, options.open, false);
   if (!options.quiet) show_warnings(std::cerr, recording->warnings());
-  EngineOptions run_options = read_engine_options(options.options_file);
-  run_options.vocabulary = open_vocabulary(std::nullopt);
+  SlamOptions slam_settings = slam_options(options.method.options());
+  slam_settings.baseline = options.open.baseline;
+  Slam slam = Slam::mapping(recording->calibration(), slam_settings);
   limit_image_threads(1);
   const InterruptCatcher interrupt;
-  const MapRun run = run_with_progress(*recording, run_options, {}, interrupt, options.quiet);
+  const MapRun run = play_with_progress(slam, *recording, {}, interrupt, options.quiet);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (!run.calibration) {
     throw InputError(options.recording.string(), "shows too little to calibrate its cameras",
@@ -95,8 +96,7 @@ Action declare_calibrate(CLI::App& command) {
       ->required();
   declare_open_options(command, options->open);
   declare_frame_range(command, options->range);
-  declare_options_file(command, options->options_file,
-                       [options = options.get()] { return read_engine_options(options->options_file); });
+  declare_options_file(command, options->method);
   command.add_flag("--json", options->json, "Print the result as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kCalibrateFooter);

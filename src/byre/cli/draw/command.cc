@@ -93,7 +93,7 @@ void write_camera_picture(const DrawnMission& mission, const fs::path& file) {
 }
 
 ExitCode run_and_draw(const DrawOptions& options, StoredMap stored, PlanScene scene, std::ostream& result) {
-  const DrawnMission mission = draw_mission(options, std::move(stored), scene);
+  const DrawnMission mission = draw_mission(options, scene);
   if (!options.quiet) show_warnings(std::cerr, mission.warnings);
   require_frames(mission, options);
   result << describe_pictures(mission, options);

@@ -4,8 +4,7 @@
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"
-#include "byre/place/map_words.h"
-#include "byre/slam/system/stored_map.h"
+#include "byre/slam/system/option_table.h"
 
 #include <algorithm>
 #include <memory>
@@ -25,12 +24,11 @@ FrameRange needed_range(const DrawOptions& options) {
   return range;
 }
 
-EngineOptions run_options(const DrawOptions& options, StoredMap stored) {
-  EngineOptions run = read_engine_options(options.options_file);
-  run.vocabulary = open_vocabulary(options.vocabulary);
-  add_words(stored, *run.vocabulary);
-  run.offline = std::make_shared<const OfflineMap>(std::move(stored.map), *run.vocabulary);
-  return run;
+Slam make_slam(const DrawOptions& options, const Recording& recording) {
+  SlamOptions slam_settings = slam_options(options.method.options());
+  slam_settings.vocabulary = options.vocabulary;
+  slam_settings.baseline = options.open.baseline;
+  return Slam::on_map(recording.calibration(), options.map_file(), slam_settings);
 }
 
 MapScene online_scene(const Map& mapped) {
@@ -42,7 +40,7 @@ MapScene online_scene(const Map& mapped) {
 
 }  // namespace
 
-DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const PlanScene& background) {
+DrawnMission draw_mission(const DrawOptions& options, const PlanScene& background) {
   const Timestamp first = open_recording(options.input, {}, options.open)->times().front();
   const std::unique_ptr<Recording> recording = open_recording(options.input, needed_range(options), options.open);
   if (options.at_s && first + from_seconds(*options.at_s) < recording->times().front()) {
@@ -57,8 +55,9 @@ DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const Pl
   hooks.on_frame = [&painter](const RunView& run) { painter.add(run); };
   limit_image_threads(1);
   const InterruptCatcher interrupt;
-  MapRun run = run_with_progress(*recording, run_options(options, std::move(stored)), hooks, interrupt, options.quiet);
-  return {painter.finish(), online_scene(run.map), std::move(run.warnings), interrupt.caught()};
+  Slam slam = make_slam(options, *recording);
+  MapRun run = play_with_progress(slam, *recording, hooks, interrupt, options.quiet);
+  return {painter.finish(), online_scene(run.stored.map), std::move(run.warnings), interrupt.caught()};
 }
 
 }  // namespace byre::cli

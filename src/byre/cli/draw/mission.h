@@ -18,6 +18,6 @@ struct DrawnMission : PaintedMission {
 
 // Runs the recording on the map, and writes the video. background: scene without the mission. Throws InputError as
 // opening the recording and the map do, and for a time outside the range.
-DrawnMission draw_mission(const DrawOptions& options, StoredMap stored, const PlanScene& background);
+DrawnMission draw_mission(const DrawOptions& options, const PlanScene& background);
 
 }  // namespace byre::cli

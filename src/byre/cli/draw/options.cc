@@ -140,7 +140,7 @@ void declare_draw_options(CLI::App& command, DrawOptions& options) {
   declare_heights(command, options.heights);
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
-  declare_options_file(command, options.options_file, [&options] { return read_engine_options(options.options_file); });
+  declare_options_file(command, options.method);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kDrawFooter);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/cli/shared/options_file.h"
+#include "byre/cli/shared/method_arguments.h"
 #include "byre/recording.h"
 #include "byre/viewer/plan_picture.h"
 
@@ -31,7 +31,7 @@ struct DrawOptions {
   std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   FrameRange range;
   OpenOptions open;
-  OptionsFile options_file;  // for running the recording
+  MethodArguments method;  // for running the recording
   bool quiet = false;
 
   const std::filesystem::path& map_file() const { return map ? *map : input; }

@@ -1,6 +1,5 @@
 #include "byre/cli/map/options.h"
 
-#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/outputs.h"
@@ -8,7 +7,9 @@
 #include "byre/cli/shared/record_options.h"
 #include "byre/cli/shared/recording_options.h"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -70,15 +71,23 @@ void declare_building(CLI::App& command, MapOptions& options) {
   command.add_option("--autosave", options.autosave_s, "Interval at which the map is saved during the run")
       ->type_name("SECONDS")
       ->check(between(0.1, 1e6));
-  command.add_flag("--no-loops", options.no_loops, "Disable place recognition and finishing; for comparison");
-  command.add_flag("--no-self-calibration", options.no_self_calibration,
-                   "Use the given calibration unchanged, without refinement");
+  declare_method_flag(command, "--no-loops", "loops.close", "false", options.method,
+                      "Disable place recognition and finishing; for comparison");
+  declare_method_flag(command, "--no-self-calibration", "calibration.refine", "false", options.method,
+                      "Use the given calibration unchanged, without refinement");
+}
+
+bool closes_loops(const MapOptions& options) {
+  return std::ranges::find(options.method.settings, std::pair<std::string, std::string>("loops.close", "false")) ==
+         options.method.settings.end();
 }
 
 void require_consistent_extension(const MapOptions& options) {
   if (!options.extended) return;
   if (!options.map) throw CLI::ValidationError("--extend", "makes a new map: give a file for it (-o barn2.byre)");
-  if (options.no_loops) throw CLI::ValidationError("--extend", "needs place recognition, which --no-loops disables");
+  if (!closes_loops(options)) {
+    throw CLI::ValidationError("--extend", "needs place recognition, which --no-loops disables");
+  }
 }
 
 void require_consistent(const MapOptions& options) {
@@ -98,7 +107,7 @@ void require_consistent(const MapOptions& options) {
     throw CLI::ValidationError("--poses",
                                "estimates no trajectory, so trajectories, statistics and records cannot be written");
   }
-  if (options.given_poses && (options.extended || options.autosave_s || options.no_loops)) {
+  if (options.given_poses && (options.extended || options.autosave_s || !closes_loops(options))) {
     throw CLI::ValidationError("--poses", "excludes --extend, --autosave and --no-loops");
   }
   if (options.autosave_s && !options.map) {
@@ -113,28 +122,19 @@ std::vector<fs::path> MapOptions::outputs() const {
   return given_paths({map, trajectory, causal_trajectory, stats, record});
 }
 
-EngineOptions MapOptions::engine_options() const {
-  EngineOptions engine = read_engine_options(options_file);
-  if (live.is_wanted()) engine.pace = Pace::live;
-  if (pace) engine.pace = *pace;
-  if (refinement) engine.extract.refinement = *refinement;
-  if (no_self_calibration) engine.self_calibrate = false;
-  return engine;
-}
-
 void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_files(command, options);
   declare_map_content(command, options);
   declare_building(command, options);
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
-  declare_live_options(command, options.live);
-  declare_pace(command, options.pace);
-  add_choice(command, "--refine", options.refinement, {Refinement::none, Refinement::stereo, Refinement::all},
-             "Matches refined to subpixel precision; less than all for comparison (all)");
+  declare_live_options(command, options.live, options.method);
+  declare_pace(command, options.method);
+  declare_method_option(command, "--refine", "features.refinement", options.method,
+                        "Matches refined to subpixel precision; less than all for comparison");
   declare_trajectory_format(command, options.trajectory_format);
   declare_recording(command, options.record, options.record_images);
-  declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });
+  declare_options_file(command, options.method);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kMapFooter);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/cli/shared/options_file.h"
+#include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/playback/map_run.h"
 #include "byre/trajectory_file.h"
@@ -31,18 +31,13 @@ struct MapOptions {
   std::string site;
   FrameRange range;
   OpenOptions open;
-  OptionsFile options_file;
-  std::optional<Pace> pace;
-  std::optional<Refinement> refinement;
-  bool no_loops = false;
-  bool no_self_calibration = false;
+  MethodArguments method;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   std::optional<std::filesystem::path> record;  // bag of ROS 2 messages
   bool record_images = false;
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;
-  EngineOptions engine_options() const;  // from the file and the command line, without maps
 };
 
 // The options must outlive the parsing of the command line.

@@ -24,7 +24,7 @@ PosedRun run_with_progress(Recording& recording, const MapOptions& options, cons
   Progress progress(std::cerr, progress_style(options.quiet), recording.size());
   const Stopwatch watch;
   PosedRunOptions run_options;
-  run_options.extract = options.engine_options().extract;
+  run_options.extract = options.method.options().extract;
   PosedRunHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };
   hooks.after_frame = [&](int done) { progress.update(done, watch.seconds(), "poses given"); };
@@ -54,7 +54,11 @@ ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
 
   StoredMap stored;
   stored.map = run.map;
-  stored.recordings = {describe_source(options.recording, *recording)};
+  stored.recordings = {{source_name(options.recording),
+                        recording->calibration(),
+                        recording->times().front(),
+                        recording->times().back(),
+                        {}}};
   stored.pose_source = PoseSource::given;
   save_for_missions(std::move(stored), vocabulary, options.site, *options.map);
   result << to_text(run, options);

@@ -15,6 +15,7 @@
 #include "byre/playback/report/record_file.h"
 #include "byre/playback/report/run_report.h"
 #include "byre/playback/run_on_plan.h"
+#include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 
 #include <iostream>
@@ -46,26 +47,35 @@ std::optional<MissionTruth> load_truths(const RunOptions& options) {
   return truth;
 }
 
-MapProtocol protocol_of(const RunOptions& options, const RunInput& input) {
+// Warns of a plan whose walls cannot be used.
+void check_walls(const DrawnFloorPlan& plan, const Slam& slam) {
+  if (slam.impl().inputs().offline->walls() != nullptr) return;
+  const bool are_known = plan.plan.occupied_threshold.has_value();
+  show_warnings(std::cerr, {plan.plan.name + ": its walls are not used: " +
+                            (are_known ? "a tenth of the map's path is inside them"
+                                       : "it has no occupied_thresh, the threshold of walls")});
+}
+
+Slam make_slam(const RunOptions& options, const RunInput& input) {
+  SlamOptions slam_settings = slam_options(options.method.options());
+  slam_settings.recording = input.name();
+  slam_settings.vocabulary = options.vocabulary;
+  slam_settings.baseline = options.open.baseline;
+  if (!options.map) return Slam::mapping(input.calibration(), slam_settings);
+  if (options.view.plan) slam_settings.plan = read_drawn_floor_plan(*options.view.plan);
+  Slam slam = Slam::on_map(input.calibration(), *options.map, slam_settings);
+  if (slam_settings.plan) check_walls(*slam_settings.plan, slam);
+  return slam;
+}
+
+MapProtocol protocol_of(const RunOptions& options, const Slam& slam, const RunInput& input) {
   MapProtocol protocol;
   protocol.program = "byre run";
   input.describe(protocol);
-  protocol.options = options.engine_options();
-  protocol.options.vocabulary = open_vocabulary(options.vocabulary);
+  protocol.options = slam.impl().options();
   if (!options.map) return protocol;
   protocol.offline = options.map->string();
-  if (options.frame == PoseFrame::plan) {
-    protocol.plan = require_plan(load_plan_registration(*options.map), *options.map);
-  }
-  std::optional<DrawnFloorPlan> plan;
-  if (options.view.plan) plan = read_drawn_floor_plan(*options.view.plan);
-  protocol.options.offline = load_offline_map(*options.map, *protocol.options.vocabulary, plan);
-  if (plan && protocol.options.offline->walls() == nullptr) {
-    const bool are_known = plan->plan.occupied_threshold.has_value();
-    show_warnings(std::cerr, {plan->plan.name + ": its walls are not used: " +
-                              (are_known ? "a tenth of the map's path is inside them"
-                                         : "it has no occupied_thresh, the threshold of walls")});
-  }
+  if (options.frame == PoseFrame::plan) protocol.plan = require_plan(slam.impl().inputs().plan, *options.map);
   return protocol;
 }
 
@@ -103,8 +113,8 @@ class EventFile {
   std::optional<std::string> fault_;
 };
 
-MapRun run_and_log(RunInput& input, const MapProtocol& protocol, WatchedRunViewer* viewer, EventFile& events,
-                   RecordFile& record, const InterruptCatcher& interrupt) {
+MapRun play_and_log(Slam& slam, RunInput& input, const MapProtocol& protocol, WatchedRunViewer* viewer,
+                    EventFile& events, RecordFile& record, const InterruptCatcher& interrupt) {
   MapRunHooks hooks;
   if (viewer != nullptr || record.is_wanted()) {
     hooks.on_frame = [&record, viewer](const RunView& view) {
@@ -118,19 +128,7 @@ MapRun run_and_log(RunInput& input, const MapProtocol& protocol, WatchedRunViewe
     record.note_unreadable(frame);
     if (viewer != nullptr) viewer->note_unreadable(frame);
   };
-  return input.run(protocol.options, hooks, interrupt);
-}
-
-void save_online_map(const MapRun& run, const RunOptions& options, const RunInput& input,
-                     const Vocabulary& vocabulary) {
-  StoredMap stored;
-  stored.map = run.map;
-  stored.recordings = {input.source()};
-  input.note_times(run, stored.recordings.back());
-  stored.recordings.back().refined = run.calibration;
-  write_odometry_calibration(run.motion.calibration_to_store, stored.notes);
-  stored.scale = input.scaled().is_metric ? MapScale::metric : MapScale::unknown;
-  save_for_missions(std::move(stored), vocabulary, "", *options.online_map);
+  return input.play(slam, hooks, interrupt);
 }
 
 void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol,
@@ -148,27 +146,29 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   RunInput input(
       {options.recording, options.range, options.open, options.live, options.map.has_value(), options.quiet});
   const std::optional<MissionTruth> truth = load_truths(options);
-  MapProtocol protocol = protocol_of(options, input);
+  Slam slam = make_slam(options, input);
+  MapProtocol protocol = protocol_of(options, slam, input);
 
   limit_image_threads(1);
   input.show_check();
   std::optional<WatchedRunViewer> viewer;
-  if (options.view.is_wanted) viewer.emplace(options.view, input.watched(options.map, protocol.options.offline));
+  if (options.view.is_wanted) viewer.emplace(options.view, input.watched(options.map, slam.impl().inputs().offline));
   const InterruptCatcher interrupt;
   EventFile events(options.events);
   RecordFile record(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
                     [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
-  MapRun run = run_and_log(input, protocol, viewer ? &*viewer : nullptr, events, record, interrupt);
+  MapRun run = play_and_log(slam, input, protocol, viewer ? &*viewer : nullptr, events, record, interrupt);
   record.finish(run);
   if (viewer) viewer->finish(run);
-  if (options.online_map && run.map.keyframe_count() == 0) {
+  if (options.online_map && run.stored.map.keyframe_count() == 0) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
     options.online_map.reset();
   }
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   OutputWriter outputs;
   outputs.attempt([&] {
-    if (options.online_map) save_online_map(run, options, input, *protocol.options.vocabulary);
+    const SlamInputs& inputs = slam.impl().inputs();
+    if (options.online_map) save_for_missions(run.stored, *inputs.vocabulary, inputs.site, *options.online_map);
   });
   const ResourceUsage resources = resource_usage();
   const MissionOutcome mission = evaluate_mission(run, protocol.options, truth, input.scaled());

@@ -1,6 +1,5 @@
 #include "byre/cli/run/options.h"
 
-#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/outputs.h"
@@ -52,7 +51,8 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
   CLI::Option* const map =
       add_input(command, Input::file, "--map", options.map, "Offline map of the mission (none: plain SLAM)")
           ->type_name("MAP");
-  command.add_flag("--localise-only", options.localise_only, "Track the offline map only, without online mapping")
+  declare_method_flag(command, "--localise-only", "map_online", "false", options.method,
+                      "Track the offline map only, without online mapping")
       ->needs(map);
   declare_pose_frame(command, options.frame)->needs(map);
   CLI::Option* const truth = add_input(command, Input::recording, "--truth", options.truth,
@@ -108,25 +108,12 @@ void require_consistent(const RunOptions& options) {
     throw CLI::ValidationError("--truth",
                                "is for recordings: record the cameras (--record-images), then run on the record");
   }
-  if (options.localise_only && options.online_map) {
+  if (options.online_map && !options.method.options().session.map_online) {
     throw CLI::ValidationError("--localise-only", "disables online mapping, so --save-online has no map");
   }
   if (options.view.plan && !options.map) {
     throw CLI::ValidationError("--plan", "needs a map that is registered on it: --map");
   }
-}
-
-// Combination of points of both maps; the defaults were chosen by measurement.
-void declare_tracking(CLI::App& command, RunOptions& options) {
-  command
-      .add_option("--offline-weight", options.offline_weight,
-                  fmt::format("Weight of an observation of an offline point; online points have 1 ({:g})",
-                              TrackOptions{}.offline_weight))
-      ->type_name("FACTOR")
-      ->check(between(1e-3, 1e3));
-  add_choice(command, "--offline-policy", options.offline_policy, {OfflinePolicy::first, OfflinePolicy::together},
-             "Order of the search: offline points first, whose pose guides the search for online ones, or both "
-             "together (first)");
 }
 
 }  // namespace
@@ -135,28 +122,22 @@ std::vector<fs::path> RunOptions::outputs() const {
   return given_paths({online_map, events, trajectory, causal_trajectory, odometry, stats, record});
 }
 
-EngineOptions RunOptions::engine_options() const {
-  EngineOptions engine = read_engine_options(options_file);
-  if (live.is_wanted()) engine.pace = Pace::live;
-  if (pace) engine.pace = *pace;
-  if (offline_weight) engine.session.track.offline_weight = *offline_weight;
-  if (offline_policy) engine.session.track.offline_policy = *offline_policy;
-  if (localise_only) engine.session.map_online = false;
-  return engine;
-}
-
 void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_inputs(command, options);
   declare_outputs(command, options);
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
-  declare_live_options(command, options.live);
-  declare_pace(command, options.pace);
-  declare_tracking(command, options);
+  declare_live_options(command, options.live, options.method);
+  declare_pace(command, options.method);
+  declare_method_option(command, "--offline-weight", "tracking.offline_weight", options.method,
+                        "Weight of an observation of an offline point; online points have 1");
+  declare_method_option(command, "--offline-policy", "tracking.offline_policy", options.method,
+                        "Order of the search: offline points first, whose pose guides the search for online ones, or "
+                        "both together");
   declare_run_viewer_options(command, options.view);
   declare_trajectory_format(command, options.trajectory_format);
   declare_recording(command, options.record, options.record_images);
-  declare_options_file(command, options.options_file, [&options] { return options.engine_options(); });
+  declare_options_file(command, options.method);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kRunFooter);

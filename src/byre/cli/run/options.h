@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/cli/shared/options_file.h"
+#include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/view_options.h"
@@ -22,7 +22,6 @@ struct RunOptions {
   std::filesystem::path recording;  // empty for live cameras
   LiveOptions live;
   std::optional<std::filesystem::path> map;  // offline map; empty: plain SLAM
-  bool localise_only = false;
   PoseFrame frame = PoseFrame::map;
   std::optional<std::filesystem::path> online_map;
   std::optional<std::filesystem::path> events;
@@ -38,10 +37,7 @@ struct RunOptions {
   std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   FrameRange range;
   OpenOptions open;
-  OptionsFile options_file;
-  std::optional<Pace> pace;
-  std::optional<double> offline_weight;
-  std::optional<OfflinePolicy> offline_policy;
+  MethodArguments method;
   ViewOptions view;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   std::optional<std::filesystem::path> record;  // bag of ROS 2 messages
@@ -49,7 +45,6 @@ struct RunOptions {
   bool quiet = false;
 
   std::vector<std::filesystem::path> outputs() const;
-  EngineOptions engine_options() const;  // from the file and the command line, without maps
 };
 
 // The options must outlive the parsing of the command line.

@@ -55,6 +55,23 @@ TEST_F(OptionsProgram, LetsTheCommandLineWinOverTheFile) {
               AllOf(HasSubstr("  offline_weight: 3  #"), HasSubstr("  offline_policy: together  #")));
 }
 
+TEST_F(OptionsProgram, SetsSingleOptions) {
+  write("mine.yaml", "features:\n  max_count: 321\n");
+  const Outcome outcome = run(
+      "map --set features.max_count=300 --options mine.yaml --set loops.close=false --set pace=live --print-options");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output,
+              AllOf(HasSubstr("  max_count: 300  #"), HasSubstr("  close: false  #"), HasSubstr("pace: live  #")));
+}
+
+TEST_F(OptionsProgram, RejectsFaultySingleOptions) {
+  EXPECT_THAT(map("--set features.max_cont=300").errors, HasSubstr("did you mean 'features.max_count'?"));
+  EXPECT_THAT(map("--set features.max_count=0").errors, HasSubstr("'0' is not a value of features.max_count"));
+  EXPECT_THAT(map("--set features.max_count").errors, HasSubstr("give NAME=VALUE"));
+  EXPECT_EQ(map("--set features.max_count=0").exit_code, 2);
+  EXPECT_THAT(map("--pace fast").errors, HasSubstr("'fast' is not a value of pace; give inline|paced|live"));
+}
+
 TEST_F(OptionsProgram, UsesAndReportsChangedOptions) {
   write("mine.yaml", "pace: inline\nfeatures:\n  max_count: 300\n");
   const Outcome outcome = map("--options mine.yaml --frames :6 --stats stats.json");

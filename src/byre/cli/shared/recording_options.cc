@@ -102,9 +102,8 @@ void require_valid(const FrameRange& range) {
   }
 }
 
-void declare_pace(CLI::App& command, std::optional<Pace>& pace) {
-  add_choice(command, "--pace", pace, {Pace::same_thread, Pace::paced, Pace::live},
-             "Thread of mapping and feeding rate of frames (paced)");
+void declare_pace(CLI::App& command, MethodArguments& arguments) {
+  declare_method_option(command, "--pace", "pace", arguments, "Thread of mapping and feeding rate of frames");
 }
 
 }  // namespace byre::cli

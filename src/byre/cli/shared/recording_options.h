@@ -1,6 +1,7 @@
 #pragma once
 
-#include "byre/playback/map_run.h"
+#include "byre/cli/shared/method_arguments.h"
+#include "byre/recording.h"
 
 #include <optional>
 
@@ -25,7 +26,7 @@ void declare_frame_range(CLI::App& command, FrameRange& range);
 // Throws CLI::ValidationError for an empty range.
 void require_valid(const FrameRange& range);
 
-// --pace. The pace must outlive the parsing of the command line.
-void declare_pace(CLI::App& command, std::optional<Pace>& pace);
+// --pace. The arguments must outlive the parsing of the command line.
+void declare_pace(CLI::App& command, MethodArguments& arguments);
 
 }  // namespace byre::cli

@@ -33,11 +33,12 @@ Calibration scaled_calibration(Calibration calibration, bool has_metric_map, Sca
 
 }  // namespace
 
-void declare_live_options(CLI::App& command, LiveOptions& options) {
+void declare_live_options(CLI::App& command, LiveOptions& options, MethodArguments& arguments) {
   CLI::Option* const live =
       add_text(command, "--live", options.cameras.devices,
                std::string("Live cameras instead of a recording. ") + kDevicesHelp + ". Needs --calibration")
           ->type_name("DEVICE");
+  live->each([&arguments](const std::string&) { arguments.is_live = true; });
   for (const char* const name :
        {"RECORDING", "--camera", "--fps", "--left", "--right", "--start", "--end", "--frames", "--stride", "--wheels",
         "--no-wheels", "--gyroscope", "--wheels-topic", "--imu-topic", "--pair-tolerance"}) {
@@ -107,36 +108,26 @@ void RunInput::describe(MapProtocol& protocol) const {
   protocol.times = scaled_.recording->time_corrections();
 }
 
-SourceRecording RunInput::source() const {
-  if (live_) return {kLiveName, calibration(), {}, {}, {}};
-  return describe_source(choice_.recording, *scaled_.recording);
+std::string RunInput::name() const {
+  return live_ ? kLiveName : source_name(choice_.recording);
 }
 
 WatchedRun RunInput::watched(const std::optional<std::filesystem::path>& map,
                              std::shared_ptr<const OfflineMap> offline) const {
-  if (live_) return {kLiveName, calibration(), 0, {}, map, std::move(offline)};
-  return {std::filesystem::absolute(choice_.recording).lexically_normal().filename().string(),
-          calibration(),
-          scaled_.recording->size(),
-          scaled_.recording->times().back(),
-          map,
-          std::move(offline)};
-}
-
-void RunInput::note_times(const MapRun& run, SourceRecording& source) const {
-  if (!live_ || run.frames.empty()) return;
-  source.first_time = run.frames.front().time;
-  source.last_time = run.frames.back().time;
+  WatchedRun run{name(), calibration(), 0, {}, map, std::move(offline)};
+  if (live_) return run;
+  run.frames = scaled_.recording->size();
+  run.last_time = scaled_.recording->times().back();
+  return run;
 }
 
 void RunInput::note_frames(const MapRun& run, MapProtocol& protocol) const {
   if (live_) protocol.frames_in_range = static_cast<int>(run.frames.size());
 }
 
-MapRun RunInput::run(const EngineOptions& options, const MapRunHooks& hooks, const InterruptCatcher& interrupt,
-                     std::optional<Map> before) {
-  if (live_) return run_with_progress(*live_, options, hooks, interrupt, choice_.quiet, std::move(before));
-  MapRun run = run_with_progress(*scaled_.recording, options, hooks, interrupt, choice_.quiet, std::move(before));
+MapRun RunInput::play(Slam& slam, const MapRunHooks& hooks, const InterruptCatcher& interrupt) {
+  if (live_) return play_with_progress(slam, *live_, hooks, interrupt, choice_.quiet);
+  MapRun run = play_with_progress(slam, *scaled_.recording, hooks, interrupt, choice_.quiet);
   for (const MotionWarning& warning : run.motion_warnings) {
     run.warnings.push_back(to_text(warning, motion_source(choice_.recording, choice_.open, warning.sensor)));
   }

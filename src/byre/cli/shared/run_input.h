@@ -3,6 +3,7 @@
 #include "byre/camera/live_frames.h"
 #include "byre/cli/shared/camera_options.h"
 #include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/report/run_report.h"
@@ -28,9 +29,9 @@ struct LiveOptions {
   bool is_wanted() const { return !cameras.devices.empty(); }
 };
 
-// Declares --live, --duration and the options of cameras. Options of recordings, declared before, exclude them. The
-// options must outlive the parsing of the command line.
-void declare_live_options(CLI::App& command, LiveOptions& options);
+// Declares --live, --duration and the options of cameras, which are played at live pace unless --pace is given.
+// Options of recordings, declared before, exclude them. The options must outlive the parsing of the command line.
+void declare_live_options(CLI::App& command, LiveOptions& options, MethodArguments& arguments);
 
 // Throws CLI::ValidationError unless there is either a recording, or live cameras with a calibration.
 void require_one_input(const std::filesystem::path& recording, const LiveOptions& live, const OpenOptions& open);
@@ -57,16 +58,13 @@ class RunInput {
   void show_check() const;
   // Fills in the source of frames.
   void describe(MapProtocol& protocol) const;
-  // Description for a map; for live cameras, note_times adds the times.
-  SourceRecording source() const;
+  std::string name() const;  // in maps and for the viewer
   // Description for the viewer.
   WatchedRun watched(const std::optional<std::filesystem::path>& map, std::shared_ptr<const OfflineMap> offline) const;
 
-  // run_with_progress on its frames.
-  MapRun run(const EngineOptions& options, const MapRunHooks& hooks, const InterruptCatcher& interrupt,
-             std::optional<Map> before = {});
-  // Adds data of live cameras that are only available after the run.
-  void note_times(const MapRun& run, SourceRecording& source) const;
+  // play_with_progress on its frames.
+  MapRun play(Slam& slam, const MapRunHooks& hooks, const InterruptCatcher& interrupt);
+  // Adds the number of frames of live cameras, known only after the run.
   void note_frames(const MapRun& run, MapProtocol& protocol) const;
   // Report rows about live cameras; empty for recordings. Call it once, after the run.
   std::string report();

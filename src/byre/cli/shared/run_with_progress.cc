@@ -45,39 +45,37 @@ namespace {
 
 // frames: number expected; zero: unknown.
 template <typename Source>
-MapRun run_source(Source& source, int frames, const EngineOptions& options, const MapRunHooks& more_hooks,
-                  const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
+MapRun play_source(Slam& slam, Source& source, int frames, const MapRunHooks& more_hooks,
+                   const InterruptCatcher& interrupt, bool quiet) {
   Progress progress(std::cerr, progress_style(quiet), frames);
   const Stopwatch watch;
   const FinishHooks finishing = finish_hooks(interrupt, quiet);
-  MapRunHooks hooks;
+  const bool is_mission = slam.impl().inputs().offline != nullptr;
+  MapRunHooks hooks = more_hooks;
   hooks.should_stop = finishing.should_stop;
-  hooks.on_frame = more_hooks.on_frame;
-  hooks.on_map_update = more_hooks.on_map_update;
   hooks.after_frame = [&](int done, const MappedFrame& frame) {
     if (more_hooks.after_frame) more_hooks.after_frame(done, frame);
-    const bool is_mission = options.offline != nullptr;
     progress.update(done, watch.seconds(), state_after(frame, is_mission), tone_after(frame, is_mission));
   };
   hooks.before_finishing_step = [&progress, &finishing](const char* step) {
     progress.close();
     if (finishing.before_step) finishing.before_step(step);
   };
-  MapRun run = run_map(source, options, hooks, std::move(before));
+  MapRun run = play(slam, source, hooks);
   progress.close();
   return run;
 }
 
 }  // namespace
 
-MapRun run_with_progress(Recording& recording, const EngineOptions& options, const MapRunHooks& more_hooks,
-                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
-  return run_source(recording, recording.size(), options, more_hooks, interrupt, quiet, std::move(before));
+MapRun play_with_progress(Slam& slam, Recording& recording, const MapRunHooks& more_hooks,
+                          const InterruptCatcher& interrupt, bool quiet) {
+  return play_source(slam, recording, recording.size(), more_hooks, interrupt, quiet);
 }
 
-MapRun run_with_progress(FrameSource& frames, const EngineOptions& options, const MapRunHooks& more_hooks,
-                         const InterruptCatcher& interrupt, bool quiet, std::optional<Map> before) {
-  return run_source(frames, 0, options, more_hooks, interrupt, quiet, std::move(before));
+MapRun play_with_progress(Slam& slam, FrameSource& frames, const MapRunHooks& more_hooks,
+                          const InterruptCatcher& interrupt, bool quiet) {
+  return play_source(slam, frames, 0, more_hooks, interrupt, quiet);
 }
 
 }  // namespace byre::cli

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 
 #include <string>
 

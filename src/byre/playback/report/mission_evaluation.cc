@@ -15,17 +15,17 @@ Trajectory path_of(const OfflineMap& offline, const std::optional<Trajectory>& m
 
 }  // namespace
 
-MissionOutcome evaluate_mission(const MapRun& run, const EngineOptions& options,
+MissionOutcome evaluate_mission(const MapRun& run, const MethodOptions& options,
                                 const std::optional<MissionTruth>& truth, const ScaledRecording& recording) {
   MissionOutcome mission;
   mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);
   if (!truth) return mission;
-  if (!options.offline) {
+  if (!run.offline) {
     mission.errors =
         aligned_errors(run, recording.path_of(truth->frames), recording.is_metric ? Scale::fixed : Scale::free);
     return mission;
   }
-  const Trajectory path = path_of(*options.offline, truth->map_run, recording.recording->calibration());
+  const Trajectory path = path_of(*run.offline, truth->map_run, recording.recording->calibration());
   mission.errors = mission_errors(run, align_to_truth(path, truth->map_scale, truth->map), truth->frames);
   return mission;
 }

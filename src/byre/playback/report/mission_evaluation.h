@@ -18,7 +18,7 @@ struct MissionTruth {
 };
 
 // Statistics and errors of a run: in the frame of its offline map, or without one after alignment. Errors need truth.
-MissionOutcome evaluate_mission(const MapRun& run, const EngineOptions& options,
+MissionOutcome evaluate_mission(const MapRun& run, const MethodOptions& options,
                                 const std::optional<MissionTruth>& truth, const ScaledRecording& recording);
 
 }  // namespace byre

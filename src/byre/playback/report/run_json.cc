@@ -34,7 +34,7 @@ Json or_null(const std::optional<Value>& value) {
 }
 
 // Options that determine the computational load, and all changed from their defaults.
-Json options_json(const EngineOptions& options) {
+Json options_json(const MethodOptions& options) {
   Json changed = Json::object();
   for (const auto& [name, value] : changed_options(options)) changed[name] = value;
   return {{"max_features", options.extract.max_features},
@@ -45,7 +45,7 @@ Json options_json(const EngineOptions& options) {
           {"local_keyframes", options.session.local_keyframes},
           {"movable_keyframes", options.session.window.movable},
           {"anchor_keyframes", options.session.window.anchors},
-          {"loops", options.vocabulary.has_value()},
+          {"loops", options.close_loops},
           {"changed", changed}};
 }
 
@@ -103,8 +103,8 @@ Json counts_json(const MapRun& run) {
           {"frames_without_right_image", counts.without_right_image},
           {"frames_with_depth_image", counts.with_depth_image},
           {"keyframes_made", counts.keyframes},
-          {"keyframes_left", run.map.keyframe_count()},
-          {"points", run.map.point_count()},
+          {"keyframes_left", run.stored.map.keyframe_count()},
+          {"points", run.stored.map.point_count()},
           {"frames_before_the_first_pose", or_null(counts.frames_to_first)},
           {"refused_starts", refused_starts_json(counts)},
           {"lost_episodes", counts.lost_episodes},
@@ -118,7 +118,7 @@ Json counts_json(const MapRun& run) {
 // Keyframes per recording, and frames until the new recording was localised in the map; null unless a map is extended.
 Json extension_json(const MapRun& run, const MapProtocol& protocol) {
   if (protocol.extended.empty()) return nullptr;
-  const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());
+  const std::vector<int> keyframes = keyframes_of_recordings(run.stored.map, protocol.recordings.size());
   Json recordings = Json::array();
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     recordings.push_back({{"name", protocol.recordings[i]}, {"keyframes", keyframes[i]}});

@@ -128,7 +128,7 @@ void RunMessages::note_image(const CameraTopics& topics, const Image& image, con
 void RunMessages::finish(const MapRun& run) {
   if (!has_begun_) return;
   sink_.put_message(topics_.path, last_time_, ros_path(run.final, last_time_));
-  sink_.put_message(topics_.points, last_time_, ros_cloud(run.map, last_time_));
+  sink_.put_message(topics_.points, last_time_, ros_cloud(run.stored.map, last_time_));
 }
 
 }  // namespace byre

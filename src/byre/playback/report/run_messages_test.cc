@@ -45,13 +45,14 @@ std::map<std::string, int> messages_of_run(const std::set<std::string>& wanted, 
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFrames});
   CountingSink sink(wanted);
   RunMessages messages(sink, recording->calibration(), {.with_images = true, .is_watched = true});
-  EngineOptions options;
-  options.pace = Pace::same_thread;
+  SlamOptions options;
+  options.workers = Workers::none;
   MapRunHooks hooks;
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
   hooks.on_frame = [&messages](const RunView& view) { messages.note(view); };
-  const MapRun run = run_map(*recording, options, hooks);
+  Slam slam = Slam::mapping(recording->calibration(), options);
+  const MapRun run = play(slam, *recording, hooks);
   if (is_finished) messages.finish(run);
   return sink.counts();
 }

@@ -24,14 +24,15 @@ class RecordedRun {
  public:
   RecordedRun() : path_(fs::path(testing::TempDir()) / ("run_record." + std::to_string(getpid()) + ".mcap")) {
     const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFramesRecorded});
-    EngineOptions options;
-    options.pace = Pace::same_thread;
+    SlamOptions options;
+    options.workers = Workers::none;
     RunRecord record(McapWriter(path_), recording->calibration(), true);
     MapRunHooks hooks;
     hooks.should_stop = [] { return false; };
     hooks.after_frame = [](int, const MappedFrame&) {};
     hooks.on_frame = [&record](const RunView& view) { record.note(view); };
-    run_ = run_map(*recording, options, hooks);
+    Slam slam = Slam::mapping(recording->calibration(), options);
+    run_ = play(slam, *recording, hooks);
     MappedFrame unread;
     unread.time = run_.frames.back().time + Timestamp(1);
     record.note_unreadable(unread);

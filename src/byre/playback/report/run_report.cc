@@ -26,8 +26,9 @@ std::string describe_poses(const FrameCounts& counts) {
 }
 
 std::string describe_map(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
-  return fmt::format("{} keyframes left of {}{} made; {} points", run.map.keyframe_count(),
-                     protocol.extended.empty() ? "" : "the extended map and ", counts.keyframes, run.map.point_count());
+  return fmt::format("{} keyframes left of {}{} made; {} points", run.stored.map.keyframe_count(),
+                     protocol.extended.empty() ? "" : "the extended map and ", counts.keyframes,
+                     run.stored.map.point_count());
 }
 
 // Most frequent reason first; empty without refusals.
@@ -76,7 +77,7 @@ std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const
                                 ? fmt::format(", localised in it after {} frames", *counts.frames_to_first)
                                 : std::string(", never localised in it");
   std::string text = row("extended", protocol.extended + found);
-  const std::vector<int> keyframes = keyframes_of_recordings(run.map, protocol.recordings.size());
+  const std::vector<int> keyframes = keyframes_of_recordings(run.stored.map, protocol.recordings.size());
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     text += row("of", protocol.recordings[i] + fmt::format(", {} keyframes", keyframes[i]));
   }
@@ -148,12 +149,12 @@ std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
 
 std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
   if (run.finishing) return calibration_row(run.calibration, run.row_error) + to_text(*run.finishing);
-  if (!protocol.options.vocabulary) return row("finishing", "skipped (--no-loops)");
+  if (!protocol.options.close_loops) return row("finishing", "skipped (--no-loops)");
   if (run.final.empty()) return row("finishing", "skipped, no map");
   return row("finishing", "skipped; run \"byre refine\"");
 }
 
-std::string cost_rows(const MapRun& run, const EngineOptions& options, const ResourceUsage& resources) {
+std::string cost_rows(const MapRun& run, const MethodOptions& options, const ResourceUsage& resources) {
   const Pace pace = options.pace;
   std::string text = row("frame time", describe_frame_time(run, pace));
   if (options.frame_deadline_ms > 0.0) text += row("deadline", describe_deadline(run, options.frame_deadline_ms));
@@ -173,8 +174,8 @@ std::string closing_rows(const MapRun& run, const std::vector<std::string>& file
   return text;
 }
 
-std::string describe_offline(const MapProtocol& protocol) {
-  const Map& map = protocol.options.offline->map();
+std::string describe_offline(const MapRun& run, const MapProtocol& protocol) {
+  const Map& map = run.offline->map();
   return protocol.offline + fmt::format(", {} keyframes, {} points", map.keyframe_count(), map.point_count()) +
          (protocol.options.session.map_online ? "" : "; no online mapping (--localise-only)") +
          (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
@@ -186,7 +187,7 @@ std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
   text += scale_rows(run, protocol, counts);
   text += row("map", describe_map(run, protocol, counts));
   text += extension_rows(run, protocol, counts);
-  if (protocol.options.vocabulary) text += row("loops", describe_loops(counts));
+  if (protocol.options.close_loops) text += row("loops", describe_loops(counts));
   text += finishing_rows(run, protocol);
   return text;
 }
@@ -215,9 +216,9 @@ std::string describe_mission_finishing(const MapRun& run) {
 // Rows of a "byre run" report, with or without an offline map.
 std::string mission_rows(const MissionOutcome& mission, const MapRun& run, const MapProtocol& protocol) {
   const FrameCounts counts = count_frames(run.frames);
-  const bool has_map = protocol.options.offline != nullptr;
+  const bool has_map = run.offline != nullptr;
   std::string text;
-  if (has_map) text += row("offline map", describe_offline(protocol));
+  if (has_map) text += row("offline map", describe_offline(run, protocol));
   text += row("poses", describe_coverage(run, mission.statistics));
   text += scale_rows(run, protocol, counts);
   text += to_text(mission.statistics);

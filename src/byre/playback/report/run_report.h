@@ -19,7 +19,7 @@ struct MapProtocol {
   FrameRange range;
   int frames_in_range = 0;
   TimeCorrections times;  // differences between frame times and recorded stamps
-  EngineOptions options;
+  MethodOptions options;
   std::string extended;  // map that the run extended; empty for none
   std::vector<std::string> recordings;
   std::string offline;

@@ -53,8 +53,8 @@ MapRun small_map_run() {
     run.final.push_back(
         {run.frames[static_cast<std::size_t>(i)].time, *run.frames[static_cast<std::size_t>(i)].report->map_from_body});
   run.causal = run.final;
-  run.map.add_keyframe({});
-  for (int i = 0; i < 1234; ++i) run.map.add_point({});
+  run.stored.map.add_keyframe({});
+  for (int i = 0; i < 1234; ++i) run.stored.map.add_point({});
   run.job_seconds = {0.0305, 0.0105};
   run.warnings = {"2.png: is not a whole image"};
   run.wall_seconds = 2.0;
@@ -254,7 +254,7 @@ TEST(MapText, ReportsTheRecordingsOfAnExtendedMap) {
   MapRun run = small_map_run();
   Keyframe keyframe;
   keyframe.recording = 1;
-  for (int i = 0; i < 2; ++i) run.map.add_keyframe(keyframe);
+  for (int i = 0; i < 2; ++i) run.stored.map.add_keyframe(keyframe);
   run.frames.front().report->map_from_body.reset();
   const std::string text = to_text(run, protocol, {}, {});
   EXPECT_THAT(text, HasSubstr("extended     barn.byre, localised in it after 2 frames\n"));

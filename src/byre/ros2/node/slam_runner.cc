@@ -31,7 +31,7 @@ SlamOptions slam_options(const NodeConfig& config) {
   options.baseline = config.baseline;
   options.max_pair_difference = std::max(options.max_pair_difference, config.pair_tolerance);
   if (!config.options) return options;
-  EngineOptions checked;
+  MethodOptions checked;
   read_options(*config.options, checked);  // its messages name the line
   for (const Setting& setting : read_settings(*config.options)) {
     if (setting.name != "pace") options.settings.emplace_back(setting.name, setting.text);  // replaced by workers

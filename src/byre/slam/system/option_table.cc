@@ -44,9 +44,9 @@ std::optional<Number> from_text(std::string_view text) {
 
 // place: accessor of the member, for constant and mutable options.
 template <typename Place>
-EngineOption number(const char* name, const char* unit, double low, double high, Place place, const char* meaning) {
-  using Number = std::remove_cvref_t<std::invoke_result_t<Place, EngineOptions&>>;
-  const auto set = [=](EngineOptions& options, std::string_view text) {
+MethodOption number(const char* name, const char* unit, double low, double high, Place place, const char* meaning) {
+  using Number = std::remove_cvref_t<std::invoke_result_t<Place, MethodOptions&>>;
+  const auto set = [=](MethodOptions& options, std::string_view text) {
     const auto value = from_text<Number>(text);
     if (!value || !(static_cast<double>(*value) >= low && static_cast<double>(*value) <= high)) return false;
     place(options) = *value;
@@ -56,13 +56,13 @@ EngineOption number(const char* name, const char* unit, double low, double high,
           unit,
           "from " + in_full(low) + " to " + in_full(high),
           meaning,
-          [=](const EngineOptions& options) { return to_text(place(options)); },
+          [=](const MethodOptions& options) { return to_text(place(options)); },
           set};
 }
 
 template <typename Place>
-EngineOption flag(const char* name, Place place, const char* meaning) {
-  const auto set = [=](EngineOptions& options, std::string_view text) {
+MethodOption flag(const char* name, Place place, const char* meaning) {
+  const auto set = [=](MethodOptions& options, std::string_view text) {
     if (text != "true" && text != "false") return false;
     place(options) = text == "true";
     return true;
@@ -71,26 +71,26 @@ EngineOption flag(const char* name, Place place, const char* meaning) {
           "",
           "true|false",
           meaning,
-          [=](const EngineOptions& options) -> std::string { return place(options) ? "true" : "false"; },
+          [=](const MethodOptions& options) -> std::string { return place(options) ? "true" : "false"; },
           set};
 }
 
 template <typename Place, typename Value>
-EngineOption choice(const char* name, std::initializer_list<Value> known, Place place, const char* meaning) {
+MethodOption choice(const char* name, std::initializer_list<Value> known, Place place, const char* meaning) {
   const std::vector<Value> values(known);
   std::string range;
   for (const Value value : values) range += (range.empty() ? "" : "|") + std::string(name_of(value));
-  const auto set = [=](EngineOptions& options, std::string_view text) {
+  const auto set = [=](MethodOptions& options, std::string_view text) {
     const auto value = std::ranges::find(values, text, [](Value each) { return name_of(each); });
     if (value == values.end()) return false;
     place(options) = *value;
     return true;
   };
-  return {name, "", range, meaning, [=](const EngineOptions& options) { return std::string(name_of(place(options))); },
+  return {name, "", range, meaning, [=](const MethodOptions& options) { return std::string(name_of(place(options))); },
           set};
 }
 
-using Table = std::vector<EngineOption>;
+using Table = std::vector<MethodOption>;
 
 void add_run(Table& table) {
   table.push_back(choice(
@@ -253,6 +253,9 @@ void add_localisation(Table& table) {
 }
 
 void add_loops(Table& table) {
+  table.push_back(flag(
+      "loops.close", [](auto& o) -> auto& { return o.close_loops; },
+      "place recognition, and finishing of the map; false: for comparison"));
   table.push_back(number(
       "loops.min_gap_keyframes", "keyframes", 1, kMany, [](auto& o) -> auto& { return o.session.loops.min_gap; },
       "minimum number of keyframes between the newest keyframe and a loop candidate"));
@@ -439,7 +442,7 @@ std::size_t distance_between(std::string_view one, std::string_view other) {
 
 }  // namespace
 
-const std::vector<EngineOption>& option_table() {
+const std::vector<MethodOption>& option_table() {
   static const Table table = [] {
     Table all;
     for (const auto add : {add_run, add_features, add_calibration, add_start, add_tracking, add_keyframes, add_mapping,
@@ -451,21 +454,27 @@ const std::vector<EngineOption>& option_table() {
   return table;
 }
 
-std::vector<std::pair<std::string, std::string>> changed_options(const EngineOptions& options) {
+std::vector<std::pair<std::string, std::string>> changed_options(const MethodOptions& options) {
   std::vector<std::pair<std::string, std::string>> changed;
-  for (const EngineOption& option : option_table()) {
+  for (const MethodOption& option : option_table()) {
     const std::string value = option.get(options);
     if (value != option.get({})) changed.emplace_back(option.name, value);
   }
   return changed;
 }
 
-std::optional<OptionFault> set_option(EngineOptions& options, std::string_view name, std::string_view text) {
+SlamOptions slam_options(const MethodOptions& options) {
+  SlamOptions slam;
+  for (const MethodOption& option : option_table()) slam.settings.emplace_back(option.name, option.get(options));
+  return slam;
+}
+
+std::optional<OptionFault> set_option(MethodOptions& options, std::string_view name, std::string_view text) {
   const Table& table = option_table();
-  const auto option = std::ranges::find(table, name, &EngineOption::name);
+  const auto option = std::ranges::find(table, name, &MethodOption::name);
   if (option == table.end()) {
     const auto like = std::ranges::min_element(
-        table, {}, [&](const EngineOption& known) { return distance_between(known.name, name); });
+        table, {}, [&](const MethodOption& known) { return distance_between(known.name, name); });
     return OptionFault{"unknown option '" + std::string(name) + "'", "did you mean '" + like->name + "'?"};
   }
   if (option->set(options, text)) return std::nullopt;

@@ -34,16 +34,16 @@ constexpr std::size_t members_of() {
 }
 
 // Valid texts of an option, derived from its range.
-std::vector<std::string> some_values(const EngineOption& option) {
+std::vector<std::string> some_values(const MethodOption& option) {
   std::string words = option.range;
   std::ranges::replace(words, '|', ' ');
   std::istringstream stream(words);
   return {std::istream_iterator<std::string>(stream), {}};
 }
 
-std::vector<std::string> values(const EngineOptions& options) {
+std::vector<std::string> values(const MethodOptions& options) {
   std::vector<std::string> all;
-  for (const EngineOption& option : option_table()) all.push_back(option.get(options));
+  for (const MethodOption& option : option_table()) all.push_back(option.get(options));
   return all;
 }
 
@@ -51,7 +51,7 @@ std::vector<std::string> values(const EngineOptions& options) {
 constexpr std::size_t kHiddenCells = 2;
 
 TEST(OptionTable, ListsEveryLeaf) {
-  const EngineOptions options;
+  const MethodOptions options;
   [[maybe_unused]] const auto& [pace, extract, session, self_calibrate, refined_calibration, self_calibration,
                                 vocabulary, extrinsics, use_saved_extrinsics, motion_limits, wheel_scale_sigma,
                                 frame_deadline_ms, offline] = options;
@@ -78,7 +78,7 @@ TEST(OptionTable, DescribesEachOptionOnceInItsGroup) {
   std::set<std::string> names;
   std::set<std::string> groups;
   std::string group;
-  for (const EngineOption& option : option_table()) {
+  for (const MethodOption& option : option_table()) {
     EXPECT_TRUE(names.insert(option.name).second) << option.name;
     EXPECT_THAT(option.name, testing::MatchesRegex("([a-z]+\\.)?[a-z_0-9]+"));
     EXPECT_FALSE(option.meaning.empty()) << option.name;
@@ -95,8 +95,8 @@ TEST(OptionTable, DescribesEachOptionOnceInItsGroup) {
 TEST(OptionTable, SetsEachOptionOnly) {
   const std::vector<std::string> before = values({});
   for (std::size_t i = 0; i < option_table().size(); ++i) {
-    const EngineOption& option = option_table()[i];
-    EngineOptions options;
+    const MethodOption& option = option_table()[i];
+    MethodOptions options;
     for (const std::string& value : some_values(option)) {
       if (option.get(options) == before[i]) option.set(options, value);
     }
@@ -108,8 +108,8 @@ TEST(OptionTable, SetsEachOptionOnly) {
 }
 
 TEST(OptionTable, ReadsItsPrintedValues) {
-  for (const EngineOption& option : option_table()) {
-    EngineOptions options;
+  for (const MethodOption& option : option_table()) {
+    MethodOptions options;
     const std::string value = option.get(options);
     EXPECT_FALSE(set_option(options, option.name, value)) << option.name;
     EXPECT_EQ(option.get(options), value);
@@ -118,9 +118,9 @@ TEST(OptionTable, ReadsItsPrintedValues) {
 
 TEST(OptionTable, RejectsInvalidValuesAndKeepsTheOption) {
   const std::vector<std::string> before = values({});
-  for (const EngineOption& option : option_table()) {
+  for (const MethodOption& option : option_table()) {
     for (const char* const text : {"", "nan", "inf", "-inf", "1e400", "-1", "1e300", "many", "5 m", "yes", "0x10"}) {
-      EngineOptions options;
+      MethodOptions options;
       EXPECT_TRUE(set_option(options, option.name, text)) << option.name << " " << text;
       EXPECT_EQ(values(options), before);
     }
@@ -128,7 +128,7 @@ TEST(OptionTable, RejectsInvalidValuesAndKeepsTheOption) {
 }
 
 TEST(OptionTable, SuggestsTheMostSimilarName) {
-  EngineOptions options;
+  MethodOptions options;
   const auto fault = set_option(options, "tracking.min_inlier", "20");
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->reason, "unknown option 'tracking.min_inlier'");
@@ -137,7 +137,7 @@ TEST(OptionTable, SuggestsTheMostSimilarName) {
 }
 
 TEST(OptionTable, ListsChangedOptions) {
-  EngineOptions options;
+  MethodOptions options;
   EXPECT_THAT(changed_options(options), testing::IsEmpty());
   options.session.health.sigmas = 2.5;
   options.pace = Pace::live;
@@ -148,7 +148,7 @@ TEST(OptionTable, ListsChangedOptions) {
 TEST(OptionTable, MappingUsesSharedOptionsOfTheSession) {
   const MappingOptions by_default = mapper_options({}).mapping;
   EXPECT_EQ(by_default.offline_weight, MappingOptions{}.offline_weight);
-  EngineOptions options;
+  MethodOptions options;
   EXPECT_FALSE(set_option(options, "tracking.offline_weight", "7"));
   EXPECT_EQ(mapper_options(options.session).mapping.offline_weight, 7.0);
 }

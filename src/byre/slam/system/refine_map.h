@@ -3,7 +3,7 @@
 #include "byre/map/map_file.h"
 #include "byre/place/vocabulary.h"
 #include "byre/slam/loops/finishing.h"
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 
 namespace byre {
 

@@ -1,4 +1,4 @@
-#include "byre/slam/system/engine.h"
+#include "byre/slam/system/slam_impl.h"
 
 #include "byre/slam/places/place_scene.h"
 #include "byre/trajectory_error.h"
@@ -28,24 +28,22 @@ SimulatedMission figure_eight(const Rig& rig) {
   return simulate_mission(rig, path, visit);
 }
 
-TEST(Engine, ScalesAMonocularMapByWheels) {
+TEST(SlamImpl, ScalesAMonocularMapByWheels) {
   for (const bool has_wheels : {true, false}) {
-    EngineOptions options;
+    MethodOptions options;
     options.pace = Pace::same_thread;
-    options.vocabulary = simulated_vocabulary();
-    Engine engine(one_camera(), options);
-    const SimulatedMission mission = figure_eight(engine.rig());
+    SlamImpl slam(one_camera(), options, {.vocabulary = simulated_vocabulary()});
+    const SimulatedMission mission = figure_eight(slam.rig());
     const Pose camera_from_robot = inverse(robot_from_camera());
     for (std::size_t i = 0; i < mission.frames.size(); ++i) {
       const StampedPose& truth = mission.truth[i];
-      if (has_wheels) engine.add_wheel_odometry({truth.time, truth.world_from_body * camera_from_robot});
-      engine.process(mission.frames[i]);
+      if (has_wheels) slam.add_wheel_odometry({truth.time, truth.world_from_body * camera_from_robot});
+      slam.process(mission.frames[i]);
     }
-    engine.finish();
-    EXPECT_FALSE(engine.is_metric());
-    engine.finish_map({[] { return false; }, {}});
-    EXPECT_EQ(engine.is_metric(), has_wheels);
-    const auto pairs = associate(engine.trajectory(), mission.truth, {});
+    EXPECT_FALSE(slam.is_metric());
+    slam.finish({[] { return false; }, {}});
+    EXPECT_EQ(slam.is_metric(), has_wheels);
+    const auto pairs = associate(slam.trajectory(), mission.truth, {});
     ASSERT_GT(pairs.size(), 150u);
     const auto error = absolute_trajectory_error(pairs, Scale::fixed);
     ASSERT_TRUE(error);

@@ -1,0 +1,307 @@
+#include "byre/slam/system/slam_impl.h"
+
+#include "byre/base/stopwatch.h"
+#include "byre/features/image_view.h"
+#include "byre/map/stored_calibration.h"
+#include "byre/slam/window/online_copy.h"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace byre {
+namespace {
+
+constexpr double kMillisecondsPerSecond = 1e3;
+
+// The second lane of a mission searches places in the offline map. Paced reading of the map ends before the next frame
+// modifies it.
+SessionExecutors make_lanes(Pace pace, bool is_mission, JobLog& log) {
+  switch (pace) {
+    case Pace::same_thread:
+      return {make_logged_executor(make_inline_executor(), log), make_inline_executor()};
+    case Pace::paced:
+      return {make_logged_executor(make_paced_executor(kPacedLatency), log),
+              make_paced_executor(is_mission ? kPacedSearchLatency : kPacedCorrectionLatency), make_inline_executor(),
+              make_paced_executor(1)};
+    case Pace::live:
+      return {make_logged_executor(make_live_executor(), log), make_live_executor(), make_inline_executor(),
+              make_live_executor()};
+  }
+  return {nullptr, nullptr};
+}
+
+const std::vector<SourceRecording>& earlier_recordings(const SlamInputs& inputs) {
+  return inputs.offline ? inputs.offline->recordings() : inputs.extended.recordings;
+}
+
+OdometryCalibration initial_extrinsics(const Calibration& given, const SlamInputs& inputs) {
+  const OdometryCalibration extrinsics =
+      inputs.offline ? inputs.offline->extrinsics() : read_odometry_calibration(inputs.extended.notes);
+  return odometry_calibration_for(extrinsics, earlier_recordings(inputs), given);
+}
+
+// Other cameras than those of the map may be mounted at another height or tilt.
+SessionOptions session_options(const Calibration& given, const MethodOptions& options, const SlamInputs& inputs) {
+  SessionOptions session = options.session;
+  const std::vector<SourceRecording>& earlier = earlier_recordings(inputs);
+  if (!inputs.offline) session.recording = static_cast<int>(earlier.size());
+  if (inputs.offline && !earlier.empty() && !has_same_cameras(earlier, given)) {
+    session.mission.bounds.is_on_ground_of_map = false;
+  }
+  return session;
+}
+
+}  // namespace
+
+std::string_view name_of(Pace pace) {
+  switch (pace) {
+    case Pace::same_thread:
+      return "inline";
+    case Pace::paced:
+      return "paced";
+    case Pace::live:
+      return "live";
+  }
+  return "";
+}
+
+std::string_view name_of(OfflinePolicy policy) {
+  switch (policy) {
+    case OfflinePolicy::first:
+      return "first";
+    case OfflinePolicy::together:
+      return "together";
+  }
+  return "";
+}
+
+SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamInputs inputs,
+                   const InputCheckOptions& check)
+    : given_(given),
+      options_(options),
+      inputs_(std::move(inputs)),
+      is_extended_(inputs_.before.has_value()),
+      body_from_left_(given.body_from_left.rotation),
+      initial_calibration_(stored_calibration(earlier_recordings(inputs_), given)),
+      extractor_(initial_calibration_ ? initial_calibration_->calibration : given, options.extract),
+      check_(given, extractor_.rig(), check),
+      prior_(options.motion_limits),
+      is_metric_(given.is_metric() || inputs_.offline || is_extended_),
+      budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
+      session_(extractor_.rig(), session_options(given, options, inputs_),
+               make_lanes(options.pace, inputs_.offline != nullptr, log_),
+               options.close_loops ? inputs_.vocabulary : std::nullopt, inputs_.offline) {
+  if (options.use_saved_extrinsics) prior_.begin_with(initial_extrinsics(given, inputs_));
+  prior_.assume_upright(body_from_left_ * -Eigen::Vector3d::UnitY(), body_from_left_ * Eigen::Vector3d::UnitZ());
+  if (!inputs_.offline) prior_.enable_mapping_mode();
+  if (is_metric_) prior_.set_metric();
+  session_.set_odometry([this](Timestamp earlier, Timestamp later) { return prior_.path_between(earlier, later); },
+                        [this, is_metric = given.is_metric()](Timestamp earlier, Timestamp later) {
+                          return prior_.reach(earlier, later, is_metric);
+                        });
+  if (options.self_calibrate) refine_calibration();
+  if (is_extended_) session_.continue_map(std::move(*inputs_.before));
+}
+
+// Refines only the readout time if the calibration is refined already, or an extended map depends on it.
+void SlamImpl::refine_calibration() {
+  if (initial_calibration_ || is_extended_) {
+    session_.refine_readout(initial_calibration_.value_or(RefinedCalibration{given_}));
+  } else {
+    session_.refine_calibration(given_, options_.self_calibration);
+  }
+}
+
+FrameReport SlamImpl::process(const CameraImages& images, const std::optional<BodyMotion>& motion) {
+  const InputFault fault = is_finished_ ? check_.note(InputFault::after_finishing) : check_.note(images);
+  const auto since = take_motion(motion, images.left.time, is_dropped(fault));
+  if (is_dropped(fault)) return dropped(images.left.time);
+  buffer_.time = images.left.time;
+  copy_grey(images.left, buffer_.left);
+  const bool has_right = check_.may_use_right();
+  if (!has_right) buffer_.right.reset();
+  if (has_right) copy_grey(*images.right, buffer_.right ? *buffer_.right : buffer_.right.emplace());
+  const bool has_depth = check_.may_use_depth();
+  if (!has_depth) buffer_.depth.reset();
+  if (has_depth) {
+    copy_depth(*images.depth, given_.depth->units_per_metre, buffer_.depth ? *buffer_.depth : buffer_.depth.emplace());
+  }
+  return process_images(buffer_, since);
+}
+
+FrameReport SlamImpl::process(const ImageFrame& images, const std::optional<BodyMotion>& motion) {
+  const InputFault fault = is_finished_ ? check_.note(InputFault::after_finishing) : check_.note(view_of(images));
+  const bool are_all_usable =
+      images.right.has_value() == check_.may_use_right() && images.depth.has_value() == check_.may_use_depth();
+  const auto since = take_motion(motion, images.time, is_dropped(fault));
+  if (is_dropped(fault)) return dropped(images.time);
+  if (are_all_usable) return process_images(images, since);
+  ImageFrame usable = images;
+  if (!check_.may_use_right()) usable.right.reset();
+  if (!check_.may_use_depth()) usable.depth.reset();
+  return process_images(usable, since);
+}
+
+FrameReport SlamImpl::process(const Frame& frame, const std::optional<BodyMotion>& motion) {
+  const InputFault fault = is_finished_ ? check_.note(InputFault::after_finishing) : check_.note(frame);
+  const auto since = take_motion(motion, frame.time, is_dropped(fault));
+  if (is_dropped(fault)) return dropped(frame.time);
+  budget_.begin();
+  const Stopwatch watch;
+  seconds_ = {};
+  FrameReport report = process_in_time(frame, since);
+  seconds_.total = watch.seconds();
+  return completed(std::move(report));
+}
+
+std::optional<BodyMotion> SlamImpl::checked(const std::optional<BodyMotion>& motion, Timestamp time) {
+  if (!motion) return {};
+  return prior_.checked(*motion, time, last_frame_ ? to_seconds(time) - to_seconds(*last_frame_) : 0.0);
+}
+
+std::optional<BodyMotion> SlamImpl::take_motion(const std::optional<BodyMotion>& motion, Timestamp time,
+                                                bool is_dropped) {
+  const std::optional<BodyMotion> sound = checked(motion, time);
+  // Metric priors need a metric map.
+  const auto since = is_metric_ && dropped_motion_ && sound ? std::optional(*dropped_motion_ * *sound) : std::nullopt;
+  dropped_motion_ = is_dropped ? since : no_motion();
+  return since;
+}
+
+FrameReport SlamImpl::process_images(const ImageFrame& images, const std::optional<BodyMotion>& motion) {
+  const double submit_seconds_before = log_.submit_seconds;
+  const Stopwatch watch;
+  budget_.begin();
+  const bool is_left_alone = images.right && !budget_.has_time_for_right_image();
+  const Extraction extraction = extractor_.extract(images, is_left_alone ? ImagesUsed::left : ImagesUsed::all);
+  if (extraction.frame.right_condition) row_error_.note(*extraction.frame.features, extractor_.rig());
+  FrameReport report = process_in_time(extraction.frame, motion);
+  seconds_ = {.rectify = extraction.times.rectify,
+              .extract = extraction.times.extract,
+              .stereo = extraction.times.stereo,
+              .track = report.track_seconds,
+              .map = report.map_seconds,
+              .map_submit = log_.submit_seconds - submit_seconds_before,
+              .total = watch.seconds()};
+  return completed(std::move(report));
+}
+
+FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion) {
+  log_.job_seconds.clear();
+  const bool uses_samples = !motion && last_frame_ && !prior_.is_empty();
+  const auto measured_motion = uses_samples ? prior_.between(*last_frame_, frame.time) : motion;
+  session_.set_tilt(uses_samples ? prior_.tilt(frame.time) : std::nullopt);
+  FrameReport report = session_.process(frame, measured_motion, &budget_);
+  last_frame_ = frame.time;
+  const bool is_seen = report.inliers > 0;
+  prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
+  if (is_seen && report.map_from_body && report.health.verdict == Verdict::trusted) {
+    prior_.note_place(*report.map_from_body);
+  }
+  if (map_damage() != nullptr) {
+    report.health.verdict = Verdict::untrusted;
+    report.health.doubt = DistrustReason::map_damaged;
+  }
+  budget_.end();
+  report.cuts = budget_.cuts();
+  report.is_late = budget_.is_late();
+  const auto first_new = warnings().begin() + static_cast<std::ptrdiff_t>(warnings_reported_);
+  report.warnings.assign(first_new, warnings().end());
+  warnings_reported_ = warnings().size();
+  return report;
+}
+
+FrameReport SlamImpl::completed(FrameReport report) {
+  report.input = check_.last();
+  state_ = report.state;
+  had_pose_ = had_pose_ || report.map_from_body;
+  if (!first_time_) first_time_ = report.time;
+  last_time_ = report.time;
+  return report;
+}
+
+FrameReport SlamImpl::dropped(Timestamp time) const {
+  FrameReport report;
+  report.time = time;
+  report.state = state_;
+  report.input = check_.last();
+  return report;
+}
+
+std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
+  if (std::exchange(is_finished_, true)) return {};
+  if (hooks.should_stop() || map_damage() != nullptr) finish_early();
+  session_.finish();
+  const bool is_mapped = had_pose_ && online().keyframe_count() > 0;
+  if (hooks.should_stop() || !is_mapped || map_damage() != nullptr) return {};
+  if (!inputs_.offline && (!options_.close_loops || !inputs_.vocabulary)) return {};
+  const Stopwatch watch;
+  FinishResult result;
+  if (inputs_.offline) {
+    session_.finish_mission(hooks);
+  } else {
+    extractor_.rest();
+    result.report = session_.finish_map(hooks);
+    prior_.reestimate(session_.final_trajectory());
+    if (!is_metric_) scale_by_wheels();
+    result.cut_short = hooks.should_stop();
+  }
+  result.seconds = watch.seconds();
+  return result;
+}
+
+// Keeps the map's own unit if motions do not determine the scale.
+void SlamImpl::scale_by_wheels() {
+  constexpr double kMaxSigma = 0.02;     // share
+  constexpr double kMaxTurnScale = 0.1;  // natural logarithm
+  const auto& wheels = prior_.wheels();
+  if (!wheels || wheels->scale_sigma > kMaxSigma) return;
+  // A wrong wheel radius scales path lengths and turns by the same factor.
+  if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnScale) {
+    prior_.warn(
+        {MotionSensor::wheels,
+         {},
+         fmt::format("wheels measure turns {:.3g} times as large as the camera does; the map has no metric scale",
+                     1.0 / wheels->turn_errors.scale),
+         "calibrate wheel radius and track width, or scale the map with byre scale"});
+    return;
+  }
+  const double factor = wheels->metres_per_unit;
+  session_.rescale(factor);
+  scale_sigma_ = std::hypot(wheels->scale_sigma, options_.wheel_scale_sigma);
+  prior_.rescale(factor);
+  is_metric_ = true;
+}
+
+std::optional<RefinedCalibration> SlamImpl::calibration() const {
+  const auto refined = session_.self_calibration();
+  return refined ? refined : initial_calibration_;
+}
+
+StoredMap SlamImpl::stored_metadata() const {
+  StoredMap stored = inputs_.extended;
+  stored.scale = is_metric_ ? MapScale::metric : MapScale::unknown;
+  stored.recordings.push_back(
+      {inputs_.recording, given_, first_time_.value_or(Timestamp{}), last_time_, calibration()});
+  write_odometry_calibration(prior_.calibration_to_store(), stored.notes);
+  if (scale_sigma_) stored.notes[kMetresNote] = metres_note(*scale_sigma_);
+  return stored;
+}
+
+StoredMap SlamImpl::stored_map() const {
+  const MapView map = session_.map();
+  StoredMap stored = stored_metadata();
+  stored.map = map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(map.online());
+  return stored;
+}
+
+StoredMap SlamImpl::take_stored_map() {
+  if (session_.map().offline()) return stored_map();
+  StoredMap stored = stored_metadata();
+  stored.map = offline_copy(session_.take_online());
+  return stored;
+}
+
+}  // namespace byre

@@ -1,0 +1,157 @@
+#pragma once
+
+#include "byre/map/map_file.h"
+#include "byre/slam.h"
+#include "byre/slam/system/input_check.h"
+#include "byre/slam/system/logged_executor.h"
+#include "byre/slam/system/method_options.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// Wall times of the stages of a frame, seconds. All except decode run sequentially on the frame thread.
+struct StageSeconds {
+  double decode = 0.0;  // decoding ahead on its own thread; not part of total
+  double rectify = 0.0;
+  double extract = 0.0;
+  double stereo = 0.0;  // stereo matching, or conversion of depths
+  double track = 0.0;
+  double map = 0.0;         // windows, deltas, new points, and jobs run on this thread
+  double map_submit = 0.0;  // part of map: submitting jobs, including jobs run on this thread
+  double total = 0.0;       // from decoded images to the report
+};
+
+// Result of finishing a map.
+struct FinishResult {
+  FinishReport report;
+  bool cut_short = false;           // stopped early on request
+  double seconds = 0.0;             // wall time
+  std::vector<std::string> faults;  // faults of the saved map
+};
+
+// Maps and names of a Slam.
+struct SlamInputs {
+  std::optional<Vocabulary> vocabulary;               // without it neither loop closing nor finishing
+  std::string recording = "live";                     // name of this session in a saved map
+  std::string site;                                   // place where the map is made, stored in it unless empty
+  std::shared_ptr<const OfflineMap> offline;          // offline map of a mission; null otherwise
+  std::optional<std::filesystem::path> offline_file;  // its file
+  std::optional<PlanRegistration> plan;               // registration of the offline or extended map on a floor plan
+  StoredMap extended;                                 // data of the map to extend, without keyframes and points
+  std::optional<Map> before;  // keyframes and points of that map: an online copy with words of the vocabulary
+};
+
+// Everything behind Slam: front end of the cameras, session, checks of inputs. Call it from one thread.
+class SlamImpl {
+ public:
+  // given: calibration of the cameras. Throws InputError if it cannot be rectified.
+  SlamImpl(const Calibration& given, const MethodOptions& options, SlamInputs inputs,
+           const InputCheckOptions& check = {});
+  ~SlamImpl() { finish_early(); }
+  SlamImpl(const SlamImpl&) = delete;  // executors refer to log_, the session to prior_
+  SlamImpl& operator=(const SlamImpl&) = delete;
+
+  // See Slam. Samples are in order of time, before the frame that they lead to.
+  void add_wheel_odometry(const StampedPose& odometry_from_base) { prior_.add(odometry_from_base); }
+  void add_wheel_odometry(const BaseTwist& velocity) { prior_.add(velocity); }
+  void add_gyro(const AngularRate& rate) { prior_.add(rate); }
+  void add_accel(const Acceleration& acceleration) { prior_.add(acceleration); }
+  void set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope) {
+    prior_.set_gyroscope_extrinsics(body_from_left_ * left_from_gyroscope);
+  }
+  FrameReport process(const CameraImages& images, const std::optional<BodyMotion>& motion = {});
+  FrameReport process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
+  FrameReport process(const Frame& frame, const std::optional<BodyMotion>& motion = {});
+  void set_initial_pose(const PoseHint& hint) { session_.set_initial_pose(hint); }
+  void pause_mapping(bool is_paused) { session_.pause_mapping(is_paused); }
+
+  // Ends tracking, then finishes the map, or the online map of a mission. Empty if already finished, stopped, without a
+  // pose or vocabulary, or after damage of the offline map. Does not fill in FinishResult::faults.
+  std::optional<FinishResult> finish(const FinishHooks& hooks);
+
+  // Damage of the offline map's file, with section and remedy; nullptr if undamaged. Parts already read stay in use;
+  // all later reports are untrusted.
+  const InputError* map_damage() const { return inputs_.offline ? inputs_.offline->map().damage() : nullptr; }
+
+  const Calibration& given() const { return given_; }
+  const MethodOptions& options() const { return options_; }
+  const SlamInputs& inputs() const { return inputs_; }
+  const InputCheck& input() const { return check_; }
+  const Rig& rig() const { return extractor_.rig(); }
+  const Map& online() const { return session_.map().online(); }
+  const Session& session() const { return session_; }
+  const JobLog& log() const { return log_; }
+  const OdometryCalibrator& prior() const { return prior_; }
+  // Faults of motion inputs so far.
+  const std::vector<MotionWarning>& warnings() const { return prior_.warnings(); }
+  // Times of the last frame; the stages of the front end are 0 for features of the caller.
+  const StageSeconds& seconds() const { return seconds_; }
+  // Current poses of all tracked frames, with gaps filled by wheel odometry.
+  Trajectory trajectory() const { return prior_.fill_gaps(session_.final_trajectory()); }
+  // Calibration of the map; empty if only the given one is available.
+  std::optional<RefinedCalibration> calibration() const;
+  // Row error of the rectification in use, over all stereo pairs so far.
+  const CommonRowError& row_error() const { return row_error_; }
+  // Whether lengths are metres. Monocular maps become metric in finish() if wheels determine the scale.
+  bool is_metric() const { return is_metric_; }
+  // Relative standard deviation of the scale if measured by wheels only; empty if the scale is unknown, or measured by
+  // cameras or a map.
+  std::optional<double> wheel_scale_sigma() const { return scale_sigma_; }
+  // Whether there is a map to save: for an extended map, whether anything was added.
+  bool has_mapped() const { return online().keyframe_count() > 0 && (had_pose_ || !is_extended_); }
+
+  // Stored map of this session without keyframes and points: recordings, scale, calibrations, notes.
+  StoredMap stored_metadata() const;
+  // Stored map of this session.
+  StoredMap stored_map() const;
+  // Same as stored_map(), without copying; the session's map is empty afterwards.
+  StoredMap take_stored_map();
+
+ private:
+  void refine_calibration();
+  void scale_by_wheels();
+  void finish_early() { session_.finish_early(); }
+  std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);
+  // Motion of the body since the last frame that was not dropped.
+  std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& motion, Timestamp time, bool is_dropped);
+  FrameReport process_images(const ImageFrame& images, const std::optional<BodyMotion>& motion);
+  // Precondition: the frame's budget has begun.
+  FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
+  FrameReport completed(FrameReport report);
+  FrameReport dropped(Timestamp time) const;
+
+  // Constant after construction.
+  Calibration given_;
+  MethodOptions options_;
+  SlamInputs inputs_;  // except before, which becomes the session's map
+  bool is_extended_;
+  Eigen::Quaterniond body_from_left_;
+  std::optional<RefinedCalibration> initial_calibration_;  // before any frame
+
+  JobLog log_;
+  Extractor extractor_;
+  InputCheck check_;
+  CommonRowError row_error_;
+  OdometryCalibrator prior_;
+  bool is_metric_;
+  std::optional<double> scale_sigma_;  // see wheel_scale_sigma
+  std::optional<Timestamp> last_frame_;
+  std::size_t warnings_reported_ = 0;
+  FrameBudget budget_;
+  StageSeconds seconds_;
+  Session session_;
+  ImageFrame buffer_;                                       // holds the caller's images during a call
+  std::optional<BodyMotion> dropped_motion_ = no_motion();  // motion over dropped frames; empty: unknown
+  State state_ = State::initialising;                       // state after the last frame
+  std::optional<Timestamp> first_time_;                     // time of the first frame not dropped
+  Timestamp last_time_{};
+  bool had_pose_ = false;  // whether any frame had a map pose
+  bool is_finished_ = false;
+};
+
+}  // namespace byre
