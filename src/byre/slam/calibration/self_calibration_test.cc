@@ -142,8 +142,8 @@ TEST(SelfCalibration, DoesNotMistakeNoiseForALongerFocalLength) {
   const Calibration given = scene_calibration();
   CalibrationVector error = draw_error(4);
   error[kLeftCamera] = error[kRightCamera] = 0.0;
-  constexpr float kSigma = 0.15f;  // pixels
-  const MapOfErringCamera map(given, error, about_the_room, 150, kSigma);
+  constexpr float kPixelSigma = 0.15f;  // pixels
+  const MapOfErringCamera map(given, error, about_the_room, 150, kPixelSigma);
   const auto found = self_calibrate(map.window(), {given, CalibrationVector::Zero()}, 0, {});
   ASSERT_TRUE(found);
   for (const int focal : {kLeftCamera, kRightCamera}) {

@@ -36,14 +36,14 @@ struct FinishResult {
 
 // Maps and names of a Slam.
 struct SlamInputs {
-  std::optional<Vocabulary> vocabulary;               // without it neither loop closing nor finishing
-  std::string recording = "live";                     // name of this session in a saved map
-  std::string site;                                   // place where the map is made, stored in it unless empty
-  std::shared_ptr<const OfflineMap> offline;          // offline map of a mission; null otherwise
-  std::optional<std::filesystem::path> offline_file;  // its file
-  std::optional<PlanRegistration> plan;               // registration of the offline or extended map on a floor plan
-  StoredMap extended;                                 // data of the map to extend, without keyframes and points
-  std::optional<Map> before;  // keyframes and points of that map: an online copy with words of the vocabulary
+  std::optional<Vocabulary> vocabulary{};               // without it neither loop closing nor finishing
+  std::string recording = "live";                       // name of this session in a saved map
+  std::string site{};                                   // place where the map is made, stored in it unless empty
+  std::shared_ptr<const OfflineMap> offline{};          // offline map of a mission; null otherwise
+  std::optional<std::filesystem::path> offline_file{};  // its file
+  std::optional<PlanRegistration> plan{};               // registration of the offline or extended map on a floor plan
+  StoredMap extended{};                                 // data of the map to extend, without keyframes and points
+  std::optional<Map> before{};  // keyframes and points of that map: an online copy with words of the vocabulary
 };
 
 // Everything behind Slam: front end of the cameras, session, checks of inputs. Call it from one thread.
