@@ -6,9 +6,6 @@ Usage: check_floors.py [SOURCE]        SOURCE: folder of rooms, default: src/byr
 A room is a folder of SOURCE with the folders in it. It may include only rooms on lower floors. Includes between folders
 of a room must not be circular. Some headers and calls are restricted, see KEPT_IN and FORBIDDEN. A type is defined
 by one header only: two types of one name in one program violate the one-definition rule.
-Names local to a file are unique in its folder, because files of a folder compile as one (unity builds, BYRE_UNITY); in
-cli they are unique in the room. File-local functions may overload by types of byre. They may not overload by
-convertible types such as numbers, or another file could call them instead of a function that a header declares.
 Prints one line per fault, "file:line: fault". Exit code: 0 no faults, 1 faults, 2 wrong usage or no source files.
 """
 import functools
@@ -66,8 +63,6 @@ KEPT_IN = {
     r"systemd/.*": {"ros2/node"},
     r"linux/videodev2\.h|poll\.h|sys/(ioctl|poll)\.h": {"camera"},
 }
-# Rooms whose folders compile together.
-COMPILED_WHOLE = {"cli"}
 
 
 class Rule(NamedTuple):
@@ -232,7 +227,7 @@ ANONYMOUS = "{anonymous}"
 
 
 # Declarations and definitions of a file at namespace scope, each as qualified name and line: types, constants, and
-# functions whose first parameter is no type of byre, marked by "()".
+# functions, marked by "()", with the type of the first parameter inside if it is one of byre.
 def definitions(text: str) -> Iterator[tuple[str, int]]:
     code = "\n".join(without_strings(line) for line in without_comments(text).split("\n"))
     code = re.sub(r"'(?:\\.|[^'\\\n])'", "' '", code)
@@ -240,8 +235,9 @@ def definitions(text: str) -> Iterator[tuple[str, int]]:
     for found in OPENING.finditer(code):
         name = found["type"] or found["constant"] or found["function"]
         is_overload = found["function"] and re.match("[A-Z](?!igen::)|ros::", found["taken"])
-        if name and None not in scopes and not is_overload:
-            yield "::".join([*scopes, name]) + "()" * bool(found["function"]), code.count("\n", 0, found.start()) + 1
+        if name and None not in scopes:
+            mark = f"({found['taken'] if is_overload else ''})" if found["function"] else ""
+            yield "::".join([*scopes, name]) + mark, code.count("\n", 0, found.start()) + 1
         if found[0] == "}":
             del scopes[-1:]
         elif not found["constant"] and not found["function"]:
@@ -263,7 +259,7 @@ def faults_of_names(paths: list[pathlib.Path], is_wanted, first: dict[str, pathl
 
 
 def twice_defined_faults(headers: list[pathlib.Path]) -> Iterator[Fault]:
-    return faults_of_names(headers, lambda name: ANONYMOUS not in name and not name.endswith("()"), {},
+    return faults_of_names(headers, lambda name: ANONYMOUS not in name and not name.endswith(")"), {},
                            "rename one of them")
 
 
@@ -283,31 +279,6 @@ def headers_of(paths: list[pathlib.Path], source: pathlib.Path, public: pathlib.
 def included_headers(path: pathlib.Path) -> tuple[str, ...]:
     found = [INCLUDE.match(line) for _, line in numbered_lines(path)]
     return tuple(include[1].removeprefix("byre/") for include in found if include and include[1].startswith("byre/"))
-
-
-# Declarations of headers, in the form of file-local names.
-def declared_names(headers: list[pathlib.Path]) -> dict[str, pathlib.Path]:
-    names = {}
-    for path in headers:
-        if not is_of_tests(path):
-            for full_name, _ in definitions_in(path):
-                scope, _, name = full_name.rpartition("::")
-                names[f"{scope}::{ANONYMOUS}::{name}"] = path
-    return names
-
-
-# Name clashes of files that compile as one: those of a folder; its tests separately.
-def clash_faults(source: pathlib.Path, public: pathlib.Path) -> Iterator[Fault]:
-    together = {}
-    for path in source_files(source):
-        folder = path.parent.relative_to(source).as_posix()
-        if path.suffix == ".cc" and room_of(folder) in EVERY_ROOM:
-            unit = room_of(folder) if room_of(folder) in COMPILED_WHOLE else folder
-            together.setdefault((unit, is_of_tests(path)), []).append(path)
-    for (unit, _), paths in together.items():
-        yield from faults_of_names(paths, lambda name: ANONYMOUS in name,
-                                   declared_names(headers_of(paths, source, public)),
-                                   f"files of {unit} compile as one (BYRE_UNITY); rename one of them")
 
 
 def source_files(source: pathlib.Path) -> list[pathlib.Path]:
@@ -356,7 +327,6 @@ def main(arguments: list[str]) -> int:
     found = list(faults(source)) + list(circle_faults(source)) + list(all_public_faults(public))
     files += source_files(public)
     found += twice_defined_faults([path for path in files if path.suffix == ".h"])
-    found += clash_faults(source, public)
     for fault in found:
         print(fault)
     print(f"{len(files)} files, {len(found)} faults" if found else f"{len(files)} files, no faults")
