@@ -69,8 +69,8 @@ std::string MapMutator::damage(MapBytes& bytes) {
 
 // Chooses each section with equal probability, regardless of its size. The first is never empty.
 std::size_t MapMutator::any_filled_section(const MapBytes& bytes) {
-  std::size_t index = below(section_count(bytes));
-  while (table_entry(bytes, index).size == 0) index = below(section_count(bytes));
+  std::size_t index = below(kSections);
+  while (table_entry(bytes, index).size == 0) index = below(kSections);
   return index;
 }
 
@@ -106,13 +106,13 @@ void MapMutator::write_number(MapBytes& bytes) {
 }
 
 void MapMutator::change_header(MapBytes& bytes) {
-  const std::size_t place = below(header_size(bytes) - sizeof(std::uint64_t));
+  const std::size_t place = below(kHeaderSize - sizeof(std::uint64_t));
   put_at(bytes, place, kIntegers[below(kIntegers.size())]);
 }
 
 void MapMutator::cut_end(MapBytes& bytes) {
   bytes.resize(below(bytes.size()));
-  if (bytes.size() >= kSmallestHeaderSize && below(2) == 0) put_at(bytes, kFileSizeAt, std::uint64_t{bytes.size()});
+  if (bytes.size() >= kHeaderSize && below(2) == 0) put_at(bytes, kFileSizeAt, std::uint64_t{bytes.size()});
 }
 
 void MapMutator::append(MapBytes& bytes) {
@@ -121,8 +121,8 @@ void MapMutator::append(MapBytes& bytes) {
 }
 
 void MapMutator::swap_sections(MapBytes& bytes) {
-  const std::size_t first = below(section_count(bytes));
-  const std::size_t second = below(section_count(bytes));
+  const std::size_t first = below(kSections);
+  const std::size_t second = below(kSections);
   const auto content = [&bytes](std::size_t index) {
     const TableEntry entry = table_entry(bytes, index);
     return piece_of(bytes, entry.offset, entry.size);
@@ -134,8 +134,8 @@ void MapMutator::swap_sections(MapBytes& bytes) {
 }
 
 void MapMutator::swap_table_entries(MapBytes& bytes) {
-  const std::size_t first = table_entry(bytes, below(section_count(bytes))).at;
-  const std::size_t second = table_entry(bytes, below(section_count(bytes))).at;
+  const std::size_t first = table_entry(bytes, below(kSections)).at;
+  const std::size_t second = table_entry(bytes, below(kSections)).at;
   const std::size_t skipped = below(2) == 0 ? 0 : 16;  // section names
   if (first == second) return;
   std::swap_ranges(at(bytes, first + skipped), at(bytes, first + kTableEntrySize), at(bytes, second + skipped));

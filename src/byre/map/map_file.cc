@@ -15,16 +15,14 @@
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace byre {
 namespace {
 
 // Like PNG's: a non-text byte, and line ends that text-mode transfers would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
-constexpr std::uint32_t kFormat = 7;                 // newest format that is read, and the one written
-constexpr std::uint32_t kFirstFormat = 1;            // oldest format that is read
-constexpr std::uint32_t kFirstRoundedFormat = 5;     // features, sightings and points are rounded to quanta
-constexpr std::uint32_t kFirstFormatWithLookup = 6;  // keyframes and points can be read separately
-constexpr std::uint32_t kFirstPackedFormat = 7;      // patches are compressed
+constexpr std::uint32_t kFormat = 7;
 
 enum Section : std::size_t {
   kSummary,
@@ -37,11 +35,11 @@ enum Section : std::size_t {
   kPoints,
   kObservations,
   kWords,
-  kPlan,                 // since format 2; empty without a plan
-  kRefinedCalibrations,  // since format 3; empty without refined calibrations
-  kReadoutTimes,         // since format 4
-  kDescriptors,          // since format 5
-  kObservers,            // since format 6, as the next one
+  kPlan,                 // empty without a plan
+  kRefinedCalibrations,  // empty without refined calibrations
+  kReadoutTimes,
+  kDescriptors,
+  kObservers,
   kLookup,
   kSectionCount
 };
@@ -52,17 +50,8 @@ constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
-
-// Formats 2 to 5 each add one section, format 6 adds two.
-constexpr std::size_t section_count(std::uint32_t format) {
-  return format >= kFirstFormatWithLookup ? kSectionCount : kPlan + format - kFirstFormat;
-}
-static_assert(section_count(kFirstFormatWithLookup - 1) == kObservers);
-
 // Includes its own checksum.
-constexpr std::size_t header_bytes(std::size_t sections) {
-  return kFixedHeaderBytes + sections * kTableEntryBytes + sizeof(std::uint64_t);
-}
+constexpr std::size_t kHeaderBytes = kFixedHeaderBytes + kSectionCount * kTableEntryBytes + sizeof(std::uint64_t);
 
 using Bytes = std::span<const std::byte>;
 
@@ -88,9 +77,9 @@ void write_section(std::size_t section, const StoredMap& stored, const Keyframes
     case kKeyframes:
       return write_keyframes(all, writer);
     case kPoints:
-      return write_rounded_points(stored.map, writer, sizes);
+      return write_points(stored.map, writer, sizes);
     case kWords:
-      return write_narrow_words(all, stored.vocabulary_checksum, writer, sizes);
+      return write_words(all, stored.vocabulary_checksum, writer, sizes);
     case kPlan:
       if (stored.plan) write_plan(*stored.plan, writer);
       return;
@@ -171,15 +160,14 @@ void write_name(std::string_view name, ByteWriter& writer) {
 
 void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
   writer.write_all<std::uint8_t>(kSignature);
-  const std::size_t header_size = header_bytes(ends.size());
   writer.write(kFormat);
-  writer.write(static_cast<std::uint32_t>(ends.size()));
-  writer.write(std::uint64_t{header_size + content.size()});
+  writer.write(static_cast<std::uint32_t>(kSectionCount));
+  writer.write(std::uint64_t{kHeaderBytes + content.size()});
   std::size_t begin = 0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const Bytes section = content.subspan(begin, ends[i] - begin);
     write_name(kSectionNames[i], writer);
-    writer.write(std::uint64_t{header_size + begin});
+    writer.write(std::uint64_t{kHeaderBytes + begin});
     writer.write(std::uint64_t{section.size()});
     writer.write(checksum(section));
     begin = ends[i];
@@ -193,21 +181,13 @@ struct SectionPlace {
   std::size_t size = 0;
   std::uint64_t checksum = 0;
 };
-struct SectionTable {
-  std::uint32_t format = kFormat;
-  std::vector<SectionPlace> places;  // one per section of the format
-};
+using SectionTable = std::array<SectionPlace, kSectionCount>;
 
-std::uint32_t read_format(ByteReader& header, const std::string& name) {
-  const auto format = header.read<std::uint32_t>();
-  if (format == 0) header.fail("has the invalid format 0");
-  if (format > kFormat) {
-    throw InputError(
-        name + ": header",
-        "has format " + std::to_string(format) + "; this program reads formats up to " + std::to_string(kFormat),
-        "use the version of byre that wrote the map, or a newer one");
-  }
-  return format;
+void require_format(std::uint32_t format, const std::string& name) {
+  if (format == kFormat) return;
+  throw InputError(name + ": header", fmt::format("has format {}; this program reads format {}", format, kFormat),
+                   format < kFormat ? "make it again with byre map, or convert it with an earlier byre"
+                                    : "use the version of byre that wrote the map, or a newer one");
 }
 
 SectionPlace read_place(ByteReader& header, std::string_view expected_name, std::size_t expected_offset,
@@ -236,20 +216,18 @@ SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& n
   }
   ByteReader header(bytes, name + ": header", 0);
   header.take(kSignature.size());
-  SectionTable table;
-  table.format = read_format(header, name);
-  const std::size_t sections = section_count(table.format);
-  const std::size_t header_size = header_bytes(sections);
-  if (header.read<std::uint32_t>() != sections) header.fail("has a wrong number of sections for its format");
+  require_format(header.read<std::uint32_t>(), name);
+  if (header.read<std::uint32_t>() != kSectionCount) header.fail("has a wrong number of sections for its format");
   if (header.read<std::uint64_t>() != file_size) {
     header.fail("has a file size other than the actual " + std::to_string(file_size) + " bytes");
   }
-  std::size_t offset = header_size;
-  for (std::size_t i = 0; i < sections; ++i) {
-    table.places.push_back(read_place(header, kSectionNames[i], offset, file_size));
-    offset += table.places[i].size;
+  SectionTable table;
+  std::size_t offset = kHeaderBytes;
+  for (std::size_t i = 0; i < kSectionCount; ++i) {
+    table[i] = read_place(header, kSectionNames[i], offset, file_size);
+    offset += table[i].size;
   }
-  const std::uint64_t expected = checksum(bytes.first(header_size - sizeof(std::uint64_t)));
+  const std::uint64_t expected = checksum(bytes.first(kHeaderBytes - sizeof(std::uint64_t)));
   if (header.read<std::uint64_t>() != expected) header.fail("has a wrong checksum");
   if (offset != file_size) header.fail("leaves bytes outside of all sections");
   return table;
@@ -261,17 +239,14 @@ using Bring = std::function<Bytes(std::size_t offset, std::size_t size)>;
 // Opens sections of a file by its table.
 class SectionOpener {
  public:
-  SectionOpener(SectionTable table, Bring bring, const std::string& name)
-      : table_(std::move(table)), bring_(std::move(bring)), name_(name) {}
+  SectionOpener(const SectionTable& table, Bring bring, const std::string& name)
+      : table_(table), bring_(std::move(bring)), name_(name) {}
   SectionOpener(Bytes bytes, const std::string& name)
       : SectionOpener(
             read_table(bytes, bytes.size(), name),
             [bytes](std::size_t offset, std::size_t size) { return bytes.subspan(offset, size); }, name) {}
 
-  bool is_rounded() const { return table_.format >= kFirstRoundedFormat; }
-  bool has_lookup() const { return table_.format >= kFirstFormatWithLookup; }
-  bool has_packed_patches() const { return table_.format >= kFirstPackedFormat; }
-  bool has(Section section) const { return section < table_.places.size() && !is_left_empty(section); }
+  bool is_empty(Section section) const { return place_of(section).size == 0; }
 
   ByteReader operator()(Section section) const {
     const auto& [offset, size, expected_checksum] = place_of(section);
@@ -283,33 +258,13 @@ class SectionOpener {
 
   // Unchecked.
   Bytes bytes_of(Section section) const { return bring_(place_of(section).offset, place_of(section).size); }
-  const SectionPlace& place_of(Section section) const { return table_.places[section]; }
+  const SectionPlace& place_of(Section section) const { return table_[section]; }
 
  private:
-  // Optional sections that are followed by others.
-  bool is_left_empty(Section section) const {
-    return (section == kPlan || section == kRefinedCalibrations) && section + 1 < table_.places.size() &&
-           place_of(section).size == 0;
-  }
-
   SectionTable table_;
   Bring bring_;
   const std::string& name_;
 };
-
-// Reads points and keyframes' features and sightings. Precondition: keyframes are read.
-void read_exact_parts(const SectionOpener& open, MapParts& parts) {
-  read_features(open(kFeatures), open(kPatches), parts.rigs, parts.keyframes);
-  parts.points = read_points(open(kPoints));
-  read_observations(open(kObservations), parts.points, parts.keyframes);
-}
-void read_rounded_parts(const SectionOpener& open, MapParts& parts, PartSizes& sizes) {
-  RoundedPoints points = read_rounded_points(open(kPoints), sizes);
-  const ViewSections views = {open(kFeatures), open(kPatches), open(kObservations), open(kDescriptors),
-                              open.has_packed_patches()};
-  read_views(views, points, parts.rigs, parts.keyframes, sizes);
-  parts.points = std::move(points.points);
-}
 
 // Reads all except features, sightings, points, and the data of read_rest().
 MapParts read_about(const SectionOpener& open, StoredMap& stored) {
@@ -325,9 +280,9 @@ MapParts read_about(const SectionOpener& open, StoredMap& stored) {
 }
 
 void read_rest(const SectionOpener& open, StoredMap& stored) {
-  if (open.has(kPlan)) stored.plan = read_plan(open(kPlan));
-  if (open.has(kRefinedCalibrations)) read_refined_calibrations(open(kRefinedCalibrations), stored.recordings);
-  if (open.has(kReadoutTimes)) read_readout_times(open(kReadoutTimes), stored.recordings);
+  if (!open.is_empty(kPlan)) stored.plan = read_plan(open(kPlan));
+  if (!open.is_empty(kRefinedCalibrations)) read_refined_calibrations(open(kRefinedCalibrations), stored.recordings);
+  read_readout_times(open(kReadoutTimes), stored.recordings);
 }
 
 PartSectionSizes part_section_sizes(const SectionOpener& open) {
@@ -354,11 +309,11 @@ WordsHead words_head(const Bring& bring, const SectionPlace& section, const std:
 }
 
 void require_checksums(const ReadAt& read_at, std::size_t size, const std::string& name) {
-  std::vector<std::byte> header(std::min(size, header_bytes(kSectionCount)));
+  std::vector<std::byte> header(std::min(size, kHeaderBytes));
   read_at(0, header);
   const SectionTable table = read_table(header, size, name);
-  for (std::size_t i = 0; i < table.places.size(); ++i) {
-    const SectionPlace& place = table.places[i];
+  for (std::size_t i = 0; i < kSectionCount; ++i) {
+    const SectionPlace& place = table[i];
     if (checksum_of_file(read_at, place.offset, place.size) == place.checksum) continue;
     ByteReader({}, name + ": section " + std::string(kSectionNames[i]), place.offset).fail("has a wrong checksum");
   }
@@ -374,14 +329,13 @@ MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std
   file.points = open.place_of(kPoints).offset;
   file.observers = open.place_of(kObservers).offset;
   file.lookup = open.place_of(kLookup).offset;
-  file.has_packed_patches = open.has_packed_patches();
   return file;
 }
 
 }  // namespace
 
 std::vector<std::byte> write_map(const StoredMap& stored) {
-  std::vector<std::byte> file(header_bytes(kSectionCount));
+  std::vector<std::byte> file(kHeaderBytes);
   const SectionEnds ends = write_sections(stored, file);
   if (const InputError* const fault = stored.map.damage()) throw InputError(*fault);
   ByteWriter header;
@@ -395,22 +349,18 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   StoredMap stored;
   MapParts parts = read_about(open, stored);
   PartSizes sizes;
-  if (open.is_rounded()) {
-    read_rounded_parts(open, parts, sizes);
-    stored.vocabulary_checksum = read_narrow_words(open(kWords), parts.keyframes, sizes);
-  } else {
-    read_exact_parts(open, parts);
-    stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes);
-  }
+  RoundedPoints points = read_points(open(kPoints), sizes);
+  read_views({open(kFeatures), open(kPatches), open(kObservations), open(kDescriptors)}, points, parts.rigs,
+             parts.keyframes, sizes);
+  parts.points = std::move(points.points);
+  stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes, sizes);
   stored.map = Map(Origin::offline, std::move(parts));
   read_rest(open, stored);
 
   ByteReader summary = open(kSummary);
   if (read_summary(summary) != summarise(stored.map)) summary.fail("does not match the other sections");
-  if (open.has_lookup()) {
-    const PartSections sections = part_sections([&open](Section section) { return open.bytes_of(section); });
-    require_lookup(stored.map, sizes, sections, open(kObservers), open(kLookup));
-  }
+  const PartSections sections = part_sections([&open](Section section) { return open.bytes_of(section); });
+  require_lookup(stored.map, sizes, sections, open(kObservers), open(kLookup));
   return stored;
 }
 
@@ -420,8 +370,7 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
     read_at(offset, pieces.emplace_back(bytes));
     return Bytes(pieces.back());
   };
-  const SectionOpener open(read_table(bring(0, std::min(size, header_bytes(kSectionCount))), size, name), bring, name);
-  if (!open.has_lookup()) return read_map(bring(0, size), name);
+  const SectionOpener open(read_table(bring(0, std::min(size, kHeaderBytes)), size, name), bring, name);
   StoredMap stored;
   MapParts parts = read_about(open, stored);
   const MapSummary summary = read_summary(open(kSummary));
@@ -443,9 +392,9 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
 }
 
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name) {
-  const std::vector<SectionPlace> places = read_table(bytes, bytes.size(), name).places;
-  std::vector<SectionSize> sizes = {{"header", header_bytes(places.size())}};
-  for (std::size_t i = 0; i < places.size(); ++i) sizes.push_back({std::string(kSectionNames[i]), places[i].size});
+  const SectionTable table = read_table(bytes, bytes.size(), name);
+  std::vector<SectionSize> sizes = {{"header", kHeaderBytes}};
+  for (std::size_t i = 0; i < kSectionCount; ++i) sizes.push_back({std::string(kSectionNames[i]), table[i].size});
   return sizes;
 }
 
@@ -465,7 +414,7 @@ std::optional<PlanRegistration> load_plan_registration(const std::filesystem::pa
   const MappedFile file(path);
   const std::string name = path.string();
   const SectionOpener open(file.bytes(), name);
-  return open.has(kPlan) ? std::optional(read_plan(open(kPlan))) : std::nullopt;
+  return open.is_empty(kPlan) ? std::nullopt : std::optional(read_plan(open(kPlan)));
 }
 
 namespace {

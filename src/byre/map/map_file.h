@@ -88,7 +88,7 @@ struct SectionSize {
 // existing rigs.
 std::vector<std::byte> write_map(const StoredMap& stored);
 
-// Throws InputError naming section and byte for damage, a violated invariant or a newer format. name: in messages.
+// Throws InputError naming section and byte for damage, a violated invariant or another format. name: in messages.
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name);
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name);
 
@@ -97,7 +97,7 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
 StoredMap load_map(const std::filesystem::path& path);
 // Like read_map and load_map, but keyframes' features and sightings, and points, are read and checked on first access
 // (see Map), from a file that stays open. Checks all checksums at once only for files up to 32 MB, some thousand
-// keyframes. Reads files of formats before 6 as a whole. read_at fills in bytes of the file from an offset, for several
+// keyframes. read_at fills in bytes of the file from an offset, for several
 // threads at once; its file is not checked beforehand.
 StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& name);
 StoredMap open_map(const std::filesystem::path& path);

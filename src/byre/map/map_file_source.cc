@@ -81,7 +81,7 @@ void MapFileSource::visit_words(const WordVisitor& visit) const {
   if (checksum(section) != file_.words_checksum) reader.fail("has a wrong checksum");
   read_words_head(reader);
   for (std::uint32_t number = 0; number < lookup_.keyframes.size(); ++number) {
-    visit({Origin::offline, number}, read_narrow_words_of(reader, file_.words, lookup_.keyframes[number].features));
+    visit({Origin::offline, number}, read_words_of(reader, file_.words, lookup_.keyframes[number].features));
   }
   reader.require_end();
 }
@@ -121,14 +121,13 @@ Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& head
   }
   Keyframe keyframe = header;
   read_view(
-      {readers[kFeaturesOfView], readers[kPatchesOfView], readers[kObservationsOfView], readers[kDescriptorsOfView],
-       file_.has_packed_patches},
+      {readers[kFeaturesOfView], readers[kPatchesOfView], readers[kObservationsOfView], readers[kDescriptorsOfView]},
       number, file_.rigs[static_cast<std::size_t>(header.rig)], file_.point_count,
       [this](std::uint32_t point_number) -> const ObservedPoint& { return point(point_number); }, keyframe);
   if (keyframe.sightings.size() != known.features) {
     readers[kFeaturesOfView].fail("has a number of features other than in the section lookup");
   }
-  keyframe.words = read_narrow_words_of(readers[kWordsOfView], file_.words, known.features);
+  keyframe.words = read_words_of(readers[kWordsOfView], file_.words, known.features);
   readers[kWordsOfView].require_end();
   return keyframe;
 }
@@ -146,7 +145,7 @@ MapFileSource::Block MapFileSource::read_block(std::uint32_t number) const {
   Block block(std::min(kPointsOfBlock, file_.point_count - first));
   for (std::uint32_t i = 0; i < block.size(); ++i) {
     auto& [point, observations] = block[i];
-    const std::uint32_t reference = read_rounded_point(points, first + i, point);
+    const std::uint32_t reference = read_point(points, first + i, point);
     observations = read_observers(observers, lookup_.keyframes);
     if (reference >= observations.size()) {
       require_no_fault(points, "has a reference keyframe that does not observe it", "point", first + i);

@@ -24,7 +24,6 @@ class MapFileSource : public MapSource {
     std::uint32_t point_count = 0;
     std::vector<Rig> rigs;
     WordsHead words;
-    bool has_packed_patches = true;  // since format 7
   };
 
   MapFileSource(File file, Lookup lookup);

@@ -283,7 +283,7 @@ TEST(BrokenSections, AreRejectedIfAKeyframeWithoutFeaturesHasWords) {
 
 TEST(BrokenSections, AreRejectedIfTooShortOrTooLong) {
   const MapBytes sound = write_map(StoredMapScene().stored_with_plan());
-  for (std::size_t i = 0; i < section_count(sound); ++i) {
+  for (std::size_t i = 0; i < kSections; ++i) {
     const TableEntry section = table_entry(sound, i);
     if (section.size == 0) continue;
     MapBytes shorter = sound;

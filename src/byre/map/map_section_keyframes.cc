@@ -74,8 +74,7 @@ std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, s
   return keyframes;
 }
 
-void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer,
-                        PartSizes& sizes) {
+void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer, PartSizes& sizes) {
   Word greatest = 0;
   for (const Keyframe* const keyframe : keyframes) {
     for (const Word word : keyframe->words) greatest = std::max(greatest, word);
@@ -101,7 +100,7 @@ WordsHead read_words_head(ByteReader& reader) {
   return head;
 }
 
-std::vector<Word> read_narrow_words_of(ByteReader& reader, const WordsHead& head, std::size_t features) {
+std::vector<Word> read_words_of(ByteReader& reader, const WordsHead& head, std::size_t features) {
   std::vector<Word> words;
   if (!read_bool(reader)) return words;
   require_word_flag(reader, features, head.vocabulary_checksum);
@@ -111,31 +110,18 @@ std::vector<Word> read_narrow_words_of(ByteReader& reader, const WordsHead& head
   return words;
 }
 
-std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes) {
+std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes) {
   const WordsHead head = read_words_head(reader);
   Word greatest = 0;
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const std::size_t before = reader.remaining();
-    keyframes[i].words = read_narrow_words_of(reader, head, keyframes[i].sightings.size());
+    keyframes[i].words = read_words_of(reader, head, keyframes[i].sightings.size());
     for (const Word word : keyframes[i].words) greatest = std::max(greatest, word);
     sizes.views[i][kWordsOfView] = static_cast<std::uint32_t>(before - reader.remaining());
   }
   if (bytes_for_word(greatest) != head.bytes_each) reader.fail("has words with more bytes than necessary");
   reader.require_end();
   return head.vocabulary_checksum;
-}
-
-std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes) {
-  const auto vocabulary_checksum = reader.read<std::uint64_t>();
-  for (Keyframe& keyframe : keyframes) {
-    if (!read_bool(reader)) continue;
-    require_word_flag(reader, keyframe.sightings.size(), vocabulary_checksum);
-    const std::span<const std::byte> bytes = reader.take(keyframe.sightings.size() * sizeof(Word));
-    keyframe.words.resize(keyframe.sightings.size());
-    std::memcpy(keyframe.words.data(), bytes.data(), bytes.size());
-  }
-  reader.require_end();
-  return vocabulary_checksum;
 }
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-// Locations of keyframes and points in other sections, and covisibility of keyframes; since format 6.
+// Locations of keyframes and points in other sections, and covisibility of keyframes.
 
 #include "byre/map/map_numbers.h"
 #include "byre/map/map_sections.h"

@@ -1,10 +1,9 @@
-// Reads keypoints, descriptors, patches and measurements of keyframes since format 5, rounded to quanta.
+// Reads keypoints, descriptors, patches and measurements of keyframes, rounded to quanta.
 
 #include "byre/base/task_threads.h"
 #include "byre/input_error.h"
 #include "byre/map/descriptor_difference.h"
 #include "byre/map/map_numbers.h"
-#include "byre/map/map_observers.h"
 #include "byre/map/map_quanta.h"
 #include "byre/map/map_sections.h"
 #include "byre/map/map_values.h"
@@ -12,6 +11,7 @@
 #include "byre/map/packed_steps.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -100,36 +100,31 @@ std::vector<Descriptor> read_descriptors(ByteReader& reader, const std::vector<S
   return descriptors;
 }
 
-Patch read_patch(ByteReader& reader, bool is_packed, std::size_t keyframe) {
+Patch read_patch(ByteReader& reader, std::size_t keyframe) {
   PatchCode code;
   code.darkest = reader.read<std::uint8_t>();
   code.brightest = reader.read<std::uint8_t>();
   reader.read_all<std::uint16_t>(code.centre);
-  if (is_packed) {
-    code.steps = read_packed_steps(reader);
-  } else {
-    reader.read_all<std::uint8_t>(code.steps);
-  }
+  code.steps = read_packed_steps(reader);
   const std::optional<Patch> patch = patch_of(code);
   require_no_fault(reader, patch ? fault_in(*patch) : "has an invalid patch", "keyframe", keyframe);
   return *patch;
 }
 
-struct RoundedPatches {
+struct KeptPatches {
   std::vector<Patch> patches;
   std::vector<int> patch_of_keypoint;  // -1: none
 };
 
-RoundedPatches read_rounded_patches(ViewSections& sections, const std::vector<std::uint8_t>& bits,
-                                    std::size_t keyframe) {
-  RoundedPatches kept;
+KeptPatches read_patches(ViewSections& sections, const std::vector<std::uint8_t>& bits, std::size_t keyframe) {
+  KeptPatches kept;
   kept.patch_of_keypoint.assign(bits.size(), -1);
   kept.patches.reserve(
       static_cast<std::size_t>(std::ranges::count_if(bits, [](std::uint8_t each) { return (each & kHasPatch) != 0; })));
   for (std::size_t i = 0; i < bits.size(); ++i) {
     if ((bits[i] & kHasPatch) == 0) continue;
     kept.patch_of_keypoint[i] = static_cast<int>(kept.patches.size());
-    kept.patches.push_back(read_patch(sections.patches, sections.has_packed_patches, keyframe));
+    kept.patches.push_back(read_patch(sections.patches, keyframe));
   }
   return kept;
 }
@@ -137,7 +132,7 @@ RoundedPatches read_rounded_patches(ViewSections& sections, const std::vector<st
 // Data of a keyframe without its descriptors.
 struct PartOfView {
   ReadKeypoints keypoints;
-  RoundedPatches patches;
+  KeptPatches patches;
 };
 
 std::shared_ptr<const Features> features_of_view(const ByteReader& reader, PartOfView part,
@@ -163,6 +158,33 @@ ViewSizes remaining(const ViewSections& sections) {
   return sizes;
 }
 
+// Checks observations while sightings are read keyframe by keyframe. Fails for a point with two observations by one
+// keyframe, and at the end for a point without observations.
+class PointObservers {
+ public:
+  explicit PointObservers(std::size_t point_count) : last_observer_(point_count, kNoObserver) {}
+
+  std::size_t point_count() const { return last_observer_.size(); }
+
+  // Precondition: point < point_count().
+  void add(const ByteReader& reader, std::uint32_t point, std::uint32_t keyframe) {
+    if (last_observer_[point] == keyframe) require_no_fault(reader, "is observed twice by a keyframe", "point", point);
+    last_observer_[point] = keyframe;
+  }
+
+  void require_all_observed(const ByteReader& reader) const {
+    for (std::size_t point = 0; point < last_observer_.size(); ++point) {
+      if (last_observer_[point] == kNoObserver)
+        require_no_fault(reader, "is not observed by any keyframe", "point", point);
+    }
+  }
+
+ private:
+  static constexpr auto kNoObserver = std::numeric_limits<std::uint32_t>::max();
+
+  std::vector<std::uint32_t> last_observer_;  // number of the last keyframe that observes each point
+};
+
 // Reads keyframes' features and sightings from sections with one part per keyframe.
 class ViewReader {
  public:
@@ -176,7 +198,7 @@ class ViewReader {
     std::vector<Descriptor> descriptors =
         read_descriptors(sections_.descriptors, keyframe.sightings,
                          [this](std::uint32_t point) -> const Descriptor& { return points_[point].descriptor; });
-    part.patches = read_rounded_patches(sections_, part.keypoints.bits, number);
+    part.patches = read_patches(sections_, part.keypoints.bits, number);
     keyframe.frame.features =
         features_of_view(sections_.features, std::move(part), std::move(descriptors), rig, number);
     set_taken(before, remaining(sections_), sizes);
@@ -186,7 +208,7 @@ class ViewReader {
   PartOfView read_part(std::uint32_t number, const Rig& rig, Keyframe& keyframe) {
     PartOfView part{read_keypoints(sections_.features, rig, number), {}};
     keyframe.sightings = read_observed(part.keypoints, number);
-    part.patches = read_rounded_patches(sections_, part.keypoints.bits, number);
+    part.patches = read_patches(sections_, part.keypoints.bits, number);
     return part;
   }
 
@@ -209,15 +231,6 @@ class ViewReader {
   PointObservers observers_;
 };
 
-void skip_patch(ViewSections& sections) {
-  if (!sections.has_packed_patches) {
-    sections.patches.take(kPatchHeadBytes + sizeof(PatchCode::steps));
-    return;
-  }
-  sections.patches.take(kPatchHeadBytes);
-  skip_packed_steps(sections.patches);
-}
-
 // Skips features of a keyframe without checking values. Calls visit for each with its point, or nullptr.
 template <typename Visitor>
 void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, ViewSections& sections, Visitor visit) {
@@ -225,7 +238,10 @@ void skip_view(std::uint32_t count, const Rig& rig, std::size_t point_bytes, Vie
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto bits = sections.features.read<std::uint8_t>();
     sections.features.take(pixel_bytes + ((bits & kHasDisparity) != 0 ? kDisparityBytes + 1 : 0));
-    if ((bits & kHasPatch) != 0) skip_patch(sections);
+    if ((bits & kHasPatch) != 0) {
+      sections.patches.take(kPatchHeadBytes);
+      skip_packed_steps(sections.patches);
+    }
     if ((bits & kSeesPoint) == 0) {
       visit(nullptr);
       continue;
@@ -405,7 +421,7 @@ void read_view(ViewSections parts, std::uint32_t number, const Rig& rig, std::si
   std::vector<Descriptor> descriptors =
       read_descriptors(parts.descriptors, keyframe.sightings,
                        [&](std::uint32_t point) -> const Descriptor& { return find_point(point).point.descriptor; });
-  part.patches = read_rounded_patches(parts, part.keypoints.bits, number);
+  part.patches = read_patches(parts, part.keypoints.bits, number);
   keyframe.frame.features = features_of_view(parts.features, std::move(part), std::move(descriptors), rig, number);
   for (const ByteReader* const read : {&parts.features, &parts.patches, &parts.observations, &parts.descriptors}) {
     read->require_end();

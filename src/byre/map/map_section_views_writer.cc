@@ -1,4 +1,4 @@
-// Writes keyframes' features and sightings in format 7; map_section_views.cc reads them.
+// Writes keyframes' features and sightings; map_section_views.cc reads them.
 
 #include "byre/map/descriptor_difference.h"
 #include "byre/map/map_numbers.h"
@@ -68,6 +68,11 @@ ViewSizes written(const ViewWriters& sections) {
 }
 
 }  // namespace
+
+const Features& features_of(const Keyframe& keyframe) {
+  static const Features kNone;
+  return keyframe.frame.features ? *keyframe.frame.features : kNone;
+}
 
 void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes) {
   sizes.views.reserve(keyframes.size());

@@ -52,15 +52,6 @@ std::vector<Rig> read_rigs(ByteReader reader);
 void write_keyframes(const Keyframes& keyframes, ByteWriter& writer);
 std::vector<Keyframe> read_keyframes(ByteReader reader, std::size_t rig_count, std::size_t recording_count);
 
-// Formats 1 to 4: sets keypoints, descriptors and some patches, which have their own section, of the keyframes.
-void read_features(ByteReader features, ByteReader patches, const std::vector<Rig>& rigs,
-                   std::vector<Keyframe>& keyframes);
-std::vector<MapPoint> read_points(ByteReader reader);
-// Sets the sightings of the keyframes. Every point's reference must be one of them.
-void read_observations(ByteReader reader, const std::vector<MapPoint>& points, std::vector<Keyframe>& keyframes);
-// Sets the words of the keyframes and returns the checksum of their vocabulary.
-std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes);
-
 // Sections with one part per keyframe, in the order of the lookup.
 enum ViewSection : std::size_t {
   kFeaturesOfView,
@@ -78,15 +69,15 @@ struct PartSizes {
   std::vector<std::uint32_t> points;                            // per block of kPointsOfBlock points
 };
 
-// Since format 5, rounded to quanta. Of the calls that fill in sizes, points come first and words last.
-void write_rounded_points(const Map& map, ByteWriter& writer, PartSizes& sizes);
+// Rounded to quanta. Of the calls that fill in sizes, points come first and words last.
+void write_points(const Map& map, ByteWriter& writer, PartSizes& sizes);
 struct RoundedPoints {
   std::vector<MapPoint> points;           // without references
   std::vector<std::uint32_t> references;  // per point: which of its observations is the reference, from 0
 };
-RoundedPoints read_rounded_points(ByteReader reader, PartSizes& sizes);
+RoundedPoints read_points(ByteReader reader, PartSizes& sizes);
 // Reads the next point without its reference. Returns which of its observations is the reference.
-std::uint32_t read_rounded_point(ByteReader& reader, std::uint32_t number, MapPoint& point);
+std::uint32_t read_point(ByteReader& reader, std::uint32_t number, MapPoint& point);
 
 // Keyframes' features and sightings; all sections have one part per keyframe.
 struct ViewWriters {
@@ -94,7 +85,6 @@ struct ViewWriters {
 };
 struct ViewSections {
   ByteReader features, patches, observations, descriptors;
-  bool has_packed_patches = true;  // since format 7
 };
 void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes);
 // Sets the features and sightings of the keyframes, and the references of the points.
@@ -105,19 +95,18 @@ void read_views(const ViewSections& sections, RoundedPoints& points, const std::
 void read_view(ViewSections parts, std::uint32_t number, const Rig& rig, std::size_t point_count,
                const std::function<const ObservedPoint&(std::uint32_t)>& find_point, Keyframe& keyframe);
 
-void write_narrow_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer,
-                        PartSizes& sizes);
+void write_words(const Keyframes& keyframes, std::uint64_t vocabulary_checksum, ByteWriter& writer, PartSizes& sizes);
 struct WordsHead {
   std::uint64_t vocabulary_checksum = 0;
   std::size_t bytes_each = 1;
 };
 WordsHead read_words_head(ByteReader& reader);
 // Reads the words of one keyframe at the reader's position.
-std::vector<Word> read_narrow_words_of(ByteReader& reader, const WordsHead& head, std::size_t features);
+std::vector<Word> read_words_of(ByteReader& reader, const WordsHead& head, std::size_t features);
 // Sets the words of the keyframes and returns the checksum of their vocabulary.
-std::uint64_t read_narrow_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes);
+std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes);
 
-// Since format 6: locations of parts in other sections, observations of points, and covisibility of keyframes, for
+// Locations of parts in other sections, observations of points, and covisibility of keyframes, for
 // separate access to keyframes and points.
 struct PartSections {
   std::array<std::span<const std::byte>, kViewSections> views;

@@ -10,7 +10,7 @@
 
 namespace byre {
 
-// Layout of keyframes' features and sightings since format 5: see docs/reference/map_format.md.
+// Layout of keyframes' features and sightings: see docs/reference/map_format.md.
 
 // First byte of a keypoint; its lowest bits are the octave.
 inline constexpr std::uint8_t kOctaveBits = 7;

@@ -177,4 +177,17 @@ inline std::string refusal_of(std::span<const std::byte> bytes) {
   }
 }
 
+inline StoredMap with_refined_calibration(StoredMap stored) {
+  RefinedCalibration refined;
+  refined.calibration = changed(stored.recordings.front().calibration, CalibrationVector::Constant(0.5));
+  refined.change.setConstant(0.5);
+  refined.sigma_before.setConstant(2.0);
+  refined.sigma_after.setConstant(0.125);
+  refined.keyframes = 41;
+  refined.observations = 12345;
+  refined.shift = 0.25;
+  stored.recordings.front().refined = refined;
+  return stored;
+}
+
 }  // namespace byre

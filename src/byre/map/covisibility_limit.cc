@@ -1,11 +1,7 @@
-// Observations in formats 1 to 4.
+// Limit of covisible keyframes by the size of the map file.
 
-#include "byre/map/map_numbers.h"
-#include "byre/map/map_observers.h"
 #include "byre/map/map_sections.h"
-#include "byre/map/map_values.h"
 
-#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -13,34 +9,6 @@
 
 namespace byre {
 namespace {
-
-constexpr std::size_t kSightingBytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(float);
-
-Sighting read_sighting(ByteReader& reader, std::uint32_t keyframe, PointObservers& observers) {
-  const std::uint32_t point = read_index(reader, observers.point_count(), "point");
-  observers.add(reader, point, keyframe);
-  Sighting sighting{PointId{Origin::offline, point}, read_vector<Eigen::Vector2f>(reader), reader.read<float>()};
-  require_no_fault(reader, fault_in(sighting), "keyframe", keyframe);
-  return sighting;
-}
-
-void read_sightings(ByteReader& reader, std::uint32_t number, PointObservers& observers, Keyframe& keyframe) {
-  const std::uint32_t count = reader.read_count(kSightingBytes);
-  std::size_t first_free_feature = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::size_t feature = read_index(reader, keyframe.sightings.size(), "feature");
-    if (feature < first_free_feature) reader.fail("has unsorted features");
-    first_free_feature = feature + 1;
-    keyframe.sightings[feature] = read_sighting(reader, number, observers);
-  }
-}
-
-bool observes(const std::vector<Keyframe>& keyframes, const Observation& observation, std::uint32_t point) {
-  if (observation.keyframe.number >= keyframes.size()) return false;
-  const std::vector<Sighting>& sightings = keyframes[observation.keyframe.number].sightings;
-  const auto feature = static_cast<std::size_t>(observation.feature);
-  return feature < sightings.size() && sightings[feature].point == PointId{Origin::offline, point};
-}
 
 // Keyframes that observe each point, concatenated over points.
 struct Observers {
@@ -110,21 +78,6 @@ bool has_too_many_covisible_keyframes(const std::vector<Keyframe>& keyframes, st
     count += count_covisible_keyframes(keyframes[i], i, observers, last_met_by);
   }
   return count > allowed;
-}
-
-void read_observations(ByteReader reader, const std::vector<MapPoint>& points, std::vector<Keyframe>& keyframes) {
-  const std::size_t section_bytes = reader.remaining();
-  PointObservers observers(points.size());
-  for (std::uint32_t i = 0; i < keyframes.size(); ++i) read_sightings(reader, i, observers, keyframes[i]);
-  reader.require_end();
-  observers.require_all_observed(reader);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (observes(keyframes, points[i].reference, i)) continue;
-    require_no_fault(reader, "has a reference keyframe that does not observe it", "point", i);
-  }
-  if (has_too_many_covisible_keyframes(keyframes, points.size(), section_bytes)) {
-    reader.fail("has more covisible keyframes than a file of this size can hold");
-  }
 }
 
 }  // namespace byre
