@@ -263,7 +263,6 @@ void optimise_graph(benchmark::State& state, bool scale_is_free) {
       1, {.nodes = 1000, .radius = 20.0, .links = 2, .loops = 6, .position_noise = 0.02, .rotation_noise = 0.002});
   const PoseGraph drifted = with_odometry(measured);
   PoseGraphOptions options;
-  options.loss = RobustLoss::cauchy;
   options.scale_is_free = scale_is_free;
   PoseGraphResult result;
   for (auto _ : state) result = optimise_pose_graph(drifted, options);

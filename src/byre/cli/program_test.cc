@@ -106,10 +106,8 @@ TEST_F(Program, ListsTheChoicesOfAnOption) {
   const std::string evaluate = "evaluate --estimate estimate.txt --truth estimate.txt ";
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"map . --pace fast", "--pace: 'fast' is not one of: inline, live, paced"},
-      {"map . --refine 2", "--refine: '2' is not one of: all, none, stereo"},
       {"map . --format csv", "--format: 'csv' is not one of: euroc, kitti, tum"},
       {"run . --map m --frame world", "--frame: 'world' is not one of: map, plan"},
-      {"run . --map m --offline-policy x", "--offline-policy: 'x' is not one of: first, together"},
       {evaluate + "--alignment rigid", "--alignment: 'rigid' is not one of: none, origin, se3, sim3"},
       {evaluate + "--label best", "--label: 'best' is not one of: causal, final"},
       {evaluate + "--frames-of . --estimate-of x", "--estimate-of: 'x' is not one of: body, camera"},

@@ -224,7 +224,7 @@ void Extractor::State::describe_octave(int octave, int quota) {
     keypoint.angle = orientation(level.ptr<std::uint8_t>(corner.y) + corner.x, static_cast<std::ptrdiff_t>(level.step));
     found.descriptors.push_back(describe(smooth.ptr<std::uint8_t>(corner.y) + corner.x,
                                          static_cast<std::ptrdiff_t>(smooth.step), keypoint.angle));
-    if (options.refinement == Refinement::all) found.patches.push_back(cut_patch(level, corner.x, corner.y));
+    found.patches.push_back(cut_patch(level, corner.x, corner.y));
     found.keypoints.push_back(keypoint);
   }
 }
@@ -237,7 +237,7 @@ std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all() {
   keypoints.clear();
   descriptors.clear();
   patches->clear();
-  if (options.refinement == Refinement::all) patches->reserve(static_cast<std::size_t>(options.max_features));
+  patches->reserve(static_cast<std::size_t>(options.max_features));
   for (const Described& found : described) {
     keypoints.insert(keypoints.end(), found.keypoints.begin(), found.keypoints.end());
     descriptors.insert(descriptors.end(), found.descriptors.begin(), found.descriptors.end());
@@ -248,15 +248,13 @@ std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all() {
 
 void Extractor::State::match_right() {
   constexpr std::size_t kAtOnce = 64;  // keypoints a task
-  StereoOptions stereo_options;
-  stereo_options.refine = options.refinement != Refinement::none;
   const std::span<Keypoint> all = keypoints;
   stereo_matches.resize(all.size());
   threads.run(static_cast<int>((all.size() + kAtOnce - 1) / kAtOnce), [&](int task) {
     const std::size_t first = static_cast<std::size_t>(task) * kAtOnce;
     const std::span<Keypoint> some = all.subspan(first, std::min(kAtOnce, all.size() - first));
     const std::span matches = std::span(stereo_matches).subspan(first, some.size());
-    match_stereo(left, right, rectifier.rig(), some, stereo_options, matches);
+    match_stereo(left, right, rectifier.rig(), some, {}, matches);
     store_disparities<StereoMatch>(matches, some);
     for (std::size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) some[i].row_offset = matches[i]->row_offset;
@@ -274,18 +272,6 @@ void Extractor::State::time_rows() {
   for (Keypoint& keypoint : keypoints) {
     keypoint.row_time = (rectifier.source_row(keypoint.pixel) + 0.5f) / height - 0.5f;
   }
-}
-
-std::string_view name_of(Refinement refinement) {
-  switch (refinement) {
-    case Refinement::none:
-      return "none";
-    case Refinement::stereo:
-      return "stereo";
-    case Refinement::all:
-      return "all";
-  }
-  return "";
 }
 
 Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options)

@@ -7,20 +7,13 @@
 
 #include <cstdint>
 #include <memory>
-#include <string_view>
 
 namespace byre {
-
-// Matches to refine to sub-pixel accuracy. Settings other than all are for comparison.
-enum class Refinement : std::uint8_t { none, stereo, all };  // stereo: only left to right; all: also over time
-
-std::string_view name_of(Refinement refinement);
 
 struct ExtractOptions {
   int max_features = 1000;
   int fast_threshold = 20;     // grey values
   int min_fast_threshold = 7;  // used in dull parts of the image
-  Refinement refinement = Refinement::all;
   DepthOptions depth{};
   int threads = 2;  // threads per frame, including the caller's; does not affect the result
 };

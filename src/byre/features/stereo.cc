@@ -110,7 +110,6 @@ std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& rig
 
 std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
                                      double max_disparity, const StereoOptions& options) {
-  constexpr float kRoundingSigma = 0.29f;  // standard deviation of rounding to whole pixels
   const float scale = kScaleOfOctave[keypoint.octave];
   const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
   const int x = static_cast<int>(std::lround(centre.x()));
@@ -119,8 +118,7 @@ std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, 
   if (y < kRowReach || y + kRowReach >= left.rows || x != clamp_column(left, x)) return std::nullopt;
   const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options);
   if (!right_x) return std::nullopt;
-  const auto match = options.refine ? refine_column(left, right, x, y, *right_x, options)
-                                    : OctaveMatch{static_cast<float>(x - *right_x), kRoundingSigma, 0.0f};
+  const auto match = refine_column(left, right, x, y, *right_x, options);
   if (!match || !(match->disparity > 0.0f)) return std::nullopt;
   return StereoMatch{match->disparity * scale, match->sigma * scale, match->row_offset * scale};
 }

@@ -15,7 +15,6 @@ struct StereoOptions {
   float max_vertical_error = 1.2f;  // octave pixels, largest row error of the rectification
   float min_similarity = 0.85f;     // similarity of the refined match, see Alignment
   float min_sigma = 0.08f;          // octave pixels
-  bool refine = true;               // false: whole octave pixels, for comparison
 };
 
 struct StereoMatch {

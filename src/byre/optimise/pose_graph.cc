@@ -78,18 +78,6 @@ GraphRoles choose_roles(const PoseGraph& graph) {
   return roles;
 }
 
-std::unique_ptr<ceres::LossFunction> make_loss(RobustLoss loss, double width) {
-  switch (loss) {
-    case RobustLoss::none:
-      return nullptr;
-    case RobustLoss::huber:
-      return std::make_unique<ceres::HuberLoss>(width);
-    case RobustLoss::cauchy:
-      return std::make_unique<ceres::CauchyLoss>(width);
-  }
-  return nullptr;
-}
-
 // Parameter blocks of a node, as in PoseGraphCost.
 struct NodeBlocks {
   explicit NodeBlocks(const PoseGraphNode& node)
@@ -115,14 +103,15 @@ class CeresGraph {
     for (const int i : roles.edges) costs_.emplace_back(graph.edges[i], options.scale_is_free);
   }
 
-  ceres::Solver::Summary solve(const PoseGraph& graph, const GraphRoles& roles, RobustLoss robust_loss) {
-    const auto loss = make_loss(robust_loss, options_.loss_width);
+  ceres::Solver::Summary solve(const PoseGraph& graph, const GraphRoles& roles) {
+    ceres::HuberLoss huber(options_.loss_width);
+    ceres::LossFunction* const loss = options_.is_robust ? &huber : nullptr;
     ceres::Problem problem(non_owning_problem_options());
     auto cost = costs_.begin();
     for (const int i : roles.edges) {
       const auto first = nodes_[graph.edges[i].first].addresses();
       const auto second = nodes_[graph.edges[i].second].addresses();
-      problem.AddResidualBlock(&*cost++, loss.get(), first[0], first[1], first[2], second[0], second[1], second[2]);
+      problem.AddResidualBlock(&*cost++, loss, first[0], first[1], first[2], second[0], second[1], second[2]);
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (problem.HasParameterBlock(nodes_[i].addresses()[0]))
@@ -173,23 +162,15 @@ PoseGraphResult unchanged_result(const PoseGraph& graph) {
   return result;
 }
 
-// The losses to minimise one after the other.
-std::vector<RobustLoss> stages(RobustLoss loss) {
-  if (loss == RobustLoss::cauchy) return {RobustLoss::huber, RobustLoss::cauchy};
-  return {loss};
-}
-
 PoseGraphResult solve(const PoseGraph& graph, const GraphRoles& roles, const PoseGraphOptions& options) {
   PoseGraphResult result = unchanged_result(graph);
   if (roles.edges.empty()) return result;
   CeresGraph ceres_graph(graph, roles, options);
-  for (const RobustLoss loss : stages(options.loss)) {
-    const ceres::Solver::Summary summary = ceres_graph.solve(graph, roles, loss);
-    result.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first entry is the start
-    result.usable = summary.IsSolutionUsable();
-    if (!result.usable) return result;
-    result.cost = summary.final_cost;
-  }
+  const ceres::Solver::Summary summary = ceres_graph.solve(graph, roles);
+  result.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);  // the first entry is the start
+  result.usable = summary.IsSolutionUsable();
+  if (!result.usable) return result;
+  result.cost = summary.final_cost;
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     if (options.scale_is_free) result.scales[i] = std::exp(ceres_graph.node(i).log_scale);
     if (roles.node_moves[i]) result.camera_from_world[i] = ceres_graph.node(i).camera_from_world();

@@ -33,13 +33,9 @@ struct PoseGraph {
   std::vector<PoseGraphEdge> edges;
 };
 
-// Loss of an edge's error. Huber's is linear for large errors and converges from a distant start. Cauchy's is
-// logarithmic, so that false edges lose nearly all influence; it starts from the result of Huber's.
-enum class RobustLoss { none, huber, cauchy };
-
 struct PoseGraphOptions {
-  int max_iterations = 50;  // per loss
-  RobustLoss loss = RobustLoss::huber;
+  int max_iterations = 50;
+  bool is_robust = true;       // Huber's loss of an edge's error: linear for large errors
   double loss_width = 4.0;     // sigmas of an edge's total error; 4 is the 99 % quantile of a correct edge
   bool scale_is_free = false;  // optimises similarities, except for nodes with scale_is_known (Strasdat 2010)
   int threads = 1;             // one thread keeps the order of sums and hence the result reproducible

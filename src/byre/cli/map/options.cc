@@ -130,8 +130,6 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_frame_range(command, options.range);
   declare_live_options(command, options.live, options.method);
   declare_pace(command, options.method);
-  declare_method_option(command, "--refine", "features.refinement", options.method,
-                        "Matches refined to subpixel precision; less than all for comparison");
   declare_trajectory_format(command, options.trajectory_format);
   declare_recording(command, options.record, options.record_images);
   declare_options_file(command, options.method);

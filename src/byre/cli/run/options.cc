@@ -131,9 +131,6 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_pace(command, options.method);
   declare_method_option(command, "--offline-weight", "tracking.offline_weight", options.method,
                         "Weight of an observation of an offline point; online points have 1");
-  declare_method_option(command, "--offline-policy", "tracking.offline_policy", options.method,
-                        "Order of the search: offline points first, whose pose guides the search for online ones, or "
-                        "both together");
   declare_run_viewer_options(command, options.view);
   declare_trajectory_format(command, options.trajectory_format);
   declare_recording(command, options.record, options.record_images);

@@ -40,7 +40,6 @@ Json options_json(const MethodOptions& options) {
   return {{"max_features", options.extract.max_features},
           {"fast_threshold", options.extract.fast_threshold},
           {"min_fast_threshold", options.extract.min_fast_threshold},
-          {"refinement", name_of(options.extract.refinement)},
           {"min_initial_points", options.session.min_initial_points},
           {"local_keyframes", options.session.local_keyframes},
           {"movable_keyframes", options.session.window.movable},
@@ -81,7 +80,6 @@ Json protocol_json(const MapProtocol& protocol) {
     if (protocol.plan) json["registration"] = registration_json(*protocol.plan);
     json["localise_only"] = !protocol.options.session.map_online;
     json["offline_weight"] = protocol.options.session.track.offline_weight;
-    json["offline_policy"] = name_of(protocol.options.session.track.offline_policy);
   }
   json["options"] = options_json(protocol.options);
   json["body_covariance"] = kCovariance;

@@ -112,18 +112,16 @@ bool is_another_place(const Pose& offline, const std::optional<Pose>& online, co
 std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted) {
   ByMap<std::vector<ExpectedPoint>>& expected = query.memory.at_prediction;
   project(query, {predicted, predicted}, expected);
-  if (query.options.offline_policy == OfflinePolicy::first) {
-    if (const auto offline = guess(query, predicted, expected.offline)) {
-      const double depth = median_depth(query, expected.offline, predicted);
-      const auto differ_by = [&](const Pose& other) { return apparent_shift(*offline, other, depth, query.rig); };
-      if (differ_by(predicted) < kNarrowRadius) return ByMap<Pose>{*offline, *offline};
-      const auto online = guess(query, predicted, expected.online);
-      if (is_another_place(*offline, online, predicted, query.limits)) {
-        return online ? std::optional(ByMap<Pose>{*online, *online}) : std::nullopt;
-      }
-      const bool contradict = online && differ_by(*online) > 0.5 * kNarrowRadius;
-      return ByMap<Pose>{*offline, contradict ? *online : *offline};
+  if (const auto offline = guess(query, predicted, expected.offline)) {
+    const double depth = median_depth(query, expected.offline, predicted);
+    const auto differ_by = [&](const Pose& other) { return apparent_shift(*offline, other, depth, query.rig); };
+    if (differ_by(predicted) < kNarrowRadius) return ByMap<Pose>{*offline, *offline};
+    const auto online = guess(query, predicted, expected.online);
+    if (is_another_place(*offline, online, predicted, query.limits)) {
+      return online ? std::optional(ByMap<Pose>{*online, *online}) : std::nullopt;
     }
+    const bool contradict = online && differ_by(*online) > 0.5 * kNarrowRadius;
+    return ByMap<Pose>{*offline, contradict ? *online : *offline};
   }
   std::vector<ExpectedPoint>& all = query.memory.all_at_prediction;
   all = expected.offline;

@@ -46,18 +46,12 @@ class TrackHybrid : public ::testing::Test {
     return options;
   }
 
-  std::optional<HybridTrack> track_frame(OfflinePolicy policy = OfflinePolicy::first) const {
-    return track_frame(truth_, policy);
-  }
-  std::optional<HybridTrack> track_frame(const Pose& predicted, OfflinePolicy policy,
-                                         const HybridLimits& limits = {}) const {
+  std::optional<HybridTrack> track_frame() const { return track_frame(truth_); }
+  std::optional<HybridTrack> track_frame(const Pose& predicted, const HybridLimits& limits = {}) const {
     std::vector<PointId> candidates = offline_.point_ids();
     const std::vector<PointId> online = online_.point_ids();
     candidates.insert(candidates.end(), online.begin(), online.end());
-    TrackOptions options;
-    options.offline_policy = policy;
-    return track_hybrid(now_.frames[kFrameTracked], predicted, now_.rig, {&offline_, online_}, candidates, options,
-                        limits);
+    return track_hybrid(now_.frames[kFrameTracked], predicted, now_.rig, {&offline_, online_}, candidates, {}, limits);
   }
 
   // Moves the offline points in this share of the image width, from the left.
@@ -103,15 +97,13 @@ TEST(AgreementOf, ComparesCameraPositions) {
 }
 
 TEST_F(TrackHybrid, UsesPointsOfBothMapsIfTheyAgree) {
-  for (const OfflinePolicy policy : {OfflinePolicy::first, OfflinePolicy::together}) {
-    const auto track = track_frame(policy);
-    ASSERT_TRUE(track);
-    EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
-    EXPECT_FALSE(track->maps_disagree);
-    EXPECT_GT(track->offline_inliers, 50);
-    EXPECT_EQ(track->offline_agreed.size(), static_cast<std::size_t>(track->offline_inliers));
-    EXPECT_EQ(track->offline_reference->origin, Origin::offline);
-  }
+  const auto track = track_frame();
+  ASSERT_TRUE(track);
+  EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
+  EXPECT_FALSE(track->maps_disagree);
+  EXPECT_GT(track->offline_inliers, 50);
+  EXPECT_EQ(track->offline_agreed.size(), static_cast<std::size_t>(track->offline_inliers));
+  EXPECT_EQ(track->offline_reference->origin, Origin::offline);
 }
 
 TEST_F(TrackHybrid, FollowsTheOfflineMapDespiteADisplacedOnlineMap) {
@@ -119,7 +111,7 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapDespiteADisplacedOnlineMap) {
     Map online = online_;
     move(online_, shift_by(metres));
     const Pose predicted = truth_ * inverse(shift_by(metres));  // predicted by the online map
-    const auto track = track_frame(predicted, OfflinePolicy::first);
+    const auto track = track_frame(predicted);
     ASSERT_TRUE(track) << metres;
     EXPECT_TRUE(track->maps_disagree) << metres;
     EXPECT_TRUE(track->offline_prevails) << metres;
@@ -135,10 +127,10 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapDespiteADisplacedOnlineMap) {
 TEST_F(TrackHybrid, StaysOnTheOnlineMapIfTheOffsetExceedsTheDrift) {
   move(online_, shift_by(0.4));
   const Pose predicted = truth_ * inverse(shift_by(0.4));
-  const auto led_astray = track_frame(predicted, OfflinePolicy::first, {.drift = {0.5, 0.1}});
+  const auto led_astray = track_frame(predicted, {.drift = {0.5, 0.1}});
   ASSERT_TRUE(led_astray);
   EXPECT_THAT(led_astray->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
-  const auto track = track_frame(predicted, OfflinePolicy::first, {.drift = {0.3, 0.1}});
+  const auto track = track_frame(predicted, {.drift = {0.3, 0.1}});
   ASSERT_TRUE(track);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(predicted, 0.01, 0.2 * kDegree));
   EXPECT_FALSE(track->is_online_displaced());
@@ -147,8 +139,8 @@ TEST_F(TrackHybrid, StaysOnTheOnlineMapIfTheOffsetExceedsTheDrift) {
 TEST_F(TrackHybrid, IsLostIfOfflinePointsImplyAnImpossibleMotion) {
   online_ = Map(Origin::online);
   const Pose predicted = truth_ * inverse(shift_by(0.4));
-  EXPECT_TRUE(track_frame(predicted, OfflinePolicy::first, {.stray = 0.5}));
-  EXPECT_FALSE(track_frame(predicted, OfflinePolicy::first, {.stray = 0.3}));
+  EXPECT_TRUE(track_frame(predicted, {.stray = 0.5}));
+  EXPECT_FALSE(track_frame(predicted, {.stray = 0.3}));
 }
 
 class TrackHybridInClutter : public TrackHybrid {
@@ -160,7 +152,7 @@ TEST_F(TrackHybridInClutter, FollowsTheOnlineMapIfFewOfflinePointsAgree) {
   hide_but_each(27);
   move(online_, shift_by(0.06));
   const Pose predicted = truth_ * inverse(shift_by(0.06));
-  const auto track = track_frame(predicted, OfflinePolicy::first);
+  const auto track = track_frame(predicted);
   ASSERT_TRUE(track);
   ASSERT_TRUE(track->from_offline) << "they are enough for a pose";
   EXPECT_LT(track->offline_matches, 0.04 * track->offline_expected);

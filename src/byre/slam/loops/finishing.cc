@@ -128,7 +128,7 @@ std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& place
   for (auto id = ids.rbegin(); id != ids.rend() && !stopped(hooks); ++id) {
     if (id->number < options.first_new) break;
     if (settled.contains(*id)) continue;
-    const auto found = find_loop(map, places, *id, options.loops, options.noise);
+    const auto found = find_loop(map, places, *id, options.loops);
     const auto confirmed = found ? confirmed_by_neighbours(map, *found) : std::nullopt;
     if (!confirmed) continue;
     loops.push_back(*confirmed);

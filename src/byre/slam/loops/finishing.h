@@ -14,7 +14,6 @@ struct FinishOptions {
   LoopOptions loops;
   GlobalMappingOptions global;
   std::vector<KeyframeMotion> motions;  // see odometry_motions
-  PlaceNoise noise;                     // noise of the place candidates of the loop search
   // Number of the first new keyframe, added since the map was last finished. Parts far from new keyframes do not
   // change, see recent_map. 0: the whole map is new.
   std::uint32_t first_new = 0;

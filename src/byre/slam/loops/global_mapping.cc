@@ -212,7 +212,7 @@ void close_loops(MapWindow& window, const std::vector<LoopEdge>& loops, const Ma
   const IndexOfKeyframe index_of = index_keyframes(window);
   PoseGraphOptions graph_options;
   graph_options.scale_is_free = scale_may_drift(window);
-  if (graph_options.scale_is_free) graph_options.loss = RobustLoss::none;  // gaps of many sigmas are expected
+  if (graph_options.scale_is_free) graph_options.is_robust = false;  // gaps of many sigmas are expected
   const PoseGraphResult optimised = optimise_pose_graph(make_pose_graph(window, index_of, loops), graph_options);
   if (optimised.usable) write_back(window, index_of, optimised);
   for (const LoopEdge& loop : loops) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <set>
 #include <utility>
 #include <vector>
@@ -43,20 +42,8 @@ float usual_similarity(const Map& map, const PlaceIndex& index, KeyframeId id, c
   return best;
 }
 
-void disturb(std::vector<PlaceCandidate>& places, const PlaceNoise& noise, KeyframeId id) {
-  if (noise.seed == 0) return;
-  std::mt19937_64 random(noise.seed ^ (std::uint64_t{id.number} << 32));
-  const auto draw = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
-  for (std::size_t i = places.size(); i > 1; --i) std::swap(places[i - 1], places[draw(i)]);
-  constexpr std::size_t kResolution = 1000;
-  std::erase_if(places, [&](const PlaceCandidate&) {
-    return static_cast<double>(draw(kResolution)) < noise.dropped_share * static_cast<double>(kResolution);
-  });
-}
-
 std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
-                                            std::span<const Word> words, const LoopOptions& options,
-                                            const PlaceNoise& noise) {
+                                            std::span<const Word> words, const LoopOptions& options) {
   const Map& map = view.online();
   const std::set<KeyframeId> surroundings = surroundings_of(map, id);
   const auto is_near = [&](KeyframeId other) {
@@ -64,7 +51,6 @@ std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceInde
   };
   std::vector<PlaceCandidate> places = find_places(index, view, words, kLoopPlaces, is_near);
   if (places.empty()) return places;
-  disturb(places, noise, id);
   const float usual = usual_similarity(map, index, id, index.vocabulary().bag_of(words));
   std::erase_if(places, [&](const PlaceCandidate& place) { return place.score < kMinScoreShare * usual; });
   return places;
@@ -151,19 +137,18 @@ const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
 }
 
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
-                                        const LoopOptions& options, const PlaceNoise& noise) {
+                                        const LoopOptions& options) {
   const Keyframe* const keyframe = map.find_keyframe(newest);
   if (keyframe == nullptr) return std::nullopt;
-  return find_loop_by_words(map, index, newest, keyframe->words, options, noise);
+  return find_loop_by_words(map, index, newest, keyframe->words, options);
 }
 
 std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceIndex& index, KeyframeId newest,
-                                                 std::span<const Word> words, const LoopOptions& options,
-                                                 const PlaceNoise& noise) {
+                                                 std::span<const Word> words, const LoopOptions& options) {
   const Keyframe* const keyframe = map.find_keyframe(newest);
   if (keyframe == nullptr || words.empty()) return std::nullopt;
   const MapView view(nullptr, map);
-  const std::vector<PlaceCandidate> places = find_old_places(view, index, newest, words, options, noise);
+  const std::vector<PlaceCandidate> places = find_old_places(view, index, newest, words, options);
   if (places.empty()) return std::nullopt;
   const Localisation found = localise_at(keyframe->frame, words, view.rig_of(*keyframe, newest), view,
                                          index.vocabulary(), places, kStrictness);

@@ -24,12 +24,6 @@ struct LoopEdge {
   double scale_sigma = 0.0;              // standard deviation of the scale's logarithm
 };
 
-// Perturbs place recognition, to test robustness: candidates in random order, some of them missing.
-struct PlaceNoise {
-  double dropped_share = 0.0;  // share of the candidates that are left out
-  std::uint64_t seed = 0;      // seed of the order and of the missing ones; 0: no noise
-};
-
 // Minimum number of frames between loops: until mapping has closed a loop, the next frames would find it again.
 inline constexpr int kMinFramesBetweenLoops = 10;
 
@@ -68,12 +62,11 @@ inline Similarity drift_of(const LoopHypothesis& hypothesis) {
 // the bounds for the path: a fence repeats within metres, but a map does not drift by metres within a few. Without
 // stereo the scale drift is estimated from points that the keyframe sees in both parts.
 std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
-                                        const LoopOptions& options, const PlaceNoise& noise = {});
+                                        const LoopOptions& options);
 
 // Same for a keyframe whose words, one per feature, are not in map and index yet.
 std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceIndex& index, KeyframeId newest,
-                                                 std::span<const Word> words, const LoopOptions& options,
-                                                 const PlaceNoise& noise = {});
+                                                 std::span<const Word> words, const LoopOptions& options);
 
 // Rig of a keyframe.
 const Rig& rig_of(const Map& map, const Keyframe& keyframe);

@@ -15,9 +15,8 @@ namespace byre {
 //   live         on workers; results are applied when ready; recordings are played in real time
 enum class Pace : std::uint8_t { same_thread, paced, live };
 
-// Names of the command line.
+// Name of the command line.
 std::string_view name_of(Pace pace);
-std::string_view name_of(OfflinePolicy policy);
 
 inline constexpr int kPacedLatency = 4;             // frames, for mapping jobs
 inline constexpr int kPacedCorrectionLatency = 40;  // frames, for corrections of the whole map

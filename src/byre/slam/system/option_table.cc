@@ -119,9 +119,6 @@ void add_features(Table& table) {
       "features.min_fast_threshold_grey", "grey values", 1, 255,
       [](auto& o) -> auto& { return o.extract.min_fast_threshold; },
       "FAST threshold in image cells with too few corners at features.fast_threshold_grey"));
-  table.push_back(choice(
-      "features.refinement", {Refinement::none, Refinement::stereo, Refinement::all},
-      [](auto& o) -> auto& { return o.extract.refinement; }, "matches refined to subpixel precision"));
   table.push_back(number(
       "features.threads", "threads", 1, 64, [](auto& o) -> auto& { return o.extract.threads; },
       "threads of feature extraction per frame; results do not depend on the number"));
@@ -172,10 +169,6 @@ void add_tracking(Table& table) {
       "tracking.min_kept_share", "share of the last frame's inliers", 0, 1,
       [](auto& o) -> auto& { return o.session.min_kept_share; },
       "share of inliers below which relocalisation without prediction runs as well"));
-  table.push_back(choice(
-      "tracking.offline_policy", {OfflinePolicy::first, OfflinePolicy::together},
-      [](auto& o) -> auto& { return o.session.track.offline_policy; },
-      "order of the search: offline points first, or both together"));
   table.push_back(number(
       "tracking.offline_weight", "weight of an online point", 1e-3, 1e3,
       [](auto& o) -> auto& { return o.session.track.offline_weight; },

@@ -67,16 +67,6 @@ std::string_view name_of(Pace pace) {
   return "";
 }
 
-std::string_view name_of(OfflinePolicy policy) {
-  switch (policy) {
-    case OfflinePolicy::first:
-      return "first";
-    case OfflinePolicy::together:
-      return "together";
-  }
-  return "";
-}
-
 SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamInputs inputs,
                    const InputCheckOptions& check)
     : given_(given),

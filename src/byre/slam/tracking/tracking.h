@@ -45,16 +45,10 @@ struct SeenPoint {
 // Appends inliers, then outliers, for display.
 void append_seen_points(const TrackedFrame& tracked, std::vector<SeenPoint>& seen);
 
-// Order in which points of an offline and an online map are used.
-//   first     a pose from offline points, if there are enough, guides the search for online ones
-//   together  both are searched around the prediction
-enum class OfflinePolicy : std::uint8_t { first, together };
-
 struct TrackOptions {
   float search_radius = 12.0f;  // pixels at octave 0, around the predicted pixel
   float wide_radius = 40.0f;    // pixels at octave 0, if the first search finds too little
   int min_inliers = 25;
-  OfflinePolicy offline_policy = OfflinePolicy::first;
   double offline_weight = 2.0;  // weight of a measured offline point; an online one has 1
   ImageMask hidden{};           // image cells without expected points
 };
