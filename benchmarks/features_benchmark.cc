@@ -8,7 +8,7 @@
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 #include "byre/map/map_file.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 
 #include <memory>
 

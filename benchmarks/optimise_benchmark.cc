@@ -3,7 +3,7 @@
 #include "byre/optimise/bundle_adjustment.h"
 #include "byre/optimise/pose_graph_scene.h"
 #include "byre/optimise/pose_refinement.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 #include "byre/slam/tracking/mission_scene.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "hot_loop.h"
 
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 #include "byre/slam/session/session.h"
 
 #include <map>

@@ -1,5 +1,5 @@
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 #include "byre/viewer/web/web_run.h"
 
 #include <utility>

@@ -8,7 +8,7 @@
 #include "byre/place/map_words.h"
 #include "byre/place/vocabulary.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <algorithm>
 #include <memory>

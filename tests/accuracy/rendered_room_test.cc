@@ -5,7 +5,7 @@
 
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

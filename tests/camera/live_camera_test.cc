@@ -3,7 +3,7 @@
 #include "byre/calibration_file.h"
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/recording.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 #include "byre/trajectory_file.h"
 #include "mapped_recording.h"
 

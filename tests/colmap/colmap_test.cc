@@ -5,7 +5,7 @@
 #include "byre/io/colmap/colmap_model.h"
 #include "byre/map/map_file.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <algorithm>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 #include "byre/slam/session/session.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "imperfection.h"
 
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 #include "byre/simulation/rendered_room.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "byre/input_error.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/calibration_file.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 #include "byre/slam.h"
 #include "node_scene.h"
 

@@ -4,7 +4,7 @@
 
 #include "byre/calibration_file.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 #include "byre/slam.h"
 #include "node_fixture.h"
 

@@ -2,7 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/place/vocabulary.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <fstream>
 

@@ -1,7 +1,7 @@
 #include "byre/features/align.h"
 
 #include "byre/features/detect.h"
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 #include "byre/geometry/geometry_matchers.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "byre/features/descriptor.h"
 
 #include "byre/features/brief_pattern.h"
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 
 #include <cmath>
 #include <cstddef>

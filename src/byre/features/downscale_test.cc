@@ -1,6 +1,6 @@
 #include "byre/features/downscale.h"
 
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 
 #include <tuple>
 

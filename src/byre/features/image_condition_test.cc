@@ -1,6 +1,6 @@
 #include "byre/image_condition.h"
 
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 
 #include <opencv2/imgproc.hpp>
 

@@ -1,6 +1,6 @@
 #include "byre/features/pyramid.h"
 
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 #include "byre/geometry/geometry_matchers.h"
 
 #include <cmath>

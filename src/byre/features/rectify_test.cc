@@ -1,6 +1,6 @@
 #include "byre/features/rectify.h"
 
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"
 

@@ -1,7 +1,7 @@
 #include "byre/features/stereo.h"
 
 #include "byre/features/detect.h"
-#include "byre/features/test_images.h"
+#include "byre/features/image_scene.h"
 
 #include <algorithm>
 #include <cmath>

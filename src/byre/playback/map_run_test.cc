@@ -1,6 +1,6 @@
 #include "byre/playback/map_run.h"
 
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 #include "byre/slam.h"
 #include "byre/trajectory_error.h"
 

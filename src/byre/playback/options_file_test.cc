@@ -1,6 +1,6 @@
 #include "byre/playback/options_file.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 #include "byre/slam/system/option_table.h"
 
 #include <algorithm>

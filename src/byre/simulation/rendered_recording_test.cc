@@ -2,7 +2,7 @@
 #include "byre/input_error.h"
 #include "byre/recording.h"
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 #include "byre/trajectory_file.h"
 
 #include <fstream>

@@ -2,7 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <algorithm>
 #include <cmath>

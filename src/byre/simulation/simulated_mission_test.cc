@@ -1,4 +1,4 @@
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 
 #include "byre/features/descriptor.h"
 #include "byre/geometry/geometry_matchers.h"

@@ -1,4 +1,4 @@
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include "byre/geometry/geometry_matchers.h"
 

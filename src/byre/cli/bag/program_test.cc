@@ -2,7 +2,7 @@
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/io/bag/bag_scene.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 
 #include "byre/cli/shared/program_fixture.h"
 #include "byre/playback/archive/register_scene.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <string>
 #include <utility>

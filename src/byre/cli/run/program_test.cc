@@ -5,7 +5,7 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/scaled_copy.h"
 #include "byre/odometry/odometry_calibration.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 #include "byre/slam/frame/state.h"
 #include "byre/trajectory_file.h"
 

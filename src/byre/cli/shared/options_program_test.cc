@@ -1,7 +1,7 @@
 // "--options" and "--print-options": output, precedence and rejection.
 
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>

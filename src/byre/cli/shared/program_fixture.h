@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <algorithm>
 #include <chrono>

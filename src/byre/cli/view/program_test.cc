@@ -1,5 +1,5 @@
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <cstdint>
 #include <iterator>

@@ -1,6 +1,6 @@
 #include "byre/io/colmap/colmap_camera.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <cmath>
 

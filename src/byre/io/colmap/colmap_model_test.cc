@@ -2,7 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/io/colmap/colmap_scene.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #include "byre/floor_plan.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 

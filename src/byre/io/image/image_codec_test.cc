@@ -2,7 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/io/image/opencv_library.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>

@@ -1,6 +1,6 @@
 #include "byre/io/image/image_file.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>

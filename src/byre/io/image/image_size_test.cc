@@ -1,7 +1,7 @@
 #include "byre/io/image/image_size.h"
 
 #include "byre/io/image/image_file.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <algorithm>
 #include <iterator>

@@ -2,7 +2,7 @@
 
 #include "byre/io/image/plan_pixels.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 

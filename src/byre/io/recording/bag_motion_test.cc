@@ -1,7 +1,7 @@
 #include "byre/io/recording/bag_motion.h"
 
 #include "byre/io/bag/bag_scene.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <limits>
 

@@ -1,8 +1,8 @@
 #include "byre/io/recording/bag_recording.h"
 
 #include "byre/io/bag/bag_scene.h"
+#include "byre/io/recording/folder_scene.h"
 #include "byre/io/recording/input_files.h"
-#include "byre/io/recording/test_folder.h"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <functional>
 #include <limits>

@@ -1,7 +1,7 @@
 // Recordings of one camera with a depth camera, in TUM's format.
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 #include "byre/recording.h"
 
 #include <gmock/gmock.h>

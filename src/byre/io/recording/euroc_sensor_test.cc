@@ -1,6 +1,6 @@
 #include "byre/io/recording/euroc_sensor.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 

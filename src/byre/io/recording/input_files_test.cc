@@ -1,6 +1,6 @@
 #include "byre/io/recording/input_files.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #include "byre/io/recording/motion_files.h"
 
 #include "byre/input_error.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include "byre/io/recording/settings_file.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 
 #include <gmock/gmock.h>
 

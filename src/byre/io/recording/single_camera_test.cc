@@ -1,7 +1,7 @@
 // Recordings of one camera: one of a pair, TUM RGB-D folders, folders of images, videos.
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 #include "byre/recording.h"
 
 #include <gmock/gmock.h>

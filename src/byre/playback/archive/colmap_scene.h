@@ -2,7 +2,7 @@
 
 #include "byre/map/map_file.h"
 #include "byre/playback/map_from_poses_run.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 namespace byre {
 

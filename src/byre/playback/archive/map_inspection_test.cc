@@ -1,7 +1,7 @@
 #include "byre/playback/archive/map_inspection.h"
 
 #include "byre/map/stored_map_scene.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 
 #include <numbers>
 

@@ -1,7 +1,7 @@
 #include "byre/playback/archive/scale_by_distance.h"
 
 #include "byre/input_error.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 
 #include <string>
 

@@ -2,7 +2,7 @@
 
 #include "byre/playback/map_run.h"
 #include "byre/recording.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <map>
 #include <set>

@@ -5,7 +5,7 @@
 #include "byre/io/ros/messages.h"
 #include "byre/playback/map_run.h"
 #include "byre/recording.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <filesystem>
 #include <map>

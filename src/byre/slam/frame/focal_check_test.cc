@@ -1,6 +1,6 @@
 #include "byre/slam/frame/focal_check.h"
 
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <random>
 

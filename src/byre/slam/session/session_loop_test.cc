@@ -2,7 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_file.h"
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 #include "byre/slam/session/session_scene.h"
 #include "byre/slam/window/online_copy.h"
 

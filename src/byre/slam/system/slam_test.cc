@@ -5,7 +5,7 @@
 #include "byre/map/map.h"
 #include "byre/map/map_file.h"
 #include "byre/recording.h"
-#include "byre/simulation/rendered_fixture.h"
+#include "byre/simulation/rendered_scene.h"
 
 #include <algorithm>
 #include <cmath>

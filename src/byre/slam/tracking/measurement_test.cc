@@ -3,7 +3,7 @@
 #include "byre/slam/tracking/measurement.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <cmath>
 #include <functional>

@@ -2,7 +2,7 @@
 
 // Simulated missions for tests of tracking, mapping and sessions.
 
-#include "byre/simulation/simulated_mission.h"
+#include "byre/simulation/simulated_mission_scene.h"
 
 #include <algorithm>
 #include <memory>

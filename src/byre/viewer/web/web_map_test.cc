@@ -1,6 +1,6 @@
 #include "byre/viewer/web/web_map.h"
 
-#include "byre/io/recording/test_folder.h"
+#include "byre/io/recording/folder_scene.h"
 #include "byre/map/plan/floor_plan_scene.h"
 #include "byre/viewer/web/web_client_scene.h"
 

@@ -1,9 +1,14 @@
-#include "byre/simulation/simulated_mission.h"
+#pragma once
 
+#include "byre/features.h"
 #include "byre/features/descriptor.h"
+#include "byre/map/map.h"
+#include "byre/rig.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -12,7 +17,40 @@
 #include <utility>
 
 namespace byre {
-namespace {
+
+// A box-shaped room with landmarks on walls, floor and ceiling; the world's origin is its centre. A landmark has a
+// size: its octave grows as the camera approaches, and it is visible over kOctaves octaves only.
+struct SimulationOptions {
+  int landmarks = 2000;
+  Eigen::Vector3d room_size{10.0, 8.0, 4.0};  // metres
+  double pixel_sigma = 0.5;                   // pixels at octave 0, scaled with the octave
+  double disparity_sigma = 0.3;               // pixels at octave 0, scaled with the octave
+  double min_disparity = 1.0;                 // pixels; farther landmarks have no disparity
+  double outlier_ratio = 0.0;                 // share of features moved to a random pixel and disparity
+  double missing_ratio = 0.1;                 // share of visible landmarks that are missed
+  double descriptor_flip_ratio = 0.03;        // share of flipped descriptor bits
+  int max_features = 1000;
+  std::uint64_t seed = 1;        // draws the landmarks; equal for visits to the same room
+  std::uint64_t noise_seed = 1;  // draws all that differs between visits
+};
+
+struct SimulatedMission {
+  Rig rig;
+  Trajectory truth;  // world_from_body
+  std::vector<Frame> frames;
+  std::vector<std::vector<int>> landmark_of_feature;  // per frame and feature: true landmark, or -1 for an outlier
+  std::vector<Eigen::Vector3d> landmarks_in_world;
+};
+
+// Simulates frames without images, for tests of everything above features/. Deterministic. Without a baseline no
+// feature has a disparity.
+SimulatedMission simulate_mission(const Rig& rig, const Trajectory& truth, const SimulationOptions& options);
+
+// The map of an ideal mapping run with every n-th frame a keyframe: true poses, and at their true positions all
+// landmarks seen by two keyframes or by one with disparity.
+Map true_map(const SimulatedMission& mission, int frames_per_keyframe, Origin origin);
+// Helpers of the functions above.
+namespace simulated {
 
 using Random = std::mt19937_64;
 
@@ -24,30 +62,30 @@ struct Landmark {
   Descriptor descriptor{};
 };
 
-double draw_uniform(Random& random, double low, double high) {
+inline double draw_uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-double draw_normal(Random& random, double sigma) {
+inline double draw_normal(Random& random, double sigma) {
   return sigma * std::normal_distribution<double>()(random);
 }
 
-bool draw_chance(Random& random, double probability) {
+inline bool draw_chance(Random& random, double probability) {
   return draw_uniform(random, 0.0, 1.0) < probability;
 }
 
-double draw_log_uniform(Random& random, double low, double high) {
+inline double draw_log_uniform(Random& random, double low, double high) {
   return std::exp(draw_uniform(random, std::log(low), std::log(high)));
 }
 
 // Axis perpendicular to a face of the room, drawn in proportion to face area.
-int draw_axis(Random& random, const Eigen::Vector3d& room_size) {
+inline int draw_axis(Random& random, const Eigen::Vector3d& room_size) {
   const double volume = room_size.prod();
   std::discrete_distribution<int> by_area{volume / room_size.x(), volume / room_size.y(), volume / room_size.z()};
   return by_area(random);
 }
 
-Landmark draw_landmark(Random& random, const Eigen::Vector3d& room_size) {
+inline Landmark draw_landmark(Random& random, const Eigen::Vector3d& room_size) {
   const int across = draw_axis(random, room_size);
   const int first = (across + 1) % 3;
   const int second = (across + 2) % 3;
@@ -68,7 +106,7 @@ Landmark draw_landmark(Random& random, const Eigen::Vector3d& room_size) {
   return landmark;
 }
 
-std::vector<Landmark> draw_landmarks(const SimulationOptions& options) {
+inline std::vector<Landmark> draw_landmarks(const SimulationOptions& options) {
   Random random(options.seed);
   std::vector<Landmark> landmarks;
   landmarks.reserve(static_cast<std::size_t>(options.landmarks));
@@ -77,7 +115,7 @@ std::vector<Landmark> draw_landmarks(const SimulationOptions& options) {
 }
 
 // Octave in which the landmark fills a descriptor patch; empty when none fits.
-std::optional<std::uint8_t> octave_of(const Landmark& landmark, double focal, double distance) {
+inline std::optional<std::uint8_t> octave_of(const Landmark& landmark, double focal, double distance) {
   constexpr double kPatchSize = 31.0;  // octave pixels (ORB, Rublee 2011)
   const double scale = landmark.size * focal / (distance * kPatchSize);
   const auto octave = std::lround(std::log(scale) / std::log(kOctaveScale));
@@ -85,15 +123,15 @@ std::optional<std::uint8_t> octave_of(const Landmark& landmark, double focal, do
   return static_cast<std::uint8_t>(octave);
 }
 
-float angle_of(const Landmark& landmark, const Rig& rig, const Pose& camera_from_world,
-               const Eigen::Vector3d& point_in_camera) {
+inline float angle_of(const Landmark& landmark, const Rig& rig, const Pose& camera_from_world,
+                      const Eigen::Vector3d& point_in_camera) {
   const Eigen::Vector3d direction_in_camera = camera_from_world.rotation * landmark.direction_in_world;
   const Eigen::Vector3d motion = rig.projection_jacobian(point_in_camera) * direction_in_camera;
   return static_cast<float>(std::atan2(motion.y(), motion.x()));
 }
 
 // Noise-free projection; empty when the landmark is not visible.
-std::optional<Keypoint> project(const Landmark& landmark, const Rig& rig, const Pose& camera_from_world) {
+inline std::optional<Keypoint> project(const Landmark& landmark, const Rig& rig, const Pose& camera_from_world) {
   constexpr double kMinDepth = 0.1;  // metres
   const Eigen::Vector3d point_in_camera = camera_from_world * landmark.position_in_world;
   if (point_in_camera.z() < kMinDepth) return std::nullopt;
@@ -111,7 +149,7 @@ std::optional<Keypoint> project(const Landmark& landmark, const Rig& rig, const 
 }
 
 // Adds measurement noise; the pixel may leave the image.
-Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& random) {
+inline Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& random) {
   const double scale = kScaleOfOctave[keypoint.octave];
   keypoint.pixel.x() += static_cast<float>(draw_normal(random, options.pixel_sigma * scale));
   keypoint.pixel.y() += static_cast<float>(draw_normal(random, options.pixel_sigma * scale));
@@ -124,7 +162,7 @@ Keypoint disturb(Keypoint keypoint, const SimulationOptions& options, Random& ra
 }
 
 // The keypoint moved to a random pixel and disparity: an outlier.
-Keypoint displace(Keypoint keypoint, const Rig& rig, const SimulationOptions& options, Random& random) {
+inline Keypoint displace(Keypoint keypoint, const Rig& rig, const SimulationOptions& options, Random& random) {
   constexpr double kNearestDepth = 0.5;  // metres
   keypoint.pixel.x() = static_cast<float>(draw_uniform(random, 0.0, rig.width - 1.0));
   keypoint.pixel.y() = static_cast<float>(draw_uniform(random, 0.0, rig.height - 1.0));
@@ -134,7 +172,7 @@ Keypoint displace(Keypoint keypoint, const Rig& rig, const SimulationOptions& op
   return keypoint;
 }
 
-Descriptor flip_bits(Descriptor descriptor, double ratio, Random& random) {
+inline Descriptor flip_bits(Descriptor descriptor, double ratio, Random& random) {
   for (std::uint64_t& word : descriptor) {
     for (int bit = 0; bit < 64; ++bit) {
       if (draw_chance(random, ratio)) word ^= std::uint64_t{1} << bit;
@@ -149,8 +187,8 @@ struct Detection {
   int landmark = -1;
 };
 
-std::vector<Detection> detect(const std::vector<Landmark>& landmarks, const Rig& rig, const Pose& camera_from_world,
-                              const SimulationOptions& options, Random& random) {
+inline std::vector<Detection> detect(const std::vector<Landmark>& landmarks, const Rig& rig,
+                                     const Pose& camera_from_world, const SimulationOptions& options, Random& random) {
   std::vector<Detection> detections;
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     const std::optional<Keypoint> seen = project(landmarks[i], rig, camera_from_world);
@@ -165,13 +203,13 @@ std::vector<Detection> detect(const std::vector<Landmark>& landmarks, const Rig&
   return detections;
 }
 
-void keep_strongest(std::vector<Detection>& detections, int max_count) {
+inline void keep_strongest(std::vector<Detection>& detections, int max_count) {
   const auto count = std::min(detections.size(), static_cast<std::size_t>(std::max(max_count, 0)));
   std::ranges::stable_sort(detections, std::greater<>{}, [](const Detection& d) { return d.keypoint.response; });
   detections.resize(count);
 }
 
-Features to_features(const std::vector<Detection>& detections, const Rig& rig) {
+inline Features to_features(const std::vector<Detection>& detections, const Rig& rig) {
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;
   for (const Detection& detection : detections) {
@@ -182,7 +220,7 @@ Features to_features(const std::vector<Detection>& detections, const Rig& rig) {
 }
 
 // Maps features to landmarks: Features reorders its input, so pixel and descriptor identify a detection.
-std::vector<int> landmarks_of(const Features& features, const std::vector<Detection>& detections) {
+inline std::vector<int> landmarks_of(const Features& features, const std::vector<Detection>& detections) {
   const auto key_of = [](const Keypoint& keypoint, const Descriptor& descriptor) {
     return std::tuple(keypoint.pixel.x(), keypoint.pixel.y(), descriptor);
   };
@@ -198,12 +236,12 @@ std::vector<int> landmarks_of(const Features& features, const std::vector<Detect
 // Observations of each landmark by a map's keyframes, ascending.
 using Tracks = std::vector<std::vector<Observation>>;
 
-Pose camera_from_world_at(const SimulatedMission& mission, std::size_t frame) {
+inline Pose camera_from_world_at(const SimulatedMission& mission, std::size_t frame) {
   return inverse(mission.truth[frame].world_from_body * mission.rig.body_from_camera);
 }
 
 // Adds every n-th frame to the map as a keyframe without points. Returns the landmarks' observations.
-Tracks add_keyframes(Map& map, const SimulatedMission& mission, int frames_per_keyframe) {
+inline Tracks add_keyframes(Map& map, const SimulatedMission& mission, int frames_per_keyframe) {
   Tracks tracks(mission.landmarks_in_world.size());
   std::optional<KeyframeId> parent;
   for (std::size_t i = 0; i < mission.frames.size(); i += static_cast<std::size_t>(frames_per_keyframe)) {
@@ -225,12 +263,12 @@ Tracks add_keyframes(Map& map, const SimulatedMission& mission, int frames_per_k
   return tracks;
 }
 
-const Features& features_of(const Map& map, const Observation& observation) {
+inline const Features& features_of(const Map& map, const Observation& observation) {
   return *map.find_keyframe(observation.keyframe)->frame.features;
 }
 
 // Descriptor with the least Hamming distance to all others.
-Descriptor central_descriptor(const Map& map, const std::vector<Observation>& observations) {
+inline Descriptor central_descriptor(const Map& map, const std::vector<Observation>& observations) {
   std::vector<Descriptor> descriptors;
   for (const Observation& seen : observations) descriptors.push_back(features_of(map, seen).descriptor(seen.feature));
   const auto distance_to_all = [&](const Descriptor& candidate) {
@@ -241,8 +279,8 @@ Descriptor central_descriptor(const Map& map, const std::vector<Observation>& ob
   return *std::ranges::min_element(descriptors, {}, distance_to_all);
 }
 
-MapPoint to_point(const Map& map, const Eigen::Vector3d& position_in_world,
-                  const std::vector<Observation>& observations) {
+inline MapPoint to_point(const Map& map, const Eigen::Vector3d& position_in_world,
+                         const std::vector<Observation>& observations) {
   const auto ray_from = [&](const Observation& observation) -> Eigen::Vector3d {
     return position_in_world - inverse(map.camera_from_world(observation.keyframe)).translation;
   };
@@ -260,13 +298,14 @@ MapPoint to_point(const Map& map, const Eigen::Vector3d& position_in_world,
   return point;
 }
 
-bool can_be_mapped(const Map& map, const std::vector<Observation>& observations) {
+inline bool can_be_mapped(const Map& map, const std::vector<Observation>& observations) {
   return observations.size() > 1 || std::ranges::any_of(observations, [&](const Observation& observation) {
            return features_of(map, observation).keypoint(observation.feature).has_disparity();
          });
 }
 
-void add_landmark(Map& map, const Eigen::Vector3d& position_in_world, const std::vector<Observation>& observations) {
+inline void add_landmark(Map& map, const Eigen::Vector3d& position_in_world,
+                         const std::vector<Observation>& observations) {
   const PointId id = map.add_point(to_point(map, position_in_world, observations));
   for (const Observation& observation : observations) {
     const std::vector<Sighting>& sightings = map.find_keyframe(observation.keyframe)->sightings;
@@ -276,32 +315,35 @@ void add_landmark(Map& map, const Eigen::Vector3d& position_in_world, const std:
   }
 }
 
-}  // namespace
+}  // namespace simulated
 
-SimulatedMission simulate_mission(const Rig& rig, const Trajectory& truth, const SimulationOptions& options) {
-  const std::vector<Landmark> landmarks = draw_landmarks(options);
+inline SimulatedMission simulate_mission(const Rig& rig, const Trajectory& truth, const SimulationOptions& options) {
+  const std::vector<simulated::Landmark> landmarks = simulated::draw_landmarks(options);
   SimulatedMission mission;
   mission.rig = rig;
   mission.truth = truth;
-  for (const Landmark& landmark : landmarks) mission.landmarks_in_world.push_back(landmark.position_in_world);
+  for (const simulated::Landmark& landmark : landmarks)
+    mission.landmarks_in_world.push_back(landmark.position_in_world);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     std::seed_seq frame_seed{options.seed, options.noise_seed, static_cast<std::uint64_t>(i)};
-    Random random(frame_seed);
-    std::vector<Detection> detections = detect(landmarks, rig, camera_from_world_at(mission, i), options, random);
-    keep_strongest(detections, options.max_features);
-    const auto features = std::make_shared<const Features>(to_features(detections, rig));
+    simulated::Random random(frame_seed);
+    std::vector<simulated::Detection> detections =
+        simulated::detect(landmarks, rig, simulated::camera_from_world_at(mission, i), options, random);
+    simulated::keep_strongest(detections, options.max_features);
+    const auto features = std::make_shared<const Features>(simulated::to_features(detections, rig));
     mission.frames.push_back({truth[i].time, features});
-    mission.landmark_of_feature.push_back(landmarks_of(*features, detections));
+    mission.landmark_of_feature.push_back(simulated::landmarks_of(*features, detections));
   }
   return mission;
 }
 
-Map true_map(const SimulatedMission& mission, int frames_per_keyframe, Origin origin) {
+inline Map true_map(const SimulatedMission& mission, int frames_per_keyframe, Origin origin) {
   Map map(origin);
   map.add_rig(mission.rig);
-  const Tracks tracks = add_keyframes(map, mission, frames_per_keyframe);
+  const simulated::Tracks tracks = simulated::add_keyframes(map, mission, frames_per_keyframe);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (can_be_mapped(map, tracks[i])) add_landmark(map, mission.landmarks_in_world[i], tracks[i]);
+    if (simulated::can_be_mapped(map, tracks[i]))
+      simulated::add_landmark(map, mission.landmarks_in_world[i], tracks[i]);
   }
   return map;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/simulation/rendered_room.h"
-#include "byre/simulation/simulated_trajectory.h"
+#include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <filesystem>
 #include <string>
