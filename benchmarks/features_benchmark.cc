@@ -7,7 +7,7 @@
 #include "byre/features/match.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_mission_scene.h"
 
 #include <algorithm>

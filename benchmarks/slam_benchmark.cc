@@ -2,7 +2,7 @@
 
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_mission_scene.h"
 #include "byre/slam/session/session.h"
 #include "byre/slam/tracking/guided_matching.h"

@@ -1,4 +1,4 @@
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_mission_scene.h"
 #include "byre/viewer/web/web_run.h"
 

@@ -7,7 +7,7 @@
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/place/map_words.h"
 #include "byre/place/vocabulary.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "mapped_recording.h"
 
 #include "byre/io/recording/trajectory_input.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <gmock/gmock.h>

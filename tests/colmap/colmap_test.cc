@@ -4,7 +4,7 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/io/colmap/colmap_model.h"
 #include "byre/map/map_file.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <algorithm>

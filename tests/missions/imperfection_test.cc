@@ -1,7 +1,7 @@
 #include "imperfection.h"
 
 #include "byre/features/image_scene.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // Deterministic in its options.
 
 #include "byre/input_error.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <cstdio>

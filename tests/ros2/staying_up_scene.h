@@ -3,7 +3,7 @@
 // Shared by soak_test.cc and kill_test.cc: visits to a room, and peer programs of a robot's node.
 
 #include "byre/calibration_file.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 #include "byre/slam.h"
 #include "node_fixture.h"

@@ -2,7 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/recording.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 
 #include <filesystem>
 #include <fstream>

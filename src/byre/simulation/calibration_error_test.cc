@@ -2,7 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/simulation/cowshed/feeding_robot.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,7 @@
 #include "byre/simulation/pixel_rays.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"
 #include "byre/recording.h"
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 #include "byre/trajectory_file.h"
 

@@ -1,4 +1,4 @@
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "byre/viewer/web/web_run.h"
 
-#include "byre/simulation/rendered_room.h"
+#include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_mission_scene.h"
 #include "byre/viewer/web/web_client_scene.h"
 
