@@ -1,8 +1,8 @@
 #pragma once
 
-#include "byre/geometry/robust.h"
 #include "byre/rig.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +14,14 @@ struct PointSighting {
   Eigen::Vector3d point_in_world;
   Eigen::Vector2d pixel;
   std::optional<double> disparity{};  // pixels; counts in the reprojection error
+};
+
+// Results depend on input and seed alone.
+struct RansacOptions {
+  int max_iterations = 1000;
+  double confidence = 0.999;
+  double max_error = 4.0;  // pixels
+  std::uint64_t seed = 0;
 };
 
 struct AbsolutePose {

@@ -13,7 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double kLeastRecent = 0.02;     // seconds, least duration for speeds, because stamps jitter
+constexpr Timestamp kLatestStamp = Timestamp::max() / 2;  // differences of stamps stay in range
+constexpr Timestamp kLeap = 10s;                          // a larger step ahead needs confirmation by a second stamp
+constexpr int kLateUntilRestarted = 10;                   // ascending stamps in a row
+constexpr double kLeastRecent = 0.02;                     // seconds, least duration for speeds, because stamps jitter
 constexpr double kFastShareOfUnit = 0.5;  // share of samples above the limit from which the unit is wrong
 constexpr double kDegreesPerRadian = 1.0 / kDegree;
 
@@ -44,6 +47,28 @@ bool is_origin(const StampedPose& sample) {
 }
 
 }  // namespace
+
+StampCheck::Order StampCheck::check(Timestamp time) {
+  if (time > kLatestStamp || time < -kLatestStamp) return Order::dropped;
+  if (last_ && time <= *last_) {
+    late_count_ = late_ && time > *late_ ? late_count_ + 1 : 1;
+    late_ = time;
+    if (late_count_ < kLateUntilRestarted) return Order::dropped;
+    *this = {};
+    last_ = time;
+    return Order::restarted;
+  }
+  late_.reset();
+  late_count_ = 0;
+  const bool is_confirmed = ahead_ && time > *ahead_ && time - *ahead_ <= kLeap;
+  if (last_ && time - *last_ > kLeap && !is_confirmed) {
+    ahead_ = time;
+    return Order::dropped;
+  }
+  ahead_.reset();
+  last_ = time;
+  return Order::next;
+}
 
 bool is_sound(const BodyMotion& motion) {
   constexpr double kMostOff = 0.1;        // largest error of the length 1

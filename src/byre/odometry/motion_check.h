@@ -2,7 +2,7 @@
 
 #include "byre/body_motion.h"
 #include "byre/motion_warning.h"
-#include "byre/odometry/stamp_check.h"
+#include "byre/trajectory.h"
 
 #include <cstdint>
 #include <optional>
@@ -22,6 +22,23 @@ struct MotionLimits {
 
 // Whether all numbers are finite, the quaternion has a length of about 1, and each variance is between 0 and 1e12.
 bool is_sound(const BodyMotion& motion);
+
+// Checks the order of the stamps of one sensor.
+class StampCheck {
+ public:
+  enum class Order : std::uint8_t {
+    next,      // later than the previous sample
+    dropped,   // not later, out of range, or a leap ahead that no second stamp confirms yet
+    restarted  // the clock was set back: ten ascending stamps, all earlier than those before
+  };
+  Order check(Timestamp time);
+
+ private:
+  std::optional<Timestamp> last_;
+  std::optional<Timestamp> ahead_;  // unconfirmed leap ahead
+  std::optional<Timestamp> late_;   // last stamp that was not later than last_
+  int late_count_ = 0;              // number of such stamps in a row, ascending
+};
 
 // Checks samples of wheels, gyroscope and accelerometer on input: finite, plausible in size, speed and rate, in order
 // of time, in the expected unit. Each kind of fault yields one warning. An input in a wrong unit, or without a signal,

@@ -1,7 +1,5 @@
 #include "byre/optimise/pose_graph.h"
 
-#include "byre/optimise/ceres_problem.h"
-
 #include "byre/optimise/pose_graph_cost.h"
 #include "byre/optimise/rotation_manifold.h"
 
@@ -16,7 +14,6 @@
 #include <ceres/solver.h>
 
 namespace byre {
-
 namespace {
 
 // Parts of a graph that take part in the solution.
@@ -76,6 +73,16 @@ GraphRoles choose_roles(const PoseGraph& graph) {
     if (moves && edge.first != edge.second) roles.edges.push_back(i);
   }
   return roles;
+}
+
+// The caller owns costs, losses and manifolds, and has validated them.
+ceres::Problem::Options non_owning_problem_options() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
+  return options;
 }
 
 // Parameter blocks of a node, as in PoseGraphCost.

@@ -5,7 +5,6 @@
 #include "byre/place/dbow2_file.h"
 #include "byre/place/k_majority.h"
 #include "byre/place/vocabulary_file.h"
-#include "byre/place/vocabulary_training.h"
 
 #include <algorithm>
 #include <cassert>
@@ -51,11 +50,6 @@ Vocabulary Vocabulary::of_tree(const VocabularyTree& tree) {
   data->bytes = data->own_bytes;
   data->view = read_vocabulary(data->bytes, "vocabulary");
   return Vocabulary(std::move(data));
-}
-
-Vocabulary Vocabulary::train(std::span<const std::vector<Descriptor>> descriptors_of_images,
-                             const VocabularyOptions& options, const std::function<void(double)>& progress) {
-  return of_tree(train_tree(descriptors_of_images, options, progress));
 }
 
 Vocabulary Vocabulary::import_dbow2(const std::filesystem::path& path) {

@@ -1,11 +1,13 @@
-#include "byre/place/vocabulary_training.h"
+#include "byre/place/vocabulary.h"
 
 #include "byre/input_error.h"
 #include "byre/place/k_majority.h"
+#include "byre/place/vocabulary_file.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -141,8 +143,8 @@ class TreeGrowth {
 
 }  // namespace
 
-VocabularyTree train_tree(std::span<const std::vector<Descriptor>> descriptors_of_images,
-                          const VocabularyOptions& options, const std::function<void(double)>& progress) {
+Vocabulary Vocabulary::train(std::span<const std::vector<Descriptor>> descriptors_of_images,
+                             const VocabularyOptions& options, const std::function<void(double)>& progress) {
   require_range("branching", options.branching, 2, kMostBranches);
   require_range("depth", options.depth, 1, kMaxDepth);
   require_range("rounds", options.rounds, 1, 1000);
@@ -155,7 +157,7 @@ VocabularyTree train_tree(std::span<const std::vector<Descriptor>> descriptors_o
     throw InputError("vocabulary", "the training images have fewer than two different descriptors",
                      "give images with more texture");
   }
-  return tree;
+  return of_tree(std::move(tree));
 }
 
 }  // namespace byre

@@ -4,18 +4,24 @@
 #include "byre/geometry/baseline.h"
 #include "byre/input_error.h"
 #include "byre/io/bag/bag.h"
-#include "byre/io/recording/bag_frames.h"
 #include "byre/io/recording/bag_image.h"
 #include "byre/io/recording/bag_motion.h"
 #include "byre/io/recording/bag_topics.h"
 #include "byre/io/recording/camera_info.h"
 #include "byre/io/recording/frame_selection.h"
+#include "byre/io/recording/restored_times.h"
 #include "byre/io/recording/timed_files.h"
+#include "byre/io/recording/timed_messages.h"
 #include "byre/io/ros/message_reader.h"
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 namespace byre {
 namespace {
@@ -30,6 +36,70 @@ bool is_wanted(std::string_view type) {
   const BagTopic topic{"", std::string(type), ""};
   return holds<ros::Image>(topic) || holds<ros::CompressedImage>(topic) || holds<ros::CameraInfo>(topic) ||
          is_transform_topic(topic);
+}
+
+struct BagFrame {
+  Timestamp time{};
+  BagMessage left;
+  std::optional<BagMessage> right{};
+};
+
+struct BagFrames {
+  std::vector<BagFrame> frames;
+  TimeCorrections corrections;        // corrections of the left images
+  SensorClock clock;                  // clock of the left images
+  std::vector<std::string> warnings;  // with counts of corrections, and of images without a partner
+};
+
+std::vector<Timestamp> times_of(const std::vector<TimedMessage>& messages) {
+  std::vector<Timestamp> times;
+  for (const TimedMessage& each : messages) times.push_back(each.time);
+  return times;
+}
+
+// Adds right images to the frames. Returns warnings of images without a partner. Preconditions: frames have left images
+// only, and there are right ones.
+std::vector<std::string> add_right(std::vector<BagFrame>& frames, const std::vector<TimedMessage>& right,
+                                   Timestamp tolerance, const std::string& place) {
+  std::vector<Timestamp> times;
+  for (const BagFrame& frame : frames) times.push_back(frame.time);
+  const std::vector<Timestamp> right_times = times_of(right);
+  const auto partners = match_by_time(times, right_times, tolerance);
+  std::vector<bool> is_used(right.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!partners[i]) continue;
+    frames[i].right = right[*partners[i]].message;
+    is_used[*partners[i]] = true;
+  }
+  const auto alone = static_cast<std::size_t>(std::ranges::count(partners, std::optional<std::size_t>()));
+  const auto unused = static_cast<std::size_t>(std::ranges::count(is_used, false));
+  if (alone == frames.size()) throw no_pairs_error(place, times, right_times, tolerance);
+  if (alone + unused == 0) return {};
+  return {fmt::format(
+      "{}: {} of {} left images have no right image within {:g} ms, {} of {} right images have no left image", place,
+      alone, frames.size(), 1e3 * to_seconds(tolerance), unused, right.size())};
+}
+
+// Frames of the left images in order of time (timed_messages), each with the right image whose time differs by at most
+// the tolerance. place: name of the bag in warnings. Throws InputError if no right image has a left partner, and if all
+// left images have one time stamp.
+BagFrames bag_frames(const BagContent& content, const ImageTopics& topics, const std::string& place,
+                     Timestamp tolerance) {
+  constexpr double kSameFrame = 0.4;  // largest difference between the receive times of a pair, intervals
+  const TimedMessages left = timed_messages(content, topics.left, {place, "image", "frame"});
+  BagFrames result{{}, left.corrections, left.clock, left.warnings};
+  const std::string left_place = place + ": " + content.topics[topics.left].name;
+  require_times(left.messages.size(), left.corrections.repeated, left_place);
+  for (const TimedMessage& each : left.messages) result.frames.push_back({each.time, each.message});
+  if (!topics.right) return result;
+  const TimedMessages right = timed_messages(content, *topics.right, {place, "image", "frame"}, left.clock);
+  result.warnings.insert(result.warnings.end(), right.warnings.begin(), right.warnings.end());
+  if (left.clock.source == TimeSource::receive_times) {
+    tolerance = std::max(tolerance, from_seconds(kSameFrame * to_seconds(left.clock.interval)));
+  }
+  const std::vector<std::string> alone = add_right(result.frames, right.messages, tolerance, place);
+  result.warnings.insert(result.warnings.end(), alone.begin(), alone.end());
+  return result;
 }
 
 class BagRecording final : public Recording {

@@ -35,7 +35,14 @@ class SchemaWriter {
   void ros1_only(const std::uint32_t& /*value*/) {}
 
   // Text of the first message, then of the others, each after a line of 80 "=" and a line with its name.
-  std::string text() const;
+  std::string text() const {
+    std::string text;
+    for (const Definition& definition : definitions_) {
+      if (!text.empty()) text += std::string(80, '=') + "\nMSG: " + definition.type + "\n";
+      text += definition.text;
+    }
+    return text;
+  }
 
  private:
   struct Definition {

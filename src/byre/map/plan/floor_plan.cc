@@ -1,16 +1,42 @@
 #include "byre/map/plan/floor_plan.h"
 
 #include "byre/geometry/decompositions.h"
-#include "byre/map/plan/floor_plan_consensus.h"
+#include "byre/geometry/median.h"
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
 namespace byre {
 namespace {
 
+// A position seen from above in two frames, x and y as real and imaginary part.
+struct PlanarPair {
+  std::complex<double> in_source;
+  std::complex<double> in_target;
+  double sigma = 1.0;  // standard error per axis, in the target
+};
+
+// in_target = turn * in_source + shift. The argument of turn is the rotation, its magnitude the scale.
+struct PlanarSimilarity {
+  std::complex<double> turn = 1.0;
+  std::complex<double> shift = 0.0;
+};
+
+// Pairs consistent with one planar similarity or rigid motion.
+struct PlanarConsensus {
+  PlanarSimilarity target_from_source;  // least squares over the inliers
+  std::vector<bool> is_inlier;          // one per pair
+};
+
+using Complex = std::complex<double>;
+using Pairs = std::span<const PlanarPair>;
+using Subset = std::vector<std::size_t>;  // indices of pairs
 using Correspondences = std::span<const PlanCorrespondence>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 
@@ -26,6 +52,123 @@ constexpr double kRoughest = 0.1;  // thickness of a path, relative to its width
 Pose level_from_map(const DrivingPlane& plane) {
   const Eigen::Quaterniond rotation = rotation_between(plane.up_in_map, Eigen::Vector3d::UnitZ()).normalized();
   return {rotation, -(rotation * plane.point_in_map)};
+}
+
+constexpr double kRayleighMedian = 1.1774;  // median length of a vector of two standard normal variables
+constexpr double kRayleigh99 = 3.0349;      // 99 % quantile of that length
+constexpr std::size_t kMostSubsets = 20000;
+constexpr int kMostSteps = 20;
+
+// Least squares weighted by 1/sigma^2; Umeyama's solution in the plane. Empty if all pairs coincide in one frame.
+std::optional<PlanarSimilarity> fit(Pairs pairs, const Subset& subset, Scale scale) {
+  Complex source_sum = 0.0, target_sum = 0.0;
+  double weights = 0.0;
+  for (const std::size_t i : subset) {
+    const double weight = 1.0 / (pairs[i].sigma * pairs[i].sigma);
+    source_sum += weight * pairs[i].in_source;
+    target_sum += weight * pairs[i].in_target;
+    weights += weight;
+  }
+  const Complex source_mean = source_sum / weights, target_mean = target_sum / weights;
+  Complex product = 0.0;
+  double source_variance = 0.0;
+  for (const std::size_t i : subset) {
+    const double weight = 1.0 / (pairs[i].sigma * pairs[i].sigma);
+    const Complex source = pairs[i].in_source - source_mean;
+    product += weight * (pairs[i].in_target - target_mean) * std::conj(source);
+    source_variance += weight * std::norm(source);
+  }
+  const double length = scale == Scale::free ? source_variance : std::abs(product);
+  if (!(std::abs(product) > 0.0) || !(length > 0.0)) return std::nullopt;
+  const Complex turn = product / length;
+  return PlanarSimilarity{turn, target_mean - turn * source_mean};
+}
+
+// Lengths, in sigmas.
+std::vector<double> residuals_of(Pairs pairs, const PlanarSimilarity& motion) {
+  std::vector<double> residuals;
+  for (const PlanarPair& pair : pairs) {
+    residuals.push_back(std::abs(motion.turn * pair.in_source + motion.shift - pair.in_target) / pair.sigma);
+  }
+  return residuals;
+}
+
+// Size of the half of `count` pairs, two of which determine a motion. In a larger subset outliers might be a majority.
+std::size_t trusted_half(std::size_t count) {
+  return std::min((count + 3) / 2, count);
+}
+
+struct TrimmedFit {
+  PlanarSimilarity motion;
+  Subset nearest;  // indices of the half with the best fit, ascending
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+TrimmedFit trim(Pairs pairs, const PlanarSimilarity& motion) {
+  const std::vector<double> residuals = residuals_of(pairs, motion);
+  TrimmedFit trimmed{motion, Subset(pairs.size()), 0.0};
+  std::iota(trimmed.nearest.begin(), trimmed.nearest.end(), std::size_t{0});
+  std::ranges::stable_sort(trimmed.nearest, {}, [&residuals](std::size_t i) { return residuals[i]; });
+  trimmed.nearest.resize(trusted_half(pairs.size()));
+  std::ranges::sort(trimmed.nearest);
+  for (const std::size_t i : trimmed.nearest) trimmed.cost += residuals[i] * residuals[i];
+  return trimmed;
+}
+
+// The best motion determined by two pairs. With very many pairs only some of the sets are tried.
+std::optional<TrimmedFit> best_of_twos(Pairs pairs, Scale scale) {
+  const std::size_t stride = 1 + pairs.size() * pairs.size() / 2 / kMostSubsets;
+  std::optional<TrimmedFit> best;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::size_t j = i + 1; j < pairs.size(); ++j) {
+      if (count++ % stride != 0) continue;
+      const std::optional<PlanarSimilarity> motion = fit(pairs, {i, j}, scale);
+      if (!motion) continue;
+      TrimmedFit trimmed = trim(pairs, *motion);
+      if (!best || trimmed.cost < best->cost) best = std::move(trimmed);
+    }
+  }
+  return best;
+}
+
+TrimmedFit concentrate(Pairs pairs, TrimmedFit best, Scale scale) {
+  for (int step = 0; step < kMostSteps; ++step) {
+    const std::optional<PlanarSimilarity> motion = fit(pairs, best.nearest, scale);
+    if (!motion) break;
+    TrimmedFit better = trim(pairs, *motion);
+    if (!(better.cost < best.cost)) break;
+    best = std::move(better);
+  }
+  return best;
+}
+
+// Bound of inlier residuals, in the given sigmas: the 99 % quantile for normally distributed errors. More than three
+// sigmas if more than a few residuals exceed their sigmas.
+double largest_agreeing_residual(std::vector<double> residuals) {
+  const auto count = static_cast<double>(residuals.size());
+  // Finite-sample correction for the exact fit to two pairs, which lowers the residuals (Rousseeuw and Leroy 1987).
+  const double few = count > 2.0 ? 1.0 + 5.0 / (count - 2.0) : 1.0;
+  return kRayleigh99 * std::max(1.0, few * median(std::move(residuals)) / kRayleighMedian);
+}
+
+// Least trimmed squares: of the motions determined by two pairs, the one that best fits its nearest half of the pairs,
+// improved by refits to that half (Rousseeuw and Van Driessen 2006, theorem 1). Empty if no two pairs are separate in
+// both frames.
+std::optional<PlanarConsensus> find_planar_consensus(Pairs pairs, Scale scale) {
+  const std::optional<TrimmedFit> start = best_of_twos(pairs, scale);
+  if (!start) return std::nullopt;
+  const TrimmedFit trimmed = concentrate(pairs, *start, scale);
+  const std::vector<double> residuals = residuals_of(pairs, trimmed.motion);
+  const double limit = largest_agreeing_residual(residuals);
+  PlanarConsensus consensus{trimmed.motion, {}};
+  Subset inliers;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    consensus.is_inlier.push_back(residuals[i] <= limit);
+    if (consensus.is_inlier.back()) inliers.push_back(i);
+  }
+  if (const auto motion = fit(pairs, inliers, scale)) consensus.target_from_source = *motion;
+  return consensus;
 }
 
 double largest_tilt_sigma(const DrivingPlane& plane) {
