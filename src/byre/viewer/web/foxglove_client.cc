@@ -78,15 +78,15 @@ void FoxgloveClient::drop_oldest() {
   answers_.push_back(status_text(StatusLevel::warning, "messages are dropped, because the client reads too slowly"));
 }
 
-std::optional<FoxgloveOutput> FoxgloveClient::next() {
+std::optional<WebMessage> FoxgloveClient::next() {
   if (!answers_.empty()) {
-    FoxgloveOutput answer{std::move(answers_.front()), false, nullptr};
+    WebMessage answer{std::move(answers_.front()), false, nullptr};
     answers_.pop_front();
     return answer;
   }
   if (const std::vector<ros::Topic> topics = topics_.topics_from(advertised_); !topics.empty()) {
     const std::size_t first = std::exchange(advertised_, advertised_ + topics.size());
-    return FoxgloveOutput{advertise_text(first, topics), false, nullptr};
+    return WebMessage{advertise_text(first, topics), false, nullptr};
   }
   if (waiting_.empty()) {
     has_dropped_ = false;
@@ -95,9 +95,9 @@ std::optional<FoxgloveOutput> FoxgloveClient::next() {
   Waiting& oldest = waiting_.front();
   if (oldest.is_new && oldest.message.time != time_) {
     time_ = oldest.message.time;
-    return FoxgloveOutput{time_bytes(time_), true, nullptr};
+    return WebMessage{time_bytes(time_), true, nullptr};
   }
-  FoxgloveOutput output{message_head(oldest.subscription, oldest.message.time), true, oldest.message.cdr};
+  WebMessage output{message_head(oldest.subscription, oldest.message.time), true, oldest.message.cdr};
   waiting_bytes_ -= oldest.message.cdr->size();
   waiting_.pop_front();
   return output;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/viewer/web/foxglove_protocol.h"
-#include "byre/viewer/web/live_topics.h"
+#include "byre/viewer/web/web_site.h"
 
 #include <deque>
 #include <map>
@@ -13,13 +13,6 @@
 
 namespace byre {
 
-// Message to send: head, then rest.
-struct FoxgloveOutput {
-  std::string head;
-  bool is_binary = false;
-  std::shared_ptr<const std::vector<std::byte>> rest;  // null: head only
-};
-
 struct FoxgloveLimits {
   std::size_t max_bytes = std::size_t{32} << 20;  // bytes of queued messages
   std::size_t max_messages = 500;                 // number of queued messages
@@ -28,22 +21,20 @@ struct FoxgloveLimits {
 
 // Subscriptions and output queue of a Foxglove client. For a slow client the oldest messages are dropped, with a status
 // message. Owned by the server's thread.
-class FoxgloveClient {
+class FoxgloveClient : public WebFeed {
  public:
   // The topics outlive this.
   FoxgloveClient(LiveTopics& topics, std::string_view session, const FoxgloveLimits& limits = {});
-  ~FoxgloveClient();
+  ~FoxgloveClient() override;
   FoxgloveClient(const FoxgloveClient&) = delete;
   FoxgloveClient& operator=(const FoxgloveClient&) = delete;
 
-  // Handles a request. False: disconnect the client.
-  bool receive(std::string_view bytes, bool is_binary);
+  bool receive(std::string_view bytes, bool is_binary) override;
 
   // Queues a message if its topic is subscribed.
-  void offer(const LiveMessage& message);
+  void offer(const LiveMessage& message) override;
 
-  // Next message to send.
-  std::optional<FoxgloveOutput> next();
+  std::optional<WebMessage> next() override;
 
  private:
   struct Waiting {

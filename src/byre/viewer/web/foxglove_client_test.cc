@@ -40,12 +40,12 @@ class FoxgloveClientTest : public testing::Test {
     while (const auto output = client_.next()) all.push_back(summary(*output));
     return all;
   }
-  static std::string summary(const FoxgloveOutput& output) {
+  static std::string summary(const WebMessage& output) {
     if (!output.is_binary) {
-      const Json text = Json::parse(output.head);
+      const Json text = Json::parse(output.bytes);
       return text.at("op").get<std::string>() + " " + text.value("message", std::string());
     }
-    const auto byte_at = [&output](std::size_t place) { return std::to_string(int{output.head[place]}); };
+    const auto byte_at = [&output](std::size_t place) { return std::to_string(int{output.bytes[place]}); };
     return output.rest ? "message " + byte_at(1) + " " + byte_at(5) : "time " + byte_at(1);
   }
 
@@ -58,10 +58,10 @@ class FoxgloveClientTest : public testing::Test {
 TEST_F(FoxgloveClientTest, ReceivesServerInfoAndChannelsFirst) {
   FoxgloveClient client(topics_, "session");
   EXPECT_EQ(summary(*client.next()), "serverInfo ");
-  EXPECT_EQ(Json::parse(client.next()->head).at("channels").size(), 2u);
+  EXPECT_EQ(Json::parse(client.next()->bytes).at("channels").size(), 2u);
   EXPECT_FALSE(client.next());
   topics_.add(ros::topic_of<ros::String>("/later"));
-  EXPECT_EQ(Json::parse(client.next()->head).at("channels")[0].at("id"), 2);
+  EXPECT_EQ(Json::parse(client.next()->bytes).at("channels")[0].at("id"), 2);
 }
 
 TEST_F(FoxgloveClientTest, ReceivesSubscribedTopicsUntilItUnsubscribes) {

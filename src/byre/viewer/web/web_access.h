@@ -39,4 +39,8 @@ std::string_view rejection_reason(const WebAccess& access, const WebOrigin& from
 std::string_view path_of(std::string_view target);
 std::string_view query_value(std::string_view target, std::string_view name);
 
+// Addresses at which a server is reachable. For 0.0.0.0 and ::, the addresses of all interfaces, loopback last; else
+// the bound address.
+std::vector<std::string> reachable_addresses(const std::string& bound_address);
+
 }  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/viewer/web/web_address.h"
+#include "byre/viewer/web/web_access.h"
 
 #include <boost/asio/ip/address.hpp>
 #include <gmock/gmock.h>

@@ -1,6 +1,7 @@
 #include "byre/viewer/web/web_connection.h"
 
 #include "byre/input_error.h"
+#include "byre/viewer/web/foxglove_client.h"
 
 #include <string_view>
 #include <utility>
@@ -61,21 +62,25 @@ WebResponse refused(int status, std::string_view reason) {
   return {status, "text/plain; charset=utf-8", std::string(reason) + "\n"};
 }
 
-template <typename Listener>
-std::vector<std::shared_ptr<Listener>> alive(std::vector<std::weak_ptr<Listener>>& listeners) {
-  std::erase_if(listeners, [](const std::weak_ptr<Listener>& each) { return each.expired(); });
-  std::vector<std::shared_ptr<Listener>> alive;
-  for (const std::weak_ptr<Listener>& each : listeners) alive.push_back(each.lock());
-  return alive;
-}
+// An open page. Its messages are dropped.
+class PageFeed : public WebFeed {
+ public:
+  explicit PageFeed(WebSite& site) : site_(site) {}
+  std::optional<WebMessage> next() override { return site_.next_message(progress_); }
+  bool receive(std::string_view, bool) override { return true; }
+  void offer(const LiveMessage&) override {}
+
+ private:
+  WebSite& site_;
+  ListenerProgress progress_;
+};
 
 }  // namespace
 
 void WebService::notify_listeners() {
-  for (const auto& listener : alive(listeners)) listener->notify();
-  if (!topics) return;
-  const std::vector<LiveMessage> messages = topics->take();
-  for (const auto& listener : alive(foxglove_listeners)) listener->notify(messages);
+  const std::vector<LiveMessage> messages = topics ? topics->take() : std::vector<LiveMessage>();
+  std::erase_if(listeners, [](const std::weak_ptr<WebListener>& each) { return each.expired(); });
+  for (const std::weak_ptr<WebListener>& each : listeners) each.lock()->notify(messages);
 }
 
 void WebConnection::read_head(std::chrono::milliseconds request_timeout) {
@@ -123,16 +128,12 @@ void WebConnection::answer_request() {
   }
   stream_.expires_never();
   tcp::socket socket = stream_.release_socket();
-  if (protocol.empty()) {
-    const auto listener = std::make_shared<WebListener>(std::move(socket), std::move(slot_), *service_.site);
-    service_.listeners.push_back(listener);
-    listener->start(request);
-  } else {
-    const auto listener =
-        std::make_shared<FoxgloveListener>(std::move(socket), std::move(slot_), *service_.topics, service_.session);
-    service_.foxglove_listeners.push_back(listener);
-    listener->start(request, protocol);
-  }
+  std::unique_ptr<WebFeed> feed;
+  if (protocol.empty()) feed = std::make_unique<PageFeed>(*service_.site);
+  if (!feed) feed = std::make_unique<FoxgloveClient>(*service_.topics, service_.session);
+  const auto listener = std::make_shared<WebListener>(std::move(socket), std::move(slot_), std::move(feed));
+  service_.listeners.push_back(listener);
+  listener->start(request, protocol);
 }
 
 void WebConnection::respond(const WebResponse& response, bool may_keep_alive) {

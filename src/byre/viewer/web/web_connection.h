@@ -1,7 +1,5 @@
 #pragma once
 
-#include "byre/viewer/web/connection_slot.h"
-#include "byre/viewer/web/foxglove_listener.h"
 #include "byre/viewer/web/web_access.h"
 #include "byre/viewer/web/web_listener.h"
 #include "byre/viewer/web/web_site.h"
@@ -26,7 +24,6 @@ struct WebService {
   WebAccess access;
   std::string session;  // unique text per server, for Foxglove's protocol
   std::vector<std::weak_ptr<WebListener>> listeners;
-  std::vector<std::weak_ptr<FoxgloveListener>> foxglove_listeners;
 
   void notify_listeners();
 };

@@ -1,33 +1,36 @@
 #pragma once
 
-#include "byre/viewer/web/connection_slot.h"
+#include "byre/viewer/web/connection_table.h"
 #include "byre/viewer/web/web_site.h"
 #include "byre/viewer/web/web_socket.h"
 
 #include <memory>
+#include <string_view>
 #include <utility>
 
 namespace byre {
 
-// WebSocket connection to a page, sending the messages of a site. Alive while an operation is pending. Used by the
-// server's thread only.
+// WebSocket connection that sends the messages of a feed. Alive while an operation is pending. Used by the server's
+// thread only.
 class WebListener : public std::enable_shared_from_this<WebListener> {
  public:
-  WebListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<ConnectionSlot> slot, WebSite& site)
-      : slot_(std::move(slot)), socket_(std::move(socket)), site_(site) {}
+  WebListener(boost::asio::ip::tcp::socket&& socket, std::unique_ptr<ConnectionSlot> slot,
+              std::unique_ptr<WebFeed> feed)
+      : slot_(std::move(slot)), socket_(std::move(socket)), feed_(std::move(feed)) {}
 
-  void start(const WebUpgrade& request);
+  // protocol: chosen sub-protocol; empty: none
+  void start(const WebUpgrade& request, std::string_view protocol);
 
   // Starts sending new messages unless busy.
-  void notify();
+  void notify(const std::vector<LiveMessage>& messages);
 
  private:
   void read();
+  void send();
 
   std::unique_ptr<ConnectionSlot> slot_;
   WebSocket socket_;
-  WebSite& site_;
-  ListenerProgress progress_;
+  std::unique_ptr<WebFeed> feed_;
   WebMessage message_;  // message being sent
   bool is_open_ = false;
   bool is_sending_ = false;

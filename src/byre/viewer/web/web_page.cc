@@ -1,4 +1,4 @@
-#include "byre/viewer/web/web_page.h"
+#include "byre/viewer/web/web_site.h"
 
 // The assembler embeds the file BYRE_WEB_PAGE.
 __asm__(
@@ -15,8 +15,8 @@ extern "C" const char byre_web_page_end[];
 
 namespace byre {
 
-std::string_view web_page() {
-  return {byre_web_page_begin, static_cast<std::size_t>(byre_web_page_end - byre_web_page_begin)};
+WebResponse page_response() {
+  return {200, "text/html; charset=utf-8", {byre_web_page_begin, byre_web_page_end}};
 }
 
 }  // namespace byre

@@ -3,7 +3,6 @@
 #include "byre/base/background_thread.h"
 #include "byre/input_error.h"
 #include "byre/viewer/web/web_access.h"
-#include "byre/viewer/web/web_address.h"
 #include "byre/viewer/web/web_connection.h"
 
 #include <algorithm>
@@ -77,7 +76,7 @@ std::vector<std::string> urls_of(const tcp::endpoint& bound, const std::string& 
 class WebServer::Core {
  public:
   Core(const WebServerOptions& options, std::unique_ptr<WebSite> site, std::shared_ptr<LiveTopics> topics)
-      : service_{std::move(site), std::move(topics), access_to(options.address), make_token(), {}, {}},
+      : service_{std::move(site), std::move(topics), access_to(options.address), make_token(), {}},
         limits_(options.limits),
         end_of_descriptors_(end_of_descriptors(limits_)),
         table_(limits_),

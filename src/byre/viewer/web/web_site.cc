@@ -1,15 +1,10 @@
 #include "byre/viewer/web/web_site.h"
 
 #include "byre/viewer/web/web_json.h"
-#include "byre/viewer/web/web_page.h"
 
 #include <utility>
 
 namespace byre {
-
-WebResponse page_response() {
-  return {200, "text/html; charset=utf-8", std::string(web_page())};
-}
 
 WebResponse bytes_response(std::string bytes, const char* content_type) {
   return {200, content_type, std::move(bytes)};

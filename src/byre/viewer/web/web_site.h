@@ -1,10 +1,14 @@
 #pragma once
 
+#include "byre/viewer/web/live_topics.h"
+
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace byre {
 
@@ -22,15 +26,26 @@ struct WebResponse {
   std::string body;  // text or bytes
 };
 
-WebResponse page_response();
+WebResponse page_response();  // HTML of the page, built from web/ and embedded at compile time
 WebResponse bytes_response(std::string bytes, const char* content_type = "application/octet-stream");
 WebResponse problem_response(int status, std::string_view problem);  // JSON with the field "problem"
 WebResponse not_found(const WebRequest& request);
 
-// WebSocket message.
+// WebSocket message: bytes, then rest.
 struct WebMessage {
   std::string bytes;
   bool is_binary = false;
+  std::shared_ptr<const std::vector<std::byte>> rest{};  // null: none
+};
+
+// Messages for a listener, and its requests.
+class WebFeed {
+ public:
+  virtual ~WebFeed() = default;
+  virtual std::optional<WebMessage> next() = 0;  // message to send; empty: up to date
+  // Handles a message of the listener. False: disconnect it.
+  virtual bool receive(std::string_view bytes, bool is_binary) = 0;
+  virtual void offer(const LiveMessage& message) = 0;  // message of a topic
 };
 
 // Progress of the messages sent to a listener (an open page).

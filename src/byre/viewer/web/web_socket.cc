@@ -11,13 +11,16 @@ namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 using boost::system::error_code;
 
-void WebSocket::accept(const WebUpgrade& request, const Terms& terms, Done done) {
+// Largest message from a client: a list of subscriptions.
+constexpr std::size_t kMaxClientMessageBytes = 64 << 10;
+
+void WebSocket::accept(const WebUpgrade& request, std::string_view protocol, Done done) {
   stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
   stream_.set_option(
-      websocket::stream_base::decorator([protocol = std::string(terms.protocol)](websocket::response_type& response) {
+      websocket::stream_base::decorator([protocol = std::string(protocol)](websocket::response_type& response) {
         if (!protocol.empty()) response.set(beast::http::field::sec_websocket_protocol, protocol);
       }));
-  stream_.read_message_max(terms.max_bytes);
+  stream_.read_message_max(kMaxClientMessageBytes);
   stream_.async_accept(request, [done = std::move(done)](error_code error) { done(!error); });
 }
 

@@ -28,11 +28,8 @@ class WebSocket {
 
   explicit WebSocket(boost::asio::ip::tcp::socket&& socket) : stream_(std::move(socket)) {}
 
-  struct Terms {
-    std::string_view protocol;  // chosen sub-protocol; empty: none
-    std::size_t max_bytes = 0;  // largest message from the client, bytes
-  };
-  void accept(const WebUpgrade& request, const Terms& terms, Done done);
+  // protocol: chosen sub-protocol; empty: none
+  void accept(const WebUpgrade& request, std::string_view protocol, Done done);
 
   // Sends head and rest as one message; both must live until done.
   void write(const WebSocketMessage& head, std::span<const std::byte> rest, Done done);
