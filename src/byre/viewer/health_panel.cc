@@ -1,12 +1,13 @@
 #include "byre/viewer/health_panel.h"
 
-#include "byre/viewer/fixed_point.h"
 #include "byre/viewer/palette.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -60,7 +61,7 @@ Meter limited(std::string name, std::string value, double measured, double limit
 
 std::string metres(double length) {
   constexpr double kCentimetres = 100.0;
-  return length < 1.0 ? fixed_point(kCentimetres * length, 1) + " cm" : fixed_point(length, 1) + " m";
+  return length < 1.0 ? fmt::format("{:.1f} cm", kCentimetres * length) : fmt::format("{:.1f} m", length);
 }
 
 Meter agreement_meter(const Health& health, double limit) {
@@ -68,8 +69,7 @@ Meter agreement_meter(const Health& health, double limit) {
   constexpr const char* kName = "maps agree to";
   if (!health.agreement) return {kName, "-", 0.0, 0.5};
   const Agreement& agreement = *health.agreement;
-  const std::string value =
-      metres(agreement.translation) + ", " + fixed_point(kDegrees * agreement.rotation, 2) + " deg";
+  const std::string value = fmt::format("{}, {:.2f} deg", metres(agreement.translation), kDegrees * agreement.rotation);
   return limited(kName, value, agreement.translation, limit, 2.0 * limit, Good::low);
 }
 
@@ -86,8 +86,8 @@ std::vector<Meter> meters_of(const Health& health, const HealthOptions& limits) 
        health.online_inliers / kManyPoints,
        {},
        palette::kOnline},
-      {"inlier share", fixed_point(100.0 * health.inlier_share, 0) + " %", health.inlier_share},
-      limited("spread in the image", fixed_point(100.0 * health.spread, 1) + " %", health.spread, limits.min_spread,
+      {"inlier share", fmt::format("{:.0f} %", 100.0 * health.inlier_share), health.inlier_share},
+      limited("spread in the image", fmt::format("{:.1f} %", 100.0 * health.spread), health.spread, limits.min_spread,
               kWideSpread, Good::high),
       limited("position sigma", metres(health.position_sigma), health.position_sigma, sigma_limit, 2.0 * sigma_limit,
               Good::low),

@@ -1,9 +1,10 @@
 #include "byre/viewer/legend.h"
 
-#include "byre/viewer/fixed_point.h"
 #include "byre/viewer/palette.h"
 
 #include <cmath>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -70,7 +71,7 @@ std::vector<PictureMark> scale_bar(const Vector2d& right_end, double pixels_per_
   const Vector2d left = right_end - Vector2d(length * pixels_per_unit, 0.0);
   const Vector2d up(0.0, -kTick);
   const int decimals = length < 1.0 ? static_cast<int>(std::ceil(-std::log10(length) - 1e-9)) : 0;
-  const std::string label = fixed_point(length, decimals) + (is_metric ? " m" : " map units");
+  const std::string label = fmt::format("{:.{}f} {}", length, decimals, is_metric ? "m" : "map units");
   return {PictureLine{{left + up, left, right_end, right_end + up}, palette::kInk, 2.0},
           PictureText{left - Vector2d(kSampleGap, 0.0), label, kLegendTextSize, palette::kInk, Align::right}};
 }

@@ -1,6 +1,6 @@
 #include "byre/viewer/legend.h"
 
-#include "byre/viewer/picture_fixture.h"
+#include "byre/viewer/picture_matchers.h"
 
 #include <gmock/gmock.h>
 

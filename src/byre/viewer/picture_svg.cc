@@ -2,14 +2,13 @@
 
 #include "byre/base/markup.h"
 #include "byre/io/image/image_codec.h"
-#include "byre/viewer/fixed_point.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <utility>
 
+#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
 namespace byre {
@@ -17,23 +16,17 @@ namespace {
 
 using std::string;
 
-string joined(std::initializer_list<std::string_view> parts) {
-  string all;
-  for (const std::string_view part : parts) all += part;
-  return all;
-}
-
 string px(double value) {
-  return fixed_point(value, 1);
+  return fmt::format("{:.1f}", value);
 }
 
 string px(const Eigen::Vector2d& point) {
-  return joined({px(point.x()), " ", px(point.y())});
+  return fmt::format("{:.1f} {:.1f}", point.x(), point.y());
 }
 
 string px(const std::vector<Eigen::Vector2d>& points) {
   string all;
-  for (const Eigen::Vector2d& point : points) all += joined({all.empty() ? "" : " ", px(point)});
+  for (const Eigen::Vector2d& point : points) all += (all.empty() ? "" : " ") + px(point);
   return all;
 }
 
@@ -41,33 +34,27 @@ string px(const std::vector<Eigen::Vector2d>& points) {
 using Attributes = std::vector<std::pair<std::string_view, string>>;
 
 string begun(std::string_view name, const Attributes& attributes) {
-  string tag = joined({"<", name});
+  string tag = fmt::format("<{}", name);
   for (const auto& [key, value] : attributes) {
-    if (!value.empty()) tag += joined({" ", key, "=\"", value, "\""});
+    if (!value.empty()) tag += fmt::format(" {}=\"{}\"", key, value);
   }
   return tag;
 }
 
 string empty_element(std::string_view name, const Attributes& attributes) {
-  return joined({begun(name, attributes), "/>\n"});
+  return begun(name, attributes) + "/>\n";
 }
 
 string element(std::string_view name, const Attributes& attributes, std::string_view content) {
-  return joined({begun(name, attributes), ">", content, "</", name, ">\n"});
+  return fmt::format("{}>{}</{}>\n", begun(name, attributes), content, name);
 }
 
 string hex(const Colour& colour) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  string text = "#";
-  for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) {
-    text += kDigits[part / 16];
-    text += kDigits[part % 16];
-  }
-  return text;
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
 string opacity_text(double opacity) {
-  return opacity < 1.0 ? fixed_point(opacity, 2) : "";
+  return opacity < 1.0 ? fmt::format("{:.2f}", opacity) : "";
 }
 
 string base64(const std::vector<unsigned char>& bytes) {
@@ -90,18 +77,14 @@ string data_address(const Image& image) {
   const std::vector<std::uint8_t> png = encode_image(".png", pixels);
   const std::vector<std::uint8_t> jpeg = encode_image(".jpg", pixels, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   const bool is_drawing = png.size() <= jpeg.size();
-  return joined({"data:image/", is_drawing ? "png" : "jpeg", ";base64,", base64(is_drawing ? png : jpeg)});
+  return fmt::format("data:image/{};base64,{}", is_drawing ? "png" : "jpeg", base64(is_drawing ? png : jpeg));
 }
 
 // Shift by half a pixel: SVG places an image by its corner, not by a pixel centre.
 string matrix_of(const Eigen::Matrix<double, 2, 3>& pane_from_image) {
   Eigen::Matrix<double, 2, 3> pane_from_corner = pane_from_image;
   pane_from_corner.col(2) = pane_from_image * Eigen::Vector3d(-0.5, -0.5, 1.0);
-  string text;
-  for (const double value : pane_from_corner.reshaped()) {
-    text += joined({text.empty() ? "matrix(" : " ", fixed_point(value, 6)});
-  }
-  return joined({text, ")"});
+  return fmt::format("matrix({:.6f})", fmt::join(pane_from_corner.reshaped(), " "));
 }
 
 string svg_of(const PictureImage& mark) {
@@ -119,8 +102,8 @@ string svg_of(const PictureArea& mark) {
 
 string dashes_of(const PictureLine& mark) {
   if (mark.stroke == Stroke::solid) return "";
-  if (mark.stroke == Stroke::dotted) return joined({"0 ", px(kDotGap * mark.width)});
-  return joined({px(kDash * mark.width), " ", px(kDashGap * mark.width)});
+  if (mark.stroke == Stroke::dotted) return fmt::format("0 {:.1f}", kDotGap * mark.width);
+  return fmt::format("{:.1f} {:.1f}", kDash * mark.width, kDashGap * mark.width);
 }
 
 string svg_of(const PictureLine& mark) {
@@ -139,18 +122,18 @@ bool is_dot(Symbol symbol) {
 
 // Path of one symbol. A dot is a line of zero length with round caps.
 string path_of(Symbol symbol, const Eigen::Vector2d& centre, double size) {
-  if (is_dot(symbol)) return joined({"M", px(centre), "h0"});
+  if (is_dot(symbol)) return "M" + px(centre) + "h0";
   string path;
   if (is_stroked(symbol)) {
     for (const auto& [from, to] : strokes_of(symbol, size)) {
-      path += joined({"M", px(centre + from), "L", px(centre + to)});
+      path += "M" + px(centre + from) + "L" + px(centre + to);
     }
     return path;
   }
   for (const Eigen::Vector2d& corner : corners_of(symbol, size)) {
-    path += joined({path.empty() ? "M" : "L", px(centre + corner)});
+    path += (path.empty() ? "M" : "L") + px(centre + corner);
   }
-  return joined({path, "Z"});
+  return path + "Z";
 }
 
 // Path of all symbols, widened by the rim on each side.
@@ -170,7 +153,7 @@ string svg_of(const PictureSymbols& mark) {
   if (mark.centres.empty()) return "";
   const string rims = mark.rim ? path_of(mark, kRim, *mark.rim) : "";
   return element("g", {{"class", markup_escaped(mark.name)}, {"opacity", opacity_text(mark.opacity)}},
-                 joined({rims, path_of(mark, 0.0, mark.colour)}));
+                 rims + path_of(mark, 0.0, mark.colour));
 }
 
 string svg_of(const PictureText& mark) {
@@ -188,8 +171,7 @@ string svg_of(const PictureText& mark) {
 string svg_of(const Pane& pane) {
   const string width = std::to_string(pane.width);
   const string height = std::to_string(pane.height);
-  string content =
-      joined({"\n", empty_element("rect", {{"width", width}, {"height", height}, {"fill", hex(pane.background)}})});
+  string content = "\n" + empty_element("rect", {{"width", width}, {"height", height}, {"fill", hex(pane.background)}});
   for (const PictureMark& mark : pane.marks) content += std::visit([](const auto& one) { return svg_of(one); }, mark);
   return element(
       "svg", {{"x", std::to_string(pane.left)}, {"y", std::to_string(pane.top)}, {"width", width}, {"height", height}},
@@ -201,13 +183,13 @@ string svg_of(const Pane& pane) {
 string to_svg(const Picture& picture) {
   const string width = std::to_string(picture.width);
   const string height = std::to_string(picture.height);
-  string content = joined({"\n", empty_element("rect", {{"width", width}, {"height", height}, {"fill", "#ffffff"}})});
+  string content = "\n" + empty_element("rect", {{"width", width}, {"height", height}, {"fill", "#ffffff"}});
   for (const Pane& pane : picture.panes) content += svg_of(pane);
   return element("svg",
                  {{"xmlns", "http://www.w3.org/2000/svg"},
                   {"width", width},
                   {"height", height},
-                  {"viewBox", joined({"0 0 ", width, " ", height})},
+                  {"viewBox", fmt::format("0 0 {} {}", width, height)},
                   {"font-family", "Helvetica, Arial, sans-serif"}},
                  content);
 }

@@ -1,6 +1,5 @@
 #include "byre/viewer/plan_picture.h"
 
-#include "byre/viewer/fixed_point.h"
 #include "byre/viewer/legend.h"
 #include "byre/viewer/palette.h"
 #include "byre/viewer/plan_view.h"
@@ -10,6 +9,8 @@
 #include <cmath>
 #include <iterator>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -174,8 +175,7 @@ MarksWithLegend ground_marks(const PlanScene& scene, const PlanPictureOptions& o
 std::string note_on(const PlanScene& scene, const HeightBand& heights) {
   if (!scene.ground.is_level) return "Map points of all heights.";
   const char* const above = scene.ground.plan ? "the floor" : "the driving plane";
-  return "Map points from " + fixed_point(heights.low, 1) + " to " + fixed_point(heights.high, 1) + " m above " +
-         above + ".";
+  return fmt::format("Map points from {:.1f} to {:.1f} m above {}.", heights.low, heights.high, above);
 }
 
 std::vector<LegendEntry> whole_legend() {

@@ -1,7 +1,7 @@
 #include "byre/viewer/plan_picture.h"
 
 #include "byre/viewer/palette.h"
-#include "byre/viewer/picture_fixture.h"
+#include "byre/viewer/picture_matchers.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include "byre/viewer/run_video.h"
 
 #include "byre/input_error.h"
-#include "byre/viewer/picture_fixture.h"
+#include "byre/viewer/picture_matchers.h"
 
 #include <gmock/gmock.h>
 #include <opencv2/videoio.hpp>
