@@ -1,5 +1,7 @@
 #include "byre/benchmark/plots.h"
 
+#include "byre/base/enum_names.h"
+
 #include <algorithm>
 
 namespace byre {
@@ -7,16 +9,8 @@ namespace {
 
 constexpr Timestamp kLongestStep = std::chrono::milliseconds(500);  // longer intervals between poses break the line
 
-const char* colour_of(Arm arm) {
-  switch (arm) {
-    case Arm::no_map:
-      return "#0072b2";
-    case Arm::localise_only:
-      return "#e69f00";
-    case Arm::hybrid:
-      return "#c7322e";
-  }
-  return "";
+std::string_view colour_of(Arm arm) {
+  return name_among<Arm::hybrid>({"#0072b2", "#e69f00", "#c7322e"}, arm);
 }
 
 // Pixels. The hybrid's line is drawn last and is narrower, so that both stay visible where they coincide.
@@ -59,7 +53,7 @@ Chart path_chart(const CaseResult& result) {
   };
   chart.series.push_back({"truth", kTruthColour, kTruthWidth, line_through(result.truth, kLongestStep, of_truth)});
   for (const ArmResult& arm : result.arms) {
-    chart.series.push_back({shown_name(arm.arm), colour_of(arm.arm), width_of(arm.arm),
+    chart.series.push_back({shown_name(arm.arm), std::string(colour_of(arm.arm)), width_of(arm.arm),
                             line_through(arm.final_trace, kLongestStep, of_trace)});
   }
   return chart;
@@ -78,7 +72,7 @@ Chart error_chart(const CaseResult& result) {
     return Eigen::Vector2d(to_seconds(point.time - begin), kMillimetres * point.error);
   };
   for (const ArmResult& arm : result.arms) {
-    chart.series.push_back({shown_name(arm.arm), colour_of(arm.arm), width_of(arm.arm),
+    chart.series.push_back({shown_name(arm.arm), std::string(colour_of(arm.arm)), width_of(arm.arm),
                             line_through(arm.causal_trace, kLongestStep, of_trace)});
   }
   return chart;

@@ -1,6 +1,7 @@
 #include "byre/benchmark/protocol.h"
 
 #include "byre/base/data_file.h"
+#include "byre/base/enum_names.h"
 #include "byre/benchmark/yaml_value.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/recording_options.h"
@@ -160,15 +161,7 @@ void read_runs(const YamlValue& root, BenchmarkProtocol& protocol) {
 }  // namespace
 
 std::string_view name_of(Arm arm) {
-  switch (arm) {
-    case Arm::no_map:
-      return "no_map";
-    case Arm::localise_only:
-      return "localise_only";
-    case Arm::hybrid:
-      return "hybrid";
-  }
-  return "";
+  return name_among<Arm::hybrid>({"no_map", "localise_only", "hybrid"}, arm);
 }
 
 const BenchmarkRecording& BenchmarkProtocol::recording(const std::string& recording_name) const {

@@ -52,40 +52,26 @@ std::string stage_table(const std::vector<SpeedMeasures>& runs, const SpeedMeasu
 std::string cost_table(const SpeedCase& what, const std::vector<SpeedMeasures>& runs, const SpeedMeasures& median) {
   constexpr double kMega = 1e6;
   MarkdownTable table({"the whole run", "figure"});
-  const auto add = [&](const char* name, const SpeedFigure& figure, int digits) {
+  const auto add = [&](const char* name, int digits, const SpeedFigure& figure) {
     table.add({name, cell_with_range(runs, median, figure, digits)});
   };
-  add(
-      "time to first pose, s", [](const SpeedMeasures& run) { return run.first_pose_seconds; }, 2);
-  add(
-      "CPU time, s", [](const SpeedMeasures& run) { return run.cpu_seconds; }, 2);
-  add(
-      "wall time, s", [](const SpeedMeasures& run) { return run.wall_seconds; }, 2);
-  add(
-      "peak memory, MB", [](const SpeedMeasures& run) { return run.peak_memory_mb; }, 0);
-  add(
-      "instructions per frame, millions",
-      [](const SpeedMeasures& run) -> std::optional<double> {
-        if (!run.instructions || run.frames == 0) return std::nullopt;
-        return static_cast<double>(*run.instructions) / kMega / run.frames;
-      },
-      1);
-  add(
-      "keyframes", [](const SpeedMeasures& run) { return run.keyframes; }, 0);
+  add("time to first pose, s", 2, [](const SpeedMeasures& run) { return run.first_pose_seconds; });
+  add("CPU time, s", 2, [](const SpeedMeasures& run) { return run.cpu_seconds; });
+  add("wall time, s", 2, [](const SpeedMeasures& run) { return run.wall_seconds; });
+  add("peak memory, MB", 0, [](const SpeedMeasures& run) { return run.peak_memory_mb; });
+  add("instructions per frame, millions", 1, [](const SpeedMeasures& run) -> std::optional<double> {
+    if (!run.instructions || run.frames == 0) return std::nullopt;
+    return static_cast<double>(*run.instructions) / kMega / run.frames;
+  });
+  add("keyframes", 0, [](const SpeedMeasures& run) { return run.keyframes; });
   if (what.method.frame_deadline_ms > 0.0) {
-    add(
-        "frames late", [](const SpeedMeasures& run) { return run.late; }, 0);
-    add(
-        "frames with limited online points", [](const SpeedMeasures& run) { return run.without_online_points; }, 0);
-    add(
-        "frames without the right image", [](const SpeedMeasures& run) { return run.with_left_alone; }, 0);
+    add("frames late", 0, [](const SpeedMeasures& run) { return run.late; });
+    add("frames with limited online points", 0, [](const SpeedMeasures& run) { return run.without_online_points; });
+    add("frames without the right image", 0, [](const SpeedMeasures& run) { return run.with_left_alone; });
   }
-  add(
-      "mapping jobs", [](const SpeedMeasures& run) { return run.jobs.count; }, 0);
-  add(
-      "mean mapping job, ms", [](const SpeedMeasures& run) { return run.jobs.mean_ms; }, 1);
-  add(
-      "longest mapping job, ms", [](const SpeedMeasures& run) { return run.jobs.max_ms; }, 1);
+  add("mapping jobs", 0, [](const SpeedMeasures& run) { return run.jobs.count; });
+  add("mean mapping job, ms", 1, [](const SpeedMeasures& run) { return run.jobs.mean_ms; });
+  add("longest mapping job, ms", 1, [](const SpeedMeasures& run) { return run.jobs.max_ms; });
   return table.text();
 }
 

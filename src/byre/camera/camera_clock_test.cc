@@ -1,4 +1,4 @@
-#include "byre/camera/camera_clock.h"
+#include "byre/camera/live_cameras.h"
 
 #include <gmock/gmock.h>
 

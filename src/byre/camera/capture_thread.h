@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/base/newest_queue.h"
+#include "byre/calibration.h"
 #include "byre/camera/live_cameras.h"
 
 #include <cstdint>
@@ -52,5 +53,11 @@ class CaptureThread {
   NewestQueue<std::string> notes_;
   std::jthread thread_;  // last member, because it uses the others
 };
+
+// Requests images of the calibrated size, unless the options request a size.
+void request_calibrated_size(const Calibration& calibration, LiveCameraOptions& options);
+
+// Throws InputError if the calibration has another number of cameras, or another image size. place: its file.
+void require_fit(const Calibration& calibration, const CaptureThread& capture, const std::string& place);
 
 }  // namespace byre

@@ -1,5 +1,6 @@
 #include "byre/camera/live_cameras.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/base/report_row.h"
 #include "byre/input_error.h"
 
@@ -13,6 +14,11 @@
 
 namespace byre {
 namespace {
+
+bool is_near(Timestamp a, Timestamp b) {
+  constexpr Timestamp kNear = std::chrono::seconds(10);
+  return std::chrono::abs(a - b) <= kNear;
+}
 
 constexpr int kExposureInterval = 6;  // frames between changes: a change takes effect some frames later
 
@@ -56,6 +62,38 @@ std::string describe_stamps(const LiveCameraReport& report) {
 }
 
 }  // namespace
+
+Timestamp monotonic_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC, same as drivers
+}
+
+std::string_view to_string(CameraClock clock) {
+  return name_among<CameraClock::own>({"monotonic", "utc", "own"}, clock);
+}
+
+MachineTime machine_time() {
+  constexpr int kAttempts = 5;
+  MachineTime best;
+  Timestamp least = Timestamp::max();
+  for (int i = 0; i < kAttempts; ++i) {
+    const Timestamp before = monotonic_now();
+    const Timestamp utc = std::chrono::system_clock::now().time_since_epoch();
+    const Timestamp took = monotonic_now() - before;
+    if (took >= least) continue;
+    least = took;
+    best = {before + took / 2, utc};
+  }
+  return best;
+}
+
+CameraClock clock_of(Timestamp stamp, const MachineTime& now) {
+  if (is_near(stamp, now.monotonic)) return CameraClock::monotonic;
+  return is_near(stamp, now.utc) ? CameraClock::utc : CameraClock::own;
+}
+
+Timestamp utc_offset(CameraClock clock, const MachineTime& now) {
+  return clock == CameraClock::monotonic ? now.utc - now.monotonic : Timestamp{};
+}
 
 LiveCameras::LiveCameras(const LiveCameraOptions& options) : options_(options), pairing_(options.pairing) {
   require_valid(options);

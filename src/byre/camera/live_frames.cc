@@ -1,6 +1,6 @@
 #include "byre/camera/live_frames.h"
 
-#include "byre/camera/camera_fit.h"
+#include "byre/camera/capture_thread.h"
 
 #include <utility>
 

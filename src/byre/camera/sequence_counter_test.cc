@@ -1,4 +1,4 @@
-#include "byre/camera/sequence_counter.h"
+#include "byre/camera/reconnecting_device.h"
 
 #include <gmock/gmock.h>
 

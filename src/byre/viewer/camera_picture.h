@@ -1,5 +1,7 @@
 #pragma once
 
+#include "byre/slam/frame/health.h"
+#include "byre/slam/frame/state.h"
 #include "byre/viewer/picture.h"
 #include "byre/viewer/scene.h"
 

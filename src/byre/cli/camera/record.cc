@@ -1,7 +1,7 @@
 #include "byre/base/report_row.h"
 #include "byre/base/stopwatch.h"
 #include "byre/calibration_file.h"
-#include "byre/camera/camera_fit.h"
+#include "byre/camera/capture_thread.h"
 #include "byre/camera/record_run.h"
 #include "byre/cli/camera/commands.h"
 #include "byre/cli/shared/camera_options.h"

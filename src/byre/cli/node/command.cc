@@ -4,7 +4,7 @@
 #include "byre/cli/shared/interrupt.h"
 #include "byre/features/image_threads.h"
 #include "byre/ros2/node/node.h"
-#include "byre/ros2/node/process_settings.h"
+#include "byre/ros2/node/process.h"
 
 #include <chrono>
 #include <iostream>

@@ -1,7 +1,7 @@
 #include "byre/ros2/dds/ros_graph.h"
 
 #include "byre/io/ros/message_writer.h"
-#include "byre/ros2/dds/type_hashes.h"
+#include "byre/ros2/dds/ros_names.h"
 
 #include <algorithm>
 #include <string_view>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "byre/io/ros/message.h"
+
 #include <string>
 #include <string_view>
 
@@ -24,5 +26,13 @@ std::string fault_in_name(std::string_view name);
 
 // Full topic name: relative topics are within the namespace.
 std::string resolve_name(std::string_view topic, std::string_view name_space);
+
+// Type hash of a message (REP-2011: RIHS01_ and 64 digits); empty for messages that are only sent as parts.
+std::string_view type_hash(std::string_view type_name);
+
+template <ros::Message T>
+MessageType message_type() {
+  return {std::string(T::kType), std::string(type_hash(T::kType))};
+}
 
 }  // namespace byre

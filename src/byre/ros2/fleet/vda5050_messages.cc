@@ -1,5 +1,6 @@
 #include "byre/ros2/fleet/vda5050_messages.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/base/printable.h"
 
 #include <algorithm>
@@ -78,16 +79,8 @@ Json errors_of(const FleetPosition& position) {
   return errors;
 }
 
-const char* name_of(FleetConnection state) {
-  switch (state) {
-    case FleetConnection::online:
-      return "ONLINE";
-    case FleetConnection::offline:
-      return "OFFLINE";
-    case FleetConnection::broken:
-      break;
-  }
-  return "CONNECTIONBROKEN";
+std::string_view name_of(FleetConnection state) {
+  return name_among<FleetConnection::broken>({"ONLINE", "OFFLINE", "CONNECTIONBROKEN"}, state);
 }
 
 }  // namespace

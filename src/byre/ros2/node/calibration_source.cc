@@ -2,7 +2,7 @@
 
 #include "byre/calibration_file.h"
 #include "byre/io/recording/camera_info.h"
-#include "byre/ros2/dds/type_hashes.h"
+#include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/node/message_parsing.h"
 
 #include <utility>

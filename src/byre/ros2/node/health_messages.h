@@ -25,4 +25,15 @@ void log_changes(const FrameReport& report, const std::optional<FrameReport>& la
 // Time, state, health and map pose as one line of JSON.
 std::string health_line(const FrameReport& report);
 
+// Counters of a node since its start.
+struct NodeCounters {
+  int images = 0;   // left images received
+  int skipped = 0;  // left images skipped for newer ones
+  int frames = 0;   // frames tracked
+  std::optional<FrameReport> last{};
+};
+
+// Prometheus text format, https://prometheus.io/docs/instrumenting/exposition_formats
+std::string metrics_text(const NodeCounters& counters);
+
 }  // namespace byre

@@ -1,4 +1,3 @@
-#include "byre/ros2/node/kept_maps.h"
 
 #include "byre/base/output_file.h"
 #include "byre/input_error.h"

@@ -1,4 +1,4 @@
-#include "byre/ros2/node/metrics.h"
+#include "byre/ros2/node/health_messages.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #include "byre/ros2/node/motion_input.h"
 
 #include "byre/io/recording/motion_messages.h"
-#include "byre/ros2/dds/type_hashes.h"
+#include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/node/message_parsing.h"
 
 #include <algorithm>

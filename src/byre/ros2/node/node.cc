@@ -1,11 +1,9 @@
 #include "byre/ros2/node/node.h"
 
 #include "byre/base/printable.h"
-#include "byre/ros2/dds/type_hashes.h"
+#include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/node/health_messages.h"
-#include "byre/ros2/node/hint_message.h"
 #include "byre/ros2/node/message_parsing.h"
-#include "byre/ros2/node/metrics.h"
 
 #include <algorithm>
 #include <chrono>

@@ -14,7 +14,7 @@
 #include "byre/ros2/node/node_outputs.h"
 #include "byre/ros2/node/node_services.h"
 #include "byre/ros2/node/pose_frames.h"
-#include "byre/ros2/node/service_manager.h"
+#include "byre/ros2/node/process.h"
 #include "byre/ros2/node/slam_runner.h"
 #include "byre/viewer/web/live_topics.h"
 #include "byre/viewer/web/status_site.h"

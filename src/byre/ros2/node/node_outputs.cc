@@ -3,7 +3,7 @@
 #include "byre/floor_plan.h"
 #include "byre/playback/report/pose_messages.h"
 #include "byre/playback/report/report_json.h"
-#include "byre/ros2/dds/type_hashes.h"
+#include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/node/health_messages.h"
 #include "byre/ros2/node/map_messages.h"
 

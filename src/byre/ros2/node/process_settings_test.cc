@@ -1,4 +1,4 @@
-#include "byre/ros2/node/process_settings.h"
+#include "byre/ros2/node/process.h"
 
 #include <gmock/gmock.h>
 #include <sched.h>

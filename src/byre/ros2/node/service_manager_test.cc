@@ -1,4 +1,4 @@
-#include "byre/ros2/node/service_manager.h"
+#include "byre/ros2/node/process.h"
 
 #include <cstdlib>
 #include <filesystem>

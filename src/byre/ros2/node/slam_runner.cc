@@ -8,7 +8,6 @@
 #include "byre/io/recording/settings_file.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/options_file.h"
-#include "byre/ros2/node/kept_maps.h"
 #include "byre/ros2/node/map_messages.h"
 
 #include <algorithm>
@@ -82,6 +81,19 @@ void require_safe_save(const NodeConfig& config) {
 }
 
 }  // namespace
+
+namespace fs = std::filesystem;
+
+fs::path previous_map(const fs::path& map) {
+  fs::path previous = map.parent_path() / map.stem();
+  previous += ".previous";
+  previous += map.extension();
+  return previous;
+}
+
+void keep_as_previous(const fs::path& map) {
+  if (content_of(map) == FileContent::map) link_or_copy(map, previous_map(map));
+}
 
 SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(slam_options(config)), map_(config.map) {
   require_safe_save(config);

@@ -1,4 +1,4 @@
-#include "byre/slam/frame/dirt_mask.h"
+#include "byre/slam/frame/dirt_detector.h"
 
 #include "byre/slam/tracking/mission_scene.h"
 

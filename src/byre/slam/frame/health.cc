@@ -1,5 +1,7 @@
 #include "byre/slam/frame/health.h"
 
+#include "byre/base/enum_names.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -84,65 +86,33 @@ DistrustReason caution_reason(const Health& health, const HealthEvidence& eviden
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::trusted:
-      return "trusted";
-    case Verdict::degraded:
-      return "degraded";
-    case Verdict::untrusted:
-      return "untrusted";
-  }
-  return "";
+  return name_among<Verdict::untrusted>({"trusted", "degraded", "untrusted"}, verdict);
 }
 
 std::string_view to_string(DistrustReason doubt) {
-  switch (doubt) {
-    case DistrustReason::none:
-      return "none";
-    case DistrustReason::no_pose:
-      return "no pose";
-    case DistrustReason::blinded:
-      return "blinded";
-    case DistrustReason::not_registered:
-      return "not registered in the map";
-    case DistrustReason::unconfirmed:
-      return "not confirmed yet";
-    case DistrustReason::off_the_map:
-      return "far outside the mapped area";
-    case DistrustReason::few_points:
-      return "too few points";
-    case DistrustReason::few_offline_points:
-      return "too few offline points";
-    case DistrustReason::clustered:
-      return "points are clustered";
-    case DistrustReason::uncertain:
-      return "pose is uncertain";
-    case DistrustReason::maps_disagree:
-      return "offline and online points disagree";
-    case DistrustReason::frozen:
-      return "camera repeats its image";
-    case DistrustReason::right_camera:
-      return "right camera is blinded";
-    case DistrustReason::cameras_disagree:
-      return "left and right images do not fit";
-    case DistrustReason::calibration:
-      return "calibration does not fit the map";
-    case DistrustReason::bridged:
-      return "bridged by wheels or a gyroscope";
-    case DistrustReason::dirty:
-      return "dirt hides most of the image";
-    case DistrustReason::map_damaged:
-      return "map file is damaged";
-    case DistrustReason::off_the_plane:
-      return "place found is off the driving plane";
-    case DistrustReason::in_wall:
-      return "place found is inside a wall";
-    case DistrustReason::outside:
-      return "place found is outside of the building";
-    case DistrustReason::behind_wall:
-      return "place found is behind a wall";
-  }
-  return "";
+  return name_among<DistrustReason::behind_wall>({"none",
+                                                  "no pose",
+                                                  "blinded",
+                                                  "not registered in the map",
+                                                  "not confirmed yet",
+                                                  "far outside the mapped area",
+                                                  "too few points",
+                                                  "too few offline points",
+                                                  "points are clustered",
+                                                  "pose is uncertain",
+                                                  "offline and online points disagree",
+                                                  "camera repeats its image",
+                                                  "right camera is blinded",
+                                                  "left and right images do not fit",
+                                                  "calibration does not fit the map",
+                                                  "bridged by wheels or a gyroscope",
+                                                  "dirt hides most of the image",
+                                                  "map file is damaged",
+                                                  "place found is off the driving plane",
+                                                  "place found is inside a wall",
+                                                  "place found is outside of the building",
+                                                  "place found is behind a wall"},
+                                                 doubt);
 }
 
 std::string note_on_dirt(const Health& health) {

@@ -1,19 +1,11 @@
 #include "byre/slam/frame/state.h"
 
+#include "byre/base/enum_names.h"
+
 namespace byre {
 
 std::string_view to_string(State state) {
-  switch (state) {
-    case State::initialising:
-      return "initialising";
-    case State::tracking:
-      return "tracking";
-    case State::relocalising:
-      return "relocalising";
-    case State::lost:
-      return "lost";
-  }
-  return "unknown";
+  return name_among<State::lost>({"initialising", "tracking", "relocalising", "lost"}, state);
 }
 
 State next_state(State state, const Evidence& evidence, const StateOptions& options) {

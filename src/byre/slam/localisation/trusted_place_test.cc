@@ -1,4 +1,4 @@
-#include "byre/slam/localisation/trusted_place.h"
+#include "byre/slam/localisation/place_bounds.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "byre/slam/loops/loop_closing.h"
 #include "byre/slam/window/delta.h"
 #include "byre/slam/window/mapping.h"
+#include "byre/slam/window/window.h"
 
 #include <functional>
 #include <map>
@@ -52,5 +53,11 @@ LengthChanges apply_correction(const MapDelta& correction, const MapWindow& befo
 
 // A measured loop in the present lengths of the map.
 LoopEdge in_new_lengths(const LoopEdge& loop, const LengthChanges& changes);
+
+// Places parts of the window that share no points by the measured motion between them, which may be more precise now
+// than at their beginning. Each part moves, with its points, to the pose predicted from the part before. Monocular
+// parts and the motions are scaled to the first part. Fixed keyframes do not move, nor parts that share points with
+// them or with the oldest keyframe that has a motion. False, and nothing changes, if no motion connects two parts.
+bool place_parts(MapWindow& window);
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/slam/loops/part_placement.h"
+#include "byre/slam/loops/global_mapping.h"
 
 #include "byre/alignment.h"
 #include "byre/slam/tracking/body_pose.h"

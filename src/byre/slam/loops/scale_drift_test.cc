@@ -1,4 +1,4 @@
-#include "byre/slam/loops/scale_drift.h"
+#include "byre/slam/loops/loop_closing.h"
 
 #include "byre/slam/loops/drift_scene.h"
 

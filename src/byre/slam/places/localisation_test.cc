@@ -1,7 +1,6 @@
 #include "byre/slam/places/localisation.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/slam/places/place_matching.h"
 #include "byre/slam/places/place_scene.h"
 
 #include <algorithm>

@@ -1,9 +1,144 @@
 #include "byre/viewer/web/foxglove_client.h"
 
+#include "byre/base/byte_stream.h"
+#include "byre/viewer/web/web_json.h"
+
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
 #include <utility>
 
 namespace byre {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<std::string_view, 2> kProtocols = {"foxglove.sdk.v1", "foxglove.websocket.v1"};
+constexpr std::uint8_t kMessageData = 1;
+constexpr std::uint8_t kTime = 2;
+constexpr std::size_t kMaxQuoted = 40;  // bytes of client text quoted in a status message
+
+std::string text_of(const ByteWriter& writer) {
+  return {reinterpret_cast<const char*>(writer.bytes().data()), writer.size()};
+}
+
+std::optional<std::uint32_t> number_of(const Json& value) {
+  if (!value.is_number_unsigned()) return std::nullopt;
+  const auto number = value.get<std::uint64_t>();
+  if (number > std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
+  return static_cast<std::uint32_t>(number);
+}
+
+std::optional<std::uint32_t> number_in(const Json& fields, const char* name) {
+  if (!fields.is_object() || !fields.contains(name)) return std::nullopt;
+  return number_of(fields.at(name));
+}
+
+FoxgloveRequest fault(std::string reason) {
+  return {{}, {}, std::move(reason)};
+}
+
+FoxgloveRequest read_subscribe(const Json& message) {
+  const auto wanted = message.find("subscriptions");
+  if (wanted == message.end() || !wanted->is_array()) return fault("subscribe has no list of subscriptions");
+  FoxgloveRequest request;
+  for (const Json& each : *wanted) {
+    const auto id = number_in(each, "id");
+    const auto channel = number_in(each, "channelId");
+    if (!id || !channel) return fault("a subscription has no numbers id and channelId");
+    request.subscribe.push_back({*id, *channel});
+  }
+  return request;
+}
+
+FoxgloveRequest read_unsubscribe(const Json& message) {
+  const auto given_up = message.find("subscriptionIds");
+  if (given_up == message.end() || !given_up->is_array()) return fault("unsubscribe has no list of subscriptionIds");
+  FoxgloveRequest request;
+  for (const Json& each : *given_up) {
+    const auto id = number_of(each);
+    if (!id) return fault("a subscriptionId is not a number");
+    request.unsubscribe.push_back(*id);
+  }
+  return request;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+bool is_offered(std::string_view protocol, std::string_view offered) {
+  while (!offered.empty()) {
+    const std::string_view field = offered.substr(0, offered.find(','));
+    if (trimmed(field) == protocol) return true;
+    offered.remove_prefix(std::min(offered.size(), field.size() + 1));
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string_view foxglove_protocol(std::string_view offered) {
+  for (const std::string_view protocol : kProtocols) {
+    if (is_offered(protocol, offered)) return protocol;
+  }
+  return {};
+}
+
+std::string server_info_text(std::string_view session) {
+  return dump_json({{"op", "serverInfo"},
+                    {"name", "byre " BYRE_VERSION},
+                    {"capabilities", {"time"}},
+                    {"metadata", Json::object()},
+                    {"sessionId", session}});
+}
+
+std::string advertise_text(std::size_t first, std::span<const ros::Topic> topics) {
+  Json channels = Json::array();
+  for (const ros::Topic& topic : topics) {
+    channels.push_back({{"id", first + channels.size()},
+                        {"topic", topic.name},
+                        {"encoding", "cdr"},
+                        {"schemaName", topic.type},
+                        {"schemaEncoding", "ros2msg"},
+                        {"schema", topic.schema}});
+  }
+  return dump_json({{"op", "advertise"}, {"channels", channels}});
+}
+
+std::string status_text(StatusLevel level, std::string_view message) {
+  return dump_json({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
+}
+
+std::string message_head(std::uint32_t subscription, Timestamp time) {
+  ByteWriter writer;
+  writer.write(kMessageData);
+  writer.write(subscription);
+  writer.write(static_cast<std::uint64_t>(time.count()));
+  return text_of(writer);
+}
+
+std::string time_bytes(Timestamp time) {
+  ByteWriter writer;
+  writer.write(kTime);
+  writer.write(static_cast<std::uint64_t>(time.count()));
+  return text_of(writer);
+}
+
+FoxgloveRequest read_foxglove_request(std::string_view bytes, bool is_binary) {
+  if (is_binary) return fault("byre accepts no messages and offers no services");
+  const Json message = Json::parse(bytes, nullptr, false);
+  if (!message.is_object()) return fault("the message is not a JSON object");
+  const auto op = message.find("op");
+  if (op == message.end() || !op->is_string()) return fault("the message has no string op");
+  const auto& name = op->get_ref<const std::string&>();
+  if (name == "subscribe") return read_subscribe(message);
+  if (name == "unsubscribe") return read_unsubscribe(message);
+  return fault("only subscribe and unsubscribe are supported, not " + name.substr(0, kMaxQuoted));
+}
 
 FoxgloveClient::FoxgloveClient(LiveTopics& topics, std::string_view session, const FoxgloveLimits& limits)
     : topics_(topics), limits_(limits), answers_({server_info_text(session)}) {}

@@ -1,4 +1,4 @@
-#include "byre/viewer/web/foxglove_protocol.h"
+#include "byre/viewer/web/foxglove_client.h"
 
 #include "byre/io/ros/messages.h"
 

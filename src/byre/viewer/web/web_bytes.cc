@@ -1,8 +1,16 @@
 #include "byre/viewer/web/web_bytes.h"
 
+#include "byre/input_error.h"
+#include "byre/io/image/image_codec.h"
+#include "byre/io/image/plan_pixels.h"
+
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <type_traits>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
 
 namespace byre {
 namespace {
@@ -25,6 +33,18 @@ std::uint8_t number_of(Origin origin) {
 }
 
 }  // namespace
+
+std::string plan_png(const FloorPlan& plan, int max_side) {
+  cv::Mat image = render_plan(plan);
+  if (image.empty()) throw InputError(plan.image.string(), "is not a readable image", "give a PNG, JPEG or PGM");
+  const int longest = std::max(image.cols, image.rows);
+  if (longest > max_side) {
+    const double scale = static_cast<double>(max_side) / longest;
+    cv::resize(image, image, {}, scale, scale, cv::INTER_AREA);
+  }
+  const std::vector<std::uint8_t> png = encode_image(".png", image);
+  return {png.begin(), png.end()};
+}
 
 std::string map_bytes(const MapScene& scene) {
   constexpr std::size_t kBytesPerPoint = 13, kBytesPerKeyframe = 29;

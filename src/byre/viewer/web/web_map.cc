@@ -3,7 +3,6 @@
 #include "byre/base/output_file.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/input_files.h"
-#include "byre/viewer/plan_image.h"
 #include "byre/viewer/plan_picks.h"
 #include "byre/viewer/scene.h"
 #include "byre/viewer/web/web_bytes.h"

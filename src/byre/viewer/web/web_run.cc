@@ -2,7 +2,6 @@
 
 #include "byre/features/rectify.h"
 #include "byre/io/image/image_codec.h"
-#include "byre/viewer/plan_image.h"
 #include "byre/viewer/web/image_store.h"
 #include "byre/viewer/web/web_bytes.h"
 #include "byre/viewer/web/web_json.h"

@@ -1,13 +1,25 @@
-#include "byre/ros2/node/service_manager.h"
+#include "byre/ros2/node/process.h"
 
 #include "byre/base/printable.h"
 
+#include <cerrno>
 #include <cstdint>
+#include <string>
+#include <system_error>
 #include <utility>
 
+#include <sched.h>
+#include <sys/mman.h>
 #include <systemd/sd-daemon.h>
 
 namespace byre {
+namespace {
+
+std::string reason() {
+  return std::generic_category().message(errno);
+}
+
+}  // namespace
 
 ServiceManager::ServiceManager() {
   std::uint64_t microseconds = 0;
@@ -47,6 +59,19 @@ void ServiceManager::busy(std::chrono::seconds longest) {
 
 void ServiceManager::set_watchdog(std::chrono::microseconds time) {
   sd_notify(0, ("WATCHDOG_USEC=" + std::to_string(time.count())).c_str());
+}
+
+void apply_process_settings(const NodeConfig& config, const NodeLog& log) {
+  // MCL_ONFAULT locks pages on first use, as most of a map is never used.
+  if (config.locks_memory && mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) {
+    log(LogLevel::warning, "process.lock_memory: not allowed (" + reason() + "): raise LimitMEMLOCK of the service");
+  }
+  if (config.priority == 0) return;
+  sched_param wanted{};
+  wanted.sched_priority = config.priority;
+  if (sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &wanted) != 0) {
+    log(LogLevel::warning, "process.priority: not allowed (" + reason() + "): raise LimitRTPRIO of the service");
+  }
 }
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/ros2/node/hint_message.h"
+#include "byre/ros2/node/message_parsing.h"
 
 #include "byre/io/recording/motion_messages.h"
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "byre/ros2/node/node_config.h"
+#include "byre/ros2/node/node_log.h"
+
 #include <chrono>
 #include <optional>
 #include <string>
@@ -27,5 +30,9 @@ class ServiceManager {
   bool is_busy_ = false;
   std::string last_status_;
 };
+
+// Locks the program's memory, and sets the real-time priority of the calling thread, but not of threads that it starts,
+// according to the settings. Missing permissions are logged.
+void apply_process_settings(const NodeConfig& config, const NodeLog& log);
 
 }  // namespace byre
