@@ -1,6 +1,6 @@
 #include "byre/benchmark/benchmark_run.h"
 
-#include "byre/benchmark/peak_memory.h"
+#include "byre/benchmark/run_cost.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/scaled_recording.h"

@@ -4,8 +4,6 @@
 #include "byre/place/vocabulary.h"
 #include "byre/simulation/rendered_scene.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
 
 namespace byre {

@@ -1,4 +1,4 @@
-#include "byre/benchmark/peak_memory.h"
+#include "byre/benchmark/run_cost.h"
 
 #include <cstring>
 

@@ -1,11 +1,68 @@
 #include "byre/benchmark/plots.h"
 
 #include "byre/base/enum_names.h"
+#include "byre/benchmark/evaluate_run.h"
 
 #include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
+
+constexpr const char* kEstimateColour = "#0072b2";
+
+Timestamp longest_step(const std::vector<PosePair>& pairs) {
+  Timestamp longest = std::chrono::milliseconds(500);
+  if (pairs.size() < 2) return longest;
+  const Timestamp mean = (pairs.back().time - pairs.front().time) / static_cast<int>(pairs.size() - 1);
+  return std::max(longest, 5 * mean);
+}
+
+// The aligned estimate. Precondition: the report has an absolute error of these pairs.
+std::vector<TracePoint> trace_of(const EvaluationReport& report, const std::vector<PosePair>& pairs) {
+  std::vector<TracePoint> trace;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Eigen::Vector3d& position = pairs[i].estimated_world_from_body.translation;
+    trace.push_back({pairs[i].time, report.ate->truth_from_estimate * position, report.ate->errors[i]});
+  }
+  return trace;
+}
+
+Chart path_chart(const EvaluationReport& report, const std::vector<PosePair>& pairs, bool y_points_down) {
+  const auto from_above = [y_points_down](const Eigen::Vector3d& position) {
+    return Eigen::Vector2d(position.x(), y_points_down ? position.z() : position.y());
+  };
+  const auto true_point = [&](const PosePair& pair) { return from_above(pair.true_world_from_body.translation); };
+  const auto estimated_point = [&](const TracePoint& point) { return from_above(point.position_in_truth); };
+  const Timestamp longest = longest_step(pairs);
+  Chart chart;
+  chart.title = "Path from above";
+  chart.subtitle = fmt::format("{} poses with truth, {:.2f} m of true path", report.pairs, report.true_path);
+  chart.x_label = "x [m]";
+  chart.y_label = y_points_down ? "z [m]" : "y [m]";
+  chart.equal_scales = true;
+  chart.series = {{"truth", kTruthColour, kTruthWidth, line_through(pairs, longest, true_point)},
+                  {"estimate", kEstimateColour, 1.6, line_through(trace_of(report, pairs), longest, estimated_point)}};
+  return chart;
+}
+
+Chart error_chart(const EvaluationReport& report, const std::vector<PosePair>& pairs) {
+  const auto error_at = [begin = pairs.front().time](const TracePoint& point) {
+    return Eigen::Vector2d(to_seconds(point.time - begin), point.error);
+  };
+  Chart chart;
+  chart.title = "Position error over time";
+  chart.subtitle =
+      fmt::format("RMSE {:.4f} m, max {:.4f} m", report.ate->translation.rmse, report.ate->translation.max);
+  chart.x_label = "time [s]";
+  chart.y_label = "error [m]";
+  chart.series = {
+      {"estimate", kEstimateColour, 1.6, line_through(trace_of(report, pairs), longest_step(pairs), error_at)}};
+  return chart;
+}
 
 constexpr Timestamp kLongestStep = std::chrono::milliseconds(500);  // longer intervals between poses break the line
 
@@ -76,6 +133,12 @@ Chart error_chart(const CaseResult& result) {
                             line_through(arm.causal_trace, kLongestStep, of_trace)});
   }
   return chart;
+}
+
+std::string evaluation_plot(const EvaluationReport& report, const Trajectory& estimate, const Trajectory& truth,
+                            bool y_points_down) {
+  const std::vector<PosePair> pairs = associate(estimate, truth, report.protocol.association);
+  return to_svg({path_chart(report, pairs, y_points_down), error_chart(report, pairs)});
 }
 
 }  // namespace byre

@@ -2,6 +2,9 @@
 
 #include "byre/benchmark/benchmark_run.h"
 #include "byre/benchmark/chart.h"
+#include "byre/geometry/evaluation/evaluate.h"
+
+#include <string>
 
 namespace byre {
 
@@ -10,5 +13,11 @@ Chart path_chart(const CaseResult& result);
 
 // Error over time of the causal poses of each arm's first run.
 Chart error_chart(const CaseResult& result);
+
+// SVG picture: true and aligned estimated path from above, and the position error over time below. The view is along z,
+// or along y for KITTI truth, whose y points down. Precondition: the report has an absolute error of these
+// trajectories.
+std::string evaluation_plot(const EvaluationReport& report, const Trajectory& estimate, const Trajectory& truth,
+                            bool y_points_down);
 
 }  // namespace byre

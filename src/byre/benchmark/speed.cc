@@ -1,8 +1,7 @@
 #include "byre/benchmark/speed.h"
 
 #include "byre/base/stopwatch.h"
-#include "byre/benchmark/event_counter.h"
-#include "byre/benchmark/peak_memory.h"
+#include "byre/benchmark/run_cost.h"
 #include "byre/playback/scaled_recording.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/resources.h"
@@ -45,7 +44,7 @@ std::span<const FrameStage> frame_stages() {
 SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
   const bool is_reset = reset_peak_memory();
   const double cpu_before = resource_usage().cpu_seconds;
-  const EventCounter instructions(EventCounter::Event::instructions);
+  const InstructionCounter instructions;
   const Stopwatch watch;
 
   const ScaledRecording opened = open_scaled(what.recording, what.range, what.open, what.map.has_value());
