@@ -76,22 +76,27 @@ std::vector<std::byte> graph_message(const EntityId& participant, const NodeDesc
 }
 
 GraphAnnouncement::GraphAnnouncement(Participant& participant, NodeDescription node)
-    : participant_(participant.id()),
-      distribution_(participant.distribution()),
+    : participant_(participant),
       publisher_(participant.publish("ros_discovery_info", message_type<ParticipantEntitiesInfo<16>>(),
                                      {.is_reliable = true, .is_latched = true, .depth = 1})),
       node_(std::move(node)) {}
 
-void GraphAnnouncement::add(const Publisher& publisher) {
+Publisher GraphAnnouncement::publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                                     const std::string& note) {
+  Publisher publisher = participant_.publish(topic, type, qos, note);
   node_.writers.push_back(publisher.id());
+  return publisher;
 }
 
-void GraphAnnouncement::add(const Subscriber& subscriber) {
+Subscriber GraphAnnouncement::subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                                        const std::string& note) {
+  Subscriber subscriber = participant_.subscribe(topic, type, qos, note);
   node_.readers.push_back(subscriber.id());
+  return subscriber;
 }
 
-void GraphAnnouncement::publish() {
-  publisher_.publish(graph_message(participant_, node_, distribution_));
+void GraphAnnouncement::announce() {
+  publisher_.publish(graph_message(participant_.id(), node_, participant_.distribution()));
 }
 
 }  // namespace byre

@@ -2,7 +2,6 @@
 
 #include "byre/ros2/dds/participant.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,14 +24,16 @@ class GraphAnnouncement {
  public:
   GraphAnnouncement(Participant& participant, NodeDescription node);
 
-  // Adds endpoints made later.
-  void add(const Publisher& publisher);
-  void add(const Subscriber& subscriber);
-  void publish();
+  // Make an endpoint of the node, see Participant; announced by the next announce().
+  Publisher publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                    const std::string& note = {});
+  Subscriber subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
+                       const std::string& note = {});
+  void announce();
+  Participant& participant() { return participant_; }
 
  private:
-  EntityId participant_;          // constant after construction
-  RosDistribution distribution_;  // constant after construction
+  Participant& participant_;  // outlives this
   Publisher publisher_;
   NodeDescription node_;
 };

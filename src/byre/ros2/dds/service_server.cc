@@ -18,14 +18,11 @@ std::string service_note(EntityId id, const std::string& service) {
 
 }  // namespace
 
-ServiceServer::ServiceServer(Participant& participant, GraphAnnouncement& graph, const std::string& service,
-                             const std::string& type) {
-  const std::string note = service_note(participant.id(), service);
-  requests_ = participant.subscribe(dds_request_name(service), {type + "_Request", ""},
-                                    {.max_bytes = kMaxBytesWithoutImage}, note);
-  replies_ = participant.publish(dds_reply_name(service), {type + "_Response", ""}, {}, note);
-  graph.add(requests_);
-  graph.add(replies_);
+ServiceServer::ServiceServer(GraphAnnouncement& graph, const std::string& service, const std::string& type) {
+  const std::string note = service_note(graph.participant().id(), service);
+  requests_ =
+      graph.subscribe(dds_request_name(service), {type + "_Request", ""}, {.max_bytes = kMaxBytesWithoutImage}, note);
+  replies_ = graph.publish(dds_reply_name(service), {type + "_Response", ""}, {}, note);
 }
 
 void ServiceServer::reply(std::vector<std::byte> message, std::chrono::nanoseconds now) {

@@ -40,8 +40,7 @@ struct ServiceMessage {
 class ServiceServer {
  public:
   // service: begins with a slash; type: "std_srvs/srv/Trigger". Both endpoints are added to the graph.
-  ServiceServer(Participant& participant, GraphAnnouncement& graph, const std::string& service,
-                const std::string& type);
+  ServiceServer(GraphAnnouncement& graph, const std::string& service, const std::string& type);
 
   // Requests since the previous call, oldest first, each a ServiceMessage.
   std::vector<Message> take() { return requests_.take(); }

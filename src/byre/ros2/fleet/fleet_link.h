@@ -3,13 +3,10 @@
 #include "byre/ros2/fleet/mqtt_client.h"
 #include "byre/ros2/fleet/vda5050_messages.h"
 
-#include <atomic>
 #include <chrono>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace byre {
 

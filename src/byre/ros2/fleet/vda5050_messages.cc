@@ -1,7 +1,7 @@
 #include "byre/ros2/fleet/vda5050_messages.h"
 
 #include "byre/base/enum_names.h"
-#include "byre/base/printable.h"
+#include "byre/playback/report/report_json.h"
 
 #include <algorithm>
 #include <cctype>
@@ -20,10 +20,6 @@ constexpr const char* kVersion = "2.1.0";
 constexpr std::string_view kTopicVersion = "v2";
 constexpr std::string_view kMarks = "_.:-";  // permitted characters of identities besides letters and digits
 constexpr double kStanding = 0.02;           // m/s and rad/s; below, the robot is at standstill
-
-std::string text_of(const Json& json) {
-  return printable_json(json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
 
 // Time such as "2026-11-23T14:05:06.123Z".
 std::string utc(std::chrono::system_clock::time_point time) {
@@ -105,14 +101,14 @@ std::string fleet_topic(const FleetIdentity& identity, std::string_view topic) {
 std::string connection_text(const FleetIdentity& identity, const FleetHeader& header, FleetConnection state) {
   Json message = header_fields(identity, header);
   message["connectionState"] = name_of(state);
-  return text_of(message);
+  return dump_json(message);
 }
 
 std::string visualization_text(const FleetIdentity& identity, const FleetHeader& header, const FleetPosition& position,
                                const FleetMap& map) {
   Json message = header_fields(identity, header);
   add_position(message, position, map);
-  return text_of(message);
+  return dump_json(message);
 }
 
 std::string state_text(const FleetIdentity& identity, const FleetHeader& header, const FleetPosition& position,
@@ -129,7 +125,7 @@ std::string state_text(const FleetIdentity& identity, const FleetHeader& header,
   message["batteryState"] = {{"batteryCharge", 0.0}, {"charging", false}};
   message["errors"] = errors_of(position);
   message["safetyState"] = {{"eStop", "NONE"}, {"fieldViolation", false}};
-  return text_of(message);
+  return dump_json(message);
 }
 
 }  // namespace byre

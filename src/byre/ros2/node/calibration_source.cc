@@ -20,16 +20,10 @@ void take_last(std::optional<Subscriber>& subscriber, const std::string& topic, 
 
 }  // namespace
 
-CalibrationSource::CalibrationSource(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph)
-    : config_(config) {
-  const auto subscribe = [&](const std::string& topic, const MessageType& type, const TopicQos& qos) {
-    Subscriber subscriber = participant.subscribe(topic, type, qos);
-    graph.add(subscriber);
-    return subscriber;
-  };
+CalibrationSource::CalibrationSource(const NodeConfig& config, GraphAnnouncement& graph) : config_(config) {
   if (config.extrinsics_source() == ExtrinsicsSource::tf) {
-    tf_static_ = subscribe("/tf_static", message_type<ros::TFMessage>(),
-                           {.is_latched = true, .depth = 100, .max_bytes = kMaxBytesWithoutImage});
+    tf_static_ = graph.subscribe("/tf_static", message_type<ros::TFMessage>(),
+                                 {.is_latched = true, .depth = 100, .max_bytes = kMaxBytesWithoutImage});
   }
   if (config.calibration) {
     cameras_ = read_calibration(*config.calibration);
@@ -38,9 +32,9 @@ CalibrationSource::CalibrationSource(const NodeConfig& config, Participant& part
     return;
   }
   const TopicQos qos{.is_reliable = false, .depth = 5, .max_bytes = kMaxBytesWithoutImage};
-  left_info_ = subscribe(config.topic(config.left_info), message_type<ros::CameraInfo>(), qos);
+  left_info_ = graph.subscribe(config.topic(config.left_info), message_type<ros::CameraInfo>(), qos);
   if (config.has_right()) {
-    right_info_ = subscribe(config.topic(config.right_info), message_type<ros::CameraInfo>(), qos);
+    right_info_ = graph.subscribe(config.topic(config.right_info), message_type<ros::CameraInfo>(), qos);
   }
 }
 

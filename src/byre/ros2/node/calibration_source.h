@@ -15,7 +15,7 @@ namespace byre {
 class CalibrationSource {
  public:
   // Throws InputError if the calibration file cannot be read or lacks the right camera.
-  CalibrationSource(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph);
+  CalibrationSource(const NodeConfig& config, GraphAnnouncement& graph);
 
   // Processes received messages; empty while any are missing. left_frame: frame of the left images; empty before the
   // first one. Throws InputError for unusable camera info.

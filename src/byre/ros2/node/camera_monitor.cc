@@ -1,7 +1,6 @@
 #include "byre/ros2/node/camera_monitor.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -3,8 +3,6 @@
 #include "byre/playback/report/pose_messages.h"
 #include "byre/ros2/node/pose_frames.h"
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 
 namespace byre {

@@ -2,8 +2,6 @@
 
 #include "byre/trajectory.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <deque>
 #include <optional>
 #include <utility>

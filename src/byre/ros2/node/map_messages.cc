@@ -4,7 +4,6 @@
 #include "byre/map/map_file.h"
 #include "byre/playback/report/pose_messages.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 

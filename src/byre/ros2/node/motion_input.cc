@@ -38,26 +38,23 @@ std::optional<MessageType> wheels_type(const std::vector<std::string>& published
 
 }  // namespace
 
-MotionInput::MotionInput(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph)
-    : config_(config), participant_(participant), graph_(graph) {
+MotionInput::MotionInput(const NodeConfig& config, GraphAnnouncement& graph) : config_(config), graph_(graph) {
   if (!config.gyroscope.empty()) gyroscope_ = subscribe(config.gyroscope, message_type<ros::Imu>());
 }
 
 Subscriber MotionInput::subscribe(const std::string& topic, const MessageType& type) {
   // Best effort, as sensor drivers publish.
   const TopicQos qos{.is_reliable = false, .depth = 1000, .max_bytes = kMaxBytesWithoutImage};
-  Subscriber subscriber = participant_.subscribe(config_.topic(topic), type, qos);
-  graph_.add(subscriber);
-  return subscriber;
+  return graph_.subscribe(config_.topic(topic), type, qos);
 }
 
 // The publisher determines the type of the wheels topic.
 void MotionInput::find_wheels() {
-  const auto type = wheels_type(participant_.published_types(config_.topic(config_.wheels)));
+  const auto type = wheels_type(graph_.participant().published_types(config_.topic(config_.wheels)));
   if (!type) return;
   wheels_ = subscribe(config_.wheels, *type);
   wheels_type_ = type->name;
-  graph_.publish();
+  graph_.announce();
 }
 
 void MotionInput::take() {

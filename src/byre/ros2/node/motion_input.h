@@ -16,7 +16,7 @@ namespace byre {
 // set.
 class MotionInput {
  public:
-  MotionInput(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph);
+  MotionInput(const NodeConfig& config, GraphAnnouncement& graph);
 
   void take();
   // Passes samples on. clock: of the images. Precondition: the runner is running.
@@ -32,7 +32,6 @@ class MotionInput {
 
   // Constant after construction.
   NodeConfig config_;
-  Participant& participant_;
   GraphAnnouncement& graph_;
 
   std::optional<Subscriber> wheels_;  // empty until the topic has a publisher

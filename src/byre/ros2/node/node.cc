@@ -44,33 +44,29 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
       log_(std::move(log)),
       participant_(network, cyclone_settings),
       graph_(participant_, {config.name, config.name_space.empty() ? "/" : config.name_space}),
-      calibration_source_(config, participant_, graph_),
+      calibration_source_(config, graph_),
       runner_(config),
       watchers_(config.http_port ? std::make_shared<LiveTopics>() : nullptr),
-      outputs_(config, participant_, graph_, watchers_.get()),
-      motion_(config, participant_, graph_),
+      outputs_(config, graph_, watchers_.get()),
+      motion_(config, graph_),
       pairs_(pairing_options(config)),
       monitor_(config.topic(config.left), steady_now()) {
   const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
-    std::optional<Subscriber> subscriber;
-    if (topic.empty()) return subscriber;
-    subscriber = participant_.subscribe(config_.topic(topic), type, qos);
-    graph_.add(*subscriber);
-    return subscriber;
+    return topic.empty() ? std::nullopt : std::optional(graph_.subscribe(config_.topic(topic), type, qos));
   };
   const MessageType image = config.is_compressed ? message_type<ros::CompressedImage>() : message_type<ros::Image>();
   const TopicQos images{.is_reliable = config.is_reliable, .depth = 5};
   const TopicQos small{.max_bytes = kMaxBytesWithoutImage};
   command_ = subscribe(config.command, message_type<ros::String>(), small);
   initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), small);
-  if (config.services.value_or(network.uses_cyclone)) services_.emplace(config, participant_, graph_, log_);
+  if (config.services.value_or(network.uses_cyclone)) services_.emplace(config, graph_, log_);
   calibration_ = calibration_source_.take("");
   if (calibration_) start();
   require_plan_of_map(config_);
   outputs_.publish_plan();
   left_ = subscribe(config.left, image, images);
   right_ = subscribe(config.right, image, images);
-  graph_.publish();
+  graph_.announce();
   if (const auto fleet = fleet_options(config)) fleet_.emplace(*fleet);
   if (config.http_port) {
     web_server_.emplace(WebServerOptions{config.http_address, *config.http_port, {}},

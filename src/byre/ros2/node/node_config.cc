@@ -6,10 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
-#include <utility>
-
-#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {

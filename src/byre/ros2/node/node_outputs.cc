@@ -30,8 +30,7 @@ template <ros::Message T>
 NodeOutputs::OptionalOutput NodeOutputs::open(const std::string& topic, const TopicQos& qos) {
   const std::string name = config_.topic(topic);
   if (name.empty()) return std::nullopt;
-  Output output{participant_.publish(name, message_type<T>(), qos), {}};
-  graph_.add(output.publisher);
+  Output output{graph_.publish(name, message_type<T>(), qos), {}};
   const auto durability = qos.is_latched ? ros::Durability::latched : ros::Durability::only_new;
   if (watchers_ != nullptr) output.watched = watchers_->add(ros::topic_of<T>(name, durability));
   return output;
@@ -47,9 +46,8 @@ void NodeOutputs::send_bytes(Output& output, std::vector<std::byte> cdr) {
   output.publisher.publish(std::move(cdr));
 }
 
-NodeOutputs::NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph,
-                         ros::MessageSink* watchers)
-    : config_(config), participant_(participant), graph_(graph), watchers_(watchers) {
+NodeOutputs::NodeOutputs(const NodeConfig& config, GraphAnnouncement& graph, ros::MessageSink* watchers)
+    : config_(config), graph_(graph), watchers_(watchers) {
   odometry_ = open<ros::Odometry>(config.odometry, kReliable);
   pose_ = open<ros::PoseWithCovarianceStamped>(config.pose, kLatched);
   if (config.publishes_map_to_odom || config.publishes_odom_to_base) tf_ = open<ros::TFMessage>("/tf", kTransforms);

@@ -21,7 +21,7 @@ namespace byre {
 class NodeOutputs {
  public:
   // watchers: additional sink for all messages; may be null. All arguments but the settings outlive this.
-  NodeOutputs(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, ros::MessageSink* watchers);
+  NodeOutputs(const NodeConfig& config, GraphAnnouncement& graph, ros::MessageSink* watchers);
 
   // Publishes all messages of a frame. image: header of its left image. The pose is in the published map frame.
   void publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames);
@@ -60,7 +60,6 @@ class NodeOutputs {
   ros::Header in_map(const ros::Header& image) const;
 
   NodeConfig config_;                                      // constant after construction
-  Participant& participant_;                               // outlives this
   GraphAnnouncement& graph_;                               // outlives this
   ros::MessageSink* watchers_;                             // outlives this; null without watchers
   std::optional<ros::MessageSink::TopicId> left_, right_;  // image topics of watchers

@@ -49,11 +49,11 @@ void NodeServices::add_service(const std::string& name,
     const ServiceMessage<typename Kind::Response> reply{request->call, response_of(outcome)};
     return ros::write_message(reply, ros::Encoding::cdr);
   };
-  services_.push_back({whole, ServiceServer(participant_, graph_, whole, std::string(Kind::kType)), reply_to});
+  services_.push_back({whole, ServiceServer(graph_, whole, std::string(Kind::kType)), reply_to});
 }
 
-NodeServices::NodeServices(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, NodeLog log)
-    : config_(config), participant_(participant), graph_(graph), log_(std::move(log)) {
+NodeServices::NodeServices(const NodeConfig& config, GraphAnnouncement& graph, NodeLog log)
+    : config_(config), graph_(graph), log_(std::move(log)) {
   using ros::LoadMap, ros::SetBool, ros::SetInitialPose, ros::Trigger;
   add_service<Trigger>("save", always<Trigger::Request>("save"), to_response<Trigger::Response>);
   add_service<Trigger>("relocalise", always<Trigger::Request>("relocalise"), to_response<Trigger::Response>);

@@ -29,7 +29,7 @@ struct Outcome {
 class NodeServices {
  public:
   // log: receives requests in an unknown encoding.
-  NodeServices(const NodeConfig& config, Participant& participant, GraphAnnouncement& graph, NodeLog log);
+  NodeServices(const NodeConfig& config, GraphAnnouncement& graph, NodeLog log);
 
   using Act = std::function<Outcome(const ServiceCall& call)>;
   // Executes requests received since the previous call, and replies. now: of a monotonic clock.
@@ -49,7 +49,6 @@ class NodeServices {
                    std::function<typename Kind::Response(const Outcome&)> response_of);
 
   NodeConfig config_;         // constant after construction
-  Participant& participant_;  // outlives this
   GraphAnnouncement& graph_;  // outlives this
   NodeLog log_;               // constant after construction
   std::vector<Service> services_;

@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <string>
 #include <system_error>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #include "byre/ros2/node/process.h"
 
-#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>

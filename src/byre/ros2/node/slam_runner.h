@@ -4,7 +4,6 @@
 #include "byre/slam.h"
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
