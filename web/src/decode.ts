@@ -1,4 +1,4 @@
-// Binary messages of byre, little-endian; layout: src/byre/viewer/web/web_bytes.h.
+// Binary messages of byre, little-endian; layout: src/byre/viewer/web/web_messages.h.
 
 export interface MapData {
   /** x, y, z of each point in the map frame, metres. */

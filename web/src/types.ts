@@ -1,4 +1,4 @@
-// JSON messages of byre, written by web_json.cc, web_run.cc and web_map.cc in src/byre/viewer/web.
+// JSON messages of byre, written by web_messages.cc, web_run.cc and web_map.cc in src/byre/viewer/web.
 
 /** x, y, z in metres and quaternion x, y, z, w. */
 export type PoseFields = [number, number, number, number, number, number, number];

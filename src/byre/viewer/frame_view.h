@@ -1,9 +1,8 @@
 #pragma once
 
-#include "byre/calibration.h"
+#include "byre/features/rectify.h"
 #include "byre/viewer/scene.h"
 
-#include <memory>
 #include <vector>
 
 namespace byre {
@@ -13,17 +12,15 @@ namespace byre {
 class FrameView {
  public:
   // Throws InputError if the calibration cannot be rectified.
-  explicit FrameView(const Calibration& calibration);
-  ~FrameView();
+  explicit FrameView(const Calibration& calibration) : rectifier_(calibration) {}
 
-  const Rig& rig() const;
+  const Rig& rig() const { return rectifier_.rig(); }
 
   // Precondition: the image has the calibrated size.
   FrameScene scene_of(const Image& left, const FrameReport& report, const std::vector<SeenPoint>& seen) const;
 
  private:
-  struct State;                   // hides OpenCV
-  std::unique_ptr<State> state_;  // constant after construction
+  Rectifier rectifier_;
 };
 
 }  // namespace byre

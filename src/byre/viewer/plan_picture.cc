@@ -5,7 +5,6 @@
 #include "byre/viewer/plan_view.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <utility>

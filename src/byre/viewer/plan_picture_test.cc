@@ -3,8 +3,6 @@
 #include "byre/viewer/palette.h"
 #include "byre/viewer/picture_matchers.h"
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 
 namespace byre {

@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
 
 namespace cv {
 class VideoWriter;

@@ -1,12 +1,12 @@
 #include "byre/viewer/web/foxglove_client.h"
 
 #include "byre/base/byte_stream.h"
-#include "byre/viewer/web/web_json.h"
+#include "byre/base/text_file.h"
+#include "byre/viewer/web/web_messages.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <optional>
 #include <utility>
 
 namespace byre {
@@ -64,26 +64,12 @@ FoxgloveRequest read_unsubscribe(const Json& message) {
   return request;
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
-bool is_offered(std::string_view protocol, std::string_view offered) {
-  while (!offered.empty()) {
-    const std::string_view field = offered.substr(0, offered.find(','));
-    if (trimmed(field) == protocol) return true;
-    offered.remove_prefix(std::min(offered.size(), field.size() + 1));
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string_view foxglove_protocol(std::string_view offered) {
+  const std::vector<std::string_view> fields = split_fields(offered);
   for (const std::string_view protocol : kProtocols) {
-    if (is_offered(protocol, offered)) return protocol;
+    if (std::ranges::find(fields, protocol) != fields.end()) return protocol;
   }
   return {};
 }

@@ -2,7 +2,6 @@
 
 #include "byre/io/ros/messages.h"
 
-#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>

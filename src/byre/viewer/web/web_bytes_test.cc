@@ -1,4 +1,4 @@
-#include "byre/viewer/web/web_bytes.h"
+#include "byre/viewer/web/web_messages.h"
 
 #include <cstring>
 

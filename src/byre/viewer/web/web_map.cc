@@ -5,10 +5,8 @@
 #include "byre/io/recording/input_files.h"
 #include "byre/viewer/plan_picks.h"
 #include "byre/viewer/scene.h"
-#include "byre/viewer/web/web_bytes.h"
-#include "byre/viewer/web/web_json.h"
+#include "byre/viewer/web/web_messages.h"
 
-#include <span>
 #include <utility>
 
 #include <fmt/core.h>

@@ -3,8 +3,7 @@
 #include "byre/features/rectify.h"
 #include "byre/io/image/image_codec.h"
 #include "byre/viewer/web/image_store.h"
-#include "byre/viewer/web/web_bytes.h"
-#include "byre/viewer/web/web_json.h"
+#include "byre/viewer/web/web_messages.h"
 
 #include <algorithm>
 #include <charconv>

@@ -10,7 +10,6 @@
 #include <map>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>

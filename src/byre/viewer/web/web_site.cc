@@ -1,6 +1,6 @@
 #include "byre/viewer/web/web_site.h"
 
-#include "byre/viewer/web/web_json.h"
+#include "byre/viewer/web/web_messages.h"
 
 #include <utility>
 
