@@ -8,7 +8,6 @@
 #include "byre/playback/report/ros_report.h"
 
 #include <cassert>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>

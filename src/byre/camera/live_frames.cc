@@ -1,7 +1,5 @@
 #include "byre/camera/live_frames.h"
 
-#include "byre/camera/capture_thread.h"
-
 #include <utility>
 
 namespace byre {

@@ -2,7 +2,6 @@
 
 #include "byre/io/image/image_codec.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include <opencv2/imgcodecs.hpp>

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <span>
-#include <string>
 
 namespace byre {
 

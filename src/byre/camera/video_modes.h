@@ -4,6 +4,7 @@
 #include "byre/camera/video_descriptor.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,5 +62,15 @@ VideoFormats formats_of(const VideoDescriptor& descriptor, const std::string& pl
 // Sets the requested mode, and returns the actual one. Formats that the request leaves open are tried in order of
 // preference, until size and rate fit. Throws InputError with the device's capabilities if none fits.
 VideoMode set_mode(const VideoDescriptor& descriptor, const VideoRequest& request, const std::string& place);
+
+// All video devices of Linux by number; those of a camera include devices for other data than images.
+std::vector<std::filesystem::path> video_devices();
+
+// Formats of a device; empty if it is not a camera's image device. Throws InputError if it cannot be opened.
+std::optional<VideoFormats> formats_if_camera(const std::filesystem::path& device);
+
+// Rows of a report: name, bus, persistent names, formats with sizes and rates, and the moment of its stamps. Unreadable
+// formats are marked.
+std::string describe_device(const std::filesystem::path& device, const VideoFormats& formats);
 
 }  // namespace byre
