@@ -1,5 +1,5 @@
 #include "byre/base/report_row.h"
-#include "byre/camera/video_devices.h"
+#include "byre/camera/video_modes.h"
 #include "byre/cli/camera/commands.h"
 #include "byre/cli/shared/camera_options.h"
 #include "byre/cli/shared/file_arguments.h"

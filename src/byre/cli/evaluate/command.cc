@@ -1,5 +1,5 @@
 #include "byre/base/output_file.h"
-#include "byre/benchmark/evaluation_plot.h"
+#include "byre/benchmark/plots.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"

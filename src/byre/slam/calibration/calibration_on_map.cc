@@ -3,7 +3,6 @@
 #include "byre/optimise/huber.h"
 #include "byre/slam/calibration/determined_calibration.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>

@@ -4,8 +4,6 @@
 #include "byre/map/map_view.h"
 #include "byre/slam/tracking/tracking.h"
 
-#include <optional>
-
 namespace byre {
 
 // Calibration estimate from a mission's observations of offline points, whose positions are given. A frame adds normal

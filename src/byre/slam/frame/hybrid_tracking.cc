@@ -5,8 +5,6 @@
 #include "byre/slam/tracking/tracking_steps.h"
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 #include <utility>
 
 namespace byre {

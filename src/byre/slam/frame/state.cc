@@ -1,8 +1,17 @@
 #include "byre/slam/frame/state.h"
 
 #include "byre/base/enum_names.h"
+#include "byre/session_event.h"
 
 namespace byre {
+
+std::string_view to_string(SessionEvent event) {
+  return name_among<SessionEvent::dirt_gone>(
+      {"initialised", "localised", "pose lost", "relocalised", "blinded", "left mapped area", "entered mapped area",
+       "navigation error", "restarted", "place refused", "place refuted", "online map corrected", "loop found",
+       "map corrected", "recalibrated", "dirt on the lens", "lens is clean"},
+      event);
+}
 
 std::string_view to_string(State state) {
   return name_among<State::lost>({"initialising", "tracking", "relocalising", "lost"}, state);

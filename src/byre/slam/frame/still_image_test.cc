@@ -2,7 +2,6 @@
 
 #include "byre/slam/tracking/mission_scene.h"
 
-#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>

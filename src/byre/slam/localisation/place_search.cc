@@ -5,7 +5,6 @@
 #include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/tracking/keyframes.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace byre {

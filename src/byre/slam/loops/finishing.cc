@@ -5,8 +5,6 @@
 #include "byre/trajectory_error.h"
 
 #include <algorithm>
-#include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 

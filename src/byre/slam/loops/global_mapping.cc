@@ -9,10 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <set>
-#include <unordered_map>
 #include <utility>
 
 namespace byre {

@@ -6,7 +6,6 @@
 #include "byre/geometry/rectified_change.h"
 #include "byre/slam/calibration/self_calibration.h"
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -29,9 +28,7 @@ Recalibration recalibration_by(const RefinedCalibration& refined, const Calibrat
 // that were rectified by the given calibration. Called from the session's thread.
 class Calibrator {
  public:
-  Calibrator(const Calibration& given, const SelfCalibrationOptions& options) : options_(options), state_{given, {}} {
-    state_.change.setZero();
-  }
+  Calibrator(const Calibration& given, const SelfCalibrationOptions& options) : options_(options), state_{given} {}
 
   const CalibrationState& state() const { return state_; }
   const std::optional<RefinedCalibration>& result() const { return result_; }  // the newest; empty before the first

@@ -4,7 +4,6 @@
 #include "byre/slam/window/paged_features.h"
 
 #include <cassert>
-#include <utility>
 
 namespace byre {
 

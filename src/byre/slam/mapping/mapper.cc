@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <utility>
 
 namespace byre {
 namespace {
@@ -69,11 +68,8 @@ Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const
     online_ = *std::move(first);
     return {{online_.keyframe_ids().front()}};
   }
-  TrackedFrame tracked;
-  tracked.camera_from_world = camera_from_world.value_or(inverse(rig.body_from_camera));
-  Keyframe keyframe = make_keyframe(frame, tracked, online_.add_rig(rig));
-  keyframe.parent = parent_of_bridge(trajectory);
-  const KeyframeId id = online_.add_keyframe(std::move(keyframe));
+  const Pose pose = camera_from_world.value_or(inverse(rig.body_from_camera));
+  const KeyframeId id = add_keyframe_at(pose, frame, rig, parent_of_bridge(trajectory), online_);
   add_stereo_points(online_, id);
   return {{id}};
 }

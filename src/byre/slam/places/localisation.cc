@@ -7,10 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace byre {
 namespace {

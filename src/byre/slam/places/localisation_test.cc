@@ -3,7 +3,6 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/places/place_scene.h"
 
-#include <algorithm>
 #include <set>
 
 #include <gmock/gmock.h>

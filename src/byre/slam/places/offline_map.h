@@ -6,7 +6,6 @@
 #include "byre/odometry/odometry_calibration.h"
 #include "byre/place/place_index.h"
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 

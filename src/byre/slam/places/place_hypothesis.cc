@@ -1,8 +1,6 @@
 #include "byre/slam/places/place_hypothesis.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <span>
 
 #include <Eigen/Eigenvalues>

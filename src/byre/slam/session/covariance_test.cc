@@ -3,8 +3,6 @@
 #include "byre/slam/session/session.h"
 #include "byre/slam/tracking/mission_scene.h"
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 
 namespace byre {

@@ -1,5 +1,6 @@
 #include "byre/slam/session/frame_summary.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/geometry/finite.h"
 #include "byre/slam/places/localisation.h"
 
@@ -73,6 +74,16 @@ FrameReport bridged(FrameReport report, const FrameSummary& summary) {
 }
 
 }  // namespace
+
+std::string_view to_string(InputFault fault) {
+  return name_among<InputFault::after_finishing>(
+      {"none", "frame after a gap", "right image is missing", "right image has another time stamp",
+       "depth image is missing", "depth image has another time stamp", "no image",
+       "image does not have the calibrated size", "image has the wrong format", "features are invalid",
+       "time stamp repeats the previous frame", "time stamp is before the previous frame",
+       "frame after finishing the map"},
+      fault);
+}
 
 HealthEvidence evidence_of(const FrameSummary& summary) {
   const PlaceHypothesis& place = summary.pose_filter.place();

@@ -5,7 +5,6 @@
 #include "byre/slam/tracking/body_pose.h"
 
 #include <cassert>
-#include <utility>
 
 namespace byre {
 namespace {

@@ -3,8 +3,6 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/tracking/mission_scene.h"
 
-#include <numeric>
-
 #include <gmock/gmock.h>
 
 namespace byre {

@@ -67,6 +67,16 @@ Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig)
   return keyframe;
 }
 
+KeyframeId add_keyframe_at(const Pose& camera_from_world, const Frame& frame, const Rig& rig,
+                           std::optional<KeyframeId> parent, Map& map, int recording) {
+  TrackedFrame without_points;
+  without_points.camera_from_world = camera_from_world;
+  Keyframe keyframe = make_keyframe(frame, without_points, map.add_rig(rig));
+  keyframe.parent = parent;
+  keyframe.recording = recording;
+  return map.add_keyframe(std::move(keyframe));
+}
+
 MapPoint make_point(const Eigen::Vector3d& position_in_world, const Eigen::Matrix3d& covariance,
                     const Observation& reference, const Features& features, const Pose& camera_from_world) {
   const Eigen::Vector3d ray = position_in_world - inverse(camera_from_world).translation;
@@ -108,11 +118,8 @@ std::optional<Map> initialise_stereo(const Frame& frame, const Rig& rig, int min
   const auto& keypoints = frame.features->keypoints();
   if (std::count_if(keypoints.begin(), keypoints.end(), has_trustworthy_disparity) < min_points) return std::nullopt;
   Map map(Origin::online);
-  TrackedFrame first;
-  first.camera_from_world = inverse(rig.body_from_camera);  // the world is the first body frame
-  Keyframe keyframe = make_keyframe(frame, first, map.add_rig(rig));
-  keyframe.parent.reset();
-  add_stereo_points(map, map.add_keyframe(std::move(keyframe)));
+  // The world is the first body frame.
+  add_stereo_points(map, add_keyframe_at(inverse(rig.body_from_camera), frame, rig, std::nullopt, map));
   return map;
 }
 

@@ -40,6 +40,10 @@ double median_depth(const TrackedFrame& tracked, const MapView& map);  // metres
 // Keyframe of a tracked frame: the inliers become sightings, the reference keyframe becomes its parent.
 Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig);
 
+// Adds a keyframe with a given pose and without points.
+KeyframeId add_keyframe_at(const Pose& camera_from_world, const Frame& frame, const Rig& rig,
+                           std::optional<KeyframeId> parent, Map& map, int recording = 0);
+
 // Adds a point for each feature with a precise disparity and no point yet, so that the next frame can be tracked on it.
 // Skips the features in moving (ascending), which show moving objects. Returns the number of new points.
 int add_stereo_points(Map& map, KeyframeId id, std::span<const int> moving = {});

@@ -6,7 +6,6 @@
 #include "byre/simulation/simulated_trajectory_scene.h"
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <random>
 

@@ -49,8 +49,7 @@ Pose MotionModel::predict(const Pose& last_camera_from_world, const Rig& rig, do
   if (measured_ && velocity_ && is_translation_unknown(*measured_))
     return *predict_by_velocity(last_camera_from_world, seconds);
   if (measured_) return camera_pose(rig, body_pose(rig, last_camera_from_world) * measured_->last_from_body);
-  if (velocity_) return exp_pose(*velocity_ * seconds) * last_camera_from_world;
-  return last_camera_from_world;
+  return predict_by_velocity(last_camera_from_world, seconds).value_or(last_camera_from_world);
 }
 
 }  // namespace byre

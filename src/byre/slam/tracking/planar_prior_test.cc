@@ -4,8 +4,6 @@
 #include "byre/map/plan/driven_scene.h"
 #include "byre/slam/tracking/body_pose.h"
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 
 namespace byre {

@@ -1,7 +1,6 @@
 #include "byre/slam/tracking/tracking_steps.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace byre {
 namespace {

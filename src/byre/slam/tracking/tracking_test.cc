@@ -6,7 +6,6 @@
 #include "byre/slam/tracking/mission_scene.h"
 
 #include <map>
-#include <random>
 #include <set>
 
 #include <gmock/gmock.h>

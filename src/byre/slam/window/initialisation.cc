@@ -44,15 +44,6 @@ double scale_for(const TwoViewMotion& motion, double median_depth) {
   return median_depth / median_or(std::move(depths), 0.0);
 }
 
-KeyframeId add_keyframe(Map& map, const Frame& frame, const Rig& rig, const Pose& camera_from_world,
-                        std::optional<KeyframeId> parent) {
-  TrackedFrame tracked;
-  tracked.camera_from_world = camera_from_world;
-  Keyframe keyframe = make_keyframe(frame, tracked, map.add_rig(rig));
-  keyframe.parent = parent;
-  return map.add_keyframe(std::move(keyframe));
-}
-
 // Adds a point defined by a feature of the first keyframe and measured in the second.
 void add_seen_point(Map& map, const Eigen::Vector3d& point_in_world, const Observation& in_first,
                     const Observation& in_second) {
@@ -159,8 +150,8 @@ MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>&
   Pose second_from_first = motion.second_from_first;
   second_from_first.translation *= scale;
   MonocularStart start{.map = Map(Origin::online), .first = {}, .second = {}};
-  start.first = add_keyframe(start.map, first, rig, first_from_world, std::nullopt);
-  start.second = add_keyframe(start.map, second, rig, second_from_first * first_from_world, start.first);
+  start.first = add_keyframe_at(first_from_world, first, rig, std::nullopt, start.map);
+  start.second = add_keyframe_at(second_from_first * first_from_world, second, rig, start.first, start.map);
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const auto& point_in_first = motion.points_in_first[i];
     if (!point_in_first) continue;

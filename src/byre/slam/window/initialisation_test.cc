@@ -5,7 +5,6 @@
 #include "byre/slam/tracking/mission_scene.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include <gmock/gmock.h>
 

@@ -121,13 +121,8 @@ Descriptor central_descriptor(const SfmModel& model, const std::vector<Measured>
 void add_images(const SfmModel& model, Map& map) {
   std::optional<KeyframeId> previous;
   for (const PosedFrame& image : model.images) {
-    TrackedFrame without_points;
-    without_points.camera_from_world = image.camera_from_world;
-    Keyframe keyframe =
-        make_keyframe(image.frame, without_points, map.add_rig(model.rigs[static_cast<std::size_t>(image.rig)]));
-    keyframe.recording = image.rig;
-    keyframe.parent = previous;
-    previous = map.add_keyframe(std::move(keyframe));
+    previous = add_keyframe_at(image.camera_from_world, image.frame, model.rigs[static_cast<std::size_t>(image.rig)],
+                               previous, map, image.rig);
   }
 }
 

@@ -65,11 +65,7 @@ void add_frames(Map& map, const std::vector<Rig>& rigs, const std::vector<PosedF
   std::optional<KeyframeId> previous;
   for (const PosedFrame& posed : frames) {
     const Rig& rig = rigs[static_cast<std::size_t>(posed.rig)];
-    TrackedFrame without_points;
-    without_points.camera_from_world = posed.camera_from_world;
-    Keyframe keyframe = make_keyframe(posed.frame, without_points, map.add_rig(rig));
-    keyframe.parent = previous;
-    previous = map.add_keyframe(std::move(keyframe));
+    previous = add_keyframe_at(posed.camera_from_world, posed.frame, rig, previous, map);
     if (rig.is_stereo()) add_stereo_points(map, *previous);
   }
 }

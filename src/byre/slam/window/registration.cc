@@ -1,7 +1,6 @@
 #include "byre/slam/window/registration.h"
 
 #include <map>
-#include <vector>
 
 namespace byre {
 namespace {
