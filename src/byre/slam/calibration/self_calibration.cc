@@ -33,7 +33,7 @@ constexpr double kMedianOfChiSquare3 = 2.366;
 std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
   std::vector<int> all;
   for (int i = 0; i < static_cast<int>(whole.keyframes.size()); ++i) {
-    const WindowKeyframe& keyframe = whole.keyframes[static_cast<std::size_t>(i)];
+    const WindowKeyframe& keyframe = whole.keyframe(i);
     if (!keyframe.removed && keyframe.keyframe.rig == rig) all.push_back(i);
   }
   const auto count = static_cast<int>(all.size());
@@ -54,7 +54,7 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
   problem.rigs = whole.rigs;
   std::vector<int> pose_of(whole.keyframes.size(), -1);
   for (const int i : keyframes) {
-    const WindowKeyframe& keyframe = whole.keyframes[static_cast<std::size_t>(i)];
+    const WindowKeyframe& keyframe = whole.keyframe(i);
     pose_of[static_cast<std::size_t>(i)] = static_cast<int>(problem.poses.size());
     problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, false});
   }
@@ -66,8 +66,7 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
     if (std::ranges::count_if(point.observations, takes_part) < 2) continue;
     for (const WindowObservation& seen : point.observations) {
       if (!takes_part(seen)) continue;
-      BundleObservation observation =
-          bundle_observation(whole.keyframes[static_cast<std::size_t>(seen.keyframe)], seen.feature);
+      BundleObservation observation = bundle_observation(whole.keyframe(seen.keyframe), seen.feature);
       observation.pose = pose_of[static_cast<std::size_t>(seen.keyframe)];
       if (observation.is_stereo()) observation.disparity_sigma *= kSharedDisparityError;
       observation.point = static_cast<int>(problem.points.size());
@@ -80,9 +79,7 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
 
 std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes, const Rig& rig,
                                          const CalibrationSensitivity& sensitivity) {
-  const auto keypoints_of = [&](int keyframe) {
-    return whole.keyframes[static_cast<std::size_t>(keyframe)].keyframe.frame.features->keypoints();
-  };
+  const auto keypoints_of = [&](int keyframe) { return whole.keyframe(keyframe).keyframe.frame.features->keypoints(); };
   std::ptrdiff_t count = 0;
   for (const int i : keyframes) count += std::ranges::count_if(keypoints_of(i), &Keypoint::has_disparity);
   std::vector<RowMeasurement> rows;

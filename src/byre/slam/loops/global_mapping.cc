@@ -3,7 +3,7 @@
 #include "byre/alignment.h"
 #include "byre/geometry/median.h"
 #include "byre/optimise/pose_graph.h"
-#include "byre/slam/loops/odometry_lengths.h"
+#include "byre/slam/loops/odometry_motions.h"
 #include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/window/mapping_steps.h"
 
@@ -45,7 +45,7 @@ class Parts {
 };
 
 Pose world_from_body(const MapWindow& window, int keyframe) {
-  const WindowKeyframe& entry = window.keyframes[static_cast<std::size_t>(keyframe)];
+  const WindowKeyframe& entry = window.keyframe(keyframe);
   return body_pose(window.rig_of(entry), entry.keyframe.camera_from_world);
 }
 
@@ -55,7 +55,7 @@ std::map<int, double> lengths_of_parts(const MapWindow& window, const Parts& par
   std::map<int, LengthRatio> ratios;
   for (const WindowMotion& motion : window.motions) {
     const int part = parts.part_of(motion.earlier);
-    const WindowKeyframe& earlier = window.keyframes[static_cast<std::size_t>(motion.earlier)];
+    const WindowKeyframe& earlier = window.keyframe(motion.earlier);
     if (part != parts.part_of(motion.later) || window.rig_of(earlier).is_stereo()) continue;
     ratios[part].add(motion.motion,
                      inverse(world_from_body(window, motion.earlier)) * world_from_body(window, motion.later));
@@ -106,18 +106,18 @@ IndexOfKeyframe index_keyframes(const MapWindow& window) {
 }
 
 Pose& pose_of(MapWindow& window, int keyframe) {
-  return window.keyframes[static_cast<std::size_t>(keyframe)].keyframe.camera_from_world;
+  return window.keyframe(keyframe).keyframe.camera_from_world;
 }
 const Pose& pose_of(const MapWindow& window, int keyframe) {
-  return window.keyframes[static_cast<std::size_t>(keyframe)].keyframe.camera_from_world;
+  return window.keyframe(keyframe).keyframe.camera_from_world;
 }
 
 // Points shared with each other keyframe, by its index.
 std::map<int, int> count_shared_points(const MapWindow& window, int keyframe) {
   std::map<int, int> shared;
-  for (const int point : window.keyframes[static_cast<std::size_t>(keyframe)].point_of_feature) {
+  for (const int point : window.keyframe(keyframe).point_of_feature) {
     if (point < 0) continue;
-    for (const WindowObservation& seen : window.points[static_cast<std::size_t>(point)].observations) {
+    for (const WindowObservation& seen : window.point(point).observations) {
       if (seen.keyframe != keyframe) ++shared[seen.keyframe];
     }
   }
@@ -145,7 +145,7 @@ double length_of_a_metre(const MapWindow& window) {
   for (const WindowKeyframe& keyframe : window.keyframes) {
     for (const int point : keyframe.point_of_feature) {
       if (point < 0) continue;
-      const Eigen::Vector3d& position = window.points[static_cast<std::size_t>(point)].point.position_in_world;
+      const Eigen::Vector3d& position = window.point(point).point.position_in_world;
       depths.push_back((keyframe.keyframe.camera_from_world * position).z());
     }
   }
@@ -196,8 +196,8 @@ PoseGraphNode node_of(const MapWindow& window, const WindowKeyframe& keyframe) {
 }
 
 PoseGraphEdge edge_of_motion(const MapWindow& window, const WindowMotion& motion) {
-  const Rig& earlier = window.rig_of(window.keyframes[static_cast<std::size_t>(motion.earlier)]);
-  const Rig& later = window.rig_of(window.keyframes[static_cast<std::size_t>(motion.later)]);
+  const Rig& earlier = window.rig_of(window.keyframe(motion.earlier));
+  const Rig& later = window.rig_of(window.keyframe(motion.later));
   const Matrix6 covariance = move_covariance(motion.motion.covariance, inverse(later.body_from_camera));
   return {.first = motion.earlier,
           .second = motion.later,
@@ -225,7 +225,7 @@ PoseGraph make_pose_graph(const MapWindow& window, const IndexOfKeyframe& index_
     if (!is_seen) joined.insert(std::minmax(motion.earlier, motion.later));
   }
   for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
-    const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(i)];
+    const WindowKeyframe& keyframe = window.keyframe(i);
     graph.nodes.push_back(node_of(window, keyframe));
     for (const auto& [shared, other] : nearest_keyframes(window, i, kMinSharedPoints, kMaxNeighbours)) {
       join(other, i, shared);
@@ -368,9 +368,7 @@ bool place_parts(MapWindow& window) {
     const auto found = lengths.find(part);
     return found == lengths.end() ? otherwise : found->second;
   };
-  const auto time_of = [&](const WindowMotion& motion) {
-    return window.keyframes[static_cast<std::size_t>(motion.later)].keyframe.frame.time;
-  };
+  const auto time_of = [&](const WindowMotion& motion) { return window.keyframe(motion.later).keyframe.frame.time; };
   std::ranges::sort(window.motions, {}, time_of);
   const int first = window.motions.front().earlier;
   const double first_length = length_of(parts.part_of(first), 1.0);

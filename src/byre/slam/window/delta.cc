@@ -102,7 +102,7 @@ std::vector<ChangedFeature> changed_features(const Before& before, const MapWind
   std::vector<ChangedFeature> changed;
   for (std::size_t f = 0; f < then.size(); ++f) {
     if (then[f] == now[f]) continue;
-    const bool was_lost = then[f] >= 0 && !after.points[static_cast<std::size_t>(then[f])].removed;
+    const bool was_lost = then[f] >= 0 && !after.point(then[f]).removed;
     const bool is_known = now[f] >= 0 && static_cast<std::size_t>(now[f]) < before.point_count();
     changed.push_back({static_cast<int>(f), was_lost ? then[f] : kNoPoint, is_known ? now[f] : kNoPoint});
   }
@@ -121,11 +121,11 @@ void append_observation_changes(const Before& before, const MapWindow& after, st
   const OnlineKeyframeId id{now.id.number};
   for (const ChangedFeature& changed : changed_features(before, after, keyframe)) {
     if (changed.then >= 0) {
-      const PointId point = *after.points[static_cast<std::size_t>(changed.then)].id;
+      const PointId point = *after.point(changed.then).id;
       delta.removed_observations.push_back({id, changed.feature, point});
     }
     if (changed.now >= 0) {
-      const std::optional<PointId> point = after.points[static_cast<std::size_t>(changed.now)].id;
+      const std::optional<PointId> point = after.point(changed.now).id;
       delta.new_observations.push_back({id, changed.feature, sighting_of(now, changed.feature, point)});
     }
   }
@@ -138,12 +138,12 @@ void append_foreign_view_changes(const Before& before, const MapWindow& after, s
   for (const ChangedFeature& changed : changed_features(before, after, keyframe)) {
     const Observation observation{now.id, changed.feature};
     if (changed.then >= 0) {
-      const PointId point = *after.points[static_cast<std::size_t>(changed.then)].id;
+      const PointId point = *after.point(changed.then).id;
       assert(is_online(point));
       delta.removed_foreign_views.push_back({{point.number}, observation});
     }
     if (changed.now >= 0) {
-      const PointId point = *after.points[static_cast<std::size_t>(changed.now)].id;
+      const PointId point = *after.point(changed.now).id;
       assert(is_online(point));
       delta.new_foreign_views.push_back({{point.number}, {observation, sighting_of(now, changed.feature, point)}});
     }
@@ -156,7 +156,7 @@ void append_new_points(std::size_t known, const MapWindow& after, MapDelta& delt
     if (point.removed) continue;
     NewPoint made{point.point, {}, {}};
     for (const WindowObservation& seen : point.observations) {
-      const WindowKeyframe& keyframe = after.keyframes[static_cast<std::size_t>(seen.keyframe)];
+      const WindowKeyframe& keyframe = after.keyframe(seen.keyframe);
       const Sighting& sighting = keyframe.keyframe.sightings[static_cast<std::size_t>(seen.feature)];
       if (is_offline(keyframe)) {
         made.foreign_views.push_back({{keyframe.id, seen.feature}, sighting});

@@ -7,7 +7,7 @@ namespace byre {
 MapDelta extend_map(const MapWindow& window, const MappingOptions& options) {
   MapWindow extended = window;
   for (int keyframe = 0; keyframe < static_cast<int>(extended.keyframes.size()); ++keyframe) {
-    if (!extended.keyframes[static_cast<std::size_t>(keyframe)].is_new) continue;
+    if (!extended.keyframe(keyframe).is_new) continue;
     fuse_duplicates(extended, keyframe, options);
     triangulate_new_points(extended, keyframe, options);
   }

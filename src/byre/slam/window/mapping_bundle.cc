@@ -37,7 +37,7 @@ void widen(BundleObservation& observation, const MapPoint& point, const Pose& ca
 
 BundleObservation weighted_observation(const MapWindow& window, const WindowPoint& point, const WindowObservation& seen,
                                        double offline_weight) {
-  const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(seen.keyframe)];
+  const WindowKeyframe& keyframe = window.keyframe(seen.keyframe);
   BundleObservation observation = bundle_observation(keyframe, seen.feature);
   if (!is_offline(point)) return observation;
   widen(observation, point.point, keyframe.keyframe.camera_from_world, window.rig_of(keyframe));
@@ -46,9 +46,7 @@ BundleObservation weighted_observation(const MapWindow& window, const WindowPoin
 }
 
 BundleMotion bundle_motion(const MapWindow& window, const WindowMotion& motion) {
-  const auto rig_at = [&](int keyframe) {
-    return window.rig_of(window.keyframes[static_cast<std::size_t>(keyframe)]).body_from_camera;
-  };
+  const auto rig_at = [&](int keyframe) { return window.rig_of(window.keyframe(keyframe)).body_from_camera; };
   const Pose earlier_camera_from_body = inverse(rig_at(motion.earlier)),
              camera_from_body = inverse(rig_at(motion.later));
   return {motion.earlier, motion.later,
@@ -80,7 +78,7 @@ WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
     bundle.problem.points.push_back({point.point.position_in_world, is_offline(point)});
     if (point.removed) continue;
     for (const WindowObservation& seen : point.observations) {
-      if (is_offline(point) && !window.keyframes[static_cast<std::size_t>(seen.keyframe)].movable) continue;
+      if (is_offline(point) && !window.keyframe(seen.keyframe).movable) continue;
       BundleObservation observation = weighted_observation(window, point, seen, offline_weight);
       observation.pose = seen.keyframe;
       observation.point = static_cast<int>(p);
@@ -116,15 +114,15 @@ void write_back(MapWindow& window, const BundleResult& result) {
 // Repairs an online point that lost a view: a removed reference is replaced by the first online view; a point without
 // one is removed. Points that are also seen outside the window are left to the map.
 void repair(MapWindow& window, int index) {
-  WindowPoint& point = window.points[static_cast<std::size_t>(index)];
+  WindowPoint& point = window.point(index);
   if (is_offline(point) || point.observations_elsewhere > 0) return;
   const auto is_reference = [&](const WindowObservation& seen) {
-    return window.keyframes[static_cast<std::size_t>(seen.keyframe)].id == point.point.reference.keyframe;
+    return window.keyframe(seen.keyframe).id == point.point.reference.keyframe;
   };
   if (std::ranges::any_of(point.observations, is_reference)) return;
   const auto first = first_online_observation(window, point);
   if (!first) return remove_point(window, index);
-  point.point.reference = {window.keyframes[static_cast<std::size_t>(first->keyframe)].id, first->feature};
+  point.point.reference = {window.keyframe(first->keyframe).id, first->feature};
 }
 
 void remove_outliers(MapWindow& window, const WindowBundle& bundle, const BundleResult& result) {
@@ -133,8 +131,7 @@ void remove_outliers(MapWindow& window, const WindowBundle& bundle, const Bundle
     const bool of_offline_point = bundle.problem.points[static_cast<std::size_t>(observation.point)].fixed;
     if (!is_outlier(observation, of_offline_point, result.squared_errors[i])) continue;
     const WindowObservation seen = bundle.seen(i);
-    if (window.keyframes[static_cast<std::size_t>(seen.keyframe)]
-            .point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {
+    if (window.keyframe(seen.keyframe).point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {
       continue;  // removed with its point
     }
     remove_observation(window, seen);
@@ -213,7 +210,7 @@ void refresh_covariances(MapWindow& window, const MappingOptions& options) {
   for (std::size_t i = 0; i < movable.size(); ++i) {
     const std::size_t nearest = i * found / movable.size();
     const auto other = static_cast<std::size_t>(bundle_options.covariances_of_poses[nearest]);
-    Keyframe& keyframe = window.keyframes[static_cast<std::size_t>(movable[i])].keyframe;
+    Keyframe& keyframe = window.keyframe(movable[i]).keyframe;
     const Pose keyframe_from_other =
         keyframe.camera_from_world * inverse(window.keyframes[other].keyframe.camera_from_world);
     keyframe.covariance = move_covariance(result.pose_covariances[nearest], keyframe_from_other);

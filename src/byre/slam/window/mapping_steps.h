@@ -12,7 +12,7 @@ namespace byre {
 inline constexpr int kOfflineNeighbours = 4;  // offline keyframes searched for new and for duplicate points
 
 inline CameraView view_of(const MapWindow& window, int keyframe) {
-  const WindowKeyframe& entry = window.keyframes[static_cast<std::size_t>(keyframe)];
+  const WindowKeyframe& entry = window.keyframe(keyframe);
   return {*entry.keyframe.frame.features, window.rig_of(entry), entry.keyframe.camera_from_world};
 }
 

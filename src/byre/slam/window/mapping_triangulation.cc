@@ -22,7 +22,7 @@ struct FreeFeature {
 };
 
 std::vector<FreeFeature> free_features(const MapWindow& window, int keyframe) {
-  const WindowKeyframe& entry = window.keyframes[static_cast<std::size_t>(keyframe)];
+  const WindowKeyframe& entry = window.keyframe(keyframe);
   const Rig& rig = window.rig_of(entry);
   std::vector<FreeFeature> free;
   for (int i = 0; i < entry.keyframe.frame.features->size(); ++i) {
@@ -123,14 +123,12 @@ void triangulate_pair(MapWindow& window, int first, int second, const MappingOpt
   const std::vector<FreeFeature> candidates = free_features(window, second);
   for (const FreeFeature& feature : free_features(window, first)) {
     const auto match = match_along_epipolar_line(first_view, feature, second_view, candidates, essential);
-    if (!match ||
-        window.keyframes[static_cast<std::size_t>(second)].point_of_feature[static_cast<std::size_t>(*match)] !=
-            kNoPoint) {
+    if (!match || window.keyframe(second).point_of_feature[static_cast<std::size_t>(*match)] != kNoPoint) {
       continue;
     }
     const auto point = triangulate_match(first_view, feature.index, second_view, *match, options);
     if (!point) continue;
-    const Observation reference{window.keyframes[static_cast<std::size_t>(first)].id, feature.index};
+    const Observation reference{window.keyframe(first).id, feature.index};
     const Keypoint& keypoint = first_view.features.keypoint(feature.index);
     window.points.push_back({std::nullopt,
                              make_point(point->position_in_world, point->covariance, reference, first_view.features,

@@ -11,14 +11,10 @@ int times_seen(const WindowPoint& point) {
   return static_cast<int>(point.observations.size()) + point.observations_elsewhere + point.foreign_views_elsewhere;
 }
 
-const WindowKeyframe& keyframe_of(const MapWindow& window, const WindowObservation& seen) {
-  return window.keyframes[static_cast<std::size_t>(seen.keyframe)];
-}
-
 // Number of online keyframes that see an online point.
 int times_seen_online(const MapWindow& window, const WindowPoint& point) {
   const auto inside = std::ranges::count_if(
-      point.observations, [&](const WindowObservation& seen) { return !is_offline(keyframe_of(window, seen)); });
+      point.observations, [&](const WindowObservation& seen) { return !is_offline(window.keyframe(seen.keyframe)); });
   return static_cast<int>(inside) + point.observations_elsewhere;
 }
 
@@ -27,7 +23,7 @@ Eigen::Matrix3d position_covariance(const MapWindow& window, const WindowPoint& 
   constexpr double kPriorSigma = 10.0;  // metres, keeps undetermined directions finite
   Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kPriorSigma * kPriorSigma);
   for (const WindowObservation& seen : point.observations) {
-    const WindowKeyframe& keyframe = keyframe_of(window, seen);
+    const WindowKeyframe& keyframe = window.keyframe(seen.keyframe);
     const BundleObservation observation = bundle_observation(keyframe, seen.feature);
     const Pose& camera_from_world = keyframe.keyframe.camera_from_world;
     const Eigen::Vector3d point_in_camera = camera_from_world * point.point.position_in_world;
@@ -48,14 +44,14 @@ Eigen::Matrix3d position_covariance(const MapWindow& window, const WindowPoint& 
 bool is_undetermined(const MapWindow& window, const WindowPoint& point) {
   if (times_seen(point) != 1 || point.observations.empty()) return false;
   const WindowObservation& seen = point.observations.front();
-  return !keyframe_of(window, seen).keyframe.frame.features->keypoint(seen.feature).has_disparity();
+  return !window.keyframe(seen.keyframe).keyframe.frame.features->keypoint(seen.feature).has_disparity();
 }
 
 // The descriptor with the smallest median distance to the others.
 Descriptor most_central_descriptor(const MapWindow& window, const WindowPoint& point) {
   std::vector<const Descriptor*> descriptors;
   for (const WindowObservation& seen : point.observations) {
-    descriptors.push_back(&keyframe_of(window, seen).keyframe.frame.features->descriptor(seen.feature));
+    descriptors.push_back(&window.keyframe(seen.keyframe).keyframe.frame.features->descriptor(seen.feature));
   }
   const Descriptor* best = &point.point.descriptor;
   int best_median = std::numeric_limits<int>::max();
@@ -76,7 +72,7 @@ Descriptor most_central_descriptor(const MapWindow& window, const WindowPoint& p
 void refresh_view(const MapWindow& window, WindowPoint& point) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (const WindowObservation& seen : point.observations) {
-    const WindowKeyframe& keyframe = keyframe_of(window, seen);
+    const WindowKeyframe& keyframe = window.keyframe(seen.keyframe);
     const Eigen::Vector3d camera_in_world = inverse(keyframe.keyframe.camera_from_world).translation;
     const Eigen::Vector3f ray = (point.point.position_in_world - camera_in_world).cast<float>();
     sum += ray.normalized();
@@ -97,14 +93,14 @@ double redundant_share(const MapWindow& window, const WindowKeyframe& keyframe) 
   for (const int index : keyframe.point_of_feature) {
     if (index < 0) continue;
     ++seen;
-    const WindowPoint& point = window.points[static_cast<std::size_t>(index)];
+    const WindowPoint& point = window.point(index);
     if (is_offline(point) || times_seen_online(window, point) > kOthers) ++redundant;
   }
   return seen == 0 ? 0.0 : static_cast<double>(redundant) / seen;
 }
 
 void remove_keyframe(MapWindow& window, int index) {
-  WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(index)];
+  WindowKeyframe& keyframe = window.keyframe(index);
   keyframe.removed = true;
   for (int feature = 0; feature < static_cast<int>(keyframe.point_of_feature.size()); ++feature) {
     if (keyframe.point_of_feature[static_cast<std::size_t>(feature)] >= 0) {
@@ -138,7 +134,7 @@ void refresh_points(MapWindow& window) {
 void remove_weak_points(MapWindow& window, KeyframeId newest, const ImageMask& hidden) {
   constexpr std::uint32_t kKeyframesToConfirm = 3;
   for (int i = 0; i < static_cast<int>(window.points.size()); ++i) {
-    const WindowPoint& point = window.points[static_cast<std::size_t>(i)];
+    const WindowPoint& point = window.point(i);
     if (point.removed || is_offline(point)) continue;
     const bool had_its_chance = newest.number >= point.point.reference.keyframe.number + kKeyframesToConfirm;
     const bool alone = !point.id && times_seen(point) < 2;  // made in this window and rejected at once
@@ -149,7 +145,7 @@ void remove_weak_points(MapWindow& window, KeyframeId newest, const ImageMask& h
 
 void remove_redundant_keyframes(MapWindow& window, const MappingOptions& options) {
   for (int i = 1; i < static_cast<int>(window.keyframes.size()); ++i) {
-    const WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(i)];
+    const WindowKeyframe& keyframe = window.keyframe(i);
     if (!keyframe.movable || keyframe.is_new) continue;
     if (redundant_share(window, keyframe) > options.redundant_share) remove_keyframe(window, i);
   }

@@ -154,15 +154,14 @@ std::vector<PointId> united(const std::vector<PointId>& first, const std::vector
 }
 
 void link_observation(MapWindow& window, int point, const WindowObservation& seen) {
-  window.points[static_cast<std::size_t>(point)].observations.push_back(seen);
-  window.keyframes[static_cast<std::size_t>(seen.keyframe)].point_of_feature[static_cast<std::size_t>(seen.feature)] =
-      point;
+  window.point(point).observations.push_back(seen);
+  window.keyframe(seen.keyframe).point_of_feature[static_cast<std::size_t>(seen.feature)] = point;
 }
 
 void link_observations(MapWindow& window, const MapView& map) {
   const NumberOfKeyframe index = index_keyframes(window);
   for (int p = 0; p < static_cast<int>(window.points.size()); ++p) {
-    WindowPoint& point = window.points[static_cast<std::size_t>(p)];
+    WindowPoint& point = window.point(p);
     map.visit_observations(*point.id, [&](const Observation& observation) {
       const int keyframe = find(index, observation.keyframe);
       if (keyframe < 0) {
@@ -178,7 +177,7 @@ void link_observations(MapWindow& window, const MapView& map) {
 void link_foreign_views(MapWindow& window, const MapView& map) {
   const NumberOfKeyframe index = index_keyframes(window);
   for (int p = 0; p < static_cast<int>(window.points.size()); ++p) {
-    WindowPoint& point = window.points[static_cast<std::size_t>(p)];
+    WindowPoint& point = window.point(p);
     for (const auto& [observation, sighting] : map.online().foreign_views(*point.id)) {
       const int keyframe = find(index, observation.keyframe);
       if (keyframe < 0) {
@@ -186,8 +185,7 @@ void link_foreign_views(MapWindow& window, const MapView& map) {
         continue;
       }
       link_observation(window, p, {keyframe, observation.feature});
-      window.keyframes[static_cast<std::size_t>(keyframe)]
-          .keyframe.sightings[static_cast<std::size_t>(observation.feature)] = sighting;
+      window.keyframe(keyframe).keyframe.sightings[static_cast<std::size_t>(observation.feature)] = sighting;
     }
   }
 }
@@ -244,7 +242,7 @@ void fix_gauge(MapWindow& window, int min_offline_sightings) {
 std::vector<int> nearest_neighbours(const MapWindow& window, int keyframe, int online_count, int offline_count) {
   std::vector<int> online, offline;
   for (int i = 0; i < static_cast<int>(window.keyframes.size()); ++i) {
-    if (i != keyframe) (is_offline(window.keyframes[static_cast<std::size_t>(i)]) ? offline : online).push_back(i);
+    if (i != keyframe) (is_offline(window.keyframe(i)) ? offline : online).push_back(i);
   }
   online.resize(std::min(online.size(), static_cast<std::size_t>(online_count)));
   offline.resize(std::min(offline.size(), static_cast<std::size_t>(offline_count)));
@@ -253,31 +251,28 @@ std::vector<int> nearest_neighbours(const MapWindow& window, int keyframe, int o
 }
 
 int count_offline_sightings(const MapWindow& window, const WindowKeyframe& keyframe) {
-  return static_cast<int>(std::ranges::count_if(keyframe.point_of_feature, [&](int point) {
-    return point >= 0 && is_offline(window.points[static_cast<std::size_t>(point)]);
-  }));
+  return static_cast<int>(std::ranges::count_if(
+      keyframe.point_of_feature, [&](int point) { return point >= 0 && is_offline(window.point(point)); }));
 }
 
 std::optional<WindowObservation> first_online_observation(const MapWindow& window, const WindowPoint& point) {
-  const auto found = std::ranges::find_if(point.observations, [&](const WindowObservation& seen) {
-    return !is_offline(window.keyframes[static_cast<std::size_t>(seen.keyframe)]);
-  });
+  const auto found = std::ranges::find_if(
+      point.observations, [&](const WindowObservation& seen) { return !is_offline(window.keyframe(seen.keyframe)); });
   return found == point.observations.end() ? std::nullopt : std::optional(*found);
 }
 
 void add_observation(MapWindow& window, int point, const WindowObservation& observation, const Sighting& sighting) {
-  WindowKeyframe& keyframe = window.keyframes[static_cast<std::size_t>(observation.keyframe)];
+  WindowKeyframe& keyframe = window.keyframe(observation.keyframe);
   const auto feature = static_cast<std::size_t>(observation.feature);
-  assert(!is_offline(keyframe) || !is_offline(window.points[static_cast<std::size_t>(point)]));
+  assert(!is_offline(keyframe) || !is_offline(window.point(point)));
   keyframe.point_of_feature[feature] = point;
   keyframe.keyframe.sightings[feature] = sighting;
-  window.points[static_cast<std::size_t>(point)].observations.push_back(observation);
+  window.point(point).observations.push_back(observation);
 }
 
 void remove_observation(MapWindow& window, const WindowObservation& observation) {
-  int& slot = window.keyframes[static_cast<std::size_t>(observation.keyframe)]
-                  .point_of_feature[static_cast<std::size_t>(observation.feature)];
-  auto& observations = window.points[static_cast<std::size_t>(slot)].observations;
+  int& slot = window.keyframe(observation.keyframe).point_of_feature[static_cast<std::size_t>(observation.feature)];
+  auto& observations = window.point(slot).observations;
   std::erase_if(observations, [&](const WindowObservation& other) {
     return other.keyframe == observation.keyframe && other.feature == observation.feature;
   });
@@ -285,10 +280,9 @@ void remove_observation(MapWindow& window, const WindowObservation& observation)
 }
 
 void remove_point(MapWindow& window, int point) {
-  WindowPoint& removed = window.points[static_cast<std::size_t>(point)];
+  WindowPoint& removed = window.point(point);
   for (const WindowObservation& observation : removed.observations) {
-    window.keyframes[static_cast<std::size_t>(observation.keyframe)]
-        .point_of_feature[static_cast<std::size_t>(observation.feature)] = kNoPoint;
+    window.keyframe(observation.keyframe).point_of_feature[static_cast<std::size_t>(observation.feature)] = kNoPoint;
   }
   removed.observations.clear();
   removed.removed = true;

@@ -49,6 +49,10 @@ struct MapWindow {
   std::vector<WindowPoint> points;
   std::vector<WindowMotion> motions;
 
+  const WindowKeyframe& keyframe(int index) const { return keyframes[static_cast<std::size_t>(index)]; }
+  WindowKeyframe& keyframe(int index) { return keyframes[static_cast<std::size_t>(index)]; }
+  const WindowPoint& point(int index) const { return points[static_cast<std::size_t>(index)]; }
+  WindowPoint& point(int index) { return points[static_cast<std::size_t>(index)]; }
   const Rig& rig_of(const WindowKeyframe& keyframe) const {
     return rigs[static_cast<std::size_t>(keyframe.keyframe.rig)];
   }
