@@ -1,4 +1,4 @@
-#include "byre/slam/localisation/active_hint.h"
+#include "byre/slam/localisation/place_search.h"
 
 #include <limits>
 

@@ -1,10 +1,10 @@
 #include "byre/slam/localisation/place_search.h"
 
-#include "byre/slam/localisation/active_hint.h"
 #include "byre/slam/places/place_hypothesis.h"
 #include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/tracking/keyframes.h"
 
+#include <cmath>
 #include <utility>
 
 namespace byre {
@@ -26,6 +26,25 @@ PoseHint surroundings_of(const PoseHint& hint) {
 }
 
 }  // namespace
+
+bool is_near(const PoseHint& hint, const Pose& map_from_body) {
+  return (map_from_body.translation - hint.map_from_body.translation).norm() <= hint.radius &&
+         angle_between(map_from_body.rotation, hint.map_from_body.rotation) <= hint.turn;
+}
+
+void ActiveHint::set_hint(const PoseHint& hint) {
+  const Pose& pose = hint.map_from_body;
+  const bool is_finite = pose.translation.allFinite() && pose.rotation.coeffs().allFinite() &&
+                         std::isfinite(hint.radius) && std::isfinite(hint.turn) && std::isfinite(hint.seconds);
+  hint_ = is_finite ? std::optional(hint) : std::nullopt;
+  first_frame_.reset();
+}
+
+void ActiveHint::expire(Timestamp frame) {
+  if (!hint_) return;
+  if (!first_frame_) first_frame_ = frame;
+  if (to_seconds(frame - *first_frame_) >= hint_->seconds) hint_.reset();
+}
 
 BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options) {
   const auto& [frame, rig, hint, reach, hidden] = query;

@@ -1,4 +1,4 @@
-#include "byre/slam/loops/odometry_lengths.h"
+#include "byre/slam/loops/odometry_motions.h"
 
 #include <gtest/gtest.h>
 

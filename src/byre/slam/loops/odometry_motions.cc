@@ -1,7 +1,7 @@
 #include "byre/slam/loops/odometry_motions.h"
 
+#include "byre/alignment.h"
 #include "byre/slam/loops/loop_closing.h"
-#include "byre/slam/loops/odometry_lengths.h"
 #include "byre/slam/tracking/body_pose.h"
 
 #include <algorithm>
@@ -51,6 +51,22 @@ Pose seen_between(const Map& online, KeyframeId earlier, KeyframeId later) {
 }
 
 }  // namespace
+
+void LengthRatio::add(const BodyMotion& measured, const Pose& seen) {
+  const Eigen::Vector3d& way = measured.last_from_body.translation;
+  const double weight = 1.0 / measured.covariance.topLeftCorner<3, 3>().trace();
+  ++count_;
+  measured_squared_ += weight * way.squaredNorm();
+  visual_by_measured_ += weight * seen.translation.dot(way);
+}
+
+std::optional<double> LengthRatio::value() const {
+  return visual_by_measured_ > 0.0 ? std::optional(visual_by_measured_ / measured_squared_) : std::nullopt;
+}
+
+BodyMotion scale_motion(const BodyMotion& motion, double scale) {
+  return {scale_lengths(motion.last_from_body, scale), scale_lengths(motion.covariance, scale)};
+}
 
 std::vector<KeyframeMotion> odometry_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
                                              const OdometryQuery& odometry) {

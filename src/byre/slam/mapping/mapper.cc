@@ -3,7 +3,7 @@
 #include "byre/map/scaled_copy.h"
 #include "byre/slam/loops/recent_map.h"
 #include "byre/slam/tracking/keyframes.h"
-#include "byre/slam/window/monocular_submap.h"
+#include "byre/slam/window/initialisation.h"
 
 #include <algorithm>
 #include <cassert>

@@ -7,7 +7,7 @@
 #include "byre/slam/frame/health.h"
 #include "byre/slam/frame/image_monitor.h"
 #include "byre/slam/frame/state.h"
-#include "byre/slam/localisation/active_hint.h"
+#include "byre/slam/localisation/place_search.h"
 #include "byre/slam/localisation/offline_tracker.h"
 #include "byre/slam/localisation/place_bounds.h"
 #include "byre/slam/localisation/pose_filter.h"
