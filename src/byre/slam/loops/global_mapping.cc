@@ -324,11 +324,6 @@ MapWindow whole_map(const MapView& map) {
   return window;
 }
 
-MapDelta adjust_map(const MapWindow& whole, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
-                    const std::function<bool()>& should_stop) {
-  return adjust_map(MapWindow(whole), whole, loops, options, should_stop);
-}
-
 MapDelta adjust_map(MapWindow&& window, const MapWindow& before, const std::vector<LoopEdge>& loops,
                     const GlobalMappingOptions& options, const std::function<bool()>& should_stop) {
   MapWindow adjusted = std::move(window);

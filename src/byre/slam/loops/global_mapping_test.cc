@@ -75,7 +75,7 @@ TEST(AdjustMap, CorrectsADriftedMap) {
   Map map = drifted_map(mission);
   const double before = worst_position_error(map, mission);
   const MapWindow whole = whole_map(map);
-  apply_correction(adjust_map(whole, {true_loop(map, mission)}, {}), whole, map);
+  apply_correction(adjust_map(MapWindow(whole), whole, {true_loop(map, mission)}, {}), whole, map);
   EXPECT_GT(before, 0.1);
   EXPECT_LT(worst_position_error(map, mission), 0.1 * before);
   EXPECT_THAT(find_faults(map), testing::IsEmpty());
@@ -95,7 +95,7 @@ TEST(AdjustMap, HoldsTheScaleToMeasuredMotions) {
       const int earlier = static_cast<int>(i) - 1, later = static_cast<int>(i);
       whole.motions.push_back({earlier, later, {inverse(truth(i - 1)) * truth(i), covariance}});
     }
-    apply_correction(adjust_map(whole, {}, {}), whole, lap.map);
+    apply_correction(adjust_map(MapWindow(whole), whole, {}, {}), whole, lap.map);
     return worst_position_error(lap.map, lap.mission);
   };
   EXPECT_GT(error_with(false), 0.05);
@@ -107,7 +107,7 @@ TEST(AdjustMap, GivesTheSameResultAtOnce) {
   Map in_two_steps = drifted_map(mission), at_once = in_two_steps;
   const MapWindow whole = whole_map(in_two_steps);
   const std::vector<LoopEdge> loops = {true_loop(at_once, mission)};
-  apply_correction(adjust_map(whole, loops, {}), whole, in_two_steps);
+  apply_correction(adjust_map(MapWindow(whole), whole, loops, {}), whole, in_two_steps);
   EXPECT_THAT(adjust_at_once(whole, loops, {}, at_once), testing::IsEmpty());
   EXPECT_THAT(find_faults(at_once), testing::IsEmpty());
   ASSERT_EQ(at_once.point_ids(), in_two_steps.point_ids());
@@ -125,7 +125,7 @@ TEST(AdjustMap, StopsOnRequest) {
   const SimulatedMission mission = lap();
   const Map map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
-  const MapDelta delta = adjust_map(whole, {}, {}, [] { return true; });
+  const MapDelta delta = adjust_map(MapWindow(whole), whole, {}, {}, [] { return true; });
   EXPECT_THAT(delta.moved_keyframes, testing::IsEmpty());
 }
 
@@ -133,8 +133,8 @@ TEST(AdjustMap, IsDeterministic) {
   const SimulatedMission mission = lap();
   const Map map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
-  const MapDelta once = adjust_map(whole, {true_loop(map, mission)}, {});
-  const MapDelta again = adjust_map(whole, {true_loop(map, mission)}, {});
+  const MapDelta once = adjust_map(MapWindow(whole), whole, {true_loop(map, mission)}, {});
+  const MapDelta again = adjust_map(MapWindow(whole), whole, {true_loop(map, mission)}, {});
   ASSERT_EQ(once.moved_keyframes.size(), again.moved_keyframes.size());
   for (std::size_t i = 0; i < once.moved_keyframes.size(); ++i) {
     EXPECT_EQ(once.moved_keyframes[i].camera_from_world.translation,

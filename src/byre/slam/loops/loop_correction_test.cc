@@ -60,7 +60,8 @@ TEST_P(DriftingScale, IsCorrectedBeforePointsAreFused) {
   Map map = lap_.map;
   const MapWindow whole = whole_map(map);
   const auto without_bundle_adjustment = [] { return true; };
-  const LengthChanges changes = apply_correction(adjust_map(whole, {edge}, {}, without_bundle_adjustment), whole, map);
+  const LengthChanges changes =
+      apply_correction(adjust_map(MapWindow(whole), whole, {edge}, {}, without_bundle_adjustment), whole, map);
   EXPECT_GT(gap_at(edge, lap_.map), 0.2);
   EXPECT_LT(gap_at(in_new_lengths(edge, changes), map), 0.01);
 }

@@ -1,5 +1,6 @@
 #include "byre/slam/places/localisation.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/features/descriptor.h"
 #include "byre/geometry/absolute_pose.h"
 #include "byre/geometry/decompositions.h"
@@ -230,29 +231,10 @@ std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& 
 }
 
 std::string_view to_string(LocalisationFailure failure) {
-  switch (failure) {
-    case Failure::none:
-      return "none";
-    case Failure::too_few_features:
-      return "too few features";
-    case Failure::no_similar_keyframe:
-      return "no similar keyframe";
-    case Failure::too_few_matches:
-      return "too few matches";
-    case Failure::geometry_disagrees:
-      return "geometry does not agree";
-    case Failure::too_few_inliers:
-      return "too few inliers";
-    case Failure::clustered:
-      return "inliers are clustered";
-    case Failure::uncertain:
-      return "pose is uncertain";
-    case Failure::impossible:
-      return "place is impossible";
-    case Failure::ambiguous:
-      return "two places fit";
-  }
-  return "";
+  return name_among<Failure::ambiguous>(
+      {"none", "too few features", "no similar keyframe", "too few matches", "geometry does not agree",
+       "too few inliers", "inliers are clustered", "pose is uncertain", "place is impossible", "two places fit"},
+      failure);
 }
 
 double spread_of(std::span<const TrackedFeature> features, const Rig& rig) {

@@ -89,7 +89,7 @@ TEST(HybridMapping, LeavesTheOfflineMapBitIdentical) {
   const std::vector<std::byte> before = bytes_of(scene.offline);
   map_in_order(scene, {});
   const MapWindow whole = whole_map(scene.view());
-  apply_correction(adjust_map(whole, {}, {}), whole, scene.online);
+  apply_correction(adjust_map(MapWindow(whole), whole, {}, {}), whole, scene.online);
   EXPECT_EQ(bytes_of(scene.offline), before);
   EXPECT_THAT(find_faults(scene.offline), IsEmpty());
   EXPECT_THAT(find_faults(scene.online), IsEmpty());
@@ -109,7 +109,7 @@ TEST(HybridMapping, PullsTheWholeMapIntoTheOfflineFrameAtOnce) {
   const MapWindow whole = whole_map(scene.view());
   GlobalMappingOptions options;
   options.first_bundle_iterations = 20;
-  apply_correction(adjust_map(whole, {}, options), whole, scene.online);
+  apply_correction(adjust_map(MapWindow(whole), whole, {}, options), whole, scene.online);
   EXPECT_THAT(mean_error(scene).position, Lt(0.004));
 }
 
