@@ -1,8 +1,9 @@
 #pragma once
 
-#include "byre/features/rectify.h"
+#include "byre/calibration.h"
 #include "byre/viewer/scene.h"
 
+#include <memory>
 #include <vector>
 
 namespace byre {
@@ -12,15 +13,17 @@ namespace byre {
 class FrameView {
  public:
   // Throws InputError if the calibration cannot be rectified.
-  explicit FrameView(const Calibration& calibration) : rectifier_(calibration) {}
+  explicit FrameView(const Calibration& calibration);
+  ~FrameView();
 
-  const Rig& rig() const { return rectifier_.rig(); }
+  const Rig& rig() const;
 
   // Precondition: the image has the calibrated size.
   FrameScene scene_of(const Image& left, const FrameReport& report, const std::vector<SeenPoint>& seen) const;
 
  private:
-  Rectifier rectifier_;
+  struct State;                   // hides OpenCV
+  std::unique_ptr<State> state_;  // constant after construction
 };
 
 }  // namespace byre

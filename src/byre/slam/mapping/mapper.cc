@@ -406,7 +406,7 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   if (first_new == 0) page_out_features(online_, *page_file_);
   const FinishHooks frugal{releasing_pages(*page_file_, hooks.should_stop), hooks.before_step};
   FinishReport report =
-      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), {}, first_new}, frugal);
+      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), first_new}, frugal);
   loop_closer_.apply_length_changes(report.length_changes);
   return report;
 }
