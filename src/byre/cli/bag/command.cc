@@ -3,14 +3,12 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/playback/report/bag_report.h"
-#include "byre/playback/report/report_json.h"
 
 #include <filesystem>
 #include <memory>
 #include <ostream>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 namespace byre::cli {
 namespace {
@@ -34,11 +32,8 @@ Exit codes: 0 all of it can be read, 1 a part of it cannot be read, 3 it is not 
 ExitCode run_info(const InfoOptions& options, std::ostream& result) {
   const auto bag = open_bag(options.bag, [](std::string_view) { return false; });
   const BagContent& content = bag->content();
-  if (options.json) {
-    result << dump_json(bag_json(content, options.bag), 2) << "\n";
-  } else {
-    result << describe(content, options.bag);
-  }
+  const Report report = bag_report(content, options.bag);
+  result << (options.json ? to_json(report) : report.text);
   return content.damage.empty() ? ExitCode::done : ExitCode::failed;
 }
 

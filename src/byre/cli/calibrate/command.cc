@@ -1,5 +1,4 @@
 #include "byre/base/output_file.h"
-#include "byre/base/report_row.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
@@ -11,7 +10,6 @@
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"
 #include "byre/playback/report/calibration_report.h"
-#include "byre/playback/report/report_json.h"
 #include "byre/playback/scaled_recording.h"
 #include "byre/slam/system/option_table.h"
 
@@ -20,7 +18,6 @@
 #include <optional>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 namespace byre::cli {
 namespace {
@@ -48,18 +45,16 @@ near and far objects, for a minute or two. Images do not constrain the length of
 --fix-scale" takes it from a floor plan. "byre map" refines the calibration of each recording likewise, and stores it
 in the map.)";
 
-std::string to_text(const CalibrateOptions& options, const RefinedCalibration& refined) {
-  return row("recording", options.recording.string()) + row("calibration", describe_calibration(refined)) +
-         calibration_table(refined) + row("written", options.output.string());
-}
-
-std::string to_json_text(const CalibrateOptions& options, const RefinedCalibration& refined) {
-  const nlohmann::ordered_json json = {{"program", "byre calibrate"},
-                                       {"version", BYRE_VERSION},
-                                       {"recording", options.recording.string()},
-                                       {"written", options.output.string()},
-                                       {"calibration", calibration_json(refined)}};
-  return dump_json(json, 2) + "\n";
+Report calibrate_report(const CalibrateOptions& options, const RefinedCalibration& refined) {
+  Report report{{{"program", "byre calibrate"},
+                 {"version", BYRE_VERSION},
+                 {"recording", options.recording.string()},
+                 {"written", options.output.string()},
+                 {"calibration", calibration_json(refined)}}};
+  report.row("recording", "{recording}");
+  add_calibration(refined, report);
+  report.row("written", "{written}");
+  return report;
 }
 
 ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
@@ -82,7 +77,8 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   Calibration calibration = run.calibration->calibration;
   if (!is_metric) calibration.body_from_left = body_from_camera;
   write_atomically(options.output, write_calibration(calibration));
-  result << (options.json ? to_json_text(options, *run.calibration) : to_text(options, *run.calibration));
+  const Report report = calibrate_report(options, *run.calibration);
+  result << (options.json ? to_json(report) : report.text);
   return ExitCode::done;
 }
 

@@ -6,14 +6,12 @@
 #include "byre/features/image_threads.h"
 #include "byre/io/recording/motion_files.h"
 #include "byre/playback/report/recording_check_report.h"
-#include "byre/playback/report/report_json.h"
 
 #include <algorithm>
 #include <iostream>
 #include <memory>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 namespace byre::cli {
 namespace {
@@ -48,14 +46,8 @@ ExitCode run_check(const CheckOptions& options, std::ostream& result) {
   const std::vector<Finding> motion = motion_findings(
       *recording, [&](MotionSensor sensor) { return motion_source(options.recording, options.open, sensor); });
   findings.insert(findings.end(), motion.begin(), motion.end());
-  if (options.json) {
-    nlohmann::ordered_json json = {
-        {"program", "byre check"}, {"version", BYRE_VERSION}, {"recording", options.recording.string()}};
-    json.update(check_json(check, findings));
-    result << dump_json(json, 2) << "\n";
-  } else {
-    result << describe(check, findings);
-  }
+  const Report report = check_report(check, findings, options.recording.string());
+  result << (options.json ? to_json(report) : report.text);
   return std::ranges::any_of(findings, &Finding::is_critical) ? ExitCode::failed : ExitCode::done;
 }
 

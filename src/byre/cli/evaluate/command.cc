@@ -111,7 +111,8 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
   if (options.aligned) write_trajectory(aligned_trajectory(estimate, *report), *options.aligned, options.format);
   if (options.plot) write_plot(options, *report, estimate, truth);
   const std::string estimated = options.estimate.string(), true_one = options.truth.string();
-  result << (options.json ? to_json(*report, estimated, true_one) : to_text(*report, estimated, true_one));
+  const Report printed = evaluation_report(*report, estimated, true_one);
+  result << (options.json ? to_json(printed) : printed.text);
 }
 
 void declare_inputs(CLI::App& command, EvaluateOptions& options) {

@@ -37,8 +37,8 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
   const StoredMap stored = read_map(bytes, name);
   if (options.points) write_atomically(*options.points, point_cloud(stored.map));
   const MapInspection inspection = inspect(stored);
-  const InspectedFile file{name, bytes.size(), section_sizes(bytes, name)};
-  result << (options.json ? to_json(stored, inspection, file) : to_text(stored, inspection, file));
+  const Report report = inspection_report(stored, inspection, {name, bytes.size(), section_sizes(bytes, name)});
+  result << (options.json ? to_json(report) : report.text);
   return ExitCode::done;
 }
 

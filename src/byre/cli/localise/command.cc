@@ -151,7 +151,8 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
   if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
   if (options.trajectory) write_found(work, *options.trajectory);
   const std::optional<LocalisationErrors> errors = judge(options, work.run, stored);
-  result << (options.json ? to_json(work.run, work.protocol, errors) : to_text(work.run, work.protocol, errors));
+  const Report report = localisation_report(work.run, work.protocol, errors);
+  result << (options.json ? to_json(report, 1) : report.text);
   if (const InputError* const damage = stored.map.damage()) throw InputError(*damage);
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }

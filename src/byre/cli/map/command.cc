@@ -45,12 +45,11 @@ MapRun play_and_autosave(Slam& slam, RunInput& input, const MapOptions& options,
   return run;
 }
 
-void write_results(const MapOptions& options, const MapRun& run, const MapProtocol& protocol,
-                   const ResourceUsage& resources, OutputWriter& outputs) {
+void write_results(const MapOptions& options, const MapRun& run, const Report& report, OutputWriter& outputs) {
   outputs.attempt(options.trajectory, run.final, options.trajectory_format);
   outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
   outputs.attempt([&] {
-    if (options.stats) write_atomically(*options.stats, to_json(run, protocol, resources));
+    if (options.stats) write_atomically(*options.stats, to_json(report, run));
   });
 }
 
@@ -102,9 +101,11 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
     const SlamInputs& inputs = slam.impl().inputs();
     if (options.map) save_for_missions_and_reload(run.stored, *inputs.vocabulary, inputs.site, *options.map);
   });
-  write_results(options, run, protocol, resources, outputs);
+  Report report = run_report(run, protocol, resources);
+  write_results(options, run, report, outputs);
   outputs.require_written();
-  result << to_text(run, protocol, resources, names_of(options.outputs())) << input.report();
+  report.row("written", "{?files}{files}", {{"files", names_of(options.outputs())}});
+  result << report.text << input.report();
   if (interrupt.caught()) return ExitCode::interrupted;
   messages.require_written();
   require_frames(run);

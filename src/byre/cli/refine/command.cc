@@ -1,11 +1,9 @@
 #include "byre/base/output_file.h"
-#include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/playback/report/finish_report.h"
-#include "byre/playback/report/report_json.h"
 #include "byre/slam/system/refine_map.h"
 #include "byre/slam/system/stored_map.h"
 
@@ -13,8 +11,6 @@
 #include <ostream>
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 namespace byre::cli {
 namespace {
@@ -39,19 +35,17 @@ Repeats the last step of "byre map": searches for loops, adjusts all keyframes a
 points and redundant keyframes. Without -o the map is replaced, completely or not at all. Given or imported poses are
 adjusted too. Ctrl-C keeps the result so far, with exit code 130.)";
 
-std::string to_text(const RefineOptions& options, const FinishResult& finishing) {
-  const MapQuality& after = finishing.report.after;
-  return row("map", fmt::format("{}: {} keyframes, {} points", options.map.string(), after.keyframes, after.points)) +
-         byre::to_text(finishing) + row("written", options.written().string());
-}
-
-std::string to_json(const RefineOptions& options, const FinishResult& finishing) {
-  nlohmann::ordered_json json = {{"program", "byre refine"},
-                                 {"version", BYRE_VERSION},
-                                 {"map", options.map.string()},
-                                 {"written", options.written().string()}};
-  json["finishing"] = byre::to_json(finishing);
-  return dump_json(json, 2) + "\n";
+Report refine_report(const RefineOptions& options, const FinishResult& finishing) {
+  const Report finish = finish_report(finishing);
+  Report report{{{"program", "byre refine"},
+                 {"version", BYRE_VERSION},
+                 {"map", options.map.string()},
+                 {"written", options.written().string()},
+                 {"finishing", finish.figures}}};
+  report.row("map", "{map}: {finishing.after.keyframes} keyframes, {finishing.after.points} points");
+  report.text += finish.text;
+  report.row("written", "{written}");
+  return report;
 }
 
 ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
@@ -62,7 +56,8 @@ ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
   const InterruptCatcher interrupt;
   const FinishResult finishing = refine_map(stored, vocabulary, finish_hooks(interrupt, options.quiet));
   save_for_missions(std::move(stored), vocabulary, "", options.written());
-  result << (options.json ? to_json(options, finishing) : to_text(options, finishing));
+  const Report report = refine_report(options, finishing);
+  result << (options.json ? to_json(report) : report.text);
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }
 

@@ -131,13 +131,13 @@ MapRun play_and_log(Slam& slam, RunInput& input, const MapProtocol& protocol, Wa
   return input.play(slam, hooks, interrupt);
 }
 
-void write_results(const RunOptions& options, const MapRun& run, const MapProtocol& protocol,
-                   const MissionOutcome& mission, const ResourceUsage& resources, OutputWriter& outputs) {
+void write_results(const RunOptions& options, const MapRun& run, const Report& report, const MissionOutcome& mission,
+                   OutputWriter& outputs) {
   outputs.attempt(options.trajectory, run.final, options.trajectory_format);
   outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
   outputs.attempt(options.odometry, run.odometry, options.trajectory_format);
   outputs.attempt([&] {
-    if (options.stats) write_atomically(*options.stats, to_json(run, protocol, resources, mission));
+    if (options.stats) write_atomically(*options.stats, to_json(report, run, mission));
   });
 }
 
@@ -174,9 +174,11 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   const MissionOutcome mission = evaluate_mission(run, protocol.options, truth, input.scaled());
   input.note_frames(run, protocol);
   if (protocol.plan) run = on_plan(std::move(run), *protocol.plan);
-  write_results(options, run, protocol, mission, resources, outputs);
+  Report report = run_report(run, protocol, resources, mission);
+  write_results(options, run, report, mission, outputs);
   outputs.require_written();
-  result << to_text(run, protocol, resources, names_of(options.outputs()), mission) << input.report();
+  report.row("written", "{?files}{files}", {{"files", names_of(options.outputs())}});
+  result << report.text << input.report();
   if (run.map_damage) throw InputError(*run.map_damage);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (viewer) {

@@ -1,22 +1,14 @@
 #include "byre/playback/report/evaluation_report.h"
 
-#include "byre/base/report_row.h"
-#include "byre/playback/report/report_json.h"
-
-#include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double to_milliseconds(Timestamp time) {
-  return 1e3 * to_seconds(time);
-}
 
 std::string_view name_of(PoseAlignment alignment) {
   switch (alignment) {
@@ -32,93 +24,51 @@ std::string_view name_of(PoseAlignment alignment) {
   return "";
 }
 
-std::string describe_alignment(const EvaluationReport& report) {
-  if (report.protocol.alignment == PoseAlignment::none) return "none, estimate and truth are in the same frame";
-  if (report.protocol.alignment == PoseAlignment::origin)
-    return "origin: the first pose equals the true one, including rotation";
-  if (!report.ate) return "impossible: collinear positions, or fewer than three";
-  if (report.protocol.alignment == PoseAlignment::se3) return "SE(3) over all pairs (Umeyama)";
-  return fmt::format("Sim(3) over all pairs (Umeyama), scale {:.6f}", report.ate->truth_from_estimate.scale);
+std::string_view describe_alignment(const EvaluationReport& evaluation) {
+  switch (evaluation.protocol.alignment) {
+    case PoseAlignment::none:
+      return "none, estimate and truth are in the same frame";
+    case PoseAlignment::origin:
+      return "origin: the first pose equals the true one, including rotation";
+    case PoseAlignment::se3:
+      return "[{?ate}SE(3) over all pairs (Umeyama)|impossible: collinear positions, or fewer than three]";
+    case PoseAlignment::sim3:
+      break;
+  }
+  return "[Sim(3) over all pairs (Umeyama), scale {ate.truth_from_estimate.scale:.6f}"
+         "|impossible: collinear positions, or fewer than three]";
 }
 
-std::string caveat_row(const EvaluationReport& report) {
-  const PoseAlignment alignment = report.protocol.alignment;
-  if (!is_nearly_straight(report) || (alignment != PoseAlignment::se3 && alignment != PoseAlignment::sim3)) return "";
-  return fmt::format(
-      "caveat       the path is nearly a line, {:.3g} m long and {:.3g} m wide. The rotation of the alignment about "
-      "this line is\n             undetermined, so errors across it and of rotation are arbitrary (not with "
-      "--alignment origin)\n",
-      report.true_spread[0], report.true_spread[1]);
+bool has_arbitrary_rotation(const EvaluationReport& evaluation) {
+  const PoseAlignment alignment = evaluation.protocol.alignment;
+  return is_nearly_straight(evaluation) && (alignment == PoseAlignment::se3 || alignment == PoseAlignment::sim3);
 }
 
-std::string describe_association(const EvaluationReport& report) {
-  const AssociationOptions& options = report.protocol.association;
-  return fmt::format("truth interpolated in gaps up to {:g} ms, else its nearest sample within {:g} ms: {} pairs",
-                     to_milliseconds(options.max_gap), to_milliseconds(options.max_difference), report.pairs);
-}
-
-std::string describe_coverage(const EvaluationReport& report) {
-  if (!report.coverage) return "unknown: fewer than two poses, and no frames given";
-  return fmt::format("{:.1f} % ({} of {} ", 100.0 * report.coverage->share(), report.coverage->with_pose,
-                     report.coverage->expected) +
-         report.coverage_source + ")";
-}
-
-std::string header(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file) {
-  return row("estimate", fmt::format("{}, {} poses", estimate_file, report.estimated_poses)) +
-         row("truth", fmt::format("{}, {} poses", truth_file, report.true_poses)) +
-         row("poses", report.protocol.label) + row("alignment", describe_alignment(report)) +
-         row("association", describe_association(report)) +
-         row("time offset",
-             fmt::format("{:g} s, added to the truth's time", to_seconds(report.protocol.association.time_offset))) +
-         row("coverage", describe_coverage(report)) + row("true path", fmt::format("{:.2f} m", report.true_path)) +
-         caveat_row(report);
-}
-
-std::string ate_rpe_row(const char* name, const ErrorStatistics& errors) {
-  if (errors.count == 0) return fmt::format("{:22} no pair of poses at this distance\n", name);
-  return fmt::format("{:22} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:8}\n", name, errors.rmse, errors.mean,
-                     errors.median, errors.p95, errors.max, errors.count);
-}
-
-Json to_json(const ErrorStatistics& errors) {
+Json statistics_json(const ErrorStatistics& errors) {
   if (errors.count == 0) return nullptr;
   return {{"rmse", errors.rmse}, {"mean", errors.mean}, {"median", errors.median},
           {"p95", errors.p95},   {"max", errors.max},   {"count", errors.count}};
 }
 
-Json to_json(const RelativePoseError& error) {
-  return {{"translation_m", to_json(error.translation)}, {"rotation_deg", to_json(error.rotation)}};
+Json relative_error_json(const RelativePoseError& error) {
+  return {{"translation_m", statistics_json(error.translation)}, {"rotation_deg", statistics_json(error.rotation)}};
 }
 
-std::string segment_row(const std::string& name, const SegmentError& error) {
-  return fmt::format("{:22} {:9.4f} % {:11.6f} deg/m {:8} segments\n", name, 1e2 * error.translation, error.rotation,
-                     error.count);
-}
-
-std::string segment_rows(const SegmentErrors& segments) {
-  if (segments.all.count == 0) return "segments (KITTI)       none, the path is shorter than 100 m\n";
-  std::string text = segment_row("segments (KITTI)", segments.all);
-  for (const SegmentError& error : segments.by_length)
-    text += segment_row(fmt::format("  of {:.0f} m", error.length), error);
-  return text;
-}
-
-Json to_json(const SegmentError& error) {
+Json segment_json(const SegmentError& error) {
   if (error.count == 0) return nullptr;
   return {
       {"translation_percent", 1e2 * error.translation}, {"rotation_deg_per_m", error.rotation}, {"count", error.count}};
 }
 
-Json to_json(const SegmentErrors& segments) {
-  Json json = {{"all", to_json(segments.all)}, {"by_length_m", Json::object()}};
+Json segments_json(const SegmentErrors& segments) {
+  Json json = {{"all", segment_json(segments.all)}, {"by_length_m", Json::object()}};
   for (const SegmentError& error : segments.by_length) {
-    json["by_length_m"][fmt::format("{:.0f}", error.length)] = to_json(error);
+    json["by_length_m"][fmt::format("{:.0f}", error.length)] = segment_json(error);
   }
   return json;
 }
 
-Json to_json(const Similarity& truth_from_estimate) {
+Json similarity_json(const Similarity& truth_from_estimate) {
   const Eigen::Vector3d& t = truth_from_estimate.target_from_source.translation;
   const Eigen::Quaterniond& q = truth_from_estimate.target_from_source.rotation;
   return {{"scale", truth_from_estimate.scale},
@@ -126,7 +76,7 @@ Json to_json(const Similarity& truth_from_estimate) {
           {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-Json protocol_json(const EvaluationProtocol& protocol) {
+Json evaluation_protocol_json(const EvaluationProtocol& protocol) {
   return {{"poses", protocol.label},
           {"alignment", name_of(protocol.alignment)},
           {"association",
@@ -145,48 +95,87 @@ Json coverage_json(const EvaluationReport& report) {
 
 Json ate_json(const std::optional<AbsoluteTrajectoryError>& ate) {
   if (!ate) return nullptr;
-  return {{"translation_m", to_json(ate->translation)},
-          {"rotation_deg", to_json(ate->rotation)},
-          {"truth_from_estimate", to_json(ate->truth_from_estimate)}};
+  return {{"translation_m", statistics_json(ate->translation)},
+          {"rotation_deg", statistics_json(ate->rotation)},
+          {"truth_from_estimate", similarity_json(ate->truth_from_estimate)}};
+}
+
+void add_header(const EvaluationReport& evaluation, Report& report) {
+  const AssociationOptions& association = evaluation.protocol.association;
+  report.row("estimate", "{estimate.file}, {estimate.poses} poses");
+  report.row("truth", "{truth.file}, {truth.poses} poses");
+  report.row("poses", "{protocol.poses}");
+  report.row("alignment", describe_alignment(evaluation));
+  report.row("association",
+             "truth interpolated in gaps up to {gap_ms:g} ms, else its nearest sample within {nearest_ms:g} ms: "
+             "{pairs} pairs",
+             {{"gap_ms", 1e3 * to_seconds(association.max_gap)},
+              {"nearest_ms", 1e3 * to_seconds(association.max_difference)}});
+  report.row("time offset", "{protocol.truth_time_offset_s:g} s, added to the truth's time");
+  report.row("coverage",
+             "[{coverage.share*100:.1f} % ({coverage.with_pose} of {coverage.expected} {coverage.expected_are})"
+             "|unknown: fewer than two poses, and no frames given]");
+  report.row("true path", "{true_path_m:.2f} m");
+  if (!has_arbitrary_rotation(evaluation)) return;
+  report.row("caveat",
+             "the path is nearly a line, {true_spread_m.0:.3g} m long and {true_spread_m.1:.3g} m wide. "
+             "The rotation of the alignment about this line is");
+  report.row("", "undetermined, so errors across it and of rotation are arbitrary (not with --alignment origin)");
+}
+
+void add_statistics(const char* label, const Json& errors, Report& report) {
+  for (const auto& [key, unit] : {std::pair("translation_m", "m"), std::pair("rotation_deg", "degrees")}) {
+    Json figures = errors[key];
+    figures["label"] = fmt::format("{:14} {}", label, unit);
+    report.line(
+        "{label:22} [{rmse:9.5f} {mean:9.5f} {median:9.5f} {p95:9.5f} {max:9.5f} {count:8}"
+        "|no pair of poses at this distance]",
+        figures);
+  }
+}
+
+void add_segment(const std::string& label, Json segment, Report& report) {
+  segment["label"] = label;
+  report.line("{label:22} {translation_percent:9.4f} % {rotation_deg_per_m:11.6f} deg/m {count:8} segments", segment);
+}
+
+void add_segments(Report& report) {
+  const Json segments = report.figures["segments"];
+  if (segments["all"].is_null()) return report.line("segments (KITTI)       none, the path is shorter than 100 m");
+  add_segment("segments (KITTI)", segments["all"], report);
+  for (const auto& [length, segment] : segments["by_length_m"].items()) {
+    add_segment("  of " + length + " m", segment, report);
+  }
 }
 
 }  // namespace
 
-std::string to_text(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file) {
-  std::string text = header(report, estimate_file, truth_file) + "\n";
-  text +=
-      fmt::format("{:22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}\n", "", "rmse", "mean", "median", "p95", "max", "count");
-  if (report.ate) {
-    text += ate_rpe_row("ATE            m", report.ate->translation) +
-            ate_rpe_row("ATE            degrees", report.ate->rotation);
-  }
-  text += ate_rpe_row("RPE 1 frame    m", report.rpe_frame.translation);
-  text += ate_rpe_row("RPE 1 frame    degrees", report.rpe_frame.rotation);
-  text += ate_rpe_row("RPE 1 s        m", report.rpe_second.translation);
-  text += ate_rpe_row("RPE 1 s        degrees", report.rpe_second.rotation);
-  text += ate_rpe_row("RPE 1 m        m", report.rpe_metre.translation);
-  text += ate_rpe_row("RPE 1 m        degrees", report.rpe_metre.rotation);
-  return text + segment_rows(report.segments);
-}
-
-std::string to_json(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file) {
-  const Json json = {
-      {"protocol", protocol_json(report.protocol)},
-      {"estimate", {{"file", estimate_file}, {"poses", report.estimated_poses}}},
-      {"truth", {{"file", truth_file}, {"poses", report.true_poses}}},
-      {"pairs", report.pairs},
-      {"true_path_m", report.true_path},
-      {"true_spread_m", {report.true_spread[0], report.true_spread[1], report.true_spread[2]}},
-      {"is_nearly_a_line", is_nearly_straight(report)},
-      {"coverage", coverage_json(report)},
-      {"ate", ate_json(report.ate)},
-      {"rpe",
-       {{"1_frame", to_json(report.rpe_frame)},
-        {"1_s", to_json(report.rpe_second)},
-        {"1_m", to_json(report.rpe_metre)}}},
-      {"segments", to_json(report.segments)},
-  };
-  return dump_json(json, 2) + "\n";
+Report evaluation_report(const EvaluationReport& evaluation, const std::string& estimate_file,
+                         const std::string& truth_file) {
+  const auto& spread = evaluation.true_spread;
+  Report report{{{"protocol", evaluation_protocol_json(evaluation.protocol)},
+                 {"estimate", {{"file", estimate_file}, {"poses", evaluation.estimated_poses}}},
+                 {"truth", {{"file", truth_file}, {"poses", evaluation.true_poses}}},
+                 {"pairs", evaluation.pairs},
+                 {"true_path_m", evaluation.true_path},
+                 {"true_spread_m", {spread[0], spread[1], spread[2]}},
+                 {"is_nearly_a_line", is_nearly_straight(evaluation)},
+                 {"coverage", coverage_json(evaluation)},
+                 {"ate", ate_json(evaluation.ate)},
+                 {"rpe",
+                  {{"1_frame", relative_error_json(evaluation.rpe_frame)},
+                   {"1_s", relative_error_json(evaluation.rpe_second)},
+                   {"1_m", relative_error_json(evaluation.rpe_metre)}}},
+                 {"segments", segments_json(evaluation.segments)}}};
+  add_header(evaluation, report);
+  report.line("");
+  report.line("                            rmse      mean    median       p95       max    count");
+  if (evaluation.ate) add_statistics("ATE", report.figures["ate"], report);
+  add_statistics("RPE 1 frame", report.figures["rpe"]["1_frame"], report);
+  add_statistics("RPE 1 s", report.figures["rpe"]["1_s"], report);
+  add_statistics("RPE 1 m", report.figures["rpe"]["1_m"], report);
+  add_segments(report);
+  return report;
 }
 
 }  // namespace byre

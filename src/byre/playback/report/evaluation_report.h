@@ -1,13 +1,14 @@
 #pragma once
 
 #include "byre/geometry/evaluation/evaluate.h"
+#include "byre/playback/report/report.h"
 
 #include <string>
 
 namespace byre {
 
-// Both begin with the protocol. File names are only printed.
-std::string to_text(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file);
-std::string to_json(const EvaluationReport& report, const std::string& estimate_file, const std::string& truth_file);
+// Begins with the protocol. File names are only printed.
+Report evaluation_report(const EvaluationReport& evaluation, const std::string& estimate_file,
+                         const std::string& truth_file);
 
 }  // namespace byre

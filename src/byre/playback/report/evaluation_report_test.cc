@@ -40,7 +40,8 @@ TEST(EvaluationReport, StatesItsProtocolFirst) {
   EvaluationProtocol protocol;
   protocol.label = "causal";
   protocol.association.time_offset = std::chrono::microseconds(-7500);
-  const std::string text = to_text(evaluate(circle(), circle(), protocol, {}).value(), "out.txt", "truth.csv");
+  const std::string text =
+      evaluation_report(evaluate(circle(), circle(), protocol, {}).value(), "out.txt", "truth.csv").text;
   EXPECT_THAT(text, StartsWith("estimate     out.txt, 101 poses\n"
                                "truth        truth.csv, 101 poses\n"
                                "poses        causal\n"
@@ -52,12 +53,13 @@ TEST(EvaluationReport, StatesItsProtocolFirst) {
 }
 
 TEST(EvaluationReport, ReportsAMissingLabel) {
-  const std::string text = to_text(evaluate(circle(), circle(), EvaluationProtocol{}, {}).value(), "a", "b");
+  const std::string text =
+      evaluation_report(evaluate(circle(), circle(), EvaluationProtocol{}, {}).value(), "a", "b").text;
   EXPECT_THAT(text, HasSubstr("poses        not stated\n"));
 }
 
 TEST(EvaluationReport, HasARowForEachError) {
-  const std::string text = to_text(report_of(scaled(circle(), 1.1), PoseAlignment::none), "a", "b");
+  const std::string text = evaluation_report(report_of(scaled(circle(), 1.1), PoseAlignment::none), "a", "b").text;
   EXPECT_THAT(text, HasSubstr("ATE            m         0.20000   0.20000   0.20000   0.20000   0.20000      101\n"));
   EXPECT_THAT(text, HasSubstr("ATE            degrees   0.00000"));
   for (const char* const row : {"RPE 1 frame    m", "RPE 1 s        degrees", "RPE 1 m        m"}) {
@@ -69,7 +71,7 @@ TEST(EvaluationReport, ScalesRelativeErrorsByTheSimilarity) {
   const EvaluationReport report = report_of(scaled(circle(), 0.5), PoseAlignment::sim3);
   EXPECT_LT(report.ate->translation.max, 1e-9);
   EXPECT_LT(report.rpe_second.translation.max, 1e-9);
-  EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("Sim(3) over all pairs (Umeyama), scale 2.000000"));
+  EXPECT_THAT(evaluation_report(report, "a", "b").text, HasSubstr("Sim(3) over all pairs (Umeyama), scale 2.000000"));
   EXPECT_GT(report_of(scaled(circle(), 0.5), PoseAlignment::se3).rpe_second.translation.rmse, 0.1);
 }
 
@@ -86,7 +88,8 @@ TEST(EvaluationReport, AlignsTheFirstPoseOnRequest) {
   const EvaluationReport report = report_of(moved(estimate, elsewhere), PoseAlignment::origin);
   EXPECT_NEAR(report.ate->translation.median, 0.5, 1e-9) << "one bad pose moves all others";
   EXPECT_LT(report.ate->errors.front(), 1e-9);
-  EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("alignment    origin: the first pose equals the true one"));
+  EXPECT_THAT(evaluation_report(report, "a", "b").text,
+              HasSubstr("alignment    origin: the first pose equals the true one"));
 }
 
 // A line of 50 m with lateral sway.
@@ -107,17 +110,19 @@ TEST(EvaluationReport, WarnsOfAlignmentsAlongALine) {
   const EvaluationReport thin = report_of_line(0.1, 0.0, PoseAlignment::se3);
   EXPECT_NEAR(thin.true_spread[0], std::sqrt((501.0 * 501.0 - 1.0) / 12.0) * 0.1, 1e-3);
   EXPECT_NEAR(thin.true_spread[1], 0.1 / std::sqrt(2.0), 2e-3);
-  EXPECT_THAT(to_text(thin, "a", "b"), HasSubstr("caveat       the path is nearly a line, 14.5 m long "));
-  EXPECT_TRUE(nlohmann::json::parse(to_json(thin, "a", "b"))["is_nearly_a_line"]);
+  EXPECT_THAT(evaluation_report(thin, "a", "b").text,
+              HasSubstr("caveat       the path is nearly a line, 14.5 m long "));
+  EXPECT_TRUE(nlohmann::json::parse(to_json(evaluation_report(thin, "a", "b")))["is_nearly_a_line"]);
   EXPECT_TRUE(is_nearly_straight(report_of_line(1.0, 0.5, PoseAlignment::se3)))
       << "the errors are as large as the sway";
   EXPECT_FALSE(is_nearly_straight(report_of_line(1.0, 0.01, PoseAlignment::se3)));
-  EXPECT_THAT(to_text(report_of_line(0.1, 0.0, PoseAlignment::origin), "a", "b"), Not(HasSubstr("caveat")));
-  EXPECT_THAT(to_text(report_of(circle(), PoseAlignment::se3), "a", "b"), Not(HasSubstr("caveat")));
+  EXPECT_THAT(evaluation_report(report_of_line(0.1, 0.0, PoseAlignment::origin), "a", "b").text,
+              Not(HasSubstr("caveat")));
+  EXPECT_THAT(evaluation_report(report_of(circle(), PoseAlignment::se3), "a", "b").text, Not(HasSubstr("caveat")));
 }
 
 TEST(EvaluationReport, ContainsKittiSegments) {
-  EXPECT_THAT(to_text(report_of(circle(), PoseAlignment::se3), "a", "b"),
+  EXPECT_THAT(evaluation_report(report_of(circle(), PoseAlignment::se3), "a", "b").text,
               HasSubstr("segments (KITTI)       none, the path is shorter than 100 m\n"));
   Trajectory truth;
   for (int i = 0; i <= 150; ++i) {
@@ -127,10 +132,10 @@ TEST(EvaluationReport, ContainsKittiSegments) {
   protocol.alignment = PoseAlignment::none;
   const EvaluationReport report = evaluate(scaled(truth, 1.02), truth, protocol, {}).value();
   // Segments begin at poses 0, 10, ... 40 and end at the first pose beyond 100 m: 101 m, 2 % of which is 2.02 m.
-  EXPECT_THAT(to_text(report, "a", "b"),
+  EXPECT_THAT(evaluation_report(report, "a", "b").text,
               HasSubstr("segments (KITTI)          2.0200 %    0.000000 deg/m        5 segments\n"
                         "  of 100 m                2.0200 %    0.000000 deg/m        5 segments\n"));
-  const nlohmann::json json = nlohmann::json::parse(to_json(report, "a", "b"))["segments"];
+  const nlohmann::json json = nlohmann::json::parse(to_json(evaluation_report(report, "a", "b")))["segments"];
   EXPECT_NEAR(json["all"]["translation_percent"].get<double>(), 2.02, 1e-9);
   EXPECT_EQ(json["by_length_m"]["100"]["count"], 5);
 }
@@ -141,13 +146,13 @@ TEST(EvaluationReport, CountsTheFramesGiven) {
   std::vector<Timestamp> times;
   for (const StampedPose& sample : circle()) times.push_back(sample.time);
   const EvaluationReport report = report_of(estimate, PoseAlignment::se3, ExpectedFrames{times, "frames of room"});
-  EXPECT_THAT(to_text(report, "a", "b"), HasSubstr("coverage     75.2 % (76 of 101 frames of room)\n"));
+  EXPECT_THAT(evaluation_report(report, "a", "b").text, HasSubstr("coverage     75.2 % (76 of 101 frames of room)\n"));
 }
 
 TEST(EvaluationReport, EstimatesTheNumberOfFramesIfNotGiven) {
   Trajectory estimate = circle();
   estimate.resize(76);
-  EXPECT_THAT(to_text(report_of(estimate, PoseAlignment::se3), "a", "b"),
+  EXPECT_THAT(evaluation_report(report_of(estimate, PoseAlignment::se3), "a", "b").text,
               HasSubstr("coverage     75.2 % (76 of 101 frames expected from the time span of the truth"));
 }
 
@@ -155,12 +160,12 @@ TEST(EvaluationReport, ReportsUndefinedFiguresOfOnePose) {
   Trajectory estimate = circle();
   estimate.resize(1);
   const EvaluationReport report = report_of(estimate, PoseAlignment::se3);
-  const std::string text = to_text(report, "a", "b");
+  const std::string text = evaluation_report(report, "a", "b").text;
   EXPECT_THAT(text, HasSubstr("alignment    impossible"));
   EXPECT_THAT(text, HasSubstr("coverage     unknown"));
   EXPECT_THAT(text, HasSubstr("RPE 1 s        m       no pair of poses"));
   EXPECT_THAT(text, Not(HasSubstr("ATE")));
-  const nlohmann::json json = nlohmann::json::parse(to_json(report, "a", "b"));
+  const nlohmann::json json = nlohmann::json::parse(to_json(evaluation_report(report, "a", "b")));
   EXPECT_TRUE(json["ate"].is_null());
   EXPECT_TRUE(json["coverage"].is_null());
   EXPECT_TRUE(json["rpe"]["1_s"]["translation_m"].is_null());
@@ -168,7 +173,7 @@ TEST(EvaluationReport, ReportsUndefinedFiguresOfOnePose) {
 
 TEST(EvaluationReport, ContainsTheSameFiguresInJson) {
   const EvaluationReport report = report_of(scaled(circle(), 1.1), PoseAlignment::none);
-  const std::string text = to_json(report, "out.txt", "truth.csv");
+  const std::string text = to_json(evaluation_report(report, "out.txt", "truth.csv"));
   EXPECT_THAT(text, StartsWith("{\n  \"protocol\": {\n    \"poses\": \"final\""));
   const nlohmann::json json = nlohmann::json::parse(text);
   EXPECT_EQ(json["protocol"]["alignment"], "none");

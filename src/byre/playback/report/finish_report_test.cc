@@ -1,7 +1,6 @@
 #include "byre/playback/report/finish_report.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {
@@ -23,7 +22,7 @@ FinishResult finishing_with_two_loops() {
 }
 
 TEST(FinishText, ContainsChangesAndFaults) {
-  const std::string text = to_text(finishing_with_two_loops());
+  const std::string text = finish_report(finishing_with_two_loops()).text;
   EXPECT_THAT(text, HasSubstr("last loops   2 closed; drift 7.2, 12.0 px, residual 0.004, 0.011 m\n"));
   EXPECT_THAT(text, HasSubstr("removed      3 redundant keyframes, 40 weak points\n"));
   EXPECT_THAT(text, HasSubstr("pixel error  median 0.500 -> 0.250 px, 95 % within 2.000 -> 1.500 px\n"));
@@ -36,14 +35,14 @@ TEST(FinishText, ReportsNoLoopsAndInterruption) {
   finishing.cut_short = true;
   finishing.faults = {"point online 7 is not observed by any keyframe",
                       "point online 8 is not observed by any keyframe"};
-  const std::string text = to_text(finishing);
+  const std::string text = finish_report(finishing).text;
   EXPECT_THAT(text, HasSubstr("last loops   none\n"));
   EXPECT_THAT(text, HasSubstr("faults       2; the first: point online 7 is not observed by any keyframe\n"));
   EXPECT_THAT(text, HasSubstr("interrupted; continue with \"byre refine\"\n"));
 }
 
 TEST(FinishJson, ContainsTheSameFigures) {
-  const json report = to_json(finishing_with_two_loops());
+  const json report = finish_report(finishing_with_two_loops()).figures;
   EXPECT_EQ(report.at("loops"), 2);
   EXPECT_EQ(report.at("loop_residuals_m"), (json{0.004, 0.0105}));
   EXPECT_EQ(report.at("before").at("parts"), 2);

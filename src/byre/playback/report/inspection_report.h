@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/playback/archive/map_inspection.h"
+#include "byre/playback/report/report.h"
 
 #include <string>
 #include <vector>
@@ -13,7 +14,6 @@ struct InspectedFile {
   std::vector<SectionSize> sections;
 };
 
-std::string to_text(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
-std::string to_json(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
+Report inspection_report(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 
 }  // namespace byre

@@ -17,7 +17,7 @@ TEST(InspectReport, IsReadable) {
   const StoredMap stored = StoredMapScene(4, 9).stored();
   MapInspection inspection = inspect(stored);
   const InspectedFile file{"barn.byre", 12345678, {{"header", 432}, {"points", 2000000}}};
-  const std::string text = to_text(stored, inspection, file);
+  const std::string text = inspection_report(stored, inspection, file).text;
   EXPECT_THAT(text, StartsWith("map            barn.byre\n"));
   EXPECT_THAT(text, HasSubstr("recording      barn_morning, 100.0 s, last frame at 200.000 s, 4 keyframes, stereo\n"));
   EXPECT_THAT(text, HasSubstr("site           barn 3\n"));
@@ -27,7 +27,8 @@ TEST(InspectReport, IsReadable) {
   EXPECT_THAT(text, HasSubstr("header 432 B, points 2.0 MB"));
   EXPECT_THAT(text, HasSubstr("faults         none\n"));
   inspection.faults = {"point 3 is not observed by any keyframe"};
-  EXPECT_THAT(to_text(stored, inspection, file), HasSubstr("fault          point 3 is not observed by any keyframe\n"));
+  EXPECT_THAT(inspection_report(stored, inspection, file).text,
+              HasSubstr("fault          point 3 is not observed by any keyframe\n"));
 }
 
 TEST(InspectReport, ContainsTheCamerasOfTheMap) {
@@ -36,21 +37,22 @@ TEST(InspectReport, ContainsTheCamerasOfTheMap) {
   stored.recordings[0].calibration.right.reset();
   const MapInspection inspection = inspect(stored);
   EXPECT_THAT(inspection.cameras_of_recordings, testing::ElementsAre("rgbd", "mono")) << "its rig has a baseline";
-  EXPECT_THAT(to_text(stored, inspection, {}), HasSubstr("last frame at 200.000 s, 4 keyframes, rgbd\n"));
-  EXPECT_EQ(Json::parse(to_json(stored, inspection, {}))["recordings"][0]["camera"], "rgbd");
+  EXPECT_THAT(inspection_report(stored, inspection, {}).text,
+              HasSubstr("last frame at 200.000 s, 4 keyframes, rgbd\n"));
+  EXPECT_EQ(Json(inspection_report(stored, inspection, {}).figures)["recordings"][0]["camera"], "rgbd");
 }
 
 TEST(InspectReport, ContainsItsUnit) {
   StoredMap stored = StoredMapScene().stored();
-  EXPECT_THAT(to_text(stored, inspect(stored), {}), testing::ContainsRegex("path +[0-9.]+ m\n"));
+  EXPECT_THAT(inspection_report(stored, inspect(stored), {}).text, testing::ContainsRegex("path +[0-9.]+ m\n"));
   stored.scale = MapScale::unknown;
-  EXPECT_THAT(to_text(stored, inspect(stored), {}), testing::ContainsRegex("path +[0-9.]+ units\n"));
+  EXPECT_THAT(inspection_report(stored, inspect(stored), {}).text, testing::ContainsRegex("path +[0-9.]+ units\n"));
 }
 
 TEST(InspectReport, IsJsonWithStableKeys) {
   const StoredMap stored = StoredMapScene(4, 9).stored();
   const InspectedFile file{"barn.byre", 1000, {{"header", 432}}};
-  const Json report = Json::parse(to_json(stored, inspect(stored), file));
+  const Json report = Json(inspection_report(stored, inspect(stored), file).figures);
   std::vector<std::string> keys;
   for (const auto& item : report.items()) keys.push_back(item.key());
   EXPECT_THAT(keys, testing::UnorderedElementsAre("file", "scale", "pose_source", "recordings", "notes", "plan",
@@ -69,19 +71,19 @@ TEST(InspectReport, IsJsonWithStableKeys) {
 
 TEST(InspectReport, ContainsTheRegistrationInJson) {
   const StoredMap stored = StoredMapScene().stored_with_plan();
-  const Json plan = Json::parse(to_json(stored, inspect(stored), {})).at("plan");
+  const Json plan = Json(inspection_report(stored, inspect(stored), {}).figures).at("plan");
   EXPECT_EQ(plan.at("plan"), "barn 3, ground floor");
   EXPECT_EQ(plan.at("scale"), 1.25);
   EXPECT_EQ(plan.at("translation_m"), Json({12.5, -3.25, 0.0}));
   EXPECT_EQ(plan.at("covariance").size(), 49);
   const StoredMap without = StoredMapScene().stored();
-  EXPECT_TRUE(Json::parse(to_json(without, inspect(without), {})).at("plan").is_null());
+  EXPECT_TRUE(Json(inspection_report(without, inspect(without), {}).figures).at("plan").is_null());
 }
 
 TEST(InspectReport, AcceptsAnEmptyMap) {
   const MapInspection inspection = inspect({});
-  EXPECT_THAT(to_text({}, inspection, {"empty.byre", 512, {}}), HasSubstr("faults         none\n"));
-  EXPECT_TRUE(Json::parse(to_json({}, inspection, {"empty.byre", 512, {}}))["bounding_box"].is_null());
+  EXPECT_THAT(inspection_report({}, inspection, {"empty.byre", 512, {}}).text, HasSubstr("faults         none\n"));
+  EXPECT_TRUE(Json(inspection_report({}, inspection, {"empty.byre", 512, {}}).figures)["bounding_box"].is_null());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "byre/geometry/evaluation/map_frame_error.h"
 #include "byre/playback/localise_run.h"
+#include "byre/playback/report/report.h"
 
 #include <optional>
 #include <string>
@@ -26,10 +27,8 @@ struct LocaliseProtocol {
   std::optional<PlanRegistration> plan = {};  // registration of the map, for poses on the plan
 };
 
-std::string to_text(const LocaliseRun& run, const LocaliseProtocol& protocol,
-                    const std::optional<LocalisationErrors>& errors);
-// Includes an object per frame.
-std::string to_json(const LocaliseRun& run, const LocaliseProtocol& protocol,
-                    const std::optional<LocalisationErrors>& errors);
+// Figures include an object per frame.
+Report localisation_report(const LocaliseRun& run, const LocaliseProtocol& protocol,
+                           const std::optional<LocalisationErrors>& errors);
 
 }  // namespace byre

@@ -1,7 +1,6 @@
 #include "byre/playback/report/localisation_report.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {
@@ -63,15 +62,16 @@ TEST(ErrorsInMap, UseUnalignedTruthThatDoesNotCoverTheMap) {
 }
 
 TEST(LocaliseReport, CountsFoundFramesAndReasonsOfOthers) {
-  const std::string text = to_text(small_run(), {"room.byre", "evening", 5}, std::nullopt);
+  const std::string text = localisation_report(small_run(), {"room.byre", "evening", 5}, std::nullopt).text;
   EXPECT_THAT(text, HasSubstr("found        4 of 5 frames (80.0 %)"));
   EXPECT_THAT(text, HasSubstr("not found    1: too few matches"));
 }
 
 TEST(LocaliseReport, CountsFramesThatAreFarOff) {
   const auto errors = errors_in_map(small_run(), small_map(), truth_of_run(), truth_of_run());
-  EXPECT_THAT(to_text(small_run(), {}, errors), HasSubstr("far          1 accepted frames with an error above 0.5 m"));
-  const json report = json::parse(to_json(small_run(), {"room.byre", "evening", 5}, errors));
+  EXPECT_THAT(localisation_report(small_run(), {}, errors).text,
+              HasSubstr("far          1 accepted frames with an error above 0.5 m"));
+  const json report = localisation_report(small_run(), {"room.byre", "evening", 5}, errors).figures;
   EXPECT_EQ(report.at("errors").at("frames_within_0.1m_2deg"), 3);
   EXPECT_EQ(report.at("errors").at("frames_off_by_more_than_0.5m"), 1);
   EXPECT_EQ(report.at("reasons").at("too few matches"), 1);

@@ -2,11 +2,9 @@
 
 #include "byre/playback/report/mission_errors.h"
 #include "byre/playback/report/mission_statistics.h"
+#include "byre/playback/report/report.h"
 
 #include <optional>
-#include <string>
-
-#include <nlohmann/json_fwd.hpp>
 
 namespace byre {
 
@@ -15,11 +13,7 @@ struct MissionOutcome {
   std::optional<MissionErrors> errors;  // only with truth
 };
 
-// Rows of a name and a value.
-std::string to_text(const MissionStatistics& statistics);
-std::string to_text(const MissionErrors& errors);
-
-nlohmann::ordered_json to_json(const MissionStatistics& statistics);
-nlohmann::ordered_json to_json(const MissionErrors& errors);
+Report mission_report(const MissionStatistics& statistics);
+Report mission_error_report(const MissionErrors& errors);
 
 }  // namespace byre

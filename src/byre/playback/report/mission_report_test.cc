@@ -1,7 +1,6 @@
 #include "byre/playback/report/mission_report.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {
@@ -52,7 +51,7 @@ MissionErrors small_errors() {
 }
 
 TEST(MissionText, SummarisesVerdictsAndMainDoubts) {
-  const std::string text = to_text(small_mission());
+  const std::string text = mission_report(small_mission()).text;
   EXPECT_THAT(text, HasSubstr("verdicts     trusted 95.0 %, degraded 3.0 %, untrusted 2.0 % of 200 frames\n"));
   EXPECT_THAT(text, HasSubstr("doubts       too few offline points 5, no pose 3, points are clustered 1 frames\n"));
   EXPECT_THAT(text, HasSubstr("lost         2 times, relocalised 2 times; 1 navigation errors\n"));
@@ -62,35 +61,35 @@ TEST(MissionText, CountsMissingFramesAmongTheOthers) {
   MissionStatistics statistics = small_mission();
   statistics.frames = 1000;
   statistics.missing = 800;
-  const std::string text = to_text(statistics);
+  const std::string text = mission_report(statistics).text;
   EXPECT_THAT(
       text,
       HasSubstr("verdicts     trusted 19.0 %, degraded 0.6 %, untrusted 0.4 %, missing 80.0 % of 1000 frames\nmissing  "
                 "    800 of 1000 frames could not be read: too many for verdict shares to describe the mission\n"));
-  EXPECT_EQ(to_json(statistics).at("frames_missing"), 800);
-  EXPECT_EQ(to_json(statistics).at("is_full_of_gaps"), true);
-  EXPECT_THAT(to_text(small_mission()), Not(HasSubstr("missing")));
+  EXPECT_EQ(mission_report(statistics).figures.at("frames_missing"), 800);
+  EXPECT_EQ(mission_report(statistics).figures.at("is_full_of_gaps"), true);
+  EXPECT_THAT(mission_report(small_mission()).text, Not(HasSubstr("missing")));
 }
 
 TEST(MissionText, ReportsKeyframesOfVisitedPlaces) {
-  const std::string text = to_text(small_mission());
+  const std::string text = mission_report(small_mission()).text;
   EXPECT_THAT(text, HasSubstr("keyframes    2.0 per minute in known places (3 in 90 s)\n"));
   EXPECT_THAT(text, Not(HasSubstr("changed or new")));
   EXPECT_THAT(text, HasSubstr("inliers      offline median 120, online 30; up to 17 offline points suspended\n"));
 }
 
 TEST(MissionText, ReportsDirt) {
-  EXPECT_THAT(to_text(small_mission()), Not(HasSubstr("dirt")));
+  EXPECT_THAT(mission_report(small_mission()).text, Not(HasSubstr("dirt")));
   MissionStatistics statistics = small_mission();
   statistics.frames_with_dirt = 40;
   statistics.max_hidden = 0.12;
-  EXPECT_THAT(to_text(statistics),
+  EXPECT_THAT(mission_report(statistics).text,
               HasSubstr("dirt         dirt hides 12 % of the left image: clean the lens (maximum; 40 frames)\n"));
-  EXPECT_EQ(to_json(statistics).at("most_hidden"), 0.12);
+  EXPECT_EQ(mission_report(statistics).figures.at("most_hidden"), 0.12);
 }
 
 TEST(MissionText, ReportsErrorsInTheMapFrameAndOfTrustedFrames) {
-  const std::string text = to_text(small_errors());
+  const std::string text = mission_error_report(small_errors()).text;
   EXPECT_THAT(text, HasSubstr("truth        aligned to the map by 12 poses of the run that made the map\n"));
   EXPECT_THAT(text, HasSubstr("causal       RMSE 0.1446 m"));
   EXPECT_THAT(text, HasSubstr("max 0.0050 m\n"));
@@ -102,7 +101,7 @@ TEST(MissionText, ReportsErrorsInTheMapFrameAndOfTrustedFrames) {
 }
 
 TEST(MissionText, ReportsAlignmentAndMissingTruth) {
-  const std::string text = to_text(MissionErrors{});
+  const std::string text = mission_error_report(MissionErrors{}).text;
   EXPECT_THAT(text, HasSubstr("truth        causal and final poses are aligned to it separately\n"));
   EXPECT_THAT(text, HasSubstr("final        no pose with truth\n"));
   EXPECT_THAT(text, Not(HasSubstr("wrong trust")));
@@ -110,20 +109,20 @@ TEST(MissionText, ReportsAlignmentAndMissingTruth) {
 }
 
 TEST(MissionJson, ContainsEveryFigureByName) {
-  const json mission = to_json(small_mission());
+  const json mission = mission_report(small_mission()).figures;
   EXPECT_EQ(mission.at("trusted_share"), 0.95);
   EXPECT_EQ(mission.at("doubts").at("too few offline points"), 5);
   EXPECT_EQ(mission.at("doubts").size(), 4u);
   EXPECT_EQ(mission.at("seconds_to_first_pose"), 0.25);
   EXPECT_EQ(mission.at("in_known_places").at("keyframes_per_minute"), 2.0);
-  const json errors = to_json(small_errors());
+  const json errors = mission_error_report(small_errors()).figures;
   EXPECT_EQ(errors.at("causal").at("count"), 3);
   EXPECT_EQ(errors.at("causal_trusted").at("position_m").at("max"), 0.25);
   EXPECT_EQ(errors.at("trusted_off_by_more_than_0.2m"), 1);
   EXPECT_EQ(errors.at("map").at("position_m").at("max"), 0.02);
   EXPECT_EQ(errors.at("share_within_95_percent_bound_beside_map"), 0.95);
-  EXPECT_TRUE(to_json(MissionErrors{}).at("share_within_95_percent_bound").is_null());
-  EXPECT_TRUE(to_json(MissionErrors{}).at("share_within_95_percent_bound_beside_map").is_null());
+  EXPECT_TRUE(mission_error_report(MissionErrors{}).figures.at("share_within_95_percent_bound").is_null());
+  EXPECT_TRUE(mission_error_report(MissionErrors{}).figures.at("share_within_95_percent_bound_beside_map").is_null());
 }
 
 }  // namespace

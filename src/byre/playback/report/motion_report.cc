@@ -1,6 +1,5 @@
 #include "byre/playback/report/motion_report.h"
 
-#include "byre/base/report_row.h"
 #include "byre/geometry/degrees.h"
 
 #include <algorithm>
@@ -21,49 +20,48 @@ std::string describe_lengths(const WheelCalibration& wheels, const MapRun& run, 
   return fmt::format("a unit of the map is {:.3f} m (sigma {:.2f} %); ", wheels.metres_per_unit, share);
 }
 
-std::string describe(const WheelCalibration& wheels, const MapRun& run, bool has_metric_source) {
-  const MotionEstimates& motion = run.motion;
-  const Eigen::Vector3d& arm = wheels.base_from_body.translation;
-  std::string text =
-      fmt::format("body {:.2f} m ahead and {:.2f} m to the left of the base; time offset {:.0f} ms to the images; ",
-                  arm.x(), arm.y(), 1e3 * motion.time_offset);
-  text += describe_lengths(wheels, run, has_metric_source);
-  text += fmt::format("ignored {} times for slip", motion.slips);
-  return text + (motion.has_calibration_changed ? "; extrinsics differ from those of the map" : "");
-}
-
-std::string describe_stops(const MotionEstimates& motion) {
-  std::string text = fmt::format("{} stops, {:.1f} s", motion.stops, motion.standstill_s);
-  if (motion.calibration_to_store.up)
-    text += fmt::format("; vertical in the map with sigma {:.1f} deg", motion.calibration_to_store.up->sigma / kDegree);
-  return text + fmt::format("; roll and pitch of {} bridged frames corrected", motion.tilts_applied);
-}
-
 bool is_bridged(const MappedFrame& frame) {
   return frame.report && frame.report->map_from_body && frame.report->health.doubt == DistrustReason::bridged;
 }
 
 }  // namespace
 
-std::string motion_rows(const MapRun& run, bool has_metric_source) {
+void add_motion(const MapRun& run, bool has_metric_source, Report& report) {
   const MotionEstimates& motion = run.motion;
-  if (!motion.has_samples) return "";
-  std::string text;
-  if (motion.wheels) text += row("wheels", describe(*motion.wheels, run, has_metric_source));
+  if (!motion.has_samples) return;
+  if (motion.wheels) {
+    const Eigen::Vector3d& arm = motion.wheels->base_from_body.translation;
+    report.row(
+        "wheels",
+        "body {ahead_m:.2f} m ahead and {left_m:.2f} m to the left of the base; time offset {offset_s*1e3:.0f} ms "
+        "to the images; {lengths}ignored {slips} times for slip[{?has_changed}; extrinsics differ from those of "
+        "the map]",
+        {{"ahead_m", arm.x()},
+         {"left_m", arm.y()},
+         {"offset_s", motion.time_offset},
+         {"lengths", describe_lengths(*motion.wheels, run, has_metric_source)},
+         {"slips", motion.slips},
+         {"has_changed", motion.has_calibration_changed}});
+  }
   if (motion.gyroscope) {
-    text += row("gyroscope", fmt::format("bias {:.3f}, {:.3f}, {:.3f} deg/s", motion.gyroscope->bias.x() / kDegree,
-                                         motion.gyroscope->bias.y() / kDegree, motion.gyroscope->bias.z() / kDegree));
+    const Eigen::Vector3d bias = motion.gyroscope->bias / kDegree;
+    report.row("gyroscope", "bias {bias:.3f} deg/s", {{"bias", {bias.x(), bias.y(), bias.z()}}});
   }
-  if (motion.stops > 0) text += row("gravity", describe_stops(motion));
+  const auto& up = motion.calibration_to_store.up;
+  report.row("gravity",
+             "{?stops}{stops} stops, {standstill_s:.1f} s[; vertical in the map with sigma {up_sigma_deg:.1f} deg]; "
+             "roll and pitch of {tilts} bridged frames corrected",
+             {{"stops", motion.stops},
+              {"standstill_s", motion.standstill_s},
+              {"up_sigma_deg", up ? nlohmann::ordered_json(up->sigma / kDegree) : nullptr},
+              {"tilts", motion.tilts_applied}});
   if (!motion.wheels && motion.has_calibration_changed) {
-    text += row("wheels", "not used: extrinsics differ from those of the map and are not estimated yet");
+    report.row("wheels", "not used: extrinsics differ from those of the map and are not estimated yet");
   } else if (!motion.wheels && !motion.gyroscope) {
-    return text + row("motion", "not used: too little motion to estimate the extrinsics");
+    return report.row("motion", "not used: too little motion to estimate the extrinsics");
   }
-  const auto bridged = std::ranges::count_if(run.frames, is_bridged);
-  return text +
-         row("bridged", fmt::format("{} frames without visual pose; {} further frames have a final pose by wheels",
-                                    static_cast<int>(bridged), motion.filled_poses));
+  report.row("bridged", "{bridged} frames without visual pose; {filled} further frames have a final pose by wheels",
+             {{"bridged", std::ranges::count_if(run.frames, is_bridged)}, {"filled", motion.filled_poses}});
 }
 
 }  // namespace byre

@@ -1,13 +1,12 @@
 #pragma once
 
 #include "byre/playback/map_run.h"
-
-#include <string>
+#include "byre/playback/report/report.h"
 
 namespace byre {
 
-// Report rows on wheel and gyroscope calibration and on poses from dead reckoning. Empty without such sensors.
+// Adds rows on wheel and gyroscope calibration and on poses from dead reckoning. None without such sensors.
 // has_metric_source: the cameras are a metric source (a stereo pair, or a map).
-std::string motion_rows(const MapRun& run, bool has_metric_source);
+void add_motion(const MapRun& run, bool has_metric_source, Report& report);
 
 }  // namespace byre

@@ -22,7 +22,7 @@ RecordingCheck check_of_pairs(double features) {
 TEST(RecordingCheckReport, ContainsTheShareOfMatchedFeatures) {
   EXPECT_EQ(summary_of(check_of_pairs(1000.0)),
             "20.0 Hz, 2 gaps; 1000 features, 53 % matched in both images, row error 0.25 px");
-  EXPECT_THAT(describe(check_of_pairs(1000.0), {}),
+  EXPECT_THAT(check_report(check_of_pairs(1000.0), {}, "").text,
               AllOf(HasSubstr("53 % of the features matched in the right image, row error 0.25 px"),
                     HasSubstr("error about 0.10 px (row differences of the pair)")));
 }
@@ -30,7 +30,7 @@ TEST(RecordingCheckReport, ContainsTheShareOfMatchedFeatures) {
 // The median number of features is zero although some images have features.
 TEST(RecordingCheckReport, OmitsTheShareWithoutFeatures) {
   EXPECT_EQ(summary_of(check_of_pairs(0.0)), "20.0 Hz, 2 gaps; 0 features");
-  EXPECT_THAT(describe(check_of_pairs(0.0), {}),
+  EXPECT_THAT(check_report(check_of_pairs(0.0), {}, "").text,
               AllOf(HasSubstr("0 per image"), Not(HasSubstr("%")), Not(HasSubstr("row differences"))));
 }
 

@@ -1,6 +1,5 @@
 #include "byre/playback/report/registration_report.h"
 
-#include "byre/base/report_row.h"
 #include "byre/playback/report/report_json.h"
 
 #include <algorithm>
@@ -8,7 +7,6 @@
 #include <numbers>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {
@@ -21,30 +19,11 @@ Eigen::Matrix3d rotation_of(const PlanRegistration& registration) {
   return registration.plan_from_map.target_from_source.rotation.toRotationMatrix();
 }
 
-std::string describe_plan(const FloorPlan& plan) {
-  const double pixel = 1e3 * plan.metres_per_pixel.col(0).norm();
-  return plan.name + fmt::format(", {} x {} pixels of {:.1f} mm", plan.width, plan.height, pixel);
-}
-
-std::string describe_agreement(const Registering& registering) {
-  const auto outliers = std::ranges::count(registering.fit.residuals, true, &PlanResidual::is_outlier);
-  const auto count = static_cast<std::ptrdiff_t>(registering.correspondences.size());
-  return fmt::format("{}; {} inliers, RMSE {:.3f} m", count, count - outliers, registering.fit.rms);
-}
-
-std::string residual_row(const PlanCorrespondence& correspondence, const PlanResidual& residual) {
-  const Eigen::Vector2d& error = residual.error_in_plan;
-  return row(
-      residual.is_outlier ? "outlier" : "fits",
-      correspondence.name + fmt::format(": error {:.3f} m (x {:+.3f}, y {:+.3f})", error.norm(), error.x(), error.y()));
-}
-
-std::string describe_turn(const PlanRegistration& registration) {
+// Heading of the map's x axis on the plan, and the vertical in the map.
+Json turn_json(const PlanRegistration& registration) {
   const Eigen::Matrix3d rotation = rotation_of(registration);
-  const double heading = kDegreesPerRadian * std::atan2(rotation(1, 0), rotation(0, 0));
-  return fmt::format(
-      "x axis of the map at {:.3f} deg on the plan, anticlockwise; vertical ({:.4f}, {:.4f}, {:.4f}) in the map",
-      heading, rotation(2, 0), rotation(2, 1), rotation(2, 2));
+  return {{"heading_deg", kDegreesPerRadian * std::atan2(rotation(1, 0), rotation(0, 0))},
+          {"vertical", {rotation(2, 0), rotation(2, 1), rotation(2, 2)}}};
 }
 
 double yaw_sigma(const PlanRegistration& registration) {
@@ -90,47 +69,58 @@ Json correspondence_json(const PlanCorrespondence& correspondence, const PlanRes
 
 }  // namespace
 
-std::string to_text(const Registering& registering, const RegisterProtocol& protocol) {
+Report registration_report(const Registering& registering, const RegisterProtocol& protocol) {
   const PlanRegistration& registration = registering.fit.registration;
-  std::string text = row("map", protocol.map) + row("plan", describe_plan(protocol.plan));
-  text += row("points", describe_agreement(registering));
-  for (std::size_t i = 0; i < registering.correspondences.size(); ++i) {
-    text += residual_row(registering.correspondences[i], registering.fit.residuals[i]);
-  }
-  text += row("origin", describe_origin(registration)) + row("turn", describe_turn(registration));
-  if (registration.covariance(6, 6) > 0.0) {
-    text += row("scale", fmt::format("{:.6g} m per unit of the map, sigma {:.2f} %", registration.plan_from_map.scale,
-                                     1e2 * std::sqrt(registration.covariance(6, 6))));
-  }
-  if (const std::optional<PlanScale>& measured = registering.measured_scale) {
-    text += row("scale", protocol.scaled_by ? describe_corrected_scale(*measured, *protocol.scaled_by)
-                                            : describe_measured_scale(*measured, registering.has_baseline));
-  }
-  text += row("accuracy", fmt::format("{:.3f} m along the path, {:.3f} deg in yaw (one sigma)",
-                                      registering.largest_path_sigma, yaw_sigma(registration)));
-  for (const PlanDoubt doubt : registering.fit.doubts) text += row("doubt", std::string(to_string(doubt)));
-  if (!protocol.written.empty()) text += row("written", protocol.written);
-  return text;
-}
-
-std::string to_json(const Registering& registering, const RegisterProtocol& protocol) {
-  Json json = {{"program", "byre register"}, {"version", BYRE_VERSION}, {"map", protocol.map}};
-  json["registration"] = registration_json(registering.fit.registration);
-  json["rms_m"] = registering.fit.rms;
-  json["residual_m"] = residual_of(registering.fit);
-  json["largest_path_sigma_m"] = registering.largest_path_sigma;
-  json["yaw_sigma_deg"] = yaw_sigma(registering.fit.registration);
   const std::optional<PlanScale>& measured = registering.measured_scale;
-  json["measured_scale"] = measured ? measured_scale_json(*measured) : Json();
-  json["scaled_by"] = protocol.scaled_by ? Json(*protocol.scaled_by) : Json();
-  json["doubts"] = Json::array();
-  for (const PlanDoubt doubt : registering.fit.doubts) json["doubts"].push_back(to_string(doubt));
-  json["points"] = Json::array();
+  Report report{{{"program", "byre register"},
+                 {"version", BYRE_VERSION},
+                 {"map", protocol.map},
+                 {"registration", registration_json(registration)},
+                 {"rms_m", registering.fit.rms},
+                 {"residual_m", residual_of(registering.fit)},
+                 {"largest_path_sigma_m", registering.largest_path_sigma},
+                 {"yaw_sigma_deg", yaw_sigma(registration)},
+                 {"measured_scale", measured ? measured_scale_json(*measured) : Json()},
+                 {"scaled_by", or_null(protocol.scaled_by)},
+                 {"doubts", Json::array()},
+                 {"points", Json::array()},
+                 {"written", protocol.written.empty() ? Json() : Json(protocol.written)}}};
+  report.row("map", "{map}");
+  report.row("plan", "{name}, {width} x {height} pixels of {pixel_mm:.1f} mm",
+             {{"name", protocol.plan.name},
+              {"width", protocol.plan.width},
+              {"height", protocol.plan.height},
+              {"pixel_mm", 1e3 * protocol.plan.metres_per_pixel.col(0).norm()}});
+  report.row("points", "{count}; {inliers} inliers, RMSE {rms_m:.3f} m",
+             {{"count", registering.correspondences.size()},
+              {"inliers", std::ranges::count(registering.fit.residuals, false, &PlanResidual::is_outlier)}});
   for (std::size_t i = 0; i < registering.correspondences.size(); ++i) {
-    json["points"].push_back(correspondence_json(registering.correspondences[i], registering.fit.residuals[i]));
+    const PlanResidual& residual = registering.fit.residuals[i];
+    Json point = correspondence_json(registering.correspondences[i], residual);
+    report.figures["points"].push_back(point);
+    point["error_m"] = residual.error_in_plan.norm();
+    report.row(residual.is_outlier ? "outlier" : "fits",
+               "{name}: error {error_m:.3f} m (x {error_in_plan_m.0:+.3f}, y {error_in_plan_m.1:+.3f})", point);
   }
-  json["written"] = protocol.written.empty() ? Json() : Json(protocol.written);
-  return dump_json(json, 2) + "\n";
+  report.row("origin", "{origin}", {{"origin", describe_origin(registration)}});
+  report.row(
+      "turn",
+      "x axis of the map at {heading_deg:.3f} deg on the plan, anticlockwise; vertical ({vertical:.4f}) in the map",
+      turn_json(registration));
+  report.row("scale", "{?sigma}{registration.scale:.6g} m per unit of the map, sigma {sigma*100:.2f} %",
+             {{"sigma", std::sqrt(std::max(0.0, registration.covariance(6, 6)))}});
+  if (measured) {
+    report.row("scale", "{scale}",
+               {{"scale", protocol.scaled_by ? describe_corrected_scale(*measured, *protocol.scaled_by)
+                                             : describe_measured_scale(*measured, registering.has_baseline)}});
+  }
+  report.row("accuracy", "{largest_path_sigma_m:.3f} m along the path, {yaw_sigma_deg:.3f} deg in yaw (one sigma)");
+  for (const PlanDoubt doubt : registering.fit.doubts) {
+    report.figures["doubts"].push_back(to_string(doubt));
+    report.row("doubt", "{doubt}", {{"doubt", to_string(doubt)}});
+  }
+  report.row("written", "{written}");
+  return report;
 }
 
 }  // namespace byre

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/playback/archive/register_map.h"
+#include "byre/playback/report/report.h"
 
 #include <optional>
 #include <string>
@@ -15,7 +16,6 @@ struct RegisterProtocol {
   std::optional<double> scaled_by;  // set if scale correction was requested; 1: no correction needed
 };
 
-std::string to_text(const Registering& registering, const RegisterProtocol& protocol);
-std::string to_json(const Registering& registering, const RegisterProtocol& protocol);
+Report registration_report(const Registering& registering, const RegisterProtocol& protocol);
 
 }  // namespace byre

@@ -34,10 +34,11 @@ TEST_F(RegisterReport, ContainsTheEstimatedScaleOfAnUnscaledMap) {
   StoredMap stored = driven_barn(scene);
   stored.scale = MapScale::unknown;
   const Registering registering = register_with(stored, scene.correspondences(6));
-  EXPECT_THAT(to_text(registering, {"barn.byre", plan_, "", {}}), HasSubstr("scale        2 m per unit of the map"));
+  EXPECT_THAT(registration_report(registering, {"barn.byre", plan_, "", {}}).text,
+              HasSubstr("scale        2 m per unit of the map"));
   FloorPlanScene metric;
   const Registering rigid = register_with(driven_barn(metric), metric.correspondences(6));
-  EXPECT_THAT(to_text(rigid, {"barn.byre", plan_, "", {}}),
+  EXPECT_THAT(registration_report(rigid, {"barn.byre", plan_, "", {}}).text,
               AllOf(HasSubstr("scale        agrees with the plan: 0.00 % +- 0.0"), Not(HasSubstr("written"))));
 }
 
@@ -47,10 +48,10 @@ TEST_F(RegisterReport, OffersScaleCorrectionForMapsWithABaseline) {
   const auto correspondences = scene.correspondences(8, 0.03);
   const Registering registering = register_with(stored, correspondences);
   EXPECT_THAT(
-      to_text(registering, {"barn.byre", plan_, "", {}}),
+      registration_report(registering, {"barn.byre", plan_, "", {}}).text,
       ContainsRegex("scale        the map is 1\\.[56]. % \\+- 0\\.[01]. % too large: correct it with --fix-scale\n"));
   stored.pose_source = PoseSource::given;
-  EXPECT_THAT(to_text(register_with(stored, correspondences), {"barn.byre", plan_, "", {}}),
+  EXPECT_THAT(registration_report(register_with(stored, correspondences), {"barn.byre", plan_, "", {}}).text,
               AllOf(HasSubstr("too large for the plan\n"), Not(HasSubstr("--fix-scale"))));
 }
 

@@ -2,6 +2,8 @@
 
 #include "byre/base/printable.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -73,6 +75,10 @@ Json registration_json(const PlanRegistration& registration) {
                {"covariance", Json::array()}};
   for (const double value : registration.covariance.reshaped<Eigen::RowMajor>()) json["covariance"].push_back(value);
   return json;
+}
+
+double rounded_ms(double milliseconds) {
+  return std::round(1e3 * milliseconds) / 1e3;
 }
 
 std::string dump_json(const Json& json, int indent) {

@@ -22,6 +22,9 @@ nlohmann::ordered_json position_json(const std::optional<Pose>& frame_from_body)
 // Pose of a map on a plan. Keys carry units; covariance row-major, see PlanRegistration.
 nlohmann::ordered_json registration_json(const PlanRegistration& registration);
 
+// Rounded to microseconds; further digits are noise.
+double rounded_ms(double milliseconds);
+
 // One line, or indented by indent spaces. Replaces invalid UTF-8 and escapes control characters.
 std::string dump_json(const nlohmann::ordered_json& json, int indent = -1);
 

@@ -1,9 +1,11 @@
 #include "byre/playback/report/run_report.h"
 
-#include "byre/base/report_row.h"
 #include "byre/playback/report/calibration_report.h"
 #include "byre/playback/report/finish_report.h"
 #include "byre/playback/report/motion_report.h"
+#include "byre/playback/report/recording_check_report.h"
+#include "byre/playback/report/report_json.h"
+#include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_error.h"
 
@@ -16,19 +18,136 @@
 namespace byre {
 namespace {
 
-std::string describe_poses(const FrameCounts& counts) {
-  std::string text =
-      fmt::format("{} of {} frames ({:.1f} %)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
-  if (counts.lost_episodes > 0) text += fmt::format(", lost {} times for {} frames", counts.lost_episodes, counts.lost);
-  if (counts.resets > 0) text += fmt::format(", reinitialised {} times", counts.resets);
-  if (counts.unreadable > 0) text += fmt::format("; {} could not be read", counts.unreadable);
-  return text;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kListedWarnings = 20;
+constexpr const char* kCovariance =
+    "6x6, row-major, of a small motion (translation in metres, rotation vector in radians) in the body frame, relative "
+    "to the map's origin";
+
+// Options that determine the computational load, and all changed from their defaults.
+Json options_json(const MethodOptions& options) {
+  Json changed = Json::object();
+  for (const auto& [name, value] : changed_options(options)) changed[name] = value;
+  return {{"max_features", options.extract.max_features},
+          {"fast_threshold", options.extract.fast_threshold},
+          {"min_fast_threshold", options.extract.min_fast_threshold},
+          {"min_initial_points", options.session.min_initial_points},
+          {"local_keyframes", options.session.local_keyframes},
+          {"movable_keyframes", options.session.window.movable},
+          {"anchor_keyframes", options.session.window.anchors},
+          {"loops", options.close_loops},
+          {"changed", changed}};
 }
 
-std::string describe_map(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
-  return fmt::format("{} keyframes left of {}{} made; {} points", run.stored.map.keyframe_count(),
-                     protocol.extended.empty() ? "" : "the extended map and ", counts.keyframes,
-                     run.stored.map.point_count());
+Json map_protocol_json(const MapProtocol& protocol) {
+  const FrameRange& range = protocol.range;
+  Json json = {{"program", protocol.program},
+               {"version", BYRE_VERSION},
+               {"recording", protocol.recording},
+               {"format", protocol.format ? to_string(*protocol.format) : "live"},
+               {"camera", to_string(protocol.camera)},
+               {"scale", protocol.is_metric ? "metric" : "unknown"},
+               {"range",
+                {{"start_s", or_null(range.start_s)},
+                 {"end_s", or_null(range.end_s)},
+                 {"first_frame", range.first},
+                 {"end_frame", or_null(range.last)},
+                 {"stride_frames", range.stride}}},
+               {"frames_in_range", protocol.frames_in_range},
+               {"times", times_json(protocol.times)},
+               {"pace", name_of(protocol.options.pace)}};
+  if (protocol.options.pace == Pace::paced) {
+    json["mapping_latency_frames"] = kPacedLatency;
+    if (protocol.offline.empty()) {
+      json["correction_latency_frames"] = kPacedCorrectionLatency;
+    } else {
+      json["search_latency_frames"] = kPacedSearchLatency;
+    }
+  }
+  if (!protocol.extended.empty()) json["extended"] = protocol.extended;
+  if (!protocol.offline.empty()) {
+    json["offline_map"] = protocol.offline;
+    json["pose_frame"] = protocol.plan ? "plan" : "map";
+    if (protocol.plan) json["registration"] = registration_json(*protocol.plan);
+    json["localise_only"] = !protocol.options.session.map_online;
+    json["offline_weight"] = protocol.options.session.track.offline_weight;
+  }
+  json["options"] = options_json(protocol.options);
+  json["body_covariance"] = kCovariance;
+  return json;
+}
+
+Json counts_json(const MapRun& run, const FrameCounts& counts) {
+  Json refused_starts = Json::object();
+  for (const auto& [failure, frames] : counts.refused_starts) refused_starts[std::string(to_string(failure))] = frames;
+  return {{"frames", counts.frames},
+          {"frames_with_pose", counts.with_pose},
+          {"coverage", counts.coverage()},
+          {"frames_unreadable", counts.unreadable},
+          {"frames_without_right_image", counts.without_right_image},
+          {"frames_with_depth_image", counts.with_depth_image},
+          {"keyframes_made", counts.keyframes},
+          {"keyframes_left", run.stored.map.keyframe_count()},
+          {"points", run.stored.map.point_count()},
+          {"frames_before_the_first_pose", or_null(counts.frames_to_first)},
+          {"refused_starts", refused_starts},
+          {"lost_episodes", counts.lost_episodes},
+          {"frames_lost", counts.lost},
+          {"resets", counts.resets},
+          {"relocalisations", counts.relocalisations},
+          {"loops_on_the_way", counts.loops},
+          {"corrections_on_the_way", counts.corrections}};
+}
+
+// Keyframes per recording, and frames until the new recording was localised in the map; null unless a map is extended.
+Json extension_json(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+  if (protocol.extended.empty()) return nullptr;
+  const std::vector<int> keyframes = keyframes_of_recordings(run.stored.map, protocol.recordings.size());
+  Json recordings = Json::array();
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    recordings.push_back({{"name", protocol.recordings[i]}, {"keyframes", keyframes[i]}});
+  }
+  return {{"frames_until_found", or_null(counts.frames_to_first)}, {"recordings", recordings}};
+}
+
+Json summary_json(const TimeSummary& times) {
+  if (times.count == 0) return nullptr;
+  return {{"mean", rounded_ms(times.mean_ms)},
+          {"p50", rounded_ms(times.p50_ms)},
+          {"p95", rounded_ms(times.p95_ms)},
+          {"p99", rounded_ms(times.p99_ms)},
+          {"max", rounded_ms(times.max_ms)}};
+}
+
+Json stages_json(const std::vector<MappedFrame>& frames) {
+  const auto stage = [&frames](double StageSeconds::*member) { return summary_json(summarise_stage(frames, member)); };
+  return {{"decode", stage(&StageSeconds::decode)},   {"rectify", stage(&StageSeconds::rectify)},
+          {"extract", stage(&StageSeconds::extract)}, {"stereo", stage(&StageSeconds::stereo)},
+          {"track", stage(&StageSeconds::track)},     {"map", stage(&StageSeconds::map)}};
+}
+
+Json jobs_json(const std::vector<double>& job_seconds) {
+  const TimeSummary jobs = summarise_times(job_seconds);
+  return {{"count", jobs.count}, {"mean_ms", rounded_ms(jobs.mean_ms)}, {"max_ms", rounded_ms(jobs.max_ms)}};
+}
+
+Json late_json(const MapRun& run) {
+  const TimeSummary late = summarise_times(run.lateness);
+  return {{"frames", late.count}, {"max_ms", rounded_ms(late.max_ms)}};
+}
+
+Json deadline_json(const FrameCounts& counts, double deadline_ms) {
+  if (deadline_ms <= 0.0) return nullptr;
+  return {{"deadline_ms", deadline_ms},
+          {"frames_late", counts.late},
+          {"frames_without_online_points", counts.without_online_points},
+          {"frames_with_left_image_alone", counts.with_left_alone}};
+}
+
+Json warnings_json(const std::vector<std::string>& warnings) {
+  const auto listed = static_cast<std::ptrdiff_t>(std::min(warnings.size(), kListedWarnings));
+  return {{"count", warnings.size()}, {"first", std::vector(warnings.begin(), warnings.begin() + listed)}};
 }
 
 // Most frequent reason first; empty without refusals.
@@ -43,207 +162,191 @@ std::string describe_refusals(const FrameCounts& counts) {
   return text.empty() ? text : text + " frames";
 }
 
-// Initialisation and scale of a monocular map; empty for other runs.
-std::string scale_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
-  if (protocol.is_metric) return "";
-  std::string begun = "never";
+// Initialisation and scale of a monocular map; none for other runs.
+void add_scale(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts, Report& report) {
+  if (protocol.is_metric) return;
+  Json more = {{"refusals", describe_refusals(counts)},
+               {"is_metric", run.is_metric},
+               {"scale_sigma", run.motion.scale_sigma.value_or(0.0)}};
   const auto first = std::ranges::find_if(run.frames, [](const MappedFrame& frame) {
     return frame.report && frame.report->has(SessionEvent::initialised);
   });
   if (first != run.frames.end()) {
-    const double seconds = to_seconds(first->time - run.frames.front().time);
-    begun = fmt::format("{:.2f} s after the first frame, at frame {}", seconds,
-                        static_cast<int>(first - run.frames.begin()));
+    more["seconds"] = to_seconds(first->time - run.frames.front().time);
+    more["frame"] = first - run.frames.begin();
   }
-  const std::string refusals = describe_refusals(counts);
-  if (!refusals.empty()) begun += "; earlier attempts failed: " + refusals;
-  const std::string scale = run.is_metric ? fmt::format("metric by wheel odometry (sigma {:.2f} %)",
-                                                        100.0 * run.motion.scale_sigma.value_or(0.0))
-                                          : "arbitrary; set it with \"byre scale\"";
-  return row("initialised", begun) + row("scale", scale);
+  report.row("initialised",
+             "[{seconds:.2f} s after the first frame, at frame {frame}|never]"
+             "[{?refusals}; earlier attempts failed: {refusals}]",
+             more);
+  report.row("scale",
+             "[{?is_metric}metric by wheel odometry (sigma {scale_sigma*100:.2f} %)"
+             "|arbitrary; set it with \"byre scale\"]",
+             more);
 }
 
-std::string describe_loops(const FrameCounts& counts) {
-  std::string text =
-      fmt::format("{} closed while tracking, {} corrections of the whole map", counts.loops, counts.corrections);
-  if (counts.relocalisations > 0) text += fmt::format("; relocalised {} times", counts.relocalisations);
-  return text;
+void add_map(Report& report) {
+  report.row("map",
+             "{keyframes_left} keyframes left of [{?extension}the extended map and ]{keyframes_made} made; "
+             "{points} points",
+             report.figures["counts"]);
 }
 
-// Empty unless a map is extended.
-std::string extension_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
-  if (protocol.extended.empty()) return "";
-  const std::string found = counts.frames_to_first
-                                ? fmt::format(", localised in it after {} frames", *counts.frames_to_first)
-                                : std::string(", never localised in it");
-  std::string text = row("extended", protocol.extended + found);
-  const std::vector<int> keyframes = keyframes_of_recordings(run.stored.map, protocol.recordings.size());
-  for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    text += row("of", protocol.recordings[i] + fmt::format(", {} keyframes", keyframes[i]));
+void add_loops(Report& report) {
+  report.row("loops",
+             "{loops_on_the_way} closed while tracking, {corrections_on_the_way} corrections of the whole map"
+             "[{?relocalisations}; relocalised {relocalisations} times]",
+             report.figures["counts"]);
+}
+
+void add_finishing(const MapRun& run, const MapProtocol& protocol, Report& report) {
+  if (run.finishing) {
+    if (run.calibration) {
+      report.row("calibration",
+                 "[error about {calibration_row_error_px:.2f} px (row differences of the pair); ]{description}",
+                 {{"description", describe_calibration(*run.calibration)}});
+    }
+    report.text += finish_report(*run.finishing).text;
+  } else if (!protocol.options.close_loops) {
+    report.row("finishing", "skipped (--no-loops)");
+  } else {
+    report.row("finishing", run.final.empty() ? "skipped, no map" : "skipped; run \"byre refine\"");
   }
-  return text;
 }
 
-std::string describe_recording(const MapRun& run, const MapProtocol& protocol) {
-  std::string text = protocol.recording + fmt::format(", {} frames", protocol.frames_in_range);
-  if (protocol.camera == CameraChoice::rgbd) {
-    text += fmt::format(", {} with depth images", count_frames(run.frames).with_depth_image);
-  } else if (protocol.camera != CameraChoice::stereo) {
-    text += fmt::format(" of the {} camera", to_string(protocol.camera));
+void add_map_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts, Report& report) {
+  report.row("poses",
+             "{frames_with_pose} of {frames} frames ({coverage*100:.1f} %)"
+             "[{?lost_episodes}, lost {lost_episodes} times for {frames_lost} frames]"
+             "[{?resets}, reinitialised {resets} times][{?frames_unreadable}; {frames_unreadable} could not be read]",
+             report.figures["counts"]);
+  add_scale(run, protocol, counts, report);
+  add_map(report);
+  if (!protocol.extended.empty()) {
+    report.row("extended",
+               "{protocol.extended}[, localised in it after {extension.frames_until_found} frames"
+               "|, never localised in it]");
+    for (const Json& recording : report.figures["extension"]["recordings"]) {
+      report.row("of", "{name}, {keyframes} keyframes", recording);
+    }
   }
-  const auto frames = static_cast<int>(run.frames.size());
-  if (frames < protocol.frames_in_range) text += fmt::format(", stopped after {}", frames);
-  return text;
-}
-
-std::string describe(const TimeSummary& times) {
-  return fmt::format("mean {:.1f} ms, p99 {:.1f} ms", times.mean_ms, times.p99_ms);
-}
-
-std::string describe_frame_time(const MapRun& run, Pace pace) {
-  const std::string total = describe(summarise_stage(run.frames, &StageSeconds::total));
-  if (pace != Pace::same_thread) return total;
-  return total + "; without mapping jobs " + describe(summarise_without_jobs(run.frames));
-}
-
-std::string describe_mapping(const MapRun& run) {
-  const TimeSummary jobs = summarise_times(run.job_seconds);
-  return fmt::format("{} jobs, mean {:.1f} ms, max {:.1f} ms", jobs.count, jobs.mean_ms, jobs.max_ms);
-}
-
-std::string describe_late(const MapRun& run) {
-  const TimeSummary late = summarise_times(run.lateness);
-  if (late.count == 0) return "no frame";
-  return fmt::format("{} frames, at most {:.1f} ms", late.count, late.max_ms);
-}
-
-std::string describe_deadline(const MapRun& run, double deadline_ms) {
-  const FrameCounts counts = count_frames(run.frames);
-  return fmt::format("{:g} ms: {} frames late; {} with limited online points, {} without the right image", deadline_ms,
-                     counts.late, counts.without_online_points, counts.with_left_alone);
-}
-
-std::string describe_processor(const MapRun& run, const ResourceUsage& resources) {
-  const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
-  const double rate = seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0;
-  return fmt::format("{:.1f} s, in {:.1f} s of wall time: {:.1f} frames/s", resources.cpu_seconds, run.wall_seconds,
-                     rate);
-}
-
-std::string describe_memory(const MapRun& run, const ResourceUsage& resources) {
-  std::string text = fmt::format("peak {:.0f} MB", resources.peak_memory_mb);
-  if (run.frames.empty()) return text;
-  return text + fmt::format("; {:.0f} MB after the first frame, {:.0f} MB after the last", run.frames.front().memory_mb,
-                            run.frames.back().memory_mb);
-}
-
-std::string comma_separated(const std::vector<std::string>& files) {
-  std::string text;
-  for (const std::string& file : files) text += (text.empty() ? "" : ", ") + file;
-  return text;
-}
-
-std::string recording_rows(const MapRun& run, const MapProtocol& protocol) {
-  return row("recording", describe_recording(run, protocol)) + row("pace", std::string(name_of(protocol.options.pace)));
-}
-
-std::string finishing_rows(const MapRun& run, const MapProtocol& protocol) {
-  if (run.finishing) return calibration_row(run.calibration, run.row_error) + to_text(*run.finishing);
-  if (!protocol.options.close_loops) return row("finishing", "skipped (--no-loops)");
-  if (run.final.empty()) return row("finishing", "skipped, no map");
-  return row("finishing", "skipped; run \"byre refine\"");
-}
-
-std::string cost_rows(const MapRun& run, const MethodOptions& options, const ResourceUsage& resources) {
-  const Pace pace = options.pace;
-  std::string text = row("frame time", describe_frame_time(run, pace));
-  if (options.frame_deadline_ms > 0.0) text += row("deadline", describe_deadline(run, options.frame_deadline_ms));
-  text += row("mapping", describe_mapping(run));
-  if (pace == Pace::live) text += row("late", describe_late(run));
-  text += row("CPU time", describe_processor(run, resources));
-  text += row("memory", describe_memory(run, resources));
-  return text;
-}
-
-std::string closing_rows(const MapRun& run, const std::vector<std::string>& files) {
-  std::string text;
-  if (!run.warnings.empty()) {
-    text += row("warnings", fmt::format("{}; the first: ", run.warnings.size()) + run.warnings.front());
-  }
-  if (!files.empty()) text += row("written", comma_separated(files));
-  return text;
-}
-
-std::string describe_offline(const MapRun& run, const MapProtocol& protocol) {
-  const Map& map = run.offline->map();
-  return protocol.offline + fmt::format(", {} keyframes, {} points", map.keyframe_count(), map.point_count()) +
-         (protocol.options.session.map_online ? "" : "; no online mapping (--localise-only)") +
-         (protocol.plan ? "; poses on the plan " + protocol.plan->plan : std::string());
-}
-
-std::string map_rows(const MapRun& run, const MapProtocol& protocol) {
-  const FrameCounts counts = count_frames(run.frames);
-  std::string text = row("poses", describe_poses(counts));
-  text += scale_rows(run, protocol, counts);
-  text += row("map", describe_map(run, protocol, counts));
-  text += extension_rows(run, protocol, counts);
-  if (protocol.options.close_loops) text += row("loops", describe_loops(counts));
-  text += finishing_rows(run, protocol);
-  return text;
-}
-
-std::string describe_coverage(const MapRun& run, const MissionStatistics& statistics) {
-  const FrameCounts counts = count_frames(run.frames);
-  std::string text =
-      fmt::format("{} of {} frames ({:.1f} %)", counts.with_pose, counts.frames, 100.0 * counts.coverage());
-  if (!statistics.seconds_to_first_pose) return text;
-  return text + fmt::format(", the first after {:.2f} s", *statistics.seconds_to_first_pose);
-}
-
-// Without the offline points that online keyframes observe.
-std::string describe_online(const MapRun& run, const FrameCounts& counts) {
-  if (run.frames.empty()) return "none";
-  return fmt::format("{} keyframes left of {} made; {} points", run.frames.back().keyframes, counts.keyframes,
-                     run.frames.back().points);
-}
-
-std::string describe_mission_finishing(const MapRun& run) {
-  if (!run.mission_finishing_seconds) return "skipped";
-  return fmt::format("{:.1f} s: adjustment of the whole online map, with the offline map fixed",
-                     *run.mission_finishing_seconds);
+  if (protocol.options.close_loops) add_loops(report);
+  add_finishing(run, protocol, report);
 }
 
 // Rows of a "byre run" report, with or without an offline map.
-std::string mission_rows(const MissionOutcome& mission, const MapRun& run, const MapProtocol& protocol) {
-  const FrameCounts counts = count_frames(run.frames);
+void add_mission_rows(const MissionOutcome& mission, const MapRun& run, const MapProtocol& protocol,
+                      const FrameCounts& counts, Report& report) {
   const bool has_map = run.offline != nullptr;
-  std::string text;
-  if (has_map) text += row("offline map", describe_offline(run, protocol));
-  text += row("poses", describe_coverage(run, mission.statistics));
-  text += scale_rows(run, protocol, counts);
-  text += to_text(mission.statistics);
-  if (protocol.options.session.map_online) {
-    text += has_map ? row("online map", describe_online(run, counts)) : row("map", describe_map(run, protocol, counts));
-    text += row("loops", describe_loops(counts));
+  const bool maps = protocol.options.session.map_online;
+  if (has_map) {
+    const Map& map = run.offline->map();
+    report.row("offline map",
+               "{map}, {keyframes} keyframes, {points} points[{!maps}; no online mapping (--localise-only)]"
+               "[{?plan}; poses on the plan {plan}]",
+               {{"map", protocol.offline},
+                {"keyframes", map.keyframe_count()},
+                {"points", map.point_count()},
+                {"maps", maps},
+                {"plan", protocol.plan ? Json(protocol.plan->plan) : Json()}});
   }
-  if (!has_map) text += finishing_rows(run, protocol);
-  if (has_map && protocol.options.session.map_online) text += row("finishing", describe_mission_finishing(run));
-  if (mission.errors) text += to_text(*mission.errors);
-  return text;
+  report.row("poses",
+             "{counts.frames_with_pose} of {counts.frames} frames ({counts.coverage*100:.1f} %)"
+             "[, the first after {mission.seconds_to_first_pose:.2f} s]");
+  add_scale(run, protocol, counts, report);
+  report.text += mission_report(mission.statistics).text;
+  if (maps && !has_map) add_map(report);
+  if (maps && has_map) {
+    // Without the offline points that online keyframes observe.
+    Json last;
+    if (!run.frames.empty()) last = {{"keyframes", run.frames.back().keyframes}, {"points", run.frames.back().points}};
+    report.row("online map", "[{keyframes} keyframes left of {counts.keyframes_made} made; {points} points|none]",
+               last);
+  }
+  if (maps) add_loops(report);
+  if (!has_map) add_finishing(run, protocol, report);
+  if (has_map && maps) {
+    report.row("finishing", "[{seconds:.1f} s: adjustment of the whole online map, with the offline map fixed|skipped]",
+               {{"seconds", or_null(run.mission_finishing_seconds)}});
+  }
+  if (mission.errors) report.text += mission_error_report(*mission.errors).text;
+}
+
+void add_cost(const MapRun& run, const MapProtocol& protocol, Report& report) {
+  report.row("frame time",
+             "[mean {frame_thread_ms.mean:.1f} ms, p99 {frame_thread_ms.p99:.1f} ms|no frame]"
+             "[; without mapping jobs mean {frame_thread_without_jobs_ms.mean:.1f} ms, "
+             "p99 {frame_thread_without_jobs_ms.p99:.1f} ms]");
+  report.row("deadline",
+             "{deadline.deadline_ms:g} ms: {deadline.frames_late} frames late; "
+             "{deadline.frames_without_online_points} with limited online points, "
+             "{deadline.frames_with_left_image_alone} without the right image");
+  report.row("mapping", "{count} jobs, mean {mean_ms:.1f} ms, max {max_ms:.1f} ms", report.figures["mapping_jobs"]);
+  if (protocol.options.pace == Pace::live) {
+    report.row("late", "[{?late.frames}{late.frames} frames, at most {late.max_ms:.1f} ms|no frame]");
+  }
+  const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
+  report.row("CPU time", "{cpu_s:.1f} s, in {wall_s:.1f} s of wall time: {rate:.1f} frames/s",
+             {{"rate", seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0}});
+  Json memory;
+  if (!run.frames.empty()) memory = {{"first", run.frames.front().memory_mb}, {"last", run.frames.back().memory_mb}};
+  report.row("memory",
+             "peak {peak_memory_mb:.0f} MB[; {first:.0f} MB after the first frame, {last:.0f} MB after the last]",
+             memory);
+}
+
+Json run_figures(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
+                 const FrameCounts& counts, const std::optional<MissionOutcome>& mission) {
+  const Pace pace = protocol.options.pace;
+  Json json = {{"protocol", map_protocol_json(protocol)},
+               {"stopped_early", static_cast<int>(run.frames.size()) < protocol.frames_in_range},
+               {"counts", counts_json(run, counts)},
+               {"extension", extension_json(run, protocol, counts)},
+               {"calibration", run.calibration ? calibration_json(*run.calibration) : Json()},
+               {"calibration_row_error_px", or_null(run.row_error)},
+               {"finishing", run.finishing ? finish_report(*run.finishing).figures : Json()},
+               {"frame_thread_ms", summary_json(summarise_stage(run.frames, &StageSeconds::total))},
+               {"stages_ms", stages_json(run.frames)},
+               {"deadline", deadline_json(counts, protocol.options.frame_deadline_ms)},
+               {"mapping_jobs", jobs_json(run.job_seconds)}};
+  if (pace == Pace::same_thread) {
+    json["frame_thread_without_jobs_ms"] = summary_json(summarise_without_jobs(run.frames));
+  }
+  if (pace == Pace::live) json["late"] = late_json(run);
+  if (mission) json["mission"] = mission_report(mission->statistics).figures;
+  if (mission && mission->errors) json["errors"] = mission_error_report(*mission->errors).figures;
+  json["cpu_s"] = resources.cpu_seconds;
+  json["wall_s"] = run.wall_seconds;
+  json["peak_memory_mb"] = resources.peak_memory_mb;
+  json["warnings"] = warnings_json(run.warnings);
+  return json;
 }
 
 }  // namespace
 
-std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
-                    const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission) {
-  std::string text = recording_rows(run, protocol);
-  text += mission ? mission_rows(*mission, run, protocol) : map_rows(run, protocol);
-  text += motion_rows(run, protocol.is_metric);
-  text += row("path", fmt::format("{:.2f} {}, through {} final poses", path_length(run.final),
-                                  run.is_metric ? "m" : "units", run.final.size()));
-  text += cost_rows(run, protocol.options, resources);
-  text += closing_rows(run, files);
-  return text;
+Report run_report(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
+                  const std::optional<MissionOutcome>& mission) {
+  const FrameCounts counts = count_frames(run.frames);
+  Report report{run_figures(run, protocol, resources, counts, mission)};
+  report.row(
+      "recording",
+      "{protocol.recording}, {protocol.frames_in_range} frames"
+      "[{?is_rgbd}, {counts.frames_with_depth_image} with depth images"
+      "|{?is_one_camera} of the {protocol.camera} camera][{?stopped_early}, stopped after {counts.frames}]",
+      {{"is_rgbd", protocol.camera == CameraChoice::rgbd}, {"is_one_camera", protocol.camera != CameraChoice::stereo}});
+  report.row("pace", "{protocol.pace}");
+  if (mission) {
+    add_mission_rows(*mission, run, protocol, counts, report);
+  } else {
+    add_map_rows(run, protocol, counts, report);
+  }
+  add_motion(run, protocol.is_metric, report);
+  report.row(
+      "path", "{length:.2f} {unit}, through {poses} final poses",
+      {{"length", path_length(run.final)}, {"unit", run.is_metric ? "m" : "units"}, {"poses", run.final.size()}});
+  add_cost(run, protocol, report);
+  report.row("warnings", "{?warnings.count}{warnings.count}; the first: {warnings.first.0}");
+  return report;
 }
 
 void require_frames(int unreadable, int frames, const std::vector<std::string>& warnings) {

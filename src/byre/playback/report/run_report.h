@@ -28,13 +28,12 @@ struct MapProtocol {
   bool is_metric = true;  // false for a monocular map from scratch, in arbitrary units
 };
 
-// Full report: protocol, figures, and an array with one object per frame, one a line. mission adds its outcome.
-std::string to_json(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
-                    const std::optional<MissionOutcome>& mission = {});
+// Protocol and figures of a run on the map, or with mission on the mission.
+Report run_report(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
+                  const std::optional<MissionOutcome>& mission = {});
 
-// Text report on the map, or with mission on the mission. files: the files written.
-std::string to_text(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
-                    const std::vector<std::string>& files, const std::optional<MissionOutcome>& mission = {});
+// The figures, and an array with one object per frame, one a line.
+std::string to_json(const Report& report, const MapRun& run, const std::optional<MissionOutcome>& mission = {});
 
 // Throws std::runtime_error, with the first warning and a remedy, if too many frames were unreadable for the result to
 // represent the recording (misses_too_many_frames).

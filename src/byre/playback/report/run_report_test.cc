@@ -1,7 +1,6 @@
 #include "byre/playback/report/run_report.h"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 namespace byre {
 namespace {
@@ -62,7 +61,7 @@ MapRun small_map_run() {
 }
 
 json stats_of(const MapRun& run, Pace pace = Pace::paced) {
-  return json::parse(to_json(run, protocol_of(pace), {1.5, 64.0}));
+  return json::parse(to_json(run_report(run, protocol_of(pace), {1.5, 64.0}), run));
 }
 
 TEST(MapJson, BeginsWithTheProtocol) {
@@ -116,7 +115,7 @@ TEST(MapJson, ReportsFinishingAndTheExtendedMap) {
   protocol.extended = "barn.byre";
   MapRun run = small_map_run();
   run.finishing.emplace().report.loops = 0;
-  const json stats = json::parse(to_json(run, protocol, {}));
+  const json stats = json::parse(to_json(run_report(run, protocol, {}), run));
   EXPECT_EQ(stats.at("finishing").at("cut_short"), false);
   EXPECT_EQ(stats.at("extension").at("frames_until_found"), 0);
   EXPECT_EQ(stats.at("extension").at("recordings"), (json{{{"name", "MH_01_easy"}, {"keyframes", 1}}}));
@@ -180,7 +179,7 @@ TEST(MapJson, ContainsTheMissionAndTheErrorOfEachPose) {
   MapProtocol protocol = protocol_of(Pace::paced);
   protocol.offline = "barn.byre";
   protocol.options.session.map_online = false;
-  const json stats = json::parse(to_json(small_map_run(), protocol, {}, mission));
+  const json stats = json::parse(to_json(run_report(small_map_run(), protocol, {}, mission), small_map_run(), mission));
   EXPECT_EQ(stats.at("protocol").at("offline_map"), "barn.byre");
   EXPECT_EQ(stats.at("protocol").at("localise_only"), true);
   EXPECT_EQ(stats.at("mission").at("losses"), 3);
@@ -210,7 +209,7 @@ TEST(MapJson, EscapesControlCharactersOfNames) {
   protocol.recording =
       "walk\xc2\x9b"
       "2J\x7f.bag";
-  const std::string text = to_json(small_map_run(), protocol, {});
+  const std::string text = to_json(run_report(small_map_run(), protocol, {}), small_map_run());
   EXPECT_THAT(text, HasSubstr(R"(walk\u009b2J\u007f.bag)"));
   EXPECT_EQ(json::parse(text).at("protocol").at("recording"), protocol.recording);
 }
@@ -224,7 +223,7 @@ TEST(MapJson, IsCompleteForARunWithoutFrames) {
 }
 
 TEST(MapText, SummarisesTheRun) {
-  const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {1.5, 64.0}, {"out.txt", "stats.json"});
+  const std::string text = run_report(small_map_run(), protocol_of(Pace::paced), {1.5, 64.0}).text;
   EXPECT_THAT(text, HasSubstr("recording    MH_01_easy, 4 frames\n"));
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %); 1 could not be read\n"));
   EXPECT_THAT(text, HasSubstr("map          1 keyframes left of 1 made; 1234 points\n"));
@@ -234,7 +233,6 @@ TEST(MapText, SummarisesTheRun) {
   EXPECT_THAT(text, HasSubstr("CPU time     1.5 s, in 2.0 s of wall time: 2.0 frames/s\n"));
   EXPECT_THAT(text, HasSubstr("memory       peak 64 MB; 60 MB after the first frame, 63 MB after the last\n"));
   EXPECT_THAT(text, HasSubstr("warnings     1; the first: 2.png: is not a whole image\n"));
-  EXPECT_THAT(text, HasSubstr("written      out.txt, stats.json\n"));
   EXPECT_THAT(text, HasSubstr("finishing    skipped (--no-loops)\n"));
   EXPECT_THAT(text, Not(HasSubstr("late")));
   EXPECT_THAT(text, Not(HasSubstr("extended")));
@@ -243,7 +241,7 @@ TEST(MapText, SummarisesTheRun) {
 TEST(MapText, ReportsChangesByFinishing) {
   MapRun run = small_map_run();
   run.finishing.emplace().report.points_removed = 12;
-  EXPECT_THAT(to_text(run, protocol_of(Pace::paced), {}, {}),
+  EXPECT_THAT(run_report(run, protocol_of(Pace::paced), {}).text,
               HasSubstr("removed      0 redundant keyframes, 12 weak points\n"));
 }
 
@@ -256,7 +254,7 @@ TEST(MapText, ReportsTheRecordingsOfAnExtendedMap) {
   keyframe.recording = 1;
   for (int i = 0; i < 2; ++i) run.stored.map.add_keyframe(keyframe);
   run.frames.front().report->map_from_body.reset();
-  const std::string text = to_text(run, protocol, {}, {});
+  const std::string text = run_report(run, protocol, {}).text;
   EXPECT_THAT(text, HasSubstr("extended     barn.byre, localised in it after 2 frames\n"));
   EXPECT_THAT(text, HasSubstr("map          3 keyframes left of the extended map and 1 made; 1234 points\n"));
   EXPECT_THAT(text, HasSubstr("of           MH_01_easy, 1 keyframes\nof           MH_02_easy, 2 keyframes\n"));
@@ -265,7 +263,7 @@ TEST(MapText, ReportsTheRecordingsOfAnExtendedMap) {
 TEST(MapText, ReportsTheMission) {
   MissionOutcome mission;
   mission.statistics.seconds_to_first_pose = 0.1;
-  const std::string text = to_text(small_map_run(), protocol_of(Pace::paced), {}, {}, mission);
+  const std::string text = run_report(small_map_run(), protocol_of(Pace::paced), {}, mission).text;
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %), the first after 0.10 s\n"));
   EXPECT_THAT(text, HasSubstr("verdicts     trusted "));
   EXPECT_THAT(text, HasSubstr("finishing    skipped")) << "as without an offline map";
@@ -276,7 +274,7 @@ TEST(MapText, ReportsInterruptionAndLateFrames) {
   MapRun run = small_map_run();
   run.frames.pop_back();
   run.lateness = {0.0405};
-  const std::string text = to_text(run, protocol_of(Pace::live), {}, {"out.txt"});
+  const std::string text = run_report(run, protocol_of(Pace::live), {}).text;
   EXPECT_THAT(text, HasSubstr("4 frames, stopped after 3\n"));
   EXPECT_THAT(text, HasSubstr("late         1 frames, at most 40.5 ms\n"));
 }

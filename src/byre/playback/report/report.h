@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+namespace byre {
+
+// Null without a value.
+template <typename Value>
+nlohmann::ordered_json or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
+// Text of a template, empty if it is left out. Figures are named in braces:
+//   {key}       figure; {part.key} within a part, {list.0} an element. Elements of a list are separated by commas.
+//   {key:.2f}   figure in a format of libfmt
+//   {key*100:g} figure multiplied by a number
+//   {#list}     number of elements
+//   {?key}      no text, but a condition: the figure is true, not zero or not empty; {!key} is the opposite
+//   [...]       left out if a figure in it is null or missing, or a condition does not hold
+//   [...|...]   first of several alternatives that is not left out
+// A whole template is left out likewise. Figures of "more" precede others of the same key.
+std::optional<std::string> expand(std::string_view text, const nlohmann::ordered_json& figures,
+                                  const nlohmann::ordered_json& more = {});
+
+// A report as JSON and as text. Rows of the text name the figures, so that a figure is computed once.
+struct Report {
+  nlohmann::ordered_json figures;
+  std::string text{};
+  int label_width = 12;
+
+  // Adds a line, with a label in the first column or without. more: figures for the text only. Templates: see expand().
+  void row(std::string_view label, std::string_view content, const nlohmann::ordered_json& more = {});
+  void line(std::string_view content, const nlohmann::ordered_json& more = {});
+};
+
+// Indented by indent spaces.
+std::string to_json(const Report& report, int indent = 2);
+
+}  // namespace byre
