@@ -83,15 +83,13 @@ Json case_json(const CaseResult& result, const BenchmarkProtocol& protocol) {
 
 Json map_json(const BuiltMap& map) {
   const Pose& truth_from_map = map.alignment.truth_from_map.target_from_source;
-  const Eigen::Vector3d& t = truth_from_map.translation;
-  const Eigen::Quaterniond& q = truth_from_map.rotation;
   return {{"recording", map.recording},
           {"file", map.file.string()},
           {"keyframes", map.keyframes},
           {"points", map.points},
           {"alignment_poses", map.alignment.poses},
-          {"truth_from_map_translation_m", {t.x(), t.y(), t.z()}},
-          {"truth_from_map_quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+          {"truth_from_map_translation_m", list_json(truth_from_map.translation)},
+          {"truth_from_map_quaternion_xyzw", list_json(truth_from_map.rotation.coeffs())},
           {"wall_s", map.wall_seconds}};
 }
 

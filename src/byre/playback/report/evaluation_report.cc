@@ -1,5 +1,7 @@
 #include "byre/playback/report/evaluation_report.h"
 
+#include "byre/playback/report/report_json.h"
+
 #include <string_view>
 #include <utility>
 
@@ -69,11 +71,10 @@ Json segments_json(const SegmentErrors& segments) {
 }
 
 Json similarity_json(const Similarity& truth_from_estimate) {
-  const Eigen::Vector3d& t = truth_from_estimate.target_from_source.translation;
-  const Eigen::Quaterniond& q = truth_from_estimate.target_from_source.rotation;
-  return {{"scale", truth_from_estimate.scale},
-          {"translation_m", {t.x(), t.y(), t.z()}},
-          {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+  const auto& [scale, pose] = truth_from_estimate;
+  return {{"scale", scale},
+          {"translation_m", list_json(pose.translation)},
+          {"rotation_xyzw", list_json(pose.rotation.coeffs())}};
 }
 
 Json evaluation_protocol_json(const EvaluationProtocol& protocol) {
@@ -152,13 +153,12 @@ void add_segments(Report& report) {
 
 Report evaluation_report(const EvaluationReport& evaluation, const std::string& estimate_file,
                          const std::string& truth_file) {
-  const auto& spread = evaluation.true_spread;
   Report report{{{"protocol", evaluation_protocol_json(evaluation.protocol)},
                  {"estimate", {{"file", estimate_file}, {"poses", evaluation.estimated_poses}}},
                  {"truth", {{"file", truth_file}, {"poses", evaluation.true_poses}}},
                  {"pairs", evaluation.pairs},
                  {"true_path_m", evaluation.true_path},
-                 {"true_spread_m", {spread[0], spread[1], spread[2]}},
+                 {"true_spread_m", list_json(evaluation.true_spread)},
                  {"is_nearly_a_line", is_nearly_straight(evaluation)},
                  {"coverage", coverage_json(evaluation)},
                  {"ate", ate_json(evaluation.ate)},

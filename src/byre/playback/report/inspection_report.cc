@@ -75,7 +75,7 @@ Json sizes_json(const std::vector<Size>& sizes, bool as_text = false) {
 
 Json box_json(const std::optional<BoundingBox>& box) {
   if (!box) return nullptr;
-  return {{"min", {box->min.x(), box->min.y(), box->min.z()}}, {"max", {box->max.x(), box->max.y(), box->max.z()}}};
+  return {{"min", list_json(box->min)}, {"max", list_json(box->max)}};
 }
 
 Json recording_json(const SourceRecording& recording, int keyframes, const std::string& camera) {
@@ -112,7 +112,7 @@ void add_notes(const StoredMap& stored, Report& report) {
 }
 
 void add_box(const std::optional<BoundingBox>& box, Json more, Report& report) {
-  if (box) more["size"] = {box->max.x() - box->min.x(), box->max.y() - box->min.y(), box->max.z() - box->min.z()};
+  if (box) more["size"] = list_json(box->max - box->min);
   report.row("extent",
              "[{size.0:.1f} x {size.1:.1f} x {size.2:.1f} {unit}: "
              "x {bounding_box.min.0:.1f} to {bounding_box.max.0:.1f}, "

@@ -1,6 +1,7 @@
 #include "byre/playback/report/localisation_report.h"
 
 #include "byre/map/keyframe_path.h"
+#include "byre/playback/report/report_json.h"
 
 #include <algorithm>
 #include <map>
@@ -51,13 +52,6 @@ double percent(int part, std::size_t whole) {
   return whole == 0 ? 0.0 : 100.0 * part / static_cast<double>(whole);
 }
 
-void add_pose(const Pose& frame_from_body, const char* position_name, const char* rotation_name, Json& json) {
-  const Eigen::Vector3d& position = frame_from_body.translation;
-  const Eigen::Vector4d rotation = frame_from_body.rotation.coeffs();
-  json[position_name] = {position.x(), position.y(), position.z()};
-  json[rotation_name] = {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
-}
-
 Json localised_frame_json(const LocalisedFrame& frame, const std::optional<PlanRegistration>& plan) {
   const Localisation& found = frame.localisation;
   Json json = {{"name", frame.name},
@@ -70,10 +64,12 @@ Json localised_frame_json(const LocalisedFrame& frame, const std::optional<PlanR
                {"extract_ms", 1e3 * frame.extract_seconds},
                {"localise_ms", 1e3 * frame.localise_seconds}};
   if (!frame.world_from_body) return json;
-  add_pose(*frame.world_from_body, "position_in_map_m", "rotation_map_from_body_xyzw", json);
-  if (plan) {
-    add_pose(plan_from_body(*plan, *frame.world_from_body), "position_on_plan_m", "rotation_plan_from_body_xyzw", json);
-  }
+  json["position_in_map_m"] = list_json(frame.world_from_body->translation);
+  json["rotation_map_from_body_xyzw"] = list_json(frame.world_from_body->rotation.coeffs());
+  if (!plan) return json;
+  const Pose on_plan = plan_from_body(*plan, *frame.world_from_body);
+  json["position_on_plan_m"] = list_json(on_plan.translation);
+  json["rotation_plan_from_body_xyzw"] = list_json(on_plan.rotation.coeffs());
   return json;
 }
 

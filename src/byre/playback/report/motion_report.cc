@@ -1,6 +1,7 @@
 #include "byre/playback/report/motion_report.h"
 
 #include "byre/geometry/degrees.h"
+#include "byre/playback/report/report_json.h"
 
 #include <algorithm>
 
@@ -44,8 +45,7 @@ void add_motion(const MapRun& run, bool has_metric_source, Report& report) {
          {"has_changed", motion.has_calibration_changed}});
   }
   if (motion.gyroscope) {
-    const Eigen::Vector3d bias = motion.gyroscope->bias / kDegree;
-    report.row("gyroscope", "bias {bias:.3f} deg/s", {{"bias", {bias.x(), bias.y(), bias.z()}}});
+    report.row("gyroscope", "bias {bias:.3f} deg/s", {{"bias", list_json(motion.gyroscope->bias / kDegree)}});
   }
   const auto& up = motion.calibration_to_store.up;
   report.row("gravity",

@@ -23,7 +23,7 @@ Eigen::Matrix3d rotation_of(const PlanRegistration& registration) {
 Json turn_json(const PlanRegistration& registration) {
   const Eigen::Matrix3d rotation = rotation_of(registration);
   return {{"heading_deg", kDegreesPerRadian * std::atan2(rotation(1, 0), rotation(0, 0))},
-          {"vertical", {rotation(2, 0), rotation(2, 1), rotation(2, 2)}}};
+          {"vertical", list_json(rotation.row(2).transpose())}};
 }
 
 double yaw_sigma(const PlanRegistration& registration) {
@@ -57,13 +57,11 @@ Json measured_scale_json(const PlanScale& scale) {
 }
 
 Json correspondence_json(const PlanCorrespondence& correspondence, const PlanResidual& residual) {
-  const Eigen::Vector3d& in_map = correspondence.point_in_map;
-  const Eigen::Vector2d& in_plan = correspondence.point_in_plan;
   return {{"name", correspondence.name},
-          {"point_in_map", {in_map.x(), in_map.y(), in_map.z()}},
-          {"point_in_plan_m", {in_plan.x(), in_plan.y()}},
+          {"point_in_map", list_json(correspondence.point_in_map)},
+          {"point_in_plan_m", list_json(correspondence.point_in_plan)},
           {"sigma_m", correspondence.sigma},
-          {"error_in_plan_m", {residual.error_in_plan.x(), residual.error_in_plan.y()}},
+          {"error_in_plan_m", list_json(residual.error_in_plan)},
           {"outlier", residual.is_outlier}};
 }
 

@@ -3,6 +3,7 @@
 #include "byre/base/printable.h"
 
 #include <cmath>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -27,6 +28,10 @@ Json condition_json(const std::optional<ImageCondition>& image) {
 
 }  // namespace
 
+Json list_json(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
 Json health_json(const Health& health) {
   return {{"verdict", to_string(health.verdict)},
           {"doubt", to_string(health.doubt)},
@@ -49,32 +54,22 @@ Json health_json(const Health& health) {
 }
 
 Json pose_json(const Pose& frame_from_body, const Matrix6& covariance) {
-  const Eigen::Quaterniond& q = frame_from_body.rotation;
-  Json json = {{"position_m", position_json(frame_from_body)}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
-  Json entries = Json::array();
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) entries.push_back(covariance(row, column));
-  }
-  json["body_covariance"] = entries;
-  return json;
+  return {{"position_m", list_json(frame_from_body.translation)},
+          {"quaternion_xyzw", list_json(frame_from_body.rotation.coeffs())},
+          {"body_covariance", list_json(covariance.reshaped<Eigen::RowMajor>())}};
 }
 
 Json position_json(const std::optional<Pose>& frame_from_body) {
-  if (!frame_from_body) return nullptr;
-  const Eigen::Vector3d& t = frame_from_body->translation;
-  return {t.x(), t.y(), t.z()};
+  return frame_from_body ? list_json(frame_from_body->translation) : Json();
 }
 
 Json registration_json(const PlanRegistration& registration) {
-  const Pose& pose = registration.plan_from_map.target_from_source;
-  const Eigen::Vector4d quaternion = pose.rotation.coeffs();
-  Json json = {{"plan", registration.plan},
-               {"scale", registration.plan_from_map.scale},
-               {"translation_m", {pose.translation.x(), pose.translation.y(), pose.translation.z()}},
-               {"quaternion_xyzw", {quaternion.x(), quaternion.y(), quaternion.z(), quaternion.w()}},
-               {"covariance", Json::array()}};
-  for (const double value : registration.covariance.reshaped<Eigen::RowMajor>()) json["covariance"].push_back(value);
-  return json;
+  const auto& [scale, pose] = registration.plan_from_map;
+  return {{"plan", registration.plan},
+          {"scale", scale},
+          {"translation_m", list_json(pose.translation)},
+          {"quaternion_xyzw", list_json(pose.rotation.coeffs())},
+          {"covariance", list_json(registration.covariance.reshaped<Eigen::RowMajor>())}};
 }
 
 double rounded_ms(double milliseconds) {

@@ -11,6 +11,8 @@
 
 namespace byre {
 
+nlohmann::ordered_json list_json(const Eigen::VectorXd& values);
+
 // Keys carry units (docs/reference/health_and_events.md).
 nlohmann::ordered_json health_json(const Health& health);
 

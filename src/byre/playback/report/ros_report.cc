@@ -1,6 +1,8 @@
 #include "byre/playback/report/ros_report.h"
 
 #include "byre/playback/report/pose_messages.h"
+#include "byre/playback/report/report.h"
+#include "byre/playback/report/report_json.h"
 
 #include <algorithm>
 #include <cstring>
@@ -18,31 +20,15 @@ bool is_usable(const FrameReport& report) {
   return report.map_from_body && report.health.verdict != Verdict::untrusted;
 }
 
-ros::KeyValue number(const char* name, double value) {
-  return {name, fmt::format("{:.6g}", value)};
-}
-
-std::vector<ros::KeyValue> values_of(const FrameReport& report) {
-  const Health& health = report.health;
-  return {{"state", std::string(to_string(report.state))},
-          {"verdict", std::string(to_string(health.verdict))},
-          {"doubt", std::string(to_string(health.doubt))},
-          number("features", report.features),
-          number("matches", report.matches),
-          number("inliers", report.inliers),
-          number("offline_expected", health.offline_expected),
-          number("offline_inliers", health.offline_inliers),
-          number("online_inliers", health.online_inliers),
-          number("suspended", health.suspended),
-          number("inlier_share", health.inlier_share),
-          number("spread", health.spread),
-          number("position_sigma_m", health.position_sigma),
-          number("rotation_sigma_rad", health.rotation_sigma),
-          number("distance_since_offline_m", health.distance_since_offline),
-          number("seconds_since_offline", health.seconds_since_offline),
-          number("hidden_share", health.hidden_share),
-          number("hidden_share_right", health.hidden_share_right),
-          number("track_seconds", report.track_seconds)};
+// Adds the figures, those of parts as "part.key". Null is left out.
+void add_values(const std::string& prefix, const nlohmann::ordered_json& figures, std::vector<ros::KeyValue>& values) {
+  for (const auto& [key, figure] : figures.items()) {
+    if (figure.is_object()) {
+      add_values(prefix + key + ".", figure, values);
+    } else if (const auto text = expand(figure.is_string() ? "{figure}" : "{figure:.6g}", {{"figure", figure}})) {
+      values.push_back({prefix + key, *text});
+    }
+  }
 }
 
 void put(std::vector<std::uint8_t>& bytes, const void* value, std::size_t size) {
@@ -52,6 +38,18 @@ void put(std::vector<std::uint8_t>& bytes, const void* value, std::size_t size) 
 }
 
 }  // namespace
+
+std::vector<ros::KeyValue> health_values(const FrameReport& report) {
+  nlohmann::ordered_json figures = {{"state", to_string(report.state)}};
+  figures.update(health_json(report.health));
+  figures.update({{"features", report.features},
+                  {"matches", report.matches},
+                  {"inliers", report.inliers},
+                  {"track_seconds", report.track_seconds}});
+  std::vector<ros::KeyValue> values;
+  add_values("", figures, values);
+  return values;
+}
 
 std::byte diagnostic_level(Verdict verdict) {
   switch (verdict) {
@@ -104,7 +102,7 @@ ros::DiagnosticArray ros_diagnostics(int number_of_frame, const MappedFrame& fra
   if (frame.report) {
     status.level = diagnostic_level(frame.report->health.verdict);
     status.message = verdict_and_doubt(frame.report->health);
-    status.values = values_of(*frame.report);
+    status.values = health_values(*frame.report);
   }
   status.values.push_back({"frame", std::to_string(number_of_frame)});
   status.values.push_back({"keyframes", std::to_string(frame.keyframes)});

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre {
 
@@ -17,6 +18,9 @@ inline constexpr const char* kOdometryFrame = "odom";
 inline constexpr const char* kBodyFrame = "base_link";
 inline constexpr const char* kLeftFrame = "left_camera";  // optical frame: x right, y down, z forward
 inline constexpr const char* kRightFrame = "right_camera";
+
+// State, health and numbers of matches, with the keys of JSON reports.
+std::vector<ros::KeyValue> health_values(const FrameReport& report);
 
 // OK for trusted, WARN for degraded, ERROR for untrusted.
 std::byte diagnostic_level(Verdict verdict);

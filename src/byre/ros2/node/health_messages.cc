@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace byre {
@@ -57,15 +56,7 @@ ros::DiagnosticStatus localisation_status(const FrameReport& report) {
     status.level = std::max(status.level, ros::DiagnosticStatus::kWarn);
     status.message += "; " + dirt;
   }
-  status.values = {{"verdict", std::string(to_string(health.verdict))},
-                   {"doubt", std::string(to_string(health.doubt))},
-                   {"state", std::string(to_string(report.state))},
-                   {"offline inliers", std::to_string(health.offline_inliers)},
-                   {"offline points expected", std::to_string(health.offline_expected)},
-                   {"online inliers", std::to_string(health.online_inliers)},
-                   {"position sigma, m", fmt::format("{:.4f}", health.position_sigma)},
-                   {"rotation sigma, rad", fmt::format("{:.5f}", health.rotation_sigma)},
-                   {"distance since offline points, m", fmt::format("{:.2f}", health.distance_since_offline)}};
+  status.values = health_values(report);
   return status;
 }
 
