@@ -1,5 +1,4 @@
 #include "byre/base/printable.h"
-#include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
@@ -7,7 +6,7 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/render_with_progress.h"
 #include "byre/cli/simulate/imperfection_options.h"
-#include "byre/playback/report/report_json.h"
+#include "byre/playback/report/report.h"
 
 #include <array>
 #include <charconv>
@@ -18,8 +17,6 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 namespace byre::cli {
 namespace {
@@ -54,12 +51,6 @@ for rendering. With --motion it also receives the measurements of two driven whe
 mav0/imu0), with their errors. The same options give the same bytes, for any number of threads. Ctrl-C leaves no
 files. docs/reference/simulation.md describes both.)";
 
-std::string to_text(const SimulateOptions& options, const Rendering& rendering) {
-  return fmt::format("rendered     {} stereo pairs in {:.1f} s ({:.1f} a second), after {:.1f} s to build the barn\n",
-                     rendering.frames, rendering.rendering_s, rendering.frames_per_second(), rendering.preparing_s) +
-         row("recording", options.output.string()) + row("floor plan", (options.output / "plan").string());
-}
-
 nlohmann::ordered_json imperfection_json(const CameraImperfection& camera) {
   return {{"calibration_level", camera.calibration_level},
           {"calibration_seed", camera.calibration_seed},
@@ -72,29 +63,36 @@ nlohmann::ordered_json imperfection_json(const CameraImperfection& camera) {
           {"jpeg_quality", camera.jpeg_quality}};
 }
 
-std::string to_json(const SimulateOptions& options, const Rendering& rendering) {
-  return dump_json({{"program", "byre simulate"},
-                    {"version", BYRE_VERSION},
-                    {"scene", "cowshed"},
-                    {"recording", options.output.string()},
-                    {"seed", options.recording.barn.seed},
-                    {"mission", options.recording.barn.mission},
-                    {"turn", options.recording.turn == TurnKind::spot ? "spot" : "arc"},
-                    {"light", options.recording.night.light},
-                    {"headlight", options.recording.night.headlight},
-                    {"imperfection", imperfection_json(options.recording.camera)},
-                    {"frames", rendering.frames},
-                    {"preparing_s", rendering.preparing_s},
-                    {"rendering_s", rendering.rendering_s}},
-                   2) +
-         "\n";
+Report simulate_report(const SimulateOptions& options, const Rendering& rendering) {
+  Report report{{{"program", "byre simulate"},
+                 {"version", BYRE_VERSION},
+                 {"scene", "cowshed"},
+                 {"recording", options.output.string()},
+                 {"seed", options.recording.barn.seed},
+                 {"mission", options.recording.barn.mission},
+                 {"turn", options.recording.turn == TurnKind::spot ? "spot" : "arc"},
+                 {"light", options.recording.night.light},
+                 {"headlight", options.recording.night.headlight},
+                 {"imperfection", imperfection_json(options.recording.camera)},
+                 {"frames", rendering.frames},
+                 {"preparing_s", rendering.preparing_s},
+                 {"rendering_s", rendering.rendering_s}}};
+  report.row(
+      "rendered",
+      "{frames} stereo pairs in {rendering_s:.1f} s ({rate:.1f} a second), after {preparing_s:.1f} s to build the "
+      "barn",
+      {{"rate", rendering.frames_per_second()}});
+  report.row("recording", "{recording}");
+  report.row("floor plan", "{plan}", {{"plan", (options.output / "plan").string()}});
+  return report;
 }
 
 ExitCode run_simulate(const SimulateOptions& options, std::ostream& result) {
   const InterruptCatcher interrupt;
   const Rendering rendering = render_with_progress(options.recording, options.output, interrupt, options.quiet);
   if (rendering.stopped) return ExitCode::interrupted;
-  result << (options.json ? to_json(options, rendering) : to_text(options, rendering));
+  const Report report = simulate_report(options, rendering);
+  result << (options.json ? to_json(report) : report.text);
   return ExitCode::done;
 }
 

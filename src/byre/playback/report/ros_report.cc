@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include <fmt/core.h>
-
 namespace byre {
 namespace {
 

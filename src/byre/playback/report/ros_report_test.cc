@@ -13,7 +13,9 @@ using testing::Contains;
 using testing::DoubleNear;
 using testing::Field;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
+using testing::StartsWith;
 
 const Pose kMapFromBody{rotation_exp({0.0, 0.0, 0.5 * M_PI}), {1.0, 2.0, 0.5}};
 const Pose kOdometryFromBody{rotation_exp({0.0, 0.0, 0.1}), {0.2, 0.0, 0.0}};
@@ -75,6 +77,15 @@ TEST(RosReport, ContainsTheMotionSinceThePreviousFrame) {
   EXPECT_EQ(ros_odometry(report(Verdict::trusted), {}).twist.twist, ros::Twist{});
 }
 
+TEST(RosReport, HasTheFiguresOfJsonReportsAsValues) {
+  FrameReport shown = report(Verdict::trusted);
+  shown.health.position_sigma = 0.012345678;
+  EXPECT_THAT(health_values(shown), Contains(ros::KeyValue{"position_sigma_m", "0.0123457"}));
+  EXPECT_THAT(health_values(shown), Not(Contains(Field(&ros::KeyValue::key, StartsWith("agreement")))));
+  shown.health.agreement = Agreement{0.25, 0.125};
+  EXPECT_THAT(health_values(shown), Contains(ros::KeyValue{"agreement.translation_m", "0.25"}));
+}
+
 TEST(RosReport, HasADiagnosticLevelByVerdict) {
   MappedFrame frame;
   frame.report = report(Verdict::degraded);
@@ -82,6 +93,7 @@ TEST(RosReport, HasADiagnosticLevelByVerdict) {
   EXPECT_EQ(degraded.level, ros::DiagnosticStatus::kWarn);
   EXPECT_EQ(degraded.message, "degraded: " + std::string(to_string(DistrustReason::few_points)));
   EXPECT_THAT(degraded.values, Contains(ros::KeyValue{"frame", "7"}));
+  EXPECT_THAT(degraded.values, Contains(ros::KeyValue{"verdict", "degraded"}));
   frame.report = report(Verdict::trusted);
   EXPECT_EQ(ros_diagnostics(7, frame).status.at(0).level, ros::DiagnosticStatus::kOk);
   EXPECT_EQ(ros_diagnostics(7, frame).status.at(0).message, "trusted");
