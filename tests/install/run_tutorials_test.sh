@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Installs a build into a new folder, and runs the code blocks of the tutorials with it.
+# Usage: run_tutorials_test.sh BUILD_DIR
+set -euo pipefail
+
+build_dir=${1:?usage: run_tutorials_test.sh BUILD_DIR}
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+is_on() { grep -q "^$1:BOOL=ON" "$build_dir/CMakeCache.txt"; }
+
+cmake --install "$build_dir" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
+pages=(demo first_map_and_mission program_in_cpp)
+! is_on BYRE_BUILD_NODE || pages+=(robot_with_ros2)
+! is_on BYRE_BUILD_PYTHON || pages+=(program_in_python)
+pages=("${pages[@]/#/docs/tutorials/}")
+cd "$source_dir"
+/usr/bin/python3 tools/run_tutorials.py --prefix "$work/prefix" "${pages[@]/%/.md}"
