@@ -18,6 +18,12 @@ block to block. HTML comments directly above a block, which readers do not see, 
   <!-- output -->           is output of the run block above: its lines occur there in this order. Numbers and spaces
                             may differ, lines "..." stand for any lines
 
+A comment of several lines with commands runs as a block, for files that readers have of their own:
+
+  <!-- setup
+  byre simulate cowshed --duration 5 -o evening_round
+  -->
+
 Blocks without a mark: sh and bash run, and each command must return 0; blocks without a language are ignored; other
 languages need a mark. Exit code: 0 all passed, 1 a block failed, 2 wrong usage or marks.
 """
@@ -34,6 +40,7 @@ import time
 from typing import Iterator, NamedTuple, Optional
 
 SHELLS = {"sh", "bash"}
+SETUP = re.compile(r" *<!-- *setup *$")
 SYSTEM_PATH = "/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin"
 FENCE = re.compile(r"( *)(`{3,}|~{3,}) *([\w+-]*)[^`]*$")
 COMMENT = re.compile(r" *<!-- *(.*?) *--> *$")
@@ -96,6 +103,14 @@ def blocks_of(path: pathlib.Path) -> Iterator[Block]:
         comment = COMMENT.match(lines[i])
         if comment:
             comments.append((i + 1, comment[1]))
+        elif SETUP.match(lines[i]):
+            start = i + 1
+            end = next((j for j in range(start, len(lines)) if lines[j].strip() == "-->"), None)
+            if end is None:
+                raise Fault(f"{path}:{start}: setup without end")
+            yield Block(start + 1, "sh", "\n".join(lines[start:end]) + "\n", {}, "")
+            comments = []
+            i = end
         elif fence:
             start = i + 1
             end = next((j for j in range(start, len(lines)) if lines[j].strip() == fence[2]), None)

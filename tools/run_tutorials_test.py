@@ -60,6 +60,11 @@ class RunTutorialsTest(unittest.TestCase):
         self.assert_passes("Save as `src/a.py`:\n\n<!-- file: src/a.py -->\n```python\nprint('a  b')\n```\n\n"
                            "```sh\npython3 src/a.py\n```\n\n<!-- output -->\n```\na b\n```\n", "1 files written, 1 outputs")
 
+    def test_runs_hidden_setup(self):
+        self.assert_passes("<!-- setup\necho hay >barn.txt\n-->\n\n```sh\ngrep hay barn.txt\n```\n", "2 blocks run")
+        self.assert_fails("<!-- setup\nfalse\n-->\n", "page.md:2: false: exit code 1")
+        self.assert_refused("<!-- setup\nfalse\n", "page.md:1: setup without end")
+
     def test_lists_blocks_left_out(self):
         self.assert_passes("<!-- skip: changes the system -->\n```sh\nfalse\n```\n\n<!-- output -->\n```\nx\n```\n",
                            "page.md:3: not run: changes the system\n  page.md:8: not compared")

@@ -45,19 +45,6 @@ for package in "$prefix"/lib/python3*/dist-packages/byre; do
   PYTHONPATH=${package%/byre} /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'
 done
 
-# The example in docs/reference/floor_plan.md must compile against the installation.
-mkdir "$work/from_docs"
-sed -n '/^## From C++$/,$p' "$source_dir/docs/reference/floor_plan.md" | sed -n '/^```cpp$/,/^```$/p' | sed '/^```/d' \
-  >"$work/from_docs/floor_plan.cc"
-cat >"$work/from_docs/CMakeLists.txt" <<'END'
-cmake_minimum_required(VERSION 3.25)
-project(from_docs LANGUAGES CXX)
-find_package(byre 0.1 REQUIRED)
-add_library(floor_plan OBJECT floor_plan.cc)
-target_link_libraries(floor_plan PRIVATE byre::byre)
-END
-build "$work/from_docs" docs
-
 build "$source_dir/examples" examples
 cd "$work"
 "$build_dir/tests/recordings/render_room" room --frames 60 --rate 10 --laps 0.4 2>/dev/null

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs a build into a new folder, and runs the code blocks of the tutorials with it.
+# Installs a build into a new folder, and runs the code blocks of the tutorials and of the pages on floor plans with it.
 # Usage: run_tutorials_test.sh BUILD_DIR
 set -euo pipefail
 
@@ -11,9 +11,10 @@ trap 'rm -rf "$work"' EXIT
 is_on() { grep -q "^$1:BOOL=ON" "$build_dir/CMakeCache.txt"; }
 
 cmake --install "$build_dir" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
-pages=(demo first_map_and_mission program_in_cpp)
-! is_on BYRE_BUILD_NODE || pages+=(robot_with_ros2)
-! is_on BYRE_BUILD_PYTHON || pages+=(program_in_python)
-pages=("${pages[@]/#/docs/tutorials/}")
+pages=(tutorials/demo tutorials/first_map_and_mission tutorials/program_in_cpp how-to/register_floor_plan
+       reference/floor_plan)
+! is_on BYRE_BUILD_NODE || pages+=(tutorials/robot_with_ros2)
+! is_on BYRE_BUILD_PYTHON || pages+=(tutorials/program_in_python)
+pages=("${pages[@]/#/docs/}")
 cd "$source_dir"
 /usr/bin/python3 tools/run_tutorials.py --prefix "$work/prefix" "${pages[@]/%/.md}"
