@@ -161,6 +161,7 @@ def environment(prefix: Optional[pathlib.Path], home: pathlib.Path) -> dict[str,
     for name in ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "MAKEFLAGS", "CDPATH", "DESTDIR"):
         env.pop(name, None)
     env.update(HOME=str(home), LC_ALL="C.UTF-8", TERM="dumb", PYTHONDONTWRITEBYTECODE="1")
+    env.update(ROS_LOCALHOST_ONLY="1", ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")  # DDS stays on this machine
     env["PATH"] = SYSTEM_PATH + ":" + env.get("PATH", "")
     if prefix is None:
         return env
