@@ -327,7 +327,7 @@ def main() -> int:
     source.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--keep", type=pathlib.Path, help=argparse.SUPPRESS)
     parser.add_argument("--timeout", type=float, default=600.0, help=argparse.SUPPRESS)
-    parser.add_argument("pages", nargs="+", type=pathlib.Path, help=argparse.SUPPRESS)
+    parser.add_argument("pages", metavar="PAGE", nargs="+", type=pathlib.Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.prefix and not arguments.prefix.is_dir():
         parser.error(f"--prefix {arguments.prefix} is no folder")
