@@ -107,7 +107,11 @@ BENCHMARK(blur_image)->Unit(benchmark::kMillisecond);
 
 void detect_corners_of_image(benchmark::State& state) {
   const cv::Mat image = as_matrix(rendered_pair().images.left);
-  measure_hot_loop(state, [&] { benchmark::DoNotOptimize(detect_corners(image, 300, {})); });
+  std::vector<Corner> corners;
+  measure_hot_loop(state, [&] {
+    detect_corners(image, 300, {}, corners);
+    benchmark::DoNotOptimize(corners.data());
+  });
 }
 BENCHMARK(detect_corners_of_image)->Unit(benchmark::kMillisecond);
 
@@ -123,8 +127,8 @@ BENCHMARK(extract_stereo_pair)->Unit(benchmark::kMillisecond);
 
 void match_stereo_pair(benchmark::State& state) {
   const DetectedPair pair = detected_pair();
-  std::vector<std::optional<StereoMatch>> matches;
-  measure_hot_loop(state, [&] { matches = match_stereo(pair.left, pair.right, pair.rig, pair.keypoints, {}); });
+  std::vector<std::optional<StereoMatch>> matches(pair.keypoints.size());
+  measure_hot_loop(state, [&] { match_stereo(pair.left, pair.right, pair.rig, pair.keypoints, {}, matches); });
   state.counters["features"] = static_cast<double>(matches.size());
   state.counters["matched"] =
       static_cast<double>(std::ranges::count_if(matches, [](const auto& match) { return match.has_value(); }));

@@ -208,10 +208,4 @@ void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& 
   }
 }
 
-std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
-  std::vector<Corner> corners;
-  detect_corners(level, max_corners, options, corners);
-  return corners;
-}
-
 }  // namespace byre

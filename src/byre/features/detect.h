@@ -17,10 +17,7 @@ struct DetectOptions {
 
 // FAST-9 corners (Rosten 2006) of one octave, at most max_corners, evenly distributed: the image is divided into about
 // max_corners squares; each contributes its strongest corner, then its second, until there are enough. Ordered by row
-// of squares. Deterministic.
-std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options);
-
-// Same, refills `corners`.
+// of squares. Deterministic. Refills `corners`.
 void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, std::vector<Corner>& corners);
 
 }  // namespace byre

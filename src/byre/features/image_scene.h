@@ -4,6 +4,7 @@
 // image is known exactly.
 
 #include "byre/features.h"
+#include "byre/features/detect.h"
 #include "byre/image.h"
 
 #include <array>
@@ -130,6 +131,12 @@ inline void add_noise(Patch& patch, double sigma, std::mt19937& random) {
 inline Image to_image(const cv::Mat& matrix) {
   return {matrix.cols, matrix.rows,
           std::vector<std::uint8_t>(matrix.begin<std::uint8_t>(), matrix.end<std::uint8_t>())};
+}
+
+inline std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
+  std::vector<Corner> corners;
+  detect_corners(level, max_corners, options, corners);
+  return corners;
 }
 
 }  // namespace byre

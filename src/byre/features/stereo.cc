@@ -136,12 +136,4 @@ void match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig, std
   }
 }
 
-std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
-                                                     std::span<const Keypoint> keypoints,
-                                                     const StereoOptions& options) {
-  std::vector<std::optional<StereoMatch>> matches(keypoints.size());
-  match_stereo(left, right, rig, keypoints, options, matches);
-  return matches;
-}
-
 }  // namespace byre

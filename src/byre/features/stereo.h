@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace byre {
 
@@ -24,12 +23,8 @@ struct StereoMatch {
 };
 
 // Matches each keypoint in the right image: searches its row by the sum of absolute differences, requires a unique and
-// mutual best match, and refines it to sub-pixel accuracy. One entry per keypoint, empty if unmatched. Keypoints are on
-// whole octave pixels. Pyramids are those of a rectified pair.
-std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
-                                                     std::span<const Keypoint> keypoints, const StereoOptions& options);
-
-// Same, writes to `matches`, which has one entry per keypoint.
+// mutual best match, and refines it to sub-pixel accuracy. `matches` has one entry per keypoint, set to empty if
+// unmatched. Keypoints are on whole octave pixels. Pyramids are those of a rectified pair.
 void match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig, std::span<const Keypoint> keypoints,
                   const StereoOptions& options, std::span<std::optional<StereoMatch>> matches);
 

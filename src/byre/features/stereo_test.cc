@@ -13,6 +13,14 @@
 namespace byre {
 namespace {
 
+std::vector<std::optional<StereoMatch>> match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig,
+                                                     std::span<const Keypoint> keypoints,
+                                                     const StereoOptions& options) {
+  std::vector<std::optional<StereoMatch>> matches(keypoints.size());
+  byre::match_stereo(left, right, rig, keypoints, options, matches);
+  return matches;
+}
+
 constexpr int kRigWidth = 320;
 constexpr int kRigHeight = 240;
 
