@@ -44,6 +44,13 @@ std::optional<std::uint64_t> whole_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
 
+std::optional<CameraCondition> camera_condition_of(std::string_view name) {
+  for (const CameraCondition condition : {CameraCondition::exact, CameraCondition::good, CameraCondition::worn}) {
+    if (to_string(condition) == name) return condition;
+  }
+  return std::nullopt;
+}
+
 std::optional<TrialOptions> parse(std::span<char*> arguments) {
   TrialOptions options;
   for (std::size_t i = 0; i < arguments.size(); ++i) {

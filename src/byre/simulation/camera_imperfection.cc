@@ -23,13 +23,6 @@ std::string_view to_string(CameraCondition condition) {
   return "";
 }
 
-std::optional<CameraCondition> camera_condition_of(std::string_view name) {
-  for (const CameraCondition condition : {CameraCondition::exact, CameraCondition::good, CameraCondition::worn}) {
-    if (to_string(condition) == name) return condition;
-  }
-  return std::nullopt;
-}
-
 CameraImperfection imperfection_of(CameraCondition condition) {
   CameraImperfection imperfection;
   switch (condition) {

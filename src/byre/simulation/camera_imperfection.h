@@ -4,7 +4,6 @@
 #include "byre/simulation/lens_blur.h"
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 namespace byre {
@@ -26,7 +25,6 @@ struct CameraImperfection {
 enum class CameraCondition : std::uint8_t { exact, good, worn };
 
 std::string_view to_string(CameraCondition condition);
-std::optional<CameraCondition> camera_condition_of(std::string_view name);  // empty for an unknown name
 
 // Imperfections of a condition, with the default calibration seed. Shutter and trigger stay ideal.
 CameraImperfection imperfection_of(CameraCondition condition);

@@ -23,13 +23,6 @@ TEST(CameraImperfection, GrowsFromExactOverGoodToWorn) {
   for (const CameraImperfection& imperfection : {exact, good, worn}) require_valid(imperfection);
 }
 
-TEST(CameraImperfection, HasConditionsWithNames) {
-  for (const CameraCondition condition : {CameraCondition::exact, CameraCondition::good, CameraCondition::worn}) {
-    EXPECT_EQ(camera_condition_of(to_string(condition)), condition);
-  }
-  EXPECT_FALSE(camera_condition_of("new"));
-}
-
 TEST(CameraImperfection, RejectsInvalidValues) {
   const auto refused = [](const std::function<void(CameraImperfection&)>& change) {
     CameraImperfection imperfection;

@@ -30,8 +30,7 @@ class DrivenGround {
 
   // Attitude of the path's bodies: the up direction on level ground, in the body frame.
   const Eigen::Vector3d& up_in_body() const { return up_in_body_; }
-  double height_spread() const { return height_spread_; }  // root mean square of heights above the local ground
-  double tilt_spread() const { return tilt_spread_; }      // radians, root mean square of tilts per axis
+  double tilt_spread() const { return tilt_spread_; }  // radians, root mean square of tilts per axis
 
  private:
   explicit DrivenGround(std::vector<Pose> path);

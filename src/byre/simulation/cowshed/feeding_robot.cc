@@ -127,10 +127,6 @@ double FeedingCourse::travelled(double time_s) const {
   return (1.0 - part) * travelled_[before] + part * travelled_[before + 1];
 }
 
-double FeedingCourse::speed(double time_s) const {
-  return (travelled(time_s + kStep_s) - travelled(time_s - kStep_s)) / (2.0 * kStep_s);
-}
-
 FeedingCourse::PathPoint FeedingCourse::turn_point(double along_turn) const {
   const double step = std::clamp(along_turn / turn_length_, 0.0, 1.0) * kTurnSteps;
   const auto before = std::min(static_cast<std::size_t>(step), turn_.size() - 2);

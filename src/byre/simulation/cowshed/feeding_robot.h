@@ -46,8 +46,6 @@ class FeedingCourse {
   // the start and after the end.
   Pose world_from_body(double time_s) const;
 
-  double speed(double time_s) const;  // metres per second; on the spot, that of a wheel
-
  private:
   struct PathPoint {
     Eigen::Vector2d position;
