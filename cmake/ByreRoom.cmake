@@ -17,6 +17,9 @@ if(BYRE_SANITIZE)
   target_compile_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(byre_flags INTERFACE -fsanitize=${BYRE_SANITIZE})
   target_compile_definitions(byre_flags INTERFACE BYRE_SANITIZED)
+  if(BYRE_SANITIZE STREQUAL thread)
+    target_compile_definitions(byre_flags INTERFACE BYRE_THREAD_SANITIZED) # see base/sanitizer_scene.h
+  endif()
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_UNITY) # Clang reports constants of other files as shadowed
   target_compile_options(byre_flags INTERFACE -Wno-shadow)
@@ -98,6 +101,15 @@ function(byre_compile_test target)
   endif()
 endfunction()
 
+# Folders with the code that fuzz/ tests. Builds with Clang's address sanitizer record its coverage and detect all
+# undefined behaviour, so that the fuzzers need no build of their own.
+if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_SANITIZE MATCHES "address")
+  set(BYRE_BUILD_FUZZERS ON)
+  set(BYRE_FUZZED_OPTIONS -fsanitize=undefined -fno-sanitize-recover=all
+      -fsanitize-coverage=inline-8bit-counters,pc-table,indirect-calls,trace-cmp)
+  set(BYRE_FOLDERS_FUZZED base map map/plan io/ros io/bag)
+endif()
+
 # Folders with a separate test program, byre_<room>_<folder>_tests. The others share the program of their room.
 set(BYRE_FOLDERS_TESTED_ALONE slam/mapping slam/localisation slam/session slam/system ros2/dds ros2/fleet ros2/node)
 
@@ -167,6 +179,9 @@ function(byre_add_folder folder)
       byre_precompile(room byre_${name})
     endif()
     byre_unite(byre_${name})
+    if(folder IN_LIST BYRE_FOLDERS_FUZZED)
+      target_compile_options(byre_${name} PRIVATE ${BYRE_FUZZED_OPTIONS})
+    endif()
   endif()
   if(tests AND BYRE_BUILD_TESTS)
     add_library(byre_${name}_test_files OBJECT ${tests})

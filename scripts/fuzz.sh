@@ -1,15 +1,14 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of map files, bags and messages with address and undefined-behaviour sanitizers. Needs Clang.
+# Fuzzes the readers of map files, bags and messages with address and undefined-behaviour sanitizers, on the objects of
+# the preset dev. Needs Clang.
 # Usage: fuzz.sh [SECONDS]        per fuzzer, 30 by default; inputs with new coverage are stored in build/fuzz/corpus
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:-30}
 [[ $seconds =~ ^[0-9]+$ ]] || { echo "usage: fuzz.sh [SECONDS]" >&2; exit 2; }
-clang=$(command -v clang++-16 || command -v clang++) || { echo "fuzz.sh: Clang is not installed" >&2; exit 1; }
-
-cmake -S fuzz -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER="$clang" -DCMAKE_BUILD_TYPE=None >/dev/null
-cmake --build build/fuzz
+scripts/build.sh dev map_file_fuzzer bag_fuzzer
+mkdir -p build/fuzz
 # Sanitizers fail to start if the kernel randomises addresses beyond their expected range.
 runner=()
 ! setarch --addr-no-randomize true 2>/dev/null || runner=(setarch --addr-no-randomize)
@@ -17,7 +16,7 @@ runner=()
 # Runs a fuzzer. Second argument: limit of one allocation in megabytes; a chunk of a bag may claim far more than a map.
 fuzz() {
   mkdir -p "build/fuzz/corpus/$1"
-  "${runner[@]}" "build/fuzz/$1" "build/fuzz/corpus/$1" -max_total_time="$seconds" -max_len=20000 -timeout=5 \
+  "${runner[@]}" "build/dev/fuzz/$1" "build/fuzz/corpus/$1" -max_total_time="$seconds" -max_len=20000 -timeout=5 \
     -malloc_limit_mb="$2" -rss_limit_mb=2048 -artifact_prefix=build/fuzz/ -print_final_stats=1
 }
 # Both run in parallel; their reports are printed at the end.

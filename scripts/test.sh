@@ -1,22 +1,26 @@
 #!/usr/bin/env bash
-# Runs all checks: builds the release, runs all tests (unit tests, accuracy on whole recordings, every benchmark once),
-# checks the formatting, runs unit tests of the library under address and undefined-behaviour sanitizers and those of
-# threaded rooms under the thread sanitizer, and fuzzes the file readers. Reports tests skipped for missing recordings,
-# and the slowest tests.
-# Usage: test.sh [--quick | --arm64]
+# Runs the checks of continuous integration: builds the release, runs its default suite (unit tests, accuracy on whole
+# recordings, every benchmark once), checks the formatting, runs unit tests of the library under address and
+# undefined-behaviour sanitizers and those of folders with threads under the thread sanitizer, and fuzzes the file
+# readers. Reports tests skipped for missing recordings, and the slowest tests.
+# Usage: test.sh [--quick | --long | --arm64]
 #   --quick   skips sanitizers and fuzzing
+#   --long    also runs the tests with the label long: further seeds, calibration errors, starts and missions. The
+#             default suite has at least one test for each kind of fault among them.
 #   --arm64   also runs unit tests for 64-bit ARM in QEMU, of rooms with processor-specific code and the rooms they
 #             depend on; the first time downloads 1.3 GB of Debian packages for arm64
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 quick=false
+long=false
 arm64=false
 case ${1:-} in
   "") ;;
   --quick) quick=true ;;
+  --long) long=true ;;
   --arm64) arm64=true ;;
-  *) echo "usage: test.sh [--quick | --arm64]" >&2; exit 2 ;;
+  *) echo "usage: test.sh [--quick | --long | --arm64]" >&2; exit 2 ;;
 esac
 
 passed=0
@@ -39,33 +43,39 @@ end_part() {
   part_began=$SECONDS
 }
 
+# Folder of a preset's build. The preset long tests the release.
+folder_of() { [[ $1 == long ]] && echo build/release || echo "build/$1"; }
+
 # Prints the skip messages of a preset's tests, including those of tests within a program that ran others.
 print_skips() {
-  local output=build/$1/Testing/Temporary/LastTest.log
+  local output
+  output=$(folder_of "$1")/Testing/Temporary/LastTest.log
   grep -A1 -E ': Skipped$' "$output" | grep -vE '^--$|: Skipped$' | sort -u | sed 's/^/Skipped: /' || true
 }
 
 # Prints the slowest tests of a preset, in seconds.
 print_slowest() {
-  sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .* ([0-9.]+) sec.*$/\2 s  \1/p' "build/$1/tests.log" |
+  sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .* ([0-9.]+) sec.*$/\2 s  \1/p' "$(folder_of "$1")/tests.log" |
     sort -rn | head -n 8 | sed '1s/^/Slowest: /; 2,$s/^/         /'
 }
 
 # Stores names and last output of a preset's failed tests, for the summary at the end.
 keep_failures() {
-  local preset=$1 name reason
+  local preset=$1 name reason folder
+  folder=$(folder_of "$preset")
   while read -r name reason; do
     failures+=("$preset: $name $reason")
-    awk -v name="$name" '$2 == "Testing:" { mine = $3 == name } mine' "build/$preset/Testing/Temporary/LastTest.log" |
+    awk -v name="$name" '$2 == "Testing:" { mine = $3 == name } mine' "$folder/Testing/Temporary/LastTest.log" |
       tail -n 60 >"build/failed_${preset}_$name.log"
     failure_logs+=("build/failed_${preset}_$name.log")
-  done < <(sed -nE 's/^[[:space:]]+[0-9]+ - ([^ ]+) \((.*)\)$/\1 (\2)/p' "build/$preset/tests.log" | grep -v '(Skipped)$')
+  done < <(sed -nE 's/^[[:space:]]+[0-9]+ - ([^ ]+) \((.*)\)$/\1 (\2)/p' "$folder/tests.log" | grep -v '(Skipped)$')
 }
 
 # Runs the tests of a preset and sums ctest's closing lines, which count skipped tests as passed. Runs one test more
 # than there are processors, because some tests mostly wait.
 run_tests() {
-  local preset=$1 log=build/$1/tests.log closing skips
+  local preset=$1 log closing skips
+  log=$(folder_of "$preset")/tests.log
   "${runner[@]}" ctest --preset "$preset" --parallel $(($(nproc) + 1)) | tee "$log" || true
   closing=$(grep -E 'tests? failed out of' "$log") || { echo "test.sh: no tests ran under $preset" >&2; exit 1; }
   [[ $closing =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]
@@ -93,11 +103,17 @@ check_format() {
   fi
 }
 
-headline "Release: all tests"
+headline "Release: default suite"
 scripts/build.sh release
 end_part "release: build"
 run_tests release
-end_part "release: all tests"
+end_part "release: default suite"
+
+if $long; then
+  headline "Release: long suite"
+  run_tests long
+  end_part "release: long suite"
+fi
 
 headline "Formatting"
 check_format
@@ -110,7 +126,7 @@ if ! $quick; then
   run_tests dev
   end_part "address and undefined-behaviour sanitizers: unit tests"
 
-  headline "Thread sanitizer: tests of rooms with threads"
+  headline "Thread sanitizer: tests of folders with threads"
   scripts/build.sh tsan
   end_part "thread sanitizer: build"
   run_tests tsan
@@ -157,6 +173,7 @@ done
 echo
 printf '%s\n' "${parts[@]}"
 python3 tools/product_size.py
+$long || echo "Not run: tests with the label long (scripts/test.sh --long)"
 $arm64 || echo "Not run: unit tests for 64-bit ARM (scripts/test.sh --arm64)"
 ((failed == 0)) || printf 'Failed: %s\n' "${failures[@]}"
 ((skipped == 0)) || echo "$skipped skipped"

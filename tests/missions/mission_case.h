@@ -36,7 +36,15 @@ struct MissionCase {
   Requirements requirements{};
   std::optional<double> mapped_again_after{};  // seconds after which the robot is back in the mapped area
   Imperfection imperfection{};
+  bool is_long_run = false;  // only in the long suite; another case of the default suite has the same kind of fault
 };
+
+// The cases of the default suite, or those that only the long suite has.
+template <typename Case>
+std::vector<Case> select_cases(std::vector<Case> cases, bool is_long_run) {
+  std::erase_if(cases, [&](const Case& other) { return other.is_long_run != is_long_run; });
+  return cases;
+}
 
 inline constexpr double kMaxWrongTrust = 0.5;   // seconds
 inline constexpr double kMaxRecovery = 2.0;     // seconds

@@ -29,9 +29,18 @@ TEST_P(MissionHealth, IsHonestAndRecovers) {
   EXPECT_THAT(unmet_requirements(GetParam(), mission_run.score), testing::IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Real, MissionHealth, testing::ValuesIn(real_mission_cases()), name_of_case);
-INSTANTIATE_TEST_SUITE_P(SensorFaults, MissionHealth, testing::ValuesIn(sensor_fault_cases()), name_of_case);
-INSTANTIATE_TEST_SUITE_P(Twin, MissionHealth, testing::ValuesIn(twin_mission_cases()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Real, MissionHealth, testing::ValuesIn(select_cases(real_mission_cases(), false)),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(SensorFaults, MissionHealth, testing::ValuesIn(select_cases(sensor_fault_cases(), false)),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Twin, MissionHealth, testing::ValuesIn(select_cases(twin_mission_cases(), false)),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(LongRunReal, MissionHealth, testing::ValuesIn(select_cases(real_mission_cases(), true)),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(LongRunSensorFaults, MissionHealth,
+                         testing::ValuesIn(select_cases(sensor_fault_cases(), true)), name_of_case);
+INSTANTIATE_TEST_SUITE_P(LongRunTwin, MissionHealth, testing::ValuesIn(select_cases(twin_mission_cases(), true)),
+                         name_of_case);
 
 }  // namespace
 }  // namespace byre

@@ -98,6 +98,11 @@ MissionCase of_recording(MissionCase mission_case, const RecordingName& recordin
   return mission_case;
 }
 
+MissionCase only_in_long_runs(MissionCase mission_case) {
+  mission_case.is_long_run = true;
+  return mission_case;
+}
+
 MissionCase named(MissionCase mission_case, const char* name) {
   mission_case.name = name;
   return mission_case;
@@ -121,7 +126,7 @@ std::vector<MissionCase> calibrated_otherwise() {
       with_requirements(in_hall("undisturbed", frames(150, 300), as_recorded), kHardlyDisturbed);
   MissionCase recalibrated = named(undisturbed, "hall_recalibrated");
   recalibrated.imperfection = kOtherError;
-  return {named(with_imperfection(undisturbed, kExact), "hall_undisturbed_exact"), recalibrated};
+  return {only_in_long_runs(named(with_imperfection(undisturbed, kExact), "hall_undisturbed_exact")), recalibrated};
 }
 
 }  // namespace
@@ -136,7 +141,7 @@ std::vector<MissionCase> real_mission_cases() {
   }
   cases.push_back(in_hall("kidnapped", whole, kidnap({0.0, 2.5}, {4.5, 7.5}, 0.0)));
   cases.push_back(in_hall("kidnapped_in_the_dark", whole, kidnap({0.0, 3.0}, {4.5, 7.5}, 0.5)));
-  cases.push_back(in_hall("haze", four_seconds, degrade_all(haze(0.4))));
+  cases.push_back(only_in_long_runs(in_hall("haze", four_seconds, degrade_all(haze(0.4)))));
   cases.push_back(in_hall("dirt", four_seconds, degrade_all(dirt(40))));
   cases.push_back(in_hall("contrast_loss", four_seconds, degrade_all(contrast_loss(0.3))));
   cases.push_back(with_map(in_hall("half_the_points", whole, as_recorded), {kHall, 0.5}));
@@ -153,13 +158,14 @@ std::vector<MissionCase> room_cases() {
   std::vector<MissionCase> cases = {
       with_requirements(in_room("undisturbed", eight_seconds, as_recorded), kHardlyDisturbed)};
   for (const NamedPlan& disturbance : passing_disturbances({2.0, 4.0})) {
-    cases.push_back(in_room(disturbance.name, eight_seconds, disturbance.plan));
+    cases.push_back(only_in_long_runs(in_room(disturbance.name, eight_seconds, disturbance.plan)));
   }
   // From one end of the room to the other.
   const FrameRange both_ends = seconds(15.0, 51.0);
-  cases.push_back(in_room("kidnapped", both_ends, kidnap({0.0, 4.0}, {32.0, 36.0}, 0.0)));
+  cases.push_back(only_in_long_runs(in_room("kidnapped", both_ends, kidnap({0.0, 4.0}, {32.0, 36.0}, 0.0))));
   cases.push_back(in_room("kidnapped_in_the_dark", both_ends, kidnap({0.0, 4.0}, {32.0, 36.0}, 1.0)));
-  cases.push_back(with_map(in_room("half_the_points", eight_seconds, as_recorded), {kTwinRoom, 0.5}));
+  cases.push_back(
+      only_in_long_runs(with_map(in_room("half_the_points", eight_seconds, as_recorded), {kTwinRoom, 0.5})));
   cases.push_back(
       with_requirements(with_map(in_room("wrong_map", eight_seconds, as_recorded), wrong(kTwinShed)), kNeverWrongOnly));
   cases.push_back(with_requirements(
@@ -179,11 +185,13 @@ std::vector<MissionCase> detours() {
 
 std::vector<MissionCase> shed_cases() {
   const FrameRange eight_seconds = seconds(21.0, 29.0);
-  std::vector<MissionCase> cases = {in_shed("black", eight_seconds, degrade({2.0, 4.0}, black_frames()))};
+  std::vector<MissionCase> cases = {
+      only_in_long_runs(in_shed("black", eight_seconds, degrade({2.0, 4.0}, black_frames())))};
   // Along the fence, with strong perceptual aliasing.
   const FrameRange along_fence = seconds(6.0, 40.0);
   cases.push_back(in_shed("kidnapped", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 0.0)));
-  cases.push_back(in_shed("kidnapped_in_the_dark", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 1.0)));
+  cases.push_back(
+      only_in_long_runs(in_shed("kidnapped_in_the_dark", along_fence, kidnap({0.0, 4.0}, {28.0, 32.0}, 1.0))));
   cases.push_back(
       with_requirements(with_map(in_shed("wrong_map", eight_seconds, as_recorded), wrong(kTwinRoom)), kNeverWrongOnly));
   for (const MissionCase& detour : detours()) cases.push_back(detour);
@@ -210,7 +218,13 @@ struct SensorFault {
   Plan plan;
   std::optional<DistrustReason> doubt;
   double focal_factor = 1.0;
+  bool is_variant = false;  // of another fault of the list: only in the long suite
 };
+
+SensorFault variant(SensorFault fault) {
+  fault.is_variant = true;
+  return fault;
+}
 
 Plan stuttering(int times_each) {
   return [=](const std::vector<Timestamp>& times) { return repeated(times, times_each); };
@@ -228,28 +242,28 @@ Plan clock_jumping(const Span& span, double jump_seconds) {
 std::vector<SensorFault> sensor_faults() {
   const auto always = [](const Degradation& degradation) { return degrade_all(degradation); };
   return {{"frozen", degrade({1.5, 3.5}, frozen()), DistrustReason::frozen},
-          {"frozen_with_noise_1", degrade({1.5, 3.5}, frozen(1.0)), {}},
+          variant({"frozen_with_noise_1", degrade({1.5, 3.5}, frozen(1.0)), {}}),
           {"frozen_with_noise_2", degrade({1.5, 3.5}, frozen(2.0)), {}},
-          {"frozen_with_noise_4", degrade({1.5, 3.5}, frozen(4.0)), {}},
+          variant({"frozen_with_noise_4", degrade({1.5, 3.5}, frozen(4.0)), {}}),
           {"right_dead", degrade({1.5, 3.5}, right_exposed(0.0)), DistrustReason::right_camera},
-          {"right_half_as_bright", always(right_exposed(0.5)), {}},
+          variant({"right_half_as_bright", always(right_exposed(0.5)), {}}),
           {"right_third_as_bright", always(right_exposed(1.0 / 3.0)), {}},
           {"right_noisy", degrade({1.5, 3.5}, right_noisy(80.0)), {}},
           {"right_late", degrade({1.5, 3.5}, right_late(1)), {}},
-          {"right_late_by_2", degrade({1.5, 3.5}, right_late(2)), {}},
+          variant({"right_late_by_2", degrade({1.5, 3.5}, right_late(2)), {}}),
           {"left_late_by_1", degrade({1.5, 3.5}, left_late(1)), {}},
-          {"left_late_by_2", degrade({1.5, 3.5}, left_late(2)), {}},
+          variant({"left_late_by_2", degrade({1.5, 3.5}, left_late(2)), {}}),
           {"right_always_late", always(right_late(1)), {}},
-          {"left_always_late", always(left_late(1)), {}},
+          variant({"left_always_late", always(left_late(1)), {}}),
           {"swapped", always(swapped()), DistrustReason::cameras_disagree},
           {"mirrored", always(mirrored()), {}},
           {"upside_down", always(upside_down()), DistrustReason::cameras_disagree},
           {"frames_twice", stuttering(2), {}},
           {"frames_dropped", dropping(4), {}},
           {"clock_jump", clock_jumping({2.0, kToTheEnd}, 5.0), {}},
-          {"focal_5_percent_long", as_recorded, DistrustReason::calibration, 1.05},
+          variant({"focal_5_percent_long", as_recorded, DistrustReason::calibration, 1.05}),
           {"focal_10_percent_long", as_recorded, DistrustReason::calibration, 1.1},
-          {"focal_20_percent_long", as_recorded, DistrustReason::calibration, 1.2},
+          variant({"focal_20_percent_long", as_recorded, DistrustReason::calibration, 1.2}),
           {"focal_10_percent_short", as_recorded, DistrustReason::calibration, 0.9}};
 }
 
@@ -259,7 +273,8 @@ MissionCase without_map(MissionCase mission_case) {
   return mission_case;
 }
 
-// Without map points a wrong focal length cannot be detected immediately.
+// Without map points a wrong focal length cannot be detected immediately. The default suite has each kind of fault in
+// the hall, on its map, and without a map those with an expected doubt.
 MissionCase with_fault(MissionCase mission_case, const SensorFault& fault) {
   mission_case.name += std::string("lie_") + fault.name;
   mission_case.plan = fault.plan;
@@ -267,6 +282,7 @@ MissionCase with_fault(MissionCase mission_case, const SensorFault& fault) {
   const bool has_map = !mission_case.map.is_absent;
   mission_case.requirements = {.recovers = false, .is_never_wrong = has_map, .doubt = fault.doubt};
   if (!has_map && fault.doubt == DistrustReason::calibration) mission_case.requirements.doubt.reset();
+  mission_case.is_long_run |= fault.is_variant || (!has_map && !mission_case.requirements.doubt);
   return mission_case;
 }
 
@@ -275,8 +291,8 @@ MissionCase with_fault(MissionCase mission_case, const SensorFault& fault) {
 std::vector<MissionCase> sensor_fault_cases() {
   std::vector<MissionCase> cases;
   for (const SensorFault& fault : sensor_faults()) {
-    for (const MissionCase& fault_free :
-         {in_hall("", frames(150, 250), as_recorded), in_room("", seconds(25.0, 33.0), as_recorded)}) {
+    for (const MissionCase& fault_free : {in_hall("", frames(150, 250), as_recorded),
+                                          only_in_long_runs(in_room("", seconds(25.0, 33.0), as_recorded))}) {
       cases.push_back(with_fault(fault_free, fault));
       cases.push_back(with_fault(without_map(fault_free), fault));
     }

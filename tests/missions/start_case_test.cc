@@ -37,7 +37,8 @@ std::string name_of_start(const testing::TestParamInfo<StartCase>& info) {
   return info.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Barn, Starts, testing::ValuesIn(start_cases()), name_of_start);
+INSTANTIATE_TEST_SUITE_P(Barn, Starts, testing::ValuesIn(select_cases(start_cases(), false)), name_of_start);
+INSTANTIATE_TEST_SUITE_P(LongRunBarn, Starts, testing::ValuesIn(select_cases(start_cases(), true)), name_of_start);
 
 }  // namespace
 }  // namespace byre

@@ -19,6 +19,7 @@ struct StartCase {
   std::string mission;  // name of the barn's recording
   StartPlan plan{};
   OpenOptions open{.use_wheels = true, .use_gyroscope = true};
+  bool is_long_run = false;  // see MissionCase
 };
 
 const std::vector<StartCase>& start_cases();

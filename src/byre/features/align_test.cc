@@ -1,5 +1,6 @@
 #include "byre/features/align.h"
 
+#include "byre/base/sanitizer_scene.h"
 #include "byre/features/detect.h"
 #include "byre/features/image_scene.h"
 #include "byre/geometry/geometry_matchers.h"
@@ -139,6 +140,7 @@ TEST(AlignPatches, CompensatesGainAndOffset) {
 
 // Under strong noise sigma is too small by about half: interpolation blurs the noise from which it is estimated.
 TEST(AlignPatches, ErrsWithinItsSigmaUnderNoise) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   const auto with_noise = [](double noise) {
     return align_corners(4, [=](Change& change, std::mt19937&) { change.noise = noise; });
   };
@@ -263,6 +265,7 @@ TEST(AlignPatches, RejectsInvalidWarpsAndPixels) {
 
 // Must read only the patches; the address sanitizer detects other reads.
 TEST(AlignPatches, StaysInsideThePatchesUnderArbitraryWarps) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   std::mt19937 random(14);
   std::uniform_real_distribution<float> entry(-2.5f, 2.5f), coordinate(-4.0f, 20.0f);
   int aligned_count = 0;

@@ -1,5 +1,6 @@
 #include "byre/features/stereo.h"
 
+#include "byre/base/sanitizer_scene.h"
 #include "byre/features/detect.h"
 #include "byre/features/image_scene.h"
 
@@ -125,6 +126,7 @@ StereoScore match_textures(double noise, double vertical_error = 0.0) {
 }
 
 TEST(MatchStereo, MeasuresSubPixelDisparitiesInAllOctaves) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   const StereoScore score = match_textures(0.0);
   EXPECT_GE(score.share_matched(), 0.95);
   EXPECT_LE(score.median_error(), 0.02);
@@ -132,6 +134,7 @@ TEST(MatchStereo, MeasuresSubPixelDisparitiesInAllOctaves) {
 }
 
 TEST(MatchStereo, ErrsWithinItsSigmaUnderNoise) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   const StereoScore slight = match_textures(2.0);
   EXPECT_GE(slight.share_matched(), 0.85);
   EXPECT_LE(slight.median_error(), 0.05);
@@ -142,6 +145,7 @@ TEST(MatchStereo, ErrsWithinItsSigmaUnderNoise) {
 }
 
 TEST(MatchStereo, ToleratesRowErrorsOfHalfAPixel) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   const StereoScore score = match_textures(1.0, 0.5);
   EXPECT_GE(score.share_matched(), 0.9);
   EXPECT_LE(score.median_error(), 0.05);

@@ -1,5 +1,6 @@
 #include "byre/simulation/cowshed/cowshed_recording.h"
 
+#include "byre/base/sanitizer_scene.h"
 #include "byre/base/text_file.h"
 #include "byre/calibration_file.h"
 #include "byre/geometry/geometry_matchers.h"
@@ -86,6 +87,7 @@ TEST_F(CowshedVisit, HasTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(CowshedVisit, DiffersBetweenMissions) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecording later(small_visit(2, 0));
   EXPECT_NE(later.render_next().left.pixels, frames.front().left.pixels);
   EXPECT_GT(later.times().front(), recording.times().back());
@@ -96,6 +98,7 @@ TEST_F(CowshedVisit, IsWellExposedFromTheFirstFrame) {
 }
 
 TEST(CowshedVisits, AreNoisierInDimLightAndBlackInDarkness) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   const auto first_two = [](const NightOptions& night) {
     CowshedRecordingOptions options = small_visit(1, 1);
     options.night = night;
@@ -184,6 +187,7 @@ CowshedRecordingOptions miscalibrated_visit(const CameraImperfection& camera) {
 }
 
 TEST_F(CowshedVisit, IsRenderedByTheTrueCalibration) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecording erring(miscalibrated_visit({.calibration_level = 1.0, .calibration_seed = 3}));
   EXPECT_EQ(erring.render_next().left.pixels, frames[0].left.pixels);
   EXPECT_EQ(erring.calibration().left.fx, recording.calibration().left.fx);
@@ -194,6 +198,7 @@ TEST_F(CowshedVisit, IsRenderedByTheTrueCalibration) {
 }
 
 TEST_F(CowshedVisit, IsRenderedLaterByTheRightCameraWithATimeOffset) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecording late(miscalibrated_visit({.time_offset_s = 0.1}));
   const std::vector<ImageFrame> seen = first_frames(late, 2);
   EXPECT_EQ(seen[1].left.pixels, frames[1].left.pixels);
@@ -201,6 +206,7 @@ TEST_F(CowshedVisit, IsRenderedLaterByTheRightCameraWithATimeOffset) {
 }
 
 TEST_F(CowshedVisit, IsBrighterBlurredAndCompressedByTheCameras) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecording bright(miscalibrated_visit({.gain = 1.2, .offset = 5.0}));
   const ImageFrame seen = bright.render_next();
   EXPECT_EQ(seen.left.pixels, frames[0].left.pixels);
@@ -220,6 +226,7 @@ double difference_of_rows(const Image& a, const Image& b, int first, int last) {
 }
 
 TEST(CowshedVisits, AreRenderedAtTheMiddleRowTimeOfARollingShutter) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecordingOptions options = small_visit(1, 0);
   options.duration_s = 20.0;
   CowshedRecording at_once(options);
@@ -233,6 +240,7 @@ TEST(CowshedVisits, AreRenderedAtTheMiddleRowTimeOfARollingShutter) {
 }
 
 TEST(CowshedVisits, ShowMarksWithRollingShutterOffsets) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecordingOptions options = small_visit(1, 0);
   const std::vector<MarkSighting> at_once = CowshedRecording(options).sightings();
   options.camera.rolling_shutter_s = 0.1;
@@ -328,6 +336,7 @@ class WrittenCowshed : public ::testing::Test {
 };
 
 TEST_F(WrittenCowshed, IsReadAsARecordingWithTruthAndFloorPlan) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecordingOptions options = small_visit(1, 0);
   options.duration_s = 0.1;
   options.frame_rate_hz = 20.0;
@@ -358,6 +367,7 @@ TEST_F(WrittenCowshed, IsReadAsARecordingWithTruthAndFloorPlan) {
 }
 
 TEST_F(WrittenCowshed, HasTheErroneousAndTheTrueCalibration) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   CowshedRecordingOptions options = small_visit(1, 0);
   options.duration_s = 0.1;
   options.image_divisor = 8;

@@ -1,5 +1,6 @@
 // Consistency of reported covariances with the errors of poses over several simulated missions.
 
+#include "byre/base/sanitizer_scene.h"
 #include "byre/slam/session/session.h"
 #include "byre/slam/tracking/mission_scene.h"
 
@@ -50,6 +51,7 @@ double share_within_bound(const std::vector<Judged>& judged) {
 }
 
 TEST(ReportedCovariance, BoundsNinetyFivePercentOfErrors) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   constexpr std::uint64_t kSeeds = 8;
   const std::vector<Trajectory> trajectories = {circling_trajectory(90, 15.0, 2.0, 0.75, robot_from_camera()),
                                                 turning_in_place_trajectory(75, 15.0, 0.75, robot_from_camera()),

@@ -1,5 +1,6 @@
 // Monocular sessions: mapping by one camera, and missions on a stereo map.
 
+#include "byre/base/sanitizer_scene.h"
 #include "byre/slam/session/session_scene.h"
 #include "byre/trajectory_error.h"
 
@@ -51,6 +52,7 @@ std::vector<bool> has_pose(const std::vector<FrameReport>& reports) {
 }
 
 TEST(Monocular, StartsAMapAfterMotionAndTracksUpToScale) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   const SimulatedMission mission = circling(one_camera(), 1.0, 2);
   Session session = session_of(one_camera());
   const auto reports = reports_of(session, mission.frames);
@@ -66,6 +68,7 @@ TEST(Monocular, StartsAMapAfterMotionAndTracksUpToScale) {
 }
 
 TEST(Monocular, DoesNotStartDuringATurnOnTheSpotAndReportsWhy) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   Session session = session_of(one_camera());
   const auto reports = reports_of(session, turning_in_place(one_camera()).frames);
   EXPECT_THAT(has_pose(reports), Each(false));
@@ -73,6 +76,7 @@ TEST(Monocular, DoesNotStartDuringATurnOnTheSpotAndReportsWhy) {
 }
 
 TEST(Monocular, TracksATurnOnTheSpotInAMap) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   SimulatedMission mapping = turning_in_place(simulated_rig());
   Session session = session_of(one_camera(), offline_map_of(mapping));
   SimulationOptions options = noisy_visit(3);
@@ -81,6 +85,7 @@ TEST(Monocular, TracksATurnOnTheSpotInAMap) {
 }
 
 TEST(Monocular, HasTheScaleOfItsOfflineMap) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   Session session = session_of(one_camera(), offline_map_of(circling(simulated_rig(), 1.0, 1)));
   const SimulatedMission mission = circling(one_camera(), 1.0, 2);
   const auto reports = reports_of(session, mission.frames);
@@ -92,6 +97,7 @@ TEST(Monocular, HasTheScaleOfItsOfflineMap) {
 }
 
 TEST(Monocular, WaitsForRelocalisationInsteadOfASecondMap) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   SimulationOptions another_room = noisy_visit(2);
   another_room.seed = 99;
   Session session = session_of(one_camera(), offline_map_of(circling(simulated_rig(), 1.0, 1)));
@@ -107,6 +113,7 @@ double error_of(const Session& session, const SimulatedMission& mission) {
 }
 
 TEST(Monocular, ClosesItsLoopsAndMovesItsFramesAlong) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   SimulationOptions options = noisy_visit(2);
   options.landmarks = 5000;
   const SimulatedMission mission = simulate_mission(one_camera(), circling_trajectory(160, 10.0, 2.0, 1.33), options);

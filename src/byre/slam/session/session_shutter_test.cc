@@ -1,6 +1,7 @@
 // Sessions with a rolling shutter that the calibration does not model.
 
 #include "byre/alignment.h"
+#include "byre/base/sanitizer_scene.h"
 #include "byre/slam/calibration/rolling_scene.h"
 #include "byre/slam/session/session_scene.h"
 
@@ -55,6 +56,7 @@ RollingShutterOutcome outcome_of(const SimulatedMission& mission, bool has_map, 
 }
 
 TEST(SessionShutter, EstimatesTheReadoutTimeInAMission) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   const SimulatedMission mission = rolling(visit_by_rolling_shutter(2), kReadoutTime);
   const RollingShutterOutcome refined = outcome_of(mission, true, true), as_given = outcome_of(mission, true, false);
   EXPECT_NEAR(refined.readout_time, kReadoutTime, 2e-3);
@@ -62,6 +64,7 @@ TEST(SessionShutter, EstimatesTheReadoutTimeInAMission) {
 }
 
 TEST(SessionShutter, IsZeroForAGlobalShutter) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   for (const bool has_map : {true, false}) {
     const RollingShutterOutcome refined = outcome_of(visit_by_rolling_shutter(2), has_map, true),
                                 as_given = outcome_of(visit_by_rolling_shutter(2), has_map, false);
