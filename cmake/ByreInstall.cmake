@@ -15,20 +15,33 @@ function(byre_install_library)
   endif()
   foreach(component library IN ZIP_LISTS components libraries)
     if(component MATCHES "^(core|shared)$") # the two libraries that a program may link directly
-      target_sources(${library} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include FILES ${headers})
+      target_include_directories(${library} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     endif()
     install(TARGETS ${library} EXPORT byre_${component}
             ARCHIVE COMPONENT development
-            LIBRARY COMPONENT runtime NAMELINK_COMPONENT development
-            FILE_SET HEADERS COMPONENT development)
+            LIBRARY COMPONENT runtime NAMELINK_COMPONENT development)
     install(EXPORT byre_${component} NAMESPACE byre:: FILE byre_${component}.cmake DESTINATION ${package_dir}
             COMPONENT development)
   endforeach()
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/byre COMPONENT development)
   configure_package_config_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/byreConfig.cmake.in
                                 ${CMAKE_CURRENT_BINARY_DIR}/byreConfig.cmake INSTALL_DESTINATION ${package_dir})
   write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/byreConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/byreConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/byreConfigVersion.cmake
           DESTINATION ${package_dir} COMPONENT development)
+  if(TARGET byre_shared)
+    byre_install_pkg_config()
+  endif()
+endfunction()
+
+# byre.pc, for the shared library. Its prefix is relative to its own place, so that the installation can be moved.
+function(byre_install_pkg_config)
+  set(folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  file(RELATIVE_PATH to_prefix /prefix/${folder} /prefix)
+  string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
+  configure_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/byre.pc.in ${CMAKE_CURRENT_BINARY_DIR}/byre.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/byre.pc DESTINATION ${folder} COMPONENT development)
 endfunction()
 
 # byre's own data, vocabulary and benchmark protocols, at the location where base/data_file.cc searches for it.
@@ -56,4 +69,26 @@ function(byre_install_service)
   byre_install_dir(service_dir ${CMAKE_INSTALL_LIBDIR}/systemd/system lib/systemd/system program)
   install(FILES share/systemd/byre.service DESTINATION ${service_dir} COMPONENT program)
   install(DIRECTORY ros2 DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT program)
+endfunction()
+
+# Documentation, as HTML if mkdocs is installed, else as Markdown, with the examples and README.md at the place that
+# pages refer to.
+function(byre_install_docs)
+  set(folder ${CMAKE_INSTALL_DATADIR}/doc/byre-doc)
+  find_program(BYRE_MKDOCS mkdocs DOC "mkdocs, HTML pages of the documentation")
+  if(BYRE_MKDOCS)
+    set(site ${CMAKE_CURRENT_BINARY_DIR}/site)
+    file(GLOB_RECURSE pages CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/docs/*)
+    add_custom_command(OUTPUT ${site}/index.html DEPENDS ${pages} mkdocs.yml tools/site_links.py VERBATIM
+      COMMAND ${BYRE_MKDOCS} build --quiet --clean --config-file ${CMAKE_CURRENT_SOURCE_DIR}/mkdocs.yml --site-dir ${site}
+      COMMENT "Building the pages of the documentation")
+    add_custom_target(byre_docs ALL DEPENDS ${site}/index.html)
+    install(DIRECTORY ${site}/ DESTINATION ${folder}/html COMPONENT doc)
+    message(STATUS "mkdocs: found, for HTML pages of the documentation")
+  else()
+    install(DIRECTORY docs DESTINATION ${folder} COMPONENT doc)
+    message(STATUS "mkdocs: not found, documentation as Markdown instead of HTML (Debian: mkdocs)")
+  endif()
+  install(DIRECTORY examples DESTINATION ${folder} COMPONENT doc)
+  install(FILES README.md CHANGELOG.md DESTINATION ${folder} COMPONENT doc)
 endfunction()

@@ -41,6 +41,10 @@ function(byre_add_package component)
           EXCLUDE_FROM_ALL)
   install(FILES ${byre_debian_dir}/changelog.gz DESTINATION share/doc/${debian_PACKAGE} RENAME changelog.Debian.gz
           COMPONENT ${component} EXCLUDE_FROM_ALL OPTIONAL)
+  if(component STREQUAL program)
+    install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/README.md DESTINATION share/doc/${debian_PACKAGE} COMPONENT program
+            EXCLUDE_FROM_ALL)
+  endif()
   set(CPACK_COMPONENT_${upper}_DEPENDS ${debian_NEEDS} PARENT_SCOPE)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${debian_PACKAGE} PARENT_SCOPE)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${debian_SECTION} PARENT_SCOPE)
@@ -86,12 +90,18 @@ byre_add_package(runtime PACKAGE libbyre${PROJECT_VERSION_MAJOR} SECTION libs NE
   DESCRIPTION "${about}${processors}\n.\nThis package contains the shared library for programs on robots.")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=") # before 1.0 a minor version may break the interface
+set(byre_embree_package)
+if(BYRE_HAS_EMBREE)
+  set(byre_embree_package "libembree-dev, ")
+endif()
 byre_add_package(development PACKAGE libbyre-dev SECTION libdevel NEEDS runtime DEPENDS libeigen3-dev
-  RECOMMENDS "libceres-dev, libopencv-dev, libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libxxhash-dev, libhwy-dev, libdeflate-dev, libembree-dev, libsqlite3-dev, libzstd-dev, liblz4-dev, libbz2-dev, zlib1g-dev"
+  RECOMMENDS "libceres-dev, libopencv-dev, libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libxxhash-dev, libhwy-dev, libdeflate-dev, ${byre_embree_package}libsqlite3-dev, libzstd-dev, liblz4-dev, libbz2-dev, zlib1g-dev"
   SUMMARY "visual SLAM for robots - development files"
-  DESCRIPTION "${about}\n.\nThis package contains the headers, the CMake package, and the static\nlibraries, which need the recommended packages at link time.")
-if(BYRE_BUILD_PYTHON)
-  find_package(Python3 COMPONENTS Interpreter REQUIRED)
+  DESCRIPTION "${about}\n.\nThis package contains the headers, the CMake and pkg-config packages, and the\nstatic libraries, which need the recommended packages at link time.")
+byre_add_package(doc PACKAGE byre-doc SECTION doc ARCHITECTURE all
+  SUMMARY "visual SLAM for robots - documentation"
+  DESCRIPTION "${about}\n.\nThis package contains the documentation and examples of programs.")
+if(BYRE_HAS_PYBIND11)
   math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
   byre_add_package(python PACKAGE python3-byre SECTION python NEEDS data
     DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, ${byre_loaded}"
@@ -102,7 +112,7 @@ endif()
 # All targets that packages contain.
 get_property(components GLOBAL PROPERTY BYRE_COMPONENTS)
 list(TRANSFORM components PREPEND byre_component_)
-set(packaged byre_shared byre_manual byre_python ${components})
+set(packaged byre_shared byre_manual byre_python byre_docs ${components})
 add_custom_target(byre_packaged)
 foreach(target IN LISTS packaged)
   if(TARGET ${target})

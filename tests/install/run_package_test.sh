@@ -34,7 +34,7 @@ require_depends() { # PACKAGE NEEDED...
 }
 
 cpack --config "$build_dir/CPackConfig.cmake" -B "$packages" >"$work/cpack.log" 2>&1 || { cat "$work/cpack.log"; exit 1; }
-names=(byre byre-data libbyre0 libbyre-dev)
+names=(byre byre-data byre-doc libbyre0 libbyre-dev)
 [[ ! -f $build_dir/python/byre/__init__.py ]] || names+=(python3-byre)
 for name in "${names[@]}"; do
   [[ -f $(echo "$packages/$name"_*.deb) ]] || fail "missing package $name"
@@ -53,8 +53,7 @@ unset BYRE_DATA BYRE_VOCABULARY
 usr=$root/usr
 byre=$usr/bin/byre
 
-if grep -q '^BYRE_BUILD_NODE:BOOL=ON' "$build_dir/CMakeCache.txt"; then
-  [[ -f $usr/lib/systemd/system/byre.service ]] || fail "missing service"
+if [[ -f $usr/lib/systemd/system/byre.service ]]; then # was built
   "$byre" node --print-config >/dev/null || fail "byre node does not start"
 fi
 "$byre" --version
@@ -101,6 +100,10 @@ print("byre for Python", byre.__version__, "has", [slam.process(images).state fo
 PYTHON
 fi
 
+flags=$(PKG_CONFIG_PATH=$usr/lib/pkgconfig pkg-config --cflags --libs byre)
+[[ " $flags " == *"pkgconfig/../../include"* && " $flags " == *" -lbyre "* ]] || fail "pkg-config gives for byre: $flags"
+[[ -f $usr/share/doc/byre/README.md ]] || fail "byre has no README.md"
+[[ -f $usr/share/doc/byre-doc/examples/CMakeLists.txt ]] || fail "byre-doc has no examples"
 for name in "${names[@]}"; do
   [[ -f $usr/share/doc/$name/copyright ]] || fail "$name has no licence"
 done

@@ -19,7 +19,8 @@ using Action = std::function<ExitCode(std::ostream& result)>;
 // Declares all commands; parsing sets the action of the one given.
 void declare_commands(CLI::App& app, Action& action);
 
-// Each declares the options of a command, in the folder of its name. Call the returned action after parsing.
+// Each declares the options of a command, in the folder of its name. Call the returned action after parsing. A command
+// that needs a library absent from this build fails with an error (absent.cc).
 Action declare_demo(CLI::App& command);
 Action declare_map(CLI::App& command);
 Action declare_run(CLI::App& command);
@@ -32,7 +33,7 @@ Action declare_scale(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
 Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
-Action declare_node(CLI::App& command);  // only if built with ROS 2
+Action declare_node(CLI::App& command);
 Action declare_register(CLI::App& command);
 Action declare_draw(CLI::App& command);
 Action declare_view(CLI::App& command);

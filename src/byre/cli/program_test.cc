@@ -111,10 +111,6 @@ TEST_F(Program, ListsTheChoicesOfAnOption) {
       {evaluate + "--alignment rigid", "--alignment: 'rigid' is not one of: none, origin, se3, sim3"},
       {evaluate + "--label best", "--label: 'best' is not one of: causal, final"},
       {evaluate + "--frames-of . --estimate-of x", "--estimate-of: 'x' is not one of: body, camera"},
-      {"simulate cowshed --time night", "--time: 'night' is not one of: day, dusk"},
-      {"simulate cowshed --gate ajar", "--gate: 'ajar' is not one of: closed, open"},
-      {"simulate cowshed --turn u", "--turn: 'u' is not one of: arc, spot"},
-      {"simulate cowshed --imperfection bad", "--imperfection: 'bad' is not one of: exact, good, worn"},
       {"completion fish", "SHELL: 'fish' is not one of: bash, zsh"},
   };
   for (const auto& [arguments, message] : cases) {

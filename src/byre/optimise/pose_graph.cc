@@ -80,7 +80,7 @@ ceres::Problem::Options non_owning_problem_options() {
   ceres::Problem::Options options;
   options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  keep_manifolds(options);
   options.disable_all_safety_checks = true;
   return options;
 }
@@ -145,7 +145,7 @@ class CeresGraph {
 
   void set_freedom(ceres::Problem& problem, std::size_t index, const PoseGraphNode& node, bool moves) {
     const auto [rotation, position, log_scale] = nodes_[index].addresses();
-    problem.SetManifold(rotation, &manifold_);
+    set_manifold(problem, rotation, manifold_);
     if (!moves) problem.SetParameterBlockConstant(rotation);
     if (!moves) problem.SetParameterBlockConstant(position);
     const bool has_free_scale = options_.scale_is_free && !node.scale_is_known && (moves || is_metric_);

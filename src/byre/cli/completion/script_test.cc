@@ -167,8 +167,7 @@ TEST_F(Completion, CompletesInZsh) {
            {"byre map --caus", "byre map --causal-trajectory="},
            {"byre map --pace inl", "byre map --pace inline "},
            {"byre map --pace=inl", "byre map --pace=inline "},
-           {"byre simulate cow", "byre simulate cowshed "},
-           {"byre simulate cowshed --gate op", "byre simulate cowshed --gate open "},
+           {"byre vocabulary tra", "byre vocabulary train "},
            {"byre map bar", "byre map barn_2/"},
            {"byre completion z", "byre completion zsh "}}) {
     EXPECT_EQ(in_zsh(line), completed);

@@ -2,8 +2,6 @@
 
 #include "byre/base/report_row.h"
 #include "byre/calibration_file.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/run_with_progress.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/geometry/baseline.h"
@@ -15,7 +13,6 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -33,24 +30,6 @@ Calibration scaled_calibration(Calibration calibration, bool has_metric_map, Sca
 
 }  // namespace
 
-void declare_live_options(CLI::App& command, LiveOptions& options, MethodArguments& arguments) {
-  CLI::Option* const live =
-      add_text(command, "--live", options.cameras.devices,
-               std::string("Live cameras instead of a recording. ") + kDevicesHelp + ". Needs --calibration")
-          ->type_name("DEVICE");
-  live->each([&arguments](const std::string&) { arguments.is_live = true; });
-  for (const char* const name :
-       {"RECORDING", "--camera", "--fps", "--left", "--right", "--start", "--end", "--frames", "--stride", "--wheels",
-        "--no-wheels", "--gyroscope", "--wheels-topic", "--imu-topic", "--pair-tolerance"}) {
-    live->excludes(command.get_option(name));
-  }
-  command.add_option("--duration", options.duration_s, "End this long after the first frame (default: Ctrl-C)")
-      ->type_name("SECONDS")
-      ->check(between(0.01, 1e9))
-      ->needs(live);
-  declare_camera_options(command, options.cameras, live);
-}
-
 void require_one_input(const std::filesystem::path& recording, const LiveOptions& live, const OpenOptions& open) {
   if (recording.empty() && !live.is_wanted()) {
     throw CLI::ValidationError("RECORDING", "give a recording, or cameras (--live /dev/video0)");
@@ -67,19 +46,17 @@ RunInput::RunInput(Choice choice) : choice_(std::move(choice)) {
     return;
   }
   const std::filesystem::path& file = *choice_.open.calibration;
-  // Shown even if quiet, as it needs attention.
   const auto on_note = [](const std::string& note) {
     show_warnings(std::cerr, {note});
   };  // shown even if quiet, as it needs attention
   const Calibration calibration =
       with_checked_baseline(read_calibration(file), choice_.open.baseline, file.string(), "--baseline ");
-  live_ = std::make_unique<LiveFrames>(choice_.live.cameras.live(),
-                                       scaled_calibration(calibration, choice_.has_metric_map, scaled_), file.string(),
-                                       choice_.live.duration_s, on_note);
+  live_ =
+      open_live(choice_.live, scaled_calibration(calibration, choice_.has_metric_map, scaled_), file.string(), on_note);
 }
 
 const Calibration& RunInput::calibration() const {
-  return live_ ? live_->calibration() : scaled_.recording->calibration();
+  return live_ ? live_->frames->calibration() : scaled_.recording->calibration();
 }
 
 void RunInput::show_check() const {
@@ -95,7 +72,7 @@ void RunInput::show_check() const {
 void RunInput::describe(MapProtocol& protocol) const {
   protocol.is_metric = scaled_.is_metric;
   if (live_) {
-    protocol.recording = choice_.live.cameras.name();
+    protocol.recording = choice_.live.name();
     protocol.format.reset();
     protocol.camera = calibration().right ? CameraChoice::stereo : CameraChoice::left;
     return;
@@ -126,7 +103,7 @@ void RunInput::note_frames(const MapRun& run, MapProtocol& protocol) const {
 }
 
 MapRun RunInput::play(Slam& slam, const MapRunHooks& hooks, const InterruptCatcher& interrupt) {
-  if (live_) return play_with_progress(slam, *live_, hooks, interrupt, choice_.quiet);
+  if (live_) return play_with_progress(slam, *live_->frames, hooks, interrupt, choice_.quiet);
   MapRun run = play_with_progress(slam, *scaled_.recording, hooks, interrupt, choice_.quiet);
   for (const MotionWarning& warning : run.motion_warnings) {
     run.warnings.push_back(to_text(warning, motion_source(choice_.recording, choice_.open, warning.sensor)));
@@ -135,9 +112,7 @@ MapRun RunInput::play(Slam& slam, const MapRunHooks& hooks, const InterruptCatch
 }
 
 std::string RunInput::report() {
-  if (!live_) return "";
-  const LiveCameraReport cameras = live_->finish();
-  return to_text(cameras) + row("skipped", fmt::format("{} frames, replaced by newer ones", live_->skipped()));
+  return live_ ? live_->report() : "";
 }
 
 }  // namespace byre::cli

@@ -1,9 +1,7 @@
 #pragma once
 
-#include "byre/camera/live_frames.h"
-#include "byre/cli/shared/camera_options.h"
 #include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/method_arguments.h"
+#include "byre/cli/shared/live_input.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/report/run_report.h"
@@ -14,24 +12,7 @@
 #include <optional>
 #include <string>
 
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
-
 namespace byre::cli {
-
-// --live with its options: cameras instead of a recording.
-struct LiveOptions {
-  CameraOptions cameras;
-  std::optional<double> duration_s;
-
-  bool is_wanted() const { return !cameras.devices.empty(); }
-};
-
-// Declares --live, --duration and the options of cameras, which are played at live pace unless --pace is given.
-// Options of recordings, declared before, exclude them. The options must outlive the parsing of the command line.
-void declare_live_options(CLI::App& command, LiveOptions& options, MethodArguments& arguments);
 
 // Throws CLI::ValidationError unless there is either a recording, or live cameras with a calibration.
 void require_one_input(const std::filesystem::path& recording, const LiveOptions& live, const OpenOptions& open);
@@ -72,7 +53,7 @@ class RunInput {
  private:
   Choice choice_;  // constant after construction
   ScaledRecording scaled_;
-  std::unique_ptr<LiveFrames> live_;
+  std::optional<LiveInput> live_;
 };
 
 }  // namespace byre::cli

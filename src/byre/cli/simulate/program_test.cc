@@ -116,5 +116,19 @@ TEST_F(SimulateProgram, RejectsWrongUsage) {
   EXPECT_EQ(run("simulate stable -o barn").exit_code, 2);
 }
 
+TEST_F(SimulateProgram, ListsTheChoicesOfAnOption) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"--time night", "--time: 'night' is not one of: day, dusk"},
+      {"--gate ajar", "--gate: 'ajar' is not one of: closed, open"},
+      {"--turn u", "--turn: 'u' is not one of: arc, spot"},
+      {"--imperfection bad", "--imperfection: 'bad' is not one of: exact, good, worn"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = run("simulate cowshed " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.errors, HasSubstr(message)) << arguments;
+  }
+}
+
 }  // namespace
 }  // namespace byre::cli

@@ -29,6 +29,32 @@ RTCGeometry geometry_of(RTCDevice device, const QuadMesh& begin, const QuadMesh&
   return geometry;
 }
 
+#if RTC_VERSION_MAJOR >= 4
+void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8& rays) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
+
+void find_occlusion(RTCScene scene, RTCRay& ray) {
+  rtcOccluded1(scene, &ray);
+}
+#else
+void intersect_coherent(const int* valid, RTCScene scene, RTCRayHit8& rays) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &context, &rays);
+}
+
+void find_occlusion(RTCScene scene, RTCRay& ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
 }  // namespace
 
 RayScene::RayScene(const QuadMesh& begin, const QuadMesh& end, unsigned id, Build build) {
@@ -47,10 +73,7 @@ RayScene::RayScene(const QuadMesh& begin, const QuadMesh& end, unsigned id, Buil
 }
 
 void RayScene::intersect(const int* valid, RTCRayHit8& rays) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(valid, scene_.get(), &context, &rays);
+  intersect_coherent(valid, scene_.get(), rays);
 }
 
 bool RayScene::is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) const {
@@ -66,9 +89,7 @@ bool RayScene::is_free(const Eigen::Vector3f& from, const Eigen::Vector3f& to) c
   ray.tnear = kEnd;
   ray.tfar = 1.0f - kEnd;
   ray.mask = ~0u;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene_.get(), &context, &ray);
+  find_occlusion(scene_.get(), ray);
   return ray.tfar >= 0.0f;  // Embree sets tfar to minus infinity on a hit
 }
 
