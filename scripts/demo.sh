@@ -19,8 +19,8 @@ mkdir -p "$results"
 results=$(cd "$results" && pwd)
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-scripts/build.sh release byre_cli
-byre=build/release/src/byre/cli/byre
+scripts/build.sh demo byre_cli
+byre=build/demo/src/byre/cli/byre
 
 if [[ -z $recording ]]; then
   rm -rf "$results/cowshed" # written only by the command below

@@ -1,41 +1,70 @@
 #!/usr/bin/env bash
-# Installs the dependencies for building and testing byre, on Debian 12 or systems with the same package names.
-# Keeps installed packages; does nothing if none is missing. Installation needs root or sudo.
+# Installs dependencies of byre, on Debian 12 and 13 or systems with the same package names. Keeps installed packages;
+# does nothing if none is missing. Installation needs root or sudo.
+# Usage: install-dependencies.sh [all | packages | demo]
+#   all        for building and testing everything (default)
+#   packages   for building the Debian packages
+#   demo       for building and running the program, without ROS 2
 set -euo pipefail
+
+scope=${1:-all}
+if (($# > 1)) || [[ ! $scope =~ ^(all|packages|demo)$ ]]; then
+  echo "usage: install-dependencies.sh [all | packages | demo]" >&2
+  exit 2
+fi
 
 packages=(
   # build
-  g++ cmake ninja-build ccache git
-  # library. OpenCV's CMake files are only in libopencv-dev, not in the packages of single modules.
+  g++ cmake ninja-build
+  # library. OpenCV's CMake files are only in libopencv-dev, not in the packages of single modules. libembree-dev is
+  # Embree 3 in Debian 12, and Embree 4 in Debian 13.
   libeigen3-dev libopencv-dev libceres-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev
   libdeflate-dev libembree-dev libboost-dev
   # bags
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
   # program
   libcli11-dev python3
-  # byre node, and its tests with an MQTT broker and another DDS, whose type generator needs Java
-  cyclonedds-dev libsystemd-dev libmosquitto-dev
-  mosquitto
-  libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
-  # Python package
-  pybind11-dev python3-dev python3-numpy python3-pytest python3-pip python3-wheel
-  # Debian packages
-  dpkg-dev file
-  # tests, fuzzing, benchmarks, rules
-  libgtest-dev libgmock-dev libbenchmark-dev valgrind clang-format zsh
-  # sanitizers and fuzzing; sanitized tests take less than half the time of those by g++ 12
-  clang-16 libclang-rt-16-dev
-  # tests of bags written by other software
-  python3-rosbag python3-sensor-msgs python3-tf2-msgs
 )
-# Packages for browser tests, which are skipped without them. Node may come from another source: Debian's npm conflicts with other
-# Node packages.
-browser_packages=(chromium)
-command -v node >/dev/null || browser_packages+=(nodejs)
-command -v npm >/dev/null || browser_packages+=(npm)
+if [[ $scope != demo ]]; then
+  packages+=(
+    # byre node
+    cyclonedds-dev libsystemd-dev libmosquitto-dev
+    # Python package
+    pybind11-dev python3-dev
+    # Debian packages
+    dpkg-dev file mkdocs
+  )
+fi
+# Packages without which some tests are left out or skipped; installed if apt knows them.
+test_packages=()
+if [[ $scope == all ]]; then
+  packages+=(
+    ccache git
+    # tests, fuzzing, benchmarks, rules
+    python3-numpy python3-pytest python3-pip python3-wheel pkg-config
+    libgtest-dev libgmock-dev libbenchmark-dev valgrind clang-format zsh
+  )
+  test_packages+=(
+    # byre node with an MQTT broker and another DDS, whose type generator needs Java
+    mosquitto libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
+    # sanitizers and fuzzing; sanitized tests take less than half the time of those by g++ 12
+    clang-16 libclang-rt-16-dev
+    # bags written by other software
+    python3-rosbag python3-sensor-msgs python3-tf2-msgs
+    # browser
+    chromium
+  )
+  # Node may come from another source: Debian's npm conflicts with other Node packages.
+  command -v node >/dev/null || test_packages+=(nodejs)
+  command -v npm >/dev/null || test_packages+=(npm)
+fi
 
 is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+is_known() { # to apt
+  apt-cache policy "$1" | grep -q '^  Candidate: [^(]'
 }
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -47,17 +76,17 @@ missing=()
 for package in "${packages[@]}"; do
   is_installed "$package" || missing+=("$package")
 done
-missing_for_browser=()
-for package in "${browser_packages[@]}"; do
-  is_installed "$package" || missing_for_browser+=("$package")
+missing_for_tests=()
+for package in "${test_packages[@]}"; do
+  is_installed "$package" || { is_known g++ && ! is_known "$package"; } || missing_for_tests+=("$package")
 done
-((${#missing[@]} + ${#missing_for_browser[@]})) || exit 0
+((${#missing[@]} + ${#missing_for_tests[@]})) || exit 0
 
 as_root=()
 if ((EUID != 0)); then
   command -v sudo >/dev/null || {
     echo "install-dependencies: neither root nor sudo available; missing packages:" \
-      "${missing[@]}" "${missing_for_browser[@]}" >&2
+      "${missing[@]}" "${missing_for_tests[@]}" >&2
     ((${#missing[@]})) && exit 1 || exit 0
   }
   as_root=(sudo)
@@ -70,5 +99,10 @@ install() {
 
 "${as_root[@]}" apt-get update --quiet
 ((${#missing[@]} == 0)) || install "${missing[@]}"
-((${#missing_for_browser[@]} == 0)) || install "${missing_for_browser[@]}" ||
-  echo "install-dependencies: cannot install ${missing_for_browser[*]}: browser tests will be skipped" >&2
+for package in "${missing_for_tests[@]}"; do # one by one, as some may conflict with installed packages
+  if ! is_known "$package"; then
+    echo "install-dependencies: no package $package in this release: some tests are left out or skipped" >&2
+  elif ! install "$package"; then
+    echo "install-dependencies: cannot install $package: some tests are left out or skipped" >&2
+  fi
+done
