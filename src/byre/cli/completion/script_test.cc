@@ -162,14 +162,14 @@ TEST_F(Completion, CompletesInZsh) {
   if (!has_zsh()) GTEST_SKIP() << "no zsh here";
   std::filesystem::create_directories(folder_ / "barn_2");
   write("barn_2/image.png", "");
-  for (const auto& [line, completed] : std::vector<std::pair<std::string, std::string>>{
-           {"byre valid", "byre validate "},
-           {"byre map --caus", "byre map --causal-trajectory="},
-           {"byre map --pace inl", "byre map --pace inline "},
-           {"byre map --pace=inl", "byre map --pace=inline "},
-           {"byre vocabulary tra", "byre vocabulary train "},
-           {"byre map bar", "byre map barn_2/"},
-           {"byre completion z", "byre completion zsh "}}) {
+  for (const auto& [line, completed] :
+       std::vector<std::pair<std::string, std::string>>{{"byre valid", "byre validate "},
+                                                        {"byre map --caus", "byre map --causal-trajectory="},
+                                                        {"byre map --pace inl", "byre map --pace inline "},
+                                                        {"byre map --pace=inl", "byre map --pace=inline "},
+                                                        {"byre vocabulary tra", "byre vocabulary train "},
+                                                        {"byre map bar", "byre map barn_2/"},
+                                                        {"byre completion z", "byre completion zsh "}}) {
     EXPECT_EQ(in_zsh(line), completed);
   }
 }
