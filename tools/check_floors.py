@@ -218,6 +218,7 @@ OPENING = re.compile(
     r"namespace(?:\s+(?P<namespace>[\w:]+))?\s*\{"
     r"|\b(?:struct|class|enum(?:\s+class)?)\s+(?P<type>\w+)\s*(?:final\s*)?(?::[^:;{(][^;{(]*)?\{"
     r"|(?<=\n)(?:inline\s+)?const(?:expr)?\s[^;=({]*\b(?P<constant>k[A-Z]\w*)"
+    r"|(?<=\n)using\s+(?P<alias>\w+)\s*=(?P<target>[^;]*);"
     r"|(?<=\n)(?!return|using|template|static_assert|#)[A-Za-z_][^\n;{}=()]*[\s&*](?P<function>\w+)"
     r"\((?:const\s+)?(?P<taken>[\w:]*)"
     r"|[{}]")
@@ -227,20 +228,22 @@ ANONYMOUS = "{anonymous}"
 
 
 # Declarations and definitions of a file at namespace scope, each as qualified name and line: types, constants, and
-# functions, marked by "()", with the type of the first parameter inside if it is one of byre.
+# functions, marked by "()", with the type of the first parameter inside if it is one of byre. Aliases have "=" and their
+# type behind the name.
 def definitions(text: str) -> Iterator[tuple[str, int]]:
     code = "\n".join(without_strings(line) for line in without_comments(text).split("\n"))
     code = re.sub(r"'(?:\\.|[^'\\\n])'", "' '", code)
     scopes = []
     for found in OPENING.finditer(code):
-        name = found["type"] or found["constant"] or found["function"]
+        name = found["type"] or found["constant"] or found["function"] or found["alias"]
         is_overload = found["function"] and re.match("[A-Z](?!igen::)|ros::", found["taken"])
         if name and None not in scopes:
             mark = f"({found['taken'] if is_overload else ''})" if found["function"] else ""
+            mark = "=" + "".join(found["target"].split()) if found["alias"] else mark
             yield "::".join([*scopes, name]) + mark, code.count("\n", 0, found.start()) + 1
         if found[0] == "}":
             del scopes[-1:]
-        elif not found["constant"] and not found["function"]:
+        elif found["type"] or found[0].startswith("namespace") or found[0] == "{":
             is_namespace = found[0].startswith("namespace")
             scopes.append((found["namespace"] or ANONYMOUS) if is_namespace else None)
 
@@ -259,7 +262,7 @@ def faults_of_names(paths: list[pathlib.Path], is_wanted, first: dict[str, pathl
 
 
 def twice_defined_faults(headers: list[pathlib.Path]) -> Iterator[Fault]:
-    return faults_of_names(headers, lambda name: ANONYMOUS not in name and not name.endswith(")"), {},
+    return faults_of_names(headers, lambda name: ANONYMOUS not in name and not re.search(r"[)=]", name), {},
                            "rename one of them")
 
 

@@ -11,6 +11,7 @@ Prints the group of each file, counted from 0, one line a file. CMake calls it w
 that another file of the group has, which the compiler reports as redefined, configure again.
 """
 import pathlib
+import re
 import sys
 
 import check_floors
@@ -22,10 +23,19 @@ def names_of(path: pathlib.Path, source: pathlib.Path, public: pathlib.Path) -> 
     seen = set()
     for header in check_floors.headers_of([path], source, public):
         for full_name, _ in check_floors.definitions_in(header):
-            name, mark, taken = full_name.partition("(")
-            scope, _, name = name.rpartition("::")
-            seen.add(f"{scope}::{check_floors.ANONYMOUS}::{name}{mark}{taken}")
+            scope_and_name, mark = re.fullmatch(r"([^(=]*)(.*)", full_name).groups()
+            scope, _, name = scope_and_name.rpartition("::")
+            seen.add(f"{scope}::{check_floors.ANONYMOUS}::{name}{mark}")
     return frozenset(own), frozenset(seen)
+
+
+def clash(some: set, others: set) -> bool:
+    """Whether both have a name in common; an alias only clashes with an alias of another type."""
+    if any("=" not in name for name in some & others):
+        return True
+    types = dict(name.split("=", 1) for name in others if "=" in name)
+    return any(types.get(alias, type_) != type_ for alias, type_ in
+               (name.split("=", 1) for name in some if "=" in name))
 
 
 def groups_of(files: list[pathlib.Path], size: int, source: pathlib.Path, public: pathlib.Path) -> list[int]:
@@ -35,7 +45,7 @@ def groups_of(files: list[pathlib.Path], size: int, source: pathlib.Path, public
     for path in files:
         own, seen = names_of(path, source, public)
         fits = (i for i, (count, owned, declared) in enumerate(groups)
-                if count < size and not own & (owned | declared) and not seen & owned)
+                if count < size and not clash(own, owned | declared) and not clash(seen, owned))
         chosen.append(next(fits, len(groups)))
         if chosen[-1] == len(groups):
             groups.append([0, set(), set()])

@@ -45,6 +45,12 @@ class UnityGroupsTest(unittest.TestCase):
                  self.write("map/e.cc", LOCAL % "int size(double x) {\n}")]
         self.assertEqual([0, 0, 1, 0, 1], self.groups(files))
 
+    def test_aliases_of_one_type_may_share_a_group(self):
+        files = [self.write("map/a.cc", LOCAL % "using Json = nlohmann::json;"),
+                 self.write("map/b.cc", LOCAL % "using Json = nlohmann::ordered_json;"),
+                 self.write("map/c.cc", LOCAL % "using Json = nlohmann::json;")]
+        self.assertEqual([0, 1, 0], self.groups(files))
+
     def test_a_local_name_is_apart_from_files_whose_headers_declare_it(self):
         self.write("geometry/pose.h", "namespace byre {\n\nconstexpr double kFar = 1;\nPose inverse(int x);\n}\n")
         self.write("map/map.h", '#include "byre/geometry/pose.h"\n')

@@ -16,6 +16,10 @@ Map map_of(int points) {
   return map;
 }
 
+StoredMap no_metadata() {
+  return {};
+}
+
 TEST(Autosave, SavesTheMapAsOffered) {
   std::vector<int> saved;
   Autosave autosave(0.0, [&saved](const StoredMap& stored) { saved.push_back(stored.map.point_count()); });

@@ -132,7 +132,9 @@ TEST(RunMap, StopsAfterTheCurrentFrame) {
 
 TEST(RunMap, InterruptsFinishingWhenStopped) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
-  Slam slam = Slam::mapping(recording->calibration(), {.workers = Workers::repeatable});
+  SlamOptions options;
+  options.workers = Workers::repeatable;
+  Slam slam = Slam::mapping(recording->calibration(), options);
   bool stopped = false;
   MapRunHooks hooks;
   hooks.should_stop = [&stopped] { return stopped; };
@@ -151,8 +153,9 @@ TEST(RunMap, OffersTheMapFromTheFirstPose) {
   hooks.should_stop = [] { return false; };
   hooks.after_frame = [](int, const MappedFrame&) {};
   hooks.on_map_update = [&keyframes](const SlamImpl& slam) { keyframes.push_back(slam.online().keyframe_count()); };
-  Slam slam =
-      Slam::mapping(recording->calibration(), {.workers = Workers::repeatable, .settings = {{"loops.close", "false"}}});
+  SlamOptions options;
+  options.settings = {{"loops.close", "false"}};
+  Slam slam = Slam::mapping(recording->calibration(), options);
   const MapRun mapped = play(slam, *recording, hooks);
   EXPECT_THAT(keyframes, SizeIs(6));
   EXPECT_THAT(keyframes, Each(Gt(0)));
