@@ -46,7 +46,7 @@ std::string cell_with_range(const std::vector<Json>& runs, const Json& median, c
   const auto shown = [digits](double value) { return fmt::format("{:.{}f}", value, digits); };
   std::vector<double> values;
   for (const Json& run : runs) {
-    if (!run.at(key).is_null()) values.push_back(run.at(key));
+    if (!run.at(key).is_null()) values.push_back(run.at(key).get<double>());
   }
   if (median.at(key).is_null()) return kEmptyCell;
   const std::string text = shown(median.at(key));
