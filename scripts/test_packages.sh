@@ -38,7 +38,7 @@ $builds || compgen -G 'build/packages/byre_*.deb' >/dev/null || {
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/byre
 if ((EUID != 0)); then
   command -v sudo >/dev/null || skip "chroots need root, and there is no sudo"
-  exec sudo --preserve-env=http_proxy,https_proxy XDG_CACHE_HOME="${cache%/byre}" "$0" "$@"
+  exec sudo --preserve-env=http_proxy,https_proxy XDG_CACHE_HOME="${cache%/byre}" scripts/test_packages.sh "$@"
 fi
 mirror=http://deb.debian.org/debian
 reached=$(mktemp)
@@ -80,7 +80,7 @@ if $builds; then
   echo "Building packages of HEAD in $release"
   make_root "$work/build"
   mkdir "$work/build/test"
-  git archive HEAD | tar --extract --directory "$work/build/test"
+  git -c safe.directory="$PWD" archive HEAD | tar --extract --directory "$work/build/test"
   run_in "$work/build" scripts/install-dependencies.sh packages
   run_in "$work/build" cmake --preset demo
   run_in "$work/build" cmake --build --preset demo --target byre_packaged
