@@ -166,6 +166,11 @@ void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
                   "Turns at the ends of the alley: arc into the adjacent lane, or on the spot (arc)")
       ->type_name("arc|spot")
       ->transform(one_of(turns));
+  command
+      .add_option("--start", options.start,
+                  "Start of the drive as a share of the lap (0 in mission 1, a little more in later ones)")
+      ->type_name("SHARE")
+      ->check(between(0.0, 1.0));
   command.add_option("--rate", options.frame_rate_hz, "Stereo pairs per second")
       ->type_name("HZ")
       ->check(between(1.0, 200.0))

@@ -3,6 +3,7 @@
 #include "byre/simulation/cowshed/barn_light.h"
 #include "byre/simulation/cowshed/scene_renderer.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -58,6 +59,9 @@ struct MovableObject {
   Eigen::Vector3f position;  // position of its foot in the world
   float yaw = 0.0f;          // radians
 };
+
+// Corners of the rectangle along the object's axes that contains it seen from above; counter-clockwise, in the world.
+std::array<Eigen::Vector2f, 4> footprint_of(const MovableObject& object);
 
 struct Cow {
   bool walks = false;  // true: walks up and down the alley; false: stands and eats

@@ -103,6 +103,18 @@ std::vector<MovableObject> make_objects(const CowshedOptions& options) {
   return objects;
 }
 
+std::array<Eigen::Vector2f, 4> footprint_of(const MovableObject& object) {
+  QuadMesh mesh;
+  add_object(mesh, {object.kind, Vector3f::Zero(), 0.0f});
+  Eigen::AlignedBox2f box;
+  for (const Vector3f& vertex : mesh.vertices) box.extend(vertex.head<2>());
+  const Eigen::Rotation2Df turned(object.yaw);
+  std::array<Eigen::Vector2f, 4> corners = {
+      box.min(), {box.max().x(), box.min().y()}, box.max(), {box.min().x(), box.max().y()}};
+  for (Eigen::Vector2f& corner : corners) corner = object.position.head<2>() + turned * corner;
+  return corners;
+}
+
 void add_object(QuadMesh& mesh, const MovableObject& object) {
   const Isometry3f world_from_object = make_isometry(object.position, object.yaw);
   const auto variant = static_cast<std::uint64_t>(std::lround(1000.0f * std::abs(object.yaw)));

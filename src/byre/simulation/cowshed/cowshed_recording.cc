@@ -23,6 +23,7 @@ const CowshedRecordingOptions& checked(const CowshedRecordingOptions& options) {
     if (!holds) throw InputError("simulated cowshed", reason);
   };
   require(options.duration_s > 0.0 && options.duration_s <= 36000.0, "the duration must be from 0 to 36000 seconds");
+  require(!options.start || (*options.start >= 0.0 && *options.start <= 1.0), "the start must be from 0 to 1");
   require(options.frame_rate_hz >= 1.0 && options.frame_rate_hz <= 200.0, "the frame rate must be from 1 to 200 Hz");
   require(options.image_divisor >= 1 && options.image_divisor <= 16, "the image divisor must be from 1 to 16");
   require(!options.image_size || std::ranges::all_of(*options.image_size, [](int n) { return n >= 32 && n <= 4096; }),
@@ -82,11 +83,13 @@ FeedingCourseOptions course_of(const CowshedRecordingOptions& options) {
   }
   const auto mission = static_cast<std::uint64_t>(options.barn.mission);
   course.seed = hash(options.barn.seed, mission, 3);
+  course.start = options.start.value_or(0.0);
   if (options.barn.mission == 1) return course;
   SeededDraws draws(course.seed, 51);
   course.shift_y = draws.between(-0.15f, 0.15f);
   course.lane_distance += draws.between(-0.12f, 0.12f);
-  course.start = draws.between(0.02f, 0.08f);
+  const double drawn_start = draws.between(0.02f, 0.08f);
+  course.start = options.start.value_or(drawn_start);
   course.cruise_speed *= draws.between(0.93f, 1.07f);
   return course;
 }

@@ -26,6 +26,7 @@ struct CowshedRecordingOptions {
   CowshedOptions barn;
   double duration_s = 40.0;
   TurnKind turn = TurnKind::arc;
+  std::optional<double> start{};  // start position on the lap, 0 to 1; empty: near 0, drawn for each later mission
   double frame_rate_hz = 20.0;
   int image_divisor = 1;                           // 1: 752 x 480 pixels
   std::optional<std::array<int, 2>> image_size{};  // width, height in pixels; empty: by the divisor

@@ -287,6 +287,19 @@ TEST(CowshedVisits, DoNotDriveThroughObjects) {
   }
 }
 
+TEST(CowshedVisits, StartWhereRequested) {
+  CowshedRecordingOptions options;
+  options.barn.mission = 2;
+  options.start = 0.75;
+  const FeedingCourseOptions course = course_of(options);
+  EXPECT_EQ(course.start, 0.75);
+  options.start.reset();
+  EXPECT_LT(course_of(options).start, 0.1);
+  EXPECT_EQ(course_of(options).shift_y, course.shift_y);
+  options.start = 1.5;
+  EXPECT_THROW(CowshedRecording{options}, InputError);
+}
+
 TEST(CowshedVisits, EnterTheFeedStoreThroughTheOpenGate) {
   const auto farthest = [](BarnGate gate) {
     CowshedRecordingOptions options;

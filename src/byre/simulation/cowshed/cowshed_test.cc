@@ -59,6 +59,24 @@ TEST(Cowshed, KeepsThePathOfTheRobotFree) {
   }
 }
 
+TEST(Cowshed, HasFootprintsThatContainItsObjects) {
+  constexpr float kMargin = 1e-4f;  // metres
+  for (const MovableObject& object : build_cowshed({.mission = 1}).objects) {
+    const std::array<Vector2f, 4> corners = footprint_of(object);
+    QuadMesh mesh;
+    add_object(mesh, object);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vector2f side = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
+      const Vector2f inwards(-side.y(), side.x());
+      float nearest = 1.0f;
+      for (const Eigen::Vector3f& vertex : mesh.vertices) {
+        nearest = std::min(nearest, inwards.dot(vertex.head<2>() - corners[i]));
+      }
+      EXPECT_NEAR(nearest, 0.0f, kMargin) << "side " << i << " of kind " << static_cast<int>(object.kind);
+    }
+  }
+}
+
 TEST(Cowshed, HasLampsAndLittleDaylightAtDusk) {
   const Cowshed day = build_cowshed({.mission = 1});
   const Cowshed dusk = build_cowshed({.mission = 2});
