@@ -38,6 +38,10 @@ bool is_of_pixels(std::string_view type) {
 
 }  // namespace
 
+std::vector<std::uint8_t> png_signature() {
+  return {kSignature.begin(), kSignature.end()};
+}
+
 bool is_png(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= kSignature.size() && std::ranges::equal(bytes.first<kSignature.size()>(), kSignature);
 }
@@ -54,7 +58,7 @@ std::optional<std::vector<PngChunk>> png_chunks(std::span<const std::uint8_t> by
 }
 
 std::vector<std::uint8_t> png_of_pixels(std::span<const PngChunk> chunks) {
-  std::vector<std::uint8_t> pixels(kSignature.begin(), kSignature.end());
+  std::vector<std::uint8_t> pixels = png_signature();
   for (const PngChunk& chunk : chunks) {
     if (is_of_pixels(chunk.type())) pixels.insert(pixels.end(), chunk.bytes.begin(), chunk.bytes.end());
   }

@@ -8,6 +8,8 @@
 
 namespace byre {
 
+std::vector<std::uint8_t> png_signature();  // the first bytes of a file
+
 bool is_png(std::span<const std::uint8_t> bytes);
 
 // A chunk of a PNG file (PNG specification, section 5).
