@@ -165,8 +165,8 @@ PictureSymbols symbols_of(const std::vector<SeenPoint>& seen, const SeenKind& ki
   return symbols;
 }
 
-Pane image_pane(const FrameScene& scene) {
-  const double scale = scale_of(scene.left);
+Pane image_pane(const FrameScene& scene, int width) {
+  const double scale = width > 0 ? static_cast<double>(width) / scene.left.width : scale_of(scene.left);
   Pane pane;
   pane.width = static_cast<int>(std::lround(scale * scene.left.width));
   pane.height = static_cast<int>(std::lround(scale * scene.left.height));
@@ -228,7 +228,7 @@ Pane health_panel(const std::string& title, State state, const Health& health, c
 
 Picture camera_picture(const FrameScene& scene, const CameraPictureOptions& options) {
   assert(scene.left.width > 0 && scene.left.height > 0);
-  Picture picture = picture_of(image_pane(scene));
+  Picture picture = picture_of(image_pane(scene, options.width));
   if (!options.panel) return picture;
   const FrameReport& report = scene.report;
   Picture panel = vconcat(picture_of(health_panel(options.title, report.state, report.health, options.health)),

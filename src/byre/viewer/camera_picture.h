@@ -11,8 +11,9 @@ namespace byre {
 
 struct CameraPictureOptions {
   std::string title;
-  bool panel = true;     // health next to the image
-  HealthOptions health;  // limits marked on the meters
+  bool panel = true;       // health next to the image
+  int width = 0;           // pixels, of the image; 0: chosen by its size
+  HealthOptions health{};  // limits marked on the meters
 };
 
 // Camera image with matched map points: offline points as green discs, online points as purple diamonds, outliers as

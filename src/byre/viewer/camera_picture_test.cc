@@ -38,6 +38,13 @@ TEST(CameraPicture, FillsInliersWithTheColourOfTheirMap) {
   EXPECT_EQ(colour_at(drawn, 150, 50), kGrey);
 }
 
+TEST(CameraPicture, IsOfTheRequestedWidth) {
+  const Picture half = camera_picture(four_points(), {.title = {}, .panel = false, .width = 376});
+  EXPECT_EQ(half.width, 376);
+  EXPECT_EQ(half.height, 240);
+  EXPECT_EQ(colour_at(decoded(to_png(half)), 50, 25), palette::kOffline);
+}
+
 TEST(CameraPicture, DrawsOutliersAsCrosses) {
   const cv::Mat drawn = decoded(to_png(camera_picture(four_points())));
   EXPECT_EQ(colour_at(drawn, 102, 102), palette::kOffline);

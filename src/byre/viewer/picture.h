@@ -98,6 +98,10 @@ std::string to_svg(const Picture& picture);
 // PNG file of the picture's size.
 std::vector<std::byte> to_png(const Picture& picture);
 
+// Animated PNG file of pictures of equal size, which repeats; 255 colours. The last picture stays for last_s seconds.
+// Precondition: at least one picture.
+std::vector<std::byte> to_animated_png(const std::vector<Picture>& pictures, double frame_rate_hz, double last_s);
+
 // Writes SVG for the extension .svg, else PNG. Throws InputError if the file cannot be written.
 void write_picture(const Picture& picture, const std::filesystem::path& file);
 

@@ -1,5 +1,6 @@
 // Raster rendering: drawn at twice the size and halved, so that lines and small text stay sharp.
 
+#include "byre/io/image/animated_png.h"
 #include "byre/io/image/image_codec.h"
 #include "byre/viewer/picture_shapes.h"
 
@@ -202,6 +203,12 @@ void draw(cv::Mat& canvas, const Pane& pane) {
   }
 }
 
+std::vector<std::byte> bytes_of(const std::vector<std::uint8_t>& file) {
+  std::vector<std::byte> bytes(file.size());
+  std::ranges::transform(file, bytes.begin(), [](std::uint8_t byte) { return std::byte(byte); });
+  return bytes;
+}
+
 }  // namespace
 
 cv::Mat rasterised(const Picture& picture) {
@@ -213,10 +220,14 @@ cv::Mat rasterised(const Picture& picture) {
 }
 
 std::vector<std::byte> to_png(const Picture& picture) {
-  const std::vector<std::uint8_t> bytes = encode_image(".png", rasterised(picture));
-  std::vector<std::byte> png(bytes.size());
-  std::ranges::transform(bytes, png.begin(), [](std::uint8_t byte) { return std::byte(byte); });
-  return png;
+  return bytes_of(encode_image(".png", rasterised(picture)));
+}
+
+std::vector<std::byte> to_animated_png(const std::vector<Picture>& pictures, double frame_rate_hz, double last_s) {
+  std::vector<cv::Mat> frames;
+  for (const Picture& picture : pictures) frames.push_back(rasterised(picture));
+  const auto milliseconds = [](double seconds) { return static_cast<std::uint16_t>(std::lround(1e3 * seconds)); };
+  return bytes_of(encode_animated_png(frames, {milliseconds(1.0 / frame_rate_hz), milliseconds(last_s)}));
 }
 
 }  // namespace byre

@@ -142,6 +142,17 @@ TEST(Picture, FitsTwoPanes) {
   EXPECT_EQ(high.panes[1].top, 80);
 }
 
+TEST(Picture, IsAnimatedAsPng) {
+  const PictureLine line{{{10.0, 40.0}, {60.0, 40.0}}, kRed, 4.0};
+  const std::vector<std::byte> png = to_animated_png({picture_of({line}, 100, 80), picture_of({}, 100, 80)}, 10.0, 2.0);
+  const cv::Mat first = decoded(png);
+  EXPECT_EQ(first.cols, 100);
+  EXPECT_EQ(colour_at(first, 30, 40), kRed);
+  EXPECT_EQ(colour_at(first, 30, 20), kWhite);
+  const std::string_view bytes(reinterpret_cast<const char*>(png.data()), png.size());
+  EXPECT_NE(bytes.find("fdAT"), std::string_view::npos);
+}
+
 TEST(PictureSvg, IsWellFormed) {
   auto image = std::make_shared<Image>(Image{2, 2, {0, 100, 200, 255}});
   const std::string svg = to_svg(picture_of({

@@ -122,18 +122,6 @@ PictureSymbols dots(const PlanScene& scene, const HeightBand& heights, Origin or
   return dots;
 }
 
-PictureImage plan_image(const Ground& ground, const PlanView& view) {
-  constexpr double kFaded = 0.55;  // keeps walls visible in the background
-  PictureImage image;
-  image.image = ground.image;
-  Eigen::Matrix2d pixels_from_metres = view.pixels_per_metre * Eigen::Matrix2d::Identity();
-  pixels_from_metres(1, 1) *= -1.0;
-  image.pane_from_image.leftCols<2>() = pixels_from_metres * ground.plan->metres_per_pixel;
-  image.pane_from_image.col(2) = view.pixel(ground.plan->top_left_in_plan);
-  image.opacity = kFaded;
-  return image;
-}
-
 // Grid that shows the scale without a plan.
 std::vector<PictureMark> grid(const PlanView& view, const Pane& pane) {
   constexpr double kStep = 140.0;  // pixels, largest
@@ -159,7 +147,7 @@ void append(MarksWithLegend more, Pane& pane, std::vector<LegendEntry>& entries)
 MarksWithLegend ground_marks(const PlanScene& scene, const PlanPictureOptions& options, const PlanView& view,
                              const Pane& pane) {
   MarksWithLegend all;
-  if (scene.ground.image) all.marks.emplace_back(plan_image(scene.ground, view));
+  if (scene.ground.image) all.marks.emplace_back(ground_image(scene.ground, view));
   if (!scene.ground.image) all.marks = grid(view, pane);
   for (const Origin origin : {Origin::offline, Origin::online}) {
     PictureSymbols points = dots(scene, options.heights, origin, view, pane);
@@ -214,6 +202,18 @@ Picture stacked(std::vector<Pane> panes) {
 }
 
 }  // namespace
+
+PictureImage ground_image(const Ground& ground, const PlanView& view) {
+  constexpr double kFaded = 0.55;  // keeps walls visible in the background
+  PictureImage image;
+  image.image = ground.image;
+  Eigen::Matrix2d pixels_from_metres = view.pixels_per_metre * Eigen::Matrix2d::Identity();
+  pixels_from_metres(1, 1) *= -1.0;
+  image.pane_from_image.leftCols<2>() = pixels_from_metres * ground.plan->metres_per_pixel;
+  image.pane_from_image.col(2) = view.pixel(ground.plan->top_left_in_plan);
+  image.opacity = kFaded;
+  return image;
+}
 
 PlanCamera plan_camera(const Pose& map_from_body, const Rig& rig) {
   return {map_from_body * rig.body_from_camera, 2.0 * std::atan2(0.5 * rig.width, rig.focal)};

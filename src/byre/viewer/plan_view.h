@@ -24,6 +24,9 @@ struct PlanView {
   }
 };
 
+// Image of the ground's plan, faded. Precondition: the ground has an image.
+PictureImage ground_image(const Ground& ground, const PlanView& view);
+
 // Marks with their legend.
 struct MarksWithLegend {
   std::vector<PictureMark> marks;
