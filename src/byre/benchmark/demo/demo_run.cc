@@ -1,13 +1,14 @@
 #include "byre/benchmark/demo/demo_run.h"
 
 #include "byre/base/stopwatch.h"
+#include "byre/benchmark/demo/animation.h"
+#include "byre/benchmark/demo/mission_picture.h"
 #include "byre/benchmark/demo/painter.h"
 #include "byre/benchmark/demo/table.h"
 #include "byre/benchmark/evaluate_run.h"
 #include "byre/features/image_threads.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/archive/register_map.h"
-#include "byre/playback/report/mission_errors.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_file.h"
@@ -36,10 +37,12 @@ struct FirstVisit {
 CowshedRecordingOptions visit_options(const DemoOptions& options, int mission) {
   constexpr double kMoved = 0.5;         // share of things moved between visits
   constexpr double kSecondVisit = 1.25;  // duration relative to the first visit, for the way into the store
+  constexpr double kSecondStart = 0.8;   // share of the lap: on the way back, where the map sees the other direction
   CowshedRecordingOptions visit;
   visit.barn.seed = options.seed;
   visit.barn.mission = mission;
   visit.barn.change = kMoved;
+  if (mission != 1) visit.start = kSecondStart;
   visit.duration_s = mission == 1 ? options.duration_s : kSecondVisit * options.duration_s;
   visit.frame_rate_hz = options.frame_rate_hz;
   visit.image_divisor = options.image_divisor;
@@ -60,39 +63,53 @@ std::vector<TimeSpan> spans_off_the_map(const Trajectory& truth) {
   return spans;
 }
 
-// Alignment of a run by its true first pose alone.
-MapAlignment alignment_at_start(const Trajectory& published, const Trajectory& truth) {
-  const std::vector<PosePair> pairs = associate(published, truth, {});
-  if (pairs.empty()) return {};
-  const PosePair& start = pairs.front();
-  return {{1.0, start.true_world_from_body * inverse(start.estimated_world_from_body)}, 1};
+Eigen::Vector2d on_floor(const Eigen::Vector3d& position) {
+  return position.head<2>();
 }
 
-std::vector<DemoMoment> moments_of(const MapRun& run, const std::vector<PoseError>& errors) {
+std::vector<DemoMoment> moments_of(const MapRun& run, const std::vector<TracePoint>& trace, const Trajectory& truth) {
   std::vector<DemoMoment> moments;
+  auto traced = trace.begin();
   for (const MappedFrame& frame : run.frames) {
-    if (!frame.report) continue;
+    const std::optional<Pose> true_pose = pose_at(truth, frame.time, AssociationOptions{}.max_gap);
+    if (!frame.report || !true_pose) continue;
     const Health& health = frame.report->health;
-    const PoseError* const error = find_error(errors, frame.time);
     moments.push_back({.time_s = to_seconds(frame.time - run.frames.front().time),
                        .has_pose = frame.report->map_from_body.has_value(),
                        .verdict = health.verdict,
                        .offline_inliers = health.offline_inliers,
                        .online_inliers = health.online_inliers,
                        .position_sigma = health.position_sigma,
-                       .error = error != nullptr ? std::optional(error->position()) : std::nullopt});
+                       .truth = on_floor(true_pose->translation)});
+    while (traced != trace.end() && traced->time < frame.time) ++traced;
+    if (traced == trace.end() || traced->time != frame.time) continue;
+    moments.back().position = on_floor(traced->position_in_truth);
+    moments.back().error = traced->error;
   }
   return moments;
 }
 
-DemoArm evaluate_arm(Arm arm, const MapRun& run, const MapAlignment& alignment, const Trajectory& truth) {
-  DemoArm result{.arm = arm, .measures = evaluate_run(run, {truth, alignment}), .close_share = 0.0, .moments = {}};
-  const std::vector<PoseError> errors = errors_in_map(run.causal, truth, alignment);
-  const auto close =
-      std::ranges::count_if(errors, [](const PoseError& error) { return error.position() <= kCloseMetres; });
-  if (!run.frames.empty()) result.close_share = static_cast<double>(close) / static_cast<double>(run.frames.size());
-  result.moments = moments_of(run, errors);
-  return result;
+// alignment: of the map to the truth; empty without a map, then the path is aligned to the truth.
+DemoArm evaluate_arm(Arm arm, const MapRun& run, const std::optional<MapAlignment>& alignment,
+                     const Trajectory& truth) {
+  const RunTruth run_truth{truth, alignment};
+  return {arm, evaluate_run(run, run_truth), moments_of(run, trace_of(run.causal, run_truth), truth)};
+}
+
+std::vector<Eigen::Vector2d> corners_of(const MovableObject& object) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const Eigen::Vector2f& corner : footprint_of(object)) corners.emplace_back(corner.cast<double>());
+  return corners;
+}
+
+std::vector<MovedThing> moved_things(const CowshedOptions& before, const CowshedOptions& after) {
+  const std::vector<MovableObject> by_day = build_cowshed(before).objects;
+  const std::vector<MovableObject> now = build_cowshed(after).objects;
+  std::vector<MovedThing> moved;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (by_day[i].position != now[i].position) moved.push_back({corners_of(by_day[i]), corners_of(now[i])});
+  }
+  return moved;
 }
 
 class DemoRunner {
@@ -106,10 +123,11 @@ class DemoRunner {
       if (!hooks_.should_stop()) render(mission);
     }
     if (!hooks_.should_stop()) map_first_visit();
-    for (const Arm arm : {Arm::no_map, Arm::localise_only, Arm::hybrid}) {
+    for (const Arm arm : {Arm::hybrid, Arm::no_map, Arm::localise_only}) {
       if (!hooks_.should_stop()) run_arm(arm);
     }
     if (hooks_.should_stop()) return std::nullopt;
+    findings_.mission_picture = mission_picture(place_, findings_.arms);
     findings_.total_s = watch.seconds();
     return std::move(findings_);
   }
@@ -166,15 +184,16 @@ class DemoRunner {
     tell("the second visit: " + shown_name(arm));
     const std::unique_ptr<Recording> recording = open_recording(visit(2), {});
     const Trajectory truth = load_truth(visit(2));
-    DemoPainter painter(recording->calibration());
+    const int every_for_film = options_.animation ? std::max(1, recording->size() / kAnimationFrames) : 0;
+    DemoPainter painter(recording->calibration(), every_for_film);
     MapRunHooks hooks;
     if (arm == Arm::hybrid) hooks.on_frame = [&painter](const RunView& view) { painter.add(view); };
     Slam slam = make_slam(arm, *recording);
     const MapRun run = hooks_.play(slam, *recording, hooks);
     if (hooks_.should_stop()) return;
     write_trajectories(run, std::string(name_of(arm)));
-    const MapAlignment alignment =
-        arm == Arm::no_map ? alignment_at_start(run.causal, truth) : MapAlignment{barn_.stored.plan->plan_from_map, 0};
+    std::optional<MapAlignment> alignment;
+    if (arm != Arm::no_map) alignment = MapAlignment{barn_.stored.plan->plan_from_map, 0};
     findings_.arms.push_back(evaluate_arm(arm, run, alignment, truth));
     if (arm != Arm::hybrid) return;
     findings_.off_the_map = spans_off_the_map(truth);
@@ -184,12 +203,17 @@ class DemoRunner {
   void draw(const DemoPainter& painter) {
     PlanScene scene;
     scene.title = "simulated cowshed";
-    scene.ground = ground_of(barn_.stored, barn_.plan);
+    scene.ground = place_.ground = ground_of(barn_.stored, barn_.plan);
     scene.map = scene_of(barn_.stored.map);
     scene.paths.push_back({"first visit", barn_.path, {}});
     findings_.plan_picture = painter.plan_picture(std::move(scene));
     findings_.camera_s = painter.camera_s();
     if (findings_.camera_s) findings_.camera_picture = painter.camera_picture();
+    const DemoArm& hybrid = findings_.arms.back();
+    place_.shown = ground_around(hybrid.moments);
+    place_.moved = moved_things(visit_options(options_, 1).barn, visit_options(options_, 2).barn);
+    if (painter.film().empty()) return;
+    findings_.animation = animation_of(place_, hybrid, painter.film());
   }
 
   void write_trajectories(const MapRun& run, const std::string& name) const {
@@ -208,6 +232,7 @@ class DemoRunner {
 
   int stage_ = 0;
   FirstVisit barn_;  // set once the first visit is mapped
+  DemoPlace place_;  // set after the hybrid run
   DemoFindings findings_;
 };
 

@@ -77,13 +77,15 @@ constexpr const char* kExplanation = R"(
 <p><b>The first visit</b> is by day. The robot drives along the feed alley once, and byre makes a map of it: points with
 descriptors, positions and covariances. The map is registered on the floor plan by signs that were picked in both.</p>
 <p><b>The second visit</b> is at dusk, by lamplight. Half of the buckets, bales and barrows have moved, the feed lies in
-other heaps, more cows walk about, and a gate is open that was closed: the robot turns round in an unmapped store.</p>
-<p><b>No map</b> is plain SLAM. It measures motion, not the position in the building: it starts at the true pose and
-drifts from there. <b>Localise only</b> tracks the offline map. It has a position while enough points of the map
-are visible. Behind the gate there are none, and when it relocalises, the bays of the barn look alike, so that a wrong
-one may be found. <b>Hybrid</b> localisation tracks the points of the offline map (green) that are still in place, maps
-new points online (purple), and rejects points that have moved. Off the map the online points constrain the pose; when
-points of the offline map come into view again, it is back on them without a jump.</p>
+other heaps, more cows walk about, and a gate is open that was closed: the robot turns round in an unmapped store. It is
+switched on in the middle of the alley, at a place that no run is given.</p>
+<p><b>Hybrid</b> localisation finds its place in the offline map, tracks the points of that map (green) that are still in
+place, maps new points online (purple), and rejects points that have moved. Off the map the online points constrain the
+pose; when points of the offline map come into view again, it is back on them without a jump. <b>No map</b> is plain
+SLAM. Its path starts at zero and has no place on the plan; to draw it at all, the whole path is laid on the truth by the
+best fit afterwards, which a robot cannot do and which makes its error as small as it can be. <b>Localise only</b> tracks
+the offline map and maps nothing. It has a position while enough points of the map are visible. Behind the gate there
+are none, and the bays of the barn look alike, so that a wrong one may be found.</p>
 <p>Each pose has a verdict. Trusted means an expected error below 20 cm. The truth comes from the simulation and is used
 for evaluation only.</p>
 )";
@@ -101,43 +103,42 @@ std::string percent(const Figure& share) {
   return share ? fmt::format("{:.1f} %", 1e2 * *share) : "-";
 }
 
-std::string centimetres(const Figure& metres) {
-  return metres ? fmt::format("{:.1f} cm", 1e2 * *metres) : "-";
-}
-
-double off_the_map_share(const DemoFindings& findings, const DemoArm& arm) {
-  if (arm.moments.empty() || arm.moments.back().time_s <= 0.0) return 0.0;
-  double seconds = 0.0;
-  for (const TimeSpan& span : findings.off_the_map) seconds += span.end_s - span.begin_s;
-  return seconds / arm.moments.back().time_s;
-}
-
 std::string key_figure(const std::string& value, const std::string& meaning) {
   return "<div>" + element("dt", meaning) + element("dd", value) + "</div>\n";
 }
 
+std::string figure(const char* id, const std::string& svg, const std::string& alternative, const std::string& caption) {
+  return "<figure id=\"" + std::string(id) + "\"><img alt=\"" + markup_escaped(alternative) + "\" src=\"" +
+         data_address(svg) + "\"><figcaption>" + caption + "</figcaption></figure>\n";
+}
+
+std::string mission_figure(const DemoFindings& findings) {
+  return figure(
+      "mission", to_svg(findings.mission_picture), "Floor plan with the positions of three runs",
+      "Colours show the error of each published position, which the simulation measures exactly. Where the true "
+      "path is bare, the run had no position. Wrong: frames reported as trusted but off by more than 20 cm.");
+}
+
 std::string header(const DemoFindings& findings) {
   std::string html = "<p class=\"eyebrow\">byre " BYRE_VERSION " &middot; a demonstration</p>\n";
-  html += "<h1>The second visit to a cowshed</h1>\n";
+  html += "<h1>Switched on somewhere in a barn</h1>\n";
   const DemoArm* const hybrid = find_hybrid(findings);
   if (hybrid == nullptr) return html;
-  const RunMeasures& measures = hybrid->measures;
   html +=
-      "<p class=\"lead\">A robot returns to a barn that it has mapped once. It is dark now, half of the objects have "
-      "moved, and for " +
-      percent(off_the_map_share(findings, *hybrid)) +
-      " of the time it drives in unmapped space. With the offline map and a new online map, byre gave its position on "
-      "the floor plan in " +
-      percent(measures.causal_poses.coverage) + " of the frames, with an error of " +
-      centimetres(measures.causal_poses.map_error) + ".</p>\n<dl class=\"key\">\n";
-  html += key_figure(percent(hybrid->close_share), "of all frames within 10 cm of the truth, as published");
-  html += key_figure(percent(measures.behaviour.trusted_share), "reported as trusted");
-  if (measures.behaviour.wrongly_trusted) {
-    html += key_figure(fmt::format("{:.0f}", *measures.behaviour.wrongly_trusted),
-                       "frames trusted with an error above 20 cm");
-  }
-  if (measures.cost.frame_ms_mean) {
-    html += key_figure(fmt::format("{:.0f} ms", *measures.cost.frame_ms_mean),
+      "<p class=\"lead\">A robot has mapped a barn once, by day. Now it is switched on at an unknown place: it is "
+      "dusk, "
+      "half of the things have moved, and part of the way leads off the map. With its map it finds its place on the "
+      "floor "
+      "plan and keeps it. Without a map it has none.</p>\n" +
+      mission_figure(findings) + "<dl class=\"key\">\n";
+  const PlanFigures figures = plan_figures(*hybrid);
+  if (figures.found_s)
+    html += key_figure(fmt::format("{:.1f} s", *figures.found_s), "until the first trusted position");
+  html += key_figure(percent(figures.close_share), "of all frames within 10 cm of the truth, as published");
+  html += key_figure(percent(figures.trusted_share), "reported as trusted");
+  html += key_figure(std::to_string(figures.wrong), "frames trusted with an error above 20 cm");
+  if (hybrid->measures.cost.frame_ms_mean) {
+    html += key_figure(fmt::format("{:.0f} ms", *hybrid->measures.cost.frame_ms_mean),
                        "per stereo pair of the run, on this machine");
   }
   return html + "</dl>\n";
@@ -146,7 +147,7 @@ std::string header(const DemoFindings& findings) {
 const char* about(Arm arm) {
   switch (arm) {
     case Arm::no_map:
-      return "starting at the true pose";
+      return "plain SLAM, from zero";
     case Arm::localise_only:
       return "on the offline map only";
     case Arm::hybrid:
@@ -170,19 +171,17 @@ std::string table(const DemoFindings& findings) {
     html += "</tr>\n";
   }
   return html +
-         "</tbody></table></div>\n<p class=\"note\">Errors are on the floor plan, over the frames with a position, "
-         "without alignment to the truth; only in the row \"path after alignment\" each path is aligned to the truth. "
+         "</tbody></table></div>\n<p class=\"note\">No run is given a true pose. Errors are on the floor plan, over "
+         "the "
+         "frames with a position, without alignment to the truth; only in the row \"path after alignment\" each path "
+         "is "
+         "aligned to the truth, which is the only error that a run without a map has. "
          "<i>Published</i> positions are causal, <i>final</i> positions are corrected after the last frame. Frames "
          "were fed as fast as they were processed; the time per frame includes waiting for mapping.</p>\n";
 }
 
-std::string figure(const char* id, const std::string& svg, const std::string& alternative, const std::string& caption) {
-  return "<figure id=\"" + std::string(id) + "\"><img alt=\"" + markup_escaped(alternative) + "\" src=\"" +
-         data_address(svg) + "\"><figcaption>" + caption + "</figcaption></figure>\n";
-}
-
 std::string plan_section(const DemoFindings& findings) {
-  return "<h2>On the floor plan</h2>\n" +
+  return "<h2>Map and verdicts</h2>\n" +
          figure(
              "plan", findings.plan_picture, "Floor plan with map points and paths",
              "Map points of the first visit are green, those of the second purple. The path of the hybrid run is "
@@ -244,7 +243,7 @@ std::string data_address(const std::string& svg) {
 std::string demo_page(const DemoFindings& findings) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-         "<title>byre: the second visit to a cowshed</title>\n<style>" +
+         "<title>byre: switched on somewhere in a barn</title>\n<style>" +
          std::string(kStyle) + "</style>\n</head>\n<body>\n<main>\n<header>\n" + header(findings) + "</header>\n" +
          table(findings) + plan_section(findings) + camera_section(findings) + timeline_section(findings) +
          kExplanation + footer(findings) + "</main>\n</body>\n</html>\n";

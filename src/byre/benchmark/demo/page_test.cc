@@ -40,9 +40,15 @@ std::vector<std::string> unbalanced_elements(const std::string& html) {
 TEST(DemoPage, ContainsTablePicturesAndTimeline) {
   const std::string html = demo_page(small_findings());
   EXPECT_THAT(html, StartsWith("<!DOCTYPE html>"));
-  EXPECT_THAT(html, AllOf(HasSubstr("<table id=\"arms\">"), HasSubstr("<figure id=\"plan\">"),
-                          HasSubstr("<figure id=\"camera\">"), HasSubstr("<svg class=\"timeline\"")));
+  EXPECT_THAT(html, AllOf(HasSubstr("<table id=\"arms\">"), HasSubstr("<figure id=\"mission\">"),
+                          HasSubstr("<figure id=\"plan\">"), HasSubstr("<figure id=\"camera\">"),
+                          HasSubstr("<svg class=\"timeline\"")));
   EXPECT_THAT(html, AllOf(HasSubstr("No map"), HasSubstr("Localise only"), HasSubstr("Hybrid")));
+}
+
+TEST(DemoPage, LeadsWithThePictureOfTheMission) {
+  const std::string html = demo_page(small_findings());
+  EXPECT_LT(html.find("<figure id=\"mission\">"), html.find("<h2>"));
 }
 
 TEST(DemoPage, IsSelfContained) {

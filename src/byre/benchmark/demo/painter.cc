@@ -13,6 +13,9 @@ void DemoPainter::add(const RunView& run) {
   const FrameReport& report = *run.frame.report;
   if (!first_) first_ = report.time;
   online_ = scene_of(run.session.map().online());
+  if (every_for_film_ > 0 && frames_++ % every_for_film_ == 0) {
+    film_.push_back(view_.scene_of(run.images.left, report, run.session.seen_points()));
+  }
   if (!report.map_from_body) return;
   path_.map_from_body.push_back({report.time, *report.map_from_body});
   path_.verdicts.push_back(report.health.verdict);

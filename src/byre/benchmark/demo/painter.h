@@ -6,14 +6,17 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre {
 
-// Collects the content of the two pictures from each frame of a mission. The camera picture shows the frame whose pose
-// rests best on both offline and online points.
+// Collects the content of pictures from each frame of a mission. The camera picture shows the frame whose pose rests
+// best on both offline and online points.
 class DemoPainter {
  public:
-  explicit DemoPainter(const Calibration& calibration) : view_(calibration) {}
+  // every_for_film: one of so many frames is kept for an animation; 0: none.
+  DemoPainter(const Calibration& calibration, int every_for_film)
+      : view_(calibration), every_for_film_(every_for_film) {}
 
   void add(const RunView& run);
 
@@ -23,8 +26,13 @@ class DemoPainter {
   std::string plan_picture(PlanScene background) const;
   std::string camera_picture() const;
 
+  const std::vector<FrameScene>& film() const { return film_; }
+
  private:
   FrameView view_;
+  int every_for_film_;
+  int frames_ = 0;
+  std::vector<FrameScene> film_;
   std::optional<Timestamp> first_;
   PlanPath path_;    // published poses with verdicts
   MapScene online_;  // map after the last frame

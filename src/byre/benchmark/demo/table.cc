@@ -55,22 +55,35 @@ RowKind time_row() {
           }};
 }
 
-// A figure of verdicts. Empty without a map: verdicts then concern the run's own frame, not the plan.
-std::function<Figure(const DemoArm&)> on_the_plan(Figure BehaviourMeasures::*figure) {
-  return [figure](const DemoArm& arm) { return arm.arm == Arm::no_map ? Figure() : arm.measures.behaviour.*figure; };
+// A figure of positions on the plan, of the arms with a map.
+std::function<Figure(const DemoArm&)> on_the_plan(double PlanFigures::*figure) {
+  return [figure](const DemoArm& arm) { return arm.is_on_plan() ? Figure(plan_figures(arm).*figure) : Figure(); };
+}
+
+RowKind found_row() {
+  return {"First trusted position after, s", [](const DemoArm& arm) { return plan_figures(arm).found_s; },
+          [](const DemoArm& arm) { return fmt::format("{:.1f}", *plan_figures(arm).found_s); }};
+}
+
+RowKind median_row() {
+  return {"Median error of published positions, cm", [](const DemoArm& arm) { return plan_figures(arm).median_error; },
+          [](const DemoArm& arm) { return centimetres(*plan_figures(arm).median_error); }};
 }
 
 std::vector<RowKind> row_kinds() {
-  const auto wrong = on_the_plan(&BehaviourMeasures::wrongly_trusted);
-  return {share_row("Frames with a position, %", [](const DemoArm& arm) { return arm.measures.causal_poses.coverage; }),
+  const auto wrong = [](const DemoArm& arm) { return arm.is_on_plan() ? Figure(plan_figures(arm).wrong) : Figure(); };
+  return {found_row(),
+          share_row("Frames with a position on the plan, %",
+                    [](const DemoArm& arm) { return Figure(plan_figures(arm).placed_share); }),
           share_row("Frames with a position within 10 cm of the truth, %",
-                    [](const DemoArm& arm) { return Figure(arm.close_share); }),
+                    [](const DemoArm& arm) { return Figure(plan_figures(arm).close_share); }),
+          share_row("Frames reported as trusted, %", on_the_plan(&PlanFigures::trusted_share)),
+          {"Frames trusted with an error above 20 cm", wrong,
+           [wrong](const DemoArm& arm) { return fmt::format("{:.0f}", *wrong(arm)); }},
+          median_row(),
           error_row("Error of published positions (RMSE), cm", &RunMeasures::causal_poses),
           error_row("Error of final positions (RMSE), cm", &RunMeasures::final_poses),
           shape_row(),
-          share_row("Frames reported as trusted, %", on_the_plan(&BehaviourMeasures::trusted_share)),
-          {"Frames trusted with an error above 20 cm", wrong,
-           [wrong](const DemoArm& arm) { return fmt::format("{:.0f}", *wrong(arm)); }},
           time_row()};
 }
 

@@ -27,13 +27,13 @@ class DemoTable : public testing::Test {
 };
 
 TEST_F(DemoTable, MarksTheBestArm) {
-  arm(Arm::no_map).measures.causal_poses.coverage = 0.2;
-  arm(Arm::localise_only).measures.causal_poses.coverage = 0.5;
-  arm(Arm::hybrid).measures.causal_poses.coverage = 0.9;
-  const DemoRow coverage = row("Frames with a position,");
+  for (std::size_t i = 0; i < 5; ++i) arm(Arm::localise_only).moments[i].error.reset();
+  arm(Arm::hybrid).moments[0].error.reset();
+  const DemoRow coverage = row("Frames with a position on the plan");
+  EXPECT_EQ(coverage.cells[0].text, "0.0") << "no map, so no position on the plan";
+  EXPECT_EQ(coverage.cells[1].text, "50.0");
   EXPECT_EQ(coverage.cells[2].text, "90.0");
   EXPECT_TRUE(coverage.cells[2].is_best);
-  EXPECT_FALSE(coverage.cells[0].is_best);
   EXPECT_FALSE(coverage.cells[1].is_best);
 }
 
@@ -51,15 +51,15 @@ TEST_F(DemoTable, MarksTheSmallestErrorAndEqualTexts) {
 }
 
 TEST_F(DemoTable, ShowsADashForAMissingFigure) {
-  arm(Arm::hybrid).measures.behaviour.wrongly_trusted = 0.0;
-  const DemoRow wrong = row("Frames trusted with");
-  EXPECT_EQ(wrong.cells[1].text, "-");
-  EXPECT_FALSE(wrong.cells[1].is_best);
-  EXPECT_EQ(wrong.cells[2].text, "0");
+  for (DemoMoment& moment : arm(Arm::localise_only).moments) moment.verdict = Verdict::untrusted;
+  const DemoRow found = row("First trusted position");
+  EXPECT_EQ(found.cells[1].text, "-");
+  EXPECT_FALSE(found.cells[1].is_best);
+  EXPECT_EQ(found.cells[2].text, "0.0");
 }
 
 TEST_F(DemoTable, OmitsTrustOfARunWithoutAMap) {
-  for (DemoArm& each : arms) each.measures.behaviour.trusted_share = 0.9;
+  arm(Arm::localise_only).moments[3].verdict = Verdict::degraded;
   const DemoRow trusted = row("Frames reported as trusted");
   EXPECT_EQ(trusted.cells[0].text, "-");
   EXPECT_EQ(trusted.cells[1].text, "90.0");

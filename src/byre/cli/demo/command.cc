@@ -1,5 +1,6 @@
 #include "byre/base/output_file.h"
 #include "byre/base/report_row.h"
+#include "byre/benchmark/demo/animation.h"
 #include "byre/benchmark/demo/demo_run.h"
 #include "byre/benchmark/demo/page.h"
 #include "byre/benchmark/demo/table.h"
@@ -24,17 +25,21 @@ namespace fs = std::filesystem;
 
 struct DemoCommandOptions {
   DemoOptions demo;
+  std::optional<fs::path> animation;
   bool quiet = false;
 };
 
 constexpr const char* kDemoFooter = R"(Examples:
   byre demo
   byre demo -o ~/demo --seed 7
+  byre demo --animation demo.png
 
-Shows hybrid localisation on simulated input, in a few minutes: two visits of a robot to a cowshed are rendered, the
-first is mapped and its map registered on the floor plan, and the second is run in three ways. FOLDER receives
-index.html, a page that needs neither server nor network, and the recordings, the map, the trajectories and both
-pictures. Ctrl-C keeps the files written so far, but no page. docs/tutorials/demo.md explains the page.)";
+Shows the worth of a map on simulated input, in a few minutes. Two visits of a robot to a cowshed are rendered. The first
+is mapped by day, and its map is registered on the floor plan. In the second the robot is switched on at another place at
+dusk, and half of the things have moved; it is run in three ways, none of which is given the start. FOLDER receives
+index.html, a page that needs neither server nor network, mission.svg and mission.png with the result in one picture, and
+the recordings, the map, the trajectories and further pictures. --animation writes an animated PNG: the camera image with
+matched points of the offline and the online map, beside the plan with the path as it grows. Ctrl-C keeps the files written so far, but no page. docs/tutorials/demo.md explains the page.)";
 
 void make_new_folder(const fs::path& folder) {
   make_folder(folder);
@@ -45,6 +50,7 @@ void make_new_folder(const fs::path& folder) {
 }
 
 ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& result) {
+  if (options.animation) require_writable(*options.animation, FileContent::png);
   make_new_folder(options.demo.output);
   const fs::path& folder = options.demo.output;
   const fs::path page = folder / "index.html";
@@ -62,10 +68,16 @@ ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& resul
   };
   const std::optional<DemoFindings> findings = run_demo(options.demo, hooks);
   if (!findings) return ExitCode::interrupted;
+  write_picture(findings->mission_picture, folder / "mission.svg");
+  write_picture(findings->mission_picture, folder / "mission.png");
   write_atomically(folder / "plan.svg", findings->plan_picture);
   if (findings->camera_s) write_atomically(folder / "camera.svg", findings->camera_picture);
   write_atomically(page, demo_page(*findings));
+  if (options.animation) {
+    write_atomically(*options.animation, to_animated_png(findings->animation, kAnimationRate, kLastAnimationFrame));
+  }
   result << to_text(demo_table(findings->arms), findings->arms) << "\n" << row("page", page.string());
+  if (options.animation) result << row("animation", options.animation->string());
   return ExitCode::done;
 }
 
@@ -91,12 +103,20 @@ Action declare_demo(CLI::App& command) {
       ->type_name("N")
       ->check(between(1, 8))
       ->capture_default_str();
+  add_output(command, Output::picture, "--animation", options->animation, "Animated PNG of the hybrid run: .png")
+      ->type_name("FILE")
+      ->check([](const std::string& file) {
+        return std::string(fs::path(file).extension() == ".png" ? "" : "must end in .png");
+      });
   add_input(command, Input::file, "--vocabulary", options->demo.vocabulary,
             "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kDemoFooter);
-  return [options](std::ostream& result) { return run_demo_command(*options, result); };
+  return [options](std::ostream& result) {
+    options->demo.animation = options->animation.has_value();
+    return run_demo_command(*options, result);
+  };
 }
 
 }  // namespace byre::cli

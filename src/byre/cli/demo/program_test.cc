@@ -20,15 +20,16 @@ using testing::StartsWith;
 class DemoProgram : public ProgramTest {};
 
 TEST_F(DemoProgram, WritesAPageAndItsData) {
-  const Outcome outcome = run("demo -o out --duration 8 --rate 4 --divide 2");
+  const Outcome outcome = run("demo -o out --duration 8 --rate 4 --divide 2 --animation film.png");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_THAT(outcome.output,
-              AllOf(HasSubstr("Frames with a position, %"), HasSubstr("page         out/index.html\n")));
-  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("1 of 6: rendering"), HasSubstr("6 of 6: the second visit: Hybrid\n")));
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("Frames with a position on the plan, %"),
+                                    HasSubstr("page         out/index.html\n"), HasSubstr("animation    film.png\n")));
+  EXPECT_THAT(outcome.errors,
+              AllOf(HasSubstr("1 of 6: rendering"), HasSubstr("6 of 6: the second visit: Localise only\n")));
 
   const std::string page = read("out/index.html");
   EXPECT_THAT(page, AllOf(StartsWith("<!DOCTYPE html>"), HasSubstr("<table id=\"arms\">")));
-  EXPECT_THAT(page, AllOf(HasSubstr("<figure id=\"plan\">"), HasSubstr("<svg class=\"timeline\"")));
+  EXPECT_THAT(page, AllOf(HasSubstr("<figure id=\"mission\">"), HasSubstr("<svg class=\"timeline\"")));
   EXPECT_THAT(page, Not(HasSubstr("http://")));
 
   const StoredMap stored = load_map(folder_ / "out" / "barn.byre");
@@ -36,6 +37,9 @@ TEST_F(DemoProgram, WritesAPageAndItsData) {
   EXPECT_EQ(stored.plan->plan, "plan.yaml");
   EXPECT_THAT(read_trajectory(folder_ / "out" / "trajectories" / "first_visit.final.txt"), SizeIs(32));
   EXPECT_THAT(read("out/plan.svg"), StartsWith("<svg"));
+  EXPECT_THAT(read("out/mission.svg"), AllOf(StartsWith("<svg"), HasSubstr("never on the plan")));
+  EXPECT_THAT(read("out/mission.png"), StartsWith("\x89PNG"));
+  EXPECT_THAT(read("film.png"), AllOf(StartsWith("\x89PNG"), HasSubstr("acTL"), HasSubstr("fdAT")));
 }
 
 TEST_F(DemoProgram, DoesNotOverwriteADemonstration) {
@@ -58,6 +62,7 @@ TEST_F(DemoProgram, StopsAtCtrlCWithoutAPage) {
 TEST_F(DemoProgram, RejectsWrongUsage) {
   EXPECT_EQ(run("demo --duration 0").exit_code, 2);
   EXPECT_EQ(run("demo somewhere").exit_code, 2);
+  EXPECT_EQ(run("demo --animation film.gif").exit_code, 2);
 }
 
 }  // namespace

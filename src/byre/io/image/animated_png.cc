@@ -20,9 +20,9 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr unsigned kBits = 5;  // bits of a channel in a colour bin
 constexpr std::size_t kBins = 1U << (3 * kBits);
-constexpr std::size_t kColours = 255;   // besides the transparent entry
-constexpr std::uint8_t kUnchanged = 0;  // palette index of the transparent entry
-constexpr int kCompression = 12;        // level of libdeflate, its highest
+constexpr std::size_t kPaletteColours = 255;  // besides the transparent entry
+constexpr std::uint8_t kUnchanged = 0;        // palette index of the transparent entry
+constexpr int kCompression = 12;              // level of libdeflate, its highest
 
 std::size_t bin_of(const cv::Vec3b& bgr) {
   constexpr unsigned kDropped = 8 - kBits;
@@ -80,7 +80,7 @@ Palette make_palette(const std::vector<cv::Mat>& frames) {
   std::ranges::stable_sort(order, std::ranges::greater(), [&bins](std::size_t bin) { return bins[bin].pixels; });
   Palette palette;
   for (const std::size_t bin : order) {
-    if (palette.rgb.size() / 3 > kColours) break;
+    if (palette.rgb.size() / 3 > kPaletteColours) break;
     const auto rgb = bins[bin].mean();
     palette.rgb.insert(palette.rgb.end(), rgb.begin(), rgb.end());
   }

@@ -1,0 +1,118 @@
+#include "byre/benchmark/demo/animation.h"
+
+#include "byre/viewer/camera_picture.h"
+#include "byre/viewer/palette.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace byre {
+namespace {
+
+constexpr int kCameraWidth = 384, kPlanWidth = 480, kSpace = 8, kTitle = 34, kCaption = 54;  // pixels
+constexpr int kAnimationWidth = kCameraWidth + kPlanWidth + 3 * kSpace;
+
+PictureSymbols sign_at(const Eigen::Vector2d& at, Symbol symbol, const Colour& colour) {
+  return {"sign", symbol, {at}, 9.0, colour};
+}
+
+const DemoMoment* moment_at(const DemoArm& arm, double time_s) {
+  const auto after =
+      std::ranges::find_if(arm.moments, [time_s](const DemoMoment& each) { return each.time_s > time_s; });
+  return after == arm.moments.begin() ? nullptr : &*std::prev(after);
+}
+
+// State of the position in plain words, with its colour.
+std::pair<std::string, Colour> state_of(const DemoMoment* moment) {
+  if (moment == nullptr || !moment->error) return {"position not found yet", palette::kUntrusted};
+  const std::string error = fmt::format("true error {:.1f} cm", 1e2 * *moment->error);
+  if (moment->verdict == Verdict::trusted) return {"position trusted, " + error, palette::kOffline};
+  return {"position not trusted, " + error, palette::kDegraded};
+}
+
+Pane title_pane() {
+  Pane pane;
+  pane.width = kAnimationWidth;
+  pane.height = kTitle;
+  PictureText text =
+      plain_text({kSpace, 23.0}, "Mapped once by day. Now: dusk, half of the things moved, start unknown.", 16.0);
+  text.bold = true;
+  pane.marks.emplace_back(std::move(text));
+  return pane;
+}
+
+Pane caption_pane(const DemoMoment* moment, double time_s, int top) {
+  constexpr double kSize = 13.0, kLine = 20.0;
+  constexpr double kPlanLeft = kCameraWidth + 2.0 * kSpace;
+  Pane pane;
+  pane.top = top;
+  pane.width = kAnimationWidth;
+  pane.height = kCaption;
+  const auto sign = [&pane](double x, double y, Symbol symbol, const Colour& colour, const char* meaning) {
+    pane.marks.emplace_back(sign_at({x, y - 4.5}, symbol, colour));
+    pane.marks.emplace_back(plain_text({x + 11.0, y}, meaning, kSize));
+  };
+  sign(kSpace + 5.0, kLine, Symbol::disc, palette::kOffline, "point of the map made by day");
+  sign(kSpace + 5.0, 2.0 * kLine, Symbol::diamond, palette::kOnline, "point mapped new in this visit");
+  const auto [state, colour] = state_of(moment);
+  PictureText shown = plain_text({kPlanLeft, kLine}, fmt::format("{:4.1f} s: {}", time_s, state), 15.0);
+  shown.bold = true;
+  shown.colour = colour;
+  pane.marks.emplace_back(std::move(shown));
+  sign(kPlanLeft + 6.0, 2.0 * kLine, Symbol::triangle, palette::kInk, "switched on here");
+  sign(kPlanLeft + 140.0, 2.0 * kLine, Symbol::disc, palette::kOffline, "within 10 cm");
+  sign(kPlanLeft + 250.0, 2.0 * kLine, Symbol::diamond, palette::kDegraded, "off by up to 1 m");
+  sign(kPlanLeft + 380.0, 2.0 * kLine, Symbol::square, {150, 95, 20}, "moved");
+  return pane;
+}
+
+// A disc where the robot is.
+PictureSymbols robot_at(const DemoPlace& place, const DemoMoment& moment) {
+  const double scale = kPlanWidth / place.shown.sizes().x();
+  const Eigen::Vector2d& at = *moment.position;
+  return {"robot",
+          Symbol::disc,
+          {scale * Eigen::Vector2d(at.x() - place.shown.min().x(), place.shown.max().y() - at.y())},
+          11.0,
+          palette::kCamera,
+          1.0,
+          palette::kPaper};
+}
+
+Picture frame_of(const DemoPlace& place, const DemoArm& hybrid, FrameScene filmed, double time_s) {
+  std::erase_if(filmed.seen, [](const SeenPoint& point) { return !point.is_inlier; });
+  Picture picture = camera_picture(filmed, {.title = {}, .panel = false, .width = kCameraWidth});
+  Pane& camera = picture.panes.front();
+  for (PictureMark& mark : camera.marks) {
+    if (auto* const symbols = std::get_if<PictureSymbols>(&mark)) symbols->size = 5.0;
+  }
+  camera.left = kSpace;
+  camera.top = kTitle;
+  Pane plan = plan_pane(place, hybrid, time_s, kPlanWidth);
+  const DemoMoment* const moment = moment_at(hybrid, time_s);
+  if (moment != nullptr && moment->position) plan.marks.emplace_back(robot_at(place, *moment));
+  const int height = std::max(camera.height, plan.height);
+  plan.left = kCameraWidth + 2 * kSpace;
+  plan.top = kTitle + (height - plan.height) / 2;
+  picture.panes.insert(picture.panes.begin(), title_pane());
+  picture.panes.push_back(std::move(plan));
+  picture.panes.push_back(caption_pane(moment, time_s, kTitle + height));
+  picture.width = kAnimationWidth;
+  picture.height = kTitle + height + kCaption;
+  return picture;
+}
+
+}  // namespace
+
+std::vector<Picture> animation_of(const DemoPlace& place, const DemoArm& hybrid,
+                                  const std::vector<FrameScene>& filmed) {
+  std::vector<Picture> frames;
+  for (const FrameScene& scene : filmed) {
+    frames.push_back(frame_of(place, hybrid, scene, to_seconds(scene.report.time - filmed.front().report.time)));
+  }
+  return frames;
+}
+
+}  // namespace byre
