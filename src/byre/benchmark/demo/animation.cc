@@ -62,9 +62,9 @@ Pane caption_pane(const DemoMoment* moment, double time_s, int top) {
   shown.colour = colour;
   pane.marks.emplace_back(std::move(shown));
   sign(kPlanLeft + 6.0, 2.0 * kLine, Symbol::triangle, palette::kInk, "switched on here");
-  sign(kPlanLeft + 140.0, 2.0 * kLine, Symbol::disc, palette::kOffline, "within 10 cm");
-  sign(kPlanLeft + 250.0, 2.0 * kLine, Symbol::diamond, palette::kDegraded, "off by up to 1 m");
-  sign(kPlanLeft + 380.0, 2.0 * kLine, Symbol::square, {150, 95, 20}, "moved");
+  sign(kPlanLeft + 148.0, 2.0 * kLine, Symbol::disc, palette::kOffline, "within 10 cm");
+  sign(kPlanLeft + 262.0, 2.0 * kLine, Symbol::diamond, palette::kDegraded, "off by up to 1 m");
+  sign(kPlanLeft + 402.0, 2.0 * kLine, Symbol::square, {150, 95, 20}, "moved");
   return pane;
 }
 

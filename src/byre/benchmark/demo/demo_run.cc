@@ -211,6 +211,9 @@ class DemoRunner {
     if (findings_.camera_s) findings_.camera_picture = painter.camera_picture();
     const DemoArm& hybrid = findings_.arms.back();
     place_.shown = ground_around(hybrid.moments);
+    place_.unmapped = {Eigen::Vector2d(kCowshedSize.length, -kCowshedSize.store_half_width),
+                       Eigen::Vector2d(kCowshedSize.length + kCowshedSize.store_length, kCowshedSize.store_half_width)};
+    place_.labels = {{{24.0, -0.1}, "barn, mapped by day"}, {{35.0, 2.6}, "feed store, not on the map"}};
     place_.moved = moved_things(visit_options(options_, 1).barn, visit_options(options_, 2).barn);
     if (painter.film().empty()) return;
     findings_.animation = animation_of(place_, hybrid, painter.film());

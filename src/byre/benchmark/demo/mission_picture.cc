@@ -12,7 +12,7 @@ namespace {
 constexpr int kPictureWidth = 1200;  // pixels
 constexpr int kMargin = 16;
 constexpr int kGap = 24;  // between the two lower plans
-constexpr double kTitleSize = 24.0, kArmSize = 18.0, kFigureSize = 14.0;
+constexpr double kTitleSize = 24.0, kArmSize = 18.0;
 
 Picture picture_of(Pane pane, int left) {
   Picture picture;
@@ -53,8 +53,9 @@ Pane title() {
 // Heading, figures and plan of one arm.
 Picture arm_picture(const DemoPlace& place, const DemoArm& arm, int left, int width) {
   Pane heading = text_pane(width, 56);
+  const double figure_size = arm.arm == Arm::hybrid ? 15.0 : 12.5;
   heading.marks.emplace_back(bold(plain_text({0.0, 25.0}, plain_name(arm.arm), kArmSize)));
-  heading.marks.emplace_back(plain_text({0.0, 46.0}, figures_line(arm), kFigureSize));
+  heading.marks.emplace_back(plain_text({0.0, 46.0}, figures_line(arm), figure_size));
   return vconcat(picture_of(std::move(heading), left), picture_of(plan_pane(place, arm, 1e9, width), left));
 }
 
@@ -83,7 +84,7 @@ std::string plain_name(Arm arm) {
 std::string figures_line(const DemoArm& arm) {
   const PlanFigures figures = plan_figures(arm);
   if (!arm.is_on_plan()) {
-    return "never on the plan, trusted there 0 %; shape of its path: median error " +
+    return "never on the plan; shape of its path: median error " +
            (figures.aligned_median_error ? length_of(*figures.aligned_median_error) : "-");
   }
   if (!figures.found_s) return "never found, position in " + whole_percent(figures.placed_share) + " of the frames";

@@ -15,7 +15,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr Colour kTruthBand{176, 190, 208};
-constexpr Colour kMoved{150, 95, 20};
+constexpr Colour kMoved{150, 85, 10};
+constexpr Colour kUnmapped{236, 238, 242};
 constexpr double kOffMetres = 1.0;  // from this error on a position is shown as wrong
 
 // Positions of a range of errors.
@@ -55,7 +56,7 @@ std::vector<PictureMark> hatching(const std::vector<Vector2d>& corners, double s
   }
   std::vector<PictureMark> strokes;
   for (double offset = low + 0.5 * step; offset < high; offset += step) {
-    PictureLine stroke{{}, kMoved, 1.2};
+    PictureLine stroke{{}, kMoved, 1.5};
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vector2d& from = corners[i];
       const Vector2d& to = corners[(i + 1) % corners.size()];
@@ -87,6 +88,20 @@ std::vector<PictureMark> moved_marks(const std::vector<MovedThing>& moved, const
   std::vector<PictureMark> marks;
   for (const MovedThing& thing : moved) append(place_before(on_pane(view, thing.before)), marks);
   for (const MovedThing& thing : moved) append(place_after(on_pane(view, thing.after)), marks);
+  return marks;
+}
+
+PictureArea shade(const Eigen::AlignedBox2d& area, const PlanView& view) {
+  const Vector2d low = view.pixel(area.min()), high = view.pixel(area.max());
+  return {{low, {high.x(), low.y()}, high, {low.x(), high.y()}}, kUnmapped};
+}
+
+std::vector<PictureMark> label_marks(const std::vector<PlanLabel>& labels, const PlanView& view) {
+  const double size = std::clamp(0.45 * view.pixels_per_metre, 10.0, 15.0);
+  std::vector<PictureMark> marks;
+  for (const PlanLabel& label : labels) {
+    marks.emplace_back(PictureText{view.pixel(label.at), label.text, size, palette::kFaint, Align::centre});
+  }
   return marks;
 }
 
@@ -144,7 +159,7 @@ PlanView view_of(const DemoPlace& place, int width) {
 }  // namespace
 
 Eigen::AlignedBox2d ground_around(const std::vector<DemoMoment>& moments) {
-  constexpr double kAlong = 2.5, kAcross = 4.4;  // metres
+  constexpr double kAlong = 3.0, kAcross = 4.4;  // metres
   Eigen::AlignedBox2d box;
   for (const DemoMoment& moment : moments) box.extend(moment.truth);
   if (box.isEmpty()) box.extend(Vector2d::Zero());
@@ -160,7 +175,9 @@ Pane plan_pane(const DemoPlace& place, const DemoArm& arm, double until_s, int w
   Pane pane;
   pane.width = width;
   pane.height = static_cast<int>(std::lround(view.pixels_per_metre * place.shown.sizes().y()));
+  if (!place.unmapped.isEmpty()) pane.marks.emplace_back(shade(place.unmapped, view));
   if (place.ground.image) pane.marks.emplace_back(ground_image(place.ground, view));
+  append(label_marks(place.labels, view), pane.marks);
   append(moved_marks(place.moved, view), pane.marks);
   std::vector<Vector2d> truth;
   for (const DemoMoment& moment : moments) truth.push_back(view.pixel(moment.truth));
@@ -193,7 +210,7 @@ PictureText plain_text(const Vector2d& at, const std::string& text, double size)
 
 Pane plan_legend(const std::vector<PlanSign>& signs, int width) {
   constexpr double kMargin = 16.0, kSign = 34.0, kGap = 26.0, kRow = 26.0, kSize = 14.0;  // pixels
-  constexpr double kCharacter = 0.52 * kSize;                                             // mean width of a character
+  constexpr double kCharacter = 0.58 * kSize;                                             // mean width of a character
   Pane pane;
   pane.width = width;
   Vector2d at(kMargin, kRow);

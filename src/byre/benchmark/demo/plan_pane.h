@@ -4,16 +4,24 @@
 #include "byre/viewer/ground.h"
 #include "byre/viewer/picture.h"
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 namespace byre {
 
+struct PlanLabel {
+  Eigen::Vector2d at;  // middle of the baseline, metres
+  std::string text;
+};
+
 // Place of the second visit. x and y on the floor plan, metres.
 struct DemoPlace {
   Ground ground;  // with the image of the floor plan
   Eigen::AlignedBox2d shown;
+  Eigen::AlignedBox2d unmapped;  // shaded
+  std::vector<PlanLabel> labels;
   std::vector<MovedThing> moved;
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -16,7 +17,7 @@
 namespace byre {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using PngBytes = std::vector<std::uint8_t>;
 
 constexpr unsigned kBits = 5;  // bits of a channel in a colour bin
 constexpr std::size_t kBins = 1U << (3 * kBits);
@@ -42,7 +43,7 @@ struct ColourBin {
 };
 
 struct Palette {
-  Bytes rgb = {0, 0, 0};             // three bytes per index; index 0 is transparent
+  PngBytes rgb = {0, 0, 0};          // three bytes per index; index 0 is transparent
   std::vector<std::uint8_t> of_bin;  // index per bin; of bins without pixels unused
 };
 
@@ -58,7 +59,7 @@ std::vector<ColourBin> count_colours(const std::vector<cv::Mat>& frames) {
   return bins;
 }
 
-std::uint8_t nearest_index(const Bytes& palette, const std::array<std::uint8_t, 3>& rgb) {
+std::uint8_t nearest_index(const PngBytes& palette, const std::array<std::uint8_t, 3>& rgb) {
   int least = std::numeric_limits<int>::max();
   std::size_t nearest = 1;
   for (std::size_t index = 1; index < palette.size() / 3; ++index) {
@@ -89,21 +90,32 @@ Palette make_palette(const std::vector<cv::Mat>& frames) {
   return palette;
 }
 
-Bytes indices_of(const cv::Mat& frame, const Palette& palette) {
-  Bytes indices;
+bool is_near(const cv::Vec3b& bgr, const PngBytes& palette, std::uint8_t index) {
+  constexpr int kTolerance = 9;  // grey values of each channel, about the noise of a camera image
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::abs(bgr[2 - static_cast<int>(k)] - palette[3U * index + k]) > kTolerance) return false;
+  }
+  return true;
+}
+
+// Keeps the colour of the pixel to the left where it is near enough, which makes noise compressible.
+PngBytes indices_of(const cv::Mat& frame, const Palette& palette) {
+  PngBytes indices;
   indices.reserve(frame.total());
   for (auto pixel = frame.begin<cv::Vec3b>(); pixel != frame.end<cv::Vec3b>(); ++pixel) {
-    indices.push_back(palette.of_bin[bin_of(*pixel)]);
+    const bool has_left = indices.size() % static_cast<std::size_t>(frame.cols) != 0;
+    const bool keeps_left = has_left && is_near(*pixel, palette.rgb, indices.back());
+    indices.push_back(keeps_left ? indices.back() : palette.of_bin[bin_of(*pixel)]);
   }
   return indices;
 }
 
 template <typename Number>
-void append_number(Bytes& bytes, Number number) {
+void append_number(PngBytes& bytes, Number number) {
   for (std::size_t i = sizeof(Number); i-- > 0;) bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
 }
 
-void append_chunk(Bytes& png, std::string_view type, const Bytes& data) {
+void append_chunk(PngBytes& png, std::string_view type, const PngBytes& data) {
   append_number(png, static_cast<std::uint32_t>(data.size()));
   const std::size_t begin = png.size();
   png.insert(png.end(), type.begin(), type.end());
@@ -112,8 +124,8 @@ void append_chunk(Bytes& png, std::string_view type, const Bytes& data) {
 }
 
 // Rows of palette indices without filters, compressed.
-Bytes compressed(const Bytes& indices, const cv::Rect& part, int width) {
-  Bytes rows;
+PngBytes compressed(const PngBytes& indices, const cv::Rect& part, int width) {
+  PngBytes rows;
   for (int y = part.y; y < part.y + part.height; ++y) {
     rows.push_back(0);  // filter type none
     const auto row = indices.begin() + static_cast<std::ptrdiff_t>(y) * width + part.x;
@@ -121,14 +133,14 @@ Bytes compressed(const Bytes& indices, const cv::Rect& part, int width) {
   }
   const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflater(
       libdeflate_alloc_compressor(kCompression), libdeflate_free_compressor);
-  Bytes packed(libdeflate_zlib_compress_bound(deflater.get(), rows.size()));
+  PngBytes packed(libdeflate_zlib_compress_bound(deflater.get(), rows.size()));
   packed.resize(libdeflate_zlib_compress(deflater.get(), rows.data(), rows.size(), packed.data(), packed.size()));
   return packed;
 }
 
 // Replaces pixels equal to those before by the transparent index. Returns the rectangle of the others, at least one
 // pixel.
-cv::Rect keep_changes(Bytes& indices, const Bytes& before, const cv::Size& size) {
+cv::Rect keep_changes(PngBytes& indices, const PngBytes& before, const cv::Size& size) {
   cv::Rect changed;
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
@@ -148,12 +160,12 @@ class AnimationWriter {
  public:
   AnimationWriter(const cv::Size& size, std::size_t frames, const Palette& palette)
       : size_(size), png_(png_signature()) {
-    Bytes header;
+    PngBytes header;
     append_number(header, static_cast<std::uint32_t>(size.width));
     append_number(header, static_cast<std::uint32_t>(size.height));
     header.insert(header.end(), {8, 3, 0, 0, 0});  // 8 bits a pixel, by palette; not interlaced
     append_chunk(png_, "IHDR", header);
-    Bytes animation;
+    PngBytes animation;
     append_number(animation, static_cast<std::uint32_t>(frames));
     append_number(animation, std::uint32_t{0});  // repetitions; 0: for ever
     append_chunk(png_, "acTL", animation);
@@ -161,27 +173,27 @@ class AnimationWriter {
     append_chunk(png_, "tRNS", {0});
   }
 
-  void add(Bytes indices, std::uint16_t duration_ms) {
+  void add(PngBytes indices, std::uint16_t duration_ms) {
     const bool is_first = before_.empty();
-    Bytes whole = indices;
+    PngBytes whole = indices;
     const cv::Rect part = is_first ? cv::Rect({}, size_) : keep_changes(indices, before_, size_);
     add_control(part, duration_ms);
-    Bytes data;
+    PngBytes data;
     if (!is_first) append_number(data, sequence_++);
-    const Bytes packed = compressed(indices, part, size_.width);
+    const PngBytes packed = compressed(indices, part, size_.width);
     data.insert(data.end(), packed.begin(), packed.end());
     append_chunk(png_, is_first ? "IDAT" : "fdAT", data);
     before_ = std::move(whole);
   }
 
-  Bytes finish() {
+  PngBytes finish() {
     append_chunk(png_, "IEND", {});
     return std::move(png_);
   }
 
  private:
   void add_control(const cv::Rect& part, std::uint16_t duration_ms) {
-    Bytes control;
+    PngBytes control;
     append_number(control, sequence_++);
     for (const int number : {part.width, part.height, part.x, part.y}) {
       append_number(control, static_cast<std::uint32_t>(number));
@@ -193,8 +205,8 @@ class AnimationWriter {
   }
 
   cv::Size size_;
-  Bytes png_;
-  Bytes before_;  // indices of the frame before; empty before the first one
+  PngBytes png_;
+  PngBytes before_;  // indices of the frame before; empty before the first one
   std::uint32_t sequence_ = 0;
 };
 
