@@ -53,7 +53,7 @@ Pane title() {
 // Heading, figures and plan of one arm.
 Picture arm_picture(const DemoPlace& place, const DemoArm& arm, int left, int width) {
   Pane heading = text_pane(width, 56);
-  const double figure_size = arm.arm == Arm::hybrid ? 15.0 : 12.5;
+  const double figure_size = arm.arm == Arm::hybrid ? 15.0 : 12.0;
   heading.marks.emplace_back(bold(plain_text({0.0, 25.0}, plain_name(arm.arm), kArmSize)));
   heading.marks.emplace_back(plain_text({0.0, 46.0}, figures_line(arm), figure_size));
   return vconcat(picture_of(std::move(heading), left), picture_of(plan_pane(place, arm, 1e9, width), left));
@@ -78,7 +78,7 @@ std::string plain_name(Arm arm) {
     case Arm::hybrid:
       break;
   }
-  return "byre with the map, mapping on beside it";
+  return "byre: with the map, and mapping what is new";
 }
 
 std::string figures_line(const DemoArm& arm) {
@@ -88,9 +88,9 @@ std::string figures_line(const DemoArm& arm) {
            (figures.aligned_median_error ? length_of(*figures.aligned_median_error) : "-");
   }
   if (!figures.found_s) return "never found, position in " + whole_percent(figures.placed_share) + " of the frames";
-  return fmt::format("found after {:.1f} s, position {}, trusted {}, wrong {}, median error {}", *figures.found_s,
-                     whole_percent(figures.placed_share), whole_percent(figures.trusted_share), figures.wrong,
-                     length_of(*figures.median_error));
+  return fmt::format("found after {:.1f} s, position {}, trusted {}, falsely trusted {}, median error {}",
+                     *figures.found_s, whole_percent(figures.placed_share), whole_percent(figures.trusted_share),
+                     figures.wrong, length_of(*figures.median_error));
 }
 
 Picture mission_picture(const DemoPlace& place, const std::vector<DemoArm>& arms) {

@@ -73,7 +73,7 @@ TEST_F(DemoPicture, HatchesMovedThingsInsideTheirOutline) {
 
 TEST_F(DemoPicture, StatesFiguresOfEachArm) {
   EXPECT_EQ(figures_line(arm(Arm::hybrid)),
-            "found after 0.0 s, position 100 %, trusted 100 %, wrong 0, median error 1.0 cm");
+            "found after 0.0 s, position 100 %, trusted 100 %, falsely trusted 0, median error 1.0 cm");
   EXPECT_THAT(figures_line(arm(Arm::no_map)), HasSubstr("never on the plan"));
   arm(Arm::hybrid).moments.clear();
   EXPECT_THAT(figures_line(arm(Arm::hybrid)), HasSubstr("never found"));

@@ -116,7 +116,8 @@ std::string mission_figure(const DemoFindings& findings) {
   return figure(
       "mission", to_svg(findings.mission_picture), "Floor plan with the positions of three runs",
       "Colours show the error of each published position, which the simulation measures exactly. Where the true "
-      "path is bare, the run had no position. Wrong: frames reported as trusted but off by more than 20 cm.");
+      "path is bare, the run had no position. Falsely trusted: frames reported as trusted, but off by more than 20 "
+      "cm.");
 }
 
 std::string header(const DemoFindings& findings) {

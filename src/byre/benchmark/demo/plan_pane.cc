@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 
 constexpr Colour kTruthBand{176, 190, 208};
 constexpr Colour kMoved{150, 85, 10};
-constexpr Colour kUnmapped{236, 238, 242};
+constexpr Colour kUnmapped{206, 213, 226};
 constexpr double kOffMetres = 1.0;  // from this error on a position is shown as wrong
 
 // Positions of a range of errors.
