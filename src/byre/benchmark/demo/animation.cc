@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-constexpr int kCameraWidth = 384, kPlanWidth = 480, kSpace = 8, kTitle = 34, kCaption = 54;  // pixels
+constexpr int kCameraWidth = 384, kPlanWidth = 480, kSpace = 8, kTitleHeight = 34, kCaptionHeight = 54;  // pixels
 constexpr int kAnimationWidth = kCameraWidth + kPlanWidth + 3 * kSpace;
 
 PictureSymbols sign_at(const Eigen::Vector2d& at, Symbol symbol, const Colour& colour) {
@@ -35,7 +35,7 @@ std::pair<std::string, Colour> state_of(const DemoMoment* moment) {
 Pane title_pane() {
   Pane pane;
   pane.width = kAnimationWidth;
-  pane.height = kTitle;
+  pane.height = kTitleHeight;
   PictureText text =
       plain_text({kSpace, 23.0}, "Mapped once by day. Now: dusk, half of the things moved, start unknown.", 16.0);
   text.bold = true;
@@ -49,7 +49,7 @@ Pane caption_pane(const DemoMoment* moment, double time_s, int top) {
   Pane pane;
   pane.top = top;
   pane.width = kAnimationWidth;
-  pane.height = kCaption;
+  pane.height = kCaptionHeight;
   const auto sign = [&pane](double x, double y, Symbol symbol, const Colour& colour, const char* meaning) {
     pane.marks.emplace_back(sign_at({x, y - 4.5}, symbol, colour));
     pane.marks.emplace_back(plain_text({x + 11.0, y}, meaning, kSize));
@@ -89,18 +89,18 @@ Picture frame_of(const DemoPlace& place, const DemoArm& hybrid, FrameScene filme
     if (auto* const symbols = std::get_if<PictureSymbols>(&mark)) symbols->size = 5.0;
   }
   camera.left = kSpace;
-  camera.top = kTitle;
+  camera.top = kTitleHeight;
   Pane plan = plan_pane(place, hybrid, time_s, kPlanWidth);
   const DemoMoment* const moment = moment_at(hybrid, time_s);
   if (moment != nullptr && moment->position) plan.marks.emplace_back(robot_at(place, *moment));
   const int height = std::max(camera.height, plan.height);
   plan.left = kCameraWidth + 2 * kSpace;
-  plan.top = kTitle + (height - plan.height) / 2;
+  plan.top = kTitleHeight + (height - plan.height) / 2;
   picture.panes.insert(picture.panes.begin(), title_pane());
   picture.panes.push_back(std::move(plan));
-  picture.panes.push_back(caption_pane(moment, time_s, kTitle + height));
+  picture.panes.push_back(caption_pane(moment, time_s, kTitleHeight + height));
   picture.width = kAnimationWidth;
-  picture.height = kTitle + height + kCaption;
+  picture.height = kTitleHeight + height + kCaptionHeight;
   return picture;
 }
 

@@ -7,7 +7,7 @@
 
 namespace byre {
 
-inline constexpr int kAnimationFrames = 52;
+inline constexpr int kAnimationFrames = 50;         // at most
 inline constexpr double kAnimationRate = 8.0;       // frames per second
 inline constexpr double kLastAnimationFrame = 1.5;  // seconds
 

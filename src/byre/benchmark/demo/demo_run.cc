@@ -184,7 +184,7 @@ class DemoRunner {
     tell("the second visit: " + shown_name(arm));
     const std::unique_ptr<Recording> recording = open_recording(visit(2), {});
     const Trajectory truth = load_truth(visit(2));
-    const int every_for_film = options_.animation ? std::max(1, recording->size() / kAnimationFrames) : 0;
+    const int every_for_film = options_.animation ? (recording->size() + kAnimationFrames - 1) / kAnimationFrames : 0;
     DemoPainter painter(recording->calibration(), every_for_film);
     MapRunHooks hooks;
     if (arm == Arm::hybrid) hooks.on_frame = [&painter](const RunView& view) { painter.add(view); };
