@@ -10,8 +10,8 @@ namespace byre {
 namespace {
 
 constexpr int kPictureWidth = 1200;  // pixels
-constexpr int kMargin = 16;
-constexpr int kGap = 24;  // between the two lower plans
+constexpr int kPictureMargin = 16;
+constexpr int kPlanGap = 24;  // between the two lower plans
 constexpr double kTitleSize = 24.0, kArmSize = 18.0;
 
 Picture picture_of(Pane pane, int left) {
@@ -43,9 +43,9 @@ PictureText faint(PictureText text) {
 Pane title() {
   Pane pane = text_pane(kPictureWidth, 68);
   pane.marks.emplace_back(
-      bold(plain_text({kMargin, 34.0}, "Switched on somewhere in a barn that was mapped once", kTitleSize)));
+      bold(plain_text({kPictureMargin, 34.0}, "Switched on somewhere in a barn that was mapped once", kTitleSize)));
   pane.marks.emplace_back(faint(
-      plain_text({kMargin, 58.0},
+      plain_text({kPictureMargin, 58.0},
                  "Mapped by day. Now it is dusk, half of the things have moved, and the start is unknown.", 15.0)));
   return pane;
 }
@@ -94,15 +94,15 @@ std::string figures_line(const DemoArm& arm) {
 }
 
 Picture mission_picture(const DemoPlace& place, const std::vector<DemoArm>& arms) {
-  constexpr int kWhole = kPictureWidth - 2 * kMargin;
-  constexpr int kHalf = (kWhole - kGap) / 2;
+  constexpr int kWhole = kPictureWidth - 2 * kPictureMargin;
+  constexpr int kHalf = (kWhole - kPlanGap) / 2;
   Picture picture = picture_of(title(), 0);
   Picture row;
   for (const DemoArm& arm : arms) {
     if (arm.arm == Arm::hybrid) {
-      picture = vconcat(std::move(picture), arm_picture(place, arm, kMargin, kWhole));
+      picture = vconcat(std::move(picture), arm_picture(place, arm, kPictureMargin, kWhole));
     } else {
-      row = hconcat(std::move(row), arm_picture(place, arm, row.width == 0 ? kMargin : kGap, kHalf));
+      row = hconcat(std::move(row), arm_picture(place, arm, row.width == 0 ? kPictureMargin : kPlanGap, kHalf));
     }
   }
   picture = vconcat(std::move(picture), row);
