@@ -22,7 +22,7 @@ class BenchmarkRun : public testing::Test {
     const fs::path& folder = RenderedFixture::shared().folder();
     options_.data = folder.parent_path();
     options_.output = fs::path(testing::TempDir()) / ("byre_benchmark." + std::to_string(getpid()));
-    options_.engine.pace = Pace::same_thread;
+    options_.method.pace = Pace::same_thread;
     fs::create_directories(options_.output);
     protocol_.name = "room";
     protocol_.recordings = {{.name = "visit", .folder = folder.filename(), .range = {.last = 12}},
@@ -39,7 +39,7 @@ class BenchmarkRun : public testing::Test {
     hooks.after_frame = [](int, const MappedFrame&) {};
     hooks.after_run = [this](const BenchmarkResult&) { ++runs_done_; };
     hooks.on_skipped = [](const SkippedCase&) {};
-    return run_benchmark(protocol_, options_, Vocabulary::load(default_vocabulary_path()), hooks);
+    return run_benchmark(protocol_, options_, hooks);
   }
 
   BenchmarkProtocol protocol_;

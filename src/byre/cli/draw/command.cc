@@ -92,7 +92,7 @@ void write_camera_picture(const DrawnMission& mission, const fs::path& file) {
   write_picture(camera_picture(*mission.frame, picture), file);
 }
 
-ExitCode run_and_draw(const DrawOptions& options, StoredMap stored, PlanScene scene, std::ostream& result) {
+ExitCode run_and_draw(const DrawOptions& options, PlanScene scene, std::ostream& result) {
   const DrawnMission mission = draw_mission(options, scene);
   if (!options.quiet) show_warnings(std::cerr, mission.warnings);
   require_frames(mission, options);
@@ -112,7 +112,7 @@ ExitCode draw(const DrawOptions& options, std::ostream& result) {
                     fmt::format(", {} keyframes, {} points", stored.map.keyframe_count(), stored.map.point_count()));
   ExitCode code = done;
   if (options.map) {
-    code = run_and_draw(options, std::move(stored), std::move(scene), result);
+    code = run_and_draw(options, std::move(scene), result);
   } else {
     write_plan_picture(scene, options);
   }

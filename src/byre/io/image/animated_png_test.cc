@@ -74,7 +74,9 @@ std::vector<ShownFrame> shown_frames(const Bytes& png) {
     }
     const bool is_later = chunk.type() == "fdAT";
     if (!is_later && chunk.type() != "IDAT") continue;
-    if (is_later) EXPECT_EQ(number_at(data, 0), sequence++);
+    if (is_later) {
+      EXPECT_EQ(number_at(data, 0), sequence++);
+    }
     const auto row = static_cast<std::size_t>(part.width) + 1;
     const Bytes rows = inflated(data.subspan(is_later ? 4 : 0), row * static_cast<std::size_t>(part.height));
     for (int y = 0; y < part.height; ++y) {

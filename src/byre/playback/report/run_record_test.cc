@@ -104,7 +104,7 @@ TEST(RunRecord, EndsWithTheFinalPathAndMap) {
   ASSERT_EQ(path.poses.size(), recorded.run().final.size());
   EXPECT_EQ(path.poses.back().pose.position.y, recorded.run().final.back().world_from_body.translation.y());
   const ros::PointCloud2 cloud = recorded.messages<ros::PointCloud2>("/map_points").back();
-  EXPECT_EQ(cloud.width, static_cast<std::uint32_t>(recorded.run().map.point_count()));
+  EXPECT_EQ(cloud.width, static_cast<std::uint32_t>(recorded.run().stored.map.point_count()));
   EXPECT_EQ(cloud.data.size(), 16u * cloud.width);
 }
 
