@@ -218,7 +218,7 @@ struct SensorFault {
   Plan plan;
   std::optional<DistrustReason> doubt;
   double focal_factor = 1.0;
-  bool is_variant = false;  // of another fault of the list: only in the long suite
+  bool is_variant = false;  // varies another fault of the list: only in the long suite
 };
 
 SensorFault variant(SensorFault fault) {

@@ -105,7 +105,7 @@ TEST_F(Program, FailsIfItsHelpCannotBeWritten) {
 TEST_F(Program, ListsTheChoicesOfAnOption) {
   const std::string evaluate = "evaluate --estimate estimate.txt --truth estimate.txt ";
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"map . --pace fast", "--pace: 'fast' is not one of: inline, live, paced"},
+      {"map . --pace fast", "--pace: 'fast' is not a value of pace; give inline|paced|live"},
       {"map . --format csv", "--format: 'csv' is not one of: euroc, kitti, tum"},
       {"run . --map m --frame world", "--frame: 'world' is not one of: map, plan"},
       {evaluate + "--alignment rigid", "--alignment: 'rigid' is not one of: none, origin, se3, sim3"},

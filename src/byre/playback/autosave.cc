@@ -15,7 +15,7 @@ void Autosave::update(const Map& online, const std::function<StoredMap()>& metad
   finish();
   since_last_ = {};
   saving_ = std::async(std::launch::async, [this, map = online, stored = metadata()]() mutable {
-    stored.map = offline_copy(std::move(map));
+    stored.map = std::move(map);
     save_(std::move(stored));
   });
 }

@@ -14,7 +14,7 @@ namespace byre {
 // save while one is running.
 class Autosave {
  public:
-  using Save = std::function<void(StoredMap stored)>;
+  using Save = std::function<void(StoredMap stored)>;  // stored.map is a copy of the online map
 
   Autosave(double interval_s, Save save) : interval_s_(interval_s), save_(std::move(save)) {}
 

@@ -27,6 +27,7 @@ MapRun play_and_autosave(Slam& slam, RunInput& input, const MapOptions& options,
                          const InterruptCatcher& interrupt) {
   const SlamInputs& inputs = slam.impl().inputs();
   Autosave autosave(options.autosave_s.value_or(0.0), [&](StoredMap stored) {
+    stored.map = offline_copy(std::move(stored.map));
     save_for_missions(std::move(stored), *inputs.vocabulary, inputs.site, *options.map);
   });
   MapRunHooks hooks;

@@ -13,6 +13,7 @@ using testing::Not;
 
 MapProtocol protocol_of(Pace pace) {
   MapProtocol protocol;
+  protocol.options.close_loops = false;
   protocol.recording = "MH_01_easy";
   protocol.range = {.start_s = 1.5, .stride = 2};
   protocol.frames_in_range = 4;
