@@ -23,8 +23,8 @@
 namespace byre {
 
 // A room with a few boxes on its floor, covered with a procedural, band-limited texture. Renders small stereo
-// recordings with exact truth for tests and for a demo without a data set. World frame: origin at the room's centre, z
-// up. The boxes leave the space above the lower third of the room free.
+// recordings with exact truth for tests and benchmarks. World frame: origin at the room's centre, z up. The boxes leave
+// the space above the lower third of the room free.
 struct RenderedRoomOptions {
   Eigen::Vector3d room_size{8.0, 6.0, 3.0};  // metres
   int boxes = 6;
