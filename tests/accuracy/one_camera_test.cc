@@ -101,7 +101,10 @@ TEST_F(TurnOnTheSpot, StartsNoMapAndReportsWhy) {
   EXPECT_GT(std::ranges::count(reports, TwoViewFailure::rotation_only, &FrameReport::start_failure), kTurnFrames / 2);
 }
 
-TEST_F(TurnOnTheSpot, IsTrackedFrameByFrameOnAStereoMap) {
+// Monocular.TracksATurnOnTheSpotInAMap tests this on simulated features.
+using LongRunTurnOnTheSpot = TurnOnTheSpot;
+
+TEST_F(LongRunTurnOnTheSpot, IsTrackedFrameByFrameOnAStereoMap) {
   Session mapping = session_of(rig_of(kCalibration));
   run(mapping, kCalibration, turn(0.0));
   mapping.finish();
