@@ -41,10 +41,11 @@ if(BYRE_BUILD_TESTS)
 endif()
 set(BYRE_ROOMS_BY_PROCESSOR base geometry features optimise map place)
 
-# A folder has threads if one of its files, tests included, includes a header of threads or locks. Such headers of byre
-# are recorded for the folders that follow. The executor's header names no thread, but its implementation starts one.
+# A folder has threads if one of its files, tests included, includes a header of threads or locks, or a header of byre
+# that does; these are recorded for the folders that follow. The header of executors and that of their workers name no
+# thread, but an implementation starts one.
 set(BYRE_THREAD_LIBRARY thread mutex shared_mutex condition_variable future stop_token latch barrier semaphore)
-set_property(GLOBAL PROPERTY BYRE_THREAD_HEADERS base/executor.h)
+set_property(GLOBAL PROPERTY BYRE_THREAD_HEADERS base/executor.h base/worker.h)
 function(byre_find_threads variable folder)
   list(JOIN BYRE_THREAD_LIBRARY "|" library)
   file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/byre/${folder}/*.h
@@ -56,7 +57,7 @@ function(byre_find_threads variable folder)
     file(STRINGS ${file} includes REGEX "^#include (<(${library})>|\"byre/(${headers})\")")
     if(includes)
       set(has_threads TRUE)
-      if(file MATCHES "\\.h$")
+      if(file MATCHES "\\.h$" AND includes MATCHES "<")
         cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${PROJECT_SOURCE_DIR}/src/byre)
         set_property(GLOBAL APPEND PROPERTY BYRE_THREAD_HEADERS ${file})
       endif()
@@ -110,8 +111,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_SANITIZE MATCHES "address")
   set(BYRE_FOLDERS_FUZZED base map map/plan io/ros io/bag)
 endif()
 
-# Folders with a separate test program, byre_<room>_<folder>_tests. The others share the program of their room.
-set(BYRE_FOLDERS_TESTED_ALONE slam/mapping slam/localisation slam/session slam/system ros2/dds ros2/fleet ros2/node)
+# Folders with a separate test program, byre_<room>_<folder>_tests. The others share the program of their room. Folders
+# with and without threads are apart, so that the thread sanitizer builds few tests without threads.
+set(BYRE_FOLDERS_TESTED_ALONE slam/window slam/mapping slam/localisation slam/session slam/system playback/archive
+    playback/report viewer/web ros2/dds ros2/fleet ros2/node)
 
 # The slowest tests, started first so that none of them runs alone at the end.
 set(BYRE_TESTED_FIRST slam_session slam playback simulation)
