@@ -7,8 +7,8 @@
 
 namespace byre {
 
-inline constexpr int kAnimationFrames = 50;         // at most
-inline constexpr double kAnimationRate = 8.0;       // frames per second
+inline constexpr int kAnimationFrames = 40;         // at most
+inline constexpr double kAnimationRate = 6.0;       // frames per second
 inline constexpr double kLastAnimationFrame = 1.5;  // seconds
 
 // Frames of equal size: left the camera image with matched points of both maps, right the plan with the path up to the

@@ -50,8 +50,8 @@ void make_new_folder(const fs::path& folder) {
 }
 
 ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& result) {
+  make_new_folder(options.demo.output);  // may be the folder of the animation
   if (options.animation) require_writable(*options.animation, FileContent::png);
-  make_new_folder(options.demo.output);
   const fs::path& folder = options.demo.output;
   const fs::path page = folder / "index.html";
   const InterruptCatcher interrupt;
