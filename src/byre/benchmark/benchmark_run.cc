@@ -102,11 +102,11 @@ Trajectory truth_during(const Trajectory& truth, const Recording& recording) {
 }
 
 struct TimedRun {
-  MapRun run;
+  RunResult run;
   CostMeasures cost;
 };
 
-TimedRun play_and_time(Slam slam, Recording& recording, const MapRunHooks& hooks) {
+TimedRun play_and_time(Slam slam, Recording& recording, const PlayHooks& hooks) {
   const bool is_reset = reset_peak_memory();
   const double cpu_before = resource_usage().cpu_seconds;
   TimedRun timed;
@@ -217,7 +217,7 @@ class BenchmarkRunner {
     const auto recording = source.open_frames(false).recording;
     hooks_.before_run("map of " + name, recording->size());
     Slam slam = Slam::mapping(recording->calibration(), options_for(Arm::no_map, 0, source));
-    MapRun run = play(slam, *recording, run_hooks());
+    RunResult run = play(slam, *recording, run_hooks());
     if (hooks_.should_stop()) return;
     if (run.final.empty()) {
       failed_maps_.insert(name);
@@ -245,14 +245,14 @@ class BenchmarkRunner {
     return slam;
   }
 
-  MapRunHooks run_hooks() const {
-    MapRunHooks hooks;
+  PlayHooks run_hooks() const {
+    PlayHooks hooks;
     hooks.should_stop = hooks_.should_stop;
     hooks.after_frame = hooks_.after_frame;
     return hooks;
   }
 
-  void write_trajectories(const MapRun& run, const std::string& name, int index) const {
+  void write_trajectories(const RunResult& run, const std::string& name, int index) const {
     const fs::path folder = options_.output / "trajectories";
     fs::create_directories(folder);
     const std::string run_name = name + fmt::format(".{}", index + 1);

@@ -3,7 +3,7 @@
 #include "byre/benchmark/evaluate_run.h"
 #include "byre/benchmark/protocol.h"
 #include "byre/place/vocabulary.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -69,7 +69,7 @@ struct BenchmarkResult {
 struct BenchmarkHooks {
   std::function<bool()> should_stop;                                    // called before each frame
   std::function<void(const std::string& what, int frames)> before_run;  // "mh_02* hybrid, run 1 of 3"
-  std::function<void(int done, const MappedFrame& frame)> after_frame;
+  std::function<void(int done, const PlayedFrame& frame)> after_frame;
   std::function<void(const BenchmarkResult& so_far)> after_run;
   std::function<void(const SkippedCase& skipped)> on_skipped;
 };

@@ -36,7 +36,7 @@ class BenchmarkRun : public testing::Test {
     BenchmarkHooks hooks;
     hooks.should_stop = [this, stop_after_runs] { return static_cast<int>(runs_done_) >= stop_after_runs; };
     hooks.before_run = [this](const std::string& what, int) { started_runs_.push_back(what); };
-    hooks.after_frame = [](int, const MappedFrame&) {};
+    hooks.after_frame = [](int, const PlayedFrame&) {};
     hooks.after_run = [this](const BenchmarkResult&) { ++runs_done_; };
     hooks.on_skipped = [](const SkippedCase&) {};
     return run_benchmark(protocol_, options_, hooks);

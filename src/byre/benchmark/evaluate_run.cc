@@ -55,7 +55,7 @@ Figure keyframes_per_minute(const KeyframeRate& rate) {
   return rate.per_minute();
 }
 
-BehaviourMeasures evaluate_behaviour(const MapRun& run, bool has_map) {
+BehaviourMeasures evaluate_behaviour(const RunResult& run, bool has_map) {
   BehaviourMeasures measures;
   if (run.frames.empty()) return measures;
   const MissionStatistics mission = summarise_mission(run.frames, SessionOptions{}.mission.view.min_inliers);
@@ -70,7 +70,7 @@ BehaviourMeasures evaluate_behaviour(const MapRun& run, bool has_map) {
 
 }  // namespace
 
-RunMeasures evaluate_run(const MapRun& run, const RunTruth& truth) {
+RunMeasures evaluate_run(const RunResult& run, const RunTruth& truth) {
   RunMeasures measures;
   measures.final_poses = evaluate_trajectory(run.final, run.frames.size(), truth);
   measures.causal_poses = evaluate_trajectory(run.causal, run.frames.size(), truth);

@@ -2,7 +2,7 @@
 
 #include "byre/benchmark/measures.h"
 #include "byre/geometry/evaluation/map_frame_error.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include <optional>
 #include <vector>
@@ -15,8 +15,8 @@ struct RunTruth {
   Scale scale = Scale::fixed;       // free for a monocular run without a map
 };
 
-// All measures except memory and CPU time, which a MapRun does not contain.
-RunMeasures evaluate_run(const MapRun& run, const RunTruth& truth);
+// All measures except memory and CPU time, which a RunResult does not contain.
+RunMeasures evaluate_run(const RunResult& run, const RunTruth& truth);
 
 struct TracePoint {
   Timestamp time{};

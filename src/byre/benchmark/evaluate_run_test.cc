@@ -43,8 +43,8 @@ Pose estimated_pose(int frame) {
   return pose;
 }
 
-MappedFrame frame_with_pose(int index, double sigma) {
-  MappedFrame frame;
+PlayedFrame frame_with_pose(int index, double sigma) {
+  PlayedFrame frame;
   frame.time = time_of(index);
   FrameReport report;
   report.time = frame.time;
@@ -58,10 +58,10 @@ MappedFrame frame_with_pose(int index, double sigma) {
 }
 
 // Only frames first to last have a pose.
-MapRun run_with_poses(int first, int last, double sigma) {
-  MapRun run;
+RunResult run_with_poses(int first, int last, double sigma) {
+  RunResult run;
   for (int i = 0; i < kFrames; ++i) {
-    MappedFrame frame = frame_with_pose(i, sigma);
+    PlayedFrame frame = frame_with_pose(i, sigma);
     if (i < first || i > last) {
       frame.report->map_from_body.reset();
       frame.report->health = {};
@@ -122,7 +122,7 @@ TEST(Judge, ComparesErrorsWithTheirCovariance) {
 }
 
 TEST(Judge, ComparesTrustWithErrors) {
-  MapRun run = run_with_poses(0, 99, 0.01);
+  RunResult run = run_with_poses(0, 99, 0.01);
   for (const int far : {30, 31, 60}) run.causal[far].world_from_body.translation.x() += 0.3;
   run.frames[60].report->health.verdict = Verdict::degraded;
   const BehaviourMeasures behaviour = evaluate_run(run, kOnMap).behaviour;
@@ -133,7 +133,7 @@ TEST(Judge, ComparesTrustWithErrors) {
 }
 
 TEST(Judge, CountsLossesKeyframesAndTimes) {
-  MapRun run = run_with_poses(0, 99, 0.01);
+  RunResult run = run_with_poses(0, 99, 0.01);
   run.frames[10].report->events = {SessionEvent::pose_lost};
   run.frames[40].report->events = {SessionEvent::relocalised};
   for (const int keyframe : {0, 15, 50}) run.frames[keyframe].report->keyframe_added = true;
@@ -146,7 +146,7 @@ TEST(Judge, CountsLossesKeyframesAndTimes) {
 }
 
 TEST(Judge, SeparatesKeyframesInKnownPlacesFromOthers) {
-  MapRun run = run_with_poses(0, 99, 0.01);
+  RunResult run = run_with_poses(0, 99, 0.01);
   for (int i = 1; i <= 60; ++i) run.frames[i].report->health.offline_inliers = 1000;
   for (const int keyframe : {30, 70, 80}) run.frames[keyframe].report->keyframe_added = true;
   const BehaviourMeasures on_map = evaluate_run(run, kOnMap).behaviour;
@@ -156,7 +156,7 @@ TEST(Judge, SeparatesKeyframesInKnownPlacesFromOthers) {
 }
 
 TEST(Trace, IsInTheFrameOfTheTruth) {
-  const MapRun run = run_with_poses(0, 99, 0.01);
+  const RunResult run = run_with_poses(0, 99, 0.01);
   const std::vector<TracePoint> on_map = trace_of(run.final, kOnMap);
   ASSERT_THAT(on_map, SizeIs(kFrames));
   EXPECT_THAT(on_map, Each(Field(&TracePoint::error, DoubleNear(kOffset, 1e-9))));

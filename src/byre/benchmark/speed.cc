@@ -21,7 +21,7 @@ constexpr auto kStages = std::to_array<FrameStage>({
     {"frame", "frame", &StageSeconds::total},
 });
 
-SpeedMeasures measures_of(const MapRun& run) {
+SpeedMeasures measures_of(const RunResult& run) {
   SpeedMeasures measures;
   const FrameCounts counts = count_frames(run.frames);
   measures.frames = counts.frames - counts.unreadable;
@@ -41,7 +41,7 @@ std::span<const FrameStage> frame_stages() {
   return kStages;
 }
 
-SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
+SpeedMeasures measure_speed(const SpeedCase& what, const PlayHooks& hooks) {
   const bool is_reset = reset_peak_memory();
   const double cpu_before = resource_usage().cpu_seconds;
   const InstructionCounter instructions;
@@ -54,13 +54,13 @@ SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks) {
   const Calibration& calibration = opened.recording->calibration();
   Slam slam = what.map ? Slam::on_map(calibration, *what.map, options) : Slam::mapping(calibration, options);
   std::optional<double> first_pose_seconds;
-  MapRunHooks watched = hooks;
-  watched.after_frame = [&](int done, const MappedFrame& frame) {
+  PlayHooks watched = hooks;
+  watched.after_frame = [&](int done, const PlayedFrame& frame) {
     const bool has_pose = frame.report && frame.report->map_from_body;
     if (has_pose && !first_pose_seconds) first_pose_seconds = watch.seconds();
     hooks.after_frame(done, frame);
   };
-  const MapRun run = play(slam, *opened.recording, watched);
+  const RunResult run = play(slam, *opened.recording, watched);
   if (run.map_damage) throw InputError(*run.map_damage);
 
   SpeedMeasures measures = measures_of(run);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/playback/report/map_statistics.h"
 
 #include <cstdint>
@@ -49,7 +49,7 @@ struct SpeedMeasures {
 
 // Runs once. A stopped run is measured up to the stop. Throws InputError when the recording or the map cannot be
 // opened.
-SpeedMeasures measure_speed(const SpeedCase& what, const MapRunHooks& hooks);
+SpeedMeasures measure_speed(const SpeedCase& what, const PlayHooks& hooks);
 
 // Markdown table of the run with the median mean frame time, with the range over all runs.
 std::string speed_markdown(const SpeedCase& what, std::vector<SpeedMeasures> runs);

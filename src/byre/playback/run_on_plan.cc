@@ -9,7 +9,7 @@ Trajectory on_plan(Trajectory trajectory, const PlanRegistration& registration) 
   return trajectory;
 }
 
-MappedFrame on_plan(MappedFrame frame, const PlanRegistration& registration) {
+PlayedFrame on_plan(PlayedFrame frame, const PlanRegistration& registration) {
   if (!frame.report || !frame.report->map_from_body) return frame;
   FrameReport& report = *frame.report;
   report.covariance = covariance_on_plan(registration, *report.map_from_body, report.covariance);
@@ -17,10 +17,10 @@ MappedFrame on_plan(MappedFrame frame, const PlanRegistration& registration) {
   return frame;
 }
 
-MapRun on_plan(MapRun run, const PlanRegistration& registration) {
+RunResult on_plan(RunResult run, const PlanRegistration& registration) {
   run.causal = on_plan(std::move(run.causal), registration);
   run.final = on_plan(std::move(run.final), registration);
-  for (MappedFrame& frame : run.frames) frame = on_plan(std::move(frame), registration);
+  for (PlayedFrame& frame : run.frames) frame = on_plan(std::move(frame), registration);
   return run;
 }
 

@@ -17,14 +17,14 @@ PlanRegistration turned_and_shifted() {
 
 TEST(RunOnPlan, TransformsOnlyPosesInTheMap) {
   const PlanRegistration registration = turned_and_shifted();
-  MapRun run;
+  RunResult run;
   run.causal = run.final = run.odometry = {{{}, kMapFromBody}};
   run.frames.resize(3);
   run.frames[1].report.emplace();
   run.frames[2].report.emplace();
   run.frames[2].report->map_from_body = kMapFromBody;
   run.frames[2].report->odometry_from_body = kMapFromBody;
-  const MapRun moved = on_plan(run, registration);
+  const RunResult moved = on_plan(run, registration);
   const Pose expected = registration.plan_from_map.target_from_source * kMapFromBody;
   EXPECT_THAT(moved.causal[0].world_from_body, PoseNear(expected, 1e-9, 1e-9));
   EXPECT_THAT(moved.final[0].world_from_body, PoseNear(expected, 1e-9, 1e-9));
@@ -38,7 +38,7 @@ TEST(RunOnPlan, TransformsOnlyPosesInTheMap) {
 TEST(RunOnPlan, AddsTheCovarianceOfTheRegistration) {
   PlanRegistration registration = turned_and_shifted();
   registration.covariance(5, 5) = 1e-4;  // about the vertical through the origin of the map
-  MappedFrame frame;
+  PlayedFrame frame;
   frame.report.emplace();
   frame.report->map_from_body = Pose{Eigen::Quaterniond::Identity(), {10.0, 0.0, 0.0}};
   frame.report->covariance = 1e-6 * Matrix6::Identity();

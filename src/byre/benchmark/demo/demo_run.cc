@@ -67,10 +67,11 @@ Eigen::Vector2d on_floor(const Eigen::Vector3d& position) {
   return position.head<2>();
 }
 
-std::vector<DemoMoment> moments_of(const MapRun& run, const std::vector<TracePoint>& trace, const Trajectory& truth) {
+std::vector<DemoMoment> moments_of(const RunResult& run, const std::vector<TracePoint>& trace,
+                                   const Trajectory& truth) {
   std::vector<DemoMoment> moments;
   auto traced = trace.begin();
-  for (const MappedFrame& frame : run.frames) {
+  for (const PlayedFrame& frame : run.frames) {
     const std::optional<Pose> true_pose = pose_at(truth, frame.time, AssociationOptions{}.max_gap);
     if (!frame.report || !true_pose) continue;
     const Health& health = frame.report->health;
@@ -90,7 +91,7 @@ std::vector<DemoMoment> moments_of(const MapRun& run, const std::vector<TracePoi
 }
 
 // alignment: of the map to the truth; empty without a map, then the path is aligned to the truth.
-DemoArm evaluate_arm(Arm arm, const MapRun& run, const std::optional<MapAlignment>& alignment,
+DemoArm evaluate_arm(Arm arm, const RunResult& run, const std::optional<MapAlignment>& alignment,
                      const Trajectory& truth) {
   const RunTruth run_truth{truth, alignment};
   return {arm, evaluate_run(run, run_truth), moments_of(run, trace_of(run.causal, run_truth), truth)};
@@ -158,7 +159,7 @@ class DemoRunner {
     tell("mapping the first visit, and registering the map on the floor plan");
     const std::unique_ptr<Recording> recording = open_recording(visit(1), {});
     Slam slam = make_slam(Arm::no_map, *recording);
-    MapRun run = hooks_.play(slam, *recording, {});
+    RunResult run = hooks_.play(slam, *recording, {});
     if (hooks_.should_stop()) return;
     if (run.causal.empty()) throw std::runtime_error("no frame of the first visit got a pose");
     write_trajectories(run, "first_visit");
@@ -186,10 +187,10 @@ class DemoRunner {
     const Trajectory truth = load_truth(visit(2));
     const int every_for_film = options_.animation ? (recording->size() + kAnimationFrames - 1) / kAnimationFrames : 0;
     DemoPainter painter(recording->calibration(), every_for_film);
-    MapRunHooks hooks;
+    PlayHooks hooks;
     if (arm == Arm::hybrid) hooks.on_frame = [&painter](const RunView& view) { painter.add(view); };
     Slam slam = make_slam(arm, *recording);
-    const MapRun run = hooks_.play(slam, *recording, hooks);
+    const RunResult run = hooks_.play(slam, *recording, hooks);
     if (hooks_.should_stop()) return;
     write_trajectories(run, std::string(name_of(arm)));
     std::optional<MapAlignment> alignment;
@@ -219,7 +220,7 @@ class DemoRunner {
     findings_.animation = animation_of(place_, hybrid, painter.film());
   }
 
-  void write_trajectories(const MapRun& run, const std::string& name) const {
+  void write_trajectories(const RunResult& run, const std::string& name) const {
     const fs::path folder = options_.output / "trajectories";
     fs::create_directories(folder);
     write_trajectory(run.causal, folder / (name + ".published.txt"));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/benchmark/demo/findings.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/simulation/cowshed/cowshed_rendering.h"
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct DemoHooks {
   std::function<bool()> should_stop;
   std::function<void(const std::string& stage)> before_stage;  // "1 of 6: rendering the first visit, by day"
   std::function<Rendering(const CowshedRecordingOptions& options, const std::filesystem::path& folder)> render;
-  std::function<MapRun(Slam& slam, Recording& recording, const MapRunHooks& hooks)> play;
+  std::function<RunResult(Slam& slam, Recording& recording, const PlayHooks& hooks)> play;
 };
 
 // Renders two visits to the simulated cowshed, maps the first, registers its map on the floor plan, and runs the second

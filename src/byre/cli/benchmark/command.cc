@@ -90,7 +90,7 @@ class BenchmarkProgress {
     say(what);
     progress_.emplace(std::cerr, style_, frames);
   }
-  void update(int done, const MappedFrame& frame) {
+  void update(int done, const PlayedFrame& frame) {
     const bool is_read = frame.report.has_value();
     progress_->update(done, watch_.seconds(), is_read ? to_string(frame.report->state) : "unreadable frame");
   }
@@ -124,9 +124,9 @@ ExitCode measure_speed_command(BenchmarkCommandOptions options, std::ostream& re
   limit_image_threads(1);
   const InterruptCatcher interrupt;
   BenchmarkProgress progress(options.quiet);
-  MapRunHooks hooks;
+  PlayHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };
-  hooks.after_frame = [&progress](int done, const MappedFrame& frame) { progress.update(done, frame); };
+  hooks.after_frame = [&progress](int done, const PlayedFrame& frame) { progress.update(done, frame); };
   const int frames = open_recording(what.recording, what.range, what.open)->size();
   const int count = options.runs.value_or(1);
   std::vector<SpeedMeasures> runs;
@@ -159,7 +159,7 @@ ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& re
   BenchmarkHooks hooks;
   hooks.should_stop = [&interrupt] { return interrupt.caught(); };
   hooks.before_run = [&progress](const std::string& what, int frames) { progress.begin(what, frames); };
-  hooks.after_frame = [&progress](int done, const MappedFrame& frame) { progress.update(done, frame); };
+  hooks.after_frame = [&progress](int done, const PlayedFrame& frame) { progress.update(done, frame); };
   hooks.after_run = [&](const BenchmarkResult& so_far) { write_results(so_far, protocol, setting, folder); };
   hooks.on_skipped = [&progress](const SkippedCase& skipped) {
     progress.end();

@@ -67,7 +67,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   Slam slam = Slam::mapping(recording->calibration(), slam_settings);
   limit_image_threads(1);
   const InterruptCatcher interrupt;
-  const MapRun run = play_with_progress(slam, *recording, {}, interrupt, options.quiet);
+  const RunResult run = play_with_progress(slam, *recording, {}, interrupt, options.quiet);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (!run.calibration) {
     throw InputError(options.recording.string(), "shows too little to calibrate its cameras",

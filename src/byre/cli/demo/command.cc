@@ -63,7 +63,7 @@ ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& resul
   hooks.render = [&](const CowshedRecordingOptions& visit, const fs::path& visit_folder) {
     return render_with_progress(visit, visit_folder, interrupt, options.quiet);
   };
-  hooks.play = [&](Slam& slam, Recording& recording, const MapRunHooks& more) {
+  hooks.play = [&](Slam& slam, Recording& recording, const PlayHooks& more) {
     return play_with_progress(slam, recording, more, interrupt, options.quiet);
   };
   const std::optional<DemoFindings> findings = run_demo(options.demo, hooks);

@@ -51,12 +51,12 @@ DrawnMission draw_mission(const DrawOptions& options, const PlanScene& backgroun
   const MissionPainting painting{options.camera_picture.has_value(), options.at_s, options.video, options.speed,
                                  options.heights};
   MissionPainter painter(painting, *recording, first, background);
-  MapRunHooks hooks;
+  PlayHooks hooks;
   hooks.on_frame = [&painter](const RunView& run) { painter.add(run); };
   limit_image_threads(1);
   const InterruptCatcher interrupt;
   Slam slam = make_slam(options, *recording);
-  MapRun run = play_with_progress(slam, *recording, hooks, interrupt, options.quiet);
+  RunResult run = play_with_progress(slam, *recording, hooks, interrupt, options.quiet);
   return {painter.finish(), online_scene(run.stored.map), std::move(run.warnings), interrupt.caught()};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/viewer/frame_view.h"
 #include "byre/viewer/plan_picture.h"
 #include "byre/viewer/run_video.h"

@@ -23,16 +23,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MapRun play_and_autosave(Slam& slam, RunInput& input, const MapOptions& options, RecordFile& messages,
-                         const InterruptCatcher& interrupt) {
+RunResult play_and_autosave(Slam& slam, RunInput& input, const MapOptions& options, RecordFile& messages,
+                            const InterruptCatcher& interrupt) {
   const SlamInputs& inputs = slam.impl().inputs();
   Autosave autosave(options.autosave_s.value_or(0.0), [&](StoredMap stored) {
     stored.map = offline_copy(std::move(stored.map));
     save_for_missions(std::move(stored), *inputs.vocabulary, inputs.site, *options.map);
   });
-  MapRunHooks hooks;
+  PlayHooks hooks;
   if (messages.is_wanted()) hooks.on_frame = [&messages](const RunView& view) { messages.note(view); };
-  hooks.after_frame = [&messages](int, const MappedFrame& frame) {
+  hooks.after_frame = [&messages](int, const PlayedFrame& frame) {
     if (!frame.report) messages.note_unreadable(frame);
   };
   if (options.autosave_s) {
@@ -40,13 +40,13 @@ MapRun play_and_autosave(Slam& slam, RunInput& input, const MapOptions& options,
       autosave.update(now.online(), [&now] { return now.stored_metadata(); });
     };
   }
-  MapRun run = input.play(slam, hooks, interrupt);
+  RunResult run = input.play(slam, hooks, interrupt);
   autosave.finish();
   run.warnings.insert(run.warnings.end(), autosave.failures().begin(), autosave.failures().end());
   return run;
 }
 
-void write_results(const MapOptions& options, const MapRun& run, const Report& report, OutputWriter& outputs) {
+void write_results(const MapOptions& options, const RunResult& run, const Report& report, OutputWriter& outputs) {
   outputs.attempt(options.trajectory, run.final, options.trajectory_format);
   outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
   outputs.attempt([&] {
@@ -64,8 +64,8 @@ Slam make_slam(const MapOptions& options, const RunInput& input) {
                           : Slam::mapping(input.calibration(), slam);
 }
 
-MapProtocol protocol_of(const MapOptions& options, const Slam& slam, const RunInput& input) {
-  MapProtocol protocol;
+RunProtocol protocol_of(const MapOptions& options, const Slam& slam, const RunInput& input) {
+  RunProtocol protocol;
   input.describe(protocol);
   protocol.options = slam.impl().options();
   if (options.extended) protocol.extended = options.extended->string();
@@ -83,14 +83,14 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   RunInput input(
       {options.recording, options.range, options.open, options.live, options.extended.has_value(), options.quiet});
   Slam slam = make_slam(options, input);
-  MapProtocol protocol = protocol_of(options, slam, input);
+  RunProtocol protocol = protocol_of(options, slam, input);
 
   limit_image_threads(1);
   input.show_check();
   const InterruptCatcher interrupt;
   RecordFile messages(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
                       [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
-  MapRun run = play_and_autosave(slam, input, options, messages, interrupt);
+  RunResult run = play_and_autosave(slam, input, options, messages, interrupt);
   messages.finish(run);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   if (const auto warning = calibration_warning(run.calibration, run.row_error)) show_warnings(std::cerr, {*warning});

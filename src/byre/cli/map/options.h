@@ -2,7 +2,7 @@
 
 #include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/run_input.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/trajectory_file.h"
 
 #include <filesystem>

@@ -68,8 +68,8 @@ Slam make_slam(const RunOptions& options, const RunInput& input) {
   return slam;
 }
 
-MapProtocol protocol_of(const RunOptions& options, const Slam& slam, const RunInput& input) {
-  MapProtocol protocol;
+RunProtocol protocol_of(const RunOptions& options, const Slam& slam, const RunInput& input) {
+  RunProtocol protocol;
   protocol.program = "byre run";
   input.describe(protocol);
   protocol.options = slam.impl().options();
@@ -89,7 +89,7 @@ class EventFile {
     file_->publish();
   }
 
-  void note(int number, const MappedFrame& frame) {
+  void note(int number, const PlayedFrame& frame) {
     if (!path_ || fault_) return;
     log_.note(number, frame);
     try {
@@ -113,16 +113,16 @@ class EventFile {
   std::optional<std::string> fault_;
 };
 
-MapRun play_and_log(Slam& slam, RunInput& input, const MapProtocol& protocol, WatchedRunViewer* viewer,
-                    EventFile& events, RecordFile& record, const InterruptCatcher& interrupt) {
-  MapRunHooks hooks;
+RunResult play_and_log(Slam& slam, RunInput& input, const RunProtocol& protocol, WatchedRunViewer* viewer,
+                       EventFile& events, RecordFile& record, const InterruptCatcher& interrupt) {
+  PlayHooks hooks;
   if (viewer != nullptr || record.is_wanted()) {
     hooks.on_frame = [&record, viewer](const RunView& view) {
       if (viewer != nullptr) viewer->note(view);
       record.note(view);
     };
   }
-  hooks.after_frame = [&](int done, const MappedFrame& frame) {
+  hooks.after_frame = [&](int done, const PlayedFrame& frame) {
     events.note(done - 1, protocol.plan ? on_plan(frame, *protocol.plan) : frame);
     if (frame.report) return;
     record.note_unreadable(frame);
@@ -131,7 +131,7 @@ MapRun play_and_log(Slam& slam, RunInput& input, const MapProtocol& protocol, Wa
   return input.play(slam, hooks, interrupt);
 }
 
-void write_results(const RunOptions& options, const MapRun& run, const Report& report, const MissionOutcome& mission,
+void write_results(const RunOptions& options, const RunResult& run, const Report& report, const MissionOutcome& mission,
                    OutputWriter& outputs) {
   outputs.attempt(options.trajectory, run.final, options.trajectory_format);
   outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
@@ -147,7 +147,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
       {options.recording, options.range, options.open, options.live, options.map.has_value(), options.quiet});
   const std::optional<MissionTruth> truth = load_truths(options);
   Slam slam = make_slam(options, input);
-  MapProtocol protocol = protocol_of(options, slam, input);
+  RunProtocol protocol = protocol_of(options, slam, input);
 
   limit_image_threads(1);
   input.show_check();
@@ -157,7 +157,7 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   EventFile events(options.events);
   RecordFile record(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
                     [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
-  MapRun run = play_and_log(slam, input, protocol, viewer ? &*viewer : nullptr, events, record, interrupt);
+  RunResult run = play_and_log(slam, input, protocol, viewer ? &*viewer : nullptr, events, record, interrupt);
   record.finish(run);
   if (viewer) viewer->finish(run);
   if (options.online_map && run.stored.map.keyframe_count() == 0) {

@@ -4,7 +4,7 @@
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/cli/shared/view_options.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/trajectory_file.h"
 
 #include <filesystem>

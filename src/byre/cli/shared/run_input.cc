@@ -69,7 +69,7 @@ void RunInput::show_check() const {
   show_warnings(std::cerr, warnings);
 }
 
-void RunInput::describe(MapProtocol& protocol) const {
+void RunInput::describe(RunProtocol& protocol) const {
   protocol.is_metric = scaled_.is_metric;
   if (live_) {
     protocol.recording = choice_.live.name();
@@ -98,13 +98,13 @@ WatchedRun RunInput::watched(const std::optional<std::filesystem::path>& map,
   return run;
 }
 
-void RunInput::note_frames(const MapRun& run, MapProtocol& protocol) const {
+void RunInput::note_frames(const RunResult& run, RunProtocol& protocol) const {
   if (live_) protocol.frames_in_range = static_cast<int>(run.frames.size());
 }
 
-MapRun RunInput::play(Slam& slam, const MapRunHooks& hooks, const InterruptCatcher& interrupt) {
+RunResult RunInput::play(Slam& slam, const PlayHooks& hooks, const InterruptCatcher& interrupt) {
   if (live_) return play_with_progress(slam, *live_->frames, hooks, interrupt, choice_.quiet);
-  MapRun run = play_with_progress(slam, *scaled_.recording, hooks, interrupt, choice_.quiet);
+  RunResult run = play_with_progress(slam, *scaled_.recording, hooks, interrupt, choice_.quiet);
   for (const MotionWarning& warning : run.motion_warnings) {
     run.warnings.push_back(to_text(warning, motion_source(choice_.recording, choice_.open, warning.sensor)));
   }

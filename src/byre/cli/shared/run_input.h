@@ -38,15 +38,15 @@ class RunInput {
   // Prints a summary of the recording and its problems before the run.
   void show_check() const;
   // Fills in the source of frames.
-  void describe(MapProtocol& protocol) const;
+  void describe(RunProtocol& protocol) const;
   std::string name() const;  // in maps and for the viewer
   // Description for the viewer.
   WatchedRun watched(const std::optional<std::filesystem::path>& map, std::shared_ptr<const OfflineMap> offline) const;
 
   // play_with_progress on its frames.
-  MapRun play(Slam& slam, const MapRunHooks& hooks, const InterruptCatcher& interrupt);
+  RunResult play(Slam& slam, const PlayHooks& hooks, const InterruptCatcher& interrupt);
   // Adds the number of frames of live cameras, known only after the run.
-  void note_frames(const MapRun& run, MapProtocol& protocol) const;
+  void note_frames(const RunResult& run, RunProtocol& protocol) const;
   // Report rows about live cameras; empty for recordings. Call it once, after the run.
   std::string report();
 

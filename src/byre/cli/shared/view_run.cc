@@ -69,11 +69,11 @@ void WatchedRunViewer::note(const RunView& view) {
   viewer_.show(view.images.left, *view.frame.report, view.session);
 }
 
-void WatchedRunViewer::note_unreadable(const MappedFrame& frame) {
+void WatchedRunViewer::note_unreadable(const PlayedFrame& frame) {
   messages_.note_unreadable(frame);
 }
 
-void WatchedRunViewer::finish(const MapRun& run) {
+void WatchedRunViewer::finish(const RunResult& run) {
   messages_.finish(run);
   viewer_.end_run();
 }

@@ -2,7 +2,7 @@
 
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/view_options.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/playback/report/run_messages.h"
 #include "byre/viewer/web/web_run.h"
 
@@ -32,9 +32,9 @@ class WatchedRunViewer {
 
   // Call one of both after each frame, in order.
   void note(const RunView& view);                  // frame with readable images
-  void note_unreadable(const MappedFrame& frame);  // frame with unreadable images
+  void note_unreadable(const PlayedFrame& frame);  // frame with unreadable images
 
-  void finish(const MapRun& run);  // no more frames follow
+  void finish(const RunResult& run);  // no more frames follow
 
  private:
   RunViewer viewer_;

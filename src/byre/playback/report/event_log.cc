@@ -53,7 +53,7 @@ Json before_json(const std::optional<Value>& before) {
 
 }  // namespace
 
-void EventLog::note(int number, const MappedFrame& frame) {
+void EventLog::note(int number, const PlayedFrame& frame) {
   if (!frame.report) return;
   const FrameReport& report = *frame.report;
   const auto write = [this](const Json& line) { stream_ << dump_json(line) << std::endl; };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include <iosfwd>
 #include <optional>
@@ -14,7 +14,7 @@ class EventLog {
   explicit EventLog(std::ostream& stream) : stream_(stream) {}
 
   // Call after each frame, in order; number: frame number from 0. Flushes the stream.
-  void note(int number, const MappedFrame& frame);
+  void note(int number, const PlayedFrame& frame);
 
  private:
   std::ostream& stream_;

@@ -13,19 +13,19 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 
-MappedFrame frame_at(double seconds, State state, Verdict verdict, std::vector<SessionEvent> events = {}) {
+PlayedFrame frame_at(double seconds, State state, Verdict verdict, std::vector<SessionEvent> events = {}) {
   FrameReport report;
   report.time = from_seconds(seconds);
   report.state = state;
   report.health.verdict = verdict;
   report.events = std::move(events);
-  MappedFrame frame;
+  PlayedFrame frame;
   frame.time = report.time;
   frame.report = report;
   return frame;
 }
 
-std::vector<json> lines_of(const std::vector<MappedFrame>& frames) {
+std::vector<json> lines_of(const std::vector<PlayedFrame>& frames) {
   std::stringstream stream;
   EventLog log(stream);
   for (std::size_t i = 0; i < frames.size(); ++i) log.note(static_cast<int>(i), frames[i]);
@@ -51,7 +51,7 @@ TEST(EventLog, BeginsWithTheFirstStateAndVerdict) {
 }
 
 TEST(EventLog, ContainsOnlyChanges) {
-  const MappedFrame steady = frame_at(0.1, State::tracking, Verdict::trusted);
+  const PlayedFrame steady = frame_at(0.1, State::tracking, Verdict::trusted);
   const std::vector<json> lines = lines_of({steady, steady, frame_at(0.3, State::tracking, Verdict::degraded)});
   EXPECT_THAT(events_of(lines), ElementsAre("state changed", "verdict changed", "verdict changed"));
   EXPECT_EQ(lines[2].at("before"), "trusted");
@@ -61,7 +61,7 @@ TEST(EventLog, ContainsOnlyChanges) {
 }
 
 TEST(EventLog, ContainsEventsOfAFrameInOrderWithPoseAndDistance) {
-  MappedFrame lost = frame_at(7.0, State::lost, Verdict::untrusted, {SessionEvent::pose_lost, SessionEvent::blinded});
+  PlayedFrame lost = frame_at(7.0, State::lost, Verdict::untrusted, {SessionEvent::pose_lost, SessionEvent::blinded});
   lost.report->health.distance_since_offline = 1.5;
   lost.report->health.seconds_since_offline = 3.0;
   lost.report->health.doubt = DistrustReason::blinded;
@@ -77,13 +77,13 @@ TEST(EventLog, ContainsEventsOfAFrameInOrderWithPoseAndDistance) {
 }
 
 TEST(EventLog, ContainsTheJumpOfAMapCorrection) {
-  const auto with_poses = [](MappedFrame frame, double map_x, double odometry_x) {
+  const auto with_poses = [](PlayedFrame frame, double map_x, double odometry_x) {
     frame.report->map_from_body = Pose{Eigen::Quaterniond::Identity(), {map_x, 0.0, 0.0}};
     frame.report->odometry_from_body = Pose{Eigen::Quaterniond::Identity(), {odometry_x, 0.0, 0.0}};
     return frame;
   };
-  const MappedFrame before = with_poses(frame_at(0.0, State::tracking, Verdict::trusted), 10.0, 0.0);
-  const MappedFrame after =
+  const PlayedFrame before = with_poses(frame_at(0.0, State::tracking, Verdict::trusted), 10.0, 0.0);
+  const PlayedFrame after =
       with_poses(frame_at(0.1, State::tracking, Verdict::trusted, {SessionEvent::online_corrected}), 10.5, 0.25);
   const std::vector<json> lines = lines_of({before, after});
   ASSERT_EQ(lines.size(), 3u);
@@ -95,8 +95,8 @@ TEST(EventLog, ContainsTheJumpOfAMapCorrection) {
 }
 
 TEST(EventLog, SkipsUnreadableFrames) {
-  const MappedFrame steady = frame_at(0.1, State::tracking, Verdict::trusted);
-  EXPECT_THAT(lines_of({steady, MappedFrame{}, steady}), testing::SizeIs(2));
+  const PlayedFrame steady = frame_at(0.1, State::tracking, Verdict::trusted);
+  EXPECT_THAT(lines_of({steady, PlayedFrame{}, steady}), testing::SizeIs(2));
 }
 
 }  // namespace

@@ -8,9 +8,9 @@ namespace byre {
 namespace {
 
 template <typename SecondsOf>
-TimeSummary summarise_processed(const std::vector<MappedFrame>& frames, SecondsOf seconds_of) {
+TimeSummary summarise_processed(const std::vector<PlayedFrame>& frames, SecondsOf seconds_of) {
   std::vector<double> seconds;
-  for (const MappedFrame& frame : frames) {
+  for (const PlayedFrame& frame : frames) {
     if (frame.report) seconds.push_back(seconds_of(frame.seconds));
   }
   return summarise_times(std::move(seconds));
@@ -31,18 +31,18 @@ TimeSummary summarise_times(std::vector<double> seconds) {
   return {ms.count, ms.mean, ms.p50, ms.p95, ms.p99, ms.max};
 }
 
-TimeSummary summarise_stage(const std::vector<MappedFrame>& frames, double StageSeconds::*stage) {
+TimeSummary summarise_stage(const std::vector<PlayedFrame>& frames, double StageSeconds::*stage) {
   return summarise_processed(frames, [stage](const StageSeconds& seconds) { return seconds.*stage; });
 }
 
-TimeSummary summarise_without_jobs(const std::vector<MappedFrame>& frames) {
+TimeSummary summarise_without_jobs(const std::vector<PlayedFrame>& frames) {
   return summarise_processed(frames, [](const StageSeconds& seconds) { return seconds.total - seconds.map_submit; });
 }
 
-FrameCounts count_frames(const std::vector<MappedFrame>& frames) {
+FrameCounts count_frames(const std::vector<PlayedFrame>& frames) {
   FrameCounts counts;
   State state = State::initialising;
-  for (const MappedFrame& frame : frames) {
+  for (const PlayedFrame& frame : frames) {
     if (frame.report && frame.report->map_from_body && counts.with_pose == 0) counts.frames_to_first = counts.frames;
     ++counts.frames;
     counts.unreadable += frame.report ? 0 : 1;

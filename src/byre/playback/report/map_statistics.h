@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include <map>
 #include <optional>
@@ -21,9 +21,9 @@ struct TimeSummary {
 TimeSummary summarise_times(std::vector<double> seconds);  // all zero for an empty vector
 
 // Times of one stage over the processed frames: summarise_stage(frames, &StageSeconds::track).
-TimeSummary summarise_stage(const std::vector<MappedFrame>& frames, double StageSeconds::*stage);
+TimeSummary summarise_stage(const std::vector<PlayedFrame>& frames, double StageSeconds::*stage);
 // Times of whole frames, without mapping jobs on the frame thread.
-TimeSummary summarise_without_jobs(const std::vector<MappedFrame>& frames);
+TimeSummary summarise_without_jobs(const std::vector<PlayedFrame>& frames);
 
 struct FrameCounts {
   int frames = 0;
@@ -47,6 +47,6 @@ struct FrameCounts {
   double coverage() const { return frames > 0 ? static_cast<double>(with_pose) / frames : 0.0; }
 };
 
-FrameCounts count_frames(const std::vector<MappedFrame>& frames);
+FrameCounts count_frames(const std::vector<PlayedFrame>& frames);
 
 }  // namespace byre

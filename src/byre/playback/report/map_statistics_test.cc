@@ -5,8 +5,8 @@
 namespace byre {
 namespace {
 
-MappedFrame frame_in(State state) {
-  MappedFrame frame;
+PlayedFrame frame_in(State state) {
+  PlayedFrame frame;
   frame.has_right = true;
   frame.report.emplace();
   frame.report->state = state;
@@ -40,7 +40,7 @@ TEST(SummariseTimes, IsZeroForNothing) {
 }
 
 TEST(SummariseStage, SkipsUnprocessedFrames) {
-  std::vector<MappedFrame> frames(3, frame_in(State::tracking));
+  std::vector<PlayedFrame> frames(3, frame_in(State::tracking));
   frames[0].seconds.track = 0.010;
   frames[1].report.reset();
   frames[2].seconds.track = 0.020;
@@ -50,14 +50,14 @@ TEST(SummariseStage, SkipsUnprocessedFrames) {
 }
 
 TEST(SummariseWithoutJobs, SubtractsTheTimeOfSubmittedJobs) {
-  MappedFrame frame = frame_in(State::tracking);
+  PlayedFrame frame = frame_in(State::tracking);
   frame.seconds.total = 0.100;
   frame.seconds.map_submit = 0.080;
   EXPECT_NEAR(summarise_without_jobs({frame}).max_ms, 20.0, 1e-9);
 }
 
 TEST(CountFrames, CountsLostEpisodesAndTheirFrames) {
-  std::vector<MappedFrame> frames;
+  std::vector<PlayedFrame> frames;
   for (const State state : {State::initialising, State::tracking, State::relocalising, State::lost, State::tracking,
                             State::relocalising, State::tracking, State::tracking}) {
     frames.push_back(frame_in(state));
@@ -73,7 +73,7 @@ TEST(CountFrames, CountsLostEpisodesAndTheirFrames) {
 }
 
 TEST(CountFrames, CountsUnreadableFramesSeparately) {
-  std::vector<MappedFrame> frames(5, frame_in(State::lost));
+  std::vector<PlayedFrame> frames(5, frame_in(State::lost));
   frames[2].report.reset();
   frames[3].has_right = false;
   const FrameCounts counts = count_frames(frames);
@@ -84,7 +84,7 @@ TEST(CountFrames, CountsUnreadableFramesSeparately) {
 }
 
 TEST(CountFrames, CountsMapEvents) {
-  std::vector<MappedFrame> frames(4, frame_in(State::tracking));
+  std::vector<PlayedFrame> frames(4, frame_in(State::tracking));
   frames[0] = frame_in(State::lost);
   frames[1].report->events.push_back(SessionEvent::relocalised);
   frames[2].report->events.push_back(SessionEvent::loop_found);

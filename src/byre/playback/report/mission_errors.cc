@@ -7,9 +7,9 @@
 namespace byre {
 namespace {
 
-std::vector<PoseError> errors_with(Verdict verdict, const MapRun& run, const std::vector<PoseError>& causal) {
+std::vector<PoseError> errors_with(Verdict verdict, const RunResult& run, const std::vector<PoseError>& causal) {
   std::vector<PoseError> chosen;
-  for (const MappedFrame& frame : run.frames) {
+  for (const PlayedFrame& frame : run.frames) {
     const PoseError* const error = find_error(causal, frame.time);
     if (error != nullptr && frame.report->health.verdict == verdict) chosen.push_back(*error);
   }
@@ -21,10 +21,10 @@ bool is_far(const PoseError& error) {
 }
 
 // Duration from the first to the last frame of an episode; 0 for a single frame.
-double longest_wrong_trust(const MapRun& run, const std::vector<PoseError>& trusted) {
+double longest_wrong_trust(const RunResult& run, const std::vector<PoseError>& trusted) {
   double longest_s = 0.0;
-  const MappedFrame* first = nullptr;
-  for (const MappedFrame& frame : run.frames) {
+  const PlayedFrame* first = nullptr;
+  for (const PlayedFrame& frame : run.frames) {
     const PoseError* const error = find_error(trusted, frame.time);
     if (error == nullptr || !is_far(*error)) {
       first = nullptr;
@@ -37,11 +37,11 @@ double longest_wrong_trust(const MapRun& run, const std::vector<PoseError>& trus
 }
 
 // Compares position errors with covariances: both refer to a small motion in the body frame.
-std::optional<double> share_within_bound(const MapRun& run, const std::vector<PoseError>& causal) {
+std::optional<double> share_within_bound(const RunResult& run, const std::vector<PoseError>& causal) {
   constexpr double kBound95 = 7.815;  // 95 % quantile of chi-square with three degrees of freedom
   int within = 0;
   int judged = 0;
-  for (const MappedFrame& frame : run.frames) {
+  for (const PlayedFrame& frame : run.frames) {
     const PoseError* const error = find_error(causal, frame.time);
     if (error == nullptr) continue;
     const Eigen::Matrix3d covariance = frame.report->covariance.topLeftCorner<3, 3>();
@@ -55,7 +55,7 @@ std::optional<double> share_within_bound(const MapRun& run, const std::vector<Po
 }
 
 // Errors by verdict, from the causal errors.
-void judge_trust(const MapRun& run, MissionErrors& errors) {
+void judge_trust(const RunResult& run, MissionErrors& errors) {
   errors.trusted = errors_with(Verdict::trusted, run, errors.causal);
   errors.degraded = errors_with(Verdict::degraded, run, errors.causal);
   errors.wrongly_trusted = static_cast<int>(std::ranges::count_if(errors.trusted, is_far));
@@ -70,7 +70,7 @@ std::vector<PoseError> errors_when_aligned(const Trajectory& estimate, const Tra
 
 }  // namespace
 
-MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth) {
+MissionErrors mission_errors(const RunResult& run, const MapAlignment& alignment, const Trajectory& truth) {
   MissionErrors errors;
   errors.in_map_frame = true;
   errors.alignment_poses = alignment.poses;
@@ -83,7 +83,7 @@ MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, c
   return errors;
 }
 
-MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth, Scale scale) {
+MissionErrors aligned_errors(const RunResult& run, const Trajectory& truth, Scale scale) {
   MissionErrors errors;
   errors.causal = errors_when_aligned(run.causal, truth, scale);
   errors.final = errors_when_aligned(run.final, truth, scale);

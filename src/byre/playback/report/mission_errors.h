@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/geometry/evaluation/map_frame_error.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include <optional>
 #include <vector>
@@ -26,9 +26,9 @@ struct MissionErrors {
 
 inline constexpr double kFarMetres = 0.2;
 
-MissionErrors mission_errors(const MapRun& run, const MapAlignment& alignment, const Trajectory& truth);
+MissionErrors mission_errors(const RunResult& run, const MapAlignment& alignment, const Trajectory& truth);
 
 // Errors after alignment, for a run without an offline map. scale: free for a monocular map.
-MissionErrors aligned_errors(const MapRun& run, const Trajectory& truth, Scale scale);
+MissionErrors aligned_errors(const RunResult& run, const Trajectory& truth, Scale scale);
 
 }  // namespace byre

@@ -39,8 +39,8 @@ MapAlignment aligned_map() {
 }
 
 // Frames every 0.5 s, each with the given error along its x axis, metres, and a sigma of 1 cm.
-MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Verdict::trusted) {
-  MapRun run;
+RunResult run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Verdict::trusted) {
+  RunResult run;
   for (std::size_t i = 0; i < errors_m.size(); ++i) {
     const double time_s = 0.5 * static_cast<double>(i);
     FrameReport report;
@@ -49,7 +49,7 @@ MapRun run_with_errors(const std::vector<double>& errors_m, Verdict verdict = Ve
     report.covariance = 1e-4 * Matrix6::Identity();
     report.health.verdict = verdict;
     run.causal.push_back({report.time, *report.map_from_body});
-    MappedFrame frame;
+    PlayedFrame frame;
     frame.time = report.time;
     frame.report = report;
     run.frames.push_back(frame);
@@ -67,7 +67,7 @@ TEST(MissionErrors, AreInTheMapFrame) {
 }
 
 TEST(MissionErrors, CountWronglyTrustedFrames) {
-  MapRun run = run_with_errors({0.0, 0.3, 0.0, 0.3, 0.3, 0.3, 0.3, 0.0});
+  RunResult run = run_with_errors({0.0, 0.3, 0.0, 0.3, 0.3, 0.3, 0.3, 0.0});
   run.frames[6].report->health.verdict = Verdict::degraded;
   const MissionErrors errors = mission_errors(run, aligned_map(), truth());
   EXPECT_THAT(errors.trusted, SizeIs(7));
@@ -78,12 +78,12 @@ TEST(MissionErrors, CountWronglyTrustedFrames) {
 
 TEST(MissionErrors, CompareErrorsWithTheirCovariance) {
   // The 95 % bound for three degrees of freedom is 2.8 sigmas.
-  const MapRun run = run_with_errors({0.0, 0.027, 0.029, 0.1});
+  const RunResult run = run_with_errors({0.0, 0.027, 0.029, 0.1});
   EXPECT_EQ(mission_errors(run, aligned_map(), truth()).within_bound, 0.5);
 }
 
 TEST(MissionErrors, SkipUnreadableFramesAndFramesWithoutPose) {
-  MapRun run = run_with_errors({0.0, 0.0, 0.0, 0.0});
+  RunResult run = run_with_errors({0.0, 0.0, 0.0, 0.0});
   run.frames[1].report.reset();
   run.frames[2].report->map_from_body.reset();
   run.causal.erase(run.causal.begin() + 1, run.causal.begin() + 3);

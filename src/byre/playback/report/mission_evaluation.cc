@@ -15,7 +15,7 @@ Trajectory path_of(const OfflineMap& offline, const std::optional<Trajectory>& m
 
 }  // namespace
 
-MissionOutcome evaluate_mission(const MapRun& run, const MethodOptions& options,
+MissionOutcome evaluate_mission(const RunResult& run, const MethodOptions& options,
                                 const std::optional<MissionTruth>& truth, const ScaledRecording& recording) {
   MissionOutcome mission;
   mission.statistics = summarise_mission(run.frames, options.session.mission.view.min_inliers);

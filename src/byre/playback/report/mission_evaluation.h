@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/playback/report/mission_report.h"
 #include "byre/playback/scaled_recording.h"
 
@@ -18,7 +18,7 @@ struct MissionTruth {
 };
 
 // Statistics and errors of a run: in the frame of its offline map, or without one after alignment. Errors need truth.
-MissionOutcome evaluate_mission(const MapRun& run, const MethodOptions& options,
+MissionOutcome evaluate_mission(const RunResult& run, const MethodOptions& options,
                                 const std::optional<MissionTruth>& truth, const ScaledRecording& recording);
 
 }  // namespace byre

@@ -14,7 +14,7 @@ Trajectory curve(double offset) {
 }
 
 TEST(JudgeMission, MeasuresErrorsGivenTruth) {
-  MapRun run;
+  RunResult run;
   run.causal = run.final = curve(0.0);
   EXPECT_FALSE(evaluate_mission(run, {}, std::nullopt, {}).errors.has_value());
   const MissionOutcome outcome = evaluate_mission(run, {}, MissionTruth{curve(2.0), {}, {}, Scale::fixed}, {});

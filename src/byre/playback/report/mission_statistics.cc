@@ -35,9 +35,9 @@ void note_dirt(const Health& health, MissionStatistics& statistics) {
   if (health.hidden_share > 0.0 || health.hidden_share_right > 0.0) ++statistics.frames_with_dirt;
 }
 
-std::vector<std::pair<DistrustReason, int>> count_doubts(const std::vector<MappedFrame>& frames) {
+std::vector<std::pair<DistrustReason, int>> count_doubts(const std::vector<PlayedFrame>& frames) {
   std::map<DistrustReason, int> counts;
-  for (const MappedFrame& frame : frames) {
+  for (const PlayedFrame& frame : frames) {
     if (frame.report && frame.report->health.verdict != Verdict::trusted) ++counts[frame.report->health.doubt];
   }
   std::vector<std::pair<DistrustReason, int>> doubts(counts.begin(), counts.end());
@@ -45,9 +45,9 @@ std::vector<std::pair<DistrustReason, int>> count_doubts(const std::vector<Mappe
   return doubts;
 }
 
-ErrorStatistics inliers_with_pose(const std::vector<MappedFrame>& frames, int Health::*inliers) {
+ErrorStatistics inliers_with_pose(const std::vector<PlayedFrame>& frames, int Health::*inliers) {
   std::vector<double> counts;
-  for (const MappedFrame& frame : frames) {
+  for (const PlayedFrame& frame : frames) {
     if (frame.report && frame.report->map_from_body) counts.push_back(frame.report->health.*inliers);
   }
   return summarise(std::move(counts));
@@ -65,10 +65,10 @@ bool misses_too_many_frames(int missing, int frames) {
   return missing > kMaxMissing * frames;
 }
 
-MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers) {
+MissionStatistics summarise_mission(const std::vector<PlayedFrame>& frames, int min_offline_inliers) {
   MissionStatistics statistics;
   std::optional<Timestamp> last_time;
-  for (const MappedFrame& frame : frames) {
+  for (const PlayedFrame& frame : frames) {
     const double seconds = last_time ? to_seconds(frame.time - *last_time) : 0.0;
     last_time = frame.time;
     ++statistics.frames;

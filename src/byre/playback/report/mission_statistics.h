@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/trajectory_error.h"
 
 #include <optional>
@@ -44,6 +44,6 @@ inline bool misses_too_many_frames(const MissionStatistics& statistics) {
 }
 
 // min_offline_inliers: offline inliers from which a frame counts as in_mapped_area.
-MissionStatistics summarise_mission(const std::vector<MappedFrame>& frames, int min_offline_inliers);
+MissionStatistics summarise_mission(const std::vector<PlayedFrame>& frames, int min_offline_inliers);
 
 }  // namespace byre

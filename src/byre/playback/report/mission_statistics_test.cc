@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-MappedFrame frame_with(int number, Verdict verdict, DistrustReason doubt, int offline_inliers) {
+PlayedFrame frame_with(int number, Verdict verdict, DistrustReason doubt, int offline_inliers) {
   FrameReport report;
   report.time = from_seconds(number);
   report.map_from_body = Pose{};
@@ -20,18 +20,18 @@ MappedFrame frame_with(int number, Verdict verdict, DistrustReason doubt, int of
   report.health.doubt = doubt;
   report.health.offline_inliers = offline_inliers;
   report.health.online_inliers = 10;
-  MappedFrame frame;
+  PlayedFrame frame;
   frame.time = report.time;
   frame.report = std::move(report);
   return frame;
 }
 
 // A frame without pose, two in a mapped place, one unreadable, and two in a changed place.
-std::vector<MappedFrame> mission() {
-  std::vector<MappedFrame> frames = {frame_with(0, Verdict::untrusted, DistrustReason::no_pose, 0),
+std::vector<PlayedFrame> mission() {
+  std::vector<PlayedFrame> frames = {frame_with(0, Verdict::untrusted, DistrustReason::no_pose, 0),
                                      frame_with(1, Verdict::trusted, DistrustReason::none, 100),
                                      frame_with(2, Verdict::trusted, DistrustReason::none, 80),
-                                     MappedFrame{},
+                                     PlayedFrame{},
                                      frame_with(4, Verdict::degraded, DistrustReason::few_offline_points, 10),
                                      frame_with(5, Verdict::degraded, DistrustReason::few_offline_points, 25)};
   frames[0].report->map_from_body.reset();
@@ -56,7 +56,7 @@ TEST(SummariseMission, MeasuresTheTimeToTheFirstPose) {
 }
 
 TEST(SummariseMission, CountsKeyframesInKnownAndOtherPlacesSeparately) {
-  std::vector<MappedFrame> frames = mission();
+  std::vector<PlayedFrame> frames = mission();
   for (const std::size_t i : {1, 4, 5}) frames[i].report->keyframe_added = true;
   const MissionStatistics statistics = summarise_mission(frames, 25);
   EXPECT_EQ(statistics.in_mapped_area.keyframes, 2);
@@ -67,7 +67,7 @@ TEST(SummariseMission, CountsKeyframesInKnownAndOtherPlacesSeparately) {
 }
 
 TEST(SummariseMission, CountsLossesAndRelocalisations) {
-  std::vector<MappedFrame> frames = mission();
+  std::vector<PlayedFrame> frames = mission();
   frames[2].report->events = {SessionEvent::blinded, SessionEvent::pose_lost};
   frames[4].report->events = {SessionEvent::navigation_error};
   frames[5].report->events = {SessionEvent::relocalised};
@@ -78,7 +78,7 @@ TEST(SummariseMission, CountsLossesAndRelocalisations) {
 }
 
 TEST(SummariseMission, UsesInliersOfFramesWithPose) {
-  std::vector<MappedFrame> frames = mission();
+  std::vector<PlayedFrame> frames = mission();
   frames[2].report->health.suspended = 7;
   const MissionStatistics statistics = summarise_mission(frames, 25);
   EXPECT_EQ(statistics.offline_inliers.median, 52.5);

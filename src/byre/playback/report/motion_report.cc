@@ -11,7 +11,7 @@ namespace byre {
 namespace {
 
 // Length of a map unit by the wheels. Empty if the wheels set the scale, which makes it 1.
-std::string describe_lengths(const WheelCalibration& wheels, const MapRun& run, bool has_metric_source) {
+std::string describe_lengths(const WheelCalibration& wheels, const RunResult& run, bool has_metric_source) {
   const double share = 100.0 * wheels.scale_sigma;
   if (has_metric_source) {
     return fmt::format("{:.2f} % longer than by camera (sigma {:.2f} %); ", 100.0 * (wheels.metres_per_unit - 1.0),
@@ -21,13 +21,13 @@ std::string describe_lengths(const WheelCalibration& wheels, const MapRun& run, 
   return fmt::format("a unit of the map is {:.3f} m (sigma {:.2f} %); ", wheels.metres_per_unit, share);
 }
 
-bool is_bridged(const MappedFrame& frame) {
+bool is_bridged(const PlayedFrame& frame) {
   return frame.report && frame.report->map_from_body && frame.report->health.doubt == DistrustReason::bridged;
 }
 
 }  // namespace
 
-void add_motion(const MapRun& run, bool has_metric_source, Report& report) {
+void add_motion(const RunResult& run, bool has_metric_source, Report& report) {
   const MotionEstimates& motion = run.motion;
   if (!motion.has_samples) return;
   if (motion.wheels) {

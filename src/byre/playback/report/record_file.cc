@@ -27,11 +27,11 @@ void RecordFile::note(const RunView& view) {
   attempt([&] { record_->note(view); });
 }
 
-void RecordFile::note_unreadable(const MappedFrame& frame) {
+void RecordFile::note_unreadable(const PlayedFrame& frame) {
   attempt([&] { record_->note_unreadable(frame); });
 }
 
-void RecordFile::finish(const MapRun& run) {
+void RecordFile::finish(const RunResult& run) {
   attempt([&] { record_->finish(run); });
 }
 

@@ -18,8 +18,8 @@ class RecordFile {
 
   bool is_wanted() const { return record_.has_value(); }
   void note(const RunView& view);                  // call after each frame with readable images
-  void note_unreadable(const MappedFrame& frame);  // call after each other frame
-  void finish(const MapRun& run);
+  void note_unreadable(const PlayedFrame& frame);  // call after each other frame
+  void finish(const RunResult& run);
   void require_written() const;
 
  private:

@@ -95,7 +95,7 @@ std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& re
   return pose_message(header(kMapFrame, report.time), *report.map_from_body, report.covariance);
 }
 
-ros::DiagnosticArray ros_diagnostics(int number_of_frame, const MappedFrame& frame) {
+ros::DiagnosticArray ros_diagnostics(int number_of_frame, const PlayedFrame& frame) {
   ros::DiagnosticStatus status{ros::DiagnosticStatus::kStale, "byre: localisation", "no image", "camera", {}};
   if (frame.report) {
     status.level = diagnostic_level(frame.report->health.verdict);

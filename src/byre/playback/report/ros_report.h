@@ -3,7 +3,7 @@
 #include "byre/calibration.h"
 #include "byre/io/ros/messages.h"
 #include "byre/map/map.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include <optional>
 #include <string>
@@ -38,7 +38,7 @@ ros::Odometry ros_odometry(const FrameReport& report, const std::optional<Stampe
 std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report);
 
 // Verdict as level, doubt as message, health and state as values. Frames without images are STALE.
-ros::DiagnosticArray ros_diagnostics(int number, const MappedFrame& frame);
+ros::DiagnosticArray ros_diagnostics(int number, const PlayedFrame& frame);
 
 ros::Path ros_path(const Trajectory& trajectory, Timestamp time);
 

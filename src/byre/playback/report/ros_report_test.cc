@@ -87,7 +87,7 @@ TEST(RosReport, HasTheFiguresOfJsonReportsAsValues) {
 }
 
 TEST(RosReport, HasADiagnosticLevelByVerdict) {
-  MappedFrame frame;
+  PlayedFrame frame;
   frame.report = report(Verdict::degraded);
   const ros::DiagnosticStatus degraded = ros_diagnostics(7, frame).status.at(0);
   EXPECT_EQ(degraded.level, ros::DiagnosticStatus::kWarn);

@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json milliseconds_json(const MappedFrame& frame) {
+Json milliseconds_json(const PlayedFrame& frame) {
   const StageSeconds& seconds = frame.seconds;
   Json json;
   const auto add = [&json](const char* name, double value) { json[name] = rounded_ms(1e3 * value); };
@@ -25,7 +25,7 @@ Json milliseconds_json(const MappedFrame& frame) {
   return json;
 }
 
-Json frame_json(const MappedFrame& frame, const PoseError* error) {
+Json frame_json(const PlayedFrame& frame, const PoseError* error) {
   Json json = {{"time_s", to_seconds(frame.time)}, {"time_ns", frame.time.count()}};
   if (!frame.report) {
     json["state"] = "unreadable";
@@ -58,12 +58,12 @@ Json frame_json(const MappedFrame& frame, const PoseError* error) {
 
 }  // namespace
 
-std::string to_json(const Report& report, const MapRun& run, const std::optional<MissionOutcome>& mission) {
+std::string to_json(const Report& report, const RunResult& run, const std::optional<MissionOutcome>& mission) {
   std::string text = to_json(report);
   text.erase(text.rfind("\n}"));
   text += ",\n  \"frames\": [";
   const char* separator = "\n    ";
-  for (const MappedFrame& frame : run.frames) {
+  for (const PlayedFrame& frame : run.frames) {
     const bool has_truth = mission && mission->errors;
     const PoseError* const error = has_truth ? find_error(mission->errors->causal, frame.time) : nullptr;
     text += separator + dump_json(frame_json(frame, error));

@@ -48,7 +48,7 @@ void RunMessages::note(const RunView& view) {
   last_time_ = view.frame.time;
 }
 
-void RunMessages::note_unreadable(const MappedFrame& frame) {
+void RunMessages::note_unreadable(const PlayedFrame& frame) {
   note_diagnostics(frames_++, frame);
   last_time_ = frame.time;
 }
@@ -61,7 +61,7 @@ void RunMessages::note_first(const RunView& view) {
   }
 }
 
-void RunMessages::note_report(int number, const MappedFrame& frame) {
+void RunMessages::note_report(int number, const PlayedFrame& frame) {
   const Timestamp time = frame.time;
   note_diagnostics(number, frame);
   note_events(number, frame);
@@ -77,12 +77,12 @@ void RunMessages::note_report(int number, const MappedFrame& frame) {
   note_pose(report);
 }
 
-void RunMessages::note_diagnostics(int number, const MappedFrame& frame) {
+void RunMessages::note_diagnostics(int number, const PlayedFrame& frame) {
   if (!sink_.is_wanted(topics_.diagnostics)) return;
   sink_.put_message(topics_.diagnostics, frame.time, ros_diagnostics(number, frame));
 }
 
-void RunMessages::note_events(int number, const MappedFrame& frame) {
+void RunMessages::note_events(int number, const PlayedFrame& frame) {
   events_.note(number, frame);
   std::istringstream lines(event_text_.str());
   event_text_.str("");
@@ -125,7 +125,7 @@ void RunMessages::note_image(const CameraTopics& topics, const Image& image, con
   if (sink_.is_wanted(topics.info)) sink_.put_message(topics.info, time, ros_camera_info(camera, frame, time));
 }
 
-void RunMessages::finish(const MapRun& run) {
+void RunMessages::finish(const RunResult& run) {
   if (!has_begun_) return;
   sink_.put_message(topics_.path, last_time_, ros_path(run.final, last_time_));
   sink_.put_message(topics_.points, last_time_, ros_cloud(run.stored.map, last_time_));

@@ -2,7 +2,7 @@
 
 #include "byre/calibration.h"
 #include "byre/io/ros/message_sink.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/playback/report/event_log.h"
 
 #include <chrono>
@@ -25,9 +25,9 @@ class RunMessages {
 
   // Call one of the two after each frame, in order.
   void note(const RunView& view);                  // frame with readable images
-  void note_unreadable(const MappedFrame& frame);  // frame without
+  void note_unreadable(const PlayedFrame& frame);  // frame without
 
-  void finish(const MapRun& run);  // call after the last frame: publishes final path and map, wanted or not
+  void finish(const RunResult& run);  // call after the last frame: publishes final path and map, wanted or not
 
  private:
   using TopicId = ros::MessageSink::TopicId;
@@ -40,9 +40,9 @@ class RunMessages {
 
   CameraTopics add_camera(const std::string& name);
   void note_first(const RunView& view);
-  void note_report(int number, const MappedFrame& frame);
-  void note_diagnostics(int number, const MappedFrame& frame);
-  void note_events(int number, const MappedFrame& frame);
+  void note_report(int number, const PlayedFrame& frame);
+  void note_diagnostics(int number, const PlayedFrame& frame);
+  void note_events(int number, const PlayedFrame& frame);
   void note_pose(const FrameReport& report);
   void note_map(Timestamp time, const Map& online);
   void note_images(const ImageFrame& images);

@@ -1,6 +1,6 @@
 #include "byre/playback/report/run_messages.h"
 
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/recording.h"
 #include "byre/simulation/rendered_scene.h"
 
@@ -47,12 +47,12 @@ std::map<std::string, int> messages_of_run(const std::set<std::string>& wanted, 
   RunMessages messages(sink, recording->calibration(), {.with_images = true, .is_watched = true});
   SlamOptions options;
   options.workers = Workers::none;
-  MapRunHooks hooks;
+  PlayHooks hooks;
   hooks.should_stop = [] { return false; };
-  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.after_frame = [](int, const PlayedFrame&) {};
   hooks.on_frame = [&messages](const RunView& view) { messages.note(view); };
   Slam slam = Slam::mapping(recording->calibration(), options);
-  const MapRun run = play(slam, *recording, hooks);
+  const RunResult run = play(slam, *recording, hooks);
   if (is_finished) messages.finish(run);
   return sink.counts();
 }

@@ -20,11 +20,11 @@ void RunRecord::note(const RunView& view) {
   flush_time_ = time;
 }
 
-void RunRecord::note_unreadable(const MappedFrame& frame) {
+void RunRecord::note_unreadable(const PlayedFrame& frame) {
   messages_.note_unreadable(frame);
 }
 
-void RunRecord::finish(const MapRun& run) {
+void RunRecord::finish(const RunResult& run) {
   messages_.finish(run);
   writer_.close();
 }

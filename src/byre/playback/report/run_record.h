@@ -19,9 +19,9 @@ class RunRecord {
 
   // Call one of the two after each frame, in order.
   void note(const RunView& view);                  // frame with readable images
-  void note_unreadable(const MappedFrame& frame);  // frame without
+  void note_unreadable(const PlayedFrame& frame);  // frame without
 
-  void finish(const MapRun& run);  // call after the last frame: writes final path and map
+  void finish(const RunResult& run);  // call after the last frame: writes final path and map
 
  private:
   McapWriter writer_;

@@ -3,7 +3,7 @@
 #include "byre/io/bag/bag.h"
 #include "byre/io/ros/message_reader.h"
 #include "byre/io/ros/messages.h"
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 #include "byre/recording.h"
 #include "byre/simulation/rendered_scene.h"
 
@@ -27,13 +27,13 @@ class RecordedRun {
     SlamOptions options;
     options.workers = Workers::none;
     RunRecord record(McapWriter(path_), recording->calibration(), true);
-    MapRunHooks hooks;
+    PlayHooks hooks;
     hooks.should_stop = [] { return false; };
-    hooks.after_frame = [](int, const MappedFrame&) {};
+    hooks.after_frame = [](int, const PlayedFrame&) {};
     hooks.on_frame = [&record](const RunView& view) { record.note(view); };
     Slam slam = Slam::mapping(recording->calibration(), options);
     run_ = play(slam, *recording, hooks);
-    MappedFrame unread;
+    PlayedFrame unread;
     unread.time = run_.frames.back().time + Timestamp(1);
     record.note_unreadable(unread);
     record.finish(run_);
@@ -48,7 +48,7 @@ class RecordedRun {
   }
 
   const fs::path& path() const { return path_; }
-  const MapRun& run() const { return run_; }
+  const RunResult& run() const { return run_; }
 
   // All messages of a topic, read back as a bag.
   template <ros::Message M>
@@ -64,7 +64,7 @@ class RecordedRun {
 
  private:
   fs::path path_;
-  MapRun run_;
+  RunResult run_;
 };
 
 TEST(RunRecord, IsACompleteBag) {

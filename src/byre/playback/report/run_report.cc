@@ -40,7 +40,7 @@ Json options_json(const MethodOptions& options) {
           {"changed", changed}};
 }
 
-Json map_protocol_json(const MapProtocol& protocol) {
+Json map_protocol_json(const RunProtocol& protocol) {
   const FrameRange& range = protocol.range;
   Json json = {{"program", protocol.program},
                {"version", BYRE_VERSION},
@@ -78,7 +78,7 @@ Json map_protocol_json(const MapProtocol& protocol) {
   return json;
 }
 
-Json counts_json(const MapRun& run, const FrameCounts& counts) {
+Json counts_json(const RunResult& run, const FrameCounts& counts) {
   Json refused_starts = Json::object();
   for (const auto& [failure, frames] : counts.refused_starts) refused_starts[std::string(to_string(failure))] = frames;
   return {{"frames", counts.frames},
@@ -101,7 +101,7 @@ Json counts_json(const MapRun& run, const FrameCounts& counts) {
 }
 
 // Keyframes per recording, and frames until the new recording was localised in the map; null unless a map is extended.
-Json extension_json(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts) {
+Json extension_json(const RunResult& run, const RunProtocol& protocol, const FrameCounts& counts) {
   if (protocol.extended.empty()) return nullptr;
   const std::vector<int> keyframes = keyframes_of_recordings(run.stored.map, protocol.recordings.size());
   Json recordings = Json::array();
@@ -120,7 +120,7 @@ Json summary_json(const TimeSummary& times) {
           {"max", rounded_ms(times.max_ms)}};
 }
 
-Json stages_json(const std::vector<MappedFrame>& frames) {
+Json stages_json(const std::vector<PlayedFrame>& frames) {
   const auto stage = [&frames](double StageSeconds::*member) { return summary_json(summarise_stage(frames, member)); };
   return {{"decode", stage(&StageSeconds::decode)},   {"rectify", stage(&StageSeconds::rectify)},
           {"extract", stage(&StageSeconds::extract)}, {"stereo", stage(&StageSeconds::stereo)},
@@ -132,7 +132,7 @@ Json jobs_json(const std::vector<double>& job_seconds) {
   return {{"count", jobs.count}, {"mean_ms", rounded_ms(jobs.mean_ms)}, {"max_ms", rounded_ms(jobs.max_ms)}};
 }
 
-Json late_json(const MapRun& run) {
+Json late_json(const RunResult& run) {
   const TimeSummary late = summarise_times(run.lateness);
   return {{"frames", late.count}, {"max_ms", rounded_ms(late.max_ms)}};
 }
@@ -163,12 +163,12 @@ std::string describe_refusals(const FrameCounts& counts) {
 }
 
 // Initialisation and scale of a monocular map; none for other runs.
-void add_scale(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts, Report& report) {
+void add_scale(const RunResult& run, const RunProtocol& protocol, const FrameCounts& counts, Report& report) {
   if (protocol.is_metric) return;
   Json more = {{"refusals", describe_refusals(counts)},
                {"is_metric", run.is_metric},
                {"scale_sigma", run.motion.scale_sigma.value_or(0.0)}};
-  const auto first = std::ranges::find_if(run.frames, [](const MappedFrame& frame) {
+  const auto first = std::ranges::find_if(run.frames, [](const PlayedFrame& frame) {
     return frame.report && frame.report->has(SessionEvent::initialised);
   });
   if (first != run.frames.end()) {
@@ -199,7 +199,7 @@ void add_loops(Report& report) {
              report.figures["counts"]);
 }
 
-void add_finishing(const MapRun& run, const MapProtocol& protocol, Report& report) {
+void add_finishing(const RunResult& run, const RunProtocol& protocol, Report& report) {
   if (run.finishing) {
     if (run.calibration) {
       report.row("calibration",
@@ -214,7 +214,7 @@ void add_finishing(const MapRun& run, const MapProtocol& protocol, Report& repor
   }
 }
 
-void add_map_rows(const MapRun& run, const MapProtocol& protocol, const FrameCounts& counts, Report& report) {
+void add_map_rows(const RunResult& run, const RunProtocol& protocol, const FrameCounts& counts, Report& report) {
   report.row("poses",
              "{frames_with_pose} of {frames} frames ({coverage*100:.1f} %)"
              "[{?lost_episodes}, lost {lost_episodes} times for {frames_lost} frames]"
@@ -235,7 +235,7 @@ void add_map_rows(const MapRun& run, const MapProtocol& protocol, const FrameCou
 }
 
 // Rows of a "byre run" report, with or without an offline map.
-void add_mission_rows(const MissionOutcome& mission, const MapRun& run, const MapProtocol& protocol,
+void add_mission_rows(const MissionOutcome& mission, const RunResult& run, const RunProtocol& protocol,
                       const FrameCounts& counts, Report& report) {
   const bool has_map = run.offline != nullptr;
   const bool maps = protocol.options.session.map_online;
@@ -272,7 +272,7 @@ void add_mission_rows(const MissionOutcome& mission, const MapRun& run, const Ma
   if (mission.errors) report.text += mission_error_report(*mission.errors).text;
 }
 
-void add_cost(const MapRun& run, const MapProtocol& protocol, Report& report) {
+void add_cost(const RunResult& run, const RunProtocol& protocol, Report& report) {
   report.row("frame time",
              "[mean {frame_thread_ms.mean:.1f} ms, p99 {frame_thread_ms.p99:.1f} ms|no frame]"
              "[; without mapping jobs mean {frame_thread_without_jobs_ms.mean:.1f} ms, "
@@ -295,7 +295,7 @@ void add_cost(const MapRun& run, const MapProtocol& protocol, Report& report) {
              memory);
 }
 
-Json run_figures(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
+Json run_figures(const RunResult& run, const RunProtocol& protocol, const ResourceUsage& resources,
                  const FrameCounts& counts, const std::optional<MissionOutcome>& mission) {
   const Pace pace = protocol.options.pace;
   Json json = {{"protocol", map_protocol_json(protocol)},
@@ -324,7 +324,7 @@ Json run_figures(const MapRun& run, const MapProtocol& protocol, const ResourceU
 
 }  // namespace
 
-Report run_report(const MapRun& run, const MapProtocol& protocol, const ResourceUsage& resources,
+Report run_report(const RunResult& run, const RunProtocol& protocol, const ResourceUsage& resources,
                   const std::optional<MissionOutcome>& mission) {
   const FrameCounts counts = count_frames(run.frames);
   Report report{run_figures(run, protocol, resources, counts, mission)};
@@ -356,7 +356,7 @@ void require_frames(int unreadable, int frames, const std::vector<std::string>& 
   throw std::runtime_error(text + " (record or copy these images again, or exclude them with --frames)");
 }
 
-void require_poses(const MapRun& run, const MapProtocol& protocol) {
+void require_poses(const RunResult& run, const RunProtocol& protocol) {
   if (!run.final.empty()) return;
   const FrameCounts counts = count_frames(run.frames);
   if (2 * counts.unreadable > counts.frames) {

@@ -11,8 +11,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-MapProtocol protocol_of(Pace pace) {
-  MapProtocol protocol;
+RunProtocol protocol_of(Pace pace) {
+  RunProtocol protocol;
   protocol.options.close_loops = false;
   protocol.recording = "MH_01_easy";
   protocol.range = {.start_s = 1.5, .stride = 2};
@@ -22,7 +22,7 @@ MapProtocol protocol_of(Pace pace) {
   return protocol;
 }
 
-MappedFrame tracked_frame(int number) {
+PlayedFrame tracked_frame(int number) {
   FrameReport report;
   report.time = milliseconds(50 * number);
   report.state = State::tracking;
@@ -44,8 +44,8 @@ MappedFrame tracked_frame(int number) {
 }
 
 // Four frames, the second unreadable.
-MapRun small_map_run() {
-  MapRun run;
+RunResult small_map_run() {
+  RunResult run;
   for (int i = 0; i < 4; ++i) run.frames.push_back(tracked_frame(i));
   run.frames[1].report.reset();
   run.frames[1].has_right = false;
@@ -61,7 +61,7 @@ MapRun small_map_run() {
   return run;
 }
 
-json stats_of(const MapRun& run, Pace pace = Pace::paced) {
+json stats_of(const RunResult& run, Pace pace = Pace::paced) {
   return json::parse(to_json(run_report(run, protocol_of(pace), {1.5, 64.0}), run));
 }
 
@@ -105,16 +105,16 @@ TEST(MapJson, ReportsFrameTimesWithoutJobsOnTheSameThread) {
 }
 
 TEST(MapJson, ReportsLateFramesWhenLive) {
-  MapRun run = small_map_run();
+  RunResult run = small_map_run();
   run.lateness = {0.002, 0.0405};
   EXPECT_EQ(stats_of(run, Pace::live).at("late"), (json{{"frames", 2}, {"max_ms", 40.5}}));
   EXPECT_FALSE(stats_of(run).contains("late"));
 }
 
 TEST(MapJson, ReportsFinishingAndTheExtendedMap) {
-  MapProtocol protocol = protocol_of(Pace::paced);
+  RunProtocol protocol = protocol_of(Pace::paced);
   protocol.extended = "barn.byre";
-  MapRun run = small_map_run();
+  RunResult run = small_map_run();
   run.finishing.emplace().report.loops = 0;
   const json stats = json::parse(to_json(run_report(run, protocol, {}), run));
   EXPECT_EQ(stats.at("finishing").at("cut_short"), false);
@@ -150,7 +150,7 @@ TEST(MapJson, ContainsEveryFrame) {
 }
 
 TEST(MapJson, ContainsHealthAndOdometryOfEveryFrame) {
-  MapRun run = small_map_run();
+  RunResult run = small_map_run();
   FrameReport& report = *run.frames[2].report;
   report.odometry_from_body = Pose{Eigen::Quaterniond::Identity(), {0.0, 1.5, 0.0}};
   report.odometry_covariance(0, 1) = 0.125;
@@ -177,7 +177,7 @@ TEST(MapJson, ContainsTheMissionAndTheErrorOfEachPose) {
   MissionOutcome mission;
   mission.statistics.losses = 3;
   mission.errors.emplace().causal = {{milliseconds(100), Vector6::Unit(1)}};
-  MapProtocol protocol = protocol_of(Pace::paced);
+  RunProtocol protocol = protocol_of(Pace::paced);
   protocol.offline = "barn.byre";
   protocol.options.session.map_online = false;
   const json stats = json::parse(to_json(run_report(small_map_run(), protocol, {}, mission), small_map_run(), mission));
@@ -198,7 +198,7 @@ TEST(MapJson, ContainsUnreadableFrames) {
 }
 
 TEST(MapJson, ListsTheFirstTwentyWarnings) {
-  MapRun run = small_map_run();
+  RunResult run = small_map_run();
   run.warnings.assign(45, "torn");
   const json warnings = stats_of(run).at("warnings");
   EXPECT_EQ(warnings.at("count"), 45);
@@ -206,7 +206,7 @@ TEST(MapJson, ListsTheFirstTwentyWarnings) {
 }
 
 TEST(MapJson, EscapesControlCharactersOfNames) {
-  MapProtocol protocol = protocol_of(Pace::paced);
+  RunProtocol protocol = protocol_of(Pace::paced);
   protocol.recording =
       "walk\xc2\x9b"
       "2J\x7f.bag";
@@ -240,17 +240,17 @@ TEST(MapText, SummarisesTheRun) {
 }
 
 TEST(MapText, ReportsChangesByFinishing) {
-  MapRun run = small_map_run();
+  RunResult run = small_map_run();
   run.finishing.emplace().report.points_removed = 12;
   EXPECT_THAT(run_report(run, protocol_of(Pace::paced), {}).text,
               HasSubstr("removed      0 redundant keyframes, 12 weak points\n"));
 }
 
 TEST(MapText, ReportsTheRecordingsOfAnExtendedMap) {
-  MapProtocol protocol = protocol_of(Pace::paced);
+  RunProtocol protocol = protocol_of(Pace::paced);
   protocol.extended = "barn.byre";
   protocol.recordings = {"MH_01_easy", "MH_02_easy"};
-  MapRun run = small_map_run();
+  RunResult run = small_map_run();
   Keyframe keyframe;
   keyframe.recording = 1;
   for (int i = 0; i < 2; ++i) run.stored.map.add_keyframe(keyframe);
@@ -272,7 +272,7 @@ TEST(MapText, ReportsTheMission) {
 }
 
 TEST(MapText, ReportsInterruptionAndLateFrames) {
-  MapRun run = small_map_run();
+  RunResult run = small_map_run();
   run.frames.pop_back();
   run.lateness = {0.0405};
   const std::string text = run_report(run, protocol_of(Pace::live), {}).text;

@@ -111,7 +111,7 @@ void NodeOutputs::publish_transforms(const ros::Header& image, const PoseFrames&
 }
 
 void NodeOutputs::publish_events(const FrameReport& report) {
-  MappedFrame frame;
+  PlayedFrame frame;
   frame.time = report.time;
   frame.report = report;
   event_log_.note(frames_, frame);

@@ -13,7 +13,7 @@ namespace byre {
 
 class FrameSource;
 
-struct MappedFrame {
+struct PlayedFrame {
   Timestamp time{};
   bool has_right = false;
   bool has_depth = false;
@@ -40,8 +40,8 @@ struct MotionEstimates {
   int filled_poses = 0;                      // frames whose final pose is filled in by wheel odometry
 };
 
-struct MapRun {
-  std::vector<MappedFrame> frames;                // one per frame of the recording; fewer if stopped
+struct RunResult {
+  std::vector<PlayedFrame> frames;                // one per frame of the recording; fewer if stopped
   Trajectory causal;                              // poses as published at their frames
   Trajectory final;                               // poses after the last frame, with all corrections
   Trajectory odometry;                            // smooth odometry as published, in its own frame
@@ -65,13 +65,13 @@ struct MapRun {
 // State of a run after a frame; valid during a call.
 struct RunView {
   const ImageFrame& images;
-  const MappedFrame& frame;
+  const PlayedFrame& frame;
   const Session& session;
 };
 
-struct MapRunHooks {
+struct PlayHooks {
   std::function<bool()> should_stop;                                    // called before each frame and while finishing
-  std::function<void(int done, const MappedFrame& frame)> after_frame;  // not part of the frame's time
+  std::function<void(int done, const PlayedFrame& frame)> after_frame;  // not part of the frame's time
   std::function<void(const RunView& view)> on_frame;        // optional; after each readable frame, not part of its time
   std::function<void(const SlamImpl& slam)> on_map_update;  // optional; after each frame from the first pose on
   std::function<void(const char* step)> before_finishing_step;
@@ -79,8 +79,8 @@ struct MapRunHooks {
 
 // Feeds all frames and motion samples of a source to slam, then finishes it. Skips unreadable frames. The map moves to
 // the result; slam is finished and without a map afterwards.
-MapRun play(Slam& slam, FrameSource& frames, const MapRunHooks& hooks);
+RunResult play(Slam& slam, FrameSource& frames, const PlayHooks& hooks);
 // Recordings are played as fast as possible, at live pace in real time.
-MapRun play(Slam& slam, Recording& recording, const MapRunHooks& hooks);
+RunResult play(Slam& slam, Recording& recording, const PlayHooks& hooks);
 
 }  // namespace byre

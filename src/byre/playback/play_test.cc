@@ -1,4 +1,4 @@
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include "byre/simulation/rendered_scene.h"
 #include "byre/slam.h"
@@ -16,15 +16,15 @@ using testing::Each;
 using testing::Gt;
 using testing::SizeIs;
 
-MapRun run(const RenderedFixture& rendered, Pace pace, int stop_after = 1000) {
+RunResult run(const RenderedFixture& rendered, Pace pace, int stop_after = 1000) {
   const auto recording = open_recording(rendered.folder(), {});
   SlamOptions options;
   options.settings = {{"pace", std::string(name_of(pace))}};
   Slam slam = Slam::mapping(recording->calibration(), options);
   int frames_done = 0;
-  MapRunHooks hooks;
+  PlayHooks hooks;
   hooks.should_stop = [&] { return frames_done == stop_after; };
-  hooks.after_frame = [&frames_done](int done, const MappedFrame&) { frames_done = done; };
+  hooks.after_frame = [&frames_done](int done, const PlayedFrame&) { frames_done = done; };
   return play(slam, *recording, hooks);
 }
 
@@ -39,11 +39,11 @@ std::vector<Eigen::Vector3d> positions(const Trajectory& trajectory) {
   return positions;
 }
 
-TEST(RunMap, TracksARecordingInEveryPace) {
+TEST(Play, TracksARecordingInEveryPace) {
   const RenderedFixture& rendered = RenderedFixture::shared();
   for (const Pace pace : {Pace::same_thread, Pace::paced, Pace::live}) {
     SCOPED_TRACE(name_of(pace));
-    const MapRun mapped = run(rendered, pace);
+    const RunResult mapped = run(rendered, pace);
     EXPECT_THAT(mapped.frames, SizeIs(rendered.truth().size()));
     EXPECT_THAT(mapped.causal, SizeIs(rendered.truth().size()));
     EXPECT_THAT(mapped.final, SizeIs(rendered.truth().size()));
@@ -59,11 +59,11 @@ TEST(RunMap, TracksARecordingInEveryPace) {
   }
 }
 
-TEST(RunMap, ReportsEachFrameWithItsPoints) {
+TEST(Play, ReportsEachFrameWithItsPoints) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {});
-  MapRunHooks hooks;
+  PlayHooks hooks;
   hooks.should_stop = [] { return false; };
-  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.after_frame = [](int, const PlayedFrame&) {};
   int looks = 0;
   hooks.on_frame = [&looks](const RunView& view) {
     ++looks;
@@ -72,13 +72,13 @@ TEST(RunMap, ReportsEachFrameWithItsPoints) {
     EXPECT_EQ(std::ranges::count_if(seen, &SeenPoint::is_inlier), view.frame.report->inliers);
   };
   Slam slam = Slam::mapping(recording->calibration());
-  const MapRun mapped = play(slam, *recording, hooks);
+  const RunResult mapped = play(slam, *recording, hooks);
   EXPECT_EQ(looks, static_cast<int>(mapped.frames.size()));
 }
 
-TEST(RunMap, IsDeterministicWhenPaced) {
-  const MapRun first = run(RenderedFixture::shared(), Pace::paced);
-  const MapRun second = run(RenderedFixture::shared(), Pace::paced);
+TEST(Play, IsDeterministicWhenPaced) {
+  const RunResult first = run(RenderedFixture::shared(), Pace::paced);
+  const RunResult second = run(RenderedFixture::shared(), Pace::paced);
   EXPECT_EQ(positions(first.causal), positions(second.causal));
   EXPECT_EQ(positions(first.final), positions(second.final));
 }
@@ -89,8 +89,8 @@ bool same(const Trajectory& first, const Trajectory& second) {
   });
 }
 
-TEST(RunMap, EqualsThePosesOfSlam) {
-  const MapRun mapped = run(RenderedFixture::shared(), Pace::paced);
+TEST(Play, EqualsThePosesOfSlam) {
+  const RunResult mapped = run(RenderedFixture::shared(), Pace::paced);
   const auto recording = open_recording(RenderedFixture::shared().folder(), {});
   SlamOptions options;
   options.workers = Workers::repeatable;
@@ -108,8 +108,8 @@ TEST(RunMap, EqualsThePosesOfSlam) {
   EXPECT_EQ(slam.points(), mapped.stored.map.point_count());
 }
 
-TEST(RunMap, ReportsTheFrameOfAJobOnTheSameThread) {
-  const MapRun mapped = run(RenderedFixture::shared(), Pace::same_thread);
+TEST(Play, ReportsTheFrameOfAJobOnTheSameThread) {
+  const RunResult mapped = run(RenderedFixture::shared(), Pace::same_thread);
   int taken_over = 0;
   for (std::size_t i = 1; i < mapped.frames.size(); ++i) {
     const std::optional<double> job_before = mapped.frames[i].report->job_seconds;
@@ -122,60 +122,60 @@ TEST(RunMap, ReportsTheFrameOfAJobOnTheSameThread) {
   EXPECT_GT(taken_over, 0);
 }
 
-TEST(RunMap, StopsAfterTheCurrentFrame) {
-  const MapRun mapped = run(RenderedFixture::shared(), Pace::paced, 5);
+TEST(Play, StopsAfterTheCurrentFrame) {
+  const RunResult mapped = run(RenderedFixture::shared(), Pace::paced, 5);
   EXPECT_THAT(mapped.frames, SizeIs(5));
   EXPECT_THAT(mapped.causal, SizeIs(5));
   EXPECT_THAT(mapped.final, SizeIs(5));
   EXPECT_FALSE(mapped.finishing) << "a stopped run is saved soon";
 }
 
-TEST(RunMap, InterruptsFinishingWhenStopped) {
+TEST(Play, InterruptsFinishingWhenStopped) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
   SlamOptions options;
   options.workers = Workers::repeatable;
   Slam slam = Slam::mapping(recording->calibration(), options);
   bool stopped = false;
-  MapRunHooks hooks;
+  PlayHooks hooks;
   hooks.should_stop = [&stopped] { return stopped; };
-  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.after_frame = [](int, const PlayedFrame&) {};
   hooks.before_finishing_step = [&stopped](const char*) { stopped = true; };
-  const MapRun mapped = play(slam, *recording, hooks);
+  const RunResult mapped = play(slam, *recording, hooks);
   ASSERT_TRUE(mapped.finishing);
   EXPECT_TRUE(mapped.finishing->cut_short);
   EXPECT_THAT(mapped.final, SizeIs(6));
 }
 
-TEST(RunMap, OffersTheMapFromTheFirstPose) {
+TEST(Play, OffersTheMapFromTheFirstPose) {
   const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = 6});
   std::vector<int> keyframes;
-  MapRunHooks hooks;
+  PlayHooks hooks;
   hooks.should_stop = [] { return false; };
-  hooks.after_frame = [](int, const MappedFrame&) {};
+  hooks.after_frame = [](int, const PlayedFrame&) {};
   hooks.on_map_update = [&keyframes](const SlamImpl& slam) { keyframes.push_back(slam.online().keyframe_count()); };
   SlamOptions options;
   options.settings = {{"loops.close", "false"}};
   Slam slam = Slam::mapping(recording->calibration(), options);
-  const MapRun mapped = play(slam, *recording, hooks);
+  const RunResult mapped = play(slam, *recording, hooks);
   EXPECT_THAT(keyframes, SizeIs(6));
   EXPECT_THAT(keyframes, Each(Gt(0)));
   EXPECT_FALSE(mapped.finishing) << "no places were recognised";
 }
 
-TEST(RunMap, ContinuesAfterDamagedOrMissingImages) {
+TEST(Play, ContinuesAfterDamagedOrMissingImages) {
   const RenderedFixture damaged("byre_damaged_room", 12, 20.0);
   std::filesystem::resize_file(damaged.image("cam0", 4), 100);
   std::filesystem::remove(damaged.image("cam1", 7));
-  const MapRun mapped = run(damaged, Pace::same_thread);
+  const RunResult mapped = run(damaged, Pace::same_thread);
   EXPECT_THAT(mapped.frames, SizeIs(12));
-  EXPECT_EQ(std::ranges::count_if(mapped.frames, [](const MappedFrame& frame) { return !frame.report; }), 1);
+  EXPECT_EQ(std::ranges::count_if(mapped.frames, [](const PlayedFrame& frame) { return !frame.report; }), 1);
   EXPECT_FALSE(mapped.frames[4].report);
   EXPECT_FALSE(mapped.frames[7].has_right);
   EXPECT_THAT(mapped.warnings, SizeIs(2));
   EXPECT_THAT(mapped.final, SizeIs(11));
 }
 
-TEST(RunMap, CountsLateFramesOnlyWhenLive) {
+TEST(Play, CountsLateFramesOnlyWhenLive) {
   EXPECT_THAT(run(RenderedFixture::shared(), Pace::paced).lateness, SizeIs(0));
   EXPECT_THAT(run(RenderedFixture::shared(), Pace::live).lateness, Each(Gt(0.0)));
 }

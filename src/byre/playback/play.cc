@@ -1,4 +1,4 @@
-#include "byre/playback/map_run.h"
+#include "byre/playback/play.h"
 
 #include "byre/base/stopwatch.h"
 #include "byre/odometry/recorded_motion.h"
@@ -10,12 +10,12 @@
 namespace byre {
 namespace {
 
-bool has_pose(const MappedFrame& frame) {
+bool has_pose(const PlayedFrame& frame) {
   return frame.report && frame.report->map_from_body;
 }
 
-MappedFrame process_frame(SlamImpl& slam, const DecodedFrame& decoded) {
-  MappedFrame frame;
+PlayedFrame process_frame(SlamImpl& slam, const DecodedFrame& decoded) {
+  PlayedFrame frame;
   frame.time = decoded.time;
   if (decoded.images) {
     frame.report = slam.process(*decoded.images);
@@ -60,7 +60,7 @@ class MotionFeed {
 };
 
 // Adds jobs finished since the current frame began, except those noted before.
-void note_jobs(const SlamImpl& slam, MapRun& run, std::size_t noted = 0) {
+void note_jobs(const SlamImpl& slam, RunResult& run, std::size_t noted = 0) {
   const std::vector<double>& seconds = slam.log().job_seconds;
   run.job_seconds.insert(run.job_seconds.end(), seconds.begin() + static_cast<std::ptrdiff_t>(noted), seconds.end());
 }
@@ -80,7 +80,7 @@ MotionEstimates motion_estimates(const OdometryCalibrator& prior, const Session&
   return motion;
 }
 
-void collect_results(SlamImpl& slam, MapRun& run) {
+void collect_results(SlamImpl& slam, RunResult& run) {
   const Trajectory seen = slam.session().final_trajectory();
   run.final = slam.prior().fill_gaps(seen);
   run.offline = slam.inputs().offline;
@@ -92,7 +92,7 @@ void collect_results(SlamImpl& slam, MapRun& run) {
   run.stored = slam.take_stored_map();
   if (run.finishing) run.finishing->faults = find_faults(run.stored.map);
   run.motion.filled_poses = static_cast<int>(run.final.size() - seen.size());
-  for (const MappedFrame& frame : run.frames) {
+  for (const PlayedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
     if (frame.report && frame.report->odometry_from_body) {
       run.odometry.push_back({frame.time, *frame.report->odometry_from_body});
@@ -101,18 +101,18 @@ void collect_results(SlamImpl& slam, MapRun& run) {
 }
 
 // Each step needs about as much memory as all earlier ones, in other block sizes.
-FinishHooks release_memory_between_steps(const MapRunHooks& hooks) {
+FinishHooks release_memory_between_steps(const PlayHooks& hooks) {
   return {hooks.should_stop, [announce = hooks.before_finishing_step](const char* step) {
             release_free_memory();
             if (announce) announce(step);
           }};
 }
 
-MapRun run_through(SlamImpl& slam, FrameSource& frames, const MapRunHooks& hooks) {
+RunResult run_through(SlamImpl& slam, FrameSource& frames, const PlayHooks& hooks) {
   const Stopwatch watch;
   MotionFeed feed(frames.motion());
   if (const auto& axes = frames.motion().left_from_gyroscope) slam.set_gyro_extrinsics(*axes);
-  MapRun run;
+  RunResult run;
   bool is_begun = false;
   while (const auto frame = frames.next(hooks.should_stop)) {
     if (frame->late_s > 0.0) run.lateness.push_back(frame->late_s);
@@ -146,13 +146,13 @@ MapRun run_through(SlamImpl& slam, FrameSource& frames, const MapRunHooks& hooks
 
 }  // namespace
 
-MapRun play(Slam& slam, FrameSource& frames, const MapRunHooks& hooks) {
-  MapRun run = run_through(slam.impl(), frames, hooks);
+RunResult play(Slam& slam, FrameSource& frames, const PlayHooks& hooks) {
+  RunResult run = run_through(slam.impl(), frames, hooks);
   release_free_memory();
   return run;
 }
 
-MapRun play(Slam& slam, Recording& recording, const MapRunHooks& hooks) {
+RunResult play(Slam& slam, Recording& recording, const PlayHooks& hooks) {
   RecordingFrames frames(recording, slam.impl().options().pace == Pace::live);
   return play(slam, frames, hooks);
 }
