@@ -64,7 +64,7 @@ is_installed() {
 }
 
 is_known() { # to apt
-  apt-cache policy "$1" | grep -q '^  Candidate: [^(]'
+  [[ $(apt-cache policy "$1") == *"Candidate: "[^\(]* ]]
 }
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
