@@ -62,7 +62,7 @@ function(byre_read_version variable header macro)
 endfunction()
 
 # Embree 4, else 3, as simulation/cowshed/ray_casting.h does.
-set(BYRE_EMBREE)
+set(BYRE_EMBREE "")
 set(name Embree)
 foreach(version IN ITEMS 4 3)
   find_library(BYRE_EMBREE${version} embree${version} DOC "Embree ${version} library, ray tracing of the simulation")
@@ -76,7 +76,7 @@ endforeach()
 byre_decide_part(EMBREE NAME "${name}" FOUND "${BYRE_EMBREE}" PACKAGES libembree-dev
                  LOSS "byre simulate and byre demo")
 if(NOT BYRE_HAS_EMBREE)
-  set(BYRE_EMBREE)
+  set(BYRE_EMBREE "")
 endif()
 
 find_package(CycloneDDS 0.10 QUIET)
@@ -85,7 +85,8 @@ set(found FALSE)
 if(CycloneDDS_FOUND AND BYRE_SYSTEMD)
   set(found TRUE)
 endif()
-byre_decide_part(CYCLONEDDS NAME "Cyclone DDS ${CycloneDDS_VERSION} and libsystemd" FOUND ${found}
+string(STRIP "Cyclone DDS ${CycloneDDS_VERSION}" name)
+byre_decide_part(CYCLONEDDS NAME "${name} and libsystemd" FOUND ${found}
                  PACKAGES "cyclonedds-dev libsystemd-dev" LOSS "byre node")
 
 find_library(BYRE_MOSQUITTO mosquitto DOC "libmosquitto library, MQTT client for fleet managers")
@@ -104,10 +105,11 @@ set(found FALSE)
 if(BYRE_MOSQUITTO AND BYRE_MOSQUITTO_HEADERS)
   set(found TRUE)
 endif()
-byre_decide_part(MOSQUITTO NAME "libmosquitto ${version}" FOUND ${found} MISSING "${reason}" PACKAGES libmosquitto-dev
+string(STRIP "libmosquitto ${version}" name)
+byre_decide_part(MOSQUITTO NAME "${name}" FOUND ${found} MISSING "${reason}" PACKAGES libmosquitto-dev
                  LOSS "messages to fleet managers")
 if(NOT BYRE_HAS_MOSQUITTO)
-  set(BYRE_MOSQUITTO)
+  set(BYRE_MOSQUITTO "") # hides the cached path of the library
 endif()
 
 find_path(BYRE_V4L2_HEADERS linux/videodev2.h DOC "Header folder of Video4Linux 2")

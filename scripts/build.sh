@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs missing dependencies, configures a preset of CMakePresets.json and builds it.
-# Usage: build.sh [PRESET [TARGET...]]       default: release, all targets; demo: the program without ROS 2 and tests
+# Usage: build.sh [PRESET [TARGET...]]       default: release, all targets; demo: the program without tests;
+#                                            installs fewer packages, none of ROS 2
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

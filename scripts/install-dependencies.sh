@@ -4,7 +4,7 @@
 # Usage: install-dependencies.sh [all | packages | demo]
 #   all        for building and testing everything (default)
 #   packages   for building the Debian packages
-#   demo       for building and running the program, without ROS 2
+#   demo       for building and running the program; none of ROS 2
 set -euo pipefail
 
 scope=${1:-all}
@@ -43,12 +43,12 @@ if [[ $scope == all ]]; then
     # tests, fuzzing, benchmarks, rules
     python3-numpy python3-pytest python3-pip python3-wheel pkg-config
     libgtest-dev libgmock-dev libbenchmark-dev valgrind clang-format zsh
+    # sanitizers and fuzzing; sanitized tests take less than half the time of those by g++ 12
+    clang-16 libclang-rt-16-dev
   )
   test_packages+=(
     # byre node with an MQTT broker and another DDS, whose type generator needs Java
     mosquitto libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
-    # sanitizers and fuzzing; sanitized tests take less than half the time of those by g++ 12
-    clang-16 libclang-rt-16-dev
     # bags written by other software
     python3-rosbag python3-sensor-msgs python3-tf2-msgs
     # browser
@@ -64,7 +64,7 @@ is_installed() {
 }
 
 is_known() { # to apt
-  [[ $(apt-cache policy "$1") == *"Candidate: "[^\(]* ]]
+  [[ $(LC_ALL=C LANGUAGE= apt-cache policy "$1") == *"Candidate: "[^\(]* ]]
 }
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

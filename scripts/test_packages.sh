@@ -71,7 +71,7 @@ make_root() { # FOLDER
 # Runs a command in the chroot, in its folder /test. The kernel ends its processes and mounts with it.
 run_in() { # FOLDER COMMAND...
   unshare --mount --pid --fork --kill-child --mount-proc="$1/proc" \
-    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TERM=dumb ${http_proxy:+http_proxy="$http_proxy"} \
+    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp TERM=dumb ${http_proxy:+http_proxy="$http_proxy"} \
     chroot "$1" sh -c 'cd /test && exec "$@"' - "${@:2}"
 }
 
@@ -89,12 +89,12 @@ if $builds; then
 fi
 
 echo "Testing packages in $release"
-make_root "$work/root"
-mkdir -p "$work/root/test/packages" "$work/root/test/consumer" "$work/root/test/tools"
-cp "$packages"/*.deb "$work/root/test/packages"
-cp tests/install/CMakeLists.txt tests/install/consumer.cc "$work/root/test/consumer"
-cp tests/install/use_packages.sh "$work/root/test"
-cp -r docs "$work/root/test"
-[[ ! -f tools/run_tutorials.py ]] || cp tools/run_tutorials.py "$work/root/test/tools"
-run_in "$work/root" ./use_packages.sh
+make_root "$work/chroot"
+mkdir -p "$work/chroot/test/packages" "$work/chroot/test/consumer" "$work/chroot/test/tools"
+cp "$packages"/*.deb "$work/chroot/test/packages"
+cp tests/install/CMakeLists.txt tests/install/consumer.cc "$work/chroot/test/consumer"
+cp tests/install/use_packages.sh "$work/chroot/test"
+cp -r docs "$work/chroot/test"
+cp tools/run_tutorials.py "$work/chroot/test/tools"
+run_in "$work/chroot" ./use_packages.sh
 echo "The packages work in $release"

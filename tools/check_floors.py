@@ -52,7 +52,7 @@ KEPT_IN = {
                             "playback/", "playback/archive", "viewer", "benchmark", "camera", "ros2/node", "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"ceres/.*": {"optimise"},
-    r"embree3/.*": {"simulation"},
+    r"embree[34]/.*": {"simulation"},
     r"boost/.*": {"viewer/web"},
     r"dds/.*": {"ros2/dds"},
     r"opencv2/.*": {"features", "io/image", "io/recording", "simulation", "viewer", "camera", "ros2/node"},
@@ -78,7 +78,7 @@ FORBIDDEN = [
     Rule(r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(", frozenset({"cli"}),
          "only cli ends the program: throw InputError for bad input, assert for bugs"),
     Rule(r"\.dump\s*\(", frozenset({"playback/report", "viewer/web", "ros2/fleet"}),
-         "JSON text needs printable_json(): call dumped() of playback/report/report_json.h"),
+         "JSON text needs printable_json(): call dump_json() of playback/report/report_json.h"),
     Rule(r"\brandom_device\b|(?<![\w.>:])(std::)?s?rand\s*\(", frozenset(),
          "equal seeds must yield equal results: take the seed as an option"),
 ]

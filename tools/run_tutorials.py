@@ -158,7 +158,8 @@ def read_page(path: pathlib.Path) -> Page:
 def environment(prefix: Optional[pathlib.Path], home: pathlib.Path) -> dict[str, str]:
     """Environment of a reader: system programs first, no settings of byre, and the installed byre if not the system's."""
     env = {name: value for name, value in os.environ.items() if not name.startswith(("BYRE_", "PYTHON", "XDG_"))}
-    for name in ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "MAKEFLAGS", "CDPATH", "DESTDIR"):
+    for name in ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "MAKEFLAGS", "CDPATH", "DESTDIR",
+                 "ROS_DOMAIN_ID", "CYCLONEDDS_URI"):
         env.pop(name, None)
     env.update(HOME=str(home), LC_ALL="C.UTF-8", TERM="dumb", PYTHONDONTWRITEBYTECODE="1")
     env.update(ROS_LOCALHOST_ONLY="1", ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")  # DDS stays on this machine

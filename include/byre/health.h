@@ -26,7 +26,7 @@ enum class DistrustReason : std::uint8_t {
   unconfirmed,         // relocalised, but not confirmed by enough frames yet
   off_the_map,         // so far outside the mapped area that drift may be large
   few_points,          // too few inliers
-  few_offline_points,  // inside the mapped area, but held by online points
+  few_offline_points,  // inside the mapped area, but supported by online points
   clustered,           // inliers cover a small part of the image
   uncertain,           // covariance too large
   maps_disagree,       // offline and online points yield different poses
@@ -67,7 +67,7 @@ struct Health {
   std::optional<Agreement> agreement;   // empty unless both kinds of points yield a pose
   double position_sigma = 0.0;          // metres, root of the trace of the position covariance
   double rotation_sigma = 0.0;          // radians, root of the trace of the rotation covariance
-  double distance_since_offline = 0.0;  // path length since offline points last held the pose, metres
+  double distance_since_offline = 0.0;  // path length since offline points last supported the pose, metres
   double seconds_since_offline = 0.0;
   double focal_error = 0.0;   // relative excess of the focal length, estimated from offline points; 0 until estimated
   double hidden_share = 0.0;  // share of the left image hidden by dirt, where no points are searched

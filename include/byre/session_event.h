@@ -13,7 +13,7 @@ enum class SessionEvent : std::uint8_t {
   relocalised,          // confirmed pose after a loss
   blinded,              // offline points lost: the image shows too little, as it is dark, blurred, covered or blank
   left_mapped_area,     // offline points lost as predicted from the extent of the map
-  entered_mapped_area,  // offline points hold the pose again
+  entered_mapped_area,  // offline points support the pose again
   navigation_error,     // no confirmed pose for 10 s (option mission.lost_after_s); once per loss
   restarted,            // new submap of the online map started, as relocalisation failed
   place_refused,     // impossible place found, see FrameReport::refused_place; once per reason until a pose is trusted

@@ -56,7 +56,7 @@ TEST_F(EurocMh01, CausalTrajectoryIsNearlyAsAccurate) {
   EXPECT_LE(position_error(inline_run().causal, truth_), 0.006);
 }
 
-// Determinism on real images. Session.IsDeterministic* and MapProgram test it on simulated and rendered ones.
+// Determinism on real images. Session.IsDeterministic* tests it on simulated features, MapProgram on rendered images.
 using LongRunEurocMh01 = EurocMh01;
 
 TEST_F(LongRunEurocMh01, InlineMappingIsDeterministic) {

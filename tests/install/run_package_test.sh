@@ -6,7 +6,7 @@ set -euo pipefail
 
 build_dir=${1:?usage: run_package_test.sh BUILD_DIR}
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-for tool in dpkg dpkg-deb dpkg-shlibdeps cpack; do
+for tool in dpkg dpkg-deb dpkg-shlibdeps cpack pkg-config; do
   command -v "$tool" >/dev/null || { echo "Skipped: no $tool on this system"; exit 77; }
 done
 work=$(mktemp -d)
@@ -40,8 +40,8 @@ for name in "${names[@]}"; do
   [[ -f $(echo "$packages/$name"_*.deb) ]] || fail "missing package $name"
 done
 version=$(field byre Version)
-require_depends byre "byre-data (= $version)" libyaml-cpp libfmt9 libopencv-videoio libsqlite3-0 libzstd1 liblz4-1 libbz2
-require_depends libbyre0 "byre-data (= $version)" libyaml-cpp libfmt9 libopencv-core
+require_depends byre "byre-data (= $version)" libyaml-cpp libfmt libopencv-videoio libsqlite3-0 libzstd1 liblz4-1 libbz2
+require_depends libbyre0 "byre-data (= $version)" libyaml-cpp libfmt libopencv-core
 [[ $(field libbyre0 Depends) != *videoio* ]] || fail "the shared library needs videos"
 [[ $(field libbyre0 Depends) != *sqlite* ]] || fail "the shared library needs bags"
 require_depends libbyre-dev "libbyre0 (= $version)" libeigen3-dev
@@ -53,7 +53,8 @@ unset BYRE_DATA BYRE_VOCABULARY
 usr=$root/usr
 byre=$usr/bin/byre
 
-if [[ -f $usr/lib/systemd/system/byre.service ]]; then # was built
+if [[ $("$byre" node --help) != *"Not available: "* ]]; then
+  [[ -f $usr/lib/systemd/system/byre.service ]] || fail "missing service"
   "$byre" node --print-config >/dev/null || fail "byre node does not start"
 fi
 "$byre" --version

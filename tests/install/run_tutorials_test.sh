@@ -8,13 +8,20 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-is_on() { grep -q "^$1:BOOL=ON" "$build_dir/CMakeCache.txt"; }
-
 cmake --install "$build_dir" --prefix "$work/prefix" >"$work/install.log" || { cat "$work/install.log"; exit 1; }
 pages=(tutorials/demo tutorials/first_map_and_mission tutorials/program_in_cpp how-to/register_floor_plan
        reference/floor_plan)
-! is_on BYRE_BUILD_NODE || pages+=(tutorials/robot_with_ros2)
-! is_on BYRE_BUILD_PYTHON || pages+=(tutorials/program_in_python)
+help=$("$work/prefix/bin/byre" node --help)
+if [[ $help == *"Not available"* ]]; then
+  echo "left out: tutorials/robot_with_ros2, as this build has no byre node"
+else
+  pages+=(tutorials/robot_with_ros2)
+fi
+if compgen -G "$work/prefix/lib/python3*/*/byre/__init__.py" >/dev/null; then
+  pages+=(tutorials/program_in_python)
+else
+  echo "left out: tutorials/program_in_python, as this build has no Python package"
+fi
 pages=("${pages[@]/#/docs/}")
 cd "$source_dir"
 /usr/bin/python3 tools/run_tutorials.py --prefix "$work/prefix" "${pages[@]/%/.md}"

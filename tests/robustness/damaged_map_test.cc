@@ -118,8 +118,8 @@ TEST(DamagedMaps, AreReadAsValidMapsOrRejected) {
   EXPECT_GT(tally.read_with_right_checksums, count / 100);
 }
 
-// The file never changes while its format is read.
-TEST(DamagedMaps, AStoredFileIsReadAndWrittenUnchanged) {
+// Do not regenerate the file: it guards the reader of its format against changes.
+TEST(DamagedMaps, UndamagedFileIsReadAndWrittenUnchanged) {
   const StoredMap stored = load_map(kStoredFile);
   EXPECT_THAT(find_faults(stored), IsEmpty());
   EXPECT_EQ(stored.map.keyframe_count(), 5);

@@ -2,8 +2,8 @@
 
 namespace byre {
 
-// The thread sanitizer makes code some ten times slower. A test of seconds skips itself if kHasThreadSanitizer, with
-// this message, unless it is the one of its folder that covers the threads.
+// The thread sanitizer slows code by about ten times. Tests that take seconds are skipped under it, except one per
+// folder that covers its threads.
 #ifdef BYRE_THREAD_SANITIZED
 inline constexpr bool kHasThreadSanitizer = true;
 #else

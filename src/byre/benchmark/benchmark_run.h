@@ -2,12 +2,12 @@
 
 #include "byre/benchmark/evaluate_run.h"
 #include "byre/benchmark/protocol.h"
-#include "byre/place/vocabulary.h"
 #include "byre/playback/play.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 

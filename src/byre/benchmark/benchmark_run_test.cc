@@ -1,7 +1,6 @@
 #include "byre/benchmark/benchmark_run.h"
 
 #include "byre/input_error.h"
-#include "byre/place/vocabulary.h"
 #include "byre/simulation/rendered_scene.h"
 
 #include <gmock/gmock.h>

@@ -13,12 +13,12 @@ namespace byre {
 namespace {
 
 constexpr const char* kEstimateColour = "#0072b2";
+constexpr Timestamp kLongestStep = std::chrono::milliseconds(500);  // longer intervals between poses break the line
 
 Timestamp longest_step(const std::vector<PosePair>& pairs) {
-  Timestamp longest = std::chrono::milliseconds(500);
-  if (pairs.size() < 2) return longest;
+  if (pairs.size() < 2) return kLongestStep;
   const Timestamp mean = (pairs.back().time - pairs.front().time) / static_cast<int>(pairs.size() - 1);
-  return std::max(longest, 5 * mean);
+  return std::max(kLongestStep, 5 * mean);
 }
 
 // The aligned estimate. Precondition: the report has an absolute error of these pairs.
@@ -63,8 +63,6 @@ Chart error_chart(const EvaluationReport& report, const std::vector<PosePair>& p
       {"estimate", kEstimateColour, 1.6, line_through(trace_of(report, pairs), longest_step(pairs), error_at)}};
   return chart;
 }
-
-constexpr Timestamp kLongestStep = std::chrono::milliseconds(500);  // longer intervals between poses break the line
 
 std::string_view colour_of(Arm arm) {
   return name_among<Arm::hybrid>({"#0072b2", "#e69f00", "#c7322e"}, arm);

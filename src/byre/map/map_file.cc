@@ -186,7 +186,7 @@ using SectionTable = std::array<SectionPlace, kSectionCount>;
 void require_format(std::uint32_t format, const std::string& name) {
   if (format == kFormat) return;
   throw InputError(name + ": header", fmt::format("has format {}; this program reads format {}", format, kFormat),
-                   format < kFormat ? "make it again with byre map, or convert it with an earlier byre"
+                   format < kFormat ? "map the recordings again with byre map"
                                     : "use the version of byre that wrote the map, or a newer one");
 }
 

@@ -97,8 +97,8 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
 StoredMap load_map(const std::filesystem::path& path);
 // Like read_map and load_map, but keyframes' features and sightings, and points, are read and checked on first access
 // (see Map), from a file that stays open. Checks all checksums at once only for files up to 32 MB, some thousand
-// keyframes. read_at fills in bytes of the file from an offset, for several
-// threads at once; its file is not checked beforehand.
+// keyframes. read_at fills in bytes of the file from an offset, for several threads at once; its file is not checked
+// beforehand.
 StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& name);
 StoredMap open_map(const std::filesystem::path& path);
 

@@ -246,7 +246,7 @@ TEST(MapFile, RejectsOtherFormatsWithARemedy) {
   };
   EXPECT_EQ(refusal_of_format(6),
             "barn.byre: header: has format 6; this program reads format 7 "
-            "(make it again with byre map, or convert it with an earlier byre)");
+            "(map the recordings again with byre map)");
   EXPECT_EQ(refusal_of_format(8),
             "barn.byre: header: has format 8; this program reads format 7 "
             "(use the version of byre that wrote the map, or a newer one)");

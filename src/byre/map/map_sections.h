@@ -106,8 +106,8 @@ std::vector<Word> read_words_of(ByteReader& reader, const WordsHead& head, std::
 // Sets the words of the keyframes and returns the checksum of their vocabulary.
 std::uint64_t read_words(ByteReader reader, std::vector<Keyframe>& keyframes, PartSizes& sizes);
 
-// Locations of parts in other sections, observations of points, and covisibility of keyframes, for
-// separate access to keyframes and points.
+// Locations of parts in other sections, observations of points, and covisibility of keyframes, for separate access to
+// keyframes and points.
 struct PartSections {
   std::array<std::span<const std::byte>, kViewSections> views;
   std::span<const std::byte> points;

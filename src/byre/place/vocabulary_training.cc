@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace byre {
 namespace {
@@ -157,7 +156,7 @@ Vocabulary Vocabulary::train(std::span<const std::vector<Descriptor>> descriptor
     throw InputError("vocabulary", "the training images have fewer than two different descriptors",
                      "give images with more texture");
   }
-  return of_tree(std::move(tree));
+  return of_tree(tree);
 }
 
 }  // namespace byre

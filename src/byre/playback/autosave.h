@@ -18,7 +18,7 @@ class Autosave {
 
   Autosave(double interval_s, Save save) : interval_s_(interval_s), save_(std::move(save)) {}
 
-  // Call it after each frame. metadata: StoredMap without keyframes and points, asked for only when saving.
+  // Call it after each frame. metadata: StoredMap without keyframes and points, evaluated only when saving.
   void update(const Map& online, const std::function<StoredMap()>& metadata);
   void finish();  // waits for the thread
 

@@ -7,6 +7,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace byre {
 namespace {
 
@@ -14,14 +16,16 @@ bool has_pose(const PlayedFrame& frame) {
   return frame.report && frame.report->map_from_body;
 }
 
+// A frame that slam drops has no report, like one with unreadable images.
 PlayedFrame process_frame(SlamImpl& slam, const DecodedFrame& decoded) {
   PlayedFrame frame;
   frame.time = decoded.time;
   if (decoded.images) {
-    frame.report = slam.process(*decoded.images);
+    FrameReport report = slam.process(*decoded.images);
     frame.has_right = decoded.images->right.has_value();
     frame.has_depth = decoded.images->depth.has_value();
     frame.seconds = slam.seconds();
+    if (!is_dropped(report.input)) frame.report = std::move(report);
   }
   frame.seconds.decode = decoded.seconds;
   frame.keyframes = slam.online().keyframe_count();
@@ -121,9 +125,14 @@ RunResult run_through(SlamImpl& slam, FrameSource& frames, const PlayHooks& hook
     run.warnings.insert(run.warnings.end(), decoded.warnings.begin(), decoded.warnings.end());
     feed.feed(slam, decoded.time);
     run.frames.push_back(process_frame(slam, decoded));
+    if (decoded.images && !run.frames.back().report) {
+      run.warnings.push_back(
+          fmt::format("frame {} is skipped: {}", run.frames.size() - 1, to_string(slam.input().last())));
+    }
     note_jobs(slam, run);
     hooks.after_frame(static_cast<int>(run.frames.size()), run.frames.back());
-    if (hooks.on_frame && decoded.images) hooks.on_frame({*decoded.images, run.frames.back(), slam.session()});
+    if (hooks.on_frame && run.frames.back().report)
+      hooks.on_frame({*decoded.images, run.frames.back(), slam.session()});
     is_begun = is_begun || (has_pose(run.frames.back()) && slam.online().keyframe_count() > 0);
     if (is_begun && hooks.on_map_update) hooks.on_map_update(slam);
     if (slam.map_damage() != nullptr) break;

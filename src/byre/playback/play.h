@@ -17,7 +17,7 @@ struct PlayedFrame {
   Timestamp time{};
   bool has_right = false;
   bool has_depth = false;
-  std::optional<FrameReport> report;  // empty if the images were unreadable and the frame was skipped
+  std::optional<FrameReport> report;  // empty if skipped: unreadable images, or a fault that Slam drops
   StageSeconds seconds;
   int keyframes = 0;       // keyframes of the map after the frame
   int points = 0;          // points of the map after the frame

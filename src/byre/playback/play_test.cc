@@ -1,5 +1,6 @@
 #include "byre/playback/play.h"
 
+#include "byre/playback/frame_source.h"
 #include "byre/simulation/rendered_scene.h"
 #include "byre/slam.h"
 #include "byre/trajectory_error.h"
@@ -13,6 +14,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Each;
+using testing::ElementsAre;
 using testing::Gt;
 using testing::SizeIs;
 
@@ -173,6 +175,53 @@ TEST(Play, ContinuesAfterDamagedOrMissingImages) {
   EXPECT_FALSE(mapped.frames[7].has_right);
   EXPECT_THAT(mapped.warnings, SizeIs(2));
   EXPECT_THAT(mapped.final, SizeIs(11));
+}
+
+// Frames of a recording, of which one comes twice and one has a smaller left image.
+class FaultyFrames final : public FrameSource {
+ public:
+  explicit FaultyFrames(Recording& recording) : recording_(recording) {}
+
+  const Calibration& calibration() const override { return recording_.calibration(); }
+  std::optional<SourceFrame> next(const std::function<bool()>&) override {
+    if (given_ == 8) return std::nullopt;
+    SourceFrame frame;
+    frame.decoded.images = recording_.read(given_ == 3 ? 2 : given_);
+    frame.decoded.time = frame.decoded.images->time;
+    if (given_ == 5) frame.decoded.images->left = Image{4, 4, std::vector<std::uint8_t>(16)};
+    ++given_;
+    return frame;
+  }
+
+ private:
+  Recording& recording_;
+  int given_ = 0;
+};
+
+TEST(Play, SkipsFramesThatSlamDrops) {
+  const auto recording = open_recording(RenderedFixture::shared().folder(), {});
+  SlamOptions options;
+  options.workers = Workers::none;
+  Slam slam = Slam::mapping(recording->calibration(), options);
+  FaultyFrames frames(*recording);
+  PlayHooks hooks;
+  hooks.should_stop = [] { return false; };
+  hooks.after_frame = [](int, const PlayedFrame&) {};
+  std::vector<Timestamp> seen;
+  hooks.on_frame = [&seen](const RunView& view) { seen.push_back(view.frame.time); };
+  const RunResult run = play(slam, frames, hooks);
+  EXPECT_THAT(run.frames, SizeIs(8));
+  EXPECT_FALSE(run.frames[3].report);
+  EXPECT_FALSE(run.frames[5].report);
+  EXPECT_EQ(run.frames[5].seconds.total, 0.0);
+  EXPECT_THAT(seen, SizeIs(6));
+  EXPECT_THAT(run.causal, SizeIs(6));
+  EXPECT_THAT(run.warnings, ElementsAre("frame 3 is skipped: time stamp repeats the previous frame",
+                                        "frame 5 is skipped: image does not have the calibrated size"));
+  const auto jobs = std::ranges::count_if(
+      run.frames, [](const PlayedFrame& frame) { return frame.report && frame.report->job_seconds; });
+  EXPECT_GE(static_cast<int>(run.job_seconds.size()), jobs);
+  EXPECT_LE(static_cast<int>(run.job_seconds.size()), jobs + 1);
 }
 
 TEST(Play, CountsLateFramesOnlyWhenLive) {

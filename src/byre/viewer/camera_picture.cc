@@ -1,5 +1,6 @@
 #include "byre/viewer/camera_picture.h"
 
+#include "byre/slam/frame/state.h"
 #include "byre/viewer/legend.h"
 #include "byre/viewer/palette.h"
 
@@ -15,8 +16,6 @@
 
 namespace byre {
 namespace {
-
-using Eigen::Vector2d;
 
 constexpr int kHealthPanelWidth = 300;  // pixels
 constexpr double kMargin = 16.0;        // pixels, for all lengths in this file

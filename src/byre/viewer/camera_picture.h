@@ -1,7 +1,6 @@
 #pragma once
 
 #include "byre/slam/frame/health.h"
-#include "byre/slam/frame/state.h"
 #include "byre/viewer/picture.h"
 #include "byre/viewer/scene.h"
 

@@ -98,8 +98,8 @@ std::string to_svg(const Picture& picture);
 // PNG file of the picture's size.
 std::vector<std::byte> to_png(const Picture& picture);
 
-// Animated PNG file of pictures of equal size, which repeats; 255 colours. The last picture stays for last_s seconds.
-// Precondition: at least one picture.
+// Endlessly repeating PNG file of pictures of equal size, at most 255 colours. The last picture is shown for last_s
+// seconds. Preconditions: at least one picture; at most 65 s per picture.
 std::vector<std::byte> to_animated_png(const std::vector<Picture>& pictures, double frame_rate_hz, double last_s);
 
 // Writes SVG for the extension .svg, else PNG. Throws InputError if the file cannot be written.

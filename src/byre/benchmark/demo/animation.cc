@@ -68,7 +68,7 @@ Pane caption_pane(const DemoMoment* moment, double time_s, int top) {
   return pane;
 }
 
-// A disc where the robot is.
+// Disc at the published position.
 PictureSymbols robot_at(const DemoPlace& place, const DemoMoment& moment) {
   const double scale = kPlanWidth / place.shown.sizes().x();
   const Eigen::Vector2d& at = *moment.position;

@@ -149,7 +149,7 @@ class DemoRunner {
     method.session.map_online = arm != Arm::localise_only;
     SlamOptions slam = slam_options(method);
     slam.vocabulary = options_.vocabulary;
-    slam.recording = "first_visit";
+    slam.recording = visit(barn_.stored.plan ? 2 : 1).filename().string();
     slam.site = "simulated cowshed";
     return arm == Arm::no_map ? Slam::mapping(recording.calibration(), slam)
                               : Slam::on_map(recording.calibration(), map_file(), slam);

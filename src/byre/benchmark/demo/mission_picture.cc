@@ -102,7 +102,8 @@ Picture mission_picture(const DemoPlace& place, const std::vector<DemoArm>& arms
     if (arm.arm == Arm::hybrid) {
       picture = vconcat(std::move(picture), arm_picture(place, arm, kPictureMargin, kWhole));
     } else {
-      row = hconcat(std::move(row), arm_picture(place, arm, row.width == 0 ? kPictureMargin : kPlanGap, kHalf));
+      const int left = row.width == 0 ? kPictureMargin : kPlanGap;
+      row = hconcat(std::move(row), arm_picture(place, arm, left, kHalf));
     }
   }
   picture = vconcat(std::move(picture), row);

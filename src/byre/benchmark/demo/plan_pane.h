@@ -32,7 +32,7 @@ Eigen::AlignedBox2d ground_around(const std::vector<DemoMoment>& moments);
 // time from the first frame.
 Pane plan_pane(const DemoPlace& place, const DemoArm& arm, double until_s, int width);
 
-// What a sign of the plan means.
+// Legend entry.
 struct PlanSign {
   std::vector<PictureMark> marks;  // around the origin, about 24 pixels wide
   std::string meaning;

@@ -16,7 +16,6 @@
 #include "byre/cli/shared/recording_options.h"
 #include "byre/features/image_threads.h"
 #include "byre/slam/system/option_table.h"
-#include "byre/slam/system/stored_map.h"
 
 #include <iostream>
 #include <memory>

@@ -103,13 +103,18 @@ ExitCode run_and_draw(const DrawOptions& options, PlanScene scene, std::ostream&
   return mission.stopped ? interrupted : done;
 }
 
-ExitCode draw(const DrawOptions& options, std::ostream& result) {
-  for (const fs::path& output : options.outputs()) require_writable(output);
-  StoredMap stored = load_map_to_draw(options);
-  PlanScene scene = scene_without_mission(options, stored);
+// Frees the map, which a mission reads again.
+PlanScene map_scene(const DrawOptions& options, std::ostream& result) {
+  const StoredMap stored = load_map_to_draw(options);
   result << row("map",
                 options.map_file().string() +
                     fmt::format(", {} keyframes, {} points", stored.map.keyframe_count(), stored.map.point_count()));
+  return scene_without_mission(options, stored);
+}
+
+ExitCode draw(const DrawOptions& options, std::ostream& result) {
+  for (const fs::path& output : options.outputs()) require_writable(output);
+  PlanScene scene = map_scene(options, result);
   ExitCode code = done;
   if (options.map) {
     code = run_and_draw(options, std::move(scene), result);

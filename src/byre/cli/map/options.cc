@@ -7,9 +7,7 @@
 #include "byre/cli/shared/record_options.h"
 #include "byre/cli/shared/recording_options.h"
 
-#include <algorithm>
 #include <string>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -77,16 +75,11 @@ void declare_building(CLI::App& command, MapOptions& options) {
                       "Use the given calibration unchanged, without refinement");
 }
 
-bool closes_loops(const MapOptions& options) {
-  return std::ranges::find(options.method.settings, std::pair<std::string, std::string>("loops.close", "false")) ==
-         options.method.settings.end();
-}
-
 void require_consistent_extension(const MapOptions& options) {
   if (!options.extended) return;
   if (!options.map) throw CLI::ValidationError("--extend", "makes a new map: give a file for it (-o barn2.byre)");
-  if (!closes_loops(options)) {
-    throw CLI::ValidationError("--extend", "needs place recognition, which --no-loops disables");
+  if (!options.method.options().close_loops) {
+    throw CLI::ValidationError("--extend", "needs place recognition: leave out --no-loops, or set loops.close to true");
   }
 }
 
@@ -107,7 +100,7 @@ void require_consistent(const MapOptions& options) {
     throw CLI::ValidationError("--poses",
                                "estimates no trajectory, so trajectories, statistics and records cannot be written");
   }
-  if (options.given_poses && (options.extended || options.autosave_s || !closes_loops(options))) {
+  if (options.given_poses && (options.extended || options.autosave_s || !options.method.options().close_loops)) {
     throw CLI::ValidationError("--poses", "excludes --extend, --autosave and --no-loops");
   }
   if (options.autosave_s && !options.map) {

@@ -25,16 +25,6 @@ void add_setting(const std::string& flag, const std::string& name, const std::st
   arguments.settings.emplace_back(name, text);
 }
 
-const MethodOption& table_entry(const std::string& name) {
-  const auto option = std::ranges::find(option_table(), name, &MethodOption::name);
-  if (option == option_table().end()) throw std::logic_error("no option " + name);
-  return *option;
-}
-
-std::string type_name(const MethodOption& option) {
-  return option.range.find('|') != std::string::npos ? option.range : "NUMBER";
-}
-
 }  // namespace
 
 MethodOptions MethodArguments::options() const {
@@ -46,18 +36,17 @@ MethodOptions MethodArguments::options() const {
 }
 
 void declare_method_option(CLI::App& command, const std::string& flag, const std::string& name,
-                           MethodArguments& arguments, std::string help) {
-  const MethodOption& option = table_entry(name);
-  std::string unit = help.empty() && !option.unit.empty() ? ", " + option.unit : "";
-  if (help.empty()) help = option.meaning;
+                           MethodArguments& arguments, const std::string& help) {
+  const auto option = std::ranges::find(option_table(), name, &MethodOption::name);
+  if (option == option_table().end()) throw std::logic_error("no option " + name);
+  const bool is_choice = option->range.find('|') != std::string::npos;
   const auto keep = [flag, name, &arguments](const std::string& text) { add_setting(flag, name, text, arguments); };
-  command.add_option_function<std::string>(flag, keep, fmt::format("{} ({}{})", help, option.get({}), unit))
-      ->type_name(type_name(option));
+  command.add_option_function<std::string>(flag, keep, fmt::format("{} ({})", help, option->get({})))
+      ->type_name(is_choice ? option->range : "NUMBER");
 }
 
 CLI::Option* declare_method_flag(CLI::App& command, const std::string& flag, const std::string& name,
                                  const std::string& value, MethodArguments& arguments, const std::string& help) {
-  table_entry(name);
   return command.add_flag_callback(
       flag, [=, &arguments] { add_setting(flag, name, value, arguments); }, help);
 }

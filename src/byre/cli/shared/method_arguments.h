@@ -25,10 +25,10 @@ struct MethodArguments {
   MethodOptions options() const;
 };
 
-// Option of the option table under a name of its own: values, range and default come from the table. help: empty for
-// the meaning in the table. The arguments must outlive the parsing of the command line.
+// Option of the option table under a name of its own: values, range and default come from the table. The arguments must
+// outlive the parsing of the command line.
 void declare_method_option(CLI::App& command, const std::string& flag, const std::string& name,
-                           MethodArguments& arguments, std::string help = {});
+                           MethodArguments& arguments, const std::string& help);
 // Flag that sets an option of the table to a value.
 CLI::Option* declare_method_flag(CLI::App& command, const std::string& flag, const std::string& name,
                                  const std::string& value, MethodArguments& arguments, const std::string& help);

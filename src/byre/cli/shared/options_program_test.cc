@@ -63,6 +63,14 @@ TEST_F(OptionsProgram, SetsSingleOptions) {
               AllOf(HasSubstr("  max_count: 300  #"), HasSubstr("  close: false  #"), HasSubstr("pace: live  #")));
 }
 
+TEST_F(OptionsProgram, RejectsAnExtensionWithoutLoopClosing) {
+  write("mine.yaml", "loops: {close: false}\n");
+  for (const char* const off : {"--no-loops", "--set loops.close=false", "--options mine.yaml"}) {
+    EXPECT_THAT(map(std::string("-o new.byre --extend old.byre ") + off).errors, HasSubstr("needs place recognition"))
+        << off;
+  }
+}
+
 TEST_F(OptionsProgram, RejectsFaultySingleOptions) {
   EXPECT_THAT(map("--set features.max_cont=300").errors, HasSubstr("did you mean 'features.max_count'?"));
   EXPECT_THAT(map("--set features.max_count=0").errors, HasSubstr("'0' is not a value of features.max_count"));

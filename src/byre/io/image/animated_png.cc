@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <new>
 #include <numeric>
 #include <string_view>
 
@@ -133,6 +134,7 @@ PngBytes compressed(const PngBytes& indices, const cv::Rect& part, int width) {
   }
   const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> deflater(
       libdeflate_alloc_compressor(kCompression), libdeflate_free_compressor);
+  if (!deflater) throw std::bad_alloc();
   PngBytes packed(libdeflate_zlib_compress_bound(deflater.get(), rows.size()));
   packed.resize(libdeflate_zlib_compress(deflater.get(), rows.data(), rows.size(), packed.data(), packed.size()));
   return packed;
@@ -200,7 +202,7 @@ class AnimationWriter {
     }
     append_number(control, duration_ms);
     append_number(control, std::uint16_t{1000});  // unit of the duration: 1/1000 s
-    control.insert(control.end(), {0, 1});        // stays after its time; drawn over the frame before
+    control.insert(control.end(), {0, 1});        // dispose: none; blend: over
     append_chunk(png_, "fcTL", control);
   }
 
@@ -214,10 +216,12 @@ class AnimationWriter {
 
 std::vector<std::uint8_t> encode_animated_png(const std::vector<cv::Mat>& frames, const AnimationTimes& times) {
   assert(!frames.empty());
+  assert(std::ranges::all_of(frames, [&frames](const cv::Mat& frame) {
+    return frame.type() == CV_8UC3 && frame.size() == frames.front().size();
+  }));
   const Palette palette = make_palette(frames);
   AnimationWriter writer(frames.front().size(), frames.size(), palette);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    assert(frames[i].size() == frames.front().size() && frames[i].type() == CV_8UC3);
     writer.add(indices_of(frames[i], palette), i + 1 < frames.size() ? times.frame_ms : times.last_frame_ms);
   }
   return writer.finish();

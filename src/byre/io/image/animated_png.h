@@ -14,9 +14,9 @@ struct AnimationTimes {
 };
 
 // An animated PNG file that repeats for ever (PNG specification 3, section 11.3.6), of BGR frames of equal size.
-// Colours are rounded to the 255 most frequent ones of five bits a channel, and small differences to the pixel on the
-// left are dropped. A frame stores only pixels that differ
-// from the frame before it. Precondition: at least one frame.
+// Colours are rounded to the 255 most frequent ones of five bits a channel. Differences of at most 9 grey values from
+// the left neighbour are dropped. Each later frame stores only the rectangle of changed pixels. Precondition: at least
+// one frame.
 std::vector<std::uint8_t> encode_animated_png(const std::vector<cv::Mat>& frames, const AnimationTimes& times);
 
 }  // namespace byre

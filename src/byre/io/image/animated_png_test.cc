@@ -131,7 +131,7 @@ TEST(AnimatedPng, ApproximatesManyColours) {
   EXPECT_LT(difference(shown[0].bgr, noise), kTolerance);
 }
 
-TEST(AnimatedPng, StoresLittleForFramesThatDifferLittle) {
+TEST(AnimatedPng, StoresLittleForEqualFrames) {
   const Bytes png = encode_animated_png(std::vector<cv::Mat>(20, moving_square(1).front()), {});
   std::vector<std::size_t> sizes;
   const auto chunks = png_chunks(png);

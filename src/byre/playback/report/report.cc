@@ -4,6 +4,7 @@
 #include "byre/playback/report/report_json.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <cstdlib>
 #include <utility>
@@ -63,9 +64,10 @@ class Expansion {
       std::optional<std::string> text = alternative();
       if (!chosen) chosen = std::move(text);
     } while (takes('|'));
-    takes(']');
     return chosen;
   }
+
+  bool is_complete() const { return rest_.empty(); }  // false after an unmatched bracket
 
  private:
   bool takes(char character) {
@@ -88,6 +90,7 @@ class Expansion {
     while (!rest_.empty() && rest_.front() != '|' && rest_.front() != ']') {
       if (takes('[')) {
         add(alternatives().value_or(""));
+        takes(']');
       } else if (takes('{')) {
         add(figure(take_until("}")));
         takes('}');
@@ -110,6 +113,7 @@ class Expansion {
     const std::size_t star = std::min(field.find('*'), field.size());
     const double factor = star < field.size() ? std::atof(std::string(field.substr(star + 1)).c_str()) : 1.0;
     field = field.substr(0, star);
+    assert(!field.empty());
     const char mark = field.front();
     const Json value = value_of(mark == '?' || mark == '!' || mark == '#' ? field.substr(1) : field);
     if (mark == '?' || mark == '!')
@@ -126,7 +130,10 @@ class Expansion {
 }  // namespace
 
 std::optional<std::string> expand(std::string_view text, const Json& figures, const Json& more) {
-  return Expansion(text, figures, more).alternatives();
+  Expansion expansion(text, figures, more);
+  std::optional<std::string> expanded = expansion.alternatives();
+  assert(expansion.is_complete());
+  return expanded;
 }
 
 void Report::row(std::string_view label, std::string_view content, const Json& more) {

@@ -26,7 +26,7 @@ nlohmann::ordered_json or_null(const std::optional<Value>& value) {
 std::optional<std::string> expand(std::string_view text, const nlohmann::ordered_json& figures,
                                   const nlohmann::ordered_json& more = {});
 
-// A report as JSON and as text. Rows of the text name the figures, so that a figure is computed once.
+// A report as JSON and as text, whose rows name the figures.
 struct Report {
   nlohmann::ordered_json figures;
   std::string text{};

@@ -23,7 +23,7 @@ void add_values(const std::string& prefix, const nlohmann::ordered_json& figures
   for (const auto& [key, figure] : figures.items()) {
     if (figure.is_object()) {
       add_values(prefix + key + ".", figure, values);
-    } else if (const auto text = expand(figure.is_string() ? "{figure}" : "{figure:.6g}", {{"figure", figure}})) {
+    } else if (const auto text = expand(figure.is_number() ? "{figure:.6g}" : "{figure}", {{"figure", figure}})) {
       values.push_back({prefix + key, *text});
     }
   }

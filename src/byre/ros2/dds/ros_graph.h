@@ -24,7 +24,7 @@ class GraphAnnouncement {
  public:
   GraphAnnouncement(Participant& participant, NodeDescription node);
 
-  // Make an endpoint of the node, see Participant; announced by the next announce().
+  // Endpoints of the node, as of Participant. The next announce() publishes them in the graph.
   Publisher publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
                     const std::string& note = {});
   Subscriber subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,

@@ -1,7 +1,7 @@
+#include "byre/ros2/node/slam_runner.h"
 
 #include "byre/base/output_file.h"
 #include "byre/input_error.h"
-#include "byre/ros2/node/slam_runner.h"
 
 #include <fstream>
 #include <sstream>

@@ -82,8 +82,6 @@ void require_safe_save(const NodeConfig& config) {
 
 }  // namespace
 
-namespace fs = std::filesystem;
-
 fs::path previous_map(const fs::path& map) {
   fs::path previous = map.parent_path() / map.stem();
   previous += ".previous";

@@ -29,7 +29,8 @@ MapWindow whole_map(const MapView& map);
 // a loop are fused, and bundle adjustment refines everything. Without loops, bundle adjustment alone. First, parts that
 // share no points are placed by measured motion. Keyframes without stereo move as similarities (Strasdat 2010, Scale
 // drift-aware large scale monocular SLAM), since their scale has drifted; lengths around them change. should_stop,
-// unless empty, is polled and ends with the present result. Consumes the copy. before: the copy, or its outline.
+// unless empty, is polled and ends with the present result. window: copy of the map, see whole_map. before: the same
+// copy unchanged, or its outline.
 MapDelta adjust_map(MapWindow&& window, const MapWindow& before, const std::vector<LoopEdge>& loops,
                     const GlobalMappingOptions& options, const std::function<bool()>& should_stop = {});
 

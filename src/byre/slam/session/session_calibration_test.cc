@@ -127,7 +127,7 @@ TEST_P(MissionWithCalibrationError, IsNoWorseWithOnlineMapping) {
 INSTANTIATE_TEST_SUITE_P(Errors, MissionWithCalibrationError,
                          ::testing::Values(SeenError{}, SeenError{.zoom = 1.0},
                                            SeenError{.zoom = -1.0, .shift = 0.7, .lens = -1.5, .disparity = -0.2}));
-// The single errors of the last mission above.
+// Single errors of the kinds that the last mission above combines.
 INSTANTIATE_TEST_SUITE_P(LongRunErrors, MissionWithCalibrationError,
                          ::testing::Values(SeenError{.shift = 1.0}, SeenError{.lens = 2.0},
                                            SeenError{.disparity = 0.3}));

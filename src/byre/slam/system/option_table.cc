@@ -248,7 +248,7 @@ void add_localisation(Table& table) {
 void add_loops(Table& table) {
   table.push_back(flag(
       "loops.close", [](auto& o) -> auto& { return o.close_loops; },
-      "place recognition, and finishing of the map; false: for comparison"));
+      "place recognition in the map being made, and its finishing; false: for comparison"));
   table.push_back(number(
       "loops.min_gap_keyframes", "keyframes", 1, kMany, [](auto& o) -> auto& { return o.session.loops.min_gap; },
       "minimum number of keyframes between the newest keyframe and a loop candidate"));

@@ -93,6 +93,9 @@ Slam Slam::mapping(const Calibration& calibration, const SlamOptions& options) {
 
 Slam Slam::extending(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
   const Calibration given = checked(calibration, options);
+  if (!method_options(options).close_loops) {
+    throw InputError("loops.close", "is false, but a map is extended by place recognition", "set it to true");
+  }
   SlamInputs inputs;
   inputs.vocabulary = open_vocabulary(options.vocabulary);
   inputs.extended = load_for_mapping(map, *inputs.vocabulary);

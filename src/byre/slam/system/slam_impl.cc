@@ -140,9 +140,8 @@ FrameReport SlamImpl::process(const Frame& frame, const std::optional<BodyMotion
   if (is_dropped(fault)) return dropped(frame.time);
   budget_.begin();
   const Stopwatch watch;
-  seconds_ = {};
   FrameReport report = process_in_time(frame, since);
-  seconds_.total = watch.seconds();
+  seconds_ = {.track = report.track_seconds, .map = report.map_seconds, .total = watch.seconds()};
   return completed(std::move(report));
 }
 
@@ -212,7 +211,9 @@ FrameReport SlamImpl::completed(FrameReport report) {
   return report;
 }
 
-FrameReport SlamImpl::dropped(Timestamp time) const {
+FrameReport SlamImpl::dropped(Timestamp time) {
+  log_.job_seconds.clear();
+  seconds_ = {};
   FrameReport report;
   report.time = time;
   report.state = state_;

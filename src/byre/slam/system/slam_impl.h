@@ -89,7 +89,7 @@ class SlamImpl {
   const OdometryCalibrator& prior() const { return prior_; }
   // Faults of motion inputs so far.
   const std::vector<MotionWarning>& warnings() const { return prior_.warnings(); }
-  // Times of the last frame; the stages of the front end are 0 for features of the caller.
+  // Times of the last frame, zero for a dropped one. Features of the caller have times of track, map and total only.
   const StageSeconds& seconds() const { return seconds_; }
   // Current poses of all tracked frames, with gaps filled by wheel odometry.
   Trajectory trajectory() const { return prior_.fill_gaps(session_.final_trajectory()); }
@@ -123,7 +123,7 @@ class SlamImpl {
   // Precondition: the frame's budget has begun.
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
   FrameReport completed(FrameReport report);
-  FrameReport dropped(Timestamp time) const;
+  FrameReport dropped(Timestamp time);
 
   // Constant after construction.
   Calibration given_;

@@ -263,6 +263,13 @@ TEST(Slam, RejectsUnreadableMaps) {
   EXPECT_THAT(error_by([&] { Slam::mapping(open_shared()->calibration(), options); }), HasSubstr("no/such.vocabulary"));
 }
 
+TEST(Slam, RejectsExtensionWithoutPlaceRecognition) {
+  SlamOptions options;
+  options.settings = {{"loops.close", "false"}};
+  EXPECT_THAT(error_by([&] { Slam::extending(open_shared()->calibration(), "no/such.byre", options); }),
+              HasSubstr("loops.close: is false, but a map is extended by place recognition"));
+}
+
 TEST(Slam, SetsOptionsByName) {
   const std::vector<ImageFrame> frames = shared_frames();
   SlamOptions options = repeatable();

@@ -62,13 +62,11 @@ WebResponse refused(int status, std::string_view reason) {
   return {status, "text/plain; charset=utf-8", std::string(reason) + "\n"};
 }
 
-// An open page. Its messages are dropped.
+// Messages of a site to an open page. Messages from the page are ignored.
 class PageFeed : public WebFeed {
  public:
   explicit PageFeed(WebSite& site) : site_(site) {}
   std::optional<WebMessage> next() override { return site_.next_message(progress_); }
-  bool receive(std::string_view, bool) override { return true; }
-  void offer(const LiveMessage&) override {}
 
  private:
   WebSite& site_;
@@ -129,8 +127,11 @@ void WebConnection::answer_request() {
   stream_.expires_never();
   tcp::socket socket = stream_.release_socket();
   std::unique_ptr<WebFeed> feed;
-  if (protocol.empty()) feed = std::make_unique<PageFeed>(*service_.site);
-  if (!feed) feed = std::make_unique<FoxgloveClient>(*service_.topics, service_.session);
+  if (protocol.empty()) {
+    feed = std::make_unique<PageFeed>(*service_.site);
+  } else {
+    feed = std::make_unique<FoxgloveClient>(*service_.topics, service_.session);
+  }
   const auto listener = std::make_shared<WebListener>(std::move(socket), std::move(slot_), std::move(feed));
   service_.listeners.push_back(listener);
   listener->start(request, protocol);

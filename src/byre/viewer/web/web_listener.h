@@ -21,7 +21,7 @@ class WebListener : public std::enable_shared_from_this<WebListener> {
   // protocol: chosen sub-protocol; empty: none
   void start(const WebUpgrade& request, std::string_view protocol);
 
-  // Starts sending new messages unless busy.
+  // Offers topic messages to the feed, and starts sending unless busy.
   void notify(const std::vector<LiveMessage>& messages);
 
  private:

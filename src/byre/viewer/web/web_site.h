@@ -44,8 +44,8 @@ class WebFeed {
   virtual ~WebFeed() = default;
   virtual std::optional<WebMessage> next() = 0;  // message to send; empty: up to date
   // Handles a message of the listener. False: disconnect it.
-  virtual bool receive(std::string_view bytes, bool is_binary) = 0;
-  virtual void offer(const LiveMessage& message) = 0;  // message of a topic
+  virtual bool receive(std::string_view /*bytes*/, bool /*is_binary*/) { return true; }
+  virtual void offer(const LiveMessage& /*message*/) {}  // message of a topic
 };
 
 // Progress of the messages sent to a listener (an open page).
