@@ -30,11 +30,19 @@ TEST(BlockList, IsCopyable) {
   const BlockList<int> list = counted();
   BlockList<int> copy = list;
   copy.emplace_back() = -1;
-  copy[0] = -2;
+  copy.edit(0) = -2;
   EXPECT_EQ(list.size(), static_cast<std::size_t>(kMany));
   EXPECT_EQ(list[0], 0);
   EXPECT_EQ(copy[kMany], -1);
   EXPECT_EQ(copy[kMany - 1], kMany - 1);
+}
+
+TEST(BlockList, SharesBlocksThatNoCopyChanged) {
+  const BlockList<int> list = counted();
+  BlockList<int> copy = list;
+  copy.edit(kMany - 1) = -1;
+  EXPECT_EQ(&copy[0], &list[0]);
+  EXPECT_NE(&copy[kMany - 1], &list[kMany - 1]);
 }
 
 TEST(BlockList, StartsWithTheGivenSize) {

@@ -23,16 +23,15 @@ auto lower_bound_of(std::vector<Observation>& observations, KeyframeId keyframe)
   return std::ranges::lower_bound(observations, keyframe, {}, &Observation::keyframe);
 }
 
-bool is_seen_by(std::vector<Observation>& observations, KeyframeId keyframe) {
-  const auto place = lower_bound_of(observations, keyframe);
-  return place != observations.end() && place->keyframe == keyframe;
+bool is_seen_by(const std::vector<Observation>& observations, KeyframeId keyframe) {
+  return std::ranges::binary_search(observations, keyframe, {}, &Observation::keyframe);
 }
 
 KeyframeId keyframe_of_view(const ForeignView& view) {
   return view.observation.keyframe;
 }
 
-Sighting& sighting_of(Keyframe& keyframe, int feature) {
+auto& sighting_of(auto& keyframe, int feature) {
   assert(feature >= 0 && static_cast<std::size_t>(feature) < keyframe.sightings.size());
   return keyframe.sightings[static_cast<std::size_t>(feature)];
 }
@@ -60,8 +59,8 @@ KeyframeId Map::add_keyframe(Keyframe keyframe) {
   for (Sighting& sighting : keyframe.sightings) sighting.point.reset();
   keyframe.parent = living_ancestor(keyframe.parent);
 
-  if (keyframe.parent) slot(*keyframe.parent).children.push_back(id);
-  keyframes_.emplace_back().keyframe = std::move(keyframe);
+  if (keyframe.parent) edit_slot(*keyframe.parent).children.push_back(id);
+  keyframes_.emplace_back().edit().keyframe = std::move(keyframe);
   ++keyframe_count_;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     if (sightings[i].point) add_observation({id, static_cast<int>(i)}, sightings[i]);
@@ -73,13 +72,13 @@ PointId Map::add_point(const MapPoint& point) {
   read_all();
   const PointId id{origin_, static_cast<std::uint32_t>(point_slots_.size())};
   if (free_point_slots_.empty()) {
-    point_slots_.push_back(static_cast<std::uint32_t>(points_.size()));
+    point_slots_.emplace_back() = static_cast<std::uint32_t>(points_.size());
     points_.emplace_back();
   } else {
-    point_slots_.push_back(free_point_slots_.back());
+    point_slots_.emplace_back() = free_point_slots_.back();
     free_point_slots_.pop_back();
   }
-  slot(id).point = point;
+  edit_slot(id).point = point;
   ++point_count_;
   return id;
 }
@@ -87,15 +86,16 @@ PointId Map::add_point(const MapPoint& point) {
 bool Map::add_observation(const Observation& observation, const Sighting& sighting) {
   assert(sighting.point);
   read_all();
-  Keyframe* keyframe = find_own_keyframe(observation.keyframe);
-  std::vector<Observation>* observers = find_observations(*sighting.point);
-  if (!keyframe || !observers) return false;
-  Sighting& place = sighting_of(*keyframe, observation.feature);
-  if (place.point || is_seen_by(*observers, observation.keyframe)) return false;
+  const PointId point = *sighting.point;
+  const Keyframe* const keyframe = find_own_keyframe(observation.keyframe);
+  const bool is_known = point.origin == origin_ ? find_slot(point) != nullptr : origin_ == Origin::online;
+  if (!keyframe || !is_known || sighting_of(*keyframe, observation.feature).point) return false;
+  if (is_seen_by(observations(point), observation.keyframe)) return false;
 
-  count_shared_point(*observers, observation.keyframe, 1);
-  observers->insert(lower_bound_of(*observers, observation.keyframe), observation);
-  place = sighting;
+  std::vector<Observation>& observers = edit_observations(point);
+  count_shared_point(observers, observation.keyframe, 1);
+  observers.insert(lower_bound_of(observers, observation.keyframe), observation);
+  sighting_of(edit_keyframe(observation.keyframe), observation.feature) = sighting;
   return true;
 }
 
@@ -117,19 +117,19 @@ bool Map::add_foreign_view(const ForeignView& view) {
   if (keyframe.origin == origin_ || origin_ == Origin::offline || !find_point(point)) return false;
   const std::vector<ForeignView>& present = foreign_views(point);
   if (std::ranges::binary_search(present, keyframe, {}, keyframe_of_view)) return false;
-  if (!points_of_foreign_views_.emplace(view.observation, point).second) return false;
-  std::vector<ForeignView>& views = foreign_views_[point];
+  if (!points_of_foreign_views_.edit().emplace(view.observation, point).second) return false;
+  std::vector<ForeignView>& views = foreign_views_.edit()[point];
   views.insert(std::ranges::lower_bound(views, keyframe, {}, keyframe_of_view), view);
   return true;
 }
 
 void Map::remove_foreign_view(const Observation& observation) {
-  const auto known = points_of_foreign_views_.find(observation);
-  if (known == points_of_foreign_views_.end()) return;
-  std::vector<ForeignView>& views = foreign_views_[known->second];
+  const std::optional<PointId> point = point_of_foreign_view(observation);
+  if (!point) return;
+  std::vector<ForeignView>& views = foreign_views_.edit()[*point];
   views.erase(std::ranges::lower_bound(views, observation.keyframe, {}, keyframe_of_view));
-  if (views.empty()) foreign_views_.erase(known->second);
-  points_of_foreign_views_.erase(known);
+  if (views.empty()) foreign_views_.edit().erase(*point);
+  points_of_foreign_views_.edit().erase(observation);
 }
 
 void Map::remove_point(PointId id) {
@@ -137,10 +137,12 @@ void Map::remove_point(PointId id) {
   if (!find_point(id)) return;
   const std::vector<Observation> observers = observations(id);
   for (const Observation& observation : observers) unlink(observation);
-  for (const ForeignView& view : foreign_views(id)) points_of_foreign_views_.erase(view.observation);
-  foreign_views_.erase(id);
-  slot(id) = {};
-  free_point_slots_.push_back(std::exchange(point_slots_[id.number], kGone));
+  if (foreign_views_->contains(id)) {
+    for (const ForeignView& view : foreign_views(id)) points_of_foreign_views_.edit().erase(view.observation);
+    foreign_views_.edit().erase(id);
+  }
+  edit_slot(id) = {};
+  free_point_slots_.push_back(std::exchange(point_slots_.edit(id.number), kGone));
   --point_count_;
 }
 
@@ -150,45 +152,45 @@ void Map::remove_keyframe(KeyframeId id) {
   if (!keyframe || !keyframe->parent) return;
   const KeyframeId parent = *keyframe->parent;
   const Pose camera_from_parent = keyframe->camera_from_world * inverse(camera_from_world(parent));
-  for (std::size_t i = 0; i < keyframe->sightings.size(); ++i) remove_observation({id, static_cast<int>(i)});
-
   const int rig = keyframe->rig;
+  const std::size_t features = keyframe->sightings.size();
+  for (std::size_t i = 0; i < features; ++i) remove_observation({id, static_cast<int>(i)});
+
   reparent_children(id, parent);
-  slot(id).keyframe.reset();
-  slot(id).removed = RemovedKeyframe{rig, parent, camera_from_parent};
+  edit_slot(id).keyframe.reset();
+  edit_slot(id).removed = RemovedKeyframe{rig, parent, camera_from_parent};
   --keyframe_count_;
 }
 
 Keyframe Map::take_keyframe(KeyframeId id) {
   read_all();
-  return std::move(*slot(id).keyframe);
+  return std::move(edit_keyframe(id));
 }
 
 void Map::set_words(KeyframeId id, std::vector<Word> words) {
   read_all();
-  Keyframe* keyframe = find_own_keyframe(id);
-  if (!keyframe) return;
-  assert(words.empty() || words.size() == keyframe->sightings.size());
-  keyframe->words = std::move(words);
+  if (!find_own_keyframe(id)) return;
+  assert(words.empty() || words.size() == slot(id).keyframe->sightings.size());
+  edit_keyframe(id).words = std::move(words);
 }
 
 void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
   read_all();
-  Keyframe* keyframe = find_own_keyframe(id);
-  if (!keyframe) return;
-  keyframe->camera_from_world = camera_from_world;
-  keyframe->covariance = covariance;
+  if (!find_own_keyframe(id)) return;
+  Keyframe& keyframe = edit_keyframe(id);
+  keyframe.camera_from_world = camera_from_world;
+  keyframe.covariance = covariance;
 }
 
 void Map::scale_removed_keyframe(KeyframeId id, double scale) {
   if (!was_assigned(id) || !slot(id).removed) return;
-  slot(id).removed->camera_from_parent.translation *= scale;
+  edit_slot(id).removed->camera_from_parent.translation *= scale;
 }
 
 void Map::update_point(PointId id, const MapPoint& point) {
   read_all();
   if (!find_point(id)) return;
-  slot(id).point = point;
+  edit_slot(id).point = point;
   repair_reference(id);
 }
 
@@ -211,7 +213,7 @@ std::vector<KeyframeId> Map::keyframe_ids() const {
   std::vector<KeyframeId> ids;
   ids.reserve(static_cast<std::size_t>(keyframe_count_));
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
-    if (keyframes_[i].keyframe) ids.push_back({origin_, i});
+    if (keyframes_[i]->keyframe) ids.push_back({origin_, i});
   }
   return ids;
 }
@@ -229,7 +231,7 @@ std::vector<PointId> Map::point_ids() const {
 void Map::visit_words(const MapSource::WordVisitor& visit) const {
   if (source_) return source_->visit_words(visit);
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
-    if (keyframes_[i].keyframe) visit({origin_, i}, keyframes_[i].keyframe->words);
+    if (keyframes_[i]->keyframe) visit({origin_, i}, keyframes_[i]->keyframe->words);
   }
 }
 
@@ -244,22 +246,22 @@ const std::vector<Observation>& Map::observations(PointId id) const {
 
 const std::vector<ForeignView>& Map::foreign_views(PointId id) const {
   static const std::vector<ForeignView> kNone;
-  const auto found = foreign_views_.find(id);
-  return found != foreign_views_.end() ? found->second : kNone;
+  const auto found = foreign_views_->find(id);
+  return found != foreign_views_->end() ? found->second : kNone;
 }
 
 std::vector<Observation> Map::foreign_observations(KeyframeId offline) const {
   std::vector<Observation> observations;
-  for (auto view = points_of_foreign_views_.lower_bound({offline, 0});
-       view != points_of_foreign_views_.end() && view->first.keyframe == offline; ++view) {
+  for (auto view = points_of_foreign_views_->lower_bound({offline, 0});
+       view != points_of_foreign_views_->end() && view->first.keyframe == offline; ++view) {
     observations.push_back(view->first);
   }
   return observations;
 }
 
 std::optional<PointId> Map::point_of_foreign_view(const Observation& observation) const {
-  const auto known = points_of_foreign_views_.find(observation);
-  if (known == points_of_foreign_views_.end()) return std::nullopt;
+  const auto known = points_of_foreign_views_->find(observation);
+  if (known == points_of_foreign_views_->end()) return std::nullopt;
   return known->second;
 }
 
@@ -297,7 +299,7 @@ bool Map::was_assigned(KeyframeId id) const {
   return id.origin == origin_ && id.number < keyframes_.size();
 }
 
-Keyframe* Map::find_own_keyframe(KeyframeId id) {
+const Keyframe* Map::find_own_keyframe(KeyframeId id) const {
   if (!was_assigned(id) || !slot(id).keyframe) return nullptr;
   return &*slot(id).keyframe;
 }
@@ -313,24 +315,22 @@ const ObservedPoint* Map::find_slot(PointId id) const {
   return place == kGone ? nullptr : &points_[place];
 }
 
-std::vector<Observation>* Map::find_observations(PointId id) {
-  if (id.origin == origin_) return find_slot(id) ? &slot(id).observations : nullptr;
-  if (origin_ == Origin::offline) return nullptr;
-  if (id.number >= offline_observations_.size()) offline_observations_.resize(id.number + std::size_t{1});
-  return &offline_observations_[id.number];
+std::vector<Observation>& Map::edit_observations(PointId id) {
+  if (id.origin == origin_) return edit_slot(id).observations;
+  while (id.number >= offline_observations_.size()) offline_observations_.emplace_back();
+  return offline_observations_.edit(id.number);
 }
 
 std::optional<PointId> Map::unlink(const Observation& observation) {
-  Keyframe* keyframe = find_own_keyframe(observation.keyframe);
-  if (!keyframe) return std::nullopt;
-  Sighting& sighting = sighting_of(*keyframe, observation.feature);
-  if (!sighting.point) return std::nullopt;
+  const Keyframe* const keyframe = find_own_keyframe(observation.keyframe);
+  if (!keyframe || !sighting_of(*keyframe, observation.feature).point) return std::nullopt;
 
+  Sighting& sighting = sighting_of(edit_keyframe(observation.keyframe), observation.feature);
   const PointId point = *sighting.point;
-  std::vector<Observation>& observers = *find_observations(point);
+  std::vector<Observation>& observers = edit_observations(point);
   observers.erase(lower_bound_of(observers, observation.keyframe));
-  count_shared_point(observers, observation.keyframe, -1);
   sighting.point.reset();
+  count_shared_point(observers, observation.keyframe, -1);
   return point;
 }
 
@@ -342,7 +342,7 @@ void Map::count_shared_point(const std::vector<Observation>& observers, Keyframe
 }
 
 void Map::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
-  std::vector<Covisible>& covisible = slot(keyframe).covisible;
+  std::vector<Covisible>& covisible = edit_slot(keyframe).covisible;
   auto place = std::ranges::lower_bound(covisible, with, {}, &Covisible::keyframe);
   if (place == covisible.end() || place->keyframe != with) place = covisible.insert(place, Covisible{with, 0});
   place->shared_points += change;
@@ -350,21 +350,20 @@ void Map::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
 }
 
 void Map::repair_reference(PointId id) {
-  ObservedPoint& point_slot = slot(id);
-  const std::vector<Observation>& observers = point_slot.observations;
-  if (observers.empty() || std::ranges::binary_search(observers, point_slot.point.reference)) return;
-  point_slot.point.reference = observers.front();
+  const ObservedPoint& seen = *find_slot(id);
+  if (seen.observations.empty() || std::ranges::binary_search(seen.observations, seen.point.reference)) return;
+  ObservedPoint& repaired = edit_slot(id);
+  repaired.point.reference = repaired.observations.front();
 }
 
 void Map::reparent_children(KeyframeId id, KeyframeId parent) {
-  std::vector<KeyframeId>& adopted = slot(id).children;
-  for (const KeyframeId child : adopted) slot(child).keyframe->parent = parent;
+  const std::vector<KeyframeId> adopted = std::exchange(edit_slot(id).children, {});
+  for (const KeyframeId child : adopted) edit_keyframe(child).parent = parent;
 
   std::vector<KeyframeId> children;
   std::ranges::set_union(slot(parent).children, adopted, std::back_inserter(children));
   std::erase(children, id);
-  slot(parent).children = std::move(children);
-  adopted.clear();
+  edit_slot(parent).children = std::move(children);
 }
 
 }  // namespace byre

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/base/scratch_memory.h"
+#include "byre/base/shared.h"
 #include "byre/features.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/input_error.h"
@@ -150,7 +151,8 @@ class MapSource {
   virtual const InputError* damage() const = 0;
 };
 
-// Keyframes, points and observations as a value type; copies are independent. Maintains both ends of every observation.
+// Keyframes, points and observations as a value type. Copies are independent, and share memory until they change: a
+// copy takes microseconds, and is a snapshot that another thread may read. Maintains both ends of every observation.
 // Containers are dense and indexed by id number; numbers are never reused. Ids passed in must have this map's origin
 // unless stated otherwise. Lookup of a removed or foreign id returns nullptr, and changes to it do nothing. Returned
 // pointers and references are valid until the next change. Several threads may read a map while none changes it.
@@ -257,16 +259,17 @@ class Map {
   static constexpr std::uint32_t kGone = 0xFFFFFFFF;  // marks a removed point in point_slots_
 
   bool was_assigned(KeyframeId id) const;
-  Keyframe* find_own_keyframe(KeyframeId id);
-  KeyframeSlot& slot(KeyframeId id) { return keyframes_[id.number]; }
-  const KeyframeSlot& slot(KeyframeId id) const { return keyframes_[id.number]; }
+  const Keyframe* find_own_keyframe(KeyframeId id) const;
+  const KeyframeSlot& slot(KeyframeId id) const { return *keyframes_[id.number]; }
+  KeyframeSlot& edit_slot(KeyframeId id) { return keyframes_[id.number].edit(); }
+  Keyframe& edit_keyframe(KeyframeId id) { return *edit_slot(id).keyframe; }  // precondition: it exists
   // nullptr for a point that does not exist or is of another origin.
   const ObservedPoint* find_observed(PointId id) const;
   // Like find_observed(), but nullptr for a point still in the source.
   const ObservedPoint* find_slot(PointId id) const;
-  ObservedPoint& slot(PointId id) { return points_[point_slots_[id.number]]; }  // precondition: it exists
-  // Observations of a point, also of an offline one; nullptr if it does not exist.
-  std::vector<Observation>* find_observations(PointId id);
+  ObservedPoint& edit_slot(PointId id) { return points_.edit(point_slots_[id.number]); }  // precondition: it exists
+  // Observations of a point, also of an offline one. Precondition: the point exists, or is offline.
+  std::vector<Observation>& edit_observations(PointId id);
 
   // Removes an observation at both ends and returns its point, which is kept even without observations.
   std::optional<PointId> unlink(const Observation& observation);
@@ -283,15 +286,16 @@ class Map {
 
   Origin origin_;
   std::vector<Rig> rigs_;
-  std::shared_ptr<const MapSource> source_;  // nullptr if everything is in memory
-  std::vector<KeyframeSlot> keyframes_;      // header with a source
+  std::shared_ptr<const MapSource> source_;      // nullptr if everything is in memory
+  std::vector<Shared<KeyframeSlot>> keyframes_;  // header with a source
   // Existing points in any order, and free places. Places are reused, because most points are removed sooner or later.
   BlockList<ObservedPoint> points_;
-  std::vector<std::uint32_t> point_slots_;  // index into points_ by the point's number, or kGone
+  BlockList<std::uint32_t> point_slots_;  // index into points_ by the point's number, or kGone
   std::vector<std::uint32_t> free_point_slots_;
-  std::vector<std::vector<Observation>> offline_observations_;  // by online keyframes, per offline point
-  std::map<Observation, PointId> points_of_foreign_views_;
-  std::map<PointId, std::vector<ForeignView>> foreign_views_;  // ascending by keyframe; only points with foreign views
+  BlockList<std::vector<Observation>> offline_observations_;  // by online keyframes, per offline point
+  Shared<std::map<Observation, PointId>> points_of_foreign_views_;
+  // Ascending by keyframe; only points with foreign views.
+  Shared<std::map<PointId, std::vector<ForeignView>>> foreign_views_;
   int keyframe_count_ = 0;
   int point_count_ = 0;
 };

@@ -3,7 +3,6 @@
 #include "byre/map/map.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace byre {
@@ -11,17 +10,19 @@ namespace byre {
 Map::Map(Origin origin, MapParts parts)
     : origin_(origin),
       rigs_(std::move(parts.rigs)),
-      keyframes_(parts.keyframes.size()),
       points_(parts.points.size()),
       point_slots_(parts.points.size()),
       keyframe_count_(static_cast<int>(parts.keyframes.size())),
       point_count_(static_cast<int>(parts.points.size())) {
-  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
-    if (const auto parent = parts.keyframes[i].parent) slot(*parent).children.push_back({origin_, i});
-    keyframes_[i].keyframe = std::move(parts.keyframes[i]);
+  keyframes_.reserve(parts.keyframes.size());
+  for (Keyframe& keyframe : parts.keyframes) {
+    if (keyframe.parent) edit_slot(*keyframe.parent).children.push_back({origin_, std::uint32_t(keyframes_.size())});
+    keyframes_.emplace_back().edit().keyframe = std::move(keyframe);
   }
-  std::iota(point_slots_.begin(), point_slots_.end(), 0);
-  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].point = parts.points[i];
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    point_slots_.edit(i) = static_cast<std::uint32_t>(i);
+    points_.edit(i).point = parts.points[i];
+  }
   collect_observations();
   count_covisible_keyframes();
 }
@@ -30,10 +31,10 @@ Map::Map(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count, 
     : origin_(Origin::offline),
       rigs_(std::move(rigs)),
       source_(std::move(source)),
-      keyframes_(headers.size()),
       keyframe_count_(static_cast<int>(headers.size())),
       point_count_(point_count) {
-  for (std::size_t i = 0; i < keyframes_.size(); ++i) keyframes_[i].keyframe = std::move(headers[i]);
+  keyframes_.reserve(headers.size());
+  for (Keyframe& header : headers) keyframes_.emplace_back().edit().keyframe = std::move(header);
 }
 
 void Map::read_from_source() {
@@ -49,17 +50,17 @@ void Map::read_from_source() {
 // Keyframes are in ascending order, so the observations of a point are too.
 void Map::collect_observations() {
   std::vector<std::size_t> observers(points_.size(), 0);
-  for (const KeyframeSlot& keyframe_slot : keyframes_) {
-    for (const Sighting& sighting : keyframe_slot.keyframe->sightings) {
+  for (const Shared<KeyframeSlot>& keyframe_slot : keyframes_) {
+    for (const Sighting& sighting : keyframe_slot->keyframe->sightings) {
       if (sighting.point) ++observers[sighting.point->number];
     }
   }
-  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].observations.reserve(observers[i]);
+  for (std::size_t i = 0; i < points_.size(); ++i) points_.edit(i).observations.reserve(observers[i]);
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
-    const std::vector<Sighting>& sightings = keyframes_[i].keyframe->sightings;
+    const std::vector<Sighting>& sightings = keyframes_[i]->keyframe->sightings;
     for (std::size_t feature = 0; feature < sightings.size(); ++feature) {
       if (!sightings[feature].point) continue;
-      points_[sightings[feature].point->number].observations.push_back({{origin_, i}, static_cast<int>(feature)});
+      points_.edit(sightings[feature].point->number).observations.push_back({{origin_, i}, static_cast<int>(feature)});
     }
   }
 }
@@ -68,17 +69,18 @@ void Map::count_covisible_keyframes() {
   std::vector<int> shared_points(keyframes_.size(), 0);
   std::vector<std::uint32_t> seen;  // keyframes with a non-zero count
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
-    for (const Sighting& sighting : keyframes_[i].keyframe->sightings) {
+    for (const Sighting& sighting : keyframes_[i]->keyframe->sightings) {
       if (!sighting.point) continue;
       for (const Observation& other : points_[sighting.point->number].observations) {
         if (shared_points[other.keyframe.number]++ == 0) seen.push_back(other.keyframe.number);
       }
     }
     std::ranges::sort(seen);
-    keyframes_[i].covisible.reserve(seen.size());
+    std::vector<Covisible>& covisible = keyframes_[i].edit().covisible;
+    covisible.reserve(seen.size());
     for (const std::uint32_t other : seen) {
       const int count = std::exchange(shared_points[other], 0);
-      if (other != i) keyframes_[i].covisible.push_back({{origin_, other}, count});
+      if (other != i) covisible.push_back({{origin_, other}, count});
     }
     seen.clear();
   }

@@ -228,6 +228,22 @@ TEST_P(MapUnderRandomOperations, EqualsTheReferenceModelAndStaysValid) {
   EXPECT_GT(operations.map.point_count(), 5) << "the operations must leave points to compare";
 }
 
+// Copies share memory until one of them changes.
+TEST_P(MapUnderRandomOperations, LeavesItsCopies) {
+  RandomOperations operations(GetParam());
+  for (int i = 0; i < 10 && !HasFailure(); ++i) {
+    SCOPED_TRACE("copy " + std::to_string(i));
+    for (int step = 0; step < 50; ++step) operations.step();
+    const Map copy = operations.map;
+    const Model model = operations.model;
+    for (int step = 0; step < 50; ++step) operations.step();
+    expect_same_keyframes(copy, model);
+    expect_same_points(copy, model);
+    expect_same_covisibility(copy, model);
+    ASSERT_THAT(find_faults(copy), ::testing::IsEmpty());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, MapUnderRandomOperations, ::testing::Values(1, 2, 3, 4, 5));
 
 }  // namespace

@@ -26,26 +26,26 @@ void recalibrate(Keyframe& keyframe, const RectifiedChange& change, const Recali
 
 void Map::move_features(KeyframeId id, Features moved) {
   read_all();
-  Keyframe* const keyframe = find_own_keyframe(id);
-  if (keyframe == nullptr) return;
-  const Features& before = *keyframe->frame.features;
+  if (find_own_keyframe(id) == nullptr) return;
+  Keyframe& keyframe = edit_keyframe(id);
+  const Features& before = *keyframe.frame.features;
   for (int i = 0; i < before.size(); ++i) {
-    keyframe->sightings[static_cast<std::size_t>(i)].pixel += moved.keypoint(i).pixel - before.keypoint(i).pixel;
+    keyframe.sightings[static_cast<std::size_t>(i)].pixel += moved.keypoint(i).pixel - before.keypoint(i).pixel;
   }
-  keyframe->frame.features = std::make_shared<const Features>(std::move(moved));
+  keyframe.frame.features = std::make_shared<const Features>(std::move(moved));
 }
 
 void Map::replace_features(KeyframeId id, std::shared_ptr<const Features> equal) {
   read_all();
-  Keyframe* const keyframe = find_own_keyframe(id);
-  if (keyframe != nullptr) keyframe->frame.features = std::move(equal);
+  if (find_own_keyframe(id) != nullptr) edit_keyframe(id).frame.features = std::move(equal);
 }
 
 void Map::keep_patches(KeyframeId id, std::span<const int> features) {
   read_all();
-  Keyframe* const keyframe = find_own_keyframe(id);
+  const Keyframe* const keyframe = find_own_keyframe(id);
   if (keyframe == nullptr || !keyframe->frame.features) return;
-  keyframe->frame.features = std::make_shared<const Features>(keyframe->frame.features->with_patches_of(features));
+  edit_keyframe(id).frame.features =
+      std::make_shared<const Features>(keyframe->frame.features->with_patches_of(features));
 }
 
 int Map::rig_of(KeyframeId id) const {
@@ -61,7 +61,7 @@ void Map::recalibrate(int rig, const RectifiedChange& change, std::span<const Re
   };
   const auto turn_of = [&](int other) { return other == rig ? change.after_from_before() : Pose{}; };
   for (std::size_t number = 0; number < keyframes_.size(); ++number) {
-    KeyframeSlot& slot = keyframes_[number];
+    KeyframeSlot& slot = keyframes_[number].edit();
     if (slot.keyframe && slot.keyframe->rig == rig) byre::recalibrate(*slot.keyframe, change, made_of(number));
     if (!slot.removed) continue;
     const Pose turned = turn_of(slot.removed->rig) * slot.removed->camera_from_parent;

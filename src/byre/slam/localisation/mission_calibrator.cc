@@ -4,18 +4,15 @@
 
 namespace byre {
 
-MissionCalibrator::MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor)
-    : on_map_(given, prior_sigmas), calibrator_(given, {}), worker_(std::move(executor)) {}
-
 // Estimates double their interval: a few more frames do not change the result of many.
 void MissionCalibrator::note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map) {
   constexpr double kLeastChange = 0.3;  // sigmas of the parameters, about 0.01 pixels
   on_map_.add(frame, rig, tracked, map, calibrator_.state().change);
-  if (on_map_.frames() < next_frames_ || !worker_.idle()) return;
+  if (on_map_.frames() < next_frames_ || !job_.is_idle()) return;
   next_frames_ = 2 * on_map_.frames();
   const RefinedCalibration refined = on_map_.estimate();
   if ((refined.change - calibrator_.state().change).norm() < kLeastChange) return;
-  worker_.start([refined, state = calibrator_.state()] {
+  job_.request([refined, state = calibrator_.state()] {
     return Outcome{refined,
                    {state.given, refined.calibration},
                    {rectification_of(refined.calibration).left_from_rectified.conjugate() *
@@ -25,7 +22,7 @@ void MissionCalibrator::note(const Frame& frame, const Rig& rig, const TrackedFr
 }
 
 std::optional<MissionCalibrator::Switch> MissionCalibrator::collect() {
-  auto finished = worker_.collect();
+  auto finished = job_.collect();
   if (!finished) return std::nullopt;
   Outcome& outcome = finished->result;
   const Switch result{outcome.after_from_before, outcome.from_given.rig()};

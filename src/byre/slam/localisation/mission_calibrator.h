@@ -1,19 +1,21 @@
 #pragma once
 
-#include "byre/base/worker.h"
+#include "byre/base/job_slot.h"
 #include "byre/slam/calibration/calibration_on_map.h"
 #include "byre/slam/mapping/calibrator.h"
 
-#include <memory>
 #include <optional>
 
 namespace byre {
 
 // Refines the calibration of a mission's cameras on the points of the offline map, frame by frame. The change of
-// rectified features takes long to compute and runs as a job. Called from the session's thread.
+// rectified features takes long to compute, so it is a job.
 class MissionCalibrator {
  public:
-  MissionCalibrator(const Calibration& given, double prior_sigmas, std::unique_ptr<Executor> executor);
+  MissionCalibrator(const Calibration& given, double prior_sigmas)
+      : on_map_(given, prior_sigmas), calibrator_(given, {}) {}
+
+  JobState& job() { return job_; }  // for the owner to run
 
   Frame corrected(const Frame& frame) { return calibrator_.corrected(frame); }
   const std::optional<RefinedCalibration>& result() const { return calibrator_.result(); }
@@ -27,7 +29,6 @@ class MissionCalibrator {
     Rig rig;
   };
   std::optional<Switch> collect();  // once per frame; empty without a better calibration
-  void finish() { worker_.finish(); }
 
  private:
   struct Outcome {
@@ -38,7 +39,7 @@ class MissionCalibrator {
 
   CalibrationOnMap on_map_;
   Calibrator calibrator_;
-  Worker<Outcome> worker_;
+  JobSlot<Outcome> job_;
   int next_frames_ = 60;  // frames noted before the next estimate
 };
 

@@ -23,17 +23,14 @@ Pose camera_at(const LookAlikePlace& place, const Pose& camera_from_place) {
 
 }  // namespace
 
-OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options,
-                               Executors executors)
+OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options)
     : options_(options),
       offline_(std::move(offline)),
       mission_(offline_, options.mission),
-      rivals_(options.mission.registration),
-      search_(std::move(executors.search)),
-      calibration_executor_(std::move(executors.calibration)) {}
+      rivals_(options.mission.registration) {}
 
 void OfflineTracker::refine_calibration(const Calibration& given, double prior_sigmas) {
-  calibrator_.emplace(given, prior_sigmas, std::move(calibration_executor_));
+  calibrator_.emplace(given, prior_sigmas);
 }
 
 const DrivenGround* OfflineTracker::ground_under(const PoseFilter& pose_filter, const Mapper& mapper) const {
@@ -247,7 +244,7 @@ void OfflineTracker::search_in_background(const PlaceQuery& query, const PoseFil
                                           const Mapper& mapper) {
   constexpr double kVerifyEvery = 1.0;  // seconds
   const PlaceHypothesis& place = pose_filter.place();
-  if (!search_.idle() || mapper.has_correction() || (place.is_accepted() && !place.is_confirmed())) return;
+  if (!search_.is_idle() || mapper.has_correction() || (place.is_accepted() && !place.is_confirmed())) return;
   const bool is_due = !last_search_ || to_seconds(query.frame.time - *last_search_) >= kVerifyEvery;
   is_verifying_search_ = !is_search_needed(pose_filter, mapper);
   if (is_verifying_search_ && (is_certain(pose_filter) || !is_due)) return;
@@ -255,9 +252,9 @@ void OfflineTracker::search_in_background(const PlaceQuery& query, const PoseFil
   const bool is_hint_to_be_checked = pose_filter.is_by_hint() && mapper.submaps().is_registered();
   // A find elsewhere refutes an accepted pose, so the motion measured from that pose must not constrain the search.
   const bool is_reach_uncertain = pose_filter.place().is_accepted() && mapper.submaps().is_registered();
-  search_.start([frame = query.frame, rig = query.rig, hint = is_hint_to_be_checked ? std::nullopt : query.hint,
-                 reach = is_reach_uncertain ? std::nullopt : query.reach, hidden = query.hidden, offline = offline_,
-                 options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds}] {
+  search_.request([frame = query.frame, rig = query.rig, hint = is_hint_to_be_checked ? std::nullopt : query.hint,
+                   reach = is_reach_uncertain ? std::nullopt : query.reach, hidden = query.hidden, offline = offline_,
+                   options = PlaceSearchOptions{options_.relocalise, options_.mission.bounds}] {
     return search_place(*offline, {frame, rig, hint, reach, hidden}, options);
   });
 }
@@ -345,11 +342,6 @@ Health OfflineTracker::with_map_health(Health health, Timestamp now, Timestamp f
   health.distance_since_offline = mission_.distance_since_offline();
   health.seconds_since_offline = to_seconds(now - mission_.last_offline_time().value_or(first_frame));
   return health;
-}
-
-void OfflineTracker::finish() {
-  search_.finish();
-  if (calibrator_) calibrator_->finish();
 }
 
 }  // namespace byre

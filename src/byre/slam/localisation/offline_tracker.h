@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/base/worker.h"
+#include "byre/base/job_slot.h"
 #include "byre/session_event.h"
 #include "byre/slam/frame/focal_check.h"
 #include "byre/slam/localisation/look_alike_places.h"
@@ -25,17 +25,15 @@ struct OfflineTrackerOptions {
   bool is_planar = false;      // constrains the body to the ground that the map was driven on
 };
 
-// The part of a session that needs an offline map: the registration to it, place searches in parallel with tracking,
-// and evidence about the online map's pose and the cameras. Called from the session's thread.
+// The part of the method that needs an offline map: the registration to it, place searches in parallel with tracking,
+// and evidence about the online map's pose and the cameras. A value.
 class OfflineTracker {
  public:
-  // Executors of place searches and of calibration jobs.
-  struct Executors {
-    std::unique_ptr<Executor> search;
-    std::unique_ptr<Executor> calibration;
-  };
+  OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options);
 
-  OfflineTracker(std::shared_ptr<const OfflineMap> offline, const OfflineTrackerOptions& options, Executors executors);
+  // Jobs, for the owner to run; nullptr without calibration.
+  JobState& search_job() { return search_; }
+  JobState* calibration_job() { return calibrator_ ? &calibrator_->job() : nullptr; }
 
   const Mission& mission() const { return mission_; }
   const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
@@ -115,8 +113,6 @@ class OfflineTracker {
   // Adds measures of the offline map.
   Health with_map_health(Health health, Timestamp now, Timestamp first_frame) const;
 
-  void finish();  // waits for running jobs, and discards their results
-
  private:
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
   ScratchVector<PointId> points_around(const Pose& camera_from_offline) const;
@@ -157,8 +153,7 @@ class OfflineTracker {
   bool is_refuted_ = false;  // see RivalPlaces::refute
   std::optional<Timestamp> last_search_;
   bool is_verifying_search_ = false;  // the running search is due to doubt, not to need
-  Worker<PlaceSearch> search_;
-  std::unique_ptr<Executor> calibration_executor_;  // until calibration begins
+  JobSlot<PlaceSearch> search_;
   std::optional<MissionCalibrator> calibrator_;
   FocalCheck focal_check_;
   // Number of the newest online keyframe when offline points last constrained the pose.

@@ -18,8 +18,8 @@ class OfflineTrackerTest : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
   const std::shared_ptr<const OfflineMap> map_ = offline_map_of(mission_);
-  Mapper mapper_{mission_.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), map_}};
-  OfflineTracker tracker_{map_, {}, {make_inline_executor(), make_inline_executor()}};
+  Mapper mapper_{mission_.rig, {}, {simulated_vocabulary(), map_}};
+  OfflineTracker tracker_{map_, {}};
   PoseFilter pose_filter_{{}, {}, {}, true};
 
   HybridTrack track_of(std::size_t frame, int inliers = 100, int expected = 100) const {
@@ -43,6 +43,10 @@ class OfflineTrackerTest : public ::testing::Test {
   OfflineTracker::MissionUpdate note(std::size_t frame, int inliers) {
     return tracker_.note({mission_.frames[frame], track_of(frame, inliers), mission_.rig, 0.1, false, {}, {}},
                          pose_filter_, mapper_);
+  }
+  std::optional<PlaceSearch> collect_place() {
+    run_at_once(tracker_.search_job());
+    return tracker_.collect_place();
   }
   // A search that found the first frame so many metres off its confirmed pose.
   PlaceSearch place_beside(double metres) const {
@@ -68,7 +72,7 @@ class OfflineTrackerTest : public ::testing::Test {
           mission_.rig, mapper_.map());
       tracker_.note(seen, pose_filter_, mapper_);
       tracker_.search_in_background({mission_.frames[i], mission_.rig}, pose_filter_, mapper_);
-      update_ = tracker_.process_search(tracker_.collect_place(), pose_filter_, mapper_);
+      update_ = tracker_.process_search(collect_place(), pose_filter_, mapper_);
     }
   }
 
@@ -126,7 +130,7 @@ TEST_F(OfflineTrackerTest, RequiresNoFurtherEvidenceForAConsistentHint) {
     pose_filter_.note({mission_.frames[i], track_of(i), i == 0, true, 0, true, &view}, mission_.rig, mapper_.map());
   }
   tracker_.search_in_background({mission_.frames[3], mission_.rig, PoseHint{}}, pose_filter_, mapper_);
-  const std::optional<PlaceSearch> search = tracker_.collect_place();
+  const std::optional<PlaceSearch> search = collect_place();
   ASSERT_TRUE(search && search->found) << "in the whole map, as the hint is elsewhere";
   EXPECT_TRUE(tracker_.process_search(search, pose_filter_, mapper_).agrees_with_hint);
 }
@@ -147,7 +151,7 @@ TEST_F(OfflineTrackerTest, CorrectsTheOnlineMapAfterEnoughConsistentPlaces) {
 TEST_F(OfflineTrackerTest, SearchesPlacesWhileItsPlaceIsNotAccepted) {
   note_found(0, view_of_room(2, 8));
   tracker_.search_in_background({mission_.frames[4], mission_.rig}, pose_filter_, mapper_);
-  const std::optional<PlaceSearch> search = tracker_.collect_place();
+  const std::optional<PlaceSearch> search = collect_place();
   ASSERT_TRUE(search && search->found);
   EXPECT_EQ(search->time, mission_.frames[4].time);
   EXPECT_THAT(search->found->camera_from_offline, PoseNear(true_camera_from_world(mission_, 4), 0.02, 0.01));
@@ -162,17 +166,17 @@ TEST_F(OfflineTrackerTest, SearchesPlacesOncePerSecondWithFewOfflinePoints) {
   ASSERT_TRUE(pose_filter_.place().is_accepted());
   note(4, 70);
   tracker_.search_in_background({mission_.frames[4], mission_.rig}, pose_filter_, mapper_);
-  const std::optional<PlaceSearch> search = tracker_.collect_place();
+  const std::optional<PlaceSearch> search = collect_place();
   EXPECT_TRUE(search && search->found);
   tracker_.search_in_background({mission_.frames[5], mission_.rig}, pose_filter_, mapper_);
-  EXPECT_FALSE(tracker_.collect_place());
+  EXPECT_FALSE(collect_place());
 }
 
 TEST_F(OfflineTrackerTest, SearchesNoPlacesWhileOfflinePointsHoldThePose) {
   note_found(0);
   note(4, 100);
   tracker_.search_in_background({mission_.frames[4], mission_.rig}, pose_filter_, mapper_);
-  EXPECT_FALSE(tracker_.collect_place());
+  EXPECT_FALSE(collect_place());
 }
 
 // Each frame fits two rooms of the map.
@@ -190,8 +194,8 @@ class OfflineTrackerInTwinRooms : public ::testing::Test {
     MappedPlace place = twin_rooms(mission_);
     return std::make_shared<const OfflineMap>(std::move(place.map), place.index.vocabulary());
   }();
-  Mapper mapper_{mission_.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), rooms_}};
-  OfflineTracker tracker_{rooms_, {}, {make_inline_executor(), make_inline_executor()}};
+  Mapper mapper_{mission_.rig, {}, {simulated_vocabulary(), rooms_}};
+  OfflineTracker tracker_{rooms_, {}};
   PoseFilter pose_filter_{{}, {}, {}, true};
   HybridTrack track_ = [this] {
     HybridTrack track;

@@ -15,13 +15,9 @@ constexpr std::uint32_t kNewKeyframes = 32;  // the size of a window, whose feat
 
 }  // namespace
 
-Mapper::Mapper(const Rig& rig, const MapperOptions& options, MapperExecutors executors, MapperResources resources)
-    : options_(options),
-      offline_(std::move(resources.offline)),
-      local_(std::move(executors.local)),
-      global_(std::move(executors.global), {options.mapping}, page_file_),
-      reading_(std::move(executors.reading)) {
-  if (resources.vocabulary) places_.emplace(*std::move(resources.vocabulary));
+Mapper::Mapper(const Rig& rig, const MapperOptions& options, MapperResources resources)
+    : options_(options), offline_(std::move(resources.offline)) {
+  if (resources.vocabulary) places_.edit().emplace(*std::move(resources.vocabulary));
   if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
 }
 
@@ -30,10 +26,10 @@ std::optional<KeyframeId> Mapper::newest_in_present_frame() const {
 }
 
 void Mapper::continue_map(Map online) {
-  assert(places_ && !offline_ && online.keyframe_count() > 0);
+  assert(places() && !offline_ && online.keyframe_count() > 0);
   online_ = std::move(online);
   initialiser_.reset();
-  for (const KeyframeId id : online_.keyframe_ids()) places_->add(id, online_.find_keyframe(id)->words);
+  for (const KeyframeId id : online_.keyframe_ids()) places_.edit()->add(id, online_.find_keyframe(id)->words);
   newest_ = online_.keyframe_ids().back();
   first_new_ = next_keyframe_number();
   submaps_.begin_in_map_frame(0);
@@ -46,13 +42,14 @@ void Mapper::refine_calibration(const Calibration& given, const SelfCalibrationO
 
 Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                                 const AnchoredTrajectory& trajectory) {
-  assert(!is_being_read());
   Beginning begun = rig.is_stereo() ? begin_stereo(frame, rig, camera_from_world, trajectory)
                                     : begin_monocular(frame, rig, camera_from_world, trajectory);
   if (begun.keyframes.empty()) return begun;
   newest_ = begun.keyframes.back();
-  if (places_) {
-    for (const KeyframeId id : begun.keyframes) store(index_keyframe(id, false));
+  if (places()) {
+    for (IndexedKeyframe& indexed : index_keyframes(online_, **places_, begun.keyframes, false, options_.loops)) {
+      store(std::move(indexed));
+    }
   }
   ++revision_;
   return begun;
@@ -136,17 +133,16 @@ void Mapper::begin_at_relocalisation(const HybridTrack& found) {
 }
 
 KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig) {
-  assert(!is_being_read());
   Keyframe keyframe = make_keyframe(frame, track.tracked, online_.add_rig(rig));
   keyframe.recording = options_.recording;
   keyframe.parent = track.online_reference;
   const KeyframeId id = online_.add_keyframe(std::move(keyframe));
   add_stereo_points(online_, id, contradicting_features(track.tracked, *frame.features));
   newest_ = id;
-  if (places_) unindexed_ = id;
+  if (places()) unindexed_.push_back(id);
   ++revision_;
   pending_.push_back(id);
-  start_job();
+  request_local_job();
   page_out_old_keyframe();
   return id;
 }
@@ -183,7 +179,7 @@ void Mapper::page_out_all() {
 
 // Searches older parts of the map for new keyframes. A match must be confirmed by the frames after it.
 bool Mapper::search_loop(const LoopCloser::LoopFrame& now) {
-  if (!places_ || !is_global_free()) return false;
+  if (!places() || !may_request_map_job()) return false;
   const auto loop = loop_closer_.check(now, online_);
   if (loop) close_loop(*loop);
   return loop.has_value();
@@ -199,7 +195,7 @@ void Mapper::close_loop(const LoopHypothesis& loop) {
   if (fusing_will_do) {
     pending_.insert(pending_.begin(), {loop.place, loop.keyframe});
   } else {
-    to_copy_ = ToCopy::to_correct;
+    due_ = MapJob::correct;
   }
 }
 
@@ -214,12 +210,11 @@ std::vector<KeyframeMotion> Mapper::all_motions() const {
 }
 
 std::optional<double> Mapper::collect() {
-  assert(!is_being_read());
+  collect_index();
   const auto finished = local_.collect();
   if (finished) apply_update(finished->result);
-  global_.collect();
-  if (!finished) return std::nullopt;
-  return finished->seconds;
+  if (auto optimised = whole_.collect()) outcome_ = std::move(optimised->result);
+  return finished ? std::optional(finished->seconds) : std::nullopt;
 }
 
 void Mapper::apply_update(const LocalOutcome& outcome) {
@@ -234,32 +229,30 @@ void Mapper::apply_update(const LocalOutcome& outcome) {
 
 // A new readout time changes keyframe poses. In a mission the offline map corrects them, else a global adjustment does.
 bool Mapper::apply_readout_change(RollingShutterCorrector& corrector, const Rig& rig) {
-  assert(!is_being_read());
-  if (!corrector.has_change() || !local_.idle() || !is_global_free()) return false;
+  if (!corrector.has_change() || !local_.is_idle() || !may_request_map_job()) return false;
   corrector.apply_update(rig, online_);
   page_out_all();
   ++revision_;
   loop_closer_.forget_hypothesis();
-  if (!offline_ && online_.keyframe_count() > 1) to_copy_ = ToCopy::to_correct;
+  if (!offline_ && online_.keyframe_count() > 1) due_ = MapJob::correct;
   return true;
 }
 
 // Waits for the local job, whose data are by the previous calibration.
 std::optional<RigRotation> Mapper::apply_calibration(const Rig& rig) {
-  assert(!is_being_read());
-  if (!calibrator_ || !local_.idle()) return std::nullopt;
-  if (auto by = global_.take_calibration()) {
+  if (!calibrator_ || !local_.is_idle()) return std::nullopt;
+  if (auto by = take_calibration()) {
     constexpr double kToAdjust = 0.5;  // sigmas of the parameters; smaller changes move the map by less than its noise
     const bool is_large = (by->refined.change - calibrator_->state().change).norm() > kToAdjust;
     const RigRotation turn = recalibrate(*std::move(by), rig);
     page_out_all();
-    if (is_large && is_global_free()) to_copy_ = ToCopy::to_correct;
+    if (is_large && may_request_map_job()) due_ = MapJob::correct;
     return turn;
   }
-  if (!is_global_free() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
+  if (!may_request_map_job() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
   calibrator_->note_attempt(online_.keyframe_count());
   rig_to_calibrate_ = online_.add_rig(rig);
-  to_copy_ = ToCopy::to_calibrate;
+  due_ = MapJob::calibrate;
   return std::nullopt;
 }
 
@@ -274,14 +267,19 @@ RigRotation Mapper::recalibrate(Recalibration by, const Rig& rig) {
   return turn;
 }
 
+std::optional<Recalibration> Mapper::take_calibration() {
+  if (!outcome_ || is_correction_waiting()) return std::nullopt;
+  return std::get<MapCalibration>(*std::exchange(outcome_, std::nullopt));
+}
+
 std::optional<LengthChanges> Mapper::apply_map_optimisation() {
-  assert(!is_being_read());
-  if (!global_.is_waiting() || !local_.idle()) return std::nullopt;
-  AppliedCorrection applied = global_.apply(online_);
-  forget_places(applied.delta);
-  loop_closer_.apply_length_changes(applied.length_changes);
+  if (!is_correction_waiting() || !local_.is_idle()) return std::nullopt;
+  const MapCorrection correction = std::get<MapCorrection>(*std::exchange(outcome_, std::nullopt));
+  LengthChanges changes = apply_correction(correction.delta, *correction.outline, online_);
+  forget_places(correction.delta);
+  loop_closer_.apply_length_changes(changes);
   ++revision_;
-  return std::move(applied.length_changes);
+  return changes;
 }
 
 void Mapper::correct_later(const OnlineCorrection& correction) {
@@ -290,8 +288,7 @@ void Mapper::correct_later(const OnlineCorrection& correction) {
 }
 
 std::optional<Pose> Mapper::correct_online() {
-  assert(!is_being_read());
-  if (!waiting_correction_ || !local_.idle()) return std::nullopt;
+  if (!waiting_correction_ || !local_.is_idle()) return std::nullopt;
   const OnlineCorrection correction = *std::exchange(waiting_correction_, std::nullopt);
   std::vector<KeyframeId> path = online_.keyframe_ids();
   std::erase_if(path, [&](KeyframeId id) {
@@ -305,8 +302,8 @@ std::optional<Pose> Mapper::correct_online() {
 }
 
 // Not before a waiting correction, which moves the job's keyframes.
-void Mapper::start_job() {
-  if (pending_.empty() || !local_.idle() || global_.is_waiting() || waiting_correction_) return;
+void Mapper::request_local_job() {
+  if (pending_.empty() || !local_.is_idle() || is_correction_waiting() || waiting_correction_) return;
   MapWindow window = cut_window(map(), pending_, options_.mapping.window);
   pending_.clear();
   if (window.keyframes.empty()) return;
@@ -317,75 +314,79 @@ void Mapper::start_job() {
   add_motions(window, motions_between(online));
   MappingOptions mapping = options_.mapping;
   mapping.hidden = hidden_;
-  local_.start([window = std::move(window), options = mapping, to_page_out = std::exchange(to_page_out_, {}),
-                file = page_file_] {
-    LocalOutcome outcome{extend_map(window, options), to_page_out};
-    for (KeyframeFeatures& of : outcome.paged) of.paged = page_out(of.features, *file);
-    file->release_pages();
-    return outcome;
-  });
+  local_.request([window = std::move(window), options = mapping, to_page_out = std::exchange(to_page_out_, {}),
+                  file = page_file_] { return extend_map_locally(window, options, to_page_out, *file); });
 }
 
-// Requests wait while a job reads the map.
-void Mapper::start_reading() {
-  if (is_being_read()) return;
-  std::optional<KeyframeId> id = std::exchange(unindexed_, std::nullopt);
-  if (id && online_.find_keyframe(*id) == nullptr) id.reset();
-  const bool corrects = to_copy_ == ToCopy::to_correct, calibrates = to_copy_ == ToCopy::to_calibrate;
-  if (!id && !corrects && !calibrates) return;
-  reading_.start([this, id, searches_loop = loop_closer_.take_search_request(), corrects, calibrates,
-                  motions = corrects ? all_motions() : std::vector<KeyframeMotion>()] {
-    MapReading reading;
-    if (id) reading.newest = index_keyframe(*id, searches_loop);
-    if (corrects) reading.to_correct = copy_for_loop_closure(online_, first_new_, loops(), motions);
-    if (calibrates) reading.whole = std::make_shared<const MapWindow>(whole_map(map()));
-    return reading;
-  });
+void Mapper::request_jobs() {
+  request_index();
+  request_map_job();
 }
 
-// Preconditions: places_, and the keyframe exists.
-KeyframeReading Mapper::index_keyframe(KeyframeId id, bool searches_loop) const {
-  KeyframeReading reading{id, places_->vocabulary().words_of(*online_.find_keyframe(id)->frame.features)};
-  if (searches_loop) reading.loop = find_loop_by_words(online_, *places_, id, reading.words, options_.loops);
-  return reading;
+void Mapper::request_index() {
+  const bool searches_loop = loop_closer_.take_search_request();
+  if (!index_.is_idle()) return;
+  std::erase_if(unindexed_, [&](KeyframeId id) { return online_.find_keyframe(id) == nullptr; });
+  if (unindexed_.empty()) return;
+  index_.request(
+      [map = online_, places = places_, keyframes = std::exchange(unindexed_, {}), searches_loop,
+       options = options_.loops] { return index_keyframes(map, **places, keyframes, searches_loop, options); });
 }
 
-void Mapper::collect_reading() {
-  if (auto finished = reading_.collect()) store(std::move(finished->result));
-}
-
-void Mapper::store(MapReading reading) {
-  if (reading.newest) store(*std::move(reading.newest));
-  if (reading.to_correct || reading.whole) to_copy_ = ToCopy::nothing;
-  if (reading.to_correct) global_.close_loops(*std::move(reading.to_correct));
-  if (reading.whole) {
-    global_.calibrate(std::move(reading.whole), calibrator_->state(), rig_to_calibrate_, calibrator_->options());
+void Mapper::request_map_job() {
+  const auto stop = [early = is_finishing_early_, file = page_file_] {
+    return releasing_pages(*file, [early] { return early->load(); });
+  };
+  if (due_ == MapJob::correct) {
+    whole_.request([map = std::make_shared<Map>(online_), first_new = first_new_, loops = loops(),
+                    motions = all_motions(), options = GlobalMappingOptions{options_.mapping}, stop] {
+      LoopClosureInput input = copy_for_loop_closure(*map, first_new, loops, motions);
+      *map = Map(Origin::online);  // the snapshot is not needed any more
+      return MapOutcome(close_loops(std::move(input), options, stop()));
+    });
+  } else if (due_ == MapJob::calibrate) {
+    whole_.request([map = online_, offline = offline_, state = calibrator_->state(), rig = rig_to_calibrate_,
+                    options = calibrator_->options(), file = page_file_, stop] {
+      const MapWindow whole = whole_map({offline ? &offline->map() : nullptr, map});
+      MapCalibration calibration = calibrate(whole, state, rig, options, stop());
+      file->release_pages();
+      return MapOutcome(std::move(calibration));
+    });
   }
+  due_ = MapJob::none;
 }
 
-void Mapper::store(KeyframeReading reading) {
-  places_->add(reading.keyframe, reading.words);
-  online_.set_words(reading.keyframe, std::move(reading.words));
-  if (reading.loop) loop_closer_.set_hypothesis(*reading.loop);
+void Mapper::collect_index() {
+  auto finished = index_.collect();
+  if (!finished) return;
+  for (IndexedKeyframe& indexed : finished->result) store(std::move(indexed));
+}
+
+// Mapping may have removed the keyframe meanwhile.
+void Mapper::store(IndexedKeyframe indexed) {
+  if (online_.find_keyframe(indexed.keyframe) == nullptr) return;
+  places_.edit()->add(indexed.keyframe, indexed.words);
+  online_.set_words(indexed.keyframe, std::move(indexed.words));
+  if (indexed.loop) loop_closer_.set_hypothesis(*indexed.loop);
 }
 
 void Mapper::forget_places(const MapDelta& delta) {
-  if (!places_) return;
-  for (const OnlineKeyframeId id : delta.removed_keyframes) places_->remove(id);
+  if (!places()) return;
+  for (const OnlineKeyframeId id : delta.removed_keyframes) places_.edit()->remove(id);
 }
 
-LengthChanges Mapper::finish() {
-  if (auto finished = reading_.finish()) store(std::move(finished->result));
-  start_reading();
-  if (auto finished = reading_.finish()) store(std::move(finished->result));
+LengthChanges Mapper::finish(const std::function<void()>& run_jobs) {
+  run_jobs();
+  collect_index();
+  request_jobs();
   LengthChanges lengths;  // by the one correction that may be in flight
   while (true) {
-    if (const auto finished = local_.finish()) apply_update(finished->result);
-    global_.finish();
+    run_jobs();
+    collect();
     if (auto changes = apply_map_optimisation()) lengths = *std::move(changes);
     correct_online();
     if (pending_.empty()) return lengths;
-    start_job();
+    request_local_job();
   }
 }
 
@@ -399,14 +400,14 @@ std::optional<RigRotation> Mapper::calibrate_finally(const Rig& rig, const std::
 }
 
 FinishReport Mapper::finish_map(const FinishHooks& hooks) {
-  assert(places_);
+  assert(places());
   const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
   to_page_out_.clear();  // no more jobs
   if (first_new == 0) page_out_features(online_, *page_file_);
   const FinishHooks frugal{releasing_pages(*page_file_, hooks.should_stop), hooks.before_step};
   FinishReport report =
-      byre::finish_map(online_, *places_, {options_.loops, {options_.mapping}, all_motions(), first_new}, frugal);
+      byre::finish_map(online_, **places_, {options_.loops, {options_.mapping}, all_motions(), first_new}, frugal);
   loop_closer_.apply_length_changes(report.length_changes);
   return report;
 }

@@ -12,13 +12,19 @@ namespace {
 
 using ::testing::IsEmpty;
 
+void run_jobs(Mapper& mapper) {
+  for (JobState* const job : {&mapper.local_job(), &mapper.index_job(), &mapper.map_job()}) run_at_once(*job);
+}
+
+void finish(Mapper& mapper) {
+  mapper.finish([&] { run_jobs(mapper); });
+}
+
 class MapperOfAMission : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
 
-  Mapper mapper(std::unique_ptr<Executor> local, MapperResources resources = {}) const {
-    return {mission_.rig, {}, {.local = std::move(local)}, std::move(resources)};
-  }
+  Mapper mapper(MapperResources resources = {}) const { return {mission_.rig, {}, std::move(resources)}; }
   Pose true_pose(std::size_t frame) const {  // in the map of the first frame
     return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
   }
@@ -34,7 +40,7 @@ class MapperOfAMission : public ::testing::Test {
 };
 
 TEST_F(MapperOfAMission, StartsWithAStereoFrame) {
-  Mapper mapper = this->mapper(make_inline_executor());
+  Mapper mapper = this->mapper();
   EXPECT_FALSE(mapper.newest_keyframe());
   const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   ASSERT_EQ(begun.keyframes.size(), 1u);
@@ -44,7 +50,7 @@ TEST_F(MapperOfAMission, StartsWithAStereoFrame) {
 }
 
 TEST_F(MapperOfAMission, DoesNotStartWithAnEmptyFrame) {
-  Mapper mapper = this->mapper(make_inline_executor());
+  Mapper mapper = this->mapper();
   const Frame blank{mission_.frames[0].time, std::make_shared<const Features>()};
   EXPECT_THAT(mapper.begin(blank, mission_.rig, {}, AnchoredTrajectory({})).keyframes, IsEmpty());
   EXPECT_TRUE(mapper.submaps().empty());
@@ -52,7 +58,7 @@ TEST_F(MapperOfAMission, DoesNotStartWithAnEmptyFrame) {
 }
 
 TEST_F(MapperOfAMission, ChangesItsRevisionWithTheMap) {
-  Mapper mapper = this->mapper(make_paced_executor(2));
+  Mapper mapper = this->mapper();
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   const int begun = mapper.revision();
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
@@ -61,6 +67,7 @@ TEST_F(MapperOfAMission, ChangesItsRevisionWithTheMap) {
   EXPECT_EQ(mapper.pending(), 0) << "the job has the keyframe";
   EXPECT_FALSE(mapper.collect());
   EXPECT_EQ(mapper.revision(), added);
+  run_jobs(mapper);
   EXPECT_TRUE(mapper.collect());
   EXPECT_GT(mapper.revision(), added);
   EXPECT_THAT(find_faults(mapper.online()), IsEmpty());
@@ -79,7 +86,7 @@ Frame with_patches(const Frame& frame, const Rig& rig) {
 }
 
 TEST_F(MapperOfAMission, DropsUnusedPatchesAfterThirtyTwoKeyframes) {
-  Mapper mapper = this->mapper(make_paced_executor(1000));
+  Mapper mapper = this->mapper();
   const KeyframeId first =
       mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, {}, AnchoredTrajectory({}))
           .keyframes.front();
@@ -103,17 +110,19 @@ TEST_F(MapperOfAMission, DropsUnusedPatchesAfterThirtyTwoKeyframes) {
 }
 
 TEST_F(MapperOfAMission, StoresTheFeaturesOfOlderKeyframesInAFile) {
-  Mapper mapper = this->mapper(make_inline_executor());
+  Mapper mapper = this->mapper();
   const KeyframeId first =
       mapper.begin(with_patches(mission_.frames[0], mission_.rig), mission_.rig, {}, AnchoredTrajectory({}))
           .keyframes.front();
   const auto features = [&] { return mapper.online().find_keyframe(first)->frame.features; };
   for (std::size_t frame = 1; frame < 33; ++frame) {
     mapper.add_keyframe(mission_.frames[frame], track(mapper, frame), mission_.rig);
+    run_jobs(mapper);
     mapper.collect();
   }
   const std::shared_ptr<const Features> in_memory = features();
   mapper.add_keyframe(mission_.frames[33], track(mapper, 33), mission_.rig);
+  run_jobs(mapper);
   EXPECT_EQ(features(), in_memory) << "the result of the job is not applied yet";
   mapper.collect();
   const auto before = in_memory->arrays(), paged = features()->arrays();
@@ -125,46 +134,78 @@ TEST_F(MapperOfAMission, StoresTheFeaturesOfOlderKeyframesInAFile) {
 }
 
 TEST_F(MapperOfAMission, KeepsKeyframesPendingWhileAJobRuns) {
-  Mapper mapper = this->mapper(make_paced_executor(5));
+  Mapper mapper = this->mapper();
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   mapper.add_keyframe(mission_.frames[8], track(mapper, 8), mission_.rig);
   EXPECT_EQ(mapper.pending(), 1);
-  mapper.finish();
+  finish(mapper);
   EXPECT_EQ(mapper.pending(), 0);
 }
 
 TEST_F(MapperOfAMission, HasTheWordsOfAKeyframeAfterAJob) {
-  Mapper mapper(mission_.rig, {},
-                {make_paced_executor(1000), make_inline_executor(), /*reading=*/make_paced_executor(2)},
-                {simulated_vocabulary(), nullptr});
+  Mapper mapper = this->mapper({simulated_vocabulary(), nullptr});
   const auto words_of = [&](KeyframeId id) { return mapper.online().find_keyframe(id)->words.size(); };
   const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   EXPECT_GT(words_of(begun.keyframes[0]), 0u) << "at once, for relocalisation";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
-  mapper.start_reading();
-  EXPECT_TRUE(mapper.is_being_read());
-  mapper.collect_reading();
-  EXPECT_EQ(words_of(id), 0u);
-  mapper.collect_reading();
-  EXPECT_FALSE(mapper.is_being_read());
+  mapper.request_jobs();
+  run_at_once(mapper.index_job());
+  EXPECT_EQ(words_of(id), 0u) << "the result is not applied yet";
+  mapper.collect();
   EXPECT_EQ(words_of(id), static_cast<std::size_t>(mission_.frames[4].features->size()));
   EXPECT_EQ(mapper.places()->size(), 2);
-  mapper.start_reading();
-  EXPECT_FALSE(mapper.is_being_read()) << "no reading is needed";
+  mapper.request_jobs();
+  EXPECT_TRUE(mapper.index_job().is_idle()) << "no index is needed";
 }
 
-TEST_F(MapperOfAMission, ReadsRemainingKeyframesAtTheEnd) {
-  Mapper mapper = this->mapper(make_inline_executor(), {simulated_vocabulary(), nullptr});
+// Jobs read a snapshot, so the map may change meanwhile.
+TEST_F(MapperOfAMission, IndexesKeyframesAddedWhileAJobRuns) {
+  Mapper mapper = this->mapper({simulated_vocabulary(), nullptr});
+  mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
+  mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
+  mapper.request_jobs();
+  const std::optional<Job> job = mapper.index_job().take_request();
+  ASSERT_TRUE(job);
+  std::vector<KeyframeId> meanwhile;
+  for (const std::size_t frame : {8u, 12u}) {
+    meanwhile.push_back(mapper.add_keyframe(mission_.frames[frame], track(mapper, frame), mission_.rig));
+    mapper.request_jobs();
+    EXPECT_FALSE(mapper.index_job().take_request()) << "one job at a time";
+  }
+  mapper.index_job().deliver({(*job)(), 0.0});
+  mapper.collect();
+  mapper.request_jobs();
+  run_at_once(mapper.index_job());
+  mapper.collect();
+  for (const KeyframeId id : meanwhile) EXPECT_FALSE(mapper.online().find_keyframe(id)->words.empty());
+  EXPECT_EQ(mapper.places()->size(), 4);
+}
+
+TEST_F(MapperOfAMission, IndexesRemainingKeyframesAtTheEnd) {
+  Mapper mapper = this->mapper({simulated_vocabulary(), nullptr});
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
-  mapper.finish();
+  finish(mapper);
   EXPECT_FALSE(mapper.online().find_keyframe(id)->words.empty());
   EXPECT_EQ(mapper.places()->size(), 2);
 }
 
+TEST_F(MapperOfAMission, HasIndependentCopies) {
+  Mapper mapper = this->mapper();
+  mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
+  const Mapper before = mapper;
+  const int points = before.online().point_count();
+  mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
+  finish(mapper);
+  EXPECT_EQ(before.online().keyframe_count(), 1);
+  EXPECT_EQ(before.online().point_count(), points);
+  EXPECT_THAT(find_faults(before.online()), IsEmpty());
+  EXPECT_EQ(mapper.online().keyframe_count(), 2);
+}
+
 TEST_F(MapperOfAMission, AppliesACorrectionOnceNoJobRuns) {
-  Mapper mapper = this->mapper(make_paced_executor(2), {simulated_vocabulary(), offline_map_of(mission_)});
+  Mapper mapper = this->mapper({simulated_vocabulary(), offline_map_of(mission_)});
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   EXPECT_FALSE(mapper.submaps().is_registered()) << "its pose in the map is unknown";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
@@ -172,7 +213,7 @@ TEST_F(MapperOfAMission, AppliesACorrectionOnceNoJobRuns) {
   mapper.correct_later({mapper.submaps().frame(), 0, offline_from_online, CorrectionShape::rigid});
   EXPECT_TRUE(mapper.has_correction());
   EXPECT_FALSE(mapper.correct_online()) << "a job uses the keyframes to be moved";
-  mapper.collect();
+  run_jobs(mapper);
   mapper.collect();
   const Pose before = mapper.online().camera_from_world(id);
   EXPECT_TRUE(mapper.correct_online());
@@ -193,7 +234,7 @@ SimulatedMission one_camera_circling(int frames, double laps) {
 TEST(MapperOfOneCamera, StartsOneMap) {
   const SimulatedMission mission = one_camera_circling(120, 1.0);
   const Rig& rig = mission.rig;
-  Mapper mapper(rig, {}, {.local = make_inline_executor()}, {});
+  Mapper mapper(rig, {}, {});
   EXPECT_TRUE(mapper.can_begin(rig));
   std::size_t frame = 0;
   Mapper::Beginning begun;
@@ -211,7 +252,7 @@ TEST(MapperOfOneCamera, StartsAtTheGivenPose) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;
   const Pose world_from_truth{rotation_exp({0.0, 0.0, 2.0}), {1.0, 2.0, 3.0}};
-  Mapper mapper(rig, {}, {.local = make_inline_executor()}, {});
+  Mapper mapper(rig, {}, {});
   std::size_t frame = 0;
   Mapper::Beginning begun;
   Pose measured;

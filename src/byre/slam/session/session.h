@@ -2,21 +2,9 @@
 
 #include "byre/base/executor.h"
 #include "byre/frame_report.h"
-#include "byre/slam/frame/dirt_detector.h"
-#include "byre/slam/frame/frame_budget.h"
-#include "byre/slam/frame/health.h"
-#include "byre/slam/frame/image_monitor.h"
-#include "byre/slam/frame/state.h"
-#include "byre/slam/localisation/offline_tracker.h"
-#include "byre/slam/localisation/place_bounds.h"
-#include "byre/slam/localisation/place_search.h"
-#include "byre/slam/localisation/pose_filter.h"
-#include "byre/slam/mapping/keyframe_policy.h"
-#include "byre/slam/mapping/mapper.h"
-#include "byre/slam/mapping/rolling_shutter_corrector.h"
-#include "byre/slam/session/frame_summary.h"
+#include "byre/slam/session/robot_state.h"
 #include "byre/slam/session/session_options.h"
-#include "byre/slam/session/tracker.h"
+#include "byre/slam/session/step.h"
 
 #include <memory>
 #include <optional>
@@ -25,38 +13,42 @@
 
 namespace byre {
 
-// Executors of jobs. local: mapping around new keyframes. global: corrections of the whole map; in a mission on an
-// offline map, place searches.
+// Executors of jobs. local: mapping around new keyframes. global: jobs on the whole map; in a mission on an offline
+// map, place searches. calibration: calibration of a mission's cameras. index: words of new keyframes, and loop
+// searches.
 struct SessionExecutors {
   // NOLINTNEXTLINE(google-explicit-constructor): a session without loop closing needs one executor
   SessionExecutors(std::unique_ptr<Executor> local_executor,
                    std::unique_ptr<Executor> global_executor = make_inline_executor(),
                    std::unique_ptr<Executor> calibration_executor = make_inline_executor(),
-                   std::unique_ptr<Executor> reading_executor = make_inline_executor())
+                   std::unique_ptr<Executor> index_executor = make_inline_executor())
       : local(std::move(local_executor)),
         global(std::move(global_executor)),
         calibration(std::move(calibration_executor)),
-        reading(std::move(reading_executor)) {}
+        index(std::move(index_executor)) {}
+
+  Executor& of(JobKind kind) const;
 
   std::unique_ptr<Executor> local;
   std::unique_ptr<Executor> global;
-  std::unique_ptr<Executor> calibration;  // calibration of a mission's cameras
-  std::unique_ptr<Executor> reading;      // jobs that read the map, which is constant meanwhile
+  std::unique_ptr<Executor> calibration;
+  std::unique_ptr<Executor> index;
 };
 
-// Tracks frames in order of time and maps the scene. The tracker localises each frame, the mapper makes keyframes of
-// some, and the pose filter holds the pose. Call every method from one thread; only executors use others.
+// Runs step() frame by frame, and its jobs on executors. Call every method from one thread; only executors use others.
 class Session {
  public:
-  // A vocabulary enables place recognition: loop closing and relocalisation. An offline map makes the session a
-  // mission: it localises in that map, and its poses are in the map's frame.
+  // See RobotState.
   Session(const Rig& rig, const SessionOptions& options, SessionExecutors executors,
-          std::optional<Vocabulary> vocabulary = {}, std::shared_ptr<const OfflineMap> offline = nullptr);
+          std::optional<Vocabulary> vocabulary = {}, std::shared_ptr<const OfflineMap> offline = nullptr)
+      : options_(options),
+        state_(rig, options, std::move(vocabulary), std::move(offline)),
+        executors_(std::move(executors)) {}
 
   // Sets the sources of measured motion between keyframes and of the robot's reach. Call it before the first frame.
   void set_odometry(OdometryQuery odometry, ReachQuery reach) {
-    mapper_.set_odometry(std::move(odometry));
-    pose_filter_.set_odometry(std::move(reach));
+    state_.mapper.set_odometry(std::move(odometry));
+    state_.pose_filter.set_odometry(std::move(reach));
   }
 
   // Continues an online map of another recording: the session is lost until it relocalises in it, and extends it. Call
@@ -75,98 +67,56 @@ class Session {
 
   // Limits localisation in the offline map to the hint until it expires.
   void set_initial_pose(const PoseHint& hint) {
-    hint_.set_hint(hint);
-    trusted_place_.forget();
+    state_.hint.set_hint(hint);
+    state_.trusted_place.forget();
   }
 
   // While paused, frames are tracked and nothing is added to the map.
-  void pause_mapping(bool is_paused) { is_mapping_paused_ = is_paused; }
-  bool is_mapping_paused() const { return is_mapping_paused_; }
+  void pause_mapping(bool is_paused) { state_.is_mapping_paused = is_paused; }
+  bool is_mapping_paused() const { return state_.is_mapping_paused; }
 
   // Tilt of the body at the next frame, measured by accelerations; empty: unknown. Constrains dead reckoning.
-  void set_tilt(const std::optional<BodyTilt>& tilt) { pose_filter_.set_tilt(tilt); }
-  int tilts_applied() const { return pose_filter_.tilts_applied(); }  // number of frames that a tilt constrained
-  // motion: of the body since the last frame; empty: unknown. budget: time limit of the frame; nullptr: none. The
-  // caller calls its begin() before and its end() after.
+  void set_tilt(const std::optional<BodyTilt>& tilt) { tilt_ = tilt; }
+  int tilts_applied() const { return state_.pose_filter.tilts_applied(); }  // frames that a tilt constrained
+  // See StepInput.
   FrameReport process(const Frame& rectified, const std::optional<BodyMotion>& motion = {},
                       FrameBudget* budget = nullptr);
 
-  // Ends a running correction of the whole map early, with its present result.
-  void finish_early() { mapper_.finish_early(); }
+  // Ends a running job on the whole map early, with its present result.
+  void finish_early() { state_.mapper.finish_early(); }
 
   // Applies the results of running jobs. Call it once, after the last frame.
   void finish();
 
   // Last loop search and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishHooks& hooks);
-  Map take_online() { return mapper_.take_online(); }  // see Mapper
+  Map take_online() { return state_.mapper.take_online(); }  // see Mapper
 
   // Scales all lengths. Call it after finish_map().
-  void rescale(double factor) { pose_filter_.apply_length_changes(mapper_.rescale(factor)); }
+  void rescale(double factor) { state_.pose_filter.apply_length_changes(state_.mapper.rescale(factor)); }
 
   // Adjusts the whole online map around the fixed offline map. Call it after finish().
   void finish_mission(const FinishHooks& hooks);
 
-  MapView map() const { return mapper_.map(); }
+  MapView map() const { return state_.map(); }
 
   // Map points matched in the last frame; empty without a pose.
-  const std::vector<SeenPoint>& seen_points() const { return seen_; }
+  const std::vector<SeenPoint>& seen_points() const { return state_.seen; }
 
   // Loops found so far, with the measurement at that time.
-  const std::vector<LoopEdge>& loops() const { return mapper_.loops(); }
+  const std::vector<LoopEdge>& loops() const { return state_.mapper.loops(); }
 
   // Poses world_from_body of all frames with a pose, by the present poses of their keyframes.
   Trajectory final_trajectory() const;
 
  private:
-  // Result of tracking or localising a frame.
-  struct Located {
-    std::optional<HybridTrack> track;
-    std::vector<HybridTrack> elsewhere;  // other places that show the frame
-    bool is_relocalised = false;
-    bool is_by_hint = false;     // the search was limited to a hint
-    bool begins_submap = false;  // the frame became the first keyframe of a submap
-    TwoViewFailure start_failure = TwoViewFailure::none;
-    DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
-  };
-
-  void apply_finished_jobs(FrameReport& report);
-  void apply_place_search(FrameReport& report);
-  bool apply_camera_change();
-  void apply_rig_rotation(const RigRotation& turn);
-  InputFrame input_of(const Frame& rectified, const std::optional<BodyMotion>& motion);
-  void sort_by_log_odds(std::vector<HybridTrack>& places, const Frame& frame);
-  Located locate(const InputFrame& input);
-  bool may_begin_submap(const InputFrame& input) const;
-  Located begin_submap(const Frame& frame);
-  void remember(const InputFrame& input, const Located& located, FrameReport& report);
-  void update_dirt_mask(const InputFrame& input, const Located& located, FrameReport& report);
-  void extend_map(const InputFrame& input, const HybridTrack& track, FrameReport& report);
-  bool may_add_keyframe(const InputFrame& input, const HybridTrack& track);
-  bool search_loop(const Frame& frame, bool keyframe_added);
-  void lose_pose(ImageFault fault, FrameReport& report);
-  void note_quality(const FrameReport& report);
+  void run(std::vector<JobRequest> requests);
+  void deliver_results(std::optional<FinishedJob> (Executor::*take)());
 
   SessionOptions options_;  // constant after construction
-
-  // Owned by the calling thread.
-  Rig rig_;  // rig of the present frame
-  Mapper mapper_;
-  Tracker tracker_;
-  std::optional<OfflineTracker> mission_;
-  ActiveHint hint_;
-  PoseFilter pose_filter_;
-  KeyframePolicy keyframe_policy_;
-  ImageMonitor image_monitor_;
-  FaultLatches fault_latches_;
-  DirtDetector dirt_detector_;
-  RollingShutterCorrector rolling_shutter_;
-  State state_ = State::initialising;
-  std::optional<Timestamp> first_frame_;
-  TrustedPlace trusted_place_;
-  bool is_error_reported_ = false;  // a navigation error was reported
-  bool is_mapping_paused_ = false;
-  std::vector<SeenPoint> seen_;  // points of the last frame
+  RobotState state_;
+  std::optional<BodyTilt> tilt_;
+  SessionExecutors executors_;  // last member: its jobs end before the data that they share
 };
 
 }  // namespace byre

@@ -12,7 +12,7 @@ namespace {
 class TrackerOnAMap : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
-  Mapper mapper_{mission_.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), nullptr}};
+  Mapper mapper_{mission_.rig, {}, {simulated_vocabulary(), nullptr}};
   Tracker tracker_{{}};
 
   void SetUp() override { mapper_.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({})); }
@@ -79,7 +79,7 @@ TEST_F(TrackerOnAMap, IsEmptyForAnEmptyFrame) {
 TEST(TrackerOnAnOfflineMap, RelocalisesInTheOfflineMapFirst) {
   const SimulatedMission mission = quarter_circle({});
   const auto offline = offline_map_of(mission);
-  const Mapper mapper(mission.rig, {}, {.local = make_inline_executor()}, {simulated_vocabulary(), offline});
+  const Mapper mapper(mission.rig, {}, {simulated_vocabulary(), offline});
   const Mission way(offline, {});
   const Tracker tracker({});
   const std::vector<HybridTrack> places = tracker.find(mission.frames[6], {mission.rig, mapper, &way}).places;

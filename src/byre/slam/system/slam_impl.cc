@@ -15,8 +15,7 @@ namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
 
-// The second lane of a mission searches places in the offline map. Paced reading of the map ends before the next frame
-// modifies it.
+// The second executor of a mission searches places in the offline map.
 SessionExecutors make_lanes(Pace pace, bool is_mission, JobLog& log) {
   switch (pace) {
     case Pace::same_thread:

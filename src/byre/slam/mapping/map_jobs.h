@@ -1,0 +1,77 @@
+#pragma once
+
+#include "byre/base/scratch_file.h"
+#include "byre/base/shared.h"
+#include "byre/place/place_index.h"
+#include "byre/slam/calibration/self_calibration.h"
+#include "byre/slam/loops/global_mapping.h"
+#include "byre/slam/loops/loop_closing.h"
+#include "byre/slam/loops/odometry_motions.h"
+#include "byre/slam/mapping/calibrator.h"
+#include "byre/slam/window/mapping.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace byre {
+
+// Jobs of mapping: functions of snapshots of the map, run in parallel with tracking. Their results are applied to the
+// map of a later frame.
+
+struct KeyframeFeatures {
+  KeyframeId keyframe;
+  std::shared_ptr<const Features> features;         // before paging out
+  std::shared_ptr<const Features> paged = nullptr;  // copy in the scratch file
+};
+
+// Result of a local job.
+struct LocalOutcome {
+  MapDelta delta;
+  std::vector<KeyframeFeatures> paged = {};
+};
+// Extends and refines the map around new keyframes, and writes features of old keyframes to the file.
+LocalOutcome extend_map_locally(const MapWindow& window, const MappingOptions& options,
+                                std::vector<KeyframeFeatures> to_page_out, ScratchFile& page_file);
+
+// Result of indexing a keyframe.
+struct IndexedKeyframe {
+  KeyframeId keyframe;
+  std::vector<Word> words;  // one per feature, for place recognition
+  std::optional<LoopHypothesis> loop = {};
+};
+// Words of keyframes that exist, in this order. Searches older parts of the map for the last one if requested.
+std::vector<IndexedKeyframe> index_keyframes(const Map& map, const PlaceIndex& places,
+                                             const std::vector<KeyframeId>& keyframes, bool searches_loop,
+                                             const LoopOptions& options);
+
+// Result of a correction of the whole map.
+struct MapCorrection {
+  MapDelta delta;
+  std::shared_ptr<const MapWindow> outline;  // outline of the map before the correction
+};
+// Result of a calibration by the whole map; empty if it failed or was stopped.
+using MapCalibration = std::optional<Recalibration>;
+// Result of a job on the whole map.
+using MapOutcome = std::variant<MapCorrection, MapCalibration>;
+
+// Copy of the part of a map that loop closing deforms; see recent_map.
+struct LoopClosureInput {
+  MapWindow recent;
+  std::shared_ptr<const MapWindow> outline;  // outline of `recent`
+  std::vector<LoopEdge> loops;
+};
+// first_new: number of the first keyframe after those of a continued map; motions: see odometry_motions.
+LoopClosureInput copy_for_loop_closure(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
+                                       const std::vector<KeyframeMotion>& motions);
+MapCorrection close_loops(LoopClosureInput input, const GlobalMappingOptions& options,
+                          const std::function<bool()>& should_stop);
+
+// Refines the calibration of a rig of the map. should_stop ends it without a result.
+MapCalibration calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
+                         const SelfCalibrationOptions& options, const std::function<bool()>& should_stop);
+
+}  // namespace byre
