@@ -10,11 +10,16 @@ const MotionSamples& FrameSource::motion() const {
 }
 
 std::optional<FrameSource::SourceFrame> RecordingFrames::next(const std::function<bool()>& should_stop) {
-  auto decoded = decoder_.next();
+  auto decoded = decoder_->next();
   if (!decoded) return std::nullopt;
   SourceFrame frame{std::move(*decoded)};
   if (is_live_) frame.late_s = clock_.wait_until_due(frame.decoded.time, should_stop);
   return frame;
+}
+
+std::optional<ImageFrame> RecordingFrames::read_again(int number) {
+  decoder_.reset();  // only one thread may read
+  return recording_.read(number);
 }
 
 }  // namespace byre

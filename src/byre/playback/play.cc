@@ -3,6 +3,7 @@
 #include "byre/base/stopwatch.h"
 #include "byre/odometry/recorded_motion.h"
 #include "byre/playback/frame_source.h"
+#include "byre/playback/missing_poses.h"
 #include "byre/slam/system/resources.h"
 
 #include <utility>
@@ -84,8 +85,23 @@ MotionEstimates motion_estimates(const OdometryCalibrator& prior, const Session&
   return motion;
 }
 
-void collect_results(SlamImpl& slam, RunResult& run) {
-  const Trajectory seen = slam.session().final_trajectory();
+// Final poses of all located frames; those of a finished map include frames located in it afterwards.
+Trajectory located_frames(SlamImpl& slam, FrameSource& frames, const PlayHooks& hooks, RunResult& run) {
+  Trajectory seen = slam.session().final_trajectory();
+  if (!run.finishing || seen.empty()) return seen;
+  FramesAgain again;
+  for (const PlayedFrame& frame : run.frames) again.times.push_back(frame.time);
+  again.read = [&](int number) {
+    return run.frames[static_cast<std::size_t>(number)].report ? frames.read_again(number) : std::nullopt;
+  };
+  again.should_stop = hooks.should_stop;
+  if (hooks.before_finishing_step) hooks.before_finishing_step("locating frames without a pose");
+  Trajectory all = with_missing_poses(slam, seen, again);
+  run.located_afterwards = static_cast<int>(all.size() - seen.size());
+  return all;
+}
+
+void collect_results(SlamImpl& slam, const Trajectory& seen, RunResult& run) {
   run.final = slam.prior().fill_gaps(seen);
   run.offline = slam.inputs().offline;
   run.calibration = slam.calibration();
@@ -147,7 +163,7 @@ RunResult run_through(SlamImpl& slam, FrameSource& frames, const PlayHooks& hook
     const auto clocks = clock_warnings(frames.motion(), run.frames.front().time, run.frames.back().time);
     run.motion_warnings.insert(run.motion_warnings.end(), clocks.begin(), clocks.end());
   }
-  collect_results(slam, run);
+  collect_results(slam, located_frames(slam, frames, hooks, run), run);
   if (const InputError* const damage = slam.map_damage()) run.map_damage = *damage;
   run.wall_seconds = watch.seconds();
   return run;

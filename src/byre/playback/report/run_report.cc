@@ -94,6 +94,7 @@ Json counts_json(const RunResult& run, const FrameCounts& counts) {
           {"refused_starts", refused_starts},
           {"lost_episodes", counts.lost_episodes},
           {"frames_lost", counts.lost},
+          {"frames_located_afterwards", run.located_afterwards},
           {"resets", counts.resets},
           {"relocalisations", counts.relocalisations},
           {"loops_on_the_way", counts.loops},
@@ -218,7 +219,8 @@ void add_map_rows(const RunResult& run, const RunProtocol& protocol, const Frame
   report.row("poses",
              "{frames_with_pose} of {frames} frames ({coverage*100:.1f} %)"
              "[{?lost_episodes}, lost {lost_episodes} times for {frames_lost} frames]"
-             "[{?resets}, reinitialised {resets} times][{?frames_unreadable}; {frames_unreadable} could not be read]",
+             "[{?resets}, reinitialised {resets} times][{?frames_located_afterwards}; {frames_located_afterwards} more "
+             "located in the finished map][{?frames_unreadable}; {frames_unreadable} could not be read]",
              report.figures["counts"]);
   add_scale(run, protocol, counts, report);
   add_map(report);

@@ -1,10 +1,29 @@
 #include "byre/slam/session/session.h"
 
 #include "byre/base/stopwatch.h"
+#include "byre/geometry/finite.h"
+#include "byre/slam/tracking/body_pose.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace byre {
+namespace {
+
+// Keyframe with the most similar view: the least sum of its distance, in map units, and the angle between the viewing
+// directions, in radians. Empty for an empty map.
+std::optional<KeyframeId> keyframe_with_similar_view(const Map& map, const Pose& camera_from_world) {
+  const std::vector<KeyframeId> ids = map.keyframe_ids();
+  const auto difference = [&](KeyframeId id) {
+    const Pose apart = camera_from_world * inverse(map.keyframe_header(id)->camera_from_world);
+    return apart.translation.norm() + std::acos(std::clamp(apart.rotation.toRotationMatrix()(2, 2), -1.0, 1.0));
+  };
+  const auto most_similar = std::ranges::min_element(ids, {}, difference);
+  return most_similar != ids.end() ? std::optional(*most_similar) : std::nullopt;
+}
+
+}  // namespace
 
 // Corrections of the whole map and place searches share an executor, because a mission has only the latter.
 Executor& SessionExecutors::of(JobKind kind) const {
@@ -89,6 +108,30 @@ FinishReport Session::finish_map(const FinishHooks& hooks) {
   FinishReport report = state_.mapper.finish_map(hooks);
   state_.pose_filter.apply_length_changes(report.length_changes);
   return report;
+}
+
+// Tracks from the prediction, else from matches anywhere in the image. A pose far from the prediction is a look-alike.
+std::optional<Pose> Session::locate_in_finished_map(const Frame& rectified, const Pose& predicted) {
+  constexpr double kFarthest = 0.5;  // from the prediction: share of the median depth, and radians
+  const Frame frame = state_.mapper.corrected(rectified);
+  const Pose camera = camera_pose(state_.rig, predicted);
+  const std::optional<KeyframeId> similar = keyframe_with_similar_view(state_.mapper.online(), camera);
+  if (!similar) return std::nullopt;
+  const ScratchVector<PointId> points = local_points(state_.map(), *similar, options_.local_keyframes);
+  const auto located_from = [&](const Pose& start) -> std::optional<Pose> {
+    const auto tracked = track(frame, start, state_.rig, state_.map(), points, options_.track);
+    if (!tracked || !is_finite(tracked->camera_from_world)) return std::nullopt;
+    if (rejection_reason(*tracked, state_.rig, state_.map(), options_.relocalise) != LocalisationFailure::none) {
+      return std::nullopt;
+    }
+    const Pose apart = tracked->camera_from_world * inverse(camera);
+    const bool is_near = apart.translation.norm() <= kFarthest * median_depth(*tracked, state_.map()) &&
+                         rotation_log(apart.rotation).norm() <= kFarthest;
+    return is_near ? std::optional(body_pose(state_.rig, tracked->camera_from_world)) : std::nullopt;
+  };
+  if (const auto located = located_from(camera)) return located;
+  const auto anywhere = pose_from_keyframe(frame, state_.rig, state_.map(), *similar);
+  return anywhere ? located_from(*anywhere) : std::nullopt;
 }
 
 void Session::finish_mission(const FinishHooks& hooks) {

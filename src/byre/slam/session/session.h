@@ -95,6 +95,10 @@ class Session {
   // Scales all lengths. Call it after finish_map().
   void rescale(double factor) { state_.pose_filter.apply_length_changes(state_.mapper.rescale(factor)); }
 
+  // Pose world_from_body of a frame that was not located, in the finished map; empty if too few points agree.
+  // predicted: by frames close in time. Call it after finish_map().
+  std::optional<Pose> locate_in_finished_map(const Frame& rectified, const Pose& predicted);
+
   // Adjusts the whole online map around the fixed offline map. Call it after finish().
   void finish_mission(const FinishHooks& hooks);
 

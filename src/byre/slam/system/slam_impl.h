@@ -74,6 +74,12 @@ class SlamImpl {
   // pose or vocabulary, or after damage of the offline map. Does not fill in FinishResult::faults.
   std::optional<FinishResult> finish(const FinishHooks& hooks);
 
+  // Pose world_from_body of a frame without a pose in the finished map; empty if not located. predicted: by frames
+  // close in time. Call it after finish().
+  std::optional<Pose> locate_in_finished_map(const ImageFrame& images, const Pose& predicted) {
+    return session_.locate_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame, predicted);
+  }
+
   // Damage of the offline map's file, with section and remedy; nullptr if undamaged. Parts already read stay in use;
   // all later reports are untrusted.
   const InputError* map_damage() const { return inputs_.offline ? inputs_.offline->map().damage() : nullptr; }
