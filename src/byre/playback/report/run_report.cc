@@ -268,7 +268,8 @@ void add_mission_rows(const MissionOutcome& mission, const RunResult& run, const
   if (maps) add_loops(report);
   if (!has_map) add_finishing(run, protocol, report);
   if (has_map && maps) {
-    report.row("finishing", "[{seconds:.1f} s: adjustment of the whole online map, with the offline map fixed|skipped]",
+    report.row("finishing",
+               "[{seconds:.1f} s: adjustment of the online map together with the offline map in view|skipped]",
                {{"seconds", or_null(run.mission_finishing_seconds)}});
   }
   if (mission.errors) report.text += mission_error_report(*mission.errors).text;

@@ -129,8 +129,8 @@ class PoseFilter {
 
   // Once for each frame: refines and thins out old poses.
   void refine_overdue(const MapView& map, const TrackOptions& tracking);
-  void refine_all_deferred(const MapView& map, const TrackOptions& tracking) {
-    trajectory_.refine_all_deferred(map, tracking);
+  void refine_all_deferred(const MapView& map, const TrackOptions& tracking, const AdjustedOffline& offline) {
+    trajectory_.refine_all_deferred(map, tracking, offline);
   }
 
  private:

@@ -307,6 +307,29 @@ void optimise_with_motions(MapWindow& window) {
   if (settled.usable) write_back(window, index_of, settled);
 }
 
+// Motion of an adjusted copy of both maps that fits its offline points to their earlier positions; the more precise
+// half of them, as distant points move freely. Images of one camera do not determine the scale.
+Similarity offline_from_adjusted(const MapWindow& adjusted, const MapWindow& before) {
+  const auto sees_depth = [&](const WindowKeyframe& entry) {
+    return is_offline(entry) && adjusted.rig_of(entry).is_stereo();
+  };
+  std::vector<double> variances;
+  for (const WindowPoint& point : before.points) {
+    if (is_offline(point)) variances.push_back(point.point.covariance.trace());
+  }
+  if (variances.empty()) return {};
+  const double usual = median(std::move(variances));
+  std::vector<Eigen::Vector3d> from, to;
+  for (std::size_t i = 0; i < before.points.size(); ++i) {
+    const WindowPoint& point = before.points[i];
+    if (!is_offline(point) || point.point.covariance.trace() > usual) continue;
+    from.push_back(adjusted.points[i].point.position_in_world);
+    to.push_back(point.point.position_in_world);
+  }
+  const bool is_scale_known = std::ranges::any_of(adjusted.keyframes, sees_depth);
+  return align(from, to, is_scale_known ? Scale::fixed : Scale::free).value_or(Similarity{});
+}
+
 }  // namespace
 
 bool scale_may_drift(const MapWindow& window) {
@@ -322,6 +345,37 @@ MapWindow whole_map(const MapView& map) {
   for (WindowKeyframe& keyframe : window.keyframes) keyframe.movable = true;
   fix_gauge(window, kMinOfflineSightings);
   return window;
+}
+
+MapWindow both_maps(const MapView& map) {
+  MapWindow online = whole_map(map);
+  const bool is_held_by_offline = std::ranges::all_of(online.keyframes, &WindowKeyframe::movable);
+  return is_held_by_offline ? window_of_both_maps(map) : online;
+}
+
+AdjustedOffline detach_offline(MapWindow& adjusted, MapWindow& before) {
+  const auto first = std::ranges::find_if(adjusted.keyframes, [](const auto& entry) { return is_offline(entry); });
+  if (first == adjusted.keyframes.end()) return {};
+  const auto online_count = static_cast<std::size_t>(first - adjusted.keyframes.begin());
+  const auto is_detached = [&](const WindowObservation& seen) {
+    return static_cast<std::size_t>(seen.keyframe) >= online_count;
+  };
+  const Similarity held = offline_from_adjusted(adjusted, before);
+  AdjustedOffline offline;
+  for (WindowKeyframe& entry : adjusted.keyframes) {
+    Pose& pose = entry.keyframe.camera_from_world;
+    pose = move_camera(held, pose);
+    if (is_offline(entry)) offline.camera_from_world[entry.id] = pose;
+  }
+  for (WindowPoint& point : adjusted.points) {
+    Eigen::Vector3d& position = point.point.position_in_world;
+    position = held * position;
+    if (is_offline(point)) offline.points_in_world[*point.id] = position;
+    std::erase_if(point.observations, is_detached);
+  }
+  adjusted.keyframes.resize(online_count);
+  before.keyframes.resize(online_count);
+  return offline;
 }
 
 MapDelta adjust_map(MapWindow&& window, const MapWindow& before, const std::vector<LoopEdge>& loops,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/slam/loops/loop_closing.h"
+#include "byre/slam/tracking/deferred_refinement.h"
 #include "byre/slam/window/delta.h"
 #include "byre/slam/window/mapping.h"
 #include "byre/slam/window/window.h"
@@ -24,6 +25,15 @@ bool scale_may_drift(const MapWindow& window);
 
 // Copy of a whole online map and the offline points that it sees. All keyframes but the gauge are movable.
 MapWindow whole_map(const MapView& map);
+
+// Same, followed by the offline keyframes in view, which move as well, see window_of_both_maps(). Without them if the
+// online map hardly sees the offline one.
+MapWindow both_maps(const MapView& map);
+
+// Removes the offline keyframes from an adjusted copy of both maps and from the copy before. Returns their poses and
+// points. The frame of the offline map is kept: everything moves such that the offline points fit their earlier
+// positions.
+AdjustedOffline detach_offline(MapWindow& adjusted, MapWindow& before);
 
 // Closes loops: a pose graph over covisibility and loops moves the keyframes with their points, points on both sides of
 // a loop are fused, and bundle adjustment refines everything. Without loops, bundle adjustment alone. First, parts that

@@ -114,19 +114,29 @@ void AnchoredTrajectory::refine_overdue(const MapView& map, const TrackOptions& 
   const auto first = deferred_.first();
   const bool is_old = first && *first < number_of(recent_begin());
   if (const auto overdue = is_old ? deferred_.take_oldest() : deferred_.take_overdue()) {
-    refine_deferred(*overdue, map, tracking);
+    refine_deferred(*overdue, map, tracking, {});
   }
 }
 
-void AnchoredTrajectory::refine_all_deferred(const MapView& map, const TrackOptions& tracking) {
-  while (const auto seen = deferred_.take_oldest()) refine_deferred(*seen, map, tracking);
+void AnchoredTrajectory::refine_all_deferred(const MapView& map, const TrackOptions& tracking,
+                                             const AdjustedOffline& offline) {
+  for (AnchoredPose& pose : poses_) {
+    const auto adjusted = offline.camera_from_world.find(pose.keyframe);
+    if (adjusted == offline.camera_from_world.end()) continue;
+    pose.camera_from_keyframe =
+        pose.camera_from_keyframe * adjusted->second * inverse(camera_from_world(map, pose.keyframe));
+  }
+  while (const auto seen = deferred_.take_oldest()) refine_deferred(*seen, map, tracking, offline);
 }
 
 // Precondition: mapping has settled the points on which the frame was tracked.
-void AnchoredTrajectory::refine_deferred(const DeferredFrame& seen, const MapView& map, const TrackOptions& tracking) {
+void AnchoredTrajectory::refine_deferred(const DeferredFrame& seen, const MapView& map, const TrackOptions& tracking,
+                                         const AdjustedOffline& offline) {
+  if (offline.points_in_world.empty() && is_held_by_offline(seen)) return;  // its points did not move
   AnchoredPose& anchored = poses_[seen.number - thinned_out_];
   const Pose keyframe_from_world = camera_from_world(map, anchored.keyframe);
-  const auto pose = refine_deferred_pose(seen, anchored.camera_from_keyframe * keyframe_from_world, map, tracking);
+  const auto pose =
+      refine_deferred_pose(seen, anchored.camera_from_keyframe * keyframe_from_world, map, tracking, offline);
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);
 }
 

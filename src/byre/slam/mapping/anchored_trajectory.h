@@ -81,15 +81,17 @@ class AnchoredTrajectory {
   // The camera of all poses changes; keyframes keep theirs.
   void rotate_camera(const Pose& after_from_before);
 
-  // Refines the oldest pose whose sightings were kept long enough, or all remaining ones.
+  // Refines the oldest pose whose sightings were kept long enough, or all remaining ones. Poses relative to offline
+  // keyframes follow the adjusted ones.
   void refine_overdue(const MapView& map, const TrackOptions& tracking);
-  void refine_all_deferred(const MapView& map, const TrackOptions& tracking);
+  void refine_all_deferred(const MapView& map, const TrackOptions& tracking, const AdjustedOffline& offline);
 
   // The poses world_from_body in the map frame.
   Trajectory in_map_frame(const MapView& map, const Submaps& submaps, const Rig& rig) const;
 
  private:
-  void refine_deferred(const DeferredFrame& seen, const MapView& map, const TrackOptions& tracking);
+  void refine_deferred(const DeferredFrame& seen, const MapView& map, const TrackOptions& tracking,
+                       const AdjustedOffline& offline);
   std::size_t number_of(std::size_t index) const { return index + thinned_out_; }
   std::size_t recent_begin() const;
 

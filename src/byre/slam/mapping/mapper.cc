@@ -66,7 +66,7 @@ Mapper::Beginning Mapper::begin_stereo(const Frame& frame, const Rig& rig, const
     return {{online_.keyframe_ids().front()}};
   }
   const Pose pose = camera_from_world.value_or(inverse(rig.body_from_camera));
-  const KeyframeId id = add_keyframe_at(pose, frame, rig, parent_of_bridge(trajectory), online_);
+  const KeyframeId id = add_keyframe_at(pose, frame, rig, parent_of_bridge(trajectory), online_, options_.recording);
   add_stereo_points(online_, id);
   return {{id}};
 }
@@ -412,15 +412,15 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   return report;
 }
 
-LengthChanges Mapper::adjust_around_offline(const FinishHooks& hooks) {
+std::pair<LengthChanges, AdjustedOffline> Mapper::adjust_with_offline(const FinishHooks& hooks) {
   assert(offline_);
-  MapWindow whole = whole_map(map());
-  const MapWindow before = outline_of(whole);
-  const MapDelta adjusted =
-      adjust_map(std::move(whole), before, {}, {options_.mapping}, releasing_pages(*page_file_, hooks.should_stop));
-  LengthChanges changes = apply_correction(adjusted, before, online_);
+  MapWindow both = both_maps(map());
+  MapWindow before = outline_of(both);
+  adjust_window(both, {}, {options_.mapping}, releasing_pages(*page_file_, hooks.should_stop));
+  AdjustedOffline offline = detach_offline(both, before);
+  LengthChanges changes = apply_correction(difference(before, both), before, online_);
   loop_closer_.apply_length_changes(changes);
-  return changes;
+  return {std::move(changes), std::move(offline)};
 }
 
 LengthChanges Mapper::rescale(double factor) {

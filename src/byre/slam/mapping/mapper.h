@@ -116,7 +116,7 @@ class Mapper {
   LengthChanges finish(const std::function<void()>& run_jobs);
   std::optional<RigRotation> calibrate_finally(const Rig& rig, const std::function<bool()>& should_stop);
   FinishReport finish_map(const FinishHooks& hooks);
-  LengthChanges adjust_around_offline(const FinishHooks& hooks);
+  std::pair<LengthChanges, AdjustedOffline> adjust_with_offline(const FinishHooks& hooks);
   // Scales all lengths, once the unit of a monocular map is determined.
   LengthChanges rescale(double factor);
   // The last call; leaves an empty map.

@@ -136,8 +136,9 @@ std::optional<Pose> Session::locate_in_finished_map(const Frame& rectified, cons
 
 void Session::finish_mission(const FinishHooks& hooks) {
   if (state_.mapper.online().keyframe_count() == 0) return;
-  state_.pose_filter.apply_length_changes(state_.mapper.adjust_around_offline(hooks));
-  state_.pose_filter.refine_all_deferred(state_.map(), options_.track);
+  const auto [lengths, offline] = state_.mapper.adjust_with_offline(hooks);
+  state_.pose_filter.apply_length_changes(lengths);
+  state_.pose_filter.refine_all_deferred(state_.map(), options_.track, offline);
 }
 
 Trajectory Session::final_trajectory() const {

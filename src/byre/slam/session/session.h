@@ -99,7 +99,8 @@ class Session {
   // predicted: by frames close in time. Call it after finish_map().
   std::optional<Pose> locate_in_finished_map(const Frame& rectified, const Pose& predicted);
 
-  // Adjusts the whole online map around the fixed offline map. Call it after finish().
+  // Adjusts the whole online map together with the part of the offline map in its view, and refines the trajectory by
+  // both. The offline map does not change. Call it after finish().
   void finish_mission(const FinishHooks& hooks);
 
   MapView map() const { return state_.map(); }

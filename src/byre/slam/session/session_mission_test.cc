@@ -3,6 +3,7 @@
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/session/session_scene.h"
+#include "byre/trajectory_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -210,7 +211,45 @@ TEST(Mission, SearchesTheWholeMapAfterAWrongHint) {
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
 }
 
-TEST(Mission, AdjustsItsOnlineMapAroundTheOfflineMapAtTheEnd) {
+// Map whose points are off by some centimetres; its keyframes and their measurements are exact.
+std::shared_ptr<const OfflineMap> inexact(const std::shared_ptr<const OfflineMap>& exact) {
+  constexpr double kError = 0.02;  // metres
+  Map map = exact->map();
+  for (const PointId id : map.point_ids()) {
+    MapPoint point = *map.find_point(id);
+    const double phase = id.number;
+    point.position_in_world += kError * Eigen::Vector3d(std::sin(phase), std::sin(2.0 * phase), std::sin(3.0 * phase));
+    map.update_point(id, point);
+  }
+  return std::make_shared<const OfflineMap>(std::move(map), simulated_vocabulary());
+}
+
+// Offline points are evidence in the last adjustment, with the measurements that they come from.
+TEST(Mission, CorrectsErrorsOfTheOfflineMapInItsFinalPoses) {
+  const SimulatedMission mission = circling(1.0, 2);
+  SessionOptions options;
+  options.keyframes.max_shift_share = 0.05;  // keyframes all along the way
+  Session session = session_on(inexact(mapped(1.0)), options);
+  reports_of(session, mission.frames);
+  session.finish();
+  const auto error_of = [&](const Trajectory& poses) {
+    return absolute_trajectory_error(associate(poses, mission.truth, {}), Scale::fixed)->translation.rmse;
+  };
+  const double before = error_of(session.final_trajectory());
+  session.finish_mission({});
+  EXPECT_LT(error_of(session.final_trajectory()), 0.7 * before) << before << " m before";
+  const auto offset_of = [&](const Trajectory& poses) {  // metres, in the frame of the offline map
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      sum += poses[i].world_from_body.translation - mission.truth[i].world_from_body.translation;
+    }
+    return (sum / static_cast<double>(poses.size())).norm();
+  };
+  ASSERT_EQ(session.final_trajectory().size(), mission.truth.size());
+  EXPECT_LT(offset_of(session.final_trajectory()), 0.01) << "the frame of the map stays";
+}
+
+TEST(Mission, AdjustsItsOnlineMapWithTheOfflineMapAtTheEnd) {
   const SimulatedMission mission = circling(1.0, 2);
   Session session = session_on(mapped(0.4));
   reports_of(session, mission.frames);

@@ -17,60 +17,80 @@ DeferredPoint remember(const TrackedFeature& seen, const Keypoint& keypoint) {
           keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0f};
 }
 
-PoseObservation observation_of(const DeferredPoint& seen, const MapPoint& point, double offline_weight) {
+PoseObservation observation_of(const DeferredPoint& seen, const MapPoint& point, const AdjustedOffline& offline,
+                               double offline_weight) {
   PoseObservation observation =
       pose_observation(point, seen.measured.cast<double>(), seen.pixel_sigma, seen.disparity_sigma);
-  if (seen.point.origin == Origin::offline) observation.weight = offline_weight;
+  const auto adjusted = offline.points_in_world.find(seen.point);
+  if (adjusted != offline.points_in_world.end()) {
+    observation.point_in_world = adjusted->second;
+  } else if (seen.point.origin == Origin::offline) {
+    observation.weight = offline_weight;
+  }
   return observation;
 }
 
 }  // namespace
 
+bool is_held_by_offline(const DeferredFrame& frame) {
+  const auto offline =
+      std::ranges::count(frame.points, Origin::offline, [](const DeferredPoint& seen) { return seen.point.origin; });
+  return 2 * offline > std::ssize(frame.points);
+}
+
 void DeferredRefinement::note(std::size_t number, const Rig& rig, const Features& features,
                               const TrackedFrame& tracked) {
-  const auto offline = std::ranges::count(tracked.features, Origin::offline,
-                                          [](const TrackedFeature& seen) { return seen.point.origin; });
-  if (2 * static_cast<std::size_t>(offline) > tracked.features.size()) return;
-  DeferredFrame frame;
-  frame.number = number;
-  frame.rig = rig;
-  frame.points.reserve(tracked.features.size());
-  for (const TrackedFeature& seen : tracked.features) {
-    frame.points.push_back(remember(seen, features.keypoint(seen.feature)));
+  constexpr std::size_t kBlock = std::size_t{1} << 16U;  // points, 2 MB
+  constexpr std::size_t kFrames = 512;
+  if (frames_.capacity() == 0) frames_.reserve(kFrames);
+  if (blocks_.empty() || blocks_.back().size() + tracked.features.size() > blocks_.back().capacity()) {
+    blocks_.emplace_back().reserve(std::max(kBlock, tracked.features.size()));
   }
-  frames_.push_back(std::move(frame));
+  std::vector<DeferredPoint>& points = blocks_.back();
+  const std::size_t begin = points.size();
+  for (const TrackedFeature& seen : tracked.features) {
+    points.push_back(remember(seen, features.keypoint(seen.feature)));
+  }
+  frames_.push_back({{number, rig, Pose{}, {}}, first_block_ + blocks_.size() - 1, begin, points.size()});
 }
 
 void DeferredRefinement::rotate_rig(const Pose& after_from_before) {
-  for (DeferredFrame& frame : frames_) frame.now_from_then = after_from_before * frame.now_from_then;
+  for (Kept& kept : frames_) kept.frame.now_from_then = after_from_before * kept.frame.now_from_then;
 }
 
 void DeferredRefinement::forget_from(std::size_t number) {
-  while (!frames_.empty() && frames_.back().number >= number) frames_.pop_back();
+  while (frames_.size() > taken_ && frames_.back().frame.number >= number) frames_.pop_back();
 }
 
 std::optional<std::size_t> DeferredRefinement::first() const {
-  return frames_.empty() ? std::nullopt : std::optional(frames_.front().number);
+  return frames_.size() == taken_ ? std::nullopt : std::optional(frames_[taken_].frame.number);
 }
 
 std::optional<DeferredFrame> DeferredRefinement::take_overdue() {
-  return frames_.size() > options_.frames ? take_oldest() : std::nullopt;
+  return frames_.size() - taken_ > options_.frames ? take_oldest() : std::nullopt;
 }
 
 std::optional<DeferredFrame> DeferredRefinement::take_oldest() {
-  if (frames_.empty()) return std::nullopt;
-  DeferredFrame oldest = std::move(frames_.front());
-  frames_.pop_front();
-  return oldest;
+  if (frames_.size() == taken_) return std::nullopt;
+  const Kept& oldest = frames_[taken_++];
+  for (; first_block_ < oldest.block; ++first_block_) blocks_.pop_front();
+  const std::vector<DeferredPoint>& points = blocks_.front();
+  DeferredFrame frame = oldest.frame;
+  frame.points.assign(points.begin() + static_cast<std::ptrdiff_t>(oldest.begin),
+                      points.begin() + static_cast<std::ptrdiff_t>(oldest.end));
+  if (2 * taken_ > frames_.size()) {
+    frames_.erase(frames_.begin(), frames_.begin() + static_cast<std::ptrdiff_t>(std::exchange(taken_, 0)));
+  }
+  return frame;
 }
 
 std::optional<Pose> refine_deferred_pose(const DeferredFrame& frame, const Pose& camera_from_world, const MapView& map,
-                                         const TrackOptions& tracking) {
+                                         const TrackOptions& tracking, const AdjustedOffline& offline) {
   std::vector<PoseObservation> observations;
   observations.reserve(frame.points.size());
   for (const DeferredPoint& seen : frame.points) {
     if (const MapPoint* const point = map.find_point(seen.point)) {
-      observations.push_back(observation_of(seen, *point, tracking.offline_weight));
+      observations.push_back(observation_of(seen, *point, offline, tracking.offline_weight));
     }
   }
   const double needed = kMinShareAgreeing * static_cast<double>(observations.size());

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -29,13 +30,19 @@ struct DeferredFrame {
   std::vector<DeferredPoint> points;
 };
 
+// Offline points and keyframes as a joint adjustment with the online map estimates them; the offline map is constant.
+struct AdjustedOffline {
+  std::map<PointId, Eigen::Vector3d> points_in_world;
+  std::map<KeyframeId, Pose> camera_from_world;
+};
+
 // Measurements of frames, kept until mapping has settled. A frame is tracked on points with few observations; once
 // these are more precise, the pose of the frame is refined.
 class DeferredRefinement {
  public:
   explicit DeferredRefinement(const DeferredRefinementOptions& options) : options_(options) {}
 
-  // Numbers ascend. Skips frames with mostly offline inliers, since offline points do not move.
+  // Numbers ascend.
   void note(std::size_t number, const Rig& rig, const Features& features, const TrackedFrame& tracked);
   // Poses from here on are of another rig.
   void rotate_rig(const Pose& after_from_before);
@@ -47,12 +54,28 @@ class DeferredRefinement {
   std::optional<DeferredFrame> take_oldest();
 
  private:
+  // A frame whose points are in a block.
+  struct Kept {
+    DeferredFrame frame;    // without points
+    std::size_t block = 0;  // number of the block since the beginning
+    std::size_t begin = 0;  // first point in it
+    std::size_t end = 0;
+  };
+
   DeferredRefinementOptions options_;
-  std::deque<DeferredFrame> frames_;
+  std::vector<Kept> frames_;
+  std::size_t taken_ = 0;  // frames at the front that were taken
+  // Points of all frames, in blocks of fixed capacity, so that few frames allocate.
+  std::deque<std::vector<DeferredPoint>> blocks_;
+  std::size_t first_block_ = 0;  // number of the first of them
 };
 
-// Pose of the frame by the present positions of its points. Empty if too few are left or agree.
+// Whether most points of the frame are offline ones.
+bool is_held_by_offline(const DeferredFrame& frame);
+
+// Pose of the frame by the present positions of its points; offline ones by `offline` if it has them. Empty if too few
+// are left or agree.
 std::optional<Pose> refine_deferred_pose(const DeferredFrame& frame, const Pose& camera_from_world, const MapView& map,
-                                         const TrackOptions& tracking);
+                                         const TrackOptions& tracking, const AdjustedOffline& offline = {});
 
 }  // namespace byre

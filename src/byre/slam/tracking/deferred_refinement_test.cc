@@ -95,13 +95,41 @@ TEST_F(HindsightTest, KeepsAtMostTheGivenNumberOfFrames) {
   EXPECT_FALSE(deferred_refinement.take_oldest());
 }
 
-// Offline points do not move, so the pose would not change.
-TEST_F(HindsightTest, DropsFramesHeldByOfflinePoints) {
-  TrackedFrame held = tracked();
-  for (TrackedFeature& seen : held.features) seen.point.origin = Origin::offline;
+TEST_F(HindsightTest, ReturnsEveryFrameWithItsPoints) {
   DeferredRefinement deferred_refinement({});
-  deferred_refinement.note(0, mission_.rig, features(), held);
-  EXPECT_FALSE(deferred_refinement.take_oldest());
+  const TrackedFrame all = tracked();
+  constexpr std::size_t kFrames = 400;  // several blocks
+  for (std::size_t number = 0; number < kFrames; ++number) {
+    TrackedFrame some = all;
+    some.features.resize(all.features.size() - number % 7);
+    deferred_refinement.note(number, mission_.rig, features(), some);
+  }
+  for (std::size_t number = 0; number < kFrames; ++number) {
+    const DeferredFrame frame = deferred_refinement.take_oldest().value();
+    EXPECT_EQ(frame.number, number);
+    ASSERT_EQ(frame.points.size(), all.features.size() - number % 7);
+    for (std::size_t i = 0; i < frame.points.size(); ++i) EXPECT_EQ(frame.points[i].point, all.features[i].point);
+  }
+  EXPECT_FALSE(deferred_refinement.first());
+}
+
+TEST_F(HindsightTest, DetectsFramesHeldByOfflinePoints) {
+  DeferredFrame frame = remembered({});
+  EXPECT_FALSE(is_held_by_offline(frame));
+  for (DeferredPoint& seen : frame.points) seen.point.origin = Origin::offline;
+  EXPECT_TRUE(is_held_by_offline(frame));
+}
+
+TEST_F(HindsightTest, UsesAdjustedOfflinePoints) {
+  const Eigen::Vector3d shift(0.0, 0.3, 0.0);
+  AdjustedOffline offline;
+  for (const PointId id : seen_points()) {
+    offline.points_in_world[id] = map_.find_point(id)->position_in_world + shift;
+  }
+  const Pose moved = true_pose_ * Pose{Eigen::Quaterniond::Identity(), -shift};
+  const auto pose = refine_deferred_pose(remembered({}), moved, MapView(nullptr, map_), {}, offline);
+  ASSERT_TRUE(pose);
+  EXPECT_LT((inverse(*pose).translation - inverse(moved).translation).norm(), 1e-3);
 }
 
 }  // namespace

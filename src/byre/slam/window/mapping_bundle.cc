@@ -36,10 +36,10 @@ void widen(BundleObservation& observation, const MapPoint& point, const Pose& ca
 }
 
 BundleObservation weighted_observation(const MapWindow& window, const WindowPoint& point, const WindowObservation& seen,
-                                       double offline_weight) {
+                                       bool is_fixed, double offline_weight) {
   const WindowKeyframe& keyframe = window.keyframe(seen.keyframe);
   BundleObservation observation = bundle_observation(keyframe, seen.feature);
-  if (!is_offline(point)) return observation;
+  if (!is_fixed) return observation;
   widen(observation, point.point, keyframe.keyframe.camera_from_world, window.rig_of(keyframe));
   observation.weight = offline_weight;
   return observation;
@@ -64,7 +64,7 @@ void reserve_for(const MapWindow& window, WindowBundle& bundle) {
   bundle.features.reserve(observations);
 }
 
-// Anchors' observations of offline points are left out, since both are fixed.
+// Anchors' observations of fixed points are left out.
 WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   WindowBundle bundle;
   reserve_for(window, bundle);
@@ -75,11 +75,12 @@ WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   for (const WindowMotion& motion : window.motions) bundle.problem.motions.push_back(bundle_motion(window, motion));
   for (std::size_t p = 0; p < window.points.size(); ++p) {
     const WindowPoint& point = window.points[p];
-    bundle.problem.points.push_back({point.point.position_in_world, is_offline(point)});
+    const bool is_fixed = byre::is_fixed(window, point);
+    bundle.problem.points.push_back({point.point.position_in_world, is_fixed});
     if (point.removed) continue;
     for (const WindowObservation& seen : point.observations) {
-      if (is_offline(point) && !window.keyframe(seen.keyframe).movable) continue;
-      BundleObservation observation = weighted_observation(window, point, seen, offline_weight);
+      if (is_fixed && !window.keyframe(seen.keyframe).movable) continue;
+      BundleObservation observation = weighted_observation(window, point, seen, is_fixed, offline_weight);
       observation.pose = seen.keyframe;
       observation.point = static_cast<int>(p);
       bundle.problem.observations.push_back(observation);
@@ -89,7 +90,7 @@ WindowBundle make_bundle(const MapWindow& window, double offline_weight) {
   return bundle;
 }
 
-// Factor on the gate of squared errors for offline points. Online points adapt to common errors of their views, offline
+// Factor on the gate of squared errors for fixed points. Movable points adapt to common errors of their views, fixed
 // points do not.
 double tolerance_of(const BundleObservation& observation) {
   const double systematic_sigma = PoseRefinementOptions{}.systematic_sigma;
@@ -97,17 +98,17 @@ double tolerance_of(const BundleObservation& observation) {
   return 1.0 + std::pow(systematic_sigma / sigma, 2);
 }
 
-bool is_outlier(const BundleObservation& observation, bool of_offline_point, double squared_error) {
+bool is_outlier(const BundleObservation& observation, bool of_fixed_point, double squared_error) {
   const double gate = observation.is_stereo() ? kMaxSquaredErrorStereo : kMaxSquaredErrorMono;
-  return !(squared_error <= gate * (of_offline_point ? tolerance_of(observation) : 1.0));
+  return !(squared_error <= gate * (of_fixed_point ? tolerance_of(observation) : 1.0));
 }
 
-void write_back(MapWindow& window, const BundleResult& result) {
+void write_back(MapWindow& window, const WindowBundle& bundle, const BundleResult& result) {
   for (std::size_t i = 0; i < window.keyframes.size(); ++i) {
     if (window.keyframes[i].movable) window.keyframes[i].keyframe.camera_from_world = result.camera_from_world[i];
   }
   for (std::size_t i = 0; i < window.points.size(); ++i) {
-    if (!is_offline(window.points[i])) window.points[i].point.position_in_world = result.points_in_world[i];
+    if (!bundle.problem.points[i].fixed) window.points[i].point.position_in_world = result.points_in_world[i];
   }
 }
 
@@ -128,8 +129,8 @@ void repair(MapWindow& window, int index) {
 void remove_outliers(MapWindow& window, const WindowBundle& bundle, const BundleResult& result) {
   for (std::size_t i = 0; i < bundle.features.size(); ++i) {
     const BundleObservation& observation = bundle.problem.observations[i];
-    const bool of_offline_point = bundle.problem.points[static_cast<std::size_t>(observation.point)].fixed;
-    if (!is_outlier(observation, of_offline_point, result.squared_errors[i])) continue;
+    const bool of_fixed_point = bundle.problem.points[static_cast<std::size_t>(observation.point)].fixed;
+    if (!is_outlier(observation, of_fixed_point, result.squared_errors[i])) continue;
     const WindowObservation seen = bundle.seen(i);
     if (window.keyframe(seen.keyframe).point_of_feature[static_cast<std::size_t>(seen.feature)] != observation.point) {
       continue;  // removed with its point
@@ -155,16 +156,22 @@ Matrix6 anchor_covariance(const MapWindow& window) {
   return *middle;
 }
 
+bool has_anchor(const BundleProblem& problem) {
+  return std::ranges::any_of(problem.poses, &BundlePose::fixed) ||
+         std::ranges::any_of(problem.points, &BundlePoint::fixed);
+}
+
 void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options, const std::function<bool()>& should_stop) {
   BundleOptions bundle_options;
   bundle_options.should_stop = should_stop;
   for (const bool last_round : {false, true}) {
     bundle_options.max_iterations = last_round ? options.second_bundle_iterations : options.first_bundle_iterations;
-    bundle_options.covariance_of_pose = last_round && window.keyframes.front().movable ? 0 : -1;
     const WindowBundle bundle = make_bundle(window, options.offline_weight);
+    const bool is_relative_to_anchors = window.keyframes.front().movable && has_anchor(bundle.problem);
+    bundle_options.covariance_of_pose = last_round && is_relative_to_anchors ? 0 : -1;
     const BundleResult result = bundle_adjust(bundle.problem, bundle_options);
     if (!result.usable) return;
-    write_back(window, result);
+    write_back(window, bundle, result);
     if (result.pose_covariance) {
       window.keyframes.front().keyframe.covariance = *result.pose_covariance + anchor_covariance(window);
     }

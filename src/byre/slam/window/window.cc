@@ -227,6 +227,20 @@ MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes
   return window;
 }
 
+MapWindow window_of_both_maps(const MapView& map) {
+  constexpr int kMostOffline = 1000;  // bounds the memory on the map of a large site
+  MapWindow window;
+  window.rigs = rigs_of(map);
+  for (const KeyframeId id : map.online().keyframe_ids()) append_keyframe(window, map, id, true, false);
+  const std::vector<KeyframeId> ranked = rank_anchors(map, points_seen(window.keyframes, map));
+  append_anchors(window, map, ranked, Origin::offline, kMostOffline);
+  for (WindowKeyframe& keyframe : window.keyframes) keyframe.movable = true;
+  append_points(window, map, points_seen(window.keyframes, map));
+  link_observations(window, map);
+  link_foreign_views(window, map);
+  return window;
+}
+
 void fix_gauge(MapWindow& window, int min_offline_sightings) {
   int sightings = 0;
   for (const WindowKeyframe& keyframe : window.keyframes) {
@@ -253,6 +267,13 @@ std::vector<int> nearest_neighbours(const MapWindow& window, int keyframe, int o
 int count_offline_sightings(const MapWindow& window, const WindowKeyframe& keyframe) {
   return static_cast<int>(std::ranges::count_if(
       keyframe.point_of_feature, [&](int point) { return point >= 0 && is_offline(window.point(point)); }));
+}
+
+bool is_fixed(const MapWindow& window, const WindowPoint& point) {
+  return is_offline(point) && std::ranges::none_of(point.observations, [&](const WindowObservation& seen) {
+           const WindowKeyframe& keyframe = window.keyframe(seen.keyframe);
+           return is_offline(keyframe) && keyframe.movable;
+         });
 }
 
 std::optional<WindowObservation> first_online_observation(const MapWindow& window, const WindowPoint& point) {

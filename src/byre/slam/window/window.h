@@ -13,7 +13,7 @@ inline constexpr int kNoPoint = -1;
 inline constexpr int kPointElsewhere = -2;  // a point outside the window
 
 struct WindowKeyframe {
-  KeyframeId id;                      // offline keyframes are always anchors
+  KeyframeId id;                      // offline keyframes are anchors, except in window_of_both_maps()
   Keyframe keyframe;                  // without words; point_of_feature has the points of its sightings
   std::vector<int> point_of_feature;  // index into MapWindow::points, kNoPoint or kPointElsewhere
   bool movable = false;               // mapping may move it; an anchor sees the same points and is fixed
@@ -27,7 +27,7 @@ struct WindowObservation {
 };
 
 struct WindowPoint {
-  std::optional<PointId> id;  // empty for a point made in this window; offline points are fixed
+  std::optional<PointId> id;  // empty for a point made in this window
   MapPoint point;
   std::vector<WindowObservation> observations;
   int observations_elsewhere = 0;  // by keyframes outside the window
@@ -78,6 +78,10 @@ MapWindow cut_window(const MapView& map, const std::vector<KeyframeId>& new_keyf
 MapWindow window_of(const MapView& map, const std::vector<KeyframeId>& keyframes,
                     const std::vector<KeyframeId>& others = {});
 
+// Window of the whole online map, then the offline keyframes in its view, with all points of both. Offline data are
+// evidence in this window: their keyframes are movable, and so are the offline points that these see.
+MapWindow window_of_both_maps(const MapView& map);
+
 // Fixes the gauge. Enough sightings of offline points do so by themselves. With fewer, the very first keyframe of the
 // online map becomes an anchor; if a window with a few sightings has no online anchor at all, its oldest keyframe does.
 void fix_gauge(MapWindow& window, int min_offline_sightings);
@@ -93,6 +97,9 @@ inline bool is_offline(const WindowPoint& point) {
 std::vector<int> nearest_neighbours(const MapWindow& window, int keyframe, int online_count, int offline_count);
 
 int count_offline_sightings(const MapWindow& window, const WindowKeyframe& keyframe);
+
+// An offline point is fixed unless a movable offline keyframe sees it.
+bool is_fixed(const MapWindow& window, const WindowPoint& point);
 
 // First observation by an online keyframe of the window; empty without one. A point's reference must be such an
 // observation.
