@@ -20,7 +20,7 @@ namespace {
 Camera make_camera(int width, int height, double fx, double fy, double cx, double cy, CameraModel model,
                    const std::vector<double>& distortion) {
   Camera camera{model, width, height, fx, fy, cx, cy, {}};
-  if (distortion.size() > camera.distortion.size()) throw py::value_error("distortion has at most five coefficients");
+  if (distortion.size() > camera.distortion.size()) throw py::value_error("distortion has at most fourteen coefficients");
   const bool is_distorted = std::ranges::any_of(distortion, [](double value) { return value != 0.0; });
   if (is_distorted && model == CameraModel::pinhole) throw py::value_error("distortion needs a model with distortion");
   std::ranges::copy(distortion, camera.distortion.begin());
@@ -48,7 +48,7 @@ void bind_camera(py::module_& module) {
                      "Intrinsics of a camera. Pixels: origin at the centre of the top left pixel, u right, v down.")
       .def(py::init(&make_camera), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
            py::arg("cy"), py::arg("model") = CameraModel::pinhole, py::arg("distortion") = std::vector<double>{},
-           "distortion: at most five coefficients, see CameraModel. Raises ValueError for more coefficients, and for "
+           "distortion: at most fourteen coefficients, see CameraModel. Raises ValueError for more coefficients, and for "
            "distortion of a pinhole camera.")
       .def_readonly("model", &Camera::model)
       .def_readonly("width", &Camera::width, "Pixels.")
@@ -57,7 +57,7 @@ void bind_camera(py::module_& module) {
       .def_readonly("fy", &Camera::fy, "Pixels.")
       .def_readonly("cx", &Camera::cx, "Pixels.")
       .def_readonly("cy", &Camera::cy, "Pixels.")
-      .def_readonly("distortion", &Camera::distortion, "Five coefficients, see CameraModel; unused ones are zero.")
+      .def_readonly("distortion", &Camera::distortion, "Fourteen coefficients, see CameraModel; unused ones are zero.")
       .def("__eq__", [](const Camera& camera, const Camera& other) { return camera == other; });
 }
 
@@ -113,8 +113,9 @@ void bind_calibration(py::module_& module) {
                     "Rolling-shutter readout time from the first row to the last, seconds; negative if the last row is "
                     "read first; zero for a global shutter.")
       .def("__eq__", [](const Calibration& calibration, const Calibration& other) { return calibration == other; });
-  module.def("read_calibration", &read_calibration, py::arg("path"),
-             "Reads the calibration of one camera or a stereo pair: EuRoC sensor.yaml, Kalibr camchain, OpenCV or ROS. "
+  module.def("read_calibration", &read_calibration, py::arg("path"), py::arg("right") = py::none(),
+             "Reads the calibration of one camera or a stereo pair in any format of the reference page "
+             "\"calibration_files\". right: file of the right camera, if each camera has its own. "
              "Raises InputError with the field for an unsupported model and for a missing or invalid value.");
 }
 
@@ -150,7 +151,10 @@ std::shared_ptr<SharedRecording> open(const std::filesystem::path& path, const s
                                       std::optional<double> frame_rate_hz, std::optional<double> start_s,
                                       std::optional<double> end_s, int stride,
                                       const std::optional<std::string>& left_topic,
-                                      const std::optional<std::string>& right_topic, std::optional<double> baseline) {
+                                      const std::optional<std::string>& right_topic, std::optional<double> baseline,
+                                      const std::optional<std::filesystem::path>& right_calibration,
+                                      const std::optional<std::string>& depth_topic,
+                                      std::optional<double> pair_tolerance_s) {
   FrameRange range;
   range.start_s = start_s;
   range.end_s = end_s;
@@ -159,6 +163,9 @@ std::shared_ptr<SharedRecording> open(const std::filesystem::path& path, const s
   const py::gil_scoped_release release;
   OpenOptions options{camera, calibration, frame_rate_hz, left_topic, right_topic};
   options.baseline = baseline;
+  options.right_calibration = right_calibration;
+  options.depth_topic = depth_topic;
+  options.pair_tolerance_s = pair_tolerance_s;
   return std::make_shared<SharedRecording>(open_recording(path, range, options));
 }
 
@@ -242,6 +249,8 @@ void bind_recording(py::module_& module) {
            py::arg("calibration") = py::none(), py::arg("frame_rate_hz") = py::none(), py::arg("start_s") = py::none(),
            py::arg("end_s") = py::none(), py::arg("stride") = 1, py::arg("left_topic") = py::none(),
            py::arg("right_topic") = py::none(), py::arg("baseline") = py::none(),
+           py::arg("right_calibration") = py::none(), py::arg("depth_topic") = py::none(),
+           py::arg("pair_tolerance_s") = py::none(),
            "Opens a EuRoC, KITTI or TUM RGB-D folder, a folder of images, a video or a ROS bag.\n"
            "camera: cameras to use; default: a stereo pair if available, with depth if available.\n"
            "calibration: calibration file; replaces that of the recording.\n"
@@ -250,6 +259,9 @@ void bind_recording(py::module_& module) {
            "stride: every n-th frame is read.\n"
            "left_topic, right_topic: image topics of a bag; default: detected.\n"
            "baseline: baseline of the stereo pair, metres; replaces that of the calibration.\n"
+           "right_calibration: calibration file of the right camera, if each camera has its own.\n"
+           "depth_topic: topic of depth images in a bag; default: detected.\n"
+           "pair_tolerance_s: largest time difference within a stereo pair, seconds; default: 0.002.\n"
            "Raises InputError for missing files, an invalid calibration, an absent camera and a range without frames, "
            "and ValueError for a stride below one.")
       .def_property_readonly(

@@ -23,7 +23,13 @@ void bind_enums_of_input(py::module_& module) {
                          "radial_tangential, k1 to k4 for equidistant.",
                          {{"pinhole", CameraModel::pinhole},
                           {"radial_tangential", CameraModel::radial_tangential},
-                          {"equidistant", CameraModel::equidistant}});
+                          {"equidistant", CameraModel::equidistant},
+                          {"rational", CameraModel::rational},
+                          {"unified", CameraModel::unified},
+                          {"extended_unified", CameraModel::extended_unified},
+                          {"double_sphere", CameraModel::double_sphere},
+                          {"field_of_view", CameraModel::field_of_view},
+                          {"thin_prism_fisheye", CameraModel::thin_prism_fisheye}});
   bind_enum<CameraChoice>(
       module, "CameraChoice",
       "Cameras of a recording to use: both of a stereo pair, one of them, or the left one with the depth camera.",

@@ -55,7 +55,7 @@ KEPT_IN = {
     r"embree[34]/.*": {"simulation"},
     r"boost/.*": {"viewer/web"},
     r"dds/.*": {"ros2/dds"},
-    r"opencv2/.*": {"features", "io/image", "io/recording", "simulation", "viewer", "camera", "ros2/node"},
+    r"opencv2/.*": {"features", "io/calibration", "io/image", "io/recording", "simulation", "viewer", "camera", "ros2/node"},
     r"yaml-cpp/.*": {"io", "benchmark"},
     r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"io/bag"},
     r"nlohmann/.*": {"playback/report", "viewer", "ros2/fleet", "ros2/node", "benchmark", "cli"},

@@ -9,10 +9,28 @@
 
 namespace byre {
 
-// Lens models as defined by EuRoC, Kalibr and OpenCV. Distortion coefficients:
-//   radial_tangential  k1, k2, p1, p2, k3 (Brown-Conrady)
-//   equidistant        k1 to k4 (Kannala-Brandt fisheye)
-enum class CameraModel : std::uint8_t { pinhole, radial_tangential, equidistant };
+// Lens models as defined by EuRoC, Kalibr, OpenCV and COLMAP. Distortion coefficients:
+//   radial_tangential   k1, k2, p1, p2, k3 (Brown-Conrady)
+//   equidistant         k1 to k4 (Kannala-Brandt fisheye)
+//   rational            k1, k2, p1, p2, k3 to k6, s1 to s4, tx, ty (OpenCV, with thin prism and tilted sensor)
+//   unified             k1, k2, p1, p2, xi (omni, Mei)
+//   extended_unified    k1, k2, p1, p2, alpha, beta (Khomutenko)
+//   double_sphere       k1, k2, p1, p2, xi, alpha (Usenko)
+//   field_of_view       k1, k2, p1, p2, omega (Devernay)
+//   thin_prism_fisheye  k1, k2, p1, p2, k3, k4, s1, s3 on the equidistant plane (COLMAP)
+enum class CameraModel : std::uint8_t {
+  pinhole,
+  radial_tangential,
+  equidistant,
+  rational,
+  unified,
+  extended_unified,
+  double_sphere,
+  field_of_view,
+  thin_prism_fisheye
+};
+
+inline constexpr int kCameraModels = 9;
 
 std::string_view to_string(CameraModel model);
 
@@ -22,7 +40,7 @@ struct Camera {
   int width = 0;                                  // pixels
   int height = 0;                                 // pixels
   double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;  // pixels
-  std::array<double, 5> distortion{};             // see CameraModel; unused ones are zero
+  std::array<double, 14> distortion{};            // see CameraModel; unused ones are zero
 
   // Pixel of a point, also outside the image. Empty behind the camera or beyond the model's valid field.
   std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_in_camera) const;

@@ -5,24 +5,42 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre {
 
-// Reads the calibration of one camera or a stereo pair from a YAML file. The fields determine the format:
-//   EuRoC sensor.yaml  intrinsics, distortion_coefficients, T_BS (body from camera, default identity)
-//   OpenCV, ROS        camera_matrix, distortion_coefficients, T_BS as above
-//   Kalibr camchain    cam0 and optionally cam1, with T_cn_cnm1 (this camera from the previous one) and optionally
-//                      T_cam_imu, whose inverse is body from camera; further cameras are ignored
-// Optional per camera, read from the first of a chain: readout_time or Kalibr's line_delay, seconds for all rows or one
-// row. Throws InputError with the field for an unsupported model and for a missing or invalid value.
-Calibration read_calibration(const std::filesystem::path& path);
+// A calibration, and how its files were understood.
+struct CalibrationReading {
+  Calibration calibration;         // width and height are zero if the files do not have the image size
+  std::string format{};            // "Kalibr camchain"
+  std::vector<std::string> notes;  // assumptions, and parts of the files that are not used
+};
+
+// Reads the calibration of one camera or a stereo pair. The content of the file determines the format:
+//   Kalibr camchain, OpenVINS    cam0 and optionally cam1
+//   EuRoC sensor.yaml            intrinsics, T_BS
+//   ROS camera_info              camera_matrix and the like; also as .ini or ost.txt
+//   OpenCV                       camera_matrix; pairs as M1, D1, R, T or K1, D1; also as XML
+//   ORB-SLAM2, ORB-SLAM3         Camera.fx, Camera1.fx, LEFT.K
+//   stella_vslam                 Camera: fx
+//   VINS-Fusion                  model_type, or cam0_calib and body_T_cam0, which name and place such files
+//   okvis2, basalt, maplab       cameras, value0, ncameras
+// right: file of the right camera if each camera has its own; its pose comes from the files' P and R (ROS), T_BS or
+// body_T_cam. A folder stands for left.yaml and right.yaml, or intrinsics.yml and extrinsics.yml in it. Optional per
+// camera, read from the first: readout_time or Kalibr's line_delay, seconds for all rows or one row. Throws InputError
+// with the field for an unsupported model and for a missing or invalid value.
+CalibrationReading read_calibration_file(const std::filesystem::path& path,
+                                         const std::optional<std::filesystem::path>& right = {});
+
+// The calibration of read_calibration_file. Throws InputError also if the files do not have the image size.
+Calibration read_calibration(const std::filesystem::path& path, const std::optional<std::filesystem::path>& right = {});
 
 // Text of a Kalibr camchain. Reading it back yields the same calibration bit by bit, except for the rounding of
 // rotation matrices.
 std::string write_calibration(const Calibration& calibration);
 
 // Reads a depth camera from fields of a calibration file, which may also stand alone:
-//   depth_scale   units of the depth images per metre; default 5000, as in TUM
+//   depth_scale   units of the depth images per metre; default 5000, as in TUM; also DepthMapFactor (ORB-SLAM)
 //   depth_sigma   standard deviation of a depth of one metre, metres; grows with the square of depth
 //   depth_camera  only if depth images are not registered to the colour camera: intrinsics in any format for one
 //                 camera, and colour_from_depth, the 4x4 matrix of its pose in the colour camera
@@ -35,7 +53,8 @@ bool has_depth_camera_fields(const std::filesystem::path& path);
 // Throws InputError with this place if the baseline of the pair is zero, as depth is then unobservable.
 void require_baseline(const StereoPartner& partner, const std::string& place);
 
-// Calibration file in a folder: calibration.yaml, camera.yaml or sensor.yaml. Empty if there is none.
+// Calibration file in a folder: calibration.yaml, camera.yaml or sensor.yaml; the folder itself if it has the files of
+// both cameras. Empty if there is none.
 std::optional<std::filesystem::path> find_calibration(const std::filesystem::path& folder);
 
 }  // namespace byre

@@ -82,6 +82,8 @@ struct OpenOptions {
   // Baseline of a stereo pair in metres; replaces that of the calibration. A calibrated baseline outside 2 mm to 1 m is
   // rejected unless confirmed here, as extrinsics in centimetres or millimetres are likelier.
   std::optional<double> baseline{};
+  std::optional<std::filesystem::path> right_calibration{};  // file of the right camera, if each has its own
+  std::optional<std::string> depth_topic{};  // topic of depth images in a bag; empty: detected, see open_recording
 };
 
 // Recorded sequence of a camera, a stereo pair, or a camera with a depth camera, read frame by frame. For
@@ -118,6 +120,8 @@ bool is_video_file(const std::filesystem::path& path);
 // Opens a recording of any format.
 //   calibration  images and videos: OpenOptions::calibration, else find_calibration() in the folder; bags: camera info
 //                and /tf_static. If a pair is calibrated but one camera recorded, OpenOptions::camera selects which
+//   depth        TUM folders: depth.txt; bags: the only topic of depth images near the left images in name, registered
+//                to them or with camera info of its own
 //   times        images and videos: from file names, else a constant frame rate, by default 30 Hz with a warning
 // Throws InputError with file and reason for missing files, an unreadable or invalid calibration, an implausible
 // baseline (see OpenOptions), a calibration for another image size, an absent camera, images that share one time stamp,

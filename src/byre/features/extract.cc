@@ -315,7 +315,7 @@ Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   if (calibration.depth && images.depth) state_->read_depths(*images.depth);
   state_->time_rows();
   const std::shared_ptr<Features>& features = state_->features_of_frames.take();
-  features->refill(images.left.width, images.left.height, state_->keypoints, state_->descriptors, patches);
+  features->refill(rig().width, rig().height, state_->keypoints, state_->descriptors, patches);
   frame.features = features;
   extraction.times = {seconds_between(start, rectified), seconds_between(rectified, extracted),
                       seconds_between(extracted, Clock::now())};

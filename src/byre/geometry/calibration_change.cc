@@ -31,7 +31,7 @@ Camera changed(Camera camera, const double* sigmas) {
   const bool is_distorted = std::any_of(distortion, distortion + 4, [](double value) { return value != 0.0; });
   if (camera.model == CameraModel::pinhole && is_distorted) camera.model = CameraModel::radial_tangential;
   for (int i = 0; i < 4; ++i) {
-    const bool is_tangential = camera.model == CameraModel::radial_tangential && i >= 2;
+    const bool is_tangential = camera.model != CameraModel::equidistant && i >= 2;
     camera.distortion[static_cast<std::size_t>(i)] += (is_tangential ? kTangentialSigma : kRadialSigma) * distortion[i];
   }
   return camera;

@@ -3,9 +3,12 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -46,18 +49,32 @@ Eigen::Vector2d on_rectified_plane(const View& view, const Eigen::Vector2d& bord
                    "check intrinsics and distortion coefficients");
 }
 
+// Quarter turns of the camera's image that bring it nearest to the rectified one.
+int quarter_turns(const View& view) {
+  const Eigen::Vector3d right = view.rectified_from_camera * Eigen::Vector3d::UnitX();
+  const auto turns = static_cast<int>(std::lround(std::atan2(right.y(), right.x()) / (0.5 * std::numbers::pi)));
+  return (turns + 4) % 4;
+}
+
 // Shrinks the field to the largest upright rectangle inside this view's field.
 void clip_to_view(const View& view, Field& field) {
   const double last_u = view.camera->width - 1;
   const double last_v = view.camera->height - 1;
   constexpr int kSamples = 32;
+  const int turns = quarter_turns(view);
   for (int i = 0; i <= kSamples; ++i) {
     const double u = last_u * i / kSamples;
     const double v = last_v * i / kSamples;
-    field.left = std::max(field.left, on_rectified_plane(view, {0.0, v}).x());
-    field.right = std::min(field.right, on_rectified_plane(view, {last_u, v}).x());
-    field.top = std::max(field.top, on_rectified_plane(view, {u, 0.0}).y());
-    field.bottom = std::min(field.bottom, on_rectified_plane(view, {u, last_v}).y());
+    // Sides of the image in clockwise order; the first of the rectified image is the left one.
+    const std::array<Eigen::Vector2d, 4> sides = {Eigen::Vector2d(0.0, v), Eigen::Vector2d(u, 0.0),
+                                                  Eigen::Vector2d(last_u, v), Eigen::Vector2d(u, last_v)};
+    const auto side = [&](int number) {
+      return on_rectified_plane(view, sides[static_cast<std::size_t>((number + 4 - turns) % 4)]);
+    };
+    field.left = std::max(field.left, side(0).x());
+    field.right = std::min(field.right, side(2).x());
+    field.top = std::max(field.top, side(1).y());
+    field.bottom = std::min(field.bottom, side(3).y());
   }
 }
 
@@ -65,9 +82,15 @@ void clip_to_view(const View& view, Field& field) {
 Eigen::Quaterniond rectified_from_left(const StereoPartner& partner) {
   const Pose left_from_right = inverse(partner.right_from_left);
   const Eigen::Vector3d x_axis = left_from_right.translation.normalized();
-  if (!(left_from_right.translation.norm() > 1e-6) || x_axis.x() < 0.5) {
+  constexpr double kLeastShare = 0.5;  // least share of the baseline along a side of the image
+  if (!(left_from_right.translation.norm() > 1e-6) || x_axis.x() < -kLeastShare) {
     throw InputError("calibration", "the right camera is not to the right of the left camera",
-                     "check the extrinsic calibration; left and right may be swapped");
+                     "exchange left and right, also where both cameras are upside down; or check the sign of the "
+                     "extrinsic calibration: left and right may be swapped");
+  }
+  if (x_axis.x() < kLeastShare && std::abs(x_axis.y()) < kLeastShare) {
+    throw InputError("calibration", "the right camera is in front of the left camera or behind it",
+                     "check the extrinsic calibration: its translation has the axes x right, y down, z forward");
   }
   const Eigen::Vector3d mean_axis = Eigen::Vector3d::UnitZ() + left_from_right.rotation * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d z_axis = (mean_axis - mean_axis.dot(x_axis) * x_axis).normalized();
@@ -101,8 +124,12 @@ double nearest_to_axis(double low, double high) {
   return std::min(std::max(0.0, low), high);
 }
 
-// The camera that shows exactly the whole field at the source's resolution.
-Rig rig_of_field(const Field& field, const Camera& source) {
+// The camera that shows exactly the whole field at the source's resolution. A turn by a quarter exchanges the sides.
+Rig rig_of_field(const Field& field, Camera source, bool is_turned_by_quarter) {
+  if (is_turned_by_quarter) {
+    std::swap(source.width, source.height);
+    std::swap(source.fx, source.fy);
+  }
   const double width = field.right - field.left;
   const double height = field.bottom - field.top;
   if (!(width > 0.0) || !(height > 0.0)) {
@@ -158,7 +185,12 @@ Rectification rectification_of(const Calibration& calibration) {
     turned_right = turned_left * calibration.right->right_from_left.rotation.conjugate();
     clip_to_view({&calibration.right->camera, turned_right}, field);
   }
-  result.rig = rig_of_field(field, left);
+  const bool is_turned_by_quarter = quarter_turns({&left, turned_left}) % 2 == 1;
+  if (is_turned_by_quarter && calibration.readout_time != 0.0) {
+    throw InputError("calibration", "has a rolling shutter, and one camera above the other",
+                     "a vertical pair needs a global shutter; use the left camera alone");
+  }
+  result.rig = rig_of_field(field, left, is_turned_by_quarter);
   result.rig.baseline = baseline;
   result.rig.readout_time = calibration.readout_time;
   result.rig.body_from_camera = calibration.body_from_left * Pose{turned_left.conjugate(), Eigen::Vector3d::Zero()};

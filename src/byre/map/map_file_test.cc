@@ -50,6 +50,19 @@ TEST(MapFile, ReadsBackTheScene) {
   EXPECT_EQ(read.recordings.at(1).calibration.left.distortion[1], -0.002);
 }
 
+TEST(MapFile, ReadsBackEveryLensModel) {
+  for (int model = 0; model < kCameraModels; ++model) {
+    StoredMap stored = StoredMapScene().stored();
+    Camera& lens = stored.recordings[0].calibration.left;
+    lens.model = static_cast<CameraModel>(model);
+    lens.distortion = {0.1, 0.2, 0.3, 0.4, 0.5};
+    if (lens.model > CameraModel::equidistant) lens.distortion.back() = 0.01;
+    const StoredMap read = read_map(write_map(stored), "file");
+    EXPECT_EQ(read.recordings.at(0).calibration, stored.recordings[0].calibration);
+    EXPECT_EQ(read.recordings.at(1).calibration, stored.recordings[1].calibration);
+  }
+}
+
 TEST(MapFile, ReadsBackKeyframesWithRoundedSightings) {
   const StoredMapScene scene;
   const StoredMap read = read_map(scene_bytes(), "file");

@@ -225,7 +225,7 @@ const std::vector<BrokenValue>& broken_values() {
       {"Scale", "provenance", "has the invalid value 2", 0, bytes_of(std::uint8_t{2})},
       {"PoseSource", "provenance", "has the invalid value 3", 1, bytes_of(std::uint8_t{3})},
       {"RecordingCount", "provenance", "declares 4294967280 entries", 2, bytes_of(kHuge)},
-      {"CameraModel", "provenance", "has the invalid value 3", 22, bytes_of(std::uint8_t{3})},
+      {"CameraModel", "provenance", "has the invalid value 9", 22, bytes_of(std::uint8_t{9})},
       {"HasRight", "provenance", "has the invalid value 2", 22 + 81, bytes_of(std::uint8_t{2})},
       {"RigCount", "rigs", "declares 4294967280 entries", 0, bytes_of(kHuge)},
       {"FewerRigs", "rigs", "bytes are left over", 0, bytes_of(std::uint32_t{1})},

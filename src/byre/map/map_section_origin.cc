@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 namespace byre {
 namespace {
@@ -14,16 +15,21 @@ constexpr std::size_t kCameraBytes = 1 + 2 * sizeof(std::int32_t) + 9 * sizeof(d
 constexpr std::size_t kRecordingBytes =
     sizeof(std::uint32_t) + kCameraBytes + 1 + kPoseBytes + 2 * sizeof(std::int64_t);
 constexpr std::size_t kRigBytes = 2 * sizeof(std::int32_t) + 4 * sizeof(double) + kPoseBytes;
-constexpr int kCameraModels = 3;
+constexpr std::size_t kShortDistortion = 5;  // coefficients that every model has
 constexpr int kMapScales = 2;
 constexpr int kPoseSources = 3;
+
+// Coefficients that are stored for a model.
+std::size_t stored_distortion(CameraModel model) {
+  return model <= CameraModel::equidistant ? kShortDistortion : Camera{}.distortion.size();
+}
 
 void write_camera(const Camera& camera, ByteWriter& writer) {
   writer.write(camera.model);
   writer.write(std::int32_t{camera.width});
   writer.write(std::int32_t{camera.height});
   for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) writer.write(value);
-  writer.write_all<double>(camera.distortion);
+  writer.write_all<double>(std::span(camera.distortion).first(stored_distortion(camera.model)));
 }
 
 Camera read_camera(ByteReader& reader) {
@@ -32,7 +38,7 @@ Camera read_camera(ByteReader& reader) {
   camera.width = reader.read<std::int32_t>();
   camera.height = reader.read<std::int32_t>();
   for (double* const value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *value = reader.read<double>();
-  reader.read_all<double>(camera.distortion);
+  reader.read_all<double>(std::span(camera.distortion).first(stored_distortion(camera.model)));
   return camera;
 }
 

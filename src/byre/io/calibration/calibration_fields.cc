@@ -3,25 +3,43 @@
 #include "byre/base/regular_file.h"
 #include "byre/base/text_file.h"
 #include "byre/input_error.h"
+#include "byre/io/calibration/calibration_text.h"
 
 #include <cmath>
 #include <fstream>
 #include <optional>
-#include <sstream>
+#include <string_view>
+#include <utility>
 
 namespace byre {
 namespace {
 
-// OpenCV writes "%YAML:1.0" in the first line, which is an invalid directive; a comment keeps the line numbers.
-std::string readable_yaml(const std::filesystem::path& path) {
+std::string text_of_file(const std::filesystem::path& path) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  constexpr std::streamsize kLargest = 1 << 20;  // bytes
   refuse_pipe(path);
-  std::ifstream file(path);
+  std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
-  std::ostringstream text;
-  text << file.rdbuf();
-  std::string yaml = text.str();
-  if (yaml.starts_with("%YAML:")) yaml.front() = '#';
-  return yaml;
+  std::string text(kLargest + 1, '\0');
+  file.read(text.data(), kLargest + 1);
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLargest) throw InputError(path.string(), "is larger than 1 MB, so it is no calibration file");
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  return text;
+}
+
+// OpenCV writes "%YAML:1.0" in the first line, which is an invalid directive; a comment keeps the line numbers.
+YAML::Node parse_yaml(std::string text) {
+  if (text.starts_with("%YAML:")) text.front() = '#';
+  return YAML::Load(text);
+}
+
+YAML::Node parse_any(const std::filesystem::path& path) {
+  std::string text = text_of_file(path);
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin != std::string::npos && text[begin] == '<') return parse_opencv_xml(text, path.string());
+  if (is_ros_ini(text)) return parse_ros_ini(text, path.string());
+  return parse_yaml(std::move(text));
 }
 
 void append_numbers(const YAML::Node& list, const std::string& place, std::vector<double>& numbers) {
@@ -40,7 +58,7 @@ void append_numbers(const YAML::Node& list, const std::string& place, std::vecto
 
 CalibrationFields CalibrationFields::load(const std::filesystem::path& path) {
   try {
-    CalibrationFields fields(path.string() + ": ", YAML::Load(readable_yaml(path)));
+    CalibrationFields fields(path.string() + ": ", parse_any(path));
     if (!fields.node_.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
     return fields;
   } catch (const YAML::Exception& error) {
@@ -92,8 +110,36 @@ std::vector<double> CalibrationFields::numbers(const std::string& field, std::si
                    "has " + std::to_string(result.size()) + " numbers instead of " + std::to_string(count));
 }
 
+Eigen::Matrix3d CalibrationFields::matrix(const std::string& field) const {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers(field, 9).data());
+}
+
+std::vector<CalibrationFields> CalibrationFields::list(const std::string& field) const {
+  if (!has(field)) throw InputError(place(field), "is missing");
+  if (!find(field).IsSequence()) throw InputError(place(field), "is not a list");
+  std::vector<CalibrationFields> entries;
+  for (const YAML::Node& entry : find(field)) {
+    const std::string name = place(field) + "[" + std::to_string(entries.size()) + "]";
+    if (!entry.IsMap()) throw InputError(name, "has no named fields");
+    entries.push_back({name + ".", entry});
+  }
+  return entries;
+}
+
+double CalibrationFields::number(const std::string& field) const {
+  const std::optional<double> number = parse_number(text(field));
+  if (!number) throw InputError(place(field), "is not a number");
+  return *number;
+}
+
+double CalibrationFields::number_or(const std::string& field, double missing) const {
+  return has(field) ? number(field) : missing;
+}
+
 Pose CalibrationFields::pose(const std::string& field) const {
-  const std::vector<double> values = numbers(field, 16);
+  std::vector<double> values = numbers(field);
+  if (values.size() == 12) values.insert(values.end(), {0.0, 0.0, 0.0, 1.0});
+  if (values.size() != 16) numbers(field, 16);
   const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(values.data());
   const std::optional<Eigen::Quaterniond> rotation = rotation_from_matrix(matrix.topLeftCorner<3, 3>());
   if (!rotation) throw InputError(place(field), "the 3x3 part is not a rotation", "give the matrix row by row");

@@ -11,25 +11,30 @@
 
 namespace byre {
 
-// Named fields of a YAML file that describes cameras; OpenCV's directive in the first line is allowed. Errors in a
-// field throw InputError with the place "FILE: FIELD".
+// Named fields of a file that describes cameras: YAML, with OpenCV's directive in the first line allowed, JSON,
+// OpenCV's XML, or ROS' .ini, whose sections and names are fields. Errors in a field throw InputError with the place
+// "FILE: FIELD".
 class CalibrationFields {
  public:
-  // Throws InputError if the file cannot be read, is not YAML, or has no named fields.
+  // Throws InputError if the file cannot be read, is in none of these formats, or has no named fields.
   static CalibrationFields load(const std::filesystem::path& path);
 
   std::string place(const std::string& field) const;  // place of the field for an InputError
   bool has(const std::string& field) const;
 
   // Each throws InputError if the field is missing or has another type.
-  CalibrationFields group(const std::string& field) const;  // fields inside this field
+  CalibrationFields group(const std::string& field) const;              // fields inside this field
+  std::vector<CalibrationFields> list(const std::string& field) const;  // groups of a list
   std::string text(const std::string& field) const;
   // Numbers of a list, of a list of rows, or of a matrix stored row by row under "data".
   std::vector<double> numbers(const std::string& field) const;
   std::vector<double> numbers(const std::string& field, std::size_t count) const;  // requires this count
-  Pose pose(const std::string& field) const;                                       // rigid motion, from its 4x4 matrix
-  double positive(const std::string& field) const;                                 // one number above zero
-  int pixels(const std::string& field) const;                                      // one side of an image
+  Eigen::Matrix3d matrix(const std::string& field) const;                          // 3x3, row by row
+  Pose pose(const std::string& field) const;                                       // rigid motion, from 4x4 or 3x4
+  double number(const std::string& field) const;
+  double number_or(const std::string& field, double missing) const;  // the second number if the field is missing
+  double positive(const std::string& field) const;                     // one number above zero
+  int pixels(const std::string& field) const;                          // one side of an image
 
  private:
   CalibrationFields(std::string place, YAML::Node node) : place_(std::move(place)), node_(std::move(node)) {}

@@ -1,9 +1,12 @@
 #include "byre/calibration_file.h"
 
 #include "byre/input_error.h"
+#include "byre/io/calibration/calibration_formats.h"
 #include "byre/io/calibration/camera_fields.h"
 
+#include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -13,49 +16,84 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Calibration one_camera(const Camera& camera, const CalibrationFields& fields) {
-  return {.left = camera,
-          .right = std::nullopt,
-          .body_from_left = fields.has("T_BS") ? fields.pose("T_BS") : Pose{},
-          .readout_time = read_readout_time(fields, camera)};
+constexpr const char* kLeaveRightOut = "give the pose of the right camera, or use the left camera alone";
+
+Pose pose_of_right(const CameraList& list) {
+  const PlacedCamera& left = list.cameras[0];
+  const PlacedCamera& right = list.cameras[1];
+  if (right.from_previous) return *right.from_previous;
+  if (left.rectified && right.rectified) {
+    if (const auto pose = right_from_left(*left.rectified, *right.rectified)) return *pose;
+  }
+  if (left.body_from_camera && right.body_from_camera) {
+    return inverse(*right.body_from_camera) * *left.body_from_camera;
+  }
+  if (left.rectified && right.rectified) {
+    throw InputError(right.pose_place, "has no baseline, or a rotation matrix of the pair is not a rotation",
+                     "calibrate both cameras as a stereo pair, or use the left camera alone");
+  }
+  throw InputError(right.pose_place, "is missing", kLeaveRightOut);
 }
 
-Calibration kalibr_chain(const CalibrationFields& chain) {
-  const CalibrationFields first = chain.group("cam0");
-  Calibration calibration;
-  calibration.left = read_camera_fields(first, "distortion_coeffs");
-  calibration.readout_time = read_readout_time(first, calibration.left);
-  if (first.has("T_cam_imu")) calibration.body_from_left = inverse(first.pose("T_cam_imu"));
-  if (!chain.has("cam1")) return calibration;
-  const CalibrationFields second = chain.group("cam1");
-  calibration.right = StereoPartner{read_camera_fields(second, "distortion_coeffs"), second.pose("T_cn_cnm1")};
-  require_baseline(*calibration.right, second.place("T_cn_cnm1"));
-  return calibration;
+CalibrationReading combined(CameraList list) {
+  const PlacedCamera& left = list.cameras.front();
+  CalibrationReading reading{{.left = left.camera,
+                              .right = std::nullopt,
+                              .body_from_left = left.body_from_camera.value_or(Pose{}),
+                              .readout_time = left.readout_time},
+                             std::move(list.format),
+                             std::move(list.notes)};
+  if (list.cameras.size() > 1) {
+    reading.calibration.right = StereoPartner{list.cameras[1].camera, pose_of_right(list)};
+    require_baseline(*reading.calibration.right, list.cameras[1].pose_place);
+  } else if (left.rectified && left.rectified->projection(0, 3) != 0.0) {
+    reading.notes.push_back("a camera of a stereo pair; give the files of both cameras for the pair");
+  }
+  return reading;
+}
+
+// Names of files of a pair in a folder.
+std::optional<std::pair<fs::path, fs::path>> pair_in(const fs::path& folder) {
+  for (const auto& [left, right] : {std::pair("left", "right"), std::pair("intrinsics", "extrinsics"),
+                                    std::pair("cam0", "cam1"), std::pair("camera_left", "camera_right")}) {
+    for (const char* const extension : {".yaml", ".yml", ".ini", ".xml"}) {
+      std::pair<fs::path, fs::path> files{folder / (std::string(left) + extension),
+                                          folder / (std::string(right) + extension)};
+      if (fs::is_regular_file(files.first) && fs::is_regular_file(files.second)) return files;
+    }
+  }
+  return std::nullopt;
+}
+
+CalibrationReading read_pair(const fs::path& left, const fs::path& right) {
+  if (const auto extrinsics = read_opencv_extrinsics(right)) {
+    CameraList list = read_cameras(left);
+    if (list.cameras.size() == 2) {
+      list.cameras[1].from_previous = extrinsics;
+      return combined(std::move(list));
+    }
+  }
+  CameraList list = read_cameras(left);
+  const CameraList second = read_cameras(right);
+  if (list.cameras.size() > 1 || second.cameras.size() > 1) {
+    throw InputError(list.cameras.size() > 1 ? left.string() : right.string(), "already has both cameras",
+                     "give this file alone");
+  }
+  list.cameras.push_back(second.cameras.front());
+  list.notes.insert(list.notes.end(), second.notes.begin(), second.notes.end());
+  return combined(std::move(list));
 }
 
 void write_list(YAML::Emitter& yaml, const char* name, const std::vector<double>& values) {
   yaml << YAML::Key << name << YAML::Value << YAML::Flow << values;
 }
 
-const char* name_of_lens(CameraModel model) {
-  switch (model) {
-    case CameraModel::pinhole:
-      return "none";
-    case CameraModel::radial_tangential:
-      return "radtan";
-    case CameraModel::equidistant:
-      return "equidistant";
-  }
-  return "";
-}
-
 void write_camera(YAML::Emitter& yaml, const Camera& camera) {
-  yaml << YAML::Key << "camera_model" << YAML::Value << "pinhole";
-  write_list(yaml, "intrinsics", {camera.fx, camera.fy, camera.cx, camera.cy});
-  yaml << YAML::Key << "distortion_model" << YAML::Value << name_of_lens(camera.model);
-  const bool has_fifth = camera.model == CameraModel::radial_tangential && camera.distortion[4] != 0.0;
-  const auto end = camera.distortion.begin() + (has_fifth ? 5 : 4);
-  write_list(yaml, "distortion_coeffs", std::vector<double>(camera.distortion.begin(), end));
+  const KalibrLens lens = kalibr_lens(camera);
+  yaml << YAML::Key << "camera_model" << YAML::Value << lens.camera_model;
+  write_list(yaml, "intrinsics", lens.intrinsics);
+  yaml << YAML::Key << "distortion_model" << YAML::Value << lens.distortion_model;
+  write_list(yaml, "distortion_coeffs", lens.coefficients);
   yaml << YAML::Key << "resolution" << YAML::Value << YAML::Flow << std::vector<int>{camera.width, camera.height};
 }
 
@@ -75,6 +113,7 @@ Camera depth_lens(const CalibrationFields& fields) {
   return read_camera_fields(fields, fields.has("distortion_coeffs") ? "distortion_coeffs" : "distortion_coefficients");
 }
 
+constexpr std::array kOrbSlamDepthScales = {"DepthMapFactor", "RGBD.DepthMapFactor"};
 constexpr const char* kDepthScale = "depth_scale";
 constexpr const char* kDepthSigma = "depth_sigma";
 constexpr const char* kDepthCamera = "depth_camera";
@@ -91,14 +130,21 @@ void write_depth_camera(YAML::Emitter& yaml, const DepthCamera& depth) {
 
 }  // namespace
 
-Calibration read_calibration(const fs::path& path) {
-  const CalibrationFields fields = CalibrationFields::load(path);
-  if (fields.has("cam0")) return kalibr_chain(fields);
-  if (fields.has("camera_matrix")) return one_camera(read_opencv_camera(fields), fields);
-  if (fields.has("intrinsics")) return one_camera(read_camera_fields(fields, "distortion_coefficients"), fields);
-  throw InputError(path.string(), "is not a supported calibration file",
-                   "supported files have the field intrinsics (EuRoC sensor.yaml), camera_matrix (OpenCV, ROS) or cam0 "
-                   "(Kalibr camchain)");
+CalibrationReading read_calibration_file(const fs::path& path, const std::optional<fs::path>& right) {
+  if (right) return read_pair(path, *right);
+  if (!fs::is_directory(path)) return combined(read_cameras(path));
+  if (const auto pair = pair_in(path)) return read_pair(pair->first, pair->second);
+  if (const auto file = find_calibration(path)) return combined(read_cameras(*file));
+  throw InputError(
+      path.string(), "contains no camera calibration",
+      "give the file, or add it as calibration.yaml, camera.yaml, sensor.yaml, or left.yaml and right.yaml");
+}
+
+Calibration read_calibration(const fs::path& path, const std::optional<fs::path>& right) {
+  Calibration calibration = read_calibration_file(path, right).calibration;
+  if (calibration.left.width > 0 && (!calibration.right || calibration.right->camera.width > 0)) return calibration;
+  throw InputError(path.string(), "does not have the image size",
+                   "convert it with \"byre calibration convert --size WIDTHxHEIGHT\"");
 }
 
 std::string write_calibration(const Calibration& calibration) {
@@ -121,8 +167,12 @@ std::string write_calibration(const Calibration& calibration) {
 }
 
 DepthCamera read_depth_camera(const fs::path& path) {
-  const CalibrationFields fields = CalibrationFields::load(path);
   DepthCamera depth;
+  if (fs::is_directory(path)) return depth;
+  const CalibrationFields fields = CalibrationFields::load(path);
+  for (const char* const field : kOrbSlamDepthScales) {
+    if (fields.has(field)) depth.units_per_metre = fields.positive(field);
+  }
   if (fields.has(kDepthScale)) depth.units_per_metre = fields.positive(kDepthScale);
   if (fields.has(kDepthSigma)) depth.sigma_at_one_metre = fields.positive(kDepthSigma);
   if (!fields.has(kDepthCamera)) return depth;
@@ -133,7 +183,11 @@ DepthCamera read_depth_camera(const fs::path& path) {
 }
 
 bool has_depth_camera_fields(const fs::path& path) {
+  if (fs::is_directory(path)) return false;
   const CalibrationFields fields = CalibrationFields::load(path);
+  for (const char* const field : kOrbSlamDepthScales) {
+    if (fields.has(field)) return true;
+  }
   return fields.has(kDepthScale) || fields.has(kDepthSigma) || fields.has(kDepthCamera);
 }
 
@@ -148,6 +202,7 @@ std::optional<fs::path> find_calibration(const fs::path& folder) {
   for (const char* const name : {"calibration.yaml", "camera.yaml", "sensor.yaml"}) {
     if (fs::is_regular_file(folder / name)) return folder / name;
   }
+  if (pair_in(folder)) return folder;
   return std::nullopt;
 }
 

@@ -3,7 +3,10 @@
 #include "byre/calibration.h"
 #include "byre/io/calibration/calibration_fields.h"
 
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace byre {
 
@@ -16,11 +19,33 @@ Camera read_camera_fields(const CalibrationFields& fields, const std::string& co
 // distortion_coefficients. Equidistant if distortion_model or fisheye_model specify it. Throws the same errors.
 Camera read_opencv_camera(const CalibrationFields& fields);
 
+// Sets focal lengths and principal point from a 3x3 matrix. Throws InputError for skew.
+void set_camera_matrix(Camera& camera, const std::vector<double>& matrix, const std::string& place);
+
+// Sets model and coefficients in OpenCV's order: four of a fisheye; else four to fourteen. Without distortion the model
+// is pinhole. Throws InputError for another number of coefficients.
+void set_opencv_distortion(Camera& camera, std::span<const double> coefficients, bool is_fisheye,
+                           const std::string& place);
+
+// A lens as Kalibr names it: the model of the projection with its intrinsics, and that of the distortion.
+struct KalibrLens {
+  std::string camera_model;
+  std::vector<double> intrinsics;
+  std::string distortion_model;
+  std::vector<double> coefficients;
+};
+
+KalibrLens kalibr_lens(const Camera& camera);
+
+// Sets model, intrinsics and coefficients. Names are those of Kalibr, EuRoC and aslam. place: field for InputError.
+void set_kalibr_lens(Camera& camera, const KalibrLens& lens, const std::string& place);
+
 // Readout time of a rolling shutter, seconds: readout_time, or rows times line_delay (Kalibr); zero without either.
 // Throws InputError with the field for more than a second.
 double read_readout_time(const CalibrationFields& fields, const Camera& camera);
 
-// Throws InputError with the place for focal lengths that are not positive, and a principal point outside the image.
+// Throws InputError with the place for focal lengths that are not positive, shape parameters outside their domain, and
+// a principal point outside the image, if its size is known.
 void require_valid(const Camera& camera, const std::string& place);
 
 }  // namespace byre

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -43,7 +45,7 @@ Camera with_one_focal_length(const std::vector<double>& p, CameraModel model) {
 // Parameters: fx, fy, cx, cy, and distortion.
 Camera with_two_focal_lengths(const std::vector<double>& p, CameraModel model) {
   Camera camera = with_intrinsics(model, p[0], p[1], p[2], p[3]);
-  std::copy_n(p.begin() + 4, std::min<std::size_t>(p.size() - 4, 5), camera.distortion.begin());
+  std::copy_n(p.begin() + 4, std::min(p.size() - 4, camera.distortion.size()), camera.distortion.begin());
   return camera;
 }
 
@@ -56,12 +58,26 @@ Camera lens_of(const ColmapCamera& camera, const std::string& place) {
   }
   if (camera.model == "OPENCV") return with_two_focal_lengths(p, CameraModel::radial_tangential);
   if (camera.model == "OPENCV_FISHEYE") return with_two_focal_lengths(p, CameraModel::equidistant);
-  const bool is_polynomial =
-      camera.model == "FULL_OPENCV" && std::all_of(p.begin() + 9, p.end(), [](double k) { return k == 0.0; });
-  if (is_polynomial) return with_two_focal_lengths(p, CameraModel::radial_tangential);
+  if (camera.model == "FULL_OPENCV") {
+    const bool is_polynomial = std::all_of(p.begin() + 9, p.end(), [](double k) { return k == 0.0; });
+    return with_two_focal_lengths(p, is_polynomial ? CameraModel::radial_tangential : CameraModel::rational);
+  }
+  if (camera.model == "FOV") {
+    Camera result = with_two_focal_lengths(p, CameraModel::field_of_view);
+    std::swap(result.distortion[0], result.distortion[4]);
+    return result;
+  }
+  if (camera.model == "SIMPLE_RADIAL_FISHEYE" || camera.model == "RADIAL_FISHEYE") {
+    return with_one_focal_length(p, CameraModel::equidistant);
+  }
+  if (camera.model == "THIN_PRISM_FISHEYE") return with_two_focal_lengths(p, CameraModel::thin_prism_fisheye);
   throw InputError(place, "camera model " + camera.model + " is not supported",
-                   "reconstruct with SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV or OPENCV_FISHEYE, or "
-                   "undistort the images with \"colmap image_undistorter\"");
+                   "reconstruct with another camera model, or undistort the images with \"colmap image_undistorter\"");
+}
+
+[[noreturn]] void refuse_export(CameraModel model) {
+  throw InputError("calibration", "COLMAP has no camera model for " + std::string(to_string(model)),
+                   "export undistorted images");
 }
 
 }  // namespace
@@ -93,7 +109,10 @@ Camera camera_of(const ColmapCamera& camera, const std::string& place) {
 }
 
 ColmapCamera colmap_camera(const Camera& camera) {
-  const std::array<double, 5>& d = camera.distortion;
+  const auto is_zero_from = [&camera](int first) {
+    return std::all_of(camera.distortion.begin() + first, camera.distortion.end(), [](double k) { return k == 0.0; });
+  };
+  const std::array<double, 14>& d = camera.distortion;
   ColmapCamera result{"",
                       static_cast<std::uint64_t>(camera.width),
                       static_cast<std::uint64_t>(camera.height),
@@ -111,6 +130,20 @@ ColmapCamera colmap_camera(const Camera& camera) {
       result.model = "OPENCV_FISHEYE";
       result.parameters.insert(result.parameters.end(), d.begin(), d.begin() + 4);
       break;
+    case CameraModel::rational:
+      if (!is_zero_from(8)) refuse_export(camera.model);
+      result.model = "FULL_OPENCV";
+      result.parameters.insert(result.parameters.end(), d.begin(), d.begin() + 8);
+      break;
+    case CameraModel::thin_prism_fisheye:
+      result.model = "THIN_PRISM_FISHEYE";
+      result.parameters.insert(result.parameters.end(), d.begin(), d.begin() + 8);
+      break;
+    case CameraModel::unified:
+    case CameraModel::extended_unified:
+    case CameraModel::double_sphere:
+    case CameraModel::field_of_view:
+      refuse_export(camera.model);
   }
   return result;
 }

@@ -44,14 +44,25 @@ TEST(CameraOf, ProjectsLikeColmap) {
   const double radius = std::sqrt(kSquaredRadius), theta = std::atan(radius);
   expect_near(pixel_in("OPENCV_FISHEYE", {kFocal, kFocal, 320, 240, 0.1, -0.05, 0, 0}),
               scaled((theta + 0.1 * std::pow(theta, 3) - 0.05 * std::pow(theta, 5)) / radius));
+  expect_near(pixel_in("SIMPLE_RADIAL_FISHEYE", {kFocal, 320, 240, 0.1}),
+              scaled((theta + 0.1 * std::pow(theta, 3)) / radius));
+  expect_near(pixel_in("RADIAL_FISHEYE", {kFocal, 320, 240, 0.1, -0.05}),
+              scaled((theta + 0.1 * std::pow(theta, 3) - 0.05 * std::pow(theta, 5)) / radius));
+  expect_near(pixel_in("FOV", {kFocal, kFocal, 320, 240, 0.9}),
+              scaled(std::atan(2.0 * radius * std::tan(0.45)) / (0.9 * radius)));
+  expect_near(pixel_in("FULL_OPENCV", {kFocal, kFocal, 320, 240, 0.1, -0.05, 0, 0, 0, 0.2, 0, 0}),
+              scaled(both / (1.0 + 0.2 * kSquaredRadius)));
+  const double squared_theta = theta * theta;
+  const Eigen::Vector2d prism(0.002 * squared_theta, -0.001 * squared_theta);
+  expect_near(pixel_in("THIN_PRISM_FISHEYE", {kFocal, kFocal, 320, 240, 0.1, 0, 0, 0, 0, 0, 0.002, -0.001}),
+              scaled((theta + 0.1 * std::pow(theta, 3)) / radius) + kFocal * prism);
 }
 
 TEST(CameraOf, RejectsUnsupportedModels) {
   const auto error = [](const std::string& model, const std::vector<double>& parameters) {
     return error_of([&] { camera_of({model, 640, 480, parameters}, "camera 3"); });
   };
-  EXPECT_THAT(error("FOV", {1, 1, 1, 1, 1}), HasSubstr("camera 3: camera model FOV is not supported"));
-  EXPECT_THAT(error("FULL_OPENCV", {400, 400, 320, 240, 0, 0, 0, 0, 0, 0.1, 0, 0}), HasSubstr("not supported"));
+  EXPECT_THAT(error("FOV", {400, 400, 320, 240, 4}), HasSubstr("camera 3: has shape parameters outside 0 < omega"));
   EXPECT_THAT(error("PINHOLE", {0, 400, 320, 240}), HasSubstr("focal"));
   EXPECT_THAT(error("PINHOLE", {400, 400, 700, 240}), HasSubstr("principal point"));
   EXPECT_THAT(error("PINHOLE", {400, 400, 320}), HasSubstr("number of parameters"));
@@ -69,7 +80,12 @@ TEST(ColmapCamera, ConvertsBackToTheSameCamera) {
   lens.distortion = {-0.28, 0.07, 1e-4, 2e-5, 0.0};
   long_lens.distortion = {-0.28, 0.07, 1e-4, 2e-5, 0.01};
   fisheye.distortion = {0.01, 0.02, 0.03, 0.04, 0.0};
-  for (const Camera& camera : {pinhole, lens, long_lens, fisheye}) {
+  Camera rational = pinhole, prism = pinhole;
+  rational.model = CameraModel::rational;
+  rational.distortion = {-0.28, 0.07, 1e-4, 2e-5, 0.01, 0.1, 0.2, 0.3};
+  prism.model = CameraModel::thin_prism_fisheye;
+  prism.distortion = {0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.001, 0.002};
+  for (const Camera& camera : {pinhole, lens, long_lens, fisheye, rational, prism}) {
     const ColmapCamera exported = colmap_camera(camera);
     SCOPED_TRACE(exported.model);
     const Camera again = camera_of(exported, "camera");
@@ -82,6 +98,9 @@ TEST(ColmapCamera, ConvertsBackToTheSameCamera) {
     EXPECT_EQ(again.cy, camera.cy);
     EXPECT_EQ(again.distortion, camera.distortion);
   }
+  Camera sphere = pinhole;
+  sphere.model = CameraModel::double_sphere;
+  EXPECT_THAT(error_of([&] { colmap_camera(sphere); }), HasSubstr("COLMAP has no camera model for double_sphere"));
 }
 
 }  // namespace

@@ -2,14 +2,18 @@
 
 #include "byre/calibration_file.h"
 #include "byre/input_error.h"
+#include "byre/io/calibration/calibration_formats.h"
+#include "byre/io/calibration/camera_fields.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -46,50 +50,55 @@ void require_valid(const CameraInfoWithSource& placed) {
   }
 }
 
-// "plumb_bob" (k1, k2, p1, p2, k3), "rational_polynomial" without its last terms, "equidistant" (k1..k4).
+// OpenCV's models by their ROS names, and byre's by their own.
 void take_distortion(const CameraInfoWithSource& placed, Camera& camera) {
+  constexpr std::array kOpenCvNames = {"plumb_bob", "rational_polynomial", "thin_prism", "equidistant", "fisheye"};
   const ros::CameraInfo& info = placed.info;
-  const auto is_zero = [](double coefficient) { return coefficient == 0.0; };
-  const bool is_fisheye = info.distortion_model == "equidistant" || info.distortion_model == "fisheye";
-  if (!is_fisheye && std::ranges::all_of(info.d, is_zero)) return;
-  const bool is_radial = info.distortion_model == "plumb_bob" || info.distortion_model == "rational_polynomial";
-  const std::size_t known = is_fisheye ? 4 : 5;
-  const std::size_t count = std::min(known, info.d.size());
-  const bool has_more =
-      !std::all_of(info.d.begin() + static_cast<std::ptrdiff_t>(count), info.d.end(), is_zero) || count < 4;
-  if ((!is_fisheye && !is_radial) || has_more) {
+  const std::string& name = info.distortion_model;
+  if (name.empty() && info.d.empty()) return;
+  const auto unsupported = [&] {
     refuse(placed,
-           "has the unsupported lens model \"" + info.distortion_model.substr(0, 40) + "\" with " +
-               std::to_string(info.d.size()) + " coefficients",
-           "calibrate with plumb_bob (5) or equidistant (4), or publish rectified images");
+           "has the unsupported lens model \"" + name.substr(0, 40) + "\" with " + std::to_string(info.d.size()) +
+               " coefficients",
+           "calibrate with plumb_bob (5), rational_polynomial (8) or equidistant (4), or publish rectified images");
+  };
+  for (int model = 0; model < kCameraModels; ++model) {
+    if (to_string(static_cast<CameraModel>(model)) != name || name == "equidistant") continue;
+    if (info.d.size() > camera.distortion.size()) unsupported();
+    camera.model = static_cast<CameraModel>(model);
+    std::ranges::copy(info.d, camera.distortion.begin());
+    return require_valid(camera, placed.place);
   }
-  camera.model = is_fisheye ? CameraModel::equidistant : CameraModel::radial_tangential;
-  std::copy_n(info.d.begin(), count, camera.distortion.begin());
+  const bool is_fisheye = name == "equidistant" || name == "fisheye";
+  const bool is_ideal = std::ranges::all_of(info.d, [](double coefficient) { return coefficient == 0.0; });
+  if (!is_fisheye && is_ideal) return;
+  if (std::ranges::find(kOpenCvNames, name) == kOpenCvNames.end()) unsupported();
+  try {
+    set_opencv_distortion(camera, info.d, is_fisheye, placed.place);
+  } catch (const InputError&) {
+    unsupported();
+  }
 }
 
-Eigen::Matrix3d rotation_of(const ros::CameraInfo& info) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info.r.data());
+RectifiedView view_of(const CameraInfoWithSource& placed) {
+  RectifiedView view;
+  if (!placed.is_rectified) {
+    view.rotation = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(placed.info.r.data());
+  }
+  view.projection = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(placed.info.p.data());
+  return view;
 }
 
-// Translation from the rectified left frame to the right one.
-Eigen::Vector3d shift_of(const ros::CameraInfo& right) {
-  return {right.p[3] / right.p[0], right.p[7] / right.p[5], 0.0};
+// The views of a pair. A positive baseline in the right camera's P alone is a sign error of the driver: the REP defines
+// it as negative.
+std::pair<RectifiedView, RectifiedView> views_of(const CameraInfoWithSource& left, const CameraInfoWithSource& right) {
+  std::pair views(view_of(left), view_of(right));
+  if (has_positive_baseline(left, right)) views.second.projection(0, 3) *= -1.0;
+  return views;
 }
 
-bool has_baseline(const ros::CameraInfo& right) {
-  return right.p[0] > 0.0 && right.p[5] > 0.0 && right.p[3] != 0.0;
-}
-
-std::optional<Pose> by_projections(const CameraInfoWithSource& left, const CameraInfoWithSource& right) {
-  if (!has_baseline(right.info)) return std::nullopt;
-  if (right.is_rectified) return Pose{Eigen::Quaterniond::Identity(), shift_of(right.info)};
-  const auto left_rotation = rotation_from_matrix(rotation_of(left.info));
-  const auto right_rotation = rotation_from_matrix(rotation_of(right.info));
-  if (!left_rotation || !right_rotation) return std::nullopt;
-  const Pose rectified_from_left{*left_rotation, Eigen::Vector3d::Zero()};
-  const Pose rectified_from_right{*right_rotation, Eigen::Vector3d::Zero()};
-  return inverse(rectified_from_right) * Pose{Eigen::Quaterniond::Identity(), shift_of(right.info)} *
-         rectified_from_left;
+bool has_baseline(const std::pair<RectifiedView, RectifiedView>& views) {
+  return views.first.projection.col(3) != views.second.projection.col(3);
 }
 
 }  // namespace
@@ -110,15 +119,12 @@ Camera camera_of(const CameraInfoWithSource& placed) {
 StereoPartner partner_of(const CameraInfoWithSource& left, const CameraInfoWithSource& right,
                          const StaticFrames& frames) {
   require_valid(right);
-  if (right.info.p[3] > 0.0) {
-    refuse(right, "places the right camera to the left of the left camera: the fourth value of P is positive",
-           "swap left and right");
-  }
-  std::optional<Pose> right_from_left = by_projections(left, right);
+  const auto views = views_of(left, right);
+  std::optional<Pose> right_from_left = byre::right_from_left(views.first, views.second);
   if (!right_from_left) right_from_left = frames.between(right.info.header.frame_id, left.info.header.frame_id);
-  if (!right_from_left && has_baseline(right.info)) {
-    for (const CameraInfoWithSource* const each : {&left, &right}) {
-      if (rotation_from_matrix(rotation_of(each->info))) continue;
+  if (!right_from_left && has_baseline(views)) {
+    for (const auto& [each, view] : {std::pair(&left, &views.first), std::pair(&right, &views.second)}) {
+      if (rotation_from_matrix(view->rotation)) continue;
       refuse(*each, "has a matrix R that is not a rotation", "correct R in the calibration of the driver");
     }
   }
@@ -129,6 +135,10 @@ StereoPartner partner_of(const CameraInfoWithSource& left, const CameraInfoWithS
   StereoPartner partner{camera_of(right), *right_from_left};
   require_baseline(partner, right.place);
   return partner;
+}
+
+bool has_positive_baseline(const CameraInfoWithSource& left, const CameraInfoWithSource& right) {
+  return right.info.p[3] > 0.0 && left.info.p[3] == 0.0;
 }
 
 Pose body_from_camera(const std::string& camera_frame, const StaticFrames& frames) {

@@ -19,10 +19,15 @@ struct CameraInfoWithSource {
 // camera, an unsupported model, invalid numbers, and binned or cropped images.
 Camera camera_of(const CameraInfoWithSource& placed);
 
-// The right camera: of rectified images by its P; of raw ones by R and P if P has a baseline, else by the transform
-// tree. Throws InputError if neither determines its pose.
+// The right camera: of rectified images by both P; of raw ones by R and P if they have a baseline, else by the
+// transform tree. A baseline of positive sign counts as negative, see has_positive_baseline. Throws InputError if
+// neither determines its pose.
 StereoPartner partner_of(const CameraInfoWithSource& left, const CameraInfoWithSource& right,
                          const StaticFrames& frames);
+
+// Whether P of the right camera alone has a baseline, and of the sign that no right camera has. The images show whether
+// the driver errs or the cameras are exchanged.
+bool has_positive_baseline(const CameraInfoWithSource& left, const CameraInfoWithSource& right);
 
 // Pose of the camera in the robot's body, the frame base_link. Identity if the tree does not connect them.
 Pose body_from_camera(const std::string& camera_frame, const StaticFrames& frames);

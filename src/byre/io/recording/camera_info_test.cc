@@ -66,8 +66,11 @@ TEST(CameraInfo, RejectsUnsupportedLensModels) {
   CameraInfoWithSource rational = placed_info("left");
   rational.info.distortion_model = "rational_polynomial";
   rational.info.d = {0.1, 0.1, 0.0, 0.0, 0.1, 0.2, 0.2, 0.1};
+  EXPECT_EQ(camera_of(rational).model, CameraModel::rational);
+  EXPECT_EQ(camera_of(rational).distortion[7], 0.1);
+  rational.info.d.resize(15, 0.1);
   EXPECT_THAT(error_of([&] { camera_of(rational); }),
-              HasSubstr("walk.bag: /left/camera_info: has the unsupported lens model \"rational_polynomial\" with 8"));
+              HasSubstr("walk.bag: /left/camera_info: has the unsupported lens model \"rational_polynomial\" with 15"));
   CameraInfoWithSource none = placed_info("left");
   none.info.k = {};
   EXPECT_THAT(error_of([&] { camera_of(none); }),
@@ -88,6 +91,19 @@ TEST(CameraInfo, ReadsTheBaselineOfRectifiedProjections) {
   const Pose right_from_left = partner_of(left, right, {}).right_from_left;
   EXPECT_THAT(right_from_left.translation.x(), DoubleNear(-0.1, 1e-12));
   EXPECT_THAT(right_from_left, PoseNear(Pose{Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.0}}, 1e-12, 1e-12));
+}
+
+TEST(CameraInfo, ReadsABaselineOfEitherSignAndInEitherCamera) {
+  CameraInfoWithSource left = placed_info("left"), right = placed_info("right");
+  left.info.p = right.info.p = {430.0, 0.0, 360.0, 0.0, 0.0, 430.0, 240.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  right.info.p[3] = 43.0;
+  EXPECT_TRUE(has_positive_baseline(left, right));
+  EXPECT_THAT(partner_of(left, right, {}).right_from_left.translation.x(), DoubleNear(-0.1, 1e-12));
+  std::swap(left.info.p, right.info.p);  // the right camera is the reference
+  EXPECT_FALSE(has_positive_baseline(left, right));
+  EXPECT_THAT(partner_of(left, right, {}).right_from_left.translation.x(), DoubleNear(-0.1, 1e-12));
+  right.info.p[7] = -21.5;  // a vertical part
+  EXPECT_THAT(partner_of(left, right, {}).right_from_left.translation.y(), DoubleNear(-0.05, 1e-12));
 }
 
 TEST(CameraInfo, RotatesRawImagesIntoTheRectifiedFrames) {
@@ -146,7 +162,6 @@ TEST(CameraInfo, RejectsInvalidValues) {
   is_refused([](auto& info) { info.k[0] = 0.0; });
   is_refused([](auto& info) { info.k[4] = std::numeric_limits<double>::quiet_NaN(); });
   is_refused([](auto& info) { info.p[3] = 0.0; });
-  is_refused([](auto& info) { info.p[3] = 43.0; });
   is_refused([](auto& info) { info.r = {}; });
   is_refused([](auto& info) { info.distortion_model = "kannala"; });
   is_refused([](auto& info) { info.d = {1.0, 2.0, 3.0}; });

@@ -20,17 +20,22 @@ void write_matrix(std::ostream& text, const Pose& pose) {
   text << "0.0, 0.0, 0.0, 1.0]\n";
 }
 
+void write_list(std::ostream& text, const std::vector<double>& numbers) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) text << (i == 0 ? "[" : ", ") << numbers[i];
+  text << "]";
+}
+
 void write_lens(std::ostream& text, const Camera& camera) {
-  const auto& d = camera.distortion;
-  const bool is_fisheye = camera.model == CameraModel::equidistant;
-  const std::size_t count = camera.model == CameraModel::radial_tangential && d[4] != 0.0 ? 5 : 4;
-  text << "camera_model: pinhole\n";
-  text << "intrinsics: [" << camera.fx << ", " << camera.fy << ", " << camera.cx << ", " << camera.cy
-       << "] #fu, fv, cu, cv\n";
-  text << "distortion_model: " << (is_fisheye ? "equidistant" : "radial-tangential") << "\n";
-  text << "distortion_coefficients: [" << d[0];
-  for (std::size_t i = 1; i < count; ++i) text << ", " << d[i];
-  text << "]\n";
+  KalibrLens lens = kalibr_lens(camera);
+  if (camera.model == CameraModel::pinhole || camera.model == CameraModel::radial_tangential) {
+    lens.distortion_model = "radial-tangential";
+  }
+  text << "camera_model: " << lens.camera_model << "\nintrinsics: ";
+  write_list(text, lens.intrinsics);
+  text << (lens.intrinsics.size() == 4 ? " #fu, fv, cu, cv\n" : "\n");
+  text << "distortion_model: " << lens.distortion_model << "\ndistortion_coefficients: ";
+  write_list(text, lens.coefficients);
+  text << "\n";
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ TEST_F(EurocSensorFile, ReadsCameraAndBodyPose) {
   EXPECT_EQ(sensor.camera.height, 480);
   EXPECT_EQ(sensor.camera.fx, 458.654);
   EXPECT_EQ(sensor.camera.cy, 248.375);
-  EXPECT_THAT(sensor.camera.distortion, ElementsAre(-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0));
+  EXPECT_THAT(sensor.camera.distortion,
+              ElementsAre(-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
   const Eigen::Vector3d point_in_body = sensor.body_from_camera * Eigen::Vector3d(1.0, 0.0, 0.0);
   EXPECT_LT((point_in_body - Eigen::Vector3d(0.5, 0.75, 2.0)).norm(), 1e-12);
 }
@@ -89,8 +90,8 @@ TEST_F(EurocSensorFile, ReportsTheInvalidField) {
       {"458.654", "wide", "intrinsics: contains a value that is not a number"},
       {"458.654", ".nan", "intrinsics: contains a value that is not a number"},
       {"458.654, ", "", "intrinsics: has 3 numbers instead of 4"},
-      {"model: pinhole", "model: omni", "camera_model: \"omni\" is not supported"},
-      {"radial-tangential", "fov", "distortion_model: \"fov\" is not supported"},
+      {"model: pinhole", "model: ocam", "camera_model: \"ocam\" is not supported"},
+      {"radial-tangential", "poly", "distortion_model: \"poly\" is not supported"},
       {"-0.28340811, ", "", "distortion_coefficients: has 3 numbers instead of 4"},
       {"radial-tangential\ndistortion_coefficients: [", "equidistant\ndistortion_coefficients: [0.1, ",
        "has 5 numbers"},

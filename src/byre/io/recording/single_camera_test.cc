@@ -303,8 +303,8 @@ TEST_F(VideoFile, ReturnsExactFramesInAnyOrder) {
 
 TEST_F(VideoFile, ReportsErrors) {
   EXPECT_THAT(film_error({.camera = CameraChoice::stereo}), HasSubstr("film.avi: has images of one camera only"));
-  write("calibration.yaml", "cam0:\n  camera_model: ds\n");
-  EXPECT_THAT(film_error(), HasSubstr("calibration.yaml: cam0.camera_model: \"ds\" is not supported"));
+  write("calibration.yaml", "cam0:\n  camera_model: ocam\n");
+  EXPECT_THAT(film_error(), HasSubstr("calibration.yaml: cam0.camera_model: \"ocam\" is not supported"));
   fs::remove(folder_ / "calibration.yaml");
   EXPECT_THAT(film_error(), HasSubstr("contains no camera calibration"));
   write("film.avi", "no film");

@@ -142,13 +142,43 @@ ros::TFMessage ros_camera_extrinsics(const Calibration& calibration, Timestamp t
   return mounts;
 }
 
+namespace {
+
+struct RosLens {
+  std::string model;
+  int count = 0;  // coefficients
+};
+
+// Models that ROS does not define keep their name.
+RosLens ros_lens(const Camera& camera) {
+  const auto& d = camera.distortion;
+  switch (camera.model) {
+    case CameraModel::pinhole:
+    case CameraModel::radial_tangential:
+      return {"plumb_bob", 5};
+    case CameraModel::equidistant:
+      return {"equidistant", 4};
+    case CameraModel::rational:
+      return {"rational_polynomial", std::all_of(d.begin() + 8, d.end(), [](double k) { return k == 0.0; }) ? 8 : 14};
+    case CameraModel::unified:
+    case CameraModel::extended_unified:
+    case CameraModel::double_sphere:
+    case CameraModel::field_of_view:
+    case CameraModel::thin_prism_fisheye:
+      break;
+  }
+  return {std::string(to_string(camera.model)), 8};
+}
+
+}  // namespace
+
 ros::CameraInfo ros_camera_info(const Camera& camera, const std::string& frame, Timestamp time) {
   ros::CameraInfo info{.header = header(frame.c_str(), time),
                        .height = static_cast<std::uint32_t>(camera.height),
                        .width = static_cast<std::uint32_t>(camera.width)};
-  const bool is_fisheye = camera.model == CameraModel::equidistant;
-  info.distortion_model = is_fisheye ? "equidistant" : "plumb_bob";
-  info.d.assign(camera.distortion.begin(), camera.distortion.begin() + (is_fisheye ? 4 : 5));
+  const auto [model, count] = ros_lens(camera);
+  info.distortion_model = model;
+  info.d.assign(camera.distortion.begin(), camera.distortion.begin() + count);
   info.k = {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
   info.r = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   info.p = {camera.fx, 0.0, camera.cx, 0.0, 0.0, camera.fy, camera.cy, 0.0, 0.0, 0.0, 1.0, 0.0};

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include <yaml-cpp/yaml.h>
+
+namespace byre {
+
+// Calibration files that are not YAML, as its nodes. place: name of the file. Throws InputError if the text is invalid.
+YAML::Node parse_opencv_xml(const std::string& text, const std::string& place);
+
+// ROS' .ini and ost.txt: "[image]" with width and height, and a section for each camera with "camera matrix",
+// "distortion", "rectification" and "projection". Each camera has the fields of a ROS YAML file, as the whole file if
+// there is one camera, else as "left" and "right".
+bool is_ros_ini(const std::string& text);
+YAML::Node parse_ros_ini(const std::string& text, const std::string& place);
+
+}  // namespace byre
