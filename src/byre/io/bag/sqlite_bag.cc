@@ -81,7 +81,11 @@ SqliteBag::Statement SqliteBag::prepare(const char* text) const {
 }
 
 void SqliteBag::read_topics(const TypeFilter& wanted) {
-  const Statement topics = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+  // The first versions of rosbag2 have no column of formats, and write CDR.
+  const Statement formats = prepare("SELECT 1 FROM pragma_table_info('topics') WHERE name = 'serialization_format'");
+  const bool has_formats = sqlite3_step(formats.get()) == SQLITE_ROW;
+  const Statement topics = prepare(has_formats ? "SELECT id, name, type, serialization_format FROM topics ORDER BY id"
+                                               : "SELECT id, name, type, 'cdr' FROM topics ORDER BY id");
   int result = SQLITE_OK;
   while ((result = sqlite3_step(topics.get())) == SQLITE_ROW) {
     topic_ids_.push_back(sqlite3_column_int64(topics.get(), 0));

@@ -89,17 +89,50 @@ cv::Mat decode(const OwnBytes& bytes, int flags) {
   }
 }
 
-}  // namespace
-
-ImageReading<Image> try_image(const std::filesystem::path& path) {
-  const auto [bytes, failure] = read_bytes(path);
-  if (!failure.empty()) return {std::nullopt, failure};
-  return decoded_image(bytes);
+// Whether the bytes are a PNG with 16 bits per channel.
+bool has_sixteen_bits(const OwnBytes& bytes) {
+  constexpr std::size_t kBitDepth = 24;  // after the signature, the header's length and name, width and height
+  return bytes.size() > kBitDepth && is_png(bytes) && bytes[kBitDepth] == kWordBits;
 }
 
-ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes) {
+}  // namespace
+
+int bits_of(std::uint16_t value) {
+  for (const int bits : {8, 10, 12, 14}) {
+    if (value < 1 << bits) return bits;
+  }
+  return kWordBits;
+}
+
+std::optional<std::uint16_t> largest_value(const std::filesystem::path& path) {
+  const auto [bytes, failure] = read_bytes(path);
+  if (!has_sixteen_bits(bytes)) return std::nullopt;
+  const cv::Mat pixels = decode(bytes, cv::IMREAD_UNCHANGED);
+  if (pixels.empty() || pixels.type() != CV_16U) return std::nullopt;
+  return *std::max_element(pixels.begin<std::uint16_t>(), pixels.end<std::uint16_t>());
+}
+
+Image grey_of_sixteen_bits(const cv::Mat& pixels, int bits) {
+  Image image{pixels.cols, pixels.rows, OwnBytes(pixels.total())};
+  cv::Mat grey(image.height, image.width, CV_8U, image.pixels.data());
+  pixels.convertTo(grey, CV_8U, 255.0 / ((1 << bits) - 1));
+  return image;
+}
+
+ImageReading<Image> try_image(const std::filesystem::path& path, int bits) {
+  const auto [bytes, failure] = read_bytes(path);
+  if (!failure.empty()) return {std::nullopt, failure};
+  return decoded_image(bytes, bits);
+}
+
+ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes, int bits) {
   const ImageReading<Image> broken{std::nullopt, "is not a complete image"};
   if (bytes.empty() || is_cut_jpeg(bytes)) return broken;
+  if (bits != kWordBits && has_sixteen_bits(bytes)) {
+    const cv::Mat pixels = decode(bytes, cv::IMREAD_UNCHANGED);
+    if (pixels.empty()) return broken;
+    if (pixels.type() == CV_16U) return {grey_of_sixteen_bits(pixels, bits), {}};
+  }
   const cv::Mat grey = decode(bytes, cv::IMREAD_GRAYSCALE);
   if (grey.empty()) return broken;
   assert(grey.isContinuous());
@@ -107,9 +140,13 @@ ImageReading<Image> decoded_image(const std::vector<std::uint8_t>& bytes) {
 }
 
 ImageReading<DepthImage> try_depth_image(const std::filesystem::path& path) {
-  const ImageReading<DepthImage> broken{std::nullopt, "is not a complete 16-bit image"};
   const auto [bytes, failure] = read_bytes(path);
   if (!failure.empty()) return {std::nullopt, failure};
+  return decoded_depth_image(bytes);
+}
+
+ImageReading<DepthImage> decoded_depth_image(const std::vector<std::uint8_t>& bytes) {
+  const ImageReading<DepthImage> broken{std::nullopt, "is not a complete 16-bit image"};
   if (bytes.empty()) return broken;
   const cv::Mat depth = decode(bytes, cv::IMREAD_UNCHANGED);
   if (depth.empty() || depth.type() != CV_16U) return broken;

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -71,19 +74,94 @@ void swap_bytes(cv::Mat& numbers) {
   }
 }
 
-void copy_grey(const ros::Image& image, const Layout& layout, cv::Mat& grey) {
+void copy_grey(const ros::Image& image, const Layout& layout, int bits, cv::Mat& grey) {
   const cv::Mat pixels(static_cast<int>(image.height), static_cast<int>(image.width), layout.type,
                        const_cast<std::uint8_t*>(image.data.data()), image.step);
   if (layout.to_grey) return cv::cvtColor(pixels, grey, *layout.to_grey);
   if (layout.type != CV_16UC1) return pixels.copyTo(grey);
   cv::Mat numbers = pixels.clone();
   if (image.is_bigendian != 0) swap_bytes(numbers);
-  numbers.convertTo(grey, CV_8U, 255.0 / 65535.0);
+  numbers.convertTo(grey, CV_8U, 255.0 / ((1 << bits) - 1));
+}
+
+// Metres as units; zero for invalid depths and those out of range.
+std::uint16_t units_of(float metres) {
+  constexpr double kMost = 65535.0;
+  const double units = std::round(kUnitsOfMetres * static_cast<double>(metres));
+  return units >= 1.0 && units <= kMost ? static_cast<std::uint16_t>(units) : std::uint16_t{0};
+}
+
+template <typename Number>
+DepthImage depth_image(const cv::Mat& pixels) {
+  DepthImage depth{pixels.cols, pixels.rows, {}};
+  depth.units.reserve(pixels.total());
+  for (int row = 0; row < pixels.rows; ++row) {
+    for (const Number* value = pixels.ptr<Number>(row); value != pixels.ptr<Number>(row) + pixels.cols; ++value) {
+      if constexpr (std::is_same_v<Number, float>) {
+        depth.units.push_back(units_of(*value));
+      } else {
+        depth.units.push_back(*value);
+      }
+    }
+  }
+  return depth;
+}
+
+BagDepth raw_depth(const ros::Image& image) {
+  const bool is_metric = image.encoding == "32FC1";
+  if (!is_metric && image.encoding != "16UC1" && image.encoding != "mono16") {
+    return {{std::nullopt, "has the encoding \"" + image.encoding + "\", which is not of depths (16UC1, 32FC1)"}};
+  }
+  const int type = is_metric ? CV_32FC1 : CV_16UC1;
+  const bool is_sound = image.width > 0 && image.height > 0 &&
+                        ImageSize{image.width, image.height}.pixels() <= kMaxPixels &&
+                        image.data.size() >= bytes_needed(image, type) && image.step % CV_ELEM_SIZE1(type) == 0;
+  if (!is_sound) return {{std::nullopt, "is not a complete depth image"}};
+  if (is_metric && image.is_bigendian != 0) return {{std::nullopt, "has big-endian depths, which are not supported"}};
+  const cv::Mat source(static_cast<int>(image.height), static_cast<int>(image.width), type,
+                       const_cast<std::uint8_t*>(image.data.data()), image.step);
+  cv::Mat pixels = source.clone();
+  if (is_metric) return {{depth_image<float>(pixels), {}}, true};
+  if (image.is_bigendian != 0) swap_bytes(pixels);
+  return {{depth_image<std::uint16_t>(pixels), {}}};
+}
+
+// compressed_depth_image_transport: the header (i32 kind, f32 a, f32 b), then a PNG of depths, or of a / depth + b for
+// depths in metres.
+BagDepth compressed_depth(const ros::CompressedImage& image) {
+  constexpr std::size_t kHeader = 12;
+  const bool has_header = image.format.find("compressedDepth") != std::string::npos;
+  if (image.format.find("rvl") != std::string::npos) {
+    return {
+        {std::nullopt, "has depths compressed as RVL, which is not read; record PNG (depth_image_transport format)"}};
+  }
+  if (has_header && image.data.size() < kHeader) return {{std::nullopt, "is not a complete depth image"}};
+  const auto begin = image.data.begin() + (has_header ? static_cast<std::ptrdiff_t>(kHeader) : 0);
+  ImageReading<DepthImage> depth = decoded_depth_image({begin, image.data.end()});
+  if (!depth.image || !has_header || !image.format.starts_with("32FC1")) return {std::move(depth)};
+  std::array<float, 2> scale{};
+  std::memcpy(scale.data(), image.data.data() + sizeof(float), sizeof(scale));
+  for (std::uint16_t& value : depth.image->units) {
+    value = value == 0 ? std::uint16_t{0} : units_of(scale[0] / (static_cast<float>(value) - scale[1]));
+  }
+  return {std::move(depth), true};
 }
 
 }  // namespace
 
-ImageReading<Image> grey_of(const ros::Image& image) {
+BagDepth depth_of(Bag& bag, const BagMessage& message) {
+  const BagTopic& topic = bag.content().topics[message.topic];
+  try {
+    const std::vector<std::byte> bytes = bag.read(message);
+    const ros::Encoding encoding = *encoding_of(topic);
+    if (holds<ros::Image>(topic)) return raw_depth(ros::read_message<ros::Image>(bytes, encoding, topic.name));
+    return compressed_depth(ros::read_message<ros::CompressedImage>(bytes, encoding, topic.name));
+  } catch (const InputError& error) {
+    return {{std::nullopt, error.reason()}};
+  }
+}
+
+ImageReading<Image> grey_of(const ros::Image& image, int bits) {
   const auto layout = std::ranges::find(kLayouts, image.encoding, &Layout::encoding);
   if (layout == kLayouts.end()) {
     return {std::nullopt, "has the unsupported encoding \"" + image.encoding + "\""};
@@ -101,25 +179,39 @@ ImageReading<Image> grey_of(const ros::Image& image) {
   result.pixels.resize(std::size_t{image.width} * image.height);
   cv::Mat grey(result.height, result.width, CV_8UC1, result.pixels.data());
   try {
-    copy_grey(image, *layout, grey);
+    copy_grey(image, *layout, bits, grey);
   } catch (const cv::Exception& exception) {  // sizes that a conversion does not support
     return {std::nullopt, "cannot be converted from \"" + image.encoding + "\": " + exception.err};
   }
   return {std::move(result), {}};
 }
 
-ImageReading<Image> image_of(Bag& bag, const BagMessage& message) {
+ImageReading<Image> image_of(Bag& bag, const BagMessage& message, int bits) {
   const BagTopic& topic = bag.content().topics[message.topic];
   try {
     const std::vector<std::byte> bytes = bag.read(message);
     const ros::Encoding encoding = *encoding_of(topic);
-    if (holds<ros::Image>(topic)) return grey_of(ros::read_message<ros::Image>(bytes, encoding, topic.name));
+    if (holds<ros::Image>(topic)) return grey_of(ros::read_message<ros::Image>(bytes, encoding, topic.name), bits);
     const auto compressed = ros::read_message<ros::CompressedImage>(bytes, encoding, topic.name);
-    ImageReading<Image> image = decoded_image(compressed.data);
+    ImageReading<Image> image = decoded_image(compressed.data, bits);
     if (!image.image) image.failure += " (format \"" + compressed.format + "\"; supported: JPEG and PNG)";
     return image;
   } catch (const InputError& error) {
     return {std::nullopt, error.reason()};
+  }
+}
+
+std::optional<std::uint16_t> largest_value(Bag& bag, const BagMessage& message) {
+  const BagTopic& topic = bag.content().topics[message.topic];
+  if (!holds<ros::Image>(topic)) return std::nullopt;
+  try {
+    const auto image = ros::read_message<ros::Image>(bag.read(message), *encoding_of(topic), topic.name);
+    if (image.encoding != "mono16") return std::nullopt;
+    const ImageReading<DepthImage> values = raw_depth(image).reading;
+    if (!values.image) return std::nullopt;
+    return std::ranges::max(values.image->units);
+  } catch (const InputError&) {
+    return std::nullopt;
   }
 }
 

@@ -42,6 +42,7 @@ struct BagFrame {
   Timestamp time{};
   BagMessage left;
   std::optional<BagMessage> right{};
+  std::optional<BagMessage> depth{};
 };
 
 struct BagFrames {
@@ -102,17 +103,34 @@ BagFrames bag_frames(const BagContent& content, const ImageTopics& topics, const
   return result;
 }
 
+// Adds depth images to the frames: each belongs to the nearest frame within 20 ms, and a frame takes the nearest.
+void add_depth(std::vector<BagFrame>& frames, const std::vector<TimedMessage>& depth) {
+  std::vector<Timestamp> times;
+  for (const BagFrame& frame : frames) times.push_back(frame.time);
+  const auto owners = match_by_time(times_of(depth), times, kDepthTolerance);
+  std::vector<Timestamp> gaps(frames.size(), Timestamp::max());
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (!owners[i]) continue;
+    const Timestamp gap = std::chrono::abs(depth[i].time - times[*owners[i]]);
+    if (gap >= gaps[*owners[i]]) continue;
+    gaps[*owners[i]] = gap;
+    frames[*owners[i]].depth = depth[i].message;
+  }
+}
+
 class BagRecording final : public Recording {
  public:
   BagRecording(std::unique_ptr<Bag> bag, CalibrationWithSource calibration, std::vector<BagFrame> frames,
-               MotionSamples motion, TimeCorrections corrections, std::string place, std::vector<std::string> warnings)
+               MotionSamples motion, TimeCorrections corrections, std::string place, std::vector<std::string> warnings,
+               int bits)
       : bag_(std::move(bag)),
         calibration_(std::move(calibration)),
         frames_(std::move(frames)),
         motion_(std::move(motion)),
         corrections_(std::move(corrections)),
         place_(std::move(place)),
-        warnings_(std::move(warnings)) {
+        warnings_(std::move(warnings)),
+        bits_(bits) {
     for (const BagFrame& frame : frames_) times_.push_back(frame.time);
   }
 
@@ -125,6 +143,7 @@ class BagRecording final : public Recording {
 
  private:
   std::optional<Image> read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera);
+  std::optional<DepthImage> read_depth(const BagFrame& frame);
   void warn(const BagFrame& frame, const BagMessage& message, const std::string& what);
 
   std::unique_ptr<Bag> bag_;
@@ -135,6 +154,7 @@ class BagRecording final : public Recording {
   TimeCorrections corrections_;        // constant after construction
   std::string place_;                  // constant after construction
   std::vector<std::string> warnings_;  // grows with read
+  int bits_;                           // bits in use of 16-bit images, constant after construction
 };
 
 void BagRecording::warn(const BagFrame& frame, const BagMessage& message, const std::string& what) {
@@ -143,7 +163,7 @@ void BagRecording::warn(const BagFrame& frame, const BagMessage& message, const 
 }
 
 std::optional<Image> BagRecording::read_image(const BagFrame& frame, const BagMessage& message, const Camera& camera) {
-  ImageReading<Image> read = image_of(*bag_, message);
+  ImageReading<Image> read = image_of(*bag_, message, bits_);
   if (!read.image) {
     warn(frame, message, read.failure);
     return std::nullopt;
@@ -155,12 +175,25 @@ std::optional<Image> BagRecording::read_image(const BagFrame& frame, const BagMe
   return std::nullopt;
 }
 
+std::optional<DepthImage> BagRecording::read_depth(const BagFrame& frame) {
+  if (!calibration().depth || !frame.depth) return std::nullopt;
+  ImageReading<DepthImage> read = depth_of(*bag_, *frame.depth).reading;
+  const Camera& camera = calibration().depth->camera.value_or(calibration().left);
+  if (read.image && (read.image->width != camera.width || read.image->height != camera.height)) {
+    read.failure =
+        fmt::format("is {}x{} instead of {}x{}", read.image->width, read.image->height, camera.width, camera.height);
+    read.image.reset();
+  }
+  if (!read.image) warn(frame, *frame.depth, read.failure);
+  return std::move(read.image);
+}
+
 std::optional<ImageFrame> BagRecording::read(int index) {
   assert(index >= 0 && index < size());
   const BagFrame& frame = frames_[static_cast<std::size_t>(index)];
   std::optional<Image> left = read_image(frame, frame.left, calibration().left);
   if (!left) return std::nullopt;
-  ImageFrame images{frame.time, std::move(*left), std::nullopt};
+  ImageFrame images{frame.time, std::move(*left), std::nullopt, read_depth(frame)};
   if (!calibration().right) return images;
   if (frame.right) {
     images.right = read_image(frame, *frame.right, calibration().right->camera);
@@ -176,7 +209,7 @@ class BagCalibration {
   BagCalibration(Bag& bag, std::string place) : bag_(bag), place_(std::move(place)) {}
 
   // Empty without camera info for the left images.
-  std::optional<CalibrationWithSource> read(const ImageTopics& topics) const {
+  std::optional<CalibrationWithSource> read(const ImageTopics& topics, std::vector<std::string>& warnings) const {
     const std::optional<CameraInfoWithSource> left = info_of(topics.left);
     if (!left) return std::nullopt;
     const StaticFrames frames = tree();
@@ -190,7 +223,36 @@ class BagCalibration {
     }
     calibration.cameras.right = partner_of(*left, *right, frames);
     calibration.right_size = right->place;
+    if (has_positive_baseline(*left, *right)) {
+      warnings.push_back(right->place +
+                         ": the baseline in P is positive, but a right camera has a negative one; the "
+                         "sign is ignored. If left and right images then do not fit, exchange them with "
+                         "--left and --right");
+    }
     return calibration;
+  }
+
+  // The depth camera: registered to the left camera by name, by frame, or without camera info of its own; else with its
+  // own camera info and the transform tree. Throws InputError if the tree does not connect the frames.
+  DepthCamera read_depth(const ImageTopics& topics) const {
+    const BagTopic& topic = bag_.content().topics[*topics.depth];
+    DepthCamera depth;
+    const std::optional<CameraInfoWithSource> own = info_of(*topics.depth);
+    const std::optional<CameraInfoWithSource> left = info_of(topics.left);
+    const bool is_one_frame = own && left && own->info.header.frame_id == left->info.header.frame_id;
+    if (is_registered(topic) || !own || is_one_frame) return depth;
+    depth.camera = camera_of(*own);
+    const std::string left_frame = left ? left->info.header.frame_id : "";
+    const auto pose = tree().between(left_frame, own->info.header.frame_id);
+    if (!pose) {
+      throw InputError(own->place,
+                       "has the frame \"" + own->info.header.frame_id +
+                           "\", which /tf_static does not connect to that of the left camera, \"" + left_frame + "\"",
+                       "record depth registered to the left camera, give the extrinsics with --calibration FILE "
+                       "(depth_camera), or use the camera alone: --camera left");
+    }
+    depth.left_from_depth = *pose;
+    return depth;
   }
 
  private:
@@ -235,15 +297,80 @@ class BagCalibration {
 };
 
 CalibrationWithSource calibration_of(Bag& bag, const fs::path& path, const ImageTopics& topics,
-                                     const OpenOptions& options) {
+                                     const OpenOptions& options, std::vector<std::string>& warnings) {
   const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
   if (options.calibration) return calibration_for(folder, options);
-  if (auto calibration = BagCalibration(bag, path.string()).read(topics)) return std::move(*calibration);
+  if (auto calibration = BagCalibration(bag, path.string()).read(topics, warnings)) return std::move(*calibration);
   if (find_calibration(folder)) return calibration_for(folder, options);
   throw InputError(path.string(),
                    "has no camera info on topic " + camera_info_topic(bag.content().topics[topics.left].name) +
                        ", and its folder contains no calibration file",
                    "give one with --calibration FILE");
+}
+
+// Adds the depth camera: of the given calibration file if that has one, else of the bag. The unit is that of the first
+// readable depth image. Without one, or without a pose of the depth camera, depth is left out.
+void add_depth_camera(Bag& bag, const std::vector<BagFrame>& frames, const ImageTopics& topics, const fs::path& path,
+                      const OpenOptions& options, CalibrationWithSource& calibration,
+                      std::vector<std::string>& warnings) {
+  const std::string place = path.string() + ": " + bag.content().topics[*topics.depth].name;
+  std::string failure = "no depth image is within 20 ms of a frame";
+  std::optional<BagDepth> first;
+  for (const BagFrame& frame : frames) {
+    if (!frame.depth) continue;
+    first = depth_of(bag, *frame.depth);
+    if (first->reading.image) break;
+    failure = first->reading.failure;
+    first.reset();
+  }
+  try {
+    if (!first) throw InputError(place, failure, "select another topic with --depth TOPIC");
+    const bool has_file = options.calibration && has_depth_camera_fields(*options.calibration);
+    DepthCamera depth =
+        has_file ? read_depth_camera(*options.calibration) : BagCalibration(bag, path.string()).read_depth(topics);
+    if (first->is_in_metres) depth.units_per_metre = kUnitsOfMetres;
+    if (!first->is_in_metres && !has_file) depth.units_per_metre = kUnitsOfMillimetres;
+    const Camera& camera = depth.camera.value_or(calibration.cameras.left);
+    require_calibrated_size(first->reading.image->width, first->reading.image->height, camera, place);
+    calibration.cameras.depth = depth;
+    calibration.depth_size = place;
+  } catch (const InputError& error) {
+    if (options.camera == CameraChoice::rgbd || options.depth_topic) throw;
+    warnings.push_back(std::string(error.what()) + "; depth is ignored");
+  }
+}
+
+// Completes sizes that the calibration file does not have from the first readable images.
+void complete_sizes(Bag& bag, const std::vector<BagFrame>& frames, CalibrationWithSource& calibration) {
+  const auto is_complete = [&cameras = calibration.cameras] {
+    return cameras.left.width != 0 && (!cameras.right || cameras.right->camera.width != 0);
+  };
+  if (is_complete()) return;
+  const auto complete = [&](Camera& camera, const BagMessage& message, const std::string& place) {
+    const ImageReading<Image> read = image_of(bag, message);
+    if (read.image) complete_size(camera, read.image->width, read.image->height, place);
+  };
+  for (const BagFrame& frame : frames) {
+    complete(calibration.cameras.left, frame.left, calibration.left_size);
+    if (calibration.cameras.right) {
+      complete(calibration.cameras.right->camera, frame.right.value_or(frame.left), calibration.right_size);
+    }
+    if (is_complete()) return;
+  }
+}
+
+// Bits in use of 16-bit images, by the largest value of images spread over the recording.
+int bits_in_use(Bag& bag, const std::vector<BagFrame>& frames) {
+  constexpr std::size_t kSamples = 9;
+  std::uint16_t largest = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const BagFrame& frame = frames[i * (frames.size() - 1) / (kSamples - 1)];
+    const auto left = largest_value(bag, frame.left);
+    if (!left && i == 0) return kWordBits;
+    const auto right = frame.right ? largest_value(bag, *frame.right) : std::nullopt;
+    largest = std::max({largest, left.value_or(0), right.value_or(0)});
+  }
+  return bits_of(largest);
 }
 
 // Throws InputError if the size of the first readable image differs from the calibration, or none is readable.
@@ -296,11 +423,19 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   auto [frames, corrections, clock, frame_warnings] = bag_frames(content, topics, place, pair_tolerance(options));
   warnings.insert(warnings.end(), frame_warnings.begin(), frame_warnings.end());
 
-  CalibrationWithSource calibration = calibration_of(*bag, path, topics, options);
+  CalibrationWithSource calibration = calibration_of(*bag, path, topics, options, warnings);
+  complete_sizes(*bag, frames, calibration);
+  if (topics.depth) {
+    const TimedMessages depth = timed_messages(content, *topics.depth, {place, "image", "frame"}, clock);
+    warnings.insert(warnings.end(), depth.warnings.begin(), depth.warnings.end());
+    add_depth(frames, depth.messages);
+    add_depth_camera(*bag, frames, topics, path, options, calibration, warnings);
+  }
   if (topics.right && !calibration.cameras.right && !options.camera) {
     warnings.push_back(place + ": the calibration has one camera only; right images are ignored");
   }
-  calibration = choose_calibration(calibration, {.right = topics.right.has_value()}, options.camera, path);
+  const ExtraImages extra{.right = topics.right.has_value(), .depth = calibration.cameras.depth.has_value()};
+  calibration = choose_calibration(calibration, extra, options.camera, path);
   calibration.cameras =
       with_checked_baseline(calibration.cameras, options.baseline, place_of_calibration(path, options), "--baseline ");
   frames = frames_of_choice(std::move(frames), calibration, options.camera);
@@ -308,12 +443,13 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   auto [motion, motion_warnings] = read_bag_motion(*bag, options, place, clock);
   warnings.insert(warnings.end(), motion_warnings.begin(), motion_warnings.end());
 
+  const int bits = frames.empty() ? kWordBits : bits_in_use(*bag, frames);
   std::vector<Timestamp> times;
   for (const BagFrame& frame : frames) times.push_back(frame.time);
   std::vector<BagFrame> selected;
   for (const std::size_t i : frames_in_range(times, range, path)) selected.push_back(frames[i]);
   return std::make_unique<BagRecording>(std::move(bag), std::move(calibration), std::move(selected), std::move(motion),
-                                        std::move(corrections), place, std::move(warnings));
+                                        std::move(corrections), place, std::move(warnings), bits);
 }
 
 }  // namespace byre

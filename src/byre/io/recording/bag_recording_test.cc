@@ -4,6 +4,10 @@
 #include "byre/io/recording/folder_scene.h"
 #include "byre/io/recording/input_files.h"
 
+#include <array>
+#include <cstring>
+#include <limits>
+
 #include <gmock/gmock.h>
 
 namespace byre {
@@ -274,6 +278,152 @@ TEST_F(BagRecordings, AcceptTopicsUnlikeOtherRecordings) {
   EXPECT_THAT(error_of([&] { open_recording(folder_ / "images", {}, {.left_topic = kLeft}); }),
               HasSubstr("is not a bag and has no topics"));
   EXPECT_THAT(open_error(with_infos(scene_messages()), {.frame_rate_hz = 20.0}), HasSubstr("has time stamps"));
+}
+
+constexpr const char* kDepth = "/depth/image_raw";
+
+// Depths of 6x4 pixels, 16UC1 in millimetres: all the same except for the first, which is invalid.
+ros::Image depth_message(Timestamp stamp, std::uint16_t millimetres) {
+  ros::Image image{{ros::to_time(stamp), "left"}, 4, 6, "16UC1", 0, 12, std::vector<std::uint8_t>(48)};
+  for (std::size_t i = 1; i < 24; ++i) std::memcpy(image.data.data() + 2 * i, &millimetres, 2);
+  return image;
+}
+
+ros::Image depth_in_metres(Timestamp stamp, float metres) {
+  ros::Image image{{ros::to_time(stamp), "left"}, 4, 6, "32FC1", 0, 24, std::vector<std::uint8_t>(96)};
+  const float invalid = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 0; i < 24; ++i) std::memcpy(image.data.data() + 4 * i, i == 0 ? &invalid : &metres, 4);
+  return image;
+}
+
+std::vector<SceneMessage> colour_images() {
+  return {image_of_bag(kLeft, 1, ms(1000), ms(1001)), image_of_bag(kLeft, 2, ms(1050), ms(1051)), infos()[0]};
+}
+
+std::vector<SceneMessage> with(std::vector<SceneMessage> messages, SceneMessage more) {
+  messages.push_back(std::move(more));
+  return messages;
+}
+
+// The last depth of the first frame, metres.
+double depth_of_first(Recording& recording) {
+  const auto frame = recording.read(0);
+  if (!frame || !frame->depth) return -1.0;
+  EXPECT_EQ(frame->depth->units.front(), 0);
+  return frame->depth->units.back() / recording.calibration().depth->units_per_metre;
+}
+
+TEST_F(BagRecordings, HaveDepthWithoutAnOption) {
+  const auto recording = open(with(colour_images(), scene_message(kDepth, ms(1001), depth_message(ms(1004), 1234))));
+  EXPECT_THAT(recording->warnings(), IsEmpty());
+  ASSERT_TRUE(recording->calibration().depth);
+  EXPECT_FALSE(recording->calibration().depth->camera) << "without camera info of its own";
+  EXPECT_EQ(camera_of(*recording, {}), CameraChoice::rgbd);
+  EXPECT_NEAR(depth_of_first(*recording), 1.234, 1e-9);
+  EXPECT_FALSE(recording->read(1)->depth) << "too far in time";
+}
+
+TEST_F(BagRecordings, ReadEveryKindOfDepth) {
+  EXPECT_NEAR(
+      depth_of_first(*open(with(colour_images(), scene_message(kDepth, ms(1001), depth_in_metres(ms(1000), 1.2345f))))),
+      1.2345, 1e-4);
+  cv::Mat pixels(4, 6, CV_16U, cv::Scalar(1234));
+  pixels.at<std::uint16_t>(0, 0) = 0;
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", pixels, png);
+  const auto message = [&](const std::string& format, std::array<float, 3> head) {
+    ros::CompressedImage image{{ros::to_time(ms(1000)), "left"}, format, png};
+    if (format.find("compressedDepth") == std::string::npos) return image;
+    image.data.insert(image.data.begin(), 12, 0);
+    std::memcpy(image.data.data(), head.data(), 12);
+    return image;
+  };
+  const auto depth = [&](const std::string& topic, const ros::CompressedImage& image) {
+    return depth_of_first(*open(with(colour_images(), scene_message(topic, ms(1001), image))));
+  };
+  EXPECT_NEAR(depth("/depth/image_raw/compressedDepth", message("16UC1; compressedDepth png", {})), 1.234, 1e-9);
+  EXPECT_NEAR(depth("/depth/image_raw/compressed", message("16UC1; png compressed ", {})), 1.234, 1e-9);
+  // Depth = a / (value - b): 2000 / (1234 - 34).
+  EXPECT_NEAR(depth("/depth/image/compressedDepth", message("32FC1; compressedDepth png", {0.0f, 2000.0f, 34.0f})),
+              2000.0 / 1200.0, 1e-4);
+  EXPECT_THAT(open_error(with(colour_images(), scene_message("/depth/image/compressedDepth", ms(1001),
+                                                             message("16UC1; compressedDepth rvl", {}))),
+                         {.camera = CameraChoice::rgbd}),
+              HasSubstr("has depths compressed as RVL"));
+}
+
+TEST_F(BagRecordings, PlaceADepthCameraByTheTransformTree) {
+  std::vector<SceneMessage> messages =
+      with(colour_images(), scene_message(kDepth, ms(1001), depth_message(ms(1000), 1234)));
+  ros::CameraInfo own = info("depth");
+  own.k[0] = 4.0;
+  messages.push_back(scene_message("/depth/camera_info", ms(1000), own));
+  const auto ignored = open(messages);
+  EXPECT_FALSE(ignored->calibration().depth);
+  EXPECT_THAT(ignored->warnings(),
+              ElementsAre(testing::AllOf(HasSubstr("has the frame \"depth\", which /tf_static does not connect"),
+                                         HasSubstr("depth is ignored"))));
+  EXPECT_THAT(open_error(messages, {.camera = CameraChoice::rgbd}), HasSubstr("does not connect to that of the left"));
+  const ros::TransformStamped mount{{.frame_id = "left"}, "depth", {{-0.015, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0}}};
+  messages.push_back(scene_message("/tf_static", ms(900), ros::TFMessage{{mount}}));
+  const auto recording = open(messages);
+  ASSERT_TRUE(recording->calibration().depth && recording->calibration().depth->camera);
+  EXPECT_EQ(recording->calibration().depth->camera->fx, 4.0);
+  EXPECT_EQ(recording->calibration().depth->left_from_depth.translation.x(), -0.015);
+  EXPECT_NEAR(depth_of_first(*recording), 1.234, 1e-9);
+}
+
+TEST_F(BagRecordings, UseTheDepthScaleOfTheCalibrationFile) {
+  write(
+      "scaled.yaml",
+      "camera_matrix: {rows: 3, cols: 3, data: [4.0, 0, 2.5, 0, 4.0, 1.5, 0, 0, 1]}\nimage_width: 6\nimage_height: 4\n"
+      "distortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\ndepth_scale: 5000\n");
+  const auto recording = open(with(colour_images(), scene_message(kDepth, ms(1001), depth_message(ms(1000), 10000))),
+                              {.calibration = folder_ / "scaled.yaml"});
+  EXPECT_NEAR(depth_of_first(*recording), 2.0, 1e-9);
+}
+
+TEST_F(BagRecordings, IgnoreTheSignOfTheBaselineWithAWarning) {
+  std::vector<SceneMessage> messages = scene_messages();
+  messages.push_back(infos()[0]);
+  messages.push_back(scene_message("/right/camera_info", ms(1000), info("left", 0.5)));
+  const auto recording = open(messages);
+  EXPECT_NEAR(recording->calibration().right->right_from_left.translation.x(), -0.1, 1e-12);
+  EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr("/right/camera_info: the baseline in P is positive")));
+}
+
+TEST_F(BagRecordings, TakeTheImageSizeWhereTheCalibrationHasNone) {
+  write("k.yaml", "K: [4.0, 0, 2.5, 0, 4.0, 1.5, 0, 0, 1]\nD: [0, 0, 0, 0, 0]\n");
+  const auto recording = open(colour_images(), {.calibration = folder_ / "k.yaml"});
+  EXPECT_EQ(recording->calibration().left.width, 6);
+  EXPECT_EQ(recording->calibration().left.height, 4);
+}
+
+// Images of 10, 12 and 14 bits in words of 16: half of the largest value is grey 127 or 128.
+TEST_F(BagRecordings, DetectTheBitsInUse) {
+  for (const int bits : {8, 10, 12, 14, 16}) {
+    std::vector<SceneMessage> messages = {infos()[0]};
+    for (int i = 0; i < 3; ++i) {
+      const auto largest = static_cast<std::uint16_t>((1 << bits) - 1);
+      ros::Image image = depth_message(ms(1000 + 50 * i), i == 1 ? largest : static_cast<std::uint16_t>(largest / 2));
+      image.encoding = "mono16";
+      messages.push_back(scene_message(kLeft, ms(1001 + 50 * i), image));
+    }
+    const auto recording = open(messages);
+    EXPECT_EQ(recording->read(1)->left.pixels.back(), 255) << bits;
+    EXPECT_NEAR(recording->read(0)->left.pixels.back(), 127.5, 1.0) << bits;
+    EXPECT_EQ(recording->read(0)->left.pixels.front(), 0);
+  }
+}
+
+TEST_F(BagRecordings, ReadDatabasesOfTheFirstRosbag2) {
+  write_db3(folder_ / "old.db3", with_infos(scene_messages()));
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((folder_ / "old.db3").c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, "ALTER TABLE topics DROP COLUMN serialization_format", nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  EXPECT_EQ(open_recording(folder_ / "old.db3", {})->read(2)->right->pixels, scene_image(102, {}).data);
 }
 
 }  // namespace

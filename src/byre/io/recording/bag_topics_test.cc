@@ -78,9 +78,56 @@ TEST(BagTopics, SelectTheGivenTopics) {
   EXPECT_THAT(chosen(images, {.right_topic = "/rear/image"}), HasSubstr("without that of the left camera"));
 }
 
+TEST(BagTopics, PreferRawImagesByTypeOfTheTopic) {
+  BagContent content;
+  content.topics = {{"/left/image_raw", "sensor_msgs/msg/CompressedImage", "cdr", 7},
+                    {"/left/image_mono", "sensor_msgs/msg/Image", "cdr", 7}};
+  EXPECT_EQ(choose_image_topics(content, {}, "walk.bag").left, 0u) << "less processed";
+  content.topics = {{"/left/image", "sensor_msgs/msg/CompressedImage", "cdr", 7},
+                    {"/left/image_raw", "sensor_msgs/msg/Image", "cdr", 7}};
+  EXPECT_EQ(choose_image_topics(content, {}, "walk.bag").left, 1u) << "raw";
+}
+
+TEST(BagTopics, DistinguishCamerasAtTheTopLevel) {
+  EXPECT_THAT(chosen({"/front", "/rear"}), HasSubstr("several cameras"));
+  EXPECT_EQ(chosen({"/front", "/front/compressed"}), "/front");
+  EXPECT_EQ(chosen({"/image_color", "/image_raw"}), "/image_raw");
+  EXPECT_EQ(chosen({"/left", "/right"}), "/left /right");
+}
+
+TEST(BagTopics, NameVideosThatAreNotRead) {
+  BagContent content;
+  content.topics = {{"/cam/video", "foxglove_msgs/msg/CompressedVideo", "cdr", 7}};
+  EXPECT_THAT(error_of([&] { choose_image_topics(content, {}, "walk.bag"); }),
+              testing::AllOf(HasSubstr("walk.bag: has images as video (H.264 or H.265) on topic /cam/video"),
+                             HasSubstr("republish it")));
+}
+
+std::string chosen_depth(const std::vector<std::string>& images, const OpenOptions& options = {}) {
+  const BagContent content = bag_of(images);
+  const ImageTopics topics = choose_image_topics(content, options, "walk.bag");
+  return topics.depth ? content.topics[*topics.depth].name : "none";
+}
+
+TEST(BagTopics, SelectTheDepthOfTheCamera) {
+  EXPECT_EQ(chosen_depth({"/camera/rgb/image_color", "/camera/depth/image"}), "/camera/depth/image");
+  EXPECT_EQ(chosen_depth({"/a/color/image_raw", "/b/depth/image_raw", "/a/depth/image_raw",
+                          "/a/aligned_depth_to_color/image_raw"}),
+            "/a/aligned_depth_to_color/image_raw");
+  EXPECT_EQ(chosen_depth({"/left/image", "/right/image", "/depth/image"}), "none") << "the pair is used";
+  EXPECT_EQ(chosen_depth({"/left/image", "/right/image", "/depth/image"}, {.camera = CameraChoice::rgbd}),
+            "/depth/image");
+  EXPECT_EQ(chosen_depth({"/color/image", "/depth/image"}, {.camera = CameraChoice::left}), "none");
+  EXPECT_EQ(chosen_depth({"/color/image", "/depth/image", "/other/depth"}, {.depth_topic = "/other/depth"}),
+            "/other/depth");
+  EXPECT_THAT(error_of([] { chosen_depth({"/color/image"}, {.depth_topic = "/depth"}); }),
+              HasSubstr("has no depth images on topic /depth"));
+}
+
 TEST(BagTopics, FindTheirCameraInfo) {
   EXPECT_EQ(camera_info_topic("/cam0/image_raw"), "/cam0/camera_info");
   EXPECT_EQ(camera_info_topic("/cam0/image_raw/compressed"), "/cam0/camera_info");
+  EXPECT_EQ(camera_info_topic("/depth/image_raw/compressedDepth"), "/depth/camera_info");
   EXPECT_EQ(camera_info_topic("image"), "/camera_info");
 }
 

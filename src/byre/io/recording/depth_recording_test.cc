@@ -152,5 +152,23 @@ TEST_F(DepthRecording, ReportsTheInvalidField) {
   }
 }
 
+TEST_F(DepthRecording, ReadsTimesInNanoseconds) {
+  write("rgb.txt", "1403636579763555584 rgb/0.png\n1403636579813555456 rgb/1.png\n");
+  fs::remove(folder_ / "depth.txt");
+  EXPECT_THAT(open()->times(), ElementsAre(Timestamp(1403636579763555584), Timestamp(1403636579813555456)));
+}
+
+TEST_F(DepthRecording, DetectsTheBitsInUseOfItsImages) {
+  for (const int bits : {10, 12, 14, 16}) {
+    for (int i = 0; i < 5; ++i) {
+      const int largest = (1 << bits) - 1;
+      cv::imwrite((folder_ / "rgb" / (std::to_string(i) + ".png")).string(),
+                  cv::Mat(24, 32, CV_16U, cv::Scalar(i == 3 ? largest : largest / 2)));
+    }
+    EXPECT_EQ(open()->read(3)->left.pixels.back(), 255) << bits;
+    EXPECT_NEAR(open()->read(0)->left.pixels.back(), 127.5, 1.0) << bits;
+  }
+}
+
 }  // namespace
 }  // namespace byre

@@ -93,7 +93,8 @@ void add_bag(const fs::path& folder, Files& files) {
 }
 
 void add_calibrations(const fs::path& folder, Files& files) {
-  for (const char* const name : {"calibration.yaml", "camera.yaml", "sensor.yaml", "depth.yaml"}) {
+  for (const char* const name : {"calibration.yaml", "camera.yaml", "sensor.yaml", "depth.yaml", "left.yaml",
+                                 "right.yaml", "intrinsics.yml", "extrinsics.yml"}) {
     add_if_exists(folder / name, files);
   }
 }

@@ -12,7 +12,9 @@
 #include "byre/io/recording/video.h"
 #include "byre/trajectory_file.h"
 
+#include <algorithm>
 #include <cassert>
+#include <cstdint>
 #include <utility>
 
 namespace byre {
@@ -27,8 +29,8 @@ const Camera& depth_lens(const Calibration& calibration) {
 
 class ImageFiles final : public Recording {
  public:
-  ImageFiles(RecordingIndex index, MotionSamples motion)
-      : index_(std::move(index)), motion_(std::move(motion)), warnings_(index_.warnings) {
+  ImageFiles(RecordingIndex index, MotionSamples motion, int bits)
+      : index_(std::move(index)), motion_(std::move(motion)), warnings_(index_.warnings), bits_(bits) {
     for (const FrameFiles& frame : index_.frames) times_.push_back(frame.time);
   }
 
@@ -49,19 +51,20 @@ class ImageFiles final : public Recording {
   MotionSamples motion_;               // constant after construction
   std::vector<Timestamp> times_;       // constant after construction
   std::vector<std::string> warnings_;  // grows with read
+  int bits_;                           // bits in use of 16-bit images, constant after construction
 };
 
 std::optional<ImageFrame> ImageFiles::read(int index) {
   assert(index >= 0 && index < size());
   const FrameFiles& files = index_.frames[static_cast<std::size_t>(index)];
-  std::optional<Image> left = read_calibrated(files.left, try_image(files.left), calibration().left);
+  std::optional<Image> left = read_calibrated(files.left, try_image(files.left, bits_), calibration().left);
   if (!left) return std::nullopt;
   return ImageFrame{files.time, std::move(*left), read_right(files), read_depth(files)};
 }
 
 std::optional<Image> ImageFiles::read_right(const FrameFiles& files) {
   if (!calibration().right) return std::nullopt;
-  if (files.right) return read_calibrated(*files.right, try_image(*files.right), calibration().right->camera);
+  if (files.right) return read_calibrated(*files.right, try_image(*files.right, bits_), calibration().right->camera);
   warnings_.push_back(files.left.string() + ": has no right image with the same time stamp");
   return std::nullopt;
 }
@@ -83,6 +86,20 @@ std::optional<AnyImage> ImageFiles::read_calibrated(const fs::path& path, ImageR
   warnings_.push_back(path.string() + ": is " + std::to_string(image->width) + "x" + std::to_string(image->height) +
                       " instead of " + std::to_string(camera.width) + "x" + std::to_string(camera.height));
   return std::nullopt;
+}
+
+// Bits in use of 16-bit images, by the largest value of images spread over the recording.
+int bits_in_use(const std::vector<FrameFiles>& frames) {
+  constexpr std::size_t kSamples = 9;
+  std::uint16_t largest = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const FrameFiles& frame = frames[i * (frames.size() - 1) / (kSamples - 1)];
+    const auto left = largest_value(frame.left);
+    if (!left && i == 0) return kWordBits;
+    const auto right = frame.right ? largest_value(*frame.right) : std::nullopt;
+    largest = std::max({largest, left.value_or(0), right.value_or(0)});
+  }
+  return bits_of(largest);
 }
 
 // Keeps only the frames in range.
@@ -122,6 +139,40 @@ void require_calibrated_sizes(const RecordingIndex& index) {
   if (!cameras.right || right.empty()) return;
   const Image first_right = first_readable(right);
   require_calibrated_size(first_right.width, first_right.height, cameras.right->camera, right_size);
+}
+
+// Completes sizes that the calibration file does not have from the first readable images.
+void complete_sizes(RecordingIndex& index) {
+  auto& [cameras, left_size, right_size, depth_size] = index.calibration;
+  if (cameras.left.width != 0 && (!cameras.right || cameras.right->camera.width != 0)) return;
+  std::vector<fs::path> left, right;
+  for (const FrameFiles& frame : index.frames) {
+    left.push_back(frame.left);
+    if (frame.right) right.push_back(*frame.right);
+  }
+  const Image first_left = first_readable(left);
+  complete_size(cameras.left, first_left.width, first_left.height, left_size);
+  if (!cameras.right) return;
+  const Image first_right = right.empty() ? first_left : first_readable(right);
+  complete_size(cameras.right->camera, first_right.width, first_right.height, right_size);
+}
+
+RecordingIndex index_format(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
+  switch (format) {
+    case RecordingFormat::euroc:
+      return index_euroc(path, options);
+    case RecordingFormat::kitti:
+      return index_kitti(path, options);
+    case RecordingFormat::tum:
+      return index_tum(path, options);
+    case RecordingFormat::images:
+      return index_images(path, options);
+    case RecordingFormat::video:
+    case RecordingFormat::bag:
+      break;
+  }
+  throw InputError(path.string(), "is a " + std::string(to_string(format)) + ", which has no image files",
+                   "extract its images into a folder");
 }
 
 void require_untimed(RecordingFormat format, const fs::path& path, const OpenOptions& options) {
@@ -168,7 +219,17 @@ std::string place_of_calibration(const fs::path& recording, const OpenOptions& o
 
 CalibrationWithSource calibration_for(const fs::path& folder, const OpenOptions& options) {
   const fs::path file = calibration_file_for(folder, options);
-  return {read_calibration(file), file.string(), file.string()};
+  const std::string right = options.right_calibration ? options.right_calibration->string() : file.string();
+  return {read_calibration_file(file, options.right_calibration).calibration, file.string(), right};
+}
+
+void complete_size(Camera& camera, int width, int height, const std::string& place) {
+  if (camera.width != 0) return;
+  camera.width = width;
+  camera.height = height;
+  if (camera.contains({camera.cx, camera.cy})) return;
+  throw InputError(place, "the principal point is outside the images",
+                   "check that calibration and images belong together");
 }
 
 DepthCameraWithSource depth_camera_for(const fs::path& folder, const OpenOptions& options) {
@@ -241,21 +302,9 @@ RecordingFormat guess_format(const fs::path& path) {
 RecordingIndex index_recording(const fs::path& path, const OpenOptions& options) {
   const RecordingFormat format = guess_format(path);
   require_untimed(format, path, options);
-  switch (format) {
-    case RecordingFormat::euroc:
-      return index_euroc(path, options);
-    case RecordingFormat::kitti:
-      return index_kitti(path, options);
-    case RecordingFormat::tum:
-      return index_tum(path, options);
-    case RecordingFormat::images:
-      return index_images(path, options);
-    case RecordingFormat::video:
-    case RecordingFormat::bag:
-      break;
-  }
-  throw InputError(path.string(), "is a " + std::string(to_string(format)) + ", which has no image files",
-                   "extract its images into a folder");
+  RecordingIndex index = index_format(format, path, options);
+  complete_sizes(index);
+  return index;
 }
 
 std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange& range, const OpenOptions& options) {
@@ -277,7 +326,8 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
                                                      place_of_calibration(path, options), "--baseline ");
   FileMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);
   chosen.warnings.insert(chosen.warnings.end(), motion.warnings.begin(), motion.warnings.end());
-  return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples));
+  const int bits = whole.frames.empty() ? kWordBits : bits_in_use(whole.frames);
+  return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples), bits);
 }
 
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {

@@ -62,6 +62,10 @@ RecordingIndex index_recording(const std::filesystem::path& path, const OpenOpti
 // The calibration of the options, else the one in the folder. Throws InputError if there is neither.
 CalibrationWithSource calibration_for(const std::filesystem::path& folder, const OpenOptions& options);
 
+// Sets the size of the images where the calibration file does not have it. Throws InputError with the file if the
+// principal point is outside.
+void complete_size(Camera& camera, int width, int height, const std::string& place);
+
 // A depth camera, and the place of its image size for InputError.
 struct DepthCameraWithSource {
   DepthCamera camera;

@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Timestamp kDepthTolerance = std::chrono::milliseconds(20);
-
 Timestamp time_of(Timestamp time) {
   return time;
 }

@@ -18,6 +18,7 @@ struct TimedFile {
 };
 
 inline constexpr Timestamp kDefaultPairTolerance = std::chrono::milliseconds(2);
+inline constexpr Timestamp kDepthTolerance = std::chrono::milliseconds(20);  // between a depth image and its frame
 
 // Largest time between the stamps of a pair.
 Timestamp pair_tolerance(const OpenOptions& options);

@@ -1,4 +1,5 @@
 #include "byre/base/text_file.h"
+#include "byre/geometry/evaluation/trajectory_lines.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/recording_index.h"
 #include "byre/io/recording/timed_files.h"
@@ -11,13 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A line of rgb.txt or depth.txt: "1305031102.175304 rgb/1305031102.175304.png".
+// A line of rgb.txt or depth.txt: "1305031102.175304 rgb/1305031102.175304.png". Whole numbers too large for seconds
+// are nanoseconds.
 TimedFile parse_tum_line(const TextLine& line, const fs::path& folder, const std::string& place) {
   const std::vector<std::string_view> fields = split_fields(line.text);
-  const std::optional<Timestamp> time = parse_seconds(fields.front());
-  if (!time) throw InputError(place, "\"" + std::string(fields.front()) + "\" is not a time in seconds");
+  const Timestamp time = parse_time({line.number, std::string(fields.front())}, place);
   if (fields.size() < 2 || fields[1].empty()) throw InputError(place, "has no name of an image file");
-  return {*time, folder / fields[1]};
+  return {time, folder / fields[1]};
 }
 
 // rgb: clock of the colour images, for depth images.

@@ -135,8 +135,10 @@ bool is_video_file(const fs::path& path) {
 
 std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& range, const OpenOptions& options) {
   std::unique_ptr<cv::VideoCapture> capture = open_capture(file);
-  const CalibrationWithSource calibration =
+  CalibrationWithSource calibration =
       choose_calibration(calibration_for(file.parent_path(), options), {}, options.camera, file);
+  complete_size(calibration.cameras.left, static_cast<int>(capture->get(cv::CAP_PROP_FRAME_WIDTH)),
+                static_cast<int>(capture->get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.left_size);
   with_checked_baseline(calibration.cameras, options.baseline, place_of_calibration(file, options), "--baseline ");
   require_calibrated_size(static_cast<int>(capture->get(cv::CAP_PROP_FRAME_WIDTH)),
                           static_cast<int>(capture->get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.cameras.left,
