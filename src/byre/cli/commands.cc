@@ -28,6 +28,7 @@ constexpr std::array kCommands = {
     Command{"register", "Register a map on a floor plan", declare_register},
     Command{"refine", "Close further loops of a map and adjust it as a whole", declare_refine},
     Command{"calibrate", "Refine the calibration of a recording's cameras by its images", declare_calibrate},
+    Command{"calibration", "Show or convert a calibration file of any format", declare_calibration},
     Command{"scale", "Scale a monocular map by a known distance", declare_scale},
     Command{"draw", "Draw a map on its floor plan, camera images and videos of missions", declare_draw},
     Command{"view", "Show a map in a browser, and register it on a floor plan", declare_view},

@@ -28,6 +28,7 @@ Action declare_bag(CLI::App& command);
 Action declare_camera(CLI::App& command);
 Action declare_check(CLI::App& command);
 Action declare_calibrate(CLI::App& command);
+Action declare_calibration(CLI::App& command);
 Action declare_refine(CLI::App& command);
 Action declare_scale(CLI::App& command);
 Action declare_evaluate(CLI::App& command);

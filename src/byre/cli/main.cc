@@ -2,14 +2,18 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/recording_options.h"
 #include "byre/input_error.h"
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <malloc.h>
@@ -76,7 +80,9 @@ int main(int argc, char** argv) {
   Action action;
   declare_commands(app, action);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> arguments = with_right_calibration({argv + 1, argv + argc});
+    std::ranges::reverse(arguments);  // as CLI11 takes them
+    app.parse(std::move(arguments));
   } catch (const CLI::ParseError& error) {  // parse errors; also --help and --version, which succeed
     if (app.exit(error) != done) return wrong_usage;
     return std::cout.flush() ? static_cast<int>(done) : report(kUnwritten, failed);

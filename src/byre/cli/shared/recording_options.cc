@@ -7,6 +7,9 @@
 #include "byre/geometry/baseline.h"
 #include "byre/io/recording/recording_options.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +18,7 @@ namespace byre::cli {
 namespace {
 
 constexpr double kLongest_s = 1e9;
+constexpr const char* kRightCalibration = "--right-calibration";
 
 std::optional<double> parse_frame_rate(std::string_view text) {
   const std::optional<double> rate = parse_number(text);
@@ -22,6 +26,18 @@ std::optional<double> parse_frame_rate(std::string_view text) {
 }
 
 }  // namespace
+
+std::vector<std::string> with_right_calibration(std::vector<std::string> arguments) {
+  constexpr std::array kExtensions = {".yaml", ".yml", ".xml", ".json", ".ini"};
+  for (std::size_t i = 0; i + 2 < arguments.size(); ++i) {
+    if (arguments[i] != "--calibration" || arguments[i + 2].starts_with("-")) continue;
+    const std::string& second = arguments[i + 2];
+    const bool is_calibration =
+        std::ranges::any_of(kExtensions, [&](const char* extension) { return second.ends_with(extension); });
+    if (is_calibration) arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 2, kRightCalibration);
+  }
+  return arguments;
+}
 
 void declare_open_options(CLI::App& command, OpenOptions& options) {
   const auto set_camera = [&options](const std::string& text) {
@@ -39,7 +55,11 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
           "Cameras to use: both, one alone, or the colour camera with depth (all cameras of the recording)")
       ->type_name("stereo|left|right|rgbd");
   add_input(command, Input::file, "--calibration", options.calibration,
-            "Calibration, replaces that of the recording: EuRoC sensor.yaml, OpenCV or ROS YAML, Kalibr camchain")
+            "Calibration, replaces that of the recording, in any format that \"byre calibration show\" reads; "
+            "two files, LEFT and RIGHT, if each camera has its own")
+      ->type_name("FILE");
+  add_input(command, Input::file, kRightCalibration, options.right_calibration,
+            "Calibration of the right camera, if each camera has its own")
       ->type_name("FILE");
   command
       .add_option(
@@ -66,6 +86,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
   add_text(command, "--left", options.left_topic, "Topic of the left or only camera's images in a bag")
       ->type_name("TOPIC");
   add_text(command, "--right", options.right_topic, "Topic of the right camera's images in a bag")->type_name("TOPIC");
+  add_text(command, "--depth", options.depth_topic, "Topic of the depth images in a bag")->type_name("TOPIC");
   command
       .add_option("--pair-tolerance", options.pair_tolerance_s,
                   "Maximum difference between the time stamps of left and right image of a pair (0.002)")

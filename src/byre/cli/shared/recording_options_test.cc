@@ -31,6 +31,18 @@ TEST(OpenOptions, AreParsed) {
   EXPECT_EQ(options.frame_rate_hz, 20.0);
 }
 
+TEST(OpenOptions, TakeTwoCalibrationFiles) {
+  using Arguments = std::vector<std::string>;
+  EXPECT_EQ(with_right_calibration({"map", "--calibration", "left.yaml", "right.yaml", "walk"}),
+            (Arguments{"map", "--calibration", "left.yaml", "--right-calibration", "right.yaml", "walk"}));
+  for (const Arguments& one :
+       {Arguments{"map", "--calibration", "left.yaml", "walk"}, Arguments{"map", "walk", "--calibration", "left.yaml"},
+        Arguments{"map", "--calibration", "left.yaml", "--options", "mine.yaml", "walk"}}) {
+    EXPECT_EQ(with_right_calibration(one), one);
+  }
+  EXPECT_EQ(parsed("--calibration left.yaml --right-calibration right.yaml").right_calibration, "right.yaml");
+}
+
 TEST(OpenOptions, AreRejectedIfInvalid) {
   for (const char* const arguments : {"--camera", "--camera middle", "--camera 1", "--camera Left", "--fps 0",
                                       "--fps -5", "--fps fast", "--fps nan"}) {
