@@ -95,6 +95,14 @@ bool has_sixteen_bits(const OwnBytes& bytes) {
   return bytes.size() > kBitDepth && is_png(bytes) && bytes[kBitDepth] == kWordBits;
 }
 
+// Reduces 16-bit values to grey: the largest value of the bits in use becomes white.
+Image grey_of_sixteen_bits(const cv::Mat& pixels, int bits) {
+  Image image{pixels.cols, pixels.rows, OwnBytes(pixels.total())};
+  cv::Mat grey(image.height, image.width, CV_8U, image.pixels.data());
+  pixels.convertTo(grey, CV_8U, 255.0 / ((1 << bits) - 1));
+  return image;
+}
+
 }  // namespace
 
 int bits_of(std::uint16_t value) {
@@ -110,13 +118,6 @@ std::optional<std::uint16_t> largest_value(const std::filesystem::path& path) {
   const cv::Mat pixels = decode(bytes, cv::IMREAD_UNCHANGED);
   if (pixels.empty() || pixels.type() != CV_16U) return std::nullopt;
   return *std::max_element(pixels.begin<std::uint16_t>(), pixels.end<std::uint16_t>());
-}
-
-Image grey_of_sixteen_bits(const cv::Mat& pixels, int bits) {
-  Image image{pixels.cols, pixels.rows, OwnBytes(pixels.total())};
-  cv::Mat grey(image.height, image.width, CV_8U, image.pixels.data());
-  pixels.convertTo(grey, CV_8U, 255.0 / ((1 << bits) - 1));
-  return image;
 }
 
 ImageReading<Image> try_image(const std::filesystem::path& path, int bits) {

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <opencv2/core/mat.hpp>
-
 namespace byre {
 
 // Result of reading an image file.
@@ -27,9 +25,6 @@ int bits_of(std::uint16_t value);
 
 // Largest value of a PNG of 16-bit grey; empty for other files.
 std::optional<std::uint16_t> largest_value(const std::filesystem::path& path);
-
-// Reduces 16-bit values to grey: the largest of the bits in use becomes white.
-Image grey_of_sixteen_bits(const cv::Mat& pixels, int bits);
 
 // Same as read_image and read_depth_image, with the reason of failure. bits: bits in use of 16-bit grey images.
 ImageReading<Image> try_image(const std::filesystem::path& path, int bits = kWordBits);
