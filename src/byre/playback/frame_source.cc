@@ -1,5 +1,6 @@
 #include "byre/playback/frame_source.h"
 
+#include <exception>
 #include <utility>
 
 namespace byre {
@@ -19,7 +20,11 @@ std::optional<FrameSource::SourceFrame> RecordingFrames::next(const std::functio
 
 std::optional<ImageFrame> RecordingFrames::read_again(int number) {
   decoder_.reset();  // only one thread may read
-  return recording_.read(number);
+  try {
+    return recording_.read(number);
+  } catch (const std::exception&) {
+    return std::nullopt;  // such as a disk that was removed: the map must not be lost
+  }
 }
 
 }  // namespace byre
