@@ -30,10 +30,11 @@ struct CalibrationReading {
 // camera, read from the first: readout_time or Kalibr's line_delay, seconds for all rows or one row. Throws InputError
 // with the field for an unsupported model and for a missing or invalid value.
 CalibrationReading read_calibration_file(const std::filesystem::path& path,
-                                         const std::optional<std::filesystem::path>& right = {});
+                                         const std::optional<std::filesystem::path>& right = std::nullopt);
 
 // The calibration of read_calibration_file. Throws InputError also if the files do not have the image size.
-Calibration read_calibration(const std::filesystem::path& path, const std::optional<std::filesystem::path>& right = {});
+Calibration read_calibration(const std::filesystem::path& path,
+                             const std::optional<std::filesystem::path>& right = std::nullopt);
 
 // Text of a Kalibr camchain. Reading it back yields the same calibration bit by bit, except for the rounding of
 // rotation matrices.

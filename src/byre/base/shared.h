@@ -16,6 +16,8 @@ class Shared {
 
   const Value& operator*() const { return value_ ? *value_ : default_value(); }
   const Value* operator->() const { return &**this; }
+  // The value, without a test for a default one. Precondition: it was changed or given.
+  const Value& given() const { return *value_; }
 
   // The value, to change it; copied first while other copies share it. References obtained before are invalid then.
   Value& edit() {

@@ -148,7 +148,6 @@ INSTANTIATE_TEST_SUITE_P(
               by_opencv_with_five, 768},
         Model{"equidistant", camera_with(CameraModel::equidistant, 190.0, {0.0034, 0.0007, -0.0020, 0.0002}),
               by_opencv_fisheye, 600},
-        // OAK-D, with a factor of numerator and denominator that nearly cancel.
         Model{
             "rational_8",
             camera_with(CameraModel::rational, 570.0, {-4.53, 15.48, -0.00147, -0.000259, -6.59, -4.60, 15.67, -6.83}),

@@ -18,7 +18,7 @@ class BlockList {
   }
 
   std::size_t size() const { return blocks_.empty() ? 0 : (blocks_.size() - 1) * kBlock + blocks_.back()->size(); }
-  const Item& operator[](std::size_t i) const { return (*blocks_[i / kBlock])[i % kBlock]; }
+  const Item& operator[](std::size_t i) const { return blocks_[i / kBlock].given()[i % kBlock]; }
   // The item, to change it. References to items of its block are invalid afterwards if a copy shares the block.
   Item& edit(std::size_t i) { return blocks_[i / kBlock].edit()[i % kBlock]; }
 

@@ -260,7 +260,7 @@ class Map {
 
   bool was_assigned(KeyframeId id) const;
   const Keyframe* find_own_keyframe(KeyframeId id) const;
-  const KeyframeSlot& slot(KeyframeId id) const { return *keyframes_[id.number]; }
+  const KeyframeSlot& slot(KeyframeId id) const { return keyframes_[id.number].given(); }
   KeyframeSlot& edit_slot(KeyframeId id) { return keyframes_[id.number].edit(); }
   Keyframe& edit_keyframe(KeyframeId id) { return *edit_slot(id).keyframe; }  // precondition: it exists
   // nullptr for a point that does not exist or is of another origin.

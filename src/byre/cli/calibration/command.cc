@@ -46,7 +46,7 @@ or a pair), ORB-SLAM2 and 3, stella_vslam, VINS-Fusion, okvis2, basalt, maplab. 
 right camera, or intrinsics and extrinsics. A folder stands for both. "convert" writes a Kalibr camchain, which loses
 nothing: all lens models are kept.)";
 
-// Sides of an image from "640x480".
+// Sides of an image from "640x480"; zero if it is none.
 std::pair<int, int> sides_of(const std::string& text) {
   int width = 0, height = 0;
   char end = 0;
@@ -55,7 +55,12 @@ std::pair<int, int> sides_of(const std::string& text) {
       height <= kMost) {
     return {width, height};
   }
-  throw CLI::ValidationError("--size", "\"" + text + "\" is not WIDTHxHEIGHT");
+  return {0, 0};
+}
+
+// Error of a size as text; empty for a valid one.
+std::string error_of_size(const std::string& text) {
+  return sides_of(text).first > 0 ? "" : "\"" + text + "\" is not WIDTHxHEIGHT";
 }
 
 CalibrationReading read(const CalibrationOptions& options) {
@@ -125,7 +130,8 @@ std::string distortion_text(const Camera& camera) {
 }
 
 std::string pose_text(const Pose& pose) {
-  const Eigen::Vector3d& t = pose.translation;
+  constexpr double kPlaces = 1e5;
+  const Eigen::Vector3d t = (kPlaces * pose.translation).array().round().matrix() / kPlaces + Eigen::Vector3d::Zero();
   const double angle = 2.0 * std::acos(std::min(1.0, std::abs(pose.rotation.w()))) * 180.0 / std::numbers::pi;
   return fmt::format("{:.5f} {:.5f} {:.5f} m, turned by {:.3f} deg", t.x(), t.y(), t.z(), angle);
 }
@@ -161,7 +167,7 @@ Report calibration_report(const CalibrationOptions& options, const CalibrationRe
   }
   if (calibration.readout_time != 0.0) json["readout_time_s"] = calibration.readout_time;
   Report report{std::move(json)};
-  report.label_width = 14;
+  report.label_width = 13;
   const auto add_camera = [&report](const char* label, const Camera& camera) {
     report.row(label, "{text}", {{"text", camera_text(report.figures.at(label))}});
     report.row("distortion", "{text}", {{"text", distortion_text(camera)}});
@@ -206,7 +212,9 @@ std::shared_ptr<CalibrationOptions> declare_input(CLI::App& command) {
       ->required();
   add_input(command, Input::file, "RIGHT", options->right, "File of the right camera, or of the extrinsics")
       ->type_name("FILE");
-  add_text(command, "--size", options->size, "Image size, for files without it")->type_name("WIDTHxHEIGHT");
+  add_text(command, "--size", options->size, "Image size, for files without it")
+      ->type_name("WIDTHxHEIGHT")
+      ->check(error_of_size);
   command.add_flag("--json", options->json, "Print the result as JSON");
   command.footer(kFooter);
   return options;

@@ -1,8 +1,11 @@
 // Recordings of one camera with a depth camera, in TUM's format.
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/io/bag/bag_scene.h"
 #include "byre/io/recording/folder_scene.h"
 #include "byre/recording.h"
+
+#include <cstring>
 
 #include <gmock/gmock.h>
 
@@ -167,6 +170,47 @@ TEST_F(DepthRecording, DetectsTheBitsInUseOfItsImages) {
     }
     EXPECT_EQ(open()->read(3)->left.pixels.back(), 255) << bits;
     EXPECT_NEAR(open()->read(0)->left.pixels.back(), 127.5, 1.0) << bits;
+  }
+}
+
+// Depths in metres, as a driver publishes them.
+ros::Image in_metres(const DepthImage& depth, Timestamp time) {
+  ros::Image message{{ros::to_time(time), "camera"}, 24, 32, "32FC1", 0, 4 * 32, {}};
+  message.data.resize(depth.units.size() * sizeof(float));
+  for (std::size_t i = 0; i < depth.units.size(); ++i) {
+    const float metres = static_cast<float>(depth.units[i]) / 5000.0f;
+    std::memcpy(message.data.data() + i * sizeof(float), &metres, sizeof(float));
+  }
+  return message;
+}
+
+// The images, depths, times and cameras that poses depend on.
+TEST_F(DepthRecording, IsTheSameInABag) {
+  const auto folder = open();
+  ros::CameraInfo info{.header = {.frame_id = "camera"}, .height = 24, .width = 32, .distortion_model = "plumb_bob"};
+  info.k = {20.0, 0.0, 15.5, 0.0, 20.0, 11.5, 0.0, 0.0, 1.0};
+  std::vector<SceneMessage> messages = {scene_message("/rgb/camera_info", Timestamp(std::chrono::seconds(100)), info)};
+  for (int i = 0; i < folder->size(); ++i) {
+    const ImageFrame frame = folder->read(i).value();
+    messages.push_back(
+        scene_message("/rgb/image", frame.time,
+                      ros::Image{{ros::to_time(frame.time), "camera"}, 24, 32, "mono8", 0, 32, frame.left.pixels}));
+    if (!frame.depth) continue;
+    const Timestamp time = frame.time + std::chrono::milliseconds(4);
+    messages.push_back(scene_message("/depth/image", time, in_metres(*frame.depth, time)));
+  }
+  const BagBytes bytes = mcap_bytes(messages, "zstd");
+  write("walk.mcap", std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  const auto bag = open_recording(folder_ / "walk.mcap", {});
+  EXPECT_THAT(bag->warnings(), IsEmpty());
+  EXPECT_EQ(bag->calibration(), folder->calibration());
+  EXPECT_EQ(bag->times(), folder->times());
+  EXPECT_THAT(units_of(*bag), ElementsAre(1000, -1, 1002, 1003, -1));
+  for (int i = 0; i < folder->size(); ++i) {
+    const ImageFrame from_bag = bag->read(i).value(), from_folder = folder->read(i).value();
+    EXPECT_EQ(from_bag.left.pixels, from_folder.left.pixels);
+    ASSERT_EQ(from_bag.depth.has_value(), from_folder.depth.has_value());
+    if (from_bag.depth) EXPECT_EQ(from_bag.depth->units, from_folder.depth->units);
   }
 }
 

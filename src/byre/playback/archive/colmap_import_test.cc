@@ -132,12 +132,12 @@ TEST_F(ImportedMap, NeedsAModelWithImagesAndPoints) {
 }
 
 TEST_F(ImportedMap, ReportsAnUnsupportedCamera) {
-  model_.cameras.at(1) = {"FOV", 188, 120, {100, 100, 94, 60, 0.9}};
+  model_.cameras.at(1) = {"EQUIRECTANGULAR", 188, 120, {100, 100, 94, 60}};
   try {
     import(model_);
     FAIL() << "imported";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("model: camera 1: camera model FOV"));
+    EXPECT_THAT(error.what(), HasSubstr("model: camera 1: camera model EQUIRECTANGULAR"));
   }
 }
 

@@ -414,9 +414,10 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
 
 std::pair<LengthChanges, AdjustedOffline> Mapper::adjust_with_offline(const FinishHooks& hooks) {
   assert(offline_);
+  constexpr int kFirstIterations = 3;  // each map is adjusted already
   MapWindow both = both_maps(map());
   MapWindow before = outline_of(both);
-  adjust_window(both, {}, {options_.mapping}, releasing_pages(*page_file_, hooks.should_stop));
+  adjust_window(both, {}, {options_.mapping, kFirstIterations}, releasing_pages(*page_file_, hooks.should_stop));
   AdjustedOffline offline = detach_offline(both, before);
   LengthChanges changes = apply_correction(difference(before, both), before, online_);
   loop_closer_.apply_length_changes(changes);
