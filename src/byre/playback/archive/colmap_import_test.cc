@@ -131,13 +131,13 @@ TEST_F(ImportedMap, NeedsAModelWithImagesAndPoints) {
   EXPECT_THAT(error_of(model_), HasSubstr("model: is a model without points, so it cannot be imported"));
 }
 
-TEST_F(ImportedMap, ReportsAnUnsupportedCamera) {
+TEST_F(ImportedMap, ReportsAnUnknownCamera) {
   model_.cameras.at(1) = {"EQUIRECTANGULAR", 188, 120, {100, 100, 94, 60}};
   try {
     import(model_);
     FAIL() << "imported";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("model: camera 1: camera model EQUIRECTANGULAR"));
+    EXPECT_THAT(error.what(), HasSubstr("model: camera 1: has an unknown model"));
   }
 }
 
