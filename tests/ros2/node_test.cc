@@ -38,6 +38,78 @@ TEST_F(ByreNode, PublishesThePosesOfSlam) {
   EXPECT_TRUE(fs::exists(folder_ / "made.byre")) << "the map is saved at the end";
 }
 
+geometry_msgs::msg::TransformStamped transform_message(Timestamp time, const std::string& parent,
+                                                       const std::string& child, const Pose& parent_from_child) {
+  geometry_msgs::msg::TransformStamped message;
+  message.header().stamp(ros_time(time));
+  message.header().frame_id(parent);
+  message.child_frame_id(child);
+  message.transform().translation().x(parent_from_child.translation.x());
+  message.transform().translation().y(parent_from_child.translation.y());
+  message.transform().translation().z(parent_from_child.translation.z());
+  message.transform().rotation().w(parent_from_child.rotation.w());
+  message.transform().rotation().x(parent_from_child.rotation.x());
+  message.transform().rotation().y(parent_from_child.rotation.y());
+  message.transform().rotation().z(parent_from_child.rotation.z());
+  return message;
+}
+
+Pose pose_of(const geometry_msgs::msg::TransformStamped& message) {
+  const auto& [rotation, translation] = std::pair(message.transform().rotation(), message.transform().translation());
+  return {Eigen::Quaterniond(rotation.w(), rotation.x(), rotation.y(), rotation.z()),
+          {translation.x(), translation.y(), translation.z()}};
+}
+
+// A base driver publishes odom -> base_link, which drifts and begins anew half-way (REP-105).
+TEST_F(ByreNode, ComputesMapToOdomFromTheOdometryOfABaseDriver) {
+  const Room& room = Room::shared();
+  const std::vector<FrameReport> expected =
+      room.tracked(Slam::on_map(read_calibration(room.calibration()), room.map(), Room::options()));
+  const auto driver = peer_.writer("rt/tf", TypeSupport(new tf2_msgs::msg::TFMessagePubSubType), kVolatile);
+  Transforms transforms(peer_, "rt/tf", kVolatile);
+  Texts health(peer_, "rt/byre/health", kVolatile);
+  NodeProcess node(folder_, mission(), domain_);
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  ASSERT_TRUE(FastPeer::has_subscriber(driver));
+  const auto odom_from_base = [&](std::size_t i) {
+    const bool is_restarted = i > expected.size() / 2;
+    const Pose map_from_base = expected[i].map_from_body.value_or(Pose{});
+    const Pose odom_from_map{rotation_exp({0.0, 0.0, 0.02 * static_cast<double>(i)}),
+                             {is_restarted ? 5.0 : 1.0, 2.0, 0.0}};
+    return odom_from_map * map_from_base;
+  };
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    tf2_msgs::msg::TFMessage message;
+    message.transforms().push_back(transform_message(expected[i].time, "odom", "base_link", odom_from_base(i)));
+    driver->write(&message);
+    std::this_thread::sleep_for(20ms);
+    feed_.send(room.frames()[i]);
+    const std::string time = "\"time_ns\":" + std::to_string(expected[i].time.count());
+    ASSERT_TRUE(health.find([&](const auto& text) { return text.data().find(time + ",") != std::string::npos; }))
+        << "frame " << i << "\n"
+        << node.stderr_output();
+  }
+  constexpr Timestamp kFuture = 100ms;  // frames.future
+  int compared = 0;
+  for (const tf2_msgs::msg::TFMessage& message : transforms.all()) {
+    for (const auto& transform : message.transforms()) {
+      if (transform.child_frame_id() != "odom") continue;
+      const Timestamp stamp = time_of(transform.header().stamp()) - kFuture;
+      const auto frame = std::ranges::find(expected, stamp, &FrameReport::time);
+      ASSERT_NE(frame, expected.end());
+      if (frame->health.verdict == Verdict::untrusted) continue;
+      const Pose map_from_base =
+          pose_of(transform) * odom_from_base(static_cast<std::size_t>(frame - expected.begin()));
+      EXPECT_LT((map_from_base.translation - frame->map_from_body->translation).norm(), 1e-3) << "metres";
+      EXPECT_EQ(message.transforms().size(), 1u) << "odom -> base_link belongs to the base driver";
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 20);
+  EXPECT_EQ(node.stop(), 0);
+  EXPECT_THAT(node.stderr_output(), HasSubstr("another node publishes odom -> base_link"));
+}
+
 TEST_F(ByreNode, PublishesTheMissionPosesOfSlam) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =

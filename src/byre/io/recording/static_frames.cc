@@ -3,14 +3,12 @@
 #include <cmath>
 
 namespace byre {
-namespace {
 
-// Same as tf2: names of ROS 1 began with a slash.
-std::string without_slash(const std::string& frame) {
+std::string frame_without_slash(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
 
-std::optional<Pose> pose_of(const ros::Transform& transform) {
+std::optional<Pose> pose_of_transform(const ros::Transform& transform) {
   const auto& [x, y, z, w] = transform.rotation;
   const Eigen::Vector3d translation(transform.translation.x, transform.translation.y, transform.translation.z);
   const Eigen::Quaterniond rotation(w, x, y, z);
@@ -20,13 +18,12 @@ std::optional<Pose> pose_of(const ros::Transform& transform) {
   return Pose{rotation.normalized(), translation};
 }
 
-}  // namespace
-
 void StaticFrames::take(const ros::TFMessage& message) {
   constexpr std::size_t kMaxFrames = 1000;
   for (const ros::TransformStamped& each : message.transforms) {
-    const std::string child = without_slash(each.child_frame_id), parent = without_slash(each.header.frame_id);
-    const auto pose = pose_of(each.transform);
+    const std::string child = frame_without_slash(each.child_frame_id),
+                      parent = frame_without_slash(each.header.frame_id);
+    const auto pose = pose_of_transform(each.transform);
     if (!pose || child.empty() || parent.empty() || child == parent) continue;
     if (parents_.size() >= kMaxFrames && !parents_.contains(child)) continue;
     parents_[child] = {parent, *pose};
@@ -44,8 +41,8 @@ std::map<std::string, Pose> StaticFrames::ancestors(const std::string& frame) co
 }
 
 std::optional<Pose> StaticFrames::between(const std::string& a, const std::string& b) const {
-  const std::map<std::string, Pose> above_a = ancestors(without_slash(a));
-  for (const auto& [frame, frame_from_b] : ancestors(without_slash(b))) {
+  const std::map<std::string, Pose> above_a = ancestors(frame_without_slash(a));
+  for (const auto& [frame, frame_from_b] : ancestors(frame_without_slash(b))) {
     const auto common = above_a.find(frame);
     if (common != above_a.end()) return inverse(common->second) * frame_from_b;
   }

@@ -9,6 +9,12 @@
 
 namespace byre {
 
+// Name of a frame as tf2 compares it: those of ROS 1 began with a slash.
+std::string frame_without_slash(const std::string& frame);
+
+// Pose of a transform; empty for an invalid one, as any peer may send.
+std::optional<Pose> pose_of_transform(const ros::Transform& transform);
+
 // Tree of fixed transforms from /tf_static.
 class StaticFrames {
  public:

@@ -155,6 +155,7 @@ Subscriber Participant::subscribe(const std::string& topic, const MessageType& t
   TypedTopic made = make_topic(participant_.handle(), topic, type, qos.max_bytes);
   const Qos wanted = make_qos(qos);
   set_user_data(wanted.get(), type, note, distribution_);
+  if (qos.ignores_own) dds_qset_ignorelocal(wanted.get(), DDS_IGNORELOCAL_PARTICIPANT);
   Subscriber subscriber;
   subscriber.topic_ = std::move(made.topic);
   subscriber.reader_ =

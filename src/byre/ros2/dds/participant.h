@@ -24,6 +24,7 @@ struct TopicQos {
   bool is_latched = false;                         // keeps the last messages for late subscribers ("transient local")
   int depth = 10;                                  // messages kept for a slow reader
   std::size_t max_bytes = std::size_t{128} << 20;  // longer received messages are dropped
+  bool ignores_own = false;                        // readers only: no messages of the same participant
 };
 
 // Largest received message without an image: commands, poses, camera calibrations, motion, transforms.

@@ -22,7 +22,7 @@ void take_last(std::optional<Subscriber>& subscriber, const std::string& topic, 
 
 CalibrationSource::CalibrationSource(const NodeConfig& config, GraphAnnouncement& graph) : config_(config) {
   if (config.extrinsics_source() == ExtrinsicsSource::tf) {
-    tf_static_ = graph.subscribe("/tf_static", message_type<ros::TFMessage>(),
+    tf_static_ = graph.subscribe(config.topic(config.tf_static), message_type<ros::TFMessage>(),
                                  {.is_latched = true, .depth = 100, .max_bytes = kMaxBytesWithoutImage});
   }
   if (config.calibration) {
@@ -59,7 +59,7 @@ std::optional<Calibration> CalibrationSource::cameras() {
 std::optional<Calibration> CalibrationSource::take(const std::string& left_frame) {
   if (tf_static_) {
     for (const Message& message : tf_static_->take()) {
-      if (const auto parsed = parsed_message<ros::TFMessage>(message, "/tf_static")) frames_.take(*parsed);
+      if (const auto parsed = parsed_message<ros::TFMessage>(message, config_.tf_static)) frames_.take(*parsed);
     }
   }
   std::optional<Calibration> calibration = cameras();
@@ -68,8 +68,8 @@ std::optional<Calibration> CalibrationSource::take(const std::string& left_frame
   if (config_.extrinsics_source() != ExtrinsicsSource::tf) return calibration;
   const auto base_from_left = frames_.between(config_.base_frame, left_frame);
   if (!base_from_left) {
-    missing_input_ = "/tf_static from " + config_.base_frame + " to the frame of the left images" +
-                     (left_frame.empty() ? "" : ", " + left_frame);
+    missing_input_ = config_.topic(config_.tf_static) + " from " + config_.base_frame +
+                     " to the frame of the left images" + (left_frame.empty() ? "" : ", " + left_frame);
     return std::nullopt;
   }
   calibration->body_from_left = *base_from_left;

@@ -63,6 +63,20 @@ TEST(PoseFrames, ContinueOdometryAfterReinitialisation) {
   EXPECT_LT(distance(*frames.odom_from_base(), before * some_pose(0.2)), 1e-9);
 }
 
+TEST(PoseFrames, AttachTheMapToTheOdometryOfItsOwner) {
+  PoseFrames frames;
+  frames.note(report_at(some_pose(1), some_pose(2)));
+  EXPECT_TRUE(frames.is_odometry_own());
+  frames.note(report_at(some_pose(1), some_pose(2)), std::nullopt);
+  EXPECT_FALSE(frames.is_odometry_own());
+  EXPECT_FALSE(frames.map_from_odom()) << "that of the own odometry does not hold for another odom frame";
+  frames.note(report_at(some_pose(1), some_pose(2)), some_pose(4));
+  ASSERT_TRUE(frames.map_from_odom());
+  EXPECT_LT(distance(*frames.map_from_odom() * some_pose(4), some_pose(2)), 1e-9);
+  frames.note(report_at(some_pose(1), some_pose(3)), std::nullopt);
+  EXPECT_TRUE(frames.is_held());
+}
+
 TEST(PoseMessages, RotateCovariancesIntoTheParentFrame) {
   Matrix6 covariance = Matrix6::Zero();
   covariance(0, 0) = 4.0;   // along x of the body

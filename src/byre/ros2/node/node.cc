@@ -50,7 +50,8 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
       outputs_(config, graph_, watchers_.get()),
       motion_(config, graph_),
       pairs_(pairing_options(config)),
-      monitor_(config.topic(config.left), steady_now()) {
+      monitor_(config.topic(config.left), steady_now()),
+      robot_frames_({config.map_frame, config.odom_frame, config.base_frame}) {
   const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
     return topic.empty() ? std::nullopt : std::optional(graph_.subscribe(config_.topic(topic), type, qos));
   };
@@ -59,6 +60,11 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   const TopicQos small{.max_bytes = kMaxBytesWithoutImage};
   command_ = subscribe(config.command, message_type<ros::String>(), small);
   initial_pose_ = subscribe(config.initial_pose, message_type<ros::PoseWithCovarianceStamped>(), small);
+  const TopicQos transforms{
+      .is_reliable = false, .depth = 1000, .max_bytes = kMaxBytesWithoutImage, .ignores_own = true};
+  tf_ = subscribe(config.tf, message_type<ros::TFMessage>(), transforms);
+  tf_static_ = subscribe(config.tf_static, message_type<ros::TFMessage>(),
+                         {.is_latched = true, .depth = 100, .max_bytes = kMaxBytesWithoutImage, .ignores_own = true});
   if (config.services.value_or(network.uses_cyclone)) services_.emplace(config, graph_, log_);
   calibration_ = calibration_source_.take("");
   if (calibration_) start();
@@ -92,6 +98,45 @@ void Node::take_images(Timestamp now) {
     const auto header = stamp_of(message, config_.right);
     if (header) pairs_.add_right(ros::to_nanoseconds(header->stamp), std::move(message), now);
   }
+}
+
+void Node::take_transforms(Timestamp now) {
+  for (const Message& message : tf_static_->take()) {
+    if (const auto parsed = parsed_message<ros::TFMessage>(message, config_.tf_static))
+      robot_frames_.take_static(*parsed);
+  }
+  for (const Message& message : tf_->take()) {
+    if (const auto parsed = parsed_message<ros::TFMessage>(message, config_.tf)) robot_frames_.take(*parsed, now);
+  }
+  log_transforms(now);
+}
+
+// Reports each change of who publishes the transforms, with a remedy for conflicts.
+void Node::log_transforms(Timestamp now) {
+  constexpr Timestamp kPatience = 5s;
+  const std::string tf = config_.topic(config_.tf);
+  const std::string odometry = config_.odom_frame + " -> " + config_.base_frame;
+  const std::string root = robot_frames_.root_of_base();
+  LogLevel level = LogLevel::warning;
+  std::string text;
+  if (config_.publishes_map_to_odom && robot_frames_.has_odom_owner(now)) {
+    text = "another node publishes a transform to " + config_.odom_frame + " on " + tf +
+           ", so byre does not; stop it (such as amcl), or set frames.map_to_odom: false";
+  } else if (robot_frames_.has_base_owner() && root != config_.odom_frame) {
+    text = config_.base_frame + " has the parent " + root + " on " + tf + ", which has no transform from " +
+           config_.odom_frame + "; start the base driver, or set frames.base: " + root;
+  } else if (without_odometry_since_ && now - *without_odometry_since_ > kPatience) {
+    text = "no transform " + odometry + " at the time of the images on " + tf +
+           " for 5 s; check the base driver and that its clock is that of the images" +
+           (robot_frames_.has_base_owner() ? "" : ", or set frames.odom_to_base: true");
+  } else if (robot_frames_.has_base_owner()) {
+    level = LogLevel::info;
+    text = "another node publishes " + odometry + " on " + tf + "; " + config_.map_frame + " -> " + config_.odom_frame +
+           " is computed from it";
+  }
+  if (text == last_transforms_) return;
+  last_transforms_ = text;
+  if (!text.empty()) log_(level, text);
 }
 
 void Node::start() {
@@ -234,8 +279,17 @@ void Node::process(const Pairs::Pair& pair) {
 void Node::publish(const ReceivedImage& left, const FrameReport& report) {
   if (is_dropped(report.input)) return;  // without a pose
   map_from_body_ = report.map_from_body;
-  pose_frames_.note(report);
-  outputs_.publish_frame(left.header, report, pose_frames_);
+  const Timestamp now = steady_now();
+  take_transforms(now);
+  if (config_.publishes_odom_to_base && !robot_frames_.has_base_owner()) {
+    pose_frames_.note(report);
+  } else {
+    const auto odom_from_base = robot_frames_.odom_from_base(ros::to_nanoseconds(left.header.stamp));
+    if (odom_from_base) without_odometry_since_.reset();
+    if (!odom_from_base && !without_odometry_since_) without_odometry_since_ = now;
+    pose_frames_.note(report, odom_from_base);
+  }
+  outputs_.publish_frame(left.header, report, pose_frames_, !robot_frames_.has_odom_owner(now));
   if (fleet_) fleet_->note(report, steady_now(), advice_for(report.health.doubt));
   last_image_time_ = ros::to_nanoseconds(left.header.stamp);
   const auto source_of = [this](MotionSensor sensor) { return motion_.source_of(sensor); };
@@ -300,6 +354,7 @@ void Node::run(const std::function<bool()>& should_stop) {
     take_calibration(now);
     take_requests(now);
     take_images(now);
+    take_transforms(now);
     motion_.take();
     if (runner_.is_running()) {
       if (const auto pair = pairs_.next(now)) process(*pair);

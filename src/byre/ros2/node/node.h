@@ -15,6 +15,7 @@
 #include "byre/ros2/node/node_services.h"
 #include "byre/ros2/node/pose_frames.h"
 #include "byre/ros2/node/process.h"
+#include "byre/ros2/node/robot_frames.h"
 #include "byre/ros2/node/slam_runner.h"
 #include "byre/viewer/web/live_topics.h"
 #include "byre/viewer/web/status_site.h"
@@ -43,6 +44,8 @@ class Node {
   void take_images(Timestamp now);
   void start();
   void take_calibration(Timestamp now);
+  void take_transforms(Timestamp now);
+  void log_transforms(Timestamp now);
   void take_requests(Timestamp now);
   Outcome answer(const std::string& request, const std::function<std::string()>& done);
   Outcome execute(const std::string& command);
@@ -65,13 +68,14 @@ class Node {
   SlamRunner runner_;
   std::shared_ptr<LiveTopics> watchers_;  // null without a web server
   NodeOutputs outputs_;
-  std::optional<Subscriber> left_, right_, command_, initial_pose_;
+  std::optional<Subscriber> left_, right_, command_, initial_pose_, tf_, tf_static_;
   std::optional<NodeServices> services_;  // empty if services are disabled
   MotionInput motion_;
   Pairs pairs_;
   StampClock clock_;
   CameraMonitor monitor_;
   PoseFrames pose_frames_;
+  RobotFrames robot_frames_;
   ServiceManager manager_;
   std::shared_ptr<StatusBoard> board_ = std::make_shared<StatusBoard>();
   std::optional<FleetLink> fleet_;       // empty without a fleet interface
@@ -84,9 +88,11 @@ class Node {
   std::optional<Pose> map_from_body_;  // last published pose
   Timestamp last_image_time_{};
   std::string last_diagnosis_;
-  std::string last_fault_;           // last reported fault of the calibration
-  Timestamp last_published_{};       // time of the last diagnostics
-  Timestamp last_slow_published_{};  // time of the last path and points
+  std::optional<Timestamp> without_odometry_since_;  // no odom -> base of its owner for the images since then
+  std::string last_transforms_;                      // last reported state of the transforms
+  std::string last_fault_;                           // last reported fault of the calibration
+  Timestamp last_published_{};                       // time of the last diagnostics
+  Timestamp last_slow_published_{};                  // time of the last path and points
   int arrived_at_last_keepalive_ = 0;
   int frames_ = 0;
   int frames_at_last_keepalive_ = 0;

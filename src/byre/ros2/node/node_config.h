@@ -77,9 +77,9 @@ struct NodeConfig {
   std::optional<ExtrinsicsSource> extrinsics;  // empty: file with a calibration file, else tf
   bool in_plan = true;                         // map frame is that of the floor plan on which the map is registered
   bool publishes_map_to_odom = true;
-  bool publishes_odom_to_base = true;
-  bool publishes_cameras = true;  // publishes base->camera if /tf_static does not contain it
-  double future = 0.1;            // seconds added to the stamp of map->odom, so that lookups need not wait
+  bool publishes_odom_to_base = true;  // unless another node does
+  bool publishes_cameras = true;       // publishes base->camera if /tf_static does not contain it
+  double future = 0.1;                 // seconds added to the stamp of map->odom, so that lookups need not wait
 
   std::string odometry = "odometry";
   std::string pose = "pose";
@@ -88,6 +88,8 @@ struct NodeConfig {
   std::string health = "health";
   std::string events = "events";
   std::string command = "command";
+  std::string tf = "/tf";
+  std::string tf_static = "/tf_static";
   std::string grid = "/map";
   std::string initial_pose = "/initialpose";
 

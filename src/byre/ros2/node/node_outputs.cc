@@ -50,9 +50,9 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, GraphAnnouncement& graph, ros
     : config_(config), graph_(graph), watchers_(watchers) {
   odometry_ = open<ros::Odometry>(config.odometry, kReliable);
   pose_ = open<ros::PoseWithCovarianceStamped>(config.pose, kLatched);
-  if (config.publishes_map_to_odom || config.publishes_odom_to_base) tf_ = open<ros::TFMessage>("/tf", kTransforms);
+  if (config.publishes_map_to_odom || config.publishes_odom_to_base) tf_ = open<ros::TFMessage>(config.tf, kTransforms);
   if (config.publishes_cameras && config.extrinsics_source() != ExtrinsicsSource::tf) {
-    tf_static_ = open<ros::TFMessage>("/tf_static", kLatched);
+    tf_static_ = open<ros::TFMessage>(config.tf_static, kLatched);
   }
   diagnostics_ = open<ros::DiagnosticArray>("/diagnostics", kReliable);
   path_ = open<ros::Path>(config.path, kLatched);
@@ -96,14 +96,14 @@ void NodeOutputs::publish_odometry(const ros::Header& header, const FrameReport&
   send(odometry_, odometry);
 }
 
-void NodeOutputs::publish_transforms(const ros::Header& image, const PoseFrames& frames) {
+void NodeOutputs::publish_transforms(const ros::Header& image, const PoseFrames& frames, bool is_map_free) {
   ros::TFMessage message;
-  if (config_.publishes_map_to_odom && frames.map_from_odom()) {
+  if (config_.publishes_map_to_odom && is_map_free && frames.map_from_odom()) {
     const ros::Time later = ros::to_time(ros::to_nanoseconds(image.stamp) + from_seconds(config_.future));
     message.transforms.push_back(
         transform_message({later, config_.map_frame}, config_.odom_frame, *frames.map_from_odom()));
   }
-  if (config_.publishes_odom_to_base && frames.odom_from_base()) {
+  if (frames.is_odometry_own() && frames.odom_from_base()) {
     message.transforms.push_back(
         transform_message({image.stamp, config_.odom_frame}, config_.base_frame, *frames.odom_from_base()));
   }
@@ -119,16 +119,18 @@ void NodeOutputs::publish_events(const FrameReport& report) {
   for (std::string line; std::getline(lines, line);) send_text(events_, line);
 }
 
-void NodeOutputs::publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames) {
+void NodeOutputs::publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames,
+                                bool is_map_free) {
   if (frames.odom_from_base()) {
-    publish_odometry({image.stamp, config_.odom_frame}, report, *frames.odom_from_base());
+    const std::string frame = frames.is_odometry_own() ? config_.odom_frame : config_.name + "_odom";
+    publish_odometry({image.stamp, frame}, report, *frames.odom_from_base());
   } else {
     last_.reset();
   }
   if (report.map_from_body && report.health.verdict != Verdict::untrusted) {
     send(pose_, pose_message(in_map(image), *report.map_from_body, report.covariance));
   }
-  publish_transforms(image, frames);
+  publish_transforms(image, frames, is_map_free);
   if (is_wanted(health_)) send_text(health_, health_line(report));
   publish_events(report);
   ++frames_;

@@ -24,7 +24,8 @@ class NodeOutputs {
   NodeOutputs(const NodeConfig& config, GraphAnnouncement& graph, ros::MessageSink* watchers);
 
   // Publishes all messages of a frame. image: header of its left image. The pose is in the published map frame.
-  void publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames);
+  // is_map_free: whether no other node publishes map -> odom.
+  void publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames, bool is_map_free);
   void publish_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
   // Sends received images to watchers only.
   void publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
@@ -54,7 +55,7 @@ class NodeOutputs {
   void send_bytes(Output& output, std::vector<std::byte> cdr);
   void send_text(OptionalOutput& output, const std::string& text) { send(output, ros::String{text}); }
   void publish_odometry(const ros::Header& header, const FrameReport& report, const Pose& odom_from_base);
-  void publish_transforms(const ros::Header& image, const PoseFrames& frames);
+  void publish_transforms(const ros::Header& image, const PoseFrames& frames, bool is_map_free);
   void publish_events(const FrameReport& report);
   static Timestamp wall_time();
   ros::Header in_map(const ros::Header& image) const;

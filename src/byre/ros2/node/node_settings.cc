@@ -51,9 +51,13 @@ NodeSetting any_text(const char* name, auto member, const char* meaning) {
   return text_if(name, "text or empty", member, meaning, [](std::string_view) { return true; });
 }
 
+bool is_topic(std::string_view text) {
+  return !text.empty() && fault_in_name(resolve_name(text, "/")).empty();
+}
+
 NodeSetting topic(const char* name, auto member, const char* meaning) {
   return text_if(name, "topic or empty", member, meaning,
-                 [](std::string_view text) { return text.empty() || fault_in_name(resolve_name(text, "/")).empty(); });
+                 [](std::string_view text) { return text.empty() || is_topic(text); });
 }
 
 NodeSetting file(const char* name, auto member, const char* meaning) {
@@ -176,9 +180,10 @@ const std::vector<NodeSetting>& node_settings() {
           "pose of the left camera on the robot: from the calibration file, from /tf_static, or identity"),
       flag("frames.in_plan", &NodeConfig::in_plan,
            "map frame equals the frame of the floor plan if the map is registered on one"),
-      flag("frames.map_to_odom", &NodeConfig::publishes_map_to_odom, "publication of map->odom on /tf"),
+      flag("frames.map_to_odom", &NodeConfig::publishes_map_to_odom,
+           "publication of map->odom, unless another node publishes it"),
       flag("frames.odom_to_base", &NodeConfig::publishes_odom_to_base,
-           "publication of odom->base on /tf; false if wheel odometry or a filter publishes it"),
+           "publication of odom->base, unless another node publishes it; false: always that of another node"),
       flag("frames.cameras", &NodeConfig::publishes_cameras,
            "publication of base->camera on /tf_static, unless frames.mounting is tf"),
       seconds("frames.future", &NodeConfig::future, "offset of the time stamp of map->odom after that of its image",
@@ -190,6 +195,8 @@ const std::vector<NodeSetting>& node_settings() {
       topic("topics.health", &NodeConfig::health, "health, as JSON"),
       topic("topics.events", &NodeConfig::events, "events, as JSON"),
       topic("topics.command", &NodeConfig::command, "commands, as text"),
+      text_if("topics.tf", "topic", &NodeConfig::tf, "transforms, read and published", is_topic),
+      text_if("topics.tf_static", "topic", &NodeConfig::tf_static, "fixed transforms, read and published", is_topic),
       topic("topics.grid", &NodeConfig::grid, "floor plan"),
       topic("topics.initial_pose", &NodeConfig::initial_pose, "initial poses set by an operator"),
       text("http.address", &NodeConfig::http_address, "address of /healthz, /metrics and the Foxglove protocol"),
