@@ -208,7 +208,11 @@ TEST_F(ByreNode, SurvivesAFloodOfImages) {
     std::this_thread::sleep_for(1ms);
   }
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "were replaced by newer ones"));
-  EXPECT_TRUE(answer_to(feed_, odometry_, Room::shared().frames()[0], 1h)) << "it continues";
+  bool has_answered = false;  // an image of an unreliable publisher may be lost
+  for (std::size_t i = 0; i < 3 && !has_answered; ++i) {
+    has_answered = answer_to(feed_, odometry_, Room::shared().frames()[i], 1h).has_value();
+  }
+  EXPECT_TRUE(has_answered) << "it continues";
   EXPECT_EQ(node.stop(), 0);
 }
 
