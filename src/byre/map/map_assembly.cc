@@ -14,10 +14,10 @@ Map::Map(Origin origin, MapParts parts)
       point_slots_(parts.points.size()),
       keyframe_count_(static_cast<int>(parts.keyframes.size())),
       point_count_(static_cast<int>(parts.points.size())) {
-  keyframes_.reserve(parts.keyframes.size());
-  for (Keyframe& keyframe : parts.keyframes) {
-    if (keyframe.parent) edit_slot(*keyframe.parent).children.push_back({origin_, std::uint32_t(keyframes_.size())});
-    keyframes_.emplace_back().edit().keyframe = std::move(keyframe);
+  keyframes_.resize(parts.keyframes.size());
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    if (const auto parent = parts.keyframes[i].parent) edit_slot(*parent).children.push_back({origin_, i});
+    keyframes_[i].edit().keyframe = std::move(parts.keyframes[i]);
   }
   for (std::size_t i = 0; i < points_.size(); ++i) {
     point_slots_.edit(i) = static_cast<std::uint32_t>(i);
