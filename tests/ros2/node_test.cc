@@ -60,7 +60,7 @@ Pose pose_of(const geometry_msgs::msg::TransformStamped& message) {
           {translation.x(), translation.y(), translation.z()}};
 }
 
-// A base driver publishes odom -> base_link, which drifts and begins anew half-way (REP-105).
+// A base driver publishes odom -> base_link, which drifts and restarts half-way (REP-105).
 TEST_F(ByreNode, ComputesMapToOdomFromTheOdometryOfABaseDriver) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =

@@ -55,9 +55,4 @@ class JobSlot : public JobState {
   }
 };
 
-// Runs the requested job at once, on the calling thread.
-inline void run_at_once(JobState& job) {
-  if (const std::optional<Job> request = job.take_request()) job.deliver({(*request)(), 0.0});
-}
-
 }  // namespace byre

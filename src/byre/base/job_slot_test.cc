@@ -1,5 +1,7 @@
 #include "byre/base/job_slot.h"
 
+#include "byre/base/job_slot_scene.h"
+
 #include <string>
 
 #include <gtest/gtest.h>

@@ -88,7 +88,7 @@ MotionEstimates motion_estimates(const OdometryCalibrator& prior, const Session&
 // Final poses of all located frames; those of a finished map include frames located in it afterwards.
 Trajectory located_frames(SlamImpl& slam, FrameSource& frames, const PlayHooks& hooks, RunResult& run) {
   Trajectory seen = slam.session().final_trajectory();
-  if (!run.finishing || seen.empty()) return seen;
+  if (!run.finishing || seen.empty() || seen.size() == run.frames.size()) return seen;
   FramesAgain again;
   for (const PlayedFrame& frame : run.frames) again.times.push_back(frame.time);
   again.read = [&](int number) {

@@ -2,6 +2,7 @@
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/rectification.h"
 #include "byre/input_error.h"
 #include "byre/playback/report/report.h"
@@ -11,7 +12,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -81,7 +81,7 @@ CalibrationReading read(const CalibrationOptions& options) {
 }
 
 double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / std::numbers::pi;
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) / kDegree;
 }
 
 // Angle between the middles of two opposite sides; null if the lens has no ray there.
@@ -132,7 +132,7 @@ std::string distortion_text(const Camera& camera) {
 std::string pose_text(const Pose& pose) {
   constexpr double kPlaces = 1e5;
   const Eigen::Vector3d t = (kPlaces * pose.translation).array().round().matrix() / kPlaces + Eigen::Vector3d::Zero();
-  const double angle = 2.0 * std::acos(std::min(1.0, std::abs(pose.rotation.w()))) * 180.0 / std::numbers::pi;
+  const double angle = angle_between(Eigen::Quaterniond::Identity(), pose.rotation) / kDegree;
   return fmt::format("{:.5f} {:.5f} {:.5f} m, turned by {:.3f} deg", t.x(), t.y(), t.z(), angle);
 }
 
@@ -144,7 +144,7 @@ std::string rectified_text(const Calibration& calibration) {
   try {
     const Rig rig = rectification_of(calibration).rig;
     return fmt::format("{}x{}, focal length {:.1f} px, view {:.1f} deg", rig.width, rig.height, rig.focal,
-                       2.0 * std::atan(0.5 * rig.width / rig.focal) * 180.0 / std::numbers::pi);
+                       2.0 * std::atan(0.5 * rig.width / rig.focal) / kDegree);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -23,7 +23,7 @@ Pose scaled(const Pose& motion, double share) {
   return {rotation_exp(share * rotation_log(motion.rotation)), share * motion.translation};
 }
 
-// Whether odometry began anew or was corrected, as no indoor robot moves so fast.
+// Whether odometry restarted or was corrected: no indoor robot moves so fast.
 bool is_jump(const Pose& motion, Timestamp passed) {
   constexpr double kMaxSpeed = 5.0, kMaxTurnRate = 10.0;  // m/s, rad/s
   constexpr double kRounding = 0.02;                      // m, rad

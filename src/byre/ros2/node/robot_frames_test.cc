@@ -118,7 +118,7 @@ TEST_F(Frames, IgnoreInvalidTransforms) {
   EXPECT_FALSE(frames_.has_base_owner());
 }
 
-// map -> base stays true while odometry of the owner drifts and begins anew.
+// map -> base stays true while odometry of the owner drifts and restarts.
 TEST_F(Frames, KeepTheMapPoseWhileOdometryDriftsAndIsReset) {
   PoseFrames published;
   Pose odom_from_world;

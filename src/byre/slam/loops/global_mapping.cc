@@ -349,8 +349,10 @@ MapWindow whole_map(const MapView& map) {
 
 MapWindow both_maps(const MapView& map) {
   MapWindow online = whole_map(map);
-  const bool is_held_by_offline = std::ranges::all_of(online.keyframes, &WindowKeyframe::movable);
-  return is_held_by_offline ? window_of_both_maps(map) : online;
+  if (!std::ranges::all_of(online.keyframes, &WindowKeyframe::movable))
+    return online;  // the offline map is hardly seen
+  online = {};      // its memory is needed
+  return window_of_both_maps(map);
 }
 
 AdjustedOffline detach_offline(MapWindow& adjusted, MapWindow& before) {

@@ -1,5 +1,6 @@
 #include "byre/slam/mapping/mapper.h"
 
+#include "byre/base/job_slot_scene.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/places/place_scene.h"
 
