@@ -20,7 +20,8 @@ namespace {
 Camera make_camera(int width, int height, double fx, double fy, double cx, double cy, CameraModel model,
                    const std::vector<double>& distortion) {
   Camera camera{model, width, height, fx, fy, cx, cy, {}};
-  if (distortion.size() > camera.distortion.size()) throw py::value_error("distortion has at most fourteen coefficients");
+  if (distortion.size() > camera.distortion.size())
+    throw py::value_error("distortion has at most fourteen coefficients");
   const bool is_distorted = std::ranges::any_of(distortion, [](double value) { return value != 0.0; });
   if (is_distorted && model == CameraModel::pinhole) throw py::value_error("distortion needs a model with distortion");
   std::ranges::copy(distortion, camera.distortion.begin());
@@ -48,7 +49,8 @@ void bind_camera(py::module_& module) {
                      "Intrinsics of a camera. Pixels: origin at the centre of the top left pixel, u right, v down.")
       .def(py::init(&make_camera), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
            py::arg("cy"), py::arg("model") = CameraModel::pinhole, py::arg("distortion") = std::vector<double>{},
-           "distortion: at most fourteen coefficients, see CameraModel. Raises ValueError for more coefficients, and for "
+           "distortion: at most fourteen coefficients, see CameraModel. Raises ValueError for more coefficients, and "
+           "for "
            "distortion of a pinhole camera.")
       .def_readonly("model", &Camera::model)
       .def_readonly("width", &Camera::width, "Pixels.")

@@ -82,8 +82,8 @@ Calibration calibration_of_map(const StoredMap& stored, const fs::path& path) {
 // Camera of single images: from the named calibration, else that of the map.
 Calibration camera_of_images(const LocaliseCommandOptions& options, const StoredMap& stored) {
   const fs::path source = options.open.calibration.value_or(options.map);
-  const Calibration calibration =
-      options.open.calibration ? read_calibration(source, options.open.right_calibration) : calibration_of_map(stored, options.map);
+  const Calibration calibration = options.open.calibration ? read_calibration(source, options.open.right_calibration)
+                                                           : calibration_of_map(stored, options.map);
   return choose_calibration({calibration, source.string(), source.string()}, {}, options.open.camera, source).cameras;
 }
 

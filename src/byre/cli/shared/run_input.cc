@@ -49,8 +49,8 @@ RunInput::RunInput(Choice choice) : choice_(std::move(choice)) {
   const auto on_note = [](const std::string& note) {
     show_warnings(std::cerr, {note});
   };  // shown even if quiet, as it needs attention
-  const Calibration calibration =
-      with_checked_baseline(read_calibration(file, choice_.open.right_calibration), choice_.open.baseline, file.string(), "--baseline ");
+  const Calibration calibration = with_checked_baseline(read_calibration(file, choice_.open.right_calibration),
+                                                        choice_.open.baseline, file.string(), "--baseline ");
   live_ =
       open_live(choice_.live, scaled_calibration(calibration, choice_.has_metric_map, scaled_), file.string(), on_note);
 }

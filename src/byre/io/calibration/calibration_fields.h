@@ -33,8 +33,8 @@ class CalibrationFields {
   Pose pose(const std::string& field) const;                                       // rigid motion, from 4x4 or 3x4
   double number(const std::string& field) const;
   double number_or(const std::string& field, double missing) const;  // the second number if the field is missing
-  double positive(const std::string& field) const;                     // one number above zero
-  int pixels(const std::string& field) const;                          // one side of an image
+  double positive(const std::string& field) const;                   // one number above zero
+  int pixels(const std::string& field) const;                        // one side of an image
 
  private:
   CalibrationFields(std::string place, YAML::Node node) : place_(std::move(place)), node_(std::move(node)) {}

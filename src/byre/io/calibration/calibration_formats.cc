@@ -365,7 +365,7 @@ CameraList stella_cameras(const Fields& file, const fs::path&) {
                      "supported models: perspective, fisheye");
   }
   CameraList list{"stella_vslam", {stella_camera(fields, prefix)}};
-  const PlacedCamera& whole = list.cameras.front();
+  const PlacedCamera whole = list.cameras.front();
   if (text_or(fields, prefix + "setup", "") != "stereo") return list;
   const double focal_baseline = fields.number(prefix + "focal_x_baseline");
   const bool has_source = is_nested ? file.has("StereoRectifier") : file.has("StereoRectifier.K_left");
