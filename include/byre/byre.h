@@ -6,6 +6,7 @@
 #include "byre/body_motion.h"
 #include "byre/calibration.h"
 #include "byre/calibration_file.h"
+#include "byre/extrinsics.h"
 #include "byre/features.h"
 #include "byre/floor_plan.h"
 #include "byre/frame_cuts.h"

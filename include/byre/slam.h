@@ -2,6 +2,7 @@
 
 #include "byre/body_motion.h"
 #include "byre/calibration.h"
+#include "byre/extrinsics.h"
 #include "byre/features.h"
 #include "byre/floor_plan.h"
 #include "byre/frame_report.h"
@@ -51,6 +52,9 @@ struct SlamOptions {
   // Floor plan on which the mission's map is registered (read_drawn_floor_plan). Places behind its walls are rejected.
   // Empty: no walls.
   std::optional<DrawnFloorPlan> plan{};
+  // How camera and IMU are mounted on the robot's base. With it wheels yield poses from the first frame on, and one
+  // camera makes a map in metres. Empty: taken from the map, or found while driving. The camera's is required.
+  std::optional<Extrinsics> extrinsics{};
 };
 
 // Visual SLAM of one robot: images in, poses out. Call it from one thread; mapping has its own threads. Construction

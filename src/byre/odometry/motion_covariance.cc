@@ -23,13 +23,15 @@ Matrix6 wheel_covariance(const Pose& motion, const Pose& base, const WheelCalibr
   constexpr double kLeastTurn = 5e-4;  // radians
   const double way = motion.translation.norm();
   const double turn = rotation_log(motion.rotation).norm();
-  const double arm_sigma = std::sqrt(calibration.covariance.bottomRightCorner<2, 2>().trace());  // metres
-  const double translation_sigma =
-      way * std::hypot(std::max(kLeastShare, calibration.translation_error), calibration.scale_sigma) +
-      (turn * arm_sigma + kLeastMetres + calibration.lateral_error * std::abs(lateral_displacement(base))) /
-          calibration.metres_per_unit;
-  const double turn_sigma = turn * std::max(kLeastShare, calibration.rotation_error) +
-                            kTurnPerMetre * way * calibration.metres_per_unit + kLeastTurn;
+  const double direction_sigma = std::hypot(calibration.heading_sigma(), calibration.tilt_sigma());
+  const double translation_sigma = way * std::hypot(std::max(kLeastShare, calibration.translation_error),
+                                                    calibration.scale_sigma(), std::min(direction_sigma, 1.0)) +
+                                   (turn * calibration.arm_sigma() + kLeastMetres +
+                                    calibration.lateral_error * std::abs(lateral_displacement(base))) /
+                                       calibration.metres_per_unit;
+  const double turn_sigma =
+      turn * std::hypot(std::max(kLeastShare, calibration.rotation_error), std::min(calibration.tilt_sigma(), 1.0)) +
+      kTurnPerMetre * way * calibration.metres_per_unit + kLeastTurn;
   Matrix6 covariance = Matrix6::Zero();
   covariance.diagonal().head<3>().setConstant(translation_sigma * translation_sigma);
   covariance.diagonal().tail<3>().setConstant(turn_sigma * turn_sigma);

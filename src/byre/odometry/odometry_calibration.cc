@@ -1,6 +1,8 @@
 #include "byre/odometry/odometry_calibration.h"
 
+#include "byre/alignment.h"
 #include "byre/base/text_file.h"
+#include "byre/geometry/decompositions.h"
 
 #include <array>
 #include <charconv>
@@ -18,6 +20,7 @@ namespace {
 constexpr const char* kWheels = "wheels";
 constexpr const char* kGyroscope = "gyroscope";
 constexpr const char* kGravity = "gravity";
+constexpr double kNeglected = 9.0;  // factor of the variances of an estimate for errors that motions have in common
 
 std::string text_of(double value) {
   std::array<char, 32> text{};
@@ -84,32 +87,48 @@ bool get_rotation(const NumbersByName& numbers, const std::string& name, Eigen::
 std::string note_of(const WheelCalibration& wheels, double time_offset) {
   NumbersByName numbers;
   add_rotation(numbers, "base_from_body_wxyz", wheels.base_from_body.rotation);
-  numbers.add("arm_m", std::array{wheels.base_from_body.translation.x(), wheels.base_from_body.translation.y()});
+  numbers.add("arm_m", std::span(wheels.base_from_body.translation.data(), 3));
   numbers.add("metres_per_unit", wheels.metres_per_unit);
-  numbers.add("scale_sigma", wheels.scale_sigma);
   numbers.add("way_error", wheels.translation_error);
   numbers.add("turn_error", wheels.rotation_error);
   numbers.add("turn_scale", wheels.turn_errors.scale);
   numbers.add("turn_per_metre", wheels.turn_errors.per_metre);
-  numbers.add("covariance", std::span(wheels.covariance.data(), 16));
+  numbers.add("covariance", std::span(wheels.covariance.data(), wheels.covariance.size()));
   numbers.add("delay_s", time_offset);
   return numbers.text();
 }
 
+// Older versions have the covariance of metres_per_unit times cosine and sine of the heading, and of the lever arm, and
+// no sigma of the other parameters.
+bool read_older_covariance(const NumbersByName& numbers, WheelCalibration& wheels) {
+  Eigen::Matrix4d older;
+  if (!numbers.get("covariance", std::span(older.data(), 16))) return false;
+  const Eigen::Quaterniond level_from_body = rotation_between(wheels.up_in_body(), Eigen::Vector3d::UnitZ());
+  const double heading = rotation_log(wheels.base_from_body.rotation * level_from_body.conjugate()).z();
+  const Eigen::Vector2d along = Eigen::Vector2d(std::cos(heading), std::sin(heading)) / wheels.metres_per_unit;
+  Eigen::Matrix<double, 9, 4> factors = Eigen::Matrix<double, 9, 4>::Zero();
+  factors.block<1, 2>(2, 0) << -along.y(), along.x();
+  factors.block<2, 2>(3, 2).setIdentity();
+  factors.block<1, 2>(6, 0) = along.transpose();
+  wheels.covariance = day_to_day_covariance() + factors * older * factors.transpose();
+  return true;
+}
+
 bool read_note(const NumbersByName& numbers, WheelCalibration& wheels, double& time_offset) {
-  std::array<double, 2> arm{};
-  const bool is_whole =
-      get_rotation(numbers, "base_from_body_wxyz", wheels.base_from_body.rotation) && numbers.get("arm_m", arm) &&
-      numbers.get("metres_per_unit", wheels.metres_per_unit) && numbers.get("scale_sigma", wheels.scale_sigma) &&
+  Eigen::Vector3d& arm = wheels.base_from_body.translation;
+  const bool has_mean =
+      get_rotation(numbers, "base_from_body_wxyz", wheels.base_from_body.rotation) &&
+      (numbers.get("arm_m", std::span(arm.data(), 3)) || numbers.get("arm_m", std::span(arm.data(), 2))) &&
+      numbers.get("metres_per_unit", wheels.metres_per_unit) && wheels.metres_per_unit > 0.0 &&
       numbers.get("way_error", wheels.translation_error) && numbers.get("turn_error", wheels.rotation_error) &&
       numbers.get("turn_scale", wheels.turn_errors.scale) &&
-      numbers.get("turn_per_metre", wheels.turn_errors.per_metre) &&
-      numbers.get("covariance", std::span(wheels.covariance.data(), 16)) && numbers.get("delay_s", time_offset);
-  wheels.base_from_body.translation = {arm[0], arm[1], 0.0};
-  const bool is_sound = wheels.metres_per_unit > 0.0 && wheels.scale_sigma >= 0.0 &&
-                        wheels.covariance.ldlt().isPositive() &&
-                        wheels.covariance.isApprox(wheels.covariance.transpose());
-  return is_whole && is_sound;
+      numbers.get("turn_per_metre", wheels.turn_errors.per_metre) && numbers.get("delay_s", time_offset);
+  if (!has_mean) return false;
+  WheelCovariance& covariance = wheels.covariance;
+  const bool has_covariance =
+      numbers.get("covariance", std::span(covariance.data(), static_cast<std::size_t>(covariance.size()))) ||
+      read_older_covariance(numbers, wheels);
+  return has_covariance && covariance.ldlt().isPositive() && covariance.isApprox(covariance.transpose());
 }
 
 }  // namespace
@@ -164,19 +183,20 @@ OdometryCalibration read_odometry_calibration(const std::map<std::string, std::s
 }
 
 OdometryCalibration scaled(OdometryCalibration calibration, double factor) {
-  if (!calibration.wheels) return calibration;
-  calibration.wheels->metres_per_unit /= factor;
-  calibration.wheels->covariance.topRows<2>() /= factor;
-  calibration.wheels->covariance.leftCols<2>() /= factor;
+  if (calibration.wheels) calibration.wheels->metres_per_unit /= factor;
   return calibration;
 }
 
 OdometryCalibration moved(OdometryCalibration calibration, const Pose& before_from_after) {
   if (calibration.wheels) {
-    Pose arm = before_from_after;
-    arm.translation *= calibration.wheels->metres_per_unit;
-    calibration.wheels->base_from_body = calibration.wheels->base_from_body * arm;
-    calibration.wheels->base_from_body.translation.z() = 0.0;
+    WheelCalibration& wheels = *calibration.wheels;
+    const Pose arm = scale_lengths(before_from_after, wheels.metres_per_unit);
+    const Eigen::Vector3d shift = wheels.base_from_body.rotation * arm.translation;
+    WheelCovariance factors = WheelCovariance::Identity();
+    factors.block<3, 3>(3, 0) = -skew(shift);
+    factors.block<3, 1>(3, 6) = shift;
+    wheels.covariance = factors * wheels.covariance * factors.transpose();
+    wheels.base_from_body = wheels.base_from_body * arm;
   }
   if (calibration.gyroscope) {
     Eigen::Quaterniond& turned = calibration.gyroscope->body_from_gyroscope;
@@ -188,16 +208,15 @@ OdometryCalibration moved(OdometryCalibration calibration, const Pose& before_fr
   return calibration;
 }
 
-bool is_contradicted(const WheelCalibration& known, const WheelCalibration& found) {
-  constexpr double kMostTilt = 0.06;         // radians between the axes
-  constexpr double kMostSquaredSigmas = 18;  // sum over four parameters; probability 1/800 to exceed it
-  constexpr double kNeglected = 9.0;         // factor for errors that motions have in common
-  const auto up = [](const WheelCalibration& calibration) -> Eigen::Vector3d {
-    return calibration.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  };
-  if (std::acos(std::clamp(up(known).dot(up(found)), -1.0, 1.0)) > kMostTilt) return true;
-  const Eigen::Vector4d apart = constrained_parameters(found, up(known)) - constrained_parameters(known, up(known));
-  const Eigen::Matrix4d covariance = kNeglected * (known.covariance + found.covariance) + day_to_day_covariance(known);
+WheelCalibration as_prior(WheelCalibration earlier) {
+  earlier.covariance = kNeglected * earlier.covariance + day_to_day_covariance();
+  return earlier;
+}
+
+bool is_contradicted(const WheelCalibration& prior, const WheelCalibration& found) {
+  constexpr double kMostSquaredSigmas = 27.9;  // sum over nine parameters; probability 1/1000 to exceed it
+  const WheelDeviation apart = difference(prior, found);
+  const WheelCovariance covariance = prior.covariance + kNeglected * found.covariance;
   return apart.dot(covariance.ldlt().solve(apart)) > kMostSquaredSigmas;
 }
 

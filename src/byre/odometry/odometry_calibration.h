@@ -31,12 +31,15 @@ OdometryCalibration read_odometry_calibration(const std::map<std::string, std::s
 // The calibration for a map whose lengths are multiplied by a factor.
 OdometryCalibration scaled(OdometryCalibration calibration, double factor);
 
-// The calibration of another point of the body. Its unknown height above the base stays zero.
+// The calibration of another point of the body.
 OdometryCalibration moved(OdometryCalibration calibration, const Pose& before_from_after);
 
-// Whether two estimates of a calibration differ by more than their uncertainty and the usual change from drive to
-// drive.
-bool is_contradicted(const WheelCalibration& known, const WheelCalibration& found);
+// The estimate of an earlier drive as a prior of this one: wider by the usual change from drive to drive, and by errors
+// that the motions of a drive have in common.
+WheelCalibration as_prior(WheelCalibration earlier);
+
+// Whether an estimate by motions differs from the prior by more than the uncertainty of both.
+bool is_contradicted(const WheelCalibration& prior, const WheelCalibration& found);
 
 // Note of a map whose scale only wheels measured, with the key kMetresNote: "sigma_by_wheels SHARE".
 inline constexpr const char* kMetresNote = "metres";

@@ -1,4 +1,6 @@
 #include "byre/odometry/odometry_calibrator.h"
+#include <cstdio>
+#include <cstdlib>
 
 #include "byre/odometry/motion_covariance.h"
 #include "byre/odometry/time_offset.h"
@@ -21,6 +23,10 @@ constexpr double kUnprovenFactor = 9.0;   // factor of the covariance until kCon
 constexpr int kEstimatesUntilStored = 8;  // estimates of a calibration until it is kept
 constexpr int kEstimatesPerOffset =
     8;  // estimates of a calibration per estimate of the delay: costly, and it changes least
+constexpr double kMaxSigma = 0.05;        // relative for the scale, radians for the rotation, of an estimate
+constexpr double kMaxInitialSigma = 0.2;  // largest sigma of the first estimate
+constexpr double kMeasuredTilt = 0.03;    // radians, standard deviation of an up axis measured at standstill
+constexpr double kLeastInitialWay = 0.3;  // metres, sum of all paths of the first estimate
 
 // Whether wheels and gyroscope disagree about a turn, such as when a wheel spins or is lifted.
 bool is_slip(const Eigen::Quaterniond& by_wheels, const Eigen::Quaterniond& by_gyroscope, double seconds) {
@@ -29,13 +35,63 @@ bool is_slip(const Eigen::Quaterniond& by_wheels, const Eigen::Quaterniond& by_g
   return angle_between(by_wheels, by_gyroscope) > kRate * seconds + kShare * rotation_log(by_gyroscope).norm();
 }
 
+// Metres, sum of all paths.
+double way_of(const std::vector<MotionPair>& motions) {
+  double way = 0.0;
+  for (const MotionPair& motion : motions) way += motion.base.translation.norm();
+  return way;
+}
+
+// Whether the base drove and turned enough for an estimate without a prior.
+bool determine_calibration(const std::vector<MotionPair>& motions) {
+  constexpr double kLeastTurn = 0.8;  // radians, sum of all turns
+  constexpr double kLeastWay = 1.0;   // metres
+  double turned = 0.0;
+  for (const MotionPair& motion : motions) turned += std::abs(rotation_log(motion.base.rotation).z());
+  return turned >= kLeastTurn && way_of(motions) >= kLeastWay;
+}
+
+bool is_determined(const std::optional<WheelCalibration>& calibration, double max_sigma) {
+  return calibration && calibration->scale_sigma() < max_sigma && calibration->heading_sigma() < max_sigma;
+}
+
+std::optional<WheelCalibration> estimate_without_prior(const std::vector<MotionPair>& motions) {
+  if (!determine_calibration(motions)) return {};
+  auto found = estimate_wheel_calibration(motions);
+  return is_determined(found, kMaxSigma) ? found : std::nullopt;
+}
+
+// The prior without motions.
+std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair>& motions,
+                                                    const WheelCalibration& prior) {
+  auto found = estimate_wheel_calibration(motions, prior);
+  return is_determined(found, kMaxSigma) ? found : std::nullopt;
+}
+
 }  // namespace
 
 void OdometryCalibrator::begin_with(const OdometryCalibration& known) {
   prior_ = known;
+  if (known.wheels) prior_.wheels = as_prior(*known.wheels);
   wheel_calibration_ = known.wheels;
   stationary_.begin_with(known.up);
-  if (known.wheels) time_offset_ = known.time_offset;
+  if (known.wheels) set_time_offset(known.time_offset);
+}
+
+void OdometryCalibrator::begin_with_extrinsics(const WheelCalibration& measured, std::optional<double> time_offset) {
+  constexpr double kTilt = 0.1;  // radians, largest standard deviation of a known up axis
+  if (measured.tilt_sigma() < kTilt) up_in_body_ = measured.up_in_body();
+  if (time_offset) set_time_offset(*time_offset);
+  if (prior_.wheels && !is_contradicted(measured, *wheel_calibration_)) return;
+  prior_.wheels = measured;
+  is_prior_measured_ = true;
+  wheel_calibration_ = is_determined(measured, kMaxSigma) ? std::optional(measured) : std::nullopt;
+}
+
+void OdometryCalibrator::forget_scale() {
+  if (!is_prior_measured_ || !prior_.wheels) return;
+  prior_.wheels = with_unknown_scale(*prior_.wheels);
+  wheel_calibration_.reset();
 }
 
 // Forgets old samples also while no frame arrives.
@@ -230,7 +286,7 @@ void OdometryCalibrator::estimate_calibrations() {
   if (!wheel_calibration_) return;
   if (estimates_++ % kEstimatesPerOffset == 0) {
     const Eigen::Vector3d up = wheel_calibration_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) time_offset_ = *offset;
+    if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) set_time_offset(*offset);
   }
   if (estimates_ >= kEstimatesUntilUsed || prior_.wheels) gaps_.integrate(base_odometry());
 }
@@ -249,7 +305,8 @@ void OdometryCalibrator::reestimate(const Trajectory& seen) {
     }
     begin = i;
   }
-  if (const auto found = estimate_wheel_calibration(pairs, prior_.wheels)) wheel_calibration_ = found;
+  const auto found = prior_.wheels ? estimate_with_prior(pairs, *prior_.wheels) : estimate_without_prior(pairs);
+  if (found) wheel_calibration_ = found;
 }
 
 void OdometryCalibrator::rescale(double factor) {
@@ -263,31 +320,45 @@ void OdometryCalibrator::rescale(double factor) {
 void OdometryCalibrator::estimate_wheels() {
   constexpr int kLooks = 3;  // consecutive contradictions
   const std::vector<MotionPair> all = pairs();
-  const auto alone = estimate_wheel_calibration(all);
+  const auto alone = estimate_without_prior(all);
   if (prior_.wheels && alone) {
     contradicting_estimates_ = is_contradicted(*prior_.wheels, *alone) ? contradicting_estimates_ + 1 : 0;
-    if (contradicting_estimates_ >= kLooks) discard_prior_wheels();
+    if (contradicting_estimates_ >= kLooks) discard_prior_wheels(seen_.back().later);
   }
-  const auto found = prior_.wheels ? estimate_wheel_calibration(all, prior_.wheels) : alone;
+  const auto found = prior_.wheels ? estimate_with_prior(all, *prior_.wheels) : alone;
   if (found) wheel_calibration_ = found;
   if (!is_metric_ || !alone || seen_.empty()) return;
-  if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma, seen_.back().later)) drop_wheels();
+  if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma(), seen_.back().later)) drop_wheels();
 }
 
 // Derived from the first seconds, and updated with each motion until the calibration is estimated.
 void OdometryCalibrator::update_initial_calibration() {
   constexpr std::size_t kLeastMotions = 2;
+  constexpr double kTilt = 0.2;        // radians, of a camera that is upright
+  constexpr double kLeastError = 0.1;  // share of path lengths and turns
   initial_.reset();
   if (wheel_calibration_ || seen_.size() < kLeastMotions) return;
   const std::vector<MotionPair> all = pairs();
-  if (measured_up_) initial_ = estimate_initial_wheel_calibration(all, *measured_up_, UpSource::measured);
-  if (!initial_ && up_in_body_) initial_ = estimate_initial_wheel_calibration(all, *up_in_body_);
+  if (way_of(all) < kLeastInitialWay) return;
+  if (prior_.wheels) {
+    wheel_calibration_ = estimate_with_prior(all, *prior_.wheels);
+    return;
+  }
+  if (measured_up_) initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*measured_up_, kMeasuredTilt));
+  if (!is_determined(initial_, kMaxInitialSigma) && up_in_body_) {
+    initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*up_in_body_, kTilt));
+  }
+  if (!is_determined(initial_, kMaxInitialSigma)) return initial_.reset();
+  initial_->translation_error = std::max(initial_->translation_error, kLeastError);
+  initial_->rotation_error = std::max(initial_->rotation_error, kLeastError);
 }
 
 const WheelCalibration* OdometryCalibrator::active_calibration() const {
   if (wheel_calibration_) return &*wheel_calibration_;
   if (initial_) return &*initial_;
-  return predicts_before_tracking_ && assumed_forward_ ? &*assumed_forward_ : nullptr;
+  if (!predicts_before_tracking_) return nullptr;
+  if (prior_.wheels) return &*prior_.wheels;
+  return assumed_forward_ ? &*assumed_forward_ : nullptr;
 }
 
 // An earlier calibration that most motions contradict from the start is wrong. Slip does not last as long.
@@ -298,16 +369,27 @@ void OdometryCalibrator::check_prior(double disagreement, const VisualMotion& mo
   const double way = wheel_calibration_->metres_per_unit * motion.body.translation.norm();
   if (way < kMinPath && rotation_log(motion.body.rotation).norm() < kMinRotation) return;
   ++(disagreement > 1.0 ? contradicting_ : confirming_);
-  if (contradicting_ >= kContradicting && contradicting_ > 2 * confirming_) discard_prior_wheels();
+  if (contradicting_ >= kContradicting && contradicting_ > 2 * confirming_) discard_prior_wheels(motion.later);
 }
 
-void OdometryCalibrator::discard_prior_wheels() {
+void OdometryCalibrator::discard_prior_wheels(Timestamp time) {
+  if (is_prior_measured_) {
+    warn({MotionSensor::wheels, time,
+          "motions contradict the given extrinsics of camera and base; these are dropped, and estimated from motions",
+          "compare the given pose of the camera on the base with the one that the report of the run shows"});
+  }
   prior_.wheels.reset();
   wheel_calibration_.reset();
   time_offset_.reset();
   estimates_ = 0;
   is_slipping_ = false;
   has_calibration_changed_ = true;
+}
+
+void OdometryCalibrator::set_time_offset(double seconds) {
+  constexpr double kSigma = 0.005;  // seconds
+  time_offset_ = seconds;
+  time_offset_sigma_ = kSigma;
 }
 
 OdometryCalibration OdometryCalibrator::calibration_to_store() const {
@@ -392,10 +474,23 @@ std::optional<BodyMotion> OdometryCalibrator::wheel_motion(Timestamp earlier, Ti
   if (!base) return {};
   const Pose body = body_motion(*calibration, base->motion);
   BodyMotion motion{body, wheel_covariance(body, base->motion, *calibration)};
+  const Vector6 deviation = deviation_by_time_offset(earlier, later, base->motion);
+  motion.covariance += deviation * deviation.transpose();
   if (prior_.wheels && confirming_ < kConfirmed) motion.covariance *= kUnprovenFactor;
   if (!base->is_translation_valid) set_translation_unknown(motion);
   if (!base->is_rotation_valid) set_rotation_unknown(motion);
   return motion;
+}
+
+// Standard deviation of the body's motion, as a delta, by that of the delay of the wheels: zero at constant speed.
+Vector6 OdometryCalibrator::deviation_by_time_offset(Timestamp earlier, Timestamp later, const Pose& base) const {
+  const Timestamp shift = from_seconds(time_offset_sigma_);
+  auto shifted = base_between(earlier + shift, later + shift);
+  if (!shifted) shifted = base_between(earlier - shift, later - shift);
+  if (!shifted) return Vector6::Zero();
+  const WheelCalibration& calibration = *active_calibration();
+  Vector6 deviation = log_pose(inverse(body_motion(calibration, base)) * body_motion(calibration, *shifted));
+  return deviation;
 }
 
 // Whether the motion of the base changes from the previous span by more than a body can: wheels spin, or are faulty.

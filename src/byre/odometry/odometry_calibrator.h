@@ -31,6 +31,11 @@ class OdometryCalibrator {
   // Sets a prior from an earlier drive, with which wheels yield motion from the first frame on. Dropped if motions
   // contradict it. Call it before any other input.
   void begin_with(const OdometryCalibration& known);
+  // Sets extrinsics measured by hand as the prior, instead of those of an earlier drive that differ from them.
+  // time_offset: delay of the wheels' stamps, seconds; empty: unknown. Call it after begin_with().
+  void begin_with_extrinsics(const WheelCalibration& measured, std::optional<double> time_offset);
+  // The map began with a unit other than metres. The prior is in use again once the first motions determine the unit.
+  void forget_scale();
   // Sets the approximate up and forward axes of the body. The first motions then yield an assumed calibration, used
   // until it can be estimated; otherwise there is no motion before the estimate. Call it before any other input.
   // ahead_in_body: the direction in which the body drives.
@@ -123,7 +128,8 @@ class OdometryCalibrator {
   const WheelCalibration* active_calibration() const;  // nullptr if nothing is estimated or assumed
   void detect_slip(const VisualMotion& motion);
   void check_prior(double disagreement, const VisualMotion& motion);
-  void discard_prior_wheels();
+  void set_time_offset(double seconds);
+  void discard_prior_wheels(Timestamp time);
   void add_gyroscope_rotations();
   std::vector<MotionPair> pairs() const;
   // In the clock of the wheels.
@@ -139,6 +145,7 @@ class OdometryCalibrator {
   GapTrajectory::BaseOdometry base_odometry() const;
   std::optional<BodyMotion> wheel_motion(Timestamp earlier, Timestamp later,
                                          const std::optional<Eigen::Quaterniond>& turn) const;
+  Vector6 deviation_by_time_offset(Timestamp earlier, Timestamp later, const Pose& base) const;
   bool contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const;
   std::optional<BodyMotion> bridge_jump(Timestamp earlier, Timestamp later,
                                         const std::optional<Eigen::Quaterniond>& turn) const;
@@ -170,10 +177,12 @@ class OdometryCalibrator {
   std::optional<GyroscopeCalibration> given_gyroscope_;
   std::optional<GyroscopeCalibration> gyroscope_;
   std::optional<double> time_offset_;
+  double time_offset_sigma_ = 0.05;  // seconds; usual until it is given or estimated
   bool is_slipping_ = false;
   int agreeing_ = 0;  // number of motions since slip in which wheels agree with images
   int slips_ = 0;
   OdometryCalibration prior_;        // from an earlier drive, until contradicted
+  bool is_prior_measured_ = false;   // by hand, not on an earlier drive
   int contradicting_ = 0;            // number of motions that contradict the earlier calibration of wheels
   int confirming_ = 0;               // number of motions that agree with it
   int contradicting_estimates_ = 0;  // consecutive estimates that contradict the earlier calibration

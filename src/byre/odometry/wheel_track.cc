@@ -13,6 +13,7 @@ constexpr Timestamp kKeptLonger = 120s;
 constexpr Timestamp kMaxWheelGap = 500ms;
 constexpr Timestamp kMaxVelocityGap = 300ms;
 constexpr Timestamp kMaxAhead = 250ms;
+constexpr Timestamp kMaxBehind = 50ms;
 
 // earlier_from_later, along an arc.
 Pose arc_of(const BaseTwist& velocity, double seconds) {
@@ -76,7 +77,17 @@ void WheelTrack::forget_before(Timestamp time) {
   breaks_.erase(breaks_.begin(), std::ranges::lower_bound(breaks_, time));
 }
 
+// The pose before the first sample by the motion after it.
+std::optional<Pose> WheelTrack::pose_before_first(Timestamp time) const {
+  const StampedPose &first = samples_[0], &second = samples_[1];
+  const bool is_motion_known = breaks_.empty() || breaks_.front() > second.time;
+  if (!is_motion_known || time < first.time - kMaxBehind || second.time - first.time > kMaxWheelGap) return {};
+  const double fraction = to_seconds(time - first.time) / to_seconds(second.time - first.time);
+  return interpolate(first.world_from_body, second.world_from_body, fraction);
+}
+
 std::optional<Pose> WheelTrack::pose_at(Timestamp time) const {
+  if (samples_.size() >= 2 && time < samples_.front().time) return pose_before_first(time);
   if (samples_.size() < 2 || time <= samples_.back().time) return byre::pose_at(samples_, time, kMaxWheelGap);
   const StampedPose &before = samples_[samples_.size() - 2], &last = samples_.back();
   if (velocity_ && time <= last.time + kMaxAhead) {

@@ -24,7 +24,7 @@ class WheelTrack {
 
   bool empty() const { return samples_.empty(); }
   // Pose of the base. Interpolated between two samples at most 0.5 s apart; extrapolated with the last motion up to
-  // 0.25 s after the last sample.
+  // 0.25 s after the last sample, and with the first motion up to 0.05 s before the first one.
   std::optional<Pose> pose_at(Timestamp time) const;
   // Motion of the base, earlier_from_later; empty if either end is unknown, or both are in different segments.
   std::optional<Pose> between(Timestamp earlier, Timestamp later) const;
@@ -40,6 +40,7 @@ class WheelTrack {
 
  private:
   bool is_broken(Timestamp earlier, Timestamp later) const;
+  std::optional<Pose> pose_before_first(Timestamp time) const;
 
   Trajectory samples_;
   std::optional<BaseTwist> velocity_;  // velocity of the last sample, if it has one

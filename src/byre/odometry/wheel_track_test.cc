@@ -90,5 +90,15 @@ TEST(WheelTrack, IsEmptyFromVelocitiesToPoses) {
   expect_at(way(track, 1.2, 1.7), 0.5, 0.0, 0.0, 1e-9);
 }
 
+TEST(WheelTrack, ContinuesTheFirstMotionBackwards) {
+  WheelTrack track;
+  track.add(StampedPose{from_seconds(1.0), Pose{}});
+  EXPECT_FALSE(track.pose_at(from_seconds(0.96))) << "one pose has no motion";
+  track.add(StampedPose{from_seconds(1.1), Pose{Eigen::Quaterniond::Identity(), {0.2, 0.0, 0.0}}});
+  ASSERT_TRUE(track.pose_at(from_seconds(0.96)));
+  EXPECT_NEAR(track.pose_at(from_seconds(0.96))->translation.x(), -0.08, 1e-9);
+  EXPECT_FALSE(track.pose_at(from_seconds(0.94)));
+}
+
 }  // namespace
 }  // namespace byre

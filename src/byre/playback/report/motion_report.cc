@@ -12,7 +12,7 @@ namespace {
 
 // Length of a map unit by the wheels. Empty if the wheels set the scale, which makes it 1.
 std::string describe_lengths(const WheelCalibration& wheels, const RunResult& run, bool has_metric_source) {
-  const double share = 100.0 * wheels.scale_sigma;
+  const double share = 100.0 * wheels.scale_sigma();
   if (has_metric_source) {
     return fmt::format("{:.2f} % longer than by camera (sigma {:.2f} %); ", 100.0 * (wheels.metres_per_unit - 1.0),
                        share);

@@ -91,9 +91,15 @@ Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Rig& rig,
     keyframes = add_submap_by_odometry(*attempt.start, *camera_from_world, trajectory);
     if (keyframes.empty()) return {};
   } else {
-    MonocularStart start = camera_from_world
-                               ? align_to_odometry(*attempt.start, {odometry_reference_, *camera_from_world})
-                               : std::move(*attempt.start);
+    MonocularStart start = *std::move(attempt.start);
+    if (camera_from_world) {
+      const MonocularStartOptions& options = options_.monocular_start;
+      const StartPoses measured{odometry_reference_, *camera_from_world};
+      const auto scale = odometry_scale(start, measured, options.lever_arm_sigma);
+      if (!scale && options.is_scaled_by_odometry) return {{}, TwoViewFailure::uncertain};
+      start = align_to_odometry(start, measured, scale.value_or(1.0));
+      is_scaled_by_odometry_ = scale && options.is_scaled_by_odometry;
+    }
     keyframes = {start.first, start.second};
     online_ = std::move(start.map);
     submaps_.begin_in_map_frame(0);
@@ -206,7 +212,8 @@ std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId
 }
 
 std::vector<KeyframeMotion> Mapper::all_motions() const {
-  return in_lengths_of(online_, motions_between(online_.keyframe_ids()));
+  std::vector<KeyframeMotion> motions = motions_between(online_.keyframe_ids());
+  return is_scaled_by_odometry_ ? motions : in_lengths_of(online_, std::move(motions));
 }
 
 std::optional<double> Mapper::collect() {

@@ -19,6 +19,23 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGivenCalibration = "the calibration given to Slam";
 
+bool is_sound(const std::optional<SensorMounting>& mounting) {
+  return !mounting || (is_finite(mounting->base_from_sensor) && mounting->sigma_m > 0.0 && mounting->sigma_rad > 0.0);
+}
+
+void require_valid(const Extrinsics& extrinsics) {
+  const auto refuse = [](std::string_view reason, std::string_view remedy) {
+    throw InputError("SlamOptions::extrinsics", reason, remedy);
+  };
+  if (!extrinsics.camera) refuse("has no camera", "give the pose of the camera on the base");
+  if (!is_sound(extrinsics.camera) || !is_sound(extrinsics.imu)) {
+    refuse("has a pose that is not finite, or a sigma that is not positive", "see byre/extrinsics.h");
+  }
+  const bool is_wheel_sound = extrinsics.wheel_scale > 0.0 && std::isfinite(extrinsics.wheel_scale) &&
+                              extrinsics.wheel_scale_sigma > 0.0 && std::isfinite(extrinsics.wheel_delay.value_or(0.0));
+  if (!is_wheel_sound) refuse("has a scale, sigma or delay of wheels that is not positive or finite", "");
+}
+
 // Throws InputError for an invalid calibration. Those from files were checked on reading; others were not.
 void require_valid(const Calibration& calibration, const SlamOptions& options) {
   const auto refuse = [](std::string_view reason) {
@@ -34,6 +51,7 @@ void require_valid(const Calibration& calibration, const SlamOptions& options) {
   }
   if (options.max_features < 1) throw InputError("SlamOptions::max_features", "is less than one");
   if (options.image_threads < 1) throw InputError("SlamOptions::image_threads", "is less than one");
+  if (options.extrinsics) require_valid(*options.extrinsics);
 }
 
 // Calibration with the baseline of the options. Throws InputError if invalid.
@@ -71,6 +89,7 @@ MethodOptions method_options(const SlamOptions& options) {
 
 std::unique_ptr<SlamImpl> make(const Calibration& given, const SlamOptions& options, SlamInputs inputs) {
   inputs.recording = options.recording;
+  inputs.extrinsics = options.extrinsics;
   inputs.site = options.site;
   return std::make_unique<SlamImpl>(given, method_options(options), std::move(inputs),
                                     InputCheckOptions{options.max_pair_difference, options.max_gap});

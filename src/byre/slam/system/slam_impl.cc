@@ -5,6 +5,7 @@
 #include "byre/map/stored_calibration.h"
 #include "byre/slam/window/online_copy.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -41,11 +42,29 @@ OdometryCalibration initial_extrinsics(const Calibration& given, const SlamInput
   return odometry_calibration_for(extrinsics, earlier_recordings(inputs), given);
 }
 
+// The camera as the body, with extrinsics measured by hand.
+WheelCalibration wheel_calibration_of(const Extrinsics& extrinsics) {
+  const SensorMounting& camera = *extrinsics.camera;
+  WheelCalibration measured = unknown_wheel_calibration();
+  measured.base_from_body = camera.base_from_sensor;
+  measured.metres_per_unit = 1.0 / extrinsics.wheel_scale;
+  Eigen::Matrix<double, 7, 1> sigmas;
+  sigmas.head<3>().setConstant(camera.sigma_rad);
+  sigmas.segment<3>(3).setConstant(camera.sigma_m);
+  sigmas[6] = extrinsics.wheel_scale_sigma;
+  measured.covariance.topLeftCorner<7, 7>() = sigmas.cwiseAbs2().asDiagonal();
+  return measured;
+}
+
 // Other cameras than those of the map may be mounted at another height or tilt.
 SessionOptions session_options(const Calibration& given, const MethodOptions& options, const SlamInputs& inputs) {
   SessionOptions session = options.session;
   const std::vector<SourceRecording>& earlier = earlier_recordings(inputs);
   if (!inputs.offline) session.recording = static_cast<int>(earlier.size());
+  if (inputs.extrinsics) {
+    session.monocular_start.is_scaled_by_odometry = true;
+    session.monocular_start.lever_arm_sigma = inputs.extrinsics->camera->sigma_m;
+  }
   if (inputs.offline && !earlier.empty() && !has_same_cameras(earlier, given)) {
     session.mission.bounds.is_on_ground_of_map = false;
   }
@@ -84,6 +103,7 @@ SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamI
                options.close_loops ? inputs_.vocabulary : std::nullopt, inputs_.offline) {
   if (options.use_saved_extrinsics) prior_.begin_with(initial_extrinsics(given, inputs_));
   prior_.assume_upright(body_from_left_ * -Eigen::Vector3d::UnitY(), body_from_left_ * Eigen::Vector3d::UnitZ());
+  if (inputs_.extrinsics) begin_with_extrinsics(*inputs_.extrinsics);
   if (!inputs_.offline) prior_.enable_mapping_mode();
   if (is_metric_) prior_.set_metric();
   session_.set_odometry([this](Timestamp earlier, Timestamp later) { return prior_.path_between(earlier, later); },
@@ -101,6 +121,22 @@ void SlamImpl::refine_calibration() {
   } else {
     session_.refine_calibration(given_, options_.self_calibration);
   }
+}
+
+void SlamImpl::begin_with_extrinsics(const Extrinsics& extrinsics) {
+  const Pose left_from_body = inverse(given_.body_from_left);
+  OdometryCalibration measured;
+  measured.wheels = wheel_calibration_of(extrinsics);
+  measured = moved(measured, left_from_body);
+  prior_.begin_with_extrinsics(*measured.wheels, extrinsics.wheel_delay);
+  if (!extrinsics.imu) return;
+  const Eigen::Quaterniond left_from_base = extrinsics.camera->base_from_sensor.rotation.conjugate();
+  prior_.set_gyroscope_extrinsics(body_from_left_ * left_from_base * extrinsics.imu->base_from_sensor.rotation);
+}
+
+void SlamImpl::set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope) {
+  if (inputs_.extrinsics && inputs_.extrinsics->imu) return;
+  prior_.set_gyroscope_extrinsics(body_from_left_ * left_from_gyroscope);
 }
 
 FrameReport SlamImpl::process(const CameraImages& images, const std::optional<BodyMotion>& motion) {
@@ -178,11 +214,14 @@ FrameReport SlamImpl::process_images(const ImageFrame& images, const std::option
 
 FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion) {
   log_.job_seconds.clear();
-  const bool uses_samples = !motion && last_frame_ && !prior_.is_empty();
-  const auto measured_motion = uses_samples ? prior_.between(*last_frame_, frame.time) : motion;
+  const bool uses_samples = !motion && !prior_.is_empty();
+  const Timestamp since = last_frame_.value_or(frame.time);  // the first frame is where the measured path begins
+  const auto measured_motion = uses_samples ? prior_.between(since, frame.time) : motion;
   session_.set_tilt(uses_samples ? prior_.tilt(frame.time) : std::nullopt);
   FrameReport report = session_.process(frame, measured_motion, &budget_);
   last_frame_ = frame.time;
+  const bool is_begun = std::ranges::find(report.events, SessionEvent::initialised) != report.events.end();
+  if (is_begun && !is_metric_ && !session_.is_scaled_by_odometry()) prior_.forget_scale();
   const bool is_seen = report.inliers > 0;
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
   if (is_seen && report.map_from_body && report.health.verdict == Verdict::trusted) {
@@ -244,10 +283,10 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
 
 // Keeps the map's own unit if motions do not determine the scale.
 void SlamImpl::scale_by_wheels() {
-  constexpr double kMaxSigma = 0.02;     // share
-  constexpr double kMaxTurnScale = 0.1;  // natural logarithm
+  const double max_sigma = session_.is_scaled_by_odometry() ? 0.05 : 0.02;  // share
+  constexpr double kMaxTurnScale = 0.1;                                     // natural logarithm
   const auto& wheels = prior_.wheels();
-  if (!wheels || wheels->scale_sigma > kMaxSigma) return;
+  if (!wheels || wheels->scale_sigma() > max_sigma) return;
   // A wrong wheel radius scales path lengths and turns by the same factor.
   if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnScale) {
     prior_.warn(
@@ -258,9 +297,11 @@ void SlamImpl::scale_by_wheels() {
          "calibrate wheel radius and track width, or scale the map with byre scale"});
     return;
   }
-  const double factor = wheels->metres_per_unit;
+  const auto& extrinsics = inputs_.extrinsics;
+  const double factor = wheels->metres_per_unit * (extrinsics ? extrinsics->wheel_scale : 1.0);
   session_.rescale(factor);
-  scale_sigma_ = std::hypot(wheels->scale_sigma, options_.wheel_scale_sigma);
+  scale_sigma_ =
+      std::hypot(wheels->scale_sigma(), extrinsics ? extrinsics->wheel_scale_sigma : options_.wheel_scale_sigma);
   prior_.rescale(factor);
   is_metric_ = true;
 }

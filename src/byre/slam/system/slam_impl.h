@@ -38,6 +38,7 @@ struct FinishResult {
 struct SlamInputs {
   std::optional<Vocabulary> vocabulary{};               // without it neither loop closing nor finishing
   std::string recording = "live";                       // name of this session in a saved map
+  std::optional<Extrinsics> extrinsics{};               // robot's, with its camera
   std::string site{};                                   // place where the map is made, stored in it unless empty
   std::shared_ptr<const OfflineMap> offline{};          // offline map of a mission; null otherwise
   std::optional<std::filesystem::path> offline_file{};  // its file
@@ -61,9 +62,8 @@ class SlamImpl {
   void add_wheel_odometry(const BaseTwist& velocity) { prior_.add(velocity); }
   void add_gyro(const AngularRate& rate) { prior_.add(rate); }
   void add_accel(const Acceleration& acceleration) { prior_.add(acceleration); }
-  void set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope) {
-    prior_.set_gyroscope_extrinsics(body_from_left_ * left_from_gyroscope);
-  }
+  // Without effect if the extrinsics of the inputs have an IMU.
+  void set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope);
   FrameReport process(const CameraImages& images, const std::optional<BodyMotion>& motion = {});
   FrameReport process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& motion = {});
@@ -120,6 +120,7 @@ class SlamImpl {
 
  private:
   void refine_calibration();
+  void begin_with_extrinsics(const Extrinsics& extrinsics);
   void scale_by_wheels();
   void finish_early() { session_.finish_early(); }
   std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);

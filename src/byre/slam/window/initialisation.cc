@@ -47,19 +47,6 @@ double distance_between(const Pose& first_from_world, const Pose& second_from_wo
   return (first_from_world * inverse(second_from_world)).translation.norm();
 }
 
-// Scale of the start by the measured motion; empty if that does not determine it.
-std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry) {
-  constexpr double kLeastWay = 0.05;   // metres
-  constexpr double kUsualArm = 0.3;    // metres
-  constexpr double kMostByArm = 0.25;  // share of the motion
-  const Pose &first = odometry.first_camera_from_world, &second = odometry.second_camera_from_world;
-  const double motion = distance_between(first, second), turn = angle_between(first.rotation, second.rotation);
-  const double seen =
-      distance_between(start.map.camera_from_world(start.first), start.map.camera_from_world(start.second));
-  if (motion < kLeastWay || kUsualArm * turn > kMostByArm * motion || !(seen > 0.0)) return {};
-  return motion / seen;
-}
-
 KeyframeId add_keyframe(const MonocularStart& start, KeyframeId id, const Placement& placement,
                         const std::optional<KeyframeId>& parent, int recording, Map& map) {
   Keyframe keyframe = *start.map.find_keyframe(id);
@@ -326,8 +313,18 @@ std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const 
   return placement ? add_start(start, *placement, parent, recording, map) : std::vector<KeyframeId>{};
 }
 
-MonocularStart align_to_odometry(const MonocularStart& start, const StartPoses& odometry) {
-  const double scale = odometry_scale(start, odometry).value_or(1.0);
+std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry, double lever_arm_sigma) {
+  constexpr double kLeastWay = 0.05;   // metres
+  constexpr double kMostByArm = 0.25;  // share of the motion
+  const Pose &first = odometry.first_camera_from_world, &second = odometry.second_camera_from_world;
+  const double motion = distance_between(first, second), turn = angle_between(first.rotation, second.rotation);
+  const double seen =
+      distance_between(start.map.camera_from_world(start.first), start.map.camera_from_world(start.second));
+  if (motion < kLeastWay || lever_arm_sigma * turn > kMostByArm * motion || !(seen > 0.0)) return {};
+  return motion / seen;
+}
+
+MonocularStart align_to_odometry(const MonocularStart& start, const StartPoses& odometry, double scale) {
   const Pose second_from_start = scale_lengths(start.map.camera_from_world(start.second), scale);
   MonocularStart result = start;
   result.map = Map(Origin::online);

@@ -13,6 +13,8 @@ namespace byre {
 struct MonocularStartOptions {
   // Metres, assumed distance from the first camera to the points; the scale is not observable.
   double median_depth = 1.0;
+  double lever_arm_sigma = 0.3;        // metres, of the camera on the base that wheels measure
+  bool is_scaled_by_odometry = false;  // with measured motion, waits until that determines the scale
 };
 
 // First map of one camera: two keyframes and the points that both see. The world is the body at the first keyframe. The
@@ -76,9 +78,12 @@ struct StartPoses {
 std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const StartPoses& odometry,
                                              const std::optional<KeyframeId>& parent, int recording, Map& map);
 
-// Moves a first map so that its second camera is at its measured pose, with lengths scaled by the measured motion. The
-// mounting of the wheels is unknown at that time, so the direction of the motion is not used. Lengths are kept if the
-// camera turned so much that an unknown lever arm would change the length of its motion.
-MonocularStart align_to_odometry(const MonocularStart& start, const StartPoses& odometry);
+// Factor for the lengths of a start by the measured motion. Empty if the camera hardly moved, or turned so much that
+// the error of the lever arm (standard deviation, metres) would change the length of its motion.
+std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry, double lever_arm_sigma);
+
+// Moves a first map so that its second camera is at its measured pose, with lengths multiplied by the scale. The
+// mounting of the wheels may be unknown at that time, so the direction of the motion is not used.
+MonocularStart align_to_odometry(const MonocularStart& start, const StartPoses& odometry, double scale);
 
 }  // namespace byre
