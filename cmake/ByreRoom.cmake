@@ -116,7 +116,7 @@ set(BYRE_TESTED_FIRST slam_session slam playback simulation)
 set(BYRE_FOLDERS_WITH_DATA io/recording geometry/evaluation place)
 
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
-    ${BYRE_FMT} ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
+    ${BYRE_TINYXML2} ${BYRE_FMT} ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
 # Sets a variable to the objects of rooms.
 function(byre_objects_of variable)
@@ -266,16 +266,16 @@ function(byre_add_component component)
   set_property(GLOBAL APPEND PROPERTY BYRE_COMPONENTS ${component})
 endfunction()
 
-# libbyre.so, byre::shared: the objects of core and those that read calibrations, without readers of image files and
-# videos. Exports the functions of the public headers, except recordings and floor plans.
+# libbyre.so, byre::shared: the objects of core and those that read calibrations, without readers of image files, videos
+# and bags. Exports the functions of the public headers, except recordings and floor plans.
 function(byre_add_shared_library)
-  add_library(byre_shared SHARED $<TARGET_OBJECTS:byre_io_calibration>)
+  add_library(byre_shared SHARED $<TARGET_OBJECTS:byre_io_calibration> src/byre/io/recording/bag_frames_absent.cc)
   add_library(byre::shared ALIAS byre_shared)
   get_target_property(objects byre_component_core SOURCES)
   get_target_property(links byre_component_core LINK_LIBRARIES)
   target_sources(byre_shared PRIVATE ${objects})
   byre_set_usage(byre_shared)
-  target_link_libraries(byre_shared PRIVATE ${links} yaml-cpp)
+  target_link_libraries(byre_shared PRIVATE ${links} yaml-cpp ${BYRE_TINYXML2})
   set_target_properties(byre_shared PROPERTIES OUTPUT_NAME byre EXPORT_NAME shared LINKER_LANGUAGE CXX
                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 

@@ -29,12 +29,12 @@ FLOORS = [
 # Room of each header of include/byre. Its functions may be defined in a higher room, as those of floor_plan.h in io.
 PUBLIC = {
     "input_error.h": "base",
-    "alignment.h": "geometry", "calibration.h": "geometry", "pose.h": "geometry", "pose_hint.h": "geometry",
-    "rig.h": "geometry", "trajectory.h": "geometry", "trajectory_error.h": "geometry",
+    "alignment.h": "geometry", "calibration.h": "geometry", "extrinsics.h": "geometry", "pose.h": "geometry",
+    "pose_hint.h": "geometry", "rig.h": "geometry", "trajectory.h": "geometry", "trajectory_error.h": "geometry",
     "trajectory_file.h": "geometry", "two_view_failure.h": "geometry",
     "features.h": "features", "floor_plan.h": "features", "image.h": "features", "image_condition.h": "features",
     "body_motion.h": "odometry", "motion_warning.h": "odometry",
-    "calibration_file.h": "io", "recording.h": "io",
+    "calibration_file.h": "io", "extrinsics_file.h": "io", "recording.h": "io",
     "byre.h": "slam", "frame_cuts.h": "slam", "frame_report.h": "slam", "health.h": "slam", "session_event.h": "slam",
     "slam.h": "slam", "state.h": "slam",
 }
@@ -57,6 +57,7 @@ KEPT_IN = {
     r"dds/.*": {"ros2/dds"},
     r"opencv2/.*": {"features", "io/calibration", "io/image", "io/recording", "simulation", "viewer", "camera", "ros2/node"},
     r"yaml-cpp/.*": {"io", "benchmark"},
+    r"tinyxml2\.h": {"io/calibration"},
     r"sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|zlib\.h": {"io/bag"},
     r"nlohmann/.*": {"playback/report", "viewer", "ros2/fleet", "ros2/node", "benchmark", "cli"},
     r"mosquitto\.h": {"ros2/fleet"},

@@ -7,6 +7,8 @@
 #include "byre/calibration.h"
 #include "byre/calibration_file.h"
 #include "byre/extrinsics.h"
+#include "byre/extrinsics.h"
+#include "byre/extrinsics_file.h"
 #include "byre/features.h"
 #include "byre/floor_plan.h"
 #include "byre/frame_cuts.h"

@@ -80,6 +80,16 @@ bool CalibrationFields::has(const std::string& field) const {
   return node && !node.IsNull();
 }
 
+bool CalibrationFields::is_group(const std::string& field) const {
+  return has(field) && find(field).IsMap();
+}
+
+std::vector<std::string> CalibrationFields::names() const {
+  std::vector<std::string> names;
+  for (const auto& field : node_) names.push_back(field.first.IsScalar() ? field.first.Scalar() : "");
+  return names;
+}
+
 CalibrationFields CalibrationFields::group(const std::string& field) const {
   if (!has(field)) throw InputError(place(field), "is missing");
   if (!find(field).IsMap()) throw InputError(place(field), "has no named fields");

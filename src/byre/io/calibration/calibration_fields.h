@@ -21,6 +21,8 @@ class CalibrationFields {
 
   std::string place(const std::string& field) const;  // place of the field for an InputError
   bool has(const std::string& field) const;
+  bool is_group(const std::string& field) const;  // whether it has named fields
+  std::vector<std::string> names() const;         // names of all fields, in their order
 
   // Each throws InputError if the field is missing or has another type.
   CalibrationFields group(const std::string& field) const;              // fields inside this field

@@ -28,10 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_transform_topic(const BagTopic& topic) {
-  return holds<ros::TFMessage>(topic) || topic.type == "tf/tfMessage";
-}
-
 bool is_wanted(std::string_view type) {
   const BagTopic topic{"", std::string(type), ""};
   return holds<ros::Image>(topic) || holds<ros::CompressedImage>(topic) || holds<ros::CameraInfo>(topic) ||

@@ -213,6 +213,10 @@ bool is_depth_topic(const BagTopic& topic) {
   return is_supported_image(topic) && names_depth(topic.name);
 }
 
+bool is_transform_topic(const BagTopic& topic) {
+  return holds<ros::TFMessage>(topic) || topic.type == "tf/tfMessage";
+}
+
 bool is_registered(const BagTopic& topic) {
   return topic.name.find("aligned") != std::string::npos || topic.name.find("registered") != std::string::npos;
 }

@@ -30,6 +30,9 @@ bool is_registered(const BagTopic& topic);
 // Whether the images are rectified, by the name of the topic.
 bool is_rectified(const BagTopic& topic);
 
+// Whether a topic has transforms between frames, by its type.
+bool is_transform_topic(const BagTopic& topic);
+
 // Image topics: those in the options; else the only pair with names of a left and a right camera, or the only image
 // topic. Raw images are preferred to compressed ones of the same camera, and the least processed kind of several.
 // The depth topic is that of the options; else, without a right camera or for CameraChoice::rgbd, the one whose name
