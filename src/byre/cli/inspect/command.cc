@@ -1,7 +1,9 @@
 #include "byre/base/binary_file.h"
 #include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/inspect/map_extrinsics.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/extrinsics_file.h"
 #include "byre/playback/archive/point_cloud.h"
 #include "byre/playback/report/inspection_report.h"
 
@@ -20,6 +22,7 @@ namespace fs = std::filesystem;
 struct InspectOptions {
   fs::path map;
   std::optional<fs::path> points;
+  std::optional<fs::path> extrinsics;
   bool json = false;
 };
 
@@ -27,17 +30,24 @@ constexpr const char* kInspectFooter = R"(Examples:
   byre inspect barn.byre
   byre inspect barn.byre --json
   byre inspect barn.byre --points points.ply
+  byre inspect barn.byre --extrinsics robot.yaml
 
 Errors are distances in the rectified image between the measured point and the projection of the map point.)";
 
 ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
   if (options.points) require_writable(*options.points);
+  if (options.extrinsics) require_writable(*options.extrinsics);
   const std::string name = options.map.string();
   const std::vector<std::byte> bytes = read_file(options.map);
   const StoredMap stored = read_map(bytes, name);
+  if (options.extrinsics) write_extrinsics(*options.extrinsics, extrinsics_of(stored, name));
   if (options.points) write_atomically(*options.points, point_cloud(stored.map));
   const MapInspection inspection = inspect(stored);
-  const Report report = inspection_report(stored, inspection, {name, bytes.size(), section_sizes(bytes, name)});
+  Report report = inspection_report(stored, inspection, {name, bytes.size(), section_sizes(bytes, name)});
+  if (options.extrinsics) {
+    report.figures["extrinsics_file"] = options.extrinsics->string();
+    report.row("extrinsics", "{extrinsics_file}; the height of the camera is not estimated");
+  }
   result << (options.json ? to_json(report) : report.text);
   return ExitCode::done;
 }
@@ -50,6 +60,9 @@ Action declare_inspect(CLI::App& command) {
   command.add_flag("--json", options->json, "Print the report as JSON, sizes in bytes, lengths in the map's unit");
   add_output(command, Output::point_cloud, "--points", options->points,
              "Also write the points, coloured by their observations. PLY format")
+      ->type_name("FILE");
+  add_output(command, Output::calibration, "--extrinsics", options->extrinsics,
+             "Also write the extrinsics of the robot that drives with wheel odometry estimated. YAML format")
       ->type_name("FILE");
   command.footer(kInspectFooter);
   return [options](std::ostream& result) { return run_inspect(*options, result); };
