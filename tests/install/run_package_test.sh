@@ -40,8 +40,8 @@ for name in "${names[@]}"; do
   [[ -f $(echo "$packages/$name"_*.deb) ]] || fail "missing package $name"
 done
 version=$(field byre Version)
-require_depends byre "byre-data (= $version)" libyaml-cpp libfmt libopencv-videoio libsqlite3-0 libzstd1 liblz4-1 libbz2
-require_depends libbyre0 "byre-data (= $version)" libyaml-cpp libfmt libopencv-core
+require_depends byre "byre-data (= $version)" libyaml-cpp libtinyxml2 libfmt libopencv-videoio libsqlite3-0 libzstd1 liblz4-1 libbz2
+require_depends libbyre0 "byre-data (= $version)" libyaml-cpp libtinyxml2 libfmt libopencv-core
 [[ $(field libbyre0 Depends) != *videoio* ]] || fail "the shared library needs videos"
 [[ $(field libbyre0 Depends) != *sqlite* ]] || fail "the shared library needs bags"
 require_depends libbyre-dev "libbyre0 (= $version)" libeigen3-dev
