@@ -29,8 +29,8 @@ struct ExtrinsicsFrames {
 // no rotation, not finite or likely in the wrong unit or axes.
 Extrinsics read_extrinsics(const std::filesystem::path& path, const ExtrinsicsFrames& frames = ExtrinsicsFrames());
 
-// Writes the extrinsics as YAML, which read_extrinsics reads back. Throws InputError for lengths and scales that it would
-// reject, and if the file cannot be written.
+// Writes the extrinsics as YAML, which read_extrinsics reads back. Throws InputError for lengths and scales that it
+// would reject, and if the file cannot be written.
 void write_extrinsics(const std::filesystem::path& path, const Extrinsics& extrinsics);
 
 }  // namespace byre
