@@ -100,7 +100,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_SANITIZE MATCHES "address")
   set(BYRE_BUILD_FUZZERS ON)
   set(BYRE_FUZZED_OPTIONS -fsanitize=undefined -fno-sanitize-recover=all
       -fsanitize-coverage=inline-8bit-counters,pc-table,indirect-calls,trace-cmp)
-  set(BYRE_FOLDERS_FUZZED base geometry odometry map map/plan io/ros io/bag)
+  set(BYRE_FOLDERS_FUZZED base geometry odometry map map/plan io/ros io/bag io/calibration)
 endif()
 
 # Folders with a separate test program, byre_<room>_<folder>_tests. The others share the program of their room. Folders

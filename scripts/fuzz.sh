@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of map files, bags and messages with address and undefined-behaviour sanitizers, on the objects of
-# the preset dev. Needs Clang.
+# Fuzzes the readers of map files, bags, messages and URDF with address and undefined-behaviour sanitizers, on the objects
+# of the preset dev. Needs Clang.
 # Usage: fuzz.sh [SECONDS]        per fuzzer, 30 by default; inputs with new coverage are stored in build/fuzz/corpus
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:-30}
 [[ $seconds =~ ^[0-9]+$ ]] || { echo "usage: fuzz.sh [SECONDS]" >&2; exit 2; }
-scripts/build.sh dev map_file_fuzzer bag_fuzzer
+scripts/build.sh dev map_file_fuzzer bag_fuzzer urdf_fuzzer
 mkdir -p build/fuzz
 # Sanitizers fail to start if the kernel randomises addresses beyond their expected range.
 runner=()
@@ -19,11 +19,14 @@ fuzz() {
   "${runner[@]}" "build/dev/fuzz/$1" "build/fuzz/corpus/$1" -max_total_time="$seconds" -max_len=20000 -timeout=5 \
     -malloc_limit_mb="$2" -rss_limit_mb=2048 -artifact_prefix=build/fuzz/ -print_final_stats=1
 }
-# Both run in parallel; their reports are printed at the end.
+# All run in parallel; their reports are printed at the end.
 fuzz map_file_fuzzer 16 >build/fuzz/map_file.log 2>&1 &
 maps=$!
+fuzz urdf_fuzzer 16 >build/fuzz/urdf.log 2>&1 &
+urdfs=$!
 failed=0
 fuzz bag_fuzzer 512 >build/fuzz/bag.log 2>&1 || failed=1
 wait "$maps" || failed=1
-cat build/fuzz/map_file.log build/fuzz/bag.log
+wait "$urdfs" || failed=1
+cat build/fuzz/map_file.log build/fuzz/bag.log build/fuzz/urdf.log
 exit "$failed"
