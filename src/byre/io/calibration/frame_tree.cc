@@ -142,9 +142,10 @@ Pose pose_in(const FrameTree& tree, const std::string& ancestor, const std::stri
 }
 
 Pose pose_between(const FrameTree& tree, const std::string& base, const std::string& sensor) {
-  const std::vector<std::string> above_base = chain_of(tree, base);
+  const std::vector<std::string> chain = chain_of(tree, base);
+  const std::set<std::string> above_base(chain.begin(), chain.end());
   for (const std::string& each : chain_of(tree, sensor)) {
-    if (std::ranges::find(above_base, each) == above_base.end()) continue;
+    if (!above_base.contains(each)) continue;
     return inverse(pose_in(tree, each, base)) * pose_in(tree, each, sensor);
   }
   throw InputError(tree.place,
@@ -166,8 +167,9 @@ Extrinsics extrinsics_of(const FrameTree& tree, const ExtrinsicsFrames& names) {
   const std::string camera = camera_frame(tree, names.camera);
   Extrinsics extrinsics;
   extrinsics.camera = mounting_of(tree, base, camera);
-  const std::string stem = camera.ends_with("_frame") ? camera.substr(0, camera.size() - 6) : camera;
-  if (is_z_vertical(extrinsics.camera->base_from_sensor) && !lower_case(stem).ends_with(kOptical)) {
+  const std::string name = lower_case(camera);
+  const bool is_optical = name.ends_with(kOptical) || name.ends_with("optical_frame");
+  if (is_z_vertical(extrinsics.camera->base_from_sensor) && !is_optical) {
     throw InputError(
         fmt::format("{}: {}", tree.place, camera),
         "has a vertical z axis in the base, as a frame with x ahead and z up; that of a camera has z ahead",
