@@ -7,7 +7,6 @@
 #include "byre/calibration.h"
 #include "byre/calibration_file.h"
 #include "byre/extrinsics.h"
-#include "byre/extrinsics.h"
 #include "byre/extrinsics_file.h"
 #include "byre/features.h"
 #include "byre/floor_plan.h"

@@ -158,7 +158,8 @@ WheelCalibration centred(const WheelCalibration& prior, const WheelCalibration& 
   return result;
 }
 
-// Differences of a motion by images from that by wheels, in axes of the base, with their derivatives.
+// Differences of a motion by images from that by wheels, in axes of the base, with their derivatives. The derivatives
+// are taken at the motion by wheels, whose noise is smaller: that of images would shrink the scale.
 struct Residual {
   Eigen::Matrix<double, 6, 1> values;  // rotation (radians), translation (metres)
   Eigen::Matrix<double, 6, 9> factors;
@@ -174,14 +175,15 @@ Residual residual_of(const MotionPair& motion, const WheelCalibration& calibrati
   const Eigen::Quaterniond turn = rotation * motion.body.rotation * rotation.conjugate();
   const Eigen::Matrix3d turned = base.rotation.toRotationMatrix();
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d predicted = base.translation + turned * arm - arm;
   Residual result;
-  result.values << rotation_log(turn * base.rotation.conjugate()), seen + arm - turned * arm - base.translation;
+  result.values << rotation_log(turn * base.rotation.conjugate()), seen - predicted;
   result.factors.setZero();
   result.factors.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() - turn.toRotationMatrix();
   result.factors.block<1, 2>(2, 7) = -turn_factors.transpose();
-  result.factors.bottomLeftCorner<3, 3>() = -skew(seen);
+  result.factors.bottomLeftCorner<3, 3>() = -skew(predicted);
   result.factors.block<3, 3>(3, 3) = Eigen::Matrix3d::Identity() - turned;
-  result.factors.block<3, 1>(3, 6) = seen;
+  result.factors.block<3, 1>(3, 6) = predicted;
   result.factors.block<3, 2>(3, 7) = -up.cross(turned * arm + 0.5 * motion.base.translation) * turn_factors.transpose();
   result.length = length_of(motion.base);
   return result;

@@ -161,7 +161,7 @@ TEST(WheelCalibration, IsPresumedFromAMeasuredUpDirectionForASidewaysCamera) {
   };
   const Eigen::Vector3d up = drive.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
   EXPECT_LT(error(rotation_exp({0.01, 0.0, 0.01}) * up, 0.03), 0.15);
-  EXPECT_GT(error(-Eigen::Vector3d::UnitY(), 0.2), 0.3);
+  EXPECT_GT(error(-Eigen::Vector3d::UnitY(), 0.2), 0.2);
 }
 
 // A prior as narrow as a tape measure, and a drive that does not turn.

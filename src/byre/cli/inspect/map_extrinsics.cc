@@ -17,15 +17,9 @@ struct WheelSigmas {
 
 // Standard deviations for the next drive: with the usual change from day to day.
 WheelSigmas sigmas_of(const WheelCalibration& wheels) {
-  constexpr double kTilt = 0.0175;  // radians, of the up axis, whose uncertainty the covariance does not have
-  const Eigen::Vector3d up_in_body = wheels.base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  const Eigen::Matrix4d covariance = wheels.covariance + day_to_day_covariance(wheels);
-  const Eigen::Vector2d ahead = constrained_parameters(wheels, up_in_body).head<2>().normalized();
-  const Eigen::Vector2d across(-ahead.y(), ahead.x());
-  const auto relative = [&](const Eigen::Vector2d& direction) {
-    return std::sqrt(direction.dot(covariance.topLeftCorner<2, 2>() * direction)) / wheels.metres_per_unit;
-  };
-  return {std::sqrt(std::max(covariance(2, 2), covariance(3, 3))), std::max(relative(across), kTilt), relative(ahead)};
+  const WheelCalibration prior = as_prior(wheels);
+  const double metres = std::sqrt(std::max(prior.covariance(3, 3), prior.covariance(4, 4)));
+  return {metres, std::max(prior.tilt_sigma(), prior.heading_sigma()), prior.scale_sigma()};
 }
 
 }  // namespace
@@ -42,7 +36,7 @@ Extrinsics extrinsics_of(const StoredMap& stored, const std::string& place) {
                      sigmas.radians};
   if (stored.scale == MapScale::metric && !stored.notes.contains(kMetresNote)) {
     extrinsics.wheel_scale = 1.0 / known.wheels->metres_per_unit;
-    extrinsics.wheel_scale_sigma = std::hypot(sigmas.scale, known.wheels->scale_sigma);
+    extrinsics.wheel_scale_sigma = sigmas.scale;
   }
   if (known.time_offset != 0.0) extrinsics.wheel_delay = known.time_offset;  // zero until it is estimated
   return extrinsics;

@@ -60,6 +60,7 @@ Slam make_slam(const MapOptions& options, const RunInput& input) {
   slam.site = options.site;
   slam.vocabulary = options.vocabulary;
   slam.baseline = options.open.baseline;
+  slam.extrinsics = options.extrinsics.read(options.open);
   return options.extended ? Slam::extending(input.calibration(), *options.extended, slam)
                           : Slam::mapping(input.calibration(), slam);
 }

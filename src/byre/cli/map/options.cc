@@ -120,6 +120,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_map_content(command, options);
   declare_building(command, options);
   declare_open_options(command, options.open);
+  declare_extrinsics(command, options.extrinsics);
   declare_frame_range(command, options.range);
   declare_live_options(command, options.live, options.method);
   declare_pace(command, options.method);

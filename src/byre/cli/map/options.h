@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/cli/shared/extrinsics_arguments.h"
 #include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/playback/play.h"
@@ -31,6 +32,7 @@ struct MapOptions {
   std::string site;
   FrameRange range;
   OpenOptions open;
+  ExtrinsicsArguments extrinsics;
   MethodArguments method;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
   std::optional<std::filesystem::path> record;  // bag of ROS 2 messages

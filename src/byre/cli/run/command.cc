@@ -61,6 +61,7 @@ Slam make_slam(const RunOptions& options, const RunInput& input) {
   slam_settings.recording = input.name();
   slam_settings.vocabulary = options.vocabulary;
   slam_settings.baseline = options.open.baseline;
+  slam_settings.extrinsics = options.extrinsics.read(options.open);
   if (!options.map) return Slam::mapping(input.calibration(), slam_settings);
   if (options.view.plan) slam_settings.plan = read_drawn_floor_plan(*options.view.plan);
   Slam slam = Slam::on_map(input.calibration(), *options.map, slam_settings);

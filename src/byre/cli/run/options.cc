@@ -126,6 +126,7 @@ void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_inputs(command, options);
   declare_outputs(command, options);
   declare_open_options(command, options.open);
+  declare_extrinsics(command, options.extrinsics);
   declare_frame_range(command, options.range);
   declare_live_options(command, options.live, options.method);
   declare_pace(command, options.method);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/cli/shared/extrinsics_arguments.h"
 #include "byre/cli/shared/method_arguments.h"
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/run_input.h"
@@ -37,6 +38,7 @@ struct RunOptions {
   std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   FrameRange range;
   OpenOptions open;
+  ExtrinsicsArguments extrinsics;
   MethodArguments method;
   ViewOptions view;
   TrajectoryFormat trajectory_format = TrajectoryFormat::tum;

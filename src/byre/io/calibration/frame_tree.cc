@@ -57,7 +57,7 @@ const std::string& known_frame(const FrameTree& tree, const std::string& name, c
                                const char* source = "") {
   if (tree.frames.contains(name)) return name;
   throw InputError(tree.place, fmt::format("has no frame \"{}\"{}", name, source),
-                   fmt::format("name the frame of the {}; {}", owner, candidates(tree, words)));
+                   fmt::format("name the frame of the {0} (--{0}-frame); {1}", owner, candidates(tree, words)));
 }
 
 // A base by convention must not move on a part of the robot.
@@ -69,10 +69,10 @@ std::string base_frame(const FrameTree& tree, const std::string& named) {
     const RobotFrame& base = found->second;
     if (base.fault.empty()) return usual;
     throw InputError(base.place, fmt::format("{}, above the base \"{}\"", base.fault, usual),
-                     "name the frame of the base");
+                     "name the frame of the base (--base-frame)");
   }
   throw InputError(tree.place, "has neither base_link nor base_footprint",
-                   "name the frame of the base; " + candidates(tree, {"base"}));
+                   "name the frame of the base (--base-frame); " + candidates(tree, {"base"}));
 }
 
 std::string camera_frame(const FrameTree& tree, const std::string& named) {

@@ -336,6 +336,7 @@ bool scale_may_drift(const MapWindow& window) {
   const auto has_no_stereo = [&](const WindowKeyframe& keyframe) { return !window.rig_of(keyframe).is_stereo(); };
   const auto is_of_offline_map = [](const auto& entry) { return is_offline(entry); };
   return std::ranges::any_of(window.keyframes, has_no_stereo) &&
+         std::ranges::none_of(window.motions, &WindowMotion::holds_scale) &&
          std::ranges::none_of(window.keyframes, is_of_offline_map) &&
          std::ranges::none_of(window.points, is_of_offline_map);
 }

@@ -20,7 +20,8 @@ struct GlobalMappingOptions {
 // Scale changes around keyframes, removed ones included: length after over length before. Others are unchanged.
 using LengthChanges = std::map<KeyframeId, double>;
 
-// Whether only the map itself determines the scale around some keyframes: no stereo, and no offline map in view.
+// Whether only the map itself determines the scale around some keyframes: no stereo, no offline map in view, and no
+// motion that holds the scale.
 bool scale_may_drift(const MapWindow& window);
 
 // Copy of a whole online map and the offline points that it sees. All keyframes but the gauge are movable.

@@ -111,7 +111,7 @@ void add_motions(MapWindow& window, const std::vector<KeyframeMotion>& motions) 
   for (const KeyframeMotion& motion : motions) {
     const auto earlier = index_of.find(motion.earlier), later = index_of.find(motion.later);
     if (earlier == index_of.end() || later == index_of.end()) continue;
-    window.motions.push_back({earlier->second, later->second, motion.motion});
+    window.motions.push_back({earlier->second, later->second, motion.motion, motion.holds_scale});
   }
 }
 

@@ -38,6 +38,7 @@ struct KeyframeMotion {
   KeyframeId later;
   BodyMotion motion;
   bool lacks_visual_constraint = false;  // both share hardly any points, so only the measurement relates them
+  bool holds_scale = false;              // see WindowMotion
 };
 
 // Measured motions between successive keyframes of these, of one recording. Left out: a motion that contradicts the

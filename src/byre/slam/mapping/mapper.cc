@@ -208,7 +208,9 @@ void Mapper::close_loop(const LoopHypothesis& loop) {
 // Empty in a mission: the offline map fixes lengths, and motions would add nothing.
 std::vector<KeyframeMotion> Mapper::motions_between(const std::vector<KeyframeId>& keyframes) const {
   if (offline_) return {};
-  return odometry_motions(online_, keyframes, options_.recording, odometry_);
+  std::vector<KeyframeMotion> motions = odometry_motions(online_, keyframes, options_.recording, odometry_);
+  for (KeyframeMotion& motion : motions) motion.holds_scale = is_scaled_by_odometry_;
+  return motions;
 }
 
 std::vector<KeyframeMotion> Mapper::all_motions() const {

@@ -40,6 +40,7 @@ struct WindowMotion {
   int earlier = 0;  // indices into MapWindow::keyframes
   int later = 0;
   BodyMotion motion;
+  bool holds_scale = false;  // the map has been in the unit of measured motion since it began
 };
 
 // Bounded copy of the maps around the newest keyframes: the only input of mapping.
