@@ -32,6 +32,15 @@ TEST_F(ByreNode, PublishesThePosesOfSlam) {
     EXPECT_LT((position - expected[i].odometry_from_body->translation).norm(), 1e-6) << "frame " << i;
     EXPECT_EQ(odometry->header().frame_id(), "odom");
     EXPECT_EQ(odometry->child_frame_id(), "base_link");
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const double variance = odometry->twist().covariance()[7 * axis];
+      if (i < 2) {
+        EXPECT_DOUBLE_EQ(variance, 1e6) << "frame " << i << ": the first pose has no covariance";
+      } else {
+        EXPECT_GT(variance, 1e-4) << "frame " << i << ", axis " << axis;
+        EXPECT_LT(variance, 10.0) << "frame " << i << ", axis " << axis;
+      }
+    }
   }
   EXPECT_TRUE(points.find([](const auto& cloud) { return cloud.width() > 100; })) << "of the online map";
   EXPECT_EQ(node.stop(), 0);

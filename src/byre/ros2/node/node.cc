@@ -187,7 +187,7 @@ Outcome Node::take_hint(const ros::PoseWithCovarianceStamped& hint) {
 void Node::restart() {
   pose_frames_.restart();
   if (fleet_) fleet_->restart();
-  outputs_.reset_points();
+  outputs_.restart();
   map_from_body_.reset();
   last_report_.reset();
 }

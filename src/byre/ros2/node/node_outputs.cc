@@ -89,10 +89,9 @@ void NodeOutputs::publish_odometry(const ros::Header& header, const FrameReport&
   odometry.header = header;
   odometry.child_frame_id = config_.base_frame;
   odometry.pose = pose_message(header, odom_from_base, report.odometry_covariance).pose;
-  if (last_ && report.time > last_->time) {
-    odometry.twist.twist = twist_between(last_->odom_from_base, odom_from_base, report.time - last_->time);
-  }
-  last_ = LastPose{report.time, odom_from_base};
+  const OdometrySample now = odometry_sample(report, odom_from_base);
+  odometry.twist = twist_message(last_, now);
+  last_ = now;
   send(odometry_, odometry);
 }
 

@@ -6,6 +6,7 @@
 #include "byre/ros2/dds/participant.h"
 #include "byre/ros2/dds/ros_graph.h"
 #include "byre/ros2/node/node_config.h"
+#include "byre/ros2/node/odometry_message.h"
 #include "byre/ros2/node/pose_frames.h"
 #include "byre/ros2/node/slam_runner.h"
 
@@ -35,7 +36,11 @@ class NodeOutputs {
   // Only with subscribers.
   void publish_path(const SlamRunner& runner, Timestamp image_time);
   void publish_points(const SlamRunner& runner);
-  void reset_points() { has_published_points_ = false; }  // after loading another map
+  // Begins a new run, perhaps on another map.
+  void restart() {
+    has_published_points_ = false;
+    last_.reset();
+  }
 
  private:
   // Topic with DDS readers and watchers.
@@ -66,11 +71,7 @@ class NodeOutputs {
   std::optional<ros::MessageSink::TopicId> left_, right_;  // image topics of watchers
   Timestamp stamp_ = wall_time();                          // stamp of the last image; start time before the first
   OptionalOutput odometry_, pose_, tf_, tf_static_, diagnostics_, path_, points_, grid_, health_, events_;
-  struct LastPose {
-    Timestamp time{};
-    Pose odom_from_base;
-  };
-  std::optional<LastPose> last_;
+  std::optional<OdometrySample> last_;  // previous frame; empty if the twist cannot be computed from it
   std::ostringstream event_lines_;
   EventLog event_log_{event_lines_};
   int frames_ = 0;
