@@ -12,6 +12,7 @@
 namespace byre::testing_ros2 {
 namespace {
 
+using testing::HasSubstr;
 using std::chrono_literals::operator""h;
 using std::chrono_literals::operator""ms;
 using std::chrono_literals::operator""s;
@@ -86,6 +87,39 @@ TEST_F(ByreNode, ReportsFaultsOfTheCameras) {
   feed_.send_left(broken);
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "'thermal'"));
   EXPECT_TRUE(diagnosis(diagnostics_, "byre: cameras", "no image for"));
+  EXPECT_EQ(node.stop(), 0);
+}
+
+TEST_F(ByreNode, ReportsMissingInputsWithTheirPublishers) {
+  const ImageFrame& frame = Room::shared().frames()[0];
+  const int domain = some_domain();  // without the fixture's cameras
+  FastPeer peer(domain);
+  Diagnostics diagnostics(peer, "rt/diagnostics", kVolatile);
+  const CameraFeed unreliable(peer, false);
+  NodeProcess node(folder_, mission("motion:\n  wheels: /wheels\nframes:\n  odom_to_base: false\n"), domain);
+  const auto left = diagnosis(diagnostics, "byre: inputs", "no left images on /left/image_raw for 5 s");
+  ASSERT_TRUE(left) << node.stderr_output();
+  EXPECT_THAT(*left, HasSubstr("1 publisher not connected: QoS best effort, volatile, required reliable, volatile; set "
+                               "images.reliable: false"));
+  EXPECT_THAT(*left, HasSubstr("no right images on /right/image_raw for 5 s"));
+  EXPECT_THAT(*left, HasSubstr("no wheel odometry on /wheels for 5 s: no publisher"));
+  EXPECT_THAT(*left, HasSubstr("no transform from odom to base_link on /tf for 5 s: no publisher"));
+  EXPECT_THAT(node.stderr_output(), HasSubstr("no left images on /left/image_raw for 5 s: 1 publisher not connected"));
+  CameraFeed feed(peer);
+  ASSERT_TRUE(feed.has_subscriber());
+  const auto count = [&](const std::string& part) {
+    const std::string log = node.stderr_output();
+    int found = 0;
+    for (std::size_t at = 0; (at = log.find(part, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  for (int i = 0; i < 100 && count("left images received on /left/image_raw") == 0; ++i) {
+    feed.send(frame, i * 100ms);
+    std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_EQ(count("left images received on /left/image_raw"), 1) << node.stderr_output();
+  EXPECT_EQ(count("no left images on"), 1) << node.stderr_output();
+  EXPECT_EQ(count("no wheel odometry on"), 1) << node.stderr_output();
   EXPECT_EQ(node.stop(), 0);
 }
 

@@ -2,6 +2,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/ros2/node/node.h"
 #include "byre/ros2/node/process.h"
@@ -45,7 +46,9 @@ NodeConfig sound_config(const NodeOptions& options) {
 ExitCode check(const std::filesystem::path& path, std::ostream& result) {
   NodeConfigReading reading = read_node_config(path);
   std::vector<InputError> faults = std::move(reading.faults);
-  if (faults.empty()) faults = faults_in_files(reading.config);
+  std::vector<std::string> notes;
+  if (faults.empty()) faults = faults_in_files(reading.config, notes);
+  show_warnings(std::cerr, notes);
   for (const InputError& fault : faults) std::cerr << "byre: error: " << fault.what() << "\n";
   if (!faults.empty()) return ExitCode::bad_input;
   result << printable(path.string()) << ": no fault found\n";

@@ -48,6 +48,34 @@ TEST_F(NodeProgram, ReportsAllFaultsOfSettings) {
   EXPECT_EQ(sound.output, "robot.yaml: no fault found\n");
 }
 
+TEST_F(NodeProgram, RefusesCommonMistakes) {
+  write("camera.yaml",
+        "cam0:\n  camera_model: pinhole\n  intrinsics: [400, 400, 376, 240]\n  distortion_model: radtan\n"
+        "  distortion_coeffs: [0, 0, 0, 0]\n  resolution: [752, 480]\n");
+  const std::string slam = "slam:\n  task: map\n  save: made.byre\n";
+  for (const auto& [settings, message] : std::vector<std::pair<std::string, std::string>>{
+           {"images:\n  left: /left/image_rect\n", "robot.yaml:5: images.left is of rectified images"},
+           {"motion:\n  wheels: /byre/odometry\n", "robot.yaml:5: motion.wheels is topics.odometry"},
+           {"calibration:\n  file: camera.yaml\n", "camera.yaml: is of one camera"}}) {
+    write("robot.yaml", slam + settings);
+    const Outcome outcome = run("node --config robot.yaml --check");
+    EXPECT_EQ(outcome.exit_code, 3) << settings;
+    EXPECT_THAT(outcome.errors, HasSubstr("byre: error: " + message));
+  }
+  write("robot.yaml", slam + "calibration:\n  file: pair.yaml\n");
+  write("pair.yaml",
+        "cam0:\n  camera_model: pinhole\n  intrinsics: [400, 400, 376, 240]\n  distortion_model: radtan\n"
+        "  distortion_coeffs: [0, 0, 0, 0]\n  resolution: [752, 480]\n"
+        "cam1:\n  camera_model: pinhole\n  intrinsics: [400, 400, 376, 240]\n  distortion_model: radtan\n"
+        "  distortion_coeffs: [0, 0, 0, 0]\n  resolution: [752, 480]\n"
+        "  T_cn_cnm1: [[1, 0, 0, -0.1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n");
+  const Outcome optical = run("node --config robot.yaml --check");
+  EXPECT_EQ(optical.exit_code, 3);
+  EXPECT_THAT(optical.errors, HasSubstr("pair.yaml: has no pose of the cameras in a body"));
+  write("robot.yaml", slam + "calibration:\n  file: pair.yaml\nframes:\n  mounting: camera\n");
+  EXPECT_EQ(run("node --config robot.yaml --check").exit_code, 0);
+}
+
 TEST_F(NodeProgram, NamesBadInput) {
   write("robot.yaml", "slam:\n  task: map\n  save: barn.byre\n");
   for (const auto& [arguments, message] : std::vector<std::pair<std::string, std::string>>{

@@ -167,8 +167,9 @@ Subscriber Participant::subscribe(const std::string& topic, const MessageType& t
   return subscriber;
 }
 
-std::vector<std::string> Participant::published_types(const std::string& topic) {
+std::vector<DiscoveredPublisher> Participant::publishers(const std::string& topic) {
   constexpr std::size_t kMax = 1000;
+  constexpr std::uint32_t kAlive = DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE;
   if (publications_.handle() <= 0) {
     publications_ =
         DdsEntity(dds_create_reader(participant_.handle(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
@@ -176,16 +177,23 @@ std::vector<std::string> Participant::published_types(const std::string& topic) 
   }
   std::vector<void*> read(kMax, nullptr);
   std::vector<dds_sample_info_t> about(kMax);
-  const dds_return_t count = dds_read(publications_.handle(), read.data(), about.data(), kMax, kMax);
-  std::vector<std::string> types;
+  const dds_return_t count = dds_read_mask(publications_.handle(), read.data(), about.data(), kMax, kMax, kAlive);
+  const std::string name = dds_topic_name(topic);
+  std::vector<DiscoveredPublisher> found;
   for (int i = 0; i < count; ++i) {
-    const auto& info = about[static_cast<std::size_t>(i)];
-    if (!info.valid_data || info.instance_state != DDS_IST_ALIVE) continue;
+    if (!about[static_cast<std::size_t>(i)].valid_data) continue;
     const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(read[static_cast<std::size_t>(i)]);
-    if (dds_topic_name(topic) == endpoint->topic_name) types.push_back(ros_type_name(endpoint->type_name));
+    const bool is_own = std::ranges::equal(endpoint->participant_key.v, id());
+    if (is_own || name != endpoint->topic_name) continue;
+    auto reliability = DDS_RELIABILITY_BEST_EFFORT;
+    auto durability = DDS_DURABILITY_VOLATILE;
+    dds_qget_reliability(endpoint->qos, &reliability, nullptr);
+    dds_qget_durability(endpoint->qos, &durability);
+    found.push_back({ros_type_name(endpoint->type_name), reliability == DDS_RELIABILITY_RELIABLE,
+                     durability != DDS_DURABILITY_VOLATILE});
   }
   if (count > 0) dds_return_loan(publications_.handle(), read.data(), count);
-  return types;
+  return found;
 }
 
 void Participant::wait(std::chrono::nanoseconds longest) {

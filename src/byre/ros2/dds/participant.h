@@ -33,6 +33,15 @@ inline constexpr std::size_t kMaxBytesWithoutImage = std::size_t{256} << 10;
 // 16-byte GUID of DDS.
 using EntityId = std::array<std::uint8_t, 16>;
 
+// Publisher of another participant. Subscribers need the same type and at least this quality of service.
+struct DiscoveredPublisher {
+  std::string type;  // "nav_msgs/msg/Odometry"; empty if it is not a type of ROS
+  bool is_reliable = true;
+  bool is_latched = false;
+
+  bool operator==(const DiscoveredPublisher&) const = default;
+};
+
 // Handle of a Cyclone DDS entity, deleted on destruction.
 class DdsEntity {
  public:
@@ -113,8 +122,8 @@ class Participant {
   Subscriber subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
                        const std::string& note = {});
 
-  // Types of the publishers on a topic discovered so far: "nav_msgs/msg/Odometry".
-  std::vector<std::string> published_types(const std::string& topic);
+  // Publishers of other participants on a topic, discovered so far.
+  std::vector<DiscoveredPublisher> publishers(const std::string& topic);
 
   // Waits until a subscriber has messages, or for the given time.
   void wait(std::chrono::nanoseconds longest);

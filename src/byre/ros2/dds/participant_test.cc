@@ -114,6 +114,27 @@ TEST_F(TwoParticipants, KeepTheNewestMessageForSlowReaders) {
   }
 }
 
+TEST_F(TwoParticipants, DiscoverThePublishersOfOthers) {
+  const MessageType image{"sensor_msgs/msg/Image", ""};
+  const Publisher own = receiver_.publish("/seen", kText, {});
+  const Subscriber reliable = receiver_.subscribe("/seen", kText, {.is_reliable = true});
+  EXPECT_THAT(receiver_.publishers("/seen"), testing::IsEmpty()) << "not its own";
+  {
+    const Publisher text = sender_.publish("/seen", kText, {.is_reliable = false});
+    const Publisher other_type = sender_.publish("/seen", image, {.is_reliable = true, .is_latched = true});
+    const Publisher other_topic = sender_.publish("/unseen", kText, {});
+    const auto end = std::chrono::steady_clock::now() + 20s;
+    while (receiver_.publishers("/seen").size() < 2 && std::chrono::steady_clock::now() < end) receiver_.wait(10ms);
+    EXPECT_THAT(receiver_.publishers("/seen"),
+                testing::UnorderedElementsAre(DiscoveredPublisher{"std_msgs/msg/String", false, false},
+                                              DiscoveredPublisher{"sensor_msgs/msg/Image", true, true}));
+    EXPECT_EQ(reliable.publishers(), 1) << "only its own, which is reliable and of its type";
+  }
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (!receiver_.publishers("/seen").empty() && std::chrono::steady_clock::now() < end) receiver_.wait(10ms);
+  EXPECT_THAT(receiver_.publishers("/seen"), testing::IsEmpty()) << "they are gone";
+}
+
 TEST_F(TwoParticipants, HaveDistinctIds) {
   const Publisher publisher = sender_.publish("/ids", kText, {});
   const Subscriber subscriber = receiver_.subscribe("/ids", kText, {});

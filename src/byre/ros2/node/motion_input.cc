@@ -5,12 +5,16 @@
 #include "byre/ros2/node/message_parsing.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace byre {
 namespace {
 
 constexpr std::size_t kMaxKept = 10'000;  // several seconds of the fastest sensor
+
+// Best effort, as sensor drivers publish.
+constexpr TopicQos kMotionQos{.is_reliable = false, .depth = 1000, .max_bytes = kMaxBytesWithoutImage};
 
 // Adds a sample; drops the oldest one if no frame takes samples.
 template <typename Sample>
@@ -28,30 +32,44 @@ void take_samples(Subscriber& subscriber, const std::string& topic, const Use& u
   }
 }
 
-std::optional<MessageType> wheels_type(const std::vector<std::string>& published) {
-  for (const MessageType& type : {message_type<ros::Odometry>(), message_type<ros::TwistStamped>(),
-                                  message_type<ros::TwistWithCovarianceStamped>()}) {
-    if (std::ranges::find(published, type.name) != published.end()) return type;
-  }
-  return std::nullopt;
+const std::array<MessageType, 3>& wheel_types() {
+  static const std::array types = {message_type<ros::Odometry>(), message_type<ros::TwistStamped>(),
+                                   message_type<ros::TwistWithCovarianceStamped>()};
+  return types;
 }
 
 }  // namespace
 
-MotionInput::MotionInput(const NodeConfig& config, GraphAnnouncement& graph) : config_(config), graph_(graph) {
-  if (!config.gyroscope.empty()) gyroscope_ = subscribe(config.gyroscope, message_type<ros::Imu>());
+MotionInput::MotionInput(const NodeConfig& config, GraphAnnouncement& graph, InputMonitor& monitor)
+    : config_(config), graph_(graph), monitor_(monitor) {
+  const auto watch = [&](const char* name, const std::string& topic, const std::optional<Subscriber>& subscriber) {
+    WatchedInput input{name, config.topic(topic), {}, kMotionQos};
+    input.matched = [source = &subscriber] { return *source ? (*source)->publishers() : 0; };
+    return input;
+  };
+  if (!config.gyroscope.empty()) {
+    gyroscope_ = subscribe(config.gyroscope, message_type<ros::Imu>());
+    WatchedInput input = watch("gyroscope messages", config.gyroscope, gyroscope_);
+    input.types = {message_type<ros::Imu>().name};
+    gyroscope_input_ = monitor.add(std::move(input));
+  }
+  if (config.wheels.empty()) return;
+  WatchedInput input = watch("wheel odometry", config.wheels, wheels_);
+  for (const MessageType& type : wheel_types()) input.types.push_back(type.name);
+  wheels_input_ = monitor.add(std::move(input));
 }
 
 Subscriber MotionInput::subscribe(const std::string& topic, const MessageType& type) {
-  // Best effort, as sensor drivers publish.
-  const TopicQos qos{.is_reliable = false, .depth = 1000, .max_bytes = kMaxBytesWithoutImage};
-  return graph_.subscribe(config_.topic(topic), type, qos);
+  return graph_.subscribe(config_.topic(topic), type, kMotionQos);
 }
 
 // The publisher determines the type of the wheels topic.
 void MotionInput::find_wheels() {
-  const auto type = wheels_type(graph_.participant().published_types(config_.topic(config_.wheels)));
-  if (!type) return;
+  const auto publishers = graph_.participant().publishers(config_.topic(config_.wheels));
+  const auto type = std::ranges::find_if(wheel_types(), [&](const MessageType& known) {
+    return std::ranges::find(publishers, known.name, &DiscoveredPublisher::type) != publishers.end();
+  });
+  if (type == wheel_types().end()) return;
   wheels_ = subscribe(config_.wheels, *type);
   wheels_type_ = type->name;
   graph_.announce();
@@ -59,12 +77,18 @@ void MotionInput::find_wheels() {
 
 void MotionInput::take() {
   if (gyroscope_) {
-    take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& sample) { keep(sample, imu_); });
+    take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& sample) {
+      monitor_.note_arrival(*gyroscope_input_);
+      keep(sample, imu_);
+    });
   }
   if (config_.wheels.empty()) return;
   if (!wheels_) find_wheels();
   if (!wheels_) return;
-  const auto add = [&](const WheelSample& sample) { stream_.add(sample); };
+  const auto add = [&](const WheelSample& sample) {
+    monitor_.note_arrival(*wheels_input_);
+    stream_.add(sample);
+  };
   if (wheels_type_ == ros::Odometry::kType) take_samples<ros::Odometry>(*wheels_, config_.wheels, add);
   if (wheels_type_ == ros::TwistStamped::kType) take_samples<ros::TwistStamped>(*wheels_, config_.wheels, add);
   if (wheels_type_ == ros::TwistWithCovarianceStamped::kType) {

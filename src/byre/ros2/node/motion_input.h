@@ -3,6 +3,7 @@
 #include "byre/io/recording/stamp_clock.h"
 #include "byre/io/recording/wheel_stream.h"
 #include "byre/ros2/dds/ros_graph.h"
+#include "byre/ros2/node/input_monitor.h"
 #include "byre/ros2/node/node_config.h"
 #include "byre/ros2/node/slam_runner.h"
 
@@ -16,7 +17,10 @@ namespace byre {
 // set.
 class MotionInput {
  public:
-  MotionInput(const NodeConfig& config, GraphAnnouncement& graph);
+  // Its topics are added to the monitor. The graph and the monitor outlive this.
+  MotionInput(const NodeConfig& config, GraphAnnouncement& graph, InputMonitor& monitor);
+  MotionInput(const MotionInput&) = delete;  // the monitor refers to it
+  MotionInput& operator=(const MotionInput&) = delete;
 
   void take();
   // Passes samples on. clock: of the images. Precondition: the runner is running.
@@ -33,6 +37,8 @@ class MotionInput {
   // Constant after construction.
   NodeConfig config_;
   GraphAnnouncement& graph_;
+  InputMonitor& monitor_;
+  std::optional<InputMonitor::Id> wheels_input_, gyroscope_input_;  // empty if not configured
 
   std::optional<Subscriber> wheels_;  // empty until the topic has a publisher
   std::string wheels_type_;

@@ -44,11 +44,12 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
       log_(std::move(log)),
       participant_(network, cyclone_settings),
       graph_(participant_, {config.name, config.name_space.empty() ? "/" : config.name_space}),
-      calibration_source_(config, graph_),
+      inputs_([this](const std::string& topic) { return participant_.publishers(topic); }, steady_now()),
+      calibration_source_(config, graph_, inputs_),
       runner_(config),
       watchers_(config.http_port ? std::make_shared<LiveTopics>() : nullptr),
       outputs_(config, graph_, watchers_.get()),
-      motion_(config, graph_),
+      motion_(config, graph_, inputs_),
       pairs_(pairing_options(config)),
       monitor_(config.topic(config.left), steady_now()),
       robot_frames_({config.map_frame, config.odom_frame, config.base_frame}) {
@@ -72,6 +73,8 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   outputs_.publish_plan();
   left_ = subscribe(config.left, image, images);
   right_ = subscribe(config.right, image, images);
+  watch_images(image, images);
+  watch_odometry(transforms);
   graph_.announce();
   if (const auto fleet = fleet_options(config)) fleet_.emplace(*fleet);
   if (config.http_port) {
@@ -82,6 +85,48 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   }
 }
 
+void Node::watch_images(const MessageType& type, const TopicQos& qos) {
+  const auto watch = [&](const char* name, const std::string& topic, const std::optional<Subscriber>& subscriber) {
+    WatchedInput input{name, config_.topic(topic), {type.name}, qos};
+    input.remedy_for_type = std::string("set images.compressed: ") + (config_.is_compressed ? "false" : "true");
+    input.remedy_for_reliability = "set images.reliable: false";
+    input.matched = [source = &subscriber] { return (*source)->publishers(); };
+    return inputs_.add(std::move(input));
+  };
+  left_input_ = watch("left images", config_.left, left_);
+  if (right_) right_input_ = watch("right images", config_.right, right_);
+}
+
+void Node::watch_odometry(const TopicQos& qos) {
+  WatchedInput input{"transform from " + config_.odom_frame + " to " + config_.base_frame,
+                     config_.topic(config_.tf),
+                     {message_type<ros::TFMessage>().name},
+                     qos};
+  input.matched = [this] { return tf_->publishers(); };
+  input.detail = [this]() -> std::string {
+    const std::string root = robot_frames_.root_of_base();
+    if (root == config_.odom_frame) return "";
+    if (robot_frames_.has_base_owner()) {
+      return config_.base_frame + " has the parent " + root + "; start the base driver, or set frames.base: " + root;
+    }
+    return "start the base driver, or set frames.odom_to_base: true";
+  };
+  odometry_input_ = inputs_.add(std::move(input));
+  inputs_.set_needed(odometry_input_, !config_.publishes_odom_to_base);
+}
+
+void Node::check_inputs(Timestamp now) {
+  constexpr Timestamp kInterval = 200ms;
+  if (now - last_checked_ < kInterval) return;
+  last_checked_ = now;
+  // Another node that publishes a transform to the base owns odometry.
+  inputs_.set_needed(odometry_input_, !config_.publishes_odom_to_base || robot_frames_.has_base_owner());
+  const auto odometry = robot_frames_.last_odometry();
+  if (odometry && odometry != last_odometry_) inputs_.note_arrival(odometry_input_);
+  last_odometry_ = odometry;
+  for (const LogLine& line : inputs_.check(now)) log_(line.level, line.text);
+}
+
 void Node::take_images(Timestamp now) {
   const auto stamp_of = [](const Message& message, const std::string& topic) -> std::optional<ros::Header> {
     return parsed_message<ros::Header>(message, topic);  // both image types begin with a header
@@ -90,13 +135,16 @@ void Node::take_images(Timestamp now) {
     const auto header = stamp_of(message, config_.left);
     if (!header) continue;
     monitor_.note_arrival(now);
+    inputs_.note_arrival(left_input_);
     left_frame_ = header->frame_id;
     pairs_.add_left(ros::to_nanoseconds(header->stamp), std::move(message), now);
   }
   if (!right_) return;
   for (Message& message : right_->take()) {
     const auto header = stamp_of(message, config_.right);
-    if (header) pairs_.add_right(ros::to_nanoseconds(header->stamp), std::move(message), now);
+    if (!header) continue;
+    inputs_.note_arrival(right_input_);
+    pairs_.add_right(ros::to_nanoseconds(header->stamp), std::move(message), now);
   }
 }
 
@@ -116,20 +164,16 @@ void Node::log_transforms(Timestamp now) {
   constexpr Timestamp kPatience = 5s;
   const std::string tf = config_.topic(config_.tf);
   const std::string odometry = config_.odom_frame + " -> " + config_.base_frame;
-  const std::string root = robot_frames_.root_of_base();
   LogLevel level = LogLevel::warning;
   std::string text;
   if (config_.publishes_map_to_odom && robot_frames_.has_odom_owner(now)) {
     text = "another node publishes a transform to " + config_.odom_frame + " on " + tf +
            ", so byre does not; stop it (such as amcl), or set frames.map_to_odom: false";
-  } else if (robot_frames_.has_base_owner() && root != config_.odom_frame) {
-    text = config_.base_frame + " has the parent " + root + " on " + tf + ", which has no transform from " +
-           config_.odom_frame + "; start the base driver, or set frames.base: " + root;
-  } else if (without_odometry_since_ && now - *without_odometry_since_ > kPatience) {
+  } else if (without_odometry_since_ && now - *without_odometry_since_ > kPatience && last_odometry_ &&
+             now - *last_odometry_ < kPatience) {
     text = "no transform " + odometry + " at the time of the images on " + tf +
-           " for 5 s; check the base driver and that its clock is that of the images" +
-           (robot_frames_.has_base_owner() ? "" : ", or set frames.odom_to_base: true");
-  } else if (robot_frames_.has_base_owner()) {
+           " for 5 s; check that the clock of the base driver is that of the images";
+  } else if (last_odometry_) {
     level = LogLevel::info;
     text = "another node publishes " + odometry + " on " + tf + "; " + config_.map_frame + " -> " + config_.odom_frame +
            " is computed from it";
@@ -140,6 +184,7 @@ void Node::log_transforms(Timestamp now) {
 }
 
 void Node::start() {
+  for (const std::string& warning : calibration_source_.take_warnings()) log_(LogLevel::warning, warning);
   manager_.busy(kLongestWithFiles);
   const std::string note = runner_.start(*calibration_);
   if (!note.empty()) log_(LogLevel::warning, note);
@@ -317,8 +362,8 @@ void Node::publish_status(const ros::DiagnosticStatus& localisation, const ros::
 
 // Once a second, and immediately after a change.
 void Node::publish_state(Timestamp now) {
-  std::vector<ros::DiagnosticStatus> statuses = {localisation(), monitor_.status(now)};
-  const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message);
+  std::vector<ros::DiagnosticStatus> statuses = {localisation(), monitor_.status(now), inputs_.status()};
+  const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message + statuses[2].message);
   const bool has_changed = diagnosis != last_diagnosis_ && now - last_published_ > 100ms;
   if (has_changed || now - last_published_ > 1s) {
     publish_status(statuses[0], statuses[1]);
@@ -359,6 +404,7 @@ void Node::run(const std::function<bool()>& should_stop) {
     if (runner_.is_running()) {
       if (const auto pair = pairs_.next(now)) process(*pair);
     }
+    check_inputs(steady_now());
     publish_state(steady_now());
     publish_fleet(steady_now());
     if (web_server_) web_server_->wake();

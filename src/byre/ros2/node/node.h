@@ -8,6 +8,7 @@
 #include "byre/ros2/node/camera_monitor.h"
 #include "byre/ros2/node/image_message.h"
 #include "byre/ros2/node/image_pairs.h"
+#include "byre/ros2/node/input_monitor.h"
 #include "byre/ros2/node/motion_input.h"
 #include "byre/ros2/node/node_config.h"
 #include "byre/ros2/node/node_log.h"
@@ -46,6 +47,9 @@ class Node {
   void take_calibration(Timestamp now);
   void take_transforms(Timestamp now);
   void log_transforms(Timestamp now);
+  void watch_images(const MessageType& type, const TopicQos& qos);
+  void watch_odometry(const TopicQos& qos);
+  void check_inputs(Timestamp now);
   void take_requests(Timestamp now);
   Outcome answer(const std::string& request, const std::function<std::string()>& done);
   Outcome execute(const std::string& command);
@@ -64,12 +68,14 @@ class Node {
   NodeLog log_;        // constant after construction
   Participant participant_;
   GraphAnnouncement graph_;
+  InputMonitor inputs_;
   CalibrationSource calibration_source_;
   SlamRunner runner_;
   std::shared_ptr<LiveTopics> watchers_;  // null without a web server
   NodeOutputs outputs_;
   std::optional<Subscriber> left_, right_, command_, initial_pose_, tf_, tf_static_;
-  std::optional<NodeServices> services_;  // empty if services are disabled
+  InputMonitor::Id left_input_ = 0, right_input_ = 0, odometry_input_ = 0;  // right: only with a topic
+  std::optional<NodeServices> services_;                                    // empty if services are disabled
   MotionInput motion_;
   Pairs pairs_;
   StampClock clock_;
@@ -91,6 +97,8 @@ class Node {
   std::optional<Timestamp> without_odometry_since_;  // no odom -> base of its owner for the images since then
   std::string last_transforms_;                      // last reported state of the transforms
   std::string last_fault_;                           // last reported fault of the calibration
+  Timestamp last_checked_{};                         // time of the last check of the inputs
+  std::optional<Timestamp> last_odometry_;           // arrival of the last odom -> base of its owner
   Timestamp last_published_{};                       // time of the last diagnostics
   Timestamp last_slow_published_{};                  // time of the last path and points
   int arrived_at_last_keepalive_ = 0;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <utility>
 
 namespace byre {
 namespace {
@@ -30,6 +32,13 @@ std::array<std::optional<fs::path>*, 7> paths_of(NodeConfig& config) {
           &config.plan,
           &config.calibration,
           &config.fleet.password_file};
+}
+
+// Path with the home folder in place of a leading ~, which only shells expand.
+fs::path without_tilde(const fs::path& path) {
+  const char* const home = std::getenv("HOME");
+  if (home == nullptr || path.empty() || *path.begin() != "~") return path;
+  return fs::path(home) / path.lexically_relative("~");
 }
 
 // Constraints between settings; faults are reported at the first line involved.
@@ -65,6 +74,34 @@ void check_fleet(const FleetSettings& fleet, Consistency& consistency) {
                       "is set, but mqtt.user is empty", "set mqtt.user, or leave this empty");
 }
 
+// Whether a topic is of rectified images by the names of image_proc and of camera drivers: "/left/image_rect_color".
+bool names_rectified(std::string_view topic) {
+  return topic.starts_with("image_rect") || topic.find("/image_rect") != std::string_view::npos;
+}
+
+void check_topics(const NodeConfig& config, Consistency& consistency) {
+  const bool uses_distortion = !config.calibration && !config.is_rectified;
+  for (const auto& [name, topic] : {std::pair("images.left", config.left), std::pair("images.right", config.right)}) {
+    consistency.require(!uses_distortion || !names_rectified(topic), name,
+                        "is of rectified images, but images.rectified is false, so their distortion would be removed "
+                        "twice",
+                        "set images.rectified: true, or the topic of the raw images");
+  }
+  consistency.require(config.left.empty() || config.topic(config.left) != config.topic(config.right), "images.right",
+                      "is the topic of the left images", "set the topic of the right images");
+  const std::array outputs = {std::pair("topics.odometry", config.odometry), std::pair("topics.pose", config.pose),
+                              std::pair("topics.path", config.path),         std::pair("topics.points", config.points),
+                              std::pair("topics.health", config.health),     std::pair("topics.events", config.events)};
+  for (const auto& [input, read] :
+       {std::pair("motion.wheels", config.wheels), std::pair("motion.gyroscope", config.gyroscope),
+        std::pair("topics.initial_pose", config.initial_pose), std::pair("topics.command", config.command)}) {
+    for (const auto& [output, published] : outputs) {
+      consistency.require(read.empty() || config.topic(read) != config.topic(published), input,
+                          std::string("is ") + output + ", which this node publishes", "set the topic of another node");
+    }
+  }
+}
+
 void check(const NodeConfig& config, Consistency consistency) {
   const bool is_mission = config.task == NodeTask::mission;
   consistency.require(config.task == NodeTask::map || config.map.has_value(), "slam.map", "is missing",
@@ -90,6 +127,7 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "needs a map registered on it, and frames.in_plan", "set both, or leave slam.plan empty");
   consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
                       "is the offline map, which a mission must not replace", "name another file");
+  check_topics(config, consistency);
   check_fleet(config.fleet, consistency);
   consistency.require(fault_in_name("/" + config.name).empty(), "node.name", "is not a valid node name",
                       "use letters, digits and underscores");
@@ -109,7 +147,8 @@ std::string NodeConfig::topic(const std::string& given) const {
   return given.empty() ? "" : resolve_name(given, full_name());
 }
 
-NodeConfigReading read_node_config(const fs::path& path) {
+NodeConfigReading read_node_config(const fs::path& given_path) {
+  const fs::path path = without_tilde(given_path);
   NodeConfigReading reading;
   reading.config.file = path;
   const std::vector<Setting> given = read_settings(path);
@@ -123,7 +162,7 @@ NodeConfigReading read_node_config(const fs::path& path) {
     }
   }
   for (std::optional<fs::path>* const named : paths_of(reading.config)) {
-    if (*named) **named = path.parent_path() / **named;  // absolute paths are kept
+    if (*named) **named = path.parent_path() / without_tilde(**named);  // absolute paths are kept
   }
   check(reading.config, {path, given, reading.faults});
   return reading;

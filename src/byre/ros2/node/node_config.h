@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/calibration_file.h"
 #include "byre/input_error.h"
 #include "byre/ros2/fleet/fleet_link.h"
 #include "byre/slam.h"
@@ -106,7 +107,7 @@ struct NodeConfig {
   }
   bool has_right() const { return !right.empty(); }
   std::string full_name() const { return name_space + (name_space == "/" ? "" : "/") + name; }
-  // Full name of a topic; empty if it is disabled.
+  // Full name of a topic: relative names are within the node. Empty if it is disabled.
   std::string topic(const std::string& given) const;
 };
 
@@ -121,15 +122,16 @@ struct NodeSetting {
 
 const std::vector<NodeSetting>& node_settings();
 
-// Contents of a YAML file with all of its faults, each with line and remedy. Relative paths start at its folder.
+// Contents of a YAML file with all of its faults, each with line and remedy. Relative paths start at its folder, and
+// "~" is the home folder.
 struct NodeConfigReading {
   NodeConfig config;
   std::vector<InputError> faults;
 };
 NodeConfigReading read_node_config(const std::filesystem::path& path);
 
-// Faults of the files named in a valid configuration; opens each as the node would.
-std::vector<InputError> faults_in_files(const NodeConfig& config);
+// Faults of the files named in a valid configuration; opens each as the node would. notes: assumptions about them.
+std::vector<InputError> faults_in_files(const NodeConfig& config, std::vector<std::string>& notes);
 
 // Fleet interface of the settings; empty: disabled. Throws InputError if the password cannot be read.
 std::optional<FleetOptions> fleet_options(const NodeConfig& config);
@@ -137,8 +139,13 @@ std::optional<FleetOptions> fleet_options(const NodeConfig& config);
 // Setting that confirms an implausible baseline, without its value; see with_checked_baseline.
 inline constexpr const char* kBaselineSetting = "calibration.baseline: ";
 
-// Throws InputError if the calibration file lacks a camera whose topic is named.
-void require_cameras(const Calibration& calibration, const NodeConfig& config);
+// Reads the calibration file, with assumptions about it. Throws InputError also if it lacks a camera whose topic is
+// named. Precondition: config.calibration.
+CalibrationReading read_node_calibration(const NodeConfig& config);
+
+// Fault of a calibration file without a body frame, as the base frame would then be the optical frame of the left
+// camera; empty if it has one, or if the settings choose that.
+std::optional<InputError> fault_of_base_frame(const Calibration& calibration, const NodeConfig& config);
 
 // Throws InputError if a floor plan is named on which the map is not registered, as it would be published in a wrong
 // place.

@@ -3,6 +3,7 @@
 #include "byre/calibration_file.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -16,6 +17,11 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
+
+std::vector<InputError> faults_in(const NodeConfig& config) {
+  std::vector<std::string> notes;
+  return faults_in_files(config, notes);
+}
 
 class NodeConfigFile : public testing::Test {
  protected:
@@ -73,6 +79,45 @@ TEST_F(NodeConfigFile, RejectsContradictingSettings) {
   EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
 }
 
+TEST_F(NodeConfigFile, RejectsRectifiedImagesWithDistortion) {
+  const std::string one = "slam:\n  map: m\nimages:\n  left: /camera/left/image_rect_color\n  right: ''\n";
+  EXPECT_THAT(faults(one),
+              HasSubstr("robot.yaml:4: images.left is of rectified images, but images.rectified is false"));
+  EXPECT_THAT(faults(one + "  rectified: true\n"), IsEmpty());
+  EXPECT_THAT(faults(one + "calibration:\n  file: rectified.yaml\n"), IsEmpty()) << "of rectified images";
+  EXPECT_THAT(faults("slam:\n  map: m\nimages:\n  left: /rectory/image_raw\n"), IsEmpty());
+}
+
+TEST_F(NodeConfigFile, RejectsItsOwnTopicsAsInputs) {
+  const std::string sound = "slam:\n  map: m\nmotion:\n";
+  EXPECT_THAT(faults(sound + "  wheels: odometry\n"),
+              HasSubstr("robot.yaml:4: motion.wheels is topics.odometry, which this node publishes"));
+  EXPECT_THAT(faults(sound + "  wheels: /byre/odometry\n"), HasSubstr("motion.wheels is topics.odometry"));
+  EXPECT_THAT(faults(sound + "  wheels: /odom\ntopics:\n  odometry: /odom\n"),
+              HasSubstr("motion.wheels is topics.odometry"));
+  EXPECT_THAT(faults(sound + "  wheels: /odometry\n"), IsEmpty());
+  EXPECT_THAT(faults("slam:\n  map: m\ntopics:\n  pose: /initialpose\n"),
+              HasSubstr("topics.initial_pose is topics.pose"));
+  EXPECT_THAT(faults("slam:\n  map: m\nimages:\n  left: /a\n  right: /a\n"),
+              HasSubstr("images.right is the topic of the left images"));
+}
+
+TEST_F(NodeConfigFile, ExpandsTheHomeFolder) {
+  const char* const before = std::getenv("HOME");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("HOME", folder_.c_str(), 1);
+  const NodeConfigReading reading = read(
+      "slam:\n  task: extend\n  map: ~/maps/barn.byre\n  save: ~barn.byre\n  options: \"~\"\n"
+      "calibration:\n  file: ~/camchain.yaml\nmqtt:\n  user: me\n  password_file: ~/password\n");
+  EXPECT_EQ(read_node_config("~/robot.yaml").config.map, folder_ / "maps/barn.byre");
+  setenv("HOME", kept.c_str(), 1);
+  EXPECT_THAT(reading.faults, IsEmpty());
+  EXPECT_EQ(reading.config.map, folder_ / "maps/barn.byre");
+  EXPECT_EQ(reading.config.save, folder_ / "~barn.byre") << "a file name";
+  EXPECT_EQ(reading.config.calibration, folder_ / "camchain.yaml");
+  EXPECT_EQ(reading.config.fleet.password_file, folder_ / "password");
+}
+
 TEST_F(NodeConfigFile, ReportsFaultsOfFleetSettings) {
   const std::string sound = "slam:\n  map: m\nmqtt:\n  host: broker\n";
   EXPECT_THAT(faults(sound + "  port: 0\n"), HasSubstr("robot.yaml:5: mqtt.port is '0'"));
@@ -117,21 +162,48 @@ TEST_F(NodeConfigFile, QuotesTextWithoutControlCharacters) {
 TEST_F(NodeConfigFile, ReportsUnusableFiles) {
   const NodeConfig config =
       read("slam:\n  map: absent.byre\n  plan: absent.yaml\ncalibration:\n  file: absent.yml\n").config;
-  const std::vector<InputError> found = faults_in_files(config);
+  const std::vector<InputError> found = faults_in(config);
   EXPECT_THAT(found, SizeIs(3));
   for (const InputError& fault : found) EXPECT_THAT(fault.what(), HasSubstr("absent"));
+}
+
+// Forward (z of the camera) is x of the base, right is -y, down is -z.
+const Pose kForwardCamera{Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.3, 0.0, 0.5}};
+
+TEST_F(NodeConfigFile, RefusesACameraAsBaseFrameUnlessChosen) {
+  Calibration calibration;
+  calibration.left = {.width = 752, .height = 480, .fx = 400.0, .fy = 400.0, .cx = 376.0, .cy = 240.0};
+  calibration.right = {calibration.left, {Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.0}}};
+  const auto found = [&](const std::string& more = {}) {
+    std::ofstream(folder_ / "pair.yaml") << write_calibration(calibration);
+    std::vector<std::string> notes;
+    std::string text;
+    const std::string settings = "slam:\n  task: map\n  save: made.byre\ncalibration:\n  file: pair.yaml\n";
+    for (const InputError& fault : faults_in_files(read(settings + more).config, notes)) text += fault.what();
+    for (const std::string& note : notes) text += note;
+    return text;
+  };
+  EXPECT_THAT(found(), AllOf(HasSubstr("pair.yaml: has no pose of the cameras in a body"),
+                             HasSubstr("base_link is the optical frame of the left camera")));
+  EXPECT_THAT(found("frames:\n  mounting: camera\n"), IsEmpty());
+  EXPECT_THAT(found("frames:\n  mounting: tf\n"), IsEmpty());
+  calibration.body_from_left = {rotation_exp({0.02, 0.0, 0.01}), {0.005, 0.01, 0.0}};  // an IMU beside the camera
+  EXPECT_THAT(found(), HasSubstr("the left camera looks along z of base_link, which is up"));
+  calibration.body_from_left = kForwardCamera;
+  EXPECT_THAT(found(), IsEmpty());
 }
 
 TEST_F(NodeConfigFile, ReportsACalibrationWithAnUnusualBaseline) {
   Calibration calibration;
   calibration.left = {.width = 752, .height = 480, .fx = 400.0, .fy = 400.0, .cx = 376.0, .cy = 240.0};
   calibration.right = {calibration.left, {Eigen::Quaterniond::Identity(), {-7.5, 0.0, 0.0}}};
+  calibration.body_from_left = kForwardCamera;
   std::ofstream(folder_ / "pair.yaml") << write_calibration(calibration);
   const std::string settings = "images:\n  left: left\n  right: right\ncalibration:\n  file: pair.yaml\n";
-  const std::vector<InputError> found = faults_in_files(read(settings).config);
+  const std::vector<InputError> found = faults_in(read(settings).config);
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_THAT(found[0].what(), AllOf(HasSubstr("pair.yaml"), HasSubstr("calibration.baseline: 0.075")));
-  EXPECT_THAT(faults_in_files(read(settings + "  baseline: 0.075\n").config), IsEmpty());
+  EXPECT_THAT(faults_in(read(settings + "  baseline: 0.075\n").config), IsEmpty());
 }
 
 }  // namespace

@@ -7,12 +7,36 @@
 #include "byre/ros2/node/slam_runner.h"
 #include "byre/slam/system/stored_map.h"
 
+#include <filesystem>
 #include <fstream>
 #include <functional>
 
 namespace byre {
 
-std::vector<InputError> faults_in_files(const NodeConfig& config) {
+namespace {
+
+namespace fs = std::filesystem;
+
+void require_cameras(const Calibration& calibration, const NodeConfig& config) {
+  if (!config.has_right() || calibration.right) return;
+  throw InputError(config.calibration->string(), "is of one camera, but images.right gives a second one",
+                   "give the calibration of the pair (Kalibr camchain), or leave images.right empty");
+}
+
+// Whether the axes of the body are those of the left camera: right, down, forward.
+bool has_optical_axes(const Calibration& calibration) {
+  constexpr double kMaxTurn = 0.3;  // radians
+  return angle_between(calibration.body_from_left.rotation, Eigen::Quaterniond::Identity()) < kMaxTurn;
+}
+
+bool has_no_body(const Calibration& calibration) {
+  constexpr double kRounding = 1e-9;
+  return log_pose(calibration.body_from_left).norm() < kRounding;
+}
+
+}  // namespace
+
+std::vector<InputError> faults_in_files(const NodeConfig& config, std::vector<std::string>& notes) {
   std::vector<InputError> faults;
   const auto look = [&faults](const std::function<void()>& open) {
     try {
@@ -31,9 +55,10 @@ std::vector<InputError> faults_in_files(const NodeConfig& config) {
   look([&] { fleet_options(config); });
   if (config.calibration) {
     look([&] {
-      const Calibration given = read_calibration(*config.calibration);
-      require_cameras(with_checked_baseline(given, config.baseline, config.calibration->string(), kBaselineSetting),
-                      config);
+      const CalibrationReading reading = read_node_calibration(config);
+      notes = reading.notes;
+      if (const auto fault = fault_of_base_frame(reading.calibration, config)) faults.push_back(*fault);
+      with_checked_baseline(reading.calibration, config.baseline, config.calibration->string(), kBaselineSetting);
     });
   }
   return faults;
@@ -71,10 +96,28 @@ void require_plan_of_map(const NodeConfig& config) {
   }
 }
 
-void require_cameras(const Calibration& calibration, const NodeConfig& config) {
-  if (!config.has_right() || calibration.right) return;
-  throw InputError(config.calibration->string(), "is of one camera, but images.right gives a second one",
-                   "give the calibration of the pair (Kalibr camchain), or leave images.right empty");
+CalibrationReading read_node_calibration(const NodeConfig& config) {
+  const fs::path& file = *config.calibration;
+  CalibrationReading reading = read_calibration_file(file);
+  reading.calibration = read_calibration(file);  // with the image size
+  require_cameras(reading.calibration, config);
+  if (config.extrinsics_source() == ExtrinsicsSource::file && has_optical_axes(reading.calibration) &&
+      !has_no_body(reading.calibration)) {
+    reading.notes.push_back(
+        "the left camera looks along z of " + config.base_frame +
+        ", which is up; if its body is an IMU with the axes of the camera, set frames.mounting: tf");
+  }
+  for (std::string& note : reading.notes) note = file.string() + ": " + note;
+  return reading;
+}
+
+std::optional<InputError> fault_of_base_frame(const Calibration& calibration, const NodeConfig& config) {
+  if (config.extrinsics_source() != ExtrinsicsSource::file || !has_no_body(calibration)) return std::nullopt;
+  return InputError(config.calibration->string(),
+                    "has no pose of the cameras in a body (T_cam_imu, T_BS), so " + config.base_frame +
+                        " is the optical frame of the left camera, with z forward and y down",
+                    "add it, or set frames.mounting: tf if the robot description has the cameras; frames.mounting: "
+                    "camera confirms it");
 }
 
 }  // namespace byre

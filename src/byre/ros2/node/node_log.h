@@ -12,6 +12,13 @@ namespace byre {
 // Severities as numbered by syslog(3).
 enum class LogLevel : std::uint8_t { error = 3, warning = 4, notice = 5, info = 6 };
 
+struct LogLine {
+  LogLevel level = LogLevel::info;
+  std::string text;
+
+  bool operator==(const LogLine&) const = default;
+};
+
 // Receiver of log lines.
 using NodeLog = std::function<void(LogLevel level, const std::string& line)>;
 

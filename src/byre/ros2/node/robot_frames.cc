@@ -44,7 +44,7 @@ RobotFrames::Link* RobotFrames::link(const ros::TransformStamped& transform) {
   if (child.empty() || parent.empty() || child == parent) return nullptr;
   if (links_.size() >= kMaxFrames && !links_.contains(child)) return nullptr;
   Link& found = links_[child];
-  if (found.parent != parent) found = {parent, false, {}};
+  if (found.parent != parent) found = {parent, false, {}, {}};
   return &found;
 }
 
@@ -66,6 +66,7 @@ void RobotFrames::take(const ros::TFMessage& message, Timestamp now) {
     if (!pose) continue;
     if (Link* const found = link(each)) {
       found->is_static = false;
+      found->arrival = now;
       add({ros::to_nanoseconds(each.header.stamp), *pose}, *found);
     }
     if (frame_without_slash(each.child_frame_id) == names_.odom) last_odom_parent_ = now;
@@ -76,7 +77,7 @@ void RobotFrames::take_static(const ros::TFMessage& message) {
   for (const ros::TransformStamped& each : message.transforms) {
     const auto pose = pose_of_transform(each.transform);
     if (!pose) continue;
-    if (Link* const found = link(each)) *found = {found->parent, true, {{Timestamp{}, *pose}}};
+    if (Link* const found = link(each)) *found = {found->parent, true, {}, {{Timestamp{}, *pose}}};
   }
 }
 
@@ -119,6 +120,18 @@ std::optional<Pose> RobotFrames::odom_from_base(Timestamp stamp) const {
     frame_from_base = *parent_from_frame * frame_from_base;
     if (found->second.parent == names_.odom) return frame_from_base;
     found = links_.find(found->second.parent);
+  }
+  return std::nullopt;
+}
+
+std::optional<Timestamp> RobotFrames::last_odometry() const {
+  std::optional<Timestamp> oldest;
+  std::size_t steps = 0;
+  for (auto found = links_.find(names_.base); found != links_.end() && steps <= links_.size(); ++steps) {
+    const Link& link = found->second;
+    if (!link.is_static) oldest = std::min(oldest.value_or(link.arrival), link.arrival);
+    if (link.parent == names_.odom) return oldest;
+    found = links_.find(link.parent);
   }
   return std::nullopt;
 }

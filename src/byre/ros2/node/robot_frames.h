@@ -33,6 +33,10 @@ class RobotFrames {
   // odometry, and if the transforms above the base do not lead to odom.
   std::optional<Pose> odom_from_base(Timestamp stamp) const;
 
+  // Arrival of the last transforms of other nodes that lead from odom to the base, of the oldest one between them;
+  // empty if none do. Times are those of take(); static transforms have none.
+  std::optional<Timestamp> last_odometry() const;
+
   // Topmost frame known above the base.
   std::string root_of_base() const;
 
@@ -44,6 +48,7 @@ class RobotFrames {
   struct Link {
     std::string parent;
     bool is_static = false;
+    Timestamp arrival{};         // time of the last transform; zero if static
     std::deque<Sample> samples;  // by stamp; one if static
   };
   Link* link(const ros::TransformStamped& transform);

@@ -97,6 +97,18 @@ TEST_F(Frames, PassThroughTheFootprint) {
   EXPECT_LT(distance(*pose, path(1.0) * footprint_from_base), 1e-9);
 }
 
+TEST_F(Frames, ReportTheArrivalOfOdometry) {
+  EXPECT_FALSE(frames_.last_odometry());
+  frames_.take_static(tf_message("base_footprint", "base_link", {}));
+  EXPECT_FALSE(frames_.last_odometry()) << "it does not lead to odom";
+  frames_.take(tf_message("odom", "base_footprint", path(1.0), 1s), 7s);
+  EXPECT_EQ(frames_.last_odometry(), 7s);
+  frames_.take(tf_message("wheel", "tyre", path(1.0), 1s), 8s);
+  EXPECT_EQ(frames_.last_odometry(), 7s) << "of other frames";
+  frames_.take(tf_message("odom", "base_footprint", path(1.1), 2s), 9s);
+  EXPECT_EQ(frames_.last_odometry(), 9s);
+}
+
 TEST_F(Frames, EndAtACircle) {
   frames_.take_static(tf_message("a", "base_link", {}));
   frames_.take_static(tf_message("base_link", "a", {}));
