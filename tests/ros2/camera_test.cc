@@ -123,6 +123,34 @@ TEST_F(ByreNode, ReportsMissingInputsWithTheirPublishers) {
   EXPECT_EQ(node.stop(), 0);
 }
 
+TEST_F(ByreNode, WarnsOfAPositiveBaselineInCameraInfo) {
+  const auto info_type = [] { return TypeSupport(new sensor_msgs::msg::CameraInfoPubSubType); };
+  auto* const left_info = peer_.writer("rt/left/camera_info", info_type(), kVolatile);
+  auto* const right_info = peer_.writer("rt/right/camera_info", info_type(), kVolatile);
+  NodeProcess node(folder_,
+                   "slam:\n  task: map\n  save: made.byre\nimages:\n  rectified: true\nframes:\n  mounting: camera\n",
+                   domain_);
+  ASSERT_TRUE(FastPeer::has_subscriber(left_info) && FastPeer::has_subscriber(right_info)) << node.stderr_output();
+  sensor_msgs::msg::CameraInfo info;
+  info.width(188);
+  info.height(120);
+  info.distortion_model("plumb_bob");
+  info.d({0, 0, 0, 0, 0});
+  info.k({100, 0, 94, 0, 100, 60, 0, 0, 1});
+  info.r({1, 0, 0, 0, 1, 0, 0, 0, 1});
+  info.p({100, 0, 94, 0, 0, 100, 60, 0, 0, 0, 1, 0});
+  const std::string warning = "/right/camera_info: the baseline in P is positive";
+  for (int i = 0; i < 100 && node.stderr_output().find(warning) == std::string::npos; ++i) {
+    info.p()[3] = 0.0;
+    left_info->write(&info);
+    info.p()[3] = 11.0;
+    right_info->write(&info);
+    std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_THAT(node.stderr_output(), HasSubstr(warning));
+  EXPECT_EQ(node.stop(), 0);
+}
+
 TEST_F(ByreNode, ReadsCameraInfoAndExtrinsicsFromTransforms) {
   const Room& room = Room::shared();
   Calibration calibration = read_calibration(room.calibration());

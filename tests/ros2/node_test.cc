@@ -119,6 +119,25 @@ TEST_F(ByreNode, ComputesMapToOdomFromTheOdometryOfABaseDriver) {
   EXPECT_THAT(node.stderr_output(), HasSubstr("another node publishes odom -> base_link"));
 }
 
+TEST_F(ByreNode, KeepsItsTransformsInTheNamespaceOfItsRobot) {
+  const std::vector<ImageFrame>& frames = Room::shared().frames();
+  Odometry odometry(peer_, "rt/robot1/byre/odometry", kVolatile);
+  Transforms transforms(peer_, "rt/robot1/tf", kVolatile), of_all(peer_, "rt/tf", kVolatile);
+  auto* const hint = peer_.writer("rt/robot1/initialpose",
+                                  TypeSupport(new geometry_msgs::msg::PoseWithCovarianceStampedPubSubType), kVolatile);
+  NodeProcess node(folder_, mission("node:\n  namespace: /robot1\ntopics:\n  in_namespace: true\n"), domain_);
+  ASSERT_TRUE(diagnostics_.first() && feed_.has_subscriber() && FastPeer::has_subscriber(hint)) << node.stderr_output();
+  ASSERT_TRUE(feed_.send_acknowledged());
+  for (std::size_t i = 0; i < 10; ++i) ASSERT_TRUE(answer_to(feed_, odometry, frames[i])) << node.stderr_output();
+  const auto is_to_base = [](const auto& message) {
+    return std::ranges::any_of(message.transforms(),
+                               [](const auto& each) { return each.child_frame_id() == "base_link"; });
+  };
+  EXPECT_TRUE(transforms.find(is_to_base)) << node.stderr_output();
+  EXPECT_THAT(of_all.all(), testing::IsEmpty());
+  EXPECT_EQ(node.stop(), 0);
+}
+
 TEST_F(ByreNode, PublishesTheMissionPosesOfSlam) {
   const Room& room = Room::shared();
   const std::vector<FrameReport> expected =

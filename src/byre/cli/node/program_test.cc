@@ -48,6 +48,34 @@ TEST_F(NodeProgram, ReportsAllFaultsOfSettings) {
   EXPECT_EQ(sound.output, "robot.yaml: no fault found\n");
 }
 
+TEST_F(NodeProgram, AcceptsTheArgumentsOfRos) {
+  write("robot.yaml", "slam:\n  task: map\n  save: made.byre\n");
+  write("parameters.yaml", "/**:\n  ros__parameters:\n    use_sim_time: false\n    frames: {map: world}\n");
+  const Outcome printed =
+      run("node --config robot.yaml --print-config --ros-args -r __node:=eyes -r __ns:=/robot1 --params-file "
+          "parameters.yaml "
+          "-p frames.odom:=wheels -r /tf:=tf --log-level warn");
+  EXPECT_EQ(printed.exit_code, 0) << printed.errors;
+  EXPECT_THAT(printed.output,
+              AllOf(HasSubstr("name: eyes "), HasSubstr("namespace: /robot1 "), HasSubstr("map: world "),
+                    HasSubstr("odom: wheels "), HasSubstr("tf: /robot1/tf ")));
+  const Outcome checked =
+      run("node --check --ros-args -p slam.task:=map -p slam.save:=made.byre --ros-args -r /map:=plan");
+  EXPECT_EQ(checked.exit_code, 0) << checked.errors;
+  EXPECT_EQ(checked.output, "byre node: no fault found\n");
+  for (const auto& [arguments, message] : std::vector<std::pair<std::string, std::string>>{
+           {"-r /scan:=/scan2", "-r /scan:=/scan2: /scan is not a topic of the node (give one of /left/image_raw"},
+           {"-p speed:=3", "-p speed:=3: unknown setting speed"},
+           {"--log-level loud", "--log-level loud: is not a level of this node"},
+           {"--disable-rosout-logs", "--ros-args: has an argument without an effect on this node (give -r, -p"},
+           {"-e /enclave", "--ros-args: has an argument without an effect"}}) {
+    const Outcome outcome = run("node --config robot.yaml --ros-args " + arguments);
+    EXPECT_EQ(outcome.exit_code, 3) << arguments;
+    EXPECT_THAT(outcome.errors, HasSubstr("byre: error: " + message)) << arguments;
+  }
+  EXPECT_EQ(run("node --config robot.yaml -p slam.map:=m").exit_code, 2) << "without --ros-args";
+}
+
 TEST_F(NodeProgram, RefusesCommonMistakes) {
   write("camera.yaml",
         "cam0:\n  camera_model: pinhole\n  intrinsics: [400, 400, 376, 240]\n  distortion_model: radtan\n"

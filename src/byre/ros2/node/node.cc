@@ -116,7 +116,7 @@ void Node::watch_odometry(const TopicQos& qos) {
 }
 
 void Node::check_inputs(Timestamp now) {
-  constexpr Timestamp kInterval = 200ms;
+  constexpr Timestamp kInterval = 500ms;
   if (now - last_checked_ < kInterval) return;
   last_checked_ = now;
   // Another node that publishes a transform to the base owns odometry.

@@ -23,41 +23,24 @@ std::string remedy_for_unknown(std::string_view name) {
   return "see byre node --print-config";
 }
 
-// Paths relative to the configuration file.
-std::array<std::optional<fs::path>*, 7> paths_of(NodeConfig& config) {
-  return {&config.map,
-          &config.save,
-          &config.options,
-          &config.vocabulary,
-          &config.plan,
-          &config.calibration,
-          &config.fleet.password_file};
-}
-
-// Path with the home folder in place of a leading ~, which only shells expand.
-fs::path without_tilde(const fs::path& path) {
-  const char* const home = std::getenv("HOME");
-  if (home == nullptr || path.empty() || *path.begin() != "~") return path;
-  return fs::path(home) / path.lexically_relative("~");
-}
-
 // Constraints between settings; faults are reported at the first line involved.
 class Consistency {
  public:
-  Consistency(const fs::path& path, const std::vector<Setting>& given, std::vector<InputError>& faults)
-      : path_(path), given_(given), faults_(faults) {}
+  // place: of settings that were not given.
+  Consistency(const std::string& place, const std::vector<GivenSetting>& given, std::vector<InputError>& faults)
+      : place_(place), given_(given), faults_(faults) {}
 
   void require(bool holds, std::string_view setting, std::string_view reason, std::string_view remedy) {
     if (holds) return;
-    const auto found = std::ranges::find(given_, setting, &Setting::name);
-    std::string place = path_.string();
-    if (found != given_.end()) place.append(":").append(std::to_string(found->line));
-    faults_.emplace_back(place, std::string(setting).append(" ").append(reason), remedy);
+    const auto found =
+        std::find_if(given_.rbegin(), given_.rend(), [&](const auto& each) { return each.name == setting; });
+    faults_.emplace_back(found == given_.rend() ? place_ : found->place,
+                         std::string(setting).append(" ").append(reason), remedy);
   }
 
  private:
-  const fs::path& path_;
-  const std::vector<Setting>& given_;
+  const std::string& place_;
+  const std::vector<GivenSetting>& given_;
   std::vector<InputError>& faults_;
 };
 
@@ -147,24 +130,53 @@ std::string NodeConfig::topic(const std::string& given) const {
   return given.empty() ? "" : resolve_name(given, full_name());
 }
 
-NodeConfigReading read_node_config(const fs::path& given_path) {
+fs::path without_tilde(const fs::path& path) {
+  const char* const home = std::getenv("HOME");
+  if (home == nullptr || path.empty() || *path.begin() != "~") return path;
+  return fs::path(home) / path.lexically_relative("~");
+}
+
+std::vector<GivenSetting> settings_of_file(const fs::path& given_path) {
   const fs::path path = without_tilde(given_path);
+  std::vector<GivenSetting> given;
+  for (const Setting& setting : read_settings(path)) {
+    given.push_back(
+        {setting.name, setting.text, path.string() + ":" + std::to_string(setting.line), path.parent_path()});
+  }
+  return given;
+}
+
+NodeConfigReading config_of(const std::vector<GivenSetting>& given) {
   NodeConfigReading reading;
-  reading.config.file = path;
-  const std::vector<Setting> given = read_settings(path);
-  for (const Setting& setting : given) {
-    const std::string place = path.string() + ":" + std::to_string(setting.line);
+  for (const GivenSetting& setting : given) {
     const auto known = std::ranges::find(node_settings(), setting.name, &NodeSetting::name);
     if (known == node_settings().end()) {
-      reading.faults.emplace_back(place, "unknown setting " + setting.name, remedy_for_unknown(setting.name));
-    } else if (!known->set(reading.config, setting.text)) {
-      reading.faults.emplace_back(place, setting.name + " is '" + setting.text + "'", "give " + known->range);
+      reading.faults.emplace_back(setting.place, "unknown setting " + setting.name, remedy_for_unknown(setting.name));
+      continue;
     }
+    const bool is_path = known->range == kFileRange && !setting.text.empty();
+    const std::string text = is_path ? (setting.folder / without_tilde(setting.text)).string() : setting.text;
+    if (known->set(reading.config, text)) continue;
+    reading.faults.emplace_back(setting.place, setting.name + " is '" + setting.text + "'", "give " + known->range);
   }
-  for (std::optional<fs::path>* const named : paths_of(reading.config)) {
-    if (*named) **named = path.parent_path() / without_tilde(**named);  // absolute paths are kept
+  return reading;
+}
+
+void complete(NodeConfigReading& reading, const std::vector<GivenSetting>& given, const std::string& place) {
+  NodeConfig& config = reading.config;
+  check(config, {place, given, reading.faults});
+  const std::string prefix = config.name_space + (config.name_space.ends_with('/') ? "" : "/");
+  if (!config.moves_into_namespace || prefix == "/") return;
+  for (std::string* const topic : {&config.tf, &config.tf_static, &config.grid, &config.initial_pose}) {
+    if (topic->starts_with('/') && !topic->starts_with(prefix)) topic->replace(0, 1, prefix);
   }
-  check(reading.config, {path, given, reading.faults});
+}
+
+NodeConfigReading read_node_config(const fs::path& path) {
+  const std::vector<GivenSetting> given = settings_of_file(path);
+  NodeConfigReading reading = config_of(given);
+  reading.config.file = without_tilde(path);
+  complete(reading, given, reading.config.file->string());
   return reading;
 }
 

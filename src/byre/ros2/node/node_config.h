@@ -93,6 +93,7 @@ struct NodeConfig {
   std::string tf_static = "/tf_static";
   std::string grid = "/map";
   std::string initial_pose = "/initialpose";
+  bool moves_into_namespace = false;  // moves the four topics above into the namespace, as complete() does
 
   std::string http_address = "127.0.0.1";  // local address for /healthz and /metrics
   std::optional<int> http_port;            // empty: no HTTP server
@@ -122,6 +123,8 @@ struct NodeSetting {
 
 const std::vector<NodeSetting>& node_settings();
 
+inline constexpr std::string_view kFileRange = "file or empty";  // range of paths
+
 // Contents of a YAML file with all of its faults, each with line and remedy. Relative paths start at its folder, and
 // "~" is the home folder.
 struct NodeConfigReading {
@@ -129,6 +132,25 @@ struct NodeConfigReading {
   std::vector<InputError> faults;
 };
 NodeConfigReading read_node_config(const std::filesystem::path& path);
+
+// Path with the home folder in place of a leading ~, which only shells expand.
+std::filesystem::path without_tilde(const std::filesystem::path& path);
+
+// Setting of a configuration before it is parsed.
+struct GivenSetting {
+  std::string name;
+  std::string text;
+  std::string place;             // for messages
+  std::filesystem::path folder;  // folder of relative paths
+};
+std::vector<GivenSetting> settings_of_file(const std::filesystem::path& path);
+
+// Configuration with these settings, later ones replacing earlier ones, and the faults of each.
+NodeConfigReading config_of(const std::vector<GivenSetting>& given);
+
+// Completes a configuration of the settings given: checks them against each other, and moves topics into the namespace
+// if so configured. place: for faults of settings that were not given.
+void complete(NodeConfigReading& reading, const std::vector<GivenSetting>& given, const std::string& place);
 
 // Faults of the files named in a valid configuration; opens each as the node would. notes: assumptions about them.
 std::vector<InputError> faults_in_files(const NodeConfig& config, std::vector<std::string>& notes);

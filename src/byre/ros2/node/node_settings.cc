@@ -63,7 +63,8 @@ NodeSetting topic(const char* name, auto member, const char* meaning) {
 NodeSetting file(const char* name, auto member, const char* meaning) {
   using File = std::optional<fs::path>;
   return setting(
-      name, "file or empty", member, meaning, [](const File& value) { return value ? value->string() : std::string(); },
+      name, std::string(kFileRange), member, meaning,
+      [](const File& value) { return value ? value->string() : std::string(); },
       [](std::string_view text) { return std::optional<File>(text.empty() ? File() : File(text)); });
 }
 
@@ -199,6 +200,9 @@ const std::vector<NodeSetting>& node_settings() {
       text_if("topics.tf_static", "topic", &NodeConfig::tf_static, "fixed transforms, read and published", is_topic),
       topic("topics.grid", &NodeConfig::grid, "floor plan"),
       topic("topics.initial_pose", &NodeConfig::initial_pose, "initial poses set by an operator"),
+      flag("topics.in_namespace", &NodeConfig::moves_into_namespace,
+           "topics.tf, tf_static, grid and initial_pose begin with node.namespace: /robot1/tf, as Nav2 remaps them for "
+           "several robots"),
       text("http.address", &NodeConfig::http_address, "address of /healthz, /metrics and the Foxglove protocol"),
       optional_number("http.port", "1 to 65535 or empty", &NodeConfig::http_port,
                       "port of /healthz, /metrics and Foxglove; empty: none", 1.0, 65535.0),
