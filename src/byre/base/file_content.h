@@ -14,6 +14,7 @@ enum class FileContent : std::uint8_t {
   map,
   vocabulary,
   png,
+  pgm,
   video,
   point_cloud,
   mcap,

@@ -26,6 +26,7 @@ TEST(ContentOf, RecognisesByreFiles) {
   EXPECT_EQ(content_of_bytes("\x89PNG\r\n\x1a\n"), FileContent::png);
   EXPECT_EQ(content_of_bytes(std::string("\0\0\0 ftypisom", 12)), FileContent::video);
   EXPECT_EQ(content_of_bytes("\x89MCAP0\r\n\x01"), FileContent::mcap);
+  EXPECT_EQ(content_of_bytes("P5\n3 2\n255\n"), FileContent::pgm);
   EXPECT_EQ(content_of_bytes("ply\nformat binary_little_endian 1.0\n"), FileContent::point_cloud);
   EXPECT_EQ(content_of_bytes("<?xml version=\"1.0\"?>\n<svg width=\"1\">"), FileContent::svg);
   EXPECT_EQ(content_of_bytes("{\"time_s\": 1}\n{}"), FileContent::json);

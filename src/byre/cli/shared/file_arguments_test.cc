@@ -110,6 +110,7 @@ bool is_input(CLI::Option& option) {
 
 std::string extension_of(Output output) {
   if (output == Output::picture) return ".png";
+  if (output == Output::grid) return ".pgm";
   return output == Output::video ? ".mp4" : "";
 }
 

@@ -1,6 +1,7 @@
 #include "byre/io/recording/file_safety.h"
 
 #include "byre/base/output_file.h"
+#include "byre/io/image/plan_file.h"
 #include "byre/io/recording/input_files.h"
 
 #include <algorithm>
@@ -68,6 +69,8 @@ std::vector<fs::path> files_of(const NamedOutput& written) {
         for (const char* const suffix : {".bin", ".txt"}) files.push_back(written.path / (std::string(name) + suffix));
       }
       return files;
+    case OutputKind::grid:
+      return {written.path, plan_description(written.path)};
     case OutputKind::viewed_map:
       files.push_back(picks_path(written.path));
       [[fallthrough]];
@@ -153,6 +156,8 @@ FileContent content_written(const NamedOutput& written, const fs::path& file) {
       return FileContent::json;
     case OutputKind::picture:
       return is_svg(file) ? FileContent::svg : FileContent::png;
+    case OutputKind::grid:
+      return file == written.path ? FileContent::pgm : FileContent::yaml;
     case OutputKind::video:
       return FileContent::video;
     case OutputKind::point_cloud:

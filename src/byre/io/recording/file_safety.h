@@ -28,6 +28,7 @@ enum class OutputKind : std::uint8_t {
   trajectory,
   json,
   picture,  // format by extension: .svg or .png
+  grid,     // PGM image with its description next to it
   video,
   point_cloud,
   mcap,

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "byre/floor_plan.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+namespace byre {
+
+// Path of the description that is written next to the image of a plan: FILE.yaml.
+std::filesystem::path plan_description(const std::filesystem::path& image);
+
+// Writes occupancy as a PGM image and its description, in the format of ROS' map_server (mode trinary): pixels of 100
+// are black, of 0 nearly white (254), others grey (205). read_drawn_floor_plan reads the same occupancy. occupancy: of
+// the plan's pixels, as in DrawnFloorPlan. Preconditions: square pixels, not mirrored. Throws InputError on failure.
+void write_floor_plan(const FloorPlan& plan, std::span<const std::int8_t> occupancy,
+                      const std::filesystem::path& image);
+
+}  // namespace byre
