@@ -5,7 +5,9 @@
 #include "byre/cli/draw/options.h"
 #include "byre/cli/shared/warnings.h"
 #include "byre/input_error.h"
+#include "byre/io/image/plan_file.h"
 #include "byre/io/recording/trajectory_input.h"
+#include "byre/map/plan/occupancy_grid.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/viewer/camera_picture.h"
 #include "byre/viewer/mission_input.h"
@@ -38,6 +40,10 @@ StoredMap load_map_to_draw(const DrawOptions& options) {
   if (options.map && stored.scale != MapScale::metric) {
     throw InputError(options.map_file().string(), "has no metric scale, which missions need", "set it with byre scale");
   }
+  if (options.grid && stored.scale != MapScale::metric && !stored.plan) {
+    throw InputError(options.map_file().string(), "has no metric scale, which occupancy grids need",
+                     "set it with byre scale or byre register");
+  }
   return stored;
 }
 
@@ -55,6 +61,24 @@ PlanScene scene_without_mission(const DrawOptions& options, const StoredMap& sto
     if (options.missions.size() > 1) scene.paths.back().name = file.stem().string();
   }
   return scene;
+}
+
+double share_of(const OccupancyGrid& grid, std::int8_t occupancy) {
+  const auto count = std::ranges::count(grid.occupancy, occupancy);
+  return 100.0 * static_cast<double>(count) / static_cast<double>(grid.occupancy.size());
+}
+
+void write_grid(const StoredMap& stored, const DrawOptions& options, std::ostream& result) {
+  const std::optional<OccupancyGrid> grid = occupancy_grid(stored.map, stored.plan, options.grid_options);
+  if (!grid) {
+    throw InputError(options.map_file().string(), "was not driven on a floor, so it has no occupancy grid",
+                     "map with a camera on a wheeled robot");
+  }
+  write_floor_plan(grid->plan, grid->occupancy, *options.grid);
+  result << row("grid", fmt::format("{} x {} cells of {:g} m: {:.1f} % occupied, {:.1f} % free, {:.1f} % unknown",
+                                    grid->plan.width, grid->plan.height, options.grid_options.resolution,
+                                    share_of(*grid, kOccupiedPixel), share_of(*grid, kFreePixel),
+                                    share_of(*grid, kUnknownPixel)));
 }
 
 void write_plan_picture(const PlanScene& scene, const DrawOptions& options) {
@@ -109,19 +133,22 @@ PlanScene map_scene(const DrawOptions& options, std::ostream& result) {
   result << row("map",
                 options.map_file().string() +
                     fmt::format(", {} keyframes, {} points", stored.map.keyframe_count(), stored.map.point_count()));
+  if (options.grid) write_grid(stored, options, result);
   return scene_without_mission(options, stored);
 }
 
 ExitCode draw(const DrawOptions& options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
+  if (options.grid) require_writable(plan_description(*options.grid));
   PlanScene scene = map_scene(options, result);
   ExitCode code = done;
   if (options.map) {
     code = run_and_draw(options, std::move(scene), result);
-  } else {
+  } else if (options.plan_picture) {
     write_plan_picture(scene, options);
   }
   for (const fs::path& output : options.outputs()) result << row("written", output.string());
+  if (options.grid) result << row("written", plan_description(*options.grid).string());
   return code;
 }
 

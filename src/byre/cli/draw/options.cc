@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDrawFooter = R"(Examples:
   byre draw barn.byre -o barn.svg
+  byre draw barn.byre --grid barn.pgm --grid-resolution 0.05
   byre draw barn-plan.byre --plan plan.yaml --mission stats.json -o mission.svg
   byre draw barn.byre --trajectory morning.txt --trajectory evening.txt -o rounds.png
   byre draw evening_round --map barn.byre --end 30 --at 12.5 --camera-picture shot.png -o where.svg
@@ -32,7 +33,9 @@ For a map, a picture from above is drawn: points, keyframes, and the paths of tr
 image with the matched map points and a video of both can be drawn as well. --at is the time of the camera picture;
 the plan picture shows position and direction of the camera at that time. A plan is drawn below maps registered by
 "byre register". Exit code 1 if no frame of the recording could be read. docs/how-to/draw_pictures.md explains the
-symbols.)";
+symbols.
+--grid writes an occupancy grid for map_server and Nav2 from the points and keyframes of the map: FILE.pgm and
+FILE.yaml.)";
 
 std::string extension_of(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -52,17 +55,43 @@ std::optional<HeightBand> parse_heights(std::string_view text) {
   return heights;
 }
 
-CLI::Option* declare_heights(CLI::App& command, HeightBand& heights) {
-  const auto parse = [&heights](const CLI::results_t& texts) {
+// set: callable that takes the heights.
+template <typename Set>
+CLI::Option* declare_heights(CLI::App& command, const std::string& name, const std::string& help, Set set) {
+  const auto parse = [name, set](const CLI::results_t& texts) {
     const std::optional<HeightBand> parsed = parse_heights(texts.front());
-    if (!parsed) throw CLI::ValidationError("--heights", texts.front() + " is not LOW:HIGH in metres such as 0.1:2.5");
-    heights = *parsed;
+    if (!parsed) throw CLI::ValidationError(name, texts.front() + " is not LOW:HIGH in metres such as 0.1:2.5");
+    set(*parsed);
     return true;
   };
-  return command
-      .add_option("--heights", parse, "Range of heights of the drawn map points above the floor, metres (0.1:2.5)")
-      ->type_name("LOW:HIGH")
-      ->expected(1);
+  return command.add_option(name, parse, help)->type_name("LOW:HIGH")->expected(1);
+}
+
+void declare_grid(CLI::App& command, DrawOptions& options) {
+  GridOptions& grid = options.grid_options;
+  CLI::Option* const file = add_output(command, Output::grid, "--grid", options.grid,
+                                       "Occupancy grid of the map: .pgm, with its description in .yaml next to it")
+                                ->type_name("FILE");
+  command.add_option("--grid-resolution", grid.resolution, "Edge of a cell (0.05)")
+      ->type_name("METRES")
+      ->check(between(0.001, 10.0))
+      ->needs(file);
+  declare_heights(command, "--grid-heights", "Range of heights of obstacles above the floor, metres (0.1:1.8)",
+                  [&grid](const HeightBand& heights) {
+                    grid.low = heights.low;
+                    grid.high = heights.high;
+                  })
+      ->needs(file);
+  command.add_option("--footprint", grid.footprint_radius, "Radius of the robot, whose path is free in the grid (0.3)")
+      ->type_name("METRES")
+      ->check(between(0.0, 10.0))
+      ->needs(file);
+  command
+      .add_option("--body-height", grid.body_height,
+                  "Height of the body's origin above the floor, for the grid of a map without a plan (0)")
+      ->type_name("METRES")
+      ->check(between(-100.0, 100.0))
+      ->needs(file);
 }
 
 void declare_inputs(CLI::App& command, DrawOptions& options) {
@@ -121,23 +150,26 @@ void require_extension(const std::optional<fs::path>& file, const char* option,
 void require_consistent(const DrawOptions& options) {
   require_valid(options.range);
   if (options.outputs().empty()) {
-    throw CLI::ValidationError("draw", "give a file to draw: --plan-picture (-o), --camera-picture or --video");
+    throw CLI::ValidationError("draw", "give a file to draw: --plan-picture (-o), --grid, --camera-picture or --video");
   }
   require_extension(options.plan_picture, "--plan-picture", {".svg", ".png"});
   require_extension(options.camera_picture, "--camera-picture", {".svg", ".png"});
   require_extension(options.video, "--video", {".mp4"});
+  require_extension(options.grid, "--grid", {".pgm"});
 }
 
 }  // namespace
 
 std::vector<fs::path> DrawOptions::outputs() const {
-  return given_paths({plan_picture, camera_picture, video});
+  return given_paths({plan_picture, camera_picture, video, grid});
 }
 
 void declare_draw_options(CLI::App& command, DrawOptions& options) {
   declare_inputs(command, options);
   declare_outputs(command, options);
-  declare_heights(command, options.heights);
+  declare_heights(command, "--heights", "Range of heights of the drawn map points above the floor, metres (0.1:2.5)",
+                  [&options](const HeightBand& heights) { options.heights = heights; });
+  declare_grid(command, options);
   declare_open_options(command, options.open);
   declare_frame_range(command, options.range);
   declare_options_file(command, options.method);

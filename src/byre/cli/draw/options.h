@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/cli/shared/method_arguments.h"
+#include "byre/map/plan/occupancy_grid.h"
 #include "byre/recording.h"
 #include "byre/viewer/plan_picture.h"
 
@@ -24,6 +25,8 @@ struct DrawOptions {
   std::optional<std::filesystem::path> plan_picture;
   std::optional<std::filesystem::path> camera_picture;
   std::optional<std::filesystem::path> video;
+  std::optional<std::filesystem::path> grid;  // .pgm, with a .yaml file next to it
+  GridOptions grid_options;
   std::optional<double> at_s;  // time of the camera picture in the recording, seconds; empty: the last frame
   double speed = 1.0;          // playback speed of the video
   int width = 1200;            // pixels, of the plan picture

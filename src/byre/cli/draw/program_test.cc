@@ -1,6 +1,7 @@
 // "byre draw": exit codes, messages, and content of the pictures.
 
 #include "byre/cli/shared/program_fixture.h"
+#include "byre/map/plan/occupancy_grid.h"
 #include "byre/playback/archive/register_scene.h"
 #include "byre/simulation/rendered_scene.h"
 
@@ -102,7 +103,10 @@ TEST_F(DrawProgram, RejectsWrongUsage) {
         "draw room.byre --video a.mp4", "draw room.byre -o a.svg --heights 2:1", "draw room.byre -o a.svg --heights 1",
         "draw room.byre -o a.svg --width 3", "draw RECORDING --map room.byre --video a.avi",
         "draw RECORDING --map room.byre -o a.svg --camera-picture ./a.svg",
-        "draw RECORDING --map room.byre --at -1 -o a.svg"}) {
+        "draw RECORDING --map room.byre --at -1 -o a.svg", "draw room.byre --grid a.png",
+        "draw room.byre -o a.svg --grid-resolution 0.1", "draw room.byre --grid a.pgm --grid-resolution 0",
+        "draw room.byre --grid a.pgm --grid-heights 2:1", "draw room.byre --grid a.pgm --grid-heights 1",
+        "draw room.byre --grid a.pgm --footprint -1"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
     EXPECT_THAT(outcome.errors, StartsWith("byre: error: ")) << arguments;
@@ -159,6 +163,50 @@ TEST_F(DrawOnPlanProgram, DrawsThePlanBelowTheMap) {
 TEST_F(DrawOnPlanProgram, UsesThePlanFrameWithoutThePlan) {
   ASSERT_EQ(run("draw barn.byre -o barn.svg").exit_code, 0);
   EXPECT_THAT(read("barn.svg"), AllOf(Not(HasSubstr("<image")), HasSubstr("class=\"keyframes\"")));
+}
+
+TEST_F(DrawOnPlanProgram, WritesAnOccupancyGrid) {
+  const Outcome outcome = run("draw barn.byre --grid grid.pgm --grid-resolution 0.1 --footprint 0.5");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output,
+              AllOf(HasSubstr("cells of 0.1 m: "), HasSubstr("written      grid.pgm\nwritten      grid.yaml\n")));
+  const DrawnFloorPlan read = read_drawn_floor_plan(folder_ / "grid.yaml");
+  const StoredMap stored = load_map(folder_ / "barn.byre");
+  const auto grid = occupancy_grid(stored.map, stored.plan, {.resolution = 0.1, .footprint_radius = 0.5});
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(read.occupancy, grid->occupancy);
+  EXPECT_EQ(read.plan.width, grid->plan.width);
+  EXPECT_LT((read.plan.top_left_in_plan - grid->plan.top_left_in_plan).norm(), 1e-9);
+}
+
+TEST_F(DrawOnPlanProgram, DrawsNextToTheGrid) {
+  const Outcome outcome = run("draw barn.byre --grid grid.pgm --grid-heights 0.2:1.5 -o barn.svg");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(read("barn.svg"), HasSubstr("class=\"keyframes\""));
+  EXPECT_THAT(read("grid.pgm"), StartsWith("P5\n"));
+}
+
+TEST_F(DrawOnPlanProgram, WritesNoGridOverAnInputOrAnotherFile) {
+  EXPECT_EQ(run("draw barn.byre --plan plan.yaml --grid plan.pgm").exit_code, 2);
+  write("grid.yaml", "BYRE");
+  EXPECT_EQ(run("draw barn.byre --grid grid.pgm").exit_code, 2);
+  EXPECT_EQ(read("grid.yaml"), "BYRE");
+}
+
+TEST_F(DrawOnPlanProgram, RefusesAGridOfTooManyCells) {
+  const Outcome outcome = run("draw barn.byre --grid grid.pgm --grid-resolution 0.001");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("occupancy grid: has "));
+  EXPECT_FALSE(fs::exists(folder_ / "grid.pgm"));
+}
+
+TEST_F(DrawOnPlanProgram, RefusesAGridWithoutMetres) {
+  StoredMap stored = driven_barn(scene_);
+  stored.scale = MapScale::unknown;
+  save_map(stored, folder_ / "mono.byre");
+  const Outcome outcome = run("draw mono.byre --grid grid.pgm");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("mono.byre: has no metric scale, which occupancy grids need"));
 }
 
 TEST_F(DrawOnPlanProgram, ReportsAMissingPlanImage) {
