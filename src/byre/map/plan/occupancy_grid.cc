@@ -38,13 +38,16 @@ Similarity ground_from(const DrivingPlane& plane, double body_height) {
 struct DrivenPose {
   Vector3d body;
   Vector3d camera;
-  double floor = 0.0;  // height of the floor under the body
+  Eigen::Quaterniond rotation;  // of the camera
+  double floor = 0.0;           // height of the floor under the body
   Timestamp time{};
   int recording = 0;
 };
 
 // The floor follows the mean height of the path within this distance, so that ramps and drift do not lift the band.
 constexpr double kAround = 3.0;  // metres
+
+constexpr double kLongestLink = 0.6;  // metres, between points on a line that are joined
 
 std::vector<DrivenPose> driven_poses(const Map& map, const Similarity& plan_from_map) {
   std::vector<DrivenPose> poses;
@@ -55,6 +58,7 @@ std::vector<DrivenPose> driven_poses(const Map& map, const Similarity& plan_from
     DrivenPose pose;
     pose.body = plan_from_map * body_at(map, keyframe);
     pose.camera = plan_from_map * inverse(keyframe.camera_from_world).translation;
+    pose.rotation = keyframe.camera_from_world.rotation;
     pose.time = keyframe.frame.time;
     pose.recording = keyframe.recording;
     mean_height += pose.body.z() / map.keyframe_count();
@@ -100,17 +104,26 @@ std::vector<GridPoint> grid_points(const Map& map, const Similarity& plan_from_m
   return points;
 }
 
-// Positions along the path at most half a cell apart. Keyframes farther apart than kLongestGap are not joined.
-std::vector<Vector2d> driven_places(std::vector<DrivenPose> poses, double resolution) {
-  constexpr double kLongestGap = 1.0;  // metres
+// Whether the robot drove straight from one keyframe to the next: they are close in space or time, and the arc between
+// them is at most half the footprint's radius from the chord.
+bool drove_straight(const DrivenPose& from, const DrivenPose& to, double footprint_radius) {
+  constexpr double kClose = 1.0;  // metres
+  constexpr double kSoon = 2.0;   // seconds
+  if (from.recording != to.recording) return false;
+  const double length = (to.body - from.body).norm();
+  if (length > kClose && to_seconds(to.time - from.time) > kSoon) return false;
+  return length * angle_between(from.rotation, to.rotation) / 8.0 <= 0.5 * footprint_radius;
+}
+
+// Positions along the path at most half a cell apart.
+std::vector<Vector2d> driven_places(std::vector<DrivenPose> poses, const GridOptions& options) {
   std::ranges::sort(poses, {}, [](const DrivenPose& pose) { return std::pair(pose.recording, pose.time); });
   std::vector<Vector2d> places;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Vector2d to = poses[i].body.head<2>();
-    if (i > 0 && poses[i - 1].recording == poses[i].recording) {
+    if (i > 0 && drove_straight(poses[i - 1], poses[i], options.footprint_radius)) {
       const Vector2d from = poses[i - 1].body.head<2>();
-      const double length = (to - from).norm();
-      const int pieces = length > kLongestGap ? 0 : static_cast<int>(2.0 * length / resolution);
+      const int pieces = static_cast<int>(2.0 * (to - from).norm() / options.resolution);
       for (int piece = 1; piece <= pieces; ++piece) {
         places.push_back(from + (to - from) * (static_cast<double>(piece) / (pieces + 1)));
       }
@@ -174,7 +187,7 @@ std::optional<OccupancyGrid> occupancy_grid(const Map& map, const std::optional<
   std::vector<std::uint32_t> pose_of(ids.back().number + 1, 0);
   for (std::uint32_t i = 0; i < ids.size(); ++i) pose_of[ids[i].number] = i;
   const std::vector<GridPoint> points = grid_points(map, grid.plan_from_map, poses, pose_of, options);
-  const std::vector<Vector2d> driven = driven_places(poses, options.resolution);
+  const std::vector<Vector2d> driven = driven_places(poses, options);
 
   AlignedBox2d box;
   for (const Vector2d& place : driven) {
@@ -188,8 +201,8 @@ std::optional<OccupancyGrid> occupancy_grid(const Map& map, const std::optional<
 
   std::vector<Vector3d> cameras;
   for (const DrivenPose& pose : poses) cameras.emplace_back(pose.camera - pose.floor * Vector3d::UnitZ());
-  grid.occupancy =
-      occupancy_by_rays(grid.plan, points, cameras, {options.low, options.high, 2.0 * options.footprint_radius});
+  grid.occupancy = occupancy_by_rays(
+      grid.plan, points, cameras, {options.low, options.high, std::min(2.0 * options.footprint_radius, kLongestLink)});
   free_driven_cells(driven, options.footprint_radius, grid);
   return grid;
 }

@@ -35,7 +35,8 @@ inline constexpr double kMaxGridCells = 100e6;
 // Occupancy mapping by log-odds (Moravec and Elfes 1985) in horizontal layers, clamped and projected as by OctoMap
 // (Hornung et al. 2013): a cell is occupied if it is in any layer. Each keyframe is one scan of the points it observes:
 // a hit is spread by the covariance of its point, a ray misses up to three sigmas before it. Points on a line that a
-// keyframe observes together are also hits between them, if closer than the robot's width. Driven cells are free.
+// keyframe observes together are also hits between them, if closer than the robot's width and 0.6 m. Driven cells are
+// free.
 //
 // The map is metric, or registered on a plan. Empty without keyframes, or if the path is not planar (flown or carried).
 // Throws InputError for more than kMaxGridCells.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,13 +31,14 @@ constexpr double kStep = 0.25;    // metres between keyframes
 // A robot drives along x from 0 to 6 m, its camera 0.9 m above the floor. The level frame has z up from the floor.
 class GridScene {
  public:
-  explicit GridScene(const Pose& map_from_level = {}, const std::vector<Pose>& level_from_body = straight())
+  explicit GridScene(const Pose& map_from_level = {}, const std::vector<Pose>& level_from_body = straight(),
+                     Timestamp interval = std::chrono::seconds(1))
       : map_from_level_(map_from_level) {
     rig_ = looking_down();
     map_.add_rig(rig_);
     for (const Pose& body : level_from_body) {
       Keyframe keyframe;
-      keyframe.frame.time = std::chrono::seconds(map_.keyframe_count());
+      keyframe.frame.time = interval * map_.keyframe_count();
       keyframe.frame.features =
           std::make_shared<Features>(320, 240, std::vector<Keypoint>(kFeatures, Keypoint{{1.0f, 1.0f}}),
                                      std::vector<Descriptor>(kFeatures), std::vector<Patch>{});
@@ -141,6 +143,28 @@ TEST(OccupancyGrid, IsFreeWhereTheRobotDrove) {
   for (const double y : {-0.225, 0.0, 0.225}) EXPECT_THAT(along(grid, 0.0, 6.0, y), Each(kFreePixel));
   EXPECT_THAT(occupied(grid), IsEmpty());
   EXPECT_THAT(occupied(scene.grid({.footprint_radius = 0.1})), SizeIs(testing::Gt(40u)));
+}
+
+// Keyframes 3 m apart, 1 s or 10 s after each other.
+TEST(OccupancyGrid, IsFreeBetweenKeyframesOfAFastVehicle) {
+  std::vector<Pose> path;
+  for (int i = 0; i < 5; ++i) path.push_back(on_floor(3.0 * i, 0.0, 0.0));
+  EXPECT_THAT(along(GridScene({}, path).grid(), 0.0, 12.0, 0.2), Each(kFreePixel));
+  const OccupancyGrid slow = GridScene({}, path, std::chrono::seconds(10)).grid();
+  EXPECT_EQ(occupancy_at(slow, {3.0, 0.0}), kFreePixel);
+  EXPECT_EQ(occupancy_at(slow, {4.5, 0.0}), kUnknownPixel);
+}
+
+// The chord of a quarter circle of 3 m.
+TEST(OccupancyGrid, CutsNoCorners) {
+  std::vector<Pose> path;
+  for (int i = 0; i < 3; ++i) {
+    const double turn = 0.5 * std::numbers::pi * i;
+    path.push_back(on_floor(3.0 * std::sin(turn), 3.0 * (1.0 - std::cos(turn)), turn));
+  }
+  const OccupancyGrid grid = GridScene({}, path).grid();
+  EXPECT_EQ(occupancy_at(grid, {3.0, 3.0}), kFreePixel);
+  EXPECT_EQ(occupancy_at(grid, {1.5, 1.5}), kUnknownPixel);
 }
 
 TEST(OccupancyGrid, IgnoresPointsBelowAndAboveTheHeights) {
