@@ -88,7 +88,8 @@ void declare_grid(CLI::App& command, DrawOptions& options) {
       ->needs(file);
   command
       .add_option("--body-height", grid.body_height,
-                  "Height of the body's origin above the floor, for the grid of a map without a plan (0)")
+                  "Height of the body's origin above the floor, for the grid of a map without a plan (0; a camera's "
+                  "must be given)")
       ->type_name("METRES")
       ->check(between(-100.0, 100.0))
       ->needs(file);

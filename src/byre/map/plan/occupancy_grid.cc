@@ -2,6 +2,7 @@
 
 #include "byre/geometry/decompositions.h"
 #include "byre/input_error.h"
+#include "byre/map/keyframe_path.h"
 #include "byre/map/plan/driving_plane.h"
 #include "byre/map/plan/grid_evidence.h"
 #include "byre/map/plan/path_cells.h"
@@ -34,11 +35,26 @@ Similarity ground_from(const DrivingPlane& plane, double body_height) {
   return {1.0, {Eigen::Quaterniond(rotation), {0.0, 0.0, -floor}}};
 }
 
+double height_of_body(const Map& map, const Vector3d& up_in_map, const GridOptions& options) {
+  if (options.body_height) return *options.body_height;
+  constexpr double kUpright = 0.7;  // cosine of 45 degrees
+  double upright = 0.0;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Keyframe& keyframe = *map.keyframe_header(id);
+    upright += up_in_map.dot(world_from_body(map, keyframe).rotation * Vector3d::UnitZ()) / map.keyframe_count();
+  }
+  if (upright > kUpright) return 0.0;
+  throw InputError("occupancy grid",
+                   "the z axis of the map's body does not point up, as for a camera, so its height "
+                   "above the floor is unknown",
+                   "give the height of the body's origin above the floor, such as --body-height 0.9");
+}
+
 // Keyframe in the grid's frame.
 struct DrivenPose {
   Vector3d body;
   Vector3d camera;
-  Eigen::Quaterniond rotation;  // of the camera
+  Eigen::Quaterniond rotation;  // camera_from_world
   double floor = 0.0;           // height of the floor under the body
   Timestamp time{};
   int recording = 0;
@@ -180,7 +196,8 @@ std::optional<OccupancyGrid> occupancy_grid(const Map& map, const std::optional<
   const std::optional<DrivingPlane> plane = fit_driving_plane(map);
   if (!plane || plane->thickness > kRoughest * plane->length) return std::nullopt;
   OccupancyGrid grid;
-  grid.plan_from_map = registration ? registration->plan_from_map : ground_from(*plane, options.body_height);
+  grid.plan_from_map =
+      registration ? registration->plan_from_map : ground_from(*plane, height_of_body(map, plane->up_in_map, options));
 
   const std::vector<DrivenPose> poses = driven_poses(map, grid.plan_from_map);
   const std::vector<KeyframeId> ids = map.keyframe_ids();

@@ -16,9 +16,11 @@ struct GridOptions {
   double low = 0.1;          // points between these heights are obstacles
   double high = 1.8;
   double footprint_radius = 0.3;  // the robot covers this disc around its body's origin
-  double body_height = 0.0;       // height of the body's origin; ignored with a plan registration
   int least_observations = 2;     // points with fewer are ignored
   double largest_sigma = 0.05;    // obstacles with a larger horizontal standard deviation are ignored
+  // Height of the body's origin; ignored with a plan registration. Empty: zero if the body's z axis points up; unknown
+  // for other bodies, such as a camera.
+  std::optional<double> body_height{};
 };
 
 // Occupancy of the ground plane. Frame: that of the map's floor plan, else the ground frame: origin and x axis of the
@@ -39,7 +41,7 @@ inline constexpr double kMaxGridCells = 100e6;
 // free.
 //
 // The map is metric, or registered on a plan. Empty without keyframes, or if the path is not planar (flown or carried).
-// Throws InputError for more than kMaxGridCells.
+// Throws InputError for more than kMaxGridCells, and if the height of the body is unknown.
 std::optional<OccupancyGrid> occupancy_grid(const Map& map, const std::optional<PlanRegistration>& registration,
                                             const GridOptions& options = {});
 

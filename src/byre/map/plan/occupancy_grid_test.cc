@@ -285,6 +285,25 @@ TEST(OccupancyGrid, MeasuresHeightsFromTheFloorBelowTheBody) {
   EXPECT_FALSE(occupied(scene.grid({.body_height = 0.9})).empty());
 }
 
+// The body is the camera, 0.9 m above the floor.
+TEST(OccupancyGrid, NeedsTheHeightOfACamera) {
+  Map map(Origin::offline);
+  Rig rig = looking_down();
+  rig.body_from_camera = {};
+  map.add_rig(rig);
+  for (const Pose& body : GridScene::straight()) {
+    Keyframe keyframe;
+    keyframe.frame.time = std::chrono::seconds(map.keyframe_count());
+    keyframe.camera_from_world = inverse(body * looking_down().body_from_camera);
+    map.add_keyframe(keyframe);
+  }
+  EXPECT_THAT([&] { occupancy_grid(map, {}); },
+              testing::ThrowsMessage<InputError>(HasSubstr("its height above the floor is unknown")));
+  const OccupancyGrid grid = occupancy_grid(map, {}, {.body_height = 0.9}).value();
+  EXPECT_THAT(grid.plan_from_map * Vector3d(1.0, 2.0, 0.0), PointNear(Vector3d(1.0, 2.0, 0.0), 1e-3));
+  EXPECT_NO_THROW(occupancy_grid(map, PlanRegistration{}));
+}
+
 // Up a ramp of 10 % from x = 10 m to 16 m, and back.
 TEST(OccupancyGrid, FollowsARamp) {
   constexpr double kSlope = 0.1;
