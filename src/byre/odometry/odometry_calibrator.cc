@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "byre/geometry/median.h"
 #include "byre/odometry/motion_covariance.h"
 #include "byre/odometry/time_offset.h"
 
@@ -307,6 +308,23 @@ void OdometryCalibrator::reestimate(const Trajectory& seen) {
   }
   const auto found = prior_.wheels ? estimate_with_prior(pairs, *prior_.wheels) : estimate_without_prior(pairs);
   if (found) wheel_calibration_ = found;
+}
+
+std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() const {
+  constexpr double kSmall = 0.08;     // radians, turns with a poorly determined ratio
+  constexpr std::size_t kLeast = 8;   // turns
+  constexpr double kOfMedian = 1.25;  // sigma of a median over that of a mean, normal distribution
+  std::vector<double> ratios;
+  for (const MotionPair& motion : pairs()) {
+    const double turn = rotation_log(motion.base.rotation).norm();
+    if (turn > kSmall) ratios.push_back(rotation_log(motion.body.rotation).norm() / turn);
+  }
+  if (ratios.size() < kLeast) return {};
+  const double value = median(ratios);
+  std::vector<double> deviations;
+  for (const double ratio : ratios) deviations.push_back(std::abs(ratio - value) / value);
+  const double sigma = 1.4826 * median(std::move(deviations));  // of one turn, by the median absolute deviation
+  return TurnRatio{value, kOfMedian * sigma / std::sqrt(static_cast<double>(ratios.size()))};
 }
 
 void OdometryCalibrator::rescale(double factor) {

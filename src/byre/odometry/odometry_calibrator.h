@@ -99,6 +99,14 @@ class OdometryCalibrator {
   // The final poses of tracked frames, and those of untracked frames which wheels connect to them.
   Trajectory fill_gaps(Trajectory seen) const;
 
+  // Turns in images as a share of the turns by wheels, over the last minutes; empty with few turns. Far from one, the
+  // focal length or the wheels' track width is wrong.
+  struct TurnRatio {
+    double value = 1.0;
+    double sigma = 0.0;
+  };
+  std::optional<TurnRatio> turn_ratio() const;
+
   const std::optional<WheelCalibration>& wheels() const { return wheel_calibration_; }
   const StationaryDetector& stationary() const { return stationary_; }
   const std::optional<GyroscopeCalibration>& gyroscope() const { return gyroscope_; }

@@ -286,5 +286,17 @@ TEST(OdometryCalibrator, DropsAChangedMounting) {
   EXPECT_NEAR(prior.calibration_to_store().wheels->base_from_body.translation.x(), 0.55, 0.02);
 }
 
+// A focal length that is too long by a factor makes turns in images smaller by it.
+TEST(OdometryCalibrator, ComparesTurnsInImagesWithThoseOfWheels) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  EXPECT_FALSE(followed(drive, {}, 2.0, 2.0).turn_ratio()) << "few turns";
+  for (const double turn_scale : {1.0, 1.13}) {
+    const auto ratio = followed(drive, {.turn_scale = turn_scale}, 60.0, 60.0).turn_ratio();
+    ASSERT_TRUE(ratio);
+    EXPECT_NEAR(ratio->value, 1.0 / turn_scale, 0.005);
+    EXPECT_LT(ratio->sigma, 0.005);
+  }
+}
+
 }  // namespace
 }  // namespace byre

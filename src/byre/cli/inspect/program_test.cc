@@ -49,8 +49,9 @@ TEST_F(InspectProgram, WritesExtrinsicsOfTheRobot) {
   WheelCalibration& wheels = known.wheels.emplace();
   wheels.base_from_body = {rotation_exp({-1.2, 1.2, -1.1}), {0.4, 0.1, 0.0}};
   wheels.metres_per_unit = 0.98;
-  wheels.scale_sigma = 0.002;
-  wheels.covariance = Eigen::Vector4d(1e-4, 1e-4, 4e-4, 9e-4).asDiagonal();
+  WheelDeviation sigmas;
+  sigmas << 0.003, 0.003, 0.003, 0.012, 0.012, 1.0, 0.002, 0.003, 0.001;
+  wheels.covariance = sigmas.cwiseAbs2().asDiagonal();
   known.time_offset = 0.03;
   for (const bool is_metric : {true, false}) {
     stored.scale = is_metric ? MapScale::metric : MapScale::unknown;

@@ -274,11 +274,31 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
     extractor_.rest();
     result.report = session_.finish_map(hooks);
     prior_.reestimate(session_.final_trajectory());
+    if (!given_.is_metric()) compare_focal_length();
     if (!is_metric_) scale_by_wheels();
     result.cut_short = hooks.should_stop();
   }
   result.seconds = watch.seconds();
   return result;
+}
+
+// Turns in images are inversely proportional to the focal length. A pair of cameras or a depth camera would show a
+// wrong one in its map.
+void SlamImpl::compare_focal_length() {
+  constexpr double kWheelSigma = 0.02;  // natural logarithm, of turns by wheels
+  constexpr double kSigmas = 3.0;
+  const auto turns = prior_.turn_ratio();
+  if (!turns || std::abs(std::log(turns->value)) < kSigmas * std::hypot(kWheelSigma, turns->sigma)) return;
+  const double focal = given_.left.fx;
+  prior_.warn(
+      {MotionSensor::wheels,
+       {},
+       fmt::format("the camera turns {:.3g} times as far in images as by wheels: its focal length is likely "
+                   "{:.0f} px (sigma {:.0f} px) instead of {:.0f} px, or the wheels' track width is wrong",
+                   turns->value, focal * turns->value, focal * std::hypot(kWheelSigma, turns->sigma), focal),
+       fmt::format("calibrate the camera, or set the focal lengths fx and fy in the calibration file to {:.0f}, "
+                   "and map again",
+                   focal * turns->value)});
 }
 
 // Keeps the map's own unit if motions do not determine the scale.

@@ -121,6 +121,7 @@ class SlamImpl {
  private:
   void refine_calibration();
   void begin_with_extrinsics(const Extrinsics& extrinsics);
+  void compare_focal_length();
   void scale_by_wheels();
   void finish_early() { session_.finish_early(); }
   std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);

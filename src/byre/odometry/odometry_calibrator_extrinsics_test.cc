@@ -1,0 +1,108 @@
+#include "byre/odometry/prior_scene.h"
+
+#include <random>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::Contains;
+using testing::Field;
+using testing::HasSubstr;
+
+// Extrinsics as by a tape measure, with this rotation error about the base's up axis.
+WheelCalibration measured_by_hand(const Drive& drive, double yaw_error = 0.0) {
+  WheelCalibration measured;
+  measured.base_from_body = drive.base_from_body;
+  measured.base_from_body.rotation = rotation_exp({0.0, 0.0, yaw_error}) * drive.base_from_body.rotation;
+  measured.base_from_body.translation += Eigen::Vector3d(0.015, -0.01, 0.0);
+  WheelDeviation sigmas;
+  sigmas << 0.035, 0.035, 0.035, 0.02, 0.02, 0.02, 0.03, 0.03, 0.005;
+  measured.covariance = sigmas.cwiseAbs2().asDiagonal();
+  return measured;
+}
+
+struct Told {
+  WheelCalibration measured;
+  OdometryCalibration known{};  // from an earlier drive
+  bool is_scale_unknown = false;
+};
+
+// A calibrator after a drive whose frames are tracked from `from` to `to`, seconds.
+OdometryCalibrator driven(const Drive& drive, const Told& told, double from, double to, double end) {
+  OdometryCalibrator calibrator;
+  calibrator.begin_with(told.known);
+  calibrator.begin_with_extrinsics(told.measured, {});
+  calibrator.enable_mapping_mode();
+  std::mt19937 random(5);
+  bool is_begun = false;
+  for (int i = 0; i * 0.05 <= end; ++i) {
+    const double t = i * 0.05;
+    calibrator.add(drive.wheels(t));
+    const bool is_seen = t >= from && t < to;
+    if (is_seen && !is_begun && told.is_scale_unknown) calibrator.forget_scale();
+    is_begun = is_begun || is_seen;
+    calibrator.note(from_seconds(t), is_seen ? std::optional(drive.seen(t, random)) : std::nullopt);
+  }
+  return calibrator;
+}
+
+TEST(GivenExtrinsics, YieldMotionFromTheFirstFrameOn) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const OdometryCalibrator calibrator = driven(drive, {measured_by_hand(drive, 0.02)}, 1e9, 1e9, 5.0);
+  const auto first = calibrator.between(from_seconds(0.0), from_seconds(0.05));
+  ASSERT_TRUE(first);
+  EXPECT_LT(log_pose(inverse(first->last_from_body) * true_motion(drive, 0.0, 0.05)).norm(), 0.01);
+  const BodyMotion whole = over(calibrator, 0.0, 4.5);
+  const Vector6 error = log_pose(inverse(whole.last_from_body) * true_motion(drive, 0.0, 4.5));
+  EXPECT_LT(error.head<3>().norm(), 0.1) << "metres, of 2.25";
+  EXPECT_LT(error.transpose() * whole.covariance.ldlt().solve(error), 12.6) << "within 95 %";
+}
+
+TEST(GivenExtrinsics, AreRefinedByDriving) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  const OdometryCalibrator calibrator = driven(drive, {measured_by_hand(drive, 0.03)}, 0.0, 60.0, 60.0);
+  ASSERT_TRUE(calibrator.wheels());
+  EXPECT_FALSE(calibrator.has_calibration_changed());
+  EXPECT_LT(angle_between(calibrator.wheels()->base_from_body.rotation, drive.base_from_body.rotation), 0.01);
+  EXPECT_LT((calibrator.wheels()->base_from_body.translation - drive.base_from_body.translation).head<2>().norm(),
+            0.01);
+}
+
+TEST(GivenExtrinsics, AreReportedAndDroppedIfMotionsContradictThem) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  for (const double yaw_error : {0.3, 1.57, 3.1}) {
+    const OdometryCalibrator calibrator = driven(drive, {measured_by_hand(drive, yaw_error)}, 0.0, 60.0, 60.0);
+    EXPECT_TRUE(calibrator.has_calibration_changed()) << yaw_error;
+    EXPECT_THAT(calibrator.warnings(),
+                Contains(Field(&MotionWarning::what, HasSubstr("contradict the given extrinsics"))))
+        << yaw_error;
+    ASSERT_TRUE(calibrator.wheels()) << yaw_error;
+    EXPECT_LT(angle_between(calibrator.wheels()->base_from_body.rotation, drive.base_from_body.rotation), 0.02)
+        << yaw_error;
+  }
+}
+
+TEST(GivenExtrinsics, ReplaceThoseOfTheMapOnlyIfTheyDiffer) {
+  const Drive before{.base_from_body = camera_on_base(), .noise = 0.001};
+  const OdometryCalibration known = followed(before, {}, 60.0, 60.0).calibration_to_store();
+  Drive moved = before;
+  moved.base_from_body.translation.x() += 0.3;
+  const OdometryCalibrator agreeing = driven(before, {measured_by_hand(before), known}, 1e9, 1e9, 1.0);
+  EXPECT_EQ(agreeing.wheels()->base_from_body.translation, known.wheels->base_from_body.translation);
+  const OdometryCalibrator differing = driven(moved, {measured_by_hand(moved), known}, 1e9, 1e9, 1.0);
+  EXPECT_NEAR(differing.wheels()->base_from_body.translation.x(), 0.715, 1e-9);
+}
+
+// One camera whose map began without measured motion.
+TEST(GivenExtrinsics, DetermineTheUnitOfAMapFromTheFirstMotions) {
+  const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};
+  const OdometryCalibrator calibrator =
+      driven(drive, {.measured = measured_by_hand(drive), .is_scale_unknown = true}, 2.0, 1e9, 5.0);
+  ASSERT_TRUE(calibrator.wheels());
+  EXPECT_NEAR(calibrator.wheels()->metres_per_unit, 0.37, 0.01);
+}
+
+}  // namespace
+}  // namespace byre
