@@ -323,7 +323,7 @@ std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() co
   const double value = median(ratios);
   std::vector<double> deviations;
   for (const double ratio : ratios) deviations.push_back(std::abs(ratio - value) / value);
-  const double sigma = 1.4826 * median(std::move(deviations));  // of one turn, by the median absolute deviation
+  const double sigma = 1.4826 * median(std::move(deviations));  // for one turn, by the median absolute deviation
   return TurnRatio{value, kOfMedian * sigma / std::sqrt(static_cast<double>(ratios.size()))};
 }
 

@@ -49,6 +49,10 @@ class PoseFilter {
   CameraMotion camera_motion() const { return {motion_.velocity(), scene_depth_}; }
   // Time of the last confirmed pose in the reports' frame.
   std::optional<Timestamp> last_confirmed() const { return last_confirmed_; }
+  // Time of the last pose at an accepted place of the offline map.
+  std::optional<Timestamp> last_accepted() const {
+    return last_accepted_ ? std::optional(last_accepted_->time) : std::nullopt;
+  }
   // The pose is lost, but measured motion since then is precise enough to match points from the predicted pose.
   bool can_return_by_odometry() const { return !has_pose_ && is_path_measured_ && is_odometry_accurate(); }
   // Measured motion from the last visual pose to the present one; empty if the last frame was tracked. Before there is
@@ -107,6 +111,7 @@ class PoseFilter {
   // A submap of the online map begins with these keyframes; the last one is the present frame.
   void begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig, const Map& online);
   void anchor_to(KeyframeId keyframe) { trajectory_.anchor_last_to(keyframe); }
+  void move_to_submap(std::size_t submap, Timestamp after) { trajectory_.move_to_submap(submap, after); }
   void mark_lost();
   // Same as mark_lost(), after the confirmed pose was refuted: no dead reckoning from it.
   void reset();

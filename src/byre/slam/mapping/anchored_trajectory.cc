@@ -39,6 +39,10 @@ void AnchoredTrajectory::keep_sightings(const Rig& rig, const Features& features
   deferred_.note(number_of(poses_.size() - 1), rig, features, tracked);
 }
 
+void AnchoredTrajectory::move_to_submap(std::size_t submap, Timestamp after) {
+  for (auto pose = poses_.rbegin(); pose != poses_.rend() && pose->time > after; ++pose) pose->submap = submap;
+}
+
 void AnchoredTrajectory::anchor_last_to(KeyframeId keyframe) {
   poses_.back().keyframe = keyframe;
   poses_.back().camera_from_keyframe = Pose{};

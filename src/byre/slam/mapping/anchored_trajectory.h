@@ -60,6 +60,8 @@ class AnchoredTrajectory {
   void add(const AnchoredPose& pose) { poses_.push_back(pose); }
   // Keeps the last frame's sightings, to refine its pose once mapping has settled.
   void keep_sightings(const Rig& rig, const Features& features, const TrackedFrame& tracked);
+  // Poses after a time belong to another submap.
+  void move_to_submap(std::size_t submap, Timestamp after);
   // The last frame became this keyframe.
   void anchor_last_to(KeyframeId keyframe);
   std::size_t confirmed_count() const { return confirmed_end_; }  // number of confirmed poses, the first ones

@@ -138,6 +138,18 @@ void Mapper::begin_at_relocalisation(const HybridTrack& found) {
   }
 }
 
+void Mapper::leave_map_frame(std::optional<Timestamp> after) {
+  std::uint32_t first = 0;
+  if (after) {
+    first = next_keyframe_number();
+    const std::vector<KeyframeId> ids = online_.keyframe_ids();
+    for (auto id = ids.rbegin(); id != ids.rend() && online_.find_keyframe(*id)->frame.time > *after; ++id) {
+      first = id->number;
+    }
+  }
+  submaps_.leave_map_frame(first);
+}
+
 KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig) {
   Keyframe keyframe = make_keyframe(frame, track.tracked, online_.add_rig(rig));
   keyframe.recording = options_.recording;

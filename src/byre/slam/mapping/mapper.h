@@ -88,8 +88,8 @@ class Mapper {
   void allow_monocular_submap(const Rig& rig, bool has_odometry);
   // Begins a submap at a relocalised frame.
   void begin_at_relocalisation(const HybridTrack& found);
-  // Revokes the registration of the present submap to the map frame.
-  void leave_map_frame() { submaps_.leave_map_frame(); }
+  // Revokes the registration to the map frame of the present submap, or of its keyframes after a time.
+  void leave_map_frame(std::optional<Timestamp> after);
 
   KeyframeId add_keyframe(const Frame& frame, const HybridTrack& track, const Rig& rig);
   // Called per frame unless it is tracked on offline points. Returns whether a loop was confirmed.

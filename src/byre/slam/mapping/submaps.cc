@@ -23,6 +23,11 @@ void Submaps::begin_in_frame_of(KeyframeId online, std::uint32_t first_keyframe)
   submaps_.push_back({first_keyframe, frame(online)});
 }
 
+void Submaps::leave_map_frame(std::uint32_t first_keyframe) {
+  if (first_keyframe > submaps_.back().first_keyframe) submaps_.push_back({first_keyframe, kMapFrame});
+  submaps_.back().frame = next_frame_++;
+}
+
 void Submaps::join_map_frame(Frame frame) {
   for (Submap& submap : submaps_) {
     if (submap.frame == frame) submap.frame = kMapFrame;

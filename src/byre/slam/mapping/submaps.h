@@ -35,8 +35,9 @@ class Submaps {
 
   // The contents of a frame were registered and moved to the map frame.
   void join_map_frame(Frame frame);
-  // Gives the present submap a frame of its own: it was registered to the map frame wrongly.
-  void leave_map_frame() { submaps_.back().frame = next_frame_++; }
+  // Gives the present submap from this keyframe on a frame of its own: it was registered to the map frame wrongly. The
+  // part before becomes a submap that stays.
+  void leave_map_frame(std::uint32_t first_keyframe);
 
  private:
   struct Submap {

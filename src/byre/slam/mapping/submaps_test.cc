@@ -44,9 +44,19 @@ TEST(Submaps, JoinTheMapFrameWithAllSubmapsOfTheirFrame) {
 
 TEST(Submaps, LeaveTheMapFrameSeparately) {
   Submaps submaps = two_in_map_frame();
-  submaps.leave_map_frame();
+  submaps.leave_map_frame(0);
+  EXPECT_EQ(submaps.size(), 2u);
   EXPECT_EQ(submaps.frame(online(3)), Submaps::kMapFrame);
   EXPECT_NE(submaps.frame(online(4)), Submaps::kMapFrame);
+}
+
+TEST(Submaps, LeaveTheMapFrameFromAKeyframeOn) {
+  Submaps submaps = two_in_map_frame();
+  submaps.leave_map_frame(7);
+  EXPECT_EQ(submaps.size(), 3u);
+  EXPECT_EQ(submaps.frame(online(6)), Submaps::kMapFrame);
+  EXPECT_NE(submaps.frame(online(7)), Submaps::kMapFrame);
+  EXPECT_FALSE(submaps.is_registered());
 }
 
 TEST(Submaps, WithoutKeyframeAreRemoved) {

@@ -61,7 +61,10 @@ void apply_place_search(RobotState& state, FrameReport& report) {
   if (update.agrees_with_hint) state.pose_filter.note_agreement();
   if (update.refutes_pose) {
     if (state.pose_filter.is_by_hint()) state.hint.clear();
-    state.mapper.leave_map_frame();
+    // Poses at an accepted place stay in the map.
+    const auto accepted = update.refutes_earlier_poses ? std::nullopt : state.pose_filter.last_accepted();
+    state.mapper.leave_map_frame(accepted);
+    if (accepted) state.pose_filter.move_to_submap(state.mapper.submaps().present(), *accepted);
     lose_pose(state, ImageFault::none, report);
   }
   if (update.refutes_earlier_poses) {

@@ -56,10 +56,11 @@ TEST(OptionTable, ListsEveryLeaf) {
                                 use_saved_extrinsics, motion_limits, wheel_scale_sigma, frame_deadline_ms] = options;
   const std::size_t single = member_count<MethodOptions>() - 4;            // without the groups
   const std::size_t in_session = member_count<SessionOptions>() - 1 - 11;  // without the recording and the groups
+  // Those of a monocular start are its unit of length and what the extrinsics determine.
   const std::size_t in_groups =
-      members_of<MonocularStartOptions, TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions,
-                 HealthOptions, ImageConditionOptions, StateOptions, DeferredRefinementOptions>() -
-      1 - kHiddenCells;  // without the unit of length of a monocular map
+      members_of<TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions, HealthOptions,
+                 ImageConditionOptions, StateOptions, DeferredRefinementOptions>() -
+      kHiddenCells;
   const std::size_t in_mission = member_count<MissionOptions>() - 4 +
                                  members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>() +
                                  member_count<PlaceBoundsOptions>() - 1;  // without the flag for other cameras
