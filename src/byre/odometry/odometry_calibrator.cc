@@ -396,6 +396,7 @@ void OdometryCalibrator::discard_prior_wheels(Timestamp time) {
           "motions contradict the given extrinsics of camera and base; these are dropped, and estimated from motions",
           "compare the given pose of the camera on the base with the one that the report of the run shows"});
   }
+  is_prior_measured_ = false;
   prior_.wheels.reset();
   wheel_calibration_.reset();
   time_offset_.reset();

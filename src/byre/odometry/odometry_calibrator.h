@@ -34,6 +34,8 @@ class OdometryCalibrator {
   // Sets extrinsics measured by hand as the prior, instead of those of an earlier drive that differ from them.
   // time_offset: delay of the wheels' stamps, seconds; empty: unknown. Call it after begin_with().
   void begin_with_extrinsics(const WheelCalibration& measured, std::optional<double> time_offset);
+  // Images contradict the given extrinsics, which are reported and dropped. time: of the frame.
+  void reject_extrinsics(Timestamp time) { discard_prior_wheels(time); }
   // The map began with a unit other than metres. The prior is in use again once the first motions determine the unit.
   void forget_scale();
   // Sets the approximate up and forward axes of the body. The first motions then yield an assumed calibration, used

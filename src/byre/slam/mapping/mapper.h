@@ -64,6 +64,8 @@ class Mapper {
   int revision() const { return revision_; }  // increases with each change of points or keyframes
   // The first monocular submap has the unit of the measured motion.
   bool is_scaled_by_odometry() const { return is_scaled_by_odometry_; }
+  // The first monocular submap began with another motion than measured by wheels of given extrinsics.
+  bool contradicts_odometry() const { return contradicts_odometry_; }
   bool has_correction() const { return waiting_correction_.has_value(); }
 
   void note_images(bool disagree) {  // see Calibrator
@@ -167,6 +169,7 @@ class Mapper {
   std::shared_ptr<std::atomic<bool>> is_finishing_early_ = std::make_shared<std::atomic<bool>>(false);  // read by jobs
   std::optional<MonocularInitialiser> initialiser_;  // while a monocular map or submap may begin
   bool is_scaled_by_odometry_ = false;
+  bool contradicts_odometry_ = false;
   Pose odometry_reference_;  // camera_from_world of the initialiser's reference frame, by odometry
   std::optional<Calibrator> calibrator_;
   ImageMask hidden_;

@@ -84,6 +84,7 @@ class Session {
 
   // Ends a running job on the whole map early, with its present result.
   bool is_scaled_by_odometry() const { return state_.mapper.is_scaled_by_odometry(); }  // see Mapper
+  bool contradicts_odometry() const { return state_.mapper.contradicts_odometry(); }    // see Mapper
   void finish_early() { state_.mapper.finish_early(); }
 
   // Applies the results of running jobs. Call it once, after the last frame.

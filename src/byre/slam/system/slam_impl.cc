@@ -221,6 +221,7 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   FrameReport report = session_.process(frame, measured_motion, &budget_);
   last_frame_ = frame.time;
   const bool is_begun = std::ranges::find(report.events, SessionEvent::initialised) != report.events.end();
+  if (is_begun && session_.contradicts_odometry()) prior_.reject_extrinsics(frame.time);
   if (is_begun && !is_metric_ && !session_.is_scaled_by_odometry()) prior_.forget_scale();
   const bool is_seen = report.inliers > 0;
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);

@@ -28,23 +28,34 @@ struct Placement {
   }
 };
 
+// The motion between the two cameras of a start, from images and as measured.
+struct StartMotion {
+  Pose seen;
+  Pose measured;
+
+  StartMotion(const MonocularStart& start, const StartPoses& odometry)
+      : seen(start.map.camera_from_world(start.first) * inverse(start.map.camera_from_world(start.second))),
+        measured(odometry.first_camera_from_world * inverse(odometry.second_camera_from_world)) {}
+
+  // Measured length over that in images.
+  double scale() const { return measured.translation.norm() / seen.translation.norm(); }
+
+  bool agrees(double max_turn, double max_direction) const {  // radians
+    const double lengths = measured.translation.norm() * seen.translation.norm();
+    return lengths > 0.0 && angle_between(measured.rotation, seen.rotation) < max_turn &&
+           measured.translation.dot(seen.translation) > lengths * std::cos(max_direction);
+  }
+};
+
 // Empty if the cameras moved differently than measured.
 std::optional<Placement> placement_of(const MonocularStart& start, const StartPoses& odometry) {
   constexpr double kMaxTurn = 0.1;        // radians between visual and measured turn
   constexpr double kMaxDirection = 0.35;  // radians between the directions of motion
+  const StartMotion motion(start, odometry);
+  if (!motion.agrees(kMaxTurn, kMaxDirection)) return {};
+  const double scale = motion.scale();
   const Pose first_from_start = start.map.camera_from_world(start.first);
-  const Pose seen = first_from_start * inverse(start.map.camera_from_world(start.second));
-  const Pose motion = odometry.first_camera_from_world * inverse(odometry.second_camera_from_world);
-  const double odometry_length = motion.translation.norm(), seen_length = seen.translation.norm();
-  if (!(odometry_length > 0.0) || !(seen_length > 0.0)) return {};
-  const double cosine = motion.translation.dot(seen.translation) / (odometry_length * seen_length);
-  if (angle_between(motion.rotation, seen.rotation) > kMaxTurn || cosine < std::cos(kMaxDirection)) return {};
-  const double scale = odometry_length / seen_length;
   return Placement{inverse(odometry.first_camera_from_world) * scale_lengths(first_from_start, scale), scale};
-}
-
-double distance_between(const Pose& first_from_world, const Pose& second_from_world) {
-  return (first_from_world * inverse(second_from_world)).translation.norm();
 }
 
 KeyframeId add_keyframe(const MonocularStart& start, KeyframeId id, const Placement& placement,
@@ -313,15 +324,20 @@ std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const 
   return placement ? add_start(start, *placement, parent, recording, map) : std::vector<KeyframeId>{};
 }
 
+bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometry) {
+  constexpr double kMaxTurn = 0.1;        // radians
+  constexpr double kMaxDirection = 0.15;  // radians, three sigmas of extrinsics measured by hand
+  return StartMotion(start, odometry).agrees(kMaxTurn, kMaxDirection);
+}
+
 std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry, double lever_arm_sigma) {
   constexpr double kLeastWay = 0.05;   // metres
   constexpr double kMostByArm = 0.25;  // share of the motion
-  const Pose &first = odometry.first_camera_from_world, &second = odometry.second_camera_from_world;
-  const double motion = distance_between(first, second), turn = angle_between(first.rotation, second.rotation);
-  const double seen =
-      distance_between(start.map.camera_from_world(start.first), start.map.camera_from_world(start.second));
-  if (motion < kLeastWay || lever_arm_sigma * turn > kMostByArm * motion || !(seen > 0.0)) return {};
-  return motion / seen;
+  const StartMotion motion(start, odometry);
+  const double way = motion.measured.translation.norm(), turn = rotation_log(motion.measured.rotation).norm();
+  if (way < kLeastWay || lever_arm_sigma * turn > kMostByArm * way || !(motion.seen.translation.norm() > 0.0))
+    return {};
+  return motion.scale();
 }
 
 MonocularStart align_to_odometry(const MonocularStart& start, const StartPoses& odometry, double scale) {

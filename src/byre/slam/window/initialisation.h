@@ -78,6 +78,9 @@ struct StartPoses {
 std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const StartPoses& odometry,
                                              const std::optional<KeyframeId>& parent, int recording, Map& map);
 
+// Whether the cameras of a start turned and moved in the measured direction.
+bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometry);
+
 // Factor for the lengths of a start by the measured motion. Empty if the camera hardly moved, or turned so much that
 // the error of the lever arm (standard deviation, metres) would change the length of its motion.
 std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry, double lever_arm_sigma);
