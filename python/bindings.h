@@ -21,6 +21,7 @@ namespace py = pybind11;
 
 // Each adds its part of the package to the module.
 void bind_cameras(py::module_& module);
+void bind_extrinsics(py::module_& module);
 void bind_slam(py::module_& module);
 void bind_evaluation(py::module_& module);
 

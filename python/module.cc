@@ -62,6 +62,7 @@ PYBIND11_MODULE(_byre, module) {
   bind_enums(module);
   bind_cameras(module);
   bind_evaluation(module);
+  bind_extrinsics(module);
   bind_slam(module);
 }
 

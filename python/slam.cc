@@ -247,6 +247,12 @@ void bind_options(py::module_& module) {
           },
           "Floor plan on which the mission's map is registered; places behind its walls are rejected. Takes the path "
           "of the plan, returns its name; None: no walls. Raises InputError for an unreadable plan.")
+      .def_property(
+          "extrinsics", [](const SlamOptions& options) { return options.extrinsics; },
+          [](SlamOptions& options, const std::optional<Extrinsics>& extrinsics) { options.extrinsics = extrinsics; },
+          "How camera and IMU are mounted on the robot's base. With it wheels yield poses from the first "
+          "frame on, and one camera makes a map in metres. The camera's is required. None: taken from the "
+          "map, or found while driving.")
       .def_property("settings", &settings_of, &set_settings,
                     "Options of docs/reference/options.md, as dict of name and value. They override the fields above.");
 }

@@ -24,6 +24,7 @@ from ._byre import (
     DistrustReason,
     ErrorStatistics,
     Event,
+    Extrinsics,
     FrameReport,
     Health,
     Images,
@@ -32,6 +33,7 @@ from ._byre import (
     PixelFormat,
     Recording,
     RelativePoseError,
+    SensorMounting,
     Slam,
     SlamOptions,
     State,
@@ -43,8 +45,10 @@ from ._byre import (
     absolute_trajectory_error,
     find_ground_truth,
     read_calibration,
+    read_extrinsics,
     read_trajectory,
     relative_pose_error,
+    write_extrinsics,
 )
 
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -298,6 +298,36 @@ class FrameReport:
     @property
     def refused_place(self) -> DistrustReason: ...
 
+class SensorMounting:
+    def __init__(self, base_from_sensor: _Matrix4, sigma_m: float = ..., sigma_rad: float = ...) -> None: ...
+    @property
+    def base_from_sensor(self) -> _Matrix4: ...
+    @property
+    def sigma_m(self) -> float: ...
+    @property
+    def sigma_rad(self) -> float: ...
+
+class Extrinsics:
+    def __init__(
+        self,
+        camera: Optional[SensorMounting] = None,
+        *,
+        imu: Optional[SensorMounting] = None,
+        wheel_scale: float = 1.0,
+        wheel_scale_sigma: float = ...,
+        wheel_delay: Optional[float] = None,
+    ) -> None: ...
+    @property
+    def camera(self) -> Optional[SensorMounting]: ...
+    @property
+    def imu(self) -> Optional[SensorMounting]: ...
+    @property
+    def wheel_scale(self) -> float: ...
+    @property
+    def wheel_scale_sigma(self) -> float: ...
+    @property
+    def wheel_delay(self) -> Optional[float]: ...
+
 class SlamOptions:
     workers: Workers
     refine_calibration: bool
@@ -311,6 +341,7 @@ class SlamOptions:
     site: str
     vocabulary: Optional[_Path]
     plan: Optional[_Path]
+    extrinsics: Optional[Extrinsics]
     settings: Dict[str, Union[bool, float, str]]
     def __init__(
         self,
@@ -327,6 +358,7 @@ class SlamOptions:
         site: str = "",
         vocabulary: Optional[_Path] = None,
         plan: Optional[_Path] = None,
+        extrinsics: Optional[Extrinsics] = None,
         settings: Dict[str, Union[bool, float, str]] = {},
     ) -> None: ...
 
@@ -424,6 +456,8 @@ class RelativePoseError:
 
 def find_ground_truth(path: _Path) -> Optional[_Path]: ...
 def read_calibration(path: _Path) -> Calibration: ...
+def read_extrinsics(path: _Path, *, base: str = "", camera: str = "", imu: str = "") -> Extrinsics: ...
+def write_extrinsics(path: _Path, extrinsics: Extrinsics) -> None: ...
 def read_trajectory(path: _Path) -> Trajectory: ...
 def absolute_trajectory_error(
     estimate: Trajectory, truth: Trajectory, scale: bool = False, time_offset_s: float = 0.0

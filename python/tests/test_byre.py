@@ -275,6 +275,89 @@ def test_calibrations_can_be_constructed():
         byre.Calibration(camera, camera, 2 * right_from_left)
 
 
+AHEAD = np.array([[0, 0, 1, 0.4], [-1, 0, 0, 0.1], [0, -1, 0, 0.9], [0, 0, 0, 1]], float)  # base_from_camera
+
+
+def test_extrinsics_are_written_and_read(tmp_path):
+    imu = np.eye(4)
+    imu[:3, 3] = [0.1, 0.0, 0.3]
+    given = byre.Extrinsics(
+        byre.SensorMounting(AHEAD, sigma_m=0.01),
+        imu=byre.SensorMounting(imu, sigma_rad=0.1),
+        wheel_scale=1.02,
+        wheel_scale_sigma=0.005,
+        wheel_delay=0.03,
+    )
+    byre.write_extrinsics(tmp_path / "robot.yaml", given)
+    read = byre.read_extrinsics(tmp_path / "robot.yaml")
+    assert np.allclose(read.camera.base_from_sensor, AHEAD) and np.allclose(read.imu.base_from_sensor, imu)
+    assert read.camera.sigma_m == 0.01 and read.imu.sigma_rad == pytest.approx(0.1)
+    assert (read.wheel_scale, read.wheel_scale_sigma, read.wheel_delay) == (1.02, 0.005, 0.03)
+    assert "at (0.4, 0.1, 0.9) m, sigma 0.01 m" in repr(read.camera) and repr(read.camera) in repr(read)
+    unknown = byre.Extrinsics()
+    assert unknown.camera is None and unknown.imu is None and unknown.wheel_delay is None
+    assert repr(unknown) == "<Extrinsics camera None, imu None, wheel_scale 1.0, sigma 0.03, wheel_delay None>"
+
+
+def test_extrinsics_of_a_urdf_have_frames(tmp_path):
+    origin = '<origin xyz="0 {} 1" rpy="-1.570796327 0 -1.570796327"/>'
+    joints = "".join(
+        f'<joint name="{name}" type="fixed"><parent link="base_link"/><child link="{name}_optical_frame"/>'
+        f"{origin.format(y)}</joint>"
+        for name, y in (("front", 0.2), ("rear", -0.2))
+    )
+    links = "".join(f'<link name="{name}"/>' for name in ("base_link", "front_optical_frame", "rear_optical_frame"))
+    (tmp_path / "robot.urdf").write_text(f'<robot name="r">{links}{joints}</robot>')
+    rear = byre.read_extrinsics(tmp_path / "robot.urdf", camera="rear_optical_frame")
+    assert rear.camera.base_from_sensor[:3, 3] == pytest.approx([0.0, -0.2, 1.0])
+    with pytest.raises(byre.InputError, match="has 2 optical frames"):
+        byre.read_extrinsics(tmp_path / "robot.urdf")
+
+
+def test_bad_extrinsics_are_rejected(tmp_path, room):
+    calibration = byre.Recording(room).calibration
+    with pytest.raises(byre.InputError, match="base_from_sensor"):
+        byre.SensorMounting(2 * AHEAD)
+    far = AHEAD.copy()
+    far[:3, 3] *= 1000.0
+    with pytest.raises(byre.InputError, match="too far for a robot"):
+        byre.write_extrinsics(tmp_path / "far.yaml", byre.Extrinsics(byre.SensorMounting(far)))
+    assert not (tmp_path / "far.yaml").exists()
+    (tmp_path / "robot.yaml").write_text("base_from_camera: [0, 0, 1]\n")
+    with pytest.raises(byre.InputError, match="has 3 numbers") as raised:
+        byre.read_extrinsics(tmp_path / "robot.yaml")
+    assert "robot.yaml" in raised.value.place
+    for bad in (
+        byre.Extrinsics(),
+        byre.Extrinsics(byre.SensorMounting(AHEAD, sigma_m=0.0)),
+        byre.Extrinsics(byre.SensorMounting(AHEAD), wheel_scale=-1.0),
+        byre.Extrinsics(byre.SensorMounting(AHEAD), wheel_delay=float("nan")),
+    ):
+        with pytest.raises(byre.InputError, match="SlamOptions::extrinsics"):
+            byre.Slam.mapping(calibration, byre.SlamOptions(extrinsics=bad))
+    with pytest.raises(TypeError):
+        byre.SlamOptions(extrinsics="robot.yaml")
+
+
+def test_wheels_move_one_camera_as_it_is_mounted(room):
+    recording = byre.Recording(room, camera=byre.CameraChoice.left)
+    left = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 1], [0, 0, 0, 1]], float)  # its right is ahead
+    positions = []
+    for base_from_camera in (AHEAD, left):
+        options = byre.SlamOptions(workers=byre.Workers.repeatable)
+        options.extrinsics = byre.Extrinsics(byre.SensorMounting(base_from_camera))
+        assert options.extrinsics.camera.base_from_sensor == pytest.approx(base_from_camera)
+        slam = byre.Slam.mapping(recording.calibration, options)
+        odometry_from_base = np.eye(4)
+        for images in list(recording)[:3]:
+            slam.add_wheel_odometry(images.time_ns, odometry_from_base)
+            report = slam.process(images)
+            odometry_from_base[0, 3] += 0.05
+        positions.append(report.map_from_body[:3, 3])
+    assert positions[0] == pytest.approx([0.0, 0.0, 0.1], abs=1e-6)
+    assert positions[1] == pytest.approx([0.1, 0.0, 0.0], abs=1e-6)
+
+
 def test_trajectories_are_written_and_read(tmp_path):
     times = np.arange(5, dtype=np.int64) * 100_000_000
     poses = np.tile(np.eye(4), (5, 1, 1))
