@@ -31,7 +31,7 @@ struct MotionEstimates {
   std::optional<GyroscopeCalibration> gyroscope;
   double time_offset = 0.0;                  // delay of wheel stamps relative to the camera, seconds
   int slips = 0;                             // number of rejections for wheel slip
-  bool has_calibration_changed = false;      // wheel extrinsics differ from those of the map
+  bool has_calibration_changed = false;      // motions contradict the initial wheel extrinsics
   OdometryCalibration calibration_to_store;  // extrinsics to save for later runs
   int stops = 0;                             // standstills confirmed by the accelerometer
   double standstill_s = 0.0;                 // duration of the standstills, seconds
