@@ -1,4 +1,4 @@
-#include "byre/cli/inspect/map_extrinsics.h"
+#include "byre/cli/shared/map_extrinsics.h"
 
 #include "byre/input_error.h"
 #include "byre/odometry/odometry_calibration.h"
