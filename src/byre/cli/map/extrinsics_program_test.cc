@@ -83,7 +83,7 @@ TEST_F(ExtrinsicsProgram, MapsWithOneCameraInMetresFromTheFirstFrameOn) {
     const Outcome judged = run("evaluate --estimate " + path + " --truth " + bend().folder() + " --frames-of " +
                                bend().folder() + " --estimate-of camera --alignment se3 --json");
     ASSERT_EQ(judged.exit_code, 0) << judged.errors;
-    EXPECT_LT(json::parse(judged.output)["ate"]["translation_m"]["rmse"], 0.05) << path;
+    EXPECT_LT(json::parse(judged.output)["ate"]["translation_m"]["rmse"], 0.01) << path;
   }
 }
 
