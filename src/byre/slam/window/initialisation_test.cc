@@ -257,5 +257,22 @@ TEST(MonocularInitialiser, IsDeterministic) {
   }
 }
 
+// The motion between the cameras of a start, measured with a mounting that errs by a rotation about the camera's y
+// axis.
+TEST(MonocularStart, AgreesWithOdometryOfARightMountingOnly) {
+  const SimulatedMission mission = sidestepping(noisy(1));
+  const Started started = run(mission);
+  ASSERT_NE(started.start(), nullptr);
+  const MonocularStart& start = *started.start();
+  const Pose seen = start.map.camera_from_world(start.first) * inverse(start.map.camera_from_world(start.second));
+  for (const double error : {0.0, 0.05, 0.3, 3.1}) {
+    const Pose turned{rotation_exp({0.0, error, 0.0}), Eigen::Vector3d::Zero()};
+    const Pose measured = turned * seen * inverse(turned);
+    const StartPoses odometry{Pose{}, inverse(measured)};
+    EXPECT_EQ(agrees_with_odometry(start, odometry), error < 0.1) << error;
+    EXPECT_NEAR(odometry_scale(start, odometry, 0.02).value(), 1.0, 1e-9) << "lengths are right with any mounting";
+  }
+}
+
 }  // namespace
 }  // namespace byre
