@@ -79,15 +79,11 @@ ros::TFMessage ros_transforms(const FrameReport& report) {
   return message;
 }
 
-ros::Odometry ros_odometry(const FrameReport& report, const std::optional<StampedPose>& before) {
+ros::Odometry ros_odometry(const FrameReport& report, const std::optional<OdometrySample>& before,
+                           const OdometrySample& now) {
   const ros::Header stamped = header(kOdometryFrame, report.time);
-  ros::Odometry odometry{stamped, kBodyFrame,
-                         pose_message(stamped, *report.odometry_from_body, report.odometry_covariance).pose};
-  if (!before || before->time >= report.time) return odometry;
-  const double seconds = to_seconds(report.time - before->time);
-  const Vector6 motion = log_pose(inverse(before->world_from_body) * *report.odometry_from_body) / seconds;
-  odometry.twist.twist = {{motion[0], motion[1], motion[2]}, {motion[3], motion[4], motion[5]}};
-  return odometry;
+  return {stamped, kBodyFrame, pose_message(stamped, now.odom_from_base, report.odometry_covariance).pose,
+          twist_message(before, now)};
 }
 
 std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report) {

@@ -4,6 +4,7 @@
 #include "byre/io/ros/messages.h"
 #include "byre/map/map.h"
 #include "byre/playback/play.h"
+#include "byre/playback/report/odometry_message.h"
 
 #include <optional>
 #include <string>
@@ -31,8 +32,10 @@ std::string verdict_and_doubt(const Health& health);
 // transform otherwise.
 ros::TFMessage ros_transforms(const FrameReport& report);
 
-// Velocity is the mean since the previous frame; none without one.
-ros::Odometry ros_odometry(const FrameReport& report, const std::optional<StampedPose>& before);
+// before: previous frame with odometry; empty for the first one. now: odometry_sample of the report, which has
+// odometry.
+ros::Odometry ros_odometry(const FrameReport& report, const std::optional<OdometrySample>& before,
+                           const OdometrySample& now);
 
 // Empty if the pose is untrusted or missing.
 std::optional<ros::PoseWithCovarianceStamped> ros_map_pose(const FrameReport& report);

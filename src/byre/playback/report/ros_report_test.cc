@@ -69,12 +69,17 @@ TEST(RosReport, WithholdsThePoseInTheMapWhileItIsUntrusted) {
 }
 
 TEST(RosReport, ContainsTheMotionSinceThePreviousFrame) {
-  const StampedPose before{Timestamp(1'000'000'000),
-                           kOdometryFromBody * exp_pose((Vector6() << -0.5, 0, 0, 0, 0, -0.1).finished())};
-  const ros::Twist twist = ros_odometry(report(Verdict::trusted), before).twist.twist;
-  EXPECT_THAT(twist.linear.x, DoubleNear(0.5 / 0.5 * std::cos(0.1), 1e-9));
-  EXPECT_THAT(twist.angular.z, DoubleNear(0.2, 1e-9));
-  EXPECT_EQ(ros_odometry(report(Verdict::trusted), {}).twist.twist, ros::Twist{});
+  const Pose step = exp_pose((Vector6() << -0.5, 0, 0, 0, 0, -0.1).finished());
+  const OdometrySample before{Timestamp(1'000'000'000), kOdometryFromBody * step, 1e-6 * Matrix6::Identity()};
+  const OdometrySample now{report(Verdict::trusted).time, kOdometryFromBody, 1e-6 * Matrix6::Identity()};
+  const ros::TwistWithCovariance twist = ros_odometry(report(Verdict::trusted), before, now).twist;
+  EXPECT_THAT(twist.twist.linear.x, DoubleNear(1.0, 1e-9)) << "in the axes of the body at the later frame";
+  EXPECT_THAT(twist.twist.angular.z, DoubleNear(0.2, 1e-9));
+  EXPECT_GT(twist.covariance[0], 0.0);
+  EXPECT_LT(twist.covariance[0], 1.0);
+  const ros::TwistWithCovariance unknown = ros_odometry(report(Verdict::trusted), {}, now).twist;
+  EXPECT_EQ(unknown.twist, ros::Twist{});
+  EXPECT_EQ(unknown.covariance[0], kUnknownVariance);
 }
 
 TEST(RosReport, HasTheFiguresOfJsonReportsAsValues) {

@@ -71,8 +71,13 @@ void RunMessages::note_report(int number, const PlayedFrame& frame) {
     if (!transforms.transforms.empty()) sink_.put_message(topics_.transforms, time, transforms);
   }
   if (report.odometry_from_body) {
-    if (sink_.is_wanted(topics_.odometry)) sink_.put_message(topics_.odometry, time, ros_odometry(report, odometry_));
-    odometry_ = StampedPose{time, *report.odometry_from_body};
+    const OdometrySample sample = odometry_sample(report, *report.odometry_from_body);
+    if (sink_.is_wanted(topics_.odometry)) {
+      sink_.put_message(topics_.odometry, time, ros_odometry(report, odometry_, sample));
+    }
+    odometry_ = sample;
+  } else {
+    odometry_.reset();
   }
   note_pose(report);
 }

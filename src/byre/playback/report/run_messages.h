@@ -4,6 +4,7 @@
 #include "byre/io/ros/message_sink.h"
 #include "byre/playback/play.h"
 #include "byre/playback/report/event_log.h"
+#include "byre/playback/report/odometry_message.h"
 
 #include <chrono>
 #include <optional>
@@ -58,8 +59,8 @@ class RunMessages {
 
   std::ostringstream event_text_;
   EventLog events_{event_text_};
-  std::optional<StampedPose> odometry_;  // pose of the last frame with odometry
-  Trajectory path_;                      // trusted or degraded poses at least kPathStep apart
+  std::optional<OdometrySample> odometry_;  // previous frame; empty if it has no odometry
+  Trajectory path_;                         // trusted or degraded poses at least kPathStep apart
   int frames_ = 0;
   std::optional<Timestamp> map_time_;                  // frame time of the last path and map message
   std::chrono::steady_clock::time_point map_pause_{};  // earliest time of the next one

@@ -1,4 +1,4 @@
-#include "byre/ros2/node/odometry_message.h"
+#include "byre/playback/report/odometry_message.h"
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
