@@ -1,6 +1,7 @@
 // Messages of `byre node` to other vendors' ROS 2 programs, and its handling of their commands.
 
 #include "byre/map/map_file.h"
+#include "byre/map/plan/occupancy_grid.h"
 #include "mapped_recording.h"
 #include "node_fixture.h"
 
@@ -238,6 +239,51 @@ TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
   EXPECT_EQ(told->node_entities_info_seq()[0].node_name(), "byre");
   EXPECT_EQ(told->node_entities_info_seq()[0].node_namespace(), "/");
   EXPECT_GE(told->node_entities_info_seq()[0].writer_gid_seq().size(), 9u);
+  EXPECT_EQ(node.stop(), 0);
+}
+
+TEST_F(ByreNode, PublishesTheOccupancyOfEachMapItLoads) {
+  StoredMap stored = load_map(Room::shared().map());
+  save_map(stored, folder_ / "carried.byre");
+  Keyframe driven;  // without images, far from the mapped room
+  const Rig& rig = stored.map.rigs()[0];
+  driven.frame.features = std::make_shared<Features>(rig.width, rig.height, std::vector<Keypoint>{},
+                                                     std::vector<Descriptor>{}, std::vector<Patch>{});
+  driven.frame.time = stored.map.keyframe_header(stored.map.keyframe_ids().back())->frame.time;
+  driven.parent = stored.map.keyframe_ids().back();
+  for (int i = 0; i < 40; ++i) {
+    driven.frame.time += 1000ms;
+    driven.camera_from_world = inverse(Pose{Eigen::Quaterniond::Identity(), {0.5 * i, 20.0 + 1.0 * (i % 2), 0.0}});
+    stored.map.add_keyframe(driven);
+  }
+  stored.plan = PlanRegistration{"plan.yaml", {1.0, {Eigen::Quaterniond::Identity(), {0.0, 0.0, 10.0}}}};
+  save_map(stored, folder_ / "on_plan.byre");
+  const auto expected = occupancy_grid(stored.map, stored.plan);
+  ASSERT_TRUE(expected);
+  NodeProcess node(folder_, config("  map: on_plan.byre\n"), domain_);
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  Grids grids(peer_, "rt/map", kLatched);
+  const auto grid = grids.first();
+  ASSERT_TRUE(grid.has_value()) << node.stderr_output();
+  EXPECT_EQ(grid->header().frame_id(), "map");
+  const int width = expected->plan.width, height = expected->plan.height;
+  ASSERT_EQ(static_cast<int>(grid->info().width()), width);
+  ASSERT_EQ(static_cast<int>(grid->info().height()), height);
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const std::size_t sent = static_cast<std::size_t>(row) * width + column;
+      const std::size_t drawn = static_cast<std::size_t>(height - 1 - row) * width + column;
+      ASSERT_EQ(static_cast<std::int8_t>(grid->data()[sent]), expected->occupancy[drawn]) << row << " " << column;
+    }
+  }
+  const Eigen::Vector2d corner = expected->plan.point_at({-0.5, height - 0.5});
+  EXPECT_NEAR(grid->info().origin().position().x(), corner.x(), 1e-6);
+  EXPECT_NEAR(grid->info().origin().position().y(), corner.y(), 1e-6);
+
+  command("load carried.byre");
+  EXPECT_TRUE(grids.find([](const auto& message) { return message.data() == std::vector<std::uint8_t>{255}; }))
+      << "one unknown cell";
+  EXPECT_THAT(node.stderr_output(), HasSubstr("carried.byre: was not driven on a floor"));
   EXPECT_EQ(node.stop(), 0);
 }
 

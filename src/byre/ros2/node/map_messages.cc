@@ -1,7 +1,6 @@
 #include "byre/ros2/node/map_messages.h"
 
 #include "byre/input_error.h"
-#include "byre/map/map_file.h"
 #include "byre/playback/report/pose_messages.h"
 
 #include <cmath>
@@ -22,10 +21,8 @@ double side_of_pixel(const FloorPlan& plan) {
   return side;
 }
 
-}  // namespace
-
-ros::OccupancyGrid grid_of(const FloorPlan& plan) {
-  const std::vector<std::int8_t> occupancy = read_plan_pixels(plan).occupancy;
+ros::OccupancyGrid grid_message(const FloorPlan& plan, const std::vector<std::int8_t>& occupancy,
+                                const Pose& published_from_plan) {
   ros::OccupancyGrid grid;
   grid.info.resolution = static_cast<float>(side_of_pixel(plan));
   grid.info.width = static_cast<std::uint32_t>(plan.width);
@@ -33,12 +30,46 @@ ros::OccupancyGrid grid_of(const FloorPlan& plan) {
   const Eigen::Vector2d corner = plan.point_at({-0.5, plan.height - 0.5});
   const Eigen::Vector2d right = plan.metres_per_pixel.col(0);
   const Eigen::AngleAxisd turn(std::atan2(right.y(), right.x()), Eigen::Vector3d::UnitZ());
-  grid.info.origin = ros_pose({Eigen::Quaterniond(turn), {corner.x(), corner.y(), 0.0}});
+  grid.info.origin = ros_pose(published_from_plan * Pose{Eigen::Quaterniond(turn), {corner.x(), corner.y(), 0.0}});
   grid.data.reserve(occupancy.size());
   for (int row = plan.height - 1; row >= 0; --row) {  // from the bottom row up
     const auto begin = occupancy.begin() + static_cast<std::ptrdiff_t>(row) * plan.width;
     grid.data.insert(grid.data.end(), begin, begin + plan.width);
   }
+  return grid;
+}
+
+}  // namespace
+
+ros::OccupancyGrid grid_of(const FloorPlan& plan) {
+  return grid_message(plan, read_plan_pixels(plan).occupancy, {});
+}
+
+ros::OccupancyGrid grid_of(const OccupancyGrid& grid, bool in_plan) {
+  const Pose map_from_plan = inverse(grid.plan_from_map.target_from_source);
+  return grid_message(grid.plan, grid.occupancy, in_plan ? Pose{} : map_from_plan);
+}
+
+ros::OccupancyGrid grid_of(const StoredMap& stored, bool in_plan, const GridOptions& options) {
+  const auto registration = in_plan ? stored.plan : std::nullopt;
+  if (stored.scale != MapScale::metric && !registration) {
+    throw InputError("the map", "has no metric scale, which occupancy grids need",
+                     "set it with byre scale or byre register");
+  }
+  const auto grid = occupancy_grid(stored.map, registration, options);
+  if (!grid) {
+    throw InputError("the map", "was not driven on a floor, so it has no occupancy grid",
+                     "set grid.from_map: false, or map with a camera on a wheeled robot");
+  }
+  return grid_of(*grid, registration.has_value());
+}
+
+ros::OccupancyGrid unknown_grid() {
+  ros::OccupancyGrid grid;
+  grid.info.resolution = 0.05f;
+  grid.info.width = grid.info.height = 1;
+  grid.info.origin = ros_pose({});
+  grid.data = {kUnknownPixel};
   return grid;
 }
 

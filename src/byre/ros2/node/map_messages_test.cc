@@ -1,7 +1,10 @@
 #include "byre/ros2/node/map_messages.h"
 
 #include "byre/input_error.h"
+#include "byre/map/plan/driven_scene.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -12,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 class PlanFile : public testing::Test {
  protected:
@@ -51,6 +55,82 @@ TEST_F(PlanFile, IsConvertedByTheThresholdsOfItsYaml) {
 TEST_F(PlanFile, IsRejectedWithNonSquarePixels) {
   std::ofstream(folder_ / "plan.wld") << "0.5\n0\n0\n-0.6\n0\n0\n";
   EXPECT_THROW(grid_of(read_floor_plan(folder_ / "plan.pgm")), InputError);
+}
+
+// Two rows of three cells of 0.5 m, the upper one first; the lower left corner is at (-1, 2) in the plan.
+OccupancyGrid two_rows() {
+  OccupancyGrid grid;
+  grid.plan.width = 3;
+  grid.plan.height = 2;
+  grid.plan.metres_per_pixel = Eigen::Vector2d(0.5, -0.5).asDiagonal();
+  grid.plan.top_left_in_plan = {-0.75, 2.75};
+  grid.occupancy = {kFreePixel, kOccupiedPixel, kFreePixel, kUnknownPixel, kFreePixel, kOccupiedPixel};
+  grid.plan_from_map = {1.0, {rotation_exp({0.0, 0.0, 0.5 * M_PI}), {0.0, 0.0, 0.25}}};
+  return grid;
+}
+
+TEST(GridOfMap, BeginsWithTheLowestRowAtTheCornerInThePublishedFrame) {
+  const ros::OccupancyGrid on_plan = grid_of(two_rows(), true);
+  EXPECT_EQ(on_plan.info.width, 3u);
+  EXPECT_EQ(on_plan.info.height, 2u);
+  EXPECT_FLOAT_EQ(on_plan.info.resolution, 0.5f);
+  EXPECT_THAT(on_plan.data, ElementsAre(-1, 0, 100, 0, 100, 0)) << "-1: unknown";
+  EXPECT_NEAR(on_plan.info.origin.position.x, -1.0, 1e-9);
+  EXPECT_NEAR(on_plan.info.origin.position.y, 2.0, 1e-9);
+  const ros::OccupancyGrid in_map = grid_of(two_rows(), false);
+  EXPECT_EQ(in_map.data, on_plan.data);
+  EXPECT_NEAR(in_map.info.origin.position.x, 2.0, 1e-9) << "a quarter turn to the right";
+  EXPECT_NEAR(in_map.info.origin.position.y, 1.0, 1e-9);
+  EXPECT_NEAR(in_map.info.origin.position.z, -0.25, 1e-9);
+  EXPECT_NEAR(in_map.info.origin.orientation.z, -std::sqrt(0.5), 1e-9);
+}
+
+// Occupancy at a position in the frame of the grid's header; -2 beside the grid.
+int occupancy_at(const ros::OccupancyGrid& grid, const Eigen::Vector3d& position) {
+  const auto& [at, turn] = grid.info.origin;
+  const Pose frame_from_grid{Eigen::Quaterniond(turn.w, turn.x, turn.y, turn.z), {at.x, at.y, at.z}};
+  const Eigen::Vector3d in_grid = inverse(frame_from_grid) * position / grid.info.resolution;
+  const int column = static_cast<int>(std::floor(in_grid.x())), row = static_cast<int>(std::floor(in_grid.y()));
+  const int width = static_cast<int>(grid.info.width), height = static_cast<int>(grid.info.height);
+  if (column < 0 || row < 0 || column >= width || row >= height) return -2;
+  EXPECT_LT(std::abs(in_grid.z()), 0.1) << "cells above the floor";
+  return grid.data[static_cast<std::size_t>(row) * grid.info.width + column];
+}
+
+TEST(GridOfMap, IsFreeWhereTheMapWasDriven) {
+  std::vector<Pose> path;
+  for (int i = 0; i <= 40; ++i) path.push_back(on_floor(0.25 * std::min(i, 20), 0.25 * std::max(0, i - 20), 0.0));
+  StoredMap stored;
+  stored.map = map_of(path);
+  const ros::OccupancyGrid grid = grid_of(stored, true, {});
+  for (const Pose& level_from_body : path) {
+    EXPECT_EQ(occupancy_at(grid, kMapFromLevel * level_from_body.translation), 0);
+  }
+  EXPECT_EQ(occupancy_at(grid, kMapFromLevel * Eigen::Vector3d(1.0, 4.0, 0.0)), -1) << "never seen";
+  stored.plan.emplace();
+  stored.plan->plan_from_map = {1.0,
+                                Pose{Eigen::Quaterniond::Identity(), {100.0, 200.0, 0.0}} * inverse(kMapFromLevel)};
+  EXPECT_EQ(occupancy_at(grid_of(stored, true, {}), {102.0, 200.0, 0.0}), 0) << "in the frame of the plan";
+  EXPECT_EQ(occupancy_at(grid_of(stored, false, {}), kMapFromLevel * Eigen::Vector3d(2.0, 0.0, 0.0)), 0);
+}
+
+TEST(GridOfMap, IsRefusedForMapsWithoutScaleOrFloor) {
+  const auto fault = [](const StoredMap& stored) {
+    try {
+      grid_of(stored, true, {});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  StoredMap stored;
+  EXPECT_THAT(fault(stored), HasSubstr("was not driven on a floor"));
+  std::vector<Pose> path;
+  for (int i = 0; i <= 20; ++i) path.push_back(on_floor(0.25 * i, 0.0, 0.0));
+  stored.map = map_of(path);
+  EXPECT_EQ(fault(stored), "");
+  stored.scale = MapScale::unknown;
+  EXPECT_THAT(fault(stored), HasSubstr("has no metric scale"));
 }
 
 TEST(CloudMessage, ContainsThreeNumbersPerPoint) {

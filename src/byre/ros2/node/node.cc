@@ -3,6 +3,7 @@
 #include "byre/base/printable.h"
 #include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/node/health_messages.h"
+#include "byre/ros2/node/map_messages.h"
 #include "byre/ros2/node/message_parsing.h"
 
 #include <algorithm>
@@ -188,6 +189,18 @@ void Node::start() {
   manager_.busy(kLongestWithFiles);
   const std::string note = runner_.start(*calibration_);
   if (!note.empty()) log_(LogLevel::warning, note);
+  publish_grid_of_map();
+}
+
+// The grid of an earlier map is replaced also if this one has none.
+void Node::publish_grid_of_map() {
+  if (!outputs_.has_grid_of_map()) return;
+  try {
+    if (auto grid = runner_.occupancy()) outputs_.publish_grid(std::move(*grid));
+  } catch (const InputError& error) {
+    outputs_.publish_grid(unknown_grid());
+    log_(LogLevel::warning, error.what());
+  }
 }
 
 void Node::take_calibration(Timestamp now) {
@@ -221,6 +234,7 @@ Outcome Node::execute(const std::string& command) {
   return answer(printable(command, kShownOfText), [&] {
     const CommandResult result = byre::execute(runner_, command);
     if (result.restarts) restart();
+    if (result.loads) publish_grid_of_map();
     return result.answer;
   });
 }

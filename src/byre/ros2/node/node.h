@@ -45,6 +45,7 @@ class Node {
   void take_images(Timestamp now);
   void start();
   void take_calibration(Timestamp now);
+  void publish_grid_of_map();
   void take_transforms(Timestamp now);
   void log_transforms(Timestamp now);
   void watch_images(const MessageType& type, const TopicQos& qos);

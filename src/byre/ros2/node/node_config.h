@@ -56,6 +56,11 @@ struct NodeConfig {
   std::optional<std::filesystem::path> plan;        // floor plan to publish
   Workers workers = Workers::live;
 
+  bool has_grid_of_map = true;        // publishes an occupancy grid computed from the map, without a floor plan
+  double grid_resolution = 0.05;      // metres
+  double grid_footprint = 0.3;        // metres, radius of the robot
+  std::optional<double> body_height;  // metres above the floor; empty: zero if the body's z axis points up
+
   std::string left = "/left/image_raw";
   std::string right = "/right/image_raw";  // empty: one camera
   bool is_compressed = false;              // JPEG or PNG images (sensor_msgs/CompressedImage)

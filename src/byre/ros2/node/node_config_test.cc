@@ -130,6 +130,17 @@ TEST_F(NodeConfigFile, ReportsFaultsOfFleetSettings) {
   EXPECT_THAT(faults(sound), IsEmpty());
 }
 
+TEST_F(NodeConfigFile, ReadsGridSettings) {
+  const NodeConfig config =
+      read("slam:\n  map: m\ngrid:\n  from_map: false\n  resolution: 0.1\n  footprint: 0.4\n  body_height: 0.9\n")
+          .config;
+  EXPECT_FALSE(config.has_grid_of_map);
+  EXPECT_EQ(config.grid_resolution, 0.1);
+  EXPECT_EQ(config.grid_footprint, 0.4);
+  EXPECT_EQ(config.body_height, 0.9);
+  EXPECT_THAT(faults("slam:\n  map: m\ngrid:\n  resolution: 0\n"), HasSubstr("robot.yaml:4: grid.resolution is '0'"));
+}
+
 TEST_F(NodeConfigFile, EnablesTheFleetLinkOnlyWithABroker) {
   EXPECT_FALSE(fleet_options(read("slam:\n  map: m\n").config));
   std::ofstream(folder_ / "password") << "secret\nmore\n";

@@ -57,7 +57,7 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, GraphAnnouncement& graph, ros
   diagnostics_ = open<ros::DiagnosticArray>("/diagnostics", kReliable);
   path_ = open<ros::Path>(config.path, kLatched);
   points_ = open<ros::PointCloud2>(config.points, kLatched);
-  if (config.plan) grid_ = open<ros::OccupancyGrid>(config.grid, kLatched);
+  if (config.plan || (config.map && config.has_grid_of_map)) grid_ = open<ros::OccupancyGrid>(config.grid, kLatched);
   health_ = open<ros::String>(config.health, kLatched);
   events_ = open<ros::String>(config.events, kEvents);
   if (watchers_ == nullptr) return;
@@ -163,8 +163,10 @@ void NodeOutputs::publish_answer(const std::string& request, bool is_done, const
 }
 
 void NodeOutputs::publish_plan() {
-  if (!grid_) return;
-  ros::OccupancyGrid grid = grid_of(read_floor_plan(*config_.plan));
+  if (grid_ && config_.plan) publish_grid(grid_of(read_floor_plan(*config_.plan)));
+}
+
+void NodeOutputs::publish_grid(ros::OccupancyGrid grid) {
   grid.header = {ros::to_time(wall_time()), config_.map_frame};
   grid.info.map_load_time = grid.header.stamp;
   send(grid_, grid);

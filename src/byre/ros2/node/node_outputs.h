@@ -32,7 +32,12 @@ class NodeOutputs {
   void publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
   void publish_diagnostics(std::vector<ros::DiagnosticStatus> statuses);
   void publish_answer(const std::string& request, bool is_done, const std::string& answer);
+  // Publishes the floor plan, if configured.
   void publish_plan();
+  // Whether the occupancy grid is that of the map.
+  bool has_grid_of_map() const { return grid_ && !config_.plan; }
+  // grid: in the published map frame.
+  void publish_grid(ros::OccupancyGrid grid);
   // Only with subscribers.
   void publish_path(const SlamRunner& runner, Timestamp image_time);
   void publish_points(const SlamRunner& runner);

@@ -172,6 +172,20 @@ std::vector<Eigen::Vector3f> SlamRunner::points() const {
   return points;
 }
 
+std::optional<ros::OccupancyGrid> SlamRunner::occupancy() const {
+  if (!map_ || !config_.has_grid_of_map) return std::nullopt;
+  GridOptions options;
+  options.resolution = config_.grid_resolution;
+  options.footprint_radius = config_.grid_footprint;
+  options.body_height = config_.body_height;
+  try {
+    return grid_of(load_map(*map_), config_.in_plan, options);
+  } catch (const InputError& error) {
+    throw InputError("no occupancy grid of " + map_->string(), error.reason(),
+                     error.remedy() + "; the settings are grid.body_height, grid.resolution and grid.from_map");
+  }
+}
+
 void SlamRunner::require_running() const {
   if (!slam_) throw InputError("byre node", "has no calibration yet", "wait for camera info");
 }
@@ -223,7 +237,7 @@ std::string SlamRunner::pause_mapping(bool is_paused) {
 
 CommandResult execute(SlamRunner& runner, const std::string& line) {
   constexpr std::string_view kLoad = "load ";
-  if (line.starts_with(kLoad)) return {runner.load(line.substr(kLoad.size())), true};
+  if (line.starts_with(kLoad)) return {runner.load(line.substr(kLoad.size())), true, true};
   if (line == "relocalise") return {runner.relocalise(), true};
   if (line == "save") return {runner.save()};
   if (line == "pause mapping") return {runner.pause_mapping(true)};

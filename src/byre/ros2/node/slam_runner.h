@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/io/ros/messages.h"
 #include "byre/ros2/node/node_config.h"
 #include "byre/slam.h"
 
@@ -43,6 +44,9 @@ class SlamRunner {
   // Points of the new map, or of a mission's offline map, in the published frame. The offline map is read from its file
   // again, which takes as long as loading.
   std::vector<Eigen::Vector3f> points() const;
+  // Occupancy grid of the current map, which is read from its file again. Empty without a map or if switched off.
+  // Throws InputError if the map has none.
+  std::optional<ros::OccupancyGrid> occupancy() const;
   // File name of the current map without folder and extension.
   std::string map_name() const;
   bool makes_map() const { return config_.task != NodeTask::mission; }
@@ -64,7 +68,7 @@ class SlamRunner {
   void require_running() const;
 
   NodeConfig config_;    // constant after construction
-  SlamOptions options_;  // constant after construction
+  SlamOptions options_;  // constant once running
   std::optional<std::filesystem::path> map_;
   std::optional<Calibration> calibration_;
   std::optional<Slam> slam_;
@@ -77,6 +81,7 @@ class SlamRunner {
 struct CommandResult {
   std::string answer;
   bool restarts = false;  // starts global relocalisation
+  bool loads = false;     // uses another map
 };
 CommandResult execute(SlamRunner& runner, const std::string& line);
 
