@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include <gmock/gmock.h>
 
 namespace byre::testing_ros2 {
 namespace {
+
+using std::chrono_literals::operator""ms;
 
 constexpr double kFrameRate = 5.0;  // Hz
 constexpr int kFrames = 76;
@@ -117,6 +120,39 @@ TEST_F(ByreNodeOnWheels, BridgesDarknessByOdometry) {
 
 TEST_F(ByreNodeOnWheels, BridgesDarknessByVelocities) {
   expect_dead_reckoning(TypeSupport(new geometry_msgs::msg::TwistStampedPubSubType), twist_message);
+}
+
+TEST_F(ByreNodeOnWheels, BeginsTheirExtrinsicsWithTheTransformToTheCamera) {
+  const Pose base_from_left{Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5), {0.3, 0.0, 0.5}};
+  auto* const wheels = peer_.writer("rt/wheels", TypeSupport(new nav_msgs::msg::OdometryPubSubType), kVolatile);
+  auto* const fixed =
+      peer_.writer("rt/tf_static", TypeSupport(new tf2_msgs::msg::TFMessagePubSubType), {true, true, 1});
+  geometry_msgs::msg::TransformStamped transform;
+  transform.header().frame_id("base_link");
+  transform.child_frame_id("left_optical");
+  transform.transform().translation().x(base_from_left.translation.x());
+  transform.transform().translation().z(base_from_left.translation.z());
+  transform.transform().rotation().w(base_from_left.rotation.w());
+  transform.transform().rotation().x(base_from_left.rotation.x());
+  transform.transform().rotation().y(base_from_left.rotation.y());
+  transform.transform().rotation().z(base_from_left.rotation.z());
+  tf2_msgs::msg::TFMessage mounting;
+  mounting.transforms({transform});
+  fixed->write(&mounting);
+  NodeProcess node(folder_, mapping() + "frames:\n  mounting: tf\nmotion:\n  wheels: /wheels\n", domain_);
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  const std::string choice = "the extrinsics of the wheels on /wheels start with the transform base_link";
+  bool is_chosen = false;
+  for (int i = 0; i < 100 && !is_chosen; ++i) {
+    nav_msgs::msg::Odometry message = wheel_message(from_seconds(0.1 * i));
+    message.child_frame_id("base_link");
+    wheels->write(&message);
+    feed_.send(Room::shared().frames()[0], 100ms * i);
+    std::this_thread::sleep_for(100ms);
+    is_chosen = node.stderr_output().find(choice) != std::string::npos;
+  }
+  EXPECT_TRUE(is_chosen) << node.stderr_output();
+  EXPECT_EQ(node.stop(), 0);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "byre/ros2/node/motion_input.h"
 
 #include "byre/io/recording/motion_messages.h"
+#include "byre/io/recording/static_frames.h"
 #include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/node/message_parsing.h"
 
@@ -23,12 +24,24 @@ void keep(const Sample& sample, std::deque<Sample>& samples) {
   if (samples.size() > kMaxKept) samples.pop_front();
 }
 
+// Frame in which the motion of a message is measured.
+std::string moving_frame(const auto& message) {
+  if constexpr (requires { message.child_frame_id; }) {
+    return frame_without_slash(message.child_frame_id);
+  } else {
+    return frame_without_slash(message.header.frame_id);
+  }
+}
+
+// use: called with each sample and its frame.
 template <ros::Message M, typename Use>
 void take_samples(Subscriber& subscriber, const std::string& topic, const Use& use) {
   for (const Message& message : subscriber.take()) {
     const auto parsed = parsed_message<M>(message, topic);
     if (!parsed) continue;
-    if (const auto sample = sample_of(*parsed, ros::to_nanoseconds(parsed->header.stamp))) use(*sample);
+    if (const auto sample = sample_of(*parsed, ros::to_nanoseconds(parsed->header.stamp))) {
+      use(*sample, moving_frame(*parsed));
+    }
   }
 }
 
@@ -77,7 +90,7 @@ void MotionInput::find_wheels() {
 
 void MotionInput::take() {
   if (gyroscope_) {
-    take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& sample) {
+    take_samples<ros::Imu>(*gyroscope_, config_.gyroscope, [&](const auto& sample, const std::string&) {
       monitor_.note_arrival(*gyroscope_input_);
       keep(sample, imu_);
     });
@@ -85,8 +98,9 @@ void MotionInput::take() {
   if (config_.wheels.empty()) return;
   if (!wheels_) find_wheels();
   if (!wheels_) return;
-  const auto add = [&](const WheelSample& sample) {
+  const auto add = [&](const WheelSample& sample, const std::string& frame) {
     monitor_.note_arrival(*wheels_input_);
+    if (!base_of_wheels_) base_of_wheels_ = frame;
     stream_.add(sample);
   };
   if (wheels_type_ == ros::Odometry::kType) take_samples<ros::Odometry>(*wheels_, config_.wheels, add);

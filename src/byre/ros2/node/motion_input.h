@@ -27,6 +27,8 @@ class MotionInput {
   void forward(const StampClock& clock, SlamRunner& runner);
   // New fault of a topic, reported once; empty without one.
   std::string take_fault();
+  // Frame whose motion the wheels measure, by their first message; empty before it.
+  const std::optional<std::string>& base_of_wheels() const { return base_of_wheels_; }
   // Topic of a sensor, for messages.
   std::string source_of(MotionSensor sensor) const;
 
@@ -42,6 +44,7 @@ class MotionInput {
 
   std::optional<Subscriber> wheels_;  // empty until the topic has a publisher
   std::string wheels_type_;
+  std::optional<std::string> base_of_wheels_;
   std::optional<Subscriber> gyroscope_;
   WheelStream stream_;
   bool has_unmeasured_rates_ = false;  // whether a message marked rates as not measured

@@ -187,9 +187,20 @@ void Node::log_transforms(Timestamp now) {
 void Node::start() {
   for (const std::string& warning : calibration_source_.take_warnings()) log_(LogLevel::warning, warning);
   manager_.busy(kLongestWithFiles);
+  const std::string extrinsics = runner_.take_extrinsics(calibration_->body_from_left, motion_.base_of_wheels());
   const std::string note = runner_.start(*calibration_);
   if (!note.empty()) log_(LogLevel::warning, note);
+  if (!extrinsics.empty()) log_(LogLevel::info, extrinsics);
   publish_grid_of_map();
+}
+
+// The first message of the wheels determines whether their extrinsics are those of /tf_static.
+bool Node::is_waiting_for_wheels(Timestamp now) {
+  constexpr Timestamp kPatience = 2s;  // for the discovery of the publisher
+  if (!calibrated_at_) calibrated_at_ = now;
+  waits_for_wheels_ = !config_.wheels.empty() && config_.extrinsics_source() == ExtrinsicsSource::tf &&
+                      !config_.extrinsics_file && !motion_.base_of_wheels() && now - *calibrated_at_ < kPatience;
+  return waits_for_wheels_;
 }
 
 // The grid of an earlier map is replaced also if this one has none.
@@ -206,8 +217,10 @@ void Node::publish_grid_of_map() {
 void Node::take_calibration(Timestamp now) {
   if (calibration_) return;
   try {
-    calibration_ = calibration_source_.take(left_frame_);
-    if (calibration_) start();
+    const auto calibration = calibration_source_.take(left_frame_);
+    if (!calibration || is_waiting_for_wheels(now)) return;
+    calibration_ = calibration;
+    start();
   } catch (const InputError& error) {
     calibration_.reset();
     monitor_.note_unusable(error, now);
@@ -361,8 +374,9 @@ ros::DiagnosticStatus Node::localisation() const {
   ros::DiagnosticStatus status;
   status.level = ros::DiagnosticStatus::kWarn;
   status.name = "byre: localisation";
-  status.message =
-      runner_.is_running() ? "no frame has been tracked yet" : "waiting for " + calibration_source_.missing_input();
+  const std::string missing =
+      waits_for_wheels_ ? "wheel odometry on " + config_.topic(config_.wheels) : calibration_source_.missing_input();
+  status.message = runner_.is_running() ? "no frame has been tracked yet" : "waiting for " + missing;
   return status;
 }
 

@@ -45,6 +45,7 @@ class Node {
   void take_images(Timestamp now);
   void start();
   void take_calibration(Timestamp now);
+  bool is_waiting_for_wheels(Timestamp now);
   void publish_grid_of_map();
   void take_transforms(Timestamp now);
   void log_transforms(Timestamp now);
@@ -89,6 +90,8 @@ class Node {
   std::optional<WebServer> web_server_;  // uses board_ and watchers_
 
   std::optional<Calibration> calibration_;  // empty until available
+  std::optional<Timestamp> calibrated_at_;  // time since which the calibration is available
+  bool waits_for_wheels_ = false;           // with a calibration
   std::string left_frame_;                  // frame of the left images; empty before the first one
   bool has_published_cameras_ = false;
   std::optional<FrameReport> last_report_;

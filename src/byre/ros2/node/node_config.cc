@@ -108,6 +108,13 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "does not begin with a slash", "write it as /barn");
   consistency.require(!config.plan || (config.map && config.in_plan), "slam.plan",
                       "needs a map registered on it, and frames.in_plan", "set both, or leave slam.plan empty");
+  const ExtrinsicsFrames& frames = config.extrinsics_frames;
+  for (const auto& [name, frame] :
+       {std::pair("extrinsics.base_frame", frames.base), std::pair("extrinsics.camera_frame", frames.camera),
+        std::pair("extrinsics.imu_frame", frames.imu)}) {
+    consistency.require(config.extrinsics_file || frame.empty(), name, "is set, but extrinsics.file is empty",
+                        "set extrinsics.file, or leave this empty");
+  }
   consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
                       "is the offline map, which a mission must not replace", "name another file");
   check_topics(config, consistency);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/calibration_file.h"
+#include "byre/extrinsics_file.h"
 #include "byre/input_error.h"
 #include "byre/ros2/fleet/fleet_link.h"
 #include "byre/slam.h"
@@ -74,6 +75,9 @@ struct NodeConfig {
 
   std::optional<std::filesystem::path> calibration;  // empty: camera info
   std::optional<double> baseline;                    // metres; empty: that of the calibration
+  // Extrinsics of the robot with names of frames in a URDF; empty: from /tf_static, or found while driving.
+  std::optional<std::filesystem::path> extrinsics_file;
+  ExtrinsicsFrames extrinsics_frames;
   std::string left_info = "/left/camera_info";
   std::string right_info = "/right/camera_info";
 

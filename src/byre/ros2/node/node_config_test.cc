@@ -141,6 +141,25 @@ TEST_F(NodeConfigFile, ReadsGridSettings) {
   EXPECT_THAT(faults("slam:\n  map: m\ngrid:\n  resolution: 0\n"), HasSubstr("robot.yaml:4: grid.resolution is '0'"));
 }
 
+TEST_F(NodeConfigFile, ReportsFaultsOfExtrinsics) {
+  const std::string sound = "slam:\n  task: map\n  save: made.byre\n";
+  EXPECT_THAT(faults(sound + "extrinsics:\n  camera_frame: left_optical\n"),
+              HasSubstr("robot.yaml:5: extrinsics.camera_frame is set, but extrinsics.file is empty"));
+  const auto found = [&](const std::string& content) {
+    std::ofstream(folder_ / "mounts.yaml") << content;
+    std::string text;
+    for (const InputError& fault : faults_in(read(sound + "extrinsics:\n  file: mounts.yaml\n").config)) {
+      text += fault.what();
+    }
+    return text;
+  };
+  EXPECT_THAT(found("base_from_camera:\n  translation_m: [400, 100, 900]\n  rpy_deg: [0, 0, 0]\ncamera_axes: body\n"),
+              AllOf(HasSubstr("mounts.yaml"), HasSubstr("too far for a robot")));
+  EXPECT_THAT(found("wheels:\n  scale: 1.01\n"), HasSubstr("mounts.yaml: has no pose of the camera"));
+  EXPECT_THAT(found("base_from_camera:\n  translation_m: [0.4, 0.1, 0.9]\n  rpy_deg: [0, 0, 0]\ncamera_axes: body\n"),
+              IsEmpty());
+}
+
 TEST_F(NodeConfigFile, EnablesTheFleetLinkOnlyWithABroker) {
   EXPECT_FALSE(fleet_options(read("slam:\n  map: m\n").config));
   std::ofstream(folder_ / "password") << "secret\nmore\n";

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Member of a configuration or of its fleet settings.
+// Member of a configuration, of its fleet settings or of its frames.
 template <typename Value>
 auto& member_of(auto& config, Value NodeConfig::*member) {
   return config.*member;
@@ -24,6 +24,11 @@ auto& member_of(auto& config, Value NodeConfig::*member) {
 template <typename Value>
 auto& member_of(auto& config, Value FleetSettings::*member) {
   return config.fleet.*member;
+}
+
+template <typename Value>
+auto& member_of(auto& config, Value ExtrinsicsFrames::*member) {
+  return config.extrinsics_frames.*member;
 }
 
 // show: text of a value; parse: value of a text, empty if invalid.
@@ -172,6 +177,13 @@ const std::vector<NodeSetting>& node_settings() {
           std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()),
       topic("calibration.left_info", &NodeConfig::left_info, "camera info of the left or only camera"),
       topic("calibration.right_info", &NodeConfig::right_info, "camera info of the right camera"),
+      file("extrinsics.file", &NodeConfig::extrinsics_file,
+           "poses of camera and IMU on the robot, and scale of its wheels: YAML or URDF, docs/reference/extrinsics.md"),
+      any_text("extrinsics.base_frame", &ExtrinsicsFrames::base,
+               "frame of the robot in the URDF; empty: by convention"),
+      any_text("extrinsics.camera_frame", &ExtrinsicsFrames::camera,
+               "optical frame of the left or only camera in the URDF; empty: by convention"),
+      any_text("extrinsics.imu_frame", &ExtrinsicsFrames::imu, "frame of the IMU in the URDF; empty: by convention"),
       topic("motion.wheels", &NodeConfig::wheels,
             "wheel odometry: nav_msgs/Odometry of wheels alone, or twists, docs/how-to/use_wheels_and_imu.md; empty: "
             "none"),

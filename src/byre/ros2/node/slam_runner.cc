@@ -2,15 +2,18 @@
 
 #include "byre/base/output_file.h"
 #include "byre/base/printable.h"
+#include "byre/extrinsics_file.h"
 #include "byre/floor_plan.h"
 #include "byre/geometry/baseline.h"
 #include "byre/io/recording/file_safety.h"
 #include "byre/io/recording/settings_file.h"
+#include "byre/io/recording/static_frames.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/options_file.h"
 #include "byre/ros2/node/map_messages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -28,6 +31,12 @@ SlamOptions slam_options(const NodeConfig& config) {
   options.workers = config.workers;
   options.vocabulary = config.vocabulary;
   options.baseline = config.baseline;
+  if (config.extrinsics_file) {
+    options.extrinsics = read_extrinsics(*config.extrinsics_file, config.extrinsics_frames);
+    if (!options.extrinsics->camera) {
+      throw InputError(config.extrinsics_file->string(), "has no pose of the camera", "add base_from_camera");
+    }
+  }
   options.max_pair_difference = std::max(options.max_pair_difference, config.pair_tolerance);
   if (!config.options) return options;
   MethodOptions checked;
@@ -67,6 +76,7 @@ void require_safe_save(const NodeConfig& config) {
   add(InputKind::file, "slam.options", config.options);
   add(InputKind::file, "slam.vocabulary", config.vocabulary);
   add(InputKind::plan, "slam.plan", config.plan);
+  add(InputKind::file, "extrinsics.file", config.extrinsics_file);
   add(InputKind::file, "calibration.file", config.calibration);
   add(InputKind::file, "mqtt.password_file", config.fleet.password_file);
   for (const fs::path& written : {*config.save, previous_map(*config.save)}) {
@@ -130,6 +140,29 @@ Slam SlamRunner::make(const fs::path* map) const {
       break;
   }
   return Slam::mapping(*calibration_, options_);
+}
+
+std::string SlamRunner::take_extrinsics(const Pose& base_from_left, const std::optional<std::string>& base_of_wheels) {
+  constexpr double kVertical = 0.7;  // cosine of 45 degrees, between the optical axis and z of the base
+  const bool has_transform = config_.extrinsics_source() == ExtrinsicsSource::tf && !config_.wheels.empty();
+  const std::string base = frame_without_slash(config_.base_frame);
+  const std::string transform = base + " -> left camera on " + config_.topic(config_.tf_static);
+  const std::string wheels = config_.topic(config_.wheels);
+  if (config_.extrinsics_file) {
+    const std::string other = has_transform ? "; not the transform " + transform : "";
+    return "the extrinsics start with those of " + config_.extrinsics_file->string() + other;
+  }
+  if (!has_transform) return "";
+  const std::string unused = ", so the extrinsics of the wheels do not start with the transform " + transform;
+  if (!base_of_wheels) return "no message on " + wheels + " before the first frame" + unused;
+  if (*base_of_wheels != base) {
+    return wheels + " measures the motion of '" + printable(*base_of_wheels, 100) + "', not of " + base + unused;
+  }
+  if (std::abs((base_from_left.rotation * Eigen::Vector3d::UnitZ()).z()) > kVertical) {
+    return "the left camera looks up or down" + unused + "; give extrinsics.file to confirm it";
+  }
+  options_.extrinsics.emplace().camera.emplace().base_from_sensor = base_from_left;
+  return "the extrinsics of the wheels on " + wheels + " start with the transform " + transform;
 }
 
 std::string SlamRunner::start(const Calibration& calibration) {

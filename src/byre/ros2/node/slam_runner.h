@@ -20,13 +20,18 @@ void keep_as_previous(const std::filesystem::path& map);
 // The node's Slam. Made once the calibration is available, and again for another map or for global relocalisation.
 class SlamRunner {
  public:
-  // Throws InputError for unreadable options, and for an output file that may not be written (base/output_file.h) or
-  // that the node reads.
+  // Throws InputError for unreadable options or extrinsics, and for an output file that may not be written
+  // (base/output_file.h) or that the node reads.
   explicit SlamRunner(const NodeConfig& config);
 
   // Throws InputError as Slam does, and for a stereo pair without metric scale. If the map cannot be used, its previous
   // version is loaded. Returns a note on that, else empty text.
   std::string start(const Calibration& calibration);
+  // Before the start: with frames.mounting: tf, the pose of the left camera on the base is also the start of the
+  // extrinsics, if the wheels measure the motion of that base. base_of_wheels: frame whose motion they measure; empty
+  // without a message. extrinsics.file takes precedence. Returns the choice as text; empty without any extrinsics.
+  std::string take_extrinsics(const Pose& base_from_left, const std::optional<std::string>& base_of_wheels);
+  const SlamOptions& options() const { return options_; }
 
   bool is_running() const { return slam_.has_value(); }
   // Motion samples before the next frame. Precondition: is_running().
