@@ -22,8 +22,7 @@ constexpr int kEstimatesUntilUsed = 24;   // the first estimates determine delay
 constexpr int kConfirmed = 4;             // motions until the calibration of an earlier drive counts as confirmed
 constexpr double kUnprovenFactor = 9.0;   // factor of the covariance until kConfirmed
 constexpr int kEstimatesUntilStored = 8;  // estimates of a calibration until it is kept
-constexpr int kEstimatesPerOffset =
-    8;  // estimates of a calibration per estimate of the delay: costly, and it changes least
+constexpr int kEstimatesPerOffset = 8;    // estimates of a calibration per estimate of the delay, which costs most
 constexpr double kMaxSigma = 0.05;        // relative for the scale, radians for the rotation, of an estimate
 constexpr double kMaxInitialSigma = 0.2;  // largest sigma of the first estimate
 constexpr double kMeasuredTilt = 0.03;    // radians, standard deviation of an up axis measured at standstill
@@ -62,7 +61,7 @@ std::optional<WheelCalibration> estimate_without_prior(const std::vector<MotionP
   return is_determined(found, kMaxSigma) ? found : std::nullopt;
 }
 
-// The prior without motions.
+// Empty while prior and motions do not determine the calibration.
 std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair>& motions,
                                                     const WheelCalibration& prior) {
   auto found = estimate_wheel_calibration(motions, prior);
@@ -349,7 +348,8 @@ void OdometryCalibrator::estimate_wheels() {
   if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma(), seen_.back().later)) drop_wheels();
 }
 
-// Derived from the first seconds, and updated with each motion until the calibration is estimated.
+// Derived from the first seconds, and updated with each motion until the calibration is estimated. A prior without a
+// scale is in use once motions determine it.
 void OdometryCalibrator::update_initial_calibration() {
   constexpr std::size_t kLeastMotions = 2;
   constexpr double kTilt = 0.2;        // radians, of a camera that is upright
