@@ -14,7 +14,7 @@ namespace byre {
 struct BarnFromAbove {
   FloorPlan plan;
   std::vector<std::uint8_t> is_wall;    // drawn walls, posts and curbs
-  std::vector<std::uint8_t> is_solid;   // these, and surfaces between the heights: gates, feed, movable objects
+  std::vector<std::uint8_t> is_solid;   // walls, and surfaces between the heights: gates, feed, movable objects
   std::vector<std::uint8_t> is_seen;    // surfaces between the heights in a left image, within the range
   std::vector<Eigen::Vector2d> driven;  // true positions of the body
 };
