@@ -24,7 +24,7 @@ struct Extrinsics {
   std::optional<SensorMounting> imu;
   double wheel_scale = 1.0;           // true metres per metre of the wheel odometry
   double wheel_scale_sigma = 0.03;    // relative standard deviation
-  std::optional<double> wheel_delay;  // delay of the wheels' stamps against the images', seconds; empty: found out
+  std::optional<double> wheel_delay;  // delay of the wheels' stamps against the images', seconds; empty: estimated
 };
 
 }  // namespace byre

@@ -52,8 +52,8 @@ struct SlamOptions {
   // Floor plan on which the mission's map is registered (read_drawn_floor_plan). Places behind its walls are rejected.
   // Empty: no walls.
   std::optional<DrawnFloorPlan> plan{};
-  // How camera and IMU are mounted on the robot's base. With it wheels yield poses from the first frame on, and one
-  // camera makes a map in metres. Empty: taken from the map, or found while driving. The camera's is required.
+  // How camera and IMU are mounted on the robot's base. With it wheels yield poses from their second sample on, and
+  // one camera begins its map in metres. Empty: taken from the map, or found while driving. The camera's is required.
   std::optional<Extrinsics> extrinsics{};
 };
 

@@ -1,6 +1,4 @@
 #include "byre/odometry/odometry_calibrator.h"
-#include <cstdio>
-#include <cstdlib>
 
 #include "byre/geometry/median.h"
 #include "byre/odometry/motion_covariance.h"
@@ -493,7 +491,7 @@ std::optional<BodyMotion> OdometryCalibrator::wheel_motion(Timestamp earlier, Ti
   if (!base) return {};
   const Pose body = body_motion(*calibration, base->motion);
   BodyMotion motion{body, wheel_covariance(body, base->motion, *calibration)};
-  const Vector6 deviation = deviation_by_time_offset(earlier, later, base->motion);
+  const Vector6 deviation = deviation_by_time_offset(earlier, later);
   motion.covariance += deviation * deviation.transpose();
   if (prior_.wheels && confirming_ < kConfirmed) motion.covariance *= kUnprovenFactor;
   if (!base->is_translation_valid) set_translation_unknown(motion);
@@ -502,14 +500,14 @@ std::optional<BodyMotion> OdometryCalibrator::wheel_motion(Timestamp earlier, Ti
 }
 
 // Standard deviation of the body's motion, as a delta, by that of the delay of the wheels: zero at constant speed.
-Vector6 OdometryCalibrator::deviation_by_time_offset(Timestamp earlier, Timestamp later, const Pose& base) const {
+Vector6 OdometryCalibrator::deviation_by_time_offset(Timestamp earlier, Timestamp later) const {
   const Timestamp shift = from_seconds(time_offset_sigma_);
   auto shifted = base_between(earlier + shift, later + shift);
   if (!shifted) shifted = base_between(earlier - shift, later - shift);
-  if (!shifted) return Vector6::Zero();
+  const auto base = base_between(earlier, later);
+  if (!shifted || !base) return Vector6::Zero();
   const WheelCalibration& calibration = *active_calibration();
-  Vector6 deviation = log_pose(inverse(body_motion(calibration, base)) * body_motion(calibration, *shifted));
-  return deviation;
+  return log_pose(inverse(body_motion(calibration, *base)) * body_motion(calibration, *shifted));
 }
 
 // Whether the motion of the base changes from the previous span by more than a body can: wheels spin, or are faulty.

@@ -155,7 +155,7 @@ class OdometryCalibrator {
   GapTrajectory::BaseOdometry base_odometry() const;
   std::optional<BodyMotion> wheel_motion(Timestamp earlier, Timestamp later,
                                          const std::optional<Eigen::Quaterniond>& turn) const;
-  Vector6 deviation_by_time_offset(Timestamp earlier, Timestamp later, const Pose& base) const;
+  Vector6 deviation_by_time_offset(Timestamp earlier, Timestamp later) const;
   bool contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const;
   std::optional<BodyMotion> bridge_jump(Timestamp earlier, Timestamp later,
                                         const std::optional<Eigen::Quaterniond>& turn) const;

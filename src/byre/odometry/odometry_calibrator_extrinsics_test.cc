@@ -23,17 +23,17 @@ WheelCalibration measured_by_hand(const Drive& drive, double yaw_error = 0.0) {
   return measured;
 }
 
-struct Told {
+struct Given {
   WheelCalibration measured;
   OdometryCalibration known{};  // from an earlier drive
   bool is_scale_unknown = false;
 };
 
 // A calibrator after a drive whose frames are tracked from `from` to `to`, seconds.
-OdometryCalibrator driven(const Drive& drive, const Told& told, double from, double to, double end) {
+OdometryCalibrator driven(const Drive& drive, const Given& given, double from, double to, double end) {
   OdometryCalibrator calibrator;
-  calibrator.begin_with(told.known);
-  calibrator.begin_with_extrinsics(told.measured, {});
+  calibrator.begin_with(given.known);
+  calibrator.begin_with_extrinsics(given.measured, {});
   calibrator.enable_mapping_mode();
   std::mt19937 random(5);
   bool is_begun = false;
@@ -41,7 +41,7 @@ OdometryCalibrator driven(const Drive& drive, const Told& told, double from, dou
     const double t = i * 0.05;
     calibrator.add(drive.wheels(t));
     const bool is_seen = t >= from && t < to;
-    if (is_seen && !is_begun && told.is_scale_unknown) calibrator.forget_scale();
+    if (is_seen && !is_begun && given.is_scale_unknown) calibrator.forget_scale();
     is_begun = is_begun || is_seen;
     calibrator.note(from_seconds(t), is_seen ? std::optional(drive.seen(t, random)) : std::nullopt);
   }

@@ -11,15 +11,22 @@
 namespace byre::cli {
 namespace {
 
-bool has_extrinsics(const std::filesystem::path& calibration) {
-  const std::vector<std::string> names = CalibrationFields::load(calibration).names();
-  return std::ranges::any_of(names, [](const std::string& name) { return name.starts_with("base_from"); });
+namespace fs = std::filesystem;
+
+// The file of a calibration, given as file or folder, if it has extrinsics among its fields.
+std::optional<fs::path> file_with_extrinsics(const fs::path& calibration) {
+  const auto file = fs::is_directory(calibration) ? find_calibration(calibration) : std::optional(calibration);
+  if (!file || fs::is_directory(*file)) return std::nullopt;  // a folder of two files has no common fields
+  const std::vector<std::string> names = CalibrationFields::load(*file).names();
+  const auto is_pose = [](const std::string& name) { return name.starts_with("base_from"); };
+  return std::ranges::any_of(names, is_pose) ? file : std::nullopt;
 }
 
 }  // namespace
 
 std::optional<Extrinsics> ExtrinsicsArguments::read(const OpenOptions& open) const {
-  const auto& path = file ? file : open.calibration && has_extrinsics(*open.calibration) ? open.calibration : file;
+  std::optional<fs::path> path = file;
+  if (!path && open.calibration) path = file_with_extrinsics(*open.calibration);
   if (!path) return std::nullopt;
   if (open.camera == CameraChoice::right) {
     throw InputError(path->string(), "has the pose of the left camera, and --camera right uses the other one",

@@ -65,6 +65,14 @@ TEST_F(ExtrinsicsOnCommandLine, AreThoseOfTheCalibrationUnlessGiven) {
   EXPECT_EQ(camera_ahead(given.read(calibrated_by("calibration.yaml"))), -0.4);
 }
 
+TEST_F(ExtrinsicsOnCommandLine, AreFoundInACalibrationGivenAsAFolder) {
+  EXPECT_TRUE(parsed("").read(calibrated_by("")));
+  std::filesystem::create_directory(folder_ / "pair");
+  write("pair/left.yaml", kCamera);
+  write("pair/right.yaml", kCamera);
+  EXPECT_FALSE(parsed("").read(calibrated_by("pair")));
+}
+
 TEST_F(ExtrinsicsOnCommandLine, AreRefusedForTheRightCamera) {
   const ExtrinsicsArguments given = parsed("--extrinsics '" + (folder_ / "robot.yaml").string() + "'");
   OpenOptions open = calibrated_by("calibration.yaml");

@@ -19,9 +19,9 @@ struct GridPoint {
 };
 
 struct GridLayers {
-  double low = 0.1;  // heights of the lowest layer's bottom and the highest one's top, metres
-  double high = 1.8;
-  double largest_gap = 0.6;  // metres, between points on a line that are joined
+  double low = 0.0;  // heights of the lowest layer's bottom and the highest one's top, metres
+  double high = 0.0;
+  double largest_gap = 0.0;  // metres, between points on a line that are joined; zero joins none
 };
 
 // Occupancy of the cells of an upright grid with square pixels, see occupancy_grid(). cameras: their positions, z above
