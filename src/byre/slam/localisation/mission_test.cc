@@ -34,9 +34,9 @@ TEST_F(RegistrationOfAnOnlineMap, DoesNotEndIfMostOfTheMapIsInvisible) {
 }
 
 TEST_F(RegistrationOfAnOnlineMap, RequiresMoreEvidenceAgainstMeasuredMotion) {
-  const PlaceView three_cells = view_of_room(3, 0), ten_cells = view_of_room(10, 0);
+  const PlaceView two_cells = view_of_room(2, 0), ten_cells = view_of_room(10, 0);
   for (int frame = 0; frame < 5; ++frame) {
-    EXPECT_FALSE(is_registered_by(kOfflineFromOnline, three_cells, {1.0, 2.0, 0.0}, kLogOddsOfKidnapping));
+    EXPECT_FALSE(is_registered_by(kOfflineFromOnline, two_cells, {1.0, 2.0, 0.0}, kLogOddsOfKidnapping));
   }
   EXPECT_TRUE(is_registered_by(kOfflineFromOnline, ten_cells, {1.0, 2.0, 0.0}, kLogOddsOfKidnapping));
 }

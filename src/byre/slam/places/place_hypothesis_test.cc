@@ -47,6 +47,19 @@ TEST(PlaceHypothesis, StaysOpenIfFewExpectedPointsAreFound) {
   EXPECT_LT(place.log_odds(), 0.0);
 }
 
+TEST(PlaceHypothesis, HasMoreEvidenceTheMorePointsOfACellAreSeen) {
+  const auto log_odds = [](int seen) {
+    PlaceView view = view_of_room(10, 0);
+    for (CellInView& cell : view.cells) cell.seen = cell.seen_alone = seen;
+    return observed(PlaceHypothesis(0.0, 0), view, 1).log_odds();
+  };
+  EXPECT_LT(log_odds(0), 0.0);
+  EXPECT_DOUBLE_EQ(log_odds(1), 0.0) << "as frequent at wrong poses";
+  EXPECT_GT(log_odds(3), log_odds(1));
+  EXPECT_GT(log_odds(6), log_odds(3));
+  EXPECT_GT(log_odds(30), log_odds(6));
+}
+
 TEST(PlaceHypothesis, StaysOpenIfOneMovedObjectExplainsAllMatches) {
   EXPECT_FALSE(observed(PlaceHypothesis(0.0, 0), view_of_gate(), 100).is_accepted());
   PlaceView with_surroundings = view_of_gate();

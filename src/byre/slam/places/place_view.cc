@@ -66,11 +66,13 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
     return map.find_point(id)->position_in_world / query.metre;
   };
   ScratchVector<std::pair<std::array<int, 3>, PointId>> points;  // by cell
-  for (const ExpectedPoint& point : expected) {
-    if (query.is_left_out && query.is_left_out(point.id)) continue;
-    points.emplace_back(cell_at(position_of(point.id)), point.id);
-  }
+  const auto add = [&](PointId id) {
+    if (!query.is_left_out || !query.is_left_out(id)) points.emplace_back(cell_at(position_of(id)), id);
+  };
+  for (const ExpectedPoint& point : expected) add(point.id);
+  for (const PointId id : shown) add(id);
   std::ranges::sort(points);
+  points.erase(std::ranges::unique(points).begin(), points.end());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i == 0 || points[i].first != points[i - 1].first) view.cells.push_back({points[i].first});
     CellInView& cell = view.cells.back();

@@ -10,7 +10,8 @@
 
 namespace byre {
 
-// Points of one map cell (2 m cube) that should be in view, and those that are seen.
+// Points of one map cell (2 m cube) that should be in view, and those of them that are seen. Each seen point counts as
+// expected.
 struct CellInView {
   std::array<int, 3> cell{};  // index along x, y and z
   int expected = 0;

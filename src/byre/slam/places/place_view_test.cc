@@ -67,6 +67,15 @@ TEST_F(ViewOfAPlace, ExpectsTheCandidatesWithoutNearbyKeyframes) {
   EXPECT_EQ(counts_of(view).expected, counts_of(view_of_place(query(tracked))).expected);
 }
 
+TEST_F(ViewOfAPlace, ExpectsSeenPointsOfOtherKeyframes) {
+  const TrackedFrame tracked = tracked_at(pose_);
+  PlaceViewQuery half = query(tracked);
+  half.nearby = std::span(nearby_).first(nearby_.size() / 2);
+  const Counts counts = counts_of(view_of_place(half)), all = counts_of(view_of_place(query(tracked)));
+  EXPECT_EQ(counts.seen, all.seen);
+  EXPECT_LT(counts.expected, all.expected);
+}
+
 TEST_F(ViewOfAPlace, IsEmptyForAFrameWithoutMatches) {
   TrackedFrame tracked = tracked_at(pose_);
   tracked.features.clear();
