@@ -46,6 +46,23 @@ void append_points(const Map& online, const std::map<KeyframeId, Pose>& motions,
   }
 }
 
+// Observations that were made at a refuted place. They would draw the keyframes back there.
+void remove_links_to_offline(const Map& online, const std::map<KeyframeId, Pose>& motions, MapDelta& delta) {
+  for (const auto& [id, motion] : motions) {
+    const std::vector<Sighting>& sightings = online.find_keyframe(id)->sightings;
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+      const OptionalPoint& point = sightings[i].point;
+      if (!point || point->origin != Origin::offline) continue;
+      delta.removed_observations.push_back({{id.number}, static_cast<int>(i), *point});
+    }
+  }
+  for (const UpdatedPoint& moved : delta.updated_points) {
+    for (const ForeignView& view : online.foreign_views(moved.id)) {
+      delta.removed_foreign_views.push_back({moved.id, view.observation});
+    }
+  }
+}
+
 }  // namespace
 
 MapDelta correction_of(const Map& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
@@ -64,6 +81,7 @@ MapDelta correction_of(const Map& online, const std::vector<KeyframeId>& path, c
     delta.moved_keyframes.push_back({keyframe.id, keyframe.camera_from_world * inverse(motion), covariance});
   }
   append_points(online, motions, delta);
+  if (shape == CorrectionShape::rigid) remove_links_to_offline(online, motions, delta);
   return delta;
 }
 

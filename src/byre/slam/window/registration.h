@@ -18,7 +18,7 @@ inline constexpr int kConfirmationsOfJump = 10;  // frames, after the robot was 
 
 // Correction of a path of online keyframes, in order of ids, that aligns its newest end with the offline map. Earlier
 // keyframes:
-//   rigid   move as a whole: the path was not registered before
+//   rigid   move as a whole, without their observations of offline points: the path was not registered, or wrongly
 //   spread  move by their share of the path: both maps agreed at the first keyframe
 enum class CorrectionShape : std::uint8_t { rigid, spread };
 

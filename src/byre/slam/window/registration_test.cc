@@ -2,6 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/tracking/mission_scene.h"
+#include "byre/slam/window/hybrid_scene.h"
 
 #include <gmock/gmock.h>
 
@@ -64,6 +65,34 @@ TEST_F(CorrectionOf, IsEmptyForAPathWithoutKeyframes) {
   const MapDelta delta = correction_of(map_, {}, kOfflineFromOnline, CorrectionShape::rigid);
   EXPECT_TRUE(delta.moved_keyframes.empty());
   EXPECT_TRUE(delta.updated_points.empty());
+}
+
+int sightings_of_offline_points(const Map& online) {
+  int count = 0;
+  for (const KeyframeId id : online.keyframe_ids()) {
+    for (const Sighting& sighting : online.find_keyframe(id)->sightings) {
+      count += sighting.point && sighting.point->origin == Origin::offline;
+    }
+  }
+  return count;
+}
+
+TEST(CorrectionOfAHybridMap, RemovesObservationsAtARefutedPlace) {
+  HybridScene scene = two_true_maps({});
+  see_offline(scene);
+  const KeyframeId offline = scene.offline.keyframe_ids().front();
+  const PointId point = scene.online.point_ids().front();
+  ASSERT_TRUE(scene.online.add_foreign_view({{offline, 0}, {point, {10.0f, 10.0f}, 1.0f}}));
+  const std::vector<KeyframeId> path = scene.online.keyframe_ids();
+  Map spread = scene.online, rigid = scene.online;
+  apply(correction_of(scene.online, path, kOfflineFromOnline, CorrectionShape::spread), spread);
+  apply(correction_of(scene.online, path, kOfflineFromOnline, CorrectionShape::rigid), rigid);
+  EXPECT_GT(sightings_of_offline_points(spread), 100);
+  EXPECT_FALSE(spread.foreign_views(point).empty());
+  EXPECT_EQ(sightings_of_offline_points(rigid), 0);
+  EXPECT_TRUE(rigid.foreign_views(point).empty());
+  EXPECT_EQ(rigid.keyframe_count(), scene.online.keyframe_count());
+  EXPECT_THAT(find_faults(rigid), testing::IsEmpty());
 }
 
 }  // namespace
