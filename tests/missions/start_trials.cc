@@ -1,6 +1,6 @@
 // Starts missions on a map at regular times of a recording, and counts wrongly trusted frames.
 // Usage: byre_start_trials MISSION --map MAP --map-truth RECORDING [options]
-//        byre_start_trials --case NAME [--calibration-seed N]
+//        byre_start_trials --case NAME [--calibration-seed N] [--from S] [--to S] [--trace FILE]
 // MISSION is a recording with ground truth. MAP is an offline map of RECORDING, whose ground truth aligns it.
 //   --every S          seconds between starts (0.5)
 //   --length S         duration of each mission, seconds (11)
@@ -129,13 +129,20 @@ void print_failure(const StartedMission& mission) {
   std::fflush(stdout);
 }
 
-StartTotals run_case(const StartOptions& options, const std::function<void(const StartedMission&)>& each) {
+StartTotals run_case(const StartOptions& options, const std::function<void(const StartedMission&)>& each,
+                     std::ofstream& trace) {
   const auto named = std::ranges::find(start_cases(), options.start_case, &StartCase::name);
   if (named == start_cases().end()) throw InputError(options.start_case, "is not a case", "see start_cases.cc");
   StartCase start_case = *named;
   if (const auto missing = what_is_missing(start_case)) throw InputError(start_case.name, "cannot be run", *missing);
   start_case.map.recipe.imperfection.calibration_seed = options.calibration_seed;
-  return run(start_case, MapCache().get(start_case.map), each);
+  start_case.plan.from_s = std::max(start_case.plan.from_s, options.plan.from_s);
+  start_case.plan.to_s = std::min(start_case.plan.to_s, options.plan.to_s);
+  const AlignedMap& known = MapCache().get(start_case.map);
+  return run(start_case, known, [&](const StartedMission& mission) {
+    if (trace.is_open()) write_trace(trace, mission, known.truth_from_map);
+    each(mission);
+  });
 }
 
 StartTotals run_recording(const StartOptions& options, const std::function<void(const StartedMission&)>& each,
@@ -155,8 +162,8 @@ StartTotals run_recording(const StartOptions& options, const std::function<void(
 int run_trials(const StartOptions& options) {
   std::ofstream trace;
   if (options.trace) trace.open(*options.trace);
-  const StartTotals totals =
-      options.start_case.empty() ? run_recording(options, print_failure, trace) : run_case(options, print_failure);
+  const StartTotals totals = options.start_case.empty() ? run_recording(options, print_failure, trace)
+                                                        : run_case(options, print_failure, trace);
   fmt::print(
       "{} starts, {} frames: {:.1f} % with a pose, {} trusted and correct, {} trusted and wrong in {} starts (worst "
       "{:.2f} m); {} starts localised late\n",
@@ -175,7 +182,7 @@ int main(int argc, char** argv) {
         << "usage: byre_start_trials MISSION --map MAP --map-truth RECORDING [--every S] [--length S] [--from S]\n"
            "         [--to S] [--camera stereo|left] [--no-wheels] [--no-gyroscope] [--cover A:B]\n"
            "         [--trace FILE]\n"
-           "       byre_start_trials --case NAME [--calibration-seed N]\n";
+           "       byre_start_trials --case NAME [--calibration-seed N] [--from S] [--to S] [--trace FILE]\n";
     return 2;
   }
   try {
