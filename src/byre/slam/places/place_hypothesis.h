@@ -17,8 +17,8 @@ inline constexpr double kNoRivals = -std::numeric_limits<double>::infinity();
 
 // Sequential likelihood-ratio test (Wald 1945) of a pose in a map against any other place. Log-odds in nats.
 //
-// The map is divided into cells. The share of a cell's points that is seen is evidence for or against the pose. Each cell
-// counts once, however many frames and points show it: objects are moved and covered as a whole, and a robot at
+// The map is divided into cells. The share of a cell's points that is seen is evidence for or against the pose. Each
+// cell counts once, however many frames and points show it: objects are moved and covered as a whole, and a robot at
 // standstill gets no new evidence. A moved object (a gate's leaf, the side of a wagon) agrees with the map at its new
 // place as well. So the agreeing cells that one such object can cover add no more than the log-odds against a moved
 // object.
