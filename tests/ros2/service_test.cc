@@ -1,4 +1,4 @@
-// Commands of byre node as services, called by Fast DDS with the request ids of rmw_cyclonedds.
+// Commands and parameters of byre node as services, called by Fast DDS with the request ids of rmw_cyclonedds.
 
 #include "mqtt_peer.h"
 #include "node_fixture.h"
@@ -23,12 +23,18 @@ class Client {
 
   bool has_subscriber() const { return FastPeer::has_subscriber(requests_); }
 
-  std::optional<Response> call(Request request) {
+  std::optional<Response> call(Request request, std::chrono::seconds patience = std::chrono::seconds(20)) {
     request.client(id_);
     request.number(++number_);
     requests_->write(&request);
     return replies_.find(
-        [&](const Response& response) { return response.client() == id_ && response.number() == number_; });
+        [&](const Response& response) { return response.client() == id_ && response.number() == number_; }, patience);
+  }
+  // Repeats a request without an effect, as DDS drops replies to readers that it has not discovered.
+  std::optional<Response> ask(const Request& request) {
+    std::optional<Response> response;
+    for (int i = 0; i < 20 && !response; ++i) response = call(request, std::chrono::seconds(2));
+    return response;
   }
 
  private:
@@ -47,6 +53,27 @@ using LoadMap = Client<nav2_msgs::srv::LoadMap_Request, nav2_msgs::srv::LoadMap_
 using SetInitialPose =
     Client<nav2_msgs::srv::SetInitialPose_Request, nav2_msgs::srv::SetInitialPose_RequestPubSubType,
            nav2_msgs::srv::SetInitialPose_Response, nav2_msgs::srv::SetInitialPose_ResponsePubSubType>;
+
+using ListParameters =
+    Client<rcl_interfaces::srv::ListParameters_Request, rcl_interfaces::srv::ListParameters_RequestPubSubType,
+           rcl_interfaces::srv::ListParameters_Response, rcl_interfaces::srv::ListParameters_ResponsePubSubType>;
+using GetParameters =
+    Client<rcl_interfaces::srv::GetParameters_Request, rcl_interfaces::srv::GetParameters_RequestPubSubType,
+           rcl_interfaces::srv::GetParameters_Response, rcl_interfaces::srv::GetParameters_ResponsePubSubType>;
+using GetParameterTypes =
+    Client<rcl_interfaces::srv::GetParameterTypes_Request, rcl_interfaces::srv::GetParameterTypes_RequestPubSubType,
+           rcl_interfaces::srv::GetParameterTypes_Response, rcl_interfaces::srv::GetParameterTypes_ResponsePubSubType>;
+using DescribeParameters =
+    Client<rcl_interfaces::srv::DescribeParameters_Request, rcl_interfaces::srv::DescribeParameters_RequestPubSubType,
+           rcl_interfaces::srv::DescribeParameters_Response,
+           rcl_interfaces::srv::DescribeParameters_ResponsePubSubType>;
+using SetParameters =
+    Client<rcl_interfaces::srv::SetParameters_Request, rcl_interfaces::srv::SetParameters_RequestPubSubType,
+           rcl_interfaces::srv::SetParameters_Response, rcl_interfaces::srv::SetParameters_ResponsePubSubType>;
+using SetParametersAtomically = Client<rcl_interfaces::srv::SetParametersAtomically_Request,
+                                       rcl_interfaces::srv::SetParametersAtomically_RequestPubSubType,
+                                       rcl_interfaces::srv::SetParametersAtomically_Response,
+                                       rcl_interfaces::srv::SetParametersAtomically_ResponsePubSubType>;
 
 constexpr const char* kOffered = "node:\n  services: true\n";
 
@@ -100,6 +127,74 @@ TEST_F(ByreNode, PausesMappingByServiceAndByCommand) {
   EXPECT_TRUE(
       events_.find([](const auto& event) { return event.data().find("mapping is resumed") != std::string::npos; }));
   EXPECT_TRUE(answer_to(feed_, odometry_, frames[1])) << node.stderr_output();
+  EXPECT_EQ(node.stop(), 0);
+}
+
+// As `ros2 param` calls them, and with the endpoints in the graph.
+TEST_F(ByreNode, AnswersParameterServices) {
+  using namespace rcl_interfaces::srv;
+  Graph graph(peer_, "ros_discovery_info", kLatched);
+  NodeProcess node(folder_, kOffered + mission(), domain_);
+  ListParameters list(peer_, "list_parameters", 1);
+  GetParameters get(peer_, "get_parameters", 2);
+  GetParameterTypes types(peer_, "get_parameter_types", 3);
+  DescribeParameters describe(peer_, "describe_parameters", 4);
+  SetParameters set(peer_, "set_parameters", 5);
+  SetParametersAtomically set_together(peer_, "set_parameters_atomically", 6);
+
+  ListParameters_Request all;
+  all.depth(0);
+  const auto listed = list.ask(all);
+  ASSERT_TRUE(listed.has_value()) << node.stderr_output();
+  const std::vector<std::string>& names = listed->result().names();
+  EXPECT_THAT(names, testing::IsSupersetOf({"slam.map", "grid.resolution", "images.reliable", "mqtt.port"}));
+
+  GetParameters_Request values;
+  values.names({"slam.map", "grid.resolution", "images.reliable", "mqtt.port", "no.such"});
+  const auto got = get.ask(values);
+  ASSERT_TRUE(got && got->values().size() == 5) << node.stderr_output();
+  EXPECT_EQ(got->values()[0].string_value(), Room::shared().map().string());
+  EXPECT_EQ(got->values()[1].double_value(), 0.05);
+  EXPECT_TRUE(got->values()[2].bool_value());
+  EXPECT_EQ(got->values()[3].integer_value(), 1883);
+  GetParameterTypes_Request typed;
+  typed.names(values.names());
+  const auto found = types.ask(typed);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_THAT(found->types(), testing::ElementsAre(4, 3, 1, 2, 0));
+  values.names(names);
+  const auto every = get.ask(values);
+  EXPECT_TRUE(every && every->values().size() == names.size());
+
+  DescribeParameters_Request described;
+  described.names({"grid.footprint"});
+  const auto description = describe.ask(described);
+  ASSERT_TRUE(description && description->descriptors().size() == 1);
+  EXPECT_TRUE(description->descriptors()[0].read_only());
+  EXPECT_THAT(description->descriptors()[0].description(), HasSubstr("radius of the robot"));
+
+  rcl_interfaces::msg::Parameter changed;
+  changed.name("grid.footprint");
+  changed.value().type(3);
+  changed.value().double_value(1.0);
+  SetParameters_Request one;
+  one.parameters({changed});
+  const auto refused = set.ask(one);
+  ASSERT_TRUE(refused && refused->results().size() == 1);
+  EXPECT_FALSE(refused->results()[0].successful());
+  EXPECT_THAT(refused->results()[0].reason(), HasSubstr("grid.footprint is read-only"));
+  SetParametersAtomically_Request together;
+  together.parameters({changed});
+  const auto refused_together = set_together.ask(together);
+  EXPECT_TRUE(refused_together && !refused_together->result().successful());
+
+  // 5 commands and 6 services for parameters.
+  const auto announced = graph.find([](const auto& message) {
+    return !message.node_entities_info_seq().empty() &&
+           message.node_entities_info_seq()[0].reader_gid_seq().size() >= 11 &&
+           message.node_entities_info_seq()[0].writer_gid_seq().size() >= 11;
+  });
+  EXPECT_TRUE(announced.has_value());
   EXPECT_EQ(node.stop(), 0);
 }
 

@@ -121,9 +121,13 @@ struct NodeConfig {
   std::string topic(const std::string& given) const;
 };
 
+// Type of a setting as a parameter of ROS.
+enum class SettingType : std::uint8_t { boolean, integer, number, text };
+
 // Setting of a configuration file.
 struct NodeSetting {
   std::string name;
+  SettingType type = SettingType::text;
   std::string range;
   std::string meaning;  // noun phrase
   std::function<std::string(const NodeConfig&)> get;

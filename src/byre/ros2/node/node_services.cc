@@ -4,6 +4,7 @@
 #include "byre/io/ros/message_reader.h"
 #include "byre/io/ros/message_writer.h"
 #include "byre/io/ros/services.h"
+#include "byre/ros2/node/parameters.h"
 
 #include <utility>
 
@@ -25,53 +26,65 @@ std::optional<ServiceMessage<Body>> whole_request(const Message& message, const 
   }
 }
 
-template <typename Response>
-Response to_response(const Outcome& outcome) {
-  return {outcome.is_done, outcome.answer};
-}
-
-template <typename Request>
-std::function<ServiceCall(const Request&)> always(const std::string& command) {
-  return [command](const Request&) { return ServiceCall{command}; };
-}
-
 }  // namespace
 
 template <typename Kind>
-void NodeServices::add_service(const std::string& name,
-                               std::function<ServiceCall(const typename Kind::Request&)> call_of,
-                               std::function<typename Kind::Response(const Outcome&)> response_of) {
+void NodeServices::add_service(
+    const std::string& name,
+    std::function<typename Kind::Response(const typename Kind::Request& request, const Act& act)> response_of) {
   const std::string whole = config_.topic(name);
   const auto reply_to = [=](const Message& message, const Act& act) -> std::optional<std::vector<std::byte>> {
     const auto request = whole_request<typename Kind::Request>(message, whole);
     if (!request) return std::nullopt;
-    const Outcome outcome = act(call_of(request->body));
-    const ServiceMessage<typename Kind::Response> reply{request->call, response_of(outcome)};
+    const ServiceMessage<typename Kind::Response> reply{request->call, response_of(request->body, act)};
     return ros::write_message(reply, ros::Encoding::cdr);
   };
   services_.push_back({whole, ServiceServer(graph_, whole, std::string(Kind::kType)), reply_to});
 }
 
+template <typename Kind>
+void NodeServices::add_command(const std::string& name,
+                               std::function<std::string(const typename Kind::Request&)> command_of) {
+  add_service<Kind>(name, [command_of](const typename Kind::Request& request, const Act& act) {
+    const Outcome outcome = act({command_of(request)});
+    return typename Kind::Response{outcome.is_done, outcome.answer};
+  });
+}
+
+void NodeServices::add_parameters() {
+  add_service<ros::ListParameters>("list_parameters",
+                                   [](const auto& request, const Act&) { return parameter_names(request); });
+  add_service<ros::GetParameters>(
+      "get_parameters", [this](const auto& request, const Act&) { return parameter_values(config_, request); });
+  add_service<ros::GetParameterTypes>(
+      "get_parameter_types", [this](const auto& request, const Act&) { return parameter_types(config_, request); });
+  add_service<ros::DescribeParameters>("describe_parameters", [this](const auto& request, const Act&) {
+    return parameter_descriptions(config_, request);
+  });
+  add_service<ros::SetParameters>("set_parameters",
+                                  [](const auto& request, const Act&) { return refused_parameters(request); });
+  // Clients of rclpy wait for all six.
+  add_service<ros::SetParametersAtomically>(
+      "set_parameters_atomically", [](const auto& request, const Act&) { return refused_parameters(request); });
+}
+
 NodeServices::NodeServices(const NodeConfig& config, GraphAnnouncement& graph, NodeLog log)
     : config_(config), graph_(graph), log_(std::move(log)) {
   using ros::LoadMap, ros::SetBool, ros::SetInitialPose, ros::Trigger;
-  add_service<Trigger>("save", always<Trigger::Request>("save"), to_response<Trigger::Response>);
-  add_service<Trigger>("relocalise", always<Trigger::Request>("relocalise"), to_response<Trigger::Response>);
-  add_service<SetBool>(
-      "pause_mapping",
-      [](const SetBool::Request& request) { return ServiceCall{request.data ? "pause mapping" : "resume mapping"}; },
-      to_response<SetBool::Response>);
-  add_service<LoadMap>(
-      "load_map", [](const LoadMap::Request& request) { return ServiceCall{"load " + request.map_url}; },
-      [](const Outcome& outcome) {
-        return LoadMap::Response{{}, outcome.is_done ? LoadMap::kSuccess : LoadMap::kUndefinedFailure};
-      });
-  add_service<SetInitialPose>(
-      "set_initial_pose",
-      [](const SetInitialPose::Request& request) {
-        return ServiceCall{{}, request.pose};
-      },
-      [](const Outcome&) { return SetInitialPose::Response{}; });
+  add_command<Trigger>("save", [](const Trigger::Request&) { return "save"; });
+  add_command<Trigger>("relocalise", [](const Trigger::Request&) { return "relocalise"; });
+  add_command<SetBool>("pause_mapping", [](const SetBool::Request& request) {
+    return request.data ? "pause mapping" : "resume mapping";
+  });
+  add_service<LoadMap>("load_map", [](const LoadMap::Request& request, const Act& act) {
+    const Outcome outcome = act({"load " + request.map_url});
+    return LoadMap::Response{{}, outcome.is_done ? LoadMap::kSuccess : LoadMap::kUndefinedFailure};
+  });
+  add_service<SetInitialPose>("set_initial_pose", [](const SetInitialPose::Request& request, const Act& act) {
+    act({{}, request.pose});
+    return SetInitialPose::Response{};
+  });
+  add_parameters();
 }
 
 void NodeServices::answer(const Act& act, Timestamp now) {
@@ -80,9 +93,9 @@ void NodeServices::answer(const Act& act, Timestamp now) {
       if (auto reply = service.reply_to(request, act)) {
         service.server.reply(std::move(*reply), now);
       } else if (!std::exchange(service.has_logged_invalid, true)) {
-        log_(LogLevel::warning, service.name +
-                                    " is called by another middleware than rmw_cyclonedds_cpp: send commands to " +
-                                    config_.topic(config_.command));
+        log_(LogLevel::warning,
+             service.name + " is called by another middleware than rmw_cyclonedds_cpp: send commands to " +
+                 config_.topic(config_.command) + ", or start the caller with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp");
       }
     }
     service.server.send_waiting(now);

@@ -25,11 +25,13 @@ struct Outcome {
   std::string answer{};
 };
 
-// Commands of a node as ROS services, docs/reference/ros2.md.
+// Commands and parameters of a node as ROS services, docs/reference/ros2.md.
 class NodeServices {
  public:
   // log: receives requests in an unknown encoding.
   NodeServices(const NodeConfig& config, GraphAnnouncement& graph, NodeLog log);
+  NodeServices(const NodeServices&) = delete;
+  NodeServices& operator=(const NodeServices&) = delete;
 
   using Act = std::function<Outcome(const ServiceCall& call)>;
   // Executes requests received since the previous call, and replies. now: of a monotonic clock.
@@ -45,8 +47,13 @@ class NodeServices {
   };
 
   template <typename Kind>
-  void add_service(const std::string& name, std::function<ServiceCall(const typename Kind::Request&)> call_of,
-                   std::function<typename Kind::Response(const Outcome&)> response_of);
+  void add_service(
+      const std::string& name,
+      std::function<typename Kind::Response(const typename Kind::Request& request, const Act& act)> response_of);
+  // A command without arguments, or with those of the request.
+  template <typename Kind>
+  void add_command(const std::string& name, std::function<std::string(const typename Kind::Request&)> command_of);
+  void add_parameters();
 
   NodeConfig config_;         // constant after construction
   GraphAnnouncement& graph_;  // outlives this

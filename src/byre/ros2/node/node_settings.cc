@@ -31,9 +31,24 @@ auto& member_of(auto& config, Value ExtrinsicsFrames::*member) {
   return config.extrinsics_frames.*member;
 }
 
+// Type of a setting with this value. Choices by name are text.
+template <typename Value>
+constexpr SettingType kTypeOf = std::is_same_v<Value, bool>       ? SettingType::boolean
+                                : std::is_integral_v<Value>       ? SettingType::integer
+                                : std::is_floating_point_v<Value> ? SettingType::number
+                                                                  : SettingType::text;
+template <>
+constexpr SettingType kTypeOf<std::optional<int>> = SettingType::integer;
+template <>
+constexpr SettingType kTypeOf<std::optional<double>> = SettingType::number;
+
 // show: text of a value; parse: value of a text, empty if invalid.
 NodeSetting setting(const char* name, std::string range, auto member, const char* meaning, auto show, auto parse) {
-  return {name, std::move(range), meaning,
+  using Value = std::remove_cvref_t<decltype(member_of(std::declval<NodeConfig&>(), member))>;
+  return {name,
+          kTypeOf<Value>,
+          std::move(range),
+          meaning,
           [=](const NodeConfig& config) -> std::string { return show(member_of(config, member)); },
           [=](NodeConfig& config, std::string_view text) {
             const auto value = parse(text);
@@ -136,9 +151,10 @@ const std::vector<NodeSetting>& node_settings() {
   static const std::vector<NodeSetting> table = {
       text("node.name", &NodeConfig::name, "name of the node"),
       topic("node.namespace", &NodeConfig::name_space, "namespace of the node"),
-      choice<std::optional<bool>>(
-          "node.services", {{"auto", std::nullopt}, {"true", true}, {"false", false}}, &NodeConfig::services,
-          "commands also as services, for programs with rmw_cyclonedds_cpp; auto: depends on RMW_IMPLEMENTATION"),
+      choice<std::optional<bool>>("node.services", {{"auto", std::nullopt}, {"true", true}, {"false", false}},
+                                  &NodeConfig::services,
+                                  "commands and parameters as services, for programs with rmw_cyclonedds_cpp; auto: "
+                                  "depends on RMW_IMPLEMENTATION"),
       choice<NodeTask>("slam.task",
                        {{"mission", NodeTask::mission}, {"extend", NodeTask::extend}, {"map", NodeTask::map}},
                        &NodeConfig::task, "mission on an offline map, extension of a map, or a new map"),
