@@ -64,11 +64,23 @@ function(byre_install_dir variable folder debian_folder component)
   set(${variable} "\${BYRE_${variable}}" PARENT_SCOPE)
 endfunction()
 
-# systemd service of `byre node`, not enabled by default, and its ROS files.
+# systemd service of `byre node`, not enabled by default.
 function(byre_install_service)
   byre_install_dir(service_dir ${CMAKE_INSTALL_LIBDIR}/systemd/system lib/systemd/system program)
   install(FILES share/systemd/byre.service DESTINATION ${service_dir} COMPONENT program)
-  install(DIRECTORY ros2 DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT program)
+endfunction()
+
+# Package of ROS 2, by the layout of its resource index, which needs no ament: `ros2 run byre node`, `ros2 launch byre
+# mission.launch.py`. The hooks extend the environment of a colcon workspace, see colcon.pkg.
+function(byre_install_ros_package)
+  install(DIRECTORY ros2 DESTINATION share/byre COMPONENT program
+          PATTERN colcon EXCLUDE PATTERN node.sh EXCLUDE PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY ros2/colcon/ DESTINATION share/byre/hook COMPONENT program)
+  install(PROGRAMS ros2/node.sh DESTINATION lib/byre RENAME node COMPONENT program)
+  install(FILES package.xml DESTINATION share/byre COMPONENT program)
+  set(marker ${CMAKE_CURRENT_BINARY_DIR}/ament_marker)
+  file(TOUCH ${marker})
+  install(FILES ${marker} DESTINATION share/ament_index/resource_index/packages RENAME byre COMPONENT program)
 endfunction()
 
 # Documentation, as HTML if mkdocs is installed, else as Markdown, with the examples and README.md at the place that

@@ -40,6 +40,17 @@ shown=$("$byre" vocabulary show)
 echo "$shown"
 [[ $shown == "vocabulary   $prefix/share/byre/default.vocabulary"* ]]
 
+if [[ $("$byre" node --help) != *"Not available: "* ]]; then
+  [[ -f $prefix/share/ament_index/resource_index/packages/byre ]] || fail "missing in the index of ROS packages"
+  [[ -f $prefix/share/byre/package.xml && -f $prefix/share/byre/ros2/launch/mission.launch.py ]] ||
+    fail "missing files of the ROS package"
+  ln -s "$prefix/lib/byre/node" "$work/linked_node"
+  for node in "$prefix/lib/byre/node" "$work/linked_node"; do
+    "$node" --check --ros-args --params-file "$prefix/share/byre/ros2/sensors/realsense_d435.yaml" \
+      -p slam.task:=map -p slam.save:=made.byre || fail "$node does not run the program"
+  done
+fi
+
 for package in "$prefix"/lib/python3*/dist-packages/byre; do
   [[ -d $package ]] || continue # was not built
   PYTHONPATH=${package%/byre} /usr/bin/python3 -c 'import byre; print("byre for Python", byre.__version__)'

@@ -55,6 +55,8 @@ byre=$usr/bin/byre
 
 if [[ $("$byre" node --help) != *"Not available: "* ]]; then
   [[ -f $usr/lib/systemd/system/byre.service ]] || fail "missing service"
+  [[ -f $usr/share/ament_index/resource_index/packages/byre ]] || fail "missing in the index of ROS packages"
+  "$usr/lib/byre/node" --print-config >/dev/null || fail "the executable of the ROS package does not start"
   "$byre" node --print-config >/dev/null || fail "byre node does not start"
 fi
 "$byre" --version

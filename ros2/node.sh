@@ -1,0 +1,3 @@
+#!/bin/sh
+# Executable of the ROS package, installed as lib/byre/node: ros2 run byre node --ros-args ...
+exec "$(dirname "$(readlink -f "$0")")/../../bin/byre" node "$@"
