@@ -13,7 +13,8 @@ namespace {
 using std::chrono_literals::operator""s;
 
 constexpr Timestamp kLongestWithoutMessage = 5s;
-constexpr Timestamp kLongestStep = 1s;  // between two checks while messages are read
+constexpr Timestamp kLongestWithRivals = 15s;  // DDS keeps publishers of a crashed process for 10 s
+constexpr Timestamp kLongestStep = 1s;         // between two checks while messages are read
 
 std::string publishers_text(int count) {
   return fmt::format("{} publisher{}", count, count == 1 ? "" : "s");
@@ -94,6 +95,7 @@ std::vector<LogLine> InputMonitor::check(Timestamp now) {
   clock_ += std::clamp(passed, Timestamp{}, kLongestStep);
   std::vector<LogLine> lines;
   for (Watch& watch : inputs_) check(watch, lines);
+  for (Rivals& rivals : outputs_) check(rivals, lines);
   return lines;
 }
 
@@ -120,6 +122,21 @@ void InputMonitor::check(Watch& watch, std::vector<LogLine>& lines) {
   lines.push_back({LogLevel::warning, watch.finding});
 }
 
+void InputMonitor::check(Rivals& rivals, std::vector<LogLine>& lines) {
+  const std::string& topic = rivals.output.topic;
+  const auto count = static_cast<int>(discovered_(topic).size());
+  if (count == 0) {
+    if (!rivals.finding.empty()) lines.push_back({LogLevel::info, "no other node publishes " + topic + " any more"});
+    rivals.finding.clear();
+    rivals.since.reset();
+    return;
+  }
+  if (!rivals.since) rivals.since = clock_;
+  if (!rivals.finding.empty() || clock_ - *rivals.since < kLongestWithRivals) return;
+  rivals.finding = topic + " has a second publisher, of another node: " + rivals.output.remedy;
+  lines.push_back({LogLevel::warning, rivals.finding});
+}
+
 ros::DiagnosticStatus InputMonitor::status() const {
   ros::DiagnosticStatus status;
   status.name = "byre: inputs";
@@ -135,6 +152,11 @@ ros::DiagnosticStatus InputMonitor::status() const {
                               : watch.ever_arrived ? "arrived"
                                                    : "waiting";
     status.values.push_back({input.name + " on " + input.topic, state});
+  }
+  for (const Rivals& rivals : outputs_) {
+    if (rivals.finding.empty()) continue;
+    status.level = ros::DiagnosticStatus::kWarn;
+    status.message = joined(status.message, rivals.finding);
   }
   if (status.message.empty()) status.message = "no input is missing";
   return status;

@@ -26,8 +26,14 @@ struct WatchedInput {
   std::function<std::string()> detail = [] { return ""; };  // further fact on missing messages
 };
 
-// Reports inputs without messages for 5 s, with the publishers of their topics. Time during which the node does not
-// read messages, as while it loads a map, does not count.
+// Topic that only this node should publish.
+struct WatchedOutput {
+  std::string topic;   // full name
+  std::string remedy;  // for a second publisher
+};
+
+// Reports inputs without messages for 5 s, with the publishers of their topics, and outputs that other nodes publish as
+// well for 15 s. Time during which the node does not read messages, as while it loads a map, does not count.
 class InputMonitor {
  public:
   using Id = std::size_t;
@@ -37,12 +43,13 @@ class InputMonitor {
   InputMonitor(Discovered discovered, Timestamp now) : discovered_(std::move(discovered)), last_check_(now) {}
 
   Id add(WatchedInput input);
+  void add(WatchedOutput output) { outputs_.push_back({std::move(output)}); }
   void note_arrival(Id id) { inputs_[id].has_arrived = true; }
   // Inputs are needed unless stated otherwise. Silence counts from the time when an input is needed again.
   void set_needed(Id id, bool is_needed);
 
-  // One warning for each input that becomes silent, or whose unsuitable publishers change meanwhile; one information
-  // when it arrives again.
+  // One warning for each input that becomes silent, or whose unsuitable publishers change meanwhile, and for each
+  // output with a second publisher; one information when that is over.
   std::vector<LogLine> check(Timestamp now);
 
   // Findings of the last check.
@@ -58,12 +65,19 @@ class InputMonitor {
     std::string finding{};      // empty unless silent
     std::string reported{};     // unsuitable publishers in the last warning
   };
+  struct Rivals {
+    WatchedOutput output;
+    std::optional<Timestamp> since{};  // first check with another publisher, by clock_
+    std::string finding{};             // empty without a second publisher
+  };
   void check(Watch& watch, std::vector<LogLine>& lines);
+  void check(Rivals& rivals, std::vector<LogLine>& lines);
 
   Discovered discovered_;  // constant after construction
   Timestamp last_check_;
   Timestamp clock_{};  // time during which messages were read
   std::vector<Watch> inputs_;
+  std::vector<Rivals> outputs_;
 };
 
 }  // namespace byre

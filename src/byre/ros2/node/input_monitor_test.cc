@@ -142,6 +142,33 @@ TEST_F(Inputs, AreNotMissedWhileTheNodeIsBusy) {
   EXPECT_THAT(run(1s), SizeIs(1));
 }
 
+TEST_F(Inputs, OfOtherNodesOnAnOwnTopicAreReportedOnce) {
+  monitor_.add(WatchedOutput{"/map", "stop it"});
+  EXPECT_THAT(run(60s), IsEmpty());
+  published_["/map"] = {kSuitable};
+  EXPECT_THAT(run(10s), IsEmpty()) << "it may be one of a process that has crashed";
+  const std::string text = "/map has a second publisher, of another node: stop it";
+  EXPECT_THAT(run(10s), ElementsAre(LogLine{LogLevel::warning, text}));
+  EXPECT_THAT(run(60s), IsEmpty());
+  EXPECT_EQ(monitor_.status().level, ros::DiagnosticStatus::kWarn);
+  EXPECT_EQ(monitor_.status().message, text);
+  published_["/map"].clear();
+  EXPECT_THAT(run(1s), ElementsAre(LogLine{LogLevel::info, "no other node publishes /map any more"}));
+  EXPECT_EQ(monitor_.status().level, ros::DiagnosticStatus::kOk);
+  published_["/map"] = {kSuitable};
+  EXPECT_THAT(run(20s), SizeIs(1));
+}
+
+TEST_F(Inputs, OfACrashedProcessOnAnOwnTopicAreNotReported) {
+  monitor_.add(WatchedOutput{"/map", "stop it"});
+  for (int i = 0; i < 3; ++i) {
+    published_["/map"] = {kSuitable};
+    EXPECT_THAT(run(11s), IsEmpty());
+    published_["/map"].clear();
+    EXPECT_THAT(run(1s), IsEmpty());
+  }
+}
+
 TEST_F(Inputs, EscapeTypesOfOtherPrograms) {
   add();
   published_["/left"] = {{"a\x1b[2Jb", true, false}, {"", true, false}};

@@ -76,6 +76,7 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   right_ = subscribe(config.right, image, images);
   watch_images(image, images);
   watch_odometry(transforms);
+  watch_outputs();
   graph_.announce();
   if (const auto fleet = fleet_options(config)) fleet_.emplace(*fleet);
   if (config.http_port) {
@@ -114,6 +115,37 @@ void Node::watch_odometry(const TopicQos& qos) {
   };
   odometry_input_ = inputs_.add(std::move(input));
   inputs_.set_needed(odometry_input_, !config_.publishes_odom_to_base);
+}
+
+void Node::watch_outputs() {
+  const std::string other_name = "two nodes have the name " + config_.full_name() + "; stop one, or set node.name";
+  for (const std::string& topic : {config_.odometry, config_.path, config_.points, config_.health, config_.events}) {
+    if (!topic.empty()) inputs_.add(WatchedOutput{config_.topic(topic), other_name});
+  }
+  if (!config_.pose.empty()) {
+    inputs_.add(WatchedOutput{config_.topic(config_.pose), "stop it (such as amcl), or set topics.pose"});
+  }
+  if (!outputs_.has_grid()) return;
+  const std::string other_grid = config_.plan ? "topics.grid: \"\"" : "grid.from_map: false";
+  inputs_.add(WatchedOutput{config_.topic(config_.grid), "stop it (such as map_server), or set " + other_grid});
+}
+
+// Once; without frames that have a parent already.
+void Node::publish_cameras(const std::string& left_frame, const std::string& right_frame) {
+  if (!camera_frames_.empty() || !outputs_.has_cameras()) return;
+  camera_frames_ = {left_frame, right_frame};
+  const auto unless_taken = [this](const std::string& frame) -> std::string {
+    return robot_frames_.has_parent(frame) ? "" : frame;
+  };
+  outputs_.publish_cameras(*calibration_, unless_taken(left_frame), unless_taken(right_frame));
+}
+
+// Frame of a camera to which another node publishes a transform; empty if none does.
+std::string Node::rival_of_cameras() const {
+  const auto found = std::ranges::find_if(camera_frames_, [this](const std::string& frame) {
+    return frame != config_.base_frame && robot_frames_.has_parent(frame);
+  });
+  return found == camera_frames_.end() ? "" : *found;
 }
 
 void Node::check_inputs(Timestamp now) {
@@ -174,6 +206,9 @@ void Node::log_transforms(Timestamp now) {
              now - *last_odometry_ < kPatience) {
     text = "no transform " + odometry + " at the time of the images on " + tf +
            " for 5 s; check that the clock of the base driver is that of the images";
+  } else if (const std::string camera = rival_of_cameras(); !camera.empty()) {
+    text = "another node publishes a transform to " + printable(camera, kShownOfText) +
+           "; set frames.cameras: false, or frames.mounting: tf to use it";
   } else if (last_odometry_) {
     level = LogLevel::info;
     text = "another node publishes " + odometry + " on " + tf + "; " + config_.map_frame + " -> " + config_.odom_frame +
@@ -330,9 +365,7 @@ void Node::process(const Pairs::Pair& pair) {
     const FrameReport report = runner_.process(images);
     outputs_.publish_images(pair.stamp, pair.left.bytes(),
                             pair.right ? pair.right->bytes() : std::span<const std::byte>());
-    if (!std::exchange(has_published_cameras_, true)) {
-      outputs_.publish_cameras(*calibration_, left.header.frame_id, right ? right->header.frame_id : "");
-    }
+    publish_cameras(left.header.frame_id, right ? right->header.frame_id : "");
     publish(left, report);
     const CameraFrame camera_frame{right.has_value(),
                                    config_.has_right(),

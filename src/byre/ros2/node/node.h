@@ -26,6 +26,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre {
 
@@ -51,6 +52,9 @@ class Node {
   void log_transforms(Timestamp now);
   void watch_images(const MessageType& type, const TopicQos& qos);
   void watch_odometry(const TopicQos& qos);
+  void watch_outputs();
+  void publish_cameras(const std::string& left_frame, const std::string& right_frame);
+  std::string rival_of_cameras() const;
   void check_inputs(Timestamp now);
   void take_requests(Timestamp now);
   Outcome answer(const std::string& request, const std::function<std::string()>& done);
@@ -93,7 +97,7 @@ class Node {
   std::optional<Timestamp> calibrated_at_;  // time since which the calibration is available
   bool waits_for_wheels_ = false;           // with a calibration
   std::string left_frame_;                  // frame of the left images; empty before the first one
-  bool has_published_cameras_ = false;
+  std::vector<std::string> camera_frames_;  // empty until the cameras are published
   std::optional<FrameReport> last_report_;
   std::optional<Pose> map_from_body_;  // last published pose
   Timestamp last_image_time_{};

@@ -27,6 +27,8 @@ class NodeOutputs {
   // Publishes all messages of a frame. image: header of its left image. The pose is in the published map frame.
   // is_map_free: whether no other node publishes map -> odom.
   void publish_frame(const ros::Header& image, const FrameReport& report, const PoseFrames& frames, bool is_map_free);
+  bool has_cameras() const { return tf_static_.has_value(); }
+  // Empty frames are left out.
   void publish_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
   // Sends received images to watchers only.
   void publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
@@ -34,6 +36,7 @@ class NodeOutputs {
   void publish_answer(const std::string& request, bool is_done, const std::string& answer);
   // Publishes the floor plan, if configured.
   void publish_plan();
+  bool has_grid() const { return grid_.has_value(); }
   // Whether the occupancy grid is that of the map.
   bool has_grid_of_map() const { return grid_ && !config_.plan; }
   // grid: in the published map frame.

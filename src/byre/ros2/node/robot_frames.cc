@@ -81,6 +81,10 @@ void RobotFrames::take_static(const ros::TFMessage& message) {
   }
 }
 
+bool RobotFrames::has_parent(const std::string& frame) const {
+  return links_.contains(frame_without_slash(frame));
+}
+
 bool RobotFrames::has_odom_owner(Timestamp now) const {
   const auto found = links_.find(names_.odom);
   if (found == links_.end()) return false;

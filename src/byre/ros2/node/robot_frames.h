@@ -26,6 +26,8 @@ class RobotFrames {
 
   // Whether another node has published a transform to the base, which then may have no second parent.
   bool has_base_owner() const { return links_.contains(names_.base); }
+  // Whether another node has published a transform to a frame.
+  bool has_parent(const std::string& frame) const;
   // Whether another node published a transform to odom within the last seconds.
   bool has_odom_owner(Timestamp now) const;
 
