@@ -22,25 +22,25 @@ test("the file is complete, indexed and has the profile ros2", () => {
 test("topics have the standard message types", () => {
   const types = Object.fromEntries(Object.entries(found.topics).map(([name, topic]) => [name, topic.type]));
   assert.equal(types["/tf"], "tf2_msgs/msg/TFMessage");
-  assert.equal(types["/odometry"], "nav_msgs/msg/Odometry");
-  assert.equal(types["/pose"], "geometry_msgs/msg/PoseWithCovarianceStamped");
+  assert.equal(types["/byre/odometry"], "nav_msgs/msg/Odometry");
+  assert.equal(types["/byre/pose"], "geometry_msgs/msg/PoseWithCovarianceStamped");
   assert.equal(types["/diagnostics"], "diagnostic_msgs/msg/DiagnosticArray");
-  assert.equal(types["/map_points"], "sensor_msgs/msg/PointCloud2");
+  assert.equal(types["/byre/points"], "sensor_msgs/msg/PointCloud2");
   assert.equal(types["/left/image_raw"], "sensor_msgs/msg/Image");
   assert.equal(types["/left/camera_info"], "sensor_msgs/msg/CameraInfo");
 });
 
 test("poses equal those of the trajectory", () => {
   const byTime = new Map(poses.map((pose) => [pose[0].toFixed(4), pose]));
-  assert.ok(messages("/pose").length > 0.8 * poses.length);
-  for (const {header, pose} of messages("/pose")) {
+  assert.ok(messages("/byre/pose").length > 0.8 * poses.length);
+  for (const {header, pose} of messages("/byre/pose")) {
     const {x, y, z} = pose.pose.position;
     const expected = byTime.get((header.stamp.sec + 1e-9 * header.stamp.nanosec).toFixed(4));
     assert.ok(Math.hypot(x - expected[1], y - expected[2], z - expected[3]) < 1e-6);
     assert.equal(header.frame_id, "map");
     assert.equal(pose.covariance.length, 36);
   }
-  const {covariance} = messages("/pose").at(-1).pose; // the first pose is the origin, without uncertainty
+  const {covariance} = messages("/byre/pose").at(-1).pose; // the first pose is the origin, without uncertainty
   assert.ok(covariance[0] > 0 && covariance[35] > 0);
 });
 
@@ -61,7 +61,7 @@ test("diagnostics contain the verdict", () => {
 });
 
 test("sizes of points and images match their headers", () => {
-  const cloud = messages("/map_points").at(-1);
+  const cloud = messages("/byre/points").at(-1);
   assert.ok(cloud.width > 100);
   assert.equal(cloud.data.length, cloud.width * cloud.point_step);
   assert.deepEqual(cloud.fields.map(({name}) => name), ["x", "y", "z", "observations"]);
@@ -71,6 +71,6 @@ test("sizes of points and images match their headers", () => {
 });
 
 test("events are lines of JSON", () => {
-  const events = messages("/events").map(({data}) => JSON.parse(data).event);
+  const events = messages("/byre/events").map(({data}) => JSON.parse(data).event);
   assert.ok(events.includes("initialised"));
 });

@@ -51,9 +51,9 @@ before(async () => {
   await eventually(() => said.includes("viewer: stays"), () => `the end of the run in: ${said}`);
   await eventually(() => watcher.messages.get("/diagnostics").length > 0, () => "diagnostics");
   const last = watcher.messages.get("/diagnostics").at(-1).time;
-  const hasMap = (each) => each.messages.get("/map_points").at(-1)?.time >= last;
+  const hasMap = (each) => each.messages.get("/byre/points").at(-1)?.time >= last;
   await eventually(() => hasMap(watcher), () => "the final map");
-  late = await Watcher.connect(url, (topic) => topic.includes("map") || topic.startsWith("/tf"));
+  late = await Watcher.connect(url, (topic) => topic.includes("points") || topic.startsWith("/tf"));
   await eventually(() => hasMap(late) && late.messages.get("/tf_static").length > 0, () => "the latched messages");
 });
 
@@ -74,7 +74,7 @@ test("messages and schemas equal the record byte by byte", async () => {
   for (const [topic, received] of watcher.messages) {
     assert.equal(watcher.channels.get(topic).schema, schemas.get(topic));
     assert.equal(watcher.channels.get(topic).encoding, "cdr");
-    const isPaced = topic === "/path" || topic === "/map_points";  // sent at a limited rate
+    const isPaced = topic === "/byre/path" || topic === "/byre/points";  // sent at a limited rate
     for (const {time, data} of isPaced ? received.slice(-1) : received) {
       const expected = messages.get(`${topic} ${time}`);
       assert.ok(expected?.some((bytes) => bytes.equals(data)), `${topic} at ${time}`);
@@ -85,12 +85,12 @@ test("messages and schemas equal the record byte by byte", async () => {
 });
 
 test("messages of each topic decode to the expected content", () => {
-  for (const topic of ["/tf", "/tf_static", "/odometry", "/pose", "/path", "/diagnostics", "/map_points",
+  for (const topic of ["/tf", "/tf_static", "/byre/odometry", "/byre/pose", "/byre/path", "/diagnostics", "/byre/points",
     "/left/image_raw", "/left/camera_info", "/right/image_raw", "/right/camera_info"]) {
     assert.ok(watcher.decoded(topic).length > 0, topic);
   }
-  assert.equal(watcher.decoded("/pose")[0].header.frame_id, "map");
-  const cloud = watcher.decoded("/map_points").at(-1);
+  assert.equal(watcher.decoded("/byre/pose")[0].header.frame_id, "map");
+  const cloud = watcher.decoded("/byre/points").at(-1);
   assert.ok(cloud.width > 100 && cloud.data.length === cloud.width * cloud.point_step);
   const image = watcher.decoded("/left/image_raw")[0];
   assert.equal(image.data.length, image.height * image.step);
@@ -106,8 +106,8 @@ test("times equal those of the frames", async () => {
 });
 
 test("a client after the run receives the latched messages only", () => {
-  assert.equal(late.messages.get("/map_points").length, 1);
-  assert.deepEqual(late.messages.get("/map_points")[0], watcher.messages.get("/map_points").at(-1));
+  assert.equal(late.messages.get("/byre/points").length, 1);
+  assert.deepEqual(late.messages.get("/byre/points")[0], watcher.messages.get("/byre/points").at(-1));
   assert.deepEqual(late.messages.get("/tf_static"), watcher.messages.get("/tf_static"));
   assert.deepEqual(late.messages.get("/tf"), []);
 });

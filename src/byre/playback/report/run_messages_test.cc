@@ -58,22 +58,22 @@ std::map<std::string, int> messages_of_run(const std::set<std::string>& wanted, 
 }
 
 TEST(RunMessages, CreateOnlyEventsAndExtrinsicsWithoutSubscribers) {
-  EXPECT_THAT(messages_of_run({}, false), ElementsAre(Key("/events"), Key("/tf_static")));
+  EXPECT_THAT(messages_of_run({}, false), ElementsAre(Key("/byre/events"), Key("/tf_static")));
 }
 
 TEST(RunMessages, CreateSubscribedMessages) {
-  const std::map<std::string, int> counts = messages_of_run({"/left/image_raw", "/diagnostics", "/map_points"}, false);
+  const std::map<std::string, int> counts = messages_of_run({"/left/image_raw", "/diagnostics", "/byre/points"}, false);
   EXPECT_EQ(counts.at("/left/image_raw"), kFrames);
   EXPECT_EQ(counts.at("/diagnostics"), kFrames);
-  EXPECT_EQ(counts.at("/map_points"), 1);
+  EXPECT_EQ(counts.at("/byre/points"), 1);
   EXPECT_FALSE(counts.contains("/right/image_raw"));
-  EXPECT_FALSE(counts.contains("/path"));
+  EXPECT_FALSE(counts.contains("/byre/path"));
 }
 
 TEST(RunMessages, LatchPathAndMap) {
   const std::map<std::string, int> counts = messages_of_run({}, true);
-  EXPECT_EQ(counts.at("/path"), 1);
-  EXPECT_EQ(counts.at("/map_points"), 1);
+  EXPECT_EQ(counts.at("/byre/path"), 1);
+  EXPECT_EQ(counts.at("/byre/points"), 1);
 }
 
 }  // namespace

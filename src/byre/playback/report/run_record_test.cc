@@ -73,17 +73,17 @@ TEST(RunRecord, IsACompleteBag) {
   std::map<std::string, std::uint64_t> counts;
   for (const BagTopic& topic : bag->content().topics) counts[topic.name] = topic.messages;
   EXPECT_EQ(counts["/tf_static"], 1u);
-  EXPECT_EQ(counts["/map_points"], 2u);
-  EXPECT_EQ(counts["/path"], 2u);
+  EXPECT_EQ(counts["/byre/points"], 2u);
+  EXPECT_EQ(counts["/byre/path"], 2u);
   EXPECT_EQ(counts["/diagnostics"], kFramesRecorded + 1u);
-  for (const char* const topic : {"/tf", "/odometry", "/left/image_raw", "/right/camera_info"}) {
+  for (const char* const topic : {"/tf", "/byre/odometry", "/left/image_raw", "/right/camera_info"}) {
     EXPECT_EQ(counts[topic], static_cast<std::uint64_t>(kFramesRecorded)) << topic;
   }
 }
 
 TEST(RunRecord, ContainsThePosesOfTheReports) {
   const RecordedRun& recorded = RecordedRun::shared();
-  const auto odometry = recorded.messages<ros::Odometry>("/odometry");
+  const auto odometry = recorded.messages<ros::Odometry>("/byre/odometry");
   ASSERT_EQ(odometry.size(), recorded.run().frames.size());
   for (std::size_t i = 0; i < odometry.size(); ++i) {
     const FrameReport& report = *recorded.run().frames[i].report;
@@ -100,10 +100,10 @@ TEST(RunRecord, ReportsUnreadableFrames) {
 
 TEST(RunRecord, EndsWithTheFinalPathAndMap) {
   const RecordedRun& recorded = RecordedRun::shared();
-  const ros::Path path = recorded.messages<ros::Path>("/path").back();
+  const ros::Path path = recorded.messages<ros::Path>("/byre/path").back();
   ASSERT_EQ(path.poses.size(), recorded.run().final.size());
   EXPECT_EQ(path.poses.back().pose.position.y, recorded.run().final.back().world_from_body.translation.y());
-  const ros::PointCloud2 cloud = recorded.messages<ros::PointCloud2>("/map_points").back();
+  const ros::PointCloud2 cloud = recorded.messages<ros::PointCloud2>("/byre/points").back();
   EXPECT_EQ(cloud.width, static_cast<std::uint32_t>(recorded.run().stored.map.point_count()));
   EXPECT_EQ(cloud.data.size(), 16u * cloud.width);
 }
