@@ -74,7 +74,7 @@ endfunction()
 # mission.launch.py`. The hooks extend the environment of a colcon workspace, see colcon.pkg.
 function(byre_install_ros_package)
   install(DIRECTORY ros2 DESTINATION share/byre COMPONENT program
-          PATTERN colcon EXCLUDE PATTERN node.sh EXCLUDE PATTERN __pycache__ EXCLUDE)
+          PATTERN byre_ros EXCLUDE PATTERN colcon EXCLUDE PATTERN node.sh EXCLUDE PATTERN __pycache__ EXCLUDE)
   install(DIRECTORY ros2/colcon/ DESTINATION share/byre/hook COMPONENT program)
   install(PROGRAMS ros2/node.sh DESTINATION lib/byre RENAME node COMPONENT program)
   install(FILES package.xml DESTINATION share/byre COMPONENT program)
