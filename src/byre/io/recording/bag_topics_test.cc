@@ -41,6 +41,21 @@ TEST(BagTopics, SelectALeftAndRightPair) {
             "/stereo/left/image /stereo/right/image");
 }
 
+// The pairs of ros2/sensors, beside other topics of the same drivers.
+TEST(BagTopics, SelectThePairsOfCameraDrivers) {
+  EXPECT_EQ(chosen({"/camera/camera/color/image_raw", "/camera/camera/infra1/image_rect_raw",
+                    "/camera/camera/infra2/image_rect_raw", "/camera/camera/depth/image_rect_raw"}),
+            "/camera/camera/infra1/image_rect_raw /camera/camera/infra2/image_rect_raw");
+  EXPECT_EQ(chosen({"/oak/rgb/image_raw", "/oak/stereo/image_raw", "/oak/left/image_rect", "/oak/right/image_rect"}),
+            "/oak/left/image_rect /oak/right/image_rect");
+  EXPECT_EQ(chosen({"/oakd/rgb/preview/image_raw", "/oakd/left/image_rect", "/oakd/right/image_rect"}),
+            "/oakd/left/image_rect /oakd/right/image_rect");
+  EXPECT_EQ(chosen({"/zed/zed_node/rgb/color/rect/image", "/zed/zed_node/left/gray/rect/image",
+                    "/zed/zed_node/right/gray/rect/image", "/zed/zed_node/depth/depth_registered"}),
+            "/zed/zed_node/left/gray/rect/image /zed/zed_node/right/gray/rect/image");
+  EXPECT_EQ(camera_info_topic("/zed/zed_node/left/gray/rect/image"), "/zed/zed_node/left/gray/rect/camera_info");
+}
+
 TEST(BagTopics, PreferRawAndUnrectifiedImages) {
   EXPECT_EQ(
       chosen({"/left/image_raw/compressed", "/right/image_raw/compressed", "/left/image_raw", "/right/image_raw"}),
