@@ -46,6 +46,9 @@ enum class DistrustReason : std::uint8_t {
 
 std::string_view to_string(DistrustReason doubt);
 
+// Remedy for an operator; empty for none.
+std::string_view advice_for(DistrustReason doubt);
+
 // Distance between the poses estimated from offline points alone and from online points alone.
 struct Agreement {
   double translation = 0.0;  // metres

@@ -14,6 +14,7 @@ struct Command {
   const char* name;
   const char* summary;
   Action (*declare)(CLI::App& command);
+  const char* alias = nullptr;  // another usual spelling
 };
 
 constexpr std::array kCommands = {
@@ -24,7 +25,7 @@ constexpr std::array kCommands = {
     Command{"map", "Make a map and a trajectory of a recording", declare_map},
     Command{"run", "Run a mission on a map: track, map changes, rate each pose", declare_run},
     Command{"node", "Run the ROS 2 node: track images, publish poses and health", declare_node},
-    Command{"localise", "Localise frames in a map, each without prediction", declare_localise},
+    Command{"localise", "Localise frames in a map, each without prediction", declare_localise, "localize"},
     Command{"register", "Register a map on a floor plan", declare_register},
     Command{"refine", "Close further loops of a map and adjust it as a whole", declare_refine},
     Command{"calibrate", "Refine the calibration of a recording's cameras by its images", declare_calibrate},
@@ -32,10 +33,10 @@ constexpr std::array kCommands = {
     Command{"scale", "Scale a monocular map by a known distance", declare_scale},
     Command{"draw", "Draw a map on its floor plan, camera images and videos of missions", declare_draw},
     Command{"view", "Show a map in a browser, and register it on a floor plan", declare_view},
-    Command{"inspect", "Print the contents and residuals of a map", declare_inspect},
+    Command{"inspect", "Print the contents and residuals of a map", declare_inspect, "info"},
     Command{"validate", "Check the consistency of a map", declare_validate},
-    Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate},
-    Command{"benchmark", "Measure accuracy and speed on a protocol of recordings", declare_benchmark},
+    Command{"evaluate", "Compare an estimated trajectory with the truth", declare_evaluate, "eval"},
+    Command{"benchmark", "Measure accuracy and speed on a protocol of recordings", declare_benchmark, "bench"},
     Command{"vocabulary", "Train, import or show a visual vocabulary", declare_vocabulary},
     Command{"simulate", "Render a recording of a simulated barn, with truth and floor plan", declare_simulate},
     Command{"import-colmap", "Import a COLMAP model and its images as a map", declare_import_colmap},
@@ -53,6 +54,7 @@ void declare_commands(CLI::App& app, Action& action) {
   declare_no_overwrite(app);
   for (const Command& command : kCommands) {
     CLI::App* const declared = app.add_subcommand(command.name, command.summary);
+    if (command.alias != nullptr) declared->alias(command.alias);
     check_when_parsed(*declared);  // a command's own check replaces it
     declared->callback([&action, run = command.declare(*declared)] { action = run; });
     std::vector<CLI::App*> writing = declared->get_subcommands([](CLI::App*) { return true; });

@@ -84,6 +84,7 @@ Report calibrate_report(const CalibrateOptions& options, const RefinedCalibratio
     report.figures["extrinsics_file"] = options.extrinsics->string();
     report.row("extrinsics", "{extrinsics_file}; the height of the camera is not estimated");
   }
+  report.conclude("Next: byre map {recording} --calibration {written} -o MAP.byre");
   return report;
 }
 
@@ -119,7 +120,7 @@ ExitCode run_calibrate(const CalibrateOptions& options, std::ostream& result) {
   write_atomically(options.output, write_calibration(calibration));
   if (options.extrinsics) write_estimated_extrinsics(options, run);
   const Report report = calibrate_report(options, *run.calibration);
-  result << (options.json ? to_json(report) : report.text);
+  result << (options.json ? to_json(report) : to_text(report, false));
   return ExitCode::done;
 }
 

@@ -47,7 +47,7 @@ ExitCode run_check(const CheckOptions& options, std::ostream& result) {
       *recording, [&](MotionSensor sensor) { return motion_source(options.recording, options.open, sensor); });
   findings.insert(findings.end(), motion.begin(), motion.end());
   const Report report = check_report(check, findings, options.recording.string());
-  result << (options.json ? to_json(report) : report.text);
+  result << (options.json ? to_json(report) : to_text(report, false));
   return std::ranges::any_of(findings, &Finding::is_critical) ? ExitCode::failed : ExitCode::done;
 }
 

@@ -24,6 +24,7 @@ struct InspectOptions {
   std::optional<fs::path> points;
   std::optional<fs::path> extrinsics;
   bool json = false;
+  bool verbose = false;
 };
 
 constexpr const char* kInspectFooter = R"(Examples:
@@ -48,7 +49,7 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
     report.figures["extrinsics_file"] = options.extrinsics->string();
     report.row("extrinsics", "{extrinsics_file}; the height of the camera is not estimated");
   }
-  result << (options.json ? to_json(report) : report.text);
+  result << (options.json ? to_json(report) : to_text(report, options.verbose));
   return ExitCode::done;
 }
 
@@ -57,6 +58,7 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
 Action declare_inspect(CLI::App& command) {
   const auto options = std::make_shared<InspectOptions>();
   add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  command.add_flag("--verbose", options->verbose, "Print figures for developers too: features, words, errors, sizes");
   command.add_flag("--json", options->json, "Print the report as JSON, sizes in bytes, lengths in the map's unit");
   add_output(command, Output::point_cloud, "--points", options->points,
              "Also write the points, coloured by their observations. PLY format")

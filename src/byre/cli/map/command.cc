@@ -77,6 +77,22 @@ RunProtocol protocol_of(const MapOptions& options, const Slam& slam, const RunIn
   return protocol;
 }
 
+void conclude(const MapOptions& options, const RunResult& run, Report& report) {
+  if (run.final.empty()) return;  // an error follows
+  constexpr double kFew = 0.05;   // share of frames without a pose
+  const std::string recording = options.recording.empty() ? "RECORDING" : options.recording.string();
+  report.conclude(
+      "[{?stopped_early}Stopped after {counts.frames} of {protocol.frames_in_range} frames."
+      "|{?has_gaps}{missing*100:.0f} % of the frames have no pose; \"byre check {recording}\" lists problems."
+      "|{?is_unscaled}Complete, but of arbitrary scale; \"byre scale\" sets it.|Complete.] "
+      "Next: [byre run {recording} --map {map}|byre map {recording} -o MAP.byre, which saves the map]",
+      {{"recording", recording},
+       {"missing", 1.0 - report.figures["counts"]["coverage"].get<double>()},
+       {"has_gaps", report.figures["counts"]["coverage"].get<double>() < 1.0 - kFew},
+       {"is_unscaled", !run.is_metric},
+       {"map", options.map ? nlohmann::ordered_json(options.map->string()) : nlohmann::ordered_json()}});
+}
+
 ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   if (options.given_poses) return run_posed_map(options, result);
@@ -107,7 +123,8 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   write_results(options, run, report, outputs);
   outputs.require_written();
   report.row("written", "{?files}{files}", {{"files", names_of(options.outputs())}});
-  result << report.text << input.report();
+  conclude(options, run, report);
+  result << to_text(report, options.verbose) << input.report();
   if (interrupt.caught()) return ExitCode::interrupted;
   messages.require_written();
   require_frames(run);

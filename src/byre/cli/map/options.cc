@@ -128,6 +128,7 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_recording(command, options.record, options.record_images);
   declare_options_file(command, options.method);
   command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  command.add_flag("--verbose", options.verbose, "Print figures for developers too: loops, inliers, times, memory");
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kMapFooter);
 }

@@ -38,6 +38,7 @@ struct MapOptions {
   std::optional<std::filesystem::path> record;  // bag of ROS 2 messages
   bool record_images = false;
   bool quiet = false;
+  bool verbose = false;
 
   std::vector<std::filesystem::path> outputs() const;
 };

@@ -52,7 +52,7 @@ TEST_F(MapProgram, WritesTheRequestedOutputs) {
   EXPECT_THAT(outcome.output, HasSubstr("written      final.txt, causal.txt, stats.json\n"));
   EXPECT_THAT(outcome.errors, HasSubstr("24 of 24 frames, "));
   EXPECT_THAT(outcome.errors, HasSubstr("finishing: searching for loops\n"));
-  EXPECT_THAT(outcome.output, HasSubstr("faults       none\n"));
+  EXPECT_THAT(outcome.output, testing::Not(HasSubstr("faults")));
   EXPECT_EQ(json::parse(read("stats.json")).at("finishing").at("cut_short"), false);
   EXPECT_EQ(files_left(), 5) << "three results and the two streams";
 }

@@ -43,8 +43,9 @@ Report refine_report(const RefineOptions& options, const FinishResult& finishing
                  {"written", options.written().string()},
                  {"finishing", finish.figures}}};
   report.row("map", "{map}: {finishing.after.keyframes} keyframes, {finishing.after.points} points");
-  report.text += finish.text;
+  report.append(finish);
   report.row("written", "{written}");
+  report.conclude("Next: byre run RECORDING --map {written}");
   return report;
 }
 
@@ -57,7 +58,7 @@ ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
   const FinishResult finishing = refine_map(stored, vocabulary, finish_hooks(interrupt, options.quiet));
   save_for_missions(std::move(stored), vocabulary, "", options.written());
   const Report report = refine_report(options, finishing);
-  result << (options.json ? to_json(report) : report.text);
+  result << (options.json ? to_json(report) : to_text(report, true));
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }
 

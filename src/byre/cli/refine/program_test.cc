@@ -35,7 +35,7 @@ TEST_F(RefineProgram, ReplacesTheMapAndReportsChanges) {
   const Outcome outcome = run("refine room.byre");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, StartsWith("map          room.byre: "));
-  EXPECT_THAT(outcome.output, HasSubstr("parts        1 -> 1 without common points\nfaults       none\n"));
+  EXPECT_THAT(outcome.output, HasSubstr("parts        1 -> 1 without common points\n"));
   EXPECT_THAT(outcome.output, HasSubstr("written      room.byre\n"));
   EXPECT_THAT(outcome.errors, HasSubstr("finishing: adjusting the whole map\n"));
   EXPECT_NE(read("room.byre"), before);

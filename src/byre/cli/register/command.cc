@@ -83,7 +83,7 @@ ExitCode run_register(const RegisterCommandOptions& options, std::ostream& resul
   RegisterProtocol protocol{options.map.string(), plan, is_kept ? options.output->string() : "", {}};
   if (options.fix_scale) protocol.scaled_by = registered.factor;
   const Report report = registration_report(registered.registering, protocol);
-  result << (options.json ? to_json(report) : report.text);
+  result << (options.json ? to_json(report) : to_text(report, false));
   if (options.output && !is_kept) refuse_to_write(fit, options);
   return ExitCode::done;
 }

@@ -142,6 +142,31 @@ void write_results(const RunOptions& options, const RunResult& run, const Report
   });
 }
 
+void conclude(const RunOptions& options, const RunResult& run, const RunProtocol& protocol,
+              const MissionOutcome& mission, Report& report) {
+  if (run.final.empty()) return;    // an error follows
+  constexpr double kMostly = 0.95;  // share of trusted frames
+  if (!options.map) {
+    report.conclude(
+        "Tracked without a map. Next: byre map RECORDING -o MAP.byre, then byre run RECORDING --map MAP.byre");
+    return;
+  }
+  nlohmann::ordered_json more = {{"is_mostly_trusted", report.figures["mission"]["trusted_share"] >= kMostly},
+                                 {"map", options.map->string()},
+                                 {"is_on_plan", protocol.plan.has_value()}};
+  if (!mission.statistics.doubts.empty()) {
+    const DistrustReason doubt = mission.statistics.doubts.front().first;
+    more["doubt"] = to_string(doubt);
+    more["advice"] = advice_for(doubt);
+  }
+  report.conclude(
+      "{mission.trusted_share*100:.1f} % of the frames are trusted"
+      "[{!is_mostly_trusted}, most others are not because: {doubt}[{?advice} ({advice})]]. Next: "
+      "[{?is_on_plan}byre node robot.yaml, on the robot"
+      "|byre register {map} --plan PLAN.yaml --points PICKS.csv -o MAP.byre, for poses on a floor plan]",
+      more);
+}
+
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   RunInput input(
@@ -179,7 +204,8 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
   write_results(options, run, report, mission, outputs);
   outputs.require_written();
   report.row("written", "{?files}{files}", {{"files", names_of(options.outputs())}});
-  result << report.text << input.report();
+  conclude(options, run, protocol, mission, report);
+  result << to_text(report, options.verbose) << input.report();
   if (run.map_damage) throw InputError(*run.map_damage);
   if (interrupt.caught()) return ExitCode::interrupted;
   if (viewer) {

@@ -45,6 +45,7 @@ struct RunOptions {
   std::optional<std::filesystem::path> record;  // bag of ROS 2 messages
   bool record_images = false;
   bool quiet = false;
+  bool verbose = false;
 
   std::vector<std::filesystem::path> outputs() const;
 };

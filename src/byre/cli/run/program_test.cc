@@ -55,7 +55,7 @@ TEST_F(RunProgram, EqualsMappingWithoutAMap) {
   const Outcome outcome = run_room("--trajectory c.txt --causal-trajectory d.txt --save-online run.byre --quiet");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, IsEmpty());
-  EXPECT_THAT(outcome.output, HasSubstr("faults       none\n")) << "the map is finished";
+  EXPECT_THAT(outcome.output, testing::Not(HasSubstr("faults"))) << "the map is finished";
   EXPECT_EQ(read("a.txt"), read("c.txt"));
   EXPECT_EQ(read("b.txt"), read("d.txt"));
   EXPECT_EQ(read("map.byre"), read("run.byre"));

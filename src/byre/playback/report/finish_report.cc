@@ -26,15 +26,16 @@ Report finish_report(const FinishResult& finishing) {
                  {"faults", finishing.faults},
                  {"cut_short", finishing.cut_short},
                  {"wall_s", finishing.seconds}}};
-  report.row("last loops",
-             "[{?loops}{loops} closed; drift {loop_drifts_px:.1f} px, residual {loop_residuals_m:.3f} m|none]");
-  report.row("removed", "{keyframes_removed} redundant keyframes, {points_removed} weak points");
-  report.row("pixel error",
-             "median {before.reprojection_median_px:.3f} -> {after.reprojection_median_px:.3f} px, "
-             "95 % within {before.reprojection_p95_px:.3f} -> {after.reprojection_p95_px:.3f} px");
-  report.row("parts", "{before.parts} -> {after.parts} without common points");
-  report.row("faults", "[{#faults}; the first: {faults.0}|none]");
-  report.row("finishing", "{wall_s:.1f} s[{?cut_short}, interrupted; continue with \"byre refine\"]");
+  report.detail("last loops",
+                "[{?loops}{loops} closed; drift {loop_drifts_px:.1f} px, residual {loop_residuals_m:.3f} m|none]");
+  report.detail("removed", "{keyframes_removed} redundant keyframes, {points_removed} weak points");
+  report.detail("pixel error",
+                "median {before.reprojection_median_px:.3f} -> {after.reprojection_median_px:.3f} px, "
+                "95 % within {before.reprojection_p95_px:.3f} -> {after.reprojection_p95_px:.3f} px");
+  report.detail("parts", "{before.parts} -> {after.parts} without common points");
+  report.row("faults", "{?faults}{#faults}; the first: {faults.0}");
+  report.row("finishing", "{?cut_short}interrupted after {wall_s:.1f} s; continue with \"byre refine\"");
+  report.detail("finishing", "{!cut_short}{wall_s:.1f} s");
   return report;
 }
 

@@ -22,12 +22,12 @@ FinishResult finishing_with_two_loops() {
 }
 
 TEST(FinishText, ContainsChangesAndFaults) {
-  const std::string text = finish_report(finishing_with_two_loops()).text;
+  const std::string text = to_text(finish_report(finishing_with_two_loops()), true);
   EXPECT_THAT(text, HasSubstr("last loops   2 closed; drift 7.2, 12.0 px, residual 0.004, 0.011 m\n"));
   EXPECT_THAT(text, HasSubstr("removed      3 redundant keyframes, 40 weak points\n"));
   EXPECT_THAT(text, HasSubstr("pixel error  median 0.500 -> 0.250 px, 95 % within 2.000 -> 1.500 px\n"));
   EXPECT_THAT(text, HasSubstr("parts        2 -> 1 without common points\n"));
-  EXPECT_THAT(text, HasSubstr("faults       none\n"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("faults")));
 }
 
 TEST(FinishText, ReportsNoLoopsAndInterruption) {
@@ -35,10 +35,10 @@ TEST(FinishText, ReportsNoLoopsAndInterruption) {
   finishing.cut_short = true;
   finishing.faults = {"point online 7 is not observed by any keyframe",
                       "point online 8 is not observed by any keyframe"};
-  const std::string text = finish_report(finishing).text;
+  const std::string text = to_text(finish_report(finishing), true);
   EXPECT_THAT(text, HasSubstr("last loops   none\n"));
   EXPECT_THAT(text, HasSubstr("faults       2; the first: point online 7 is not observed by any keyframe\n"));
-  EXPECT_THAT(text, HasSubstr("interrupted; continue with \"byre refine\"\n"));
+  EXPECT_THAT(text, HasSubstr("finishing    interrupted after 0.0 s; continue with \"byre refine\"\n"));
 }
 
 TEST(FinishJson, ContainsTheSameFigures) {

@@ -59,7 +59,7 @@ Json distribution_json(const Distribution& values) {
 // figures: null without values.
 void add_distribution(const char* label, Json figures, const char* unit, Report& report) {
   figures["unit"] = unit;
-  report.row(
+  report.detail(
       label,
       "[mean {mean:.2f}{unit}, median {p50:.2f}, 95 % below {p95:.2f}, 99 % below {p99:.2f}, max {max:.2f}|none]",
       figures);
@@ -127,11 +127,11 @@ void add_sizes(const InspectedFile& file, const MapInspection& inspection, Repor
   if (keyframes > 0) per_keyframe = 1e-3 * static_cast<double>(file.bytes) / keyframes;
   report.row("file", "{size}[, {kilobytes_per_keyframe:.1f} kB per keyframe]",
              {{"size", size_text(file.bytes)}, {"kilobytes_per_keyframe", per_keyframe}});
-  report.row("", "{sizes}", {{"sizes", sizes_json(file.sections, true)}});
+  report.detail("sections", "{sizes}", {{"sizes", sizes_json(file.sections, true)}});
   std::size_t memory = 0;
   for (const PartSize& part : inspection.memory) memory += part.bytes;
   report.row("memory", "about {size}", {{"size", size_text(memory)}});
-  report.row("", "{sizes}", {{"sizes", sizes_json(inspection.memory, true)}});
+  report.detail("memory", "{sizes}", {{"sizes", sizes_json(inspection.memory, true)}});
 }
 
 }  // namespace
@@ -173,9 +173,9 @@ Report inspection_report(const StoredMap& stored, const MapInspection& inspectio
   report.row("keyframes", "{counts.keyframes}, with {counts.features} features, {counts.patches} with a patch");
   report.row("points", "{counts.points}, with {counts.observations} observations");
   add_distribution("seen by", report.figures["observations_per_point"], " keyframes", report);
-  report.row("words",
-             "[{?counts.keyframes_with_words}of {counts.keyframes_with_words} keyframes, "
-             "vocabulary {vocabulary_checksum}|none]");
+  report.detail("words",
+                "[{?counts.keyframes_with_words}of {counts.keyframes_with_words} keyframes, "
+                "vocabulary {vocabulary_checksum}|none]");
   add_distribution("pixel error", report.figures["reprojection_error"]["pixel_px"], " px", report);
   add_distribution("disparity", report.figures["reprojection_error"]["disparity_px"], " px", report);
   report.row("behind camera",
@@ -186,6 +186,13 @@ Report inspection_report(const StoredMap& stored, const MapInspection& inspectio
   add_sizes(file, inspection, report);
   report.row("faults", "{!faults}none");
   for (const std::string& fault : inspection.faults) report.row("fault", "{fault}", {{"fault", fault}});
+  report.conclude(
+      "[{?faults}The map is damaged: use a copy, or map anew."
+      "|Ready for missions[{?is_unscaled}, of arbitrary scale (\"byre scale\" sets it)]. Next: byre run RECORDING "
+      "--map "
+      "{file.name}[{?is_on_plan}, whose poses are on the plan"
+      "|, or byre register {file.name} --plan PLAN.yaml --points PICKS.csv -o MAP.byre]]",
+      {{"is_unscaled", stored.scale == MapScale::unknown}, {"is_on_plan", stored.plan.has_value()}});
   return report;
 }
 

@@ -17,7 +17,7 @@ TEST(InspectReport, IsReadable) {
   const StoredMap stored = StoredMapScene(4, 9).stored();
   MapInspection inspection = inspect(stored);
   const InspectedFile file{"barn.byre", 12345678, {{"header", 432}, {"points", 2000000}}};
-  const std::string text = inspection_report(stored, inspection, file).text;
+  const std::string text = to_text(inspection_report(stored, inspection, file), true);
   EXPECT_THAT(text, StartsWith("map            barn.byre\n"));
   EXPECT_THAT(text, HasSubstr("recording      barn_morning, 100.0 s, last frame at 200.000 s, 4 keyframes, stereo\n"));
   EXPECT_THAT(text, HasSubstr("site           barn 3\n"));
@@ -26,6 +26,7 @@ TEST(InspectReport, IsReadable) {
   EXPECT_THAT(text, HasSubstr("file           12.3 MB, 2469.1 kB per keyframe\n"));
   EXPECT_THAT(text, HasSubstr("header 432 B, points 2.0 MB"));
   EXPECT_THAT(text, HasSubstr("faults         none\n"));
+  EXPECT_THAT(text, HasSubstr("\n\nReady for missions. Next: byre run RECORDING --map barn.byre, or byre register"));
   inspection.faults = {"point 3 is not observed by any keyframe"};
   EXPECT_THAT(inspection_report(stored, inspection, file).text,
               HasSubstr("fault          point 3 is not observed by any keyframe\n"));
@@ -58,7 +59,7 @@ TEST(InspectReport, IsJsonWithStableKeys) {
   EXPECT_THAT(keys, testing::UnorderedElementsAre("file", "scale", "pose_source", "recordings", "notes", "plan",
                                                   "vocabulary_checksum", "counts", "observations_per_point",
                                                   "reprojection_error", "bounding_box", "path_length", "memory_bytes",
-                                                  "faults"));
+                                                  "faults", "conclusion"));
   EXPECT_EQ(report["file"]["section_bytes"]["header"], 432);
   EXPECT_EQ(report["counts"]["points"], 16);
   EXPECT_EQ(report["notes"]["site"], "barn 3");

@@ -90,14 +90,14 @@ Report mission_report(const MissionStatistics& statistics) {
        {std::pair("known", "in_known_places"), std::pair("changed or new", "in_changed_or_new_places")}) {
     Json rate = report.figures[key];
     rate["places"] = places;
-    report.row("keyframes",
-               "{?minutes}{keyframes_per_minute:.1f} per minute in {places} places "
-               "({keyframes} in {minutes*60:.0f} s)",
-               rate);
+    report.detail("keyframes",
+                  "{?minutes}{keyframes_per_minute:.1f} per minute in {places} places "
+                  "({keyframes} in {minutes*60:.0f} s)",
+                  rate);
   }
-  report.row("inliers",
-             "offline median {offline_inliers_median:.0f}, online {online_inliers_median:.0f}"
-             "[{?most_suspended}; up to {most_suspended} offline points suspended]");
+  report.detail("inliers",
+                "offline median {offline_inliers_median:.0f}, online {online_inliers_median:.0f}"
+                "[{?most_suspended}; up to {most_suspended} offline points suspended]");
   report.row("dirt", "{?frames_with_dirt}{dirt} (maximum; {frames_with_dirt} frames)",
              {{"dirt", describe_dirt(statistics)}});
   return report;

@@ -51,7 +51,7 @@ MissionErrors small_errors() {
 }
 
 TEST(MissionText, SummarisesVerdictsAndMainDoubts) {
-  const std::string text = mission_report(small_mission()).text;
+  const std::string text = to_text(mission_report(small_mission()), true);
   EXPECT_THAT(text, HasSubstr("verdicts     trusted 95.0 %, degraded 3.0 %, untrusted 2.0 % of 200 frames\n"));
   EXPECT_THAT(text, HasSubstr("doubts       too few offline points 5, no pose 3, points are clustered 1 frames\n"));
   EXPECT_THAT(text, HasSubstr("lost         2 times, relocalised 2 times; 1 navigation errors\n"));
@@ -61,7 +61,7 @@ TEST(MissionText, CountsMissingFramesAmongTheOthers) {
   MissionStatistics statistics = small_mission();
   statistics.frames = 1000;
   statistics.missing = 800;
-  const std::string text = mission_report(statistics).text;
+  const std::string text = to_text(mission_report(statistics), true);
   EXPECT_THAT(
       text,
       HasSubstr("verdicts     trusted 19.0 %, degraded 0.6 %, untrusted 0.4 %, missing 80.0 % of 1000 frames\nmissing  "
@@ -72,7 +72,7 @@ TEST(MissionText, CountsMissingFramesAmongTheOthers) {
 }
 
 TEST(MissionText, ReportsKeyframesOfVisitedPlaces) {
-  const std::string text = mission_report(small_mission()).text;
+  const std::string text = to_text(mission_report(small_mission()), true);
   EXPECT_THAT(text, HasSubstr("keyframes    2.0 per minute in known places (3 in 90 s)\n"));
   EXPECT_THAT(text, Not(HasSubstr("changed or new")));
   EXPECT_THAT(text, HasSubstr("inliers      offline median 120, online 30; up to 17 offline points suspended\n"));

@@ -84,6 +84,10 @@ Report check_report(const RecordingCheck& check, const std::vector<Finding>& fin
     report.row("", "{remedy}", {{"remedy", finding.remedy}});
   }
   report.row("found", "{!findings}no problems");
+  report.conclude(
+      "[{?critical}Serious problems: {critical}. Solve them first, then check again."
+      "|[{?findings}Usable, with warnings: {#findings}.|Fit for mapping.] Next: byre map {recording} -o MAP.byre]",
+      {{"critical", std::ranges::count_if(findings, &Finding::is_critical)}});
   return report;
 }
 

@@ -118,6 +118,10 @@ Report registration_report(const Registering& registering, const RegisterProtoco
     report.row("doubt", "{doubt}", {{"doubt", to_string(doubt)}});
   }
   report.row("written", "{written}");
+  report.conclude(
+      "Fits the plan to {residual_m:.3f} m[{?doubts}, with doubts]"
+      "[{?written}. Next: byre run RECORDING --map {written}, whose poses are on the plan"
+      "|; no map is saved. Next: correct the points, or save it with -o MAP.byre]");
   return report;
 }
 

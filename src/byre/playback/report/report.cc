@@ -141,8 +141,32 @@ void Report::row(std::string_view label, std::string_view content, const Json& m
   if (expanded) text += fmt::format("{:{}} {}\n", printable(label), label_width, printable(*expanded));
 }
 
+void Report::detail(std::string_view label, std::string_view content, const Json& more) {
+  const std::string rows = std::exchange(text, std::move(details));
+  row(label, content, more);
+  details = std::exchange(text, rows);
+}
+
+void Report::conclude(std::string_view content, const Json& more) {
+  const std::optional<std::string> expanded = expand(content, figures, more);
+  if (!expanded) return;
+  conclusion = printable(*expanded);
+  figures["conclusion"] = *expanded;
+}
+
+void Report::append(const Report& part) {
+  text += part.text;
+  details += part.details;
+}
+
 void Report::line(std::string_view content, const Json& more) {
   if (const std::optional<std::string> expanded = expand(content, figures, more)) text += printable(*expanded) + "\n";
+}
+
+std::string to_text(const Report& report, bool with_details) {
+  std::string text = report.text;
+  if (with_details) text += report.details;
+  return report.conclusion.empty() ? text : text + "\n" + report.conclusion + "\n";
 }
 
 std::string to_json(const Report& report, int indent) {

@@ -31,11 +31,20 @@ struct Report {
   nlohmann::ordered_json figures;
   std::string text{};
   int label_width = 12;
+  std::string details{};     // further rows, for developers
+  std::string conclusion{};  // the last line: the result in a sentence, and the next command
 
   // Adds a line, with a label in the first column or without. more: figures for the text only. Templates: see expand().
   void row(std::string_view label, std::string_view content, const nlohmann::ordered_json& more = {});
   void line(std::string_view content, const nlohmann::ordered_json& more = {});
+  void detail(std::string_view label, std::string_view content, const nlohmann::ordered_json& more = {});
+  // Sets the conclusion, unless a figure is missing; also among the figures.
+  void conclude(std::string_view content, const nlohmann::ordered_json& more = {});
+  // Adds the rows of a part, without its figures and its conclusion.
+  void append(const Report& part);
 };
+
+std::string to_text(const Report& report, bool with_details);
 
 // Indented by indent spaces.
 std::string to_json(const Report& report, int indent = 2);

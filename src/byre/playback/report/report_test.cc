@@ -61,5 +61,15 @@ TEST(Report, ContainsRowsLinesAndJson) {
   EXPECT_EQ(to_json(report, 1), "{\n \"frames\": 3,\n \"name\": \"barn\\u001b[2J\"\n}\n");
 }
 
+TEST(Report, EndsWithItsConclusion) {
+  Report report{{{"frames", 3}}};
+  report.detail("memory", "{frames} MB");
+  report.row("frames", "{frames}");
+  report.conclude("Complete[, {error}]. Next: byre run");
+  EXPECT_EQ(to_text(report, false), "frames       3\n\nComplete. Next: byre run\n");
+  EXPECT_EQ(to_text(report, true), "frames       3\nmemory       3 MB\n\nComplete. Next: byre run\n");
+  EXPECT_EQ(report.figures["conclusion"], "Complete. Next: byre run");
+}
+
 }  // namespace
 }  // namespace byre

@@ -194,10 +194,10 @@ void add_map(Report& report) {
 }
 
 void add_loops(Report& report) {
-  report.row("loops",
-             "{loops_on_the_way} closed while tracking, {corrections_on_the_way} corrections of the whole map"
-             "[{?relocalisations}; relocalised {relocalisations} times]",
-             report.figures["counts"]);
+  report.detail("loops",
+                "{loops_on_the_way} closed while tracking, {corrections_on_the_way} corrections of the whole map"
+                "[{?relocalisations}; relocalised {relocalisations} times]",
+                report.figures["counts"]);
 }
 
 void add_finishing(const RunResult& run, const RunProtocol& protocol, Report& report) {
@@ -207,7 +207,7 @@ void add_finishing(const RunResult& run, const RunProtocol& protocol, Report& re
                  "[error about {calibration_row_error_px:.2f} px (row differences of the pair); ]{description}",
                  {{"description", describe_calibration(*run.calibration)}});
     }
-    report.text += finish_report(*run.finishing).text;
+    report.append(finish_report(*run.finishing));
   } else if (!protocol.options.close_loops) {
     report.row("finishing", "skipped (--no-loops)");
   } else {
@@ -256,46 +256,46 @@ void add_mission_rows(const MissionOutcome& mission, const RunResult& run, const
              "{counts.frames_with_pose} of {counts.frames} frames ({counts.coverage*100:.1f} %)"
              "[, the first after {mission.seconds_to_first_pose:.2f} s]");
   add_scale(run, protocol, counts, report);
-  report.text += mission_report(mission.statistics).text;
+  report.append(mission_report(mission.statistics));
   if (maps && !has_map) add_map(report);
   if (maps && has_map) {
     // Without the offline points that online keyframes observe.
     Json last;
     if (!run.frames.empty()) last = {{"keyframes", run.frames.back().keyframes}, {"points", run.frames.back().points}};
-    report.row("online map", "[{keyframes} keyframes left of {counts.keyframes_made} made; {points} points|none]",
-               last);
+    report.detail("online map", "[{keyframes} keyframes left of {counts.keyframes_made} made; {points} points|none]",
+                  last);
   }
   if (maps) add_loops(report);
   if (!has_map) add_finishing(run, protocol, report);
   if (has_map && maps) {
-    report.row("finishing",
-               "[{seconds:.1f} s: adjustment of the online map together with the offline map in view|skipped]",
-               {{"seconds", or_null(run.mission_finishing_seconds)}});
+    report.detail("finishing",
+                  "[{seconds:.1f} s: adjustment of the online map together with the offline map in view|skipped]",
+                  {{"seconds", or_null(run.mission_finishing_seconds)}});
   }
-  if (mission.errors) report.text += mission_error_report(*mission.errors).text;
+  if (mission.errors) report.append(mission_error_report(*mission.errors));
 }
 
 void add_cost(const RunResult& run, const RunProtocol& protocol, Report& report) {
-  report.row("frame time",
-             "[mean {frame_thread_ms.mean:.1f} ms, p99 {frame_thread_ms.p99:.1f} ms|no frame]"
-             "[; without mapping jobs mean {frame_thread_without_jobs_ms.mean:.1f} ms, "
-             "p99 {frame_thread_without_jobs_ms.p99:.1f} ms]");
-  report.row("deadline",
-             "{deadline.deadline_ms:g} ms: {deadline.frames_late} frames late; "
-             "{deadline.frames_without_online_points} with limited online points, "
-             "{deadline.frames_with_left_image_alone} without the right image");
-  report.row("mapping", "{count} jobs, mean {mean_ms:.1f} ms, max {max_ms:.1f} ms", report.figures["mapping_jobs"]);
+  report.detail("frame time",
+                "[mean {frame_thread_ms.mean:.1f} ms, p99 {frame_thread_ms.p99:.1f} ms|no frame]"
+                "[; without mapping jobs mean {frame_thread_without_jobs_ms.mean:.1f} ms, "
+                "p99 {frame_thread_without_jobs_ms.p99:.1f} ms]");
+  report.detail("deadline",
+                "{deadline.deadline_ms:g} ms: {deadline.frames_late} frames late; "
+                "{deadline.frames_without_online_points} with limited online points, "
+                "{deadline.frames_with_left_image_alone} without the right image");
+  report.detail("mapping", "{count} jobs, mean {mean_ms:.1f} ms, max {max_ms:.1f} ms", report.figures["mapping_jobs"]);
   if (protocol.options.pace == Pace::live) {
     report.row("late", "[{?late.frames}{late.frames} frames, at most {late.max_ms:.1f} ms|no frame]");
   }
   const double seconds = run.wall_seconds - (run.finishing ? run.finishing->seconds : 0.0);
-  report.row("CPU time", "{cpu_s:.1f} s, in {wall_s:.1f} s of wall time: {rate:.1f} frames/s",
-             {{"rate", seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0}});
+  report.detail("CPU time", "{cpu_s:.1f} s, in {wall_s:.1f} s of wall time: {rate:.1f} frames/s",
+                {{"rate", seconds > 0.0 ? static_cast<double>(run.frames.size()) / seconds : 0.0}});
   Json memory;
   if (!run.frames.empty()) memory = {{"first", run.frames.front().memory_mb}, {"last", run.frames.back().memory_mb}};
-  report.row("memory",
-             "peak {peak_memory_mb:.0f} MB[; {first:.0f} MB after the first frame, {last:.0f} MB after the last]",
-             memory);
+  report.detail("memory",
+                "peak {peak_memory_mb:.0f} MB[; {first:.0f} MB after the first frame, {last:.0f} MB after the last]",
+                memory);
 }
 
 Json run_figures(const RunResult& run, const RunProtocol& protocol, const ResourceUsage& resources,
@@ -337,7 +337,7 @@ Report run_report(const RunResult& run, const RunProtocol& protocol, const Resou
       "[{?is_rgbd}, {counts.frames_with_depth_image} with depth images"
       "|{?is_one_camera} of the {protocol.camera} camera][{?stopped_early}, stopped after {counts.frames}]",
       {{"is_rgbd", protocol.camera == CameraChoice::rgbd}, {"is_one_camera", protocol.camera != CameraChoice::stereo}});
-  report.row("pace", "{protocol.pace}");
+  report.detail("pace", "{protocol.pace}");
   if (mission) {
     add_mission_rows(*mission, run, protocol, counts, report);
   } else {

@@ -224,7 +224,7 @@ TEST(MapJson, IsCompleteForARunWithoutFrames) {
 }
 
 TEST(MapText, SummarisesTheRun) {
-  const std::string text = run_report(small_map_run(), protocol_of(Pace::paced), {1.5, 64.0}).text;
+  const std::string text = to_text(run_report(small_map_run(), protocol_of(Pace::paced), {1.5, 64.0}), true);
   EXPECT_THAT(text, HasSubstr("recording    MH_01_easy, 4 frames\n"));
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %); 1 could not be read\n"));
   EXPECT_THAT(text, HasSubstr("map          1 keyframes left of 1 made; 1234 points\n"));
@@ -242,7 +242,7 @@ TEST(MapText, SummarisesTheRun) {
 TEST(MapText, ReportsChangesByFinishing) {
   RunResult run = small_map_run();
   run.finishing.emplace().report.points_removed = 12;
-  EXPECT_THAT(run_report(run, protocol_of(Pace::paced), {}).text,
+  EXPECT_THAT(to_text(run_report(run, protocol_of(Pace::paced), {}), true),
               HasSubstr("removed      0 redundant keyframes, 12 weak points\n"));
 }
 
@@ -255,7 +255,7 @@ TEST(MapText, ReportsTheRecordingsOfAnExtendedMap) {
   keyframe.recording = 1;
   for (int i = 0; i < 2; ++i) run.stored.map.add_keyframe(keyframe);
   run.frames.front().report->map_from_body.reset();
-  const std::string text = run_report(run, protocol, {}).text;
+  const std::string text = to_text(run_report(run, protocol, {}), true);
   EXPECT_THAT(text, HasSubstr("extended     barn.byre, localised in it after 2 frames\n"));
   EXPECT_THAT(text, HasSubstr("map          3 keyframes left of the extended map and 1 made; 1234 points\n"));
   EXPECT_THAT(text, HasSubstr("of           MH_01_easy, 1 keyframes\nof           MH_02_easy, 2 keyframes\n"));
@@ -264,7 +264,7 @@ TEST(MapText, ReportsTheRecordingsOfAnExtendedMap) {
 TEST(MapText, ReportsTheMission) {
   MissionOutcome mission;
   mission.statistics.seconds_to_first_pose = 0.1;
-  const std::string text = run_report(small_map_run(), protocol_of(Pace::paced), {}, mission).text;
+  const std::string text = to_text(run_report(small_map_run(), protocol_of(Pace::paced), {}, mission), true);
   EXPECT_THAT(text, HasSubstr("poses        3 of 4 frames (75.0 %), the first after 0.10 s\n"));
   EXPECT_THAT(text, HasSubstr("verdicts     trusted "));
   EXPECT_THAT(text, HasSubstr("finishing    skipped")) << "as without an offline map";
@@ -275,7 +275,7 @@ TEST(MapText, ReportsInterruptionAndLateFrames) {
   RunResult run = small_map_run();
   run.frames.pop_back();
   run.lateness = {0.0405};
-  const std::string text = run_report(run, protocol_of(Pace::live), {}).text;
+  const std::string text = to_text(run_report(run, protocol_of(Pace::live), {}), true);
   EXPECT_THAT(text, HasSubstr("4 frames, stopped after 3\n"));
   EXPECT_THAT(text, HasSubstr("late         1 frames, at most 40.5 ms\n"));
 }

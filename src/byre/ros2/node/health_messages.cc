@@ -17,40 +17,12 @@ std::string metric(const char* name, const char* type, const char* help, double 
 
 }  // namespace
 
-std::string advice_for(DistrustReason doubt) {
-  switch (doubt) {
-    case DistrustReason::no_pose:
-      return "move the robot into the mapped area";
-    case DistrustReason::blinded:
-      return "check for covered lenses, darkness and glare";
-    case DistrustReason::frozen:
-      return "restart the camera's driver";
-    case DistrustReason::right_camera:
-      return "check lens and exposure of the right camera";
-    case DistrustReason::cameras_disagree:
-      return "check whether the cameras are synchronised, swapped or displaced; calibrate them";
-    case DistrustReason::calibration:
-      return "calibrate the cameras";
-    case DistrustReason::map_damaged:
-      return "replace the map by a copy, then send load NAME or restart the node";
-    case DistrustReason::bridged:
-      return "check for covered lenses and darkness; dead reckoning by wheels is usable for some metres only";
-    case DistrustReason::off_the_plane:
-    case DistrustReason::in_wall:
-    case DistrustReason::outside:
-    case DistrustReason::behind_wall:
-      return "set the initial pose, move the robot to a distinctive place, or check the floor plan";
-    default:
-      return "";
-  }
-}
-
 ros::DiagnosticStatus localisation_status(const FrameReport& report) {
   const Health& health = report.health;
   ros::DiagnosticStatus status;
   status.level = diagnostic_level(health.verdict);
   status.name = "byre: localisation";
-  const std::string advice = advice_for(health.doubt);
+  const std::string advice(advice_for(health.doubt));
   status.message = verdict_and_doubt(health);
   if (!advice.empty()) status.message += "; " + advice;
   if (const std::string dirt = note_on_dirt(health); !dirt.empty()) {

@@ -13,9 +13,6 @@ namespace byre {
 // Diagnostic of the pose: OK for trusted, WARN for degraded, ERROR for untrusted.
 ros::DiagnosticStatus localisation_status(const FrameReport& report);
 
-// Remedy for a doubt; empty without one.
-std::string advice_for(DistrustReason doubt);
-
 // Logs events of a frame, new damage of the map, faults of motion inputs, and a change of the verdict.
 // last: report of the previous frame; map_damage: see Slam; source_of: topic of a sensor.
 void log_changes(const FrameReport& report, const std::optional<FrameReport>& last,

@@ -40,8 +40,7 @@ LogLines lines_of(const FrameReport& report, const std::optional<FrameReport>& l
 TEST(LocalisationStatus, IsAnErrorWithARemedyIfTheMapIsDamaged) {
   const ros::DiagnosticStatus status = localisation_status(kDamaged);
   EXPECT_EQ(status.level, ros::DiagnosticStatus::kError);
-  EXPECT_EQ(status.message,
-            "untrusted: map file is damaged; replace the map by a copy, then send load NAME or restart the node");
+  EXPECT_EQ(status.message, "untrusted: map file is damaged; replace the map file by a copy and load it again");
 }
 
 TEST(LocalisationStatus, HasTheLevelOfTheVerdict) {

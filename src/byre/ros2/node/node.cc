@@ -395,7 +395,7 @@ void Node::publish(const ReceivedImage& left, const FrameReport& report) {
     pose_frames_.note(report, odom_from_base);
   }
   outputs_.publish_frame(left.header, report, pose_frames_, !robot_frames_.has_odom_owner(now));
-  if (fleet_) fleet_->note(report, steady_now(), advice_for(report.health.doubt));
+  if (fleet_) fleet_->note(report, steady_now(), std::string(advice_for(report.health.doubt)));
   last_image_time_ = ros::to_nanoseconds(left.header.stamp);
   const auto source_of = [this](MotionSensor sensor) { return motion_.source_of(sensor); };
   log_changes(report, last_report_, runner_.map_damage(), source_of, log_);

@@ -115,6 +115,35 @@ std::string_view to_string(DistrustReason doubt) {
                                                  doubt);
 }
 
+std::string_view advice_for(DistrustReason doubt) {
+  constexpr std::string_view kImpossible =
+      "set the initial pose, move the robot to a distinctive place, or check the floor plan";
+  return name_among<DistrustReason::behind_wall>(
+      {"",
+       "move the robot into the mapped area",
+       "check for covered lenses, darkness and glare",
+       "drive on through mapped places",
+       "drive on: other parts of the map in view confirm the place",
+       "return to the mapped area, or extend the map (byre map --extend)",
+       "check light and lenses, and turn to things with texture",
+       "extend the map, as much has changed here",
+       "turn to things with texture in more of the image",
+       "approach mapped things, or drive on",
+       "drive on; if things were moved for good, extend the map",
+       "restart the camera's driver",
+       "check lens and exposure of the right camera",
+       "check whether the cameras are synchronised, swapped or displaced; calibrate them",
+       "calibrate the cameras",
+       "check for covered lenses and darkness; dead reckoning by wheels is usable for some metres only",
+       "clean the lens",
+       "replace the map file by a copy and load it again",
+       kImpossible,
+       kImpossible,
+       kImpossible,
+       kImpossible},
+      doubt);
+}
+
 std::string note_on_dirt(const Health& health) {
   const auto hidden = [](double share, const char* image) {
     return std::to_string(std::max(1L, std::lround(100.0 * share))) + " % of the " + image + " image";
