@@ -12,7 +12,7 @@ constexpr int kRooms = 11;
 constexpr int kKeyframesPerRoom = 91;
 
 // A map of one room: about 9,300 points, each keyframe with up to 1000 features.
-Map room_map(int room) {
+MapGraph room_map(int room) {
   SimulationOptions options;
   options.landmarks = 25000;
   options.room_size = {20.0, 16.0, 4.0};
@@ -22,7 +22,7 @@ Map room_map(int room) {
 }
 
 // Simulated features have no patches; adds them to features that define a point, as mapping stores them.
-std::shared_ptr<const Features> with_patches(const Map& map, KeyframeId id) {
+std::shared_ptr<const Features> with_patches(const MapGraph& map, KeyframeId id) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   std::vector<Patch> patches;
@@ -38,7 +38,7 @@ std::shared_ptr<const Features> with_patches(const Map& map, KeyframeId id) {
                                           to_vector(features.descriptors()), patches, patch_of_keypoint);
 }
 
-void add_room(const Map& room, MapParts& parts) {
+void add_room(const MapGraph& room, MapParts& parts) {
   const auto first_keyframe = static_cast<std::uint32_t>(parts.keyframes.size());
   const auto first_point = static_cast<std::uint32_t>(parts.points.size());
   for (const KeyframeId id : room.keyframe_ids()) {
@@ -69,7 +69,7 @@ const StoredMap& building() {
     made.vocabulary_checksum = 1;
     MapParts parts{{simulated_rig()}, {}, {}};
     for (int room = 0; room < kRooms; ++room) add_room(room_map(room), parts);
-    made.map = Map(Origin::offline, std::move(parts));
+    made.map = MapGraph(Origin::offline, std::move(parts));
     return made;
   }();
   return stored;

@@ -47,9 +47,9 @@ std::vector<Word> uneven_words(const Vocabulary& vocabulary, std::mt19937_64& ra
 }
 
 // A chain of keyframes, each of which shares a point with each of its five neighbours on either side.
-Map chain_of_keyframes(int count, const Vocabulary& vocabulary) {
+MapGraph chain_of_keyframes(int count, const Vocabulary& vocabulary) {
   constexpr int kNeighbours = 5;
-  Map map(Origin::offline);
+  MapGraph map(Origin::offline);
   map.add_rig({});
   std::mt19937_64 random(2);
   const auto features =
@@ -73,15 +73,15 @@ Map chain_of_keyframes(int count, const Vocabulary& vocabulary) {
 
 void index_a_map(benchmark::State& state) {
   const Vocabulary vocabulary = default_vocabulary();
-  const Map map = chain_of_keyframes(static_cast<int>(state.range(0)), vocabulary);
+  const MapGraph map = chain_of_keyframes(static_cast<int>(state.range(0)), vocabulary);
   for (auto _ : state) benchmark::DoNotOptimize(index_of(map, vocabulary).size());
 }
 BENCHMARK(index_a_map)->Unit(benchmark::kMillisecond)->Arg(1000);
 
 void query_places(benchmark::State& state) {
   const Vocabulary vocabulary = default_vocabulary();
-  const Map map = chain_of_keyframes(static_cast<int>(state.range(0)), vocabulary);
-  const Map online(Origin::online);
+  const MapGraph map = chain_of_keyframes(static_cast<int>(state.range(0)), vocabulary);
+  const MapGraph online(Origin::online);
   const MapView view(&map, online);
   const PlaceIndex index = index_of(map, vocabulary);
   std::mt19937_64 random(3);

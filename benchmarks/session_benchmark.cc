@@ -61,7 +61,7 @@ std::shared_ptr<const OfflineMap> map_of(int keyframes) {
   SimulatedMission building;
   building.rig = simulated_rig();
   for (int hall = 0; hall < keyframes / kKeyframesOfHall; ++hall) append(lap(hall, 1), hall, building);
-  Map map = true_map(building, 1, Origin::offline);
+  MapGraph map = true_map(building, 1, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
     map.set_words(id, vocabulary().words_of(*map.find_keyframe(id)->frame.features));
   }

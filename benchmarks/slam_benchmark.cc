@@ -18,7 +18,7 @@ void find_expected_points(benchmark::State& state) {
   SimulationOptions options;
   options.landmarks = 12000;
   const auto mission = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.5), options);
-  const Map map = true_map(mission, 2, Origin::online);  // map of the even frames; the search is in an odd frame
+  const MapGraph map = true_map(mission, 2, Origin::online);  // map of the even frames; the search is in an odd frame
   const MapView view(nullptr, map);
   constexpr int kFrame = 21;
   const Pose prediction_error{rotation_exp({0.003, 0.003, 0.003}), {0.01, 0.01, 0.01}};
@@ -37,7 +37,7 @@ BENCHMARK(find_expected_points)->Unit(benchmark::kMicrosecond);
 
 // A map of rendered images before mapping has processed its newest keyframe.
 struct UnfinishedMap {
-  Map map{Origin::online};
+  MapGraph map{Origin::online};
   KeyframeId newest;
 };
 
@@ -62,7 +62,7 @@ const UnfinishedMap& unfinished_map() {
     for (const auto& [time, pose] : circling_trajectory(kFrames, 10.0, 1.5, 0.2, calibration.body_from_left)) {
       session.process(extractor.extract(room.render(cameras, pose, time)).frame);
     }
-    const Map& map = session.map().online();
+    const MapGraph& map = session.map().online();
     return UnfinishedMap{map, map.keyframe_ids().back()};
   }();
   return unfinished;

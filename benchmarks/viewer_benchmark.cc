@@ -47,7 +47,7 @@ BENCHMARK(show_frame)->Unit(benchmark::kMicrosecond)->Iterations(5000);  // boun
 
 // Time of the map copy, once per second.
 void copy_map(benchmark::State& state) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   for (int i = 0; i < state.range(0); ++i) {
     MapPoint point;
     point.position_in_world = Eigen::Vector3d(i % 100, i / 100, 1.0);

@@ -33,10 +33,12 @@ PUBLIC = {
     "pose_hint.h": "geometry", "rig.h": "geometry", "trajectory.h": "geometry", "trajectory_error.h": "geometry",
     "trajectory_file.h": "geometry", "two_view_failure.h": "geometry",
     "features.h": "features", "floor_plan.h": "features", "image.h": "features", "image_condition.h": "features",
+    "plan_registration.h": "map",
     "body_motion.h": "odometry", "motion_warning.h": "odometry",
     "calibration_file.h": "io", "extrinsics_file.h": "io", "recording.h": "io",
-    "byre.h": "slam", "frame_cuts.h": "slam", "frame_report.h": "slam", "health.h": "slam", "session_event.h": "slam",
-    "slam.h": "slam", "state.h": "slam",
+    "frame_cuts.h": "slam", "frame_report.h": "slam", "health.h": "slam", "session_event.h": "slam",
+    "localisation_failure.h": "slam", "map.h": "slam", "slam.h": "slam", "state.h": "slam",
+    "byre.h": "playback", "colmap.h": "playback",
 }
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 EVERY_ROOM = frozenset(FLOOR)

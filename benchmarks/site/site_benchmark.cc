@@ -163,7 +163,7 @@ Calibration calibration_of(const OfflineMap& offline, const Recording& recording
 void measure_places(const OfflineMap& offline, Recording& recording, Use& use) {
   constexpr int kStride = 10;
   Extractor extractor(calibration_of(offline, recording), {});
-  const Map nothing_online(Origin::online);
+  const MapGraph nothing_online(Origin::online);
   const MapView view(&offline.map(), nothing_online);
   std::vector<double> queries, searches;
   for (int i = 0; i < recording.size(); i += kStride) {
@@ -206,7 +206,7 @@ void measure_frames(const Inputs& inputs, const std::shared_ptr<const OfflineMap
 // Uses a synthetic driven map, because the recording need not have a ground plane.
 void measure_ground(int keyframes, Use& use) {
   constexpr int kStands = 1000;
-  const Map field = driven_field(keyframes);
+  const MapGraph field = driven_field(keyframes);
   const ThreadStopwatch watch;
   const std::optional<DrivenGround> ground = DrivenGround::under(field);
   use.ground_seconds = watch.seconds();

@@ -20,7 +20,7 @@ Descriptor difference(const Descriptor& one, const Descriptor& other) {
 }
 
 // The first keyframes of a map and the points that they define.
-MapParts parts_of(const Map& map, std::uint32_t keyframes) {
+MapParts parts_of(const MapGraph& map, std::uint32_t keyframes) {
   MapParts parts{map.rigs(), {}, {}};
   std::vector<std::optional<PointId>> kept(static_cast<std::size_t>(map.point_count()));
   for (const PointId id : map.point_ids()) {
@@ -151,11 +151,11 @@ StoredMap tiled_map(const StoredMap& one, int keyframes, const Vocabulary& vocab
     append(std::move(tile), ground.place_of(copy), copy * duration, parts);
   }
   site.recordings.front().last_time += copies * duration;
-  site.map = Map(Origin::offline, std::move(parts));
+  site.map = MapGraph(Origin::offline, std::move(parts));
   return site;
 }
 
-Map driven_field(int keyframes) {
+MapGraph driven_field(int keyframes) {
   constexpr int kLane = 120;
   constexpr double kStep = 0.5;      // metres between keyframes
   constexpr double kBetween = 3.0;   // metres between lanes

@@ -13,6 +13,6 @@ namespace byre {
 StoredMap tiled_map(const StoredMap& one, int keyframes, const Vocabulary& vocabulary);
 
 // A map of poses only, of a robot that drives up and down the lanes of a field, with a keyframe every half metre.
-Map driven_field(int keyframes);
+MapGraph driven_field(int keyframes);
 
 }  // namespace byre

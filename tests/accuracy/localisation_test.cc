@@ -28,7 +28,7 @@ constexpr const char* kElsewhere = "vocabulary";
 
 // A map with words, ready for localisation.
 struct MappedPlace {
-  explicit MappedPlace(const Map& mapped) {
+  explicit MappedPlace(const MapGraph& mapped) {
     stored.map = offline_copy(mapped);
     add_words(stored, shipped_vocabulary());
     index = index_of(stored.map, shipped_vocabulary());
@@ -39,7 +39,7 @@ struct MappedPlace {
   }
 
   StoredMap stored;
-  Map nothing_online{Origin::online};
+  MapGraph nothing_online{Origin::online};
   PlaceIndex index{shipped_vocabulary()};
 };
 

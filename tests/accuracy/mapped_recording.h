@@ -18,7 +18,7 @@ struct MappedRecording {
   std::vector<Timestamp> frame_times;
   Trajectory causal;  // published poses
   Trajectory final;   // poses of all these frames after the last correction
-  Map map{Origin::online};
+  MapGraph map{Origin::online};
 };
 
 MappedRecording map_recording(const std::filesystem::path& folder, const FrameRange& range,

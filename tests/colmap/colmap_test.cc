@@ -57,7 +57,7 @@ void expect_same_positions(const ColmapModel& model, const ColmapModel& original
 }
 
 TEST_F(ColmapProgram, ReadsTheContentOfTheMapFromAnExportedModel) {
-  const Map map = load_map(folder_ / "room.byre").map;
+  const MapGraph map = load_map(folder_ / "room.byre").map;
   const std::vector<PointId> ids = map.point_ids();
   const auto points = std::ranges::count_if(ids, [&map](PointId id) { return map.observations(id).size() >= 2; });
   for (const std::string format : {"text", "binary"}) {
@@ -89,7 +89,7 @@ TEST_F(ColmapProgram, ReturnsAMapWithTheSamePositions) {
   require(imported);
   EXPECT_THAT(imported.output, HasSubstr("keyframes          6"));
 
-  const Map original = load_map(folder_ / "room.byre").map;
+  const MapGraph original = load_map(folder_ / "room.byre").map;
   const StoredMap stored = load_map(folder_ / "back.byre");
   EXPECT_EQ(stored.scale, MapScale::metric);
   ASSERT_EQ(stored.map.keyframe_count(), original.keyframe_count());

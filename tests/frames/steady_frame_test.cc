@@ -60,7 +60,7 @@ SimulatedMission lap(std::uint64_t noise_seed) {
 }
 
 TEST(SteadyFrame, OfAMissionAllocatesNothing) {
-  Map map = true_map(lap(1), 3, Origin::offline);
+  MapGraph map = true_map(lap(1), 3, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
     map.set_words(id, shipped_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
   }

@@ -74,7 +74,7 @@ class MapFrames {
 
 // A map and its refined calibration.
 struct BuiltMap {
-  Map map;
+  MapGraph map;
   std::optional<RefinedCalibration> refined{};
 };
 
@@ -142,13 +142,13 @@ StoredMap load_or_build(const MapRecipe& recipe) {
   return stored;
 }
 
-Similarity truth_from(const Map& map, const Trajectory& truth) {
+Similarity truth_from(const MapGraph& map, const Trajectory& truth) {
   const MapAlignment alignment = align_to_truth(keyframe_path(map), Scale::fixed, truth);
   if (alignment.poses == 0) throw InputError("map", "cannot be aligned to the truth of its recording");
   return alignment.truth_from_map;
 }
 
-AlignedMap with(Map map, const AlignedMap& aligned) {
+AlignedMap with(MapGraph map, const AlignedMap& aligned) {
   return {std::make_shared<const OfflineMap>(std::move(map), mission_vocabulary(), aligned.map->recordings()),
           aligned.truth_from_map};
 }
@@ -196,7 +196,7 @@ AlignedMap make_aligned_map(const MapRecipe& recipe) {
 }
 
 AlignedMap without_stretch(const AlignedMap& aligned, Timestamp from, Timestamp to) {
-  Map map = aligned.map->map();
+  MapGraph map = aligned.map->map();
   const std::vector<KeyframeId> keyframes = map.keyframe_ids();
   const Timestamp begin = map.find_keyframe(keyframes.front())->frame.time;
   const auto is_in_stretch = [&](KeyframeId id) {
@@ -216,7 +216,7 @@ AlignedMap without_stretch(const AlignedMap& aligned, Timestamp from, Timestamp 
 }
 
 AlignedMap without_points(const AlignedMap& aligned, double share, std::uint64_t seed) {
-  Map map = aligned.map->map();
+  MapGraph map = aligned.map->map();
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> any(0.0, 1.0);
   for (const PointId id : map.point_ids()) {

@@ -23,7 +23,7 @@ Keyframe keyframe_with_features() {
   return keyframe;
 }
 
-PointId add_sighted_point(Map& map, const Observation& seen) {
+PointId add_sighted_point(MapGraph& map, const Observation& seen) {
   MapPoint point;
   point.reference = seen;
   const PointId id = map.add_point(point);
@@ -47,7 +47,7 @@ class ForeignViews : public ::testing::Test {
 
   bool add(KeyframeId by, int feature, PointId point) { return online.add_foreign_view({{by, feature}, {point}}); }
 
-  Map online{Origin::online};
+  MapGraph online{Origin::online};
   KeyframeId keyframe;
   PointId first, second;
 };
@@ -80,7 +80,7 @@ TEST_F(ForeignViews, RejectContradictions) {
 }
 
 TEST_F(ForeignViews, AreRejectedByAnOfflineMap) {
-  Map offline(Origin::offline);
+  MapGraph offline(Origin::offline);
   const PointId point = add_sighted_point(offline, {offline.add_keyframe(keyframe_with_features()), 0});
   EXPECT_FALSE(offline.add_foreign_view({{{Origin::online, 0}, 0}, {point}}));
 }
@@ -103,7 +103,7 @@ TEST_F(ForeignViews, AreRemovable) {
 }
 
 TEST(FindFaults, ReportsAForeignViewWithInvalidValues) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   map.add_rig({});
   const PointId point = add_sighted_point(map, {map.add_keyframe(keyframe_with_features()), 0});
   map.add_foreign_view({{kOld, 0}, {point, {1.0f, 1.0f}, -1.0f}});
@@ -126,13 +126,13 @@ class StandaloneCopy : public ForeignViews {
     add({Origin::offline, 0}, 2, first);
   }
 
-  Map offline{Origin::offline};
+  MapGraph offline{Origin::offline};
   PointId seen;
   KeyframeId other;
 };
 
 TEST_F(StandaloneCopy, CopiesTheObservedOfflinePoints) {
-  const Map copy = standalone_copy({&offline, online});
+  const MapGraph copy = standalone_copy({&offline, online});
   ASSERT_EQ(copy.point_count(), 3);
   const PointId adopted = *copy.find_keyframe(other)->sightings[3].point;
   ASSERT_NE(copy.find_point(adopted), nullptr);
@@ -146,7 +146,7 @@ TEST_F(StandaloneCopy, CopiesTheObservedOfflinePoints) {
 }
 
 TEST_F(StandaloneCopy, HasNoReferencesToTheOtherMap) {
-  const Map copy = standalone_copy({&offline, online});
+  const MapGraph copy = standalone_copy({&offline, online});
   EXPECT_THAT(find_faults(copy), IsEmpty());
   EXPECT_THAT(copy.observations(seen), IsEmpty());
   EXPECT_THAT(copy.foreign_views(first), IsEmpty());

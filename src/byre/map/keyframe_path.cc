@@ -4,12 +4,12 @@
 
 namespace byre {
 
-Pose world_from_body(const Map& map, const Keyframe& keyframe) {
+Pose world_from_body(const MapGraph& map, const Keyframe& keyframe) {
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   return inverse(rig.body_from_camera * keyframe.camera_from_world);
 }
 
-Trajectory keyframe_path(const Map& map) {
+Trajectory keyframe_path(const MapGraph& map) {
   Trajectory path;
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.keyframe_header(id);

@@ -8,7 +8,7 @@ namespace {
 TEST(KeyframePath, ReturnsBodyPositionsInOrderOfTime) {
   const Pose body_from_camera{rotation_exp({0.1, 0.2, 0.3}), {0.4, 0.5, 0.6}};
   const Pose world_from_camera{rotation_exp({0.0, 0.0, 1.0}), {1.0, 2.0, 3.0}};
-  Map map(Origin::offline);
+  MapGraph map(Origin::offline);
   Rig rig;
   rig.body_from_camera = body_from_camera;
   map.add_rig(rig);

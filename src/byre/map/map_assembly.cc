@@ -1,13 +1,13 @@
 // Construction of a map from all its parts, with all derived data computed at once.
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace byre {
 
-Map::Map(Origin origin, MapParts parts)
+MapGraph::MapGraph(Origin origin, MapParts parts)
     : origin_(origin),
       rigs_(std::move(parts.rigs)),
       points_(parts.points.size()),
@@ -27,7 +27,8 @@ Map::Map(Origin origin, MapParts parts)
   count_covisible_keyframes();
 }
 
-Map::Map(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count, std::shared_ptr<const MapSource> source)
+MapGraph::MapGraph(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count,
+                   std::shared_ptr<const MapSource> source)
     : origin_(Origin::offline),
       rigs_(std::move(rigs)),
       source_(std::move(source)),
@@ -37,18 +38,18 @@ Map::Map(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count, 
   for (Keyframe& header : headers) keyframes_.emplace_back().edit().keyframe = std::move(header);
 }
 
-void Map::read_from_source() {
+void MapGraph::read_from_source() {
   MapParts parts{rigs_, {}, {}};
   parts.keyframes.reserve(keyframes_.size());
   parts.points.reserve(static_cast<std::size_t>(point_count_));
   for (const KeyframeId id : keyframe_ids()) parts.keyframes.push_back(*find_keyframe(id));
   for (const PointId id : point_ids()) parts.points.push_back(*find_point(id));
   if (const InputError* const fault = damage()) throw InputError(*fault);
-  *this = Map(origin_, std::move(parts));
+  *this = MapGraph(origin_, std::move(parts));
 }
 
 // Keyframes are in ascending order, so the observations of a point are too.
-void Map::collect_observations() {
+void MapGraph::collect_observations() {
   std::vector<std::size_t> observers(points_.size(), 0);
   for (const Shared<KeyframeSlot>& keyframe_slot : keyframes_) {
     for (const Sighting& sighting : keyframe_slot->keyframe->sightings) {
@@ -65,7 +66,7 @@ void Map::collect_observations() {
   }
 }
 
-void Map::count_covisible_keyframes() {
+void MapGraph::count_covisible_keyframes() {
   std::vector<int> shared_points(keyframes_.size(), 0);
   std::vector<std::uint32_t> seen;  // keyframes with a non-zero count
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {

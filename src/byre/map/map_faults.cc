@@ -1,4 +1,4 @@
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/map/map_values.h"
 
 #include <algorithm>
@@ -27,16 +27,16 @@ bool is_sound(const Pose& pose) {
   return pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1.0) < kTolerance;
 }
 
-bool is_observed(const Map& map, PointId point, const Observation& observation) {
+bool is_observed(const MapGraph& map, PointId point, const Observation& observation) {
   return std::ranges::binary_search(map.observations(point), observation);
 }
 
 // If every parent precedes its child, the parents form trees.
-bool is_parent_sound(const Map& map, KeyframeId id, const Keyframe& keyframe) {
+bool is_parent_sound(const MapGraph& map, KeyframeId id, const Keyframe& keyframe) {
   return !keyframe.parent || (*keyframe.parent < id && map.find_keyframe(*keyframe.parent));
 }
 
-void check_sightings(const Map& map, KeyframeId id, const Keyframe& keyframe, Faults& faults) {
+void check_sightings(const MapGraph& map, KeyframeId id, const Keyframe& keyframe, Faults& faults) {
   const std::size_t feature_count = keyframe.frame.features ? keyframe.frame.features->keypoints().size() : 0;
   if (keyframe.sightings.size() != feature_count)
     faults.push_back(name_of(id) + " does not have one sighting per feature");
@@ -51,7 +51,7 @@ void check_sightings(const Map& map, KeyframeId id, const Keyframe& keyframe, Fa
   }
 }
 
-void check_keyframe(const Map& map, KeyframeId id, Faults& faults) {
+void check_keyframe(const MapGraph& map, KeyframeId id, Faults& faults) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   if (keyframe.rig < 0 || static_cast<std::size_t>(keyframe.rig) >= map.rigs().size()) {
     faults.push_back(name_of(id) + " has no rig");
@@ -62,7 +62,7 @@ void check_keyframe(const Map& map, KeyframeId id, Faults& faults) {
 }
 
 // Checks both ends of every observation of a point of this map or of an offline one.
-void check_observations(const Map& map, PointId id, Faults& faults) {
+void check_observations(const MapGraph& map, PointId id, Faults& faults) {
   const std::vector<Observation>& observations = map.observations(id);
   const auto by_keyframe = [](const Observation& a, const Observation& b) { return a.keyframe >= b.keyframe; };
   if (std::ranges::adjacent_find(observations, by_keyframe) != observations.end()) {
@@ -77,7 +77,7 @@ void check_observations(const Map& map, PointId id, Faults& faults) {
   }
 }
 
-void check_foreign_views(const Map& map, PointId id, Faults& faults) {
+void check_foreign_views(const MapGraph& map, PointId id, Faults& faults) {
   const std::vector<ForeignView>& views = map.foreign_views(id);
   const auto by_keyframe = [](const ForeignView& a, const ForeignView& b) {
     return a.observation.keyframe >= b.observation.keyframe;
@@ -95,7 +95,7 @@ void check_foreign_views(const Map& map, PointId id, Faults& faults) {
   }
 }
 
-void check_point(const Map& map, PointId id, Faults& faults) {
+void check_point(const MapGraph& map, PointId id, Faults& faults) {
   const MapPoint& point = *map.find_point(id);
   if (map.observations(id).empty()) faults.push_back(name_of(id) + " is not observed by any keyframe");
   if (!is_observed(map, id, point.reference))
@@ -110,7 +110,7 @@ void check_point(const Map& map, PointId id, Faults& faults) {
   check_foreign_views(map, id, faults);
 }
 
-std::set<PointId> points_seen_from(const Map& map, KeyframeId id) {
+std::set<PointId> points_seen_from(const MapGraph& map, KeyframeId id) {
   std::set<PointId> points;
   for (const Sighting& sighting : map.find_keyframe(id)->sightings) {
     if (sighting.point) points.insert(*sighting.point);
@@ -118,7 +118,7 @@ std::set<PointId> points_seen_from(const Map& map, KeyframeId id) {
   return points;
 }
 
-void check_covisibility(const Map& map, KeyframeId id, Faults& faults) {
+void check_covisibility(const MapGraph& map, KeyframeId id, Faults& faults) {
   std::map<KeyframeId, int> counted;
   for (const PointId point : points_seen_from(map, id)) {
     for (const Observation& observation : map.observations(point)) ++counted[observation.keyframe];
@@ -131,7 +131,7 @@ void check_covisibility(const Map& map, KeyframeId id, Faults& faults) {
   if (counted != maintained) faults.push_back(name_of(id) + " has wrong counts of covisible keyframes");
 }
 
-std::set<PointId> foreign_points(const Map& map) {
+std::set<PointId> foreign_points(const MapGraph& map) {
   std::set<PointId> foreign;
   for (const KeyframeId id : map.keyframe_ids()) {
     for (const PointId point : points_seen_from(map, id)) {
@@ -143,7 +143,7 @@ std::set<PointId> foreign_points(const Map& map) {
 
 }  // namespace
 
-std::vector<std::string> find_faults(const Map& map) {
+std::vector<std::string> find_faults(const MapGraph& map) {
   Faults faults;
   const std::vector<KeyframeId> keyframes = map.keyframe_ids();
   const std::vector<PointId> points = map.point_ids();

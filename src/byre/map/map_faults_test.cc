@@ -1,6 +1,6 @@
 // Faults that callers can cause: invalid values. The map itself keeps links between its parts valid.
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <functional>
 #include <limits>
@@ -23,14 +23,14 @@ Keyframe sound_keyframe() {
 }
 
 std::vector<std::string> faults_of(const Keyframe& keyframe) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   map.add_rig({});
   map.add_keyframe(keyframe);
   return find_faults(map);
 }
 
 std::vector<std::string> faults_of_point(const std::function<void(MapPoint&)>& spoil) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   map.add_rig({});
   const KeyframeId keyframe = map.add_keyframe(sound_keyframe());
   MapPoint point;
@@ -41,7 +41,7 @@ std::vector<std::string> faults_of_point(const std::function<void(MapPoint&)>& s
 }
 
 TEST(FindFaults, AcceptsASoundMap) {
-  EXPECT_THAT(find_faults(Map(Origin::online)), IsEmpty());
+  EXPECT_THAT(find_faults(MapGraph(Origin::online)), IsEmpty());
   EXPECT_THAT(faults_of(sound_keyframe()), IsEmpty());
   EXPECT_THAT(faults_of_point([](MapPoint&) {}), IsEmpty());
 }
@@ -68,7 +68,7 @@ TEST(FindFaults, ReportsMoreSightingsThanFeatures) {
 }
 
 TEST(FindFaults, ReportsAnUnobservedPoint) {
-  Map map(Origin::offline);
+  MapGraph map(Origin::offline);
   map.add_point({});
   EXPECT_THAT(find_faults(map), Contains("point offline 0 is not observed by any keyframe"));
 }

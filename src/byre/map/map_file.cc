@@ -354,7 +354,7 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
              parts.keyframes, sizes);
   parts.points = std::move(points.points);
   stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes, sizes);
-  stored.map = Map(Origin::offline, std::move(parts));
+  stored.map = MapGraph(Origin::offline, std::move(parts));
   read_rest(open, stored);
 
   ByteReader summary = open(kSummary);
@@ -385,8 +385,8 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
   file.point_count = static_cast<std::uint32_t>(summary.points);
   file.rigs = parts.rigs;
   file.words = head;
-  stored.map = Map(std::move(parts.rigs), std::move(parts.keyframes), static_cast<int>(summary.points),
-                   std::make_shared<const MapFileSource>(std::move(file), std::move(lookup)));
+  stored.map = MapGraph(std::move(parts.rigs), std::move(parts.keyframes), static_cast<int>(summary.points),
+                        std::make_shared<const MapFileSource>(std::move(file), std::move(lookup)));
   read_rest(open, stored);
   return stored;
 }

@@ -2,8 +2,8 @@
 
 #include "byre/base/byte_stream.h"
 #include "byre/geometry/calibration_change.h"
-#include "byre/map/map.h"
-#include "byre/map/plan_registration.h"
+#include "byre/map/map_graph.h"
+#include "byre/plan_registration.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -54,7 +54,7 @@ enum class PoseSource : std::uint8_t {
 
 // A map and the data stored with it. Its ids have origin offline and no gaps.
 struct StoredMap {
-  Map map{Origin::offline};
+  MapGraph map{Origin::offline};
   std::vector<SourceRecording> recordings;  // indexed by Keyframe::recording
   MapScale scale = MapScale::metric;
   PoseSource pose_source = PoseSource::slam;
@@ -66,15 +66,15 @@ struct StoredMap {
 // Copy of a session's map for storage: ids become offline without gaps. Omits removed keyframes, sightings of another
 // map's points, features without a point, and patches that are no point's reference. Precondition: a map without
 // faults, with features for images of its rigs' size.
-Map offline_copy(const Map& online);
+MapGraph offline_copy(const MapGraph& online);
 // Consumes the map keyframe by keyframe, so that the two are never in memory together. Leaves it empty.
-Map offline_copy(Map&& online);
+MapGraph offline_copy(MapGraph&& online);
 
 // Copy with scaled camera poses, points and baselines: image positions and disparities of the points are unchanged. The
 // measured camera poses on the body are not scaled. Preconditions: ids without gaps, and a positive factor.
-Map scaled_copy(const Map& map, double factor);
+MapGraph scaled_copy(const MapGraph& map, double factor);
 
-// Faults of find_faults(Map) and of the other stored data.
+// Faults of find_faults(MapGraph) and of the other stored data.
 std::vector<std::string> find_faults(const StoredMap& stored);
 
 // Size of a section of a map file, or of its header, as listed by `byre inspect`.
@@ -96,7 +96,7 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
 // cannot be read back throws InputError and leaves the old file.
 StoredMap load_map(const std::filesystem::path& path);
 // Like read_map and load_map, but keyframes' features and sightings, and points, are read and checked on first access
-// (see Map), from a file that stays open. Checks all checksums at once only for files up to 32 MB, some thousand
+// (see MapGraph), from a file that stays open. Checks all checksums at once only for files up to 32 MB, some thousand
 // keyframes. read_at fills in bytes of the file from an offset, for several threads at once; its file is not checked
 // beforehand.
 StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& name);

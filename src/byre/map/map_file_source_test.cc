@@ -49,7 +49,7 @@ MapBytes scene_of_size(int keyframes, int features = 9) {
 }
 
 // Accesses all data. The sum is meaningless, but forces the access.
-double look_at_all(const Map& map) {
+double look_at_all(const MapGraph& map) {
   double sum = 0.0;
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.find_keyframe(id);
@@ -200,7 +200,7 @@ TEST(MapFileSource, ReplacesADamagedKeyframeByAnEmptyOne) {
     EXPECT_EQ(keyframe.frame.features->size(), static_cast<int>(keyframe.sightings.size()));
   }
   ASSERT_NE(opened.map.damage(), nullptr);
-  Map changed = opened.map;
+  MapGraph changed = opened.map;
   EXPECT_THROW(changed.remove_keyframe(opened.map.keyframe_ids().back()), InputError) << "a change reads all of it";
 }
 

@@ -226,7 +226,7 @@ TEST(MapFile, WritesANullFeatureSetAsAnEmptyOne) {
   MapParts parts = scene.parts();
   parts.keyframes.back().frame.features.reset();
   StoredMap stored = scene.stored();
-  stored.map = Map(Origin::offline, parts);
+  stored.map = MapGraph(Origin::offline, parts);
   EXPECT_EQ(write_map(stored), scene_bytes());
 }
 

@@ -39,7 +39,7 @@ StoredMap broken_map(const BrokenInvariant& broken) {
   StoredMap stored = scene.stored();
   MapParts parts = scene.parts();
   broken.break_it(stored, parts);
-  stored.map = Map(Origin::offline, parts);
+  stored.map = MapGraph(Origin::offline, parts);
   return stored;
 }
 
@@ -181,10 +181,10 @@ TEST(StoredMapFaults, ReportInvariantsThatAFileCannotViolate) {
   MapParts parts = scene.parts();
   parts.keyframes[2].covariance(0, 1) = 1.0;
   parts.points[3].covariance(0, 1) = 1.0;
-  stored.map = Map(Origin::offline, parts);
+  stored.map = MapGraph(Origin::offline, parts);
   EXPECT_THAT(find_faults(stored), AllOf(Contains("keyframe 2 has an asymmetric covariance"),
                                          Contains("point 3 has an asymmetric covariance")));
-  stored.map = Map(Origin::online);
+  stored.map = MapGraph(Origin::online);
   EXPECT_THAT(find_faults(stored), Contains("the map is not offline"));
   stored = scene.stored();
   stored.map.remove_point({Origin::offline, 0});
@@ -343,7 +343,7 @@ StoredMap crowd(std::uint32_t keyframes) {
   keyframe.sightings.push_back({PointId{Origin::offline, 0}, {1.0f, 1.0f}});
   parts.keyframes.assign(keyframes, keyframe);
   parts.points[0].reference = {{Origin::offline, 0}, 0};
-  stored.map = Map(Origin::offline, parts);
+  stored.map = MapGraph(Origin::offline, parts);
   return stored;
 }
 

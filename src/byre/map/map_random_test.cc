@@ -1,6 +1,6 @@
 // Compares the map with a naive model that recomputes the data that the map maintains.
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <limits>
 #include <map>
@@ -96,7 +96,7 @@ class RandomOperations {
     remove_keyframe();
   }
 
-  Map map{Origin::online};
+  MapGraph map{Origin::online};
   Model model;
 
  private:
@@ -176,7 +176,7 @@ class RandomOperations {
   std::uint32_t points_ = 0;
 };
 
-void expect_same_keyframes(const Map& map, const Model& model) {
+void expect_same_keyframes(const MapGraph& map, const Model& model) {
   ASSERT_EQ(static_cast<std::size_t>(map.keyframe_count()), model.parents.size());
   for (const auto& [id, parent] : model.parents) {
     const Keyframe* keyframe = map.find_keyframe(id);
@@ -191,7 +191,7 @@ void expect_same_keyframes(const Map& map, const Model& model) {
   }
 }
 
-void expect_same_points(const Map& map, const Model& model) {
+void expect_same_points(const MapGraph& map, const Model& model) {
   ASSERT_EQ(static_cast<std::size_t>(map.point_count()), model.references.size());
   for (const auto& [id, reference] : model.references) {
     ASSERT_NE(map.find_point(id), nullptr);
@@ -203,7 +203,7 @@ void expect_same_points(const Map& map, const Model& model) {
   }
 }
 
-void expect_same_covisibility(const Map& map, const Model& model) {
+void expect_same_covisibility(const MapGraph& map, const Model& model) {
   for (const auto& [id, parent] : model.parents) {
     std::vector<std::pair<KeyframeId, int>> maintained;
     for (const auto& [keyframe, shared] : map.covisible_keyframes(id, std::numeric_limits<int>::max())) {
@@ -234,7 +234,7 @@ TEST_P(MapUnderRandomOperations, LeavesItsCopies) {
   for (int i = 0; i < 10 && !HasFailure(); ++i) {
     SCOPED_TRACE("copy " + std::to_string(i));
     for (int step = 0; step < 50; ++step) operations.step();
-    const Map copy = operations.map;
+    const MapGraph copy = operations.map;
     const Model model = operations.model;
     for (int step = 0; step < 50; ++step) operations.step();
     expect_same_keyframes(copy, model);

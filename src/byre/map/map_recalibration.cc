@@ -1,5 +1,5 @@
 #include "byre/features/recalibrated.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <algorithm>
 #include <utility>
@@ -24,7 +24,7 @@ void recalibrate(Keyframe& keyframe, const RectifiedChange& change, const Recali
 
 }  // namespace
 
-void Map::move_features(KeyframeId id, Features moved) {
+void MapGraph::move_features(KeyframeId id, Features moved) {
   read_all();
   if (find_own_keyframe(id) == nullptr) return;
   Keyframe& keyframe = edit_keyframe(id);
@@ -35,12 +35,12 @@ void Map::move_features(KeyframeId id, Features moved) {
   keyframe.frame.features = std::make_shared<const Features>(std::move(moved));
 }
 
-void Map::replace_features(KeyframeId id, std::shared_ptr<const Features> equal) {
+void MapGraph::replace_features(KeyframeId id, std::shared_ptr<const Features> equal) {
   read_all();
   if (find_own_keyframe(id) != nullptr) edit_keyframe(id).frame.features = std::move(equal);
 }
 
-void Map::keep_patches(KeyframeId id, std::span<const int> features) {
+void MapGraph::keep_patches(KeyframeId id, std::span<const int> features) {
   read_all();
   const Keyframe* const keyframe = find_own_keyframe(id);
   if (keyframe == nullptr || !keyframe->frame.features) return;
@@ -48,11 +48,11 @@ void Map::keep_patches(KeyframeId id, std::span<const int> features) {
       std::make_shared<const Features>(keyframe->frame.features->with_patches_of(features));
 }
 
-int Map::rig_of(KeyframeId id) const {
+int MapGraph::rig_of(KeyframeId id) const {
   return slot(id).keyframe ? slot(id).keyframe->rig : slot(id).removed->rig;
 }
 
-void Map::recalibrate(int rig, const RectifiedChange& change, std::span<const RecalibratedFeatures> made) {
+void MapGraph::recalibrate(int rig, const RectifiedChange& change, std::span<const RecalibratedFeatures> made) {
   read_all();
   const auto made_of = [&](std::size_t number) {
     const KeyframeId id{origin_, static_cast<std::uint32_t>(number)};

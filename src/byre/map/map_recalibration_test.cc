@@ -1,5 +1,5 @@
 #include "byre/features/recalibrated.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <array>
 #include <cmath>
@@ -37,7 +37,7 @@ class RecalibratedKeyframes : public ::testing::Test {
   float moved(float column) const { return recalibrated(Eigen::Vector2f(column, 240.0f), change_).x(); }
 
   const RectifiedChange change_{camera(0.0), camera(0.05)};
-  Map map_{Origin::online};
+  MapGraph map_{Origin::online};
   int rig_ = 0;
 };
 

@@ -67,7 +67,7 @@ void write_observers(const std::vector<Observation>& observations, ByteWriter& w
   }
 }
 
-void write_covisible(const Map& map, KeyframeId id, ByteWriter& writer) {
+void write_covisible(const MapGraph& map, KeyframeId id, ByteWriter& writer) {
   ScratchVector<Covisible> all = map.covisible_keyframes(id, std::numeric_limits<int>::max());
   std::ranges::sort(all, {}, &Covisible::keyframe);
   writer.write_varint(static_cast<std::uint32_t>(all.size()));
@@ -93,7 +93,7 @@ class PartTaker {
   Bytes rest_;
 };
 
-void write_keyframe_parts(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& lookup,
+void write_keyframe_parts(const MapGraph& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& lookup,
                           ByteWriter& covisible) {
   std::vector<PartTaker> takers(sections.views.begin(), sections.views.end());
   takers[kWordsOfView].take(kWordsHeadBytes);
@@ -112,7 +112,7 @@ void write_keyframe_parts(const Map& map, const PartSizes& sizes, const PartSect
   }
 }
 
-void write_point_blocks(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& lookup,
+void write_point_blocks(const MapGraph& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& lookup,
                         ByteWriter& observers) {
   const auto point_count = static_cast<std::uint32_t>(map.point_count());
   PartTaker points(sections.points);
@@ -144,7 +144,7 @@ void require_bytes(ByteReader reader, Bytes expected, std::string_view fault) {
 
 }  // namespace
 
-void write_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& observers,
+void write_lookup(const MapGraph& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& observers,
                   ByteWriter& lookup) {
   ByteWriter covisible;
   write_keyframe_parts(map, sizes, sections, lookup, covisible);
@@ -152,7 +152,7 @@ void write_lookup(const Map& map, const PartSizes& sizes, const PartSections& se
   lookup.write_bytes(covisible.bytes());
 }
 
-void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteReader observers,
+void require_lookup(const MapGraph& map, const PartSizes& sizes, const PartSections& sections, ByteReader observers,
                     ByteReader lookup) {
   ByteWriter expected_observers, expected_lookup;
   write_lookup(map, sizes, sections, expected_observers, expected_lookup);

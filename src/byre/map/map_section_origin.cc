@@ -84,13 +84,13 @@ Rig read_rig(ByteReader& reader) {
 
 }  // namespace
 
-Keyframes keyframes_of(const Map& map) {
+Keyframes keyframes_of(const MapGraph& map) {
   Keyframes keyframes;
   for (const KeyframeId id : map.keyframe_ids()) keyframes.push_back(map.find_keyframe(id));
   return keyframes;
 }
 
-MapSummary summarise(const Map& map) {
+MapSummary summarise(const MapGraph& map) {
   MapSummary summary;
   summary.keyframes = static_cast<std::uint64_t>(map.keyframe_count());
   summary.points = static_cast<std::uint64_t>(map.point_count());

@@ -32,7 +32,7 @@ void write_point(const MapPoint& point, std::uint32_t reference, ByteWriter& wri
 
 }  // namespace
 
-void write_points(const Map& map, ByteWriter& writer, PartSizes& sizes) {
+void write_points(const MapGraph& map, ByteWriter& writer, PartSizes& sizes) {
   writer.write(static_cast<std::uint32_t>(map.point_count()));
   for (const PointId id : map.point_ids()) {
     const std::size_t begin = writer.size();

@@ -28,7 +28,7 @@ void write_keypoint(const Keypoint& keypoint, std::uint8_t bits, const Rig& rig,
   writer.write(sigma_code(keypoint.disparity_sigma));
 }
 
-void write_descriptors(const Map& map, const Keyframe& keyframe, ByteWriter& writer) {
+void write_descriptors(const MapGraph& map, const Keyframe& keyframe, ByteWriter& writer) {
   const std::span<const Descriptor> descriptors = features_of(keyframe).descriptors();
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     const std::optional<PointId>& point = keyframe.sightings[i].point;
@@ -74,7 +74,7 @@ const Features& features_of(const Keyframe& keyframe) {
   return keyframe.frame.features ? *keyframe.frame.features : kNone;
 }
 
-void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes) {
+void write_views(const MapGraph& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes) {
   sizes.views.reserve(keyframes.size());
   for (const Keyframe* const keyframe : keyframes) {
     const ViewSizes before = written(sections);

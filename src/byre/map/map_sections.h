@@ -16,7 +16,7 @@ namespace byre {
 // InputError for invalid values and for bytes that no writer produces, so that reading and writing reproduces the file.
 
 using Keyframes = std::vector<const Keyframe*>;  // all keyframes of a map, by number
-Keyframes keyframes_of(const Map& map);
+Keyframes keyframes_of(const MapGraph& map);
 
 // Features of a keyframe; empty features for a keyframe without any.
 const Features& features_of(const Keyframe& keyframe);
@@ -30,7 +30,7 @@ struct MapSummary {
   std::uint64_t patches = 0;
   bool operator==(const MapSummary&) const = default;
 };
-MapSummary summarise(const Map& map);
+MapSummary summarise(const MapGraph& map);
 void write_summary(const MapSummary& summary, ByteWriter& writer);
 MapSummary read_summary(ByteReader reader);
 
@@ -70,7 +70,7 @@ struct PartSizes {
 };
 
 // Rounded to quanta. Of the calls that fill in sizes, points come first and words last.
-void write_points(const Map& map, ByteWriter& writer, PartSizes& sizes);
+void write_points(const MapGraph& map, ByteWriter& writer, PartSizes& sizes);
 struct RoundedPoints {
   std::vector<MapPoint> points;           // without references
   std::vector<std::uint32_t> references;  // per point: which of its observations is the reference, from 0
@@ -86,7 +86,7 @@ struct ViewWriters {
 struct ViewSections {
   ByteReader features, patches, observations, descriptors;
 };
-void write_views(const Map& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes);
+void write_views(const MapGraph& map, const Keyframes& keyframes, ViewWriters& sections, PartSizes& sizes);
 // Sets the features and sightings of the keyframes, and the references of the points.
 void read_views(const ViewSections& sections, RoundedPoints& points, const std::vector<Rig>& rigs,
                 std::vector<Keyframe>& keyframes, PartSizes& sizes);
@@ -112,10 +112,10 @@ struct PartSections {
   std::array<std::span<const std::byte>, kViewSections> views;
   std::span<const std::byte> points;
 };
-void write_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& observers,
+void write_lookup(const MapGraph& map, const PartSizes& sizes, const PartSections& sections, ByteWriter& observers,
                   ByteWriter& lookup);
 // Fails if the sections do not match the contents of the others.
-void require_lookup(const Map& map, const PartSizes& sizes, const PartSections& sections, ByteReader observers,
+void require_lookup(const MapGraph& map, const PartSizes& sizes, const PartSections& sections, ByteReader observers,
                     ByteReader lookup);
 
 // Location of a part in its section, bytes.

@@ -3,17 +3,17 @@
 namespace byre {
 
 const MapPoint* MapView::find_point(PointId id) const {
-  const Map* map = of(id.origin);
+  const MapGraph* map = of(id.origin);
   return map ? map->find_point(id) : nullptr;
 }
 
 const Keyframe* MapView::find_keyframe(KeyframeId id) const {
-  const Map* map = of(id.origin);
+  const MapGraph* map = of(id.origin);
   return map ? map->find_keyframe(id) : nullptr;
 }
 
 const Keyframe* MapView::keyframe_header(KeyframeId id) const {
-  const Map* map = of(id.origin);
+  const MapGraph* map = of(id.origin);
   return map ? map->keyframe_header(id) : nullptr;
 }
 
@@ -22,7 +22,7 @@ const Rig& MapView::rig_of(const Keyframe& keyframe, KeyframeId id) const {
 }
 
 ScratchVector<Covisible> MapView::covisible_keyframes(KeyframeId id, int max_count) const {
-  const Map* const map = of(id.origin);
+  const MapGraph* const map = of(id.origin);
   return map == nullptr ? ScratchVector<Covisible>{} : map->covisible_keyframes(id, max_count);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <algorithm>
 #include <vector>
@@ -10,16 +10,16 @@ namespace byre {
 // Reads the offline and the online map as one. Borrows both; the offline map may be absent (nullptr).
 class MapView {
  public:
-  MapView(const Map* offline, const Map& online) : offline_(offline), online_(&online) {}
+  MapView(const MapGraph* offline, const MapGraph& online) : offline_(offline), online_(&online) {}
   // NOLINTNEXTLINE(google-explicit-constructor): an online map alone can be read wherever two can
-  MapView(const Map& online) : MapView(nullptr, online) {}
+  MapView(const MapGraph& online) : MapView(nullptr, online) {}
 
-  const Map* offline() const { return offline_; }
-  const Map& online() const { return *online_; }
+  const MapGraph* offline() const { return offline_; }
+  const MapGraph& online() const { return *online_; }
 
   const MapPoint* find_point(PointId id) const;          // nullptr if it does not exist
   const Keyframe* find_keyframe(KeyframeId id) const;    // nullptr if it does not exist
-  const Keyframe* keyframe_header(KeyframeId id) const;  // see Map
+  const Keyframe* keyframe_header(KeyframeId id) const;  // see MapGraph
   const Rig& rig_of(const Keyframe& keyframe, KeyframeId id) const;
 
   // Calls visit(observation) for every observation of the point by keyframes of both maps.
@@ -40,14 +40,14 @@ class MapView {
   ScratchVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
 
  private:
-  const Map* of(Origin origin) const { return origin == Origin::offline ? offline_ : online_; }
+  const MapGraph* of(Origin origin) const { return origin == Origin::offline ? offline_ : online_; }
 
-  const Map* offline_;
-  const Map* online_;
+  const MapGraph* offline_;
+  const MapGraph* online_;
 };
 
 // Copy of the online map that does not depend on the offline one. Offline points with online observations become its
 // own points, with their first online observation as reference; foreign views are omitted.
-Map standalone_copy(const MapView& map);
+MapGraph standalone_copy(const MapView& map);
 
 }  // namespace byre

@@ -29,7 +29,8 @@ class Renumbering {
 };
 
 // Features of a keyframe that are the reference of a point, ascending.
-std::vector<int> features_that_define_points(const Map& map, KeyframeId id, const std::vector<Sighting>& sightings) {
+std::vector<int> features_that_define_points(const MapGraph& map, KeyframeId id,
+                                             const std::vector<Sighting>& sightings) {
   std::vector<int> features;
   for (int i = 0; i < static_cast<int>(sightings.size()); ++i) {
     const std::optional<PointId>& point = sightings[static_cast<std::size_t>(i)].point;
@@ -96,8 +97,8 @@ Matrix symmetric(const Matrix& covariance) {
 }
 
 // take returns each keyframe, ascending. is_done is called when the map is no longer needed.
-Map made_offline(const Map& online, const std::function<Keyframe(KeyframeId)>& take,
-                 const std::function<void()>& is_done) {
+MapGraph made_offline(const MapGraph& online, const std::function<Keyframe(KeyframeId)>& take,
+                      const std::function<void()>& is_done) {
   const Renumbering<KeyframeId> keyframes(online.keyframe_ids());
   const Renumbering<PointId> points(online.point_ids());
   MapParts parts{online.rigs(), {}, {}};
@@ -122,20 +123,20 @@ Map made_offline(const Map& online, const std::function<Keyframe(KeyframeId)>& t
     parts.points.push_back(point);
   }
   is_done();
-  return Map(Origin::offline, std::move(parts));
+  return MapGraph(Origin::offline, std::move(parts));
 }
 
 }  // namespace
 
-Map offline_copy(const Map& online) {
+MapGraph offline_copy(const MapGraph& online) {
   return made_offline(
       online, [&online](KeyframeId id) { return *online.find_keyframe(id); }, [] {});
 }
 
-Map offline_copy(Map&& online) {
+MapGraph offline_copy(MapGraph&& online) {
   return made_offline(
       online, [&online](KeyframeId id) { return online.take_keyframe(id); },
-      [&online] { online = Map(online.origin()); });
+      [&online] { online = MapGraph(online.origin()); });
 }
 
 }  // namespace byre

@@ -40,11 +40,11 @@ class OfflineCopy : public testing::Test {
   static KeyframeId online_id(std::uint32_t number) { return {Origin::online, number}; }
 
   StoredMapScene scene_;
-  Map online_{Origin::online};
+  MapGraph online_{Origin::online};
 };
 
 TEST_F(OfflineCopy, KeepsNumbersOfAMapWithoutGaps) {
-  const Map copy = offline_copy(online_);
+  const MapGraph copy = offline_copy(online_);
   EXPECT_EQ(copy.origin(), Origin::offline);
   EXPECT_EQ(copy.keyframe_ids(), scene_.stored().map.keyframe_ids());
   EXPECT_EQ(copy.point_ids(), scene_.stored().map.point_ids());
@@ -68,7 +68,7 @@ TEST_F(OfflineCopy, ClosesGaps) {
   const Eigen::Vector3d second_point = online_.find_point({Origin::online, 1})->position_in_world;
   const Timestamp third_time = online_.find_keyframe(online_id(2))->frame.time;
 
-  const Map copy = offline_copy(online_);
+  const MapGraph copy = offline_copy(online_);
   StoredMap stored = scene_.stored();
   stored.map = copy;
   EXPECT_THAT(find_faults(stored), IsEmpty());
@@ -80,7 +80,7 @@ TEST_F(OfflineCopy, ClosesGaps) {
 }
 
 TEST_F(OfflineCopy, KeepsFeaturesOfPointsAndPatchesOfReferences) {
-  const Map copy = offline_copy(online_);
+  const MapGraph copy = offline_copy(online_);
   int patches = 0;
   for (const KeyframeId id : copy.keyframe_ids()) {
     const Keyframe& keyframe = *copy.find_keyframe(id);
@@ -102,7 +102,7 @@ TEST_F(OfflineCopy, KeepsFeaturesOfPointsAndPatchesOfReferences) {
 }
 
 TEST_F(OfflineCopy, KeepsThePatchOfEveryReference) {
-  const Map copy = offline_copy(online_);
+  const MapGraph copy = offline_copy(online_);
   for (const PointId id : copy.point_ids()) {
     const auto& [keyframe, feature] = copy.find_point(id)->reference;
     const Patch* const original = scene_.stored().map.find_keyframe(keyframe)->frame.features->find_patch(feature);
@@ -118,7 +118,7 @@ TEST_F(OfflineCopy, DropsSightingsOfAnotherMap) {
   const KeyframeId watcher = online_id(static_cast<std::uint32_t>(online_.keyframe_count()) - 2);
   const auto free_feature = static_cast<int>(online_.find_keyframe(watcher)->sightings.size()) - 1;
   ASSERT_TRUE(online_.add_observation({watcher, free_feature}, {PointId{Origin::offline, 7}, {1.0f, 2.0f}}));
-  const Map copy = offline_copy(online_);
+  const MapGraph copy = offline_copy(online_);
   EXPECT_EQ(copy.find_keyframe(keyframe_id(watcher.number))->frame.features->size(), free_feature);
   EXPECT_THAT(find_faults(copy), IsEmpty());
 }

@@ -1,4 +1,4 @@
-#include "byre/map/plan_registration.h"
+#include "byre/plan_registration.h"
 
 namespace byre {
 

@@ -30,7 +30,7 @@ Calibration scaled(const Calibration& calibration, double factor) {
   return scaled;
 }
 
-Map scaled_copy(const Map& map, double factor) {
+MapGraph scaled_copy(const MapGraph& map, double factor) {
   assert(factor > 0.0);
   MapParts parts{map.rigs(), {}, {}};
   for (Rig& rig : parts.rigs) rig.baseline *= factor;
@@ -58,7 +58,7 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
   return scaled;
 }
 
-void rescale(Map& map, double factor) {
+void rescale(MapGraph& map, double factor) {
   assert(factor > 0.0);
   for (KeyframeId id{map.origin(), 0}; map.living_ancestor(id); ++id.number) {
     const Keyframe* const keyframe = map.find_keyframe(id);

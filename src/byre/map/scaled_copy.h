@@ -8,12 +8,12 @@ namespace byre {
 // scaled. A monocular calibration is unchanged.
 Calibration scaled(const Calibration& calibration, double factor);
 
-// The map with scaled camera poses, see scaled_copy of a Map. Its registration on a floor plan is adapted. Recordings
-// keep their given calibrations, which identify the cameras; their refined ones get the scaled baseline.
+// The map with scaled camera poses, see scaled_copy of a MapGraph. Its registration on a floor plan is adapted.
+// Recordings keep their given calibrations, which identify the cameras; their refined ones get the scaled baseline.
 StoredMap scaled_copy(const StoredMap& stored, double factor);
 
 // Scales all lengths of a map, also of removed keyframes. Rigs are unchanged. Precondition: a positive factor.
-void rescale(Map& map, double factor);
+void rescale(MapGraph& map, double factor);
 
 // Ratio of the map's baseline to the given one of a stereo recording: 1 unless its scale was corrected. Also 1 for a
 // monocular recording and one without keyframes. Precondition: the recording exists.

@@ -28,7 +28,7 @@ TEST(ScaledCopy, KeepsAllProjections) {
   for (const PointId id : before.map.point_ids()) {
     for (const Observation& seen : before.map.observations(id)) {
       const auto rig = static_cast<std::size_t>(before.map.find_keyframe(seen.keyframe)->rig);
-      const auto in_camera = [&](const Map& map) {
+      const auto in_camera = [&](const MapGraph& map) {
         return map.camera_from_world(seen.keyframe) * map.find_point(id)->position_in_world;
       };
       if (std::abs(in_camera(before.map).z()) < 0.1) continue;
@@ -147,11 +147,11 @@ TEST(KnownCalibration, AppliesToTheSameCameraOnAnotherBody) {
 }
 
 TEST(Stretch, ScalesDistancesToRemovedKeyframesToo) {
-  Map map = consistent_map().map;
+  MapGraph map = consistent_map().map;
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   map.remove_keyframe(ids.back());
   ASSERT_EQ(map.keyframe_count(), static_cast<int>(ids.size()) - 1);
-  const Map before = map;
+  const MapGraph before = map;
   rescale(map, 2.0);
   for (const KeyframeId id : ids) {
     EXPECT_THAT(map.camera_from_world(id), PoseNear(scale_lengths(before.camera_from_world(id), 2.0), 1e-9, 1e-9));

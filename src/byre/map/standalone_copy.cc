@@ -21,7 +21,7 @@ std::vector<PointId> offline_points_seen(const MapView& map) {
 }
 
 // Replaces an offline point by a copy in `copy`, with its observations.
-void adopt(const MapPoint& offline, PointId offline_id, Map& copy) {
+void adopt(const MapPoint& offline, PointId offline_id, MapGraph& copy) {
   const std::vector<Observation> observers = copy.observations(offline_id);
   MapPoint adopted = offline;
   adopted.reference = observers.front();
@@ -35,7 +35,7 @@ void adopt(const MapPoint& offline, PointId offline_id, Map& copy) {
   }
 }
 
-void drop_foreign_views(Map& copy) {
+void drop_foreign_views(MapGraph& copy) {
   for (const PointId id : copy.point_ids()) {
     const std::vector<ForeignView> views = copy.foreign_views(id);
     for (const ForeignView& view : views) copy.remove_foreign_view(view.observation);
@@ -44,8 +44,8 @@ void drop_foreign_views(Map& copy) {
 
 }  // namespace
 
-Map standalone_copy(const MapView& map) {
-  Map copy = map.online();
+MapGraph standalone_copy(const MapView& map) {
+  MapGraph copy = map.online();
   for (const PointId id : offline_points_seen(map)) adopt(*map.find_point(id), id, copy);
   drop_foreign_views(copy);
   return copy;

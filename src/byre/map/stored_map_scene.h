@@ -28,7 +28,7 @@ class StoredMapScene {
     empty.sightings.clear();
     empty.words.clear();
     parts_.keyframes.push_back(empty);
-    stored_.map = Map(Origin::offline, parts_);
+    stored_.map = MapGraph(Origin::offline, parts_);
   }
 
   const StoredMap& stored() const { return stored_; }

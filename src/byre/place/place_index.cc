@@ -229,7 +229,7 @@ std::vector<PlaceMatch> PlaceIndex::query(const BagOfWords& query, int max_resul
   return matches;
 }
 
-PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary) {
+PlaceIndex index_of(const MapGraph& map, const Vocabulary& vocabulary) {
   PlaceIndex::WordsOfMap all;
   map.visit_words([&](KeyframeId id, std::span<const Word> known) {
     std::vector<Word> found;

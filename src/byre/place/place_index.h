@@ -51,7 +51,7 @@ class PlaceIndex {
  private:
   friend class PlaceGrouping;
   struct WordsOfMap;
-  friend PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary);
+  friend PlaceIndex index_of(const MapGraph& map, const Vocabulary& vocabulary);
 
   struct Posting {
     std::uint32_t slot = 0;
@@ -76,7 +76,7 @@ class PlaceIndex {
 };
 
 // Index of a map's keyframes by their words. Words of keyframes without stored words are computed from descriptors.
-PlaceIndex index_of(const Map& map, const Vocabulary& vocabulary);
+PlaceIndex index_of(const MapGraph& map, const Vocabulary& vocabulary);
 
 // The best places for the words of a frame, by descending group score. Each keyframe is in at most one group.
 std::vector<PlaceCandidate> find_places(const PlaceIndex& index, const MapView& map, std::span<const Word> words,

@@ -133,7 +133,7 @@ TEST_F(RandomIndex, IsIndependentOfTheOrderOfKeyframes) {
 }
 
 TEST_F(RandomIndex, IsBitIdenticalIfBuiltFromAWholeMap) {
-  Map map(Origin::offline);
+  MapGraph map(Origin::offline);
   map.add_rig({});
   for (const auto& [id, keyframe_words] : words) {
     Keyframe keyframe;
@@ -233,12 +233,12 @@ class TwoRooms : public testing::Test {
 
   std::vector<PlaceCandidate> places(const std::vector<Word>& words, const PlaceQueryOptions& options = {},
                                      const std::function<bool(KeyframeId)>& is_excluded = {}) const {
-    const Map online(Origin::online);
+    const MapGraph online(Origin::online);
     return find_places(index_of(map, vocabulary), MapView(&map, online), words, options, is_excluded);
   }
 
   const Vocabulary vocabulary = plain_vocabulary(8);
-  Map map{Origin::offline};
+  MapGraph map{Origin::offline};
   std::vector<KeyframeId> keyframes;
 };
 
@@ -360,12 +360,12 @@ class RowOfRooms : public testing::Test {
 
   std::mt19937_64 random{1};
   const Vocabulary vocabulary = random_vocabulary();
-  Map map{Origin::offline};
+  MapGraph map{Origin::offline};
 };
 
 TEST_F(RowOfRooms, ReturnsThePlacesOfAnExhaustiveSearch) {
   const PlaceIndex index = index_of(map, vocabulary);
-  const Map online(Origin::online);
+  const MapGraph online(Origin::online);
   const auto is_excluded = [](KeyframeId id) { return id.number % 7 == 3; };
   for (const PlaceQueryOptions& options :
        {PlaceQueryOptions{}, PlaceQueryOptions{.max_candidates = 3}, PlaceQueryOptions{.group_size = 1},

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/features.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <cstdint>
 #include <filesystem>

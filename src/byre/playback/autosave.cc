@@ -10,7 +10,7 @@ bool Autosave::is_saving() const {
   return saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
 }
 
-void Autosave::update(const Map& online, const std::function<StoredMap()>& metadata) {
+void Autosave::update(const MapGraph& online, const std::function<StoredMap()>& metadata) {
   if (since_last_.seconds() < interval_s_ || is_saving()) return;
   finish();
   since_last_ = {};

@@ -19,7 +19,7 @@ class Autosave {
   Autosave(double interval_s, Save save) : interval_s_(interval_s), save_(std::move(save)) {}
 
   // Call it after each frame. metadata: StoredMap without keyframes and points, evaluated only when saving.
-  void update(const Map& online, const std::function<StoredMap()>& metadata);
+  void update(const MapGraph& online, const std::function<StoredMap()>& metadata);
   void finish();  // waits for the thread
 
   int saved() const { return saved_; }                                    // number of saves

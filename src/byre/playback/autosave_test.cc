@@ -10,8 +10,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-Map map_of(int points) {
-  Map map(Origin::online);
+MapGraph map_of(int points) {
+  MapGraph map(Origin::online);
   for (int i = 0; i < points; ++i) map.add_point({});
   return map;
 }
@@ -23,7 +23,7 @@ StoredMap no_metadata() {
 TEST(Autosave, SavesTheMapAsOffered) {
   std::vector<int> saved;
   Autosave autosave(0.0, [&saved](const StoredMap& stored) { saved.push_back(stored.map.point_count()); });
-  Map map = map_of(1);
+  MapGraph map = map_of(1);
   autosave.update(map, no_metadata);
   map.add_point({});
   autosave.finish();

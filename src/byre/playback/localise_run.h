@@ -43,9 +43,9 @@ struct SearchableMap {
         index(index_of(stored.map, vocabulary)) {}
 
   bool is_metric;  // whether disparities are comparable with the map
-  const Map& map;
+  const MapGraph& map;
   const std::vector<SourceRecording>& recordings;
-  Map empty_online_map{Origin::online};
+  MapGraph empty_online_map{Origin::online};
   PlaceIndex index;
 
   MapView view() const { return {&map, empty_online_map}; }

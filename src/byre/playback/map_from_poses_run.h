@@ -18,7 +18,7 @@ struct PosedRunOptions {
 
 // Map made from a recording with given poses.
 struct PosedRun {
-  Map map{Origin::offline};
+  MapGraph map{Origin::offline};
   Trajectory trajectory;  // given poses of the keyframes
   int frames = 0;         // frames processed
   int without_pose = 0;   // frames skipped as the trajectory does not cover their time

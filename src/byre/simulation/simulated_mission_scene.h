@@ -2,7 +2,7 @@
 
 #include "byre/features.h"
 #include "byre/features/descriptor.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/rig.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
 
@@ -48,7 +48,7 @@ SimulatedMission simulate_mission(const Rig& rig, const Trajectory& truth, const
 
 // The map of an ideal mapping run with every n-th frame a keyframe: true poses, and at their true positions all
 // landmarks seen by two keyframes or by one with disparity.
-Map true_map(const SimulatedMission& mission, int frames_per_keyframe, Origin origin);
+MapGraph true_map(const SimulatedMission& mission, int frames_per_keyframe, Origin origin);
 // Helpers of the functions above.
 namespace simulated {
 
@@ -241,7 +241,7 @@ inline Pose camera_from_world_at(const SimulatedMission& mission, std::size_t fr
 }
 
 // Adds every n-th frame to the map as a keyframe without points. Returns the landmarks' observations.
-inline Tracks add_keyframes(Map& map, const SimulatedMission& mission, int frames_per_keyframe) {
+inline Tracks add_keyframes(MapGraph& map, const SimulatedMission& mission, int frames_per_keyframe) {
   Tracks tracks(mission.landmarks_in_world.size());
   std::optional<KeyframeId> parent;
   for (std::size_t i = 0; i < mission.frames.size(); i += static_cast<std::size_t>(frames_per_keyframe)) {
@@ -263,12 +263,12 @@ inline Tracks add_keyframes(Map& map, const SimulatedMission& mission, int frame
   return tracks;
 }
 
-inline const Features& features_of(const Map& map, const Observation& observation) {
+inline const Features& features_of(const MapGraph& map, const Observation& observation) {
   return *map.find_keyframe(observation.keyframe)->frame.features;
 }
 
 // Descriptor with the least Hamming distance to all others.
-inline Descriptor central_descriptor(const Map& map, const std::vector<Observation>& observations) {
+inline Descriptor central_descriptor(const MapGraph& map, const std::vector<Observation>& observations) {
   std::vector<Descriptor> descriptors;
   for (const Observation& seen : observations) descriptors.push_back(features_of(map, seen).descriptor(seen.feature));
   const auto distance_to_all = [&](const Descriptor& candidate) {
@@ -279,7 +279,7 @@ inline Descriptor central_descriptor(const Map& map, const std::vector<Observati
   return *std::ranges::min_element(descriptors, {}, distance_to_all);
 }
 
-inline MapPoint to_point(const Map& map, const Eigen::Vector3d& position_in_world,
+inline MapPoint to_point(const MapGraph& map, const Eigen::Vector3d& position_in_world,
                          const std::vector<Observation>& observations) {
   const auto ray_from = [&](const Observation& observation) -> Eigen::Vector3d {
     return position_in_world - inverse(map.camera_from_world(observation.keyframe)).translation;
@@ -298,13 +298,13 @@ inline MapPoint to_point(const Map& map, const Eigen::Vector3d& position_in_worl
   return point;
 }
 
-inline bool can_be_mapped(const Map& map, const std::vector<Observation>& observations) {
+inline bool can_be_mapped(const MapGraph& map, const std::vector<Observation>& observations) {
   return observations.size() > 1 || std::ranges::any_of(observations, [&](const Observation& observation) {
            return features_of(map, observation).keypoint(observation.feature).has_disparity();
          });
 }
 
-inline void add_landmark(Map& map, const Eigen::Vector3d& position_in_world,
+inline void add_landmark(MapGraph& map, const Eigen::Vector3d& position_in_world,
                          const std::vector<Observation>& observations) {
   const PointId id = map.add_point(to_point(map, position_in_world, observations));
   for (const Observation& observation : observations) {
@@ -337,8 +337,8 @@ inline SimulatedMission simulate_mission(const Rig& rig, const Trajectory& truth
   return mission;
 }
 
-inline Map true_map(const SimulatedMission& mission, int frames_per_keyframe, Origin origin) {
-  Map map(origin);
+inline MapGraph true_map(const SimulatedMission& mission, int frames_per_keyframe, Origin origin) {
+  MapGraph map(origin);
   map.add_rig(mission.rig);
   const simulated::Tracks tracks = simulated::add_keyframes(map, mission, frames_per_keyframe);
   for (std::size_t i = 0; i < tracks.size(); ++i) {

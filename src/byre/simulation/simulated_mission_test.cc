@@ -238,7 +238,7 @@ TEST(SimulateMission, DependsOnTheSeedsOnly) {
 
 TEST(TrueMap, IsValidAndTrue) {
   const SimulatedMission mission = simulate({});
-  const Map map = true_map(mission, 5, Origin::offline);
+  const MapGraph map = true_map(mission, 5, Origin::offline);
   EXPECT_THAT(find_faults(map), IsEmpty());
   EXPECT_EQ(map.keyframe_count(), 4);
   EXPECT_GT(map.point_count(), 150);
@@ -253,7 +253,7 @@ TEST(TrueMap, IsValidAndTrue) {
 }
 
 TEST(TrueMap, AttachesEveryKeyframeToThePreviousOne) {
-  const Map map = true_map(simulate({}), 5, Origin::online);
+  const MapGraph map = true_map(simulate({}), 5, Origin::online);
   const std::vector<KeyframeId> keyframes = map.keyframe_ids();
   EXPECT_EQ(map.find_keyframe(keyframes.front())->parent, std::nullopt);
   for (std::size_t i = 1; i < keyframes.size(); ++i) {
@@ -263,7 +263,7 @@ TEST(TrueMap, AttachesEveryKeyframeToThePreviousOne) {
 
 TEST(TrueMap, HasTheDistanceRangeOfEachPoint) {
   const SimulatedMission mission = simulate(without_noise());
-  const Map map = true_map(mission, 5, Origin::online);
+  const MapGraph map = true_map(mission, 5, Origin::online);
   for (const PointId id : map.point_ids()) {
     const MapPoint& point = *map.find_point(id);
     for (const Observation& observation : map.observations(id)) {
@@ -279,7 +279,7 @@ TEST(TrueMap, OmitsOutliersAndUnobservablePoints) {
   mono_rig.baseline = 0.0;
   SimulationOptions options;
   options.outlier_ratio = 0.3;
-  const Map map =
+  const MapGraph map =
       true_map(simulate_mission(mono_rig, circling_trajectory(20, 10.0, 2.0, 0.25), options), 5, Origin::online);
   EXPECT_THAT(find_faults(map), IsEmpty());
   for (const PointId id : map.point_ids()) EXPECT_GE(map.observations(id).size(), 2u);

@@ -28,7 +28,7 @@ Eigen::Vector3d direction_of(const DrivingPlane& plane) {
 }
 
 // Plane fitted to the positions; up is the world's z if the cameras do not determine it.
-DrivingPlane plane_of_places(const Map& map) {
+DrivingPlane plane_of_places(const MapGraph& map) {
   std::vector<Eigen::Vector3d> path;
   for (const KeyframeId id : map.keyframe_ids()) path.push_back(body_at(map, *map.find_keyframe(id)));
   return fit_driving_plane(std::move(path), Eigen::Vector3d::UnitZ());

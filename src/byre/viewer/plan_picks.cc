@@ -19,7 +19,7 @@ std::string without_separators(std::string name) {
   return name;
 }
 
-PlanPick parse_pick(const nlohmann::json& fields, const Map& map) {
+PlanPick parse_pick(const nlohmann::json& fields, const MapGraph& map) {
   PlanPick pick;
   pick.name = without_separators(fields.at("name").get<std::string>());
   pick.point = fields.at("point").get<std::uint32_t>();
@@ -33,7 +33,7 @@ PlanPick parse_pick(const nlohmann::json& fields, const Map& map) {
 
 }  // namespace
 
-std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map) {
+std::vector<PlanPick> parse_plan_picks(const std::string& json, const MapGraph& map) {
   try {
     const nlohmann::json fields = nlohmann::json::parse(json);
     std::vector<PlanPick> picks;

@@ -17,7 +17,7 @@ struct PlanPick {
 
 // Parses the page's JSON: {"picks": [{"name": "gate post", "point": 17, "plan": [12.4, 3.85]}]}. Commas and line breaks
 // in names become spaces. Throws InputError for other input, and for points missing in the map.
-std::vector<PlanPick> parse_plan_picks(const std::string& json, const Map& map);
+std::vector<PlanPick> parse_plan_picks(const std::string& json, const MapGraph& map);
 
 // Residual in metres that the user has accepted ("accepted_residual_m" in the JSON); default kLargePlanResidual.
 double accepted_residual(const std::string& json);

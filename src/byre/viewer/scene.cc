@@ -3,7 +3,7 @@
 namespace byre {
 namespace {
 
-void append(const Map& map, MapScene& scene) {
+void append(const MapGraph& map, MapScene& scene) {
   for (const PointId id : map.point_ids()) {
     scene.points.push_back({map.find_point(id)->position_in_world.cast<float>(), id.origin});
   }

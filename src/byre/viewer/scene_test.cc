@@ -17,8 +17,8 @@ Rig rig_ahead_of_the_body() {
 }
 
 // Map with one keyframe at the origin that observes one point.
-Map map_of_one_point(Origin origin, double depth) {
-  Map map(origin);
+MapGraph map_of_one_point(Origin origin, double depth) {
+  MapGraph map(origin);
   Keyframe keyframe;
   keyframe.frame.time = from_seconds(3.0);
   keyframe.frame.features = std::make_shared<const Features>(752, 480, std::vector<Keypoint>(1),
@@ -33,8 +33,8 @@ Map map_of_one_point(Origin origin, double depth) {
 }
 
 TEST(Scene, ContainsOfflineThenOnlinePoints) {
-  const Map offline = map_of_one_point(Origin::offline, 2.0);
-  const Map online = map_of_one_point(Origin::online, 3.0);
+  const MapGraph offline = map_of_one_point(Origin::offline, 2.0);
+  const MapGraph online = map_of_one_point(Origin::online, 3.0);
   const MapScene scene = scene_of({&offline, online});
   ASSERT_THAT(scene.points, SizeIs(2));
   EXPECT_EQ(scene.points[0].origin, Origin::offline);
@@ -44,7 +44,7 @@ TEST(Scene, ContainsOfflineThenOnlinePoints) {
 }
 
 TEST(Scene, PlacesKeyframesAtTheBody) {
-  const Map online = map_of_one_point(Origin::online, 2.0);
+  const MapGraph online = map_of_one_point(Origin::online, 2.0);
   const MapScene scene = scene_of(online);
   ASSERT_THAT(scene.keyframes, SizeIs(1));
   EXPECT_EQ(scene.keyframes[0].time, from_seconds(3.0));
@@ -52,7 +52,7 @@ TEST(Scene, PlacesKeyframesAtTheBody) {
 }
 
 TEST(Scene, IsEmptyForAnEmptyMap) {
-  const MapScene scene = scene_of(Map(Origin::online));
+  const MapScene scene = scene_of(MapGraph(Origin::online));
   EXPECT_THAT(scene.points, IsEmpty());
   EXPECT_THAT(scene.keyframes, IsEmpty());
 }

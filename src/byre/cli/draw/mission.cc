@@ -31,7 +31,7 @@ Slam make_slam(const DrawOptions& options, const Recording& recording) {
   return Slam::on_map(recording.calibration(), options.map_file(), slam_settings);
 }
 
-MapScene online_scene(const Map& mapped) {
+MapScene online_scene(const MapGraph& mapped) {
   MapScene online = scene_of(mapped);
   for (ScenePoint& point : online.points) point.origin = Origin::online;
   for (SceneKeyframe& keyframe : online.keyframes) keyframe.origin = Origin::online;

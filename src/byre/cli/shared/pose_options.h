@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/map/plan_registration.h"
+#include "byre/plan_registration.h"
 #include "byre/trajectory_file.h"
 
 #include <cstdint>

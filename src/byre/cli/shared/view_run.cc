@@ -27,7 +27,7 @@ RunDescription describe(const ViewOptions& options, const WatchedRun& run) {
   description.last_time = run.last_time;
   if (run.map) {
     description.map_name = run.map->filename().string();
-    description.offline = scene_of({&run.offline->map(), Map(Origin::online)});
+    description.offline = scene_of({&run.offline->map(), MapGraph(Origin::online)});
     if (const auto plane = fit_driving_plane(run.offline->map())) description.up_in_map = plane->up_in_map;
   }
   if (options.plan) {

@@ -92,7 +92,7 @@ DrivenGround::GroundOffset DrivenGround::offset_from_ground(const Pose& map_from
 }
 
 // Alternates between local planes, at first by the up direction of the whole path, and the attitude of bodies on them.
-std::optional<DrivenGround> DrivenGround::under(const Map& map) {
+std::optional<DrivenGround> DrivenGround::under(const MapGraph& map) {
   constexpr std::size_t kLeastPlaces = 20;
   constexpr double kLeastLength = 1.0;  // metres, standard deviation along the path's longest direction
   const std::optional<DrivingPlane> whole = fit_driving_plane(map);

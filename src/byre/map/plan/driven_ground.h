@@ -14,7 +14,7 @@ class DrivenGround {
  public:
   // Empty if the map was not driven: heights and tilts along its path vary as with a hand-held or flying camera, the
   // path is too short, or the up direction is unknown.
-  static std::optional<DrivenGround> under(const Map& map);
+  static std::optional<DrivenGround> under(const MapGraph& map);
 
   // A body relative to the ground nearest to it.
   struct GroundOffset {

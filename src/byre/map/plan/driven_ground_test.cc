@@ -95,7 +95,7 @@ TEST(DrivenGround, IsNotFoundForShortMaps) {
   path.resize(10);
   EXPECT_FALSE(DrivenGround::under(map_of(path)));
   EXPECT_FALSE(DrivenGround::under(map_of(std::vector<Pose>(40, path.front()))));
-  EXPECT_FALSE(DrivenGround::under(Map(Origin::offline)));
+  EXPECT_FALSE(DrivenGround::under(MapGraph(Origin::offline)));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 // Map of a body that drove along one lane and back along the other, for tests of the ground under it.
 
 #include "byre/geometry/degrees.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <algorithm>
 #include <chrono>
@@ -26,8 +26,8 @@ inline Rig looking_down() {
 // The map frame is rotated about all axes relative to a level frame with z up.
 inline const Pose kMapFromLevel{rotation_exp({0.4, -0.7, 1.1}), Eigen::Vector3d::Zero()};
 
-inline Map map_of(const std::vector<Pose>& level_from_body) {
-  Map map(Origin::offline);
+inline MapGraph map_of(const std::vector<Pose>& level_from_body) {
+  MapGraph map(Origin::offline);
   map.add_rig(looking_down());
   for (const Pose& body : level_from_body) {
     Keyframe keyframe;

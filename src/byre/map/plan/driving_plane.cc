@@ -61,12 +61,12 @@ DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const E
   return plane;
 }
 
-Eigen::Vector3d body_at(const Map& map, const Keyframe& keyframe) {
+Eigen::Vector3d body_at(const MapGraph& map, const Keyframe& keyframe) {
   const Pose& body_from_camera = map.rigs()[static_cast<std::size_t>(keyframe.rig)].body_from_camera;
   return (inverse(keyframe.camera_from_world) * inverse(body_from_camera)).translation;
 }
 
-std::optional<DrivingPlane> fit_driving_plane(const Map& map) {
+std::optional<DrivingPlane> fit_driving_plane(const MapGraph& map) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> path;
   for (const KeyframeId id : map.keyframe_ids()) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <optional>
 #include <vector>
@@ -28,8 +28,8 @@ struct DrivingPlane {
 DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map);
 
 // Path of the body in a map, with the mean up direction of its images. Empty without keyframes or a common attitude.
-std::optional<DrivingPlane> fit_driving_plane(const Map& map);
+std::optional<DrivingPlane> fit_driving_plane(const MapGraph& map);
 
-Eigen::Vector3d body_at(const Map& map, const Keyframe& keyframe);
+Eigen::Vector3d body_at(const MapGraph& map, const Keyframe& keyframe);
 
 }  // namespace byre

@@ -71,8 +71,8 @@ TEST(DrivingPlane, UsesTheBodyOfAMap) {
 }
 
 TEST(DrivingPlane, IsEmptyWithoutKeyframesOrUpDirection) {
-  EXPECT_FALSE(fit_driving_plane(Map(Origin::offline)).has_value());
-  Map map(Origin::offline);
+  EXPECT_FALSE(fit_driving_plane(MapGraph(Origin::offline)).has_value());
+  MapGraph map(Origin::offline);
   map.add_rig({});
   for (const double turn : {0.0, std::numbers::pi}) {
     Keyframe keyframe;

@@ -48,12 +48,12 @@ class FloorPlanScene {
   DrivingPlane plane() { return fit_driving_plane(path_in_map(), up_of_rig_in_map()); }
 
   // Keyframes at intervals of one second of a body on the path with z up, whose camera looks along the body's x axis.
-  Map driven_map(const std::vector<Eigen::Vector3d>& path_in_map) const {
+  MapGraph driven_map(const std::vector<Eigen::Vector3d>& path_in_map) const {
     Rig rig{320, 240, 188.0, 158.0, 119.0, 0.11, {}};
     Eigen::Matrix3d body_from_camera;
     body_from_camera << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     rig.body_from_camera = {Eigen::Quaterniond(body_from_camera), {0.3, 0.1, 0.9}};
-    Map map(Origin::offline);
+    MapGraph map(Origin::offline);
     map.add_rig(rig);
     for (const Eigen::Vector3d& position : path_in_map) {
       Keyframe keyframe;

@@ -35,7 +35,7 @@ Similarity ground_from(const DrivingPlane& plane, double body_height) {
   return {1.0, {Eigen::Quaterniond(rotation), {0.0, 0.0, -floor}}};
 }
 
-double height_of_body(const Map& map, const Vector3d& up_in_map, const GridOptions& options) {
+double height_of_body(const MapGraph& map, const Vector3d& up_in_map, const GridOptions& options) {
   if (options.body_height) return *options.body_height;
   constexpr double kUpright = 0.7;  // cosine of 45 degrees
   double upright = 0.0;
@@ -65,7 +65,7 @@ constexpr double kAround = 3.0;  // metres
 
 constexpr double kLongestLink = 0.6;  // metres, between points on a line that are joined
 
-std::vector<DrivenPose> driven_poses(const Map& map, const Similarity& plan_from_map) {
+std::vector<DrivenPose> driven_poses(const MapGraph& map, const Similarity& plan_from_map) {
   std::vector<DrivenPose> poses;
   std::vector<Vector3d> places;
   double mean_height = 0.0;
@@ -96,7 +96,7 @@ std::vector<DrivenPose> driven_poses(const Map& map, const Similarity& plan_from
 }
 
 // Points with enough observations. Their floor is that of the nearest keyframe that observes them.
-std::vector<GridPoint> grid_points(const Map& map, const Similarity& plan_from_map,
+std::vector<GridPoint> grid_points(const MapGraph& map, const Similarity& plan_from_map,
                                    const std::vector<DrivenPose>& poses, const std::vector<std::uint32_t>& pose_of,
                                    const GridOptions& options) {
   std::vector<GridPoint> points;
@@ -190,7 +190,7 @@ void free_driven_cells(const std::vector<Vector2d>& places, double radius, Occup
 
 }  // namespace
 
-std::optional<OccupancyGrid> occupancy_grid(const Map& map, const std::optional<PlanRegistration>& registration,
+std::optional<OccupancyGrid> occupancy_grid(const MapGraph& map, const std::optional<PlanRegistration>& registration,
                                             const GridOptions& options) {
   constexpr double kRoughest = 0.1;  // largest thickness of the path relative to its length
   const std::optional<DrivingPlane> plane = fit_driving_plane(map);

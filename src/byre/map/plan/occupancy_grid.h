@@ -1,8 +1,8 @@
 #pragma once
 
 #include "byre/floor_plan.h"
-#include "byre/map/map.h"
-#include "byre/map/plan_registration.h"
+#include "byre/map/map_graph.h"
+#include "byre/plan_registration.h"
 
 #include <cstdint>
 #include <optional>
@@ -42,7 +42,7 @@ inline constexpr double kMaxGridCells = 100e6;
 //
 // The map is metric, or registered on a plan. Empty without keyframes, or if the path is not planar (flown or carried).
 // Throws InputError for more than kMaxGridCells, and if the height of the body is unknown.
-std::optional<OccupancyGrid> occupancy_grid(const Map& map, const std::optional<PlanRegistration>& registration,
+std::optional<OccupancyGrid> occupancy_grid(const MapGraph& map, const std::optional<PlanRegistration>& registration,
                                             const GridOptions& options = {});
 
 }  // namespace byre

@@ -77,7 +77,7 @@ class GridScene {
     }
   }
 
-  const Map& map() const { return map_; }
+  const MapGraph& map() const { return map_; }
   OccupancyGrid grid(const GridOptions& options = {}) const { return occupancy_grid(map_, {}, options).value(); }
 
  private:
@@ -85,7 +85,7 @@ class GridScene {
 
   Pose map_from_level_;
   Rig rig_;
-  Map map_{Origin::offline};
+  MapGraph map_{Origin::offline};
   std::vector<int> used_;  // features per keyframe
 };
 
@@ -287,7 +287,7 @@ TEST(OccupancyGrid, MeasuresHeightsFromTheFloorBelowTheBody) {
 
 // The body is the camera, 0.9 m above the floor.
 TEST(OccupancyGrid, NeedsTheHeightOfACamera) {
-  Map map(Origin::offline);
+  MapGraph map(Origin::offline);
   Rig rig = looking_down();
   rig.body_from_camera = {};
   map.add_rig(rig);
@@ -331,7 +331,7 @@ TEST(OccupancyGrid, RefusesMoreThanAHundredMillionCells) {
 }
 
 TEST(OccupancyGrid, IsEmptyWithoutADrivenFloor) {
-  EXPECT_FALSE(occupancy_grid(Map(Origin::offline), {}));
+  EXPECT_FALSE(occupancy_grid(MapGraph(Origin::offline), {}));
   std::vector<Pose> flown;
   for (int i = 0; i <= 24; ++i)
     flown.push_back({Eigen::Quaterniond::Identity(), {0.1 * i, (i % 5) * 0.3, (i % 3) * 0.8}});

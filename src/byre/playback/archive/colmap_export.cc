@@ -3,6 +3,7 @@
 #include "byre/io/colmap/colmap_camera.h"
 #include "byre/io/recording/frame_selection.h"
 #include "byre/io/recording/recording_index.h"
+#include "byre/map/point_grey.h"
 #include "byre/recording.h"
 
 #include <utility>
@@ -45,7 +46,7 @@ struct ImageKeypoints {
   std::vector<std::optional<std::uint32_t>> of_feature;
 };
 
-bool has_two_views(const Map& map, PointId id) {
+bool has_two_views(const MapGraph& map, PointId id) {
   return map.observations(id).size() >= 2;
 }
 
@@ -73,24 +74,20 @@ std::string name_of(const Keyframe& keyframe, const ImageNames& names) {
   return name != names.end() ? name->second : std::to_string(keyframe.frame.time.count()) + ".png";
 }
 
-double error_in_pixels(const Map& map, const Keyframe& keyframe, const Sighting& sighting, const MapPoint& point) {
+double error_in_pixels(const MapGraph& map, const Keyframe& keyframe, const Sighting& sighting, const MapPoint& point) {
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   const Eigen::Vector3d point_in_camera = keyframe.camera_from_world * point.position_in_world;
   if (point_in_camera.z() <= 0.0) return 0.0;
   return (rig.project(point_in_camera).head<2>() - sighting.pixel.cast<double>()).norm();
 }
 
-// Grey value of the reference patch of the point; black without a patch.
-std::array<std::uint8_t, 3> colour_of(const Map& map, const MapPoint& point) {
-  const Keyframe& keyframe = *map.find_keyframe(point.reference.keyframe);
-  const Patch* const patch = keyframe.frame.features->find_patch(point.reference.feature);
-  if (patch == nullptr) return {};
-  const auto column = static_cast<std::size_t>(patch->centre.x()), row = static_cast<std::size_t>(patch->centre.y());
-  const std::uint8_t grey = patch->pixels[row * Patch::kSize + column];
+// Black without a patch.
+std::array<std::uint8_t, 3> colour_of(const MapGraph& map, const MapPoint& point) {
+  const std::uint8_t grey = grey_of(map, point).value_or(0);
   return {grey, grey, grey};
 }
 
-ColmapPoint point_of(const Map& map, PointId id, const std::map<KeyframeId, ImageKeypoints>& keypoints) {
+ColmapPoint point_of(const MapGraph& map, PointId id, const std::map<KeyframeId, ImageKeypoints>& keypoints) {
   const MapPoint& point = *map.find_point(id);
   ColmapPoint result{point.position_in_world, colour_of(map, point), 0.0, {}};
   for (const Observation& seen : map.observations(id)) {

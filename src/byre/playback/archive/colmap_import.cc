@@ -136,7 +136,7 @@ void convert_points(const ColmapModel& colmap, double scale, ConvertedModel& con
 }
 
 // Reprojection errors of a keyframe's features, pixels; without references, whose error is zero by definition.
-std::vector<double> errors_of(const Map& map, const Keyframe& keyframe, KeyframeId id) {
+std::vector<double> errors_of(const MapGraph& map, const Keyframe& keyframe, KeyframeId id) {
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   std::vector<double> errors;
   for (const Sighting& sighting : keyframe.sightings) {
@@ -149,7 +149,7 @@ std::vector<double> errors_of(const Map& map, const Keyframe& keyframe, Keyframe
   return errors;
 }
 
-ImportedImage describe_image(const Map& map, KeyframeId id, const ColmapImage& image) {
+ImportedImage describe_image(const MapGraph& map, KeyframeId id, const ColmapImage& image) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   std::vector<double> errors = errors_of(map, keyframe, id);
   std::ranges::sort(errors);
@@ -276,7 +276,7 @@ std::string to_text(const ColmapImport& imported) {
   }
   std::ranges::sort(attached);
   std::ranges::sort(errors);
-  const Map& map = imported.stored.map;
+  const MapGraph& map = imported.stored.map;
   std::string text = fmt::format("keyframes          {}\n", map.keyframe_count());
   text += fmt::format("points             {} of {} in the model, {} added by byre\n", imported.colmap_ids.size(),
                       imported.points_in_model, map.point_count() - imported.colmap_ids.size());

@@ -30,7 +30,7 @@ class ImportedMap : public testing::Test {
 
 TEST_F(ImportedMap, PreservesPointsAndCamerasOfTheExportedMap) {
   const ColmapImport imported = import(model_);
-  const Map& map = imported.stored.map;
+  const MapGraph& map = imported.stored.map;
   EXPECT_THAT(find_faults(imported.stored), IsEmpty());
   EXPECT_EQ(imported.stored.pose_source, PoseSource::imported);
   EXPECT_THAT(imported.warnings, IsEmpty());

@@ -19,7 +19,7 @@ int count_patches(const Keyframe& keyframe) {
   return patches;
 }
 
-MapCounts count(const Map& map) {
+MapCounts count(const MapGraph& map) {
   MapCounts counts;
   counts.keyframes = map.keyframe_count();
   counts.points = map.point_count();
@@ -34,13 +34,13 @@ MapCounts count(const Map& map) {
   return counts;
 }
 
-Distribution observations_per_point(const Map& map) {
+Distribution observations_per_point(const MapGraph& map) {
   std::vector<double> observations;
   for (const PointId id : map.point_ids()) observations.push_back(static_cast<double>(map.observations(id).size()));
   return distribution_of(std::move(observations));
 }
 
-ReprojectionErrors reprojection_errors(const Map& map) {
+ReprojectionErrors reprojection_errors(const MapGraph& map) {
   std::vector<double> pixel_errors;
   std::vector<double> disparity_errors;
   ReprojectionErrors errors;
@@ -67,7 +67,7 @@ ReprojectionErrors reprojection_errors(const Map& map) {
   return errors;
 }
 
-std::optional<BoundingBox> bounding_box(const Map& map) {
+std::optional<BoundingBox> bounding_box(const MapGraph& map) {
   if (map.point_count() == 0) return std::nullopt;
   BoundingBox box;
   box.min.setConstant(std::numeric_limits<double>::infinity());
@@ -111,7 +111,7 @@ double path_of_keyframes(const StoredMap& stored) {
   return length;
 }
 
-std::size_t covisible_count(const Map& map) {
+std::size_t covisible_count(const MapGraph& map) {
   std::size_t covisible = 0;
   for (const KeyframeId id : map.keyframe_ids()) {
     covisible += map.covisible_keyframes(id, std::numeric_limits<int>::max()).size();
@@ -120,7 +120,7 @@ std::size_t covisible_count(const Map& map) {
 }
 
 // Size of the containers' elements, without spare capacity.
-std::vector<PartSize> memory_of(const Map& map, const MapCounts& counts) {
+std::vector<PartSize> memory_of(const MapGraph& map, const MapCounts& counts) {
   const auto size = [](int number, std::size_t bytes) { return static_cast<std::size_t>(number) * bytes; };
   std::size_t words = 0;
   for (const KeyframeId id : map.keyframe_ids()) words += map.find_keyframe(id)->words.size();

@@ -28,7 +28,7 @@ void write_colour(std::size_t observations, ByteWriter& writer) {
 
 }  // namespace
 
-std::vector<std::byte> point_cloud(const Map& map) {
+std::vector<std::byte> point_cloud(const MapGraph& map) {
   ByteWriter writer;
   writer.write_all<char>(header(map.point_count()));
   for (const PointId id : map.point_ids()) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <cstddef>
 #include <vector>
@@ -9,6 +9,6 @@ namespace byre {
 
 // Points of a map as a binary PLY file: x, y, z in the map's frame, number of observations, and a colour by that
 // number, from blue for one to red for ten or more.
-std::vector<std::byte> point_cloud(const Map& map);
+std::vector<std::byte> point_cloud(const MapGraph& map);
 
 }  // namespace byre

@@ -110,7 +110,7 @@ TEST_F(RegisterMap, RejectsCorrectionWithoutABaseline) {
   one_camera.rigs[0].baseline = 0.0;
   for (const KeyframeId id : stored.map.keyframe_ids()) one_camera.keyframes.push_back(*stored.map.find_keyframe(id));
   stored = driven_barn(scene);
-  stored.map = Map(Origin::offline, one_camera);
+  stored.map = MapGraph(Origin::offline, one_camera);
   refusal_of(stored, "has no baseline to correct (use byre scale with a known distance)");
 }
 

@@ -101,7 +101,7 @@ std::string seconds_text(Timestamp time) {
 }
 
 // The keyframe nearest in time; fails unless exactly one is within kNearestKeyframe.
-const Keyframe& find_keyframe_at(const Pick& pick, Timestamp time, const Map& map) {
+const Keyframe& find_keyframe_at(const Pick& pick, Timestamp time, const MapGraph& map) {
   const Keyframe* nearest = nullptr;
   int count = 0;
   for (const KeyframeId id : map.keyframe_ids()) {

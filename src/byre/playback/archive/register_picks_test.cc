@@ -18,7 +18,7 @@ constexpr double kPickSigma = 0.05;
 
 // A map with one keyframe per second, and one point with a sigma of 0.1 m.
 StoredMap small_map() {
-  Map map(Origin::offline);
+  MapGraph map(Origin::offline);
   map.add_rig({320, 240, 188.0, 158.0, 119.0, 0.11, {}});
   for (int i = 0; i < 3; ++i) {
     Keyframe keyframe;

@@ -40,7 +40,7 @@ Eigen::Vector3d point_position(const StoredMap& stored, const std::string& text,
   return point->position_in_world;
 }
 
-std::string time_span(const Map& map) {
+std::string time_span(const MapGraph& map) {
   if (map.keyframe_count() == 0) return "which has none";
   Timestamp first = Timestamp::max(), last = Timestamp::min();
   for (const KeyframeId id : map.keyframe_ids()) {

@@ -22,8 +22,8 @@ Trajectory truth() {
   return result;
 }
 
-Map offline_map() {
-  Map map(Origin::offline);
+MapGraph offline_map() {
+  MapGraph map(Origin::offline);
   map.add_rig({});
   for (int i = 0; i < 4; ++i) {
     Keyframe keyframe;

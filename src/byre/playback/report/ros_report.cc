@@ -112,7 +112,7 @@ ros::Path ros_path(const Trajectory& trajectory, Timestamp time) {
   return path;
 }
 
-ros::PointCloud2 ros_cloud(const Map& map, Timestamp time) {
+ros::PointCloud2 ros_cloud(const MapGraph& map, Timestamp time) {
   constexpr std::uint32_t kStep = 16;
   ros::PointCloud2 cloud{header(kMapFrame, time), 1, 0, {{"x", 0}, {"y", 4}, {"z", 8}}};
   cloud.point_fields.push_back({"observations", 12, ros::PointField::kUint32, 1});

@@ -2,7 +2,7 @@
 
 #include "byre/calibration.h"
 #include "byre/io/ros/messages.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/playback/play.h"
 #include "byre/playback/report/odometry_message.h"
 
@@ -46,7 +46,7 @@ ros::DiagnosticArray ros_diagnostics(int number, const PlayedFrame& frame);
 ros::Path ros_path(const Trajectory& trajectory, Timestamp time);
 
 // Points in the map frame: x, y, z and number of observations.
-ros::PointCloud2 ros_cloud(const Map& map, Timestamp time);
+ros::PointCloud2 ros_cloud(const MapGraph& map, Timestamp time);
 
 // Camera extrinsics in the body frame.
 ros::TFMessage ros_camera_extrinsics(const Calibration& calibration, Timestamp time);

@@ -56,7 +56,7 @@ void RunMessages::note_unreadable(const PlayedFrame& frame) {
 void RunMessages::note_first(const RunView& view) {
   const Timestamp time = view.frame.time;
   sink_.put_message(topics_.mounts, time, ros_camera_extrinsics(calibration_, time));
-  if (const Map* const offline = view.session.map().offline()) {
+  if (const MapGraph* const offline = view.session.map().offline()) {
     sink_.put_message(topics_.offline_points, time, ros_cloud(*offline, time));
   }
 }
@@ -104,7 +104,7 @@ void RunMessages::note_pose(const FrameReport& report) {
   }
 }
 
-void RunMessages::note_map(Timestamp time, const Map& online) {
+void RunMessages::note_map(Timestamp time, const MapGraph& online) {
   const bool wants_path = sink_.is_wanted(topics_.path);
   const bool wants_points = sink_.is_wanted(topics_.points);
   if (!wants_path && !wants_points) return;

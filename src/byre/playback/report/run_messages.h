@@ -45,7 +45,7 @@ class RunMessages {
   void note_diagnostics(int number, const PlayedFrame& frame);
   void note_events(int number, const PlayedFrame& frame);
   void note_pose(const FrameReport& report);
-  void note_map(Timestamp time, const Map& online);
+  void note_map(Timestamp time, const MapGraph& online);
   void note_images(const ImageFrame& images);
   void note_image(const CameraTopics& topics, const Image& image, const Camera& camera, const char* frame,
                   Timestamp time);

@@ -242,7 +242,7 @@ void add_mission_rows(const MissionOutcome& mission, const RunResult& run, const
   const bool has_map = run.offline != nullptr;
   const bool maps = protocol.options.session.map_online;
   if (has_map) {
-    const Map& map = run.offline->map();
+    const MapGraph& map = run.offline->map();
     report.row("offline map",
                "{map}, {keyframes} keyframes, {points} points[{!maps}; no online mapping (--localise-only)]"
                "[{?plan}; poses on the plan {plan}]",

@@ -54,7 +54,7 @@ class LookingAbout {
       tracked.features.push_back({i, seen[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])],
                                   frame.features->keypoint(i).pixel, kSigma});
     }
-    const Map nothing_online(Origin::online);
+    const MapGraph nothing_online(Origin::online);
     calibration.add(frame, rig, tracked, {&offline_, nothing_online}, CalibrationVector::Zero());
   }
 
@@ -76,7 +76,7 @@ class LookingAbout {
 
   Calibration given_, truth_;
   Rectification rectification_;
-  Map offline_{Origin::offline};
+  MapGraph offline_{Origin::offline};
   std::vector<PointId> ids_;
   std::mt19937_64 random_{5};
   std::normal_distribution<double> noise_;

@@ -65,7 +65,7 @@ TEST(ReadoutEstimator, RejectsImplausiblyLongTimes) {
 
 // Readout time measured on true points and poses, seconds, with an assumed one of zero.
 double change_told_by(const SimulatedMission& mission) {
-  const Map map = true_map(mission, 4, Origin::online);
+  const MapGraph map = true_map(mission, 4, Origin::online);
   const MapView view{nullptr, map};
   ReadoutEvidence sum;
   for (std::size_t i = 1; i + 1 < mission.frames.size(); ++i) {
@@ -88,7 +88,7 @@ TEST(ReadoutEvidence, MeasuresTheReadoutTime) {
 TEST(ReadoutEvidence, IsEmptyWithoutRotation) {
   const SimulatedMission mission =
       rolling(simulate_mission(simulated_rig(), figure_eight_trajectory(20, 20.0, 4.0, 0.1), {}), 0.005);
-  const Map map = true_map(mission, 4, Origin::online);
+  const MapGraph map = true_map(mission, 4, Origin::online);
   const MapView view{nullptr, map};
   constexpr std::size_t kFrame = 10;
   const auto tracked =

@@ -42,7 +42,7 @@ class Drive {
   Frame soiled(const Frame& frame) const { return seen_beside(frame, mission_.rig, is_behind); }
 
   SimulatedMission mission_;
-  Map map_;
+  MapGraph map_;
   std::vector<SessionEvent> reported_;
 };
 

@@ -21,7 +21,7 @@ Pose shift_by(double metres) {
 }
 
 // Moves a whole map in the world.
-void move(Map& map, const Pose& world_motion) {
+void move(MapGraph& map, const Pose& world_motion) {
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.find_keyframe(id);
     map.move_keyframe(id, keyframe.camera_from_world * inverse(world_motion), keyframe.covariance);
@@ -82,8 +82,8 @@ class TrackHybrid : public ::testing::Test {
   const SimulatedMission earlier_ = quarter_circle(visit(2));
   const SimulatedMission now_ = quarter_circle(visit(3));
   const Pose truth_ = true_camera_from_world(now_, kFrameTracked);
-  Map offline_ = true_map(before_, 4, Origin::offline);
-  Map online_ = true_map(earlier_, 4, Origin::online);
+  MapGraph offline_ = true_map(before_, 4, Origin::offline);
+  MapGraph online_ = true_map(earlier_, 4, Origin::online);
 };
 
 TEST(AgreementOf, ComparesCameraPositions) {
@@ -108,7 +108,7 @@ TEST_F(TrackHybrid, UsesPointsOfBothMapsIfTheyAgree) {
 
 TEST_F(TrackHybrid, FollowsTheOfflineMapDespiteADisplacedOnlineMap) {
   for (const double metres : {0.06, 0.2}) {
-    Map online = online_;
+    MapGraph online = online_;
     move(online_, shift_by(metres));
     const Pose predicted = truth_ * inverse(shift_by(metres));  // predicted by the online map
     const auto track = track_frame(predicted);
@@ -137,7 +137,7 @@ TEST_F(TrackHybrid, StaysOnTheOnlineMapIfTheOffsetExceedsTheDrift) {
 }
 
 TEST_F(TrackHybrid, IsLostIfOfflinePointsImplyAnImpossibleMotion) {
-  online_ = Map(Origin::online);
+  online_ = MapGraph(Origin::online);
   const Pose predicted = truth_ * inverse(shift_by(0.4));
   EXPECT_TRUE(track_frame(predicted, {.stray = 0.5}));
   EXPECT_FALSE(track_frame(predicted, {.stray = 0.3}));
@@ -182,7 +182,7 @@ TEST_F(TrackHybrid, IsDoubtedIfTwoFifthsOfThePointsHaveMoved) {
 // A calibration error also causes a pixel or two, so points of both parts are used.
 TEST_F(TrackHybrid, IsBiasedByLessThanHalfOfASmallMotionOfALargeObject) {
   for (const double share_of_width : {0.25, 0.4, 0.5}) {
-    const Map unchanged = offline_;
+    const MapGraph unchanged = offline_;
     move_left_part(share_of_width, {0.03, 0.0, 0.02});
     const auto track = track_frame();
     ASSERT_TRUE(track);
@@ -231,7 +231,7 @@ TEST_F(TrackHybrid, ReportsMovedOfflinePoints) {
 }
 
 TEST_F(TrackHybrid, TracksOnlinePointsAloneOffTheMap) {
-  offline_ = Map(Origin::offline);
+  offline_ = MapGraph(Origin::offline);
   const auto track = track_frame();
   ASSERT_TRUE(track);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));
@@ -241,7 +241,7 @@ TEST_F(TrackHybrid, TracksOnlinePointsAloneOffTheMap) {
 }
 
 TEST_F(TrackHybrid, TracksOfflinePointsAloneWithoutAnOnlineMap) {
-  online_ = Map(Origin::online);
+  online_ = MapGraph(Origin::online);
   const auto track = track_frame();
   ASSERT_TRUE(track);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(truth_, 0.01, 0.2 * kDegree));

@@ -70,7 +70,7 @@ class LatePair {
   }
 
   SimulatedMission mission_;
-  Map map_;
+  MapGraph map_;
   PairTiming timing_;
 };
 

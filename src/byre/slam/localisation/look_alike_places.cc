@@ -33,7 +33,7 @@ bool are_similar(const Descriptor& a, const Descriptor& b) {
   return std::popcount(a[0] ^ b[0]) + std::popcount(a[1] ^ b[1]) <= kMostBits && hamming_distance(a, b) <= kMostBits;
 }
 
-std::vector<PlacedDescriptor> descriptors_of(const Map& map, std::span<const PointId> points) {
+std::vector<PlacedDescriptor> descriptors_of(const MapGraph& map, std::span<const PointId> points) {
   std::vector<PlacedDescriptor> placed;
   placed.reserve(points.size());
   for (const PointId id : points) {
@@ -44,7 +44,7 @@ std::vector<PlacedDescriptor> descriptors_of(const Map& map, std::span<const Poi
 }
 
 // Points within kLargestShift.
-std::vector<PlacedDescriptor> descriptors_around(const Map& map, std::span<const PlacedDescriptor> place) {
+std::vector<PlacedDescriptor> descriptors_around(const MapGraph& map, std::span<const PlacedDescriptor> place) {
   Eigen::AlignedBox3d box;
   for (const PlacedDescriptor& point : place) box.extend(point.position);
   std::vector<PlacedDescriptor> around = descriptors_of(map, map.point_ids());
@@ -55,7 +55,7 @@ std::vector<PlacedDescriptor> descriptors_around(const Map& map, std::span<const
 }
 
 // Look-alike pairs, ascending by cell, then by the point of the place.
-std::vector<AlikePoint> similar_points(const Map& map, std::span<const PointId> points_of_place) {
+std::vector<AlikePoint> similar_points(const MapGraph& map, std::span<const PointId> points_of_place) {
   constexpr double kLeastShift = 1.0;  // metres
   const std::vector<PlacedDescriptor> place = descriptors_of(map, points_of_place);
   std::vector<AlikePoint> alike;

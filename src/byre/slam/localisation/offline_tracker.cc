@@ -70,7 +70,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
   ScratchVector<PointId> around;
   constexpr std::size_t kFew = 200;  // nearby points; with fewer, too few may be in view
   if (nearby_points_.size() < kFew) {
-    const Map nothing_online(Origin::online);
+    const MapGraph nothing_online(Origin::online);
     auto reference = track.offline_reference;
     if (!reference) reference = mission_.keyframe_near(pose);
     if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
@@ -100,7 +100,7 @@ std::optional<TrackedFrame> OfflineTracker::find_at_rival(const Frame& frame, co
 std::optional<TrackedFrame> OfflineTracker::track_at(const Frame& frame, const Pose& predicted,
                                                      std::span<const PointId> points, const Rig& rig,
                                                      const ImageMask& hidden) const {
-  const Map nothing_online(Origin::online);
+  const MapGraph nothing_online(Origin::online);
   TrackOptions options = options_.track;
   options.hidden = hidden;
   return track(frame, predicted, rig, {&offline_->map(), nothing_online}, points, options);
@@ -109,7 +109,7 @@ std::optional<TrackedFrame> OfflineTracker::track_at(const Frame& frame, const P
 ScratchVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offline) const {
   constexpr double kNear = 10.0;  // metres; keyframes far from a place may have seen its points
   constexpr int kKeyframes = 5;
-  const Map nothing_online(Origin::online);
+  const MapGraph nothing_online(Origin::online);
   ScratchVector<PointId> around;
   for (const KeyframeId id : offline_->keyframes_near(camera_from_offline, kNear, kKeyframes)) {
     const ScratchVector<PointId> points = local_points({&offline_->map(), nothing_online}, id, kKeyframesOfPlace);

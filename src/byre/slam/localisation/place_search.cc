@@ -50,7 +50,7 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& que
   const auto& [frame, rig, hint, reach, hidden] = query;
   LocaliseOptions localise_options = options.localise;
   localise_options.hidden = hidden;
-  const Map nothing_online(Origin::online);
+  const MapGraph nothing_online(Origin::online);
   const MapView map(&offline.map(), nothing_online);
   const PlaceBounds bounds(offline, options.bounds);
   BoundedLocalisation result;
@@ -84,7 +84,7 @@ PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, con
   PlaceSearch search{query.frame.time, query.rig, std::nullopt, refused};
   for (const TrackedFrame& place : found.places_found) search.places.push_back(place.camera_from_world);
   if (!found.tracked) return search;
-  const Map nothing_online(Origin::online);
+  const MapGraph nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
   const ScratchVector<PointId> around =
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);

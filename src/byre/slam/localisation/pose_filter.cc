@@ -250,7 +250,7 @@ PoseFilter::Progress PoseFilter::note(const TrackedPose& seen, const Rig& rig, c
 }
 
 void PoseFilter::begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig,
-                       const Map& online) {
+                       const MapGraph& online) {
   const Pose body = body_pose(rig, online.camera_from_world(keyframes.back()));
   const bool is_bridged = bridge_ && !trajectory_.empty();
   if (is_bridged && !on_offline_map_) carried_ = {body, covariance_of_bridge()};
@@ -380,7 +380,7 @@ void PoseFilter::apply_length_changes(const LengthChanges& changes) {
   motion_.scale_lengths(change->second);
 }
 
-void PoseFilter::rotate_rig(const RigRotation& turn, const Map& online) {
+void PoseFilter::rotate_rig(const RigRotation& turn, const MapGraph& online) {
   trajectory_.rotate_rig(turn, online);
   motion_.rotate_camera(turn.after_from_before);
 }

@@ -109,7 +109,7 @@ class PoseFilter {
   };
   Progress note(const TrackedPose& seen, const Rig& rig, const MapView& map);
   // A submap of the online map begins with these keyframes; the last one is the present frame.
-  void begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig, const Map& online);
+  void begin(const std::vector<KeyframeId>& keyframes, std::size_t submap, const Rig& rig, const MapGraph& online);
   void anchor_to(KeyframeId keyframe) { trajectory_.anchor_last_to(keyframe); }
   void move_to_submap(std::size_t submap, Timestamp after) { trajectory_.move_to_submap(submap, after); }
   void mark_lost();
@@ -122,7 +122,7 @@ class PoseFilter {
   void forget_carried() { carried_.reset(); }
 
   void apply_length_changes(const LengthChanges& changes);
-  void rotate_rig(const RigRotation& turn, const Map& online);
+  void rotate_rig(const RigRotation& turn, const MapGraph& online);
   void rotate_camera(const Pose& after_from_before);
   void note_online_correction() { odometry_.set_offset({}); }
   // The submap was registered in the offline map, moved by offline_from_online. Starts the test of its place.

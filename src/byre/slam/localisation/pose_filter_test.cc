@@ -14,7 +14,7 @@ namespace {
 class WhereaboutsOnATrueMap : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(40, 10.0, 2.0, 0.3), {});
-  Map map_ = true_map(mission_, 4, Origin::online);
+  MapGraph map_ = true_map(mission_, 4, Origin::online);
   PoseFilter pose_filter_{{}, {}, {}, true};
   const PlaceView view_ = view_of_room(10, 0);
 

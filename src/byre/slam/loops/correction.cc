@@ -55,7 +55,7 @@ class EarlierWindow : public Earlier {
 // State of a map that has not changed since these keyframes were copied.
 class EarlierMap : public Earlier {
  public:
-  EarlierMap(const Map& map, const MapWindow& copy) : map_(map) {
+  EarlierMap(const MapGraph& map, const MapWindow& copy) : map_(map) {
     for (const WindowKeyframe& keyframe : copy.keyframes) keyframes_.push_back(keyframe.id);
   }
 
@@ -71,7 +71,7 @@ class EarlierMap : public Earlier {
   const MapPoint* find_point(PointId id) const override { return map_.find_point(id); }
 
  private:
-  const Map& map_;
+  const MapGraph& map_;
   std::vector<KeyframeId> keyframes_;
 };
 
@@ -108,7 +108,7 @@ std::optional<double> growth_of_depths(const MapDelta& correction, const Earlier
 // scaled by the growth of the depths that it sees.
 class WorldMotion {
  public:
-  WorldMotion(const MapDelta& correction, const Earlier& before, bool may_grow, const Map& map) : map_(map) {
+  WorldMotion(const MapDelta& correction, const Earlier& before, bool may_grow, const MapGraph& map) : map_(map) {
     for (const KeyframeId id : before.keyframes()) {
       newest_ = std::max(newest_, id.number);
       motions_[id] = Similarity{};
@@ -139,7 +139,7 @@ class WorldMotion {
   }
 
  private:
-  const Map& map_;
+  const MapGraph& map_;
   std::map<KeyframeId, Similarity> motions_;
   std::uint32_t newest_ = 0;  // number of the newest keyframe of the copy
 };
@@ -162,7 +162,7 @@ MapPoint carried_along(const Similarity& world_motion, const MapPoint& point) {
 
 // Points that the correction does not place, at their positions after it: added or moved since the copy.
 std::vector<PlacedPoint> carried_points(const MapDelta& correction, const Earlier& before, const WorldMotion& motion,
-                                        const Map& map) {
+                                        const MapGraph& map) {
   std::vector<PlacedPoint> carried;
   for (const PointId id : map.point_ids()) {
     const MapPoint& now = *map.find_point(id);
@@ -177,7 +177,7 @@ std::vector<PlacedPoint> carried_points(const MapDelta& correction, const Earlie
 
 // If lengths may grow, keyframes that the correction moved have its covariance.
 std::vector<MovedKeyframe> carried_keyframes(const MapDelta& correction, bool may_grow, const WorldMotion& motion,
-                                             const Map& map) {
+                                             const MapGraph& map) {
   std::map<KeyframeId, const Matrix6*> found;
   for (const MovedKeyframe& moved : correction.moved_keyframes) {
     if (may_grow) found[moved.id] = &moved.covariance;
@@ -197,7 +197,7 @@ std::vector<MovedKeyframe> carried_keyframes(const MapDelta& correction, bool ma
 }
 
 // Scale changes at all keyframes that the map ever had.
-LengthChanges length_changes(const WorldMotion& motion, const Map& map) {
+LengthChanges length_changes(const WorldMotion& motion, const MapGraph& map) {
   LengthChanges changes;
   for (KeyframeId id{map.origin(), 0};; ++id.number) {
     const std::optional<KeyframeId> living = map.living_ancestor(id);
@@ -207,7 +207,7 @@ LengthChanges length_changes(const WorldMotion& motion, const Map& map) {
   }
 }
 
-LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_grow, Map& online) {
+LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_grow, MapGraph& online) {
   const WorldMotion motion(correction, before, may_grow, online);
   const std::vector<PlacedPoint> points = carried_points(correction, before, motion, online);
   const LengthChanges changes = length_changes(motion, online);
@@ -226,12 +226,12 @@ LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_g
 
 }  // namespace
 
-LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, Map& online) {
+LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, MapGraph& online) {
   return apply_since(correction, EarlierWindow(before), scale_may_drift(before), online);
 }
 
 LengthChanges adjust_at_once(MapWindow window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
-                             Map& online, const std::function<bool()>& should_stop) {
+                             MapGraph& online, const std::function<bool()>& should_stop) {
   const bool may_grow = scale_may_drift(window);
   adjust_window(window, loops, options, should_stop);
   MapDelta correction = difference(online, window);

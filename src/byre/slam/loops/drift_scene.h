@@ -33,7 +33,7 @@ class DriftedLap {
         index(vocabulary_of(mission)),
         whole_drift_(whole_drift),
         max_views_(options.max_views) {
-    const Map truth = true_map(mission, options.step, Origin::online);
+    const MapGraph truth = true_map(mission, options.step, Origin::online);
     map.add_rig(rig);
     keyframes_ = truth.keyframe_count();
     for (const KeyframeId id : truth.keyframe_ids()) add_keyframe(*truth.find_keyframe(id), id);
@@ -56,7 +56,7 @@ class DriftedLap {
   }
 
   // Largest position error of a keyframe after alignment with the truth, metres.
-  double worst_error(const Map& adjusted, Scale scale) const {
+  double worst_error(const MapGraph& adjusted, Scale scale) const {
     std::vector<Eigen::Vector3d> estimated, truth;
     for (const KeyframeId id : adjusted.keyframe_ids()) {
       estimated.push_back(inverse(adjusted.camera_from_world(id)).translation);
@@ -71,7 +71,7 @@ class DriftedLap {
   }
 
   SimulatedMission mission;
-  Map map{Origin::online};
+  MapGraph map{Origin::online};
   PlaceIndex index;
 
  private:
@@ -83,7 +83,7 @@ class DriftedLap {
   }
 
   // A landmark that reappears after more than kLongestGap keyframes becomes a new point.
-  void add_visits(const Map& truth, PointId id) {
+  void add_visits(const MapGraph& truth, PointId id) {
     constexpr std::uint32_t kLongestGap = 4;  // keyframes
     std::vector<Observation> visit;
     for (const Observation& seen : truth.observations(id)) {

@@ -23,7 +23,7 @@ void announce(const FinishHooks& hooks, const char* step) {
 }
 
 // Tests a loop at the neighbours of its keyframe; empty if they do not confirm it.
-std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypothesis hypothesis) {
+std::optional<LoopHypothesis> confirmed_by_neighbours(const MapGraph& map, LoopHypothesis hypothesis) {
   for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, kConfirmingKeyframes)) {
     const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
     // The drift stays that of the keyframe.
@@ -34,7 +34,7 @@ std::optional<LoopHypothesis> confirmed_by_neighbours(const Map& map, LoopHypoth
   return hypothesis;
 }
 
-LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, std::uint32_t first_new,
+LengthChanges correct(MapGraph& online, const std::vector<LoopEdge>& edges, std::uint32_t first_new,
                       const FinishOptions& options, const FinishHooks& hooks) {
   MapWindow recent = recent_map(online, first_new, edges);
   add_motions(recent, options.motions);
@@ -43,7 +43,7 @@ LengthChanges correct(Map& online, const std::vector<LoopEdge>& edges, std::uint
 
 // Corrects the map around new keyframes, then the whole map if a loop still disagrees. Returns the number of the first
 // keyframe that counted as new in the last correction.
-std::uint32_t correct_around(Map& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
+std::uint32_t correct_around(MapGraph& online, const std::vector<LoopEdge>& edges, const FinishOptions& options,
                              const FinishHooks& hooks, FinishReport& report) {
   report.length_changes = correct(online, edges, options.first_new, options, hooks);
   const auto disagrees = [&](const LoopEdge& edge) {
@@ -59,7 +59,7 @@ std::uint32_t correct_around(Map& online, const std::vector<LoopEdge>& edges, co
   return 0;
 }
 
-void thin_out(Map& online, std::uint32_t first_new, const FinishOptions& options) {
+void thin_out(MapGraph& online, std::uint32_t first_new, const FinishOptions& options) {
   MapWindow thinned = recent_map(online, first_new, {});
   if (thinned.keyframes.empty()) return;
   const KeyframeId newest = thinned.keyframes.back().id;
@@ -71,7 +71,7 @@ void thin_out(Map& online, std::uint32_t first_new, const FinishOptions& options
   apply(delta, online);
 }
 
-int count_parts(const Map& map) {
+int count_parts(const MapGraph& map) {
   constexpr int kAll = 1 << 20;
   std::set<KeyframeId> seen;
   int parts = 0;
@@ -91,7 +91,7 @@ int count_parts(const Map& map) {
 }
 
 // Pixels, of every observation.
-std::vector<double> reprojection_errors(const Map& map) {
+std::vector<double> reprojection_errors(const MapGraph& map) {
   std::vector<double> errors;
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.find_keyframe(id);
@@ -109,7 +109,7 @@ std::vector<double> reprojection_errors(const Map& map) {
 
 }  // namespace
 
-MapQuality quality_of(const Map& map) {
+MapQuality quality_of(const MapGraph& map) {
   MapQuality quality{map.keyframe_count(), map.point_count(), 0, 0.0, 0.0, count_parts(map)};
   const ErrorStatistics errors = summarise(reprojection_errors(map));
   quality.observations = errors.count;
@@ -118,7 +118,7 @@ MapQuality quality_of(const Map& map) {
   return quality;
 }
 
-std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& places, const FinishOptions& options,
+std::vector<LoopHypothesis> search_loops(const MapGraph& map, const PlaceIndex& places, const FinishOptions& options,
                                          const FinishHooks& hooks) {
   std::vector<LoopHypothesis> loops;
   std::set<KeyframeId> settled;
@@ -137,7 +137,8 @@ std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& place
   return loops;
 }
 
-FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptions& options, const FinishHooks& hooks) {
+FinishReport finish_map(MapGraph& online, const PlaceIndex& places, const FinishOptions& options,
+                        const FinishHooks& hooks) {
   FinishReport report;
   report.before = quality_of(online);
   announce(hooks, "searching for loops");

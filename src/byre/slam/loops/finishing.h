@@ -45,15 +45,16 @@ struct FinishHooks {
   std::function<void(const char* step)> before_step;  // "searching for loops", ...
 };
 
-MapQuality quality_of(const Map& map);
+MapQuality quality_of(const MapGraph& map);
 
 // Loops of new keyframes that the map does not contain, each confirmed by the keyframes around. Searches from the
 // newest keyframe backwards; skips keyframes around a found loop.
-std::vector<LoopHypothesis> search_loops(const Map& map, const PlaceIndex& places, const FinishOptions& options,
+std::vector<LoopHypothesis> search_loops(const MapGraph& map, const PlaceIndex& places, const FinishOptions& options,
                                          const FinishHooks& hooks);
 
 // Last step of a mapping run: searches loops from all new keyframes, corrects and bundle-adjusts the map around them,
 // and removes weak points and redundant keyframes there. Corrects the whole map if a loop still disagrees.
-FinishReport finish_map(Map& online, const PlaceIndex& places, const FinishOptions& options, const FinishHooks& hooks);
+FinishReport finish_map(MapGraph& online, const PlaceIndex& places, const FinishOptions& options,
+                        const FinishHooks& hooks);
 
 }  // namespace byre

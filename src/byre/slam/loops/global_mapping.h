@@ -52,12 +52,12 @@ void adjust_window(MapWindow& window, const std::vector<LoopEdge>& loops, const 
 // Same, on a map that does not change meanwhile and of which the window is a copy; makes no second copy. Returns the
 // result of apply_correction.
 LengthChanges adjust_at_once(MapWindow window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
-                             Map& online, const std::function<bool()>& should_stop = {});
+                             MapGraph& online, const std::function<bool()>& should_stop = {});
 
 // Applies a correction of an earlier state of the map (before, or its outline) to the present map. Keyframes and points
 // added since move with the keyframes that they depend on; motion since then is kept. Returns the scale changes that
 // poses relative to keyframes must follow, such as those of frames; none with stereo.
-LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, Map& online);
+LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, MapGraph& online);
 
 // A measured loop in the present lengths of the map.
 LoopEdge in_new_lengths(const LoopEdge& loop, const LengthChanges& changes);

@@ -24,8 +24,8 @@ Pose drifted_from_true(double share) {
   return {rotation_exp(share * Eigen::Vector3d(0.01, 0.02, 0.0)), share * Eigen::Vector3d(0.15, -0.1, 0.05)};
 }
 
-Map drifted_map(const SimulatedMission& mission) {
-  Map map = true_map(mission, kFramesPerKeyframe, Origin::online);
+MapGraph drifted_map(const SimulatedMission& mission) {
+  MapGraph map = true_map(mission, kFramesPerKeyframe, Origin::online);
   const auto share = [&](KeyframeId id) { return id.number / static_cast<double>(map.keyframe_count()); };
   for (const PointId id : map.point_ids()) {
     MapPoint point = *map.find_point(id);
@@ -39,7 +39,7 @@ Map drifted_map(const SimulatedMission& mission) {
   return map;
 }
 
-double worst_position_error(const Map& map, const SimulatedMission& mission) {
+double worst_position_error(const MapGraph& map, const SimulatedMission& mission) {
   double worst = 0.0;
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.find_keyframe(id);
@@ -50,7 +50,7 @@ double worst_position_error(const Map& map, const SimulatedMission& mission) {
   return worst;
 }
 
-LoopEdge true_loop(const Map& map, const SimulatedMission& mission) {
+LoopEdge true_loop(const MapGraph& map, const SimulatedMission& mission) {
   const KeyframeId first = map.keyframe_ids().front(), last = map.keyframe_ids().back();
   const auto truth = [&](KeyframeId id) {
     return true_camera_from_world(mission, frame_at(mission, map.find_keyframe(id)->frame.time));
@@ -60,7 +60,7 @@ LoopEdge true_loop(const Map& map, const SimulatedMission& mission) {
 
 TEST(WholeMap, ContainsEverythingAndMovesAllButTheFirst) {
   const SimulatedMission mission = lap();
-  const Map map = drifted_map(mission);
+  const MapGraph map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
   ASSERT_EQ(static_cast<int>(whole.keyframes.size()), map.keyframe_count());
   EXPECT_EQ(static_cast<int>(whole.points.size()), map.point_count());
@@ -72,7 +72,7 @@ TEST(WholeMap, ContainsEverythingAndMovesAllButTheFirst) {
 
 TEST(AdjustMap, CorrectsADriftedMap) {
   const SimulatedMission mission = lap();
-  Map map = drifted_map(mission);
+  MapGraph map = drifted_map(mission);
   const double before = worst_position_error(map, mission);
   const MapWindow whole = whole_map(map);
   apply_correction(adjust_map(MapWindow(whole), whole, {true_loop(map, mission)}, {}), whole, map);
@@ -104,7 +104,7 @@ TEST(AdjustMap, HoldsTheScaleToMeasuredMotions) {
 
 TEST(AdjustMap, GivesTheSameResultAtOnce) {
   const SimulatedMission mission = lap();
-  Map in_two_steps = drifted_map(mission), at_once = in_two_steps;
+  MapGraph in_two_steps = drifted_map(mission), at_once = in_two_steps;
   const MapWindow whole = whole_map(in_two_steps);
   const std::vector<LoopEdge> loops = {true_loop(at_once, mission)};
   apply_correction(adjust_map(MapWindow(whole), whole, loops, {}), whole, in_two_steps);
@@ -123,7 +123,7 @@ TEST(AdjustMap, GivesTheSameResultAtOnce) {
 
 TEST(AdjustMap, StopsOnRequest) {
   const SimulatedMission mission = lap();
-  const Map map = drifted_map(mission);
+  const MapGraph map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
   const MapDelta delta = adjust_map(MapWindow(whole), whole, {}, {}, [] { return true; });
   EXPECT_THAT(delta.moved_keyframes, testing::IsEmpty());
@@ -131,7 +131,7 @@ TEST(AdjustMap, StopsOnRequest) {
 
 TEST(AdjustMap, IsDeterministic) {
   const SimulatedMission mission = lap();
-  const Map map = drifted_map(mission);
+  const MapGraph map = drifted_map(mission);
   const MapWindow whole = whole_map(map);
   const MapDelta once = adjust_map(MapWindow(whole), whole, {true_loop(map, mission)}, {});
   const MapDelta again = adjust_map(MapWindow(whole), whole, {true_loop(map, mission)}, {});
@@ -156,7 +156,7 @@ class ShiftedHalf : public testing::Test {
 
   static inline const Pose kShift{Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0}};
   const SimulatedMission mission_ = lap();
-  Map map_ = true_map(mission_, kFramesPerKeyframe, Origin::online);
+  MapGraph map_ = true_map(mission_, kFramesPerKeyframe, Origin::online);
   const MapWindow before_ = whole_map(map_);
   MapDelta correction_;
 };
@@ -178,7 +178,7 @@ TEST_F(ShiftedHalf, LeavesElementsOutsideOfTheCopy) {
   for (WindowKeyframe& keyframe : after.keyframes) {
     keyframe.keyframe.camera_from_world = keyframe.keyframe.camera_from_world * inverse(kShift);
   }
-  const Map before = map_;
+  const MapGraph before = map_;
   apply_correction(difference(part, after), part, map_);
   for (const std::uint32_t left_out : {9u, 11u, 18u}) {
     const KeyframeId id{Origin::online, left_out};
@@ -218,8 +218,8 @@ TEST_F(ShiftedHalf, ToleratesRemovedElements) {
 
 TEST(OnlineCopy, EqualsTheMapWithOnlineIds) {
   const SimulatedMission mission = lap();
-  const Map offline = true_map(mission, kFramesPerKeyframe, Origin::offline);
-  const Map online = online_copy(offline);
+  const MapGraph offline = true_map(mission, kFramesPerKeyframe, Origin::offline);
+  const MapGraph online = online_copy(offline);
   EXPECT_EQ(online.origin(), Origin::online);
   EXPECT_EQ(online.keyframe_count(), offline.keyframe_count());
   EXPECT_EQ(online.point_count(), offline.point_count());

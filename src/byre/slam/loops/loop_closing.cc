@@ -43,7 +43,7 @@ constexpr double kMaxDriftTurn = 0.2;    // radians of drift
 constexpr double kMaxDriftDepths = 0.1;  // median depths of drift; replaces max_drift without stereo
 
 // The newest keyframe, those that share points with it, and those that share points with the nearest of these.
-std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
+std::set<KeyframeId> surroundings_of(const MapGraph& map, KeyframeId id) {
   constexpr int kAll = 1 << 20;
   constexpr int kNearest = 15;
   std::set<KeyframeId> surroundings = {id};
@@ -55,7 +55,7 @@ std::set<KeyframeId> surroundings_of(const Map& map, KeyframeId id) {
 }
 
 // Similarity of neighbouring views around a keyframe.
-float usual_similarity(const Map& map, const PlaceIndex& index, KeyframeId id, const BagOfWords& bag) {
+float usual_similarity(const MapGraph& map, const PlaceIndex& index, KeyframeId id, const BagOfWords& bag) {
   constexpr int kNeighbours = 5;
   float best = 0.0f;
   for (const Covisible& neighbour : map.covisible_keyframes(id, kNeighbours)) {
@@ -67,7 +67,7 @@ float usual_similarity(const Map& map, const PlaceIndex& index, KeyframeId id, c
 
 std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
                                             std::span<const Word> words, const LoopOptions& options) {
-  const Map& map = view.online();
+  const MapGraph& map = view.online();
   const std::set<KeyframeId> surroundings = surroundings_of(map, id);
   const auto is_near = [&](KeyframeId other) {
     return other.number + options.min_gap > id.number || surroundings.contains(other);
@@ -80,7 +80,7 @@ std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceInde
 }
 
 // Path of the camera between two keyframes, metres.
-double path_between(const Map& map, KeyframeId from, KeyframeId to) {
+double path_between(const MapGraph& map, KeyframeId from, KeyframeId to) {
   double length = 0.0;
   std::optional<Eigen::Vector3d> last;
   for (std::uint32_t number = from.number; number <= to.number; ++number) {
@@ -105,7 +105,7 @@ CameraShift camera_shift(const Pose& camera_from_world, const Similarity& old_fr
           rotation_log(old_from_new.target_from_source.rotation).norm()};
 }
 
-bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOptions& options) {
+bool is_plausible(const LoopHypothesis& hypothesis, const MapGraph& map, const LoopOptions& options) {
   const Keyframe& keyframe = *map.find_keyframe(hypothesis.keyframe);
   const CameraShift shift = camera_shift(keyframe.camera_from_world, drift_of(hypothesis));
   const double path = path_between(map, hypothesis.place, hypothesis.keyframe);
@@ -116,7 +116,7 @@ bool is_plausible(const LoopHypothesis& hypothesis, const Map& map, const LoopOp
          shift.distance <= on_top + (options.max_drift_share + scale_drift) * path;
 }
 
-bool is_same_pose(const TrackedFrame& tracked, const Pose& predicted_camera_from_old, const Map& map) {
+bool is_same_pose(const TrackedFrame& tracked, const Pose& predicted_camera_from_old, const MapGraph& map) {
   constexpr double kMaxDisagreement = 0.01;  // share of the median depth, and radians
   const Pose motion = tracked.camera_from_world * inverse(predicted_camera_from_old);
   return motion.translation.norm() <= kMaxDisagreement * median_depth(tracked, map) &&
@@ -131,7 +131,7 @@ Pose drift_between(const Pose& camera_from_old, const Pose& camera_from_new, dou
 // View of the older part from a pose there. Monocular lengths are not metric, so they are scaled to a median depth of 5
 // m. Stereo lengths are scaled likewise if the depth is less, since there would be too few cells.
 PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& frame, const TrackedFrame& there,
-                             const Rig& rig, const Map& map) {
+                             const Rig& rig, const MapGraph& map) {
   constexpr int kKeyframesNearby = 3;
   constexpr double kDepth = 5.0;  // metres
   const ScratchVector<PointId> nearby = local_points(map, there.reference, kKeyframesNearby);
@@ -143,8 +143,9 @@ PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& fram
 
 // Stereo measures the scale. Otherwise points in both parts determine it, at best as precisely as the camera's position
 // in the older part is known.
-std::optional<ScaleDrift> find_scale_drift(const Map& map, const Keyframe& keyframe, const TrackedFrame& in_older_part,
-                                           double depth, const LoopOptions& options) {
+std::optional<ScaleDrift> find_scale_drift(const MapGraph& map, const Keyframe& keyframe,
+                                           const TrackedFrame& in_older_part, double depth,
+                                           const LoopOptions& options) {
   if (rig_of(map, keyframe).is_stereo()) return ScaleDrift{};
   auto drift = estimate_scale_drift(depth_pairs(map, keyframe, in_older_part), options.min_scale_points);
   if (!drift) return std::nullopt;
@@ -155,7 +156,7 @@ std::optional<ScaleDrift> find_scale_drift(const Map& map, const Keyframe& keyfr
 
 }  // namespace
 
-std::vector<DepthPair> depth_pairs(const Map& map, const Keyframe& keyframe, const TrackedFrame& in_older_part) {
+std::vector<DepthPair> depth_pairs(const MapGraph& map, const Keyframe& keyframe, const TrackedFrame& in_older_part) {
   constexpr double kMinVariance = 0.005 * 0.005;  // lower bound, whatever the covariance
   std::vector<DepthPair> pairs;
   for (const TrackedFeature& feature : in_older_part.features) {
@@ -194,18 +195,18 @@ std::optional<ScaleDrift> estimate_scale_drift(std::span<const DepthPair> pairs,
   return ScaleDrift{std::exp(weighted / weights), spread / std::sqrt(weights)};
 }
 
-const Rig& rig_of(const Map& map, const Keyframe& keyframe) {
+const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe) {
   return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
 }
 
-std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
+std::optional<LoopHypothesis> find_loop(const MapGraph& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options) {
   const Keyframe* const keyframe = map.find_keyframe(newest);
   if (keyframe == nullptr) return std::nullopt;
   return find_loop_by_words(map, index, newest, keyframe->words, options);
 }
 
-std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceIndex& index, KeyframeId newest,
+std::optional<LoopHypothesis> find_loop_by_words(const MapGraph& map, const PlaceIndex& index, KeyframeId newest,
                                                  std::span<const Word> words, const LoopOptions& options) {
   const Keyframe* const keyframe = map.find_keyframe(newest);
   if (keyframe == nullptr || words.empty()) return std::nullopt;
@@ -234,7 +235,7 @@ std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceInde
 }
 
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
-                          const Rig& rig, const Map& map) {
+                          const Rig& rig, const MapGraph& map) {
   LoopHypothesis checked = hypothesis;
   TrackedFrame there;
   there.camera_from_world = move_camera(drift_of(hypothesis), camera_from_world);
@@ -259,7 +260,7 @@ bool is_refuted(const LoopHypothesis& hypothesis) {
   return hypothesis.test.is_rejected() || hypothesis.untracked >= kMaxUntracked;
 }
 
-std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map) {
+std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const MapGraph& map) {
   const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
   const Keyframe* const place = map.find_keyframe(hypothesis.place);
   if (keyframe == nullptr || place == nullptr) return std::nullopt;
@@ -273,7 +274,7 @@ std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map
                   hypothesis.scale_sigma};
 }
 
-double apparent_drift(const LoopHypothesis& hypothesis, const Map& map) {
+double apparent_drift(const LoopHypothesis& hypothesis, const MapGraph& map) {
   const Keyframe* const keyframe = map.find_keyframe(hypothesis.keyframe);
   if (keyframe == nullptr) return 0.0;
   const CameraShift shift = camera_shift(keyframe->camera_from_world, drift_of(hypothesis));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/alignment.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/place/place_index.h"
 #include "byre/slam/places/localisation.h"
 #include "byre/slam/places/place_hypothesis.h"
@@ -28,7 +28,7 @@ struct ScaleDrift {
 };
 
 // Depth pairs of the features that see a point of the keyframe's own and a point of the older part.
-std::vector<DepthPair> depth_pairs(const Map& map, const Keyframe& keyframe, const TrackedFrame& in_older_part);
+std::vector<DepthPair> depth_pairs(const MapGraph& map, const Keyframe& keyframe, const TrackedFrame& in_older_part);
 
 // Mean ratio of depths after outlier rejection by the distance from the median, relative to the spread. One camera
 // measures directions better than lengths: its position is estimated from rays (localise), and only this scale is left.
@@ -84,20 +84,20 @@ inline Similarity drift_of(const LoopHypothesis& hypothesis) {
 // Localises the newest keyframe at keyframes that share no points with its surroundings. Accepts only a drift within
 // the bounds for the path: a fence repeats within metres, but a map does not drift by metres within a few. Without
 // stereo the scale drift is estimated from points that the keyframe sees in both parts.
-std::optional<LoopHypothesis> find_loop(const Map& map, const PlaceIndex& index, KeyframeId newest,
+std::optional<LoopHypothesis> find_loop(const MapGraph& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options);
 
 // Same for a keyframe whose words, one per feature, are not in map and index yet.
-std::optional<LoopHypothesis> find_loop_by_words(const Map& map, const PlaceIndex& index, KeyframeId newest,
+std::optional<LoopHypothesis> find_loop_by_words(const MapGraph& map, const PlaceIndex& index, KeyframeId newest,
                                                  std::span<const Word> words, const LoopOptions& options);
 
 // Rig of a keyframe.
-const Rig& rig_of(const Map& map, const Keyframe& keyframe);
+const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe);
 
 // Tracks a frame that has a pose in the newer part of the map in the older part too. Returns the hypothesis with this
 // frame in its test, and with the drift by this frame if it was tracked.
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
-                          const Rig& rig, const Map& map);
+                          const Rig& rig, const MapGraph& map);
 
 inline bool is_confirmed(const LoopHypothesis& hypothesis) {
   return hypothesis.test.is_accepted();
@@ -105,10 +105,10 @@ inline bool is_confirmed(const LoopHypothesis& hypothesis) {
 bool is_refuted(const LoopHypothesis& hypothesis);  // rejected by the test, or no longer tracked
 
 // The loop as an edge between two keyframes; empty if one of them was removed.
-std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const Map& map);
+std::optional<LoopEdge> edge_of(const LoopHypothesis& hypothesis, const MapGraph& map);
 
 // Image motion that the drift causes for the keyframe, scale drift included, pixels. Below the search radius of points,
 // fusing them is enough.
-double apparent_drift(const LoopHypothesis& hypothesis, const Map& map);
+double apparent_drift(const LoopHypothesis& hypothesis, const MapGraph& map);
 
 }  // namespace byre

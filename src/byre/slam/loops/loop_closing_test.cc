@@ -24,7 +24,7 @@ class LoopInAMap : public testing::Test {
   explicit LoopInAMap(const SimulatedMission& mission = LoopInAMap::mission())
       : mission_(mission), index_(vocabulary_of(mission_)) {
     options_.min_gap = 15;
-    const Map truth = true_map(mission_, 3, Origin::online);
+    const MapGraph truth = true_map(mission_, 3, Origin::online);
     for (const KeyframeId id : truth.keyframe_ids()) {
       Keyframe keyframe = *truth.find_keyframe(id);
       const bool is_new = id.number >= kFirstNew;
@@ -41,7 +41,7 @@ class LoopInAMap : public testing::Test {
   }
 
   // Adds a point with the observations of the older or of the newer keyframes.
-  void add_point(const Map& truth, PointId id, bool newer) {
+  void add_point(const MapGraph& truth, PointId id, bool newer) {
     std::vector<Observation> seen;
     for (const Observation& observation : truth.observations(id)) {
       if ((observation.keyframe.number >= kFirstNew) == newer) seen.push_back(observation);
@@ -72,7 +72,7 @@ class LoopInAMap : public testing::Test {
   static constexpr std::uint32_t kFirstNew = 12;  // number of the newer half's first keyframe, of 24
   const SimulatedMission mission_;
   const Pose new_from_old_{Eigen::Quaterniond::Identity(), {0.1, -0.05, 0.02}};
-  Map map_{Origin::online};
+  MapGraph map_{Origin::online};
   PlaceIndex index_;
   LoopOptions options_;
 };

@@ -25,7 +25,7 @@ Pose drift_of_pose() {
 }
 
 // Distance between a loop's keyframe in the map and as measured by the loop, metres.
-double gap_at(const LoopEdge& loop, const Map& map) {
+double gap_at(const LoopEdge& loop, const MapGraph& map) {
   const Pose keyframe_from_place = map.camera_from_world(loop.keyframe) * inverse(map.camera_from_world(loop.place));
   return (keyframe_from_place * inverse(loop.keyframe_from_place)).translation.norm();
 }
@@ -45,7 +45,7 @@ TEST_P(DriftingScale, IsMeasuredAtTheLoop) {
 }
 
 TEST_P(DriftingScale, IsCorrectedByTheLoop) {
-  Map map = lap_.map;
+  MapGraph map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
   EXPECT_GE(report.loops, 1);
   EXPECT_GT(lap_.worst_error(lap_.map, Scale::free), 0.1);
@@ -57,7 +57,7 @@ TEST_P(DriftingScale, IsCorrectedBeforePointsAreFused) {
   const auto loop = find_loop(lap_.map, lap_.index, lap_.newest(), finish_options().loops);
   ASSERT_TRUE(loop);
   const LoopEdge edge = *edge_of(*loop, lap_.map);
-  Map map = lap_.map;
+  MapGraph map = lap_.map;
   const MapWindow whole = whole_map(map);
   const auto without_bundle_adjustment = [] { return true; };
   const LengthChanges changes =
@@ -67,7 +67,7 @@ TEST_P(DriftingScale, IsCorrectedBeforePointsAreFused) {
 }
 
 TEST_P(DriftingScale, IsTheFactorOfLengths) {
-  Map map = lap_.map;
+  MapGraph map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, finish_options(), {});
   EXPECT_NEAR(report.length_changes.at(lap_.newest()) * lap_.drift_at(lap_.newest()).scale, 1.0, 0.035);
   EXPECT_FALSE(report.length_changes.contains({Origin::online, 0}));
@@ -138,7 +138,7 @@ TEST(LoopWithStereo, HasNoScale) {
 
 TEST(LoopWithStereo, KeepsLengths) {
   const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
-  Map map = lap.map;
+  MapGraph map = lap.map;
   const FinishReport report = finish_map(map, lap.index, finish_options(), {});
   EXPECT_GE(report.loops, 1);
   EXPECT_THAT(report.length_changes, IsEmpty());
@@ -148,7 +148,7 @@ TEST(LoopWithStereo, KeepsLengths) {
 // A loop of new keyframes shows the drift of earlier ones.
 TEST(LoopWithStereo, BendsTheEarlierPathToo) {
   const DriftedLap lap(simulated_rig(), {1.0, drift_of_pose()});
-  Map map = lap.map;
+  MapGraph map = lap.map;
   FinishOptions options = finish_options();
   options.first_new = lap.newest().number - 1;
   const FinishReport report = finish_map(map, lap.index, options, {});
@@ -174,13 +174,13 @@ class LongLap : public testing::Test {
 
 TEST_F(LongLap, DisagreesAfterALocalAdjustment) {
   ASSERT_LT(2 * recent_.keyframes.size(), static_cast<std::size_t>(lap_.map.keyframe_count()));
-  Map map = lap_.map;
+  MapGraph map = lap_.map;
   adjust_at_once(recent_, {edge_}, options_.global, map);
   EXPECT_GT(disagreement(map, edge_), kMaxLoopDisagreement);
 }
 
 TEST_F(LongLap, IsAdjustedAsAWholeIfItDisagrees) {
-  Map map = lap_.map;
+  MapGraph map = lap_.map;
   const FinishReport report = finish_map(map, lap_.index, options_, {});
   ASSERT_GE(report.loops, 1);
   for (const double residual : report.loop_residuals) EXPECT_LT(residual, kMaxLoopDisagreement);
@@ -215,7 +215,7 @@ class HalfWithScaleDrift : public testing::Test {
   static constexpr std::uint32_t kFirstNew = 8;  // number of the first keyframe that the correction moves, of 24
   static inline const Similarity kGrowth{1.2, {rotation_exp({0.0, 0.0, 0.1}), {1.0, 0.0, 0.0}}};
   static constexpr KeyframeId kNew{Origin::online, 20};
-  Map map_ = DriftedLap(monocular_rig(), {}).map;
+  MapGraph map_ = DriftedLap(monocular_rig(), {}).map;
   const MapWindow before_ = whole_map(map_);
   MapDelta correction_;
 };

@@ -26,7 +26,7 @@ bool contradicts(const BodyMotion& measured, const Pose& seen) {
          error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
 }
 
-int shared_points(const Map& online, KeyframeId one, KeyframeId other) {
+int shared_points(const MapGraph& online, KeyframeId one, KeyframeId other) {
   constexpr int kEvery = std::numeric_limits<int>::max();
   for (const Covisible& seen : online.covisible_keyframes(one, kEvery)) {
     if (seen.keyframe == other) return seen.shared_points;
@@ -37,14 +37,14 @@ int shared_points(const Map& online, KeyframeId one, KeyframeId other) {
 // Whether the images do not relate two keyframes: they share few points, or the later one was tracked from a keyframe
 // that shares few points with the earlier one. In the second case a frame was relocalised at an old place displaced by
 // drift, and the shared points were triangulated across the gap.
-bool lacks_visual_constraint(const Map& online, KeyframeId earlier, KeyframeId later) {
+bool lacks_visual_constraint(const MapGraph& online, KeyframeId earlier, KeyframeId later) {
   constexpr int kFew = 30;
   if (shared_points(online, earlier, later) < kFew) return true;
   const auto tracked_from = online.living_ancestor(online.find_keyframe(later)->parent);
   return tracked_from && *tracked_from != earlier && shared_points(online, earlier, *tracked_from) < kFew;
 }
 
-Pose seen_between(const Map& online, KeyframeId earlier, KeyframeId later) {
+Pose seen_between(const MapGraph& online, KeyframeId earlier, KeyframeId later) {
   const Keyframe &from = *online.find_keyframe(earlier), &to = *online.find_keyframe(later);
   return inverse(body_pose(rig_of(online, from), from.camera_from_world)) *
          body_pose(rig_of(online, to), to.camera_from_world);
@@ -68,7 +68,7 @@ BodyMotion scale_motion(const BodyMotion& motion, double scale) {
   return {scale_lengths(motion.last_from_body, scale), scale_lengths(motion.covariance, scale)};
 }
 
-std::vector<KeyframeMotion> odometry_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
+std::vector<KeyframeMotion> odometry_motions(const MapGraph& online, std::vector<KeyframeId> keyframes, int recording,
                                              const OdometryQuery& odometry) {
   std::vector<KeyframeMotion> motions;
   if (!odometry) return motions;
@@ -92,7 +92,7 @@ std::vector<KeyframeMotion> odometry_motions(const Map& online, std::vector<Keyf
   return motions;
 }
 
-std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<KeyframeMotion> motions) {
+std::vector<KeyframeMotion> in_lengths_of(const MapGraph& online, std::vector<KeyframeMotion> motions) {
   constexpr std::size_t kMany = 20;
   if (motions.size() < kMany) return motions;
   LengthRatio ratio;

@@ -44,11 +44,11 @@ struct KeyframeMotion {
 // Measured motions between successive keyframes of these, of one recording. Left out: a motion that contradicts the
 // images, as with a spinning wheel; and a motion that a stereo camera observed, since it measures metres more precisely
 // than wheels.
-std::vector<KeyframeMotion> odometry_motions(const Map& online, std::vector<KeyframeId> keyframes, int recording,
+std::vector<KeyframeMotion> odometry_motions(const MapGraph& online, std::vector<KeyframeId> keyframes, int recording,
                                              const OdometryQuery& odometry);
 
 // The motions in the lengths of the map, if there are many: a common scale error of the wheels must not bend the map.
-std::vector<KeyframeMotion> in_lengths_of(const Map& online, std::vector<KeyframeMotion> motions);
+std::vector<KeyframeMotion> in_lengths_of(const MapGraph& online, std::vector<KeyframeMotion> motions);
 
 // Adds the motions between keyframes of the window.
 void add_motions(MapWindow& window, const std::vector<KeyframeMotion>& motions);

@@ -23,7 +23,7 @@ class MotionsOfATrueMap : public ::testing::Test {
   }
 
   const SimulatedMission mission_ = quarter_circle_of(one_camera());
-  Map map_ = true_map(mission_, 4, Origin::online);
+  MapGraph map_ = true_map(mission_, 4, Origin::online);
 
   // Motions by wheels with a scale error; from the time `spinning` on, wheels spin.
   OdometryQuery odometry(double scale = 1.0, Timestamp spinning = Timestamp::max()) const {
@@ -48,7 +48,7 @@ TEST_F(MotionsOfATrueMap, ConnectConsecutiveKeyframes) {
 }
 
 TEST_F(MotionsOfATrueMap, AreEmptyForAStereoRig) {
-  const Map map = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
+  const MapGraph map = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
   EXPECT_THAT(odometry_motions(map, map.keyframe_ids(), 0, odometry()), IsEmpty());
 }
 
@@ -66,7 +66,7 @@ TEST_F(MotionsOfATrueMap, AreAcceptedBetweenKeyframesWithoutCommonPoints) {
   ASSERT_THAT(motions, SizeIs(1));
   EXPECT_TRUE(motions.front().lacks_visual_constraint);
   EXPECT_THAT(odometry_motions(map_, {ids[0], ids[1]}, 0, odometry(3.0)), IsEmpty()) << "seen";
-  const Map pair = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
+  const MapGraph pair = true_map(quarter_circle_of(simulated_rig()), 4, Origin::online);
   EXPECT_THAT(odometry_motions(pair, {pair.keyframe_ids().front(), pair.keyframe_ids().back()}, 0, odometry()),
               SizeIs(1));
 }
@@ -91,10 +91,10 @@ TEST_F(MotionsOfATrueMap, AreAcceptedBetweenKeyframesWithFewCommonPoints) {
 
 // After relocalisation at an old place, the points shared with the keyframe before are no evidence.
 TEST_F(MotionsOfATrueMap, AreAcceptedIfTheLaterKeyframeWasTrackedFromElsewhere) {
-  const Map map =
+  const MapGraph map =
       true_map(simulate_mission(one_camera(), circling_trajectory(120, 10.0, 2.0, 1.0), {}), 4, Origin::online);
   const std::vector<KeyframeId> ids = map.keyframe_ids();
-  Map found_again(Origin::online);
+  MapGraph found_again(Origin::online);
   for (const PointId point : map.point_ids()) found_again.add_point(*map.find_point(point));
   for (const KeyframeId id : ids) {
     Keyframe keyframe = *map.find_keyframe(id);
@@ -108,7 +108,7 @@ TEST_F(MotionsOfATrueMap, AreAcceptedIfTheLaterKeyframeWasTrackedFromElsewhere) 
 }
 
 TEST_F(MotionsOfATrueMap, AreScaledToTheMap) {
-  const Map map = true_map(mission_, 1, Origin::online);
+  const MapGraph map = true_map(mission_, 1, Origin::online);
   const auto motions = in_lengths_of(map, odometry_motions(map, map.keyframe_ids(), 0, odometry(1.03)));
   const auto exact = odometry_motions(map, map.keyframe_ids(), 0, odometry());
   ASSERT_THAT(motions, SizeIs(exact.size()));

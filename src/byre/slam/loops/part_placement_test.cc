@@ -14,7 +14,7 @@ namespace {
 class TwoParts : public ::testing::Test {
  protected:
   TwoParts() {
-    const Map map = true_map(mission_, 4, Origin::online);
+    const MapGraph map = true_map(mission_, 4, Origin::online);
     truth_ = window_of(map, map.keyframe_ids());
     for (WindowKeyframe& keyframe : truth_.keyframes) keyframe.movable = &keyframe != &truth_.keyframes.front();
     for (WindowPoint& point : truth_.points) {

@@ -11,7 +11,7 @@ constexpr int kAroundLoopEnd = 15;     // keyframes around the end of a loop tha
 
 using Keyframes = std::set<KeyframeId>;
 
-Keyframes movable_keyframes(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops) {
+Keyframes movable_keyframes(const MapGraph& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops) {
   Keyframes movable;
   for (const KeyframeId id : map.keyframe_ids()) {
     if (id.number < first_new) continue;
@@ -31,7 +31,7 @@ Keyframes movable_keyframes(const Map& map, std::uint32_t first_new, const std::
   return movable;
 }
 
-Keyframes keyframes_around(const Map& map, const Keyframes& movable) {
+Keyframes keyframes_around(const MapGraph& map, const Keyframes& movable) {
   Keyframes around;
   for (const KeyframeId id : movable) {
     for (const Covisible& other : map.covisible_keyframes(id, kAll)) {
@@ -56,7 +56,7 @@ MapWindow recent_map(const MapView& map, std::uint32_t first_new, const std::vec
   return window;
 }
 
-double disagreement(const Map& map, const LoopEdge& loop) {
+double disagreement(const MapGraph& map, const LoopEdge& loop) {
   const Keyframe* const keyframe = map.find_keyframe(loop.keyframe);
   const Keyframe* const place = map.find_keyframe(loop.place);
   if (keyframe == nullptr || place == nullptr) return 0.0;

@@ -16,7 +16,7 @@ namespace byre {
 MapWindow recent_map(const MapView& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops);
 
 // Distance between the relative position of two keyframes and that measured by a loop, metres; 0 if one was removed.
-double disagreement(const Map& map, const LoopEdge& loop);
+double disagreement(const MapGraph& map, const LoopEdge& loop);
 
 // Disagreement of a loop after the map around it was adjusted, above which the whole map is corrected, metres.
 inline constexpr double kMaxLoopDisagreement = 0.05;

@@ -25,7 +25,7 @@ SimulatedMission long_way() {
 }
 
 // Limits each point to a few successive keyframes, as behind corners.
-void forget_distant_views(Map& map) {
+void forget_distant_views(MapGraph& map) {
   constexpr std::uint32_t kViews = 6;
   for (const PointId id : map.point_ids()) {
     const std::vector<Observation> views = map.observations(id);
@@ -52,7 +52,7 @@ class RecentMap : public testing::Test {
   }
 
   const SimulatedMission mission_ = long_way();
-  Map map_ = true_map(mission_, 1, Origin::online);
+  MapGraph map_ = true_map(mission_, 1, Origin::online);
 };
 
 TEST_F(RecentMap, MovesNewKeyframesAndTheirNeighbours) {
@@ -102,7 +102,7 @@ TEST_F(RecentMap, LeavesDistantKeyframes) {
   const MapWindow recent = recent_map(map_, kFirstThatCame, {});
   std::set<KeyframeId> near;
   for (const WindowKeyframe& keyframe : recent.keyframes) near.insert(keyframe.id);
-  const Map before = map_;
+  const MapGraph before = map_;
   FinishOptions options;
   options.first_new = kFirstThatCame;
   finish_map(map_, PlaceIndex(vocabulary_of(mission_)), options, {});
@@ -130,7 +130,7 @@ TEST_F(RecentMap, LeavesDistantKeyframes) {
 }
 
 TEST_F(RecentMap, IsCorrectedLikeTheWholeMap) {
-  const auto worst_error = [&](const Map& map) {
+  const auto worst_error = [&](const MapGraph& map) {
     double worst = 0.0;
     for (const KeyframeId id : map.keyframe_ids()) {
       const Pose difference = map.find_keyframe(id)->camera_from_world * inverse(true_pose(id));
@@ -139,7 +139,7 @@ TEST_F(RecentMap, IsCorrectedLikeTheWholeMap) {
     return worst;
   };
   const PlaceIndex nothing(vocabulary_of(mission_));
-  Map by_all = map_, by_recent = map_;
+  MapGraph by_all = map_, by_recent = map_;
   finish_map(by_all, nothing, {}, {});
   FinishOptions options;
   options.first_new = kFirstThatCame;
@@ -149,7 +149,7 @@ TEST_F(RecentMap, IsCorrectedLikeTheWholeMap) {
 }
 
 TEST(Disagreement, MeasuresTheErrorOfALoop) {
-  const Map map = true_map(long_way(), 1, Origin::online);
+  const MapGraph map = true_map(long_way(), 1, Origin::online);
   const KeyframeId one{Origin::online, 3}, other{Origin::online, 30};
   LoopEdge loop{other, one, map.camera_from_world(other) * inverse(map.camera_from_world(one))};
   EXPECT_NEAR(disagreement(map, loop), 0.0, 1e-12);

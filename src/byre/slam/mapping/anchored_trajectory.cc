@@ -11,7 +11,7 @@ Pose camera_from_world(const MapView& map, KeyframeId id) {
   return id.origin == Origin::offline ? map.offline()->camera_from_world(id) : map.online().camera_from_world(id);
 }
 
-Pose rotation_of(const RigRotation& turn, KeyframeId id, const Map& online) {
+Pose rotation_of(const RigRotation& turn, KeyframeId id, const MapGraph& online) {
   return id.origin == Origin::online && online.rig_of(id) == turn.rig ? turn.after_from_before : Pose{};
 }
 
@@ -102,7 +102,7 @@ void AnchoredTrajectory::apply_length_changes(const LengthChanges& changes) {
   }
 }
 
-void AnchoredTrajectory::rotate_rig(const RigRotation& turn, const Map& online) {
+void AnchoredTrajectory::rotate_rig(const RigRotation& turn, const MapGraph& online) {
   for (AnchoredPose& pose : poses_) {
     pose.camera_from_keyframe =
         turn.after_from_before * pose.camera_from_keyframe * inverse(rotation_of(turn, pose.keyframe, online));

@@ -18,12 +18,12 @@ Pose camera_from_world(const MapView& map, KeyframeId id);
 // Change of a rig's rectified camera by a new calibration.
 struct RigRotation {
   Pose after_from_before;
-  int rig = 0;  // index into Map::rigs
+  int rig = 0;  // index into MapGraph::rigs
   Rig after;
 };
 
 // Rotation of an online keyframe's camera; identity for keyframes of other rigs.
-Pose rotation_of(const RigRotation& turn, KeyframeId id, const Map& online);
+Pose rotation_of(const RigRotation& turn, KeyframeId id, const MapGraph& online);
 
 // Pose of a frame relative to a keyframe, so that it follows when mapping moves the keyframe.
 struct AnchoredPose {
@@ -79,7 +79,7 @@ class AnchoredTrajectory {
   // Rescales poses relative to keyframes whose lengths changed.
   void apply_length_changes(const LengthChanges& changes);
   // A new calibration rotated the cameras of a rig, those of its keyframes too.
-  void rotate_rig(const RigRotation& turn, const Map& online);
+  void rotate_rig(const RigRotation& turn, const MapGraph& online);
   // The camera of all poses changes; keyframes keep theirs.
   void rotate_camera(const Pose& after_from_before);
 

@@ -17,7 +17,7 @@ const Pose kAhead = exp_pose((Vector6() << 0.1, 0.0, -0.5, 0.0, 0.1, 0.0).finish
 class AnchoredFrames : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(9, 10.0, 2.0, 0.1), {});
-  Map map_ = true_map(mission_, 8, Origin::online);
+  MapGraph map_ = true_map(mission_, 8, Origin::online);
   const std::vector<KeyframeId> keyframes_ = map_.keyframe_ids();
   AnchoredTrajectory trajectory_{DeferredRefinementOptions{}};
   Submaps submaps_;

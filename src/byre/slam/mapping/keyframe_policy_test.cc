@@ -10,7 +10,7 @@ namespace {
 class KeyframeWatchTest : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = simulate_mission(simulated_rig(), circling_trajectory(9, 10.0, 2.0, 0.1), {});
-  const Map map_ = true_map(mission_, 8, Origin::online);
+  const MapGraph map_ = true_map(mission_, 8, Origin::online);
   KeyframePolicy watch_;
 
   // Evidence of a frame rotated by `turn` radians from the first keyframe.

@@ -2,7 +2,7 @@
 
 namespace byre {
 
-std::optional<LoopHypothesis> LoopCloser::check(const LoopFrame& now, const Map& online) {
+std::optional<LoopHypothesis> LoopCloser::check(const LoopFrame& now, const MapGraph& online) {
   is_search_requested_ = false;
   if (++frames_since_loop_ < kMinFramesBetweenLoops) return std::nullopt;
   if (!hypothesis_) {
@@ -20,7 +20,7 @@ void LoopCloser::apply_length_changes(const LengthChanges& changes) {
   for (LoopEdge& loop : loops_) loop = in_new_lengths(loop, changes);
 }
 
-void LoopCloser::rotate_rig(const RigRotation& turn, const Map& online) {
+void LoopCloser::rotate_rig(const RigRotation& turn, const MapGraph& online) {
   for (LoopEdge& loop : loops_) {
     loop.keyframe_from_place = rotation_of(turn, loop.keyframe, online) * loop.keyframe_from_place *
                                inverse(rotation_of(turn, loop.place, online));

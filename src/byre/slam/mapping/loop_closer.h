@@ -24,7 +24,7 @@ class LoopCloser {
     bool is_new = false;  // the newest keyframe is this frame
   };
   // Called per frame while no correction of the whole map is in flight. Returns a loop once enough frames confirm it.
-  std::optional<LoopHypothesis> check(const LoopFrame& now, const Map& online);
+  std::optional<LoopHypothesis> check(const LoopFrame& now, const MapGraph& online);
   // Called once after each check(): whether to search older parts of the map for the newest keyframe, see find_loop.
   bool take_search_request() { return std::exchange(is_search_requested_, false); }
   void set_hypothesis(const LoopHypothesis& found) { hypothesis_ = found; }  // result of that search
@@ -33,7 +33,7 @@ class LoopCloser {
   // Drops the hypothesis, whose measured pose is out of date.
   void forget_hypothesis() { hypothesis_.reset(); }
   void apply_length_changes(const LengthChanges& changes);
-  void rotate_rig(const RigRotation& turn, const Map& online);
+  void rotate_rig(const RigRotation& turn, const MapGraph& online);
 
  private:
   std::optional<LoopHypothesis> hypothesis_;  // not yet confirmed

@@ -15,7 +15,7 @@ LocalOutcome extend_map_locally(const MapWindow& window, const MappingOptions& o
   return outcome;
 }
 
-std::vector<IndexedKeyframe> index_keyframes(const Map& map, const PlaceIndex& places,
+std::vector<IndexedKeyframe> index_keyframes(const MapGraph& map, const PlaceIndex& places,
                                              const std::vector<KeyframeId>& keyframes, bool searches_loop,
                                              const LoopOptions& options) {
   std::vector<IndexedKeyframe> indexed;
@@ -29,7 +29,7 @@ std::vector<IndexedKeyframe> index_keyframes(const Map& map, const PlaceIndex& p
   return indexed;
 }
 
-LoopClosureInput copy_for_loop_closure(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
+LoopClosureInput copy_for_loop_closure(const MapGraph& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
                                        const std::vector<KeyframeMotion>& motions) {
   MapWindow recent = recent_map(map, first_new, loops);
   add_motions(recent, motions);

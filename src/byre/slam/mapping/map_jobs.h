@@ -44,7 +44,7 @@ struct IndexedKeyframe {
   std::optional<LoopHypothesis> loop = {};
 };
 // Words of keyframes that exist, in this order. Searches older parts of the map for the last one if requested.
-std::vector<IndexedKeyframe> index_keyframes(const Map& map, const PlaceIndex& places,
+std::vector<IndexedKeyframe> index_keyframes(const MapGraph& map, const PlaceIndex& places,
                                              const std::vector<KeyframeId>& keyframes, bool searches_loop,
                                              const LoopOptions& options);
 
@@ -65,7 +65,7 @@ struct LoopClosureInput {
   std::vector<LoopEdge> loops;
 };
 // first_new: number of the first keyframe after those of a continued map; motions: see odometry_motions.
-LoopClosureInput copy_for_loop_closure(const Map& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
+LoopClosureInput copy_for_loop_closure(const MapGraph& map, std::uint32_t first_new, const std::vector<LoopEdge>& loops,
                                        const std::vector<KeyframeMotion>& motions);
 MapCorrection close_loops(LoopClosureInput input, const GlobalMappingOptions& options,
                           const std::function<bool()>& should_stop);

@@ -25,7 +25,7 @@ std::optional<KeyframeId> Mapper::newest_in_present_frame() const {
   return newest_ && submaps_.is_in_present_frame(*newest_) ? newest_ : std::nullopt;
 }
 
-void Mapper::continue_map(Map online) {
+void Mapper::continue_map(MapGraph online) {
   assert(places() && !offline_ && online.keyframe_count() > 0);
   online_ = std::move(online);
   initialiser_.reset();
@@ -360,10 +360,10 @@ void Mapper::request_map_job() {
     return releasing_pages(*file, [early] { return early->load(); });
   };
   if (due_ == MapJob::correct) {
-    whole_.request([map = std::make_shared<Map>(online_), first_new = first_new_, loops = loops(),
+    whole_.request([map = std::make_shared<MapGraph>(online_), first_new = first_new_, loops = loops(),
                     motions = all_motions(), options = GlobalMappingOptions{options_.mapping}, stop] {
       LoopClosureInput input = copy_for_loop_closure(*map, first_new, loops, motions);
-      *map = Map(Origin::online);  // the snapshot is not needed any more
+      *map = MapGraph(Origin::online);  // the snapshot is not needed any more
       return MapOutcome(close_loops(std::move(input), options, stop()));
     });
   } else if (due_ == MapJob::calibrate) {

@@ -51,7 +51,7 @@ class Mapper {
   JobState& map_job() { return whole_; }
 
   MapView map() const { return {offline_ ? &offline_->map() : nullptr, online_}; }
-  const Map& online() const { return online_; }
+  const MapGraph& online() const { return online_; }
   const Submaps& submaps() const { return submaps_; }
   const PlaceIndex* places() const { return *places_ ? &**places_ : nullptr; }  // null without a vocabulary
   const std::vector<LoopEdge>& loops() const { return loop_closer_.loops(); }
@@ -74,7 +74,7 @@ class Mapper {
 
   // Called before the first frame. odometry: odometry between keyframes, called on the calling thread.
   void set_odometry(OdometryQuery odometry) { odometry_ = std::move(odometry); }
-  void continue_map(Map online);
+  void continue_map(MapGraph online);
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
   // Begins a submap with a frame. camera_from_world: pose by odometry; without it, the body's pose at the first frame
@@ -124,7 +124,7 @@ class Mapper {
   // Scales all lengths, once the unit of a monocular map is determined.
   LengthChanges rescale(double factor);
   // The last call; leaves an empty map.
-  Map take_online() { return std::exchange(online_, Map(Origin::online)); }
+  MapGraph take_online() { return std::exchange(online_, MapGraph(Origin::online)); }
 
  private:
   enum class MapJob { none, correct, calibrate };
@@ -173,7 +173,7 @@ class Mapper {
   Pose odometry_reference_;  // camera_from_world of the initialiser's reference frame, by odometry
   std::optional<Calibrator> calibrator_;
   ImageMask hidden_;
-  Map online_{Origin::online};
+  MapGraph online_{Origin::online};
   int revision_ = 0;
   Submaps submaps_;
   Shared<std::optional<PlaceIndex>> places_;  // empty without a vocabulary

@@ -262,7 +262,7 @@ TEST(MapperOfOneCamera, StartsAtTheGivenPose) {
     begun = mapper.begin(mission.frames[frame++], rig, measured, AnchoredTrajectory({}));
   }
   ASSERT_EQ(begun.keyframes.size(), 2u);
-  const Map& map = mapper.online();
+  const MapGraph& map = mapper.online();
   EXPECT_THAT(map.camera_from_world(begun.keyframes[1]), PoseNear(measured, 1e-9, 1e-9));
   const Timestamp first_time = map.find_keyframe(begun.keyframes[0])->frame.time;
   const auto first = std::ranges::find(mission.truth, first_time, &StampedPose::time);

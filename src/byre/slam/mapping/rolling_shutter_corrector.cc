@@ -32,7 +32,7 @@ void RollingShutterCorrector::note(const Frame& frame, const Rig& rig, const Tra
   estimator_->note(readout_evidence(frame, rig, tracked, map, velocity));
 }
 
-void RollingShutterCorrector::apply_update(const Rig& rig, Map& online) {
+void RollingShutterCorrector::apply_update(const Rig& rig, MapGraph& online) {
   const double change = estimator_->readout_time() - readout_time_;
   for (const auto& [id, motion] : motions_) {
     const Keyframe* const keyframe = online.find_keyframe(id);

@@ -3,7 +3,7 @@
 #include "byre/base/object_pool.h"
 #include "byre/features/rolling_shutter.h"
 #include "byre/geometry/calibration_change.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/slam/calibration/readout_estimate.h"
 
 #include <map>
@@ -38,7 +38,7 @@ class RollingShutterCorrector {
 
   // Whether a better readout time is available. apply_update() applies it to all noted keyframes.
   bool has_change() const { return estimator_ && estimator_->readout_time() != readout_time_; }
-  void apply_update(const Rig& rig, Map& online);
+  void apply_update(const Rig& rig, MapGraph& online);
 
  private:
   double readout_time_;                         // seconds, used for corners so far

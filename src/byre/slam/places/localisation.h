@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/localisation_failure.h"
 #include "byre/map/map_view.h"
 #include "byre/place/place_index.h"
 #include "byre/place/vocabulary.h"
@@ -9,7 +10,6 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace byre {
@@ -39,22 +39,6 @@ struct WordedFeatures {
 std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& map,
                                     std::span<const KeyframeId> keyframes, const Vocabulary& vocabulary,
                                     const PlaceMatchOptions& options);
-
-// Reasons why localisation failed, ordered by the progress of the attempt.
-enum class LocalisationFailure : std::uint8_t {
-  none,
-  too_few_features,     // the image is dark, blurred or blank
-  no_similar_keyframe,  // no keyframe of the map looks similar
-  too_few_matches,      // too few features match points of similar places
-  geometry_disagrees,   // no pose explains the matches
-  too_few_inliers,      // too few points around the pose are found
-  clustered,            // the inliers lie in a small part of the image
-  uncertain,            // the inliers do not constrain the pose enough
-  impossible,           // the camera cannot be at the place found
-  ambiguous             // two places fit the image
-};
-
-std::string_view to_string(LocalisationFailure failure);
 
 inline constexpr int kKeyframesOfPlace = 20;  // keyframes whose points are matched around a first pose
 

@@ -11,7 +11,7 @@
 namespace byre {
 namespace {
 
-Matrix6 median_covariance(const Map& map) {
+Matrix6 median_covariance(const MapGraph& map) {
   std::vector<double> position_variances, rotation_variances;
   for (const KeyframeId id : map.keyframe_ids()) {
     const Matrix6& covariance = map.keyframe_header(id)->covariance;
@@ -26,7 +26,7 @@ Matrix6 median_covariance(const Map& map) {
 
 }  // namespace
 
-std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls) {
+std::optional<PlacedWalls> place_walls(const MapGraph& map, const PlanRegistration& registration, PlanWalls walls) {
   constexpr double kMostApart = 2.0;    // metres between keyframes of one path
   constexpr double kDeep = 0.5;         // metres inside a wall
   constexpr double kMostInWalls = 0.1;  // share of the path
@@ -44,7 +44,7 @@ std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& r
   return PlacedWalls{registration, std::move(walls)};
 }
 
-OfflineMap::OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
+OfflineMap::OfflineMap(MapGraph map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
                        std::optional<PlacedWalls> walls, const OdometryCalibration& extrinsics)
     : map_(std::move(map)),
       places_(index_of(map_, vocabulary)),

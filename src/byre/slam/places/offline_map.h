@@ -19,16 +19,16 @@ struct PlacedWalls {
 
 // Opens walls along the map's own path, which cannot cross a wall. Empty if a tenth of that path is deep inside walls:
 // then the plan, or the registration, is wrong.
-std::optional<PlacedWalls> place_walls(const Map& map, const PlanRegistration& registration, PlanWalls walls);
+std::optional<PlacedWalls> place_walls(const MapGraph& map, const PlanRegistration& registration, PlanWalls walls);
 
 // A saved map for missions. Immutable, so any number of sessions and threads may share it.
 class OfflineMap {
  public:
   // Preconditions: the map is offline and has keyframes, with words of the vocabulary (see add_words).
-  OfflineMap(Map map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings = {},
+  OfflineMap(MapGraph map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings = {},
              std::optional<PlacedWalls> walls = {}, const OdometryCalibration& extrinsics = {});
 
-  const Map& map() const { return map_; }
+  const MapGraph& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
 
   // Recordings that the map was made from.
@@ -53,7 +53,7 @@ class OfflineMap {
   double distance_to_keyframes(const Eigen::Vector3d& camera_in_world) const;
 
  private:
-  Map map_;
+  MapGraph map_;
   PlaceIndex places_;
   std::vector<SourceRecording> recordings_;
   struct View {

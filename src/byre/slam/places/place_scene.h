@@ -31,15 +31,15 @@ struct MappedPlace {
 
   MapView view() const { return {&map, nothing_online}; }
 
-  Map map;
-  Map nothing_online{Origin::online};
+  MapGraph map;
+  MapGraph nothing_online{Origin::online};
   PlaceIndex index;
 };
 
 // Map of two equal rooms, 10 m apart; each frame fits both.
 inline MappedPlace twin_rooms(const SimulatedMission& mission) {
   MappedPlace place(mission);
-  const Map once = place.map;
+  const MapGraph once = place.map;
   const Eigen::Vector3d shift(10.0, 0.0, 0.0);
   std::vector<KeyframeId> copied;
   for (const KeyframeId id : once.keyframe_ids()) {
@@ -72,7 +72,7 @@ inline const Vocabulary& simulated_vocabulary() {
 
 // True map of an earlier visit; every fourth frame is a keyframe.
 inline std::shared_ptr<const OfflineMap> offline_map_of(const SimulatedMission& visit) {
-  Map map = true_map(visit, 4, Origin::offline);
+  MapGraph map = true_map(visit, 4, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
     map.set_words(id, simulated_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
   }

@@ -35,7 +35,7 @@ ScratchVector<KeyframeId> keyframes_of_place(const OfflineMap& offline, const Po
 ScratchVector<PointId> points_of_place(const OfflineMap& offline, std::span<const KeyframeId> keyframes);
 
 struct PlaceViewQuery {
-  const Map& map;
+  const MapGraph& map;
   const Rig& rig;
   const Frame& frame;
   const TrackedFrame& tracked;                  // pose and inliers, in the map's frame

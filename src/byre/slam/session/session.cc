@@ -13,7 +13,7 @@ namespace {
 
 // Keyframe with the most similar view: the least sum of its distance, in map units, and the angle between the viewing
 // directions, in radians. Empty for an empty map.
-std::optional<KeyframeId> keyframe_with_similar_view(const Map& map, const Pose& camera_from_world) {
+std::optional<KeyframeId> keyframe_with_similar_view(const MapGraph& map, const Pose& camera_from_world) {
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   const auto difference = [&](KeyframeId id) {
     const Pose apart = camera_from_world * inverse(map.keyframe_header(id)->camera_from_world);
@@ -41,7 +41,7 @@ Executor& SessionExecutors::of(JobKind kind) const {
   return *global;
 }
 
-void Session::continue_map(Map online) {
+void Session::continue_map(MapGraph online) {
   assert(state_.pose_filter.trajectory().empty());
   state_.mapper.continue_map(std::move(online));
   state_.status = State::lost;

@@ -53,7 +53,7 @@ class Session {
 
   // Continues an online map of another recording: the session is lost until it relocalises in it, and extends it. Call
   // it before the first frame. Precondition: the keyframes have words of the session's vocabulary.
-  void continue_map(Map online);
+  void continue_map(MapGraph online);
 
   // Refines the calibration that frames are rectified by, and the readout time of a rolling shutter. Call it before the
   // first frame.
@@ -92,7 +92,7 @@ class Session {
 
   // Last loop search and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishHooks& hooks);
-  Map take_online() { return state_.mapper.take_online(); }  // see Mapper
+  MapGraph take_online() { return state_.mapper.take_online(); }  // see Mapper
 
   // Scales all lengths. Call it after finish_map().
   void rescale(double factor) { state_.pose_filter.apply_length_changes(state_.mapper.rescale(factor)); }

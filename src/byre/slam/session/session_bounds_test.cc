@@ -64,7 +64,7 @@ PlanWalls wall_across(double door = 0.0) {
 }
 
 std::shared_ptr<const OfflineMap> map_with(const SimulatedMission& visit, std::optional<PlanWalls> walls = {}) {
-  Map map = true_map(visit, 3, Origin::offline);
+  MapGraph map = true_map(visit, 3, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
     map.set_words(id, simulated_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
   }

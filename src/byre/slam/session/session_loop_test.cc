@@ -141,7 +141,7 @@ TEST(SessionWithVocabulary, ContinuesAnEarlierMap) {
     EXPECT_LT(error_of(second, i, *report.map_from_body), 0.1);
   }
   later.finish();
-  const Map& map = later.map().online();
+  const MapGraph& map = later.map().online();
   EXPECT_THAT(find_faults(map), testing::IsEmpty());
   EXPECT_GT(map.keyframe_count(), keyframes_before);
   EXPECT_EQ(map.find_keyframe(map.keyframe_ids().front())->recording, 0);
@@ -195,7 +195,7 @@ TEST(SessionWithVocabulary, ExtendsTheMapWhileAJobReadsIt) {
   }
   EXPECT_GT(added_meanwhile, 3);
   session.finish();
-  const Map& map = session.map().online();
+  const MapGraph& map = session.map().online();
   EXPECT_THAT(find_faults(map), testing::IsEmpty());
   for (const KeyframeId id : map.keyframe_ids()) EXPECT_FALSE(map.find_keyframe(id)->words.empty());
 }

@@ -187,7 +187,7 @@ TEST(Mission, LocalisesNearAHintDespiteAMoreSimilarPlace) {
   const auto offline = mapped(1.0);
   const std::vector<Frame> frames = seen_as_the_other_side(mission);
   const Pose& truth = mission.truth[0].world_from_body;
-  const Map nothing_online(Origin::online);
+  const MapGraph nothing_online(Origin::online);
   const Localisation found = localise(frames[0], mission.rig, {&offline->map(), nothing_online}, offline->places(), {});
   ASSERT_FALSE(found.places_found.empty());
   const Pose most_alike = inverse(found.places_found.front().camera_from_world);
@@ -214,7 +214,7 @@ TEST(Mission, SearchesTheWholeMapAfterAWrongHint) {
 // Map whose points are off by some centimetres; its keyframes and their measurements are exact.
 std::shared_ptr<const OfflineMap> inexact(const std::shared_ptr<const OfflineMap>& exact) {
   constexpr double kError = 0.02;  // metres
-  Map map = exact->map();
+  MapGraph map = exact->map();
   for (const PointId id : map.point_ids()) {
     MapPoint point = *map.find_point(id);
     const double phase = id.number;
@@ -445,7 +445,7 @@ TEST(Mission, RelocalisesAfterAKidnappingWithWheelsStandingStill) {
 
 TEST(Mission, SuspendsMovedObjectsAndStaysOnCourse) {
   const SimulatedMission mission = circling(1.0, 2);
-  Map map = true_map(circling(1.0, 1), 4, Origin::offline);
+  MapGraph map = true_map(circling(1.0, 1), 4, Origin::offline);
   for (const KeyframeId id : map.keyframe_ids()) {
     map.set_words(id, simulated_vocabulary().words_of(*map.find_keyframe(id)->frame.features));
   }

@@ -31,7 +31,7 @@ struct Outcome {
   std::vector<FrameReport> reports;
   Trajectory causal;
   Trajectory final;
-  Map map{Origin::online};
+  MapGraph map{Origin::online};
 };
 
 Trajectory causal_trajectory(const std::vector<FrameReport>& reports) {
@@ -231,7 +231,7 @@ class SessionWithScriptedMapping : public ::testing::Test {
     frame.time = mission_.frames[processed_++].time;
     return session_.process(frame);
   }
-  const Map& map() const { return session_.map().online(); }
+  const MapGraph& map() const { return session_.map().online(); }
   Pose true_world_from_body(std::size_t place) const {
     return inverse(mission_.truth[0].world_from_body) * mission_.truth[place].world_from_body;
   }

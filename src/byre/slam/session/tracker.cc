@@ -57,7 +57,7 @@ const ScratchVector<PointId>& Tracker::points_around_reference(const Mapper& map
 const ScratchVector<PointId>& Tracker::offline_points_around(const Pose& predicted, const Mission& mission) {
   const std::optional<KeyframeId> around = mission.keyframe_near(predicted);
   if (around == offline_.keyframe) return offline_.points;
-  const Map nothing_online(Origin::online);
+  const MapGraph nothing_online(Origin::online);
   const MapView view(&mission.offline().map(), nothing_online);
   offline_ = {around, 0, {}};
   if (around) offline_.points = local_points(view, *around, options_.local_keyframes);

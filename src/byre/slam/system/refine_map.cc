@@ -12,8 +12,8 @@ namespace byre {
 
 FinishResult refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
   const Stopwatch watch;
-  Map online = online_copy(stored.map);
-  stored.map = Map(Origin::offline);  // frees hundreds of megabytes
+  MapGraph online = online_copy(stored.map);
+  stored.map = MapGraph(Origin::offline);  // frees hundreds of megabytes
   ScratchFile page_file;
   page_out_features(online, page_file);
   FinishResult finishing;

@@ -120,7 +120,7 @@ Slam Slam::extending(const Calibration& calibration, const fs::path& map, const 
   inputs.extended = load_for_mapping(map, *inputs.vocabulary);
   inputs.extended.pose_source = PoseSource::slam;
   inputs.before = online_copy(inputs.extended.map);
-  inputs.extended.map = Map(Origin::offline);
+  inputs.extended.map = MapGraph(Origin::offline);
   inputs.plan = inputs.extended.plan;
   return Slam(make(given, options, std::move(inputs)));
 }
@@ -238,7 +238,7 @@ int Slam::points() const {
 }
 
 std::vector<Eigen::Vector3d> Slam::point_positions() const {
-  const Map& map = impl_->online();
+  const MapGraph& map = impl_->online();
   std::vector<Eigen::Vector3d> positions;
   for (const PointId id : map.point_ids()) positions.push_back(map.find_point(id)->position_in_world);
   return positions;

@@ -44,7 +44,7 @@ struct SlamInputs {
   std::optional<std::filesystem::path> offline_file{};  // its file
   std::optional<PlanRegistration> plan{};               // registration of the offline or extended map on a floor plan
   StoredMap extended{};                                 // data of the map to extend, without keyframes and points
-  std::optional<Map> before{};  // keyframes and points of that map: an online copy with words of the vocabulary
+  std::optional<MapGraph> before{};  // keyframes and points of that map: an online copy with words of the vocabulary
 };
 
 // Everything behind Slam: front end of the cameras, session, checks of inputs. Call it from one thread.
@@ -89,7 +89,7 @@ class SlamImpl {
   const SlamInputs& inputs() const { return inputs_; }
   const InputCheck& input() const { return check_; }
   const Rig& rig() const { return extractor_.rig(); }
-  const Map& online() const { return session_.map().online(); }
+  const MapGraph& online() const { return session_.map().online(); }
   const Session& session() const { return session_; }
   const JobLog& log() const { return log_; }
   const OdometryCalibrator& prior() const { return prior_; }

@@ -2,8 +2,8 @@
 
 #include "byre/features/extract.h"
 #include "byre/geometry/finite.h"
-#include "byre/map/map.h"
 #include "byre/map/map_file.h"
+#include "byre/map/map_graph.h"
 #include "byre/recording.h"
 #include "byre/simulation/rendered_scene.h"
 
@@ -172,7 +172,7 @@ TEST_F(SlamFileTest, DoesNotReplaceTheMapOfAMission) {
 
 TEST_F(SlamFileTest, ExtendsAMap) {
   map_shared(8);
-  const Map before = load_map(map_).map;
+  const MapGraph before = load_map(map_).map;
   Slam slam = Slam::extending(open_shared()->calibration(), map_, repeatable());
   EXPECT_EQ(slam.keyframes(), before.keyframe_count());
   causal(slam, shared_frames());

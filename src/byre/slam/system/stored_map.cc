@@ -59,7 +59,7 @@ std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const V
   return offline;
 }
 
-std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings) {
+std::vector<int> keyframes_of_recordings(const MapGraph& map, std::size_t recordings) {
   std::vector<int> counts(recordings, 0);
   for (const KeyframeId id : map.keyframe_ids())
     ++counts.at(static_cast<std::size_t>(map.keyframe_header(id)->recording));

@@ -26,7 +26,7 @@ std::shared_ptr<const OfflineMap> load_offline_map(const std::filesystem::path& 
                                                    const std::optional<DrawnFloorPlan>& plan = {});
 
 // Number of keyframes per recording.
-std::vector<int> keyframes_of_recordings(const Map& map, std::size_t recordings);
+std::vector<int> keyframes_of_recordings(const MapGraph& map, std::size_t recordings);
 
 // Saves the map with the data that missions need: words of the vocabulary, site name unless empty, version of byre.
 void save_for_missions(StoredMap stored, const Vocabulary& vocabulary, const std::string& site,

@@ -11,7 +11,7 @@ namespace {
 class HindsightTest : public testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle(without_noise());
-  Map map_ = true_map(mission_, 2, Origin::online);
+  MapGraph map_ = true_map(mission_, 2, Origin::online);
   const Pose true_pose_ = true_camera_from_world(mission_, 0);
 
   const Features& features() const { return *mission_.frames[0].features; }

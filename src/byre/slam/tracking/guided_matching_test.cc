@@ -170,7 +170,7 @@ TEST(FindFeature, IsEmptyWithoutFeatures) {
 
 TEST(MatchExpected, AssignsAFeatureToTheMostSimilarPoint) {
   const Features features = make_features({{{100.0f, 100.0f}, kDescriptor}});
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   MapPoint point;
   point.descriptor = differing(30);
   const PointId less_similar = map.add_point(point);
@@ -183,7 +183,7 @@ TEST(MatchExpected, AssignsAFeatureToTheMostSimilarPoint) {
 
 TEST(MatchExpected, SkipsRemovedPoints) {
   const Features features = make_features({{{100.0f, 100.0f}, kDescriptor}});
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   MapPoint point;
   point.descriptor = kDescriptor;
   const PointId gone = map.add_point(point);
@@ -197,7 +197,7 @@ class GuidedMatching : public ::testing::Test {
   static constexpr std::size_t kFrame = 15;
 
   SimulatedMission mission_ = quarter_circle({});
-  Map map_ = true_map(mission_, 2, Origin::online);
+  MapGraph map_ = true_map(mission_, 2, Origin::online);
   MapView view_{nullptr, map_};
   std::vector<ExpectedPoint> expected_ = expected_points(view_, true_camera_from_world(mission_, kFrame), mission_.rig);
 };

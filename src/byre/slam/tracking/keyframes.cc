@@ -68,7 +68,7 @@ Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig)
 }
 
 KeyframeId add_keyframe_at(const Pose& camera_from_world, const Frame& frame, const Rig& rig,
-                           std::optional<KeyframeId> parent, Map& map, int recording) {
+                           std::optional<KeyframeId> parent, MapGraph& map, int recording) {
   TrackedFrame without_points;
   without_points.camera_from_world = camera_from_world;
   Keyframe keyframe = make_keyframe(frame, without_points, map.add_rig(rig));
@@ -92,7 +92,7 @@ MapPoint make_point(const Eigen::Vector3d& position_in_world, const Eigen::Matri
   return point;
 }
 
-int add_stereo_points(Map& map, KeyframeId id, std::span<const int> moving) {
+int add_stereo_points(MapGraph& map, KeyframeId id, std::span<const int> moving) {
   const Keyframe keyframe = *map.find_keyframe(id);  // a copy: adding observations changes the original
   const Rig rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
   const Pose world_from_camera = inverse(keyframe.camera_from_world);
@@ -114,10 +114,10 @@ int add_stereo_points(Map& map, KeyframeId id, std::span<const int> moving) {
   return added;
 }
 
-std::optional<Map> initialise_stereo(const Frame& frame, const Rig& rig, int min_points) {
+std::optional<MapGraph> initialise_stereo(const Frame& frame, const Rig& rig, int min_points) {
   const auto& keypoints = frame.features->keypoints();
   if (std::count_if(keypoints.begin(), keypoints.end(), has_trustworthy_disparity) < min_points) return std::nullopt;
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   // The world is the first body frame.
   add_stereo_points(map, add_keyframe_at(inverse(rig.body_from_camera), frame, rig, std::nullopt, map));
   return map;

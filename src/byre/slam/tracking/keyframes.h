@@ -42,17 +42,17 @@ Keyframe make_keyframe(const Frame& frame, const TrackedFrame& tracked, int rig)
 
 // Adds a keyframe with a given pose and without points.
 KeyframeId add_keyframe_at(const Pose& camera_from_world, const Frame& frame, const Rig& rig,
-                           std::optional<KeyframeId> parent, Map& map, int recording = 0);
+                           std::optional<KeyframeId> parent, MapGraph& map, int recording = 0);
 
 // Adds a point for each feature with a precise disparity and no point yet, so that the next frame can be tracked on it.
 // Skips the features in moving (ascending), which show moving objects. Returns the number of new points.
-int add_stereo_points(Map& map, KeyframeId id, std::span<const int> moving = {});
+int add_stereo_points(MapGraph& map, KeyframeId id, std::span<const int> moving = {});
 
 // A point described by its reference view; reference.keyframe must see it at the reference feature's pixel.
 MapPoint make_point(const Eigen::Vector3d& position_in_world, const Eigen::Matrix3d& covariance,
                     const Observation& reference, const Features& features, const Pose& camera_from_world);
 
 // First map from one stereo frame. Empty with fewer than min_points precise disparities.
-std::optional<Map> initialise_stereo(const Frame& frame, const Rig& rig, int min_points);
+std::optional<MapGraph> initialise_stereo(const Frame& frame, const Rig& rig, int min_points);
 
 }  // namespace byre

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(MedianDepth, IsTheDepthOfTrackedPointsAlongTheOpticalAxis) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   TrackedFrame tracked;
   tracked.camera_from_world = {rotation_exp({0.0, 0.0, 0.3}), {0.0, 0.0, 1.0}};
   for (const double depth : {9.0, 2.0, 3.0}) {
@@ -93,7 +93,7 @@ TEST(MedianDepth, IsTheDepthOfTrackedPointsAlongTheOpticalAxis) {
 }
 
 TEST(MedianDepth, SkipsRemovedPoints) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   EXPECT_EQ(median_depth(tracked_on(3), MapView(nullptr, map)), 0.0);
 }
 
@@ -197,7 +197,7 @@ class ManyMeasurementsOfOnePoint : public ::testing::Test {
 
   const Pose camera_from_world_{rotation_exp({0.4, -0.8, 0.3}), {0.5, -0.2, 0.1}};
   const Eigen::Vector3d point_in_world_ = inverse(camera_from_world_) * Eigen::Vector3d(1.0, 0.6, 3.0);
-  Map map_{Origin::online};
+  MapGraph map_{Origin::online};
 };
 
 TEST_F(ManyMeasurementsOfOnePoint, ScatterByTheirCovariance) {

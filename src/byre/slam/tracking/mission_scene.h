@@ -55,7 +55,7 @@ inline int true_landmark(const SimulatedMission& mission, const Keyframe& keyfra
 }
 
 // True landmark of most of a point's observations; -1 if that is an outlier.
-inline int true_landmark(const SimulatedMission& mission, const Map& map, PointId point) {
+inline int true_landmark(const SimulatedMission& mission, const MapGraph& map, PointId point) {
   std::vector<int> landmarks;
   for (const Observation& seen : map.observations(point)) {
     landmarks.push_back(true_landmark(mission, *map.find_keyframe(seen.keyframe), seen.feature));

@@ -46,7 +46,7 @@ class TrackingOnATrueMap : public ::testing::Test {
 
   SimulatedMission mapped_ = visit(1);
   SimulatedMission second_ = visit(2);
-  Map map_ = true_map(mapped_, 4, Origin::online);
+  MapGraph map_ = true_map(mapped_, 4, Origin::online);
   MapView view_{nullptr, map_};
   Pose truth_ = true_camera_from_world(second_, kFrame);
   Pose rough_ = displaced(truth_, {0.03, -0.02, 0.03}, {0.01, -0.015, 0.01});
@@ -159,7 +159,7 @@ TEST(Track, ReturnsAConsistentCovariance) {
   SimulationOptions options;
   options.pixel_sigma = corner_measurement(Keypoint{}).sigma;
   const SimulatedMission mission = quarter_circle(options);
-  const Map map = true_map(quarter_circle(without_noise()), 4, Origin::online);
+  const MapGraph map = true_map(quarter_circle(without_noise()), 4, Origin::online);
   const MapView view(nullptr, map);
   double mean = 0.0;
   for (std::size_t i = 0; i < mission.frames.size(); ++i) {

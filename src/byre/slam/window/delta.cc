@@ -40,7 +40,7 @@ class WindowBefore {
 // State of the window by the map that it was cut from.
 class MapBefore {
  public:
-  MapBefore(const Map& map, const MapWindow& after) : map_(map), after_(after) {
+  MapBefore(const MapGraph& map, const MapWindow& after) : map_(map), after_(after) {
     while (point_count_ < after.points.size() && after.points[point_count_].id) {
       const PointId id = *after.points[point_count_].id;
       std::vector<int>& index = index_of_[static_cast<std::size_t>(id.origin)];
@@ -68,7 +68,7 @@ class MapBefore {
     return id.number < index.size() ? index[id.number] : kPointElsewhere;
   }
 
-  const Map& map_;
+  const MapGraph& map_;
   const MapWindow& after_;
   std::size_t point_count_ = 0;               // points without the new ones
   std::array<std::vector<int>, 2> index_of_;  // index in the window, by origin and number
@@ -168,7 +168,7 @@ void append_new_points(std::size_t known, const MapWindow& after, MapDelta& delt
   }
 }
 
-void add_new_point(const NewPoint& made, Map& online) {
+void add_new_point(const NewPoint& made, MapGraph& online) {
   const PointId id = online.add_point(made.point);
   int added = 0;
   for (const NewObservation& observation : made.observations) {
@@ -188,7 +188,7 @@ void add_new_point(const NewPoint& made, Map& online) {
 }
 
 // Removals before additions: no point depends on its foreign views.
-void change_foreign_views(const MapDelta& delta, Map& online) {
+void change_foreign_views(const MapDelta& delta, MapGraph& online) {
   for (const RemovedForeignView& removed : delta.removed_foreign_views) {
     if (online.point_of_foreign_view(removed.observation) == PointId(removed.point)) {
       online.remove_foreign_view(removed.observation);
@@ -202,13 +202,13 @@ void change_foreign_views(const MapDelta& delta, Map& online) {
 }
 
 // Existing observations stay.
-void add_observations(const MapDelta& delta, Map& online) {
+void add_observations(const MapDelta& delta, MapGraph& online) {
   for (const NewObservation& added : delta.new_observations) {
     online.add_observation({added.keyframe, added.feature}, added.sighting);
   }
 }
 
-void remove_observations(const MapDelta& delta, Map& online) {
+void remove_observations(const MapDelta& delta, MapGraph& online) {
   for (const RemovedObservation& removed : delta.removed_observations) {
     const Keyframe* const keyframe = online.find_keyframe(removed.keyframe);
     if (keyframe == nullptr) continue;
@@ -274,11 +274,11 @@ MapDelta difference(const MapWindow& before, const MapWindow& after) {
   return difference_to(WindowBefore(before), after);
 }
 
-MapDelta difference(const Map& before, const MapWindow& after) {
+MapDelta difference(const MapGraph& before, const MapWindow& after) {
   return difference_to(MapBefore(before, after), after);
 }
 
-void apply(const MapDelta& delta, Map& online) {
+void apply(const MapDelta& delta, MapGraph& online) {
   for (const MovedKeyframe& moved : delta.moved_keyframes) {
     online.move_keyframe(moved.id, moved.camera_from_world, moved.covariance);
   }

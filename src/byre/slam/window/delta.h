@@ -76,9 +76,9 @@ MapWindow outline_of(const MapWindow& window);
 // Changes from a window before mapping, or its outline, to the window after.
 MapDelta difference(const MapWindow& before, const MapWindow& after);
 // Same for a map that has not changed since the window was cut from it. Precondition: all keyframes are online.
-MapDelta difference(const Map& before, const MapWindow& after);
+MapDelta difference(const MapGraph& before, const MapWindow& after);
 
 // Skips items that the map no longer holds.
-void apply(const MapDelta& delta, Map& online);
+void apply(const MapDelta& delta, MapGraph& online);
 
 }  // namespace byre

@@ -16,7 +16,7 @@ constexpr WindowOptions kWindow{.movable = 6, .anchors = 4};
 constexpr KeyframeId kNewestKeyframe{Origin::online, 19};
 
 // Outliers give features without a point.
-Map make_map() {
+MapGraph make_map() {
   SimulationOptions options;
   options.outlier_ratio = 0.2;
   return true_map(quarter_circle(options), 2, Origin::online);
@@ -141,14 +141,14 @@ class RandomMapping {
 };
 
 // Points made in the window have no id there: only their positions are compared.
-void expect_same_point(const Map& map, const WindowPoint& point, const std::optional<PointId>& seen) {
+void expect_same_point(const MapGraph& map, const WindowPoint& point, const std::optional<PointId>& seen) {
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen, point.id.value_or(*seen));
   ASSERT_NE(map.find_point(*seen), nullptr);
   EXPECT_EQ(map.find_point(*seen)->position_in_world, point.point.position_in_world);
 }
 
-void expect_same_keyframe(const Map& map, const MapWindow& window, const WindowKeyframe& expected) {
+void expect_same_keyframe(const MapGraph& map, const MapWindow& window, const WindowKeyframe& expected) {
   const Keyframe* const keyframe = map.find_keyframe(expected.id);
   ASSERT_EQ(keyframe == nullptr, expected.removed);
   if (expected.removed) return;
@@ -165,7 +165,7 @@ void expect_same_keyframe(const Map& map, const MapWindow& window, const WindowK
   }
 }
 
-void expect_same(const Map& map, const MapWindow& window) {
+void expect_same(const MapGraph& map, const MapWindow& window) {
   for (const WindowKeyframe& keyframe : window.keyframes) expect_same_keyframe(map, window, keyframe);
   for (const WindowPoint& point : window.points) {
     if (!point.id) continue;
@@ -174,7 +174,7 @@ void expect_same(const Map& map, const MapWindow& window) {
 }
 
 TEST(Difference, OfAnUnchangedWindowIsEmpty) {
-  const Map map = make_map();
+  const MapGraph map = make_map();
   const MapWindow window = cut_window(map, {kNewestKeyframe}, kWindow);
   const MapDelta delta = difference(window, window);
   EXPECT_THAT(delta.moved_keyframes, IsEmpty());
@@ -197,7 +197,7 @@ class RandomDelta : public ::testing::TestWithParam<std::uint64_t> {
   }
 
   // Changes by the frame thread and by other deltas while a job runs.
-  static void change_meanwhile(Map& map, std::uint64_t seed) {
+  static void change_meanwhile(MapGraph& map, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     const std::vector<PointId> points = map.point_ids();
     const auto some_point = [&] { return points[random() % points.size()]; };
@@ -213,7 +213,7 @@ class RandomDelta : public ::testing::TestWithParam<std::uint64_t> {
     }
   }
 
-  Map map_ = make_map();
+  MapGraph map_ = make_map();
   const MapWindow before_ = cut_window(map_, {kNewestKeyframe}, kWindow);
   const MapWindow after_ = changed(before_, GetParam());
 };
@@ -225,7 +225,7 @@ TEST_P(RandomDelta, MakesTheMapEqualToTheWindow) {
 }
 
 TEST_P(RandomDelta, IsEqualFromMapAndWindow) {
-  Map by_window = map_;
+  MapGraph by_window = map_;
   apply(difference(before_, after_), by_window);
   apply(difference(map_, after_), map_);
   expect_same(map_, after_);
@@ -259,7 +259,7 @@ TEST_P(RandomDelta, SkipsRemovedElements) {
 }
 
 TEST_P(RandomDelta, LeavesAnEmptyMapEmpty) {
-  Map empty(Origin::online);
+  MapGraph empty(Origin::online);
   apply(difference(before_, after_), empty);
   EXPECT_EQ(empty.keyframe_count(), 0);
   EXPECT_EQ(empty.point_count(), 0);
@@ -270,7 +270,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomDelta, ::testing::Range(std::uint64_t{1}, 
 
 // The point has a single observation, which moves to another keyframe.
 TEST(Apply, KeepsAPointWhoseOnlyObservationChanges) {
-  Map map = make_map();
+  MapGraph map = make_map();
   const PointId id = *map.find_keyframe(kNewestKeyframe)->sightings.front().point;
   const std::vector<Observation> seen_by = map.observations(id);
   for (std::size_t i = 1; i < seen_by.size(); ++i) map.remove_observation(seen_by[i]);
@@ -388,7 +388,7 @@ TEST_F(DeltaOfForeignViews, KeepsAFeatureThatWasReassignedMeanwhile) {
 }
 
 TEST(Apply, DropsANewPointWithOneRemainingKeyframe) {
-  Map map = make_map();
+  MapGraph map = make_map();
   const MapWindow before = cut_window(map, {kNewestKeyframe}, kWindow);
   MapWindow after = before;
   WindowPoint made;

@@ -48,7 +48,7 @@ double median_point_error(const HybridScene& scene) {
 }
 
 // The map file of a copy without gaps in ids.
-std::vector<std::byte> bytes_of(const Map& offline) {
+std::vector<std::byte> bytes_of(const MapGraph& offline) {
   StoredMap stored;
   stored.map = offline_copy(offline);
   stored.recordings.emplace_back();
@@ -119,7 +119,7 @@ HybridScene scene_of_one_keyframe() {
   for (const PointId id : scene.online.point_ids()) scene.online.remove_point(id);
   Keyframe newest = *scene.online.find_keyframe(kLastKeyframe);
   newest.parent.reset();
-  Map alone(Origin::online);
+  MapGraph alone(Origin::online);
   alone.add_rig(scene.second.rig);
   alone.add_keyframe(std::move(newest));
   scene.online = std::move(alone);
@@ -154,7 +154,7 @@ int count_known_online(const HybridScene& scene) {
       ids, [&](PointId id) { return scene.known_points.contains(true_landmark(scene.second, scene.online, id)); }));
 }
 
-int count_sightings_of_offline_points(const Map& online) {
+int count_sightings_of_offline_points(const MapGraph& online) {
   int count = 0;
   for (const KeyframeId id : online.keyframe_ids()) {
     for (const Sighting& sighting : online.find_keyframe(id)->sightings) {

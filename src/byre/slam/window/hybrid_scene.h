@@ -2,7 +2,7 @@
 
 // A mission on an offline map for tests of mapping: two visits to the same room.
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/map/map_view.h"
 #include "byre/slam/tracking/mission_scene.h"
 #include "byre/slam/window/mapping.h"
@@ -21,8 +21,8 @@ inline bool is_known(int landmark) {
 struct HybridScene {
   SimulatedMission first;   // visit that made the offline map
   SimulatedMission second;  // 10 cm off the first
-  Map offline{Origin::offline};
-  Map online{Origin::online};  // map of the second visit; every second frame is a keyframe
+  MapGraph offline{Origin::offline};
+  MapGraph online{Origin::online};  // map of the second visit; every second frame is a keyframe
   std::map<int, PointId> known_points;
 
   MapView view() const { return {&offline, online}; }
@@ -77,7 +77,7 @@ inline HybridScene true_hybrid_scene(const SimulationOptions& options) {
 }
 
 // Moves an online map as a whole.
-inline void displace(Map& online, const Pose& displaced_from_world) {
+inline void displace(MapGraph& online, const Pose& displaced_from_world) {
   for (const KeyframeId id : online.keyframe_ids()) {
     const Keyframe& keyframe = *online.find_keyframe(id);
     online.move_keyframe(id, keyframe.camera_from_world * inverse(displaced_from_world), keyframe.covariance);

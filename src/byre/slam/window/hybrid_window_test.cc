@@ -99,7 +99,7 @@ TEST_F(HybridWindow, SelectsOfflineKeyframesByCommonPoints) {
 TEST_F(HybridWindow, ContainsTheRigsOfBothMaps) {
   Rig other = scene_.first.rig;
   other.baseline *= 2.0;
-  Map offline(Origin::offline);
+  MapGraph offline(Origin::offline);
   offline.add_rig(other);
   for (const PointId id : scene_.offline.point_ids()) offline.add_point(*scene_.offline.find_point(id));
   for (const KeyframeId id : scene_.offline.keyframe_ids()) offline.add_keyframe(*scene_.offline.find_keyframe(id));

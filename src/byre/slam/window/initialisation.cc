@@ -59,7 +59,7 @@ std::optional<Placement> placement_of(const MonocularStart& start, const StartPo
 }
 
 KeyframeId add_keyframe(const MonocularStart& start, KeyframeId id, const Placement& placement,
-                        const std::optional<KeyframeId>& parent, int recording, Map& map) {
+                        const std::optional<KeyframeId>& parent, int recording, MapGraph& map) {
   Keyframe keyframe = *start.map.find_keyframe(id);
   keyframe.rig = map.add_rig(start.map.rigs()[static_cast<std::size_t>(keyframe.rig)]);
   keyframe.recording = recording;
@@ -85,7 +85,7 @@ MapPoint moved(const MapPoint& point, const Placement& placement) {
 
 // Returns the two keyframes.
 std::vector<KeyframeId> add_start(const MonocularStart& start, const Placement& placement,
-                                  const std::optional<KeyframeId>& parent, int recording, Map& map) {
+                                  const std::optional<KeyframeId>& parent, int recording, MapGraph& map) {
   const KeyframeId first = add_keyframe(start, start.first, placement, parent, recording, map);
   const KeyframeId second = add_keyframe(start, start.second, placement, first, recording, map);
   const auto renamed = [&](KeyframeId id) { return id == start.first ? first : second; };
@@ -130,7 +130,7 @@ double scale_for(const TwoViewMotion& motion, double median_depth) {
 }
 
 // Adds a point defined by a feature of the first keyframe and measured in the second.
-void add_seen_point(Map& map, const Eigen::Vector3d& point_in_world, const Observation& in_first,
+void add_seen_point(MapGraph& map, const Eigen::Vector3d& point_in_world, const Observation& in_first,
                     const Observation& in_second) {
   const Keyframe& first = *map.find_keyframe(in_first.keyframe);
   const Keyframe& second = *map.find_keyframe(in_second.keyframe);
@@ -158,7 +158,7 @@ void adjust(MonocularStart& start, const MappingOptions& options) {
   apply(difference(window, adjusted), start.map);
 }
 
-void remove_points_of_unknown_depth(Map& map, const Pose& camera_from_world, double max_relative_sigma) {
+void remove_points_of_unknown_depth(MapGraph& map, const Pose& camera_from_world, double max_relative_sigma) {
   for (const PointId id : map.point_ids()) {
     const MapPoint& point = *map.find_point(id);
     const double max_sigma = max_relative_sigma * (camera_from_world * point.position_in_world).z();
@@ -234,7 +234,7 @@ MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>&
   const Pose first_from_world = inverse(world_from_first);
   Pose second_from_first = motion.second_from_first;
   second_from_first.translation *= scale;
-  MonocularStart start{.map = Map(Origin::online), .first = {}, .second = {}};
+  MonocularStart start{.map = MapGraph(Origin::online), .first = {}, .second = {}};
   start.first = add_keyframe_at(first_from_world, first, rig, std::nullopt, start.map);
   start.second = add_keyframe_at(second_from_first * first_from_world, second, rig, start.first, start.map);
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -319,7 +319,7 @@ MonocularAttempt MonocularInitialiser::try_start(const Frame& frame) {
 }
 
 std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const StartPoses& odometry,
-                                             const std::optional<KeyframeId>& parent, int recording, Map& map) {
+                                             const std::optional<KeyframeId>& parent, int recording, MapGraph& map) {
   const auto placement = placement_of(start, odometry);
   return placement ? add_start(start, *placement, parent, recording, map) : std::vector<KeyframeId>{};
 }
@@ -343,7 +343,7 @@ std::optional<double> odometry_scale(const MonocularStart& start, const StartPos
 MonocularStart align_to_odometry(const MonocularStart& start, const StartPoses& odometry, double scale) {
   const Pose second_from_start = scale_lengths(start.map.camera_from_world(start.second), scale);
   MonocularStart result = start;
-  result.map = Map(Origin::online);
+  result.map = MapGraph(Origin::online);
   const auto keyframes = add_start(start, {inverse(odometry.second_camera_from_world) * second_from_start, scale}, {},
                                    start.map.find_keyframe(start.first)->recording, result.map);
   result.first = keyframes.front();

@@ -2,7 +2,7 @@
 
 #include "byre/features/match.h"
 #include "byre/geometry/two_view.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/slam/window/mapping.h"
 
 #include <optional>
@@ -20,7 +20,7 @@ struct MonocularStartOptions {
 // First map of one camera: two keyframes and the points that both see. The world is the body at the first keyframe. The
 // unit of length is arbitrary, so a metric lever arm of body_from_camera does not apply.
 struct MonocularStart {
-  Map map;
+  MapGraph map;
   KeyframeId first;
   KeyframeId second;             // keyframe of the tried frame
   double median_parallax = 0.0;  // radians, over the points of the map
@@ -76,7 +76,7 @@ struct StartPoses {
 // measured motion. parent: of the first keyframe, from which the motion was measured. Returns the two keyframes; empty,
 // and nothing is added, if the cameras turned or moved differently than measured.
 std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const StartPoses& odometry,
-                                             const std::optional<KeyframeId>& parent, int recording, Map& map);
+                                             const std::optional<KeyframeId>& parent, int recording, MapGraph& map);
 
 // Whether the cameras of a start turned and moved in the measured direction.
 bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometry);

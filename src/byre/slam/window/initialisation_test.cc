@@ -146,7 +146,7 @@ TEST(MonocularInitialiser, ReturnsAValidMapOfTwoKeyframes) {
   const SimulatedMission mission = sidestepping(noisy(1));
   const Started started = run(mission);
   ASSERT_NE(started.start(), nullptr);
-  const Map& map = started.start()->map;
+  const MapGraph& map = started.start()->map;
   EXPECT_THAT(find_faults(map), IsEmpty());
   EXPECT_EQ(map.keyframe_count(), 2);
   EXPECT_GE(map.point_count(), 80);

@@ -15,7 +15,7 @@ namespace byre {
 namespace {
 
 // Median depth of the points in their reference views.
-double median_depth(const Map& map) {
+double median_depth(const MapGraph& map) {
   std::vector<double> depths;
   for (const PointId id : map.point_ids()) {
     const MapPoint& point = *map.find_point(id);
@@ -24,12 +24,12 @@ double median_depth(const Map& map) {
   return median(std::move(depths));
 }
 
-std::optional<PointId> point_at(const Map& map, const Observation& seen) {
+std::optional<PointId> point_at(const MapGraph& map, const Observation& seen) {
   return map.find_keyframe(seen.keyframe)->sightings[static_cast<std::size_t>(seen.feature)].point;
 }
 
 // The point of the map that most of these features show.
-std::optional<PointId> known_point(const Map& map, const std::vector<Observation>& observations) {
+std::optional<PointId> known_point(const MapGraph& map, const std::vector<Observation>& observations) {
   std::map<PointId, int> counts;
   for (const Observation& seen : observations) {
     if (const auto point = point_at(map, seen)) ++counts[*point];
@@ -38,13 +38,13 @@ std::optional<PointId> known_point(const Map& map, const std::vector<Observation
   return std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; })->first;
 }
 
-Sighting as_seen(const Map& from, const Observation& seen, PointId point) {
+Sighting as_seen(const MapGraph& from, const Observation& seen, PointId point) {
   Sighting sighting = from.find_keyframe(seen.keyframe)->sightings[static_cast<std::size_t>(seen.feature)];
   sighting.point = point;
   return sighting;
 }
 
-void add_view(const SfmModel& model, PointId id, const Observation& seen, float max_error, Map& map) {
+void add_view(const SfmModel& model, PointId id, const Observation& seen, float max_error, MapGraph& map) {
   const MapPoint& point = *map.find_point(id);
   const CameraView reference = view_of(model, static_cast<int>(point.reference.keyframe.number));
   const Eigen::Vector2f reference_pixel =
@@ -118,7 +118,7 @@ Descriptor central_descriptor(const SfmModel& model, const std::vector<Measured>
   return view_of(model, central.image).features.descriptor(central.feature);
 }
 
-void add_images(const SfmModel& model, Map& map) {
+void add_images(const SfmModel& model, MapGraph& map) {
   std::optional<KeyframeId> previous;
   for (const PosedFrame& image : model.images) {
     previous = add_keyframe_at(image.camera_from_world, image.frame, model.rigs[static_cast<std::size_t>(image.rig)],
@@ -128,7 +128,7 @@ void add_images(const SfmModel& model, Map& map) {
 
 // Precondition: keyframe n is image n.
 void add_model_point(const SfmModel& model, int index, const std::vector<Measured>& views,
-                     const Eigen::Matrix3d& covariance, Map& map) {
+                     const Eigen::Matrix3d& covariance, MapGraph& map) {
   const ModelPoint& point = model.points[static_cast<std::size_t>(index)];
   const auto observation_of = [](const ModelView& view) {
     return Observation{{Origin::online, static_cast<std::uint32_t>(view.image)}, view.feature};
@@ -146,11 +146,11 @@ void add_model_point(const SfmModel& model, int index, const std::vector<Measure
 
 // Adds points for corners that show no point of the model, triangulated from the model's poses. If such a point turns
 // out to be a point of the model, that point gets the views that measure it at its position.
-void add_own_points(const SfmModel& model, const ModelMapOptions& options, Map& map) {
+void add_own_points(const SfmModel& model, const ModelMapOptions& options, MapGraph& map) {
   if (map.point_count() == 0) return;
   KnownPoseOptions own_options = options.own_points;
   own_options.assumed_depth = median_depth(map);
-  const Map own = map_from_poses(model.rigs, model.images, own_options);
+  const MapGraph own = map_from_poses(model.rigs, model.images, own_options);
   for (const PointId own_id : own.point_ids()) {
     const std::vector<Observation>& observations = own.observations(own_id);
     if (const auto known = known_point(map, observations)) {

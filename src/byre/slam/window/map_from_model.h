@@ -28,7 +28,7 @@ struct ModelMapOptions {
 };
 
 struct ModelMap {
-  Map map{Origin::online};        // keyframe n is image n; each rig of the model is a recording
+  MapGraph map{Origin::online};   // keyframe n is image n; each rig of the model is a recording
   std::vector<int> model_points;  // model point of point n; points beyond these are byre's own
 };
 

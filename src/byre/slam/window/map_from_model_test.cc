@@ -90,7 +90,7 @@ TEST_F(ModelOfACleanMission, AssignsFeaturesToPointsAndKeepsPositions) {
 }
 
 TEST_F(ModelOfACleanMission, KeepsThePosesOfItsImages) {
-  const Map map = map_from_model(model_, {}).map;
+  const MapGraph map = map_from_model(model_, {}).map;
   ASSERT_EQ(map.keyframe_count(), static_cast<int>(model_.images.size()));
   for (std::uint32_t i = 0; i < model_.images.size(); ++i) {
     const Keyframe& keyframe = *map.find_keyframe({Origin::online, i});
@@ -161,7 +161,7 @@ TEST_F(ModelOfAMission, IsMoreCertainForPreciseMeasurements) {
   ModelMapOptions fine = of_model_only(), coarse = of_model_only();
   fine.model_sigma = 0.5;
   coarse.model_sigma = 2.0;
-  const Map well_known = map_from_model(model_, fine).map, badly_known = map_from_model(model_, coarse).map;
+  const MapGraph well_known = map_from_model(model_, fine).map, badly_known = map_from_model(model_, coarse).map;
   for (const PointId id : well_known.point_ids()) {
     const Eigen::Matrix3d& covariance = well_known.find_point(id)->covariance;
     EXPECT_GT(covariance.determinant(), 0.0);

@@ -19,7 +19,7 @@ struct SeenPart {
 };
 
 // Samples features at their stereo depths, or at the assumed depth without stereo.
-SeenPart seen_part(const Map& map, KeyframeId id, double assumed_depth) {
+SeenPart seen_part(const MapGraph& map, KeyframeId id, double assumed_depth) {
   constexpr int kSamples = 60;
   const Keyframe& keyframe = *map.find_keyframe(id);
   const Rig& rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
@@ -61,7 +61,7 @@ double overlap(const SeenPart& first, const SeenPart& second, const Rig& first_r
   return in_second == 0.0 ? 0.0 : std::min(in_second, share(second, first, first_rig));
 }
 
-void add_frames(Map& map, const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames) {
+void add_frames(MapGraph& map, const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames) {
   std::optional<KeyframeId> previous;
   for (const PosedFrame& posed : frames) {
     const Rig& rig = rigs[static_cast<std::size_t>(posed.rig)];
@@ -71,7 +71,7 @@ void add_frames(Map& map, const std::vector<Rig>& rigs, const std::vector<PosedF
 }
 
 // Adds points that the keyframe shares with its neighbours.
-void connect(Map& map, KeyframeId id, const std::vector<KeyframeId>& neighbours, const KnownPoseOptions& options) {
+void connect(MapGraph& map, KeyframeId id, const std::vector<KeyframeId>& neighbours, const KnownPoseOptions& options) {
   MappingOptions mapping = options.mapping;
   mapping.triangulation_neighbours = mapping.fusion_neighbours = options.neighbours;
   mapping.search_radius = options.search_radius;
@@ -95,7 +95,7 @@ void add_pose_errors(MapWindow& window, double pose_sigma) {
 }
 
 // Refines all points together: with fixed poses they are independent.
-void refine_points(Map& map, const KnownPoseOptions& options) {
+void refine_points(MapGraph& map, const KnownPoseOptions& options) {
   if (map.keyframe_count() == 0) return;
   const MapWindow window = window_of(map, map.keyframe_ids());
   MapWindow settled = window;
@@ -109,7 +109,7 @@ void refine_points(Map& map, const KnownPoseOptions& options) {
 
 }  // namespace
 
-std::vector<std::vector<KeyframeId>> overlapping_keyframes(const Map& map, const KnownPoseOptions& options) {
+std::vector<std::vector<KeyframeId>> overlapping_keyframes(const MapGraph& map, const KnownPoseOptions& options) {
   constexpr double kMinOverlap = 0.1;
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   std::vector<SeenPart> parts;
@@ -135,9 +135,9 @@ std::vector<std::vector<KeyframeId>> overlapping_keyframes(const Map& map, const
   return neighbours;
 }
 
-Map map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
-                   const KnownPoseOptions& options) {
-  Map map(Origin::online);
+MapGraph map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
+                        const KnownPoseOptions& options) {
+  MapGraph map(Origin::online);
   add_frames(map, rigs, frames);
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   const auto neighbours = overlapping_keyframes(map, options);

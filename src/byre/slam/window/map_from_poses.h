@@ -24,10 +24,10 @@ struct KnownPoseOptions {
 // Map of frames with given, fixed poses. Each frame becomes a keyframe, its parent the one before it. Points come from
 // disparities and from triangulation between overlapping views, however far apart in time; duplicates are fused, points
 // whose views disagree are dropped. Keyframe covariances are zero: errors of poses count as errors of measurements.
-Map map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
-                   const KnownPoseOptions& options);
+MapGraph map_from_poses(const std::vector<Rig>& rigs, const std::vector<PosedFrame>& frames,
+                        const KnownPoseOptions& options);
 
 // For each keyframe in ascending order, the keyframes with overlapping views, most overlap first.
-std::vector<std::vector<KeyframeId>> overlapping_keyframes(const Map& map, const KnownPoseOptions& options);
+std::vector<std::vector<KeyframeId>> overlapping_keyframes(const MapGraph& map, const KnownPoseOptions& options);
 
 }  // namespace byre

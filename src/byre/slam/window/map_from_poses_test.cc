@@ -31,7 +31,7 @@ struct Placement {
   double mean_observations = 0;  // mean number of observations per point
 };
 
-Placement placement(const Map& map, const SimulatedMission& mission) {
+Placement placement(const MapGraph& map, const SimulatedMission& mission) {
   double right = 0.0, observations = 0.0;
   for (const PointId id : map.point_ids()) {
     observations += static_cast<double>(map.observations(id).size());
@@ -46,7 +46,7 @@ Placement placement(const Map& map, const SimulatedMission& mission) {
 TEST(MapFromPoses, KeepsTheGivenPoses) {
   const SimulatedMission mission = quarter_circle({});
   const std::vector<PosedFrame> frames = posed_frames(mission, 8);
-  const Map map = map_from_poses({mission.rig}, frames, {});
+  const MapGraph map = map_from_poses({mission.rig}, frames, {});
   EXPECT_THAT(find_faults(map), IsEmpty());
   const std::vector<KeyframeId> ids = map.keyframe_ids();
   ASSERT_THAT(ids, SizeIs(frames.size()));
@@ -60,7 +60,7 @@ TEST(MapFromPoses, KeepsTheGivenPoses) {
 
 TEST(MapFromPoses, PlacesCleanPointsOnLandmarksAndRematchesThem) {
   const SimulatedMission mission = quarter_circle(without_noise());
-  const Map map = map_from_poses({mission.rig}, posed_frames(mission, 8), {});
+  const MapGraph map = map_from_poses({mission.rig}, posed_frames(mission, 8), {});
   const Placement placed = placement(map, mission);
   EXPECT_GT(map.point_count(), 400);
   EXPECT_GT(placed.right_share, 0.99);
@@ -68,7 +68,7 @@ TEST(MapFromPoses, PlacesCleanPointsOnLandmarksAndRematchesThem) {
 }
 
 // Squared normalised error of a point; infinite for an outlier.
-double squared_error(const Map& map, const SimulatedMission& mission, PointId id) {
+double squared_error(const MapGraph& map, const SimulatedMission& mission, PointId id) {
   const int landmark = true_landmark(mission, map, id);
   if (landmark < 0) return std::numeric_limits<double>::infinity();
   const MapPoint& point = *map.find_point(id);
@@ -81,7 +81,7 @@ TEST(MapFromPoses, EstimatesPointCovariancesUnderNoiseAndOutliers) {
   SimulationOptions noisy;
   noisy.outlier_ratio = 0.1;
   const SimulatedMission mission = quarter_circle(noisy);
-  const Map map = map_from_poses({mission.rig}, posed_frames(mission, 4), {});
+  const MapGraph map = map_from_poses({mission.rig}, posed_frames(mission, 4), {});
   constexpr double kChiSquare99 = 11.345;  // three degrees of freedom
   int confirmed = 0, right = 0;
   for (const PointId id : map.point_ids()) {
@@ -103,7 +103,7 @@ TEST(MapFromPoses, ToleratesPoseErrorsOfPixels) {
   }
   const double with_truth =
       placement(map_from_poses({mission.rig}, posed_frames(mission, 4), {}), mission).mean_observations;
-  const Map displaced = map_from_poses({mission.rig}, frames, {});
+  const MapGraph displaced = map_from_poses({mission.rig}, frames, {});
   EXPECT_GT(placement(displaced, mission).mean_observations, 0.9 * with_truth);
 }
 
@@ -111,7 +111,7 @@ TEST(MapFromPoses, TriangulatesPointsOfOneCamera) {
   Rig mono = simulated_rig();
   mono.baseline = 0.0;
   const SimulatedMission mission = simulate_mission(mono, circling_trajectory(40, 10.0, 2.0, 0.25), without_noise());
-  const Map map = map_from_poses({mono}, posed_frames(mission, 4), {});
+  const MapGraph map = map_from_poses({mono}, posed_frames(mission, 4), {});
   EXPECT_GT(map.point_count(), 200);
   EXPECT_GT(placement(map, mission).right_share, 0.95);
   for (const PointId id : map.point_ids()) EXPECT_GE(map.observations(id).size(), 2u);
@@ -119,7 +119,7 @@ TEST(MapFromPoses, TriangulatesPointsOfOneCamera) {
 
 TEST(MapFromPoses, AcceptsOneFrameAndNone) {
   const SimulatedMission mission = quarter_circle({});
-  const Map one = map_from_poses({mission.rig}, {posed_frames(mission, 4).front()}, {});
+  const MapGraph one = map_from_poses({mission.rig}, {posed_frames(mission, 4).front()}, {});
   EXPECT_EQ(one.keyframe_count(), 1);
   EXPECT_GT(one.point_count(), 100);
   EXPECT_EQ(map_from_poses({mission.rig}, {}, {}).keyframe_count(), 0);
@@ -127,7 +127,7 @@ TEST(MapFromPoses, AcceptsOneFrameAndNone) {
 
 TEST(OverlappingKeyframes, IncludeLaterVisits) {
   const SimulatedMission lap = simulate_mission(simulated_rig(), circling_trajectory(80, 10.0, 2.0, 2.0), {});
-  const Map map = map_from_poses({lap.rig}, posed_frames(lap, 4), {});  // ten keyframes per lap, two laps
+  const MapGraph map = map_from_poses({lap.rig}, posed_frames(lap, 4), {});  // ten keyframes per lap, two laps
   const auto neighbours = overlapping_keyframes(map, {});
   ASSERT_THAT(neighbours, SizeIs(20));
   EXPECT_EQ(neighbours[0].front(), (KeyframeId{Origin::online, 10}));

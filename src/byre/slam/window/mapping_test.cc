@@ -21,11 +21,11 @@ using ::testing::Not;
 constexpr KeyframeId kFirst{Origin::online, 0};
 constexpr KeyframeId kNewest{Origin::online, 19};
 
-MapWindow cut(const Map& map) {
+MapWindow cut(const MapGraph& map) {
   return cut_window(map, {kNewest}, MappingOptions{}.window);
 }
 
-Map extended(Map map, const MappingOptions& options = {}) {
+MapGraph extended(MapGraph map, const MappingOptions& options = {}) {
   apply(extend_map(cut(map), options), map);
   return map;
 }
@@ -35,7 +35,7 @@ class MappingOn : public ::testing::Test {
  protected:
   explicit MappingOn(const SimulationOptions& options) : mission_(quarter_circle(options)) {}
 
-  Eigen::Vector3d true_position(const Map& map, PointId id) const {
+  Eigen::Vector3d true_position(const MapGraph& map, PointId id) const {
     return mission_.landmarks_in_world[static_cast<std::size_t>(true_landmark(mission_, map, id))];
   }
   Pose true_pose(KeyframeId id) const { return true_camera_from_world(mission_, 2 * id.number); }
@@ -48,7 +48,7 @@ class MappingOn : public ::testing::Test {
   }
 
   SimulatedMission mission_;
-  Map map_ = true_map(mission_, 2, Origin::online);
+  MapGraph map_ = true_map(mission_, 2, Origin::online);
 };
 
 class MappingOnCleanFeatures : public MappingOn {
@@ -81,7 +81,7 @@ class MappingOnNoisyFeatures : public MappingOn {
   MappingOnNoisyFeatures() : MappingOn(with_outliers()) {}
 
   // Landmarks in view of the newest keyframe, with their points in the map.
-  std::map<int, std::set<PointId>> points_of_landmarks(const Map& map) const {
+  std::map<int, std::set<PointId>> points_of_landmarks(const MapGraph& map) const {
     std::map<int, std::set<PointId>> points;
     for (const PointId id : map.point_ids()) points[true_landmark(mission_, map, id)].insert(id);
     const std::vector<int>& seen = mission_.landmark_of_feature[2 * kNewest.number];
@@ -89,7 +89,7 @@ class MappingOnNoisyFeatures : public MappingOn {
     return points;
   }
 
-  int count_duplicates(const Map& map) const {
+  int count_duplicates(const MapGraph& map) const {
     const auto points = points_of_landmarks(map);
     return static_cast<int>(std::ranges::count_if(points, [](const auto& entry) { return entry.second.size() > 1; }));
   }
@@ -113,7 +113,7 @@ class MappingOnNoisyFeatures : public MappingOn {
 };
 
 TEST_F(MappingOnCleanFeatures, HardlyChangesACorrectMap) {
-  const Map after = extended(map_);
+  const MapGraph after = extended(map_);
   for (const KeyframeId id : after.keyframe_ids()) {
     EXPECT_THAT(after.camera_from_world(id), PoseNear(true_pose(id), 1e-3, 1e-3));
   }
@@ -127,7 +127,7 @@ TEST_F(MappingOnCleanFeatures, PlacesNewPointsOnTheirLandmarks) {
   const std::uint32_t last = map_.point_ids().back().number;
   MappingOptions options;
   options.max_relative_depth_sigma = 0.3;  // corners without patches, 16 cm apart
-  const Map after = extended(map_, options);
+  const MapGraph after = extended(map_, options);
   EXPECT_THAT(find_faults(after), IsEmpty());
   std::set<int> landmarks;
   for (const PointId id : after.point_ids()) {
@@ -143,7 +143,7 @@ TEST_F(MappingOnCleanFeatures, RejectsPointsOfUncertainDepth) {
   forget_points();
   MappingOptions options;
   options.max_relative_depth_sigma = 1e-3;
-  const Map after = extended(map_, options);
+  const MapGraph after = extended(map_, options);
   EXPECT_LE(after.point_ids().back(), map_.point_ids().back());
 }
 
@@ -165,7 +165,7 @@ TEST_F(MappingOnNoisyFeatures, CorrectsADisplacedNeighbour) {
 
 TEST_F(MappingOnNoisyFeatures, LeavesFixedElementsBitIdentical) {
   displace(kNewest);
-  const Map after = extended(map_);
+  const MapGraph after = extended(map_);
   const MapWindow window = cut(map_);
   std::set<KeyframeId> movable;
   for (const WindowKeyframe& keyframe : window.keyframes) {
@@ -183,13 +183,13 @@ TEST_F(MappingOnNoisyFeatures, FusesDuplicatePoints) {
   for (const PointId id : map_.point_ids()) split(id);
   const int before = count_duplicates(map_);
   ASSERT_GT(before, 100);
-  const Map after = extended(map_);
+  const MapGraph after = extended(map_);
   EXPECT_LT(count_duplicates(after), 0.1 * before);
   EXPECT_THAT(find_faults(after), IsEmpty());
 }
 
 TEST_F(MappingOnNoisyFeatures, KeepsDistinctPoints) {
-  const Map after = extended(map_);
+  const MapGraph after = extended(map_);
   int mixed = 0;
   for (const PointId id : after.point_ids()) {
     std::set<int> landmarks;
@@ -215,7 +215,7 @@ TEST_F(MappingOnNoisyFeatures, RemovesOutlierObservations) {
     wrong.point = seen[(i + 1) % seen.size()].second.point;
     ASSERT_TRUE(map_.add_observation(seen[i].first, wrong));
   }
-  const Map after = extended(map_);
+  const MapGraph after = extended(map_);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto feature = static_cast<std::size_t>(seen[i].first.feature);
     EXPECT_NE(after.find_keyframe(kNewest)->sightings[feature].point, seen[(i + 1) % seen.size()].second.point);
@@ -228,7 +228,7 @@ TEST_F(MappingOnNoisyFeatures, RemovesOldUnconfirmedPoints) {
   const int new_points = add_stereo_points(map_, kNewest);
   ASSERT_GT(old_points, 0);
   ASSERT_GT(new_points, 0);
-  const Map after = extended(map_);
+  const MapGraph after = extended(map_);
   int old_left = 0;
   int new_left = 0;
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(old_points + new_points); ++i) {
@@ -263,7 +263,7 @@ TEST_F(MappingOnNoisyFeatures, KeepsOldPointsHiddenByDirt) {
 }
 
 TEST_F(MappingOnNoisyFeatures, UpdatesThePointsItObserves) {
-  const Map after = extended(map_);
+  const MapGraph after = extended(map_);
   for (const PointId id : after.point_ids()) {
     const MapPoint& point = *after.find_point(id);
     EXPECT_NEAR(point.mean_viewing_direction.norm(), 1.0f, 1e-5f);
@@ -273,10 +273,10 @@ TEST_F(MappingOnNoisyFeatures, UpdatesThePointsItObserves) {
 }
 
 TEST(ExtendMap, RemovesRedundantKeyframes) {
-  const Map map = true_map(quarter_circle({}), 1, Origin::online);  // a keyframe every 8 cm
+  const MapGraph map = true_map(quarter_circle({}), 1, Origin::online);  // a keyframe every 8 cm
   const KeyframeId newest = map.keyframe_ids().back();
   const KeyframeId before_it{Origin::online, newest.number - 1};
-  Map after = map;
+  MapGraph after = map;
   apply(extend_map(cut_window(map, {before_it, newest}, {}), {}), after);
   EXPECT_LT(after.keyframe_count(), map.keyframe_count());
   EXPECT_NE(after.find_keyframe(kFirst), nullptr);

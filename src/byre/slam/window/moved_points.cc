@@ -14,7 +14,7 @@ struct JudgedPoint {
   bool moved = false;
 };
 
-ScratchVector<JudgedPoint> judged_points(const Map& offline, std::span<const PointId> agreed,
+ScratchVector<JudgedPoint> judged_points(const MapGraph& offline, std::span<const PointId> agreed,
                                          std::span<const PointId> moved) {
   ScratchVector<JudgedPoint> judged;
   judged.reserve(agreed.size() + moved.size());
@@ -41,7 +41,7 @@ double share_around(std::span<const JudgedPoint> judged, std::size_t point) {
 
 }  // namespace
 
-ScratchVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+ScratchVector<PointId> moved_together(const MapGraph& offline, std::span<const PointId> agreed,
                                       std::span<const PointId> moved) {
   if (moved.empty()) return {};  // in most frames
   const ScratchVector<JudgedPoint> judged = judged_points(offline, agreed, moved);

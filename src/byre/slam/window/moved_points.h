@@ -2,7 +2,7 @@
 
 #include "byre/base/scratch_memory.h"
 #include "byre/map/ids.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <cstdint>
 #include <span>
@@ -17,7 +17,7 @@ struct MovedPointsOptions {
 
 // Points found elsewhere that lie among others found elsewhere: a moved object is a cluster in space, and a single
 // point among neighbours in place is a wrong match. All ascending.
-ScratchVector<PointId> moved_together(const Map& offline, std::span<const PointId> agreed,
+ScratchVector<PointId> moved_together(const MapGraph& offline, std::span<const PointId> agreed,
                                       std::span<const PointId> moved);
 
 // Offline points on objects that were moved. They are suspended until found in place again; the map does not change.

@@ -50,8 +50,8 @@ TEST(MovedPoints, IgnoresOnlinePointsOfTheSameNumber) {
 }
 
 // A row of points half a metre apart, numbered from 0.
-Map row_of_points(int count) {
-  Map map(Origin::offline);
+MapGraph row_of_points(int count) {
+  MapGraph map(Origin::offline);
   for (int i = 0; i < count; ++i) {
     MapPoint point;
     point.position_in_world = {0.5 * i, 0.0, 0.0};
@@ -61,7 +61,7 @@ Map row_of_points(int count) {
 }
 
 TEST(MovedTogether, KeepsClustersAndDropsSinglePoints) {
-  const Map map = row_of_points(30);
+  const MapGraph map = row_of_points(30);
   std::vector<PointId> agreed, moved;
   for (const PointId id : map.point_ids()) {
     const bool in_thing = id.number >= 20;
@@ -74,7 +74,7 @@ TEST(MovedTogether, KeepsClustersAndDropsSinglePoints) {
 }
 
 TEST(MovedTogether, IsEmptyForOnePoint) {
-  const Map map = row_of_points(1);
+  const MapGraph map = row_of_points(1);
   EXPECT_THAT(moved_together(map, {}, map.point_ids()), testing::IsEmpty());
 }
 

@@ -17,7 +17,7 @@ void make_online(Sighting& sighting, const Features& features, int feature) {
 
 }  // namespace
 
-Map online_copy(const Map& offline) {
+MapGraph online_copy(const MapGraph& offline) {
   MapParts parts{offline.rigs(), {}, {}};
   for (const KeyframeId id : offline.keyframe_ids()) {
     Keyframe keyframe = *offline.find_keyframe(id);
@@ -32,7 +32,7 @@ Map online_copy(const Map& offline) {
     point.reference.keyframe.origin = Origin::online;
     parts.points.push_back(point);
   }
-  return Map(Origin::online, std::move(parts));
+  return MapGraph(Origin::online, std::move(parts));
 }
 
 }  // namespace byre

@@ -36,7 +36,7 @@ std::shared_ptr<const Features> page_out(const std::shared_ptr<const Features>& 
   return std::make_shared<const Features>(features->with_arrays_at(places));
 }
 
-void page_out_features(Map& map, ScratchFile& file) {
+void page_out_features(MapGraph& map, ScratchFile& file) {
   for (const KeyframeId id : map.keyframe_ids()) {
     map.replace_features(id, page_out(map.find_keyframe(id)->frame.features, file));
   }

@@ -2,7 +2,7 @@
 
 #include "byre/base/scratch_file.h"
 #include "byre/features.h"
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <functional>
 #include <memory>
@@ -16,7 +16,7 @@ namespace byre {
 std::shared_ptr<const Features> page_out(const std::shared_ptr<const Features>& features, ScratchFile& file);
 
 // Pages out the features of all keyframes that are not in the file yet.
-void page_out_features(Map& map, ScratchFile& file);
+void page_out_features(MapGraph& map, ScratchFile& file);
 
 // Wraps should_stop for jobs that read features of a whole map and poll it: each call also releases the memory of the
 // features read from the file. The file must outlive the result. An empty should_stop counts as false.

@@ -11,7 +11,7 @@ struct PathKeyframe {
   double travelled = 0.0;  // metres since the first
 };
 
-std::vector<PathKeyframe> measured_path(const Map& online, const std::vector<KeyframeId>& keyframes) {
+std::vector<PathKeyframe> measured_path(const MapGraph& online, const std::vector<KeyframeId>& keyframes) {
   std::vector<PathKeyframe> path;
   for (const KeyframeId id : keyframes) {
     PathKeyframe entry{{id.number}, online.find_keyframe(id)->camera_from_world};
@@ -32,7 +32,7 @@ Pose share_of(const Pose& motion, double share, const Eigen::Vector3d& pivot) {
   return {turn, pivot + shift - turn * pivot};
 }
 
-void append_points(const Map& online, const std::map<KeyframeId, Pose>& motions, MapDelta& delta) {
+void append_points(const MapGraph& online, const std::map<KeyframeId, Pose>& motions, MapDelta& delta) {
   for (const PointId id : online.point_ids()) {
     const MapPoint& point = *online.find_point(id);
     const auto motion = motions.find(point.reference.keyframe);
@@ -65,7 +65,7 @@ void remove_links_to_offline(const Map& online, const std::map<KeyframeId, Pose>
 
 }  // namespace
 
-MapDelta correction_of(const Map& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
+MapDelta correction_of(const MapGraph& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
                        CorrectionShape shape) {
   MapDelta delta;
   const std::vector<PathKeyframe> measured = measured_path(online, path);

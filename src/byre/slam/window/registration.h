@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 #include "byre/slam/window/delta.h"
 
 #include <vector>
@@ -22,7 +22,7 @@ inline constexpr int kConfirmationsOfJump = 10;  // frames, after the robot was 
 //   spread  move by their share of the path: both maps agreed at the first keyframe
 enum class CorrectionShape : std::uint8_t { rigid, spread };
 
-MapDelta correction_of(const Map& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
+MapDelta correction_of(const MapGraph& online, const std::vector<KeyframeId>& path, const Pose& offline_from_online,
                        CorrectionShape shape);
 
 }  // namespace byre

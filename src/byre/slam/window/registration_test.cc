@@ -15,16 +15,16 @@ const Pose kOfflineFromOnline{rotation_exp({0.0, 0.0, 0.02}), {0.3, -0.1, 0.05}}
 
 class CorrectionOf : public ::testing::Test {
  protected:
-  Pose world_motion_of(KeyframeId id, const Map& after) const {
+  Pose world_motion_of(KeyframeId id, const MapGraph& after) const {
     return inverse(after.find_keyframe(id)->camera_from_world) * map_.find_keyframe(id)->camera_from_world;
   }
 
   const SimulatedMission mission_ = quarter_circle(without_noise());
-  const Map map_ = true_map(mission_, 4, Origin::online);
+  const MapGraph map_ = true_map(mission_, 4, Origin::online);
 };
 
 TEST_F(CorrectionOf, MovesAnUnregisteredMapRigidly) {
-  Map after = map_;
+  MapGraph after = map_;
   apply(correction_of(map_, map_.keyframe_ids(), kOfflineFromOnline, CorrectionShape::rigid), after);
   for (const KeyframeId id : map_.keyframe_ids()) {
     EXPECT_THAT(world_motion_of(id, after), PoseNear(kOfflineFromOnline, 1e-9, 1e-9));
@@ -37,7 +37,7 @@ TEST_F(CorrectionOf, MovesAnUnregisteredMapRigidly) {
 }
 
 TEST_F(CorrectionOf, DistributesTheCorrectionAlongThePath) {
-  Map after = map_;
+  MapGraph after = map_;
   apply(correction_of(map_, map_.keyframe_ids(), kOfflineFromOnline, CorrectionShape::spread), after);
   const std::vector<KeyframeId> ids = map_.keyframe_ids();
   EXPECT_THAT(world_motion_of(ids.front(), after), PoseNear(Pose{}, 1e-9, 1e-9));

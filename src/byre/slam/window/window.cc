@@ -11,7 +11,7 @@ namespace byre {
 namespace {
 
 // New keyframes, then those most covisible with the centre, up to the limit.
-std::vector<KeyframeId> choose_movable(const Map& map, const std::vector<KeyframeId>& new_keyframes, int limit) {
+std::vector<KeyframeId> choose_movable(const MapGraph& map, const std::vector<KeyframeId>& new_keyframes, int limit) {
   std::vector<KeyframeId> chosen;
   for (auto id = new_keyframes.rbegin(); id != new_keyframes.rend(); ++id) {
     if (map.find_keyframe(*id) != nullptr) chosen.push_back(*id);

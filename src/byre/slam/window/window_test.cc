@@ -51,7 +51,7 @@ std::vector<std::string> find_faults(const MapWindow& window) {
 
 class WindowOfATrueMap : public ::testing::Test {
  protected:
-  const Map map_ = true_map(quarter_circle({}), 1, Origin::online);
+  const MapGraph map_ = true_map(quarter_circle({}), 1, Origin::online);
   const KeyframeId newest_{Origin::online, 39};
 };
 
@@ -118,7 +118,7 @@ TEST_F(WindowOfATrueMap, NeverMovesTheFirstKeyframe) {
 }
 
 TEST_F(WindowOfATrueMap, OmitsRemovedNewKeyframes) {
-  Map map = map_;
+  MapGraph map = map_;
   map.remove_keyframe(newest_);
   const KeyframeId before{Origin::online, 38};
   const MapWindow window = cut_window(map, {before, newest_}, kSmall);
@@ -128,7 +128,7 @@ TEST_F(WindowOfATrueMap, OmitsRemovedNewKeyframes) {
 }
 
 TEST_F(WindowOfATrueMap, IsEmptyWithoutNewKeyframes) {
-  Map map = map_;
+  MapGraph map = map_;
   map.remove_keyframe(newest_);
   EXPECT_THAT(cut_window(map, {newest_}, kSmall).keyframes, IsEmpty());
 }

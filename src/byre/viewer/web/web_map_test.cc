@@ -28,8 +28,8 @@ class MapViewerTest : public TestFolder {
   }
 
   // Each sign is the only feature of its own keyframe.
-  Map map_with_signs() {
-    Map map = scene_.driven_map(scene_.path_in_map());
+  MapGraph map_with_signs() {
+    MapGraph map = scene_.driven_map(scene_.path_in_map());
     for (const PlanCorrespondence& sign : signs_) {
       Keyframe keyframe;
       keyframe.frame.time = std::chrono::seconds(map.keyframe_count());

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/floor_plan.h"
-#include "byre/map/plan_registration.h"
+#include "byre/plan_registration.h"
 #include "byre/viewer/scene.h"
 #include "byre/viewer/web/run_mailbox.h"
 

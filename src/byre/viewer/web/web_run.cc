@@ -142,14 +142,14 @@ RunViewer::RunViewer(RunDescription description, const RunViewerOptions& options
       server_(options.server, std::make_unique<RunSite>(description, options, mailbox_), topics_) {}
 
 void RunViewer::show(const Image& recorded_left, const FrameReport& report, const Session& session) {
-  const Map& online = session.map().online();
+  const MapGraph& online = session.map().online();
   mailbox_->put({report, online.keyframe_count(), online.point_count()},
                 {report, recorded_left, session.seen_points()});
   if (report.time == last_time_ || std::chrono::steady_clock::now() >= next_map_) copy_map(online);
   server_.wake();
 }
 
-void RunViewer::copy_map(const Map& online) {
+void RunViewer::copy_map(const MapGraph& online) {
   const auto start = std::chrono::steady_clock::now();
   mailbox_->put(scene_of(online));
   const auto end = std::chrono::steady_clock::now();

@@ -2,7 +2,7 @@
 
 #include "byre/calibration.h"
 #include "byre/floor_plan.h"
-#include "byre/map/plan_registration.h"
+#include "byre/plan_registration.h"
 #include "byre/viewer/web/run_mailbox.h"
 #include "byre/viewer/web/web_server.h"
 
@@ -53,7 +53,7 @@ class RunViewer {
   void end_run();
 
  private:
-  void copy_map(const Map& online);
+  void copy_map(const MapGraph& online);
 
   // Constant after construction.
   std::chrono::milliseconds map_interval_;

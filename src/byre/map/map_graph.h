@@ -103,7 +103,7 @@ using Word = std::uint32_t;  // visual word of a vocabulary, see place/vocabular
 
 struct Keyframe {
   Frame frame;
-  int rig = 0;        // index into Map::rigs()
+  int rig = 0;        // index into MapGraph::rigs()
   int recording = 0;  // index into StoredMap::recordings
   Pose camera_from_world;
   // Covariance of delta in exp_pose(delta) * camera_from_world, relative to the map's origin.
@@ -115,7 +115,7 @@ struct Keyframe {
 
 // Pose of a removed keyframe relative to its parent, so that frames tracked from it keep their poses.
 struct RemovedKeyframe {
-  int rig = 0;  // index into Map::rigs()
+  int rig = 0;  // index into MapGraph::rigs()
   KeyframeId parent;
   Pose camera_from_parent;
 };
@@ -145,7 +145,7 @@ class MapSource {
   virtual const Keyframe& keyframe(std::uint32_t number, const Keyframe& header) const = 0;
   virtual const ObservedPoint& point(std::uint32_t number) const = 0;
   virtual ScratchVector<Covisible> covisible(std::uint32_t number) const = 0;  // ascending by keyframe
-  // Like Map::visit_words. Throws InputError if the words are damaged.
+  // Like MapGraph::visit_words. Throws InputError if the words are damaged.
   virtual void visit_words(const WordVisitor& visit) const = 0;
   // First damage found on access, with file, section and remedy; nullptr without damage.
   virtual const InputError* damage() const = 0;
@@ -159,14 +159,15 @@ class MapSource {
 //
 // A map with a source reads sightings and points from it on first access and keeps them. damage() reports a damaged
 // source. The first change reads the whole source, and throws InputError if it is damaged.
-class Map {
+class MapGraph {
  public:
-  explicit Map(Origin origin) : origin_(origin) {}
+  explicit MapGraph(Origin origin) : origin_(origin) {}
   // Builds all at once, many times faster than one by one. Preconditions: each keyframe has one sighting per feature,
   // observes no point twice, and comes after its parent; ids have this origin and are within the parts.
-  Map(Origin origin, MapParts parts);
+  MapGraph(Origin origin, MapParts parts);
   // Map with a source, of origin offline. Keyframes are headers: without features, sightings and words.
-  Map(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count, std::shared_ptr<const MapSource> source);
+  MapGraph(std::vector<Rig> rigs, std::vector<Keyframe> headers, int point_count,
+           std::shared_ptr<const MapSource> source);
 
   Origin origin() const { return origin_; }
 
@@ -301,6 +302,6 @@ class Map {
 };
 
 // Describes every violated invariant. Empty for a valid map.
-std::vector<std::string> find_faults(const Map& map);
+std::vector<std::string> find_faults(const MapGraph& map);
 
 }  // namespace byre

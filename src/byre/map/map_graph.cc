@@ -1,4 +1,4 @@
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include <algorithm>
 #include <cassert>
@@ -43,14 +43,14 @@ bool shares_more(const Covisible& first, const Covisible& second) {
 
 }  // namespace
 
-int Map::add_rig(const Rig& rig) {
+int MapGraph::add_rig(const Rig& rig) {
   const auto known = std::ranges::find_if(rigs_, [&](const Rig& candidate) { return is_equal(candidate, rig); });
   const auto index = static_cast<int>(known - rigs_.begin());
   if (known == rigs_.end()) rigs_.push_back(rig);
   return index;
 }
 
-KeyframeId Map::add_keyframe(Keyframe keyframe) {
+KeyframeId MapGraph::add_keyframe(Keyframe keyframe) {
   read_all();
   const KeyframeId id{origin_, static_cast<std::uint32_t>(keyframes_.size())};
   const int feature_count = keyframe.frame.features ? keyframe.frame.features->size() : 0;
@@ -68,7 +68,7 @@ KeyframeId Map::add_keyframe(Keyframe keyframe) {
   return id;
 }
 
-PointId Map::add_point(const MapPoint& point) {
+PointId MapGraph::add_point(const MapPoint& point) {
   read_all();
   const PointId id{origin_, static_cast<std::uint32_t>(point_slots_.size())};
   if (free_point_slots_.empty()) {
@@ -83,7 +83,7 @@ PointId Map::add_point(const MapPoint& point) {
   return id;
 }
 
-bool Map::add_observation(const Observation& observation, const Sighting& sighting) {
+bool MapGraph::add_observation(const Observation& observation, const Sighting& sighting) {
   assert(sighting.point);
   read_all();
   const PointId point = *sighting.point;
@@ -99,7 +99,7 @@ bool Map::add_observation(const Observation& observation, const Sighting& sighti
   return true;
 }
 
-void Map::remove_observation(const Observation& observation) {
+void MapGraph::remove_observation(const Observation& observation) {
   read_all();
   const std::optional<PointId> point = unlink(observation);
   if (!point || point->origin != origin_) return;
@@ -110,7 +110,7 @@ void Map::remove_observation(const Observation& observation) {
   }
 }
 
-bool Map::add_foreign_view(const ForeignView& view) {
+bool MapGraph::add_foreign_view(const ForeignView& view) {
   assert(view.sighting.point);
   const PointId point = *view.sighting.point;
   const KeyframeId keyframe = view.observation.keyframe;
@@ -123,7 +123,7 @@ bool Map::add_foreign_view(const ForeignView& view) {
   return true;
 }
 
-void Map::remove_foreign_view(const Observation& observation) {
+void MapGraph::remove_foreign_view(const Observation& observation) {
   const std::optional<PointId> point = point_of_foreign_view(observation);
   if (!point) return;
   std::vector<ForeignView>& views = foreign_views_.edit()[*point];
@@ -132,7 +132,7 @@ void Map::remove_foreign_view(const Observation& observation) {
   points_of_foreign_views_.edit().erase(observation);
 }
 
-void Map::remove_point(PointId id) {
+void MapGraph::remove_point(PointId id) {
   read_all();
   if (!find_point(id)) return;
   const std::vector<Observation> observers = observations(id);
@@ -146,7 +146,7 @@ void Map::remove_point(PointId id) {
   --point_count_;
 }
 
-void Map::remove_keyframe(KeyframeId id) {
+void MapGraph::remove_keyframe(KeyframeId id) {
   read_all();
   const Keyframe* keyframe = find_keyframe(id);
   if (!keyframe || !keyframe->parent) return;
@@ -162,19 +162,19 @@ void Map::remove_keyframe(KeyframeId id) {
   --keyframe_count_;
 }
 
-Keyframe Map::take_keyframe(KeyframeId id) {
+Keyframe MapGraph::take_keyframe(KeyframeId id) {
   read_all();
   return std::move(edit_keyframe(id));
 }
 
-void Map::set_words(KeyframeId id, std::vector<Word> words) {
+void MapGraph::set_words(KeyframeId id, std::vector<Word> words) {
   read_all();
   if (!find_own_keyframe(id)) return;
   assert(words.empty() || words.size() == slot(id).keyframe->sightings.size());
   edit_keyframe(id).words = std::move(words);
 }
 
-void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
+void MapGraph::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
   read_all();
   if (!find_own_keyframe(id)) return;
   Keyframe& keyframe = edit_keyframe(id);
@@ -182,34 +182,34 @@ void Map::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matr
   keyframe.covariance = covariance;
 }
 
-void Map::scale_removed_keyframe(KeyframeId id, double scale) {
+void MapGraph::scale_removed_keyframe(KeyframeId id, double scale) {
   if (!was_assigned(id) || !slot(id).removed) return;
   edit_slot(id).removed->camera_from_parent.translation *= scale;
 }
 
-void Map::update_point(PointId id, const MapPoint& point) {
+void MapGraph::update_point(PointId id, const MapPoint& point) {
   read_all();
   if (!find_point(id)) return;
   edit_slot(id).point = point;
   repair_reference(id);
 }
 
-const Keyframe* Map::find_keyframe(KeyframeId id) const {
+const Keyframe* MapGraph::find_keyframe(KeyframeId id) const {
   const Keyframe* const header = keyframe_header(id);
   return header && source_ ? &source_->keyframe(id.number, *header) : header;
 }
 
-const Keyframe* Map::keyframe_header(KeyframeId id) const {
+const Keyframe* MapGraph::keyframe_header(KeyframeId id) const {
   if (!was_assigned(id) || !slot(id).keyframe) return nullptr;
   return &*slot(id).keyframe;
 }
 
-const MapPoint* Map::find_point(PointId id) const {
+const MapPoint* MapGraph::find_point(PointId id) const {
   const ObservedPoint* const found = find_observed(id);
   return found ? &found->point : nullptr;
 }
 
-std::vector<KeyframeId> Map::keyframe_ids() const {
+std::vector<KeyframeId> MapGraph::keyframe_ids() const {
   std::vector<KeyframeId> ids;
   ids.reserve(static_cast<std::size_t>(keyframe_count_));
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
@@ -218,7 +218,7 @@ std::vector<KeyframeId> Map::keyframe_ids() const {
   return ids;
 }
 
-std::vector<PointId> Map::point_ids() const {
+std::vector<PointId> MapGraph::point_ids() const {
   std::vector<PointId> ids;
   ids.reserve(static_cast<std::size_t>(point_count_));
   const auto given_out = source_ ? static_cast<std::size_t>(point_count_) : point_slots_.size();
@@ -228,14 +228,14 @@ std::vector<PointId> Map::point_ids() const {
   return ids;
 }
 
-void Map::visit_words(const MapSource::WordVisitor& visit) const {
+void MapGraph::visit_words(const MapSource::WordVisitor& visit) const {
   if (source_) return source_->visit_words(visit);
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     if (keyframes_[i]->keyframe) visit({origin_, i}, keyframes_[i]->keyframe->words);
   }
 }
 
-const std::vector<Observation>& Map::observations(PointId id) const {
+const std::vector<Observation>& MapGraph::observations(PointId id) const {
   static const std::vector<Observation> kNone;
   if (id.origin == origin_) {
     const ObservedPoint* const found = find_observed(id);
@@ -244,13 +244,13 @@ const std::vector<Observation>& Map::observations(PointId id) const {
   return id.number < offline_observations_.size() ? offline_observations_[id.number] : kNone;
 }
 
-const std::vector<ForeignView>& Map::foreign_views(PointId id) const {
+const std::vector<ForeignView>& MapGraph::foreign_views(PointId id) const {
   static const std::vector<ForeignView> kNone;
   const auto found = foreign_views_->find(id);
   return found != foreign_views_->end() ? found->second : kNone;
 }
 
-std::vector<Observation> Map::foreign_observations(KeyframeId offline) const {
+std::vector<Observation> MapGraph::foreign_observations(KeyframeId offline) const {
   std::vector<Observation> observations;
   for (auto view = points_of_foreign_views_->lower_bound({offline, 0});
        view != points_of_foreign_views_->end() && view->first.keyframe == offline; ++view) {
@@ -259,13 +259,13 @@ std::vector<Observation> Map::foreign_observations(KeyframeId offline) const {
   return observations;
 }
 
-std::optional<PointId> Map::point_of_foreign_view(const Observation& observation) const {
+std::optional<PointId> MapGraph::point_of_foreign_view(const Observation& observation) const {
   const auto known = points_of_foreign_views_->find(observation);
   if (known == points_of_foreign_views_->end()) return std::nullopt;
   return known->second;
 }
 
-ScratchVector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) const {
+ScratchVector<Covisible> MapGraph::covisible_keyframes(KeyframeId id, int max_count) const {
   if (!keyframe_header(id)) return {};
   ScratchVector<Covisible> covisible;
   if (source_) {
@@ -279,7 +279,7 @@ ScratchVector<Covisible> Map::covisible_keyframes(KeyframeId id, int max_count) 
   return covisible;
 }
 
-Pose Map::camera_from_world(KeyframeId id) const {
+Pose MapGraph::camera_from_world(KeyframeId id) const {
   assert(was_assigned(id));
   Pose camera_from_ancestor;
   while (!slot(id).keyframe) {
@@ -289,39 +289,39 @@ Pose Map::camera_from_world(KeyframeId id) const {
   return camera_from_ancestor * slot(id).keyframe->camera_from_world;
 }
 
-std::optional<KeyframeId> Map::living_ancestor(std::optional<KeyframeId> id) const {
+std::optional<KeyframeId> MapGraph::living_ancestor(std::optional<KeyframeId> id) const {
   if (!id || !was_assigned(*id)) return std::nullopt;
   while (!slot(*id).keyframe) id = slot(*id).removed->parent;
   return id;
 }
 
-bool Map::was_assigned(KeyframeId id) const {
+bool MapGraph::was_assigned(KeyframeId id) const {
   return id.origin == origin_ && id.number < keyframes_.size();
 }
 
-const Keyframe* Map::find_own_keyframe(KeyframeId id) const {
+const Keyframe* MapGraph::find_own_keyframe(KeyframeId id) const {
   if (!was_assigned(id) || !slot(id).keyframe) return nullptr;
   return &*slot(id).keyframe;
 }
 
-const ObservedPoint* Map::find_observed(PointId id) const {
+const ObservedPoint* MapGraph::find_observed(PointId id) const {
   if (!source_) return find_slot(id);
   return id.origin == origin_ && std::cmp_less(id.number, point_count_) ? &source_->point(id.number) : nullptr;
 }
 
-const ObservedPoint* Map::find_slot(PointId id) const {
+const ObservedPoint* MapGraph::find_slot(PointId id) const {
   if (id.origin != origin_ || id.number >= point_slots_.size()) return nullptr;
   const std::uint32_t place = point_slots_[id.number];
   return place == kGone ? nullptr : &points_[place];
 }
 
-std::vector<Observation>& Map::edit_observations(PointId id) {
+std::vector<Observation>& MapGraph::edit_observations(PointId id) {
   if (id.origin == origin_) return edit_slot(id).observations;
   while (id.number >= offline_observations_.size()) offline_observations_.emplace_back();
   return offline_observations_.edit(id.number);
 }
 
-std::optional<PointId> Map::unlink(const Observation& observation) {
+std::optional<PointId> MapGraph::unlink(const Observation& observation) {
   const Keyframe* const keyframe = find_own_keyframe(observation.keyframe);
   if (!keyframe || !sighting_of(*keyframe, observation.feature).point) return std::nullopt;
 
@@ -334,14 +334,14 @@ std::optional<PointId> Map::unlink(const Observation& observation) {
   return point;
 }
 
-void Map::count_shared_point(const std::vector<Observation>& observers, KeyframeId with, int change) {
+void MapGraph::count_shared_point(const std::vector<Observation>& observers, KeyframeId with, int change) {
   for (const Observation& observation : observers) {
     add_shared_points(observation.keyframe, with, change);
     add_shared_points(with, observation.keyframe, change);
   }
 }
 
-void Map::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
+void MapGraph::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
   std::vector<Covisible>& covisible = edit_slot(keyframe).covisible;
   auto place = std::ranges::lower_bound(covisible, with, {}, &Covisible::keyframe);
   if (place == covisible.end() || place->keyframe != with) place = covisible.insert(place, Covisible{with, 0});
@@ -349,14 +349,14 @@ void Map::add_shared_points(KeyframeId keyframe, KeyframeId with, int change) {
   if (place->shared_points == 0) covisible.erase(place);
 }
 
-void Map::repair_reference(PointId id) {
+void MapGraph::repair_reference(PointId id) {
   const ObservedPoint& seen = *find_slot(id);
   if (seen.observations.empty() || std::ranges::binary_search(seen.observations, seen.point.reference)) return;
   ObservedPoint& repaired = edit_slot(id);
   repaired.point.reference = repaired.observations.front();
 }
 
-void Map::reparent_children(KeyframeId id, KeyframeId parent) {
+void MapGraph::reparent_children(KeyframeId id, KeyframeId parent) {
   const std::vector<KeyframeId> adopted = std::exchange(edit_slot(id).children, {});
   for (const KeyframeId child : adopted) edit_keyframe(child).parent = parent;
 

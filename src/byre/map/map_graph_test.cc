@@ -1,4 +1,4 @@
-#include "byre/map/map.h"
+#include "byre/map/map_graph.h"
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/map_view.h"
@@ -43,7 +43,7 @@ Rig rig_of_width(int width) {
   return rig;
 }
 
-PointId add_seen_point(Map& map, const Observation& first) {
+PointId add_seen_point(MapGraph& map, const Observation& first) {
   MapPoint point;
   point.reference = first;
   const PointId id = map.add_point(point);
@@ -70,7 +70,7 @@ class SmallMap : public ::testing::Test {
     return map.find_keyframe(keyframe)->sightings[feature].point;
   }
 
-  Map map{Origin::online};
+  MapGraph map{Origin::online};
   KeyframeId first, second, third;
   PointId shared, lonely;
 };
@@ -293,7 +293,7 @@ TEST_F(SmallMap, IgnoresChangesToRemovedElements) {
 }
 
 TEST_F(SmallMap, CopiesAreIndependent) {
-  Map copy = map;
+  MapGraph copy = map;
   copy.remove_keyframe(second);
   copy.remove_point(lonely);
   copy.move_keyframe(third, motion(5.0, 0.0), Matrix6::Identity());
@@ -305,7 +305,7 @@ TEST_F(SmallMap, CopiesAreIndependent) {
 }
 
 TEST(CameraFromWorld, FollowsRemovedKeyframesToTheirMovedAncestor) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   const KeyframeId root = map.add_keyframe(keyframe_at(motion(0.0, 0.0)));
   const KeyframeId middle = map.add_keyframe(keyframe_at(motion(1.0, 0.3), root));
   const KeyframeId last = map.add_keyframe(keyframe_at(motion(2.0, 0.7), middle));
@@ -322,7 +322,7 @@ TEST(CameraFromWorld, FollowsRemovedKeyframesToTheirMovedAncestor) {
 }
 
 TEST(ScaleRemovedKeyframe, ScalesOnlyTheDistanceToItsParent) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   const KeyframeId root = map.add_keyframe(keyframe_at(motion(0.0, 0.0)));
   const KeyframeId removed = map.add_keyframe(keyframe_at(motion(1.0, 0.3), root));
   const KeyframeId kept = map.add_keyframe(keyframe_at(motion(2.0, 0.7), removed));
@@ -340,7 +340,7 @@ TEST(ScaleRemovedKeyframe, ScalesOnlyTheDistanceToItsParent) {
 }
 
 TEST(AddRig, StoresEqualRigsOnce) {
-  Map map(Origin::online);
+  MapGraph map(Origin::online);
   Rig rig = rig_of_width(640);
   EXPECT_EQ(map.add_rig(rig), 0);
   rig.baseline = 0.2;
@@ -352,7 +352,7 @@ TEST(AddRig, StoresEqualRigsOnce) {
 }
 
 TEST(OfflineMap, ContainsNoOnlinePoints) {
-  Map map(Origin::offline);
+  MapGraph map(Origin::offline);
   map.add_rig({});
   const KeyframeId keyframe = map.add_keyframe(keyframe_with(1));
   EXPECT_EQ(keyframe.origin, Origin::offline);
@@ -361,8 +361,8 @@ TEST(OfflineMap, ContainsNoOnlinePoints) {
 }
 
 TEST(MapView, ReadsBothMaps) {
-  Map offline(Origin::offline);
-  Map online(Origin::online);
+  MapGraph offline(Origin::offline);
+  MapGraph online(Origin::online);
   offline.add_rig(rig_of_width(111));
   online.add_rig(rig_of_width(222));
   const KeyframeId old_keyframe = offline.add_keyframe(keyframe_with(1));
@@ -379,8 +379,8 @@ TEST(MapView, ReadsBothMaps) {
 }
 
 TEST(MapView, VisitsObservationsOfAnOfflinePointInBothMaps) {
-  Map offline(Origin::offline);
-  Map online(Origin::online);
+  MapGraph offline(Origin::offline);
+  MapGraph online(Origin::online);
   const KeyframeId old_keyframe = offline.add_keyframe(keyframe_with(1));
   const KeyframeId new_keyframe = online.add_keyframe(keyframe_with(2));
   const PointId old_point = add_seen_point(offline, {old_keyframe, 0});
@@ -393,7 +393,7 @@ TEST(MapView, VisitsObservationsOfAnOfflinePointInBothMaps) {
 }
 
 TEST(MapView, FindsNothingWithoutAnOfflineMap) {
-  const Map online(Origin::online);
+  const MapGraph online(Origin::online);
   const MapView view(nullptr, online);
   EXPECT_EQ(view.find_point({Origin::offline, 0}), nullptr);
   EXPECT_EQ(view.find_keyframe({Origin::offline, 0}), nullptr);
