@@ -267,7 +267,7 @@ function(byre_add_component component)
 endfunction()
 
 # libbyre.so, byre::shared: the objects of core and those that read calibrations, without readers of image files, videos
-# and bags. Exports the functions of the public headers, except recordings and floor plans.
+# and bags. Exports the functions of the public headers, except COLMAP models, recordings and floor plans.
 function(byre_add_shared_library)
   add_library(byre_shared SHARED $<TARGET_OBJECTS:byre_io_calibration> src/byre/io/recording/bag_frames_absent.cc)
   add_library(byre::shared ALIAS byre_shared)
@@ -283,7 +283,7 @@ function(byre_add_shared_library)
   set(script ${CMAKE_CURRENT_SOURCE_DIR}/cmake/make_exports.py)
   set(exports ${CMAKE_CURRENT_BINARY_DIR}/byre_exports.map)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/byre/*.h)
-  list(FILTER headers EXCLUDE REGEX "/(floor_plan|recording)\\.h$")
+  list(FILTER headers EXCLUDE REGEX "/(colmap|floor_plan|recording)\\.h$")
   # Before 1.0 a minor version may break the interface, so the version of the exported symbols contains both numbers.
   add_custom_command(OUTPUT ${exports} DEPENDS ${script} ${headers} VERBATIM
     COMMAND Python3::Interpreter ${script} ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${exports} ${headers})

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/image.h"
 #include "byre/pose.h"
 #include "byre/trajectory.h"
 
@@ -22,6 +23,7 @@ namespace py = pybind11;
 // Each adds its part of the package to the module.
 void bind_cameras(py::module_& module);
 void bind_extrinsics(py::module_& module);
+void bind_map(py::module_& module);
 void bind_slam(py::module_& module);
 void bind_evaluation(py::module_& module);
 
@@ -33,5 +35,9 @@ Eigen::Matrix4d matrix_of(const Pose& pose);
 std::optional<Eigen::Matrix4d> matrix_of(const std::optional<Pose>& pose);
 // Throws InputError if the matrix is no rigid motion. name: the argument's name.
 Pose pose_of(const Eigen::Matrix4d& matrix, std::string_view name);
+
+// Views of arrays, with times of zero. Raises TypeError or ValueError for arrays that are no images.
+CameraImages images_of(const py::array& left, const std::optional<py::array>& right,
+                       const std::optional<py::array>& depth, const std::optional<PixelFormat>& format, int bits);
 
 }  // namespace byre::python

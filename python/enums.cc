@@ -114,6 +114,18 @@ void bind_enums_of_reports(py::module_& module) {
                            {"recalibrated", SessionEvent::recalibrated},
                            {"dirt_found", SessionEvent::dirt_found},
                            {"dirt_gone", SessionEvent::dirt_gone}});
+  bind_enum<LocalisationFailure>(module, "LocalisationFailure",
+                                 "Reason why an image was not localised, ordered by the progress of the attempt.",
+                                 {{"none", LocalisationFailure::none},
+                                  {"too_few_features", LocalisationFailure::too_few_features},
+                                  {"no_similar_keyframe", LocalisationFailure::no_similar_keyframe},
+                                  {"too_few_matches", LocalisationFailure::too_few_matches},
+                                  {"geometry_disagrees", LocalisationFailure::geometry_disagrees},
+                                  {"too_few_inliers", LocalisationFailure::too_few_inliers},
+                                  {"clustered", LocalisationFailure::clustered},
+                                  {"uncertain", LocalisationFailure::uncertain},
+                                  {"impossible", LocalisationFailure::impossible},
+                                  {"ambiguous", LocalisationFailure::ambiguous}});
 }
 
 }  // namespace

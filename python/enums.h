@@ -4,6 +4,7 @@
 
 #include "byre/calibration.h"
 #include "byre/frame_report.h"
+#include "byre/localisation_failure.h"
 #include "byre/recording.h"
 #include "byre/slam.h"
 #include "byre/trajectory_file.h"
@@ -57,6 +58,8 @@ template <>
 struct type_caster<byre::InputFault> : byre_enum_caster<byre::InputFault> {};
 template <>
 struct type_caster<byre::SessionEvent> : byre_enum_caster<byre::SessionEvent> {};
+template <>
+struct type_caster<byre::LocalisationFailure> : byre_enum_caster<byre::LocalisationFailure> {};
 template <>
 struct type_caster<byre::Workers> : byre_enum_caster<byre::Workers> {};
 template <>

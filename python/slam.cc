@@ -107,45 +107,6 @@ void bind_reports(py::module_& module) {
       });
 }
 
-constexpr const char* kPictures =
-    "an image needs uint8 or uint16, height x width, or uint8, height x width x 3, in native byte order";
-constexpr const char* kDepths =
-    "a depth image needs uint16 (units) or float32 (metres), height x width, in native byte order";
-
-bool is_of(const py::array& image, char kind, py::ssize_t size) {
-  return image.dtype().kind() == kind && image.itemsize() == size && image.dtype().byteorder() != '>';
-}
-
-PixelFormat depth_format(const py::array& image) {
-  if (image.ndim() == 2 && is_of(image, 'u', 2)) return PixelFormat::depth16;
-  if (image.ndim() == 2 && is_of(image, 'f', 4)) return PixelFormat::depth_metres;
-  throw py::type_error(kDepths);
-}
-
-PixelFormat picture_format(const py::array& image, const std::optional<PixelFormat>& given) {
-  const bool is_flat = image.ndim() == 2 || (image.ndim() == 3 && image.shape(2) == 1);
-  const bool is_colour = image.ndim() == 3 && image.shape(2) == 3 && is_of(image, 'u', 1);
-  if (is_colour) return given.value_or(PixelFormat::bgr8);
-  if (is_flat && is_of(image, 'u', 1)) return PixelFormat::grey8;
-  if (is_flat && is_of(image, 'u', 2)) return PixelFormat::grey16;
-  throw py::type_error(kPictures);
-}
-
-// Borrows the array's memory: rows may be strided, pixels within a row must be packed.
-ImageView view_of(const py::array& image, PixelFormat format, Timestamp time, int bits) {
-  if (image.size() == 0) return {};
-  const py::ssize_t channels = image.ndim() == 3 ? image.shape(2) : 1;
-  const bool is_packed = image.strides(1) == channels * image.itemsize() && image.strides(0) > 0 &&
-                         (channels == 1 || image.strides(2) == image.itemsize());
-  if (!is_packed) throw py::value_error("pixels within a row must be contiguous: use numpy.ascontiguousarray");
-  ImageView view{image.data(), static_cast<int>(image.shape(1)), static_cast<int>(image.shape(0))};
-  view.stride = static_cast<std::size_t>(image.strides(0));
-  view.format = format;
-  view.bits = bits;
-  view.time = time;
-  return view;
-}
-
 std::optional<BodyMotion> motion_of(const std::optional<Eigen::Matrix4d>& last_from_body) {
   if (!last_from_body) return std::nullopt;
   return BodyMotion(pose_of(*last_from_body, "last_from_body"));
@@ -155,12 +116,10 @@ FrameReport process(Slam& slam, std::int64_t time_ns, const py::array& left, con
                     const std::optional<py::array>& depth, const std::optional<Eigen::Matrix4d>& last_from_body,
                     const std::optional<PixelFormat>& format, int bits, std::optional<std::int64_t> right_time_ns,
                     std::optional<std::int64_t> depth_time_ns) {
-  const Timestamp time(time_ns);
-  CameraImages images{view_of(left, picture_format(left, format), time, bits)};
-  images.left.time = time;
-  if (right)
-    images.right = view_of(*right, picture_format(*right, format), Timestamp(right_time_ns.value_or(time_ns)), bits);
-  if (depth) images.depth = view_of(*depth, depth_format(*depth), Timestamp(depth_time_ns.value_or(time_ns)), bits);
+  CameraImages images = images_of(left, right, depth, format, bits);
+  images.left.time = Timestamp(time_ns);
+  if (images.right) images.right->time = Timestamp(right_time_ns.value_or(time_ns));
+  if (images.depth) images.depth->time = Timestamp(depth_time_ns.value_or(time_ns));
   const std::optional<BodyMotion> motion = motion_of(last_from_body);
   const py::gil_scoped_release release;
   return slam.process(images, motion);

@@ -10,7 +10,12 @@
     slam.finish()
     slam.save("hall.byre")
 
-Live images are numpy arrays: slam.process(time_ns, left, right).
+Live images are numpy arrays: slam.process(time_ns, left, right). A saved map is a byre.Map:
+
+    hall = byre.Map.load("hall.byre")
+    print(hall, hall.positions.mean(axis=0))
+    print(hall.localise(recording[10]).map_from_body)
+
 Poses are 4x4 matrices named a_from_b: point_in_a = a_from_b @ point_in_b. Covariances are 6x6, translation before
 rotation. Units: metres, radians, nanoseconds. Unknown values are None. Bad input raises InputError, a ValueError.
 """
@@ -30,7 +35,15 @@ from ._byre import (
     Images,
     InputError,
     InputFault,
+    LocalisationFailure,
+    LocalisationReport,
+    Map,
+    MapKeyframe,
+    MapObservation,
+    MapRecording,
     PixelFormat,
+    PlanFit,
+    PlanRegistration,
     Recording,
     RelativePoseError,
     SensorMounting,

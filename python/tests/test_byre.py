@@ -20,22 +20,6 @@ HERE = pathlib.Path(__file__).resolve().parent
 REPEATABLE = byre.SlamOptions(workers=byre.Workers.repeatable)
 
 
-@pytest.fixture(scope="session")
-def frames(room):
-    return list(byre.Recording(room))
-
-
-@pytest.fixture(scope="session")
-def room_map(room, frames, tmp_path_factory):
-    path = tmp_path_factory.mktemp("maps") / "room.byre"
-    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
-    for images in frames:
-        slam.process(images)
-    slam.finish()
-    slam.save(path)
-    return path
-
-
 def test_recordings_are_sequences_of_frames(room):
     recording = byre.Recording(room)
     assert len(recording) == 30
