@@ -47,7 +47,7 @@ void append_points(const MapGraph& online, const std::map<KeyframeId, Pose>& mot
 }
 
 // Observations that were made at a refuted place. They would draw the keyframes back there.
-void remove_links_to_offline(const Map& online, const std::map<KeyframeId, Pose>& motions, MapDelta& delta) {
+void remove_links_to_offline(const MapGraph& online, const std::map<KeyframeId, Pose>& motions, MapDelta& delta) {
   for (const auto& [id, motion] : motions) {
     const std::vector<Sighting>& sightings = online.find_keyframe(id)->sightings;
     for (std::size_t i = 0; i < sightings.size(); ++i) {

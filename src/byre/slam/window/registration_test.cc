@@ -67,7 +67,7 @@ TEST_F(CorrectionOf, IsEmptyForAPathWithoutKeyframes) {
   EXPECT_TRUE(delta.updated_points.empty());
 }
 
-int sightings_of_offline_points(const Map& online) {
+int sightings_of_offline_points(const MapGraph& online) {
   int count = 0;
   for (const KeyframeId id : online.keyframe_ids()) {
     for (const Sighting& sighting : online.find_keyframe(id)->sightings) {
@@ -84,7 +84,7 @@ TEST(CorrectionOfAHybridMap, RemovesObservationsAtARefutedPlace) {
   const PointId point = scene.online.point_ids().front();
   ASSERT_TRUE(scene.online.add_foreign_view({{offline, 0}, {point, {10.0f, 10.0f}, 1.0f}}));
   const std::vector<KeyframeId> path = scene.online.keyframe_ids();
-  Map spread = scene.online, rigid = scene.online;
+  MapGraph spread = scene.online, rigid = scene.online;
   apply(correction_of(scene.online, path, kOfflineFromOnline, CorrectionShape::spread), spread);
   apply(correction_of(scene.online, path, kOfflineFromOnline, CorrectionShape::rigid), rigid);
   EXPECT_GT(sightings_of_offline_points(spread), 100);
