@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 
-NOT_IN_IT = ("floor_plan.h", "recording.h")  # of the component data, which is static only
+NOT_IN_IT = ("colmap.h", "floor_plan.h", "recording.h")  # of the component data, which is static only
 FUNCTION = re.compile(r"(?!inline|template|constexpr|using)[A-Za-z][\w:<>, ]*?[ >&*](\w+)\(")
 TYPE = re.compile(r"(?:class|struct|enum class) (\w+)")
 
