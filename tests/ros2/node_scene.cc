@@ -1,9 +1,11 @@
 #include "node_scene.h"
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <fcntl.h>
@@ -62,6 +64,14 @@ std::string NodeProcess::stderr_output() const {
   std::ostringstream text;
   text << std::ifstream(folder_ / "said.txt").rdbuf();
   return text.str();
+}
+
+bool NodeProcess::has_logged(const std::string& text) const {
+  for (int i = 0; i < 200; ++i) {
+    if (stderr_output().find(text) != std::string::npos) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return false;
 }
 
 int free_port() {

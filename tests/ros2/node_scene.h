@@ -28,7 +28,8 @@ class NodeProcess {
 
   int stop();  // by SIGTERM; the exit code, or -1 if it ended otherwise
   bool is_running() const;
-  std::string stderr_output() const;  // output on stderr
+  std::string stderr_output() const;               // output on stderr
+  bool has_logged(const std::string& text) const;  // on stderr, within 20 s
   pid_t process() const { return process_; }
 
  private:

@@ -117,7 +117,7 @@ TEST_F(ByreNode, ComputesMapToOdomFromTheOdometryOfABaseDriver) {
   }
   EXPECT_GT(compared, 20);
   EXPECT_EQ(node.stop(), 0);
-  EXPECT_THAT(node.stderr_output(), HasSubstr("another node publishes odom -> base_link"));
+  EXPECT_TRUE(node.has_logged("another node publishes odom -> base_link")) << node.stderr_output();
 }
 
 TEST_F(ByreNode, KeepsItsTransformsInTheNamespaceOfItsRobot) {
@@ -283,7 +283,7 @@ TEST_F(ByreNode, PublishesTheOccupancyOfEachMapItLoads) {
   command("load carried.byre");
   EXPECT_TRUE(grids.find([](const auto& message) { return message.data() == std::vector<std::uint8_t>{255}; }))
       << "one unknown cell";
-  EXPECT_THAT(node.stderr_output(), HasSubstr("carried.byre: was not driven on a floor"));
+  EXPECT_TRUE(node.has_logged("carried.byre: was not driven on a floor")) << node.stderr_output();
   EXPECT_EQ(node.stop(), 0);
 }
 
@@ -335,7 +335,7 @@ TEST_F(ByreNode, KeepsThePreviousMapAndUsesItIfTheMapIsDamaged) {
   events_.clear();
   NodeProcess node(folder_, extend, domain_);
   ASSERT_TRUE(is_connected()) << node.stderr_output();
-  EXPECT_THAT(node.stderr_output(), HasSubstr("room.byre: ")) << "fault of the map";
+  EXPECT_TRUE(node.has_logged("room.byre: ")) << node.stderr_output();
   EXPECT_THAT(node.stderr_output(),
               HasSubstr("the previous map is used, " + (folder_ / "room.previous.byre").string()));
   EXPECT_TRUE(answer_to(feed_, odometry_, frames[10], std::chrono::seconds(60))) << node.stderr_output();
