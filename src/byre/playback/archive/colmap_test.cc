@@ -30,7 +30,7 @@ TEST_F(ColmapRoundTrip, KeepsPosesAndPoints) {
   EXPECT_TRUE(again.is_metric());
   ASSERT_EQ(again.keyframes(), map_.keyframes());
   for (int i = 0; i < map_.keyframes(); ++i) {
-    const Pose& body_from_left = map_.recordings().front().calibration.body_from_left;
+    const Pose body_from_left = map_.recordings().front().calibration.body_from_left;
     EXPECT_THAT(again.keyframe(i).map_from_body, PoseNear(map_.keyframe(i).map_from_body * body_from_left, 1e-9, 1e-9));
   }
   ASSERT_GT(again.points(), 100);
