@@ -1,7 +1,7 @@
 #include "byre/odometry/odometry_calibrator.h"
 
 #include "byre/geometry/median.h"
-#include "byre/odometry/motion_covariance.h"
+#include "byre/odometry/calibrated_odometry.h"
 #include "byre/odometry/time_offset.h"
 
 #include <algorithm>
@@ -18,20 +18,12 @@ constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerEstimate = 4;
 constexpr int kEstimatesUntilUsed = 24;   // the first estimates determine delay and bias badly
 constexpr int kConfirmed = 4;             // motions until the calibration of an earlier drive counts as confirmed
-constexpr double kUnprovenFactor = 9.0;   // factor of the covariance until kConfirmed
 constexpr int kEstimatesUntilStored = 8;  // estimates of a calibration until it is kept
 constexpr int kEstimatesPerOffset = 8;    // estimates of a calibration per estimate of the delay, which costs most
 constexpr double kMaxSigma = 0.05;        // relative for the scale, radians for the rotation, of an estimate
 constexpr double kMaxInitialSigma = 0.2;  // largest sigma of the first estimate
 constexpr double kMeasuredTilt = 0.03;    // radians, standard deviation of an up axis measured at standstill
 constexpr double kLeastInitialWay = 0.3;  // metres, sum of all paths of the first estimate
-
-// Whether wheels and gyroscope disagree about a turn, such as when a wheel spins or is lifted.
-bool is_slip(const Eigen::Quaterniond& by_wheels, const Eigen::Quaterniond& by_gyroscope, double seconds) {
-  constexpr double kRate = 0.1;   // radians per second
-  constexpr double kShare = 0.2;  // share of the turn
-  return angle_between(by_wheels, by_gyroscope) > kRate * seconds + kShare * rotation_log(by_gyroscope).norm();
-}
 
 // Metres, sum of all paths.
 double way_of(const std::vector<MotionPair>& motions) {
@@ -66,11 +58,39 @@ std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair
   return is_determined(found, kMaxSigma) ? found : std::nullopt;
 }
 
+// Motions that wheels measured as well.
+std::vector<MotionPair> pairs_of(const std::deque<VisualMotion>& seen, const CalibratedOdometry& odometry) {
+  std::vector<MotionPair> pairs;
+  for (const VisualMotion& motion : seen) {
+    if (const auto base = base_between(odometry, motion.earlier, motion.later)) pairs.push_back({*base, motion.body});
+  }
+  return pairs;
+}
+
+// Stores the gyroscope's turns of the motions since the last estimation.
+void add_gyroscope_rotations(const RateTrack& rates, std::deque<VisualMotion>& seen) {
+  for (auto motion = seen.rbegin(); motion != seen.rend() && !motion->gyroscope_turn; ++motion) {
+    const auto turn = rates.between(motion->earlier, motion->later, Eigen::Vector3d::Zero());
+    if (turn) motion->gyroscope_turn = rotation_log(*turn);
+  }
+}
+
+// The body goes on at its visual velocity.
+BodyMotion predict_from_images(const Vector6& velocity, double seconds) {
+  constexpr double kShare = 0.3;         // share of the path length
+  constexpr double kAcceleration = 1.0;  // lengths of the map per second squared
+  const Pose motion = exp_pose(velocity * seconds);
+  const double sigma = kShare * motion.translation.norm() + 0.5 * kAcceleration * seconds * seconds;
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal().head<3>().setConstant(sigma * sigma);
+  return {motion, covariance};
+}
+
 }  // namespace
 
 void OdometryCalibrator::begin_with(const OdometryCalibration& known) {
-  prior_ = known;
-  if (known.wheels) prior_.wheels = as_prior(*known.wheels);
+  prior_.calibration = known;
+  if (known.wheels) prior_.calibration.wheels = as_prior(*known.wheels);
   wheel_calibration_ = known.wheels;
   stationary_.begin_with(known.up);
   if (known.wheels) set_time_offset(known.time_offset);
@@ -80,15 +100,15 @@ void OdometryCalibrator::begin_with_extrinsics(const WheelCalibration& measured,
   constexpr double kTilt = 0.1;  // radians, largest standard deviation of a known up axis
   if (measured.tilt_sigma() < kTilt) up_in_body_ = measured.up_in_body();
   if (time_offset) set_time_offset(*time_offset);
-  if (prior_.wheels && !is_contradicted(measured, *wheel_calibration_)) return;
-  prior_.wheels = measured;
-  is_prior_measured_ = true;
+  if (prior_.calibration.wheels && !is_contradicted(measured, *wheel_calibration_)) return;
+  prior_.calibration.wheels = measured;
+  prior_.is_measured = true;
   wheel_calibration_ = is_determined(measured, kMaxSigma) ? std::optional(measured) : std::nullopt;
 }
 
 void OdometryCalibrator::forget_scale() {
-  if (!is_prior_measured_ || !prior_.wheels) return;
-  prior_.wheels = with_unknown_scale(*prior_.wheels);
+  if (!prior_.is_measured || !prior_.calibration.wheels) return;
+  prior_.calibration.wheels = with_unknown_scale(*prior_.calibration.wheels);
   wheel_calibration_.reset();
 }
 
@@ -156,40 +176,27 @@ void OdometryCalibrator::set_gyroscope_extrinsics(const Eigen::Quaterniond& body
                                           .covariance = kSigma * kSigma * Eigen::Matrix3d::Identity()};
 }
 
-std::optional<bool> OdometryCalibrator::are_wheels_stationary(Timestamp time) const {
-  constexpr double kMostMetres = 0.0025;  // in the window: ticks of encoders
-  constexpr double kMostRadians = 0.004;  // in the window
-  if (is_slipping_) return {};
-  const Timestamp end = wheel_time(time);
-  const auto distance = wheels_.distance(end - SteadyWindow::kWindow, end);
-  if (!distance) return {};
-  return distance->metres <= kMostMetres && distance->radians <= kMostRadians;
-}
-
 void OdometryCalibrator::update_standstill(Timestamp time, const std::optional<Pose>& seen) {
   constexpr double kMostSigma = 0.1;  // radians
   stationary_.note_visual_pose(time, seen);
   const auto bias = gyroscope_ ? std::optional(gyroscope_->bias) : std::nullopt;
   const double metres_per_unit = wheel_calibration_ ? wheel_calibration_->metres_per_unit : 1.0;
-  const auto steady =
-      stationary_.at(time, {are_wheels_stationary(time), stationary_.are_poses_stationary(metres_per_unit)}, bias);
+  const auto steady = stationary_.at(
+      time, {are_wheels_stationary(odometry(), time), stationary_.are_poses_stationary(metres_per_unit)}, bias);
   stationary_.note(time, steady);
   if (!steady) return;
   if (!seen && gyroscope_) gyroscope_->bias = steady->rate;
-  const auto& gyroscope = gyroscope_ ? gyroscope_ : prior_.gyroscope ? prior_.gyroscope : given_gyroscope_;
+  const auto& gyroscope = gyroscope_                     ? gyroscope_
+                          : prior_.calibration.gyroscope ? prior_.calibration.gyroscope
+                                                         : given_gyroscope_;
   if (!gyroscope) return;
   const UpInBody up = up_in_body(*steady, *gyroscope);
   if (up.sigma > kMostSigma) return;
   measured_up_ = up.up;
 }
 
-std::optional<SteadyWindow::Steady> OdometryCalibrator::standstill_by_wheels(Timestamp time) const {
-  if (!gyroscope_) return {};
-  return stationary_.at(time, {are_wheels_stationary(time), std::nullopt}, gyroscope_->bias);
-}
-
 std::optional<BodyTilt> OdometryCalibrator::tilt(Timestamp time) const {
-  return stationary_.tilt(time, standstill_by_wheels(time), gyroscope_);
+  return stationary_.tilt(time, standstill_by_wheels(odometry(), time), gyroscope_);
 }
 
 // Compares the gyroscope with turns in images, else with turns of wheels. Drops it if it is faulty.
@@ -202,7 +209,7 @@ void OdometryCalibrator::compare_turns(Timestamp time, const std::optional<Visua
   if (seen) {
     turn.reference = rotation_log(seen->body.rotation);
   } else {
-    const auto base = base_between(begin, time);
+    const auto base = base_between(odometry(), begin, time);
     if (!base) return;
     turn.reference = rotation_log(base->rotation);
   }
@@ -251,32 +258,12 @@ void OdometryCalibrator::forget_old_samples() {
   rates_.forget_before(oldest);
 }
 
-std::optional<Pose> OdometryCalibrator::base_between(Timestamp earlier, Timestamp later) const {
-  return wheels_.between(wheel_time(earlier), wheel_time(later));
-}
-
-std::vector<MotionPair> OdometryCalibrator::pairs() const {
-  std::vector<MotionPair> pairs;
-  for (const VisualMotion& motion : seen_) {
-    if (const auto base = base_between(motion.earlier, motion.later)) pairs.push_back({*base, motion.body});
-  }
-  return pairs;
-}
-
-// Stores the gyroscope's turns of the motions since the last estimation.
-void OdometryCalibrator::add_gyroscope_rotations() {
-  for (auto motion = seen_.rbegin(); motion != seen_.rend() && !motion->gyroscope_turn; ++motion) {
-    const auto turn = rates_.between(motion->earlier, motion->later, Eigen::Vector3d::Zero());
-    if (turn) motion->gyroscope_turn = rotation_log(*turn);
-  }
-}
-
 void OdometryCalibrator::estimate_calibrations() {
   motions_since_estimate_ = 0;
   if (!rates_.empty()) {
-    add_gyroscope_rotations();
-    auto found = estimate_gyroscope_calibration(seen_, prior_.gyroscope);
-    if (!found && prior_.gyroscope) found = estimate_gyroscope_calibration(seen_);
+    add_gyroscope_rotations(rates_, seen_);
+    auto found = estimate_gyroscope_calibration(seen_, prior_.calibration.gyroscope);
+    if (!found && prior_.calibration.gyroscope) found = estimate_gyroscope_calibration(seen_);
     if (found) gyroscope_ = found;
   }
   if (wheels_.empty()) return;
@@ -286,7 +273,7 @@ void OdometryCalibrator::estimate_calibrations() {
     const Eigen::Vector3d up = wheel_calibration_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
     if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) set_time_offset(*offset);
   }
-  if (estimates_ >= kEstimatesUntilUsed || prior_.wheels) gaps_.integrate(base_odometry());
+  if (estimates_ >= kEstimatesUntilUsed || prior_.calibration.wheels) integrate(gaps_);
 }
 
 void OdometryCalibrator::reestimate(const Trajectory& seen) {
@@ -298,12 +285,13 @@ void OdometryCalibrator::reestimate(const Trajectory& seen) {
     const bool is_gap = seen[i].time - seen[i - 1].time > kMaxFrameGap;
     if (is_gap || !gaps_.is_seen(seen[i - 1].time, seen[i].time)) begin = i;
     if (seen[i].time - seen[begin].time < kStride) continue;
-    if (const auto base = base_between(seen[begin].time, seen[i].time)) {
+    if (const auto base = base_between(odometry(), seen[begin].time, seen[i].time)) {
       pairs.push_back({*base, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
     }
     begin = i;
   }
-  const auto found = prior_.wheels ? estimate_with_prior(pairs, *prior_.wheels) : estimate_without_prior(pairs);
+  const auto found = prior_.calibration.wheels ? estimate_with_prior(pairs, *prior_.calibration.wheels)
+                                               : estimate_without_prior(pairs);
   if (found) wheel_calibration_ = found;
 }
 
@@ -312,7 +300,7 @@ std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() co
   constexpr std::size_t kLeast = 8;   // turns
   constexpr double kOfMedian = 1.25;  // sigma of a median over that of a mean, normal distribution
   std::vector<double> ratios;
-  for (const MotionPair& motion : pairs()) {
+  for (const MotionPair& motion : pairs_of(seen_, odometry())) {
     const double turn = rotation_log(motion.base.rotation).norm();
     if (turn > kSmall) ratios.push_back(rotation_log(motion.body.rotation).norm() / turn);
   }
@@ -328,19 +316,20 @@ void OdometryCalibrator::rescale(double factor) {
   OdometryCalibration found;
   found.wheels = wheel_calibration_;
   wheel_calibration_ = scaled(std::move(found), factor).wheels;
-  prior_ = scaled(prior_, factor);
+  prior_.calibration = scaled(prior_.calibration, factor);
 }
 
 // Motions that determine the calibration without the prior are compared with it.
 void OdometryCalibrator::estimate_wheels() {
   constexpr int kLooks = 3;  // consecutive contradictions
-  const std::vector<MotionPair> all = pairs();
+  const std::vector<MotionPair> all = pairs_of(seen_, odometry());
   const auto alone = estimate_without_prior(all);
-  if (prior_.wheels && alone) {
-    contradicting_estimates_ = is_contradicted(*prior_.wheels, *alone) ? contradicting_estimates_ + 1 : 0;
-    if (contradicting_estimates_ >= kLooks) discard_prior_wheels(seen_.back().later);
+  if (prior_.calibration.wheels && alone) {
+    prior_.contradicting_estimates =
+        is_contradicted(*prior_.calibration.wheels, *alone) ? prior_.contradicting_estimates + 1 : 0;
+    if (prior_.contradicting_estimates >= kLooks) discard_prior_wheels(seen_.back().later);
   }
-  const auto found = prior_.wheels ? estimate_with_prior(all, *prior_.wheels) : alone;
+  const auto found = prior_.calibration.wheels ? estimate_with_prior(all, *prior_.calibration.wheels) : alone;
   if (found) wheel_calibration_ = found;
   if (!is_metric_ || !alone || seen_.empty()) return;
   if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma(), seen_.back().later)) drop_wheels();
@@ -354,10 +343,10 @@ void OdometryCalibrator::update_initial_calibration() {
   constexpr double kLeastError = 0.1;  // share of path lengths and turns
   initial_.reset();
   if (wheel_calibration_ || seen_.size() < kLeastMotions) return;
-  const std::vector<MotionPair> all = pairs();
+  const std::vector<MotionPair> all = pairs_of(seen_, odometry());
   if (way_of(all) < kLeastInitialWay) return;
-  if (prior_.wheels) {
-    wheel_calibration_ = estimate_with_prior(all, *prior_.wheels);
+  if (prior_.calibration.wheels) {
+    wheel_calibration_ = estimate_with_prior(all, *prior_.calibration.wheels);
     return;
   }
   if (measured_up_) initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*measured_up_, kMeasuredTilt));
@@ -373,7 +362,7 @@ const WheelCalibration* OdometryCalibrator::active_calibration() const {
   if (wheel_calibration_) return &*wheel_calibration_;
   if (initial_) return &*initial_;
   if (!predicts_before_tracking_) return nullptr;
-  if (prior_.wheels) return &*prior_.wheels;
+  if (prior_.calibration.wheels) return &*prior_.calibration.wheels;
   return assumed_forward_ ? &*assumed_forward_ : nullptr;
 }
 
@@ -384,22 +373,23 @@ void OdometryCalibrator::check_prior(double disagreement, const VisualMotion& mo
   constexpr int kContradicting = 12;    // motions
   const double way = wheel_calibration_->metres_per_unit * motion.body.translation.norm();
   if (way < kMinPath && rotation_log(motion.body.rotation).norm() < kMinRotation) return;
-  ++(disagreement > 1.0 ? contradicting_ : confirming_);
-  if (contradicting_ >= kContradicting && contradicting_ > 2 * confirming_) discard_prior_wheels(motion.later);
+  ++(disagreement > 1.0 ? prior_.contradicting : prior_.confirming);
+  if (prior_.contradicting >= kContradicting && prior_.contradicting > 2 * prior_.confirming)
+    discard_prior_wheels(motion.later);
 }
 
 void OdometryCalibrator::discard_prior_wheels(Timestamp time) {
-  if (is_prior_measured_) {
+  if (prior_.is_measured) {
     warn({MotionSensor::wheels, time,
           "motions contradict the given extrinsics of camera and base; these are dropped, and estimated from motions",
           "compare the given pose of the camera on the base with the one that the report of the run shows"});
   }
-  is_prior_measured_ = false;
-  prior_.wheels.reset();
+  prior_.is_measured = false;
+  prior_.calibration.wheels.reset();
   wheel_calibration_.reset();
   time_offset_.reset();
   estimates_ = 0;
-  is_slipping_ = false;
+  slip_.is_present = false;
   has_calibration_changed_ = true;
 }
 
@@ -410,8 +400,8 @@ void OdometryCalibrator::set_time_offset(double seconds) {
 }
 
 OdometryCalibration OdometryCalibrator::calibration_to_store() const {
-  OdometryCalibration keep = prior_;
-  const bool is_well_known = estimates_ >= kEstimatesUntilStored || prior_.wheels;
+  OdometryCalibration keep = prior_.calibration;
+  const bool is_well_known = estimates_ >= kEstimatesUntilStored || prior_.calibration.wheels;
   if (wheel_calibration_ && is_well_known) {
     keep.wheels = wheel_calibration_;
     keep.time_offset = time_offset();
@@ -422,18 +412,17 @@ OdometryCalibration OdometryCalibrator::calibration_to_store() const {
 }
 
 // Precondition: the calibration of wheels is estimated or assumed.
-GapTrajectory::BaseOdometry OdometryCalibrator::base_odometry() const {
-  return [this](Timestamp earlier, Timestamp later) {
-    const auto measured = base_motion(earlier, later, gyroscope_rotation(earlier, later));
-    return measured ? std::optional(measured->motion) : std::nullopt;
-  };
+void OdometryCalibrator::integrate(GapTrajectory& gaps) const {
+  gaps.integrate([measured = odometry()](Timestamp earlier, Timestamp later) {
+    return base_path_between(measured, earlier, later);
+  });
 }
 
 Trajectory OdometryCalibrator::fill_gaps(Trajectory seen) const {
   const WheelCalibration* const calibration = active_calibration();
   if (calibration == nullptr) return seen;
   GapTrajectory gaps = gaps_;
-  gaps.integrate(base_odometry());
+  integrate(gaps);
   const auto body_motion_of = [&](const Pose& base) { return body_motion(*calibration, base); };
   return gaps.fill_gaps(std::move(seen), body_motion_of, old_poses_);
 }
@@ -441,167 +430,50 @@ Trajectory OdometryCalibrator::fill_gaps(Trajectory seen) const {
 void OdometryCalibrator::detect_slip(const VisualMotion& motion) {
   constexpr int kAgreeing = 2;  // agreeing motions that end the slip
   if (!wheel_calibration_) return;
-  const auto base = base_between(motion.earlier, motion.later);
+  const auto base = base_between(odometry(), motion.earlier, motion.later);
   if (!base) return;
   const Pose measured = body_motion(*wheel_calibration_, without_turn_errors(wheel_calibration_->turn_errors, *base));
   const double difference = disagreement(measured, motion, wheel_calibration_->metres_per_unit);
-  if (prior_.wheels) check_prior(difference, motion);
+  if (prior_.calibration.wheels) check_prior(difference, motion);
   if (!wheel_calibration_) return;
   if (difference > 1.0) {
-    if (!is_slipping_) ++slips_;
-    is_slipping_ = true;
-    agreeing_ = 0;
-  } else if (++agreeing_ >= kAgreeing) {
-    is_slipping_ = false;
+    if (!slip_.is_present) ++slip_.count;
+    slip_.is_present = true;
+    slip_.agreeing = 0;
+  } else if (++slip_.agreeing >= kAgreeing) {
+    slip_.is_present = false;
   }
 }
 
-std::optional<Eigen::Quaterniond> OdometryCalibrator::gyroscope_rotation(Timestamp earlier, Timestamp later) const {
-  if (!gyroscope_) return {};
-  const auto measured = rates_.between(earlier, later, gyroscope_->bias);
-  if (!measured) return {};
-  return gyroscope_->body_from_gyroscope * *measured * gyroscope_->body_from_gyroscope.conjugate();
-}
-
-// turn: rotation of the body from the gyroscope; replaces that of the wheels. Precondition: the calibration of wheels
-// is estimated or assumed.
-std::optional<OdometryCalibrator::BaseMotion> OdometryCalibrator::base_motion(
-    Timestamp earlier, Timestamp later, const std::optional<Eigen::Quaterniond>& turn) const {
-  const auto measured = base_between(earlier, later);
-  if (!measured) return {};
-  BaseMotion base{without_turn_errors(active_calibration()->turn_errors, *measured)};
-  if (turn) {
-    const Eigen::Quaterniond& base_from_body = active_calibration()->base_from_body.rotation;
-    const Eigen::Quaterniond base_turn = base_from_body * *turn * base_from_body.conjugate();
-    base.is_translation_valid = !is_slip(base.motion.rotation, base_turn, to_seconds(later - earlier));
-    base.motion.rotation = base_turn;
-  }
-  if (exceeds_acceleration(earlier, later, *measured)) {
-    base.is_translation_valid = false;
-    base.is_rotation_valid = turn.has_value();
-  }
-  return base;
-}
-
-std::optional<BodyMotion> OdometryCalibrator::wheel_motion(Timestamp earlier, Timestamp later,
-                                                           const std::optional<Eigen::Quaterniond>& turn) const {
-  const WheelCalibration* const calibration = active_calibration();
-  if (calibration == nullptr) return {};
-  const auto base = base_motion(earlier, later, turn);
-  if (!base) return {};
-  const Pose body = body_motion(*calibration, base->motion);
-  BodyMotion motion{body, wheel_covariance(body, base->motion, *calibration)};
-  const Vector6 deviation = deviation_by_time_offset(earlier, later);
-  motion.covariance += deviation * deviation.transpose();
-  if (prior_.wheels && confirming_ < kConfirmed) motion.covariance *= kUnprovenFactor;
-  if (!base->is_translation_valid) set_translation_unknown(motion);
-  if (!base->is_rotation_valid) set_rotation_unknown(motion);
-  return motion;
-}
-
-// Standard deviation of the body's motion, as a delta, by that of the delay of the wheels: zero at constant speed.
-Vector6 OdometryCalibrator::deviation_by_time_offset(Timestamp earlier, Timestamp later) const {
-  const Timestamp shift = from_seconds(time_offset_sigma_);
-  auto shifted = base_between(earlier + shift, later + shift);
-  if (!shifted) shifted = base_between(earlier - shift, later - shift);
-  const auto base = base_between(earlier, later);
-  if (!shifted || !base) return Vector6::Zero();
-  const WheelCalibration& calibration = *active_calibration();
-  return log_pose(inverse(body_motion(calibration, *base)) * body_motion(calibration, *shifted));
-}
-
-// Whether the motion of the base changes from the previous span by more than a body can: wheels spin, or are faulty.
-bool OdometryCalibrator::exceeds_acceleration(Timestamp earlier, Timestamp later, const Pose& base) const {
-  constexpr double kMostAcceleration = 15.0;  // m/s^2
-  constexpr double kLeast = 0.02;             // metres, for encoder ticks
-  constexpr double kMostTurning = 30.0;       // radians per second squared
-  constexpr double kLeastTurn = 0.05;         // radians
-  const Timestamp span = later - earlier;
-  if (span > kMaxFrameGap) return false;
-  if (wheels_.has_jump(wheel_time(earlier) - span, wheel_time(earlier))) return true;
-  const auto before = base_between(earlier - span, earlier);
-  if (!before) return false;
-  const double squared = to_seconds(span) * to_seconds(span);
-  return (base.translation - before->translation).norm() > kLeast + kMostAcceleration * squared ||
-         angle_between(base.rotation, before->rotation) > kLeastTurn + kMostTurning * squared;
-}
-
-// Whether the turns by gyroscope and wheels differ by more than a spinning wheel explains. Then one of both is faulty.
-bool OdometryCalibrator::contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const {
-  constexpr double kMostRate = 3.0;   // radians per second
-  constexpr double kLeastTurn = 0.1;  // radians
-  const auto base = base_between(earlier, later);
-  if (!base) return false;
-  const double apart = std::abs(rotation_log(turn).norm() - rotation_log(base->rotation).norm());
-  return apart > kLeastTurn + kMostRate * to_seconds(later - earlier);
-}
-
-// Motion across a jump of the wheel pose: that of the previous span, with a standard deviation as large as itself.
-std::optional<BodyMotion> OdometryCalibrator::bridge_jump(Timestamp earlier, Timestamp later,
-                                                          const std::optional<Eigen::Quaterniond>& turn) const {
-  const Timestamp span = later - earlier;
-  if (span > kMaxFrameGap || !wheels_.has_jump(wheel_time(earlier), wheel_time(later))) return {};
-  auto motion = wheel_motion(earlier - span, earlier, {});
-  if (!motion) motion = wheel_motion(earlier - 2 * span, earlier - span, {});  // if the jump is right after the frame
-  if (!motion) return {};
-  set_translation_unknown(*motion);
-  set_rotation_unknown(*motion);
-  if (turn) motion->last_from_body.rotation = *turn;
-  return motion;
-}
-
-std::optional<BodyMotion> OdometryCalibrator::predict_from_images(Timestamp earlier, Timestamp later) const {
-  constexpr Timestamp kLongest = 1s;
-  constexpr double kShare = 0.3;         // share of the path length
-  constexpr double kAcceleration = 1.0;  // lengths of the map per second squared
-  if (!velocity_ || seen_.empty() || later - seen_.back().later > kLongest + kStride) return {};
-  const double seconds = to_seconds(later - earlier);
-  const Pose motion = exp_pose(*velocity_ * seconds);
-  const double sigma = kShare * motion.translation.norm() + 0.5 * kAcceleration * seconds * seconds;
-  Matrix6 covariance = Matrix6::Zero();
-  covariance.diagonal().head<3>().setConstant(sigma * sigma);
-  return BodyMotion{motion, covariance};
+CalibratedOdometry OdometryCalibrator::odometry() const {
+  return {wheels_,
+          rates_,
+          stationary_,
+          active_calibration(),
+          gyroscope_,
+          time_offset(),
+          time_offset_sigma_,
+          slip_.is_present,
+          prior_.calibration.wheels && prior_.confirming < kConfirmed};
 }
 
 std::optional<BodyMotion> OdometryCalibrator::between(Timestamp earlier, Timestamp later) const {
-  auto turn = gyroscope_rotation(earlier, later);
-  const bool is_contradicted = turn && !is_slipping_ && contradicts_wheels(earlier, later, *turn);
-  if (is_contradicted) turn.reset();
-  auto motion = is_slipping_ ? std::nullopt : wheel_motion(earlier, later, turn);
-  if (motion && is_contradicted) {
-    set_translation_unknown(*motion);
-    set_rotation_unknown(*motion);
-  }
-  if (!motion && !is_slipping_) motion = bridge_jump(earlier, later, turn);
-  if (!turn) return motion;
-  if (motion && standstill_by_wheels(later)) return constrain_to_standstill(*motion, to_seconds(later - earlier));
-  if (!motion && (motion = predict_from_images(earlier, later))) motion->last_from_body.rotation = *turn;
-  if (!motion) return {};
-  set_turn_covariance(*motion, *gyroscope_, to_seconds(later - earlier));
-  return motion;
-}
-
-std::optional<double> OdometryCalibrator::reach(Timestamp earlier, Timestamp later, bool is_metric) const {
-  constexpr double kShare = 1.2;       // factor of the measured distance: wheels may slide
-  constexpr double kLeast = 0.5;       // metres
-  constexpr double kUnmeasured = 1.5;  // metres in the first second: failed encoders must not reject a tracked frame
-  constexpr double kUsualArm = 1.0;    // metres, before it is estimated
-  constexpr double kHalfTurns = 2.0;   // radii that turns on the spot can displace the body
-  const WheelCalibration* const calibration = active_calibration();
-  if (calibration == nullptr && !is_metric) return {};
-  const auto distance = wheels_.distance(wheel_time(earlier), wheel_time(later));
-  if (!distance) return {};
-  const double arm = wheel_calibration_ ? wheel_calibration_->base_from_body.translation.norm() : kUsualArm;
-  const double metres = kShare * distance->metres + std::min(distance->radians, kHalfTurns) * arm + kLeast +
-                        kUnmeasured * std::clamp(to_seconds(later - earlier), 0.0, 1.0);
-  return metres / (calibration != nullptr ? calibration->metres_per_unit : 1.0);
+  constexpr Timestamp kLongest = 1s;
+  const bool is_recent = velocity_ && !seen_.empty() && later - seen_.back().later <= kLongest + kStride;
+  return motion_between(
+      odometry(), earlier, later,
+      is_recent ? std::optional(predict_from_images(*velocity_, to_seconds(later - earlier))) : std::nullopt);
 }
 
 std::optional<BodyMotion> OdometryCalibrator::path_between(Timestamp earlier, Timestamp later) const {
-  const auto turn = gyroscope_rotation(earlier, later);
-  auto motion = wheel_motion(earlier, later, turn);
-  if (motion && turn) set_turn_covariance(*motion, *gyroscope_, to_seconds(later - earlier));
-  return motion;
+  return byre::path_between(odometry(), earlier, later);
+}
+
+std::optional<double> OdometryCalibrator::reach(Timestamp earlier, Timestamp later, bool is_metric) const {
+  constexpr double kUsualArm = 1.0;  // metres, before it is estimated
+  if (active_calibration() == nullptr && !is_metric) return {};
+  const double arm = wheel_calibration_ ? wheel_calibration_->base_from_body.translation.norm() : kUsualArm;
+  return reach_between(odometry(), earlier, later, arm);
 }
 
 }  // namespace byre

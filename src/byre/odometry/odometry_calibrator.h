@@ -1,15 +1,11 @@
 #pragma once
 
 #include "byre/body_motion.h"
+#include "byre/odometry/calibrated_odometry.h"
 #include "byre/odometry/gap_trajectory.h"
-#include "byre/odometry/gyroscope_calibration.h"
 #include "byre/odometry/motion_check.h"
 #include "byre/odometry/odometry_calibration.h"
-#include "byre/odometry/rate_track.h"
-#include "byre/odometry/stationary_detector.h"
 #include "byre/odometry/visual_motion.h"
-#include "byre/odometry/wheel_calibration.h"
-#include "byre/odometry/wheel_track.h"
 #include "byre/trajectory.h"
 
 #include <chrono>
@@ -114,8 +110,8 @@ class OdometryCalibrator {
   const std::optional<GyroscopeCalibration>& gyroscope() const { return gyroscope_; }
   // Delay of wheel stamps against the camera's, seconds.
   double time_offset() const { return time_offset_.value_or(0.0); }
-  bool are_wheels_slipping() const { return is_slipping_; }
-  int slips() const { return slips_; }  // number of periods of slip
+  bool are_wheels_slipping() const { return slip_.is_present; }
+  int slips() const { return slip_.count; }  // number of periods of slip
   // The calibration of wheels differs from that of the earlier drive.
   bool has_calibration_changed() const { return has_calibration_changed_; }
   // Calibration for the next drive: the estimates, or the earlier ones if not contradicted.
@@ -130,8 +126,6 @@ class OdometryCalibrator {
   void drop_gyroscope();
   void forget_old_samples();
   void update_standstill(Timestamp time, const std::optional<Pose>& seen);
-  std::optional<bool> are_wheels_stationary(Timestamp time) const;
-  std::optional<SteadyWindow::Steady> standstill_by_wheels(Timestamp time) const;
   void estimate_calibrations();
   void estimate_wheels();
   void update_initial_calibration();
@@ -140,28 +134,8 @@ class OdometryCalibrator {
   void check_prior(double disagreement, const VisualMotion& motion);
   void set_time_offset(double seconds);
   void discard_prior_wheels(Timestamp time);
-  void add_gyroscope_rotations();
-  std::vector<MotionPair> pairs() const;
-  // In the clock of the wheels.
-  Timestamp wheel_time(Timestamp time) const { return time + from_seconds(time_offset()); }
-  std::optional<Pose> base_between(Timestamp earlier, Timestamp later) const;
-  struct BaseMotion {
-    Pose motion;                       // earlier_from_later, metres
-    bool is_translation_valid = true;  // wheels agree with the gyroscope, if any, and show no jerk
-    bool is_rotation_valid = true;     // measured by the gyroscope, or by wheels without a jerk
-  };
-  std::optional<BaseMotion> base_motion(Timestamp earlier, Timestamp later,
-                                        const std::optional<Eigen::Quaterniond>& turn) const;
-  GapTrajectory::BaseOdometry base_odometry() const;
-  std::optional<BodyMotion> wheel_motion(Timestamp earlier, Timestamp later,
-                                         const std::optional<Eigen::Quaterniond>& turn) const;
-  Vector6 deviation_by_time_offset(Timestamp earlier, Timestamp later) const;
-  bool contradicts_wheels(Timestamp earlier, Timestamp later, const Eigen::Quaterniond& turn) const;
-  std::optional<BodyMotion> bridge_jump(Timestamp earlier, Timestamp later,
-                                        const std::optional<Eigen::Quaterniond>& turn) const;
-  bool exceeds_acceleration(Timestamp earlier, Timestamp later, const Pose& base) const;
-  std::optional<BodyMotion> predict_from_images(Timestamp earlier, Timestamp later) const;
-  std::optional<Eigen::Quaterniond> gyroscope_rotation(Timestamp earlier, Timestamp later) const;
+  CalibratedOdometry odometry() const;
+  void integrate(GapTrajectory& gaps) const;
 
   MotionCheck check_;
   bool is_metric_ = false;
@@ -188,14 +162,20 @@ class OdometryCalibrator {
   std::optional<GyroscopeCalibration> gyroscope_;
   std::optional<double> time_offset_;
   double time_offset_sigma_ = 0.05;  // seconds; usual until it is given or estimated
-  bool is_slipping_ = false;
-  int agreeing_ = 0;  // number of motions since slip in which wheels agree with images
-  int slips_ = 0;
-  OdometryCalibration prior_;        // from an earlier drive, until contradicted
-  bool is_prior_measured_ = false;   // by hand, not on an earlier drive
-  int contradicting_ = 0;            // number of motions that contradict the earlier calibration of wheels
-  int confirming_ = 0;               // number of motions that agree with it
-  int contradicting_estimates_ = 0;  // consecutive estimates that contradict the earlier calibration
+  struct Slip {
+    bool is_present = false;
+    int agreeing = 0;  // number of motions since slip in which wheels agree with images
+    int count = 0;     // periods of slip
+  };
+  Slip slip_;
+  struct Prior {
+    OdometryCalibration calibration;  // from an earlier drive, until contradicted
+    bool is_measured = false;         // by hand, not on an earlier drive
+    int contradicting = 0;            // number of motions that contradict it
+    int confirming = 0;               // number of motions that agree with it
+    int contradicting_estimates = 0;  // consecutive estimates that contradict it
+  };
+  Prior prior_;
   bool has_calibration_changed_ = false;
 };
 
