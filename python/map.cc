@@ -558,7 +558,7 @@ void bind_edits(MapClass& type) {
             return made([&] { return self.map.without_points(ids); });
           },
           py::arg("points"),
-          "Copy without these points and their observations; the other points are numbered anew. Keyframes that "
+          "Copy without these points and their observations; the other points are renumbered. Keyframes that "
           "observe "
           "no other point are removed too, except those without a parent.\n"
           "points: ids, or a mask with an item for each point. Raises IndexError for ids that do not exist, and "

@@ -57,7 +57,7 @@ struct MapObservation {
 
 // A saved map: keyframes, points and their observations. An immutable value whose copies share memory, so any number of
 // threads may read it. Edits return another map. Keyframes and points are numbered from 0 without gaps; an edit that
-// removes some numbers the others anew. Map frame: that of the first keyframe's body, unless transformed. Lengths are
+// removes some renumbers the others. Map frame: that of the first keyframe's body, unless transformed. Lengths are
 // metres if is_metric(), else an arbitrary unit. Precondition of all functions: ids of keyframes, points and recordings
 // exist.
 class Map {

@@ -7,17 +7,13 @@ namespace {
 
 void move(MapGraph& map, const Pose& target_from_map) {
   const Pose map_from_target = inverse(target_from_map);
-  const Eigen::Matrix3d rotation = target_from_map.rotation.toRotationMatrix();
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.find_keyframe(id);
     map.move_keyframe(id, keyframe.camera_from_world * map_from_target, keyframe.covariance);
   }
   for (const PointId id : map.point_ids()) {
-    MapPoint point = *map.find_point(id);
-    point.position_in_world = target_from_map * point.position_in_world;
-    const Eigen::Matrix3d covariance = rotation * point.covariance * rotation.transpose();
-    point.covariance = covariance.selfadjointView<Eigen::Upper>();
-    point.mean_viewing_direction = (rotation.cast<float>() * point.mean_viewing_direction).normalized();
+    MapPoint point = moved(*map.find_point(id), target_from_map);
+    point.covariance = Eigen::Matrix3d(point.covariance).selfadjointView<Eigen::Upper>();  // exactly symmetric
     map.update_point(id, point);
   }
 }
@@ -37,6 +33,14 @@ PlanRegistration moved(PlanRegistration registration, const Pose& target_from_ma
 }
 
 }  // namespace
+
+MapPoint moved(MapPoint point, const Pose& target_from_world) {
+  const Eigen::Matrix3d turn = target_from_world.rotation.toRotationMatrix();
+  point.position_in_world = target_from_world * point.position_in_world;
+  point.mean_viewing_direction = target_from_world.rotation.cast<float>() * point.mean_viewing_direction;
+  point.covariance = turn * point.covariance * turn.transpose();
+  return point;
+}
 
 StoredMap transformed_copy(const StoredMap& stored, const Similarity& target_from_map) {
   StoredMap result = target_from_map.scale == 1.0 ? stored : scaled_copy(stored, target_from_map.scale);

@@ -1,6 +1,7 @@
 #include "byre/map/plan/driving_plane.h"
 
 #include "byre/geometry/decompositions.h"
+#include "byre/input_error.h"
 
 #include <algorithm>
 #include <cassert>
@@ -59,6 +60,16 @@ DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const E
   plane.up_in_map = (plane.up_information.inverse() * up_of_rig_in_map).normalized();
   plane.path_in_map = std::move(path_in_map);
   return plane;
+}
+
+DrivingPlane require_driving_plane(const MapGraph& map, const std::string& name) {
+  const std::optional<DrivingPlane> plane = fit_driving_plane(map);
+  if (!plane) {
+    throw InputError(name,
+                     "does not determine the vertical: it has no keyframes, or they have no common upright direction",
+                     "map a recording of a camera that stays upright");
+  }
+  return *plane;
 }
 
 Eigen::Vector3d body_at(const MapGraph& map, const Keyframe& keyframe) {

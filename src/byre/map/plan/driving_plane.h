@@ -3,6 +3,7 @@
 #include "byre/map/map_graph.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -29,6 +30,8 @@ DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const E
 
 // Path of the body in a map, with the mean up direction of its images. Empty without keyframes or a common attitude.
 std::optional<DrivingPlane> fit_driving_plane(const MapGraph& map);
+// The same. Throws InputError naming the map if there is no plane.
+DrivingPlane require_driving_plane(const MapGraph& map, const std::string& name);
 
 Eigen::Vector3d body_at(const MapGraph& map, const Keyframe& keyframe);
 

@@ -38,7 +38,7 @@ void export_colmap(const Map& map, const fs::path& model, const std::optional<fs
   const StoredMap& stored = map.stored();
   for (const KeyframeId id : stored.map.keyframe_ids()) {
     if (std::cmp_less(stored.map.find_keyframe(id)->recording, stored.recordings.size())) continue;
-    throw InputError("map", "does not contain the calibrations of its cameras", "make the map anew");
+    throw InputError("map", "does not contain the calibrations of its cameras", "make the map again");
   }
   const ColmapModel exported = colmap_model_of(stored, images_of ? names_of_images(*images_of) : ImageNames{});
   std::error_code failed;

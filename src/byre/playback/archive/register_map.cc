@@ -67,25 +67,19 @@ void require_unambiguous(const StoredMap& stored, const std::filesystem::path& p
 
 Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
                          const std::filesystem::path& picks, const RegisterOptions& options) {
-  const std::optional<DrivingPlane> plane = fit_driving_plane(stored.map);
-  if (!plane) {
-    throw InputError(map.string(),
-                     "does not determine the vertical: it has no keyframes, or they have no common upright direction",
-                     "map a recording of a camera that stays upright");
-  }
+  const DrivingPlane plane = require_driving_plane(stored.map, map.string());
   Registering result;
   result.correspondences = read_plan_correspondences(picks, plan, stored, options.picks);
   const Scale scale = stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
-  std::optional<PlanFit> fit = register_on_plan(result.correspondences, *plane, scale, options.registration);
+  std::optional<PlanFit> fit = register_on_plan(result.correspondences, plane, scale, options.registration);
   if (!fit) {
     throw InputError(picks.string(), "needs two distant points to register the map on the plan",
                      "pick three or more distant points");
   }
   result.fit = std::move(*fit);
   result.fit.registration.plan = plan.name;
-  result.largest_path_sigma = largest_sigma(result.fit.registration, plane->path_in_map);
-  if (scale == Scale::fixed)
-    result.measured_scale = measure_scale(result.correspondences, *plane, options.registration);
+  result.largest_path_sigma = largest_sigma(result.fit.registration, plane.path_in_map);
+  if (scale == Scale::fixed) result.measured_scale = measure_scale(result.correspondences, plane, options.registration);
   result.has_baseline = has_scale_of_baseline(stored);
   return result;
 }

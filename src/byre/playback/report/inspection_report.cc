@@ -187,7 +187,7 @@ Report inspection_report(const StoredMap& stored, const MapInspection& inspectio
   report.row("faults", "{!faults}none");
   for (const std::string& fault : inspection.faults) report.row("fault", "{fault}", {{"fault", fault}});
   report.conclude(
-      "[{?faults}The map is damaged: use a copy, or map anew."
+      "[{?faults}The map is damaged. Use a copy, or make the map again."
       "|Ready for missions[{?is_unscaled}, of arbitrary scale (\"byre scale\" sets it)]. Next: byre run RECORDING "
       "--map "
       "{file.name}[{?is_on_plan}, whose poses are on the plan"

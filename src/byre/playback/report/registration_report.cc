@@ -119,7 +119,7 @@ Report registration_report(const Registering& registering, const RegisterProtoco
   }
   report.row("written", "{written}");
   report.conclude(
-      "Fits the plan to {residual_m:.3f} m[{?doubts}, with doubts]"
+      "Fits the plan within {residual_m:.3f} m[{?doubts}, with doubts]"
       "[{?written}. Next: byre run RECORDING --map {written}, whose poses are on the plan"
       "|; no map is saved. Next: correct the points, or save it with -o MAP.byre]");
   return report;

@@ -136,15 +136,17 @@ std::optional<std::string> expand(std::string_view text, const Json& figures, co
   return expanded;
 }
 
-void Report::row(std::string_view label, std::string_view content, const Json& more) {
+std::string Report::labelled(std::string_view label, std::string_view content, const Json& more) const {
   const std::optional<std::string> expanded = expand(content, figures, more);
-  if (expanded) text += fmt::format("{:{}} {}\n", printable(label), label_width, printable(*expanded));
+  return expanded ? fmt::format("{:{}} {}\n", printable(label), label_width, printable(*expanded)) : "";
+}
+
+void Report::row(std::string_view label, std::string_view content, const Json& more) {
+  text += labelled(label, content, more);
 }
 
 void Report::detail(std::string_view label, std::string_view content, const Json& more) {
-  const std::string rows = std::exchange(text, std::move(details));
-  row(label, content, more);
-  details = std::exchange(text, rows);
+  details += labelled(label, content, more);
 }
 
 void Report::conclude(std::string_view content, const Json& more) {

@@ -42,6 +42,10 @@ struct Report {
   void conclude(std::string_view content, const nlohmann::ordered_json& more = {});
   // Adds the rows of a part, without its figures and its conclusion.
   void append(const Report& part);
+
+ private:
+  // Empty if the template is left out.
+  std::string labelled(std::string_view label, std::string_view content, const nlohmann::ordered_json& more) const;
 };
 
 std::string to_text(const Report& report, bool with_details);

@@ -323,13 +323,8 @@ Map Map::transformed(const Similarity& target_from_map) const {
 
 PlanFit Map::register_on_plan(const std::string& plan, std::span<const PlanCorrespondence> picks,
                               const PlanRegistrationOptions& options) const {
-  const std::optional<DrivingPlane> plane = fit_driving_plane(stored_->map);
-  if (!plane) {
-    throw InputError("map",
-                     "does not determine the vertical: it has no keyframes, or they have no common upright direction",
-                     "map a recording of a camera that stays upright");
-  }
-  std::optional<PlanFit> fit = byre::register_on_plan(picks, *plane, is_metric() ? Scale::fixed : Scale::free, options);
+  const DrivingPlane plane = require_driving_plane(stored_->map, "map");
+  std::optional<PlanFit> fit = byre::register_on_plan(picks, plane, is_metric() ? Scale::fixed : Scale::free, options);
   if (!fit) {
     throw InputError("picks", "need two distant points to register the map on the plan",
                      "pick three or more distant points");

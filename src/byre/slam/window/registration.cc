@@ -1,5 +1,7 @@
 #include "byre/slam/window/registration.h"
 
+#include "byre/map/transformed_copy.h"
+
 #include <map>
 
 namespace byre {
@@ -37,12 +39,7 @@ void append_points(const MapGraph& online, const std::map<KeyframeId, Pose>& mot
     const MapPoint& point = *online.find_point(id);
     const auto motion = motions.find(point.reference.keyframe);
     if (motion == motions.end()) continue;
-    MapPoint moved = point;
-    moved.position_in_world = motion->second * point.position_in_world;
-    moved.mean_viewing_direction = motion->second.rotation.cast<float>() * point.mean_viewing_direction;
-    const Eigen::Matrix3d turn = motion->second.rotation.toRotationMatrix();
-    moved.covariance = turn * point.covariance * turn.transpose();
-    delta.updated_points.push_back({{id.number}, moved});
+    delta.updated_points.push_back({{id.number}, moved(point, motion->second)});
   }
 }
 
