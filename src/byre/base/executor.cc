@@ -129,6 +129,7 @@ class PacedExecutor final : public WorkerExecutor {
     if (idle() || --frames_left_ > 0) return std::nullopt;
     return finish();
   }
+  std::optional<FinishedJob> collect_early() override { return finish(); }
 
  private:
   const int latency_;  // frames

@@ -21,8 +21,10 @@ class Executor {
   virtual ~Executor() = default;
   virtual void submit(Job job) = 0;                  // precondition: idle()
   virtual std::optional<FinishedJob> collect() = 0;  // called once per frame
-  virtual std::optional<FinishedJob> finish() = 0;   // waits for the job in flight, if any
-  virtual bool idle() const = 0;                     // no job in flight and no result to collect
+  // Same, earlier: a paced executor waits for its job instead of its latency.
+  virtual std::optional<FinishedJob> collect_early() { return collect(); }
+  virtual std::optional<FinishedJob> finish() = 0;  // waits for the job in flight, if any
+  virtual bool idle() const = 0;                    // no job in flight and no result to collect
 };
 
 // Runs the job in submit(); the next collect() returns its result. No threads.

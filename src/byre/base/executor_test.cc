@@ -138,6 +138,17 @@ TEST_P(PacedExecutor, WaitsForASlowJob) {
             GetParam());
 }
 
+TEST_P(PacedExecutor, WaitsForItsJobInsteadOfItsLatencyIfCollectedEarly) {
+  const auto executor = make_paced_executor(GetParam());
+  executor->submit([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return std::any(7);
+  });
+  EXPECT_EQ(number_of(executor->collect_early()), 7);
+  EXPECT_TRUE(executor->idle());
+  EXPECT_FALSE(executor->collect_early());
+}
+
 INSTANTIATE_TEST_SUITE_P(Latencies, PacedExecutor, ::testing::Values(1, 2, 5));
 
 TEST_P(PacedExecutor, ReleasesTheResourcesOfAJobBeforeItsResultIsTaken) {
@@ -176,6 +187,7 @@ TEST(LiveExecutor, DoesNotWaitForARunningJob) {
     return 9;
   });
   EXPECT_FALSE(executor->collect());
+  EXPECT_FALSE(executor->collect_early());
   EXPECT_FALSE(executor->idle());
   may_end.set_value();
   EXPECT_EQ(number_of(collect_when_ready(*executor)), 9);

@@ -23,6 +23,14 @@ std::optional<KeyframeId> keyframe_with_similar_view(const MapGraph& map, const 
   return most_similar != ids.end() ? std::optional(*most_similar) : std::nullopt;
 }
 
+// A monocular map begins with the points of two views, which a moving camera loses within a few frames.
+bool needs_points_soon(const RobotState& state, int min_tracked) {
+  constexpr int kYoung = 10;  // keyframes
+  const int keyframes = state.mapper.online().keyframe_count();
+  const bool is_young = !state.mission && !state.rig.is_stereo() && keyframes > 0 && keyframes < kYoung;
+  return is_young && static_cast<int>(state.seen.size()) < min_tracked;
+}
+
 }  // namespace
 
 // Corrections of the whole map and place searches share an executor, because a mission has only the latter.
@@ -69,7 +77,9 @@ std::optional<RefinedCalibration> Session::self_calibration() const {
 }
 
 FrameReport Session::process(const Frame& rectified, const std::optional<BodyMotion>& motion, FrameBudget* budget) {
-  deliver_results(&Executor::collect);
+  deliver_results(&Executor::collect, needs_points_soon(state_, options_.keyframes.min_tracked)
+                                          ? &Executor::collect_early
+                                          : &Executor::collect);
   Step now = step(state_, {rectified, motion, tilt_, budget}, options_);
   const Stopwatch submitting;
   run(std::move(now.jobs));
@@ -81,11 +91,12 @@ void Session::run(std::vector<JobRequest> requests) {
   for (JobRequest& request : requests) executors_.of(request.kind).submit(std::move(request.job));
 }
 
-void Session::deliver_results(std::optional<FinishedJob> (Executor::*take)()) {
+void Session::deliver_results(Take take, Take take_local) {
   const JobKind global = state_.mission ? JobKind::place_search : JobKind::whole_map;
   for (const JobKind kind : {JobKind::local, JobKind::index, global, JobKind::calibration}) {
     try {
-      if (auto finished = (executors_.of(kind).*take)()) deliver(kind, *std::move(finished), state_);
+      if (auto finished = (executors_.of(kind).*(kind == JobKind::local ? take_local : take))())
+        deliver(kind, *std::move(finished), state_);
     } catch (...) {
       state_.job(kind)->abandon();
       throw;
@@ -96,7 +107,7 @@ void Session::deliver_results(std::optional<FinishedJob> (Executor::*take)()) {
 void Session::finish() {
   state_.pose_filter.apply_length_changes(state_.mapper.finish([this] {
     run(take_requests(state_));
-    deliver_results(&Executor::finish);
+    deliver_results(&Executor::finish, &Executor::finish);
   }));
 }
 

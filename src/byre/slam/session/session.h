@@ -118,7 +118,8 @@ class Session {
 
  private:
   void run(std::vector<JobRequest> requests);
-  void deliver_results(std::optional<FinishedJob> (Executor::*take)());
+  using Take = std::optional<FinishedJob> (Executor::*)();
+  void deliver_results(Take take, Take take_local);
 
   SessionOptions options_;  // constant after construction
   RobotState state_;

@@ -5,6 +5,7 @@
 #include "byre/trajectory_error.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -73,6 +74,28 @@ TEST(Monocular, DoesNotStartDuringATurnOnTheSpotAndReportsWhy) {
   const auto reports = reports_of(session, turning_in_place(one_camera()).frames);
   EXPECT_THAT(has_pose(reports), Each(false));
   EXPECT_GT(std::ranges::count(reports, TwoViewFailure::rotation_only, &FrameReport::start_failure), 20);
+}
+
+TEST(Monocular, MapsTheFirstKeyframesOfFewPointsWithoutTheLatencyOfThePace) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
+  constexpr int kLatency = 8;  // frames
+  const SimulatedMission mission = circling(one_camera(), 1.0, 2);
+  SessionOptions options;
+  options.keyframes.min_tracked = 2000;  // every frame has few points
+  Session session(one_camera(), options, SessionExecutors(make_paced_executor(kLatency)));
+  int frames_of_job = 0, longest_in_young_map = 0, longest_later = 0;
+  for (const Frame& frame : mission.frames) {
+    const bool is_young = session.map().online().keyframe_count() < 10;
+    const FrameReport report = session.process(frame);
+    if (session.map().online().keyframe_count() == 0) continue;
+    ++frames_of_job;
+    if (!report.job_seconds) continue;
+    int& longest = is_young ? longest_in_young_map : longest_later;
+    longest = std::max(longest, std::exchange(frames_of_job, 0));
+  }
+  EXPECT_GT(longest_in_young_map, 0);
+  EXPECT_LT(longest_in_young_map, kLatency);
+  EXPECT_GE(longest_later, kLatency);
 }
 
 TEST(Monocular, TracksATurnOnTheSpotInAMap) {

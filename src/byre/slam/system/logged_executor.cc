@@ -17,6 +17,7 @@ class LoggedExecutor final : public Executor {
     log_.submit_seconds += watch.seconds();
   }
   std::optional<FinishedJob> collect() override { return logged(executor_->collect()); }
+  std::optional<FinishedJob> collect_early() override { return logged(executor_->collect_early()); }
   std::optional<FinishedJob> finish() override { return logged(executor_->finish()); }
   bool idle() const override { return executor_->idle(); }
 
