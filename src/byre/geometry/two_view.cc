@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 namespace byre {
 namespace {
 
+constexpr double kMinParallax = 0.0175;   // radians (one degree)
 constexpr int kMinPoints = 80;            // triangulated points in front of both cameras
 constexpr double kMinPlanarShare = 0.40;  // homography's share of both scores above which the scene is planar
 constexpr double kRotationShare = 0.9;    // share of the homography's score from which a rotation suffices
@@ -54,6 +56,7 @@ double parallax(const Pose& second_from_first, const TwoViewMatch& match) {
 struct MotionCandidate {
   TwoViewMotion motion;
   double score = 0.0;
+  std::vector<double> parallaxes;  // radians, of the inliers
 };
 
 // Nearly parallel rays may meet behind the cameras by noise alone.
@@ -63,8 +66,7 @@ bool is_far(double match_parallax, const TwoViewMatch& match) {
 
 MotionCandidate weigh(const Pose& second_from_first, Matches matches) {
   const Eigen::Matrix3d essential = essential_of(second_from_first);
-  MotionCandidate candidate{{.second_from_first = second_from_first, .points_in_first = {}}, 0.0};
-  std::vector<double> parallaxes;
+  MotionCandidate candidate{{.second_from_first = second_from_first, .points_in_first = {}}, 0.0, {}};
   for (const TwoViewMatch& match : matches) {
     auto& point = candidate.motion.points_in_first.emplace_back();
     const double error = epipolar_error(essential, match);
@@ -74,10 +76,27 @@ MotionCandidate weigh(const Pose& second_from_first, Matches matches) {
     if (!point && !is_far(match_parallax, match)) continue;
     candidate.motion.point_count += point.has_value();
     candidate.score += kMaxEpipolarError - error;
-    parallaxes.push_back(match_parallax);
+    candidate.parallaxes.push_back(match_parallax);
   }
-  candidate.motion.median_parallax = median_or(std::move(parallaxes), 0.0);
   return candidate;
+}
+
+// Value of this rank from the largest, which has rank 1; 0 for fewer values.
+double largest(std::vector<double> values, std::size_t rank) {
+  if (values.size() < rank) return 0.0;
+  const auto wanted = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+  std::ranges::nth_element(values, wanted, std::greater<>());
+  return *wanted;
+}
+
+// Errors of a rotation by calibration and rolling shutter resemble parallax, so that of the nearest points must exceed
+// the rotation.
+bool has_parallax(const MotionCandidate& candidate, StartParallax required) {
+  constexpr std::size_t kNearest = 50;  // points
+  const double turn = rotation_log(candidate.motion.second_from_first.rotation).norm();
+  return median_or(candidate.parallaxes, 0.0) >= kMinParallax ||
+         (required == StartParallax::of_nearest_points &&
+          largest(candidate.parallaxes, kNearest) >= std::max(1.5 * kMinParallax, turn));
 }
 
 // Refinement on points off the plane may bring two motions of a homography together.
@@ -102,8 +121,9 @@ TwoViewFailure rejection_reason(const Models& models, bool planar) {
   return planar && turned ? TwoViewFailure::rotation_only : TwoViewFailure::none;
 }
 
-TwoViewFailure rejection_reason(const MotionCandidate& best, const std::vector<MotionCandidate>& candidates) {
-  if (best.motion.median_parallax < kMinParallax) return TwoViewFailure::small_parallax;
+TwoViewFailure rejection_reason(const MotionCandidate& best, const std::vector<MotionCandidate>& candidates,
+                                StartParallax required) {
+  if (!has_parallax(best, required)) return TwoViewFailure::small_parallax;
   if (has_rival(best, candidates)) return TwoViewFailure::planar_ambiguity;
   return best.motion.point_count < kMinPoints ? TwoViewFailure::too_few_points : TwoViewFailure::none;
 }
@@ -136,7 +156,7 @@ std::string_view to_string(TwoViewFailure failure) {
   return "";
 }
 
-TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches) {
+TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, StartParallax required) {
   if (static_cast<int>(matches.size()) < kMinTwoViewMatches) return failed(TwoViewFailure::too_few_matches);
   const Models models = search_models(matches);
   const bool planar = is_planar(models);
@@ -145,7 +165,7 @@ TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches) 
   std::vector<MotionCandidate> candidates;
   for (const Pose& motion : motions_of(models, matches)) candidates.push_back(weigh(motion, matches));
   MotionCandidate best = *std::ranges::max_element(candidates, {}, &MotionCandidate::score);
-  const TwoViewFailure failure = rejection_reason(best, candidates);
+  const TwoViewFailure failure = rejection_reason(best, candidates, required);
   if (failure != TwoViewFailure::none) return failed(failure);
   best.motion.is_planar = planar;
   return {std::move(best.motion), TwoViewFailure::none};

@@ -3,6 +3,7 @@
 #include "byre/geometry/two_view_models.h"
 #include "byre/two_view_failure.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,16 +11,18 @@
 namespace byre {
 
 inline constexpr int kMinTwoViewMatches = 100;  // fewest matches for an estimate
-inline constexpr double kMinParallax = 0.0175;  // radians (one degree), median over the inliers
 
 struct TwoViewMotion {
   Pose second_from_first;  // translation of unit length
   // One per match, triangulated: empty for outliers and for rays that do not meet in front of both cameras.
   std::vector<std::optional<Eigen::Vector3d>> points_in_first;
   int point_count = 0;
-  double median_parallax = 0.0;  // radians, over all inliers
-  bool is_planar = false;        // a homography explains the matches
+  bool is_planar = false;  // a homography explains the matches
 };
+
+// Parallax from which a motion is accepted: one degree in the median of all points, or also 1.5 degrees of the nearest
+// 50. A camera that moves forward sees mostly far points, and loses the first view before their median suffices.
+enum class StartParallax : std::uint8_t { of_median, of_nearest_points };
 
 struct TwoViewEstimate {
   std::optional<TwoViewMotion> motion;  // empty on failure
@@ -30,6 +33,7 @@ struct TwoViewEstimate {
 // compared (Mur-Artal et al. 2015, eq. 2 and 3), which detects pure rotation. Of the motions of both models the one
 // with the best score of inliers in front of both cameras is chosen. It is accepted only with enough parallax and
 // without a rival motion that explains the matches nearly as well.
-TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches);
+TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches,
+                                         StartParallax required = StartParallax::of_nearest_points);
 
 }  // namespace byre

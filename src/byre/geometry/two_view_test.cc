@@ -62,6 +62,38 @@ TEST(EstimateTwoViewMotion, EstimatesAForwardMotion) {
   EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1.0 * kDegree);
 }
 
+// One point in four is near. The others stay in view and have no parallax.
+double street_depth(const Eigen::Vector3d&, double random) {
+  return random < 0.25 ? 4.0 + 8.0 * random : 80.0;
+}
+
+TEST(EstimateTwoViewMotion, EstimatesAForwardMotionByTheNearestPoints) {
+  const Pose truth{rotation_exp({0.01, 0.01, 0.0}), {0.05, 0.0, -1.0}};
+  int found_count = 0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto matches = matches_of(truth, street_depth, {.count = 400, .pixel_sigma = 0.3, .seed = seed});
+    EXPECT_EQ(estimate_two_view_motion(matches, StartParallax::of_median).failure, TwoViewFailure::small_parallax);
+    const auto found = estimate_two_view_motion(matches).motion;
+    if (!found) continue;
+    ++found_count;
+    EXPECT_LT(angle_between_translations(found->second_from_first, truth), 2.0 * kDegree) << "seed " << seed;
+  }
+  EXPECT_GE(found_count, 15);
+}
+
+// Errors of a rotation by calibration and rolling shutter resemble parallax.
+TEST(EstimateTwoViewMotion, RejectsTheNearestPointsIfTheTurnExceedsTheirParallax) {
+  const Pose truth{rotation_exp({0.01, 0.15, 0.0}), {0.05, 0.0, -1.0}};
+  int small_count = 0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto matches = matches_of(truth, street_depth, {.count = 400, .pixel_sigma = 0.3, .seed = seed});
+    const TwoViewEstimate estimate = estimate_two_view_motion(matches);
+    EXPECT_FALSE(estimate.motion) << "seed " << seed;
+    small_count += estimate.failure == TwoViewFailure::small_parallax;
+  }
+  EXPECT_GE(small_count, 15);
+}
+
 TEST(EstimateTwoViewMotion, RejectsATurnOnTheSpotAsRotation) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const Pose turn{rotation_exp({0.02, 0.2, -0.05}), Eigen::Vector3d::Zero()};

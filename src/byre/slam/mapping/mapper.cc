@@ -79,7 +79,7 @@ std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& tra
 Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Rig& rig,
                                           const std::optional<Pose>& camera_from_world,
                                           const AnchoredTrajectory& trajectory) {
-  MonocularAttempt attempt = initialiser_->try_start(frame);
+  MonocularAttempt attempt = initialiser_->try_start(frame, camera_from_world.has_value());
   if (!attempt.start) {
     if (initialiser_->reference_time() == frame.time) {
       odometry_reference_ = camera_from_world.value_or(inverse(rig.body_from_camera));

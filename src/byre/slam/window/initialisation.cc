@@ -166,19 +166,6 @@ void remove_points_of_unknown_depth(MapGraph& map, const Pose& camera_from_world
   }
 }
 
-double median_parallax(const MonocularStart& start) {
-  const Eigen::Vector3d first_in_world = inverse(start.map.camera_from_world(start.first)).translation;
-  const Eigen::Vector3d second_in_world = inverse(start.map.camera_from_world(start.second)).translation;
-  std::vector<double> parallaxes;
-  for (const PointId id : start.map.point_ids()) {
-    const Eigen::Vector3d& point = start.map.find_point(id)->position_in_world;
-    const Eigen::Vector3d from_first = point - first_in_world;
-    const Eigen::Vector3d from_second = point - second_in_world;
-    parallaxes.push_back(std::atan2(from_first.cross(from_second).norm(), from_first.dot(from_second)));
-  }
-  return median_or(std::move(parallaxes), 0.0);
-}
-
 // Measured rays of the points in both keyframes.
 std::vector<TwoViewMatch> measured_rays(const MonocularStart& start, const Rig& rig) {
   const Keyframe& first = *start.map.find_keyframe(start.first);
@@ -221,7 +208,6 @@ int count_spread_points(const Keyframe& keyframe, const Rig& rig, int max_per_ce
 TwoViewFailure rejection_reason(const MonocularStart& start, const Rig& rig) {
   const int points = count_spread_points(*start.map.find_keyframe(start.second), rig, kMaxPointsPerCell);
   if (points < kMinPoints) return TwoViewFailure::too_few_points;
-  if (start.median_parallax < kMinParallax) return TwoViewFailure::small_parallax;
   const bool is_open = start.direction_sigma > kMaxDirectionSigma;
   return is_open ? TwoViewFailure::uncertain : TwoViewFailure::none;
 }
@@ -245,7 +231,6 @@ MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>&
   }
   adjust(start, mapping);
   remove_points_of_unknown_depth(start.map, first_from_world, mapping.max_relative_depth_sigma);
-  start.median_parallax = median_parallax(start);
   start.direction_sigma = direction_sigma(start, rig);
   return start;
 }
@@ -296,7 +281,7 @@ void MonocularInitialiser::update_expected(const std::vector<Match>& matches, co
   }
 }
 
-MonocularAttempt MonocularInitialiser::try_start(const Frame& frame) {
+MonocularAttempt MonocularInitialiser::try_start(const Frame& frame, bool has_odometry) {
   MonocularAttempt attempt{std::nullopt, TwoViewFailure::too_few_matches, 0};
   const std::vector<Match> matches = reference_ ? match_with_reference(*frame.features) : std::vector<Match>{};
   attempt.matches = static_cast<int>(matches.size());
@@ -306,7 +291,9 @@ MonocularAttempt MonocularInitialiser::try_start(const Frame& frame) {
   }
   update_expected(matches, *frame.features);
   const Features& first = *reference_->features;
-  const auto estimate = estimate_two_view_motion(rays_of(matches, first, *frame.features, rig_));
+  const auto estimate =
+      estimate_two_view_motion(rays_of(matches, first, *frame.features, rig_),
+                               has_odometry ? StartParallax::of_median : StartParallax::of_nearest_points);
   attempt.failure = estimate.failure;
   if (!estimate.motion) return attempt;
   MonocularStart start =

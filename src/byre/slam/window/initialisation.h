@@ -22,8 +22,7 @@ struct MonocularStartOptions {
 struct MonocularStart {
   MapGraph map;
   KeyframeId first;
-  KeyframeId second;             // keyframe of the tried frame
-  double median_parallax = 0.0;  // radians, over the points of the map
+  KeyframeId second;  // keyframe of the tried frame
   // Radians, of the translation between both keyframes along its least certain direction.
   double direction_sigma = 0.0;
 };
@@ -41,8 +40,9 @@ class MonocularInitialiser {
   // Precondition: the rig has no baseline.
   MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options, const MappingOptions& mapping = {});
 
-  // Frames in order of time. After a start the next frame becomes the reference.
-  MonocularAttempt try_start(const Frame& frame);
+  // Frames in order of time. After a start the next frame becomes the reference. Poses by odometry leave time for a
+  // more accurate start, by the median parallax.
+  MonocularAttempt try_start(const Frame& frame, bool has_odometry = false);
 
   // Time of the reference frame; empty before the first.
   std::optional<Timestamp> reference_time() const {
