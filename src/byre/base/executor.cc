@@ -1,15 +1,12 @@
 #include "byre/base/executor.h"
 
 #include "byre/base/background_thread.h"
+#include "byre/base/serial_queue.h"
 #include "byre/base/stopwatch.h"
 
 #include <cassert>
 #include <chrono>
-#include <condition_variable>
-#include <functional>
 #include <future>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 namespace byre {
@@ -40,68 +37,25 @@ class InlineExecutor final : public Executor {
   std::future<FinishedJob> result_;
 };
 
-// Thread that runs jobs one after the other, started with the first job. One thread for all jobs, because a new thread
-// may be scheduled before the thread that creates it.
-class JobThread {
- public:
-  // begin: called once on the thread before the first job.
-  explicit JobThread(std::function<void()> begin) : begin_(std::move(begin)) {}
-  ~JobThread() {
-    {
-      const std::lock_guard lock(mutex_);
-      is_over_ = true;
-    }
-    news_.notify_one();
-  }
-  JobThread(const JobThread&) = delete;
-  JobThread& operator=(const JobThread&) = delete;
-
-  // The job's captures are destroyed on the thread before the result is ready.
-  std::future<FinishedJob> start(Job job) {
-    std::packaged_task<FinishedJob()> task([job = std::move(job)]() mutable { return run(std::exchange(job, {})); });
-    std::future<FinishedJob> result = task.get_future();
-    {
-      const std::lock_guard lock(mutex_);
-      next_ = std::move(task);
-    }
-    if (thread_.joinable()) {
-      news_.notify_one();
-    } else {
-      thread_ = std::jthread([this] { work(); });
-    }
-    return result;
-  }
-
- private:
-  void work() {
-    begin_();
-    std::unique_lock lock(mutex_);
-    while (true) {
-      news_.wait(lock, [this] { return is_over_ || next_.valid(); });
-      if (!next_.valid()) return;
-      auto task = std::move(next_);
-      lock.unlock();
-      task();
-      lock.lock();
-    }
-  }
-
-  std::function<void()> begin_;
-  std::mutex mutex_;  // guards next_ and is_over_
-  std::condition_variable news_;
-  std::packaged_task<FinishedJob()> next_;
-  bool is_over_ = false;
-  std::jthread thread_;  // last member: joined before the others are destroyed
-};
-
-// Runs jobs on its own thread; derived classes define when collect() returns results.
+// Runs jobs on its own thread; derived classes define when collect() returns results. One thread for all jobs, because
+// a new thread may be scheduled before the thread that creates it.
 class WorkerExecutor : public Executor {
  public:
-  explicit WorkerExecutor(std::function<void()> begin = [] {}) : thread_(std::move(begin)) {}
+  // begin: called once on the thread before the first job.
+  explicit WorkerExecutor(void (*begin)() = nullptr) : begin_(begin) {}
 
+  ~WorkerExecutor() override {
+    thread_.run([] {});  // waits for the job
+  }
+
+  // The job's captures are destroyed on the thread before the result is ready.
   void submit(Job job) override {
     assert(idle());
-    result_ = thread_.start(std::move(job));
+    if (begin_ != nullptr) thread_.submit(std::exchange(begin_, nullptr));
+    const auto task = std::make_shared<std::packaged_task<FinishedJob()>>(
+        [job = std::move(job)]() mutable { return run(std::exchange(job, {})); });
+    result_ = task->get_future();
+    thread_.submit([task] { (*task)(); });
   }
   std::optional<FinishedJob> finish() override {
     if (idle()) return std::nullopt;
@@ -113,8 +67,9 @@ class WorkerExecutor : public Executor {
   bool is_done() const { return result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 
  private:
-  JobThread thread_;
+  void (*begin_)();
   std::future<FinishedJob> result_;
+  SerialQueue thread_;  // last member: stopped before the others are destroyed
 };
 
 class PacedExecutor final : public WorkerExecutor {
