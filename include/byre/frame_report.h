@@ -31,6 +31,7 @@ enum class InputFault : std::uint8_t {
   wrong_features,  // caller's features: outside the image, invalid octave, or disparity without sigma
   repeated_time,   // time equal to that of the previous frame
   out_of_order,    // earlier than the previous frame
+  replaced,        // not processed, as newer frames were submitted (Slam::submit)
   after_finishing  // after Slam::finish
 };
 

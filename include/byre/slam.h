@@ -41,6 +41,7 @@ struct SlamOptions {
   double max_gap = 1.0;                // largest time difference between frames without InputFault::after_gap, seconds
   int max_features = 1000;             // features per frame
   int image_threads = 2;               // threads for the images of a frame; no effect on poses
+  int max_waiting = 1;                 // frames of submit() that wait for its thread
   // Baseline of a stereo pair in metres; replaces that of the calibration. A calibrated baseline outside 2 mm to 1 m is
   // rejected unless confirmed here, as extrinsics in centimetres or millimetres are likelier.
   std::optional<double> baseline{};
@@ -57,9 +58,13 @@ struct SlamOptions {
   std::optional<Extrinsics> extrinsics{};
 };
 
-// Visual SLAM of one robot: images in, poses out. Call it from one thread; mapping has its own threads. Construction
-// throws InputError for a calibration that is invalid or cannot be rectified, a map or a vocabulary that cannot be
-// loaded, and invalid settings. Faults of frames are reported in FrameReport::input.
+// Called with the report of a frame. May call the Slam, and destroy it.
+using ReportCallback = std::function<void(const FrameReport&)>;
+
+// Visual SLAM of one robot: images in, poses out. Construction throws InputError for a calibration that is invalid or
+// cannot be rectified, a map or a vocabulary that cannot be loaded, and invalid settings. Faults of frames are reported
+// in FrameReport::input. Calls from several threads take effect one at a time, in their order: those that return a
+// result, save() and finish() wait for frames submitted before; after the first submit() the others return at once.
 class Slam {
  public:
   // Makes a new map. One camera without depth has an arbitrary scale, and poses are those of the camera.
@@ -84,6 +89,16 @@ class Slam {
 
   // Tracks the next frame with the caller's features, in pixels of rig().
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& body_motion = {});
+
+  // Queues the next frame for process() on a thread of this Slam, and returns at once. on_report is called on that
+  // thread, once for each frame, in order. If more than SlamOptions::max_waiting frames wait, the oldest is not
+  // processed but reported with InputFault::replaced: the newest wins. finish() processes waiting frames first;
+  // destruction discards them without a report. The first exception of a frame or of on_report is rethrown by the next
+  // submit(), process() or finish(). images: taken over; move them to avoid a copy.
+  void submit(ImageFrame images, ReportCallback on_report = {}, const std::optional<BodyMotion>& body_motion = {});
+  // Copies the images.
+  void submit(const CameraImages& images, ReportCallback on_report = {},
+              const std::optional<BodyMotion>& body_motion = {});
 
   // Wheel odometry at any rate: pose of the base in a drifting odometry frame, metres. Samples are in order of time, by
   // the clock of the images, and precede the frame that they lead to; delays up to 0.2 s are bridged. Driving and
@@ -146,7 +161,7 @@ class Slam {
   // Positions of these points, in the frame of map_from_body.
   std::vector<Eigen::Vector3d> point_positions() const;
   // Faults of motion inputs so far, each kind once. FrameReport::warnings holds those new in a frame.
-  const std::vector<MotionWarning>& motion_warnings() const;
+  std::vector<MotionWarning> motion_warnings() const;
   int frames() const;                  // all frames, including dropped ones
   int frames(InputFault fault) const;  // frames with this fault
 

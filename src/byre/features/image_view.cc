@@ -106,6 +106,19 @@ bool is_sound(const ImageView& view) {
   return view.format != PixelFormat::nv12 || (view.width % 2 == 0 && view.height % 2 == 0);
 }
 
+CopiedImages::CopiedImages(const CameraImages& images) : views_(images) {
+  const auto copy = [this](ImageView& view) {
+    if (view.data == nullptr || !is_sound(view)) return;
+    const std::size_t row = bytes_of_pixel(view.format) * static_cast<std::size_t>(view.width);
+    const auto* const first = static_cast<const std::byte*>(view.data);
+    const std::size_t bytes = stride_of(view) * static_cast<std::size_t>(view.height - 1) + row;
+    view.data = pixels_.emplace_back(first, first + bytes).data();
+  };
+  copy(views_.left);
+  if (views_.right) copy(*views_.right);
+  if (views_.depth) copy(*views_.depth);
+}
+
 void copy_grey(const ImageView& view, Image& grey) {
   assert(is_sound(view) && !is_depth(view.format));
   grey.width = view.width;

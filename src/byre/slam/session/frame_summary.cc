@@ -81,7 +81,7 @@ std::string_view to_string(InputFault fault) {
        "depth image is missing", "depth image has another time stamp", "no image",
        "image does not have the calibrated size", "image has the wrong format", "features are invalid",
        "time stamp repeats the previous frame", "time stamp is before the previous frame",
-       "frame after finishing the map"},
+       "newer frames were submitted", "frame after finishing the map"},
       fault);
 }
 

@@ -1,5 +1,6 @@
 #include "byre/slam.h"
 
+#include "byre/features/image_view.h"
 #include "byre/geometry/baseline.h"
 #include "byre/geometry/finite.h"
 #include "byre/map/map_file.h"
@@ -51,6 +52,7 @@ void require_valid(const Calibration& calibration, const SlamOptions& options) {
   }
   if (options.max_features < 1) throw InputError("SlamOptions::max_features", "is less than one");
   if (options.image_threads < 1) throw InputError("SlamOptions::image_threads", "is less than one");
+  if (options.max_waiting < 1) throw InputError("SlamOptions::max_waiting", "is less than one");
   if (options.extrinsics) require_valid(*options.extrinsics);
 }
 
@@ -91,6 +93,7 @@ std::unique_ptr<SlamImpl> make(const Calibration& given, const SlamOptions& opti
   inputs.recording = options.recording;
   inputs.extrinsics = options.extrinsics;
   inputs.site = options.site;
+  inputs.max_waiting = options.max_waiting;
   return std::make_unique<SlamImpl>(given, method_options(options), std::move(inputs),
                                     InputCheckOptions{options.max_pair_difference, options.max_gap});
 }
@@ -136,58 +139,81 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
 }
 
 FrameReport Slam::process(const CameraImages& images, const std::optional<BodyMotion>& body_motion) {
-  return impl_->process(images, body_motion);
+  impl_->calls().rethrow_failure();
+  return impl_->calls().run([&] { return impl_->process(images, body_motion); });
 }
 
 FrameReport Slam::process(const Frame& frame, const std::optional<BodyMotion>& body_motion) {
-  return impl_->process(frame, body_motion);
+  impl_->calls().rethrow_failure();
+  return impl_->calls().run([&] { return impl_->process(frame, body_motion); });
+}
+
+void Slam::submit(ImageFrame images, ReportCallback on_report, const std::optional<BodyMotion>& body_motion) {
+  const auto owned = std::make_shared<const ImageFrame>(std::move(images));
+  impl_->submit(
+      owned->time, [impl = impl_.get(), owned, body_motion] { return impl->process(*owned, body_motion); },
+      std::move(on_report), body_motion);
+}
+
+void Slam::submit(const CameraImages& images, ReportCallback on_report, const std::optional<BodyMotion>& body_motion) {
+  const auto copy = std::make_shared<const CopiedImages>(images);
+  impl_->submit(
+      images.left.time, [impl = impl_.get(), copy, body_motion] { return impl->process(copy->views(), body_motion); },
+      std::move(on_report), body_motion);
 }
 
 void Slam::add_wheel_odometry(const StampedPose& odometry_from_base) {
-  impl_->add_wheel_odometry(odometry_from_base);
+  impl_->calls().add([impl = impl_.get(), odometry_from_base] { impl->add_wheel_odometry(odometry_from_base); });
 }
 
 void Slam::add_wheel_odometry(const BaseTwist& velocity) {
-  impl_->add_wheel_odometry(velocity);
+  impl_->calls().add([impl = impl_.get(), velocity] { impl->add_wheel_odometry(velocity); });
 }
 
 void Slam::add_gyro(const AngularRate& rate) {
-  impl_->add_gyro(rate);
+  impl_->calls().add([impl = impl_.get(), rate] { impl->add_gyro(rate); });
 }
 
 void Slam::add_accel(const Acceleration& acceleration) {
-  impl_->add_accel(acceleration);
+  impl_->calls().add([impl = impl_.get(), acceleration] { impl->add_accel(acceleration); });
 }
 
 void Slam::set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope) {
-  impl_->set_gyro_extrinsics(left_from_gyroscope);
+  impl_->calls().add([impl = impl_.get(), left_from_gyroscope] { impl->set_gyro_extrinsics(left_from_gyroscope); });
 }
 
 void Slam::pause_mapping(bool is_paused) {
-  impl_->pause_mapping(is_paused);
+  impl_->calls().add([impl = impl_.get(), is_paused] { impl->pause_mapping(is_paused); });
 }
 
 bool Slam::is_mapping_paused() const {
-  return impl_->session().is_mapping_paused();
+  return impl_->calls().run([&] { return impl_->session().is_mapping_paused(); });
 }
 
 void Slam::set_initial_pose(const PoseHint& hint) {
   constexpr double kMaxOff = 0.1;  // tolerance of the quaternion's length 1
   const bool is_sound = is_finite(hint.map_from_body) && std::abs(hint.map_from_body.rotation.norm() - 1.0) < kMaxOff;
-  if (is_sound) impl_->set_initial_pose(hint);
+  if (is_sound) impl_->calls().add([impl = impl_.get(), hint] { impl->set_initial_pose(hint); });
 }
 
 std::optional<std::string> Slam::map_damage() const {
-  const InputError* const damage = impl_->map_damage();
-  return damage != nullptr ? std::optional<std::string>(damage->what()) : std::nullopt;
+  return impl_->calls().run([&] {
+    const InputError* const damage = impl_->map_damage();
+    return damage != nullptr ? std::optional<std::string>(damage->what()) : std::nullopt;
+  });
 }
 
 void Slam::finish(const std::function<bool()>& should_stop) {
-  impl_->finish({should_stop ? should_stop : [] { return false; }, {}});
+  impl_->calls().run([&] {
+    impl_->calls().rethrow_failure();
+    impl_->finish({should_stop ? should_stop : [] { return false; }, {}});
+  });
 }
 
 void Slam::save(const fs::path& path) const {
-  if (!impl_->has_mapped()) {
+  auto stored =
+      impl_->calls().run([&] { return impl_->has_mapped() ? std::optional(impl_->stored_map()) : std::nullopt; });
+  if (!stored) {
     throw InputError(path.string(), "is not written, because the map is still empty",
                      "let the robot move, and check the frame reports");
   }
@@ -196,11 +222,11 @@ void Slam::save(const fs::path& path) const {
   if (offline && fs::equivalent(path, *offline, none_there)) {
     throw InputError(path.string(), "is the offline map of the mission and must not be replaced", "name another file");
   }
-  save_for_missions(impl_->stored_map(), *impl_->inputs().vocabulary, impl_->inputs().site, path);
+  save_for_missions(*std::move(stored), *impl_->inputs().vocabulary, impl_->inputs().site, path);
 }
 
 Trajectory Slam::trajectory() const {
-  Trajectory trajectory = impl_->trajectory();
+  Trajectory trajectory = impl_->calls().run([&] { return impl_->trajectory(); });
   std::erase_if(trajectory, [](const StampedPose& pose) { return !is_finite(pose.world_from_body); });
   return trajectory;
 }
@@ -221,39 +247,43 @@ const Rig& Slam::rig() const {
 }
 
 Calibration Slam::calibration() const {
-  const auto refined = impl_->calibration();
-  return refined ? refined->calibration : impl_->given();
+  return impl_->calls().run([&] {
+    const auto refined = impl_->calibration();
+    return refined ? refined->calibration : impl_->given();
+  });
 }
 
 bool Slam::is_metric() const {
-  return impl_->is_metric();
+  return impl_->calls().run([&] { return impl_->is_metric(); });
 }
 
 int Slam::keyframes() const {
-  return impl_->online().keyframe_count();
+  return impl_->calls().run([&] { return impl_->online().keyframe_count(); });
 }
 
 int Slam::points() const {
-  return impl_->online().point_count();
+  return impl_->calls().run([&] { return impl_->online().point_count(); });
 }
 
 std::vector<Eigen::Vector3d> Slam::point_positions() const {
-  const MapGraph& map = impl_->online();
-  std::vector<Eigen::Vector3d> positions;
-  for (const PointId id : map.point_ids()) positions.push_back(map.find_point(id)->position_in_world);
-  return positions;
+  return impl_->calls().run([&] {
+    const MapGraph& map = impl_->online();
+    std::vector<Eigen::Vector3d> positions;
+    for (const PointId id : map.point_ids()) positions.push_back(map.find_point(id)->position_in_world);
+    return positions;
+  });
 }
 
-const std::vector<MotionWarning>& Slam::motion_warnings() const {
-  return impl_->warnings();
+std::vector<MotionWarning> Slam::motion_warnings() const {
+  return impl_->calls().run([&] { return impl_->warnings(); });
 }
 
 int Slam::frames() const {
-  return impl_->input().frames();
+  return impl_->calls().run([&] { return impl_->input().frames(); });
 }
 
 int Slam::frames(InputFault fault) const {
-  return impl_->input().frames(fault);
+  return impl_->calls().run([&] { return impl_->input().frames(fault); });
 }
 
 }  // namespace byre

@@ -180,6 +180,26 @@ FrameReport SlamImpl::process(const Frame& frame, const std::optional<BodyMotion
   return completed(std::move(report));
 }
 
+FrameReport SlamImpl::skip(Timestamp time, const std::optional<BodyMotion>& motion) {
+  const InputFault fault = check_.note(InputFault::replaced);
+  take_motion(motion, time, is_dropped(fault));
+  return dropped(time);
+}
+
+void SlamImpl::submit(Timestamp time, std::function<FrameReport()> process, ReportCallback on_report,
+                      const std::optional<BodyMotion>& motion) {
+  calls_.rethrow_failure();
+  const auto report = std::make_shared<ReportCallback>(std::move(on_report));
+  const auto task = [report](const std::function<FrameReport()>& frame) {
+    return [report, frame] {
+      const FrameReport result = frame();
+      if (*report) (*report)(result);
+    };
+  };
+  calls_.submit(task(std::move(process)), task([this, time, motion] { return skip(time, motion); }),
+                static_cast<std::size_t>(inputs_.max_waiting));
+}
+
 std::optional<BodyMotion> SlamImpl::checked(const std::optional<BodyMotion>& motion, Timestamp time) {
   if (!motion) return {};
   return prior_.checked(*motion, time, last_frame_ ? to_seconds(time) - to_seconds(*last_frame_) : 0.0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/base/serial_queue.h"
 #include "byre/map/map_file.h"
 #include "byre/slam.h"
 #include "byre/slam/system/input_check.h"
@@ -7,6 +8,7 @@
 #include "byre/slam/system/method_options.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,17 +45,22 @@ struct SlamInputs {
   std::shared_ptr<const OfflineMap> offline{};          // offline map of a mission; null otherwise
   std::optional<std::filesystem::path> offline_file{};  // its file
   std::optional<PlanRegistration> plan{};               // registration of the offline or extended map on a floor plan
+  int max_waiting = 1;                                  // frames of submit() that wait for its thread
   StoredMap extended{};                                 // data of the map to extend, without keyframes and points
   std::optional<MapGraph> before{};  // keyframes and points of that map: an online copy with words of the vocabulary
 };
 
-// Everything behind Slam: front end of the cameras, session, checks of inputs. Call it from one thread.
+// Everything behind Slam: front end of the cameras, session, checks of inputs. All but calls() and submit() are called
+// from one thread, or as tasks of calls().
 class SlamImpl {
  public:
   // given: calibration of the cameras. Throws InputError if it cannot be rectified.
   SlamImpl(const Calibration& given, const MethodOptions& options, SlamInputs inputs,
            const InputCheckOptions& check = {});
-  ~SlamImpl() { finish_early(); }
+  ~SlamImpl() {
+    calls_.stop();
+    finish_early();
+  }
   SlamImpl(const SlamImpl&) = delete;  // executors refer to log_, the session to prior_
   SlamImpl& operator=(const SlamImpl&) = delete;
 
@@ -67,6 +74,13 @@ class SlamImpl {
   FrameReport process(const CameraImages& images, const std::optional<BodyMotion>& motion = {});
   FrameReport process(const ImageFrame& images, const std::optional<BodyMotion>& motion = {});
   FrameReport process(const Frame& frame, const std::optional<BodyMotion>& motion = {});
+  // Drops a frame that was submitted, and replaced by newer ones.
+  FrameReport skip(Timestamp time, const std::optional<BodyMotion>& motion);
+  // See Slam::submit. process: calls process() with the images of this time.
+  void submit(Timestamp time, std::function<FrameReport()> process, ReportCallback on_report,
+              const std::optional<BodyMotion>& motion);
+  // Calls of Slam, in order.
+  SerialQueue& calls() const { return calls_; }
   void set_initial_pose(const PoseHint& hint) { session_.set_initial_pose(hint); }
   void pause_mapping(bool is_paused) { session_.pause_mapping(is_paused); }
 
@@ -160,6 +174,7 @@ class SlamImpl {
   Timestamp last_time_{};
   bool had_pose_ = false;  // whether any frame had a map pose
   bool is_finished_ = false;
+  mutable SerialQueue calls_;
 };
 
 }  // namespace byre
