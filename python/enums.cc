@@ -57,6 +57,7 @@ void bind_enums_of_input(py::module_& module) {
                          {"wrong_features", InputFault::wrong_features},
                          {"repeated_time", InputFault::repeated_time},
                          {"out_of_order", InputFault::out_of_order},
+                         {"replaced", InputFault::replaced},
                          {"after_finishing", InputFault::after_finishing}});
 }
 

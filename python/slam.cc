@@ -6,6 +6,9 @@
 
 #include <memory>
 #include <string>
+#include <utility>
+
+#include <pybind11/functional.h>
 
 namespace byre::python {
 namespace {
@@ -112,23 +115,47 @@ std::optional<BodyMotion> motion_of(const std::optional<Eigen::Matrix4d>& last_f
   return BodyMotion(pose_of(*last_from_body, "last_from_body"));
 }
 
+CameraImages images_at(std::int64_t time_ns, CameraImages images, std::optional<std::int64_t> right_time_ns,
+                       std::optional<std::int64_t> depth_time_ns) {
+  images.left.time = Timestamp(time_ns);
+  if (images.right) images.right->time = Timestamp(right_time_ns.value_or(time_ns));
+  if (images.depth) images.depth->time = Timestamp(depth_time_ns.value_or(time_ns));
+  return images;
+}
+
 FrameReport process(Slam& slam, std::int64_t time_ns, const py::array& left, const std::optional<py::array>& right,
                     const std::optional<py::array>& depth, const std::optional<Eigen::Matrix4d>& last_from_body,
                     const std::optional<PixelFormat>& format, int bits, std::optional<std::int64_t> right_time_ns,
                     std::optional<std::int64_t> depth_time_ns) {
-  CameraImages images = images_of(left, right, depth, format, bits);
-  images.left.time = Timestamp(time_ns);
-  if (images.right) images.right->time = Timestamp(right_time_ns.value_or(time_ns));
-  if (images.depth) images.depth->time = Timestamp(depth_time_ns.value_or(time_ns));
+  const CameraImages images =
+      images_at(time_ns, images_of(left, right, depth, format, bits), right_time_ns, depth_time_ns);
   const std::optional<BodyMotion> motion = motion_of(last_from_body);
   const py::gil_scoped_release release;
   return slam.process(images, motion);
+}
+
+void submit(Slam& slam, std::int64_t time_ns, const py::array& left, const std::optional<py::array>& right,
+            const std::optional<py::array>& depth, ReportCallback on_report,
+            const std::optional<Eigen::Matrix4d>& last_from_body, const std::optional<PixelFormat>& format, int bits,
+            std::optional<std::int64_t> right_time_ns, std::optional<std::int64_t> depth_time_ns) {
+  const CameraImages images =
+      images_at(time_ns, images_of(left, right, depth, format, bits), right_time_ns, depth_time_ns);
+  const std::optional<BodyMotion> motion = motion_of(last_from_body);
+  const py::gil_scoped_release release;
+  slam.submit(images, std::move(on_report), motion);
 }
 
 FrameReport process_images(Slam& slam, const ImageFrame& images, const std::optional<Eigen::Matrix4d>& last_from_body) {
   const std::optional<BodyMotion> motion = motion_of(last_from_body);
   const py::gil_scoped_release release;
   return slam.process(view_of(images), motion);
+}
+
+void submit_images(Slam& slam, const ImageFrame& images, ReportCallback on_report,
+                   const std::optional<Eigen::Matrix4d>& last_from_body) {
+  const std::optional<BodyMotion> motion = motion_of(last_from_body);
+  const py::gil_scoped_release release;
+  slam.submit(images, std::move(on_report), motion);
 }
 
 // Ctrl-C stops finishing; the map keeps the steps done.
@@ -172,6 +199,14 @@ py::dict settings_of(const SlamOptions& options) {
   return settings;
 }
 
+void bind_advice(py::module_& module) {
+  module.def(
+      "advice_for", [](DistrustReason doubt) { return std::string(advice_for(doubt)); }, py::arg("doubt"),
+      "Remedy for an operator against a reason of distrust; empty for none.\n"
+      ">>> byre.advice_for(byre.DistrustReason.dirty)\n"
+      "'clean the lens'");
+}
+
 void bind_options(py::module_& module) {
   py::class_<SlamOptions>(module, "SlamOptions",
                           "Options of a Slam. The constructor takes fields by name; all have defaults.")
@@ -190,6 +225,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("max_features", &SlamOptions::max_features, "Features per frame.")
       .def_readwrite("image_threads", &SlamOptions::image_threads,
                      "Threads for the images of a frame; no effect on poses.")
+      .def_readwrite("max_waiting", &SlamOptions::max_waiting, "Frames of submit() that wait for its thread.")
       .def_readwrite("baseline", &SlamOptions::baseline,
                      "Baseline of a stereo pair, metres; replaces that of the calibration. Required to confirm one "
                      "outside 2 mm to 1 m.")
@@ -218,19 +254,26 @@ void bind_options(py::module_& module) {
 
 using SlamClass = py::class_<Slam, std::unique_ptr<Slam, ReleasingDelete>>;
 
+// Every call releases the GIL, because it may wait for a callback of submit(), which takes the GIL.
+using Released = py::call_guard<py::gil_scoped_release>;
+
+template <typename Getter>
+py::cpp_function released(const Getter& getter) {
+  return py::cpp_function(getter, Released());
+}
+
 void bind_making(SlamClass& type) {
-  const auto released = py::call_guard<py::gil_scoped_release>();
   type.def_static(
-          "mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, released,
+          "mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, Released(),
           "Makes a new map. One camera without depth has an arbitrary scale, and poses are those of the camera. Raises "
           "InputError for an invalid calibration, vocabulary or setting.")
       .def_static(
           "extending", &Slam::extending, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
-          released,
+          Released(),
           "Continues a saved map: relocalises in it first, then adds to it. Raises InputError as mapping(), and if the "
           "map cannot be loaded.")
       .def_static("on_map", &Slam::on_map, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
-                  released,
+                  Released(),
                   "Mission on an offline map, which is not modified. Poses are in its frame, with verdicts. Raises "
                   "InputError as mapping(), and if the map cannot be loaded.");
 }
@@ -255,12 +298,29 @@ void bind_input(SlamClass& type) {
            "right_time_ns, depth_time_ns: default time_ns.\n"
            "Raises TypeError for other arrays, ValueError for pixels that are not contiguous, and InputError if "
            "last_from_body is not a rigid motion. Faults of the frame are reported in FrameReport.input.")
+      .def("submit", &submit_images, py::arg("images"), py::arg("on_report") = py::none(),
+           py::arg("last_from_body") = py::none(),
+           "Queues the next frame for process() on a thread of this Slam, and returns at once. on_report is called on "
+           "that thread with the FrameReport, once for each frame, in order. If more than SlamOptions.max_waiting "
+           "frames wait, the oldest is not processed but reported with InputFault.replaced: the newest wins. finish() "
+           "processes waiting frames first. The first exception of a frame or of on_report is raised by the next "
+           "submit(), process() or finish().\n"
+           ">>> live = byre.Slam.mapping(recording.calibration)\n"
+           ">>> reports = []\n"
+           ">>> for images in recording:\n"
+           "...     live.submit(images, reports.append)\n"
+           ">>> live.frames == len(reports) == len(recording)\n"
+           "True")
+      .def("submit", &submit, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
+           py::arg("depth") = py::none(), py::arg("on_report") = py::none(), py::arg("last_from_body") = py::none(),
+           py::arg("format") = py::none(), py::arg("bits") = 16, py::arg("right_time_ns") = py::none(),
+           py::arg("depth_time_ns") = py::none(), "Same with arrays as for process(), which are copied.")
       .def(
           "add_wheel_odometry",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Matrix4d& odometry_from_base) {
             slam.add_wheel_odometry({Timestamp(time_ns), pose_of(odometry_from_base, "odometry_from_base")});
           },
-          py::arg("time_ns"), py::arg("odometry_from_base"),
+          py::arg("time_ns"), py::arg("odometry_from_base"), Released(),
           "Adds wheel odometry at any rate: pose of the base in a drifting odometry frame, 4x4, metres. Samples are in "
           "order of time, by the clock of the images, and precede the frame that they lead to. Raises InputError if "
           "the matrix is not a rigid motion.")
@@ -269,7 +329,7 @@ void bind_input(SlamClass& type) {
           [](Slam& slam, std::int64_t time_ns, double vx, double vy, double wz) {
             slam.add_wheel_odometry(BaseTwist{Timestamp(time_ns), vx, vy, wz});
           },
-          py::arg("time_ns"), py::arg("vx"), py::arg("vy"), py::arg("wz"),
+          py::arg("time_ns"), py::arg("vx"), py::arg("vy"), py::arg("wz"), Released(),
           "Adds wheel odometry as velocity of the base in its own axes, x ahead, y left: vx and vy in metres per "
           "second, wz in radians per second, positive to the left. Give either poses or velocities.")
       .def(
@@ -277,7 +337,7 @@ void bind_input(SlamClass& type) {
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& rate) {
             slam.add_gyro({Timestamp(time_ns), rate});
           },
-          py::arg("time_ns"), py::arg("rate"),
+          py::arg("time_ns"), py::arg("rate"), Released(),
           "Adds a gyroscope sample: rate about its axes, radians per second. Order and clock as for wheels. Bias and "
           "rotation to the body are estimated.")
       .def(
@@ -285,7 +345,7 @@ void bind_input(SlamClass& type) {
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& acceleration) {
             slam.add_accel({Timestamp(time_ns), acceleration});
           },
-          py::arg("time_ns"), py::arg("acceleration"),
+          py::arg("time_ns"), py::arg("acceleration"), Released(),
           "Adds an accelerometer sample: specific force along the axes of the gyroscope, m/s^2. Order and clock as for "
           "wheels. Only used at standstill, as the direction of gravity.")
       .def(
@@ -294,32 +354,32 @@ void bind_input(SlamClass& type) {
             slam.set_initial_pose({pose_of(map_from_body, "map_from_body"), radius, turn, seconds});
           },
           py::arg("map_from_body"), py::arg("radius") = 2.0, py::arg("turn") = 1.0, py::arg("seconds") = 10.0,
+          Released(),
           "Limits relocalisation to the surroundings of a pose. Does not affect tracking. Replaces an earlier hint. "
           "Only for on_map().\n"
           "radius: largest position error, metres; turn: largest rotation error, radians.\n"
           "seconds: lifetime from the next frame on, seconds of frame time.\n"
           "Raises InputError if map_from_body is not a rigid motion.")
-      .def("pause_mapping", &Slam::pause_mapping, py::arg("is_paused"),
+      .def("pause_mapping", &Slam::pause_mapping, py::arg("is_paused"), Released(),
            "While paused, frames are tracked, but the map is neither initialised nor extended.")
-      .def_property_readonly("is_mapping_paused", &Slam::is_mapping_paused, "Whether mapping is paused.");
+      .def_property_readonly("is_mapping_paused", released(&Slam::is_mapping_paused), "Whether mapping is paused.");
 }
 
 void bind_results(SlamClass& type) {
-  const auto released = py::call_guard<py::gil_scoped_release>();
   type.def("finish", &finish,
            "Waits for mapping jobs, closes remaining loops and adjusts the whole map; takes seconds to minutes. Later "
            "frames are dropped. Ctrl-C stops it and keeps the steps done.")
-      .def("save", &Slam::save, py::arg("path"), released,
+      .def("save", &Slam::save, py::arg("path"), Released(),
            "Writes the map, for a mission the online map. Replaces the file atomically. Raises InputError if nothing "
            "was mapped yet, or if the file cannot be written, exists and is no map, or is the mission's offline map.")
-      .def("trajectory", &Slam::trajectory,
+      .def("trajectory", &Slam::trajectory, Released(),
            "map_from_body of all tracked frames, with all corrections so far. Gaps are filled by wheel odometry.")
       .def(
           "plan_from_body",
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body) {
             return matrix_of(slam.plan_from_body(pose_of(map_from_body, "map_from_body")));
           },
-          py::arg("map_from_body"),
+          py::arg("map_from_body"), Released(),
           "Pose on the floor plan of a pose in the map, 4x4, metres; None if the map is not registered on a plan. "
           "Raises InputError if map_from_body is not a rigid motion.")
       .def(
@@ -327,30 +387,31 @@ void bind_results(SlamClass& type) {
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body, const Matrix6& covariance) {
             return slam.plan_covariance(pose_of(map_from_body, "map_from_body"), covariance);
           },
-          py::arg("map_from_body"), py::arg("covariance"),
+          py::arg("map_from_body"), py::arg("covariance"), Released(),
           "Covariance of plan_from_body(), 6x6 as FrameReport.covariance: the given covariance in the map plus that of "
           "the registration. None if the map is not registered on a plan.")
-      .def_property_readonly("calibration", &Slam::calibration, "Calibration with all refinements so far.")
-      .def_property_readonly("is_metric", &Slam::is_metric, "Whether lengths are metres.")
-      .def_property_readonly("map_damage", &Slam::map_damage,
+      .def_property_readonly("calibration", released(&Slam::calibration), "Calibration with all refinements so far.")
+      .def_property_readonly("is_metric", released(&Slam::is_metric), "Whether lengths are metres.")
+      .def_property_readonly("map_damage", released(&Slam::map_damage),
                              "Damage of the offline map's file: file, section, reason and remedy; None if undamaged.")
-      .def_property_readonly("keyframes", &Slam::keyframes,
+      .def_property_readonly("keyframes", released(&Slam::keyframes),
                              "Keyframes of the map being made; without the offline map of a mission.")
-      .def_property_readonly("points", &Slam::points,
+      .def_property_readonly("points", released(&Slam::points),
                              "Points of the map being made; without the offline map of a mission.")
-      .def_property_readonly(
-          "motion_warnings", [](const Slam& slam) { return texts_of(slam.motion_warnings()); },
-          "Faults of wheels, gyroscope and accelerometer so far, as text; each kind once.")
-      .def_property_readonly("frames", py::overload_cast<>(&Slam::frames, py::const_),
+      .def_property_readonly("motion_warnings",
+                             released([](const Slam& slam) { return texts_of(slam.motion_warnings()); }),
+                             "Faults of wheels, gyroscope and accelerometer so far, as text; each kind once.")
+      .def_property_readonly("frames", released(py::overload_cast<>(&Slam::frames, py::const_)),
                              "Number of frames, including dropped ones.")
-      .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"),
+      .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"), Released(),
            "Number of frames with this fault.");
 }
 
 void bind_slam_itself(py::module_& module) {
   SlamClass slam(
       module, "Slam",
-      "Visual SLAM of one robot: images in, poses out. Call it from one thread; mapping has its own threads.");
+      "Visual SLAM of one robot: images in, poses out. Calls from several threads take effect one at a time, in their "
+      "order. All release the interpreter lock.");
   bind_making(slam);
   bind_input(slam);
   bind_results(slam);
@@ -360,6 +421,7 @@ void bind_slam_itself(py::module_& module) {
 
 void bind_slam(py::module_& module) {
   bind_reports(module);
+  bind_advice(module);
   bind_options(module);
   bind_slam_itself(module);
 }

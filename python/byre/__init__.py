@@ -10,7 +10,8 @@
     slam.finish()
     slam.save("hall.byre")
 
-Live images are numpy arrays: slam.process(time_ns, left, right). A saved map is a byre.Map:
+Live images are numpy arrays: slam.process(time_ns, left, right). A camera's callback calls slam.submit(time_ns, left,
+right, on_report=show), which returns at once and calls show(report) from another thread. A saved map is a byre.Map:
 
     hall = byre.Map.load("hall.byre")
     print(hall, hall.positions.mean(axis=0))
@@ -56,6 +57,7 @@ from ._byre import (
     Workers,
     __version__,
     absolute_trajectory_error,
+    advice_for,
     find_ground_truth,
     read_calibration,
     read_extrinsics,

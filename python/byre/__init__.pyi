@@ -1,6 +1,6 @@
 import enum
 from os import PathLike
-from typing import Any, Dict, Iterator, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Callable, Dict, Iterator, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -88,6 +88,7 @@ class InputFault(enum.Enum):
     wrong_features = ...
     repeated_time = ...
     out_of_order = ...
+    replaced = ...
     after_finishing = ...
 
 class Event(enum.Enum):
@@ -493,6 +494,7 @@ class SlamOptions:
     max_gap: float
     max_features: int
     image_threads: int
+    max_waiting: int
     baseline: Optional[float]
     recording: str
     site: str
@@ -510,6 +512,7 @@ class SlamOptions:
         max_gap: float = 1.0,
         max_features: int = 1000,
         image_threads: int = 2,
+        max_waiting: int = 1,
         baseline: Optional[float] = None,
         recording: str = "live",
         site: str = "",
@@ -541,6 +544,27 @@ class Slam:
         right_time_ns: Optional[int] = None,
         depth_time_ns: Optional[int] = None,
     ) -> FrameReport: ...
+    @overload
+    def submit(
+        self,
+        images: Images,
+        on_report: Optional[Callable[[FrameReport], object]] = None,
+        last_from_body: Optional[_Matrix4] = None,
+    ) -> None: ...
+    @overload
+    def submit(
+        self,
+        time_ns: int,
+        left: NDArray[Any],
+        right: Optional[NDArray[Any]] = None,
+        depth: Optional[NDArray[Any]] = None,
+        on_report: Optional[Callable[[FrameReport], object]] = None,
+        last_from_body: Optional[_Matrix4] = None,
+        format: Optional[PixelFormat] = None,
+        bits: int = 16,
+        right_time_ns: Optional[int] = None,
+        depth_time_ns: Optional[int] = None,
+    ) -> None: ...
     def add_wheel_odometry(self, time_ns: int, odometry_from_base: _Matrix4) -> None: ...
     def add_wheel_velocity(self, time_ns: int, vx: float, vy: float, wz: float) -> None: ...
     def add_gyro(self, time_ns: int, rate: NDArray[np.float64]) -> None: ...
@@ -611,6 +635,7 @@ class RelativePoseError:
     @property
     def rotation(self) -> ErrorStatistics: ...
 
+def advice_for(doubt: DistrustReason) -> str: ...
 def find_ground_truth(path: _Path) -> Optional[_Path]: ...
 def read_calibration(path: _Path) -> Calibration: ...
 def read_extrinsics(path: _Path, *, base: str = "", camera: str = "", imu: str = "") -> Extrinsics: ...

@@ -1,4 +1,5 @@
 """Tests of the package byre on a small rendered recording of a room."""
+import doctest
 import enum
 import gc
 import os
@@ -384,6 +385,90 @@ def test_other_threads_run_while_a_map_is_finished(room, frames):
     stop.set()
     # With the GIL held, another thread would run at most once, after the call.
     assert sum(before < at < after - 0.002 for at in ticks) > 1
+
+
+def test_submitted_frames_are_reported_in_order(room, frames):
+    calibration = byre.Recording(room).calibration
+    options = byre.SlamOptions(workers=byre.Workers.repeatable, max_waiting=len(frames))
+    slam = byre.Slam.mapping(calibration, options)
+    reports = []
+    for images in frames[::2]:
+        slam.submit(images, reports.append)
+        pixels = images.left.copy()
+        slam.submit(images.time_ns + 1000, pixels, images.right, on_report=lambda report: reports.append(slam.keyframes))
+        pixels[:] = 0
+        slam.add_gyro(images.time_ns, np.zeros(3))
+    assert slam.frames == len(reports) == len(frames)
+    assert [report.time_ns for report in reports[::2]] == [images.time_ns for images in frames[::2]]
+    assert reports[-1] == slam.keyframes > 0 and reports[-2].map_from_body is not None
+    slam.submit(frames[-1])
+    slam.finish()
+    assert slam.frames == len(frames) + 1
+
+
+def test_newer_frames_replace_waiting_ones(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    reached, opened, faults = threading.Event(), threading.Event(), []
+
+    def block(report):
+        reached.set()
+        opened.wait()
+        faults.append(report.input)
+
+    slam.submit(frames[0], block)
+    reached.wait()
+    for images in frames[1:4]:
+        slam.submit(images, lambda report: faults.append(report.input))
+    opened.set()
+    assert slam.frames_with(byre.InputFault.replaced) == 2
+    assert faults == [byre.InputFault[name] for name in ("none", "replaced", "replaced", "none")]
+
+
+def test_exceptions_of_a_callback_reach_the_caller(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    slam.submit(frames[0], lambda report: report.no_such_field)
+    assert slam.frames == 1
+    with pytest.raises(AttributeError, match="no_such_field"):
+        slam.submit(frames[1])
+    slam.submit(frames[1])
+    slam.finish()
+    assert slam.frames == 2
+    with pytest.raises(TypeError):
+        slam.submit(frames[2], 3)
+
+
+def test_a_callback_may_hold_the_last_reference(room, frames):
+    slam = byre.Slam.mapping(byre.Recording(room).calibration, REPEATABLE)
+    reached, opened, ended = threading.Event(), threading.Event(), threading.Event()
+
+    class Owner:
+        def __init__(self):
+            self.slam = slam
+
+        def __call__(self, report):
+            reached.set()
+            opened.wait()
+
+        def __del__(self):
+            ended.set()
+
+    slam.submit(frames[0], Owner())
+    reached.wait()
+    del slam
+    opened.set()
+    assert ended.wait(60)
+
+
+def test_functions_have_examples_that_run(room):
+    for name in ("advice_for", "Slam.submit"):
+        bound = byre
+        for part in name.split("."):
+            bound = getattr(bound, part)
+        names = {"byre": byre, "recording": byre.Recording(room)}
+        examples = doctest.DocTestParser().get_doctest(bound.__doc__, names, name, None, 0)
+        assert examples.examples
+        assert doctest.DocTestRunner().run(examples).failed == 0, name
+    assert all(byre.advice_for(doubt) for doubt in byre.DistrustReason if doubt is not byre.DistrustReason.none)
 
 
 def test_everything_has_a_signature():
