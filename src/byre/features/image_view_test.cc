@@ -62,6 +62,32 @@ TEST(ImageView, ReadsTheLuminanceOfYuv) {
   EXPECT_THAT(grey(view(nv12, 2, 2, PixelFormat::nv12)), ElementsAre(10, 20, 30, 40));
 }
 
+TEST(ImageView, IsCopiedWithItsLayout) {
+  std::vector<std::uint8_t> left = {1, 2, 99, 99, 3, 4};  // the last row has no padding
+  std::vector<std::uint8_t> right = {10, 20, 30, 40, 128, 128};
+  std::vector<std::uint16_t> depth = {0, 1500};
+  CameraImages images{view(left, 2, 2, PixelFormat::grey8, 4)};
+  images.right = view(right, 2, 2, PixelFormat::nv12);
+  images.depth = view(depth, 2, 1, PixelFormat::depth16);
+  const CopiedImages copy(images);
+  left.assign(left.size(), 0);
+  right.assign(right.size(), 0);
+  depth.assign(depth.size(), 0);
+  EXPECT_THAT(grey(copy.views().left), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(grey(*copy.views().right), ElementsAre(10, 20, 30, 40));
+  EXPECT_THAT(depths(*copy.views().depth, 1000.0), ElementsAre(0, 1500));
+}
+
+TEST(ImageView, IsNotReadIfUnsound) {
+  const std::vector<std::uint8_t> pixels = {1};
+  CameraImages images{view(pixels, 1000, 1000, PixelFormat::grey8, 1)};
+  images.right = ImageView{};
+  const CopiedImages copy(images);
+  EXPECT_FALSE(is_sound(copy.views().left));
+  EXPECT_NE(copy.views().left.data, nullptr);
+  EXPECT_EQ(copy.views().right->data, nullptr);
+}
+
 TEST(ImageView, ReturnsDepthsInCameraUnits) {
   const std::vector<std::uint16_t> millimetres = {0, 1500};
   EXPECT_THAT(depths(view(millimetres, 2, 1, PixelFormat::depth16), 1000.0), ElementsAre(0, 1500));
