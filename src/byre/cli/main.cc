@@ -3,16 +3,15 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/recording_options.h"
+#include "byre/cli/shared/unknown_argument.h"
 #include "byre/input_error.h"
 
-#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -73,16 +72,18 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "byre " BYRE_VERSION, "Print the version and exit");
   app.require_subcommand(0, 1);
   app.footer(kExitCodes);
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return "byre: error: " + byre::printable(error.what()) + "\nSee \"byre --help\" and \"byre COMMAND --help\".\n";
+  std::vector<std::string> arguments;
+  app.failure_message([&arguments](const CLI::App* failed, const CLI::Error& error) {
+    const std::string unknown = unknown_argument(*failed, arguments);
+    return "byre: error: " + byre::printable(unknown.empty() ? error.what() : unknown) +
+           "\nSee \"byre --help\" and \"byre COMMAND --help\".\n";
   });
   ignore_write_signals();
   Action action;
   declare_commands(app, action);
   try {
-    std::vector<std::string> arguments = with_right_calibration({argv + 1, argv + argc});
-    std::ranges::reverse(arguments);  // as CLI11 takes them
-    app.parse(std::move(arguments));
+    arguments = with_right_calibration({argv + 1, argv + argc});
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // reversed, as CLI11 takes them
   } catch (const CLI::ParseError& error) {  // parse errors; also --help and --version, which succeed
     if (app.exit(error) != done) return wrong_usage;
     return std::cout.flush() ? static_cast<int>(done) : report(kUnwritten, failed);

@@ -64,6 +64,27 @@ TEST_F(Program, RejectsWrongUsage) {
   }
 }
 
+TEST_F(Program, SuggestsTheNearestCommandAndOption) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"mpa . -o x.byre", "unknown command 'mpa' (did you mean 'map'?)\n"},
+      {"evalute --estimate estimate.txt", "unknown command 'evalute' (did you mean 'evaluate'?)\n"},
+      {"colmap", "unknown command 'colmap' (did you mean 'import-colmap'?)\n"},
+      {"frobnicate", "unknown command 'frobnicate'\n"},
+      {"--verion", "unknown option '--verion' (did you mean '--version'?)\n"},
+      {"map . --tracjetory x.txt", "unknown option '--tracjetory' (did you mean '--trajectory'?)\n"},
+      {"map . -o x.byre --traj=x.txt", "unknown option '--traj' (did you mean '--trajectory'?)\n"},
+      {"map . -o x.byre --frobnicate", "unknown option '--frobnicate'\n"},
+      {"bag inof .", "unknown command 'inof' (did you mean 'info'?)\n"},
+      {"simulate cowshed --durtion 2", "unknown option '--durtion' (did you mean '--duration'?)\n"},
+      {"inspect one.byre two.byre", "The following argument was not expected: two.byre\n"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.errors, StartsWith("byre: error: " + message));
+  }
+}
+
 TEST_F(Program, NamesBadInput) {
   write("broken.txt", "1 0 0 0 0 0 0 1\n2 0 0\n");
   write("later.txt", "101 0 0 0 0 0 0 1\n102 0 0 0 0 0 0 1\n");

@@ -1,12 +1,12 @@
 #include "byre/slam/system/option_table.h"
 
+#include "byre/base/nearest_name.h"
 #include "byre/base/text_file.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <initializer_list>
-#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -419,20 +419,6 @@ void add_image(Table& table) {
       [](auto& o) -> auto& { return o.session.image.min_sharpness; }, "sharpness below which an image is blurred"));
 }
 
-// Levenshtein distance.
-std::size_t distance_between(std::string_view one, std::string_view other) {
-  std::vector<std::size_t> row(other.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < other.size(); ++j) {
-      const std::size_t exchanged = diagonal + (one[i] == other[j] ? 0 : 1);
-      diagonal = std::exchange(row[j + 1], std::min({row[j] + 1, row[j + 1] + 1, exchanged}));
-    }
-  }
-  return row.back();
-}
-
 }  // namespace
 
 const std::vector<MethodOption>& option_table() {
@@ -466,9 +452,11 @@ std::optional<OptionFault> set_option(MethodOptions& options, std::string_view n
   const Table& table = option_table();
   const auto option = std::ranges::find(table, name, &MethodOption::name);
   if (option == table.end()) {
-    const auto like = std::ranges::min_element(
-        table, {}, [&](const MethodOption& known) { return distance_between(known.name, name); });
-    return OptionFault{"unknown option '" + std::string(name) + "'", "did you mean '" + like->name + "'?"};
+    std::vector<std::string> names;
+    for (const MethodOption& known : table) names.push_back(known.name);
+    const auto nearest = nearest_name(name, names);
+    return OptionFault{"unknown option '" + std::string(name) + "'",
+                       nearest ? "did you mean '" + *nearest + "'?" : "see docs/reference/options.md"};
   }
   if (option->set(options, text)) return std::nullopt;
   const std::string unit = option->unit.empty() ? "" : ", in " + option->unit;

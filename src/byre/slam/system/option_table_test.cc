@@ -132,6 +132,8 @@ TEST(OptionTable, SuggestsTheMostSimilarName) {
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->reason, "unknown option 'tracking.min_inlier'");
   EXPECT_EQ(fault->remedy, "did you mean 'tracking.min_inliers'?");
+  EXPECT_EQ(set_option(options, "min_inliers", "20")->remedy, "did you mean 'tracking.min_inliers'?");
+  EXPECT_EQ(set_option(options, "colour", "red")->remedy, "see docs/reference/options.md");
   EXPECT_THAT(set_option(options, "keyframes.min_frames", "2.5")->remedy, HasSubstr("from 0 to 10000, in frames"));
 }
 
