@@ -18,7 +18,11 @@ void print(const byre::FrameReport& report) {
 }
 
 int main(int argc, char** argv) try {
-  const auto camera = byre::open_recording(argc == 2 ? argv[1] : "", {});
+  if (argc != 2) {
+    std::cerr << "usage: 01_live_stereo RECORDING\n";
+    return 2;
+  }
+  const auto camera = byre::open_recording(argv[1], {});
   byre::Slam slam = byre::Slam::mapping(camera->calibration());
   const auto start = std::chrono::steady_clock::now() - camera->times().front();
   for (int i = 0; i < camera->size(); ++i) {
