@@ -115,6 +115,22 @@ std::optional<BodyMotion> motion_of(const std::optional<Eigen::Matrix4d>& last_f
   return BodyMotion(pose_of(*last_from_body, "last_from_body"));
 }
 
+// Weak references to Slams with submitted frames. These are processed before the interpreter ends, because it then ends
+// all threads that take the GIL, as for a callback. Created by bind_slam, never released.
+py::handle submitting;
+
+void note_submitting(const Slam& slam) {
+  submitting.attr("add")(py::cast(slam, py::return_value_policy::reference));
+}
+
+void process_before_exit() {
+  submitting = py::module_::import("weakref").attr("WeakSet")().release();
+  py::module_::import("atexit").attr("register")(py::cpp_function([] {
+    const py::list slams(py::reinterpret_borrow<py::object>(submitting));
+    for (const py::handle slam : slams) py::getattr(slam, "frames");
+  }));
+}
+
 CameraImages images_at(std::int64_t time_ns, CameraImages images, std::optional<std::int64_t> right_time_ns,
                        std::optional<std::int64_t> depth_time_ns) {
   images.left.time = Timestamp(time_ns);
@@ -141,6 +157,7 @@ void submit(Slam& slam, std::int64_t time_ns, const py::array& left, const std::
   const CameraImages images =
       images_at(time_ns, images_of(left, right, depth, format, bits), right_time_ns, depth_time_ns);
   const std::optional<BodyMotion> motion = motion_of(last_from_body);
+  note_submitting(slam);
   const py::gil_scoped_release release;
   slam.submit(images, std::move(on_report), motion);
 }
@@ -154,6 +171,7 @@ FrameReport process_images(Slam& slam, const ImageFrame& images, const std::opti
 void submit_images(Slam& slam, const ImageFrame& images, ReportCallback on_report,
                    const std::optional<Eigen::Matrix4d>& last_from_body) {
   const std::optional<BodyMotion> motion = motion_of(last_from_body);
+  note_submitting(slam);
   const py::gil_scoped_release release;
   slam.submit(images, std::move(on_report), motion);
 }
@@ -420,6 +438,7 @@ void bind_slam_itself(py::module_& module) {
 }  // namespace
 
 void bind_slam(py::module_& module) {
+  process_before_exit();
   bind_reports(module);
   bind_advice(module);
   bind_options(module);

@@ -459,6 +459,18 @@ def test_a_callback_may_hold_the_last_reference(room, frames):
     assert ended.wait(60)
 
 
+def test_submitted_frames_are_processed_before_exit(room):
+    script = """
+import sys, byre
+recording = byre.Recording(sys.argv[1])
+slam = byre.Slam.mapping(recording.calibration, byre.SlamOptions(max_waiting=6))
+for images in list(recording)[:6]:
+    slam.submit(images, lambda report: print(report.time_ns))
+"""
+    done = subprocess.run([sys.executable, "-c", script, room], check=True, capture_output=True, text=True)
+    assert len(done.stdout.splitlines()) == 6, done.stderr
+
+
 def test_functions_have_examples_that_run(room):
     for name in ("advice_for", "Slam.submit"):
         bound = byre
