@@ -649,7 +649,8 @@ TEST(SubmittedFrames, AreDiscardedWithTheirSlam) {
 TEST(SubmittedFrames, MayBeUnusable) {
   Slam slam = Slam::mapping(open_shared()->calibration(), repeatable());
   std::vector<FrameReport> reports;
-  CameraImages images = view_of(shared_frames()[0]);
+  const std::vector<ImageFrame> frames = shared_frames();
+  CameraImages images = view_of(frames[0]);
   images.left.stride = 1;
   slam.submit(images, into(reports));
   EXPECT_EQ(slam.frames(), 1);
