@@ -1,5 +1,6 @@
 #include "byre/cli/shared/extrinsics_arguments.h"
 
+#include "byre/calibration_file.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/io/calibration/calibration_fields.h"
 
