@@ -3,6 +3,7 @@
 
 #include "byre/input_error.h"
 #include "byre/map/map_bytes_scene.h"
+#include "byre/map/map_upkeep.h"
 #include "byre/map/stored_map_scene.h"
 
 #include <cstdint>
@@ -36,7 +37,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const byre::StoredMap map = byre::read_map(bytes, "fuzz.byre");
     if (!is_valid) std::abort();
     if (!byre::find_faults(map).empty()) std::abort();
-    if (!std::ranges::equal(byre::write_map(map), bytes)) std::abort();
+    const byre::MapUpkeep upkeep = byre::read_upkeep(bytes, "fuzz.byre");
+    const bool has_upkeep = byre::sections_in({bytes.begin(), bytes.end()}) > byre::kSections;
+    const byre::MapBytes again = has_upkeep ? byre::write_map(map, upkeep) : byre::write_map(map);
+    if (!std::ranges::equal(again, bytes)) std::abort();
   } catch (const byre::InputError&) {
   }
   return 0;
@@ -48,7 +52,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (size < byre::kHeaderSize) {
     static const byre::MapBytes without_plan = byre::write_map(byre::StoredMapScene(2, 4).stored());
     static const byre::MapBytes with_plan = byre::write_map(byre::StoredMapScene(2, 4).stored_with_plan());
-    const byre::MapBytes& original = seed % 2 == 0 ? without_plan : with_plan;
+    static const byre::MapBytes session = byre::write_map(byre::StoredMapScene(2, 4).stored(),
+                                                          byre::upkeep_of_session(byre::StoredMapScene(2, 4).stored()));
+    const byre::MapBytes& original = seed % 3 == 0 ? without_plan : seed % 3 == 1 ? with_plan : session;
     size = std::min(original.size(), max_size);
     std::memcpy(data, original.data(), size);
   }

@@ -23,7 +23,7 @@ inline constexpr std::size_t kSectionCountAt = 12;
 inline constexpr std::size_t kFileSizeAt = 16;
 inline constexpr std::size_t kTableAt = 24;
 inline constexpr std::size_t kTableEntrySize = 40;
-inline constexpr std::size_t kSections = 16;
+inline constexpr std::size_t kSections = 16;  // without the optional section `upkeep`
 inline constexpr std::size_t kHeaderChecksumAt = kTableAt + kSections * kTableEntrySize;
 inline constexpr std::size_t kHeaderSize = kHeaderChecksumAt + 8;
 
@@ -37,6 +37,13 @@ T value_at(const MapBytes& bytes, std::size_t place) {
 template <PlainNumber T>
 void put_at(MapBytes& bytes, std::size_t place, T value) {
   std::memcpy(bytes.data() + place, &value, sizeof(T));
+}
+
+inline std::size_t sections_in(const MapBytes& bytes) {
+  return value_at<std::uint32_t>(bytes, kSectionCountAt) == kSections + 1 ? kSections + 1 : kSections;
+}
+inline std::size_t header_checksum_at(const MapBytes& bytes) {
+  return kTableAt + sections_in(bytes) * kTableEntrySize;
 }
 
 struct TableEntry {
@@ -61,7 +68,7 @@ inline void write_entry(MapBytes& bytes, const TableEntry& entry) {
 
 inline TableEntry section_of(const MapBytes& bytes, std::string_view name) {
   TableEntry entry;
-  for (std::size_t i = 0; i < kSections && entry.name != name; ++i) entry = table_entry(bytes, i);
+  for (std::size_t i = 0; i < sections_in(bytes) && entry.name != name; ++i) entry = table_entry(bytes, i);
   return entry;
 }
 
@@ -124,14 +131,15 @@ inline void refresh_part_checksums(MapBytes& bytes) {
 // Recomputes all checksums, so that they do not reveal a change. Skips sections that the table places outside the
 // bytes. Does nothing without a complete header.
 inline void refresh_checksums(MapBytes& bytes) {
-  if (bytes.size() < kHeaderSize) return;
+  if (bytes.size() < kHeaderSize || bytes.size() < header_checksum_at(bytes) + 8) return;
   refresh_part_checksums(bytes);
-  for (std::size_t i = 0; i < kSections; ++i) {
+  for (std::size_t i = 0; i < sections_in(bytes); ++i) {
     const TableEntry entry = table_entry(bytes, i);
     if (entry.offset > bytes.size() || entry.size > bytes.size() - entry.offset) continue;
     put_at(bytes, entry.at + 32, checksum(std::span(bytes).subspan(entry.offset, entry.size)));
   }
-  put_at(bytes, kHeaderChecksumAt, checksum(std::span(bytes).first(kHeaderChecksumAt)));
+  const std::size_t end = header_checksum_at(bytes);
+  put_at(bytes, end, checksum(std::span(bytes).first(end)));
 }
 
 // Replaces bytes of a section and updates sizes and offsets. Preconditions: a valid table; bytes within the section.
@@ -144,7 +152,7 @@ inline void replace_in_section(MapBytes& bytes, std::size_t index, std::size_t b
   const std::uint64_t growth = replacement.size() - count;  // may wrap around, and does so again below
   changed.size += growth;
   write_entry(bytes, changed);
-  for (std::size_t i = index + 1; i < kSections; ++i) {
+  for (std::size_t i = index + 1; i < sections_in(bytes); ++i) {
     TableEntry later = table_entry(bytes, i);
     later.offset += growth;
     write_entry(bytes, later);

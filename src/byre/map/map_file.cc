@@ -5,6 +5,7 @@
 #include "byre/input_error.h"
 #include "byre/map/map_file_source.h"
 #include "byre/map/map_sections.h"
+#include "byre/map/map_upkeep.h"
 
 #include <algorithm>
 #include <array>
@@ -41,17 +42,22 @@ enum Section : std::size_t {
   kDescriptors,
   kObservers,
   kLookup,
+  kUpkeep,  // optional
   kSectionCount
 };
 constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
-    "summary",      "notes", "provenance", "rigs",         "keyframes", "features",    "patches",   "points",
-    "observations", "words", "plan",       "calibrations", "shutters",  "descriptors", "observers", "lookup"};
+    "summary", "notes", "provenance",   "rigs",     "keyframes",   "features",  "patches", "points", "observations",
+    "words",   "plan",  "calibrations", "shutters", "descriptors", "observers", "lookup",  "upkeep"};
 
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 constexpr std::size_t kTableEntryBytes = kNameBytes + 3 * sizeof(std::uint64_t);
-// Includes its own checksum.
-constexpr std::size_t kHeaderBytes = kFixedHeaderBytes + kSectionCount * kTableEntryBytes + sizeof(std::uint64_t);
+constexpr std::size_t kMaxHeaderBytes = kFixedHeaderBytes + kSectionCount * kTableEntryBytes + sizeof(std::uint64_t);
+
+// Bytes of the header of a file with this number of sections, with its own checksum.
+constexpr std::size_t header_bytes(std::size_t sections) {
+  return kFixedHeaderBytes + sections * kTableEntryBytes + sizeof(std::uint64_t);
+}
 
 using Bytes = std::span<const std::byte>;
 
@@ -121,8 +127,8 @@ PartSections part_sections(SectionBytes section) {
   return sections;
 }
 
-// Appends to the file.
-SectionEnds write_sections(const StoredMap& stored, std::vector<std::byte>& file) {
+// Appends to the file. upkeep: nullptr for a file without that section.
+SectionEnds write_sections(const StoredMap& stored, const MapUpkeep* upkeep, std::vector<std::byte>& file) {
   const Keyframes all = keyframes_of(stored.map);
   ViewWriters views;
   PartSizes sizes;
@@ -149,6 +155,11 @@ SectionEnds write_sections(const StoredMap& stored, std::vector<std::byte>& file
   write_lookup(stored.map, sizes, part_sections(written), observers, lookup);
   append(observers);
   append(lookup);
+  if (upkeep != nullptr) {
+    ByteWriter writer;
+    write_upkeep(*upkeep, writer);
+    append(writer);
+  }
   return ends;
 }
 
@@ -161,13 +172,14 @@ void write_name(std::string_view name, ByteWriter& writer) {
 void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
   writer.write_all<std::uint8_t>(kSignature);
   writer.write(kFormat);
-  writer.write(static_cast<std::uint32_t>(kSectionCount));
-  writer.write(std::uint64_t{kHeaderBytes + content.size()});
+  const std::size_t header_size = header_bytes(ends.size());
+  writer.write(static_cast<std::uint32_t>(ends.size()));
+  writer.write(std::uint64_t{header_size + content.size()});
   std::size_t begin = 0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const Bytes section = content.subspan(begin, ends[i] - begin);
     write_name(kSectionNames[i], writer);
-    writer.write(std::uint64_t{kHeaderBytes + begin});
+    writer.write(std::uint64_t{header_size + begin});
     writer.write(std::uint64_t{section.size()});
     writer.write(checksum(section));
     begin = ends[i];
@@ -181,7 +193,11 @@ struct SectionPlace {
   std::size_t size = 0;
   std::uint64_t checksum = 0;
 };
-using SectionTable = std::array<SectionPlace, kSectionCount>;
+struct SectionTable {
+  std::vector<SectionPlace> places;  // without a place for an optional section that is missing
+  std::size_t header_bytes = 0;
+  std::uint64_t checksum = 0;  // checksum of the header
+};
 
 void require_format(std::uint32_t format, const std::string& name) {
   if (format == kFormat) return;
@@ -217,18 +233,22 @@ SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& n
   ByteReader header(bytes, name + ": header", 0);
   header.take(kSignature.size());
   require_format(header.read<std::uint32_t>(), name);
-  if (header.read<std::uint32_t>() != kSectionCount) header.fail("has a wrong number of sections for its format");
+  const auto sections = header.read<std::uint32_t>();
+  if (sections != kUpkeep && sections != kSectionCount) header.fail("has a wrong number of sections for its format");
   if (header.read<std::uint64_t>() != file_size) {
     header.fail("has a file size other than the actual " + std::to_string(file_size) + " bytes");
   }
   SectionTable table;
-  std::size_t offset = kHeaderBytes;
-  for (std::size_t i = 0; i < kSectionCount; ++i) {
-    table[i] = read_place(header, kSectionNames[i], offset, file_size);
-    offset += table[i].size;
+  table.header_bytes = header_bytes(sections);
+  std::size_t offset = table.header_bytes;
+  for (std::size_t i = 0; i < sections; ++i) {
+    table.places.push_back(read_place(header, kSectionNames[i], offset, file_size));
+    offset += table.places.back().size;
   }
-  const std::uint64_t expected = checksum(bytes.first(kHeaderBytes - sizeof(std::uint64_t)));
-  if (header.read<std::uint64_t>() != expected) header.fail("has a wrong checksum");
+  table.checksum = header.read<std::uint64_t>();
+  if (table.checksum != checksum(bytes.first(table.header_bytes - sizeof(std::uint64_t)))) {
+    header.fail("has a wrong checksum");
+  }
   if (offset != file_size) header.fail("leaves bytes outside of all sections");
   return table;
 }
@@ -246,6 +266,7 @@ class SectionOpener {
             read_table(bytes, bytes.size(), name),
             [bytes](std::size_t offset, std::size_t size) { return bytes.subspan(offset, size); }, name) {}
 
+  bool has_upkeep() const { return table_.places.size() > kUpkeep; }
   bool is_empty(Section section) const { return place_of(section).size == 0; }
 
   ByteReader operator()(Section section) const {
@@ -258,7 +279,7 @@ class SectionOpener {
 
   // Unchecked.
   Bytes bytes_of(Section section) const { return bring_(place_of(section).offset, place_of(section).size); }
-  const SectionPlace& place_of(Section section) const { return table_[section]; }
+  const SectionPlace& place_of(Section section) const { return table_.places[section]; }
 
  private:
   SectionTable table_;
@@ -309,11 +330,11 @@ WordsHead words_head(const Bring& bring, const SectionPlace& section, const std:
 }
 
 void require_checksums(const ReadAt& read_at, std::size_t size, const std::string& name) {
-  std::vector<std::byte> header(std::min(size, kHeaderBytes));
+  std::vector<std::byte> header(std::min(size, kMaxHeaderBytes));
   read_at(0, header);
   const SectionTable table = read_table(header, size, name);
-  for (std::size_t i = 0; i < kSectionCount; ++i) {
-    const SectionPlace& place = table[i];
+  for (std::size_t i = 0; i < table.places.size(); ++i) {
+    const SectionPlace& place = table.places[i];
     if (checksum_of_file(read_at, place.offset, place.size) == place.checksum) continue;
     ByteReader({}, name + ": section " + std::string(kSectionNames[i]), place.offset).fail("has a wrong checksum");
   }
@@ -334,14 +355,26 @@ MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std
 
 }  // namespace
 
-std::vector<std::byte> write_map(const StoredMap& stored) {
-  std::vector<std::byte> file(kHeaderBytes);
-  const SectionEnds ends = write_sections(stored, file);
+namespace {
+
+std::vector<std::byte> written(const StoredMap& stored, const MapUpkeep* upkeep) {
+  std::vector<std::byte> file(header_bytes(upkeep != nullptr ? kSectionCount : kUpkeep));
+  const SectionEnds ends = write_sections(stored, upkeep, file);
   if (const InputError* const fault = stored.map.damage()) throw InputError(*fault);
   ByteWriter header;
   write_header(Bytes(file).subspan(file.size() - ends.back()), ends, header);
   std::ranges::copy(header.bytes(), file.begin());
   return file;
+}
+
+}  // namespace
+
+std::vector<std::byte> write_map(const StoredMap& stored) {
+  return written(stored, nullptr);
+}
+
+std::vector<std::byte> write_map(const StoredMap& stored, const MapUpkeep& upkeep) {
+  return written(stored, &upkeep);
 }
 
 StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
@@ -361,7 +394,26 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   if (read_summary(summary) != summarise(stored.map)) summary.fail("does not match the other sections");
   const PartSections sections = part_sections([&open](Section section) { return open.bytes_of(section); });
   require_lookup(stored.map, sizes, sections, open(kObservers), open(kLookup));
+  if (open.has_upkeep()) read_upkeep(open(kUpkeep), static_cast<std::size_t>(stored.map.point_count()));
   return stored;
+}
+
+MapUpkeep read_upkeep(std::span<const std::byte> bytes, const std::string& name) {
+  const SectionOpener open(bytes, name);
+  return open.has_upkeep() ? read_upkeep(open(kUpkeep), read_summary(open(kSummary)).points) : MapUpkeep{};
+}
+
+std::uint64_t map_id(std::span<const std::byte> bytes, const std::string& name) {
+  return read_table(bytes, bytes.size(), name).checksum;
+}
+
+std::uint64_t map_id(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return map_id(file.bytes(), path.string());
+}
+
+std::string to_text(std::uint64_t map_id) {
+  return fmt::format("{:016x}", map_id);
 }
 
 StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& name) {
@@ -370,7 +422,7 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
     read_at(offset, pieces.emplace_back(bytes));
     return Bytes(pieces.back());
   };
-  const SectionOpener open(read_table(bring(0, std::min(size, kHeaderBytes)), size, name), bring, name);
+  const SectionOpener open(read_table(bring(0, std::min(size, kMaxHeaderBytes)), size, name), bring, name);
   StoredMap stored;
   MapParts parts = read_about(open, stored);
   const MapSummary summary = read_summary(open(kSummary));
@@ -393,8 +445,10 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
 
 std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const std::string& name) {
   const SectionTable table = read_table(bytes, bytes.size(), name);
-  std::vector<SectionSize> sizes = {{"header", kHeaderBytes}};
-  for (std::size_t i = 0; i < kSectionCount; ++i) sizes.push_back({std::string(kSectionNames[i]), table[i].size});
+  std::vector<SectionSize> sizes = {{"header", table.header_bytes}};
+  for (std::size_t i = 0; i < table.places.size(); ++i) {
+    sizes.push_back({std::string(kSectionNames[i]), table.places[i].size});
+  }
   return sizes;
 }
 
@@ -431,6 +485,12 @@ StoredMap reread(std::span<const std::byte> bytes, const std::filesystem::path& 
 
 void save_map(const StoredMap& stored, const std::filesystem::path& path) {
   const std::vector<std::byte> bytes = write_map(stored);
+  reread(bytes, path);
+  write_atomically(path, bytes);
+}
+
+void save_map(const StoredMap& stored, const MapUpkeep& upkeep, const std::filesystem::path& path) {
+  const std::vector<std::byte> bytes = write_map(stored, upkeep);
   reread(bytes, path);
   write_atomically(path, bytes);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/base/byte_stream.h"
-#include "byre/map/map_file.h"
+#include "byre/map/map_upkeep.h"
 
 #include <array>
 #include <functional>
@@ -164,5 +164,9 @@ void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordi
 
 void write_plan(const PlanRegistration& registration, ByteWriter& writer);
 PlanRegistration read_plan(ByteReader reader);
+
+void write_upkeep(const MapUpkeep& upkeep, ByteWriter& writer);
+// points: number of points of the map.
+MapUpkeep read_upkeep(ByteReader reader, std::size_t points);
 
 }  // namespace byre

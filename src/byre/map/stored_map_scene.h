@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/input_error.h"
-#include "byre/map/map_file.h"
+#include "byre/map/map_upkeep.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -188,6 +188,28 @@ inline StoredMap with_refined_calibration(StoredMap stored) {
   refined.shift = 0.25;
   stored.recordings.front().refined = refined;
   return stored;
+}
+
+// All that the section `upkeep` of a file of this map can contain.
+inline MapUpkeep upkeep_of_session(const StoredMap& stored) {
+  MapUpkeep upkeep;
+  upkeep.survival.assign(static_cast<std::size_t>(stored.map.point_count()), 24);
+  upkeep.survival.front() = -128;
+  SessionRecord& session = upkeep.session.emplace();
+  session.map_id = 0xfedcba9876543210;
+  session.frames = 400;
+  session.trusted = 380;
+  session.copied_points = 2;
+  session.points.resize(302);
+  session.points[0] = {200, 3, 1, 41.25f};
+  session.points[300] = {0, 0, 7, 0.0f};
+  PoseRecord& pose = session.poses.emplace_back();
+  pose.time = std::chrono::seconds(100);
+  pose.map_from_body = {{0.8, 0.0, 0.0, 0.6}, {12.5, -3.25, 0.0}};
+  pose.covariance.fill(1e-6f);
+  pose.verdict = 2;
+  pose.image = {90.0f, 20.0f, 0.01f, 0.7f, 2.0f};
+  return upkeep;
 }
 
 }  // namespace byre
