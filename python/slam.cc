@@ -390,6 +390,9 @@ void bind_results(SlamClass& type) {
       .def("save", &Slam::save, py::arg("path"), Released(),
            "Writes the map, for a mission the online map. Replaces the file atomically. Raises InputError if nothing "
            "was mapped yet, or if the file cannot be written, exists and is no map, or is the mission's offline map.")
+      .def("save_session", &Slam::save_session, py::arg("path"), Released(),
+           "Writes what a mission learned about its offline map, without images, for \"byre update\". Raises "
+           "InputError as save(), and without an offline map.")
       .def("trajectory", &Slam::trajectory, Released(),
            "map_from_body of all tracked frames, with all corrections so far. Gaps are filled by wheel odometry.")
       .def(

@@ -139,6 +139,11 @@ class Slam {
   // be written, exists and is no map, or is the mission's offline map.
   void save(const std::filesystem::path& path) const;
 
+  // Writes what a mission learned about its offline map, without images, for "byre update": the online map, sightings
+  // and misses of the offline map's points, poses with verdicts. Throws InputError like save(), and without an offline
+  // map.
+  void save_session(const std::filesystem::path& path) const;
+
   // map_from_body of all tracked frames, with all corrections so far. Gaps, also before the first pose, are filled by
   // wheel odometry.
   Trajectory trajectory() const;

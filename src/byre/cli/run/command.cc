@@ -190,11 +190,18 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
     run.warnings.push_back(options.online_map->string() + ": not written, as nothing was mapped");
     options.online_map.reset();
   }
+  if (options.session && !slam.impl().has_mapped()) {
+    run.warnings.push_back(options.session->string() + ": not written, as nothing was mapped");
+    options.session.reset();
+  }
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
   OutputWriter outputs;
   outputs.attempt([&] {
     const SlamInputs& inputs = slam.impl().inputs();
     if (options.online_map) save_for_missions(run.stored, *inputs.vocabulary, inputs.site, *options.online_map);
+  });
+  outputs.attempt([&] {
+    if (options.session) slam.save_session(*options.session);
   });
   const ResourceUsage resources = resource_usage();
   const MissionOutcome mission = evaluate_mission(run, protocol.options, truth, input.scaled());

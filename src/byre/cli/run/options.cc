@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char* kRunFooter = R"(Examples:
   byre run evening_round --map barn.byre --events events.jsonl
   byre run evening_round --map barn.byre --trajectory map.txt --odometry odometry.txt --save-online changes.byre
+  byre run evening_round --map barn.byre --save-session evening.session
   byre run evening_round --map barn.byre --truth evening_round --map-truth morning_round --stats stats.json
   byre run evening_round --map barn.byre --localise-only --causal-trajectory causal.txt
   byre run evening_round --map barn.byre --camera left --events events.jsonl
@@ -34,7 +35,7 @@ constexpr const char* kRunFooter = R"(Examples:
 With a map the run is a mission: it localises without an initial pose, tracks the offline map's points, maps new
 points online, and gives each frame a verdict on its pose. The file of the offline map is only read. Poses are in the
 map's frame; odometry is in a frame that begins at the start of the robot and never jumps. --localise-only disables
-online mapping; --frame plan converts poses in the map to poses on the floor plan of "byre register". Without --map
+online mapping; --save-session keeps what "byre update" needs; --frame plan converts poses in the map to poses on the floor plan of "byre register". Without --map
 the whole recording is mapped as by "byre map", including finishing. With truth, errors are in the map's frame: the
 map, not the mission, is aligned to the truth by its own keyframes; for a map of another recording also give the
 truth of that recording (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
@@ -85,6 +86,10 @@ void declare_inputs(CLI::App& command, RunOptions& options) {
 void declare_outputs(CLI::App& command, RunOptions& options) {
   add_output(command, Output::map, "--save-online", options.online_map, "Online map of the mission, as a separate map")
       ->type_name("MAP");
+  add_output(command, Output::map, "--save-session", options.session,
+             "What the mission learned about its map, for \"byre update\"")
+      ->type_name("SESSION")
+      ->needs("--map");
   add_output(command, Output::json, "--events", options.events, "Events during the run, as JSON lines")
       ->type_name("FILE");
   add_output(command, Output::trajectory, "--trajectory", options.trajectory,
@@ -111,6 +116,9 @@ void require_consistent(const RunOptions& options) {
   if (options.online_map && !options.method.options().session.map_online) {
     throw CLI::ValidationError("--localise-only", "disables online mapping, so --save-online has no map");
   }
+  if (options.session && !options.method.options().session.map_online) {
+    throw CLI::ValidationError("--localise-only", "disables online mapping, so --save-session has nothing to save");
+  }
   if (options.view.plan && !options.map) {
     throw CLI::ValidationError("--plan", "needs a map that is registered on it: --map");
   }
@@ -119,7 +127,7 @@ void require_consistent(const RunOptions& options) {
 }  // namespace
 
 std::vector<fs::path> RunOptions::outputs() const {
-  return given_paths({online_map, events, trajectory, causal_trajectory, odometry, stats, record});
+  return given_paths({online_map, session, events, trajectory, causal_trajectory, odometry, stats, record});
 }
 
 void declare_run_options(CLI::App& command, RunOptions& options) {

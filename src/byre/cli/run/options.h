@@ -25,6 +25,7 @@ struct RunOptions {
   std::optional<std::filesystem::path> map;  // offline map; empty: plain SLAM
   PoseFrame frame = PoseFrame::map;
   std::optional<std::filesystem::path> online_map;
+  std::optional<std::filesystem::path> session;
   std::optional<std::filesystem::path> events;
   std::optional<std::filesystem::path> trajectory;
   std::optional<std::filesystem::path> causal_trajectory;

@@ -27,7 +27,8 @@ OfflineTracker::OfflineTracker(std::shared_ptr<const OfflineMap> offline, const 
     : options_(options),
       offline_(std::move(offline)),
       mission_(offline_, options.mission),
-      rivals_(options.mission.registration) {}
+      rivals_(options.mission.registration),
+      point_records_(static_cast<std::size_t>(offline_->map().point_count())) {}
 
 void OfflineTracker::refine_calibration(const Calibration& given, double prior_sigmas) {
   calibrator_.emplace(given, prior_sigmas);
@@ -208,6 +209,7 @@ OfflineTracker::MissionUpdate OfflineTracker::note(const Seen& seen, const PoseF
   if (is_certain(pose_filter)) rivals_.forget();
   rivals_.note_place(seen.frame.time, seen.track.tracked.camera_from_world, pose_filter.place());
   if (!pose_filter.place().is_confirmed()) return update;
+  if (pose_filter.place().is_accepted()) record_points(seen);
   if (!mapper.has_correction()) update.correction = correction_by(seen.track, pose_filter, mapper);
   if (calibrator_ && pose_filter.place().is_accepted() && !seen.track.maps_disagree) {
     calibrator_->note(seen.frame, seen.rig, seen.track.tracked, mapper.map());
@@ -233,6 +235,21 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   if (now == before || now == OfflineView::changed) return {};
   if (now == OfflineView::off_the_map) return {SessionEvent::left_mapped_area};
   return {now == OfflineView::blinded ? SessionEvent::blinded : SessionEvent::entered_mapped_area};
+}
+
+// Points hidden from the pose by walls, by dirt or by darkness are not missed: they were seen from nearby keyframes,
+// and the share of points seen weighs the frame.
+void OfflineTracker::record_points(const Seen& seen) {
+  if (seen.view == nullptr || !seen.view->is_near_keyframe || seen.image_is_faulty || seen.track.maps_disagree) return;
+  const auto count = [](const ScratchVector<PointId>& points) { return static_cast<float>(points.size()); };
+  const float share = std::min(count(seen.view->seen) / count(seen.view->expected), 1.0f);
+  for (const PointId id : seen.view->expected) {
+    PointRecord& record = point_records_[id.number];
+    ++record.expected;
+    record.seen += std::ranges::binary_search(seen.view->seen, id);
+    record.due += share;
+  }
+  for (const PointId id : seen.track.offline_moved) ++point_records_[id.number].elsewhere;
 }
 
 void OfflineTracker::mark_lost() {

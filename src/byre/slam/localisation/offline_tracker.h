@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/base/job_slot.h"
+#include "byre/map/map_upkeep.h"
 #include "byre/session_event.h"
 #include "byre/slam/frame/focal_check.h"
 #include "byre/slam/localisation/look_alike_places.h"
@@ -60,6 +61,7 @@ class OfflineTracker {
     bool image_is_faulty = false;
     std::span<const PointId> offline_around;  // suspended points included
     const ImageMask& hidden;                  // image cells without expected points
+    const PlaceView* view = nullptr;          // part of the map in view, if computed
   };
   // Effect of a frame, or of a place search, on the session.
   struct MissionUpdate {
@@ -110,11 +112,15 @@ class OfflineTracker {
   // the hint.
   void search_in_background(const PlaceQuery& query, const PoseFilter& pose_filter, const Mapper& mapper);
 
+  // What the frames showed of the offline map's points, by number.
+  const std::vector<PointRecord>& point_records() const { return point_records_; }
+
   // Adds measures of the offline map.
   Health with_map_health(Health health, Timestamp now, Timestamp first_frame) const;
 
  private:
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
+  void record_points(const Seen& seen);
   ScratchVector<PointId> points_around(const Pose& camera_from_offline) const;
   std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, std::span<const PointId> points,
                                        const Rig& rig, const ImageMask& hidden) const;
@@ -156,6 +162,7 @@ class OfflineTracker {
   JobSlot<PlaceSearch> search_;
   std::optional<MissionCalibrator> calibrator_;
   FocalCheck focal_check_;
+  std::vector<PointRecord> point_records_;  // by number of the offline point
   // Number of the newest online keyframe when offline points last constrained the pose.
   std::uint32_t last_held_keyframe_ = 0;
 };

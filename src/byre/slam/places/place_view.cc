@@ -61,7 +61,7 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   project_visible(map, query.nearby, pose, query.rig, query.hidden, expected);
   view.is_near_keyframe = expected.size() >= kEnough;
   if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
-  const ScratchVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
+  ScratchVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
   const auto position_of = [&](PointId id) -> Eigen::Vector3d {
     return map.find_point(id)->position_in_world / query.metre;
   };
@@ -73,9 +73,11 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   for (const PointId id : shown) add(id);
   std::ranges::sort(points);
   points.erase(std::ranges::unique(points).begin(), points.end());
+  view.expected.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i == 0 || points[i].first != points[i - 1].first) view.cells.push_back({points[i].first});
     CellInView& cell = view.cells.back();
+    view.expected.push_back(points[i].second);
     const bool is_alone = !query.is_in_common || !query.is_in_common(points[i].second);
     ++cell.expected;
     cell.expected_alone += is_alone;
@@ -84,6 +86,7 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
     cell.seen_alone += is_alone;
     cell.centre_of_seen += (position_of(points[i].second) - cell.centre_of_seen) / cell.seen;
   }
+  view.seen = std::move(shown);
   return view;
 }
 

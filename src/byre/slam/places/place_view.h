@@ -28,6 +28,8 @@ struct PlaceView {
   // them. False: all points in the frustum are expected, though walls may hide them.
   bool is_near_keyframe = false;
   ScratchVector<CellInView> cells;  // ascending
+  ScratchVector<PointId> expected;  // points of the cells
+  ScratchVector<PointId> seen;      // seen points, ascending
 };
 
 // Keyframes near a pose with a similar viewing direction, ascending, and the points that they saw, ascending.

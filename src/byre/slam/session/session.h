@@ -110,6 +110,11 @@ class Session {
   // Map points matched in the last frame; empty without a pose.
   const std::vector<SeenPoint>& seen_points() const { return state_.seen; }
 
+  // What a mission showed of the offline map's points, by number; empty without an offline map.
+  std::vector<PointRecord> point_records() const {
+    return state_.mission ? state_.mission->point_records() : std::vector<PointRecord>();
+  }
+
   // Loops found so far, with the measurement at that time.
   const std::vector<LoopEdge>& loops() const { return state_.mapper.loops(); }
 

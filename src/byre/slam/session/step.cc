@@ -271,7 +271,7 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
   if (is_on_map) {
     const OfflineTracker::MissionUpdate update =
         state.mission->note({input.frame, track, state.rig, progress.step, input.fault != ImageFault::none,
-                             state.tracker.offline_points(), hidden},
+                             state.tracker.offline_points(), hidden, view ? &*view : nullptr},
                             pose_filter, state.mapper);
     report.events.insert(report.events.end(), update.events.begin(), update.events.end());
     if (update.correction) state.mapper.correct_later(*update.correction);

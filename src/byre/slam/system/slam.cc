@@ -135,6 +135,7 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   inputs.offline = load_offline_map(map, *inputs.vocabulary, options.plan);
   inputs.plan = load_plan_registration(map);
   inputs.offline_file = map;
+  inputs.offline_id = map_id(map);
   return Slam(make(given, options, std::move(inputs)));
 }
 
@@ -210,19 +211,39 @@ void Slam::finish(const std::function<bool()>& should_stop) {
   });
 }
 
-void Slam::save(const fs::path& path) const {
-  auto stored =
-      impl_->calls().run([&] { return impl_->has_mapped() ? std::optional(impl_->stored_map()) : std::nullopt; });
+namespace {
+
+// What a session stores, taken in the order of calls. Throws InputError if it is empty or may not replace the file.
+template <typename Take>
+auto take_for(const fs::path& path, SlamImpl& slam, Take take) {
+  auto stored = slam.calls().run([&] { return slam.has_mapped() ? std::optional(take()) : std::nullopt; });
   if (!stored) {
     throw InputError(path.string(), "is not written, because the map is still empty",
                      "let the robot move, and check the frame reports");
   }
-  const auto& offline = impl_->inputs().offline_file;
+  const auto& offline = slam.inputs().offline_file;
   std::error_code none_there;
   if (offline && fs::equivalent(path, *offline, none_there)) {
     throw InputError(path.string(), "is the offline map of the mission and must not be replaced", "name another file");
   }
-  save_for_missions(*std::move(stored), *impl_->inputs().vocabulary, impl_->inputs().site, path);
+  return *std::move(stored);
+}
+
+}  // namespace
+
+void Slam::save_session(const fs::path& path) const {
+  const SlamInputs& inputs = impl_->inputs();
+  if (!inputs.offline) {
+    throw InputError(path.string(), "is not written, because a session needs a map that the mission runs on",
+                     "make the mission with Slam::on_map, or save a map");
+  }
+  auto [stored, record] = take_for(path, *impl_, [this] { return impl_->session_to_store(); });
+  save_session_for_updates(std::move(stored), std::move(record), *inputs.vocabulary, path);
+}
+
+void Slam::save(const fs::path& path) const {
+  save_for_missions(take_for(path, *impl_, [this] { return impl_->stored_map(); }), *impl_->inputs().vocabulary,
+                    impl_->inputs().site, path);
 }
 
 Trajectory Slam::trajectory() const {

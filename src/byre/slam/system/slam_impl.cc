@@ -3,6 +3,7 @@
 #include "byre/base/stopwatch.h"
 #include "byre/features/image_view.h"
 #include "byre/map/stored_calibration.h"
+#include "byre/slam/upkeep/session_summary.h"
 #include "byre/slam/window/online_copy.h"
 
 #include <algorithm>
@@ -252,6 +253,7 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
     report.health.verdict = Verdict::untrusted;
     report.health.doubt = DistrustReason::map_damaged;
   }
+  if (inputs_.offline) record_pose(frame, report);
   budget_.end();
   report.cuts = budget_.cuts();
   report.is_late = budget_.is_late();
@@ -259,6 +261,30 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   report.warnings.assign(first_new, warnings().end());
   warnings_reported_ = warnings().size();
   return report;
+}
+
+// Thins out older poses of long missions evenly.
+void SlamImpl::record_pose(const Frame& frame, const FrameReport& report) {
+  constexpr std::size_t kMaxPoses = 7200;
+  std::vector<PoseRecord>& poses = record_.poses;
+  ++record_.frames;
+  record_.trusted += report.health.verdict == Verdict::trusted;
+  if (!report.map_from_body || (!poses.empty() && report.time - poses.back().time < record_spacing_)) return;
+  PoseRecord& pose = poses.emplace_back();
+  pose.time = report.time;
+  pose.map_from_body = *report.map_from_body;
+  std::size_t next = 0;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      pose.covariance[next++] = static_cast<float>(report.covariance(row, column));
+    }
+  }
+  pose.verdict = static_cast<std::uint8_t>(report.health.verdict);
+  pose.image = frame.condition.value_or(ImageCondition{});
+  if (poses.size() < kMaxPoses) return;
+  for (std::size_t i = 0; 2 * i < poses.size(); ++i) poses[i] = poses[2 * i];
+  poses.resize(poses.size() / 2);
+  record_spacing_ *= 2;
 }
 
 FrameReport SlamImpl::completed(FrameReport report) {
@@ -367,6 +393,20 @@ StoredMap SlamImpl::stored_map() const {
   StoredMap stored = stored_metadata();
   stored.map = map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(map.online());
   return stored;
+}
+
+std::pair<StoredMap, SessionRecord> SlamImpl::session_to_store() const {
+  constexpr int kMaxKeyframes = 80;  // 3.5 MB
+  MapGraph map = standalone_copy(session_.map());
+  thin_out(map, kMaxKeyframes);
+  SessionRecord record = record_;
+  record.map_id = inputs_.offline_id;
+  record.points = session_.point_records();
+  const auto is_copy = [this](PointId id) { return online().find_point(id) == nullptr; };
+  record.copied_points = static_cast<std::uint32_t>(std::ranges::count_if(map.point_ids(), is_copy));
+  StoredMap stored = stored_metadata();
+  stored.map = offline_copy(std::move(map));
+  return {std::move(stored), std::move(record)};
 }
 
 StoredMap SlamImpl::take_stored_map() {

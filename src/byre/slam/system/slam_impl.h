@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/base/serial_queue.h"
-#include "byre/map/map_file.h"
+#include "byre/map/map_upkeep.h"
 #include "byre/slam.h"
 #include "byre/slam/system/input_check.h"
 #include "byre/slam/system/logged_executor.h"
@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -44,6 +45,7 @@ struct SlamInputs {
   std::string site{};                                   // place where the map is made, stored in it unless empty
   std::shared_ptr<const OfflineMap> offline{};          // offline map of a mission; null otherwise
   std::optional<std::filesystem::path> offline_file{};  // its file
+  std::uint64_t offline_id = 0;                         // see map_id
   std::optional<PlanRegistration> plan{};               // registration of the offline or extended map on a floor plan
   int max_waiting = 1;                                  // frames of submit() that wait for its thread
   StoredMap extended{};                                 // data of the map to extend, without keyframes and points
@@ -129,6 +131,8 @@ class SlamImpl {
   StoredMap stored_metadata() const;
   // Stored map of this session.
   StoredMap stored_map() const;
+  // What a mission learned, for keeping its offline map up to date. Precondition: a mission.
+  std::pair<StoredMap, SessionRecord> session_to_store() const;
   // Same as stored_map(), without copying; the session's map is empty afterwards.
   StoredMap take_stored_map();
 
@@ -146,6 +150,7 @@ class SlamImpl {
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
   FrameReport completed(FrameReport report);
   FrameReport dropped(Timestamp time);
+  void record_pose(const Frame& frame, const FrameReport& report);
 
   // Constant after construction.
   Calibration given_;
@@ -174,6 +179,8 @@ class SlamImpl {
   Timestamp last_time_{};
   bool had_pose_ = false;  // whether any frame had a map pose
   bool is_finished_ = false;
+  SessionRecord record_;  // mission alone; points are in the session
+  Timestamp record_spacing_ = std::chrono::milliseconds(500);
   mutable SerialQueue calls_;
 };
 

@@ -70,6 +70,13 @@ void save_for_missions(StoredMap stored, const Vocabulary& vocabulary, const std
   save_for_missions_and_reload(stored, vocabulary, site, path);
 }
 
+void save_session_for_updates(StoredMap stored, SessionRecord session, const Vocabulary& vocabulary,
+                              const fs::path& path) {
+  stored.notes["software"] = "byre " BYRE_VERSION;
+  add_words(stored, vocabulary);
+  save_map(stored, {{}, std::move(session)}, path);
+}
+
 void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
                                   const fs::path& path) {
   stored.notes["software"] = "byre " BYRE_VERSION;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/floor_plan.h"
-#include "byre/map/map_file.h"
+#include "byre/map/map_upkeep.h"
 #include "byre/place/vocabulary.h"
 #include "byre/slam/places/offline_map.h"
 
@@ -34,5 +34,9 @@ void save_for_missions(StoredMap stored, const Vocabulary& vocabulary, const std
 // Also updates `stored` to the map as read back from the file.
 void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
                                   const std::filesystem::path& path);
+
+// Saves what a mission learned. stored: its online map.
+void save_session_for_updates(StoredMap stored, SessionRecord session, const Vocabulary& vocabulary,
+                              const std::filesystem::path& path);
 
 }  // namespace byre
