@@ -105,7 +105,7 @@ endif()
 
 # Folders with a separate test program, byre_<room>_<folder>_tests. The others share the program of their room. Folders
 # with and without threads are apart, so that the thread sanitizer builds few tests without threads.
-set(BYRE_FOLDERS_TESTED_ALONE slam/window slam/mapping slam/localisation slam/session slam/system playback/archive
+set(BYRE_FOLDERS_TESTED_ALONE slam/window slam/mapping slam/localisation slam/session slam/upkeep slam/system playback/archive
     playback/report viewer/web ros2/dds ros2/fleet ros2/node)
 
 # The slowest tests, started first so that none of them runs alone at the end.

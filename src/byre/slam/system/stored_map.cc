@@ -1,5 +1,7 @@
 #include "byre/slam/system/stored_map.h"
 
+#include "byre/base/binary_file.h"
+#include "byre/base/printable.h"
 #include "byre/input_error.h"
 #include "byre/place/map_words.h"
 
@@ -75,6 +77,32 @@ void save_session_for_updates(StoredMap stored, SessionRecord session, const Voc
   stored.notes["software"] = "byre " BYRE_VERSION;
   add_words(stored, vocabulary);
   save_map(stored, {{}, std::move(session)}, path);
+}
+
+MapVersion load_version(const fs::path& path, const Vocabulary& vocabulary) {
+  const std::vector<std::byte> bytes = read_file(path);
+  MapUpkeep upkeep = read_upkeep(bytes, path.string());
+  if (upkeep.session) {
+    throw InputError(path.string(), "is a session, not a map", "give the map first, then the sessions");
+  }
+  return {map_id(bytes, path.string()), made_ready(read_map(bytes, path.string()), path, vocabulary),
+          std::move(upkeep.survival)};
+}
+
+StoredSession load_session(const fs::path& path, const Vocabulary& vocabulary) {
+  const std::vector<std::byte> bytes = read_file(path);
+  MapUpkeep upkeep = read_upkeep(bytes, path.string());
+  if (!upkeep.session) {
+    throw InputError(path.string(), "is a map, not a session", "save a session with byre run --save-session");
+  }
+  return {printable(path.stem().string()), made_ready(read_map(bytes, path.string()), path, vocabulary),
+          *std::move(upkeep.session)};
+}
+
+void save_child(MapUpdate update, const Vocabulary& vocabulary, const fs::path& path) {
+  update.child->notes["software"] = "byre " BYRE_VERSION;
+  add_words(*update.child, vocabulary);
+  save_map(*update.child, {std::move(update.survival), {}}, path);
 }
 
 void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,

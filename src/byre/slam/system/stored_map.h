@@ -4,6 +4,7 @@
 #include "byre/map/map_upkeep.h"
 #include "byre/place/vocabulary.h"
 #include "byre/slam/places/offline_map.h"
+#include "byre/slam/upkeep/update_map.h"
 
 #include <filesystem>
 #include <memory>
@@ -38,5 +39,12 @@ void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabular
 // Saves what a mission learned. stored: its online map.
 void save_session_for_updates(StoredMap stored, SessionRecord session, const Vocabulary& vocabulary,
                               const std::filesystem::path& path);
+
+// Load a map and a session for update_map, as load_for_mapping() does. Throw InputError also if given one for the
+// other.
+MapVersion load_version(const std::filesystem::path& path, const Vocabulary& vocabulary);
+StoredSession load_session(const std::filesystem::path& path, const Vocabulary& vocabulary);
+// Saves the child of an update. Precondition: there is one.
+void save_child(MapUpdate update, const Vocabulary& vocabulary, const std::filesystem::path& path);
 
 }  // namespace byre

@@ -1,0 +1,128 @@
+#include "byre/slam/upkeep/stored_session.h"
+
+#include "byre/geometry/rectified_change.h"
+#include "byre/slam/window/online_copy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace byre {
+namespace {
+
+// The newest recording by a camera of this size; nullptr without one.
+const SourceRecording* recording_like(const StoredMap& map, const Calibration& calibration) {
+  const auto is_like = [&](const SourceRecording& recording) {
+    return recording.calibration.left.width == calibration.left.width &&
+           recording.calibration.left.height == calibration.left.height;
+  };
+  const auto found = std::find_if(map.recordings.rbegin(), map.recordings.rend(), is_like);
+  return found == map.recordings.rend() ? nullptr : &*found;
+}
+
+// Root-mean-square change of pixels and disparities between two calibrations, as a share of the focal length. The mean
+// of u and v is left out, which acts like a rotation.
+double calibration_difference(Calibration one, Calibration other) {
+  constexpr int kGrid = 8;
+  if (!one.right || !other.right) {
+    one.right.reset();
+    other.right.reset();
+  }
+  one.depth.reset();
+  other.depth.reset();
+  const RectifiedChange change(one, other);
+  const double disparity = one.right ? 5.0 : 0.0;  // pixels
+  std::vector<StereoPixel> moves;
+  StereoPixel mean = StereoPixel::Zero();
+  for (int row = 1; row < kGrid; ++row) {
+    for (int column = 1; column < kGrid; ++column) {
+      const StereoPixel pixel(one.left.width * column / static_cast<double>(kGrid),
+                              one.left.height * row / static_cast<double>(kGrid), disparity);
+      moves.push_back(change({pixel}).pixel - pixel);
+      mean += moves.back() / ((kGrid - 1) * (kGrid - 1));
+    }
+  }
+  mean.z() = 0.0;  // disparities do not act like a rotation
+  double sum = 0.0;
+  for (const StereoPixel& move : moves) sum += (move - mean).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(moves.size())) / change.rig().focal;
+}
+
+}  // namespace
+
+std::string fault_of(const StoredSession& session, const StoredMap& map, std::span<const std::uint64_t> maps) {
+  constexpr double kMaxDifference = 0.005;  // share of the focal length: 2 pixels of 400
+  constexpr double kLeastTrusted = 0.8;     // share of frames
+  const SessionRecord& record = session.record;
+  if (std::ranges::find(maps, record.map_id) == maps.end()) {
+    return "ran on another map (" + to_text(record.map_id) + ") than this one and the versions it was made of";
+  }
+  const Calibration& calibration = session.stored.recordings.back().present_calibration();
+  const SourceRecording* const known = recording_like(map, calibration);
+  if (known == nullptr) return "has images of another size than the map's recordings";
+  const double difference = calibration_difference(known->present_calibration(), calibration);
+  if (!(difference <= kMaxDifference)) {
+    return fmt::format("has another calibration than the map: pixels differ by {:.2f} % of the focal length",
+                       1e2 * difference);
+  }
+  if (record.trusted < kLeastTrusted * record.frames || record.frames == 0) {
+    return fmt::format("has a trusted pose in {} of {} frames only", record.trusted, record.frames);
+  }
+  return {};
+}
+
+SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found) {
+  constexpr double kMaxShift = 0.1;                            // metres
+  constexpr double kMaxTurn = 1.0 * std::numbers::pi / 180.0;  // radians
+  constexpr int kLeastFound = 2;
+  constexpr double kMaxElsewhere = 0.1;  // share of the frames found; one is never enough
+  SessionPlace place;
+  place.frames = static_cast<int>(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!found[i].camera_from_world) continue;
+    ++place.found;
+    const Pose change = frames[i].camera_from_world * inverse(*found[i].camera_from_world);
+    place.elsewhere += change.translation.norm() > kMaxShift || rotation_log(change.rotation).norm() > kMaxTurn;
+  }
+  if (place.frames < kLeastFound) {
+    place.fault = fmt::format("mapped too little to be placed: it has {} keyframes", place.frames);
+  } else if (place.found < kLeastFound) {
+    place.fault = fmt::format("is not found in the map: {} of its {} keyframes are", place.found, place.frames);
+  } else if (place.elsewhere > std::max(1.0, kMaxElsewhere * place.found)) {
+    place.fault = fmt::format("contradicts the map: {} of its {} keyframes found are more than 10 cm or 1 degree away",
+                              place.elsewhere, place.found);
+  }
+  return place;
+}
+
+MapGraph online_beside(const StoredSession& session, const MapGraph& offline) {
+  using Position = std::array<double, 3>;
+  const auto position_of = [](const MapGraph& map, PointId id) {
+    const Eigen::Vector3d& position = map.find_point(id)->position_in_world;
+    return Position{position.x(), position.y(), position.z()};
+  };
+  std::map<Position, PointId> originals;
+  for (const PointId id : offline.point_ids()) originals.emplace(position_of(offline, id), id);
+  MapGraph online = online_copy(session.stored.map);
+  const std::vector<PointId> points = online.point_ids();
+  for (std::size_t i = points.size() - session.record.copied_points; i < points.size(); ++i) {
+    const auto original = originals.find(position_of(online, points[i]));
+    if (original == originals.end()) continue;
+    const std::vector<Observation> observers = online.observations(points[i]);
+    for (const Observation& seen : observers) {
+      Sighting sighting = online.find_keyframe(seen.keyframe)->sightings[static_cast<std::size_t>(seen.feature)];
+      sighting.point = original->second;
+      online.remove_observation(seen);
+      online.add_observation(seen, sighting);
+    }
+  }
+  return online;
+}
+
+}  // namespace byre

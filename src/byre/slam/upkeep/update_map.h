@@ -1,0 +1,58 @@
+#pragma once
+
+#include "byre/place/vocabulary.h"
+#include "byre/slam/upkeep/replay.h"
+#include "byre/slam/upkeep/stored_session.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace byre {
+
+// A map with what a map file holds for its upkeep.
+struct MapVersion {
+  std::uint64_t id = 0;
+  StoredMap stored;
+  std::vector<Survival> survival;  // by point; empty: unknown
+};
+
+struct SessionUse {
+  std::string name;
+  SessionPlace place;        // its fault excludes the session
+  bool has_records = false;  // sightings and misses count: it ran on this very version
+  int keyframes_added = 0;
+  int points_added = 0;
+};
+
+struct MapUpdate {
+  std::vector<SessionUse> sessions;
+  int points_retired = 0;
+  int keyframes_removed = 0;       // retired points were all that they saw
+  std::vector<PlaceProof> places;  // by the frames of all used sessions
+  int places_spared = 0;           // left as they are, since a first attempt made them worse
+  std::string refusal{};           // why there is no child; empty: there is one
+  std::optional<StoredMap> child;
+  std::vector<Survival> survival;  // survival of the child's points
+};
+
+// Steps of the update, before each of them.
+using StepHook = std::function<void(const char* step)>;
+
+// Updates a map by sessions of missions that ran on it. Points that are unlikely to exist by now are removed; keyframes
+// and points of new or changed places are added and adjusted around the others, which do not move. Places that an
+// attempt makes worse are left as they are in the next one. There is a child only if no place of the sessions' frames
+// is worse than before, see PlaceProof. Preconditions: keyframes have words of the vocabulary; the map is metric.
+MapUpdate update_map(
+    const MapVersion& parent, const std::vector<StoredSession>& sessions, const Vocabulary& vocabulary,
+    const StepHook& before_step = [](const char*) {});
+
+// Ids of the versions that a map was made of, the newest first, by its notes.
+struct MapHistory {
+  std::uint64_t parent = 0;
+  std::string change;  // "3 sessions: evening, night, morning; 31 keyframes and 904 points added, 12 points retired"
+};
+std::vector<MapHistory> history_of(const StoredMap& stored);
+
+}  // namespace byre

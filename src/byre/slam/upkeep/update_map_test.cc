@@ -1,0 +1,267 @@
+#include "byre/slam/upkeep/update_map.h"
+
+#include "byre/slam/places/place_scene.h"
+#include "byre/slam/session/session.h"
+#include "byre/slam/upkeep/additions.h"
+#include "byre/slam/upkeep/session_summary.h"
+
+#include <array>
+#include <set>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr std::uint64_t kId = 0x1234;
+constexpr std::uint64_t kRoom = 1, kOtherRoom = 2;
+
+SimulatedMission circling(double laps, std::uint64_t noise_seed, std::uint64_t room = kRoom) {
+  SimulationOptions options;
+  options.seed = room;
+  options.noise_seed = noise_seed;
+  return simulate_mission(simulated_rig(), circling_trajectory(static_cast<int>(120 * laps), 10.0, 2.0, laps), options);
+}
+
+Calibration calibration() {
+  const Rig rig = simulated_rig();
+  const Camera camera{CameraModel::pinhole, rig.width, rig.height, rig.focal, rig.focal, rig.cx, rig.cy};
+  return {camera, StereoPartner{camera, {Eigen::Quaterniond::Identity(), {-rig.baseline, 0.0, 0.0}}},
+          rig.body_from_camera};
+}
+
+MapVersion version_of(const SimulatedMission& visit) {
+  MapVersion version;
+  version.id = kId;
+  version.stored.map = offline_copy(offline_map_of(visit)->map());
+  version.stored.recordings = {{"day", calibration()}};
+  version.stored.vocabulary_checksum = simulated_vocabulary().checksum();
+  return version;
+}
+
+StoredSession session_of(const SimulatedMission& mission, const MapVersion& version) {
+  const auto offline = std::make_shared<const OfflineMap>(version.stored.map, simulated_vocabulary());
+  Session session(simulated_rig(), {}, SessionExecutors(make_inline_executor(), make_inline_executor()),
+                  simulated_vocabulary(), offline);
+  StoredSession stored{"evening", {}, {}};
+  for (const Frame& frame : mission.frames) {
+    stored.record.trusted += session.process(frame).health.verdict == Verdict::trusted;
+    ++stored.record.frames;
+  }
+  session.finish();
+  const MapGraph map = standalone_copy(session.map());
+  stored.stored.map = offline_copy(map);
+  stored.stored.recordings = {{"evening", calibration()}};
+  stored.record.map_id = version.id;
+  stored.record.copied_points = static_cast<std::uint32_t>(std::ranges::count_if(
+      map.point_ids(), [&](PointId id) { return session.map().online().find_point(id) == nullptr; }));
+  stored.record.points = session.point_records();
+  return stored;
+}
+
+MapUpdate updated(const MapVersion& version, const std::vector<StoredSession>& sessions) {
+  return update_map(version, sessions, simulated_vocabulary());
+}
+
+std::set<std::array<double, 3>> positions(const MapGraph& map) {
+  std::set<std::array<double, 3>> positions;
+  for (const PointId id : map.point_ids()) {
+    const Eigen::Vector3d& position = map.find_point(id)->position_in_world;
+    positions.insert({position.x(), position.y(), position.z()});
+  }
+  return positions;
+}
+
+// Share of frames that the map finds, each within 5 cm of the truth.
+double share_found(const MapGraph& map, const SimulatedMission& mission) {
+  const PlaceIndex index = index_of(map, simulated_vocabulary());
+  int found = 0, frames = 0;
+  for (std::size_t i = 0; i < mission.frames.size(); i += 6, ++frames) {
+    const std::array<ReplayFrame, 1> frame{ReplayFrame{mission.frames[i], mission.rig, {}}};
+    const Replayed place = replay(frame, map, index).front();
+    if (!place.camera_from_world) continue;
+    const Pose error = *place.camera_from_world * inverse(true_camera_from_world(mission, i));
+    found += error.translation.norm() < 0.05;
+  }
+  return static_cast<double>(found) / frames;
+}
+
+// A map of a third of the room's lap, and a mission on the whole lap.
+class MapUpdates : public testing::Test {
+ protected:
+  MapVersion parent_ = version_of(circling(0.4, 1));
+  StoredSession session_ = session_of(circling(1.0, 2), parent_);
+};
+
+TEST_F(MapUpdates, AddPlacesThatTheMapLacks) {
+  session_.record.trusted = session_.record.frames;  // most of the lap is not on the map
+  const MapUpdate update = updated(parent_, {session_});
+  ASSERT_TRUE(update.child) << update.refusal << update.sessions[0].place.fault;
+  EXPECT_GT(update.sessions[0].keyframes_added, 3);
+  EXPECT_GT(update.sessions[0].points_added, 300);
+  EXPECT_THAT(find_faults(*update.child), IsEmpty());
+  const SimulatedMission later = circling(1.0, 3);
+  EXPECT_LT(share_found(parent_.stored.map, later), 0.7);
+  EXPECT_GT(share_found(update.child->map, later), 0.85);
+}
+
+TEST_F(MapUpdates, MoveNoPointAndNoKeyframeThatStays) {
+  session_.record.trusted = session_.record.frames;
+  const MapUpdate update = updated(parent_, {session_});
+  ASSERT_TRUE(update.child);
+  const StoredMap written = read_map(write_map(parent_.stored), "parent");
+  const StoredMap child = read_map(write_map(*update.child), "child");
+  const auto before = positions(written.map), after = positions(child.map);
+  EXPECT_EQ(update.points_retired, 0);
+  EXPECT_TRUE(std::ranges::includes(after, before));
+  for (const KeyframeId id : written.map.keyframe_ids()) {
+    const Pose &stays = child.map.find_keyframe(id)->camera_from_world,
+               &was = written.map.find_keyframe(id)->camera_from_world;
+    EXPECT_EQ(stays.translation, was.translation);
+    EXPECT_EQ(stays.rotation.coeffs(), was.rotation.coeffs());
+  }
+}
+
+TEST_F(MapUpdates, RefuseSessionsWithAReason) {
+  session_.record.trusted = session_.record.frames;
+  const auto fault_with = [&](auto change) {
+    StoredSession session = session_;
+    change(session);
+    const MapUpdate update = updated(parent_, {session});
+    EXPECT_FALSE(update.child);
+    EXPECT_EQ(update.refusal, "no session fits the map");
+    return update.sessions[0].place.fault;
+  };
+  EXPECT_THAT(fault_with([](StoredSession& session) { session.record.map_id = 7; }), HasSubstr("ran on another map"));
+  EXPECT_THAT(fault_with([](StoredSession& session) { session.record.trusted /= 2; }),
+              HasSubstr("has a trusted pose in"));
+  EXPECT_THAT(fault_with([](StoredSession& session) {
+                session.stored.recordings[0].calibration.left.fx *= 1.05;
+                session.stored.recordings[0].calibration.left.fy *= 1.05;
+              }),
+              HasSubstr("has another calibration than the map"));
+  EXPECT_THAT(fault_with([](StoredSession& session) { session.stored.recordings[0].calibration.left.width = 64; }),
+              HasSubstr("images of another size"));
+  EXPECT_THAT(fault_with([&](StoredSession& session) {
+                const MapVersion elsewhere = version_of(circling(0.4, 1, kOtherRoom));
+                session.stored.map = session_of(circling(1.0, 2, kOtherRoom), elsewhere).stored.map;
+                session.record.copied_points = 0;
+              }),
+              HasSubstr("is not found in the map"));
+  EXPECT_THAT(fault_with([](StoredSession& session) {
+                MapGraph moved(Origin::offline);
+                moved = session.stored.map;
+                for (const KeyframeId id : moved.keyframe_ids()) {
+                  const Keyframe& keyframe = *moved.find_keyframe(id);
+                  moved.move_keyframe(id,
+                                      keyframe.camera_from_world * Pose{Eigen::Quaterniond::Identity(), {0.3, 0, 0}},
+                                      keyframe.covariance);
+                }
+                session.stored.map = moved;
+              }),
+              HasSubstr("contradicts the map"));
+}
+
+TEST_F(MapUpdates, RetirePointsThatMissionsMissRepeatedly) {
+  StoredSession session = session_;
+  session.record.trusted = session.record.frames;
+  constexpr std::uint32_t kGone = 20;
+  for (std::uint32_t i = 0; i < kGone; ++i) session.record.points[7 * i] = {40, 0, 0, 30.0f};
+  const MapUpdate once = updated(parent_, {session});
+  ASSERT_TRUE(once.child) << once.refusal << once.sessions[0].place.fault;
+  EXPECT_EQ(once.points_retired, 0) << "one mission may be mistaken";
+  const MapUpdate thrice = updated(parent_, {session, session, session});
+  ASSERT_TRUE(thrice.child) << thrice.refusal;
+  EXPECT_EQ(thrice.points_retired, kGone);
+  EXPECT_EQ(thrice.survival.size(), static_cast<std::size_t>(thrice.child->map.point_count()));
+}
+
+TEST_F(MapUpdates, NeedKeyframesOfTheMission) {
+  const StoredSession session = session_of(circling(0.4, 2), parent_);
+  EXPECT_THAT(updated(parent_, {session}).sessions[0].place.fault, HasSubstr("mapped too little to be placed"));
+}
+
+TEST_F(MapUpdates, IgnorePartsThatNoPointConnectsToTheMap) {
+  const MapGraph online = online_beside(session_, parent_.stored.map);
+  MapGraph apart(Origin::online);
+  apart.add_rig(online.rigs()[0]);
+  for (const KeyframeId id : online.keyframe_ids()) {
+    Keyframe keyframe = *online.find_keyframe(id);
+    for (Sighting& sighting : keyframe.sightings) sighting.point.reset();
+    apart.add_keyframe(std::move(keyframe));
+  }
+  EXPECT_FALSE(keyframes_to_add(parent_.stored.map, parent_.stored.map, online).empty());
+  EXPECT_THAT(keyframes_to_add(parent_.stored.map, parent_.stored.map, apart), IsEmpty());
+}
+
+TEST_F(MapUpdates, TakeAPlaceFromOneMissionOnly) {
+  session_.record.trusted = session_.record.frames;
+  StoredSession again = session_of(circling(1.0, 4), parent_);
+  again.record.trusted = again.record.frames;
+  const MapUpdate update = updated(parent_, {session_, again});
+  ASSERT_TRUE(update.child) << update.refusal;
+  EXPECT_LT(update.sessions[1].keyframes_added, update.sessions[0].keyframes_added / 2);
+}
+
+TEST(SessionSummary, KeepsSeparateKeyframesUpToALimit) {
+  const SimulatedMission mission = circling(1.0, 1);
+  MapGraph map = true_map(mission, 1, Origin::online);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    if (id.number == 0) continue;
+    ASSERT_EQ(map.find_keyframe(id)->parent->number, id.number - 1);
+  }
+  const int keyframes = map.keyframe_count();
+  thin_out(map, 1000);
+  EXPECT_LT(map.keyframe_count(), keyframes);
+  EXPECT_GT(map.keyframe_count(), 20);
+  thin_out(map, 20);
+  EXPECT_LE(map.keyframe_count(), 20);
+  EXPECT_GT(map.keyframe_count(), 8);
+  EXPECT_THAT(find_faults(map), IsEmpty());
+}
+
+TEST_F(MapUpdates, AreNotedInTheChild) {
+  session_.record.trusted = session_.record.frames;
+  MapUpdate update = updated(parent_, {session_});
+  ASSERT_TRUE(update.child);
+  const std::vector<MapHistory> history = history_of(*update.child);
+  ASSERT_EQ(history.size(), 1u);
+  EXPECT_EQ(history[0].parent, kId);
+  EXPECT_THAT(history[0].change, HasSubstr("evening: "));
+  const MapVersion child{0x5678, *std::move(update.child), update.survival};
+  const MapUpdate again = updated(child, {session_});
+  EXPECT_EQ(again.sessions[0].place.fault, "") << "it ran on the parent";
+  EXPECT_FALSE(again.sessions[0].has_records);
+  ASSERT_TRUE(again.child) << again.refusal;
+  EXPECT_EQ(history_of(*again.child).size(), 2u);
+}
+
+TEST(PlaceProof, FindsPlacesThatBecomeWorse) {
+  const SimulatedMission mission = quarter_circle(without_noise());
+  std::vector<ReplayFrame> frames;
+  std::vector<Replayed> before;
+  for (std::size_t i = 0; i < mission.frames.size(); ++i) {
+    frames.push_back({mission.frames[i], mission.rig, true_camera_from_world(mission, i)});
+    before.push_back({frames.back().camera_from_world, 1e-10 * Matrix6::Identity(), 100});
+  }
+  const auto faults_after = [&](auto change) {
+    std::vector<Replayed> after = before;
+    for (Replayed& frame : after) change(frame);
+    std::string faults;
+    for (const PlaceProof& place : compare_places(frames, before, after)) faults += place.fault;
+    return faults;
+  };
+  EXPECT_EQ(faults_after([](Replayed&) {}), "");
+  EXPECT_THAT(faults_after([](Replayed& frame) { frame.camera_from_world.reset(); }),
+              HasSubstr("frames are found instead"));
+  EXPECT_THAT(faults_after([](Replayed& frame) { frame.inliers = 80; }), HasSubstr("points fit instead of"));
+  EXPECT_THAT(faults_after([](Replayed& frame) { frame.camera_from_world->translation.z() += 0.02; }),
+              HasSubstr("poses move by "));
+  EXPECT_EQ(faults_after([](Replayed& frame) { frame.camera_from_world->translation.z() += 0.004; }), "");
+}
+
+}  // namespace
+}  // namespace byre
