@@ -237,6 +237,12 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   return {now == OfflineView::blinded ? SessionEvent::blinded : SessionEvent::entered_mapped_area};
 }
 
+// Numbers of points are without gaps in maps of files, but not in all others.
+PointRecord& OfflineTracker::record_of(PointId point) {
+  if (point.number >= point_records_.size()) point_records_.resize(point.number + 1);
+  return point_records_[point.number];
+}
+
 // Points hidden from the pose by walls, by dirt or by darkness are not missed: they were seen from nearby keyframes,
 // and the share of points seen weighs the frame.
 void OfflineTracker::record_points(const Seen& seen) {
@@ -244,12 +250,12 @@ void OfflineTracker::record_points(const Seen& seen) {
   const auto count = [](const ScratchVector<PointId>& points) { return static_cast<float>(points.size()); };
   const float share = std::min(count(seen.view->seen) / count(seen.view->expected), 1.0f);
   for (const PointId id : seen.view->expected) {
-    PointRecord& record = point_records_[id.number];
+    PointRecord& record = record_of(id);
     ++record.expected;
     record.seen += std::ranges::binary_search(seen.view->seen, id);
     record.due += share;
   }
-  for (const PointId id : seen.track.offline_moved) ++point_records_[id.number].elsewhere;
+  for (const PointId id : seen.track.offline_moved) ++record_of(id).elsewhere;
 }
 
 void OfflineTracker::mark_lost() {

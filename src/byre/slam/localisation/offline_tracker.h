@@ -121,6 +121,7 @@ class OfflineTracker {
  private:
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
   void record_points(const Seen& seen);
+  PointRecord& record_of(PointId point);
   ScratchVector<PointId> points_around(const Pose& camera_from_offline) const;
   std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, std::span<const PointId> points,
                                        const Rig& rig, const ImageMask& hidden) const;

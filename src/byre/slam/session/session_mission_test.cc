@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include <gmock/gmock.h>
 
@@ -121,6 +122,20 @@ TEST(Mission, LocalisesInTheFirstFrameAndIsTrustedOnceConfirmed) {
   EXPECT_TRUE(reports[3].has(SessionEvent::localised));
   EXPECT_EQ(count_trusted(reports), static_cast<int>(reports.size()) - 3);
   EXPECT_LT(worst_trusted(reports, mission.truth), 0.03);
+}
+
+TEST(Mission, RecordsSightingsByNumberInAMapWithRemovedPoints) {
+  MapGraph map = mapped(1.0)->map();
+  const std::vector<PointId> points = map.point_ids();
+  const std::size_t half = points.size() / 2;
+  for (std::size_t i = 0; i < half; ++i) map.remove_point(points[i]);
+  Session session = session_on(std::make_shared<const OfflineMap>(std::move(map), simulated_vocabulary()));
+  reports_of(session, circling(0.5, 2).frames);
+  const std::vector<PointRecord> records = session.point_records();
+  ASSERT_GT(records.size(), points.size() - half);
+  const auto is_seen = [](const PointRecord& record) { return record.seen > 0; };
+  EXPECT_EQ(std::ranges::count_if(std::span(records).first(half), is_seen), 0);
+  EXPECT_GT(std::ranges::count_if(records, is_seen), 100);
 }
 
 TEST(Mission, IsNotTrustedBeforeEnoughEvidence) {
