@@ -313,7 +313,7 @@ TEST_F(FileArguments, ReplaceOnlyFilesOfTheSameKindOrNone) {
       write(file,
             "\x89"
             "BYRE\r\n is how a map begins");
-      const bool is_map = output->get_type_name() == "MAP" || names == std::vector<std::string>{"import-colmap"};
+      const bool is_map = output_of(*output) <= Output::viewed_map;  // first in the list of kinds
       if (is_map) write(file, "\x89PNG\r\n is how an image begins");
       EXPECT_THAT(CommandLine().fault_of(keeping), HasSubstr("is not replaced because of --no-overwrite"))
           << joined(line);
