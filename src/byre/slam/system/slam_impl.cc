@@ -396,14 +396,14 @@ StoredMap SlamImpl::stored_map() const {
 }
 
 std::pair<StoredMap, SessionRecord> SlamImpl::session_to_store() const {
-  constexpr int kMaxKeyframes = 80;  // 3.5 MB
-  MapGraph map = standalone_copy(session_.map());
-  thin_out(map, kMaxKeyframes);
+  constexpr int kMaxKeyframes = 75;  // 4 MB of images of 752x480
+  MapGraph thin = online();
+  thin_out(thin, kMaxKeyframes);
+  MapGraph map = standalone_copy(MapView(session_.map().offline(), thin));
   SessionRecord record = record_;
   record.map_id = inputs_.offline_id;
   record.points = session_.point_records();
-  const auto is_copy = [this](PointId id) { return online().find_point(id) == nullptr; };
-  record.copied_points = static_cast<std::uint32_t>(std::ranges::count_if(map.point_ids(), is_copy));
+  record.copied_points = static_cast<std::uint32_t>(map.point_count() - thin.point_count());
   StoredMap stored = stored_metadata();
   stored.map = offline_copy(std::move(map));
   return {std::move(stored), std::move(record)};

@@ -30,12 +30,16 @@ std::vector<KeyframeId> separate_keyframes(const MapGraph& map, double spacing) 
 void thin_out(MapGraph& online, int max_keyframes) {
   constexpr double kSpacing = 0.3;
   constexpr double kGrowth = 1.3;
+  constexpr std::size_t kViews = 2;
   std::vector<KeyframeId> kept = separate_keyframes(online, kSpacing);
   for (double spacing = kSpacing; static_cast<int>(kept.size()) > max_keyframes; spacing *= kGrowth) {
     kept = separate_keyframes(online, spacing);
   }
   for (const KeyframeId id : online.keyframe_ids()) {
     if (!std::ranges::binary_search(kept, id)) online.remove_keyframe(id);
+  }
+  for (const PointId id : online.point_ids()) {
+    if (online.observations(id).size() < kViews) online.remove_point(id);
   }
 }
 

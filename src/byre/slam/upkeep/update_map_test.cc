@@ -220,6 +220,7 @@ TEST(SessionSummary, KeepsSeparateKeyframesUpToALimit) {
   thin_out(map, 20);
   EXPECT_LE(map.keyframe_count(), 20);
   EXPECT_GT(map.keyframe_count(), 8);
+  for (const PointId id : map.point_ids()) EXPECT_GE(map.observations(id).size(), 2u);
   EXPECT_THAT(find_faults(map), IsEmpty());
 }
 
