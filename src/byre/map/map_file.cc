@@ -353,10 +353,6 @@ MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std
   return file;
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<std::byte> written(const StoredMap& stored, const MapUpkeep* upkeep) {
   std::vector<std::byte> file(header_bytes(upkeep != nullptr ? kSectionCount : kUpkeep));
   const SectionEnds ends = write_sections(stored, upkeep, file);

@@ -1,16 +1,14 @@
 #include "byre/playback/report/update_report.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/playback/report/report_json.h"
 
 #include <algorithm>
-#include <numbers>
 
 namespace byre {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 Json session_json(const SessionUse& use) {
   return {{"name", use.name},
@@ -32,8 +30,8 @@ Json place_json(const PlaceProof& place) {
           {"inliers_after", place.inliers_after},
           {"shift_mm", 1e3 * place.shift},
           {"shift_sigma_mm", 1e3 * place.shift_sigma},
-          {"turn_deg", kDegreesPerRadian * place.turn},
-          {"turn_sigma_deg", kDegreesPerRadian * place.turn_sigma},
+          {"turn_deg", place.turn / kDegree},
+          {"turn_sigma_deg", place.turn_sigma / kDegree},
           {"fault", place.fault.empty() ? Json() : Json(place.fault)}};
 }
 

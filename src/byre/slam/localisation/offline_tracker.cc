@@ -237,7 +237,7 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   return {now == OfflineView::blinded ? SessionEvent::blinded : SessionEvent::entered_mapped_area};
 }
 
-// Numbers of points are without gaps in maps of files, but not in all others.
+// Grows the records for maps in memory whose point numbers have gaps; those of files have none.
 PointRecord& OfflineTracker::record_of(PointId point) {
   if (point.number >= point_records_.size()) point_records_.resize(point.number + 1);
   return point_records_[point.number];

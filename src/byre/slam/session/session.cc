@@ -95,8 +95,8 @@ void Session::deliver_results(Take take, Take take_local) {
   const JobKind global = state_.mission ? JobKind::place_search : JobKind::whole_map;
   for (const JobKind kind : {JobKind::local, JobKind::index, global, JobKind::calibration}) {
     try {
-      if (auto finished = (executors_.of(kind).*(kind == JobKind::local ? take_local : take))())
-        deliver(kind, *std::move(finished), state_);
+      const Take take_result = kind == JobKind::local ? take_local : take;
+      if (auto finished = (executors_.of(kind).*take_result)()) deliver(kind, *std::move(finished), state_);
     } catch (...) {
       state_.job(kind)->abandon();
       throw;

@@ -1,10 +1,11 @@
 #include "byre/slam/upkeep/replay.h"
 
+#include "byre/geometry/degrees.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,7 +38,6 @@ std::array<int, 4> place_of(const ReplayFrame& frame) {
 // A change of the pose of 5 mm and 0.05 degrees is never a fault, one of 20 mm or 0.3 degrees always, one in between if
 // it exceeds the standard deviation of a pose before.
 std::string fault_of(const PlaceProof& place) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr double kLeastInliers = 0.9;  // share of the inliers before
   if (place.found_after < place.found_before) {
     return fmt::format("{} of {} frames are found instead of {}", place.found_after, place.frames, place.found_before);

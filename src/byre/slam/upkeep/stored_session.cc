@@ -1,5 +1,6 @@
 #include "byre/slam/upkeep/stored_session.h"
 
+#include "byre/geometry/degrees.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/slam/window/online_copy.h"
 
@@ -7,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -78,8 +78,8 @@ std::string fault_of(const StoredSession& session, const StoredMap& map, std::sp
 }
 
 SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found) {
-  constexpr double kMaxShift = 0.1;                            // metres
-  constexpr double kMaxTurn = 1.0 * std::numbers::pi / 180.0;  // radians
+  constexpr double kMaxShift = 0.1;  // metres
+  constexpr double kMaxTurn = 1.0 * kDegree;
   constexpr int kLeastFound = 2;
   constexpr double kMaxElsewhere = 0.1;  // share of the frames found; one is never enough
   SessionPlace place;

@@ -51,7 +51,7 @@ MapUpdate update_map(
 // Ids of the versions that a map was made of, the newest first, by its notes.
 struct MapHistory {
   std::uint64_t parent = 0;
-  std::string change;  // "3 sessions: evening, night, morning; 31 keyframes and 904 points added, 12 points retired"
+  std::string change;  // "evening, night: 31 keyframes and 904 points added, 12 points retired (byre 0.1.0)"
 };
 std::vector<MapHistory> history_of(const StoredMap& stored);
 
