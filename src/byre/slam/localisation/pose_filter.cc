@@ -12,12 +12,17 @@
 namespace byre {
 namespace {
 
+// Square metres, sum over the axes.
+double position_variance(const Matrix6& covariance) {
+  return covariance.topLeftCorner<3, 3>().trace();
+}
+
 std::optional<Odometry::Offset> offset_from_online(const HybridTrack& track, const Rig& rig) {
   if (!track.from_online) return std::nullopt;
   const Pose online_from_body =
       inverse(body_pose(rig, *track.from_online)) * body_pose(rig, track.tracked.camera_from_world);
   const Matrix6 covariance = move_covariance(track.from_online_covariance, rig.body_from_camera);
-  return Odometry::Offset{online_from_body, std::sqrt(covariance.topLeftCorner<3, 3>().trace())};
+  return Odometry::Offset{online_from_body, std::sqrt(position_variance(covariance))};
 }
 
 }  // namespace
@@ -36,7 +41,7 @@ void PoseFilter::add_odometry(const std::optional<BodyMotion>& motion) {
 bool PoseFilter::is_accurate(const BodyMotion& measured) const {
   constexpr double kMostShare = 0.15;  // share of the scene depth
   constexpr double kMostTurn = 0.1;    // radians
-  return std::sqrt(measured.covariance.topLeftCorner<3, 3>().trace()) <= kMostShare * scene_depth_ &&
+  return std::sqrt(position_variance(measured.covariance)) <= kMostShare * scene_depth_ &&
          std::sqrt(measured.covariance.bottomRightCorner<3, 3>().trace()) <= kMostTurn;
 }
 
@@ -54,6 +59,41 @@ Matrix6 PoseFilter::bridged_odometry_covariance() const {
   if (!odometry_open_) return Matrix6::Zero();
   return move_covariance(odometry_open_->covariance,
                          inverse(odometry_.odometry_from_body()) * odometry_open_->map_from_body);
+}
+
+Matrix6 PoseFilter::jump_covariance() const {
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.topLeftCorner<3, 3>().diagonal().setConstant(jump_variance_ / 3.0);
+  return covariance;
+}
+
+// Compares a tracked pose with its prediction by measured motion and by velocity; the closer one counts, because wheels
+// slip and velocities change. Precondition: the pose is not in the trajectory yet.
+void PoseFilter::note_jump(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map) {
+  constexpr double kSigmas = 4.0;
+  constexpr double kAcceleration = 5.0;  // m/s^2, one sigma
+  constexpr double kDecay = 1.0;         // seconds
+  if (!has_pose_ || trajectory_.empty()) return void(jump_variance_ = 0.0);
+  const double seconds = to_seconds(seen.frame.time - trajectory_.back().time);
+  const double before = std::exchange(jump_variance_, jump_variance_ * std::exp(-seconds / kDecay));
+  if (seen.is_relocalised || !place_.is_confirmed()) return;
+  const Pose last = byre::camera_from_world(map, trajectory_.back());
+  const Matrix6 now = move_covariance(seen.track.tracked.covariance, rig.body_from_camera);
+  const double known =
+      std::max(0.0, position_variance(quality_.covariance) - before) + position_variance(now) + seen.drift * seen.drift;
+  const auto unexplained = [&](const Pose& predicted, double variance) {
+    return (predicted.translation - body.translation).squaredNorm() - kSigmas * kSigmas * (known + variance);
+  };
+  std::optional<double> jump;
+  if (const auto predicted = motion_.predict_by_velocity(last, seconds)) {
+    jump = unexplained(body_pose(rig, *predicted), std::pow(kAcceleration * seconds * seconds, 2));
+  }
+  if (const auto& measured = motion_.measured()) {
+    const Pose predicted = body_pose(rig, last) * measured->last_from_body;
+    const double by_measured = unexplained(predicted, position_variance(measured->covariance));
+    jump = std::min(jump.value_or(by_measured), by_measured);
+  }
+  if (jump) jump_variance_ = std::max(jump_variance_, *jump);
 }
 
 // Adds the covariance of a measured motion that ends at a found place, which the odometry follows.
@@ -104,7 +144,7 @@ bool PoseFilter::is_unreachable(const Frame& frame, const HybridTrack& track, co
   const bool is_elsewhere = measured && is_beyond(measured->covariance, inverse(measured->map_from_body) * now);
   const auto reach = reach_(last_seen.time, frame.time);
   if (!reach) return false;
-  const double carried = std::sqrt(carried_covariance().topLeftCorner<3, 3>().trace());
+  const double carried = std::sqrt(position_variance(carried_covariance()));
   const Pose before = body_pose(rig, byre::camera_from_world(map, last_seen));
   return (now.translation - before.translation).norm() > *reach + kSigmas * carried || is_elsewhere;
 }
@@ -114,7 +154,7 @@ bool PoseFilter::is_beyond(const Matrix6& covariance, const Pose& predicted_from
   constexpr double kLeastShare = 0.2;  // share of the scene depth
   constexpr double kLeastTurn = 0.5;   // radians
   constexpr double kSigmas = 3.0;
-  const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double sigma = std::sqrt(position_variance(covariance));
   const double turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
   return predicted_from_body.translation.norm() > kLeastShare * scene_depth_ + kSigmas * sigma ||
          rotation_log(predicted_from_body.rotation).norm() > kLeastTurn + kSigmas * turn_sigma;
@@ -231,6 +271,7 @@ PoseFilter::Progress PoseFilter::note(const TrackedPose& seen, const Rig& rig, c
   std::optional<BodyMotion> odometry_motion;
   if (seen.is_relocalised && !trajectory_.empty() && last_odometry_)
     odometry_motion = bridge_ ? *bridge_ * *last_odometry_ : *last_odometry_;
+  note_jump(seen, body, rig, map);
   progress.step = move_to(seen, body, rig, map);
   add_odometry_covariance(odometry_motion);
   if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;

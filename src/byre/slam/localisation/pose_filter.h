@@ -65,6 +65,9 @@ class PoseFilter {
   // Covariance of the present submap's beginning in the map, moved to the present pose; adds to the covariance within
   // the submap.
   Matrix6 carried_covariance() const;
+  // Covariance of the present pose by jumps of recent poses that neither the measured motion, nor the velocity, nor the
+  // covariances explain: a pose before or after a jump is wrong. Decays within seconds of consistent motion.
+  Matrix6 jump_covariance() const;
   // Covariance of the odometry due to bridges that ended at found places; without the drift of visual odometry.
   Matrix6 bridged_odometry_covariance() const;
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last visual pose
@@ -101,6 +104,7 @@ class PoseFilter {
     const PlaceView* view = nullptr;               // part of the offline map in view; nullptr without a map
     const PlaceHypothesis* known_place = nullptr;  // for finds: see hypothesis_of_relocalisation; nullptr: none
     double log_odds_of_rivals = kNoRivals;         // see PlaceHypothesis::observe
+    double drift = 0.0;                            // metres, since offline points last constrained the pose
   };
   struct Progress {
     double step = 0.0;                // metres of smooth motion
@@ -153,6 +157,7 @@ class PoseFilter {
   Accepted last_known(const Rig& rig, const MapView& map) const;  // precondition: there is a last accepted pose
   void propagate_before_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
+  void note_jump(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   bool is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const;
   void add_odometry_covariance(const std::optional<BodyMotion>& odometry_motion);
   bool is_beyond(const Matrix6& covariance, const Pose& predicted_from_body) const;
@@ -197,6 +202,7 @@ class PoseFilter {
   // Covariance due to bridges, at the odometry pose at the end of the last one.
   std::optional<Carried> odometry_open_;
   Odometry odometry_;
+  double jump_variance_ = 0.0;  // square metres, see jump_covariance()
   PlaceHypothesis place_;
   PlaceHypothesis place_before_;  // last confirmed and accepted place before its pose was lost
   bool is_by_hint_ = false;

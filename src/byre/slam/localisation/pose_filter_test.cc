@@ -94,6 +94,43 @@ TEST_F(WhereaboutsOnATrueMap, PredictConstantVelocity) {
   EXPECT_THAT(predicted, PoseNear(true_camera_from_world(mission_, last + 1), 0.01, 0.01));
 }
 
+TEST_F(WhereaboutsOnATrueMap, ReportAnUnexplainedJumpInTheCovariance) {
+  find_and_confirm(0);
+  const auto last = [&] { return pose_filter_.trajectory().size() - 1; };
+  const auto sigma = [&] { return std::sqrt(pose_filter_.jump_covariance().topLeftCorner<3, 3>().trace()); };
+  note(last() + 1);
+  EXPECT_EQ(sigma(), 0.0);
+
+  const std::size_t frame = last() + 1;
+  HybridTrack elsewhere = track_of(frame);
+  const Pose jump{Eigen::Quaterniond::Identity(), {0.5, 0.0, 0.0}};
+  elsewhere.tracked.camera_from_world = elsewhere.tracked.camera_from_world * jump;
+  const auto note_elsewhere = [&](double drift, const std::optional<BodyMotion>& motion) {
+    PoseFilter filter = pose_filter_;
+    filter.add_odometry(motion);
+    filter.note({mission_.frames[frame], elsewhere, false, true, 0, false, &view_, nullptr, kNoRivals, drift},
+                mission_.rig, map_);
+    return std::sqrt(filter.jump_covariance().topLeftCorner<3, 3>().trace());
+  };
+  const Pose body = body_pose(mission_.rig, true_camera_from_world(mission_, frame - 1));
+  const Pose body_elsewhere = body_pose(mission_.rig, elsewhere.tracked.camera_from_world);
+  EXPECT_EQ(note_elsewhere(0.2, {}), 0.0) << "drift without offline points explains it";
+  EXPECT_EQ(note_elsewhere(0.0, inverse(body) * body_elsewhere), 0.0) << "wheels explain it";
+  EXPECT_NEAR(note_elsewhere(0.0, {}), 0.5, 0.1);
+}
+
+TEST_F(WhereaboutsOnATrueMap, ForgetAJumpAfterConsistentMotion) {
+  find_and_confirm(0);
+  const std::size_t frame = pose_filter_.trajectory().size();
+  HybridTrack elsewhere = track_of(frame);
+  elsewhere.tracked.camera_from_world.translation.x() += 0.5;
+  pose_filter_.add_odometry({});
+  pose_filter_.note({mission_.frames[frame], elsewhere, false, true, 0, false, &view_}, mission_.rig, map_);
+  const double jumped = pose_filter_.jump_covariance().trace();
+  for (std::size_t later = frame + 1; later < 40; ++later) note(later);
+  EXPECT_LT(pose_filter_.jump_covariance().trace(), 0.2 * jumped);
+}
+
 TEST_F(WhereaboutsOnATrueMap, ExcludeRelocalisationsFromThePathLength) {
   EXPECT_EQ(note(0, true).step, 0.0);
   const double step = note(1).step;

@@ -108,7 +108,7 @@ FrameReport fill_poses(FrameReport report, const FrameSummary& summary) {
     report.odometry_from_body = odometry.odometry_from_body();
   }
   if (summary.pose_filter.bridge()) return bridged(std::move(report), summary);
-  report.covariance = summary.pose_filter.carried_covariance();
+  report.covariance = summary.pose_filter.carried_covariance() + summary.pose_filter.jump_covariance();
   if (!summary.track) return report;
   const TrackedFrame& tracked = summary.track->tracked;
   report.expected_points = tracked.expected;

@@ -259,7 +259,8 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
   const PoseFilter::Progress progress = pose_filter.note(
       {input.frame, track, located.is_relocalised, state.is_registered(), state.mapper.submaps().present(),
        located.is_by_hint, view ? &*view : nullptr, known_place ? &*known_place : nullptr,
-       is_on_map ? state.mission->log_odds_of_rivals() : kNoRivals},
+       is_on_map ? state.mission->log_odds_of_rivals() : kNoRivals,
+       is_on_map ? state.mission->mission().drift().translation : 0.0},
       state.rig, state.map());
   state.tracker.note(track);
   if (!input.cuts.online_points) {
