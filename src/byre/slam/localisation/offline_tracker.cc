@@ -79,7 +79,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
   const std::vector<PointId> in_common = finds_rivals ? points_in_common(pose) : std::vector<PointId>();
   return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden,
                         [this](PointId id) { return mission_.moved_points().is_suspended(id); },
-                        [&](PointId id) { return std::ranges::binary_search(in_common, id); }});
+                        [&](PointId id) { return std::ranges::binary_search(in_common, id); }, offline_->cell_unit()});
 }
 
 double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
@@ -135,7 +135,9 @@ RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& 
     return std::ranges::any_of(
         look_alikes_, [id](const LookAlikePlace& place) { return std::ranges::binary_search(place.repeated, id); });
   };
-  return {pose, view_of_place({offline_->map(), rig, frame, there, nearby, around, hidden, is_repeated}),
+  return {pose,
+          view_of_place(
+              {offline_->map(), rig, frame, there, nearby, around, hidden, is_repeated, {}, offline_->cell_unit()}),
           tracked.has_value()};
 }
 

@@ -90,7 +90,16 @@ PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, con
       local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
   const ScratchVector<PointId> nearby =
       points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
-  PlaceView view = view_of_place({offline.map(), query.rig, query.frame, *found.tracked, nearby, around, query.hidden});
+  PlaceView view = view_of_place({offline.map(),
+                                  query.rig,
+                                  query.frame,
+                                  *found.tracked,
+                                  nearby,
+                                  around,
+                                  query.hidden,
+                                  {},
+                                  {},
+                                  offline.cell_unit()});
   search.found = FoundPlace{found.tracked->camera_from_world, depth, std::move(view)};
   search.refused = DistrustReason::none;
   return search;

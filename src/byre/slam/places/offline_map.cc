@@ -4,6 +4,7 @@
 #include "byre/map/keyframe_path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -22,6 +23,27 @@ Matrix6 median_covariance(const MapGraph& map) {
   result.topLeftCorner<3, 3>().diagonal().setConstant(median(position_variances));
   result.bottomRightCorner<3, 3>().diagonal().setConstant(median(rotation_variances));
   return result;
+}
+
+// Radius of most of the map's points around their middle, as a share of that of a room; at most 1.
+double share_of_room(const MapGraph& map) {
+  constexpr double kRoom = 3.5;   // metres
+  constexpr double kMost = 0.8;   // share of the points
+  constexpr double kLeast = 0.1;  // smallest result
+  std::array<std::vector<double>, 3> coordinates;
+  for (const PointId id : map.point_ids()) {
+    const Eigen::Vector3d& position = map.find_point(id)->position_in_world;
+    for (std::size_t axis = 0; axis < 3; ++axis) coordinates[axis].push_back(position[static_cast<int>(axis)]);
+  }
+  if (coordinates[0].empty()) return 1.0;
+  std::vector<double> distances(coordinates[0].size(), 0.0);
+  for (const std::vector<double>& along : coordinates) {
+    const double middle = median(along);
+    for (std::size_t i = 0; i < along.size(); ++i) distances[i] += std::pow(along[i] - middle, 2);
+  }
+  const auto most = distances.begin() + static_cast<std::ptrdiff_t>(kMost * static_cast<double>(distances.size() - 1));
+  std::ranges::nth_element(distances, most);
+  return std::clamp(std::sqrt(*most) / kRoom, kLeast, 1.0);
 }
 
 }  // namespace
@@ -50,6 +72,7 @@ OfflineMap::OfflineMap(MapGraph map, const Vocabulary& vocabulary, std::vector<S
       places_(index_of(map_, vocabulary)),
       recordings_(std::move(recordings)),
       frame_covariance_(median_covariance(map_)),
+      cell_unit_(share_of_room(map_)),
       ground_(DrivenGround::under(map_)),
       walls_(std::move(walls)),
       extrinsics_(extrinsics) {

@@ -46,6 +46,10 @@ class OfflineMap {
   // Covariance of the map's frame at a keyframe: the median over the keyframes' covariances, isotropic.
   const Matrix6& frame_covariance() const { return frame_covariance_; }
 
+  // Unit of length of cells and of things that may move, metres: 1, or less for a map smaller than a room, such as of a
+  // desk. All that such a map holds would otherwise be one thing, which may have moved.
+  double cell_unit() const { return cell_unit_; }
+
   // Keyframes near a camera with a similar viewing direction, nearest first, by the distance in metres plus the angle
   // between the directions in radians.
   ScratchVector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
@@ -63,6 +67,7 @@ class OfflineMap {
   };
   std::vector<View> views_;
   Matrix6 frame_covariance_ = Matrix6::Zero();
+  double cell_unit_ = 1.0;
   std::optional<DrivenGround> ground_;
   std::optional<PlacedWalls> walls_;
   OdometryCalibration extrinsics_;

@@ -10,13 +10,13 @@
 
 namespace byre {
 
-// Points of one map cell (2 m cube) that should be in view, and those of them that are seen. Each seen point counts as
-// expected.
+// Points of one map cell (2 m cube; see PlaceViewQuery::metre) that should be in view, and those of them that are seen.
+// Each seen point counts as expected.
 struct CellInView {
   std::array<int, 3> cell{};  // index along x, y and z
   int expected = 0;
   int seen = 0;  // inliers with the same image patch, not only a similar corner
-  Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
+  Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // in the map, units of PlaceViewQuery::metre
   // Points that no look-alike place has, see PlaceViewQuery.
   int expected_alone = 0;
   int seen_alone = 0;
@@ -46,7 +46,7 @@ struct PlaceViewQuery {
   ImageMask hidden{};                           // image cells without expected points
   std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
   std::function<bool(PointId)> is_in_common{};  // points that a look-alike place has as well; empty: none
-  double metre = 1.0;                           // one metre in lengths of the map
+  double metre = 1.0;                           // one metre of cells in lengths of the map
 };
 
 PlaceView view_of_place(const PlaceViewQuery& query);

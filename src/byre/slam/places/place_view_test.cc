@@ -1,5 +1,6 @@
 #include "byre/slam/places/place_view.h"
 
+#include "byre/map/scaled_copy.h"
 #include "byre/slam/places/place_scene.h"
 
 #include <cmath>
@@ -103,6 +104,18 @@ TEST_F(ViewOfAPlace, HasCellsByPointPosition) {
       }
     }
   }
+}
+
+TEST_F(ViewOfAPlace, HasSmallerCellsInTheMapOfADesk) {
+  const auto unit_of = [&](double factor) {
+    MapGraph map = true_map(mission_, 4, Origin::offline);
+    rescale(map, factor);
+    return OfflineMap(std::move(map), simulated_vocabulary()).cell_unit();
+  };
+  EXPECT_EQ(unit_of(1.0), 1.0) << "a room";
+  const double fifth = unit_of(0.2);
+  EXPECT_LT(fifth, 0.5);
+  EXPECT_NEAR(unit_of(0.1), fifth / 2.0, 0.01);
 }
 
 }  // namespace
