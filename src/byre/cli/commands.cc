@@ -31,6 +31,8 @@ constexpr std::array kCommands = {
     Command{"update", "Update a map by sessions of missions, if it gets no worse anywhere", declare_update},
     Command{"history", "Print the updates that a map was made by", declare_history},
     Command{"diff", "Compare the points and keyframes of two versions of a map", declare_diff},
+    Command{"merge", "Merge two maps that overlap", declare_merge},
+    Command{"cut", "Remove a region from a map, or all but a region", declare_cut},
     Command{"calibrate", "Refine the calibration of a recording's cameras by its images", declare_calibrate},
     Command{"calibration", "Show or convert a calibration file of any format", declare_calibration},
     Command{"scale", "Scale a monocular map by a known distance", declare_scale},

@@ -33,6 +33,8 @@ Action declare_refine(CLI::App& command);
 Action declare_update(CLI::App& command);
 Action declare_history(CLI::App& command);
 Action declare_diff(CLI::App& command);
+Action declare_merge(CLI::App& command);
+Action declare_cut(CLI::App& command);
 Action declare_scale(CLI::App& command);
 Action declare_evaluate(CLI::App& command);
 Action declare_benchmark(CLI::App& command);

@@ -10,7 +10,8 @@
 
 namespace byre {
 
-FinishResult refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks) {
+FinishResult refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks,
+                        const FinishOptions& options) {
   const Stopwatch watch;
   MapGraph online = online_copy(stored.map);
   stored.map = MapGraph(Origin::offline);  // frees hundreds of megabytes
@@ -22,7 +23,7 @@ FinishResult refine_map(StoredMap& stored, const Vocabulary& vocabulary, const F
                              release_free_memory();
                              if (hooks.before_step) hooks.before_step(step);
                            }};
-  finishing.report = finish_map(online, index_of(online, vocabulary), {}, frugal);
+  finishing.report = finish_map(online, index_of(online, vocabulary), options, frugal);
   finishing.cut_short = hooks.should_stop();
   finishing.seconds = watch.seconds();
   stored.map = offline_copy(std::move(online));

@@ -10,6 +10,7 @@ namespace byre {
 // Repeats the final steps of mapping: loop search, adjustment of the whole map, removal of weak points and redundant
 // keyframes. Afterwards poses count as estimated by SLAM, whatever their origin. Precondition: the map has words of the
 // vocabulary.
-FinishResult refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks);
+FinishResult refine_map(StoredMap& stored, const Vocabulary& vocabulary, const FinishHooks& hooks,
+                        const FinishOptions& options = {});
 
 }  // namespace byre
