@@ -586,6 +586,18 @@ void bind_edits(MapClass& type) {
           ">>> np.allclose(m.transformed(up).positions, m.positions + [0, 0, 1.5])\n"
           "True")
       .def(
+          "merged_with",
+          [](const CachedMap& self, const CachedMap& other) {
+            return made([&] { return self.map.merged_with(other.map); });
+          },
+          py::arg("other"),
+          "Merged with a map that overlaps, in the frame and on the plan of this one. Keyframes keep their numbers, "
+          "those of the other follow. Raises InputError with the reason if the maps do not overlap, or a similar "
+          "building is likelier.\n\n"
+          ">>> both = m.merged_with(m.transformed(np.eye(4)))\n"
+          ">>> len(both.keyframes) > len(m.keyframes)\n"
+          "True")
+      .def(
           "register_on_plan",
           [](const CachedMap& self, const std::string& plan,
              const py::array_t<double, py::array::forcecast>& points_in_map,

@@ -114,6 +114,10 @@ class Map {
   // Copy in another frame, with scaled lengths and baselines. Covariances and the registration on a plan are adapted.
   // Throws InputError unless the scale is positive and all numbers are finite.
   Map transformed(const Similarity& target_from_map) const;
+  // Merged with a map that overlaps, as by `byre merge`: in the frame and on the plan of this one. Keyframes keep their
+  // numbers, those of the other follow. vocabulary: file of the words; empty: the installed one. Throws InputError with
+  // the reason if the maps do not overlap, or a similar building is likelier. Takes seconds for hundreds of keyframes.
+  Map merged_with(const Map& other, const std::optional<std::filesystem::path>& vocabulary = {}) const;
 
   // Fits the map to points picked on a floor plan, with the scale if the map is not metric. plan: name of the plan.
   // Throws InputError if the picks do not determine the registration: fewer than two separate ones, or a map without

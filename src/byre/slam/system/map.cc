@@ -6,6 +6,9 @@
 #include "byre/map/plan/floor_plan.h"
 #include "byre/map/point_grey.h"
 #include "byre/map/transformed_copy.h"
+#include "byre/place/map_words.h"
+#include "byre/slam/system/merge_maps.h"
+#include "byre/slam/system/stored_map.h"
 
 #include <algorithm>
 #include <cassert>
@@ -319,6 +322,19 @@ Map Map::transformed(const Similarity& target_from_map) const {
     throw InputError("transform", "is not a similarity", "give a positive scale and finite numbers");
   }
   return Map(transformed_copy(*stored_, target_from_map));
+}
+
+Map Map::merged_with(const Map& other, const std::optional<std::filesystem::path>& vocabulary) const {
+  const Vocabulary words = open_vocabulary(vocabulary);
+  StoredMap merged = *stored_, second = *other.stored_;
+  add_words(merged, words);
+  add_words(second, words);
+  const MergedMaps result = merge_maps(merged, second, words, {[] { return false; }, {}});
+  if (!result.refusal.empty()) {
+    throw InputError("map", "cannot be merged: " + result.refusal,
+                     "record where both maps overlap, and extend one by that recording");
+  }
+  return Map(std::move(merged));
 }
 
 PlanFit Map::register_on_plan(const std::string& plan, std::span<const PlanCorrespondence> picks,

@@ -308,6 +308,27 @@ TEST_F(MapOfARoom, LocalisesAfterAnEdit) {
   EXPECT_THAT(*report.map_from_body, PoseNear(true_pose(5), 0.03, 0.01));
 }
 
+TEST_F(MapOfARoom, IsMergedWithAMapInAnotherFrame) {
+  const Similarity other_from_map{1.0, {rotation_exp({0.0, 0.0, 0.7}), {4.0, -1.0, 0.5}}};
+  const Map merged = map_->merged_with(map_->transformed(other_from_map));
+  EXPECT_THAT(find_faults(merged.stored()), IsEmpty());
+  EXPECT_GT(merged.keyframes(), map_->keyframes());
+  EXPECT_EQ(merged.recordings().size(), 2u);
+  const LocalisationReport report = Localiser(merged).localise(view_of(image(5)));
+  ASSERT_TRUE(report.map_from_body) << to_string(report.failure);
+  EXPECT_THAT(*report.map_from_body, PoseNear(true_pose(5), 0.03, 0.01));
+}
+
+TEST_F(MapOfARoom, IsNotMergedWithAMapOfOtherPoints) {
+  StoredMap mirrored = map_->stored();
+  for (const PointId id : mirrored.map.point_ids()) {
+    MapPoint point = *mirrored.map.find_point(id);
+    point.position_in_world.x() *= -1.0;
+    mirrored.map.update_point(id, point);
+  }
+  EXPECT_THAT(refusal([&] { Map(std::move(mirrored)).merged_with(*map_); }), HasSubstr("cannot be merged"));
+}
+
 TEST_F(MapOfARoom, HasGreyValuesOfItsPoints) {
   int known = 0;
   for (int point = 0; point < map_->points(); ++point) known += map_->grey(point).has_value() ? 1 : 0;
