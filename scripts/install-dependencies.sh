@@ -48,9 +48,9 @@ if [[ $scope == all ]]; then
   )
   test_packages+=(
     # byre node with an MQTT broker and another DDS, whose type generator needs Java
-    mosquitto libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
+    mosquitto libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless cyclonedds-tools
     # bags written by other software
-    python3-rosbag python3-sensor-msgs python3-tf2-msgs
+    python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs
     # browser
     chromium
   )

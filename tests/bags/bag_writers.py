@@ -7,7 +7,8 @@ import genpy
 import roslz4
 import rosbag
 from geometry_msgs.msg import TransformStamped
-from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu
 from tf2_msgs.msg import TFMessage
 
 
@@ -49,6 +50,15 @@ def cdr(message):
         out.header(message.header).number("I", message.height, message.width).text(message.distortion_model)
         out.number("I", len(message.D)).number("d", *message.D, *message.K, *message.R, *message.P)
         out.number("I", message.binning_x, message.binning_y, 0, 0, 0, 0).number("B", 0)
+    elif isinstance(message, Imu):
+        q, w, a = message.orientation, message.angular_velocity, message.linear_acceleration
+        out.header(message.header).number("d", q.x, q.y, q.z, q.w, *message.orientation_covariance, w.x, w.y, w.z)
+        out.number("d", *message.angular_velocity_covariance, a.x, a.y, a.z, *message.linear_acceleration_covariance)
+    elif isinstance(message, Odometry):
+        p, q = message.pose.pose.position, message.pose.pose.orientation
+        v, w = message.twist.twist.linear, message.twist.twist.angular
+        out.header(message.header).text(message.child_frame_id).number("d", p.x, p.y, p.z, q.x, q.y, q.z, q.w)
+        out.number("d", *message.pose.covariance, v.x, v.y, v.z, w.x, w.y, w.z, *message.twist.covariance)
     elif isinstance(message, TFMessage):
         out.number("I", len(message.transforms))
         for each in message.transforms:

@@ -14,9 +14,10 @@ import unittest
 
 try:
     from bag_writers import write_rosbag, write_rosbag2_mcap, write_rosbag2_sqlite
-    from euroc_messages import Camera, camchain, messages_of
+    from euroc_messages import Camera, camchain, messages_of, motion_of
 except ImportError as error:
-    print(f"Skipped: {error.name} is not installed (python3-rosbag, python3-sensor-msgs, python3-tf2-msgs)")
+    print(f"Skipped: {error.name} is not installed (python3-rosbag, python3-sensor-msgs, python3-nav-msgs, "
+          "python3-tf2-msgs)")
     sys.exit(77)
 
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
@@ -48,9 +49,9 @@ class Bags(unittest.TestCase):
         cls.temporary.cleanup()
 
     @classmethod
-    def trajectory(cls, recording, frames):
+    def trajectory(cls, recording, frames, *options):
         written = cls.folder / "trajectory.txt"
-        run("map", recording, "--calibration", cls.calibration, "--frames", f":{frames}", "--pace", "paced", "--quiet",
+        run("map", recording, *options, "--calibration", cls.calibration, "--frames", f":{frames}", "--pace", "paced", "--quiet",
             "-o", cls.folder / "walk.byre", "--trajectory", written)
         return written.read_bytes()
 
@@ -71,6 +72,15 @@ class Bags(unittest.TestCase):
             self.assertEqual(told["compression"], [] if compression == "none" else [compression])
             self.assertEqual(told["damage"], [])
             self.assertEqual(told["messages"], len(self.short))
+
+    def test_ros1_bag_provides_wheels_and_gyroscope(self):
+        moving, options = motion_of(self.short), ("--imu-topic", "/imu", "--wheels-topic", "/odom")
+        write_rosbag2_mcap(self.folder / "moving", moving)
+        expected = self.trajectory(self.folder / "moving", 10, *options)
+        self.assertNotEqual(expected, self.from_folder[10])
+        for compression in ("none", "bz2", "lz4"):
+            write_rosbag(self.folder / "moving.bag", moving, compression)
+            self.assertTrue(self.trajectory(self.folder / "moving.bag", 10, *options) == expected, compression)
 
     def test_rosbag2_in_sqlite_equals_folder(self):
         write_rosbag2_sqlite(self.folder / "sqlite", self.long)

@@ -5,7 +5,8 @@ import zlib
 
 import genpy
 import numpy
-from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu
 from tf2_msgs.msg import TFMessage
 
 from bag_writers import transform
@@ -121,3 +122,22 @@ def messages_of(cameras, frames, raw):
             message = stamped(image_message(file, raw), number, time)
             messages.append((f"/cam{i}/image_raw{suffix}", message, time + 3_000_000 + i))
     return sorted(messages, key=lambda message: message[2])
+
+
+def motion_of(messages):
+    """Messages of a gyroscope at 100 Hz and of wheels at 50 Hz during the others, of a robot that hardly moves."""
+    begin, end = min(time for _, _, time in messages), max(time for _, _, time in messages)
+    motion = []
+    for i, time in enumerate(range(begin, end, 10**7)):
+        imu = Imu()
+        imu.header.stamp, imu.header.frame_id = genpy.Time(time // 10**9, time % 10**9), "imu"
+        imu.angular_velocity.x, imu.angular_velocity.z = 0.001 * (i % 3), -0.002
+        imu.linear_acceleration.z = 9.81
+        motion.append(("/imu", imu, time))
+        if i % 2 == 0:
+            wheels = Odometry()
+            wheels.header.stamp, wheels.header.frame_id, wheels.child_frame_id = imu.header.stamp, "odom", "base_link"
+            wheels.pose.pose.position.x, wheels.pose.pose.orientation.w = 0.0001 * i, 1.0
+            wheels.twist.twist.linear.x = 0.01
+            motion.append(("/odom", wheels, time))
+    return sorted(messages + motion, key=lambda each: each[2])
