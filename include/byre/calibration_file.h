@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -25,12 +26,17 @@ struct CalibrationReading {
 //   stella_vslam                 Camera: fx
 //   VINS-Fusion                  model_type, or cam0_calib and body_T_cam0, which name and place such files
 //   okvis2, basalt, maplab       cameras, value0, ncameras
+//   DepthAI, ZED, KITTI          cameraData, [LEFT_CAM_HD], P0 and P1
+//   other programs               fx, fy, cx, cy, with names of RealSense, SVO and NeRF
+// Fields of one camera or pair are also found inside other fields.
 // right: file of the right camera if each camera has its own; its pose comes from the files' P and R (ROS), T_BS or
-// body_T_cam. A folder stands for left.yaml and right.yaml, or intrinsics.yml and extrinsics.yml in it. Optional per
-// camera, read from the first: readout_time or Kalibr's line_delay, seconds for all rows or one row. Throws InputError
-// with the field for an unsupported model and for a missing or invalid value.
+// body_T_cam. size: width and height of the images, for files with several sizes (ZED). A folder stands for left.yaml
+// and right.yaml, or intrinsics.yml and extrinsics.yml in it. Optional per camera, read from the first: readout_time or
+// Kalibr's line_delay, seconds for all rows or one row. Throws InputError with the field for an unsupported model and
+// for a missing or invalid value.
 CalibrationReading read_calibration_file(const std::filesystem::path& path,
-                                         const std::optional<std::filesystem::path>& right = std::nullopt);
+                                         const std::optional<std::filesystem::path>& right = std::nullopt,
+                                         std::optional<std::pair<int, int>> size = std::nullopt);
 
 // The calibration of read_calibration_file. Throws InputError also if the files do not have the image size.
 Calibration read_calibration(const std::filesystem::path& path,

@@ -42,9 +42,10 @@ constexpr const char* kFooter = R"(Examples:
   byre calibration convert intrinsics.yml extrinsics.yml --size 640x480 -o calibration.yaml
 
 The content determines the format: Kalibr, OpenVINS, EuRoC, ROS (.yaml, .ini, ost.txt), OpenCV (YAML, XML, one camera
-or a pair), ORB-SLAM2 and 3, stella_vslam, VINS-Fusion, okvis2, basalt, maplab. Two files are those of the left and the
-right camera, or intrinsics and extrinsics. A folder stands for both. "convert" writes a Kalibr camchain, which loses
-nothing: all lens models are kept.)";
+or a pair), ORB-SLAM2 and 3, stella_vslam, VINS-Fusion, okvis2, basalt, maplab, DepthAI, ZED (.conf), RealSense, KITTI,
+and any file with fx, fy, cx, cy. Two files are those of the left and the right
+camera, or intrinsics and extrinsics. A folder stands for both. "convert" writes a Kalibr camchain, which loses nothing:
+all lens models are kept.)";
 
 // Sides of an image from "640x480"; zero if it is none.
 std::pair<int, int> sides_of(const std::string& text) {
@@ -64,9 +65,10 @@ std::string error_of_size(const std::string& text) {
 }
 
 CalibrationReading read(const CalibrationOptions& options) {
-  CalibrationReading reading = read_calibration_file(options.input, options.right);
-  if (options.size.empty()) return reading;
-  const auto [width, height] = sides_of(options.size);
+  if (options.size.empty()) return read_calibration_file(options.input, options.right);
+  const std::pair<int, int> size = sides_of(options.size);
+  CalibrationReading reading = read_calibration_file(options.input, options.right, size);
+  const int width = size.first, height = size.second;
   const auto complete = [&](Camera& camera) {
     if (camera.width == 0) camera.width = width, camera.height = height;
     if (camera.width == width && camera.height == height && camera.contains({camera.cx, camera.cy})) return;
@@ -212,7 +214,7 @@ std::shared_ptr<CalibrationOptions> declare_input(CLI::App& command) {
       ->required();
   add_input(command, Input::file, "RIGHT", options->right, "File of the right camera, or of the extrinsics")
       ->type_name("FILE");
-  add_text(command, "--size", options->size, "Image size, for files without it")
+  add_text(command, "--size", options->size, "Image size, for files without it or with several")
       ->type_name("WIDTHxHEIGHT")
       ->check(error_of_size);
   command.add_flag("--json", options->json, "Print the result as JSON");

@@ -5,6 +5,7 @@
 #include "byre/input_error.h"
 #include "byre/io/calibration/calibration_text.h"
 
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -28,9 +29,17 @@ std::string text_of_file(const std::filesystem::path& path) {
   return text;
 }
 
-// OpenCV writes "%YAML:1.0" in the first line, which is an invalid directive; a comment keeps the line numbers.
+// OpenCV writes "%YAML:1.0" in the first line, which is an invalid directive; a comment keeps the line numbers. Its
+// parser needs no space after the colon of a name.
 YAML::Node parse_yaml(std::string text) {
-  if (text.starts_with("%YAML:")) text.front() = '#';
+  if (!text.starts_with("%YAML:")) return YAML::Load(text);
+  text.front() = '#';
+  const auto is_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; };
+  for (std::size_t line = 0; line < text.size(); line = text.find('\n', line + 1)) {
+    std::size_t end = text.find_first_not_of(" \t\r\n", line);
+    while (end < text.size() && is_name(text[end])) ++end;
+    if (end + 1 < text.size() && text[end] == ':' && text[end + 1] > ' ') text.insert(end + 1, 1, ' ');
+  }
   return YAML::Load(text);
 }
 
@@ -39,6 +48,7 @@ YAML::Node parse_any(const std::filesystem::path& path) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin != std::string::npos && text[begin] == '<') return parse_opencv_xml(text, path.string());
   if (is_ros_ini(text)) return parse_ros_ini(text, path.string());
+  if (is_sections(text)) return parse_sections(text);
   return parse_yaml(std::move(text));
 }
 
@@ -107,10 +117,26 @@ std::vector<double> CalibrationFields::numbers(const std::string& field) const {
   const YAML::Node node = find(field);
   const YAML::Node list = node.IsMap() ? node["data"] : node;
   if (!list) throw InputError(place(field), "has no data");
+  if (list.IsScalar()) {
+    std::vector<double> numbers;
+    for (const std::string_view part : split_fields(list.Scalar())) {
+      const std::optional<double> number = parse_number(part);
+      if (!number) throw InputError(place(field), "is not a list of numbers");
+      numbers.push_back(*number);
+    }
+    if (numbers.size() < 2) throw InputError(place(field), "is not a list of numbers");
+    return numbers;
+  }
   if (!list.IsSequence()) throw InputError(place(field), "is not a list of numbers");
   std::vector<double> numbers;
   append_numbers(list, place(field), numbers);
   return numbers;
+}
+
+bool CalibrationFields::has_numbers(const std::string& field, std::size_t count) const try {
+  return has(field) && numbers(field).size() == count;
+} catch (const InputError&) {
+  return false;
 }
 
 std::vector<double> CalibrationFields::numbers(const std::string& field, std::size_t count) const {
@@ -134,6 +160,27 @@ std::vector<CalibrationFields> CalibrationFields::list(const std::string& field)
     entries.push_back({name + ".", entry});
   }
   return entries;
+}
+
+std::vector<std::pair<std::string, CalibrationFields>> CalibrationFields::groups(const std::string& field) const {
+  if (!has(field)) throw InputError(place(field), "is missing");
+  std::vector<std::pair<std::string, CalibrationFields>> result;
+  const auto add = [&](const YAML::Node& name, const YAML::Node& group) {
+    if (!name.IsScalar() || !group.IsMap()) throw InputError(place(field), "has no named groups");
+    const std::string prefix = place(field) + "." + name.Scalar() + ".";
+    result.emplace_back(name.Scalar(), CalibrationFields(prefix, group));
+  };
+  const YAML::Node node = find(field);
+  for (const auto& entry : node) {
+    if (node.IsMap()) {
+      add(entry.first, entry.second);
+    } else if (entry.IsSequence() && entry.size() == 2) {
+      add(entry[0], entry[1]);
+    } else {
+      throw InputError(place(field), "has no named groups");
+    }
+  }
+  return result;
 }
 
 double CalibrationFields::number(const std::string& field) const {

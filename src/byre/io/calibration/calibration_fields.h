@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -12,8 +13,8 @@
 namespace byre {
 
 // Named fields of a file that describes cameras: YAML, with OpenCV's directive in the first line allowed, JSON,
-// OpenCV's XML, or ROS' .ini, whose sections and names are fields. Errors in a field throw InputError with the place
-// "FILE: FIELD".
+// OpenCV's XML, ROS' .ini, or sections of NAME=VALUE, which are groups of fields. Errors in a field throw InputError
+// with the place "FILE: FIELD".
 class CalibrationFields {
  public:
   // Throws InputError if the file cannot be read, is in none of these formats, or has no named fields.
@@ -27,9 +28,12 @@ class CalibrationFields {
   // Each throws InputError if the field is missing or has another type.
   CalibrationFields group(const std::string& field) const;              // fields inside this field
   std::vector<CalibrationFields> list(const std::string& field) const;  // groups of a list
+  // Groups with their names, of named fields or of a list of pairs of name and group.
+  std::vector<std::pair<std::string, CalibrationFields>> groups(const std::string& field) const;
   std::string text(const std::string& field) const;
-  // Numbers of a list, of a list of rows, or of a matrix stored row by row under "data".
+  // Numbers of a list, of a list of rows, of a matrix stored row by row under "data", or of one line of text.
   std::vector<double> numbers(const std::string& field) const;
+  bool has_numbers(const std::string& field, std::size_t count) const;             // whether there are this many
   std::vector<double> numbers(const std::string& field, std::size_t count) const;  // requires this count
   Eigen::Matrix3d matrix(const std::string& field) const;                          // 3x3, row by row
   Pose pose(const std::string& field) const;                                       // rigid motion, from 4x4 or 3x4

@@ -130,9 +130,10 @@ void write_depth_camera(YAML::Emitter& yaml, const DepthCamera& depth) {
 
 }  // namespace
 
-CalibrationReading read_calibration_file(const fs::path& path, const std::optional<fs::path>& right) {
+CalibrationReading read_calibration_file(const fs::path& path, const std::optional<fs::path>& right,
+                                         std::optional<std::pair<int, int>> size) {
   if (right) return read_pair(path, *right);
-  if (!fs::is_directory(path)) return combined(read_cameras(path));
+  if (!fs::is_directory(path)) return combined(read_cameras(path, size));
   if (const auto pair = pair_in(path)) return read_pair(pair->first, pair->second);
   if (const auto file = find_calibration(path)) return combined(read_cameras(*file));
   throw InputError(

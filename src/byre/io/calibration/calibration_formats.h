@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -38,8 +39,9 @@ struct CameraList {
   std::vector<std::string> notes{};
 };
 
-// Cameras of a file in the first matching format. Throws InputError if there is none, and for invalid fields.
-CameraList read_cameras(const std::filesystem::path& path);
+// Cameras of a file in the first matching format, also inside other fields. size: width and height, for files with
+// several. Throws InputError if there is no camera, and for invalid fields.
+CameraList read_cameras(const std::filesystem::path& path, std::optional<std::pair<int, int>> size = std::nullopt);
 
 // Rotation and translation of a pair that is stored apart from its intrinsics, as OpenCV's extrinsics.yml; empty if the
 // file has none.

@@ -3,6 +3,7 @@
 #include "byre/base/text_file.h"
 #include "byre/input_error.h"
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -122,6 +123,34 @@ YAML::Node parse_ros_ini(const std::string& text, const std::string& place) {
   pair["left"] = cameras.front();
   pair["right"] = cameras.back();
   return pair;
+}
+
+bool is_sections(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string_view content = trimmed(line);
+    if (content.empty() || content.front() == '#' || content.front() == ';') continue;
+    return content.front() == '[' && content.back() == ']' && content.find_first_of(",:{\"") == std::string_view::npos;
+  }
+  return false;
+}
+
+YAML::Node parse_sections(const std::string& text) {
+  YAML::Node file(YAML::NodeType::Map);
+  std::string section;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string_view content = trimmed(line);
+    if (content.empty() || content.front() == '#' || content.front() == ';') continue;
+    const std::size_t equals = content.find('=');
+    if (content.front() == '[') {
+      section = content.substr(1, content.size() - 2);
+    } else if (equals != std::string_view::npos && !section.empty()) {
+      const std::string name(trimmed(content.substr(0, equals)));
+      file[section][name] = YAML::Load(std::string(content.substr(equals + 1)));
+    }
+  }
+  return file;
 }
 
 }  // namespace byre

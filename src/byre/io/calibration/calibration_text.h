@@ -15,4 +15,8 @@ YAML::Node parse_opencv_xml(const std::string& text, const std::string& place);
 bool is_ros_ini(const std::string& text);
 YAML::Node parse_ros_ini(const std::string& text, const std::string& place);
 
+// Sections "[NAME]" of lines "NAME=VALUE", as in the factory calibration of a ZED and in TOML: groups of fields.
+bool is_sections(const std::string& text);
+YAML::Node parse_sections(const std::string& text);
+
 }  // namespace byre

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "byre/io/calibration/calibration_formats.h"
+
+#include <array>
+#include <initializer_list>
+
+namespace byre {
+
+// Readers of one format each, for calibration_formats.cc. path: the file, for those it names.
+using FormatReader = CameraList (*)(const CalibrationFields& fields, const std::filesystem::path& path);
+
+CameraList read_orb_slam(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_stella(const CalibrationFields& file, const std::filesystem::path& path);
+CameraList read_vins_camera(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_vins_rig(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_camera_list(const CalibrationFields& file, const std::filesystem::path& path);  // okvis, maplab
+CameraList read_maplab_camera(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_basalt(const CalibrationFields& file, const std::filesystem::path& path);
+
+// Cameras by 3x3 matrix and list of coefficients, under the names of ROS, OpenCV, MATLAB, Open3D, PhotonVision and the
+// programs that copy them; a pair has two of each, whose names begin or end with 1 and 2, left and right, or l and r.
+bool has_matrix_camera(const CalibrationFields& fields);
+CameraList read_matrix_camera(const CalibrationFields& fields, const std::filesystem::path& path);
+bool has_matrix_pair(const CalibrationFields& fields);
+CameraList read_matrix_pair(const CalibrationFields& fields, const std::filesystem::path& path);
+
+// A camera with one field for each focal length and coefficient, as of RealSense, SVO, FAST-LIVO, NeRF and simulators.
+bool has_flat_camera(const CalibrationFields& fields);
+CameraList read_flat_camera(const CalibrationFields& fields, const std::filesystem::path& path);
+
+CameraList read_kitti(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_depthai(const CalibrationFields& fields, const std::filesystem::path& path);
+
+// Factory calibration of a ZED: cameras of the image size, else the first.
+CameraList read_zed(const CalibrationFields& fields, std::optional<std::pair<int, int>> size);
+
+// Rotation R, a matrix or a rotation vector, and translation T from the first to the second camera; empty without.
+std::optional<Pose> pair_pose(const CalibrationFields& fields);
+
+// Helpers of the readers.
+Pose baseline_pose(double x, double y = 0.0);
+std::string text_or(const CalibrationFields& fields, const std::string& field, const std::string& otherwise);
+bool has_all(const CalibrationFields& fields, std::initializer_list<const char*> names);
+// Image size from two fields; unknown if the file has neither.
+void read_size(const CalibrationFields& fields, const std::string& width, const std::string& height, Camera& camera);
+// Numbers of fields k1, k2 and the like; missing ones are zero.
+std::vector<double> coefficients_of(const CalibrationFields& fields, const std::string& prefix,
+                                    std::initializer_list<const char*> names);
+void set_intrinsics(const CalibrationFields& fields, const std::array<std::string, 4>& names, Camera& camera);
+std::optional<RectifiedView> rectified_view(const CalibrationFields& fields, const std::string& rotation,
+                                            const std::string& projection);
+
+}  // namespace byre
