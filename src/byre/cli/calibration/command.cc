@@ -43,7 +43,7 @@ constexpr const char* kFooter = R"(Examples:
 
 The content determines the format: Kalibr, OpenVINS, EuRoC, ROS (.yaml, .ini, ost.txt), OpenCV (YAML, XML, one camera
 or a pair), ORB-SLAM2 and 3, stella_vslam, VINS-Fusion, okvis2, basalt, maplab, DepthAI, ZED (.conf), RealSense, KITTI,
-and any file with fx, fy, cx, cy. Two files are those of the left and the right
+DSO, COLMAP (cameras.txt), and any file with fx, fy, cx, cy. Two files are those of the left and the right
 camera, or intrinsics and extrinsics. A folder stands for both. "convert" writes a Kalibr camchain, which loses nothing:
 all lens models are kept.)";
 

@@ -49,6 +49,7 @@ YAML::Node parse_any(const std::filesystem::path& path) {
   if (begin != std::string::npos && text[begin] == '<') return parse_opencv_xml(text, path.string());
   if (is_ros_ini(text)) return parse_ros_ini(text, path.string());
   if (is_sections(text)) return parse_sections(text);
+  if (auto fields = parse_camera_lines(text)) return *std::move(fields);
   return parse_yaml(std::move(text));
 }
 

@@ -221,6 +221,7 @@ std::optional<Pose> read_opencv_extrinsics(const fs::path& path) {
 CameraList read_cameras(const fs::path& path, std::optional<std::pair<int, int>> size) {
   const CalibrationFields fields = CalibrationFields::load(path);
   if (fields.has("STEREO") && fields.is_group("STEREO")) return read_zed(fields, size);
+  if (fields.has("colmap")) return read_colmap(fields, path);
   const auto format = std::ranges::find_if(kFormats, [&](const Format& each) { return each.matches(fields); });
   if (format != kFormats.end()) return format->read(fields, path);
   if (auto list = nested_cameras(fields, path)) return std::move(*list);

@@ -3,6 +3,8 @@
 #include "byre/base/text_file.h"
 #include "byre/input_error.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -151,6 +153,64 @@ YAML::Node parse_sections(const std::string& text) {
     }
   }
   return file;
+}
+
+namespace {
+
+// "ID MODEL WIDTH HEIGHT PARAMETERS" of COLMAP; null if the line is none.
+YAML::Node colmap_camera_of(const std::vector<std::string_view>& words) {
+  const auto is_capital = [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; };
+  if (words.size() < 5 || !parse_number(words[0]) || !std::ranges::all_of(words[1], is_capital)) return {};
+  YAML::Node camera(YAML::NodeType::Map);
+  camera["model"] = std::string(words[1]);
+  camera["width"] = std::string(words[2]);
+  camera["height"] = std::string(words[3]);
+  for (std::size_t i = 4; i < words.size(); ++i) camera["parameters"].push_back(std::string(words[i]));
+  return camera;
+}
+
+}  // namespace
+
+std::optional<YAML::Node> parse_camera_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    const std::string_view content = trimmed(line);
+    if (!content.empty() && content.front() != '#') lines.emplace_back(content);
+  }
+  if (lines.empty()) return std::nullopt;
+  YAML::Node file(YAML::NodeType::Map);
+  for (const std::string& line : lines) {
+    const YAML::Node camera = colmap_camera_of(split_fields(line));
+    if (!camera.IsDefined() || camera.IsNull()) break;
+    file["colmap"].push_back(camera);
+  }
+  if (file["colmap"].size() == lines.size()) return file;
+  // DSO: an optional model, intrinsics and coefficients; the image size; what is cut off; the new size.
+  const std::vector<std::string_view> words = split_fields(lines.front());
+  const bool has_model = !words.empty() && !parse_number(words.front());
+  const std::size_t begin = has_model ? 1 : 0;
+  const bool is_numeric = std::all_of(words.begin() + static_cast<std::ptrdiff_t>(begin), words.end(),
+                                      [](auto word) { return parse_number(word); });
+  const std::vector<std::string_view> size =
+      lines.size() > 1 ? split_fields(lines[1]) : std::vector<std::string_view>{};
+  const bool is_dso = lines.size() > 2 && size.size() == 2 && parse_number(size[0]) && parse_number(size[1]);
+  if (!is_numeric || words.size() < begin + 4 || (lines.size() > 1 && !is_dso) || (has_model && !is_dso)) {
+    return std::nullopt;
+  }
+  YAML::Node camera(YAML::NodeType::Map);
+  constexpr std::array kNames = {"fx", "fy", "cx", "cy"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) camera[kNames[i]] = std::string(words[begin + i]);
+  for (std::size_t i = begin + 4; i < words.size(); ++i) camera["distortion"].push_back(std::string(words[i]));
+  const std::size_t coefficients = words.size() - begin - 4;
+  const bool is_view_angle = coefficients == 1 && *parse_number(words.back()) != 0.0;
+  camera["model"] = has_model ? std::string(words.front()) : is_view_angle ? "FOV" : "Pinhole";
+  if (coefficients == 1 && !is_view_angle) camera.remove("distortion");
+  if (is_dso) {
+    camera["width"] = std::string(size[0]);
+    camera["height"] = std::string(size[1]);
+  }
+  return camera;
 }
 
 }  // namespace byre

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <yaml-cpp/yaml.h>
@@ -18,5 +19,9 @@ YAML::Node parse_ros_ini(const std::string& text, const std::string& place);
 // Sections "[NAME]" of lines "NAME=VALUE", as in the factory calibration of a ZED and in TOML: groups of fields.
 bool is_sections(const std::string& text);
 YAML::Node parse_sections(const std::string& text);
+
+// Lines without names: cameras.txt of COLMAP as list "colmap"; camera.txt of DSO, and fx fy cx cy with coefficients, as
+// in DROID-SLAM, as fields of these names. Empty for any other text.
+std::optional<YAML::Node> parse_camera_lines(const std::string& text);
 
 }  // namespace byre

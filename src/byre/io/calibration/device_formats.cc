@@ -141,7 +141,37 @@ CameraList read_zed(const Fields& fields, std::optional<std::pair<int, int>> siz
   return list;
 }
 
-// ---- KITTI
+// ---- COLMAP, KITTI
+
+CameraList read_colmap(const Fields& fields, const fs::path& path) {
+  constexpr double kHalf = 0.5;  // COLMAP's principal points minus byre's, pixels
+  const std::vector<Fields> rows = fields.list("colmap");
+  if (rows.size() != 1) {
+    throw InputError(path.string(), fmt::format("has {} cameras instead of one", rows.size()),
+                     "give the line of the camera that took the images in a file of its own");
+  }
+  const Fields& row = rows.front();
+  const std::string model = row.text("model");
+  std::vector<double> numbers = row.numbers("parameters");
+  if (model.starts_with("SIMPLE") || model.starts_with("RADIAL")) numbers.insert(numbers.begin(), numbers.front());
+  if (model.starts_with("THIN_PRISM") || numbers.size() < 4) {
+    throw InputError(row.place("model"), "\"" + model + "\" is not supported, or has too few parameters",
+                     "reconstruct with another camera model");
+  }
+  PlacedCamera result;
+  Camera& camera = result.camera;
+  camera.width = row.pixels("width"), camera.height = row.pixels("height");
+  const std::vector<double> intrinsics = {numbers[0], numbers[1], numbers[2] - kHalf, numbers[3] - kHalf};
+  std::vector<double> coefficients(numbers.begin() + 4, numbers.end());
+  if (model == "FOV") {
+    set_kalibr_lens(camera, {"pinhole", intrinsics, "fov", coefficients}, row.place("parameters"));
+  } else {
+    set_kalibr_lens(camera, {"pinhole", intrinsics, "none", {}}, row.place("parameters"));
+    coefficients.resize(std::max<std::size_t>(coefficients.size(), 4), 0.0);
+    set_opencv_distortion(camera, coefficients, model.ends_with("FISHEYE"), row.place("parameters"));
+  }
+  return {"COLMAP cameras.txt", {result}};
+}
 
 CameraList read_kitti(const Fields& fields, const fs::path&) {
   CameraList list{"KITTI", {}};

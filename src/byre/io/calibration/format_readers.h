@@ -31,6 +31,7 @@ CameraList read_flat_camera(const CalibrationFields& fields, const std::filesyst
 
 CameraList read_kitti(const CalibrationFields& fields, const std::filesystem::path& path);
 CameraList read_depthai(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_colmap(const CalibrationFields& fields, const std::filesystem::path& path);
 
 // Factory calibration of a ZED: cameras of the image size, else the first.
 CameraList read_zed(const CalibrationFields& fields, std::optional<std::pair<int, int>> size);

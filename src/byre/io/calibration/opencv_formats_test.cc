@@ -139,6 +139,21 @@ TEST_F(OtherCalibrations, AreReadWithOneFieldForEachNumber) {
             kMostPixels);
 }
 
+TEST_F(OtherCalibrations, AreReadWithoutNames) {
+  EXPECT_EQ(camera("458 457 367 248 -0.28 0.07 0.0002 0.00002 0.001\n"), without_size(kExpected));
+  EXPECT_EQ(camera("RadTan 458 457 367 248 -0.28 0.07 0.0002 0.00002\n752 480\ncrop\n640 480\n"),
+            (Camera{CameraModel::radial_tangential, 752, 480, 458.0, 457.0, 367.0, 248.0, {-0.28, 0.07, 2e-4, 2e-5}}));
+  const Camera fov = camera("0.5 0.8 0.5 0.5 0.9\n640 480\nfull\n640 480\n");
+  EXPECT_EQ(fov, (Camera{CameraModel::field_of_view, 640, 480, 320.0, 384.0, 319.5, 239.5, {0, 0, 0, 0, 0.9}}));
+  EXPECT_EQ(camera("# cameras\n3 OPENCV 752 480 458 457 367.5 248.5 -0.28 0.07 0.0002 0.00002\n"),
+            (Camera{CameraModel::radial_tangential, 752, 480, 458.0, 457.0, 367.0, 248.0, {-0.28, 0.07, 2e-4, 2e-5}}));
+  EXPECT_EQ(camera("1 SIMPLE_RADIAL 752 480 458 367.5 248.5 -0.1\n"),
+            (Camera{CameraModel::radial_tangential, 752, 480, 458.0, 458.0, 367.0, 248.0, {-0.1}}));
+  EXPECT_THAT(refusal("1 PINHOLE 752 480 458 457 367 248\n2 PINHOLE 752 480 458 457 367 248\n"),
+              HasSubstr("has 2 cameras instead of one"));
+  EXPECT_THAT(refusal("458 457\n"), HasSubstr("is not a YAML mapping"));
+}
+
 TEST_F(OtherCalibrations, ReadKitti) {
   const std::string text = "P0: 718 0 607 0 0 718 185 0 0 0 1 0\nP1: 718 0 607 -386 0 718 185 0 0 0 1 0\n";
   const Calibration kitti = read("calib.txt", text).calibration;
