@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""byre on bags written by other software from the recording MH_01_easy: results must equal those on the folder.
+"""byre on bags written by other software from MH_01_easy and freiburg1_rpy: results must equal those on the folder.
 
 Usage: bags_test.py BYRE        BYRE is the program; the recording is searched below $BYRE_DATA, or ../shared/data
 next to the project's folder. Exit code 77 if it or a bag writer is missing.
@@ -14,7 +14,7 @@ import unittest
 
 try:
     from bag_writers import write_rosbag, write_rosbag2_mcap, write_rosbag2_sqlite
-    from euroc_messages import Camera, camchain, messages_of, motion_of
+    from euroc_messages import Camera, camchain, depth_messages_of, messages_of, motion_of
 except ImportError as error:
     print(f"Skipped: {error.name} is not installed (python3-rosbag, python3-sensor-msgs, python3-nav-msgs, "
           "python3-tf2-msgs)")
@@ -81,6 +81,20 @@ class Bags(unittest.TestCase):
         for compression in ("none", "bz2", "lz4"):
             write_rosbag(self.folder / "moving.bag", moving, compression)
             self.assertTrue(self.trajectory(self.folder / "moving.bag", 10, *options) == expected, compression)
+
+    def test_ros1_bag_with_depth_equals_folder(self):
+        folder = DATA / "tum" / "freiburg1_rpy"
+        if not folder.is_dir():
+            self.skipTest(f"no recording at {folder}")
+        write_rosbag(self.folder / "depth.bag", depth_messages_of(folder, 10), "bz2")
+        paths = []
+        calibration = ("--calibration", folder / "calibration.yaml")
+        for recording, options in ((folder, ()), (self.folder / "depth.bag", calibration)):
+            paths.append(self.folder / f"depth{len(paths)}.txt")
+            run("map", recording, *options, "--camera", "rgbd", "--frames", ":8", "--pace", "paced", "--quiet",
+                "-o", self.folder / "depth.byre", "--trajectory", paths[-1])
+        self.assertGreaterEqual(paths[0].read_bytes().count(b"\n"), 8)
+        self.assertEqual(paths[0].read_bytes(), paths[1].read_bytes())
 
     def test_rosbag2_in_sqlite_equals_folder(self):
         write_rosbag2_sqlite(self.folder / "sqlite", self.long)

@@ -1,4 +1,5 @@
-"""Converts an EuRoC recording to ROS 1 messages, from which bags are written."""
+"""Converts recordings of EuRoC, and of depth of TUM, to ROS 1 messages, from which bags are written."""
+import decimal
 import re
 import struct
 import zlib
@@ -55,8 +56,8 @@ def camchain(cameras):
     return text
 
 
-def grey_pixels(file):
-    """Pixels of a PNG of 8-bit grey, by the PNG specification."""
+def grey_pixels(file, sample=1):
+    """Pixels of a PNG of grey values of sample bytes, big endian, by the PNG specification."""
     data, packed, at = file.read_bytes(), b"", 8
     width, height = struct.unpack(">II", data[16:24])
     while at < len(data):
@@ -64,12 +65,13 @@ def grey_pixels(file):
         if data[at + 4:at + 8] == b"IDAT":
             packed += data[at + 8:at + 8 + size]
         at += size + 12
-    lines, pixels, above = zlib.decompress(packed), bytearray(), bytes(width)
+    size = width * sample
+    lines, pixels, above = zlib.decompress(packed), bytearray(), bytes(size)
     for row in range(height):
-        kind, line = lines[row * (width + 1)], bytearray(lines[row * (width + 1) + 1:(row + 1) * (width + 1)])
-        left = corner = 0
-        for i in range(width):
+        kind, line = lines[row * (size + 1)], bytearray(lines[row * (size + 1) + 1:(row + 1) * (size + 1)])
+        for i in range(size):
             up = above[i]
+            left, corner = (line[i - sample], above[i - sample]) if i >= sample else (0, 0)
             if kind == 1:
                 line[i] = (line[i] + left) & 255
             elif kind == 2:
@@ -79,7 +81,6 @@ def grey_pixels(file):
             elif kind == 4:
                 a, b, c = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
                 line[i] = (line[i] + (left if a <= b and a <= c else up if b <= c else corner)) & 255
-            left, corner = line[i], up
         above = bytes(line)
         pixels += line
     return width, height, bytes(pixels)
@@ -141,3 +142,22 @@ def motion_of(messages):
             wheels.twist.twist.linear.x = 0.01
             motion.append(("/odom", wheels, time))
     return sorted(messages + motion, key=lambda each: each[2])
+
+
+def depth_messages_of(folder, frames):
+    """(topic, message, time in ns) of the first colour images of a TUM recording, and of depths around them, metres."""
+    def images(name, count):
+        lines = [line.split() for line in (folder / name).read_text(encoding="utf-8").splitlines()
+                 if not line.startswith("#")]
+        return [(int(decimal.Decimal(time) * 10**9), folder / file) for time, file in lines[:count]]
+
+    messages = []
+    for time, file in images("rgb.txt", frames):
+        image = CompressedImage(format="rgb8; png compressed bgr8", data=file.read_bytes())
+        messages.append(("/camera/rgb/image_color/compressed", stamped(image, 0, time), time))
+    for time, file in images("depth.txt", frames + 2):
+        width, height, pixels = grey_pixels(file, 2)
+        metres = numpy.frombuffer(pixels, ">u2").astype("<f4") / numpy.float32(5000)
+        image = Image(height=height, width=width, encoding="32FC1", step=4 * width, data=metres.tobytes())
+        messages.append(("/camera/depth/image", stamped(image, 0, time), time))
+    return sorted(messages, key=lambda each: each[2])
