@@ -51,8 +51,8 @@ class Bags(unittest.TestCase):
     @classmethod
     def trajectory(cls, recording, frames, *options):
         written = cls.folder / "trajectory.txt"
-        run("map", recording, *options, "--calibration", cls.calibration, "--frames", f":{frames}", "--pace", "paced", "--quiet",
-            "-o", cls.folder / "walk.byre", "--trajectory", written)
+        run("map", recording, *options, "--calibration", cls.calibration, "--frames", f":{frames}", "--pace", "paced",
+            "--quiet", "-o", cls.folder / "walk.byre", "--trajectory", written)
         return written.read_bytes()
 
     def expect_same(self, bag, frames):

@@ -33,7 +33,7 @@ class StatusBoard {
   ProgramStatus status_;  // guarded by mutex_
 };
 
-// Serves /healthz (200 if the program is well, else 503) and /metrics.
+// Serves /healthz (200 if the program is well, else 503), /metrics, and a front page with both.
 class StatusSite : public WebSite {
  public:
   explicit StatusSite(std::shared_ptr<const StatusBoard> board) : board_(std::move(board)) {}
