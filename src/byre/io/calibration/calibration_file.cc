@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLeaveRightOut = "give the pose of the right camera, or use the left camera alone";
+constexpr const char* kLeaveRightOut = "give the pose of the right camera, or a file with the left camera alone";
 
 Pose pose_of_right(const CameraList& list) {
   const PlacedCamera& left = list.cameras[0];
@@ -30,7 +30,7 @@ Pose pose_of_right(const CameraList& list) {
   }
   if (left.rectified && right.rectified) {
     throw InputError(right.pose_place, "has no baseline, or a rotation matrix of the pair is not a rotation",
-                     "calibrate both cameras as a stereo pair, or use the left camera alone");
+                     "calibrate both cameras as a stereo pair, or give a file with the left camera alone");
   }
   throw InputError(right.pose_place, "is missing", kLeaveRightOut);
 }
@@ -196,7 +196,7 @@ void require_baseline(const StereoPartner& partner, const std::string& place) {
   constexpr double kLeast = 1e-3;  // metres
   if (partner.right_from_left.translation.norm() >= kLeast) return;
   throw InputError(place, "places both cameras at the same position",
-                   "calibrate the stereo pair, or use the left camera alone");
+                   "calibrate the stereo pair, or give a file with the left camera alone");
 }
 
 std::optional<fs::path> find_calibration(const fs::path& folder) {
