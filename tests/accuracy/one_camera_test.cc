@@ -9,6 +9,8 @@
 #include "byre/place/vocabulary.h"
 #include "byre/simulation/rendered_room_scene.h"
 #include "byre/simulation/simulated_trajectory_scene.h"
+#include "byre/slam.h"
+#include "byre/slam/system/slam_impl.h"
 
 #include <algorithm>
 #include <memory>
@@ -86,6 +88,31 @@ TEST(OneCameraInBend, StartsInTheFirstFramesAndTracksEveryFrame) {
   EXPECT_EQ(std::count(first, posed.end(), false), 0);
   ASSERT_TRUE(error);
   EXPECT_LE(error->translation.rmse, 0.1);
+}
+
+// The camera moves on unseen twice, for 3 and 2 s, and returns to the part of the desk that it mapped before.
+TEST(OneCameraInFreiburg1Desk, MapsOnWhileLostAndJoinsNothingWrongly) {
+  const auto folder = find_recording("tum/freiburg1_desk");
+  if (!folder) GTEST_SKIP() << missing("tum/freiburg1_desk");
+  const auto recording = open_recording(*folder, {}, {.camera = CameraChoice::left});
+  SlamOptions options;
+  options.workers = Workers::repeatable;
+  Slam slam = Slam::mapping(recording->calibration(), options);
+  std::size_t posed = 0;
+  bool has_submap = false;
+  for (int i = 0; i < recording->size(); ++i) {
+    if ((i >= 150 && i < 240) || (i >= 361 && i < 421)) continue;
+    const FrameReport report = slam.impl().process(*recording->read(i));
+    posed += report.map_from_body ? 1 : 0;
+    has_submap = has_submap || report.has(SessionEvent::restarted);
+  }
+  slam.impl().finish({[] { return false; }, {}});
+  EXPECT_TRUE(has_submap);
+  const Trajectory final = slam.impl().session().final_trajectory();
+  EXPECT_GT(final.size() + slam.impl().session().frames_not_joined().size(), posed + 60) << "tracked while lost";
+  const auto error = absolute_trajectory_error(associate(final, load_truth(*folder), {}), Scale::free);
+  ASSERT_TRUE(error);
+  EXPECT_LE(error->translation.rmse, 0.03);
 }
 
 // One turn about the left camera's centre in a rendered room. later_s shifts the times, so that no image of one turn

@@ -1,6 +1,6 @@
 #include "byre/map/scaled_copy.h"
 
-#include "byre/alignment.h"
+#include "byre/map/transformed_copy.h"
 #include "byre/odometry/odometry_calibration.h"
 
 #include <cassert>
@@ -70,6 +70,25 @@ void rescale(MapGraph& map, double factor) {
     }
   }
   for (const PointId id : map.point_ids()) map.update_point(id, scaled_copy(*map.find_point(id), factor));
+}
+
+void move_part(MapGraph& map, const Similarity& after_from_before, const std::function<bool(KeyframeId)>& is_moved) {
+  const double scale = after_from_before.scale;
+  for (KeyframeId id{map.origin(), 0}; map.living_ancestor(id); ++id.number) {
+    if (!is_moved(id)) continue;
+    const Keyframe* const keyframe = map.find_keyframe(id);
+    if (keyframe == nullptr) {
+      map.scale_removed_keyframe(id, scale);
+    } else {
+      map.move_keyframe(id, move_camera(after_from_before, keyframe->camera_from_world),
+                        scale_lengths(keyframe->covariance, scale));
+    }
+  }
+  for (const PointId id : map.point_ids()) {
+    const MapPoint& point = *map.find_point(id);
+    if (!is_moved(point.reference.keyframe)) continue;
+    map.update_point(id, moved(scaled_copy(point, scale), after_from_before.target_from_source));
+  }
 }
 
 double baseline_factor(const StoredMap& stored, std::size_t recording) {

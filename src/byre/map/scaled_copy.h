@@ -1,6 +1,9 @@
 #pragma once
 
+#include "byre/alignment.h"
 #include "byre/map/map_file.h"
+
+#include <functional>
 
 namespace byre {
 
@@ -14,6 +17,10 @@ StoredMap scaled_copy(const StoredMap& stored, double factor);
 
 // Scales all lengths of a map, also of removed keyframes. Rigs are unchanged. Precondition: a positive factor.
 void rescale(MapGraph& map, double factor);
+
+// Moves a part of a map: its keyframes, removed ones included, and the points of which they are the reference.
+// Precondition: an ancestor outside of the part has not been removed since the part was added.
+void move_part(MapGraph& map, const Similarity& after_from_before, const std::function<bool(KeyframeId)>& is_moved);
 
 // Ratio of the map's baseline to the given one of a stereo recording: 1 unless its scale was corrected. Also 1 for a
 // monocular recording and one without keyframes. Precondition: the recording exists.

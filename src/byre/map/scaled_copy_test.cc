@@ -82,6 +82,30 @@ TEST(ScaledCopy, ComposesFactors) {
   }
 }
 
+TEST(MovePart, ScalesAndMovesItsKeyframesAndPointsAlone) {
+  MapGraph map(Origin::online);
+  std::vector<PointId> points;
+  for (int i = 0; i < 3; ++i) {
+    Keyframe keyframe;
+    keyframe.camera_from_world.translation.x() = i;
+    if (i > 0) keyframe.parent = KeyframeId{Origin::online, 0};
+    MapPoint point;
+    point.position_in_world = {1.0, 2.0, 3.0 + i};
+    point.reference.keyframe = map.add_keyframe(keyframe);
+    points.push_back(map.add_point(point));
+  }
+  const MapGraph before = map;
+  const Similarity motion{2.0, {rotation_exp({0.1, 0.2, 0.3}), {4.0, 5.0, 6.0}}};
+  move_part(map, motion, [](KeyframeId id) { return id.number > 0; });
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const KeyframeId id{Origin::online, i};
+    const Similarity expected = i > 0 ? motion : Similarity{};
+    EXPECT_THAT(map.camera_from_world(id), PoseNear(move_camera(expected, before.camera_from_world(id)), 1e-12, 1e-12));
+    EXPECT_THAT(map.find_point(points[i])->position_in_world,
+                PointNear(expected * before.find_point(points[i])->position_in_world, 1e-12));
+  }
+}
+
 TEST(ScaledCalibration, ScalesTheBaselineOnly) {
   const Calibration given = consistent_map().recordings[0].calibration;
   const Calibration longer = scaled(given, 1.02);

@@ -63,6 +63,24 @@ void locate_from(SlamImpl& slam, int located, int step, const FramesAgain& frame
   }
 }
 
+// Localises missing frames without a prediction, and continues from each in both directions.
+void find_places(SlamImpl& slam, const FramesAgain& frames, Poses& poses) {
+  constexpr Timestamp kInterval = std::chrono::milliseconds(200);  // after a frame that is not found
+  Timestamp next = Timestamp::min();
+  for (int i = 0; i < static_cast<int>(frames.times.size()); ++i) {
+    const Timestamp time = frames.times[static_cast<std::size_t>(i)];
+    if (time < next || poses.contains(time)) continue;
+    if (frames.should_stop()) return;
+    next = time + kInterval;
+    const std::optional<ImageFrame> shown = frames.read(i);
+    const auto pose = shown ? slam.find_in_finished_map(*shown) : std::nullopt;
+    if (!pose) continue;
+    poses[time] = *pose;
+    locate_from(slam, i, 1, frames, poses);
+    locate_from(slam, i, -1, frames, poses);
+  }
+}
+
 }  // namespace
 
 Trajectory with_missing_poses(SlamImpl& slam, const Trajectory& located, const FramesAgain& frames) {
@@ -75,6 +93,7 @@ Trajectory with_missing_poses(SlamImpl& slam, const Trajectory& located, const F
   for (int i = static_cast<int>(frames.times.size()) - 1; i > 0; --i) {
     if (has_pose(i) && !has_pose(i - 1)) locate_from(slam, i, -1, frames, poses);
   }
+  if (!slam.rig().is_stereo() && slam.prior().is_empty()) find_places(slam, frames, poses);
   Trajectory all;
   for (const auto& [time, pose] : poses) all.push_back({time, pose});
   return all;

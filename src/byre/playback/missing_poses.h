@@ -17,7 +17,8 @@ struct FramesAgain {
 };
 
 // Locates frames without a pose in the finished map: those before the map begins, and those of gaps. Each gap is
-// searched from both of its sides, frame by frame from the last located one. Returns `located` with the poses found.
+// searched from both of its sides, frame by frame from the last located one. With one camera and without odometry,
+// frames that are still missing are then localised without a prediction. Returns `located` with the poses found.
 Trajectory with_missing_poses(SlamImpl& slam, const Trajectory& located, const FramesAgain& frames);
 
 }  // namespace byre

@@ -6,6 +6,7 @@
 #include "byre/playback/missing_poses.h"
 #include "byre/slam/system/resources.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -111,6 +112,9 @@ void collect_results(SlamImpl& slam, const Trajectory& seen, RunResult& run) {
   run.is_metric = slam.is_metric();
   run.stored = slam.take_stored_map();
   if (run.finishing) run.finishing->faults = find_faults(run.stored.map);
+  if (!run.offline) run.not_joined = slam.session().frames_not_joined();
+  std::erase_if(run.not_joined,
+                [&](Timestamp time) { return std::ranges::binary_search(seen, time, {}, &StampedPose::time); });
   run.motion.filled_poses = static_cast<int>(run.final.size() - seen.size());
   for (const PlayedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});

@@ -50,6 +50,7 @@ struct RunResult {
   std::optional<RefinedCalibration> calibration;  // calibration of the map; empty unless refined
   std::optional<double> row_error;        // row error of the calibration in use, pixels; empty without stereo pairs
   std::optional<FinishResult> finishing;  // finishing of a map; empty if skipped, see SlamImpl::finish
+  std::vector<Timestamp> not_joined;      // frames tracked in separate submaps that were not joined with the map
   int located_afterwards = 0;             // frames without a causal pose that were located in the finished map
   std::optional<double> mission_finishing_seconds;  // wall time of adjusting a mission's online map
   std::vector<double> job_seconds;                  // wall time of each mapping job

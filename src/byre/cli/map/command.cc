@@ -37,7 +37,7 @@ RunResult play_and_autosave(Slam& slam, RunInput& input, const MapOptions& optio
   };
   if (options.autosave_s) {
     hooks.on_map_update = [&autosave](const SlamImpl& now) {
-      autosave.update(now.online(), [&now] { return now.stored_metadata(); });
+      autosave.update(now.session().joined_online(), [&now] { return now.stored_metadata(); });
     };
   }
   RunResult run = input.play(slam, hooks, interrupt);

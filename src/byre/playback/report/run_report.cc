@@ -95,6 +95,7 @@ Json counts_json(const RunResult& run, const FrameCounts& counts) {
           {"lost_episodes", counts.lost_episodes},
           {"frames_lost", counts.lost},
           {"frames_located_afterwards", run.located_afterwards},
+          {"frames_not_joined", run.not_joined.size()},
           {"resets", counts.resets},
           {"relocalisations", counts.relocalisations},
           {"loops_on_the_way", counts.loops},
@@ -222,6 +223,15 @@ void add_map_rows(const RunResult& run, const RunProtocol& protocol, const Frame
              "[{?resets}, reinitialised {resets} times][{?frames_located_afterwards}; {frames_located_afterwards} more "
              "located in the finished map][{?frames_unreadable}; {frames_unreadable} could not be read]",
              report.figures["counts"]);
+  if (!run.not_joined.empty()) {
+    const auto seconds = [&](Timestamp time) { return to_seconds(time - run.frames.front().time); };
+    report.row("not joined",
+               "{frames_not_joined} frames, {first:.1f} to {last:.1f} s: parts that show no place of the map are left "
+               "out; map them alone with --start and --end",
+               {{"frames_not_joined", run.not_joined.size()},
+                {"first", seconds(run.not_joined.front())},
+                {"last", seconds(run.not_joined.back())}});
+  }
   add_scale(run, protocol, counts, report);
   add_map(report);
   if (!protocol.extended.empty()) {

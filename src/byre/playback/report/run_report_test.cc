@@ -239,6 +239,14 @@ TEST(MapText, SummarisesTheRun) {
   EXPECT_THAT(text, Not(HasSubstr("extended")));
 }
 
+TEST(MapText, ReportsFramesThatWereNotJoined) {
+  RunResult run = small_map_run();
+  run.not_joined = {run.frames[2].time, run.frames[3].time};
+  const std::string text = to_text(run_report(run, protocol_of(Pace::paced), {}), false);
+  EXPECT_THAT(text, HasSubstr("not joined   2 frames, 0.1 to 0.1 s:"));
+  EXPECT_EQ(stats_of(run).at("counts").at("frames_not_joined"), 2);
+}
+
 TEST(MapText, ReportsChangesByFinishing) {
   RunResult run = small_map_run();
   run.finishing.emplace().report.points_removed = 12;

@@ -22,16 +22,37 @@ void announce(const FinishHooks& hooks, const char* step) {
   if (hooks.before_step) hooks.before_step(step);
 }
 
-// Tests a loop at the neighbours of its keyframe; empty if they do not confirm it.
-std::optional<LoopHypothesis> confirmed_by_neighbours(const MapGraph& map, LoopHypothesis hypothesis) {
+// Tests a loop at the neighbours of its keyframe. The drift stays that of the keyframe.
+LoopHypothesis tested_at_neighbours(const MapGraph& map, LoopHypothesis hypothesis) {
   for (const Covisible& neighbour : map.covisible_keyframes(hypothesis.keyframe, kConfirmingKeyframes)) {
     const Keyframe& keyframe = *map.find_keyframe(neighbour.keyframe);
-    // The drift stays that of the keyframe.
-    hypothesis.test =
-        check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map).test;
+    const LoopHypothesis tested =
+        check_loop(hypothesis, keyframe.frame, keyframe.camera_from_world, rig_of(map, keyframe), map);
+    hypothesis.test = tested.test;
+    hypothesis.untracked = tested.untracked;
   }
-  if (!is_confirmed(hypothesis)) return std::nullopt;
   return hypothesis;
+}
+
+// The loops of keyframes, from the last keyframe backwards, tested at their neighbours, which are not searched again.
+// find: for a keyframe and the loops so far. is_usable: result of the test.
+template <typename Find, typename IsUsable>
+std::vector<LoopHypothesis> tested_loops(const MapGraph& map, const std::vector<KeyframeId>& ids, Find find,
+                                         IsUsable is_usable) {
+  std::vector<LoopHypothesis> loops;
+  std::set<KeyframeId> settled;
+  for (auto id = ids.rbegin(); id != ids.rend(); ++id) {
+    if (settled.contains(*id)) continue;
+    const std::optional<LoopHypothesis> found = find(*id, loops);
+    if (!found) continue;
+    const LoopHypothesis tested = tested_at_neighbours(map, *found);
+    if (!is_usable(tested)) continue;
+    loops.push_back(tested);
+    for (const Covisible& neighbour : map.covisible_keyframes(*id, kConfirmingKeyframes)) {
+      settled.insert(neighbour.keyframe);
+    }
+  }
+  return loops;
 }
 
 LengthChanges correct(MapGraph& online, const std::vector<LoopEdge>& edges, std::uint32_t first_new,
@@ -120,21 +141,34 @@ MapQuality quality_of(const MapGraph& map) {
 
 std::vector<LoopHypothesis> search_loops(const MapGraph& map, const PlaceIndex& places, const FinishOptions& options,
                                          const FinishHooks& hooks) {
-  std::vector<LoopHypothesis> loops;
-  std::set<KeyframeId> settled;
-  const std::vector<KeyframeId> ids = map.keyframe_ids();
-  for (auto id = ids.rbegin(); id != ids.rend() && !stopped(hooks); ++id) {
-    if (id->number < options.first_new) break;
-    if (settled.contains(*id)) continue;
-    const auto found = find_loop(map, places, *id, options.loops);
-    const auto confirmed = found ? confirmed_by_neighbours(map, *found) : std::nullopt;
-    if (!confirmed) continue;
-    loops.push_back(*confirmed);
-    for (const Covisible& neighbour : map.covisible_keyframes(*id, kConfirmingKeyframes)) {
-      settled.insert(neighbour.keyframe);
+  std::vector<KeyframeId> ids = map.keyframe_ids();
+  std::erase_if(ids, [&](KeyframeId id) { return id.number < options.first_new; });
+  const auto find = [&](KeyframeId id, const auto&) {
+    return stopped(hooks) ? std::nullopt : find_loop(map, places, id, options.loops);
+  };
+  return tested_loops(map, ids, find, is_confirmed);
+}
+
+std::vector<LoopHypothesis> search_joins(const MapGraph& map, const PlaceIndex& places,
+                                         const std::vector<KeyframeId>& keyframes,
+                                         const std::function<bool(KeyframeId)>& is_in_map, const LoopOptions& options) {
+  constexpr int kMaxUntracked = kConfirmingKeyframes / 2;
+  const auto find = [&](KeyframeId id, const std::vector<LoopHypothesis>& joins) {
+    return find_join(map, places, id, is_in_map, joins.empty() ? nullptr : &joins.back(), options);
+  };
+  const auto is_tracked = [](const LoopHypothesis& join) { return join.untracked <= kMaxUntracked; };
+  const std::vector<LoopHypothesis> joins = tested_loops(map, keyframes, find, is_tracked);
+  if (joins.empty()) return {};
+  // Two keyframes do not yield one similarity by chance, which outweighs the prior of the test.
+  const bool is_repeated = joins.size() > 1;
+  const double log_odds = joins.back().test.log_odds() - (is_repeated ? kLogOddsOfKidnapping : 0.0);
+  if (log_odds < RegistrationOptions{}.accept_log_odds) return {};
+  for (const LoopHypothesis& one : joins) {
+    for (const LoopHypothesis& other : joins) {
+      if (!agree(one, other, map, options)) return {};
     }
   }
-  return loops;
+  return joins;
 }
 
 FinishReport finish_map(MapGraph& online, const PlaceIndex& places, const FinishOptions& options,
@@ -142,7 +176,7 @@ FinishReport finish_map(MapGraph& online, const PlaceIndex& places, const Finish
   FinishReport report;
   report.before = quality_of(online);
   announce(hooks, "searching for loops");
-  std::vector<LoopEdge> edges;
+  std::vector<LoopEdge> edges = options.joins;
   for (const LoopHypothesis& loop : search_loops(online, places, options, hooks)) {
     report.loop_drifts.push_back(apparent_drift(loop, online));
     edges.push_back(*edge_of(loop, online));

@@ -17,6 +17,7 @@ struct FinishOptions {
   // Number of the first new keyframe, added since the map was last finished. Parts far from new keyframes do not
   // change, see recent_map. 0: the whole map is new.
   std::uint32_t first_new = 0;
+  std::vector<LoopEdge> joins{};  // loops by which submaps were joined, to be closed as well
 };
 
 // Quality of a map, measured without ground truth.
@@ -51,6 +52,12 @@ MapQuality quality_of(const MapGraph& map);
 // newest keyframe backwards; skips keyframes around a found loop.
 std::vector<LoopHypothesis> search_loops(const MapGraph& map, const PlaceIndex& places, const FinishOptions& options,
                                          const FinishHooks& hooks);
+
+// Joins of a separate submap with the map, found at several keyframes and accepted by one test of all of them. Empty if
+// the test does not accept them, or two contradict each other. keyframes: of the submap.
+std::vector<LoopHypothesis> search_joins(const MapGraph& map, const PlaceIndex& places,
+                                         const std::vector<KeyframeId>& keyframes,
+                                         const std::function<bool(KeyframeId)>& is_in_map, const LoopOptions& options);
 
 // Last step of a mapping run: searches loops from all new keyframes, corrects and bundle-adjusts the map around them,
 // and removes weak points and redundant keyframes there. Corrects the whole map if a loop still disagrees.

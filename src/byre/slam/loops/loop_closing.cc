@@ -65,18 +65,24 @@ float usual_similarity(const MapGraph& map, const PlaceIndex& index, KeyframeId 
   return best;
 }
 
-std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
-                                            std::span<const Word> words, const LoopOptions& options) {
+// Places that look as much like the keyframe as its neighbours do.
+std::vector<PlaceCandidate> similar_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
+                                           std::span<const Word> words,
+                                           const std::function<bool(KeyframeId)>& is_excluded) {
   const MapGraph& map = view.online();
-  const std::set<KeyframeId> surroundings = surroundings_of(map, id);
-  const auto is_near = [&](KeyframeId other) {
-    return other.number + options.min_gap > id.number || surroundings.contains(other);
-  };
-  std::vector<PlaceCandidate> places = find_places(index, view, words, kLoopPlaces, is_near);
+  std::vector<PlaceCandidate> places = find_places(index, view, words, kLoopPlaces, is_excluded);
   if (places.empty()) return places;
   const float usual = usual_similarity(map, index, id, index.vocabulary().bag_of(words));
   std::erase_if(places, [&](const PlaceCandidate& place) { return place.score < kMinScoreShare * usual; });
   return places;
+}
+
+std::vector<PlaceCandidate> find_old_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
+                                            std::span<const Word> words, const LoopOptions& options) {
+  const std::set<KeyframeId> surroundings = surroundings_of(view.online(), id);
+  return similar_places(view, index, id, words, [&](KeyframeId other) {
+    return other.number + options.min_gap > id.number || surroundings.contains(other);
+  });
 }
 
 // Path of the camera between two keyframes, metres.
@@ -116,29 +122,16 @@ bool is_plausible(const LoopHypothesis& hypothesis, const MapGraph& map, const L
          shift.distance <= on_top + (options.max_drift_share + scale_drift) * path;
 }
 
-bool is_same_pose(const TrackedFrame& tracked, const Pose& predicted_camera_from_old, const MapGraph& map) {
-  constexpr double kMaxDisagreement = 0.01;  // share of the median depth, and radians
+bool is_same_pose(const TrackedFrame& tracked, const Pose& predicted_camera_from_old, double max_disagreement,
+                  const MapGraph& map) {
   const Pose motion = tracked.camera_from_world * inverse(predicted_camera_from_old);
-  return motion.translation.norm() <= kMaxDisagreement * median_depth(tracked, map) &&
-         rotation_log(motion.rotation).norm() <= kMaxDisagreement;
+  return motion.translation.norm() <= max_disagreement * median_depth(tracked, map) &&
+         rotation_log(motion.rotation).norm() <= max_disagreement;
 }
 
 // Drift between the poses of a camera in the newer and in the older part.
 Pose drift_between(const Pose& camera_from_old, const Pose& camera_from_new, double scale) {
   return inverse(camera_from_old) * scale_lengths(camera_from_new, scale);
-}
-
-// View of the older part from a pose there. Monocular lengths are not metric, so they are scaled to a median depth of 5
-// m. Stereo lengths are scaled likewise if the depth is less, since there would be too few cells.
-PlaceView view_of_older_part(const LoopHypothesis& hypothesis, const Frame& frame, const TrackedFrame& there,
-                             const Rig& rig, const MapGraph& map) {
-  constexpr int kKeyframesNearby = 3;
-  constexpr double kDepth = 5.0;  // metres
-  const ScratchVector<PointId> nearby = local_points(map, there.reference, kKeyframesNearby);
-  const ScratchVector<PointId> around = local_points(map, there.reference, kKeyframesOfPlace);
-  const double share = hypothesis.median_depth / kDepth;
-  const double metre = rig.is_stereo() ? std::min(1.0, share) : share;
-  return view_of_place({map, rig, frame, there, nearby, around, {}, {}, {}, metre});
 }
 
 // Stereo measures the scale. Otherwise points in both parts determine it, at best as precisely as the camera's position
@@ -154,7 +147,44 @@ std::optional<ScaleDrift> find_scale_drift(const MapGraph& map, const Keyframe& 
   return drift;
 }
 
+// Localises a keyframe at the best of these places. begun: hypothesis with the test to continue.
+std::optional<LoopHypothesis> localise_at_places(const MapView& view, const PlaceIndex& index, KeyframeId id,
+                                                 std::span<const Word> words, const std::vector<PlaceCandidate>& places,
+                                                 LoopHypothesis begun, const LoopOptions& options) {
+  const MapGraph& map = view.online();
+  const Keyframe& keyframe = *map.find_keyframe(id);
+  const Rig& rig = rig_of(map, keyframe);
+  const Localisation found = localise_at(keyframe.frame, words, rig, view, index.vocabulary(), places, kStrictness);
+  if (!found.tracked) return std::nullopt;
+
+  LoopHypothesis hypothesis = std::move(begun);
+  hypothesis.keyframe = id;
+  hypothesis.place = found.tracked->reference;
+  hypothesis.covariance = found.tracked->match_covariance;
+  const double depth = median_depth(*found.tracked, view);
+  if (hypothesis.median_depth == 0.0) hypothesis.median_depth = depth;
+  const auto drift = find_scale_drift(map, keyframe, *found.tracked, depth, options);
+  if (!drift) return std::nullopt;
+  hypothesis.scale = drift->old_per_new;
+  hypothesis.scale_sigma = drift->sigma;
+  hypothesis.old_from_new =
+      drift_between(found.tracked->camera_from_world, keyframe.camera_from_world, hypothesis.scale);
+  hypothesis.test.observe(view_of_map(keyframe.frame, *found.tracked, hypothesis.median_depth, rig, map), false);
+  return hypothesis;
+}
+
 }  // namespace
+
+PlaceView view_of_map(const Frame& frame, const TrackedFrame& tracked, double median_depth, const Rig& rig,
+                      const MapGraph& map) {
+  constexpr int kKeyframesNearby = 3;
+  constexpr double kDepth = 5.0;  // metres
+  const ScratchVector<PointId> nearby = local_points(map, tracked.reference, kKeyframesNearby);
+  const ScratchVector<PointId> around = local_points(map, tracked.reference, kKeyframesOfPlace);
+  const double share = median_depth / kDepth;
+  const double metre = rig.is_stereo() ? std::min(1.0, share) : share;
+  return view_of_place({map, rig, frame, tracked, nearby, around, {}, {}, {}, metre});
+}
 
 std::vector<DepthPair> depth_pairs(const MapGraph& map, const Keyframe& keyframe, const TrackedFrame& in_older_part) {
   constexpr double kMinVariance = 0.005 * 0.005;  // lower bound, whatever the covariance
@@ -213,25 +243,40 @@ std::optional<LoopHypothesis> find_loop_by_words(const MapGraph& map, const Plac
   const MapView view(nullptr, map);
   const std::vector<PlaceCandidate> places = find_old_places(view, index, newest, words, options);
   if (places.empty()) return std::nullopt;
-  const Localisation found = localise_at(keyframe->frame, words, view.rig_of(*keyframe, newest), view,
-                                         index.vocabulary(), places, kStrictness);
-  if (!found.tracked) return std::nullopt;
-
-  LoopHypothesis hypothesis;
-  hypothesis.keyframe = newest;
-  hypothesis.place = found.tracked->reference;
-  hypothesis.covariance = found.tracked->match_covariance;
-  hypothesis.median_depth = median_depth(*found.tracked, view);
-  const auto drift = find_scale_drift(map, *keyframe, *found.tracked, hypothesis.median_depth, options);
-  if (!drift) return std::nullopt;
-  hypothesis.scale = drift->old_per_new;
-  hypothesis.scale_sigma = drift->sigma;
-  hypothesis.old_from_new =
-      drift_between(found.tracked->camera_from_world, keyframe->camera_from_world, hypothesis.scale);
-  if (!is_plausible(hypothesis, map, options)) return std::nullopt;
-  const Rig& rig = rig_of(map, *keyframe);
-  hypothesis.test.observe(view_of_older_part(hypothesis, keyframe->frame, *found.tracked, rig, map), false);
+  const auto hypothesis = localise_at_places(view, index, newest, words, places, {}, options);
+  if (!hypothesis || !is_plausible(*hypothesis, map, options)) return std::nullopt;
   return hypothesis;
+}
+
+std::optional<LoopHypothesis> find_join(const MapGraph& map, const PlaceIndex& index, KeyframeId separate,
+                                        const std::function<bool(KeyframeId)>& is_in_map, const LoopHypothesis* known,
+                                        const LoopOptions& options) {
+  constexpr int kConfirmations = 4;          // tracked keyframes
+  constexpr double kMaxDisagreement = 0.03;  // see LoopHypothesis; a young submap is less precise than the map
+  const Keyframe* const keyframe = map.find_keyframe(separate);
+  if (keyframe == nullptr || keyframe->words.empty()) return std::nullopt;
+  const MapView view(nullptr, map);
+  const auto is_excluded = [&](KeyframeId id) { return !is_in_map(id); };
+  const std::vector<PlaceCandidate> places = similar_places(view, index, separate, keyframe->words, is_excluded);
+  if (places.empty()) return std::nullopt;
+  LoopHypothesis begun;
+  begun.max_disagreement = kMaxDisagreement;
+  begun.test = known != nullptr ? known->test : PlaceHypothesis(kLogOddsOfKidnapping, kConfirmations);
+  begun.median_depth = known != nullptr ? known->median_depth : 0.0;
+  return localise_at_places(view, index, separate, keyframe->words, places, std::move(begun), options);
+}
+
+bool agree(const LoopHypothesis& one, const LoopHypothesis& other, const MapGraph& map, const LoopOptions& options) {
+  constexpr double kMaxTurn = 0.1;   // radians
+  constexpr double kMaxScale = 0.1;  // natural logarithm
+  const Pose& camera = map.find_keyframe(other.keyframe)->camera_from_world;
+  const Pose apart = move_camera(drift_of(one), camera) * inverse(move_camera(drift_of(other), camera));
+  const double scale_drift = std::abs(std::log(one.scale / other.scale));
+  const auto [first, last] = std::minmax(one.keyframe, other.keyframe);
+  const double path = other.scale * path_between(map, first, last);
+  return rotation_log(apart.rotation).norm() <= kMaxTurn && scale_drift <= kMaxScale &&
+         apart.translation.norm() <=
+             kMaxDriftDepths * other.median_depth + (options.max_drift_share + scale_drift) * path;
 }
 
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,
@@ -242,9 +287,9 @@ LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, 
   there.reference = hypothesis.place;
   const auto tracked =
       track(frame, there.camera_from_world, rig, map, local_points(map, hypothesis.place, kKeyframesOfPlace), {});
-  const bool agrees = tracked && is_same_pose(*tracked, there.camera_from_world, map);
+  const bool agrees = tracked && is_same_pose(*tracked, there.camera_from_world, hypothesis.max_disagreement, map);
   if (agrees) there = *tracked;
-  checked.test.observe(view_of_older_part(hypothesis, frame, there, rig, map), agrees);
+  checked.test.observe(view_of_map(frame, there, hypothesis.median_depth, rig, map), agrees);
   if (!agrees) {
     ++checked.untracked;
     return checked;

@@ -8,6 +8,7 @@
 #include "byre/slam/tracking/tracking.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -68,18 +69,25 @@ struct LoopHypothesis {
   Pose old_from_new;
   // Covariance of the keyframe's camera in the older part, see TrackedFrame::match_covariance.
   Matrix6 covariance = Matrix6::Zero();
-  double median_depth = 0.0;  // median depth of the keyframe's points in the older part, lengths of that part
+  double median_depth = 0.0;  // median depth of the first keyframe's points in the older part, its lengths
   double scale = 1.0;         // other than 1 only for a keyframe without stereo
   double scale_sigma = 0.0;   // standard deviation of the scale's logarithm
   // Test of the poses in the older part by expected points. Even prior: LoopOptions bound the drift, and within the
   // bounds any drift is equally likely.
   PlaceHypothesis test{0.0, 3};
+  // Largest disagreement of a frame's poses in both parts: share of the median depth, and radians.
+  double max_disagreement = 0.01;
   int untracked = 0;  // frames not tracked in the older part
 };
 
 inline Similarity drift_of(const LoopHypothesis& hypothesis) {
   return {hypothesis.scale, hypothesis.old_from_new};
 }
+
+// View of an online map from a pose in it. Monocular lengths are not metric, so they are scaled to a median depth of 5
+// m. Stereo lengths are scaled likewise if the depth is less, since there would be too few cells.
+PlaceView view_of_map(const Frame& frame, const TrackedFrame& tracked, double median_depth, const Rig& rig,
+                      const MapGraph& map);
 
 // Localises the newest keyframe at keyframes that share no points with its surroundings. Accepts only a drift within
 // the bounds for the path: a fence repeats within metres, but a map does not drift by metres within a few. Without
@@ -90,6 +98,16 @@ std::optional<LoopHypothesis> find_loop(const MapGraph& map, const PlaceIndex& i
 // Same for a keyframe whose words, one per feature, are not in map and index yet.
 std::optional<LoopHypothesis> find_loop_by_words(const MapGraph& map, const PlaceIndex& index, KeyframeId newest,
                                                  std::span<const Word> words, const LoopOptions& options);
+
+// Localises a keyframe of a separate submap at keyframes of the map. Drift is the similarity between both, whatever its
+// size; the test is stricter than that of a loop, since no bound on the drift excludes places that look alike. known:
+// join of the same submap whose test continues, so that evidence of several places adds up; nullptr: none.
+std::optional<LoopHypothesis> find_join(const MapGraph& map, const PlaceIndex& index, KeyframeId separate,
+                                        const std::function<bool(KeyframeId)>& is_in_map, const LoopHypothesis* known,
+                                        const LoopOptions& options);
+
+// Whether two joins of a submap agree up to its drift between their keyframes.
+bool agree(const LoopHypothesis& one, const LoopHypothesis& other, const MapGraph& map, const LoopOptions& options);
 
 // Rig of a keyframe.
 const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe);

@@ -144,6 +144,14 @@ void AnchoredTrajectory::refine_deferred(const DeferredFrame& seen, const MapVie
   if (pose) anchored.camera_from_keyframe = *pose * inverse(keyframe_from_world);
 }
 
+std::vector<Timestamp> AnchoredTrajectory::times_outside_map_frame(const Submaps& submaps) const {
+  std::vector<Timestamp> times;
+  for (const AnchoredPose& pose : poses_) {
+    if (submaps.frame(pose.submap) != Submaps::kMapFrame) times.push_back(pose.time);
+  }
+  return times;
+}
+
 Trajectory AnchoredTrajectory::in_map_frame(const MapView& map, const Submaps& submaps, const Rig& rig) const {
   Trajectory trajectory;
   trajectory.reserve(poses_.size());

@@ -88,6 +88,8 @@ class AnchoredTrajectory {
   void refine_overdue(const MapView& map, const TrackOptions& tracking);
   void refine_all_deferred(const MapView& map, const TrackOptions& tracking, const AdjustedOffline& offline);
 
+  // Times of the poses in other frames than the map frame.
+  std::vector<Timestamp> times_outside_map_frame(const Submaps& submaps) const;
   // The poses world_from_body in the map frame.
   Trajectory in_map_frame(const MapView& map, const Submaps& submaps, const Rig& rig) const;
 

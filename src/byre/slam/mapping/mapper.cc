@@ -88,7 +88,8 @@ Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Rig& rig,
   }
   std::vector<KeyframeId> keyframes;
   if (online_.keyframe_count() > 0) {
-    keyframes = add_submap_by_odometry(*attempt.start, *camera_from_world, trajectory);
+    keyframes = camera_from_world ? add_submap_by_odometry(*attempt.start, *camera_from_world, trajectory)
+                                  : add_submap_without_odometry(*attempt.start);
     if (keyframes.empty()) return {};
   } else {
     MonocularStart start = *std::move(attempt.start);
@@ -122,9 +123,15 @@ std::vector<KeyframeId> Mapper::add_submap_by_odometry(const MonocularStart& sta
   return keyframes;
 }
 
-void Mapper::allow_monocular_submap(const Rig& rig, bool has_odometry) {
+// The parent lies in another frame. It makes the first keyframe movable, and removable if the submap is not joined.
+std::vector<KeyframeId> Mapper::add_submap_without_odometry(const MonocularStart& start) {
+  submaps_.begin_in_own_frame(next_keyframe_number());
+  return add_separate_submap(start, newest_, options_.recording, online_);
+}
+
+void Mapper::allow_monocular_submap(const Rig& rig, bool is_allowed) {
   if (rig.is_stereo() || offline_ || online_.keyframe_count() == 0) return;
-  if (!has_odometry) {
+  if (!is_allowed) {
     initialiser_.reset();
   } else if (!initialiser_) {
     initialiser_.emplace(rig, options_.monocular_start, options_.mapping);
@@ -233,8 +240,15 @@ std::vector<KeyframeMotion> Mapper::all_motions() const {
 
 std::optional<double> Mapper::collect() {
   collect_index();
-  const auto finished = local_.collect();
-  if (finished) apply_update(finished->result);
+  auto finished = local_.collect();
+  if (finished) {
+    // A removed first keyframe of a separate submap would keep its pose relative to a keyframe of another frame.
+    std::erase_if(finished->result.delta.removed_keyframes, [&](KeyframeId id) {
+      const Keyframe* const keyframe = online_.find_keyframe(id);
+      return keyframe != nullptr && keyframe->parent && submaps_.frame(id) != submaps_.frame(*keyframe->parent);
+    });
+    apply_update(finished->result);
+  }
   if (auto optimised = whole_.collect()) outcome_ = std::move(optimised->result);
   return finished ? std::optional(finished->seconds) : std::nullopt;
 }
@@ -360,14 +374,14 @@ void Mapper::request_map_job() {
     return releasing_pages(*file, [early] { return early->load(); });
   };
   if (due_ == MapJob::correct) {
-    whole_.request([map = std::make_shared<MapGraph>(online_), first_new = first_new_, loops = loops(),
+    whole_.request([map = std::make_shared<MapGraph>(joined_online()), first_new = first_new_, loops = loops(),
                     motions = all_motions(), options = GlobalMappingOptions{options_.mapping}, stop] {
       LoopClosureInput input = copy_for_loop_closure(*map, first_new, loops, motions);
       *map = MapGraph(Origin::online);  // the snapshot is not needed any more
       return MapOutcome(close_loops(std::move(input), options, stop()));
     });
   } else if (due_ == MapJob::calibrate) {
-    whole_.request([map = online_, offline = offline_, state = calibrator_->state(), rig = rig_to_calibrate_,
+    whole_.request([map = joined_online(), offline = offline_, state = calibrator_->state(), rig = rig_to_calibrate_,
                     options = calibrator_->options(), file = page_file_, stop] {
       const MapWindow whole = whole_map({offline ? &offline->map() : nullptr, map});
       MapCalibration calibration = calibrate(whole, state, rig, options, stop());
@@ -412,6 +426,54 @@ LengthChanges Mapper::finish(const std::function<void()>& run_jobs) {
   }
 }
 
+MapGraph Mapper::joined_online() const {
+  MapGraph joined = online_;
+  if (offline_ || !submaps_.has_separate()) return joined;
+  for (const KeyframeId id : online_.keyframe_ids()) {
+    if (!is_in_map(id)) joined.remove_keyframe(id);
+  }
+  return joined;
+}
+
+LengthChanges Mapper::join_submaps() {
+  LengthChanges changes;
+  if (offline_ || !submaps_.has_separate()) return changes;
+  bool has_joined = !*is_finishing_early_;
+  while (std::exchange(has_joined, false)) {
+    for (std::size_t i = 0; i < submaps_.size(); ++i) {
+      const Submaps::Frame frame = submaps_.frame(i);
+      has_joined = (frame != Submaps::kMapFrame && join_submap(frame, changes)) || has_joined;
+    }
+  }
+  for (const KeyframeId id : online_.keyframe_ids()) {
+    if (!is_in_map(id)) places_.edit()->remove(id);
+  }
+  online_ = joined_online();
+  newest_ = online_.keyframe_ids().back();
+  ++revision_;
+  return changes;
+}
+
+// Moves the submap by the join with the most precise scale.
+bool Mapper::join_submap(Submaps::Frame frame, LengthChanges& changes) {
+  std::vector<KeyframeId> keyframes = online_.keyframe_ids();
+  std::erase_if(keyframes, [&](KeyframeId id) { return submaps_.frame(id) != frame; });
+  const std::vector<LoopHypothesis> joins = search_joins(
+      online_, **places_, keyframes, [&](KeyframeId id) { return is_in_map(id); }, options_.loops);
+  if (joins.empty()) return false;
+  const LoopHypothesis& best = *std::ranges::min_element(joins, {}, &LoopHypothesis::scale_sigma);
+  LengthChanges moved;
+  for (KeyframeId id{Origin::online, 0}; online_.living_ancestor(id); ++id.number) {
+    if (submaps_.frame(id) == frame) moved[id] = best.scale;
+  }
+  for (const LoopHypothesis& join : joins) joins_.push_back(in_new_lengths(*edge_of(join, online_), moved));
+  move_part(online_, drift_of(best), [&](KeyframeId id) { return moved.contains(id); });
+  loop_closer_.apply_length_changes(moved);
+  submaps_.join_map_frame(frame);
+  changes.merge(moved);
+  return true;
+}
+
 std::optional<RigRotation> Mapper::calibrate_finally(const Rig& rig, const std::function<bool()>& should_stop) {
   if (!calibrator_ || !calibrator_->is_final_run_useful(online_.keyframe_count())) return std::nullopt;
   // The copy of the map is freed before the features are converted, because it would store the old ones.
@@ -428,8 +490,8 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   to_page_out_.clear();  // no more jobs
   if (first_new == 0) page_out_features(online_, *page_file_);
   const FinishHooks frugal{releasing_pages(*page_file_, hooks.should_stop), hooks.before_step};
-  FinishReport report =
-      byre::finish_map(online_, **places_, {options_.loops, {options_.mapping}, all_motions(), first_new}, frugal);
+  FinishReport report = byre::finish_map(
+      online_, **places_, {options_.loops, {options_.mapping}, all_motions(), first_new, joins_}, frugal);
   loop_closer_.apply_length_changes(report.length_changes);
   return report;
 }

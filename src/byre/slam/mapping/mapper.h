@@ -78,7 +78,8 @@ class Mapper {
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
   // Begins a submap with a frame. camera_from_world: pose by odometry; without it, the body's pose at the first frame
-  // defines the map frame. A monocular rig needs odometry for the scale of all but its first submap.
+  // defines the map frame. A later submap of a monocular rig without odometry is separate: it has a frame and a scale
+  // of its own, see join_submaps.
   struct Beginning {
     std::vector<KeyframeId> keyframes;  // empty if no submap was begun
     TwoViewFailure failure = TwoViewFailure::none;
@@ -86,8 +87,12 @@ class Mapper {
   Beginning begin(const Frame& frame, const Rig& rig, const std::optional<Pose>& camera_from_world,
                   const AnchoredTrajectory& trajectory);
   bool can_begin(const Rig& rig) const { return rig.is_stereo() || initialiser_; }
-  // Allows a new monocular submap if odometry is available (has_odometry), which its scale needs; else forbids it.
-  void allow_monocular_submap(const Rig& rig, bool has_odometry);
+  // Allows or forbids a new monocular submap.
+  void allow_monocular_submap(const Rig& rig, bool is_allowed);
+  // Wheels or gyroscope give the scale of submaps: none is separate.
+  void require_odometry() { needs_odometry_ = true; }
+  // Whether one camera may begin a separate submap, which place recognition joins with the map later.
+  bool may_begin_separate_submap() const { return places() && !offline_ && first_new_ == 0 && !needs_odometry_; }
   // Begins a submap at a relocalised frame.
   void begin_at_relocalisation(const HybridTrack& found);
   // Revokes the registration to the map frame of the present submap, or of its keyframes after a time.
@@ -118,6 +123,10 @@ class Mapper {
   // runs the requested jobs, waits for those in flight, and delivers their results. Returned changes of length apply to
   // poses relative to keyframes.
   LengthChanges finish(const std::function<void()>& run_jobs);
+  // Joins separate submaps with the map by similarities, see search_joins, and removes those that cannot be joined.
+  LengthChanges join_submaps();
+  // The online map without separate submaps.
+  MapGraph joined_online() const;
   std::optional<RigRotation> calibrate_finally(const Rig& rig, const std::function<bool()>& should_stop);
   FinishReport finish_map(const FinishHooks& hooks);
   std::pair<LengthChanges, AdjustedOffline> adjust_with_offline(const FinishHooks& hooks);
@@ -135,6 +144,9 @@ class Mapper {
                             const AnchoredTrajectory& trajectory);
   std::vector<KeyframeId> add_submap_by_odometry(const MonocularStart& start, const Pose& camera_from_world,
                                                  const AnchoredTrajectory& trajectory);
+  std::vector<KeyframeId> add_submap_without_odometry(const MonocularStart& start);
+  bool is_in_map(KeyframeId online) const { return submaps_.frame(online) == Submaps::kMapFrame; }
+  bool join_submap(Submaps::Frame frame, LengthChanges& changes);
   std::optional<KeyframeId> parent_of_bridge(const AnchoredTrajectory& trajectory) const;
   std::vector<KeyframeMotion> motions_between(const std::vector<KeyframeId>& keyframes) const;
   std::vector<KeyframeMotion> all_motions() const;  // covers the whole map
@@ -170,6 +182,7 @@ class Mapper {
   std::optional<MonocularInitialiser> initialiser_;  // while a monocular map or submap may begin
   bool is_scaled_by_odometry_ = false;
   bool contradicts_odometry_ = false;
+  bool needs_odometry_ = false;
   Pose odometry_reference_;  // camera_from_world of the initialiser's reference frame, by odometry
   std::optional<Calibrator> calibrator_;
   ImageMask hidden_;
@@ -178,6 +191,7 @@ class Mapper {
   Submaps submaps_;
   Shared<std::optional<PlaceIndex>> places_;  // empty without a vocabulary
   LoopCloser loop_closer_;
+  std::vector<LoopEdge> joins_;  // loops that joined submaps
   std::optional<KeyframeId> newest_;
   std::uint32_t first_new_ = 0;  // number of the first keyframe after those of a continued map
   std::vector<KeyframeId> pending_;

@@ -11,6 +11,10 @@ Submaps::Frame Submaps::frame(KeyframeId online) const {
   return std::prev(next)->frame;
 }
 
+bool Submaps::has_separate() const {
+  return std::ranges::any_of(submaps_, [](const Submap& submap) { return submap.frame != kMapFrame; });
+}
+
 void Submaps::begin_in_map_frame(std::uint32_t first_keyframe) {
   submaps_.push_back({first_keyframe, kMapFrame});
 }

@@ -24,6 +24,8 @@ class Submaps {
   Frame frame(KeyframeId online) const;
   // Whether the present submap lies in the map frame.
   bool is_registered() const { return !empty() && frame() == kMapFrame; }
+  // Whether a submap lies in a frame of its own.
+  bool has_separate() const;
   // Whether the keyframe lies in the frame of the present submap.
   bool is_in_present_frame(KeyframeId online) const { return frame(online) == frame(); }
 

@@ -23,6 +23,15 @@ TEST(Submaps, StartingInTheMapFrameShareIt) {
   EXPECT_EQ(submaps.frame(online(4)), Submaps::kMapFrame);
 }
 
+TEST(Submaps, AreSeparateUntilTheyJoinTheMapFrame) {
+  Submaps submaps = two_in_map_frame();
+  EXPECT_FALSE(submaps.has_separate());
+  submaps.begin_in_own_frame(8);
+  EXPECT_TRUE(submaps.has_separate());
+  submaps.join_map_frame(submaps.frame());
+  EXPECT_FALSE(submaps.has_separate());
+}
+
 TEST(Submaps, StartingInTheirOwnFrameAreSeparate) {
   Submaps submaps;
   submaps.begin_in_own_frame(0);

@@ -35,7 +35,7 @@ struct RobotState {
              std::shared_ptr<const OfflineMap> offline = nullptr);
 
   MapView map() const { return mapper.map(); }
-  bool is_registered() const { return mapper.submaps().is_registered(); }  // true without an offline map
+  bool is_registered() const { return mapper.submaps().is_registered(); }  // without an offline map: see Mapper::begin
   JobState* job(JobKind kind);                                             // nullptr: the state has no such job
 
   Rig rig;  // rig of the present frame

@@ -109,6 +109,7 @@ void Session::finish() {
     run(take_requests(state_));
     deliver_results(&Executor::finish, &Executor::finish);
   }));
+  state_.pose_filter.apply_length_changes(state_.mapper.join_submaps());
 }
 
 FinishReport Session::finish_map(const FinishHooks& hooks) {
@@ -145,11 +146,28 @@ std::optional<Pose> Session::locate_in_finished_map(const Frame& rectified, cons
   return anywhere ? located_from(*anywhere) : std::nullopt;
 }
 
+std::optional<Pose> Session::find_in_finished_map(const Frame& rectified) {
+  const PlaceIndex* const places = state_.mapper.places();
+  if (!places) return std::nullopt;
+  const MapGraph& map = state_.mapper.online();
+  const Frame frame = state_.mapper.corrected(rectified);
+  const PlaceFilter exists{[&](KeyframeId id) { return map.find_keyframe(id) == nullptr; }, {}};
+  const auto tracked = localise(frame, state_.rig, map, *places, options_.relocalise, exists).tracked;
+  if (!tracked || !is_finite(tracked->camera_from_world)) return std::nullopt;
+  const PlaceView view = view_of_map(frame, *tracked, median_depth(*tracked, map), state_.rig, map);
+  if (log_odds_of(view) < RegistrationOptions{}.accept_log_odds) return std::nullopt;
+  return body_pose(state_.rig, tracked->camera_from_world);
+}
+
 void Session::finish_mission(const FinishHooks& hooks) {
   if (state_.mapper.online().keyframe_count() == 0) return;
   const auto [lengths, offline] = state_.mapper.adjust_with_offline(hooks);
   state_.pose_filter.apply_length_changes(lengths);
   state_.pose_filter.refine_all_deferred(state_.map(), options_.track, offline);
+}
+
+std::vector<Timestamp> Session::frames_not_joined() const {
+  return state_.pose_filter.trajectory().times_outside_map_frame(state_.mapper.submaps());
 }
 
 Trajectory Session::final_trajectory() const {

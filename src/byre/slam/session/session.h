@@ -51,6 +51,8 @@ class Session {
     state_.pose_filter.set_odometry(std::move(reach));
   }
 
+  void require_odometry() { state_.mapper.require_odometry(); }  // see Mapper
+
   // Continues an online map of another recording: the session is lost until it relocalises in it, and extends it. Call
   // it before the first frame. Precondition: the keyframes have words of the session's vocabulary.
   void continue_map(MapGraph online);
@@ -87,12 +89,13 @@ class Session {
   bool contradicts_odometry() const { return state_.mapper.contradicts_odometry(); }    // see Mapper
   void finish_early() { state_.mapper.finish_early(); }
 
-  // Applies the results of running jobs. Call it once, after the last frame.
+  // Applies the results of running jobs, and joins separate submaps. Call it once, after the last frame.
   void finish();
 
   // Last loop search and adjustment of the whole map. Call it after finish().
   FinishReport finish_map(const FinishHooks& hooks);
-  MapGraph take_online() { return state_.mapper.take_online(); }  // see Mapper
+  MapGraph joined_online() const { return state_.mapper.joined_online(); }  // see Mapper
+  MapGraph take_online() { return state_.mapper.take_online(); }            // see Mapper
 
   // Scales all lengths. Call it after finish_map().
   void rescale(double factor) { state_.pose_filter.apply_length_changes(state_.mapper.rescale(factor)); }
@@ -100,6 +103,9 @@ class Session {
   // Pose world_from_body of a frame that was not located, in the finished map; empty if too few points agree.
   // predicted: by frames close in time. Call it after finish_map().
   std::optional<Pose> locate_in_finished_map(const Frame& rectified, const Pose& predicted);
+
+  // Same without a prediction, accepted by the test of places.
+  std::optional<Pose> find_in_finished_map(const Frame& rectified);
 
   // Adjusts the whole online map together with the part of the offline map in its view, and refines the trajectory by
   // both. The offline map does not change. Call it after finish().
@@ -117,6 +123,9 @@ class Session {
 
   // Loops found so far, with the measurement at that time.
   const std::vector<LoopEdge>& loops() const { return state_.mapper.loops(); }
+
+  // Times of frames in submaps that are not joined with the map.
+  std::vector<Timestamp> frames_not_joined() const;
 
   // Poses world_from_body of all frames with a pose, by the present poses of their keyframes.
   Trajectory final_trajectory() const;

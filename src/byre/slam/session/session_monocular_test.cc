@@ -135,6 +135,46 @@ double error_of(const Session& session, const SimulatedMission& mission) {
       ->translation.rmse;
 }
 
+// Two laps without the frames of a gap, in which the camera moves on by a sixth of a lap.
+class LostForGood : public ::testing::Test {
+ protected:
+  static constexpr int kGap = 40, kAfterGap = 60;  // frames
+
+  SimulatedMission laps_ = circling(one_camera(), 2.0, 2);
+  Session session_ = session_of(one_camera());
+  std::vector<FrameReport> run(int end) {
+    std::vector<Frame> frames(laps_.frames.begin(), laps_.frames.begin() + kGap);
+    frames.insert(frames.end(), laps_.frames.begin() + kAfterGap, laps_.frames.begin() + end);
+    return reports_of(session_, frames);
+  }
+};
+
+TEST_F(LostForGood, BeginsASubmapWithoutPosesInTheMapAndJoinsItAfterTheReturn) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
+  const auto reports = run(160);
+  EXPECT_EQ(std::ranges::count_if(reports, [](const auto& r) { return r.has(SessionEvent::restarted); }), 1);
+  EXPECT_EQ(std::ranges::count_if(reports, [](const auto& r) { return r.has(SessionEvent::relocalised); }), 1);
+  EXPECT_FALSE(reports[kGap + 20].map_from_body) << "in the submap";
+  EXPECT_NE(reports[kGap + 20].health.verdict, Verdict::trusted);
+  session_.finish();
+  session_.finish_map({});
+  EXPECT_TRUE(session_.frames_not_joined().empty());
+  EXPECT_GT(session_.final_trajectory().size(), 100u) << "of 140";
+  EXPECT_LT(error_of(session_, laps_), 0.02);
+}
+
+TEST_F(LostForGood, LeavesOutASubmapThatShowsNoPlaceOfTheMap) {
+  if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
+  run(90);
+  const Timestamp begin = laps_.frames[kAfterGap].time;
+  session_.finish();
+  session_.finish_map({});
+  EXPECT_GT(session_.frames_not_joined().size(), 10u);
+  EXPECT_THAT(session_.final_trajectory(), Each(::testing::Field(&StampedPose::time, ::testing::Lt(begin))));
+  const MapGraph& map = session_.map().online();
+  for (const KeyframeId id : map.keyframe_ids()) EXPECT_LT(map.find_keyframe(id)->frame.time, begin);
+}
+
 TEST(Monocular, ClosesItsLoopsAndMovesItsFramesAlong) {
   if (kHasThreadSanitizer) GTEST_SKIP() << kSlowUnderThreadSanitizer;
   SimulationOptions options = noisy_visit(2);

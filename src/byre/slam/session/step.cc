@@ -17,8 +17,9 @@ struct Located {
   std::optional<HybridTrack> track;
   std::vector<HybridTrack> elsewhere;  // other places that show the frame
   bool is_relocalised = false;
-  bool is_by_hint = false;     // the search was limited to a hint
-  bool begins_submap = false;  // the frame became the first keyframe of a submap
+  bool is_by_hint = false;      // the search was limited to a hint
+  bool returns_to_map = false;  // relocalised in the map frame, after a separate submap
+  bool begins_submap = false;   // the frame became the first keyframe of a submap
   TwoViewFailure start_failure = TwoViewFailure::none;
   DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
 };
@@ -163,14 +164,14 @@ void sort_by_log_odds(RobotState& state, std::vector<HybridTrack>& places, const
   std::swap(places.front(), places[static_cast<std::size_t>(std::ranges::max_element(log_odds) - log_odds.begin())]);
 }
 
-// Localises without a prediction.
-Located find_place(RobotState& state, const Frame& frame, const Tracker::Scene& scene) {
+// Localises without a prediction. is_in_map: only in the map frame.
+Located find_place(RobotState& state, const Frame& frame, const Tracker::Scene& scene, bool is_in_map) {
   Tracker::Find find;
   if (auto found =
           state.mission ? state.mission->find_at_rival(frame, state.rig, state.dirt_detector.hidden()) : std::nullopt) {
     find.places.push_back(found_in(Origin::offline, *std::move(found)));
   }
-  if (find.places.empty()) find = state.tracker.find(frame, scene);
+  if (find.places.empty()) find = state.tracker.find(frame, scene, is_in_map);
   sort_by_log_odds(state, find.places, frame);
   Located located;
   located.refused = find.refused;
@@ -194,7 +195,8 @@ bool may_begin_submap(const RobotState& state, const InputFrame& input, const Se
   if (trajectory.empty()) {
     return state.mapper.online().keyframe_count() == 0 || (state.mission && state.rig.is_stereo());
   }
-  if (input.fault != ImageFault::none || (!state.mission && !pose_filter.bridge())) return false;
+  if (input.fault != ImageFault::none) return false;
+  if (!state.mission && state.rig.is_stereo() && !pose_filter.bridge()) return false;
   const Timestamp last_seen = pose_filter.last_seen().value_or(trajectory.back().time);
   return to_seconds(input.frame.time - last_seen) >= options.mission.restart_after;
 }
@@ -203,7 +205,7 @@ Located begin_submap(RobotState& state, const Frame& frame) {
   PoseFilter& pose_filter = state.pose_filter;
   const AnchoredTrajectory& trajectory = pose_filter.trajectory();
   std::optional<Pose> predicted;  // camera_from_world
-  if (!trajectory.empty()) {
+  if (!trajectory.empty() && (state.mission || pose_filter.bridge())) {
     predicted = pose_filter.motion().predict(camera_from_world(state.map(), trajectory.back()), state.rig, 0.0);
   } else if (const auto measured = pose_filter.start_by_odometry()) {
     predicted = camera_pose(state.rig, *measured);
@@ -217,7 +219,13 @@ Located begin_submap(RobotState& state, const Frame& frame) {
   return {.track = {}, .elsewhere = {}, .begins_submap = true, .start_failure = begun.failure};
 }
 
-// Tracks the frame from the last pose, otherwise localises it in the maps, otherwise begins a submap with it.
+// Whether the present submap has a frame of its own in a map that is being made.
+bool is_separate(const RobotState& state) {
+  return !state.mission && !state.mapper.submaps().empty() && !state.is_registered();
+}
+
+// Tracks the frame from the last pose, otherwise localises it in the maps, otherwise begins a submap with it. Frames of
+// a separate submap are localised in the map first.
 Located locate(RobotState& state, const InputFrame& input, const SessionOptions& options) {
   const Frame& frame = input.frame;
   const PoseFilter& pose_filter = state.pose_filter;
@@ -225,12 +233,18 @@ Located locate(RobotState& state, const InputFrame& input, const SessionOptions&
   const bool can_search = state.mission || state.mapper.places();
   const bool returns_by_odometry = can_search && pose_filter.can_return_by_odometry();
   Located located;
+  if (is_separate(state) && pose_filter.has_pose()) {
+    located = find_place(state, frame, scene, true);
+    located.returns_to_map = located.is_relocalised;
+    if (located.track) return located;
+  }
   if (!pose_filter.trajectory().empty() && (pose_filter.has_pose() || !can_search || returns_by_odometry)) {
     located.track = track_from_last_pose(state, frame, scene);
   }
   located.is_relocalised = located.track && returns_by_odometry;
-  if (!located.track && can_search) located = find_place(state, frame, scene);
-  state.mapper.allow_monocular_submap(state.rig, !located.track && pose_filter.bridge());
+  if (!located.track && can_search) located = find_place(state, frame, scene, false);
+  state.mapper.allow_monocular_submap(
+      state.rig, !located.track && (pose_filter.bridge() || state.mapper.may_begin_separate_submap()));
   if (!located.track && may_begin_submap(state, input, options)) return begin_submap(state, frame);
   return located;
 }
@@ -280,7 +294,7 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
   if (!pose_filter.place().is_confirmed() || !state.is_registered()) return;
   if (state.mission && !progress.was_ever_confirmed) {
     report.events.push_back(SessionEvent::localised);
-  } else if (needs_relocalisation(state.status)) {
+  } else if (needs_relocalisation(state.status) || located.returns_to_map) {
     report.events.push_back(SessionEvent::relocalised);
   }
 }

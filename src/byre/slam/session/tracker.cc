@@ -132,7 +132,7 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   return best;
 }
 
-Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
+Tracker::Find Tracker::find(const Frame& frame, const Scene& scene, bool is_in_map) const {
   Find result;
   if (scene.mission) {
     const auto [found, refused] =
@@ -146,7 +146,14 @@ Tracker::Find Tracker::find(const Frame& frame, const Scene& scene) const {
   if (!places || scene.mapper.online().keyframe_count() == 0) return result;
   LocaliseOptions options = options_.relocalise;
   options.hidden = scene.hidden;
-  const Localisation found = localise(frame, scene.rig, scene.mapper.map(), *places, options);
+  const Submaps& submaps = scene.mapper.submaps();
+  const PlaceFilter in_map{[&](KeyframeId id) { return submaps.frame(id) != Submaps::kMapFrame; }, {}};
+  const bool has_separate = !scene.mission && submaps.has_separate();
+  Localisation found =
+      localise(frame, scene.rig, scene.mapper.map(), *places, options, has_separate ? in_map : PlaceFilter{});
+  if (!found.tracked && has_separate && !is_in_map) {
+    found = localise(frame, scene.rig, scene.mapper.map(), *places, options);
+  }
   if (found.tracked && !is_like_another_place(*found.tracked)) {
     result.places.push_back(found_in(Origin::online, *found.tracked));
   }

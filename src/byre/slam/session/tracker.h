@@ -54,8 +54,8 @@ class Tracker {
     std::vector<HybridTrack> places;
     DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
   };
-  // Localises in all of the maps, the offline one first.
-  Find find(const Frame& frame, const Scene& scene) const;
+  // Localises in all of the maps, the offline one first, separate submaps last. is_in_map: not in separate submaps.
+  Find find(const Frame& frame, const Scene& scene, bool is_in_map = false) const;
   // Whether a tracked pose does not meet the criteria of localisation.
   bool is_doubtful(const HybridTrack& track, const Scene& scene) const;
 

@@ -239,6 +239,7 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   const Timestamp since = last_frame_.value_or(frame.time);  // the first frame is where the measured path begins
   const auto measured_motion = uses_samples ? prior_.between(since, frame.time) : motion;
   session_.set_tilt(uses_samples ? prior_.tilt(frame.time) : std::nullopt);
+  if (measured_motion || !prior_.is_empty()) session_.require_odometry();
   FrameReport report = session_.process(frame, measured_motion, &budget_);
   last_frame_ = frame.time;
   const bool is_begun = std::ranges::find(report.events, SessionEvent::initialised) != report.events.end();
@@ -391,7 +392,7 @@ StoredMap SlamImpl::stored_metadata() const {
 StoredMap SlamImpl::stored_map() const {
   const MapView map = session_.map();
   StoredMap stored = stored_metadata();
-  stored.map = map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(map.online());
+  stored.map = map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(session_.joined_online());
   return stored;
 }
 

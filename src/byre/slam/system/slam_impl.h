@@ -96,6 +96,11 @@ class SlamImpl {
     return session_.locate_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame, predicted);
   }
 
+  // Same without a prediction.
+  std::optional<Pose> find_in_finished_map(const ImageFrame& images) {
+    return session_.find_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame);
+  }
+
   // Damage of the offline map's file, with section and remedy; nullptr if undamaged. Parts already read stay in use;
   // all later reports are untrusted.
   const InputError* map_damage() const { return inputs_.offline ? inputs_.offline->map().damage() : nullptr; }

@@ -311,6 +311,11 @@ std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const 
   return placement ? add_start(start, *placement, parent, recording, map) : std::vector<KeyframeId>{};
 }
 
+std::vector<KeyframeId> add_separate_submap(const MonocularStart& start, const std::optional<KeyframeId>& parent,
+                                            int recording, MapGraph& map) {
+  return add_start(start, {}, parent, recording, map);
+}
+
 bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometry) {
   constexpr double kMaxTurn = 0.1;        // radians
   constexpr double kMaxDirection = 0.15;  // radians, three sigmas of extrinsics measured by hand

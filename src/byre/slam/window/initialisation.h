@@ -78,6 +78,11 @@ struct StartPoses {
 std::vector<KeyframeId> add_monocular_submap(const MonocularStart& start, const StartPoses& odometry,
                                              const std::optional<KeyframeId>& parent, int recording, MapGraph& map);
 
+// Same without odometry: world and lengths of the start are kept, so the submap has a coordinate frame and a scale of
+// its own.
+std::vector<KeyframeId> add_separate_submap(const MonocularStart& start, const std::optional<KeyframeId>& parent,
+                                            int recording, MapGraph& map);
+
 // Whether the cameras of a start turned and moved in the measured direction.
 bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometry);
 
