@@ -1,15 +1,12 @@
 #include "byre/odometry/odometry_calibration.h"
 
 #include "byre/alignment.h"
-#include "byre/base/text_file.h"
+#include "byre/base/numbers_by_name.h"
 #include "byre/geometry/decompositions.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
-#include <string_view>
-#include <vector>
 
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
@@ -21,54 +18,6 @@ constexpr const char* kWheels = "wheels";
 constexpr const char* kGyroscope = "gyroscope";
 constexpr const char* kGravity = "gravity";
 constexpr double kNeglected = 9.0;  // factor of the variances of an estimate for errors that motions have in common
-
-std::string text_of(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-// Format: "name number number, name number ..."
-class NumbersByName {
- public:
-  NumbersByName() = default;
-  explicit NumbersByName(std::string_view text) {
-    while (!text.empty()) {
-      const std::size_t end = text.find(';');
-      take(text.substr(0, end));
-      if (end == std::string_view::npos) break;
-      text.remove_prefix(end + 1);
-    }
-  }
-
-  void add(const std::string& name, std::span<const double> values) {
-    text_ += (text_.empty() ? "" : "; ") + name;
-    for (const double value : values) text_ += " " + text_of(value);
-  }
-  void add(const std::string& name, double value) { add(name, std::span(&value, 1)); }
-  const std::string& text() const { return text_; }
-
-  // Copies the numbers to values; false unless the counts match.
-  bool get(const std::string& name, std::span<double> values) const {
-    const auto found = numbers_.find(name);
-    if (found == numbers_.end() || found->second.size() != values.size()) return false;
-    std::ranges::copy(found->second, values.begin());
-    return true;
-  }
-  bool get(const std::string& name, double& value) const { return get(name, std::span(&value, 1)); }
-
- private:
-  void take(std::string_view part) {
-    const std::vector<std::string_view> fields = split_fields(part);
-    if (fields.empty()) return;
-    std::vector<double>& numbers = numbers_[std::string(fields.front())];
-    for (std::size_t i = 1; i < fields.size(); ++i) {
-      if (const auto number = parse_number(fields[i])) numbers.push_back(*number);
-    }
-  }
-
-  std::string text_;
-  std::map<std::string, std::vector<double>> numbers_;
-};
 
 void add_rotation(NumbersByName& numbers, const std::string& name, const Eigen::Quaterniond& rotation) {
   numbers.add(name, std::array{rotation.w(), rotation.x(), rotation.y(), rotation.z()});
