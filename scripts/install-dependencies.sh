@@ -28,7 +28,7 @@ packages=(
 if [[ $scope != demo ]]; then
   packages+=(
     # byre node
-    cyclonedds-dev libsystemd-dev libmosquitto-dev
+    cyclonedds-dev libsystemd-dev libmosquitto-dev libapriltag-dev
     # Python package
     pybind11-dev python3-dev
     # Debian packages

@@ -25,6 +25,8 @@
 #include "byre/recording.h"
 #include "byre/rig.h"
 #include "byre/slam.h"
+#include "byre/tag.h"
+#include "byre/tag_file.h"
 #include "byre/trajectory.h"
 #include "byre/trajectory_error.h"
 #include "byre/trajectory_file.h"

@@ -2,6 +2,7 @@
 
 #include "byre/image_condition.h"
 #include "byre/rig.h"
+#include "byre/tag.h"
 #include "byre/trajectory.h"
 
 #include <algorithm>
@@ -178,6 +179,7 @@ struct Frame {
   std::optional<ImageCondition> condition = {};        // condition of the left image; empty for simulated frames
   std::optional<ImageCondition> right_condition = {};  // condition of the right image; empty without one
   std::uint64_t content = 0;                           // checksum of the left image's pixels; 0 for simulated frames
+  std::vector<TagSighting> tags = {};                  // tags detected; empty as well if detection was not due
 };
 
 template <typename Visitor>

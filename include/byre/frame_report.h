@@ -6,6 +6,7 @@
 #include "byre/pose.h"
 #include "byre/session_event.h"
 #include "byre/state.h"
+#include "byre/tag.h"
 #include "byre/trajectory.h"
 #include "byre/two_view_failure.h"
 
@@ -70,10 +71,11 @@ struct FrameReport {
   DistrustReason refused_place = DistrustReason::none;
   TwoViewFailure start_failure = TwoViewFailure::none;  // reason why a monocular map was not initialised
   std::vector<SessionEvent> events;                     // in order
-  std::vector<MotionWarning> warnings;  // faults of motion inputs since the previous frame; each kind once
-  double track_seconds = 0.0;           // wall time of tracking on the calling thread
-  double map_seconds = 0.0;             // wall time of mapping on the calling thread, including inline jobs
-  std::optional<double> job_seconds;    // wall time of the mapping job whose result was applied in this frame
+  std::vector<MotionWarning> warnings;                  // faults of motion inputs and tags since the previous frame
+  std::vector<MappedTag> moved_tags;  // found moved in this frame, at their places now; ignored from here on
+  double track_seconds = 0.0;         // wall time of tracking on the calling thread
+  double map_seconds = 0.0;           // wall time of mapping on the calling thread, including inline jobs
+  std::optional<double> job_seconds;  // wall time of the mapping job whose result was applied in this frame
 
   bool has(SessionEvent event) const { return std::ranges::find(events, event) != events.end(); }
 };

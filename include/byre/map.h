@@ -6,6 +6,7 @@
 #include "byre/localisation_failure.h"
 #include "byre/plan_registration.h"
 #include "byre/rig.h"
+#include "byre/tag.h"
 #include "byre/trajectory.h"
 
 #include <cstddef>
@@ -78,6 +79,7 @@ class Map {
   std::vector<MapRecording> recordings() const;
   const std::map<std::string, std::string>& notes() const;  // text by key, such as "site"
   const std::optional<PlanRegistration>& plan() const;      // registration on a floor plan
+  std::vector<MappedTag> tags() const;                      // AprilTags, by id
 
   MapKeyframe keyframe(int id) const;
   // map_from_body of the keyframes of a recording, by time.
@@ -126,6 +128,10 @@ class Map {
                            const PlanRegistrationOptions& options = {}) const;
   // Copy with this registration. Throws InputError if residual_of(fit) is larger, metres.
   Map with_plan(const PlanFit& fit, double accepted_residual = kLargePlanResidual) const;
+  // Copy with the tags added that are surveyed with a heading and that the map does not have. Their heights are right
+  // if the map was registered by the height of its body (PlanRegistrationOptions). Throws InputError if the map is not
+  // registered on a plan.
+  Map with_tags(std::span<const Tag> surveyed) const;
 
   // Internals for the programs of byre; their type is not public.
   explicit Map(StoredMap stored);
@@ -143,7 +149,8 @@ struct LocalisationReport {
   LocalisationFailure failure = LocalisationFailure::none;  // reason if there is no pose
 };
 
-// Localises images of one camera in a map, each without a prediction. Construction takes some tenths of a second, an
+// Localises images of one camera in a map, each without a prediction. AprilTags of the map decide between places that
+// look alike. Construction takes some tenths of a second, an
 // image some hundredths. Not thread-safe.
 class Localiser {
  public:

@@ -8,17 +8,18 @@
 
 namespace byre {
 
-// Source of measured motion.
+// Source of measured motion, or of places.
 enum class MotionSensor : std::uint8_t {
   wheels,
   gyroscope,
   accelerometer,
-  body_motion  // BodyMotion given to Slam::process
+  body_motion,  // BodyMotion given to Slam::process
+  tags          // AprilTags
 };
 
 std::string_view to_string(MotionSensor sensor);
 
-// Fault of a motion input. Each kind of fault is reported once per sensor.
+// Fault of a motion input, reported once per kind and sensor, or of a tag.
 struct MotionWarning {
   MotionSensor sensor = MotionSensor::wheels;
   Timestamp time{};    // time of the first faulty sample; zero if the fault is not of a single sample

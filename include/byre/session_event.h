@@ -23,7 +23,8 @@ enum class SessionEvent : std::uint8_t {
   map_corrected,     // correction of the whole online map applied
   recalibrated,      // refined calibration applied
   dirt_found,        // dirt on a lens detected; again when the hidden share has grown by half
-  dirt_gone
+  dirt_gone,
+  tag_moved  // tag contradicts the accepted pose repeatedly, see FrameReport::moved_tags
 };
 
 std::string_view to_string(SessionEvent event);

@@ -12,6 +12,7 @@
 #include "byre/pose.h"
 #include "byre/pose_hint.h"
 #include "byre/rig.h"
+#include "byre/tag.h"
 #include "byre/trajectory.h"
 
 #include <cstdint>
@@ -56,6 +57,9 @@ struct SlamOptions {
   // How camera and IMU are mounted on the robot's base. With it wheels yield poses from their second sample on, and
   // one camera begins its map in metres. Empty: taken from the map, or found while driving. The camera's is required.
   std::optional<Extrinsics> extrinsics{};
+  // AprilTags on the robot's way (read_tags), whose poses the map stores. One camera makes a map in metres by the sizes
+  // of two or more. Missions detect the tags of their map without this option, as evidence for a place.
+  std::vector<Tag> tags{};
 };
 
 // Called with the report of a frame. May call the Slam, and destroy it.
@@ -165,7 +169,7 @@ class Slam {
   int points() const;
   // Positions of these points, in the frame of map_from_body.
   std::vector<Eigen::Vector3d> point_positions() const;
-  // Faults of motion inputs so far, each kind once. FrameReport::warnings holds those new in a frame.
+  // Faults of motion inputs, each kind once, and of tags so far. FrameReport::warnings holds those new in a frame.
   std::vector<MotionWarning> motion_warnings() const;
   int frames() const;                  // all frames, including dropped ones
   int frames(InputFault fault) const;  // frames with this fault

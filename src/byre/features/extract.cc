@@ -10,6 +10,7 @@
 #include "byre/features/pyramid.h"
 #include "byre/features/rectify.h"
 #include "byre/features/stereo.h"
+#include "byre/features/tag_detector.h"
 #include "byre/image_condition.h"
 #include "byre/input_error.h"
 
@@ -145,8 +146,14 @@ struct EnhancedImage {
 };
 
 struct Extractor::State {
-  State(const Calibration& used, const ExtractOptions& extract_options)
-      : calibration(used), rectifier(used), options(extract_options), threads(std::max(1, options.threads) - 1) {
+  State(const Calibration& used, const ExtractOptions& extract_options, std::span<const TagFamily> tag_families,
+        Timestamp tag_interval)
+      : calibration(used),
+        rectifier(used),
+        options(extract_options),
+        tag_detector(tag_families),
+        interval_of_tags(tag_interval),
+        threads(std::max(1, options.threads) - 1) {
     if (calibration.depth) depth.emplace(calibration, rectifier.rig());
   }
 
@@ -154,6 +161,9 @@ struct Extractor::State {
   Rectifier rectifier;
   ExtractOptions options;
   std::optional<DepthReader> depth;
+  TagDetector tag_detector;
+  Timestamp interval_of_tags;
+  std::optional<Timestamp> last_tags;  // last frame in which tags were detected
   // Working memory, see rest().
   Pyramid left;
   Pyramid right;
@@ -171,7 +181,7 @@ struct Extractor::State {
 
   void prepare(const ImageFrame& images, bool stereo, Frame& frame);
   void describe_octave(int octave, int quota);
-  std::shared_ptr<const std::vector<Patch>> describe_all();
+  std::shared_ptr<const std::vector<Patch>> describe_all(Frame& frame);
   void match_right();
   void read_depths(const DepthImage& image);
   void time_rows();
@@ -229,10 +239,21 @@ void Extractor::State::describe_octave(int octave, int quota) {
   }
 }
 
-// Describes all octaves. Returns the patches.
-std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all() {
+// Describes all octaves, and beside them detects the frame's tags if they are due. Returns the patches.
+std::shared_ptr<const std::vector<Patch>> Extractor::State::describe_all(Frame& frame) {
   const std::array<int, kOctaves> quota = octave_quotas(options.max_features);
-  threads.run(kOctaves, [&](int octave) { describe_octave(octave, quota[static_cast<std::size_t>(octave)]); });
+  const bool is_due = tag_detector.has_families() && !(last_tags && frame.time - *last_tags < interval_of_tags);
+  if (is_due) last_tags = frame.time;
+  const int before = is_due ? 1 : 0;  // tags first, as they take longest
+  threads.run(before + kOctaves, [&](int task) {
+    if (task < before) {
+      const cv::Mat& image = left_enhanced.image;
+      frame.tags =
+          tag_detector.detect({.data = image.data, .width = image.cols, .height = image.rows, .stride = image.step});
+    } else {
+      describe_octave(task - before, quota[static_cast<std::size_t>(task - before)]);
+    }
+  });
   const std::shared_ptr<std::vector<Patch>>& patches = patches_of_frames.take();
   keypoints.clear();
   descriptors.clear();
@@ -274,8 +295,9 @@ void Extractor::State::time_rows() {
   }
 }
 
-Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options)
-    : state_(new State(calibration, options)) {}
+Extractor::Extractor(const Calibration& calibration, const ExtractOptions& options,
+                     std::span<const TagFamily> tag_families, Timestamp tag_interval)
+    : state_(new State(calibration, options, tag_families, tag_interval)) {}
 Extractor::~Extractor() = default;
 Extractor::Extractor(Extractor&&) noexcept = default;
 Extractor& Extractor::operator=(Extractor&&) noexcept = default;
@@ -309,7 +331,7 @@ Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   frame.time = images.time;
   state_->prepare(images, stereo, frame);
   const Clock::time_point rectified = Clock::now();
-  const std::shared_ptr<const std::vector<Patch>> patches = state_->describe_all();
+  const std::shared_ptr<const std::vector<Patch>> patches = state_->describe_all(frame);
   const Clock::time_point extracted = Clock::now();
   if (stereo) state_->match_right();
   if (calibration.depth && images.depth) state_->read_depths(*images.depth);

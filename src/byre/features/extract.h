@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 namespace byre {
 
@@ -37,8 +38,10 @@ struct Extraction {
 // Not thread-safe.
 class Extractor {
  public:
-  // Throws InputError if the calibration cannot be rectified.
-  Extractor(const Calibration& calibration, const ExtractOptions& options);
+  // Detects AprilTags of these families in the left image, unless it did within tag_interval before. Throws InputError
+  // if the calibration cannot be rectified.
+  Extractor(const Calibration& calibration, const ExtractOptions& options, std::span<const TagFamily> tag_families = {},
+            Timestamp tag_interval = {});
   ~Extractor();
   Extractor(Extractor&&) noexcept;
   Extractor& operator=(Extractor&&) noexcept;

@@ -32,6 +32,12 @@ void recalibrate_into(const Features& features, const RectifiedChange& change, F
   result.refill_moved(features, keypoints);
 }
 
+void recalibrate_tags(std::vector<TagSighting>& tags, const RectifiedChange& change) {
+  for (TagSighting& tag : tags) {
+    for (Eigen::Vector2d& corner : tag.corners) corner = change({{corner.x(), corner.y(), -1.0}, 0.0}).pixel.head<2>();
+  }
+}
+
 Eigen::Vector2f recalibrated(const Eigen::Vector2f& pixel, const RectifiedChange& change) {
   return change({{pixel.x(), pixel.y(), -1.0}, 0.0}).pixel.head<2>().cast<float>();
 }

@@ -18,6 +18,7 @@ void recalibrate(Keyframe& keyframe, const RectifiedChange& change, const Recali
   for (Sighting& sighting : keyframe.sightings) {
     if (sighting.point) sighting.pixel = recalibrated(sighting.pixel, change);
   }
+  recalibrate_tags(keyframe.frame.tags, change);
   keyframe.camera_from_world = change.after_from_before() * keyframe.camera_from_world;
   keyframe.covariance = move_covariance(keyframe.covariance, change.after_from_before());
 }

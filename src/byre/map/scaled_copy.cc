@@ -1,5 +1,6 @@
 #include "byre/map/scaled_copy.h"
 
+#include "byre/map/mapped_tag.h"
 #include "byre/map/transformed_copy.h"
 #include "byre/odometry/odometry_calibration.h"
 
@@ -54,6 +55,7 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
   }
   scaled.notes.erase(kMetresNote);  // the scale no longer comes from wheels
   write_odometry_calibration(byre::scaled(read_odometry_calibration(stored.notes), factor), scaled.notes);
+  write_tags(moved(read_tags(stored.notes), {factor, {}}), scaled.notes);
   if (scaled.plan) scaled.plan->plan_from_map.scale /= factor;
   return scaled;
 }

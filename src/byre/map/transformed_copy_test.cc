@@ -1,6 +1,7 @@
 #include "byre/map/transformed_copy.h"
 
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/map/stored_map_scene.h"
 
 #include <gmock/gmock.h>
@@ -57,6 +58,17 @@ TEST(TransformedCopy, KeepsPositionsOnThePlanWithTheirCovariance) {
     EXPECT_THAT(after.plan->plan_from_map * to, PointNear(before.plan->plan_from_map * from, 1e-9));
     EXPECT_TRUE(plan_covariance_at(*after.plan, to).isApprox(plan_covariance_at(*before.plan, from), 1e-9));
   }
+}
+
+TEST(TransformedCopy, MovesTags) {
+  StoredMap before = StoredMapScene().stored();
+  const MappedTag tag{{TagFamily::tag36h11, 3}, 0.2, {rotation_exp({0.1, 0.2, 0.3}), {1.0, -2.0, 3.0}}, 0.01};
+  write_tags(std::span(&tag, 1), before.notes);
+  const auto after = read_tags(transformed_copy(before, kTargetFromMap).notes);
+  ASSERT_EQ(after.size(), 1U);
+  EXPECT_DOUBLE_EQ(after[0].size, kTargetFromMap.scale * tag.size);
+  EXPECT_THAT(after[0].map_from_tag * tag_corners(after[0].size)[0],
+              PointNear(kTargetFromMap * (tag.map_from_tag * tag_corners(tag.size)[0]), 1e-9));
 }
 
 TEST(TransformedCopy, IsUndoneByTheInverse) {

@@ -14,6 +14,8 @@ std::string_view to_string(MotionSensor sensor) {
       return "accelerometer";
     case MotionSensor::body_motion:
       return "motion of the body";
+    case MotionSensor::tags:
+      return "AprilTags";
   }
   return "";
 }

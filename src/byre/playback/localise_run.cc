@@ -1,6 +1,7 @@
 #include "byre/playback/localise_run.h"
 
 #include "byre/base/stopwatch.h"
+#include "byre/features/tag_detector.h"
 #include "byre/io/image/image_file.h"
 #include "byre/io/image/image_fit.h"
 #include "byre/io/image/image_names.h"
@@ -24,7 +25,7 @@ Calibration best_calibration(const std::vector<SourceRecording>& recordings, con
 class Finder {
  public:
   Finder(const SearchableMap& map, const Calibration& given)
-      : map_(map), extractor_(best_calibration(map.recordings, given), {}) {}
+      : map_(map), extractor_(best_calibration(map.recordings, given), {}, families_of(map.tags)) {}
 
   LocalisedFrame find(ImageFrame images, std::string name) {
     if (!map_.is_metric) {
@@ -38,7 +39,9 @@ class Finder {
     const Frame frame = extractor_.extract(images).frame;
     result.extract_seconds = extraction.seconds();
     const Stopwatch search;
-    result.localisation = localise(frame, extractor_.rig(), map_.view(), map_.index, {});
+    LocaliseOptions options;
+    options.tags = map_.tags;
+    result.localisation = localise(frame, extractor_.rig(), map_.view(), map_.index, options);
     result.localise_seconds = search.seconds();
     if (result.localisation.tracked) {
       result.world_from_body =

@@ -40,11 +40,13 @@ struct SearchableMap {
       : is_metric(stored.scale == MapScale::metric),
         map(stored.map),
         recordings(stored.recordings),
+        tags(read_tags(stored.notes)),
         index(index_of(stored.map, vocabulary)) {}
 
   bool is_metric;  // whether disparities are comparable with the map
   const MapGraph& map;
   const std::vector<SourceRecording>& recordings;
+  std::vector<MappedTag> tags;
   MapGraph empty_online_map{Origin::online};
   PlaceIndex index;
 

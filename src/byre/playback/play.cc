@@ -108,7 +108,8 @@ void collect_results(SlamImpl& slam, const Trajectory& seen, RunResult& run) {
   run.calibration = slam.calibration();
   run.row_error = slam.row_error().pixels();
   run.motion = motion_estimates(slam.prior(), slam.session());
-  run.motion.scale_sigma = slam.wheel_scale_sigma();
+  run.motion.scale_sigma = slam.scale_sigma();
+  run.motion.is_scaled_by_tags = slam.is_scaled_by_tags();
   run.is_metric = slam.is_metric();
   run.stored = slam.take_stored_map();
   if (run.finishing) run.finishing->faults = find_faults(run.stored.map);

@@ -36,8 +36,9 @@ struct MotionEstimates {
   int stops = 0;                             // standstills confirmed by the accelerometer
   double standstill_s = 0.0;                 // duration of the standstills, seconds
   int tilts_applied = 0;                     // bridged frames with roll and pitch from the accelerometer
-  std::optional<double> scale_sigma;         // relative standard deviation of a scale measured by wheels only
-  int filled_poses = 0;                      // frames whose final pose is filled in by wheel odometry
+  std::optional<double> scale_sigma;         // relative standard deviation of a scale measured by wheels or tags only
+  bool is_scaled_by_tags = false;
+  int filled_poses = 0;  // frames whose final pose is filled in by wheel odometry
 };
 
 struct RunResult {
@@ -59,7 +60,7 @@ struct RunResult {
   // Damage of the offline map's file that ended the mission, see SlamImpl::map_damage.
   std::optional<InputError> map_damage;
   std::vector<std::string> warnings;           // warnings of the recording
-  std::vector<MotionWarning> motion_warnings;  // faults of wheels, gyroscope and accelerometer
+  std::vector<MotionWarning> motion_warnings;  // faults of motion inputs and tags
   std::vector<double> lateness;                // delays of late frames in a live run, seconds
   double wall_seconds = 0.0;                   // wall time of the whole run
 };

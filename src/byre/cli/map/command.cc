@@ -13,6 +13,7 @@
 #include "byre/playback/report/run_report.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
+#include "byre/tag_file.h"
 
 #include <iostream>
 #include <memory>
@@ -60,6 +61,7 @@ Slam make_slam(const MapOptions& options, const RunInput& input) {
   slam.site = options.site;
   slam.vocabulary = options.vocabulary;
   slam.baseline = options.open.baseline;
+  if (options.tags) slam.tags = read_tags(*options.tags);
   slam.extrinsics = options.extrinsics.read(options.open);
   return options.extended ? Slam::extending(input.calibration(), *options.extended, slam)
                           : Slam::mapping(input.calibration(), slam);

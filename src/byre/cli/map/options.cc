@@ -27,6 +27,7 @@ constexpr const char* kMapFooter = R"(Examples:
   byre map images --calibration camchain.yaml --fps 20 -o barn.byre
   byre map walk.bag --calibration camchain.yaml -o barn.byre
   byre map rosbag2_2026_11_20 --left /cam0/image_raw --right /cam1/image_raw -o barn.byre --record mapping.mcap
+  byre map MH_01_easy --tags tags.yaml -o barn.byre
   byre map --live /dev/video0 /dev/video2 --calibration camchain.yaml -o barn.byre --duration 120
 
 inline runs mapping between the frames, paced in parallel with reproducible results; both run as fast as they can.
@@ -55,6 +56,9 @@ void declare_files(CLI::App& command, MapOptions& options) {
 void declare_map_content(CLI::App& command, MapOptions& options) {
   add_input(command, Input::recording, "--poses", options.given_poses,
             "Trajectory of given body poses, which are held fixed; every frame becomes a keyframe")
+      ->type_name("FILE");
+  add_input(command, Input::file, "--tags", options.tags,
+            "AprilTags on the robot's way, for missions: YAML, see docs/how-to/use_apriltags.md")
       ->type_name("FILE");
   add_text(command, "--site", options.site, "Name of the building, stored in the map")->type_name("TEXT");
   add_input(command, Input::file, "--vocabulary", options.vocabulary,

@@ -28,6 +28,7 @@ struct MapOptions {
   std::optional<std::filesystem::path> given_poses;  // given trajectory of the recording; empty: it is estimated
   std::optional<std::filesystem::path> vocabulary;   // empty: the vocabulary installed with byre
   std::optional<std::filesystem::path> extended;     // map to extend
+  std::optional<std::filesystem::path> tags;         // file of AprilTags
   std::optional<double> autosave_s;
   std::string site;
   FrameRange range;

@@ -3,8 +3,10 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 #include "byre/input_error.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/playback/archive/register_map.h"
 #include "byre/playback/report/registration_report.h"
+#include "byre/tag_file.h"
 
 #include <cmath>
 #include <memory>
@@ -23,9 +25,11 @@ namespace fs = std::filesystem;
 struct RegisterCommandOptions {
   fs::path map;
   fs::path plan;
-  fs::path picks;
+  fs::path picks;  // empty: tags alone
+  std::optional<fs::path> tags;
   std::optional<fs::path> output;
   RegisterOptions registering;
+  bool is_height_given = false;             // body height: tags are added
   std::optional<double> accepted_residual;  // metres; empty: kLargePlanResidual
   bool fix_scale = false;
   bool json = false;
@@ -35,6 +39,7 @@ constexpr const char* kRegisterFooter = R"(Examples:
   byre register barn.byre --plan plan.yaml --points picks.csv
   byre register barn.byre --plan plan.yaml --points picks.csv -o barn-plan.byre
   byre register site.byre --plan plan.png --points picks.csv -o site-plan.byre
+  byre register barn.byre --plan plan.yaml --tags tags.yaml -o barn-plan.byre
   byre register barn.byre --plan plan.yaml --points picks.csv --fix-scale -o barn-plan.byre
 
 Estimates the pose of a map on a floor plan from points picked in both. -o writes a copy of the map with its
@@ -60,7 +65,7 @@ bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) 
 [[noreturn]] void refuse_to_write(const PlanFit& fit, const RegisterCommandOptions& options) {
   const double residual = residual_of(fit);
   throw InputError(
-      options.picks.string(),
+      options.picks.empty() ? options.tags->string() : options.picks.string(),
       fmt::format("has residuals of {:.2f} m on the map, so the map is not written: poses on the plan would have the "
                   "same error",
                   residual),
@@ -69,7 +74,8 @@ bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) 
           std::ceil(1e2 * residual) / 1e2));
 }
 
-ExitCode run_register(const RegisterCommandOptions& options, std::ostream& result) {
+ExitCode run_register(RegisterCommandOptions options, std::ostream& result) {
+  if (options.tags) options.registering.tags = read_tags(*options.tags);
   if (options.output) require_writable(*options.output);
   const FloorPlan plan = read_floor_plan(options.plan);
   const ScaleCorrectedMap registered = register_with_options(options, plan);
@@ -78,6 +84,7 @@ ExitCode run_register(const RegisterCommandOptions& options, std::ostream& resul
   if (is_kept) {
     StoredMap stored = registered.stored;
     stored.plan = fit.registration;
+    if (options.is_height_given) add_surveyed_tags(stored, options.registering.tags);
     save_map(stored, *options.output);
   }
   RegisterProtocol protocol{options.map.string(), plan, is_kept ? options.output->string() : "", {}};
@@ -98,19 +105,21 @@ Action declare_register(CLI::App& command) {
       ->type_name("FILE")
       ->required();
   add_input(command, Input::file, "--points", options->picks, "CSV file of points picked in the map and on the plan")
-      ->type_name("FILE")
-      ->required();
+      ->type_name("FILE");
+  add_input(command, Input::file, "--tags", options->tags,
+            "AprilTags surveyed on the plan, with --points or instead: YAML, see docs/how-to/use_apriltags.md")
+      ->type_name("FILE");
   CLI::Option* const output = add_output(command, Output::updated_map, "-o,--output", options->output,
                                          "Map with its registration on the plan (not written)")
                                   ->type_name("MAP");
   command.add_option("--pick-sigma", options->registering.picks.sigma, "Standard deviation of the picks (0.05)")
       ->type_name("METRES")
       ->check(between(1e-4, 100.0));
-  command
-      .add_option("--body-height", options->registering.registration.body_height,
-                  "Height of the body's origin above the floor (0)")
-      ->type_name("METRES")
-      ->check(between(-100.0, 100.0));
+  CLI::Option* const height = command
+                                  .add_option("--body-height", options->registering.registration.body_height,
+                                              "Height of the body's origin above the floor (0)")
+                                  ->type_name("METRES")
+                                  ->check(between(-100.0, 100.0));
   command
       .add_option("--accept-residual", options->accepted_residual,
                   "Largest residual up to which the map is written (0.5)")
@@ -120,6 +129,12 @@ Action declare_register(CLI::App& command) {
   command.add_flag("--fix-scale", options->fix_scale, "Correct the scale of a stereo map and its baseline by the plan")
       ->needs(output);
   command.add_flag("--json", options->json, "Print the result as JSON");
+  check_when_parsed(command, [options, height] {
+    options->is_height_given = height->count() > 0;
+    if (options->picks.empty() && !options->tags) {
+      throw CLI::ValidationError("--points", "give points picked in map and plan, surveyed tags (--tags), or both");
+    }
+  });
   command.footer(kRegisterFooter);
   return [options](std::ostream& result) { return run_register(*options, result); };
 }

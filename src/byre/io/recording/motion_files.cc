@@ -114,6 +114,7 @@ FileMotion read_motion(const fs::path& recording, const OpenOptions& options, co
 }
 
 std::string motion_source(const fs::path& recording, const OpenOptions& options, MotionSensor sensor) {
+  if (sensor == MotionSensor::tags) return "";
   const bool is_wheels = sensor == MotionSensor::wheels;
   if (is_wheels && options.wheels) return options.wheels->string();
   const auto& topic = is_wheels ? options.wheels_topic : options.imu_topic;

@@ -1,6 +1,7 @@
 #include "byre/playback/archive/register_map.h"
 
 #include "byre/input_error.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/map/scaled_copy.h"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ void require_scale_known(const PlanScale& scale, const std::string& picks) {
 
 // Positions refer to the map in which they were picked. After an earlier correction it is ambiguous which map that is.
 void require_unambiguous(const StoredMap& stored, const std::filesystem::path& picks) {
-  if (!has_positions(picks)) return;
+  if (picks.empty() || !has_positions(picks)) return;
   for (std::size_t i = 0; i < stored.recordings.size(); ++i) {
     const double factor = baseline_factor(stored, i);
     if (factor == 1.0) continue;
@@ -63,16 +64,34 @@ void require_unambiguous(const StoredMap& stored, const std::filesystem::path& p
   }
 }
 
+// Centres of the surveyed tags that the map has.
+std::vector<PlanCorrespondence> correspondences_of(const StoredMap& stored, const std::vector<Tag>& tags) {
+  std::vector<PlanCorrespondence> picks;
+  for (const MappedTag& mapped : read_tags(stored.notes)) {
+    const auto tag = std::ranges::find(tags, mapped.id, &Tag::id);
+    if (tag == tags.end() || !tag->survey) continue;
+    picks.push_back({to_string(mapped.id), mapped.map_from_tag.translation, tag->survey->position.head<2>(),
+                     std::hypot(tag->survey->sigma, mapped.sigma)});
+  }
+  return picks;
+}
+
 }  // namespace
 
 Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
                          const std::filesystem::path& picks, const RegisterOptions& options) {
   const DrivingPlane plane = require_driving_plane(stored.map, map.string());
   Registering result;
-  result.correspondences = read_plan_correspondences(picks, plan, stored, options.picks);
+  if (!picks.empty()) result.correspondences = read_plan_correspondences(picks, plan, stored, options.picks);
+  const std::vector<PlanCorrespondence> of_tags = correspondences_of(stored, options.tags);
+  result.correspondences.insert(result.correspondences.end(), of_tags.begin(), of_tags.end());
   const Scale scale = stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
   std::optional<PlanFit> fit = register_on_plan(result.correspondences, plane, scale, options.registration);
   if (!fit) {
+    if (picks.empty()) {
+      throw InputError(map.string(), "has too few of the surveyed tags to be registered on the plan",
+                       "survey two or more distant tags of the map, or pick points (--points)");
+    }
     throw InputError(picks.string(), "needs two distant points to register the map on the plan",
                      "pick three or more distant points");
   }
@@ -90,7 +109,7 @@ ScaleCorrectedMap correct_scale(StoredMap stored, const std::filesystem::path& m
   ScaleCorrectedMap corrected{std::move(stored), {}, 1.0};
   corrected.registering = register_map(corrected.stored, map, plan, picks, options);
   const PlanScale measured = corrected.registering.measured_scale.value();
-  require_scale_known(measured, picks.string());
+  require_scale_known(measured, picks.empty() ? map.string() : picks.string());
   if (!measured.differs_from_one()) return corrected;
 
   require_unambiguous(corrected.stored, picks);

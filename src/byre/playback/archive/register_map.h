@@ -15,6 +15,7 @@ namespace byre {
 struct RegisterOptions {
   PickOptions picks;
   PlanRegistrationOptions registration;
+  std::vector<Tag> tags{};  // surveyed ones of the map are picks as well
 };
 
 // Result of the registration of a map on a floor plan.
@@ -33,7 +34,8 @@ struct ScaleCorrectedMap {
   double factor = 1.0;      // new over old length; 1 without a correction
 };
 
-// Throws InputError naming the file of the picks or of the map if the registration is impossible.
+// picks: empty for tags alone. Throws InputError naming the file of the picks or of the map if the registration is
+// impossible.
 Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
                          const std::filesystem::path& picks, const RegisterOptions& options);
 

@@ -1,6 +1,7 @@
 #include "byre/playback/archive/register_map.h"
 
 #include "byre/input_error.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/map/scaled_copy.h"
 #include "byre/playback/archive/register_scene.h"
 
@@ -65,6 +66,25 @@ TEST_F(RegisterMap, RegistersAMetricMapWithoutScaling) {
   EXPECT_EQ(registering.fit.registration.plan_from_map.scale, 1.0);
   ASSERT_TRUE(registering.measured_scale.has_value());
   EXPECT_TRUE(registering.has_baseline);
+}
+
+TEST_F(RegisterMap, RegistersByTheSurveyedTagsOfTheMap) {
+  FloorPlanScene scene;
+  StoredMap stored = driven_barn(scene);
+  RegisterOptions options;
+  int number = 0;
+  for (const PlanCorrespondence& pick : scene.correspondences(6)) {
+    const MappedTag tag{
+        {TagFamily::tag36h11, number++}, 0.2, {Eigen::Quaterniond::Identity(), pick.point_in_map}, 0.02};
+    write_tags(std::span(&tag, 1), stored.notes);
+    options.tags.push_back({tag.id, 0.2, SurveyedTag{{pick.point_in_plan.x(), pick.point_in_plan.y(), 1.0}}});
+  }
+  const Registering registering = register_map(stored, "barn.byre", plan_, {}, options);
+  EXPECT_THAT(registering.correspondences, SizeIs(6));
+  EXPECT_LT(registering.fit.rms, 0.01);
+  options.tags.resize(1);
+  EXPECT_THAT([&] { register_map(stored, "barn.byre", plan_, {}, options); },
+              ThrowsMessage<InputError>(HasSubstr("too few of the surveyed tags")));
 }
 
 TEST_F(RegisterMap, CorrectsTheScaleAndRegistersTheCorrectedMap) {

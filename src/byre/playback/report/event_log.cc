@@ -60,6 +60,9 @@ void EventLog::note(int number, const PlayedFrame& frame) {
   for (const SessionEvent event : report.events) {
     Json line = line_of(number, report, to_string(event));
     if (moves_the_pose(event)) line["jump_m"] = jump_json(report, map_from_odometry_);
+    if (event == SessionEvent::tag_moved) {
+      for (const MappedTag& tag : report.moved_tags) line["tags"].push_back(to_string(tag.id));
+    }
     if (event == SessionEvent::place_refused) line["reason"] = to_string(report.refused_place);
     if (event == SessionEvent::dirt_found) line["note"] = note_on_dirt(report.health);
     if (event == SessionEvent::blinded) line["image"] = health_json(report.health).at("image");

@@ -1,5 +1,6 @@
 #include "byre/playback/report/run_report.h"
 
+#include "byre/map/mapped_tag.h"
 #include "byre/playback/report/calibration_report.h"
 #include "byre/playback/report/finish_report.h"
 #include "byre/playback/report/motion_report.h"
@@ -169,7 +170,8 @@ void add_scale(const RunResult& run, const RunProtocol& protocol, const FrameCou
   if (protocol.is_metric) return;
   Json more = {{"refusals", describe_refusals(counts)},
                {"is_metric", run.is_metric},
-               {"scale_sigma", run.motion.scale_sigma.value_or(0.0)}};
+               {"scale_source", run.motion.is_scaled_by_tags ? "AprilTags" : "wheel odometry"},
+               {"scale_sigma", or_null(run.motion.scale_sigma)}};
   const auto first = std::ranges::find_if(run.frames, [](const PlayedFrame& frame) {
     return frame.report && frame.report->has(SessionEvent::initialised);
   });
@@ -182,7 +184,7 @@ void add_scale(const RunResult& run, const RunProtocol& protocol, const FrameCou
              "[{?refusals}; earlier attempts failed: {refusals}]",
              more);
   report.row("scale",
-             "[{?is_metric}metric by wheel odometry (sigma {scale_sigma*100:.2f} %)"
+             "[metric by {scale_source} (sigma {scale_sigma*100:.2f} %)|{?is_metric}metric by the map"
              "|arbitrary; set it with \"byre scale\"]",
              more);
 }
@@ -234,6 +236,7 @@ void add_map_rows(const RunResult& run, const RunProtocol& protocol, const Frame
   }
   add_scale(run, protocol, counts, report);
   add_map(report);
+  report.row("tags", "{?tags}{tags} AprilTags in the map", {{"tags", read_tags(run.stored.notes).size()}});
   if (!protocol.extended.empty()) {
     report.row("extended",
                "{protocol.extended}[, localised in it after {extension.frames_until_found} frames"

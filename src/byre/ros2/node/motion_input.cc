@@ -136,6 +136,7 @@ std::string MotionInput::take_fault() {
 }
 
 std::string MotionInput::source_of(MotionSensor sensor) const {
+  if (sensor == MotionSensor::tags) return "";
   return config_.topic(sensor == MotionSensor::wheels ? config_.wheels : config_.gyroscope);
 }
 

@@ -55,6 +55,7 @@ struct NodeConfig {
   std::optional<std::filesystem::path> options;     // docs/reference/options.md
   std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   std::optional<std::filesystem::path> plan;        // floor plan to publish
+  std::optional<std::filesystem::path> tags;        // file of AprilTags
   Workers workers = Workers::live;
 
   bool has_grid_of_map = true;        // publishes an occupancy grid computed from the map, without a floor plan

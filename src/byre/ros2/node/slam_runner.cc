@@ -11,6 +11,7 @@
 #include "byre/map/map_file.h"
 #include "byre/playback/options_file.h"
 #include "byre/ros2/node/map_messages.h"
+#include "byre/tag_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,7 @@ SlamOptions slam_options(const NodeConfig& config) {
   options.workers = config.workers;
   options.vocabulary = config.vocabulary;
   options.baseline = config.baseline;
+  if (config.tags) options.tags = read_tags(*config.tags);
   if (config.extrinsics_file) {
     options.extrinsics = read_extrinsics(*config.extrinsics_file, config.extrinsics_frames);
     if (!options.extrinsics->camera) {
@@ -76,6 +78,7 @@ void require_safe_save(const NodeConfig& config) {
   add(InputKind::file, "slam.options", config.options);
   add(InputKind::file, "slam.vocabulary", config.vocabulary);
   add(InputKind::plan, "slam.plan", config.plan);
+  add(InputKind::file, "slam.tags", config.tags);
   add(InputKind::file, "extrinsics.file", config.extrinsics_file);
   add(InputKind::file, "calibration.file", config.calibration);
   add(InputKind::file, "mqtt.password_file", config.fleet.password_file);

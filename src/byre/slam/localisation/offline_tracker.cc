@@ -1,5 +1,6 @@
 #include "byre/slam/localisation/offline_tracker.h"
 
+#include "byre/geometry/tag_pose.h"
 #include "byre/slam/places/localisation.h"
 #include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/tracking/keyframes.h"
@@ -11,9 +12,10 @@
 namespace byre {
 namespace {
 
-// Accepted, and the map cells in view do not contradict the pose.
+// Accepted, and neither the map cells in view nor a tag contradict the pose.
 bool is_certain(const PoseFilter& pose_filter) {
-  return pose_filter.place().is_accepted() && pose_filter.place().log_odds() >= 0.0;
+  const PlaceHypothesis& place = pose_filter.place();
+  return place.is_accepted() && place.log_odds() >= 0.0 && !place.is_contradicted_by_tag();
 }
 
 // camera_from_offline at the look-alike place.
@@ -50,12 +52,18 @@ std::optional<PlaceSearch> OfflineTracker::collect_place() {
   return finished ? std::optional(std::move(finished->result)) : std::nullopt;
 }
 
-bool OfflineTracker::is_view_due(const PoseFilter& pose_filter) {
+Frame OfflineTracker::corrected(const Frame& frame) {
+  Frame result = calibrator_ ? calibrator_->corrected(frame) : frame;
+  std::erase_if(result.tags, [this](const TagSighting& seen) { return std::ranges::count(moved_tags_, seen.id) > 0; });
+  return result;
+}
+
+bool OfflineTracker::is_view_due(const Frame& frame, const PoseFilter& pose_filter) {
   constexpr int kFramesOfKnownPlace = 3;
   constexpr double kBeyondDoubt = 5.0;  // log-odds
   const PlaceHypothesis& place = pose_filter.place();
   const bool is_known = pose_filter.has_pose() && place.is_accepted() && place.log_odds() >= kBeyondDoubt;
-  if (is_known && ++frames_since_view_ < kFramesOfKnownPlace) return false;
+  if (is_known && frame.tags.empty() && ++frames_since_view_ < kFramesOfKnownPlace) return false;
   frames_since_view_ = 0;
   return true;
 }
@@ -77,7 +85,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
   }
   const std::vector<PointId> in_common = finds_rivals ? points_in_common(pose) : std::vector<PointId>();
-  return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden,
+  return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden, offline_->tags(),
                         [this](PointId id) { return mission_.moved_points().is_suspended(id); },
                         [&](PointId id) { return std::ranges::binary_search(in_common, id); }, offline_->cell_unit()});
 }
@@ -136,8 +144,17 @@ RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& 
         look_alikes_, [id](const LookAlikePlace& place) { return std::ranges::binary_search(place.repeated, id); });
   };
   return {pose,
-          view_of_place(
-              {offline_->map(), rig, frame, there, nearby, around, hidden, is_repeated, {}, offline_->cell_unit()}),
+          view_of_place({offline_->map(),
+                         rig,
+                         frame,
+                         there,
+                         nearby,
+                         around,
+                         hidden,
+                         offline_->tags(),
+                         is_repeated,
+                         {},
+                         offline_->cell_unit()}),
           tracked.has_value()};
 }
 
@@ -146,9 +163,9 @@ void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> 
   constexpr int kFramesOfAcceptedPlace = 3;  // to save time
   const Pose& camera_from_place = seen.track.tracked.camera_from_world;
   const bool is_accepted = pose_filter.place().is_accepted() && elsewhere.empty();
-  if (is_accepted && ++frames_since_rivals_ < kFramesOfAcceptedPlace) return;
+  std::vector<Pose> rivals = camera_by_contradicting_tags(seen);  // camera_from_offline
+  if (is_accepted && rivals.empty() && ++frames_since_rivals_ < kFramesOfAcceptedPlace) return;
   frames_since_rivals_ = 0;
-  std::vector<Pose> rivals;  // camera_from_offline
   for (const HybridTrack& other : elsewhere) rivals.push_back(other.tracked.camera_from_world);
   if (!is_accepted) {
     for (const LookAlikePlace& place : look_alikes_at(camera_from_place)) {
@@ -208,6 +225,8 @@ double OfflineTracker::log_odds_of_rivals() const {
 OfflineTracker::MissionUpdate OfflineTracker::note(const Seen& seen, const PoseFilter& pose_filter,
                                                    const Mapper& mapper) {
   MissionUpdate update{.events = note_view(seen, mapper)};
+  update.moved_tags = find_moved_tags(seen, pose_filter);
+  if (!update.moved_tags.empty()) update.events.push_back(SessionEvent::tag_moved);
   if (is_certain(pose_filter)) rivals_.forget();
   rivals_.note_place(seen.frame.time, seen.track.tracked.camera_from_world, pose_filter.place());
   if (!pose_filter.place().is_confirmed()) return update;
@@ -217,6 +236,36 @@ OfflineTracker::MissionUpdate OfflineTracker::note(const Seen& seen, const PoseF
     calibrator_->note(seen.frame, seen.rig, seen.track.tracked, mapper.map());
   }
   return update;
+}
+
+std::vector<Pose> OfflineTracker::camera_by_contradicting_tags(const Seen& seen) const {
+  std::vector<MappedTag> contradicting;
+  for (const TagInView& tag :
+       tags_in_view(seen.frame, seen.track.tracked.camera_from_world, seen.rig, offline_->tags())) {
+    if (!tag.agrees) contradicting.push_back(*std::ranges::find(offline_->tags(), tag.id, &MappedTag::id));
+  }
+  return camera_poses_by_tags(seen.frame, seen.rig, contradicting);
+}
+
+// While the frame is tracked at the pose by a contradicting tag, the place may be wrong instead of the tag.
+std::vector<MappedTag> OfflineTracker::find_moved_tags(const Seen& seen, const PoseFilter& pose_filter) {
+  constexpr int kContradictions = 3;
+  const PlaceHypothesis& place = pose_filter.place();
+  if (seen.frame.tags.empty() || !place.is_accepted() || place.log_odds() < 0.0) return {};
+  const Pose& camera = seen.track.tracked.camera_from_world;
+  const auto is_rival = [&](const Pose& rival) { return rivals_.has_at(camera, rival); };
+  if (std::ranges::any_of(camera_by_contradicting_tags(seen), is_rival)) return {};
+  std::vector<MappedTag> moved;
+  for (const TagSighting& sighting : seen.frame.tags) {
+    if (place.contradictions(sighting.id) < kContradictions) continue;
+    moved_tags_.push_back(sighting.id);
+    MappedTag tag = *std::ranges::find(offline_->tags(), sighting.id, &MappedTag::id);
+    const TagView view{camera, seen.rig, sighting.corners};
+    const std::vector<TagEstimate> estimates = estimate_tag_pose({&view, 1}, tag.size);
+    if (!estimates.empty()) tag.map_from_tag = estimates[0].world_from_tag;
+    moved.push_back(tag);
+  }
+  return moved;
 }
 
 std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapper& mapper) {

@@ -38,8 +38,8 @@ class OfflineTracker {
 
   const Mission& mission() const { return mission_; }
   const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
-  // The frame by the refined calibration; unchanged without one.
-  Frame corrected(const Frame& frame) { return calibrator_ ? calibrator_->corrected(frame) : frame; }
+  // The frame by the refined calibration, if there is one, without the tags found moved.
+  Frame corrected(const Frame& frame);
   bool is_focal_length_off() const { return focal_check_.is_off(); }
   // Ground that constrains the body; nullptr if unknown, or if the last pose is not in the map's frame.
   const DrivenGround* ground_under(const PoseFilter& pose_filter, const Mapper& mapper) const;
@@ -66,15 +66,16 @@ class OfflineTracker {
   // Effect of a frame, or of a place search, on the session.
   struct MissionUpdate {
     std::vector<SessionEvent> events{};
-    bool refutes_pose = false;  // the robot is elsewhere
+    std::vector<MappedTag> moved_tags{};  // at their places now
+    bool refutes_pose = false;            // the robot is elsewhere
     // Earlier trusted poses were wrong, since an unknown time.
     bool refutes_earlier_poses = false;
     bool agrees_with_hint = false;                 // a search of the whole map confirms the place found by a hint
     std::optional<OnlineCorrection> correction{};  // true pose of a part of the online map
   };
   // Whether the next tracked frame is evidence for its place: each frame until the place is beyond doubt, then every
-  // third, to save time.
-  bool is_view_due(const PoseFilter& pose_filter);
+  // third, to save time, and those that show tags.
+  bool is_view_due(const Frame& frame, const PoseFilter& pose_filter);
   // The part of the map in view of a frame that was tracked in the map's frame. finds_rivals: marks points that a
   // look-alike place has as well, needed while the place is not accepted; takes 10 ms at a new place.
   PlaceView view_of(const Frame& frame, const HybridTrack& track, const Rig& rig, const ImageMask& hidden,
@@ -122,6 +123,8 @@ class OfflineTracker {
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
   void record_points(const Seen& seen);
   PointRecord& record_of(PointId point);
+  std::vector<Pose> camera_by_contradicting_tags(const Seen& seen) const;
+  std::vector<MappedTag> find_moved_tags(const Seen& seen, const PoseFilter& pose_filter);
   ScratchVector<PointId> points_around(const Pose& camera_from_offline) const;
   std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, std::span<const PointId> points,
                                        const Rig& rig, const ImageMask& hidden) const;
@@ -159,6 +162,7 @@ class OfflineTracker {
   int frames_since_rivals_ = 0;
   bool is_refuted_ = false;  // see RivalPlaces::refute
   std::optional<Timestamp> last_search_;
+  std::vector<TagId> moved_tags_;     // ignored
   bool is_verifying_search_ = false;  // the running search is due to doubt, not to need
   JobSlot<PlaceSearch> search_;
   std::optional<MissionCalibrator> calibrator_;

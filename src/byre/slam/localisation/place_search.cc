@@ -50,6 +50,7 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& que
   const auto& [frame, rig, hint, reach, hidden] = query;
   LocaliseOptions localise_options = options.localise;
   localise_options.hidden = hidden;
+  localise_options.tags = offline.tags();
   const MapGraph nothing_online(Origin::online);
   const MapView map(&offline.map(), nothing_online);
   const PlaceBounds bounds(offline, options.bounds);
@@ -97,6 +98,7 @@ PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, con
                                   nearby,
                                   around,
                                   query.hidden,
+                                  offline.tags(),
                                   {},
                                   {},
                                   offline.cell_unit()});

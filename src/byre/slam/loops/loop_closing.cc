@@ -183,7 +183,7 @@ PlaceView view_of_map(const Frame& frame, const TrackedFrame& tracked, double me
   const ScratchVector<PointId> around = local_points(map, tracked.reference, kKeyframesOfPlace);
   const double share = median_depth / kDepth;
   const double metre = rig.is_stereo() ? std::min(1.0, share) : share;
-  return view_of_place({map, rig, frame, tracked, nearby, around, {}, {}, {}, metre});
+  return view_of_place({map, rig, frame, tracked, nearby, around, {}, {}, {}, {}, metre});
 }
 
 std::vector<DepthPair> depth_pairs(const MapGraph& map, const Keyframe& keyframe, const TrackedFrame& in_older_part) {

@@ -30,6 +30,7 @@ Frame Calibrator::corrected(const Frame& frame) {
   const std::shared_ptr<Features>& features = features_of_frames_.take();
   recalibrate_into(*frame.features, *from_given_, *features);
   result.features = features;
+  recalibrate_tags(result.tags, *from_given_);
   return result;
 }
 

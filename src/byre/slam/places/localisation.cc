@@ -4,6 +4,8 @@
 #include "byre/features/descriptor.h"
 #include "byre/geometry/absolute_pose.h"
 #include "byre/geometry/decompositions.h"
+#include "byre/geometry/tag_pose.h"
+#include "byre/slam/places/place_view.h"
 #include "byre/slam/tracking/keyframes.h"
 
 #include <algorithm>
@@ -153,8 +155,19 @@ std::optional<TrackedFrame> refine(const FrameQuery& query, const Pose& camera_f
   return second && second->features.size() > first->features.size() ? second : first;
 }
 
+// The refined pose if it is reliable. agreeing: inliers of the pose before.
+Localisation checked(const FrameQuery& query, const std::optional<TrackedFrame>& tracked, int match_count,
+                     int agreeing) {
+  if (!tracked) return failed(Failure::too_few_inliers, match_count, static_cast<std::size_t>(agreeing));
+  const Failure doubt = rejection_reason(*tracked, query.rig, query.map, query.options);
+  if (doubt != Failure::none) return failed(doubt, match_count, tracked->features.size());
+  if (query.filter.is_impossible && query.filter.is_impossible(*tracked)) {
+    return failed(Failure::impossible, match_count, tracked->features.size());
+  }
+  return {tracked, {}, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
+}
+
 Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
-  const LocaliseOptions& options = query.options;
   const std::vector<PointMatch> matches =
       match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, {});
   const int match_count = static_cast<int>(matches.size());
@@ -165,14 +178,40 @@ Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   if (agreeing < kMinPoseInliers) {
     return failed(Failure::geometry_disagrees, match_count, static_cast<std::size_t>(agreeing));
   }
-  const std::optional<TrackedFrame> tracked = refine(query, pose->camera_from_world, place.keyframe);
-  if (!tracked) return failed(Failure::too_few_inliers, match_count, static_cast<std::size_t>(agreeing));
-  const Failure doubt = rejection_reason(*tracked, query.rig, query.map, options);
-  if (doubt != Failure::none) return failed(doubt, match_count, tracked->features.size());
-  if (query.filter.is_impossible && query.filter.is_impossible(*tracked)) {
-    return failed(Failure::impossible, match_count, tracked->features.size());
+  return checked(query, refine(query, pose->camera_from_world, place.keyframe), match_count, agreeing);
+}
+
+// Keyframes with views from near a pose, nearest first, by the distance in metres plus the angle in radians.
+std::vector<KeyframeId> keyframes_near(const MapGraph& map, const Pose& camera_from_world) {
+  constexpr double kFarthest = 8.0;
+  std::vector<std::pair<double, KeyframeId>> near;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Pose apart = map.keyframe_header(id)->camera_from_world * inverse(camera_from_world);
+    const double distance = apart.translation.norm() + rotation_log(apart.rotation).norm();
+    if (distance < kFarthest) near.emplace_back(distance, id);
   }
-  return {tracked, {}, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
+  std::ranges::sort(near);
+  std::vector<KeyframeId> ids;
+  for (const auto& [distance, id] : near) {
+    if (std::ssize(ids) < kPlaces.group_size) ids.push_back(id);
+  }
+  return ids;
+}
+
+// Map points around the pose by a tag, else words of the keyframes around it: a pose by one tag may be decimetres off.
+Localisation try_tag(const Pose& camera_from_world, const FrameQuery& query) {
+  std::vector<KeyframeId> keyframes = keyframes_near(*query.map.offline(), camera_from_world);
+  if (query.filter.is_excluded) std::erase_if(keyframes, query.filter.is_excluded);
+  if (keyframes.empty()) return failed(Failure::no_similar_keyframe, 0, 0);
+  const Localisation there = checked(query, refine(query, camera_from_world, keyframes.front()), 0, 0);
+  if (there.tracked) return there;
+  return try_place({keyframes.front(), 0.0F, 0.0F, keyframes}, query);
+}
+
+// Whether the tags in the frame are where the pose predicts them.
+bool agrees_with_tags(const TrackedFrame& place, const FrameQuery& query) {
+  const auto tags = tags_in_view(query.frame, place.camera_from_world, query.rig, query.options.tags);
+  return !tags.empty() && std::ranges::all_of(tags, &TagInView::agrees);
 }
 
 // Whether at most one of two poses can be right.
@@ -276,21 +315,45 @@ Localisation localise_at(const Frame& frame, std::span<const Word> words, const 
   const FrameQuery query{frame, rig, map, vocabulary, words, options, filter};
   Localisation best = failed(Failure::no_similar_keyframe, 0, 0);
   std::vector<TrackedFrame> found;
-  for (const PlaceCandidate& place : places) {
-    const Localisation attempt = try_place(place, query);
+  const auto note = [&](const Localisation& attempt) {
     if (attempt.tracked) found.push_back(*attempt.tracked);
     if (rank_of(attempt) > rank_of(best)) best = attempt;
-  }
-  best.places = static_cast<int>(places.size());
+  };
+  for (const PlaceCandidate& place : places) note(try_place(place, query));
+  const std::vector<Pose> by_tags =
+      map.offline() != nullptr ? camera_poses_by_tags(frame, rig, options.tags) : std::vector<Pose>();
+  for (const Pose& pose : by_tags) note(try_tag(pose, query));
+  best.places = static_cast<int>(places.size() + by_tags.size());
   best.places_found = distinct_places(std::move(found), map);
   const auto fits_as_well = [&](const TrackedFrame& other) {
     return static_cast<double>(other.features.size()) >= kRivalShare * best.inliers;
   };
-  if (best.places_found.size() > 1 && fits_as_well(best.places_found[1])) {
+  if (best.places_found.size() < 2 || !fits_as_well(best.places_found[1])) return best;
+  // Places that fit as well, those that agree with the tags first.
+  const auto others = std::ranges::partition_point(best.places_found, fits_as_well);
+  const auto rest = std::stable_partition(best.places_found.begin(), others,
+                                          [&](const TrackedFrame& place) { return agrees_with_tags(place, query); });
+  if (rest - best.places_found.begin() == 1) {
+    best.tracked = best.places_found.front();
+    best.inliers = static_cast<int>(best.tracked->features.size());
+  } else {
     best.tracked.reset();
     best.failure = Failure::ambiguous;
   }
   return best;
+}
+
+std::vector<Pose> camera_poses_by_tags(const Frame& frame, const Rig& rig, std::span<const MappedTag> tags) {
+  std::vector<Pose> poses;
+  for (const TagSighting& seen : frame.tags) {
+    const auto tag = std::ranges::find(tags, seen.id, &MappedTag::id);
+    if (tag == tags.end()) continue;
+    const TagView view{{}, rig, seen.corners};
+    for (const TagEstimate& estimate : estimate_tag_pose({&view, 1}, tag->size)) {
+      poses.push_back(estimate.world_from_tag * inverse(tag->map_from_tag));
+    }
+  }
+  return poses;
 }
 
 }  // namespace byre

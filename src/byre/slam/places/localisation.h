@@ -2,6 +2,7 @@
 
 #include "byre/localisation_failure.h"
 #include "byre/map/map_view.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/place/place_index.h"
 #include "byre/place/vocabulary.h"
 #include "byre/slam/tracking/tracking.h"
@@ -50,6 +51,9 @@ struct LocaliseOptions {
   double max_position_sigma = 0.02;  // sigma of the position over the median depth of the inliers
   double max_rotation_sigma = 0.02;  // radians
   ImageMask hidden{};                // image cells without expected points
+  // Tags of the map. A frame that shows one is also localised around the pose by its corners; a pose is still found by
+  // map points. Of places that fit as well, the only one that agrees with the tags is the place.
+  std::span<const MappedTag> tags{};
 };
 
 struct Localisation {
@@ -78,6 +82,10 @@ Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, co
 Localisation localise_at(const Frame& frame, std::span<const Word> words, const Rig& rig, const MapView& map,
                          const Vocabulary& vocabulary, std::span<const PlaceCandidate> places,
                          const LocaliseOptions& options, const PlaceFilter& filter = {});
+
+// Poses camera_from_world by each of these tags that the frame shows. Two poses may explain one tag, see
+// estimate_tag_pose.
+std::vector<Pose> camera_poses_by_tags(const Frame& frame, const Rig& rig, std::span<const MappedTag> tags);
 
 // Standard deviation of the pixels in their narrowest direction, share of the image diagonal.
 double spread_of(std::span<const TrackedFeature> features, const Rig& rig);

@@ -136,6 +136,54 @@ TEST(Localise, ReportsTwoAmbiguousPlaces) {
   }
 }
 
+TEST(Localise, SelectsThePlaceOfTheTagInTwinRooms) {
+  const MappedPlace place = twin_rooms(lap(visit(1)));
+  const SimulatedMission later = lap(visit(8));
+  const Pose shift{Eigen::Quaterniond::Identity(), {10.0, 0.0, 0.0}};
+  for (std::size_t i = 0; i < later.frames.size(); i += 10) {
+    const Pose camera = true_camera_from_world(later, i);
+    MappedTag tag = tag_before(camera);
+    const Frame frame = with_tag(later.frames[i], tag, camera, later.rig);
+    ASSERT_EQ(frame.tags.size(), 1U);
+    for (const Pose& room : {Pose{}, shift}) {
+      MappedTag in_room = tag;
+      in_room.map_from_tag = room * tag.map_from_tag;
+      LocaliseOptions options;
+      options.tags = std::span(&in_room, 1);
+      const Localisation found = localise(frame, later.rig, place.view(), place.index, options);
+      ASSERT_TRUE(found.tracked) << "frame " << i << ": " << to_string(found.failure);
+      EXPECT_THAT(found.tracked->camera_from_world, PoseNear(camera * inverse(room), 0.03, 0.01)) << "frame " << i;
+      EXPECT_EQ(found.places_found.size(), 2U) << "the other room remains a rival";
+    }
+  }
+}
+
+TEST(Localise, LocalisesByATagWithoutSimilarKeyframes) {
+  const SimulatedMission later = lap(visit(8));
+  const Pose camera = true_camera_from_world(later, 3);
+  const MappedTag tag = tag_before(camera);
+  const PlaceIndex empty(mapped().index.vocabulary());
+  LocaliseOptions options;
+  options.tags = std::span(&tag, 1);
+  const Frame frame = with_tag(later.frames[3], tag, camera, later.rig);
+  const Localisation found = localise(frame, later.rig, mapped().view(), empty, options);
+  ASSERT_TRUE(found.tracked) << to_string(found.failure);
+  EXPECT_THAT(found.tracked->camera_from_world, PoseNear(camera, 0.02, 0.01));
+}
+
+TEST(Localise, IsNotMisledByAMovedTag) {
+  const SimulatedMission later = lap(visit(8));
+  const Pose camera = true_camera_from_world(later, 3);
+  MappedTag tag = tag_before(camera);
+  const Frame frame = with_tag(later.frames[3], tag, camera, later.rig);
+  tag.map_from_tag = Pose{rotation_exp({0.0, 0.0, 1.0}), {1.5, 0.5, 0.0}} * tag.map_from_tag;
+  LocaliseOptions options;
+  options.tags = std::span(&tag, 1);
+  const Localisation found = localise(frame, later.rig, mapped().view(), mapped().index, options);
+  ASSERT_TRUE(found.tracked) << to_string(found.failure);
+  EXPECT_THAT(found.tracked->camera_from_world, PoseNear(camera, 0.02, 0.01));
+}
+
 TEST(Localise, IsDeterministic) {
   const SimulatedMission later = lap(visit(9));
   const Localisation first = localise_in(mapped(), later.frames[5], later.rig);

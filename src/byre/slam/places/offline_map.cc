@@ -67,7 +67,8 @@ std::optional<PlacedWalls> place_walls(const MapGraph& map, const PlanRegistrati
 }
 
 OfflineMap::OfflineMap(MapGraph map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings,
-                       std::optional<PlacedWalls> walls, const OdometryCalibration& extrinsics)
+                       std::optional<PlacedWalls> walls, const OdometryCalibration& extrinsics,
+                       std::vector<MappedTag> tags)
     : map_(std::move(map)),
       places_(index_of(map_, vocabulary)),
       recordings_(std::move(recordings)),
@@ -75,7 +76,8 @@ OfflineMap::OfflineMap(MapGraph map, const Vocabulary& vocabulary, std::vector<S
       cell_unit_(share_of_room(map_)),
       ground_(DrivenGround::under(map_)),
       walls_(std::move(walls)),
-      extrinsics_(extrinsics) {
+      extrinsics_(extrinsics),
+      tags_(std::move(tags)) {
   for (const KeyframeId id : map_.keyframe_ids()) {
     const Pose world_from_camera = inverse(map_.keyframe_header(id)->camera_from_world);
     views_.push_back({id, world_from_camera.translation, world_from_camera.rotation * Eigen::Vector3d::UnitZ()});

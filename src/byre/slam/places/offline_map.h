@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/map/map_file.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/map/plan/driven_ground.h"
 #include "byre/map/plan/plan_walls.h"
 #include "byre/odometry/odometry_calibration.h"
@@ -26,7 +27,8 @@ class OfflineMap {
  public:
   // Preconditions: the map is offline and has keyframes, with words of the vocabulary (see add_words).
   OfflineMap(MapGraph map, const Vocabulary& vocabulary, std::vector<SourceRecording> recordings = {},
-             std::optional<PlacedWalls> walls = {}, const OdometryCalibration& extrinsics = {});
+             std::optional<PlacedWalls> walls = {}, const OdometryCalibration& extrinsics = {},
+             std::vector<MappedTag> tags = {});
 
   const MapGraph& map() const { return map_; }
   const PlaceIndex& places() const { return places_; }
@@ -37,6 +39,8 @@ class OfflineMap {
   const OdometryCalibration& extrinsics() const {
     return extrinsics_;
   }  // extrinsics of the motion sensors of these recordings
+
+  const std::vector<MappedTag>& tags() const { return tags_; }  // by id
 
   // Driven ground; nullptr if the map was not driven.
   const DrivenGround* ground() const { return ground_ ? &*ground_ : nullptr; }
@@ -71,6 +75,7 @@ class OfflineMap {
   std::optional<DrivenGround> ground_;
   std::optional<PlacedWalls> walls_;
   OdometryCalibration extrinsics_;
+  std::vector<MappedTag> tags_;
 };
 
 }  // namespace byre

@@ -29,10 +29,13 @@ double evidence_of(double expected, double seen) {
 // Prior: one find in ten is of a moved object.
 const double kOfMovedThing = std::log(10.0);
 
+// Prior: one tag in thirty was moved, or has a copy.
+const double kOfTag = std::log(30.0);
+
 constexpr double kReject = -4.0;  // log-odds at which an accepted place is rejected
 
 constexpr int kLengthOfMean = 6;     // frames over which a cell's points are averaged
-constexpr int kFramesToForget = 50;  // frames out of view after which a cell is forgotten
+constexpr int kFramesToForget = 50;  // frames out of view after which a cell or tag is forgotten
 
 struct AgreeingCell {
   Eigen::Vector3d centre;  // metres, in the map
@@ -103,6 +106,14 @@ double PlaceHypothesis::evidence(Count Cell::*points) const {
   return std::min(all, all - most_on_one_thing(agreeing) + kOfMovedThing);
 }
 
+// Contradicting tags count as one: what moves one tag, such as a new shelf, moves those beside it.
+double PlaceHypothesis::evidence_of_tags() const {
+  constexpr std::ptrdiff_t kMostAgreeing = 2;
+  const std::ptrdiff_t agreeing = std::ranges::count(tags_, 0, &SeenTag::contradictions);
+  const std::ptrdiff_t contradicting = is_contradicted_by_tag() ? 1 : 0;
+  return kOfTag * static_cast<double>(std::min(agreeing, kMostAgreeing) - contradicting);
+}
+
 void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log_odds_of_rivals) {
   if (is_tracked) confirmations_left_ = std::max(0, confirmations_left_ - 1);
   ++frame_;
@@ -121,14 +132,28 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log
     cell->frames = std::min(cell->frames + 1, kLengthOfMean - 1);
     cell->last_frame = frame_;
   }
-  std::erase_if(cells_, [this](const Cell& cell) { return frame_ - cell.last_frame > kFramesToForget; });
-  log_odds_ = prior_ + evidence(&Cell::all);
-  log_odds_to_rivals_ = prior_ + evidence(&Cell::alone);
+  for (const auto& [id, agrees] : view.tags) {
+    auto tag = std::ranges::find(tags_, id, &SeenTag::id);
+    if (tag == tags_.end()) tag = tags_.insert(tag, SeenTag{.id = id});
+    tag->contradictions = agrees ? 0 : tag->contradictions + 1;
+    tag->last_frame = frame_;
+  }
+  const auto is_forgotten = [this](const auto& seen) { return frame_ - seen.last_frame > kFramesToForget; };
+  std::erase_if(cells_, is_forgotten);
+  std::erase_if(tags_, is_forgotten);
+  const double by_others = prior_ + evidence_of_tags();
+  log_odds_ = by_others + evidence(&Cell::all);
+  log_odds_to_rivals_ = by_others + evidence(&Cell::alone);
   if (is_confirmed() && log_odds_ >= accept_ && log_odds_to_rivals_ - log_odds_of_rivals >= accept_) {
     is_accepted_ = true;
     prior_ = std::max(prior_, 0.0);  // the cells that outweighed it may be forgotten earlier
   }
   if (is_rejected()) is_accepted_ = false;
+}
+
+int PlaceHypothesis::contradictions(const TagId& tag) const {
+  const auto seen = std::ranges::find(tags_, tag, &SeenTag::id);
+  return seen != tags_.end() ? seen->contradictions : 0;
 }
 
 bool PlaceHypothesis::is_rejected() const {

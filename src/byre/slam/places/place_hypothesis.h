@@ -3,6 +3,7 @@
 #include "byre/slam/places/place_view.h"
 #include "byre/slam/window/registration.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -23,7 +24,8 @@ inline constexpr double kNoRivals = -std::numeric_limits<double>::infinity();
 // place as well. So the agreeing cells that one such object can cover add no more than the log-odds against a moved
 // object.
 //
-// Against a look-alike place (the next bay of a barn) only points that it does not have are evidence.
+// Against a look-alike place (the next bay of a barn) only points that it does not have are evidence, and tags. A tag
+// counts once, by its last detection.
 class PlaceHypothesis {
  public:
   // Accepted without a test: the pose is right by definition, as in the frame of a map that is being made.
@@ -48,6 +50,9 @@ class PlaceHypothesis {
   // The test has accepted it, and not rejected it since.
   bool is_accepted() const { return is_accepted_; }
   bool is_rejected() const;
+  // Detections of a tag in a row, the last ones, that contradict the pose.
+  int contradictions(const TagId& tag) const;
+  bool is_contradicted_by_tag() const { return std::ranges::any_of(tags_, &SeenTag::contradictions); }
 
  private:
   struct Count {
@@ -62,7 +67,13 @@ class PlaceHypothesis {
     Count alone{};                                             // points that no look-alike place has
     Eigen::Vector3d centre_of_seen = Eigen::Vector3d::Zero();  // metres, in the map
   };
+  struct SeenTag {
+    TagId id;
+    int contradictions = 0;
+    int last_frame = 0;
+  };
   double evidence(Count Cell::*points) const;
+  double evidence_of_tags() const;
 
   double prior_ = 0.0;
   double accept_ = RegistrationOptions{}.accept_log_odds;
@@ -72,6 +83,7 @@ class PlaceHypothesis {
   double log_odds_to_rivals_ = 0.0;
   int frame_ = 0;
   std::vector<Cell> cells_;  // ascending by index
+  std::vector<SeenTag> tags_;
 };
 
 // Log-odds of a pose by one frame alone, without a prior.

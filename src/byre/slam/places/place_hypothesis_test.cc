@@ -26,6 +26,41 @@ TEST(PlaceHypothesis, IsAcceptedByDefault) {
   EXPECT_TRUE(PlaceHypothesis().is_confirmed());
 }
 
+TEST(PlaceHypothesis, CountsATagOnceAgainstLookAlikesAsWell) {
+  PlaceView view{.is_near_keyframe = true, .cells = {}};
+  const PlaceHypothesis without = observed(PlaceHypothesis(0.0, 0), view, 1);
+  view.tags = {{{TagFamily::tag36h11, 3}, true}};
+  const PlaceHypothesis once = observed(PlaceHypothesis(0.0, 0), view, 1);
+  EXPECT_GT(once.log_odds(), without.log_odds() + 3.25);
+  EXPECT_GT(once.log_odds_to_rivals(), without.log_odds_to_rivals() + 3.25);
+  EXPECT_DOUBLE_EQ(observed(once, view, 20).log_odds(), once.log_odds());
+}
+
+TEST(PlaceHypothesis, IsNotRejectedByOneContradictingTag) {
+  PlaceView view{.is_near_keyframe = true, .cells = {}};
+  view.tags = {{{TagFamily::tag36h11, 3}, false}};
+  const PlaceHypothesis place = observed(PlaceHypothesis(), view, 20);
+  EXPECT_LT(place.log_odds(), -3.0);
+  EXPECT_TRUE(place.is_accepted());
+  view.tags.front().agrees = true;
+  EXPECT_GT(observed(place, view, 1).log_odds(), 3.0) << "the last detection counts";
+}
+
+TEST(PlaceHypothesis, CountsContradictionsInARowAndForgetsATagOutOfView) {
+  const TagId tag{TagFamily::tag36h11, 3};
+  PlaceView view{.is_near_keyframe = true, .cells = {}};
+  view.tags = {{tag, false}};
+  PlaceHypothesis place = observed(PlaceHypothesis(), view, 3);
+  EXPECT_EQ(place.contradictions(tag), 3);
+  EXPECT_TRUE(place.is_contradicted_by_tag());
+  view.tags.front().agrees = true;
+  EXPECT_EQ(observed(place, view, 1).contradictions(tag), 0);
+  view.tags.clear();
+  place = observed(place, view, 60);
+  EXPECT_EQ(place.contradictions(tag), 0);
+  EXPECT_EQ(place.log_odds(), 0.0);
+}
+
 TEST(PlaceHypothesis, IsAcceptedAfterItsFramesAreTracked) {
   PlaceHypothesis place(0.0, 2);
   place.observe(view_of_room(10, 0), false);

@@ -2,6 +2,7 @@
 
 // A mapped simulated room and its vocabulary, for tests of place recognition.
 
+#include "byre/geometry/tag_pose.h"
 #include "byre/place/place_index.h"
 #include "byre/slam/places/offline_map.h"
 #include "byre/slam/tracking/mission_scene.h"
@@ -61,6 +62,27 @@ inline MappedPlace twin_rooms(const SimulatedMission& mission) {
     }
   }
   return place;
+}
+
+// Tag that faces the camera of a frame from two metres.
+inline MappedTag tag_before(const Pose& camera_from_world, int number = 7) {
+  MappedTag tag{{TagFamily::tag36h11, number}, 0.25, {}, 0.001};
+  tag.map_from_tag = inverse(camera_from_world) * Pose{rotation_exp({0.0, 0.5, 0.0}), {0.2, -0.2, 2.0}};
+  return tag;
+}
+
+// The frame, with the corners of a tag if it is in view.
+inline Frame with_tag(Frame frame, const MappedTag& tag, const Pose& camera_from_world, const Rig& rig) {
+  TagSighting seen{tag.id, {}};
+  const auto in_tag = tag_corners(tag.size);
+  for (std::size_t i = 0; i < in_tag.size(); ++i) {
+    const Eigen::Vector3d in_camera = camera_from_world * tag.map_from_tag * in_tag[i];
+    if (in_camera.z() < 0.3) return frame;
+    seen.corners[i] = rig.project(in_camera).head<2>();
+    if (!rig.contains(seen.corners[i])) return frame;
+  }
+  frame.tags.push_back(seen);
+  return frame;
 }
 
 // Vocabulary of a lap in a simulated room.

@@ -1,8 +1,10 @@
 #include "byre/slam/places/place_view.h"
 
+#include "byre/geometry/tag_pose.h"
 #include "byre/slam/tracking/tracking_steps.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace byre {
@@ -21,6 +23,20 @@ std::array<int, 3> cell_at(const Eigen::Vector3d& position) {
   constexpr double kSide = 2.0;  // metres
   const Eigen::Vector3d along = (position / kSide).array().max(-1e6).min(1e6).floor();
   return {static_cast<int>(along.x()), static_cast<int>(along.y()), static_cast<int>(along.z())};
+}
+
+// Mean distance of a tag's corners from those predicted by the pose, pixels; empty behind the camera.
+std::optional<double> corner_error(const TagSighting& seen, const MappedTag& tag, const Pose& camera_from_world,
+                                   const Rig& rig) {
+  const Pose camera_from_tag = camera_from_world * tag.map_from_tag;
+  const auto in_tag = tag_corners(tag.size);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < in_tag.size(); ++i) {
+    const Eigen::Vector3d in_camera = camera_from_tag * in_tag[i];
+    if (!(in_camera.z() > 0.0)) return std::nullopt;
+    sum += (rig.project(in_camera).head<2>() - seen.corners[i]).norm();
+  }
+  return sum / static_cast<double>(in_tag.size());
 }
 
 }  // namespace
@@ -87,7 +103,26 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
     cell.centre_of_seen += (position_of(points[i].second) - cell.centre_of_seen) / cell.seen;
   }
   view.seen = std::move(shown);
+  view.tags = tags_in_view(query.frame, pose, query.rig, query.tags);
   return view;
+}
+
+// Between the limits of agreement and contradiction the error may be that of the pose or of the tag's own pose.
+std::vector<TagInView> tags_in_view(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
+                                    std::span<const MappedTag> tags) {
+  constexpr double kAgrees = 3.0;       // pixels
+  constexpr double kAgreesShare = 0.1;  // share of the tag's side in the image
+  constexpr double kContradicts = 2.0;  // limits of agreement
+  std::vector<TagInView> in_view;
+  for (const TagSighting& seen : frame.tags) {
+    const auto tag = std::ranges::find(tags, seen.id, &MappedTag::id);
+    if (tag == tags.end()) continue;
+    const auto error = corner_error(seen, *tag, camera_from_world, rig);
+    const double limit = kAgrees + kAgreesShare * (seen.corners[1] - seen.corners[0]).norm();
+    if (error && *error > limit && *error <= kContradicts * limit) continue;
+    in_view.push_back({seen.id, error && *error <= limit});
+  }
+  return in_view;
 }
 
 }  // namespace byre

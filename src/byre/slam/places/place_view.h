@@ -22,6 +22,12 @@ struct CellInView {
   int seen_alone = 0;
 };
 
+// A tag of the map in a frame, and whether its corners are where the pose predicts them.
+struct TagInView {
+  TagId id;
+  bool agrees = false;
+};
+
 // The part of a map that a frame shows from a pose.
 struct PlaceView {
   // True: the expected points were seen by keyframes near the pose, so only covering, moving or another light can hide
@@ -30,6 +36,7 @@ struct PlaceView {
   ScratchVector<CellInView> cells;  // ascending
   ScratchVector<PointId> expected;  // points of the cells
   ScratchVector<PointId> seen;      // seen points, ascending
+  std::vector<TagInView> tags{};    // detected tags; without those that neither agree nor contradict
 };
 
 // Keyframes near a pose with a similar viewing direction, ascending, and the points that they saw, ascending.
@@ -44,11 +51,16 @@ struct PlaceViewQuery {
   std::span<const PointId> nearby;              // points of keyframes near the pose
   std::span<const PointId> candidates;          // points around the pose, used if nearby ones are too few
   ImageMask hidden{};                           // image cells without expected points
+  std::span<const MappedTag> tags{};            // tags of the map
   std::function<bool(PointId)> is_left_out{};   // points that are never expected; empty: none
   std::function<bool(PointId)> is_in_common{};  // points that a look-alike place has as well; empty: none
   double metre = 1.0;                           // one metre of cells in lengths of the map
 };
 
 PlaceView view_of_place(const PlaceViewQuery& query);
+
+// Tags of the map in a frame from a pose, see PlaceView::tags.
+std::vector<TagInView> tags_in_view(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
+                                    std::span<const MappedTag> tags);
 
 }  // namespace byre

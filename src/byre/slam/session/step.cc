@@ -265,7 +265,7 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
     }
     state.mission->test_rivals({input.frame, track, state.rig, 0.0, false, {}, hidden}, located.elsewhere, pose_filter,
                                state.mapper);
-    if (located.is_relocalised || state.mission->is_view_due(pose_filter)) {
+    if (located.is_relocalised || state.mission->is_view_due(input.frame, pose_filter)) {
       view = state.mission->view_of(input.frame, track, state.rig, hidden,
                                     located.is_relocalised || !pose_filter.place().is_accepted());
     }
@@ -289,6 +289,7 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
                              state.tracker.offline_points(), hidden, view ? &*view : nullptr},
                             pose_filter, state.mapper);
     report.events.insert(report.events.end(), update.events.begin(), update.events.end());
+    report.moved_tags = update.moved_tags;
     if (update.correction) state.mapper.correct_later(*update.correction);
   }
   if (!pose_filter.place().is_confirmed() || !state.is_registered()) return;

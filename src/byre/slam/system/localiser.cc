@@ -1,5 +1,6 @@
 #include "byre/features/extract.h"
 #include "byre/features/image_view.h"
+#include "byre/features/tag_detector.h"
 #include "byre/input_error.h"
 #include "byre/map.h"
 #include "byre/map/map_file.h"
@@ -39,7 +40,8 @@ struct Localiser::State {
       : map(with_words(stored, vocabulary)),
         calibration(calibration_in(stored, given)),
         index(index_of(map.map, vocabulary)),
-        extractor(calibration, {}) {}
+        tags(read_tags(stored.notes)),
+        extractor(calibration, {}, families_of(tags)) {}
 
   ImageFrame images_of(const CameraImages& images) const;
 
@@ -47,6 +49,7 @@ struct Localiser::State {
   MapGraph nothing_online{Origin::online};
   Calibration calibration;
   PlaceIndex index;
+  std::vector<MappedTag> tags;
   Extractor extractor;
 };
 
@@ -79,8 +82,10 @@ LocalisationReport Localiser::localise(const CameraImages& images) {
   State& state = *state_;
   const Rig& rig = state.extractor.rig();
   const Frame frame = state.extractor.extract(state.images_of(images)).frame;
+  LocaliseOptions options;
+  options.tags = state.tags;
   const Localisation found =
-      byre::localise(frame, rig, MapView(&state.map.map, state.nothing_online), state.index, LocaliseOptions{});
+      byre::localise(frame, rig, MapView(&state.map.map, state.nothing_online), state.index, options);
   LocalisationReport report;
   report.failure = found.failure;
   report.inliers = found.inliers;

@@ -2,6 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/map/map_file.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/map/plan/driving_plane.h"
 #include "byre/map/plan/floor_plan.h"
 #include "byre/map/point_grey.h"
@@ -156,6 +157,10 @@ const std::map<std::string, std::string>& Map::notes() const {
 
 const std::optional<PlanRegistration>& Map::plan() const {
   return stored_->plan;
+}
+
+std::vector<MappedTag> Map::tags() const {
+  return read_tags(stored_->notes);
 }
 
 MapKeyframe Map::keyframe(int id) const {
@@ -358,6 +363,16 @@ Map Map::with_plan(const PlanFit& fit, double accepted_residual) const {
   }
   StoredMap edited = *stored_;
   edited.plan = fit.registration;
+  return Map(std::move(edited));
+}
+
+Map Map::with_tags(std::span<const Tag> surveyed) const {
+  if (!plan()) {
+    throw InputError("map", "is not registered on a floor plan, so surveyed tags have no place in it",
+                     "register it on the plan");
+  }
+  StoredMap edited = *stored_;
+  add_surveyed_tags(edited, surveyed);
   return Map(std::move(edited));
 }
 

@@ -219,6 +219,11 @@ TEST(Map, IsRegisteredOnAPlanByPicks) {
   const Map on_plan = map.with_plan(fit);
   EXPECT_EQ(on_plan.plan()->plan, "barn.png");
   EXPECT_THAT(on_plan.plan()->plan_from_map * picks[1].point_in_map, PointNear(Eigen::Vector3d(35.0, -4.0, 1.0), 0.1));
+  const Tag tag{{TagFamily::tag36h11, 3}, 0.2, SurveyedTag{{35.0, -4.0, 1.0}, 0.02, 0.0}};
+  EXPECT_THAT(refusal([&] { map.with_tags({&tag, 1}); }), HasSubstr("not registered on a floor plan"));
+  const auto tags = on_plan.with_tags({&tag, 1}).tags();
+  ASSERT_EQ(tags.size(), 1U);
+  EXPECT_THAT(on_plan.plan()->plan_from_map * tags[0].map_from_tag.translation, PointNear(tag.survey->position, 1e-6));
   EXPECT_THAT(refusal([&] { map.register_on_plan("barn.png", {}); }), HasSubstr("two distant points"));
   EXPECT_THAT(refusal([&] { Map(StoredMap()).register_on_plan("barn.png", picks); }), HasSubstr("vertical"));
   EXPECT_THAT(refusal([&] { map.with_plan(fit, -1.0); }), HasSubstr("residuals"));

@@ -47,8 +47,8 @@ std::vector<std::string> values(const MethodOptions& options) {
   return all;
 }
 
-// Hidden cells of tracking and of place search are estimated, so they are no options.
-constexpr std::size_t kHiddenCells = 2;
+// Hidden cells of tracking and of place search are estimated, and tags are those of the map, so they are no options.
+constexpr std::size_t kHiddenCellsAndTags = 3;
 
 TEST(OptionTable, ListsEveryLeaf) {
   const MethodOptions options;
@@ -60,7 +60,7 @@ TEST(OptionTable, ListsEveryLeaf) {
   const std::size_t in_groups =
       members_of<TrackOptions, KeyframeOptions, WindowOptions, LocaliseOptions, LoopOptions, HealthOptions,
                  ImageConditionOptions, StateOptions, DeferredRefinementOptions>() -
-      kHiddenCells;
+      kHiddenCellsAndTags;
   const std::size_t in_mission = member_count<MissionOptions>() - 4 +
                                  members_of<OfflineViewOptions, MovedPointsOptions, RegistrationOptions>() +
                                  member_count<PlaceBoundsOptions>() - 1;  // without the flag for other cameras

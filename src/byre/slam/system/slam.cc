@@ -94,6 +94,7 @@ std::unique_ptr<SlamImpl> make(const Calibration& given, const SlamOptions& opti
   inputs.extrinsics = options.extrinsics;
   inputs.site = options.site;
   inputs.max_waiting = options.max_waiting;
+  inputs.tags = options.tags;
   return std::make_unique<SlamImpl>(given, method_options(options), std::move(inputs),
                                     InputCheckOptions{options.max_pair_difference, options.max_gap});
 }

@@ -2,6 +2,8 @@
 
 #include "byre/base/stopwatch.h"
 #include "byre/features/image_view.h"
+#include "byre/features/tag_detector.h"
+#include "byre/map/mapped_tag.h"
 #include "byre/map/stored_calibration.h"
 #include "byre/slam/upkeep/session_summary.h"
 #include "byre/slam/window/online_copy.h"
@@ -72,6 +74,15 @@ SessionOptions session_options(const Calibration& given, const MethodOptions& op
   return session;
 }
 
+std::vector<TagFamily> tag_families(const SlamInputs& inputs) {
+  return inputs.offline ? families_of(inputs.offline->tags()) : families_of(inputs.tags);
+}
+
+// Often in mapping, as only tags in keyframes are mapped.
+Timestamp tag_interval(const SlamInputs& inputs) {
+  return std::chrono::milliseconds(inputs.offline ? 250 : 60);
+}
+
 }  // namespace
 
 std::string_view name_of(Pace pace) {
@@ -94,7 +105,8 @@ SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamI
       is_extended_(inputs_.before.has_value()),
       body_from_left_(given.body_from_left.rotation),
       initial_calibration_(stored_calibration(earlier_recordings(inputs_), given)),
-      extractor_(initial_calibration_ ? initial_calibration_->calibration : given, options.extract),
+      extractor_(initial_calibration_ ? initial_calibration_->calibration : given, options.extract,
+                 tag_families(inputs_), tag_interval(inputs_)),
       check_(given, extractor_.rig(), check),
       prior_(options.motion_limits),
       is_metric_(given.is_metric() || inputs_.offline || is_extended_),
@@ -254,6 +266,7 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
     report.health.verdict = Verdict::untrusted;
     report.health.doubt = DistrustReason::map_damaged;
   }
+  note_moved_tags(report);
   if (inputs_.offline) record_pose(frame, report);
   budget_.end();
   report.cuts = budget_.cuts();
@@ -307,6 +320,17 @@ FrameReport SlamImpl::dropped(Timestamp time) {
   return report;
 }
 
+void SlamImpl::note_moved_tags(const FrameReport& report) {
+  for (const MappedTag& tag : report.moved_tags) {
+    moved_tags_.push_back(tag.id);
+    const MappedTag& mapped = *std::ranges::find(inputs_.offline->tags(), tag.id, &MappedTag::id);
+    const double distance = (tag.map_from_tag.translation - mapped.map_from_tag.translation).norm();
+    prior_.warn({MotionSensor::tags, report.time,
+                 fmt::format("{} is {:.2f} m from its place in the map; it is ignored", to_string(tag.id), distance),
+                 "hang it at its place, remove a copy, or map again"});
+  }
+}
+
 std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
   if (std::exchange(is_finished_, true)) return {};
   if (hooks.should_stop() || map_damage() != nullptr) finish_early();
@@ -323,7 +347,11 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
     result.report = session_.finish_map(hooks);
     prior_.reestimate(session_.final_trajectory());
     if (!given_.is_metric()) compare_focal_length();
+    if (!is_metric_) scale_by_tags();
     if (!is_metric_) scale_by_wheels();
+    if (is_metric_) {
+      for (const MotionWarning& warning : map_tags(online(), inputs_.tags).warnings) prior_.warn(warning);
+    }
     result.cut_short = hooks.should_stop();
   }
   result.seconds = watch.seconds();
@@ -347,6 +375,41 @@ void SlamImpl::compare_focal_length() {
        fmt::format("calibrate the camera, or set the focal lengths fx and fy in the calibration file to {:.0f}, "
                    "and map again",
                    focal * turns->value)});
+}
+
+// Keeps the map's own unit if tags do not determine the scale, or if wheels contradict it.
+void SlamImpl::scale_by_tags() {
+  constexpr double kMaxWheelSigma = 0.05;
+  constexpr double kMaxDifference = 0.1;  // natural logarithm
+  const std::map<TagId, UnitEstimate> units = units_by_tags(online(), inputs_.tags);
+  const auto unit = common_unit(units);
+  const auto refuse = [this](const std::string& fault, const std::string& remedy) {
+    prior_.warn({MotionSensor::tags, {}, fault + "; they do not scale the map", remedy});
+  };
+  if (!unit) {
+    if (units.empty()) return;
+    std::vector<std::string> lengths;
+    for (const auto& [id, each] : units) {
+      lengths.push_back(fmt::format("{:.3g} m by {}", 1.0 / each.lengths_per_metre, to_string(id)));
+    }
+    return refuse(
+        fmt::format("the unit of the map is {}, and two tags or more have to agree", fmt::join(lengths, ", ")),
+        "check the sizes of the tags, and hang two or more in view of the way");
+  }
+  const double factor = 1.0 / unit->lengths_per_metre;
+  const auto& wheels = prior_.wheels();
+  if (wheels && wheels->scale_sigma() <= kMaxWheelSigma) {
+    const double ratio = factor / wheels->metres_per_unit;
+    if (std::abs(std::log(ratio)) > kMaxDifference) {
+      return refuse(fmt::format("AprilTags measure lengths {:.3g} times as large as wheels do", ratio),
+                    "measure the tags and the wheel radius again");
+    }
+  }
+  session_.rescale(factor);
+  prior_.rescale(factor);
+  scale_sigma_ = unit->sigma;
+  is_scaled_by_tags_ = true;
+  is_metric_ = true;
 }
 
 // Keeps the map's own unit if motions do not determine the scale.
@@ -385,7 +448,12 @@ StoredMap SlamImpl::stored_metadata() const {
   stored.recordings.push_back(
       {inputs_.recording, given_, first_time_.value_or(Timestamp{}), last_time_, calibration()});
   write_odometry_calibration(prior_.calibration_to_store(), stored.notes);
-  if (scale_sigma_) stored.notes[kMetresNote] = metres_note(*scale_sigma_);
+  std::vector<MappedTag> tags;
+  if (inputs_.offline) tags = inputs_.offline->tags();
+  if (!inputs_.offline && is_metric_) tags = map_tags(online(), inputs_.tags).tags;
+  std::erase_if(tags, [this](const MappedTag& tag) { return std::ranges::count(moved_tags_, tag.id) > 0; });
+  write_tags(tags, stored.notes);
+  if (scale_sigma_ && !is_scaled_by_tags_) stored.notes[kMetresNote] = metres_note(*scale_sigma_);
   return stored;
 }
 

@@ -49,6 +49,7 @@ struct SlamInputs {
   std::optional<PlanRegistration> plan{};               // registration of the offline or extended map on a floor plan
   int max_waiting = 1;                                  // frames of submit() that wait for its thread
   StoredMap extended{};                                 // data of the map to extend, without keyframes and points
+  std::vector<Tag> tags{};                              // tags to map
   std::optional<MapGraph> before{};  // keyframes and points of that map: an online copy with words of the vocabulary
 };
 
@@ -114,7 +115,7 @@ class SlamImpl {
   const Session& session() const { return session_; }
   const JobLog& log() const { return log_; }
   const OdometryCalibrator& prior() const { return prior_; }
-  // Faults of motion inputs so far.
+  // Faults of motion inputs and tags so far.
   const std::vector<MotionWarning>& warnings() const { return prior_.warnings(); }
   // Times of the last frame, zero for a dropped one. Features of the caller have times of track, map and total only.
   const StageSeconds& seconds() const { return seconds_; }
@@ -124,11 +125,12 @@ class SlamImpl {
   std::optional<RefinedCalibration> calibration() const;
   // Row error of the rectification in use, over all stereo pairs so far.
   const CommonRowError& row_error() const { return row_error_; }
-  // Whether lengths are metres. Monocular maps become metric in finish() if wheels determine the scale.
+  // Whether lengths are metres. Monocular maps become metric in finish() if tags or wheels determine the scale.
   bool is_metric() const { return is_metric_; }
-  // Relative standard deviation of the scale if measured by wheels only; empty if the scale is unknown, or measured by
-  // cameras or a map.
-  std::optional<double> wheel_scale_sigma() const { return scale_sigma_; }
+  // Relative standard deviation of the scale if measured by wheels or tags only; empty if the scale is unknown, or
+  // measured by cameras or a map.
+  std::optional<double> scale_sigma() const { return scale_sigma_; }
+  bool is_scaled_by_tags() const { return is_scaled_by_tags_; }
   // Whether there is a map to save: for an extended map, whether anything was added.
   bool has_mapped() const { return online().keyframe_count() > 0 && (had_pose_ || !is_extended_); }
 
@@ -145,6 +147,7 @@ class SlamImpl {
   void refine_calibration();
   void begin_with_extrinsics(const Extrinsics& extrinsics);
   void compare_focal_length();
+  void scale_by_tags();
   void scale_by_wheels();
   void finish_early() { session_.finish_early(); }
   std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);
@@ -153,6 +156,7 @@ class SlamImpl {
   FrameReport process_images(const ImageFrame& images, const std::optional<BodyMotion>& motion);
   // Precondition: the frame's budget has begun.
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
+  void note_moved_tags(const FrameReport& report);
   FrameReport completed(FrameReport report);
   FrameReport dropped(Timestamp time);
   void record_pose(const Frame& frame, const FrameReport& report);
@@ -167,11 +171,13 @@ class SlamImpl {
 
   JobLog log_;
   Extractor extractor_;
+  std::vector<TagId> moved_tags_;
   InputCheck check_;
   CommonRowError row_error_;
   OdometryCalibrator prior_;
   bool is_metric_;
-  std::optional<double> scale_sigma_;  // see wheel_scale_sigma
+  std::optional<double> scale_sigma_;  // see scale_sigma()
+  bool is_scaled_by_tags_ = false;
   std::optional<Timestamp> last_frame_;
   std::size_t warnings_reported_ = 0;
   FrameBudget budget_;
