@@ -40,6 +40,7 @@ constexpr const char* kSimulateFooter = R"(Examples:
   byre simulate cowshed --imperfection good -o barn_4
   byre simulate cowshed --mission 2 --time day --light 0.03 --headlight 1 -o barn_7
   byre simulate cowshed --motion --turn spot -o barn_6
+  byre simulate cowshed --tags 12 -o barn_8
   byre simulate cowshed --calibration-level 1 --calibration-seed 2 --rolling-shutter 15 -o barn_5
 
 A feeding robot drives up and down the feed alley with a stereo camera. The same seed gives the same barn; another
@@ -119,6 +120,14 @@ void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
                   "Gate of the feed store; the robot enters if it is open (closed in mission 1, open later)")
       ->type_name("open|closed")
       ->transform(one_of(gates));
+  command.add_option("--tags", barn.tags, "Number of AprilTags on the columns, whose poses are in plan/tags.yaml")
+      ->type_name("N")
+      ->check(between(0, 12))
+      ->capture_default_str();
+  command.add_option("--first-tag", barn.first_tag, "Number of the first AprilTag; the others follow along the alley")
+      ->type_name("N")
+      ->check(between(0, 500))
+      ->capture_default_str();
   command.add_option("--cows", barn.cows, "Number of cows (3 in mission 1, 8 later)")
       ->type_name("N")
       ->check(between(0, 40));

@@ -1,5 +1,6 @@
 #include "byre/simulation/cowshed/cowshed.h"
 
+#include "byre/features/tag_detector.h"
 #include "byre/input_error.h"
 #include "byre/simulation/cowshed/cowshed_parts.h"
 
@@ -13,6 +14,9 @@ void check(const CowshedOptions& options) {
   require(options.mission >= 1, "the mission number must be at least 1");
   require(options.change >= 0.0 && options.change <= 1.0, "the share of change must be from 0 to 1");
   require(options.dust >= 0.0 && options.dust <= 4.0, "dust must be from 0 to 4");
+  require(options.tags >= 0 && options.tags <= 12, "the number of tags must be from 0 to 12");
+  require(options.first_tag >= 0 && options.first_tag <= 500, "the number of the first tag must be from 0 to 500");
+  require(options.tags == 0 || can_detect_tags(), "has no tags, as byre was built without libapriltag");
   require(options.cows.value_or(0) >= 0 && options.cows.value_or(0) <= 40, "the number of cows must be from 0 to 40");
 }
 
@@ -39,6 +43,7 @@ Cowshed build_cowshed(const CowshedOptions& options) {
   add_fences(barn, options.seed);
   add_cubicles(barn, options.seed);
   add_fittings(barn, options.seed);
+  add_tags(barn, options);
   add_lamps(barn, time);
   add_feed(barn, options);
   barn.objects = make_objects(options);

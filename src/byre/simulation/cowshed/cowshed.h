@@ -2,6 +2,7 @@
 
 #include "byre/simulation/cowshed/barn_light.h"
 #include "byre/simulation/cowshed/scene_renderer.h"
+#include "byre/tag.h"
 
 #include <array>
 #include <cstdint>
@@ -24,6 +25,8 @@ struct CowshedOptions {
   std::optional<int> cows{};       // empty: 3 in the first mission, 8 in later ones
   std::optional<BarnGate> gate{};  // empty: closed in the first mission, open in later ones
   double dust = 0.0;               // dust in the air: 0 none, 1 loses half of the light in 14 m
+  int tags = 0;                    // AprilTags of 0.45 m on the columns
+  int first_tag = 0;               // number of the first one
 };
 
 struct CowshedSize {
@@ -80,6 +83,7 @@ struct Cowshed {
   Air air;
   std::vector<PlanOutline> outlines;
   std::vector<NamedPoint> marks;
+  std::vector<Tag> tags;  // with their poses in the world
   std::vector<MovableObject> objects;
   std::vector<Cow> cows;
 };
@@ -88,8 +92,8 @@ struct Cowshed {
 BarnTime time_of(const CowshedOptions& options);
 BarnGate gate_of(const CowshedOptions& options);
 
-// Throws InputError for options out of range: mission below 1, share outside 0 to 1, dust or number of cows negative or
-// too large.
+// Throws InputError for tags without libapriltag, and for options out of range: mission below 1, share outside 0 to 1,
+// dust or number of cows negative or too large.
 Cowshed build_cowshed(const CowshedOptions& options);
 
 // The cows in the world at a time, seconds from the start of the recording.

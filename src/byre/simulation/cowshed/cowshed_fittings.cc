@@ -1,5 +1,6 @@
 // Fixed fittings: fences, cubicles, signs, lamps; and the feed along the fences.
 
+#include "byre/features/tag_detector.h"
 #include "byre/simulation/cowshed/cowshed_parts.h"
 
 #include <algorithm>
@@ -91,6 +92,27 @@ void add_signs(Cowshed& barn) {
   add_sign(barn, hanging({kAlleyLength - 0.02f, 3.3f, 1.9f}, -Vector3f::UnitX()), 0.4f, 15, "east-gable-north");
 }
 
+// A tag on a white board; each black module is a panel in front of it.
+void add_tag(QuadMesh& mesh, const Tag& tag, const Eigen::Isometry3f& world_from_board) {
+  constexpr float kInFront = 0.001f;  // metres
+  const Material white{.texture = BarnTexture::plastic, .brightness = 1.5f};
+  const Material black{.texture = BarnTexture::plastic, .brightness = 0.05f};
+  const TagPicture picture = tag_picture(tag.id);
+  const float module = static_cast<float>(tag.size) / static_cast<float>(picture.edge);
+  const auto add = [&](float column, float row, float columns, float rows, float front, const Material& material) {
+    const float x = module * (column - 0.5f * static_cast<float>(picture.modules.width));
+    const float y = module * (0.5f * static_cast<float>(picture.modules.height) - row - rows);
+    add_panel(mesh, world_from_board * Vector3f(x, y, front), columns * module * world_from_board.linear().col(0),
+              rows * module * world_from_board.linear().col(1), material);
+  };
+  add(0.0f, 0.0f, static_cast<float>(picture.modules.width), static_cast<float>(picture.modules.height), 0.0f, white);
+  for (int i = 0; i < picture.modules.width * picture.modules.height; ++i) {
+    if (picture.modules.pixels[static_cast<std::size_t>(i)] > 127) continue;
+    add(static_cast<float>(i % picture.modules.width), static_cast<float>(i / picture.modules.width), 1.0f, 1.0f,
+        kInFront, black);
+  }
+}
+
 // An uneven pile, highest in its middle.
 void add_pile(QuadMesh& mesh, float from_x, float to_x, float side, SeededDraws& draws) {
   const float length = to_x - from_x;
@@ -158,6 +180,22 @@ void add_fittings(Cowshed& barn, std::uint64_t seed) {
       add_drum(barn.still, foot, foot + Vector3f(0.0f, 0.0f, 0.9f), 0.29f, 0.29f, material);
       add_outline_of_box(barn, make_isometry(foot), {0.29f, 0.29f, 0.9f});
     }
+  }
+}
+
+// On the columns, above the signs and the fence, facing as the signs do.
+void add_tags(Cowshed& barn, const CowshedOptions& options) {
+  constexpr double kSize = 0.45;  // metres
+  const auto bays = bay_lines();
+  for (int i = 0; i < options.tags; ++i) {
+    const bool is_south = i % 2 == 0;
+    const float side = is_south ? -1.0f : 1.0f;
+    const float x = bays[static_cast<std::size_t>(i / 2) % bays.size()] + 0.125f * side;
+    const Vector3f centre(x, 2.75f * side, 2.2f);
+    Tag tag{{TagFamily::tag36h11, options.first_tag + i}, kSize, {}};
+    tag.survey = SurveyedTag{centre.cast<double>(), 0.005, is_south ? std::numbers::pi : 0.0};
+    add_tag(barn.still, tag, hanging(centre, Vector3f(side, 0.0f, 0.0f)));
+    barn.tags.push_back(tag);
   }
 }
 

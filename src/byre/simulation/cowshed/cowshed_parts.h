@@ -24,6 +24,7 @@ void add_frame(Cowshed& barn, std::uint64_t seed);                 // columns, t
 void add_fences(Cowshed& barn, std::uint64_t seed);
 void add_cubicles(Cowshed& barn, std::uint64_t seed);
 void add_fittings(Cowshed& barn, std::uint64_t seed);  // signs, pipes, troughs, barrels
+void add_tags(Cowshed& barn, const CowshedOptions& options);
 // A tube lamp along x that hangs from the ceiling and is lit at dusk.
 void add_lamp(Cowshed& barn, const Eigen::Vector3f& middle, float ceiling, BarnTime time);
 void add_lamps(Cowshed& barn, BarnTime time);

@@ -1,6 +1,7 @@
 #include "byre/simulation/cowshed/cowshed_plan.h"
 
 #include "byre/base/output_file.h"
+#include "byre/geometry/degrees.h"
 #include "byre/io/image/image_codec.h"
 
 #include <algorithm>
@@ -63,6 +64,18 @@ std::vector<MarkPick> picks_of(const std::vector<NamedPoint>& marks, const Pose&
     picks.push_back({mark.name, map_from_world * mark.point_in_world, mark.point_in_world.head<2>()});
   }
   return picks;
+}
+
+void write_tags(const std::vector<Tag>& tags, const fs::path& path) {
+  write_fixed_text(path, [&](std::ostream& file) {
+    file << "tags:\n";
+    for (const Tag& tag : tags) {
+      const Eigen::Vector3d& position = tag.survey->position;
+      file << "  - {id: " << tag.id.number << ", family: " << to_string(tag.id.family) << ", size: " << tag.size
+           << ", position: [" << position.x() << ", " << position.y() << ", " << position.z()
+           << "], heading_deg: " << *tag.survey->heading / kDegree << ", sigma_m: " << tag.survey->sigma << "}\n";
+    }
+  });
 }
 
 void write_floor_plan(const FloorPlanImage& plan, const std::vector<MarkPick>& picks,

@@ -41,4 +41,7 @@ struct MarkSighting {
 void write_floor_plan(const FloorPlanImage& plan, const std::vector<MarkPick>& picks,
                       const std::vector<MarkSighting>& sightings, const std::filesystem::path& folder);
 
+// Writes a file for read_tags. Throws InputError when it cannot be written.
+void write_tags(const std::vector<Tag>& tags, const std::filesystem::path& path);
+
 }  // namespace byre

@@ -328,6 +328,7 @@ void write_cowshed_recording(CowshedRecording& recording, const std::filesystem:
   const Pose world_from_first_body = recording.world_from_body(recording.times().front());
   write_floor_plan(draw_floor_plan(recording.barn().outlines), picks_of(recording.barn().marks, world_from_first_body),
                    recording.sightings(), folder / "plan");
+  if (!recording.barn().tags.empty()) write_tags(recording.barn().tags, folder / "plan" / "tags.yaml");
   const int total = static_cast<int>(recording.times().size());
   std::future<void> writing;  // writes the previous frame during rendering
   for (int i = 0; i < total; ++i) {

@@ -1,5 +1,6 @@
 #include "byre/simulation/cowshed/cowshed.h"
 
+#include "byre/features/tag_detector.h"
 #include "byre/input_error.h"
 #include "byre/simulation/cowshed/cowshed_parts.h"
 #include "byre/simulation/cowshed/feeding_robot.h"
@@ -38,6 +39,17 @@ TEST(Cowshed, ChangesOnlyTheGivenShareOfItsObjects) {
   EXPECT_EQ(moved_objects(first, build_cowshed({.mission = 2, .change = 0.25})), all / 4);
   EXPECT_EQ(moved_objects(first, build_cowshed({.mission = 3, .change = 1.0})), all);
   EXPECT_EQ(moved_objects(first, build_cowshed({.mission = 1, .change = 1.0})), 0);
+}
+
+TEST(Cowshed, HangsTagsWithoutChangingAnythingElse) {
+  if (!can_detect_tags()) GTEST_SKIP() << "built without libapriltag";
+  const Cowshed bare = build_cowshed({.mission = 2});
+  const Cowshed tagged = build_cowshed({.mission = 2, .tags = 4, .first_tag = 7});
+  EXPECT_THAT(bare.tags, SizeIs(0));
+  ASSERT_THAT(tagged.tags, SizeIs(4));
+  EXPECT_EQ(tagged.tags[3].id, (TagId{TagFamily::tag36h11, 10}));
+  EXPECT_GT(tagged.still.vertices.size(), bare.still.vertices.size());
+  EXPECT_EQ(moved_objects(bare, tagged), 0);
 }
 
 TEST(Cowshed, ChangesOtherObjectsInOtherMissions) {
