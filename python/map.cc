@@ -393,6 +393,11 @@ void bind_contents(MapClass& type) {
           ">>> m.plan is None\n"
           "True")
       .def_property_readonly(
+          "tags", [](const CachedMap& self) { return self.map.tags(); },
+          "AprilTags, list of MappedTag.\n\n"
+          ">>> m.tags\n"
+          "[]")
+      .def_property_readonly(
           "keyframes",
           [](CachedMap& self) {
             return cached(self.keyframes, [&] {
@@ -631,7 +636,16 @@ void bind_edits(MapClass& type) {
           "Copy with the registration of a PlanFit. Raises InputError if its residuals exceed accepted_residual, "
           "metres.\n\n"
           ">>> m.with_plan(m.register_on_plan('plan.png', picks_in_map, picks_in_plan)).plan.plan\n"
-          "'plan.png'");
+          "'plan.png'")
+      .def(
+          "with_tags",
+          [](const CachedMap& self, const std::vector<Tag>& surveyed) {
+            return made([&] { return self.map.with_tags(surveyed); });
+          },
+          py::arg("surveyed"),
+          "Copy with the tags added, of read_tags, that are surveyed with a heading and that the map does not have. "
+          "Their heights are right if register_on_plan got the body's height. Raises InputError if the map is not "
+          "registered on a plan.");
 }
 
 void bind_localising(MapClass& type) {

@@ -86,9 +86,11 @@ void bind_reports(py::module_& module) {
       .def_property_readonly(
           "verdict", [](const FrameReport& report) { return report.health.verdict; }, "Verdict of health.")
       .def_readonly("events", &FrameReport::events, "Events in order.")
+      .def_readonly("moved_tags", &FrameReport::moved_tags,
+                    "AprilTags found moved in this frame, list of MappedTag at their places now; ignored from here on.")
       .def_property_readonly(
           "warnings", [](const FrameReport& report) { return texts_of(report.warnings); },
-          "Faults of wheels, gyroscope and accelerometer since the previous frame, as text; each kind once.")
+          "Faults of wheels, gyroscope, accelerometer and AprilTags since the previous frame, as text.")
       .def_readonly("features", &FrameReport::features, "Features detected.")
       .def_readonly("matches", &FrameReport::matches, "Map points matched.")
       .def_readonly("inliers", &FrameReport::inliers, "Matches that fit the pose.")
@@ -266,6 +268,10 @@ void bind_options(py::module_& module) {
           "How camera and IMU are mounted on the robot's base. With it wheels yield poses from the first "
           "frame on, and one camera makes a map in metres. The camera's is required. None: taken from the "
           "map, or found while driving.")
+      .def_readwrite(
+          "tags", &SlamOptions::tags,
+          "AprilTags on the robot's way, whose poses the map stores, see read_tags. One camera makes a map "
+          "in metres by the sizes of two or more. Missions detect the tags of their map without this option.")
       .def_property("settings", &settings_of, &set_settings,
                     "Options of docs/reference/options.md, as dict of name and value. They override the fields above.");
 }
@@ -421,7 +427,7 @@ void bind_results(SlamClass& type) {
                              "Points of the map being made; without the offline map of a mission.")
       .def_property_readonly("motion_warnings",
                              released([](const Slam& slam) { return texts_of(slam.motion_warnings()); }),
-                             "Faults of wheels, gyroscope and accelerometer so far, as text; each kind once.")
+                             "Faults of wheels, gyroscope, accelerometer and AprilTags so far, as text.")
       .def_property_readonly("frames", released(py::overload_cast<>(&Slam::frames, py::const_)),
                              "Number of frames, including dropped ones.")
       .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"), Released(),

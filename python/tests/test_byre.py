@@ -299,6 +299,22 @@ def test_extrinsics_of_a_urdf_have_frames(tmp_path):
         byre.read_extrinsics(tmp_path / "robot.urdf")
 
 
+def test_tags_are_read(tmp_path):
+    path = tmp_path / "tags.yaml"
+    path.write_text("size: 0.2\ntags:\n  - {id: 7, position: [1, 2, 3]}\n")
+    try:
+        (tag,) = byre.read_tags(path)
+    except byre.InputError as error:
+        if "without libapriltag" in str(error):
+            pytest.skip(str(error))
+        raise
+    assert (tag.name, tag.size, list(tag.position)) == ("tag36h11 7", 0.2, [1.0, 2.0, 3.0])
+    assert byre.SlamOptions(tags=[tag]).tags[0].name == tag.name
+    path.write_text("tags:\n  - {id: 7}\n")
+    with pytest.raises(byre.InputError, match="size: is missing"):
+        byre.read_tags(path)
+
+
 def test_bad_extrinsics_are_rejected(tmp_path, room):
     calibration = byre.Recording(room).calibration
     with pytest.raises(byre.InputError, match="base_from_sensor"):
