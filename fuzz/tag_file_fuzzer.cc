@@ -40,7 +40,7 @@ void read_file(const std::string& text) {
 }
 
 void read_note(const std::string& text) {
-  for (const byre::MappedTag& tag : byre::read_tags(std::map<std::string, std::string>{{"tag tag36h11 3", text}})) {
+  for (const byre::MappedTag& tag : byre::stored_tags(std::map<std::string, std::string>{{"tag tag36h11 3", text}})) {
     const byre::Pose& pose = tag.map_from_tag;
     const bool is_rigid = pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1.0) < 1e-9;
     if (!is_rigid || !(tag.size > 0.0) || !(tag.sigma >= 0.0)) std::abort();

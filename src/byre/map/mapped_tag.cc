@@ -178,7 +178,7 @@ void write_tags(std::span<const MappedTag> tags, std::map<std::string, std::stri
   }
 }
 
-std::vector<MappedTag> read_tags(const std::map<std::string, std::string>& notes) {
+std::vector<MappedTag> stored_tags(const std::map<std::string, std::string>& notes) {
   std::vector<MappedTag> tags;
   for (const auto& [key, note] : notes) {
     const auto id = id_of_note(key);
@@ -202,7 +202,7 @@ std::vector<MappedTag> moved(std::vector<MappedTag> tags, const Similarity& targ
 void add_surveyed_tags(StoredMap& stored, std::span<const Tag> tags) {
   const Similarity& plan_from_map = stored.plan.value().plan_from_map;
   const Pose map_from_plan = inverse(plan_from_map.target_from_source);
-  const std::vector<MappedTag> known = read_tags(stored.notes);
+  const std::vector<MappedTag> known = stored_tags(stored.notes);
   std::vector<MappedTag> on_plan;
   for (const Tag& tag : tags) {
     const bool is_known = std::ranges::find(known, tag.id, &MappedTag::id) != known.end();

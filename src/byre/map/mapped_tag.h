@@ -30,7 +30,7 @@ TagMapping map_tags(const MapGraph& map, std::span<const Tag> tags);
 // Writes the tags to notes of a map, each under the key "tag FAMILY NUMBER": readable numbers with names.
 void write_tags(std::span<const MappedTag> tags, std::map<std::string, std::string>& notes);
 // Reads the notes of write_tags, by id; ignores notes in another format.
-std::vector<MappedTag> read_tags(const std::map<std::string, std::string>& notes);
+std::vector<MappedTag> stored_tags(const std::map<std::string, std::string>& notes);
 
 // Tags of a map that is moved and scaled.
 std::vector<MappedTag> moved(std::vector<MappedTag> tags, const Similarity& target_from_map);

@@ -73,7 +73,7 @@ TEST(MappedTagNotes, AreReadBackUnchanged) {
   std::map<std::string, std::string> notes{{"site", "barn"}};
   const MappedTag tag = mapped();
   write_tags(std::span(&tag, 1), notes);
-  const auto read = read_tags(notes);
+  const auto read = stored_tags(notes);
   ASSERT_THAT(read, SizeIs(1));
   EXPECT_EQ(read[0].id, tag.id);
   EXPECT_EQ(read[0].size, tag.size);
@@ -88,16 +88,16 @@ TEST(MappedTagNotes, InAnotherFormatAreIgnored) {
   write_tags(std::span(&tag, 1), notes);
   const std::string sound = notes.at("tag tag36h11 12");
   EXPECT_THAT(
-      read_tags({{"tag", sound}, {"tag tag36h11", sound}, {"tag tag36h11 -1", sound}, {"tag tag36h11 1x", sound}}),
+      stored_tags({{"tag", sound}, {"tag tag36h11", sound}, {"tag tag36h11 -1", sound}, {"tag tag36h11 1x", sound}}),
       IsEmpty());
-  EXPECT_THAT(read_tags({{"tag tag36h11 12", ""}}), IsEmpty());
+  EXPECT_THAT(stored_tags({{"tag tag36h11 12", ""}}), IsEmpty());
   for (const auto& [part, wrong] : {std::pair("size_m 0.2", "size_m -1"), std::pair("size_m 0.2", "size_m nan"),
                                     std::pair("position_m 0.3", "position_m 1e300"), std::pair("sigma_m", "sigma"),
                                     std::pair("sigma_m 0.01", "sigma_m -1")}) {
     std::string damaged = sound;
     ASSERT_NE(damaged.find(part), std::string::npos) << part;
     damaged.replace(damaged.find(part), std::string(part).size(), wrong);
-    EXPECT_THAT(read_tags({{"tag tag36h11 12", damaged}}), IsEmpty()) << wrong;
+    EXPECT_THAT(stored_tags({{"tag tag36h11 12", damaged}}), IsEmpty()) << wrong;
   }
 }
 
@@ -123,7 +123,7 @@ TEST(SurveyedTags, AreAddedAtTheirPlaceOnThePlanUnlessTheMapHasThem) {
   Tag on_wall{{TagFamily::tag36h11, 3}, 0.16, SurveyedTag{{4.0, 1.0, 1.5}, 0.03, 0.5 * std::numbers::pi}};
   Tag same{kDoor, 0.2, on_wall.survey}, without_heading{{TagFamily::tag36h11, 4}, 0.2, SurveyedTag{{1.0, 1.0, 1.0}}};
   add_surveyed_tags(stored, std::vector{on_wall, same, without_heading});
-  const auto tags = read_tags(stored.notes);
+  const auto tags = stored_tags(stored.notes);
   ASSERT_THAT(tags, SizeIs(2));
   EXPECT_EQ(tags[1].map_from_tag.translation, known.map_from_tag.translation);
   const Pose plan_from_tag = plan.plan_from_map.target_from_source * tags[0].map_from_tag;

@@ -55,7 +55,7 @@ StoredMap scaled_copy(const StoredMap& stored, double factor) {
   }
   scaled.notes.erase(kMetresNote);  // the scale no longer comes from wheels
   write_odometry_calibration(byre::scaled(read_odometry_calibration(stored.notes), factor), scaled.notes);
-  write_tags(moved(read_tags(stored.notes), {factor, {}}), scaled.notes);
+  write_tags(moved(stored_tags(stored.notes), {factor, {}}), scaled.notes);
   if (scaled.plan) scaled.plan->plan_from_map.scale /= factor;
   return scaled;
 }

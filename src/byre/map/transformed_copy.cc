@@ -47,7 +47,7 @@ StoredMap transformed_copy(const StoredMap& stored, const Similarity& target_fro
   StoredMap result = target_from_map.scale == 1.0 ? stored : scaled_copy(stored, target_from_map.scale);
   move(result.map, target_from_map.target_from_source);
   if (result.plan) result.plan = moved(*result.plan, target_from_map.target_from_source);
-  write_tags(moved(read_tags(result.notes), {1.0, target_from_map.target_from_source}), result.notes);
+  write_tags(moved(stored_tags(result.notes), {1.0, target_from_map.target_from_source}), result.notes);
   return result;
 }
 

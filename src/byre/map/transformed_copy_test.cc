@@ -64,7 +64,7 @@ TEST(TransformedCopy, MovesTags) {
   StoredMap before = StoredMapScene().stored();
   const MappedTag tag{{TagFamily::tag36h11, 3}, 0.2, {rotation_exp({0.1, 0.2, 0.3}), {1.0, -2.0, 3.0}}, 0.01};
   write_tags(std::span(&tag, 1), before.notes);
-  const auto after = read_tags(transformed_copy(before, kTargetFromMap).notes);
+  const auto after = stored_tags(transformed_copy(before, kTargetFromMap).notes);
   ASSERT_EQ(after.size(), 1U);
   EXPECT_DOUBLE_EQ(after[0].size, kTargetFromMap.scale * tag.size);
   EXPECT_THAT(after[0].map_from_tag * tag_corners(after[0].size)[0],

@@ -40,7 +40,7 @@ struct SearchableMap {
       : is_metric(stored.scale == MapScale::metric),
         map(stored.map),
         recordings(stored.recordings),
-        tags(read_tags(stored.notes)),
+        tags(stored_tags(stored.notes)),
         index(index_of(stored.map, vocabulary)) {}
 
   bool is_metric;  // whether disparities are comparable with the map

@@ -74,14 +74,19 @@ ExitCode run_cut(const CutOptions& options, std::ostream& result) {
 Action declare_cut(CLI::App& command) {
   const auto options = std::make_shared<CutOptions>();
   add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
-  CLI::Option_group& region = *command.add_option_group("region");
-  region.add_option("--box", options->box, "Two opposite corners, lengths of the map")
-      ->type_name("X Y Z X Y Z")
-      ->expected(6);
-  region.add_option("--polygon", options->polygon, "Corners on the floor plan, metres")
+  CLI::Option* const box = command.add_option("--box", options->box, "Two opposite corners, lengths of the map")
+                               ->type_name("X Y Z X Y Z")
+                               ->expected(6);
+  command.add_option("--polygon", options->polygon, "Corners on the floor plan, metres")
       ->type_name("X Y X Y X Y ...")
-      ->expected(6, 2000);
-  region.require_option(1);
+      ->expected(6, 2000)
+      ->excludes(box);
+  check_when_parsed(command, [options = options.get()] {
+    if (options->box.empty() && options->polygon.empty()) {
+      throw CLI::ValidationError("no region is given (give --box or --polygon)");
+    }
+    if (options->polygon.size() % 2 != 0) throw CLI::ValidationError("--polygon", "has a corner without y");
+  });
   command.add_flag("--keep", options->keep, "Keep the region and remove the rest");
   add_output(command, Output::map, "-o,--output", options->output, "Map without the region")
       ->type_name("MAP")

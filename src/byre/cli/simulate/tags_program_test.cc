@@ -33,7 +33,7 @@ class TagsProgram : public ProgramTest {
   std::vector<MappedTag> map_with(const std::string& tags) {
     mapped_ = run("map first --tags " + tags + " --quiet -o barn.byre");
     EXPECT_EQ(mapped_.exit_code, 0) << mapped_.errors;
-    return read_tags(load_map(folder_ / "barn.byre").notes);
+    return stored_tags(load_map(folder_ / "barn.byre").notes);
   }
 
   Outcome mapped_;

@@ -67,7 +67,7 @@ void require_unambiguous(const StoredMap& stored, const std::filesystem::path& p
 // Centres of the surveyed tags that the map has.
 std::vector<PlanCorrespondence> correspondences_of(const StoredMap& stored, const std::vector<Tag>& tags) {
   std::vector<PlanCorrespondence> picks;
-  for (const MappedTag& mapped : read_tags(stored.notes)) {
+  for (const MappedTag& mapped : stored_tags(stored.notes)) {
     const auto tag = std::ranges::find(tags, mapped.id, &Tag::id);
     if (tag == tags.end() || !tag->survey) continue;
     picks.push_back({to_string(mapped.id), mapped.map_from_tag.translation, tag->survey->position.head<2>(),

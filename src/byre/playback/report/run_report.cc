@@ -236,7 +236,7 @@ void add_map_rows(const RunResult& run, const RunProtocol& protocol, const Frame
   }
   add_scale(run, protocol, counts, report);
   add_map(report);
-  report.row("tags", "{?tags}{tags} AprilTags in the map", {{"tags", read_tags(run.stored.notes).size()}});
+  report.row("tags", "{?tags}{tags} AprilTags in the map", {{"tags", stored_tags(run.stored.notes).size()}});
   if (!protocol.extended.empty()) {
     report.row("extended",
                "{protocol.extended}[, localised in it after {extension.frames_until_found} frames"

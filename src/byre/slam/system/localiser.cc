@@ -40,7 +40,7 @@ struct Localiser::State {
       : map(with_words(stored, vocabulary)),
         calibration(calibration_in(stored, given)),
         index(index_of(map.map, vocabulary)),
-        tags(read_tags(stored.notes)),
+        tags(stored_tags(stored.notes)),
         extractor(calibration, {}, families_of(tags)) {}
 
   ImageFrame images_of(const CameraImages& images) const;

@@ -160,7 +160,7 @@ const std::optional<PlanRegistration>& Map::plan() const {
 }
 
 std::vector<MappedTag> Map::tags() const {
-  return read_tags(stored_->notes);
+  return stored_tags(stored_->notes);
 }
 
 MapKeyframe Map::keyframe(int id) const {

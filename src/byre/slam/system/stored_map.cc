@@ -57,7 +57,7 @@ std::shared_ptr<const OfflineMap> load_offline_map(const fs::path& path, const V
   if (plan) walls = walls_of(stored, path, *plan);
   auto offline = std::make_shared<const OfflineMap>(std::move(stored.map), vocabulary, std::move(stored.recordings),
                                                     std::move(walls), read_odometry_calibration(stored.notes),
-                                                    read_tags(stored.notes));
+                                                    stored_tags(stored.notes));
   if (const InputError* const damage = offline->map().damage()) throw InputError(*damage);
   return offline;
 }
