@@ -38,7 +38,7 @@ YAML::Node parse_yaml(std::string text) {
   for (std::size_t line = 0; line < text.size(); line = text.find('\n', line + 1)) {
     std::size_t end = text.find_first_not_of(" \t\r\n", line);
     while (end < text.size() && is_name(text[end])) ++end;
-    if (end + 1 < text.size() && text[end] == ':' && text[end + 1] > ' ') text.insert(end + 1, 1, ' ');
+    if (end < text.size() - 1 && text[end] == ':' && text[end + 1] > ' ') text.insert(end + 1, 1, ' ');
   }
   return YAML::Load(text);
 }
