@@ -2,6 +2,7 @@
 #include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
 #include "byre/input_error.h"
 #include "byre/map.h"
 
@@ -76,10 +77,12 @@ Action declare_cut(CLI::App& command) {
   add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
   CLI::Option* const box = command.add_option("--box", options->box, "Two opposite corners, lengths of the map")
                                ->type_name("X Y Z X Y Z")
-                               ->expected(6);
+                               ->expected(6)
+                               ->check(between(-1e6, 1e6));
   command.add_option("--polygon", options->polygon, "Corners on the floor plan, metres")
       ->type_name("X Y X Y X Y ...")
       ->expected(6, 2000)
+      ->check(between(-1e6, 1e6))
       ->excludes(box);
   check_when_parsed(command, [options = options.get()] {
     if (options->box.empty() && options->polygon.empty()) {
