@@ -1,11 +1,11 @@
 #include "byre/tag_file.h"
 
 #include "byre/base/printable.h"
-#include "byre/base/regular_file.h"
 #include "byre/base/text_file.h"
 #include "byre/features/tag_detector.h"
 #include "byre/geometry/degrees.h"
 #include "byre/input_error.h"
+#include "byre/io/calibration/yaml_mapping.h"
 
 #include <algorithm>
 #include <array>
@@ -22,19 +22,6 @@ namespace fs = std::filesystem;
 constexpr std::array kFamilies = {TagFamily::tag36h11, TagFamily::tag25h9, TagFamily::tag_standard41h12};
 constexpr double kLargest = 10.0;  // metres, side of a tag
 constexpr double kFarthest = 1e6;  // metres, coordinate on a plan
-
-YAML::Node load_yaml(const fs::path& path) {
-  refuse_pipe(path);
-  try {
-    YAML::Node root = YAML::LoadFile(path.string());
-    if (!root.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
-    return root;
-  } catch (const YAML::BadFile&) {
-    throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
-  } catch (const YAML::Exception& error) {
-    throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
-  }
-}
 
 template <std::size_t Count>
 void require_known(const YAML::Node& fields, const std::array<const char*, Count>& known, const std::string& place) {
@@ -94,7 +81,7 @@ std::vector<Tag> read_tags(const fs::path& path) {
     throw InputError(path.string(), "cannot be used: this byre was built without libapriltag",
                      "install libapriltag-dev and build byre again");
   }
-  const YAML::Node root = load_yaml(path);
+  const YAML::Node root = load_yaml_mapping(path);
   require_known(root, kFields, path.string());
   const YAML::Node list = root["tags"];
   if (!list || !list.IsSequence() || list.size() == 0) {

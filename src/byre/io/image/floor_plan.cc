@@ -1,8 +1,8 @@
 #include "byre/floor_plan.h"
 
-#include "byre/base/regular_file.h"
 #include "byre/base/text_file.h"
 #include "byre/input_error.h"
+#include "byre/io/calibration/yaml_mapping.h"
 #include "byre/io/image/image_file.h"
 #include "byre/io/image/image_size.h"
 
@@ -41,19 +41,6 @@ void read_image_size(FloorPlan& plan) {
   }
   plan.width = image->width;
   plan.height = image->height;
-}
-
-YAML::Node load_yaml(const fs::path& path) {
-  refuse_pipe(path);
-  try {
-    YAML::Node root = YAML::LoadFile(path.string());
-    if (!root.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
-    return root;
-  } catch (const YAML::BadFile&) {
-    throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
-  } catch (const YAML::Exception& error) {
-    throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
-  }
 }
 
 double to_number(const YAML::Node& node, const std::string& place) {
@@ -140,7 +127,7 @@ void require_scale(const FloorPlan& plan, const fs::path& path) {
 }
 
 FloorPlan read_map_server_plan(const fs::path& path) {
-  const YAML::Node root = load_yaml(path);
+  const YAML::Node root = load_yaml_mapping(path);
   FloorPlan plan;
   plan.name = path.filename().string();
   plan.image = read_image_path(root, path);

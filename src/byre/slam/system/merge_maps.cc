@@ -52,10 +52,10 @@ std::optional<double> scale_by_farthest(const PlacedKeyframe& keyframe, const st
   return distance(farthest) / in_source;
 }
 
-bool has_keyframe_near(const MapGraph& map, const Pose& map_from_camera) {
+bool has_keyframe_near(const MapGraph& map, const std::vector<KeyframeId>& keyframes, const Pose& map_from_camera) {
   constexpr double kNear = 1.0;     // metres
   constexpr double kMaxTurn = 0.5;  // radians
-  return std::ranges::any_of(map.keyframe_ids(), [&](KeyframeId id) {
+  return std::ranges::any_of(keyframes, [&](KeyframeId id) {
     const Pose apart = map.camera_from_world(id) * map_from_camera;
     return apart.translation.norm() <= kNear && rotation_log(apart.rotation).norm() <= kMaxTurn;
   });
@@ -152,8 +152,10 @@ MapPlace place_in(const StoredMap& target, const StoredMap& source, const Vocabu
   }
   place.agreeing = static_cast<int>(most.size());
   if (place.target_from_source) {
+    const std::vector<KeyframeId> keyframes = target.map.keyframe_ids();
     place.expected = static_cast<int>(std::ranges::count_if(frames, [&](const ReplayFrame& frame) {
-      return has_keyframe_near(target.map, inverse(move_camera(*place.target_from_source, frame.camera_from_world)));
+      return has_keyframe_near(target.map, keyframes,
+                               inverse(move_camera(*place.target_from_source, frame.camera_from_world)));
     }));
   }
   place.fault = fault_of(place);

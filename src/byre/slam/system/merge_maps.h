@@ -25,7 +25,7 @@ MapPlace place_in(const StoredMap& target, const StoredMap& source, const Vocabu
 struct MergedMaps {
   MapPlace place;
   std::string refusal{};  // why the maps were not merged; empty: they were
-  FinishResult finishing;
+  FinishResult finishing{};
 };
 
 // Merges two maps that overlap: places the second in the first, searches loops between both, and adjusts them together
