@@ -81,6 +81,15 @@ const std::array<CalibrationParameter, kCalibrationParameters>& calibration_para
   return kParameters;
 }
 
+bool is_nominal(const Calibration& calibration) {
+  const Camera& camera = calibration.left;
+  const auto is_half = [](double pixel) { return std::abs(2.0 * pixel - std::round(2.0 * pixel)) < 1e-6; };
+  const bool is_distorted = std::ranges::any_of(camera.distortion, [](double value) { return value != 0.0; });
+  const bool may_be_without = camera.model == CameraModel::pinhole || camera.model == CameraModel::radial_tangential;
+  return !calibration.is_metric() && may_be_without && !is_distorted && camera.fx == camera.fy && is_half(camera.cx) &&
+         is_half(camera.cy);
+}
+
 bool has_parameter(const Calibration& calibration, int parameter) {
   return parameter < kRightCamera || calibration.right.has_value();
 }

@@ -28,6 +28,10 @@ struct CalibrationParameter {
 
 const std::array<CalibrationParameter, kCalibrationParameters>& calibration_parameters();
 
+// Whether these are nominal numbers, as drivers publish for cameras that were never calibrated: one camera without
+// distortion, with equal focal lengths, and the principal point at a whole or half pixel.
+bool is_nominal(const Calibration& calibration);
+
 // False for parameters of the right camera in a monocular calibration.
 bool has_parameter(const Calibration& calibration, int parameter);
 

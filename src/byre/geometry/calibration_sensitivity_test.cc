@@ -45,6 +45,27 @@ TEST(CalibrationSensitivity, IsZeroForOtherCameras) {
   EXPECT_EQ(jacobian.rightCols(kCalibrationParameters - kRightCamera).norm(), 0.0);
 }
 
+TEST(IsNominal, TellsNumbersOfDriversFromMeasuredOnes) {
+  Calibration given;
+  given.left = {
+      .model = CameraModel::pinhole, .width = 640, .height = 480, .fx = 570.34, .fy = 570.34, .cx = 314.5, .cy = 235.5};
+  EXPECT_TRUE(is_nominal(given));
+  Calibration other = given;
+  other.left.fy = 571.2;
+  EXPECT_FALSE(is_nominal(other)) << "measured pixels are not square";
+  other = given;
+  other.left.cx = 318.64;
+  EXPECT_FALSE(is_nominal(other)) << "rectified images";
+  other = given;
+  other.left.model = CameraModel::radial_tangential;
+  EXPECT_TRUE(is_nominal(other)) << "distortion of zeros";
+  other.left.distortion[0] = 0.01;
+  EXPECT_FALSE(is_nominal(other));
+  other = given;
+  other.depth = DepthCamera{};
+  EXPECT_FALSE(is_nominal(other)) << "depth contradicts a wrong focal length already";
+}
+
 TEST(Changed, KeepsTheLengthOfTheBaseline) {
   const Calibration given = scene_calibration();
   const Calibration other = changed(given, draw_error(3, 5.0));

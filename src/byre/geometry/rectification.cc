@@ -199,4 +199,13 @@ Rectification rectification_of(const Calibration& calibration) {
   return result;
 }
 
+bool can_be_rectified(const Calibration& calibration) {
+  try {
+    rectification_of(calibration);
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace byre

@@ -19,5 +19,7 @@ struct Rectification {
 // Throws InputError if the right camera is to the left of the left one, in front of it or behind it, the optical axes
 // differ too much, or the fields of view do not overlap.
 Rectification rectification_of(const Calibration& calibration);
+// Whether rectification_of succeeds.
+bool can_be_rectified(const Calibration& calibration);
 
 }  // namespace byre

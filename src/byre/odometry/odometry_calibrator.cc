@@ -238,7 +238,7 @@ void OdometryCalibrator::note(Timestamp time, const std::optional<Pose>& odometr
   last_ = now;
   if (!begin_) begin_ = now;
   if (time - begin_->time < kStride) return;
-  const VisualMotion motion{begin_->time, time, inverse(begin_->world_from_body) * now.world_from_body};
+  const VisualMotion motion{begin_->time, time, inverse(begin_->world_from_body) * now.world_from_body, focal_change_};
   begin_ = now;
   compare_turns(time, motion);
   detect_slip(motion);
@@ -300,9 +300,10 @@ std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() co
   constexpr std::size_t kLeast = 8;   // turns
   constexpr double kOfMedian = 1.25;  // sigma of a median over that of a mean, normal distribution
   std::vector<double> ratios;
-  for (const MotionPair& motion : pairs_of(seen_, odometry())) {
-    const double turn = rotation_log(motion.base.rotation).norm();
-    if (turn > kSmall) ratios.push_back(rotation_log(motion.body.rotation).norm() / turn);
+  for (const VisualMotion& motion : seen_) {
+    const auto base = base_between(odometry(), motion.earlier, motion.later);
+    const double turn = base ? rotation_log(base->rotation).norm() : 0.0;
+    if (turn > kSmall) ratios.push_back(motion.focal_change * rotation_log(motion.body.rotation).norm() / turn);
   }
   if (ratios.size() < kLeast) return {};
   const double value = median(ratios);

@@ -65,6 +65,10 @@ class OdometryCalibrator {
   const std::vector<MotionWarning>& warnings() const { return check_.warnings(); }  // all so far
   void warn(const MotionWarning& warning) { check_.warn(warning); }
   bool is_empty() const { return wheels_.empty() && rates_.empty(); }
+  bool has_wheels() const { return !wheels_.empty(); }
+
+  // Focal length of the next frames' images over that of the given calibration.
+  void set_focal_change(double factor) { focal_change_ = factor; }
 
   // Adds a frame with its smooth visual pose, in lengths of the map; empty if it was not tracked.
   void note(Timestamp time, const std::optional<Pose>& odometry_from_body);
@@ -97,8 +101,8 @@ class OdometryCalibrator {
   // The final poses of tracked frames, and those of untracked frames which wheels connect to them.
   Trajectory fill_gaps(Trajectory seen) const;
 
-  // Turns in images as a share of the turns by wheels, over the last minutes; empty with few turns. Far from one, the
-  // focal length or the wheels' track width is wrong.
+  // Turns in images of the given focal length as a share of the turns by wheels, over the last minutes; empty with few
+  // turns. Far from one, the focal length or the wheels' track width is wrong.
   struct TurnRatio {
     double value = 1.0;
     double sigma = 0.0;
@@ -149,9 +153,10 @@ class OdometryCalibrator {
   std::deque<VisualMotion> seen_;     // motions of the last minutes, half a second each
   std::optional<StampedPose> begin_;  // first frame of the motion in progress
   std::optional<StampedPose> last_;   // last frame, if tracked
-  std::optional<Vector6> velocity_;   // last visual velocity of the body, per second
-  int motions_since_estimate_ = 0;    // tracked motions since the last estimation
-  int estimates_ = 0;                 // number of estimations that yielded a calibration of wheels
+  double focal_change_ = 1.0;
+  std::optional<Vector6> velocity_;  // last visual velocity of the body, per second
+  int motions_since_estimate_ = 0;   // tracked motions since the last estimation
+  int estimates_ = 0;                // number of estimations that yielded a calibration of wheels
   std::optional<WheelCalibration> wheel_calibration_;
   std::optional<Eigen::Vector3d> up_in_body_;
   std::optional<WheelCalibration> initial_;          // only without wheel_calibration_

@@ -15,6 +15,7 @@ struct VisualMotion {
   Timestamp earlier{};
   Timestamp later{};
   Pose body;
+  double focal_change = 1.0;                        // focal length used, over that of the given calibration
   std::optional<Eigen::Vector3d> gyroscope_turn{};  // radians about the gyroscope's axes, with its bias
 };
 

@@ -29,6 +29,12 @@ bool is_changed(const Json& parameter) {
   return std::abs(parameter["change"].get<double>()) > 0.05 * parameter["sigma_before"].get<double>();
 }
 
+std::string change_of(const Json& parameter) {
+  const auto unit = parameter["unit"].get<std::string>();
+  return fmt::format("{} {:+.2g}{}{}", parameter["name"].get<std::string>(), parameter["change"].get<double>(),
+                     unit.empty() ? "" : " ", unit);
+}
+
 }  // namespace
 
 Json calibration_json(const RefinedCalibration& refined) {
@@ -48,7 +54,7 @@ std::string describe_calibration(const RefinedCalibration& refined) {
   const Json figures = calibration_json(refined);
   Json changed = Json::array();
   for (const Json& parameter : figures["parameters"]) {
-    if (is_changed(parameter)) changed.push_back(parameter["name"]);
+    if (is_changed(parameter)) changed.push_back(change_of(parameter));
   }
   return expand(
              "[{!keyframes}as given, except for baseline length or readout time"

@@ -1,5 +1,7 @@
 #include "byre/slam/calibration/determined_calibration.h"
 
+#include "byre/geometry/rectification.h"
+
 #include <algorithm>
 
 #include <Eigen/Eigenvalues>
@@ -38,7 +40,7 @@ void reject_implausible(RefinedCalibration& refined, const CalibrationVector& ex
                         double prior_sigmas) {
   constexpr double kImplausible = 5.0;  // sigmas of the prior
   const double largest = std::max(refined.change.cwiseAbs().maxCoeff(), expected.cwiseAbs().maxCoeff());
-  if (largest <= kImplausible * prior_sigmas) return;
+  if (largest <= kImplausible * prior_sigmas && can_be_rectified(refined.calibration)) return;
   refined.change.setZero();
   refined.calibration = given;
 }

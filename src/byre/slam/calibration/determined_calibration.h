@@ -11,9 +11,9 @@ namespace byre {
 RefinedCalibration determined_calibration(const Calibration& given, const CalibrationMatrix& information,
                                           const CalibrationVector& expected, double prior_sigmas);
 
-// Resets a change that exceeds five prior sigmas in any parameter, or is part of one that does: the measurements do not
-// fit the model, and no part of the change is reliable. expected: the full change, also along directions that are
-// hardly better known than by the prior.
+// Resets a change that exceeds five prior sigmas in any parameter, or is part of one that does, or leaves no
+// calibration to rectify by: the measurements do not fit the model, and no part of the change is reliable. expected:
+// the full change, also along directions that are hardly better known than by the prior.
 void reject_implausible(RefinedCalibration& refined, const CalibrationVector& expected, const Calibration& given,
                         double prior_sigmas);
 

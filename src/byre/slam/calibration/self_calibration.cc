@@ -2,6 +2,7 @@
 
 #include "byre/geometry/calibration_sensitivity.h"
 #include "byre/geometry/median.h"
+#include "byre/geometry/rectified_change.h"
 #include "byre/optimise/calibration_covariance.h"
 #include "byre/optimise/huber.h"
 #include "byre/slam/calibration/determined_calibration.h"
@@ -18,6 +19,10 @@ namespace {
 
 constexpr int kMinKeyframes = 6;  // keyframes needed
 constexpr int kIterations = 12;   // iterations of bundle adjustment
+constexpr int kMaxSteps = 10;     // bundle adjustments
+// Image motion by a change of the calibration that is linear in the change, pixels. After larger changes, one camera is
+// calibrated again around the new calibration.
+constexpr double kLinearShift = 0.5;
 // Common error of measurements in real images, which looks like a focal length error for any number of measurements. In
 // sigmas of a good calibration.
 constexpr double kFocalSigmas = 0.25;
@@ -146,6 +151,25 @@ double image_shift(const BundleProblem& problem, const CalibrationSensitivity& s
   return std::sqrt(std::max(0.0, sum_of_squares / count - (sum.head<2>() / count).squaredNorm()));
 }
 
+// The problem at the solution, with measurements in images rectified by another calibration of the rig.
+BundleProblem rectified_anew(BundleProblem problem, const BundleResult& solved, int rig,
+                             const RectifiedChange& change) {
+  problem.calibration.reset();
+  problem.rigs[static_cast<std::size_t>(rig)] = change.rig();
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    Pose& camera_from_world = problem.poses[i].camera_from_world;
+    camera_from_world = solved.camera_from_world[i];
+    if (problem.poses[i].rig == rig) camera_from_world = change.after_from_before() * camera_from_world;
+  }
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    problem.points[i].position_in_world = solved.points_in_world[i];
+  }
+  for (BundleObservation& seen : problem.observations) {
+    if (problem.poses[static_cast<std::size_t>(seen.pose)].rig == rig) seen.measured = change({seen.measured}).pixel;
+  }
+  return problem;
+}
+
 }  // namespace
 
 std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
@@ -153,34 +177,46 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
                                                  const std::function<bool()>& should_stop) {
   const std::vector<int> keyframes = choose_keyframes(whole, rig, options.max_keyframes);
   if (static_cast<int>(keyframes.size()) < kMinKeyframes) return std::nullopt;
-  const CalibrationSensitivity sensitivity(state.present());
-  const CalibrationEstimate prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas),
-                                  -state.change};
   const Rig& present = whole.rigs[static_cast<std::size_t>(rig)];
-  const CalibrationEstimate with_rows = learn_from_rows(measure_rows(whole, keyframes, present, sensitivity), prior);
-
   BundleProblem problem = bundle_of(whole, keyframes);
-  problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
   BundleOptions bundle_options;
   bundle_options.max_iterations = kIterations;
   bundle_options.huber_width = kHuberWidth;
   bundle_options.should_stop = should_stop;
-  const BundleResult solved = bundle_adjust(problem, bundle_options);
-  if (!solved.usable || (should_stop && should_stop())) return std::nullopt;
 
-  const auto information = calibration_information(at_solution(problem, solved), kHuberWidth);
-  if (!information) return std::nullopt;
-  CalibrationEquations of_motion = difference({*information, solved.calibration_change}, with_rows);
-  of_motion /= variance_factor(problem, solved.squared_errors);
-  const CalibrationEstimate posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
-  const CalibrationVector expected = state.change + posterior.expected;
-  RefinedCalibration result =
-      determined_calibration(state.given, posterior.information, expected, options.prior_sigmas);
-  result.keyframes = static_cast<int>(keyframes.size());
-  result.observations = static_cast<int>(problem.observations.size());
-  result.shift = image_shift(problem, sensitivity, result.change);
-  reject_implausible(result, expected, state.given, options.prior_sigmas);
-  return result;
+  CalibrationState at = state;  // where pixels are linear in the calibration
+  for (int step = 1;; ++step) {
+    const CalibrationSensitivity sensitivity(at.present());
+    const CalibrationEstimate prior{CalibrationMatrix::Identity() / (options.prior_sigmas * options.prior_sigmas),
+                                    -at.change};
+    const CalibrationEstimate with_rows = learn_from_rows(measure_rows(whole, keyframes, present, sensitivity), prior);
+    problem.calibration = BundleCalibration{&sensitivity, rig, with_rows.expected, with_rows.information};
+    const BundleResult solved = bundle_adjust(problem, bundle_options);
+    if (!solved.usable || (should_stop && should_stop())) return std::nullopt;
+    CalibrationState next = at;
+    next.change += solved.calibration_change;
+    if (!state.given.right && step < kMaxSteps &&
+        image_shift(problem, sensitivity, solved.calibration_change) > kLinearShift &&
+        can_be_rectified(next.present())) {
+      problem = rectified_anew(std::move(problem), solved, rig, {at.present(), next.present()});
+      at = next;
+      continue;
+    }
+
+    const auto information = calibration_information(at_solution(problem, solved), kHuberWidth);
+    if (!information) return std::nullopt;
+    CalibrationEquations of_motion = difference({*information, solved.calibration_change}, with_rows);
+    of_motion /= variance_factor(problem, solved.squared_errors);
+    const CalibrationEstimate posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
+    const CalibrationVector expected = at.change + posterior.expected;
+    RefinedCalibration result =
+        determined_calibration(state.given, posterior.information, expected, options.prior_sigmas);
+    result.keyframes = static_cast<int>(keyframes.size());
+    result.observations = static_cast<int>(problem.observations.size());
+    result.shift = image_shift(problem, sensitivity, result.change);
+    reject_implausible(result, expected, state.given, options.prior_sigmas);
+    return result;
+  }
 }
 
 }  // namespace byre

@@ -244,6 +244,33 @@ TEST(SelfCalibration, EstimatesTheLensOfOneRotatingCamera) {
   EXPECT_LT(found->sigma_after[kLeftCamera], 0.6 * found->sigma_before[kLeftCamera]);
 }
 
+// A parallel pair without distortion, with round numbers.
+Calibration nominal_pair() {
+  const Camera camera{
+      .model = CameraModel::pinhole, .width = 752, .height = 480, .fx = 500.0, .fy = 500.0, .cx = 375.5, .cy = 239.5};
+  return {camera, StereoPartner{camera, {Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.0}}}, Pose{}};
+}
+
+TEST(SelfCalibration, EstimatesTheLensOfOneCameraWithNominalNumbers) {
+  const Calibration pair = nominal_pair();
+  Calibration given = pair;
+  given.right.reset();
+  for (const double focal : {-250.0, 250.0}) {  // 10 %
+    CalibrationVector error = CalibrationVector::Zero();
+    error[kLeftCamera] = focal;
+    error[kLeftCamera + 4] = -80.0;  // k1
+    const MapOfErringCamera map(pair, error, about_the_room, 30);
+    const MapWindow window = without_disparities(map.window());
+    const auto found = self_calibrate(window, {given, CalibrationVector::Zero()}, 0, {.prior_sigmas = 150.0});
+    ASSERT_TRUE(found);
+    const Camera truth = changed(pair, error).left;
+    EXPECT_NEAR(found->calibration.left.fx, truth.fx, 0.003 * truth.fx);
+    EXPECT_NEAR(found->calibration.left.distortion[0], truth.distortion[0], 0.005);
+    const auto refused = self_calibrate(window, {given, CalibrationVector::Zero()}, 0, {});
+    EXPECT_TRUE(refused && refused->was_refused()) << "too far from calibrated numbers";
+  }
+}
+
 TEST(SelfCalibration, RequiresEnoughKeyframes) {
   const Calibration given = scene_calibration();
   const MapOfErringCamera map(given, draw_error(1), about_the_room, 5);

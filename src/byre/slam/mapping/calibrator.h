@@ -41,6 +41,7 @@ class Calibrator {
   void note_images(bool disagree) {
     if (!from_given_) given_disagrees_ = disagree;
   }
+  void set_prior_sigmas(double sigmas) { options_.prior_sigmas = sigmas; }
   // Whether the result is not yet reliable. If images were inconsistent with the given calibration, a usual change that
   // explains a few keyframes is no proof: kCloseUntil keyframes are then required.
   bool is_open() const { return !result_ || (given_disagrees_ && last_keyframes_.value_or(0) < kCloseUntil); }
@@ -64,7 +65,7 @@ class Calibrator {
  private:
   static constexpr int kCloseUntil = 28;  // number of keyframes up to which intervals are short
 
-  SelfCalibrationOptions options_;  // constant after construction
+  SelfCalibrationOptions options_;
   CalibrationState state_;
   std::optional<RefinedCalibration> result_;
   std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the given one

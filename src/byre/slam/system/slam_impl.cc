@@ -3,6 +3,7 @@
 #include "byre/base/stopwatch.h"
 #include "byre/features/image_view.h"
 #include "byre/features/tag_detector.h"
+#include "byre/geometry/calibration_change.h"
 #include "byre/map/mapped_tag.h"
 #include "byre/map/stored_calibration.h"
 #include "byre/slam/upkeep/session_summary.h"
@@ -18,6 +19,7 @@ namespace byre {
 namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
+constexpr double kNominalSigmas = 150.0;  // prior of nominal calibrations: 6 % of the focal length, 0.15 of k1
 
 // The second executor of a mission searches places in the offline map.
 SessionExecutors make_lanes(Pace pace, bool is_mission, JobLog& log) {
@@ -124,6 +126,8 @@ SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamI
                           return prior_.reach(earlier, later, is_metric);
                         });
   if (options.self_calibrate) refine_calibration();
+  is_nominal_ =
+      is_nominal(given_) && options.self_calibrate && !initial_calibration_ && !is_extended_ && !inputs_.offline;
   if (is_extended_) session_.continue_map(std::move(*inputs_.before));
 }
 
@@ -258,6 +262,10 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   if (is_begun && session_.contradicts_odometry()) prior_.reject_extrinsics(frame.time);
   if (is_begun && !is_metric_ && !session_.is_scaled_by_odometry()) prior_.forget_scale();
   const bool is_seen = report.inliers > 0;
+  if (is_nominal_ && prior_.has_wheels()) {
+    session_.set_prior_sigmas(std::max(options_.self_calibration.prior_sigmas, kNominalSigmas));
+    prior_.set_focal_change(focal_change());
+  }
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
   if (is_seen && report.map_from_body && report.health.verdict == Verdict::trusted) {
     prior_.note_place(*report.map_from_body);
@@ -346,7 +354,7 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
     extractor_.rest();
     result.report = session_.finish_map(hooks);
     prior_.reestimate(session_.final_trajectory());
-    if (!given_.is_metric()) compare_focal_length();
+    if (!given_.is_metric()) warn_of_focal_length();
     if (!is_metric_) scale_by_tags();
     if (!is_metric_) scale_by_wheels();
     if (is_metric_) {
@@ -358,20 +366,27 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
   return result;
 }
 
+double SlamImpl::focal_change() const {
+  const auto refined = session_.self_calibration();
+  return refined ? refined->calibration.left.fx / given_.left.fx : 1.0;
+}
+
 // Turns in images are inversely proportional to the focal length. A pair of cameras or a depth camera would show a
 // wrong one in its map.
-void SlamImpl::compare_focal_length() {
+void SlamImpl::warn_of_focal_length() {
   constexpr double kWheelSigma = 0.02;  // natural logarithm, of turns by wheels
   constexpr double kSigmas = 3.0;
   const auto turns = prior_.turn_ratio();
-  if (!turns || std::abs(std::log(turns->value)) < kSigmas * std::hypot(kWheelSigma, turns->sigma)) return;
+  if (!turns) return;
+  const double sigma = std::hypot(kWheelSigma, turns->sigma), ratio = turns->value / focal_change();
+  if (std::abs(std::log(ratio)) < kSigmas * sigma) return;
   const double focal = given_.left.fx;
   prior_.warn(
       {MotionSensor::wheels,
        {},
        fmt::format("the camera turns {:.3g} times as far in images as by wheels: its focal length is likely "
                    "{:.0f} px (sigma {:.0f} px) instead of {:.0f} px, or the wheels' track width is wrong",
-                   turns->value, focal * turns->value, focal * std::hypot(kWheelSigma, turns->sigma), focal),
+                   ratio, focal * turns->value, focal * sigma, focal * focal_change()),
        fmt::format("calibrate the camera, or set the focal lengths fx and fy in the calibration file to {:.0f}, "
                    "and map again",
                    focal * turns->value)});

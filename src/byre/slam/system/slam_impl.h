@@ -146,7 +146,8 @@ class SlamImpl {
  private:
   void refine_calibration();
   void begin_with_extrinsics(const Extrinsics& extrinsics);
-  void compare_focal_length();
+  double focal_change() const;  // focal length of the present calibration over that of the given one
+  void warn_of_focal_length();
   void scale_by_tags();
   void scale_by_wheels();
   void finish_early() { session_.finish_early(); }
@@ -176,6 +177,7 @@ class SlamImpl {
   CommonRowError row_error_;
   OdometryCalibrator prior_;
   bool is_metric_;
+  bool is_nominal_ = false;            // see is_nominal; refined in this run
   std::optional<double> scale_sigma_;  // see scale_sigma()
   bool is_scaled_by_tags_ = false;
   std::optional<Timestamp> last_frame_;
