@@ -111,7 +111,7 @@ describe("A run", () => {
 
   const hasEnded = (page) => () => page.getByRole("button", { name: "Live" }).isHidden();
 
-  test("updates while it runs", async () => {
+  test("updates while it runs, and is sent from its start to a late page", async () => {
     const page = await openRun();
     await eventually(async () => (await frameOf(page, "valuenow")) > 5, () => "frames");
     const [early, image, frame] = await viewer.whileStopped(async () => [
@@ -129,8 +129,19 @@ describe("A run", () => {
     assert.match(await page.locator(".verdict").innerText(), /trusted/i);
     await screenshot(page, "run_ended");
     assert.deepEqual(page.problems, []);
+    await page.close();
+    await isSentFromItsStart();
     assert.equal(await viewer.interrupt(), 0);
   });
+
+  // To a page opened late, dark and narrow.
+  async function isSentFromItsStart() {
+    const page = await openPage(browser, viewer.url, { colorScheme: "dark", viewport: { width: 420, height: 860 } });
+    await eventually(async () => (await frameOf(page, "valuemax")) === 59, () => "all frames");
+    await eventually(hasEnded(page), () => "the end of the run");
+    await eventually(async () => /fit/.test(await page.locator("figcaption").innerText()), () => "an image");
+    await page.screenshot({ path: "screenshots/run_dark_narrow.png", fullPage: true });
+  }
 
   test("can be paused and scrubbed while it runs", async () => {
     const page = await openRun();
@@ -158,17 +169,6 @@ describe("A run", () => {
     await eventually(async () => (await frameOf(page, "valuenow")) > 20, () => "replayed frames");
     await screenshot(page, "run_played");
     assert.deepEqual(page.problems, []);
-  });
-
-  test("is sent from its start to a page opened late, dark and narrow", async () => {
-    const first = await openRun();
-    await eventually(hasEnded(first), () => "the end of the run");
-    await first.close();
-    const page = await openPage(browser, viewer.url, { colorScheme: "dark", viewport: { width: 420, height: 860 } });
-    await eventually(async () => (await frameOf(page, "valuemax")) === 59, () => "all frames");
-    await eventually(hasEnded(page), () => "the end of the run");
-    await eventually(async () => /fit/.test(await page.locator("figcaption").innerText()), () => "an image");
-    await page.screenshot({ path: "screenshots/run_dark_narrow.png", fullPage: true });
   });
 });
 

@@ -43,11 +43,12 @@ std::vector<StartCase> make_start_cases() {
                    "visit_1",
                    {.every_s = 0.5, .length_s = 3.0, .from_s = 4.0, .to_s = 8.0},
                    no_wheels});
-  // Other image sizes, another day with the same one-way map, and the open gate with a stereo camera.
+  // Further image sizes, maps of one way, moved things, and the open gate with a stereo camera.
   for (StartCase& start_case : cases) {
     const std::string& name = start_case.name;
     start_case.is_long_run = name.ends_with("_376x240") || name.ends_with("_640x480") || name.ends_with("_1280x720") ||
-                             name == "one_way_map_other_day" || name == "gate_open" || name == "gate_open_wheels";
+                             name.starts_with("one_way_map_") || name == "swapped_things" || name == "gate_open" ||
+                             name == "gate_open_wheels";
   }
   return cases;
 }
