@@ -25,6 +25,7 @@ void bind_cameras(py::module_& module);
 void bind_extrinsics(py::module_& module);
 void bind_map(py::module_& module);
 void bind_slam(py::module_& module);
+void bind_map_updates(py::module_& module);
 void bind_tags(py::module_& module);
 void bind_evaluation(py::module_& module);
 

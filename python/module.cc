@@ -63,6 +63,7 @@ PYBIND11_MODULE(_byre, module) {
   bind_cameras(module);
   bind_evaluation(module);
   bind_extrinsics(module);
+  bind_map_updates(module);
   bind_tags(module);
   bind_map(module);
   bind_slam(module);

@@ -172,4 +172,19 @@ class Localiser {
   std::unique_ptr<State> state_;
 };
 
+// What an update of a map changed, or why there is none.
+struct MapUpdateResult {
+  std::string refusal{};  // empty: the updated map was written
+  int keyframes_added = 0;
+  int points_added = 0;
+  int points_retired = 0;
+};
+
+// Updates a map by sessions of missions on it, as `byre update`: writes the new version to `output`, which must not be
+// `map`, unless no session fits or a place would be worse. vocabulary: file of the words; empty: the installed one.
+// Takes seconds. Throws InputError if a file cannot be read or written, or is not of its kind.
+MapUpdateResult update_map_file(const std::filesystem::path& map, std::span<const std::filesystem::path> sessions,
+                                const std::filesystem::path& output,
+                                const std::optional<std::filesystem::path>& vocabulary = {});
+
 }  // namespace byre

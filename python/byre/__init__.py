@@ -42,6 +42,7 @@ from ._byre import (
     MapKeyframe,
     MapObservation,
     MapRecording,
+    MapUpdateResult,
     MappedTag,
     PixelFormat,
     PlanFit,
@@ -66,6 +67,7 @@ from ._byre import (
     read_tags,
     read_trajectory,
     relative_pose_error,
+    update_map_file,
     write_extrinsics,
 )
 

@@ -1,6 +1,8 @@
 // Messages of `byre node` to other vendors' ROS 2 programs, and its handling of their commands.
 
+#include "byre/map.h"
 #include "byre/map/map_file.h"
+#include "byre/map/map_upkeep.h"
 #include "byre/map/plan/occupancy_grid.h"
 #include "mapped_recording.h"
 #include "node_fixture.h"
@@ -341,6 +343,63 @@ TEST_F(ByreNode, KeepsThePreviousMapAndUsesItIfTheMapIsDamaged) {
   EXPECT_TRUE(answer_to(feed_, odometry_, frames[10], std::chrono::seconds(60))) << node.stderr_output();
   EXPECT_EQ(node.stop(), 0) << node.stderr_output();
   EXPECT_EQ(fs::file_size(folder_ / "room.previous.byre"), kept) << "a damaged map does not replace it";
+}
+
+// A mission on a map of most of the way.
+class ByreNodeAtTheDock : public ByreNode {
+ protected:
+  ByreNodeAtTheDock() {
+    const Room& room = Room::shared();
+    Slam slam = Slam::mapping(read_calibration(room.calibration()), Room::options());
+    for (std::size_t i = 0; i < room.frames().size() * 7 / 8; ++i) slam.process(view_of(room.frames()[i]));
+    slam.finish();
+    slam.save(map_);
+  }
+
+  // update: value of slam.update.
+  std::string mission_with(const std::string& update) const {
+    return config("  map: " + map_.string() + "\n  update: " + update + "\n");
+  }
+
+  void drive(NodeProcess& node) {
+    ASSERT_TRUE(is_connected()) << node.stderr_output();
+    for (const ImageFrame& frame : Room::shared().frames()) {
+      ASSERT_TRUE(answer_to(feed_, odometry_, frame)) << node.stderr_output();
+    }
+  }
+
+  int sessions() const {
+    return static_cast<int>(std::count_if(fs::directory_iterator(folder_), {}, [](const fs::directory_entry& entry) {
+      return entry.path().extension() == ".session";
+    }));
+  }
+
+  const fs::path map_ = folder_ / "room.byre";
+};
+
+TEST_F(ByreNodeAtTheDock, ProposesAnUpdatedMapByTheCommand) {
+  const std::uint64_t before = map_id(map_);
+  NodeProcess node(folder_, mission_with("propose"), domain_);
+  drive(node);
+  command("update");
+  const std::string answer = "\"answer\":\"proposed " + (folder_ / "room.proposed.byre").string();
+  EXPECT_TRUE(events_.find([&](const auto& event) { return event.data().find(answer) != std::string::npos; }))
+      << node.stderr_output();
+  EXPECT_EQ(node.stop(), 0) << node.stderr_output();
+  EXPECT_EQ(map_id(map_), before);
+  EXPECT_GT(Map::load(folder_ / "room.proposed.byre").keyframes(), Map::load(map_).keyframes());
+  EXPECT_EQ(sessions(), 1) << "of one mission";
+}
+
+TEST_F(ByreNodeAtTheDock, ReplacesItsMapAtTheEndAndKeepsThePreviousOne) {
+  const std::uint64_t before = map_id(map_);
+  NodeProcess node(folder_, mission_with("automatic"), domain_);
+  drive(node);
+  EXPECT_EQ(node.stop(), 0) << node.stderr_output();
+  EXPECT_THAT(node.stderr_output(), HasSubstr("updated " + map_.string()));
+  EXPECT_NE(map_id(map_), before);
+  EXPECT_EQ(map_id(folder_ / "room.previous.byre"), before);
+  EXPECT_EQ(sessions(), 0);
 }
 
 TEST_F(ByreNode, RelocalisesIfAnInitialPoseContradictsItsPose) {

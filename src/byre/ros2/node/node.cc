@@ -403,8 +403,12 @@ void Node::publish(const ReceivedImage& left, const FrameReport& report) {
 }
 
 ros::DiagnosticStatus Node::localisation() const {
-  if (last_report_) return localisation_status(*last_report_);
   ros::DiagnosticStatus status;
+  if (last_report_) {
+    status = localisation_status(*last_report_);
+    if (!runner_.last_update().empty()) status.values.push_back({"map update", runner_.last_update()});
+    return status;
+  }
   status.level = ros::DiagnosticStatus::kWarn;
   status.name = "byre: localisation";
   const std::string missing =
@@ -472,6 +476,7 @@ void Node::run(const std::function<bool()>& should_stop) {
   }
   manager_.stopping();
   if (runner_.can_save()) log_(LogLevel::info, runner_.save());
+  if (runner_.can_update()) execute("update");
 }
 
 }  // namespace byre

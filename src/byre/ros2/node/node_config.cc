@@ -115,6 +115,8 @@ void check(const NodeConfig& config, Consistency consistency) {
     consistency.require(config.extrinsics_file || frame.empty(), name, "is set, but extrinsics.file is empty",
                         "set extrinsics.file, or leave this empty");
   }
+  consistency.require(is_mission || config.update == MapUpdates::off, "slam.update", "needs a mission",
+                      "set slam.task to mission, or slam.update to off");
   consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
                       "is the offline map, which a mission must not replace", "name another file");
   check_topics(config, consistency);

@@ -21,6 +21,9 @@ namespace byre {
 //   map      makes a new map
 enum class NodeTask : std::uint8_t { mission, extend, map };
 
+// What the command update, and the end of a mission, do with what it learned about slam.map.
+enum class MapUpdates : std::uint8_t { off, propose, automatic };
+
 // Source of the left camera's pose on the robot.
 //   file    calibration file (T_BS, T_cam_imu); its body is the base frame
 //   tf      /tf_static, from the base frame to the frame of the left images
@@ -50,8 +53,9 @@ struct NodeConfig {
   std::optional<bool> services;  // whether commands are also services; empty: with Cyclone DDS only
 
   NodeTask task = NodeTask::mission;
-  std::optional<std::filesystem::path> map;         // offline map, or map to extend
-  std::optional<std::filesystem::path> save;        // file for the new map, saved on request and at the end
+  std::optional<std::filesystem::path> map;   // offline map, or map to extend
+  std::optional<std::filesystem::path> save;  // file for the new map, saved on request and at the end
+  MapUpdates update = MapUpdates::off;
   std::optional<std::filesystem::path> options;     // docs/reference/options.md
   std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   std::optional<std::filesystem::path> plan;        // floor plan to publish

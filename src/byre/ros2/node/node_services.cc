@@ -72,6 +72,7 @@ NodeServices::NodeServices(const NodeConfig& config, GraphAnnouncement& graph, N
     : config_(config), graph_(graph), log_(std::move(log)) {
   using ros::LoadMap, ros::SetBool, ros::SetInitialPose, ros::Trigger;
   add_command<Trigger>("save", [](const Trigger::Request&) { return "save"; });
+  add_command<Trigger>("update", [](const Trigger::Request&) { return "update"; });
   add_command<Trigger>("relocalise", [](const Trigger::Request&) { return "relocalise"; });
   add_command<SetBool>("pause_mapping", [](const SetBool::Request& request) {
     return request.data ? "pause mapping" : "resume mapping";

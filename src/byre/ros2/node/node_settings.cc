@@ -160,6 +160,11 @@ const std::vector<NodeSetting>& node_settings() {
                        &NodeConfig::task, "mission on an offline map, extension of a map, or a new map"),
       file("slam.map", &NodeConfig::map, "map to localise in or to extend"),
       file("slam.save", &NodeConfig::save, "file of the map made, written by the command save and at the end"),
+      choice<MapUpdates>(
+          "slam.update",
+          {{"off", MapUpdates::off}, {"propose", MapUpdates::propose}, {"automatic", MapUpdates::automatic}},
+          &NodeConfig::update,
+          "update of slam.map at the end of a mission and by the command update: none, to another file, or in place"),
       file("slam.options", &NodeConfig::options, "options file, see docs/reference/options.md"),
       file("slam.vocabulary", &NodeConfig::vocabulary, "visual vocabulary, replaces the built-in one"),
       choice<Workers>(

@@ -8,15 +8,21 @@
 #include "byre/io/recording/file_safety.h"
 #include "byre/io/recording/settings_file.h"
 #include "byre/io/recording/static_frames.h"
+#include "byre/map.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/options_file.h"
 #include "byre/ros2/node/map_messages.h"
+#include "byre/ros2/node/mission_sessions.h"
 #include "byre/tag_file.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string_view>
 #include <utility>
+#include <vector>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -108,6 +114,7 @@ void keep_as_previous(const fs::path& map) {
 
 SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(slam_options(config)), map_(config.map) {
   require_safe_save(config);
+  if (config.update != MapUpdates::off && config.map) require_writable(proposed_map(*config.map), FileContent::map);
 }
 
 FrameReport SlamRunner::process(const CameraImages& images) {
@@ -123,6 +130,7 @@ FrameReport SlamRunner::process(const CameraImages& images) {
 void SlamRunner::replace(Slam slam) {
   slam.pause_mapping(slam_ && slam_->is_mapping_paused());
   slam_.emplace(std::move(slam));
+  session_.reset();
   had_pose_ = false;
   has_saved_ = false;
 }
@@ -237,6 +245,32 @@ std::string SlamRunner::save() {
   return "saved " + config_.save->string();
 }
 
+std::string SlamRunner::update() {
+  require_running();
+  if (config_.update == MapUpdates::off) {
+    throw InputError("update", "is switched off", "set slam.update to propose or automatic");
+  }
+  if (!is_map_intact_) {
+    throw InputError("update", "is impossible, as the previous map is used", "restore the damaged map first");
+  }
+  if (!session_) session_ = session_file(*map_, std::chrono::system_clock::now());
+  slam_->save_session(*session_);
+  const std::vector<fs::path> sessions = waiting_sessions(*map_);
+  const fs::path child = proposed_map(*map_);
+  const MapUpdateResult result = update_map_file(*map_, sessions, child, config_.vocabulary);
+  const std::string changes = fmt::format("{} keyframes and {} points added, {} points retired", result.keyframes_added,
+                                          result.points_added, result.points_retired);
+  if (!result.refusal.empty()) return last_update_ = map_->string() + " stays as it is: " + result.refusal;
+  if (config_.update == MapUpdates::propose) return last_update_ = "proposed " + child.string() + ": " + changes;
+  keep_as_previous(*map_);
+  std::error_code error;
+  fs::rename(child, *map_, error);
+  if (error) throw InputError(map_->string(), "cannot be replaced: " + error.message(), "check its folder");
+  for (const fs::path& session : sessions) fs::remove(session, error);
+  replace(make(&*map_));
+  return last_update_ = "updated " + map_->string() + ": " + changes;
+}
+
 std::string SlamRunner::load(const std::string& name) {
   require_running();
   if (config_.task != NodeTask::mission) {
@@ -276,10 +310,15 @@ CommandResult execute(SlamRunner& runner, const std::string& line) {
   if (line.starts_with(kLoad)) return {runner.load(line.substr(kLoad.size())), true, true};
   if (line == "relocalise") return {runner.relocalise(), true};
   if (line == "save") return {runner.save()};
+  if (line == "update") {
+    const std::string answer = runner.update();
+    const bool is_replaced = answer.starts_with("updated ");
+    return {answer, is_replaced, is_replaced};
+  }
   if (line == "pause mapping") return {runner.pause_mapping(true)};
   if (line == "resume mapping") return {runner.pause_mapping(false)};
   throw InputError("'" + printable(line, 100) + "'", "is not a command",
-                   "send save, load NAME, relocalise, pause mapping or resume mapping");
+                   "send save, update, load NAME, relocalise, pause mapping or resume mapping");
 }
 
 }  // namespace byre

@@ -59,11 +59,16 @@ class SlamRunner {
   // Commands throw InputError on failure, without any change. The first save of this Slam keeps the present file as its
   // previous version. All return a report.
   std::string save();
+  // Writes what the mission learned beside the map, and updates the map by all such files, see NodeConfig::update. A
+  // map updated in place is used from here on; its former version becomes the previous one.
+  std::string update();
   std::string load(const std::string& name);  // map in the same folder, by file name
   std::string relocalise();                   // global relocalisation in the same map
   std::string pause_mapping(bool is_paused);  // see Slam::pause_mapping
   // hint: in the published frame. False if the task ignores hints.
   bool set_initial_pose(PoseHint hint);
+  bool can_update() const { return slam_ && config_.update != MapUpdates::off && had_pose_ && slam_->keyframes() > 0; }
+  const std::string& last_update() const { return last_update_; }  // answer of update(); empty before the first
   bool can_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
 
  private:
@@ -77,9 +82,11 @@ class SlamRunner {
   std::optional<std::filesystem::path> map_;
   std::optional<Calibration> calibration_;
   std::optional<Slam> slam_;
-  bool is_map_intact_ = true;  // false after falling back to the previous version of the map
-  bool has_saved_ = false;     // whether slam_ has saved the file
-  bool had_pose_ = false;      // whether any frame of slam_ had a pose
+  bool is_map_intact_ = true;                     // false after falling back to the previous version of the map
+  std::optional<std::filesystem::path> session_;  // file of what slam_ learned, once written
+  std::string last_update_;
+  bool has_saved_ = false;  // whether slam_ has saved the file
+  bool had_pose_ = false;   // whether any frame of slam_ had a pose
 };
 
 // Executes a line of the command topic. Throws InputError for an unknown command, or one that is impossible now.

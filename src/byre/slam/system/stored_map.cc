@@ -1,8 +1,10 @@
 #include "byre/slam/system/stored_map.h"
 
 #include "byre/base/binary_file.h"
+#include "byre/base/output_file.h"
 #include "byre/base/printable.h"
 #include "byre/input_error.h"
+#include "byre/map.h"
 #include "byre/place/map_words.h"
 
 #include <utility>
@@ -104,6 +106,28 @@ void save_child(MapUpdate update, const Vocabulary& vocabulary, const fs::path& 
   update.child->notes["software"] = "byre " BYRE_VERSION;
   add_words(*update.child, vocabulary);
   save_map(*update.child, {std::move(update.survival), {}}, path);
+}
+
+MapUpdateResult update_map_file(const fs::path& map, std::span<const fs::path> sessions, const fs::path& output,
+                                const std::optional<fs::path>& vocabulary) {
+  std::error_code error;
+  if (fs::equivalent(map, output, error)) {
+    throw InputError(output.string(), "is the map to be updated, which stays as it is", "choose another output");
+  }
+  require_writable(output, FileContent::map);
+  const Vocabulary words = open_vocabulary(vocabulary);
+  const MapVersion parent = load_version(map, words);
+  std::vector<StoredSession> stored;
+  for (const fs::path& session : sessions) stored.push_back(load_session(session, words));
+  MapUpdate update = update_map(parent, stored, words);
+  MapUpdateResult result{.refusal = update.refusal, .points_retired = update.points_retired};
+  for (const SessionUse& use : update.sessions) {
+    result.keyframes_added += use.keyframes_added;
+    result.points_added += use.points_added;
+    if (!update.child && !use.place.fault.empty()) result.refusal += "; " + use.name + ": " + use.place.fault;
+  }
+  if (update.child) save_child(std::move(update), words, output);
+  return result;
 }
 
 void save_for_missions_and_reload(StoredMap& stored, const Vocabulary& vocabulary, const std::string& site,
