@@ -169,6 +169,8 @@ class Slam {
   int points() const;
   // Positions of these points, in the frame of map_from_body.
   std::vector<Eigen::Vector3d> point_positions() const;
+  // Their grey values in the same order, 0 to 255; empty for a point whose patch was not kept.
+  std::vector<std::optional<std::uint8_t>> point_greys() const;
   // Faults of motion inputs, each kind once, and of tags so far. FrameReport::warnings holds those new in a frame.
   std::vector<MotionWarning> motion_warnings() const;
   int frames() const;                  // all frames, including dropped ones

@@ -64,7 +64,7 @@ test("sizes of points and images match their headers", () => {
   const cloud = messages("/byre/points").at(-1);
   assert.ok(cloud.width > 100);
   assert.equal(cloud.data.length, cloud.width * cloud.point_step);
-  assert.deepEqual(cloud.fields.map(({name}) => name), ["x", "y", "z", "observations"]);
+  assert.deepEqual(cloud.fields.map(({name}) => name), ["x", "y", "z", "intensity", "observations"]);
   const image = messages("/left/image_raw")[0];
   assert.equal(image.data.length, image.height * image.step);
   assert.equal(messages("/left/camera_info")[0].k.length, 9);

@@ -224,7 +224,8 @@ TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
   const auto cloud = points.first();
   ASSERT_TRUE(cloud.has_value());
   EXPECT_GT(cloud->width(), 100u);
-  ASSERT_EQ(cloud->data().size(), 12u * cloud->width());
+  ASSERT_EQ(cloud->data().size(), 16u * cloud->width());
+  EXPECT_EQ(cloud->fields().at(3).name(), "intensity");
   float z = 0.0f;
   std::memcpy(&z, cloud->data().data() + 8, 4);
   EXPECT_GT(z, 5.0f) << "on the plan";

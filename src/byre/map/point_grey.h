@@ -7,6 +7,9 @@
 
 namespace byre {
 
+// Grey value that clouds of points state for one without a patch: medium.
+inline constexpr std::uint8_t kUnknownGrey = 128;
+
 // Grey value at the centre of the patch that defines a point; empty if the patch was not kept.
 inline std::optional<std::uint8_t> grey_of(const MapGraph& map, const MapPoint& point) {
   const Keyframe* const keyframe = map.find_keyframe(point.reference.keyframe);

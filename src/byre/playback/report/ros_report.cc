@@ -1,5 +1,6 @@
 #include "byre/playback/report/ros_report.h"
 
+#include "byre/map/point_grey.h"
 #include "byre/playback/report/pose_messages.h"
 #include "byre/playback/report/report.h"
 #include "byre/playback/report/report_json.h"
@@ -113,13 +114,16 @@ ros::Path ros_path(const Trajectory& trajectory, Timestamp time) {
 }
 
 ros::PointCloud2 ros_cloud(const MapGraph& map, Timestamp time) {
-  constexpr std::uint32_t kStep = 16;
-  ros::PointCloud2 cloud{header(kMapFrame, time), 1, 0, {{"x", 0}, {"y", 4}, {"z", 8}}};
-  cloud.point_fields.push_back({"observations", 12, ros::PointField::kUint32, 1});
+  constexpr std::uint32_t kStep = 20;
+  ros::PointCloud2 cloud{header(kMapFrame, time), 1, 0, {{"x", 0}, {"y", 4}, {"z", 8}, {"intensity", 12}}};
+  cloud.point_fields.push_back({"observations", 16, ros::PointField::kUint32, 1});
   for (const PointId id : map.point_ids()) {
-    const Eigen::Vector3f position = map.find_point(id)->position_in_world.cast<float>();
+    const MapPoint& point = *map.find_point(id);
+    const Eigen::Vector3f position = point.position_in_world.cast<float>();
+    const auto grey = static_cast<float>(grey_of(map, point).value_or(kUnknownGrey));
     const auto observations = static_cast<std::uint32_t>(map.observations(id).size());
     put(cloud.data, position.data(), 3 * sizeof(float));
+    put(cloud.data, &grey, sizeof(grey));
     put(cloud.data, &observations, sizeof(observations));
     ++cloud.width;
   }

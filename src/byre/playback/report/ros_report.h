@@ -45,7 +45,7 @@ ros::DiagnosticArray ros_diagnostics(int number, const PlayedFrame& frame);
 
 ros::Path ros_path(const Trajectory& trajectory, Timestamp time);
 
-// Points in the map frame: x, y, z and number of observations.
+// Points in the map frame: x, y, z, grey value from 0 to 255 (kUnknownGrey without one), number of observations.
 ros::PointCloud2 ros_cloud(const MapGraph& map, Timestamp time);
 
 // Camera extrinsics in the body frame.

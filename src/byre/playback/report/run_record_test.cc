@@ -3,12 +3,15 @@
 #include "byre/io/bag/bag.h"
 #include "byre/io/ros/message_reader.h"
 #include "byre/io/ros/messages.h"
+#include "byre/map/point_grey.h"
 #include "byre/playback/play.h"
 #include "byre/recording.h"
 #include "byre/simulation/rendered_scene.h"
 
+#include <cstring>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -105,7 +108,24 @@ TEST(RunRecord, EndsWithTheFinalPathAndMap) {
   EXPECT_EQ(path.poses.back().pose.position.y, recorded.run().final.back().world_from_body.translation.y());
   const ros::PointCloud2 cloud = recorded.messages<ros::PointCloud2>("/byre/points").back();
   EXPECT_EQ(cloud.width, static_cast<std::uint32_t>(recorded.run().stored.map.point_count()));
-  EXPECT_EQ(cloud.data.size(), 16u * cloud.width);
+  EXPECT_EQ(cloud.data.size(), 20u * cloud.width);
+}
+
+TEST(RunRecord, StatesTheGreyValuesOfPoints) {
+  const RecordedRun& recorded = RecordedRun::shared();
+  const ros::PointCloud2 cloud = recorded.messages<ros::PointCloud2>("/byre/points").back();
+  ASSERT_EQ(cloud.point_fields.at(3).name, "intensity");
+  const MapGraph& map = recorded.run().stored.map;
+  std::set<float> greys;
+  std::size_t at = cloud.point_fields.at(3).offset;
+  for (const PointId id : map.point_ids()) {
+    float grey = -1.0f;
+    std::memcpy(&grey, cloud.data.data() + at, sizeof(grey));
+    EXPECT_EQ(grey, grey_of(map, *map.find_point(id)).value_or(kUnknownGrey));
+    greys.insert(grey);
+    at += cloud.point_step;
+  }
+  EXPECT_GT(greys.size(), 20u) << "texture";
 }
 
 TEST(RunRecord, CanBeRunAgainWithImages) {

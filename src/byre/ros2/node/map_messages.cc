@@ -1,6 +1,7 @@
 #include "byre/ros2/node/map_messages.h"
 
 #include "byre/input_error.h"
+#include "byre/map/point_grey.h"
 #include "byre/playback/report/pose_messages.h"
 
 #include <cmath>
@@ -73,29 +74,37 @@ ros::OccupancyGrid unknown_grid() {
   return grid;
 }
 
-std::vector<Eigen::Vector3f> points_of(const std::filesystem::path& map, bool in_plan) {
+CloudPoint cloud_point(const Eigen::Vector3d& position, std::optional<std::uint8_t> grey) {
+  CloudPoint point;
+  point << position.cast<float>(), static_cast<float>(grey.value_or(kUnknownGrey));
+  return point;
+}
+
+std::vector<CloudPoint> points_of(const std::filesystem::path& map, bool in_plan) {
   const StoredMap stored = load_map(map);
-  std::vector<Eigen::Vector3f> points;
+  std::vector<CloudPoint> points;
   for (const PointId id : stored.map.point_ids()) {
-    const Eigen::Vector3d point = stored.map.find_point(id)->position_in_world;
-    const Eigen::Vector3d placed = in_plan && stored.plan ? stored.plan->plan_from_map * point : point;
-    points.push_back(placed.cast<float>());
+    const MapPoint& point = *stored.map.find_point(id);
+    const Eigen::Vector3d& in_map = point.position_in_world;
+    const Eigen::Vector3d placed = in_plan && stored.plan ? stored.plan->plan_from_map * in_map : in_map;
+    points.push_back(cloud_point(placed, grey_of(stored.map, point)));
   }
   return points;
 }
 
-ros::PointCloud2 cloud_message(const ros::Header& header, const std::vector<Eigen::Vector3f>& points) {
+ros::PointCloud2 cloud_message(const ros::Header& header, const std::vector<CloudPoint>& points) {
   ros::PointCloud2 cloud;
   cloud.header = header;
   cloud.height = 1;
   cloud.width = static_cast<std::uint32_t>(points.size());
   cloud.point_fields = {{"x", 0, ros::PointField::kFloat32, 1},
                         {"y", 4, ros::PointField::kFloat32, 1},
-                        {"z", 8, ros::PointField::kFloat32, 1}};
-  cloud.point_step = 12;
+                        {"z", 8, ros::PointField::kFloat32, 1},
+                        {"intensity", 12, ros::PointField::kFloat32, 1}};
+  cloud.point_step = sizeof(CloudPoint);
   cloud.row_step = cloud.point_step * cloud.width;
   cloud.data.resize(cloud.row_step);
-  for (std::size_t i = 0; i < points.size(); ++i) std::memcpy(cloud.data.data() + 12 * i, points[i].data(), 12);
+  if (!points.empty()) std::memcpy(cloud.data.data(), points.data(), cloud.data.size());
   cloud.is_dense = true;
   return cloud;
 }

@@ -6,8 +6,10 @@
 #include "byre/map/plan/occupancy_grid.h"
 #include "byre/trajectory.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,9 +29,13 @@ ros::OccupancyGrid grid_of(const OccupancyGrid& grid, bool in_plan);
 // One unknown cell, which replaces a grid that no longer holds.
 ros::OccupancyGrid unknown_grid();
 
-// Points of a saved map in the published frame.
-std::vector<Eigen::Vector3f> points_of(const std::filesystem::path& map, bool in_plan);
-ros::PointCloud2 cloud_message(const ros::Header& header, const std::vector<Eigen::Vector3f>& points);
+// Point of a cloud: position in the published frame, and grey value from 0 to 255 (kUnknownGrey without one).
+using CloudPoint = Eigen::Vector4f;
+CloudPoint cloud_point(const Eigen::Vector3d& position, std::optional<std::uint8_t> grey);
+
+// Points of a saved map.
+std::vector<CloudPoint> points_of(const std::filesystem::path& map, bool in_plan);
+ros::PointCloud2 cloud_message(const ros::Header& header, const std::vector<CloudPoint>& points);
 
 // Path so far; a long one is subsampled.
 ros::Path path_message(const ros::Header& header, const Trajectory& trajectory,

@@ -2,6 +2,8 @@
 
 #include "byre/input_error.h"
 #include "byre/map/plan/driven_scene.h"
+#include "byre/map/point_grey.h"
+#include "byre/map/stored_map_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -133,14 +135,39 @@ TEST(GridOfMap, IsRefusedForMapsWithoutScaleOrFloor) {
   EXPECT_THAT(fault(stored), HasSubstr("has no metric scale"));
 }
 
-TEST(CloudMessage, ContainsThreeNumbersPerPoint) {
-  const ros::PointCloud2 cloud = cloud_message({{}, "map"}, {{1, 2, 3}, {4, 5, 6}});
+TEST(CloudMessage, ContainsPositionAndGreyValuePerPoint) {
+  const ros::PointCloud2 cloud = cloud_message({{}, "map"}, {{1, 2, 3, 40}, {4, 5, 6, 50}});
   EXPECT_EQ(cloud.width, 2u);
-  EXPECT_EQ(cloud.row_step, 24u);
-  ASSERT_EQ(cloud.data.size(), 24u);
-  float y = 0;
-  std::memcpy(&y, cloud.data.data() + 16, 4);
-  EXPECT_EQ(y, 5.0f);
+  EXPECT_EQ(cloud.row_step, 32u);
+  ASSERT_EQ(cloud.point_fields.size(), 4u);
+  EXPECT_EQ(cloud.point_fields[3], (ros::PointField{"intensity", 12, ros::PointField::kFloat32, 1}))
+      << "the name by which RViz and Foxglove colour";
+  std::vector<float> numbers(8);
+  ASSERT_EQ(cloud.data.size(), 32u);
+  std::memcpy(numbers.data(), cloud.data.data(), 32);
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 3, 40, 4, 5, 6, 50));
+  EXPECT_EQ(cloud_message({}, {}).data.size(), 0u);
+}
+
+TEST_F(PlanFile, PointsOfAMapHaveTheGreyValuesOfTheirPatches) {
+  const fs::path file = folder_ / "greys.byre";
+  save_map(StoredMapScene().stored_with_plan(), file);
+  const StoredMap stored = load_map(file);
+  const std::vector<CloudPoint> in_map = points_of(file, false), on_plan = points_of(file, true);
+  ASSERT_EQ(in_map.size(), static_cast<std::size_t>(stored.map.point_count()));
+  std::size_t i = 0, without = 0;
+  for (const PointId id : stored.map.point_ids()) {
+    const MapPoint& point = *stored.map.find_point(id);
+    const auto grey = grey_of(stored.map, point);
+    EXPECT_EQ(in_map[i].w(), grey ? static_cast<float>(*grey) : 128.0f);
+    EXPECT_EQ(in_map[i].head<3>(), point.position_in_world.cast<float>());
+    EXPECT_EQ(on_plan[i].w(), in_map[i].w());
+    EXPECT_GT((on_plan[i] - in_map[i]).norm(), 1.0f);
+    without += !grey;
+    ++i;
+  }
+  EXPECT_GT(without, 0u);
+  EXPECT_LT(without, i);
 }
 
 TEST(PathMessage, IsThinnedIfLong) {

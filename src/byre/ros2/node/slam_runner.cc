@@ -11,11 +11,11 @@
 #include "byre/map.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/options_file.h"
-#include "byre/ros2/node/map_messages.h"
 #include "byre/ros2/node/mission_sessions.h"
 #include "byre/tag_file.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <string_view>
@@ -207,12 +207,16 @@ std::string SlamRunner::map_name() const {
   return file ? file->stem().string() : "";
 }
 
-std::vector<Eigen::Vector3f> SlamRunner::points() const {
+std::vector<CloudPoint> SlamRunner::points() const {
   if (!makes_map()) return points_of(*map_, config_.in_plan);
   const Pose published_from_map = published(Pose{});
-  std::vector<Eigen::Vector3f> points;
-  for (const Eigen::Vector3d& point : slam_->point_positions())
-    points.push_back((published_from_map * point).cast<float>());
+  const auto positions = slam_->point_positions();
+  const auto greys = slam_->point_greys();
+  assert(greys.size() == positions.size());  // only calls of this runner change the map
+  std::vector<CloudPoint> points;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    points.push_back(cloud_point(published_from_map * positions[i], greys[i]));
+  }
   return points;
 }
 

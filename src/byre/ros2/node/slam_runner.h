@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/io/ros/messages.h"
+#include "byre/ros2/node/map_messages.h"
 #include "byre/ros2/node/node_config.h"
 #include "byre/slam.h"
 
@@ -48,7 +49,7 @@ class SlamRunner {
   Trajectory trajectory() const { return slam_->trajectory(); }
   // Points of the new map, or of a mission's offline map, in the published frame. The offline map is read from its file
   // again, which takes as long as loading.
-  std::vector<Eigen::Vector3f> points() const;
+  std::vector<CloudPoint> points() const;
   // Occupancy grid of the current map, which is read from its file again. Empty without a map or if switched off.
   // Throws InputError if the map has none.
   std::optional<ros::OccupancyGrid> occupancy() const;

@@ -5,6 +5,7 @@
 #include "byre/geometry/finite.h"
 #include "byre/map/map_file.h"
 #include "byre/map/map_values.h"
+#include "byre/map/point_grey.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/slam_impl.h"
 #include "byre/slam/system/stored_map.h"
@@ -293,6 +294,15 @@ std::vector<Eigen::Vector3d> Slam::point_positions() const {
     std::vector<Eigen::Vector3d> positions;
     for (const PointId id : map.point_ids()) positions.push_back(map.find_point(id)->position_in_world);
     return positions;
+  });
+}
+
+std::vector<std::optional<std::uint8_t>> Slam::point_greys() const {
+  return impl_->calls().run([&] {
+    const MapGraph& map = impl_->online();
+    std::vector<std::optional<std::uint8_t>> greys;
+    for (const PointId id : map.point_ids()) greys.push_back(grey_of(map, *map.find_point(id)));
+    return greys;
   });
 }
 

@@ -175,6 +175,10 @@ TEST_F(SlamFileTest, SavesTheOnlineMapOfAMission) {
   slam.finish();
   ASSERT_GT(slam.keyframes(), 0);
   EXPECT_EQ(slam.point_positions().size(), static_cast<std::size_t>(slam.points()));
+  const auto greys = slam.point_greys();
+  EXPECT_EQ(greys.size(), static_cast<std::size_t>(slam.points()));
+  EXPECT_THAT(greys, testing::Contains(testing::Ne(std::nullopt)));
+  EXPECT_THAT(greys, testing::Contains(testing::Ne(greys.front()))) << "texture";
   EXPECT_THROW(slam.save(map_), InputError) << "the mission reads it";
   const std::filesystem::path beside = std::filesystem::path(map_).concat("_beside.byre");
   slam.save(beside);
