@@ -107,7 +107,9 @@ DepthImage depth_image(const cv::Mat& pixels) {
   return depth;
 }
 
-BagDepth raw_depth(const ros::Image& image) {
+}  // namespace
+
+DepthMessage depth_of(const ros::Image& image) {
   const bool is_metric = image.encoding == "32FC1";
   if (!is_metric && image.encoding != "16UC1" && image.encoding != "mono16") {
     return {{std::nullopt, "has the encoding \"" + image.encoding + "\", which is not of depths (16UC1, 32FC1)"}};
@@ -128,7 +130,7 @@ BagDepth raw_depth(const ros::Image& image) {
 
 // compressed_depth_image_transport: the header (i32 kind, f32 a, f32 b), then a PNG of depths, or of a / depth + b for
 // depths in metres.
-BagDepth compressed_depth(const ros::CompressedImage& image) {
+DepthMessage depth_of(const ros::CompressedImage& image) {
   constexpr std::size_t kHeader = 12;
   const bool has_header = image.format.find("compressedDepth") != std::string::npos;
   if (image.format.find("rvl") != std::string::npos) {
@@ -147,15 +149,13 @@ BagDepth compressed_depth(const ros::CompressedImage& image) {
   return {std::move(depth), true};
 }
 
-}  // namespace
-
-BagDepth depth_of(Bag& bag, const BagMessage& message) {
+DepthMessage depth_of(Bag& bag, const BagMessage& message) {
   const BagTopic& topic = bag.content().topics[message.topic];
   try {
     const std::vector<std::byte> bytes = bag.read(message);
     const ros::Encoding encoding = *encoding_of(topic);
-    if (holds<ros::Image>(topic)) return raw_depth(ros::read_message<ros::Image>(bytes, encoding, topic.name));
-    return compressed_depth(ros::read_message<ros::CompressedImage>(bytes, encoding, topic.name));
+    if (holds<ros::Image>(topic)) return depth_of(ros::read_message<ros::Image>(bytes, encoding, topic.name));
+    return depth_of(ros::read_message<ros::CompressedImage>(bytes, encoding, topic.name));
   } catch (const InputError& error) {
     return {{std::nullopt, error.reason()}};
   }
@@ -207,7 +207,7 @@ std::optional<std::uint16_t> largest_value(Bag& bag, const BagMessage& message) 
   try {
     const auto image = ros::read_message<ros::Image>(bag.read(message), *encoding_of(topic), topic.name);
     if (image.encoding != "mono16") return std::nullopt;
-    const ImageReading<DepthImage> values = raw_depth(image).reading;
+    const ImageReading<DepthImage> values = depth_of(image).reading;
     if (!values.image) return std::nullopt;
     return std::ranges::max(values.image->units);
   } catch (const InputError&) {

@@ -22,14 +22,16 @@ std::optional<std::uint16_t> largest_value(Bag& bag, const BagMessage& message);
 inline constexpr double kUnitsOfMetres = 5000.0;
 inline constexpr double kUnitsOfMillimetres = 1000.0;  // units of 16UC1 depths per metre (REP-118)
 
-struct BagDepth {
+struct DepthMessage {
   ImageReading<DepthImage> reading;
   bool is_in_metres = false;  // the message holds metres; its units are kUnitsOfMetres
 };
 
 // Depth image of a message: 16UC1, mono16 or 32FC1, also as PNG by compressed_depth_image_transport or in a compressed
 // image.
-BagDepth depth_of(Bag& bag, const BagMessage& message);
+DepthMessage depth_of(const ros::Image& image);
+DepthMessage depth_of(const ros::CompressedImage& image);
+DepthMessage depth_of(Bag& bag, const BagMessage& message);
 
 // Time stamp in the message's header, decoded from the first bytes of the message.
 Timestamp stamp_of(const BagContent& content, const BagMessage& message);

@@ -228,27 +228,23 @@ class BagCalibration {
     return calibration;
   }
 
-  // The depth camera: registered to the left camera by name, by frame, or without camera info of its own; else with its
-  // own camera info and the transform tree. Throws InputError if the tree does not connect the frames.
-  DepthCamera read_depth(const ImageTopics& topics) const {
-    const BagTopic& topic = bag_.content().topics[*topics.depth];
-    DepthCamera depth;
+  // The depth camera: registered to the left camera without camera info of its own, else by depth_camera_of. Throws
+  // InputError if the tree does not connect the frames.
+  DepthCamera read_depth(const ImageTopics& topics, const Camera& left_camera) const {
     const std::optional<CameraInfoWithSource> own = info_of(*topics.depth);
+    if (!own) return {};
     const std::optional<CameraInfoWithSource> left = info_of(topics.left);
-    const bool is_one_frame = own && left && own->info.header.frame_id == left->info.header.frame_id;
-    if (is_registered(topic) || !own || is_one_frame) return depth;
-    depth.camera = camera_of(*own);
     const std::string left_frame = left ? left->info.header.frame_id : "";
-    const auto pose = tree().between(left_frame, own->info.header.frame_id);
-    if (!pose) {
+    const bool is_named_registered = is_registered(bag_.content().topics[*topics.depth]);
+    const auto depth = depth_camera_of(*own, is_named_registered, left_camera, left_frame, tree());
+    if (!depth) {
       throw InputError(own->place,
                        "has the frame \"" + own->info.header.frame_id +
                            "\", which /tf_static does not connect to that of the left camera, \"" + left_frame + "\"",
                        "record depth registered to the left camera, give the extrinsics with --calibration FILE "
                        "(depth_camera), or use the camera alone: --camera left");
     }
-    depth.left_from_depth = *pose;
-    return depth;
+    return *depth;
   }
 
  private:
@@ -311,7 +307,7 @@ void add_depth_camera(Bag& bag, const std::vector<BagFrame>& frames, const Image
                       std::vector<std::string>& warnings) {
   const std::string place = path.string() + ": " + bag.content().topics[*topics.depth].name;
   std::string failure = "no depth image is within 20 ms of a frame";
-  std::optional<BagDepth> first;
+  std::optional<DepthMessage> first;
   for (const BagFrame& frame : frames) {
     if (!frame.depth) continue;
     first = depth_of(bag, *frame.depth);
@@ -322,8 +318,8 @@ void add_depth_camera(Bag& bag, const std::vector<BagFrame>& frames, const Image
   try {
     if (!first) throw InputError(place, failure, "select another topic with --depth TOPIC");
     const bool has_file = options.calibration && has_depth_camera_fields(*options.calibration);
-    DepthCamera depth =
-        has_file ? read_depth_camera(*options.calibration) : BagCalibration(bag, path.string()).read_depth(topics);
+    DepthCamera depth = has_file ? read_depth_camera(*options.calibration)
+                                 : BagCalibration(bag, path.string()).read_depth(topics, calibration.cameras.left);
     if (first->is_in_metres) depth.units_per_metre = kUnitsOfMetres;
     if (!first->is_in_metres && !has_file) depth.units_per_metre = kUnitsOfMillimetres;
     const Camera& camera = depth.camera.value_or(calibration.cameras.left);

@@ -373,6 +373,29 @@ TEST_F(BagRecordings, PlaceADepthCameraByTheTransformTree) {
   EXPECT_NEAR(depth_of_first(*recording), 1.234, 1e-9);
 }
 
+// Such as depth at half the resolution of colour.
+TEST_F(BagRecordings, PlaceDepthOfAnotherSizeByItsCameraInfo) {
+  ros::Image half = depth_message(ms(1000), 1234);
+  half.width = 3;
+  half.height = 2;
+  half.step = 6;
+  half.data.resize(12);
+  ros::CameraInfo own = info("left");
+  own.width = 3;
+  own.height = 2;
+  own.k = {2.5, 0.0, 1.0, 0.0, 2.5, 0.5, 0.0, 0.0, 1.0};
+  for (const std::string camera : {"/depth", "/depth_registered"}) {
+    std::vector<SceneMessage> messages = with(colour_images(), scene_message(camera + "/image_raw", ms(1001), half));
+    messages.push_back(scene_message(camera + "/camera_info", ms(1000), own));
+    const auto recording = open(messages);
+    EXPECT_THAT(recording->warnings(), IsEmpty());
+    ASSERT_TRUE(recording->calibration().depth && recording->calibration().depth->camera) << camera;
+    EXPECT_EQ(recording->calibration().depth->camera->fx, 2.5);
+    EXPECT_EQ(recording->calibration().depth->left_from_depth.translation.norm(), 0.0);
+    EXPECT_NEAR(depth_of_first(*recording), 1.234, 1e-9);
+  }
+}
+
 TEST_F(BagRecordings, UseTheDepthScaleOfTheCalibrationFile) {
   write(
       "scaled.yaml",

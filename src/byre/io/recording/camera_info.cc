@@ -141,6 +141,24 @@ bool has_positive_baseline(const CameraInfoWithSource& left, const CameraInfoWit
   return right.info.p[3] > 0.0 && left.info.p[3] == 0.0;
 }
 
+std::optional<DepthCamera> depth_camera_of(const CameraInfoWithSource& own, bool is_named_registered,
+                                           const Camera& left, const std::string& left_frame,
+                                           const StaticFrames& frames) {
+  const ros::CameraInfo& info = own.info;
+  const bool is_of_left =
+      is_named_registered || frame_without_slash(info.header.frame_id) == frame_without_slash(left_frame);
+  const bool has_size = info.width != 0 && info.height != 0;
+  const bool is_as_left =
+      info.width == static_cast<std::uint32_t>(left.width) && info.height == static_cast<std::uint32_t>(left.height);
+  if (is_of_left && (is_as_left || !has_size)) return DepthCamera{};
+  const std::optional<Pose> left_from_depth = frames.between(left_frame, info.header.frame_id);
+  if (!left_from_depth) return std::nullopt;
+  DepthCamera depth;
+  depth.camera = camera_of(own);
+  depth.left_from_depth = *left_from_depth;
+  return depth;
+}
+
 Pose body_from_camera(const std::string& camera_frame, const StaticFrames& frames) {
   return frames.between("base_link", camera_frame).value_or(Pose());
 }

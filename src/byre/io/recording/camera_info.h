@@ -4,6 +4,7 @@
 #include "byre/io/recording/static_frames.h"
 #include "byre/io/ros/messages.h"
 
+#include <optional>
 #include <string>
 
 namespace byre {
@@ -28,6 +29,13 @@ StereoPartner partner_of(const CameraInfoWithSource& left, const CameraInfoWithS
 // Whether P of the right camera alone has a baseline, and of the sign that no right camera has. The images show whether
 // the driver errs or the cameras are exchanged.
 bool has_positive_baseline(const CameraInfoWithSource& left, const CameraInfoWithSource& right);
+
+// The depth camera by its own camera info. Registered to the left camera if its topic is named so or its frame is that
+// of the left camera, and its size too; else with its own lens, placed by the transform tree. Empty if the tree does
+// not connect the frames.
+std::optional<DepthCamera> depth_camera_of(const CameraInfoWithSource& own, bool is_named_registered,
+                                           const Camera& left, const std::string& left_frame,
+                                           const StaticFrames& frames);
 
 // Pose of the camera in the robot's body, the frame base_link. Identity if the tree does not connect them.
 Pose body_from_camera(const std::string& camera_frame, const StaticFrames& frames);

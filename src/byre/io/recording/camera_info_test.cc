@@ -62,6 +62,28 @@ TEST(CameraInfo, UsesTheProjectionOfRectifiedImages) {
   EXPECT_EQ(camera_of(placed), (Camera{CameraModel::pinhole, 752, 480, 430.0, 431.0, 360.0, 240.0, {}}));
 }
 
+TEST(CameraInfo, PlacesADepthCameraByNameFrameAndSize) {
+  CameraInfoWithSource own = placed_info("depth");
+  const Camera left = camera_of(placed_info("left"));
+  StaticFrames frames;
+  EXPECT_FALSE(depth_camera_of(own, false, left, "left", frames)) << "no transform";
+  EXPECT_EQ(depth_camera_of(own, true, left, "left", frames), DepthCamera{}) << "registered by name";
+  EXPECT_EQ(depth_camera_of(placed_info("left"), false, left, "/left", frames), DepthCamera{}) << "by frame";
+  const Pose left_from_depth{rotation_exp({0.01, 0.0, 0.02}), {-0.015, 0.001, 0.0}};
+  frames.take({{transform("left", "depth", left_from_depth)}});
+  const auto placed = depth_camera_of(own, false, left, "left", frames);
+  ASSERT_TRUE(placed && placed->camera);
+  EXPECT_EQ(*placed->camera, camera_of(own));
+  EXPECT_THAT(placed->left_from_depth, PoseNear(left_from_depth, 1e-12, 1e-12));
+  CameraInfoWithSource half = placed_info("left");
+  half.info.width /= 2;
+  half.info.height /= 2;
+  const auto smaller = depth_camera_of(half, true, left, "left", frames);
+  ASSERT_TRUE(smaller && smaller->camera) << "its own lens, in the place of the left camera";
+  EXPECT_EQ(smaller->camera->width, 376);
+  EXPECT_THAT(smaller->left_from_depth, PoseNear(Pose{}, 1e-12, 1e-12));
+}
+
 TEST(CameraInfo, RejectsUnsupportedLensModels) {
   CameraInfoWithSource rational = placed_info("left");
   rational.info.distortion_model = "rational_polynomial";

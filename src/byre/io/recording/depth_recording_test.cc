@@ -210,7 +210,9 @@ TEST_F(DepthRecording, IsTheSameInABag) {
     const ImageFrame from_bag = bag->read(i).value(), from_folder = folder->read(i).value();
     EXPECT_EQ(from_bag.left.pixels, from_folder.left.pixels);
     ASSERT_EQ(from_bag.depth.has_value(), from_folder.depth.has_value());
-    if (from_bag.depth) EXPECT_EQ(from_bag.depth->units, from_folder.depth->units);
+    if (from_bag.depth) {
+      EXPECT_EQ(from_bag.depth->units, from_folder.depth->units);
+    }
   }
 }
 
