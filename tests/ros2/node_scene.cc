@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -113,21 +114,34 @@ sensor_msgs::msg::Image image_message(const Image& image, Timestamp time, const 
   return message;
 }
 
-CameraFeed::CameraFeed(FastPeer& peer, bool is_reliable) {
+sensor_msgs::msg::Image depth_message(const DepthImage& depth, double units_per_metre, Timestamp time,
+                                      const std::string& frame) {
+  std::vector<float> metres;
+  metres.reserve(depth.units.size());
+  for (const std::uint16_t units : depth.units) metres.push_back(static_cast<float>(units / units_per_metre));
+  sensor_msgs::msg::Image message = image_message({depth.width, depth.height, {}}, time, frame);
+  message.encoding("32FC1");
+  message.step(message.width() * static_cast<std::uint32_t>(sizeof(float)));
+  message.data().resize(metres.size() * sizeof(float));
+  std::memcpy(message.data().data(), metres.data(), message.data().size());
+  return message;
+}
+
+CameraFeed::CameraFeed(FastPeer& peer, bool is_reliable, const std::string& second) {
   const PeerQos qos{is_reliable, false, 5};
   const auto type = [] { return TypeSupport(new sensor_msgs::msg::ImagePubSubType); };
   left_ = peer.writer("rt/left/image_raw", type(), qos);
-  right_ = peer.writer("rt/right/image_raw", type(), qos);
+  second_ = peer.writer("rt/" + second + "/image_raw", type(), qos);
 }
 
 bool CameraFeed::has_subscriber() const {
-  return FastPeer::has_subscriber(left_) && FastPeer::has_subscriber(right_);
+  return FastPeer::has_subscriber(left_) && FastPeer::has_subscriber(second_);
 }
 
 bool CameraFeed::send_acknowledged() {
   sensor_msgs::msg::Image image = image_message({1, 1, {0}}, {}, "left_optical");
   image.encoding("none");
-  return testing_ros2::send_acknowledged(left_, image) && testing_ros2::send_acknowledged(right_, image);
+  return testing_ros2::send_acknowledged(left_, image) && testing_ros2::send_acknowledged(second_, image);
 }
 
 void CameraFeed::send_left(const ImageFrame& frame, Timestamp later) {
@@ -140,7 +154,12 @@ void CameraFeed::send_left(sensor_msgs::msg::Image message) {
 
 void CameraFeed::send_right(const ImageFrame& frame, Timestamp later) {
   sensor_msgs::msg::Image message = image_message(*frame.right, frame.time + later, "right_optical");
-  right_->write(&message);
+  second_->write(&message);
+}
+
+void CameraFeed::send_depth(const ImageFrame& frame, double units_per_metre) {
+  sensor_msgs::msg::Image message = depth_message(*frame.depth, units_per_metre, frame.time, "left_optical");
+  second_->write(&message);
 }
 
 }  // namespace byre::testing_ros2

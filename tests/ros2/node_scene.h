@@ -51,14 +51,18 @@ int free_port();
 int some_domain();
 
 sensor_msgs::msg::Image image_message(const Image& image, Timestamp time, const std::string& frame);
+// Depths in metres (32FC1).
+sensor_msgs::msg::Image depth_message(const DepthImage& depth, double units_per_metre, Timestamp time,
+                                      const std::string& frame);
 builtin_interfaces::msg::Time ros_time(Timestamp time);
 Timestamp time_of(const builtin_interfaces::msg::Time& time);
 Eigen::Vector3d vector_of(const geometry_msgs::msg::Point& point);
 
-// Sends the images of a stereo recording like a camera driver.
+// Sends the images of a recording like a camera driver.
 class CameraFeed {
  public:
-  explicit CameraFeed(FastPeer& peer, bool is_reliable = true);
+  // second: right or depth.
+  explicit CameraFeed(FastPeer& peer, bool is_reliable = true, const std::string& second = "right");
 
   bool has_subscriber() const;
   bool send_acknowledged();  // settles both writers with dummy images
@@ -69,10 +73,11 @@ class CameraFeed {
   void send_left(const ImageFrame& frame, Timestamp later = {});
   void send_right(const ImageFrame& frame, Timestamp later = {});
   void send_left(sensor_msgs::msg::Image message);
+  void send_depth(const ImageFrame& frame, double units_per_metre);
 
  private:
   eprosima::fastdds::dds::DataWriter* left_;
-  eprosima::fastdds::dds::DataWriter* right_;
+  eprosima::fastdds::dds::DataWriter* second_;
 };
 
 }  // namespace byre::testing_ros2

@@ -112,19 +112,21 @@ class Package(unittest.TestCase):
 
 class Sensors(unittest.TestCase):
     def test_are_without_faults(self):
-        self.assertGreaterEqual({path.stem for path in SENSORS}, {"realsense_d435", "oak_d", "zed2", "turtlebot4"})
+        self.assertGreaterEqual({path.stem for path in SENSORS}, {"realsense_d435", "realsense_d435_rgbd", "oak_d", "zed2", "turtlebot4"})
         for path in SENSORS:
             with self.subTest(sensor=path.stem):
                 checked = node("--check", "--ros-args", "--params-file", str(path), "-p", "slam.task:=map",
                                "-p", "slam.save:=made.byre")
                 self.assertEqual((checked.returncode, checked.stderr), (0, ""))
 
-    def test_have_a_pair_of_rectified_images(self):
+    def test_have_a_pair_of_rectified_images_or_depth(self):
         for path in SENSORS:
             with self.subTest(sensor=path.stem):
                 printed = node("--print-config", "--ros-args", "--params-file", str(path), "-p", "slam.task:=map",
                                "-p", "slam.save:=made.byre").stdout
-                self.assertIn("rectified: true", printed)
+                has_depth = "  depth: /" in printed
+                self.assertIn("rectified: true" if not has_depth else "rectified: false", printed)
+                self.assertEqual(has_depth, path.stem.endswith("_rgbd"))
                 self.assertNotIn(": /left/", printed)
                 self.assertNotIn(": /right/", printed)
 

@@ -33,7 +33,7 @@ void CameraMonitor::note_unusable(const InputError& fault, Timestamp now) {
 }
 
 void CameraMonitor::note_frame(const CameraFrame& frame, Timestamp now) {
-  frames_.push_back({now, frame.expects_right && !frame.has_right, frame.seconds, frame.nearest_right});
+  frames_.push_back({now, frame.expects_second && !frame.has_second, frame.seconds, frame.nearest_second});
   if (frame.is_frozen) frozen_ = Note{now, "repeated image; restart the camera driver"};
   if (frame.jump) {
     jump_ =
@@ -71,14 +71,14 @@ std::optional<CameraMonitor::Finding> CameraMonitor::silence(Timestamp now) cons
   return Finding{kStale, fmt::format("no image for {:.1f} s on ", silent) + topic_};
 }
 
-std::optional<CameraMonitor::Finding> CameraMonitor::lost_right_images() const {
-  const auto lacking = std::ranges::count_if(frames_, &Recent::lacks_right);
+std::optional<CameraMonitor::Finding> CameraMonitor::lost_second_images() const {
+  const auto lacking = std::ranges::count_if(frames_, &Recent::lacks_second);
   if (lacking == 0) return std::nullopt;
-  std::string text = fmt::format("right images are missing: {} of the last {}", static_cast<int>(lacking),
+  std::string text = fmt::format("{} images are missing: {} of the last {}", second_, static_cast<int>(lacking),
                                  static_cast<int>(frames_.size()));
   // Stamps of unsynchronised cameras differ.
   constexpr Timestamp kLikelyItsOwn = 50ms;
-  if (const auto nearest = frames_.back().nearest_right; nearest && *nearest < kLikelyItsOwn) {
+  if (const auto nearest = frames_.back().nearest_second; nearest && *nearest < kLikelyItsOwn) {
     text += fmt::format(", the nearest time stamp differs by {:.1f} ms, see images.pair_tolerance",
                         1e3 * to_seconds(*nearest));
   }
@@ -93,7 +93,7 @@ std::vector<CameraMonitor::Finding> CameraMonitor::findings(Timestamp now) const
   add(kError, unusable_, kRecently);
   if (const auto finding = silence(now)) found.push_back(*finding);
   add(kError, frozen_, kRecently);
-  if (const auto finding = lost_right_images()) found.push_back(*finding);
+  if (const auto finding = lost_second_images()) found.push_back(*finding);
   add(kWarn, jump_, kRemembered);
   add(kWarn, dropped_, kRecently);
   if (!skipped_times_.empty()) {

@@ -15,20 +15,21 @@ namespace byre {
 
 // Input side of a frame.
 struct CameraFrame {
-  bool has_right = true;
-  bool expects_right = true;
+  bool has_second = true;  // right or depth image
+  bool expects_second = true;
   bool is_frozen = false;  // image equal to the previous one, bit by bit
   double seconds = 0.0;    // from arrival of the image to the pose
   InputFault fault = InputFault::none;
-  std::optional<Timestamp> nearest_right;  // without a right image: distance to the nearest right stamp
-  std::optional<Timestamp> jump;           // jump of the stamps before this frame
+  std::optional<Timestamp> nearest_second;  // without a second image: distance to the nearest one's stamp
+  std::optional<Timestamp> jump;            // jump of the stamps before this frame
 };
 
 // Monitors the cameras, and reports faults within a second. Times are of one monotonic clock.
 class CameraMonitor {
  public:
-  // topic: of the left images, for messages; now: start time.
-  CameraMonitor(std::string topic, Timestamp now) : topic_(std::move(topic)), since_(now) {}
+  // topic: of the left images, and second: "right" or "depth", for messages; now: start time.
+  CameraMonitor(std::string topic, std::string second, Timestamp now)
+      : topic_(std::move(topic)), second_(std::move(second)), since_(now) {}
 
   void note_arrival(Timestamp now);                            // left image received
   void note_unusable(const InputError& fault, Timestamp now);  // unusable image or calibration
@@ -42,9 +43,9 @@ class CameraMonitor {
  private:
   struct Recent {
     Timestamp time{};
-    bool lacks_right = false;
+    bool lacks_second = false;
     double seconds = 0.0;
-    std::optional<Timestamp> nearest_right{};
+    std::optional<Timestamp> nearest_second{};
   };
   struct Finding {
     std::byte level{};  // level of diagnostic_msgs
@@ -58,11 +59,12 @@ class CameraMonitor {
   void drop_before(Timestamp time);
   Timestamp longest_silence() const;
   std::optional<Finding> silence(Timestamp now) const;
-  std::optional<Finding> lost_right_images() const;
+  std::optional<Finding> lost_second_images() const;
   std::vector<Finding> findings(Timestamp now) const;
 
-  std::string topic_;  // constant after construction
-  Timestamp since_;    // constant after construction
+  std::string topic_;   // constant after construction
+  std::string second_;  // constant after construction
+  Timestamp since_;     // constant after construction
   std::optional<Timestamp> last_arrival_;
   Timestamp interval_{};  // typical interval between images
   int arrived_ = 0;

@@ -3,6 +3,7 @@
 #include "byre/input_error.h"
 #include "byre/io/image/image_file.h"
 #include "byre/io/image/image_size.h"
+#include "byre/io/recording/bag_image.h"
 
 #include <algorithm>
 #include <array>
@@ -70,6 +71,14 @@ ReceivedImage grey_image(ros::Header header, Image grey) {
   return image;
 }
 
+ReceivedDepth depth_or_fault(const ros::Header& header, DepthMessage read, const std::string& place) {
+  if (!read.reading.image) {
+    throw InputError(place, "has an image that " + read.reading.failure,
+                     "set the depth camera driver to 16UC1 or 32FC1, or to compressedDepth as PNG");
+  }
+  return {header, std::move(*read.reading.image), read.is_in_metres};
+}
+
 }  // namespace
 
 ReceivedImage received_image(ros::Image message, const std::string& place) {
@@ -110,6 +119,14 @@ ReceivedImage received_image(const ros::CompressedImage& message, const std::str
                      "check the compression format of the camera driver");
   }
   return grey_image(message.header, std::move(*decoded.image));
+}
+
+ReceivedDepth received_depth(const ros::Image& message, const std::string& place) {
+  return depth_or_fault(message.header, depth_of(message), place);
+}
+
+ReceivedDepth received_depth(const ros::CompressedImage& message, const std::string& place) {
+  return depth_or_fault(message.header, depth_of(message), place);
 }
 
 }  // namespace byre

@@ -3,6 +3,8 @@
 #include "byre/features/image_view.h"
 #include "byre/input_error.h"
 
+#include <cstring>
+
 #include <gmock/gmock.h>
 #include <opencv2/imgcodecs.hpp>
 
@@ -11,6 +13,7 @@ namespace {
 
 using testing::Each;
 using testing::HasSubstr;
+using std::chrono_literals::operator""s;
 
 ros::Image image_of(const std::string& encoding, std::uint32_t bytes_each, std::uint8_t value) {
   ros::Image image;
@@ -51,6 +54,84 @@ TEST(ReceivedImage, IsConvertedToGreyFromEachEncoding) {
     EXPECT_THAT(grey.pixels, Each(testing::AllOf(testing::Ge(89), testing::Le(91)))) << encoding;
     EXPECT_EQ(received.view().time, Timestamp(12'000'000'500)) << encoding;
   }
+}
+
+// A pure colour has its luminance as grey value in each order of channels.
+TEST(ReceivedImage, WeightsColoursByTheOrderOfTheChannels) {
+  const auto grey = [](const std::string& encoding, std::vector<std::uint8_t> pixel) {
+    ros::Image image = image_of(encoding, static_cast<std::uint32_t>(pixel.size()), 0);
+    for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = pixel[i % pixel.size()];
+    return grey_of(received_image(image, "/left")).pixels;
+  };
+  EXPECT_THAT(grey("rgb8", {200, 0, 0}), Each(60)) << "0.299 of red";
+  EXPECT_THAT(grey("bgr8", {0, 0, 200}), Each(60));
+  EXPECT_THAT(grey("8UC3", {0, 0, 200}), Each(60));
+  EXPECT_THAT(grey("rgba8", {200, 0, 0, 255}), Each(60));
+  EXPECT_THAT(grey("bgra8", {0, 0, 200, 255}), Each(60));
+  EXPECT_THAT(grey("rgb8", {0, 0, 200}), Each(23)) << "0.114 of blue";
+}
+
+TEST(ReceivedImage, AppliesTheBayerPattern) {
+  for (const auto& [encoding, red] : {std::pair("bayer_rggb8", 0u), std::pair("bayer_grbg8", 1u),
+                                      std::pair("bayer_gbrg8", 2u), std::pair("bayer_bggr8", 3u)}) {
+    ros::Image image = image_of(encoding, 1, 0);
+    for (std::uint32_t i = 0; i < 32; ++i) {
+      if (2 * (i / 8 % 2) + i % 2 == red) image.data[i] = 200;
+    }
+    EXPECT_NEAR(grey_of(received_image(image, "/left")).pixels[8 + 3], 60, 2) << encoding;
+  }
+}
+
+ros::Image depth_image(const std::string& encoding, std::uint32_t bytes_each) {
+  return image_of(encoding, bytes_each, 0);
+}
+
+TEST(ReceivedDepth, IsReadInMillimetresAndMetres) {
+  ros::Image millimetres = depth_image("16UC1", 2);
+  const std::uint16_t value = 1234;
+  std::memcpy(millimetres.data.data() + 2, &value, 2);
+  const ReceivedDepth read = received_depth(millimetres, "/depth");
+  EXPECT_EQ(read.image.units[0], 0);
+  EXPECT_EQ(read.image.units[1], 1234);
+  EXPECT_FALSE(read.is_in_metres);
+  EXPECT_EQ(read.header.stamp.sec, 12);
+  EXPECT_TRUE(is_sound(read.view(1s)));
+  EXPECT_EQ(read.view(1s).format, PixelFormat::depth16);
+  EXPECT_EQ(read.view(1s).time, 1s);
+  ros::Image metres = depth_image("32FC1", 4);
+  const float depth = 1.5f;
+  std::memcpy(metres.data.data() + 4, &depth, 4);
+  EXPECT_EQ(received_depth(metres, "/depth").image.units[1], 7500) << "units of 0.2 mm";
+  EXPECT_TRUE(received_depth(metres, "/depth").is_in_metres);
+}
+
+TEST(ReceivedDepth, IsReadFromCompressedDepth) {
+  ros::CompressedImage message;
+  message.format = "16UC1; compressedDepth png";
+  cv::imencode(".png", cv::Mat(4, 8, CV_16UC1, cv::Scalar(1234)), message.data);
+  message.data.insert(message.data.begin(), 12, 0);
+  EXPECT_THAT(received_depth(message, "/depth").image.units, Each(1234));
+  EXPECT_EQ(received_depth(message, "/depth").image.width, 8);
+}
+
+TEST(ReceivedDepth, RefusesOtherImagesWithARemedy) {
+  const auto refusal = [](const auto& message) -> std::string {
+    try {
+      received_depth(message, "/depth");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal(depth_image("mono8", 1)),
+              testing::AllOf(HasSubstr("/depth: has an image that has the encoding \"mono8\""),
+                             HasSubstr("set the depth camera driver to 16UC1 or 32FC1")));
+  ros::Image cut = depth_image("16UC1", 2);
+  cut.data.resize(20);
+  EXPECT_THAT(refusal(cut), HasSubstr("/depth: has an image that is not a complete depth image"));
+  ros::CompressedImage rvl;
+  rvl.format = "16UC1; compressedDepth rvl";
+  EXPECT_THAT(refusal(rvl), HasSubstr("RVL"));
 }
 
 TEST(ReceivedImage, ReadsLuminanceOfUyvyFromTheSecondByte) {

@@ -9,43 +9,43 @@
 namespace byre {
 
 struct PairingOptions {
-  bool has_right = true;
+  bool has_second = true;
   Timestamp tolerance{};  // largest time between the stamps of a pair
-  Timestamp wait{};       // time that a left image waits for its right image
+  Timestamp wait{};       // time that a left image waits for its second image
 };
 
 struct PairingCounts {
-  int skipped = 0;        // left images skipped for newer ones
-  int without_right = 0;  // left images returned without a right image
+  int skipped = 0;         // left images skipped for newer ones
+  int without_second = 0;  // left images returned without a second image
 };
 
-// Pairs left and right images by stamp. A caller that lags by one pair misses none; with more lag, the newest pair is
-// returned. Arrival times are of one monotonic clock.
+// Pairs left images with second images, right or depth, by stamp. A caller that lags by one pair misses none; with more
+// lag, the newest pair is returned. Arrival times are of one monotonic clock.
 template <typename Image>
 class ImagePairs {
  public:
   struct Pair {
     Timestamp stamp{};
     Image left;
-    std::optional<Image> right;
-    std::optional<Timestamp> nearest{};  // without a right image: distance to the nearest right stamp
+    std::optional<Image> second;
+    std::optional<Timestamp> nearest{};  // without a second image: distance to the nearest one's stamp
   };
 
   explicit ImagePairs(const PairingOptions& options) : options_(options) {}
 
   void add_left(Timestamp stamp, Image image, Timestamp arrival) { add(lefts_, stamp, std::move(image), arrival); }
-  void add_right(Timestamp stamp, Image image, Timestamp arrival) { add(rights_, stamp, std::move(image), arrival); }
+  void add_second(Timestamp stamp, Image image, Timestamp arrival) { add(seconds_, stamp, std::move(image), arrival); }
 
   // Older one of two complete pairs, newest one of more; else the newest left image whose waiting time is over.
   std::optional<Pair> next(Timestamp now) {
     if (const auto left = next_complete()) return take(*left, partner_of(lefts_[*left].stamp));
     for (std::size_t i = lefts_.size(); i-- > 0;) {
       if (now - lefts_[i].arrival < options_.wait) continue;
-      ++counts_.without_right;
+      ++counts_.without_second;
       const std::optional<std::size_t> nearest = nearest_to(lefts_[i].stamp);
       const Timestamp stamp = lefts_[i].stamp;
       Pair pair = take(i, std::nullopt);
-      if (nearest) pair.nearest = std::chrono::abs(rights_[*nearest].stamp - stamp);
+      if (nearest) pair.nearest = std::chrono::abs(seconds_[*nearest].stamp - stamp);
       return pair;
     }
     return std::nullopt;
@@ -75,7 +75,7 @@ class ImagePairs {
     std::optional<std::size_t> newest, oldest;
     std::size_t count = 0;
     for (std::size_t i = lefts_.size(); i-- > 0;) {
-      if (options_.has_right && !partner_of(lefts_[i].stamp)) continue;
+      if (options_.has_second && !partner_of(lefts_[i].stamp)) continue;
       if (!newest) newest = i;
       oldest = i;
       ++count;
@@ -85,8 +85,8 @@ class ImagePairs {
 
   std::optional<std::size_t> nearest_to(Timestamp stamp) const {
     std::optional<std::size_t> best;
-    const auto distance = [&](std::size_t i) { return std::chrono::abs(rights_[i].stamp - stamp); };
-    for (std::size_t i = 0; i < rights_.size(); ++i) {
+    const auto distance = [&](std::size_t i) { return std::chrono::abs(seconds_[i].stamp - stamp); };
+    for (std::size_t i = 0; i < seconds_.size(); ++i) {
       if (!best || distance(i) < distance(*best)) best = i;
     }
     return best;
@@ -94,22 +94,22 @@ class ImagePairs {
 
   std::optional<std::size_t> partner_of(Timestamp stamp) const {
     const auto nearest = nearest_to(stamp);
-    const bool is_near = nearest && std::chrono::abs(rights_[*nearest].stamp - stamp) <= options_.tolerance;
+    const bool is_near = nearest && std::chrono::abs(seconds_[*nearest].stamp - stamp) <= options_.tolerance;
     return is_near ? nearest : std::nullopt;
   }
 
-  Pair take(std::size_t left, std::optional<std::size_t> right) {
+  Pair take(std::size_t left, std::optional<std::size_t> second) {
     Pair pair{lefts_[left].stamp, std::move(lefts_[left].image), std::nullopt};
-    if (right) pair.right = std::move(rights_[*right].image);
+    if (second) pair.second = std::move(seconds_[*second].image);
     counts_.skipped += static_cast<int>(left);
     lefts_.erase(lefts_.begin(), lefts_.begin() + static_cast<std::ptrdiff_t>(left) + 1);
-    if (right) rights_.erase(rights_.begin(), rights_.begin() + static_cast<std::ptrdiff_t>(*right) + 1);
+    if (second) seconds_.erase(seconds_.begin(), seconds_.begin() + static_cast<std::ptrdiff_t>(*second) + 1);
     return pair;
   }
 
   PairingOptions options_;
-  Queue lefts_;   // in order of arrival
-  Queue rights_;  // in order of arrival
+  Queue lefts_;    // in order of arrival
+  Queue seconds_;  // in order of arrival
   PairingCounts counts_;
 };
 

@@ -19,7 +19,7 @@ Pairs waiting_pairs(int count) {
   Pairs pairs({true, 0ms, 50ms});
   for (int i = 1; i <= count; ++i) {
     pairs.add_left(Timestamp(i * 1s), i, 0ms);
-    pairs.add_right(Timestamp(i * 1s), 10 + i, 0ms);
+    pairs.add_second(Timestamp(i * 1s), 10 + i, 0ms);
   }
   return pairs;
 }
@@ -30,11 +30,11 @@ TEST(ImagePairs, ReturnsTheNewestCompletePairAndSkipsOlderOnes) {
   const auto pair = pairs.next(3ms);
   ASSERT_TRUE(pair.has_value());
   EXPECT_EQ(pair->left, 3);
-  EXPECT_EQ(pair->right, 13);
+  EXPECT_EQ(pair->second, 13);
   EXPECT_EQ(pairs.counts().skipped, 2);
   EXPECT_FALSE(pairs.next(4ms)) << "the fourth waits for its right image";
-  pairs.add_right(4s, 14, 5ms);
-  EXPECT_EQ(pairs.next(5ms)->right, 14);
+  pairs.add_second(4s, 14, 5ms);
+  EXPECT_EQ(pairs.next(5ms)->second, 14);
 }
 
 TEST(ImagePairs, SkipsNoneIfReadOneLate) {
@@ -47,21 +47,21 @@ TEST(ImagePairs, SkipsNoneIfReadOneLate) {
 TEST(ImagePairs, ReturnsALeftImageAloneAfterTheTimeout) {
   Pairs pairs({true, 0ms, 50ms});
   pairs.add_left(1s, 1, 0ms);
-  pairs.add_right(1s + 1ms, 11, 0ms);
+  pairs.add_second(1s + 1ms, 11, 0ms);
   EXPECT_FALSE(pairs.next(49ms));
   const auto pair = pairs.next(50ms);
   ASSERT_TRUE(pair.has_value());
-  EXPECT_FALSE(pair->right.has_value());
+  EXPECT_FALSE(pair->second.has_value());
   EXPECT_EQ(pair->nearest, Timestamp(1ms));
-  EXPECT_EQ(pairs.counts().without_right, 1);
+  EXPECT_EQ(pairs.counts().without_second, 1);
 }
 
 TEST(ImagePairs, MatchesTheNearestRightImageWithinTheTolerance) {
   Pairs pairs({true, 5ms, 50ms});
-  pairs.add_right(1s - 4ms, 10, 0ms);
-  pairs.add_right(1s + 2ms, 11, 0ms);
+  pairs.add_second(1s - 4ms, 10, 0ms);
+  pairs.add_second(1s + 2ms, 11, 0ms);
   pairs.add_left(1s, 1, 0ms);
-  EXPECT_EQ(pairs.next(0ms)->right, 11);
+  EXPECT_EQ(pairs.next(0ms)->second, 11);
 }
 
 TEST(ImagePairs, ReturnsLeftImagesForOneCamera) {
@@ -90,11 +90,11 @@ class CameraWatchTest : public testing::Test {
   std::string message(Timestamp now) const { return monitor_.status(now).message; }
   std::byte level(Timestamp now) const { return monitor_.status(now).level; }
 
-  CameraMonitor monitor_{"/left", 0s};
+  CameraMonitor monitor_{"/left", "right", 0s};
   CameraFrame good_;
   CameraFrame left_alone_ = [] {
     CameraFrame frame;
-    frame.has_right = false;
+    frame.has_second = false;
     return frame;
   }();
 };
@@ -120,11 +120,18 @@ TEST_F(CameraWatchTest, ReportsLostRightImages) {
   frames(2200ms, 20, left_alone_);
   EXPECT_EQ(level(3200ms), ros::DiagnosticStatus::kError);
   EXPECT_THAT(message(3200ms), HasSubstr("right images are missing"));
-  left_alone_.nearest_right = 3ms;
+  left_alone_.nearest_second = 3ms;
   frames(3200ms, 1, left_alone_);
   EXPECT_THAT(message(3200ms), HasSubstr("the nearest time stamp differs by 3.0 ms, see images.pair_tolerance"));
   frames(3200ms, 25, good_);
   EXPECT_EQ(level(4450ms), ros::DiagnosticStatus::kOk);
+}
+
+TEST_F(CameraWatchTest, NamesTheSecondImagesByTheirKind) {
+  CameraMonitor monitor("/left", "depth", 0s);
+  monitor.note_arrival(1s);
+  monitor.note_frame(left_alone_, 1s);
+  EXPECT_THAT(monitor.status(1s).message, HasSubstr("depth images are missing: 1 of the last 1"));
 }
 
 TEST_F(CameraWatchTest, ReportsFrozenImagesJumpsAndUnusableImages) {

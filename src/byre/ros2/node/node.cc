@@ -1,6 +1,7 @@
 #include "byre/ros2/node/node.h"
 
 #include "byre/base/printable.h"
+#include "byre/io/recording/frame_selection.h"
 #include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/node/health_messages.h"
 #include "byre/ros2/node/map_messages.h"
@@ -34,8 +35,12 @@ std::string without_digits(std::string text) {
   return text;
 }
 
+MessageType image_type(bool is_compressed) {
+  return is_compressed ? message_type<ros::CompressedImage>() : message_type<ros::Image>();
+}
+
 PairingOptions pairing_options(const NodeConfig& config) {
-  return {config.has_right(), from_seconds(config.pair_tolerance), from_seconds(config.pair_wait)};
+  return {!config.second().empty(), from_seconds(config.pair_tolerance), from_seconds(config.pair_wait)};
 }
 
 }  // namespace
@@ -52,12 +57,11 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
       outputs_(config, graph_, watchers_.get()),
       motion_(config, graph_, inputs_),
       pairs_(pairing_options(config)),
-      monitor_(config.topic(config.left), steady_now()),
+      monitor_(config.topic(config.left), config.has_depth() ? "depth" : "right", steady_now()),
       robot_frames_({config.map_frame, config.odom_frame, config.base_frame}) {
   const auto subscribe = [this](const std::string& topic, const MessageType& type, const TopicQos& qos) {
     return topic.empty() ? std::nullopt : std::optional(graph_.subscribe(config_.topic(topic), type, qos));
   };
-  const MessageType image = config.is_compressed ? message_type<ros::CompressedImage>() : message_type<ros::Image>();
   const TopicQos images{.is_reliable = config.is_reliable, .depth = 5};
   const TopicQos small{.max_bytes = kMaxBytesWithoutImage};
   command_ = subscribe(config.command, message_type<ros::String>(), small);
@@ -68,13 +72,13 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   tf_static_ = subscribe(config.tf_static, message_type<ros::TFMessage>(),
                          {.is_latched = true, .depth = 100, .max_bytes = kMaxBytesWithoutImage, .ignores_own = true});
   if (config.services.value_or(network.uses_cyclone)) services_.emplace(config, graph_, log_);
-  calibration_ = calibration_source_.take("");
+  calibration_ = calibration_source_.take("", std::nullopt);
   if (calibration_) start();
   require_plan_of_map(config_);
   outputs_.publish_plan();
-  left_ = subscribe(config.left, image, images);
-  right_ = subscribe(config.right, image, images);
-  watch_images(image, images);
+  left_ = subscribe(config.left, image_type(config.is_compressed), images);
+  second_ = subscribe(config.second(), image_type(config.is_second_compressed()), images);
+  watch_images(images);
   watch_odometry(transforms);
   watch_outputs();
   graph_.announce();
@@ -87,16 +91,21 @@ Node::Node(const NodeConfig& config, const RosNetwork& network, const std::strin
   }
 }
 
-void Node::watch_images(const MessageType& type, const TopicQos& qos) {
-  const auto watch = [&](const char* name, const std::string& topic, const std::optional<Subscriber>& subscriber) {
-    WatchedInput input{name, config_.topic(topic), {type.name}, qos};
-    input.remedy_for_type = std::string("set images.compressed: ") + (config_.is_compressed ? "false" : "true");
+void Node::watch_images(const TopicQos& qos) {
+  const auto watch = [&](const char* name, const std::string& topic, const std::optional<Subscriber>& subscriber,
+                         const char* setting, bool is_compressed) {
+    WatchedInput input{name, config_.topic(topic), {image_type(is_compressed).name}, qos};
+    input.remedy_for_type = fmt::format("set {}: {}", setting, !is_compressed);
     input.remedy_for_reliability = "set images.reliable: false";
     input.matched = [source = &subscriber] { return (*source)->publishers(); };
     return inputs_.add(std::move(input));
   };
-  left_input_ = watch("left images", config_.left, left_);
-  if (right_) right_input_ = watch("right images", config_.right, right_);
+  left_input_ = watch("left images", config_.left, left_, "images.compressed", config_.is_compressed);
+  if (!second_) return;
+  second_input_ =
+      config_.has_depth()
+          ? watch("depth images", config_.depth, second_, "images.depth_compressed", config_.is_depth_compressed)
+          : watch("right images", config_.right, second_, "images.compressed", config_.is_compressed);
 }
 
 void Node::watch_odometry(const TopicQos& qos) {
@@ -172,12 +181,13 @@ void Node::take_images(Timestamp now) {
     left_frame_ = header->frame_id;
     pairs_.add_left(ros::to_nanoseconds(header->stamp), std::move(message), now);
   }
-  if (!right_) return;
-  for (Message& message : right_->take()) {
-    const auto header = stamp_of(message, config_.right);
+  if (!second_) return;
+  for (Message& message : second_->take()) {
+    const auto header = stamp_of(message, config_.second());
     if (!header) continue;
-    inputs_.note_arrival(right_input_);
-    pairs_.add_right(ros::to_nanoseconds(header->stamp), std::move(message), now);
+    inputs_.note_arrival(second_input_);
+    if (config_.has_depth() && !calibration_) note_depth_format(message, now);
+    pairs_.add_second(ros::to_nanoseconds(header->stamp), std::move(message), now);
   }
 }
 
@@ -252,7 +262,7 @@ void Node::publish_grid_of_map() {
 void Node::take_calibration(Timestamp now) {
   if (calibration_) return;
   try {
-    const auto calibration = calibration_source_.take(left_frame_);
+    const auto calibration = calibration_source_.take(left_frame_, depth_format_);
     if (!calibration || is_waiting_for_wheels(now)) return;
     calibration_ = calibration;
     start();
@@ -347,28 +357,63 @@ ReceivedImage Node::decoded(const Message& message, const std::string& topic) co
   return received_image(ros::read_message<ros::Image>(bytes, ros::Encoding::cdr, topic), topic);
 }
 
+ReceivedDepth Node::decoded_depth(const Message& message) const {
+  const std::string topic = config_.topic(config_.depth);
+  if (config_.is_depth_compressed) {
+    return received_depth(ros::read_message<ros::CompressedImage>(message.bytes(), ros::Encoding::cdr, topic), topic);
+  }
+  return received_depth(ros::read_message<ros::Image>(message.bytes(), ros::Encoding::cdr, topic), topic);
+}
+
+void Node::note_depth_format(const Message& message, Timestamp now) {
+  try {
+    const ReceivedDepth depth = decoded_depth(message);
+    depth_format_ = {depth.header.frame_id, depth.image.width, depth.image.height, depth.is_in_metres};
+  } catch (const InputError& error) {
+    monitor_.note_unusable(error, now);
+  }
+}
+
+// Empty for an image that is not as calibrated: the left image is then tracked alone.
+std::optional<ReceivedDepth> Node::usable_depth(const Message& message, Timestamp now) {
+  const std::string topic = config_.topic(config_.depth);
+  try {
+    ReceivedDepth depth = decoded_depth(message);
+    require_calibrated_size(depth.image.width, depth.image.height,
+                            calibration_->depth->camera.value_or(calibration_->left), topic);
+    if (depth.is_in_metres == depth_format_->is_in_metres) return depth;
+    throw InputError(topic, "changed between depths in metres and in millimetres", "start the node again");
+  } catch (const InputError& error) {
+    monitor_.note_unusable(error, now);
+    return std::nullopt;
+  }
+}
+
 void Node::process(const Pairs::Pair& pair) {
   const Timestamp begin = steady_now();
   ++frames_;
   try {
     ReceivedImage left = decoded(pair.left, config_.topic(config_.left));
     std::optional<ReceivedImage> right;
-    if (pair.right) right = decoded(*pair.right, config_.topic(config_.right));
+    std::optional<ReceivedDepth> depth;
+    if (pair.second && config_.has_depth()) depth = usable_depth(*pair.second, begin);
+    if (pair.second && config_.has_right()) right = decoded(*pair.second, config_.topic(config_.right));
     const auto [time, jump] = clock_.read(pair.stamp, begin);
     if (right) right->layout.time += time - left.layout.time;
     left.layout.time = time;
     CameraImages images{left.view()};
     if (right) images.right = right->view();
+    if (depth) images.depth = depth->view(time + (ros::to_nanoseconds(depth->header.stamp) - pair.stamp));
     motion_.take();
     motion_.forward(clock_, runner_);
     if (const std::string fault = motion_.take_fault(); !fault.empty()) log_(LogLevel::warning, fault);
     const FrameReport report = runner_.process(images);
     outputs_.publish_images(pair.stamp, pair.left.bytes(),
-                            pair.right ? pair.right->bytes() : std::span<const std::byte>());
+                            pair.second ? pair.second->bytes() : std::span<const std::byte>());
     publish_cameras(left.header.frame_id, right ? right->header.frame_id : "");
     publish(left, report);
-    const CameraFrame camera_frame{right.has_value(),
-                                   config_.has_right(),
+    const CameraFrame camera_frame{right || depth,
+                                   second_.has_value(),
                                    report.health.doubt == DistrustReason::frozen,
                                    to_seconds(steady_now() - begin),
                                    report.input,

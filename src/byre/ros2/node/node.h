@@ -50,7 +50,7 @@ class Node {
   void publish_grid_of_map();
   void take_transforms(Timestamp now);
   void log_transforms(Timestamp now);
-  void watch_images(const MessageType& type, const TopicQos& qos);
+  void watch_images(const TopicQos& qos);
   void watch_odometry(const TopicQos& qos);
   void watch_outputs();
   void publish_cameras(const std::string& left_frame, const std::string& right_frame);
@@ -62,6 +62,9 @@ class Node {
   Outcome take_hint(const ros::PoseWithCovarianceStamped& hint);
   std::string compare(const ros::PoseWithCovarianceStamped& message);
   ReceivedImage decoded(const Message& message, const std::string& topic) const;
+  ReceivedDepth decoded_depth(const Message& message) const;
+  std::optional<ReceivedDepth> usable_depth(const Message& message, Timestamp now);
+  void note_depth_format(const Message& message, Timestamp now);
   void process(const Pairs::Pair& pair);
   void publish(const ReceivedImage& left, const FrameReport& report);
   void publish_state(Timestamp now);
@@ -79,9 +82,9 @@ class Node {
   SlamRunner runner_;
   std::shared_ptr<LiveTopics> watchers_;  // null without a web server
   NodeOutputs outputs_;
-  std::optional<Subscriber> left_, right_, command_, initial_pose_, tf_, tf_static_;
-  InputMonitor::Id left_input_ = 0, right_input_ = 0, odometry_input_ = 0;  // right: only with a topic
-  std::optional<NodeServices> services_;                                    // empty if services are disabled
+  std::optional<Subscriber> left_, second_, command_, initial_pose_, tf_, tf_static_;
+  InputMonitor::Id left_input_ = 0, second_input_ = 0, odometry_input_ = 0;  // second: only with a topic
+  std::optional<NodeServices> services_;                                     // empty if services are disabled
   MotionInput motion_;
   Pairs pairs_;
   StampClock clock_;
@@ -93,11 +96,12 @@ class Node {
   std::optional<FleetLink> fleet_;       // empty without a fleet interface
   std::optional<WebServer> web_server_;  // uses board_ and watchers_
 
-  std::optional<Calibration> calibration_;  // empty until available
-  std::optional<Timestamp> calibrated_at_;  // time since which the calibration is available
-  bool waits_for_wheels_ = false;           // with a calibration
-  std::string left_frame_;                  // frame of the left images; empty before the first one
-  std::vector<std::string> camera_frames_;  // empty until the cameras are published
+  std::optional<Calibration> calibration_;   // empty until available
+  std::optional<Timestamp> calibrated_at_;   // time since which the calibration is available
+  bool waits_for_wheels_ = false;            // with a calibration
+  std::string left_frame_;                   // frame of the left images; empty before the first one
+  std::optional<DepthFormat> depth_format_;  // format at the calibration; empty before a depth image
+  std::vector<std::string> camera_frames_;   // empty until the cameras are published
   std::optional<FrameReport> last_report_;
   std::optional<Pose> map_from_body_;  // last published pose
   Timestamp last_image_time_{};

@@ -72,6 +72,13 @@ void check_topics(const NodeConfig& config, Consistency& consistency) {
   }
   consistency.require(config.left.empty() || config.topic(config.left) != config.topic(config.right), "images.right",
                       "is the topic of the left images", "set the topic of the right images");
+  consistency.require(!config.has_depth() || !config.has_right(), "images.depth",
+                      "is set, but so is images.right, and depth is used with one camera",
+                      "set images.right: \"\", or leave images.depth empty");
+  consistency.require(!config.has_depth() || config.topic(config.left) != config.topic(config.depth), "images.depth",
+                      "is the topic of the left images", "set the topic of the depth images");
+  consistency.require(config.depth_info.empty() || config.has_depth(), "calibration.depth_info",
+                      "is set, but images.depth is empty", "set images.depth, or leave this empty");
   const std::array outputs = {std::pair("topics.odometry", config.odometry), std::pair("topics.pose", config.pose),
                               std::pair("topics.path", config.path),         std::pair("topics.points", config.points),
                               std::pair("topics.health", config.health),     std::pair("topics.events", config.events)};
@@ -93,9 +100,9 @@ void check(const NodeConfig& config, Consistency consistency) {
                       "leave it empty, or set slam.task to extend");
   consistency.require(is_mission || config.save.has_value(), "slam.save", "is missing, so the map would be lost",
                       "give a file");
-  consistency.require(config.has_right() || config.task != NodeTask::map, "images.right",
+  consistency.require(config.has_right() || config.has_depth() || config.task != NodeTask::map, "images.right",
                       "is empty, but a map of one camera has no metric scale",
-                      "set the topic of the right images, or map first with byre map and byre scale");
+                      "set the topic of the right images or images.depth, or map first with byre map and byre scale");
   consistency.require(!config.left.empty(), "images.left", "is empty", "set the topic of the left images");
   const bool needs_info = !config.calibration;
   consistency.require(!needs_info || !config.left_info.empty(), "calibration.left_info",

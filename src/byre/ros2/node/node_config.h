@@ -69,11 +69,13 @@ struct NodeConfig {
 
   std::string left = "/left/image_raw";
   std::string right = "/right/image_raw";  // empty: one camera
+  std::string depth;                       // depth images, of one camera; empty: none
+  bool is_depth_compressed = false;        // depth images in sensor_msgs/CompressedImage
   bool is_compressed = false;              // JPEG or PNG images (sensor_msgs/CompressedImage)
   bool is_rectified = false;               // images are rectified, so P of camera info applies
   bool is_reliable = false;                // lost images are resent, at the cost of latency
-  double pair_tolerance = 0.0;             // seconds between left and right stamps; 0: equal stamps
-  double pair_wait = 0.05;                 // seconds that a left image waits for its right image
+  double pair_tolerance = 0.0;             // seconds between the stamps of a pair; 0: equal stamps
+  double pair_wait = 0.05;                 // seconds that a left image waits for its right or depth image
 
   std::string wheels;     // wheel odometry, not fused with other sensors; empty: none
   std::string gyroscope;  // empty: none
@@ -85,6 +87,7 @@ struct NodeConfig {
   ExtrinsicsFrames extrinsics_frames;
   std::string left_info = "/left/camera_info";
   std::string right_info = "/right/camera_info";
+  std::string depth_info;  // empty: depth is registered to the left camera
 
   std::string map_frame = "map";
   std::string odom_frame = "odom";
@@ -121,6 +124,10 @@ struct NodeConfig {
     return extrinsics.value_or(calibration ? ExtrinsicsSource::file : ExtrinsicsSource::tf);
   }
   bool has_right() const { return !right.empty(); }
+  bool has_depth() const { return !depth.empty(); }
+  // Topic of the images paired with the left ones; empty: none. Right and depth images exclude each other.
+  const std::string& second() const { return has_depth() ? depth : right; }
+  bool is_second_compressed() const { return has_depth() ? is_depth_compressed : is_compressed; }
   std::string full_name() const { return name_space + (name_space == "/" ? "" : "/") + name; }
   // Full name of a topic: relative names are within the node. Empty if it is disabled.
   std::string topic(const std::string& given) const;
@@ -182,6 +189,9 @@ inline constexpr const char* kBaselineSetting = "calibration.baseline: ";
 // Reads the calibration file, with assumptions about it. Throws InputError also if it lacks a camera whose topic is
 // named. Precondition: config.calibration.
 CalibrationReading read_node_calibration(const NodeConfig& config);
+
+// Depth camera of the calibration file, if that has any of its fields. Throws InputError for invalid ones.
+std::optional<DepthCamera> read_node_depth_camera(const NodeConfig& config);
 
 // Fault of a calibration file without a body frame, as the base frame would then be the optical frame of the left
 // camera; empty if it has one, or if the settings choose that.

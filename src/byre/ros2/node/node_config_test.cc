@@ -79,6 +79,28 @@ TEST_F(NodeConfigFile, RejectsContradictingSettings) {
   EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
 }
 
+TEST_F(NodeConfigFile, AcceptsDepthImagesForOneCamera) {
+  const std::string one = "slam:\n  task: map\n  save: s\nimages:\n  depth: /depth/image_raw\n";
+  EXPECT_THAT(faults(one), HasSubstr("robot.yaml:5: images.depth is set, but so is images.right"));
+  EXPECT_THAT(faults(one + "  right: ''\n"), IsEmpty()) << "a map of one camera with depth is metric";
+  EXPECT_THAT(faults(one + "  right: ''\n  left: /depth/image_raw\n"),
+              HasSubstr("robot.yaml:5: images.depth is the topic of the left images"));
+  EXPECT_THAT(faults("slam:\n  map: m\ncalibration:\n  depth_info: /depth/camera_info\n"),
+              HasSubstr("robot.yaml:4: calibration.depth_info is set, but images.depth is empty"));
+}
+
+TEST_F(NodeConfigFile, ReportsFaultsOfTheDepthCameraInTheCalibration) {
+  std::ofstream(folder_ / "camera.yaml")
+      << "camera_matrix: {rows: 3, cols: 3, data: [400, 0, 320, 0, 400, 240, 0, 0, 1]}\nimage_width: 640\n"
+         "image_height: 480\ndistortion_coefficients: {rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}\ndepth_scale: 0\n";
+  const std::string settings =
+      "slam:\n  task: map\n  save: s.byre\nimages:\n  right: ''\n  depth: /d\ncalibration:\n  file: camera.yaml\n"
+      "frames:\n  mounting: camera\n";
+  const std::vector<InputError> found = faults_in(read(settings).config);
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_THAT(found[0].what(), HasSubstr("camera.yaml: depth_scale: is not a positive number"));
+}
+
 TEST_F(NodeConfigFile, RejectsRectifiedImagesWithDistortion) {
   const std::string one = "slam:\n  map: m\nimages:\n  left: /camera/left/image_rect_color\n  right: ''\n";
   EXPECT_THAT(faults(one),

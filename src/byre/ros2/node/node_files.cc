@@ -58,6 +58,7 @@ std::vector<InputError> faults_in_files(const NodeConfig& config, std::vector<st
       const CalibrationReading reading = read_node_calibration(config);
       notes = reading.notes;
       if (const auto fault = fault_of_base_frame(reading.calibration, config)) faults.push_back(*fault);
+      if (config.has_depth()) read_node_depth_camera(config);
       with_checked_baseline(reading.calibration, config.baseline, config.calibration->string(), kBaselineSetting);
     });
   }
@@ -109,6 +110,11 @@ CalibrationReading read_node_calibration(const NodeConfig& config) {
   }
   for (std::string& note : reading.notes) note = file.string() + ": " + note;
   return reading;
+}
+
+std::optional<DepthCamera> read_node_depth_camera(const NodeConfig& config) {
+  if (!config.calibration || !has_depth_camera_fields(*config.calibration)) return std::nullopt;
+  return read_depth_camera(*config.calibration);
 }
 
 std::optional<InputError> fault_of_base_frame(const Calibration& calibration, const NodeConfig& config) {

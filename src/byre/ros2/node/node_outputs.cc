@@ -61,23 +61,22 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, GraphAnnouncement& graph, ros
   health_ = open<ros::String>(config.health, kLatched);
   events_ = open<ros::String>(config.events, kEvents);
   if (watchers_ == nullptr) return;
-  const auto watch_images = [this](const std::string& topic) {
+  const auto watch_images = [this](const std::string& topic, bool is_compressed) {
     const std::string name = config_.topic(topic);
-    return watchers_->add(config_.is_compressed ? ros::topic_of<ros::CompressedImage>(name)
-                                                : ros::topic_of<ros::Image>(name));
+    return watchers_->add(is_compressed ? ros::topic_of<ros::CompressedImage>(name) : ros::topic_of<ros::Image>(name));
   };
-  left_ = watch_images(config.left);
-  if (config.has_right()) right_ = watch_images(config.right);
+  left_ = watch_images(config.left, config.is_compressed);
+  if (!config.second().empty()) second_ = watch_images(config.second(), config.is_second_compressed());
 }
 
-void NodeOutputs::publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right) {
+void NodeOutputs::publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> second) {
   stamp_ = stamp;
   const auto send_image = [&](const std::optional<ros::MessageSink::TopicId>& topic, std::span<const std::byte> image) {
     if (!topic || image.empty() || !watchers_->is_wanted(*topic)) return;
     watchers_->put(*topic, stamp, {image.begin(), image.end()});
   };
   send_image(left_, left);
-  send_image(right_, right);
+  send_image(second_, second);
 }
 
 ros::Header NodeOutputs::in_map(const ros::Header& image) const {

@@ -31,7 +31,7 @@ class NodeOutputs {
   // Empty frames are left out.
   void publish_cameras(const Calibration& calibration, const std::string& left_frame, const std::string& right_frame);
   // Sends received images to watchers only.
-  void publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> right);
+  void publish_images(Timestamp stamp, std::span<const std::byte> left, std::span<const std::byte> second);
   void publish_diagnostics(std::vector<ros::DiagnosticStatus> statuses);
   void publish_answer(const std::string& request, bool is_done, const std::string& answer);
   // Publishes the floor plan, if configured.
@@ -73,11 +73,11 @@ class NodeOutputs {
   static Timestamp wall_time();
   ros::Header in_map(const ros::Header& image) const;
 
-  NodeConfig config_;                                      // constant after construction
-  GraphAnnouncement& graph_;                               // outlives this
-  ros::MessageSink* watchers_;                             // outlives this; null without watchers
-  std::optional<ros::MessageSink::TopicId> left_, right_;  // image topics of watchers
-  Timestamp stamp_ = wall_time();                          // stamp of the last image; start time before the first
+  NodeConfig config_;                                       // constant after construction
+  GraphAnnouncement& graph_;                                // outlives this
+  ros::MessageSink* watchers_;                              // outlives this; null without watchers
+  std::optional<ros::MessageSink::TopicId> left_, second_;  // image topics of watchers
+  Timestamp stamp_ = wall_time();                           // stamp of the last image; start time before the first
   OptionalOutput odometry_, pose_, tf_, tf_static_, diagnostics_, path_, points_, grid_, health_, events_;
   std::optional<OdometrySample> last_;  // previous frame; empty if the twist cannot be computed from it
   std::ostringstream event_lines_;

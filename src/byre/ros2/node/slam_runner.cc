@@ -194,7 +194,8 @@ std::string SlamRunner::start(const Calibration& calibration) {
   }
   if (slam_->is_metric()) return note;
   slam_.reset();
-  throw InputError("the calibration", "is of one camera, which has no metric scale without a map", "set slam.map");
+  throw InputError("the calibration", "is of one camera, which has no metric scale without a map",
+                   "set slam.map, or images.depth");
 }
 
 Pose SlamRunner::published(const Pose& map_from_body) const {
