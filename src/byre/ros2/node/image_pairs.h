@@ -19,8 +19,8 @@ struct PairingCounts {
   int without_second = 0;  // left images returned without a second image
 };
 
-// Pairs left images with second images, right or depth, by stamp. A caller that lags by one pair misses none; with more
-// lag, the newest pair is returned. Arrival times are of one monotonic clock.
+// Pairs left images with second images, right or depth, by stamp. A caller that lags by one frame misses none; with
+// more lag, the newest frame is returned. Arrival times are of one monotonic clock.
 template <typename Image>
 class ImagePairs {
  public:
@@ -36,19 +36,17 @@ class ImagePairs {
   void add_left(Timestamp stamp, Image image, Timestamp arrival) { add(lefts_, stamp, std::move(image), arrival); }
   void add_second(Timestamp stamp, Image image, Timestamp arrival) { add(seconds_, stamp, std::move(image), arrival); }
 
-  // Older one of two complete pairs, newest one of more; else the newest left image whose waiting time is over.
+  // Older one of two frames that are ready, newest one of more.
   std::optional<Pair> next(Timestamp now) {
-    if (const auto left = next_complete()) return take(*left, partner_of(lefts_[*left].stamp));
-    for (std::size_t i = lefts_.size(); i-- > 0;) {
-      if (now - lefts_[i].arrival < options_.wait) continue;
-      ++counts_.without_second;
-      const std::optional<std::size_t> nearest = nearest_to(lefts_[i].stamp);
-      const Timestamp stamp = lefts_[i].stamp;
-      Pair pair = take(i, std::nullopt);
-      if (nearest) pair.nearest = std::chrono::abs(seconds_[*nearest].stamp - stamp);
-      return pair;
-    }
-    return std::nullopt;
+    const auto left = next_ready(now);
+    if (!left) return std::nullopt;
+    const Timestamp stamp = lefts_[*left].stamp;
+    if (const auto partner = partner_of(stamp); partner || !options_.has_second) return take(*left, partner);
+    ++counts_.without_second;
+    const std::optional<std::size_t> nearest = nearest_to(stamp);
+    Pair pair = take(*left, std::nullopt);
+    if (nearest) pair.nearest = std::chrono::abs(seconds_[*nearest].stamp - stamp);
+    return pair;
   }
 
   const PairingCounts& counts() const { return counts_; }
@@ -69,13 +67,16 @@ class ImagePairs {
     if (&queue == &lefts_) ++counts_.skipped;
   }
 
-  // Index of the left image of the next complete pair; empty if there is none.
-  std::optional<std::size_t> next_complete() const {
-    constexpr std::size_t kMaxBacklog = 2;  // complete pairs up to which none is skipped
+  // Index of the left image of the next frame; empty if none is ready. Ready are complete pairs, and left images whose
+  // second image will not come: a newer pair is complete, as each topic is in order, or the waiting time is over.
+  std::optional<std::size_t> next_ready(Timestamp now) const {
+    constexpr std::size_t kMaxBacklog = 2;  // frames up to which none is skipped
     std::optional<std::size_t> newest, oldest;
     std::size_t count = 0;
+    bool has_newer_pair = false;
     for (std::size_t i = lefts_.size(); i-- > 0;) {
-      if (options_.has_second && !partner_of(lefts_[i].stamp)) continue;
+      has_newer_pair = has_newer_pair || !options_.has_second || partner_of(lefts_[i].stamp);
+      if (!has_newer_pair && now - lefts_[i].arrival < options_.wait) continue;
       if (!newest) newest = i;
       oldest = i;
       ++count;

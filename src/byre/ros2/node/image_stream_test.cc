@@ -56,6 +56,29 @@ TEST(ImagePairs, ReturnsALeftImageAloneAfterTheTimeout) {
   EXPECT_EQ(pairs.counts().without_second, 1);
 }
 
+// Such as depth at half the rate of colour.
+TEST(ImagePairs, ReturnsALeftImageAloneBeforeANewerPair) {
+  Pairs pairs({true, 5ms, 50ms});
+  for (int i = 1; i <= 8; ++i) {
+    const Timestamp time = i * 33ms;
+    pairs.add_left(time, i, time);
+    if (i % 2 == 1) {
+      EXPECT_FALSE(pairs.next(time)) << i;
+      continue;
+    }
+    pairs.add_second(time, 10 + i, time);
+    const auto alone = pairs.next(time);
+    ASSERT_TRUE(alone.has_value());
+    EXPECT_EQ(alone->left, i - 1);
+    EXPECT_EQ(alone->second, std::nullopt);
+    EXPECT_EQ(alone->nearest, Timestamp(33ms));
+    EXPECT_EQ(pairs.next(time)->second, 10 + i);
+    EXPECT_FALSE(pairs.next(time));
+  }
+  EXPECT_EQ(pairs.counts().skipped, 0);
+  EXPECT_EQ(pairs.counts().without_second, 4);
+}
+
 TEST(ImagePairs, MatchesTheNearestRightImageWithinTheTolerance) {
   Pairs pairs({true, 5ms, 50ms});
   pairs.add_second(1s - 4ms, 10, 0ms);
