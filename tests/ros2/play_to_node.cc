@@ -80,7 +80,7 @@ struct Playing {
   std::vector<ImageFrame> frames;
   fs::path folder, map, calibration;
   double rate = 20.0;
-  std::optional<double> units_per_metre{};  // unit of depth images; empty for a stereo pair
+  std::optional<DepthCamera> depth{};  // empty for a stereo pair
 };
 
 // Results of the node, which received the frames in real time.
@@ -94,22 +94,21 @@ Played play(const Playing& playing, const std::string& workers) {
   const int domain = some_domain();
   FastPeer peer(domain);
   Answers answers(peer);
-  CameraFeed feed(peer, true, playing.units_per_metre ? "depth" : "right");
+  CameraFeed feed(peer, true, playing.depth ? "depth" : "right");
   const double before = processor_seconds(RUSAGE_CHILDREN);
-  NodeProcess node(playing.folder,
-                   "slam:\n  workers: " + workers + "\n  map: " + playing.map.string() +
-                       "\nimages:\n  reliable: true\n" +
-                       (playing.units_per_metre ? "  right: ''\n  depth: /depth/image_raw\n  pair_wait: 0.02\n"
-                                                : "  pair_wait: 0.2\n") +
-                       "calibration:\n  file: " + playing.calibration.string() + "\n",
-                   domain);
+  NodeProcess node(
+      playing.folder,
+      "slam:\n  workers: " + workers + "\n  map: " + playing.map.string() + "\nimages:\n  reliable: true\n" +
+          (playing.depth ? "  right: ''\n  depth: /depth/image_raw\n  pair_wait: 0.02\n" : "  pair_wait: 0.2\n") +
+          "calibration:\n  file: " + playing.calibration.string() + "\n",
+      domain);
   if (!feed.has_subscriber() || !feed.send_acknowledged())
     throw std::runtime_error("the node does not hear: " + node.stderr_output());
-  if (playing.units_per_metre) {  // tracking starts after the first depth image
+  if (playing.depth) {  // tracking starts after the first depth image
     const auto first =
         std::ranges::find_if(playing.frames, [](const ImageFrame& frame) { return frame.depth.has_value(); });
     if (first == playing.frames.end()) throw std::runtime_error("no frame has depth");
-    feed.send_depth({.time = {}, .left = {}, .right = {}, .depth = first->depth}, *playing.units_per_metre);
+    feed.send_depth({.time = {}, .left = {}, .right = {}, .depth = first->depth}, playing.depth->units_per_metre);
     std::this_thread::sleep_for(std::chrono::seconds(5));
   }
   std::map<Timestamp, Clock::time_point> sent;
@@ -118,7 +117,7 @@ Played play(const Playing& playing, const std::string& workers) {
     std::this_thread::sleep_until(next);
     next += std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / playing.rate));
     sent[frame.time] = Clock::now();
-    if (frame.depth) feed.send_depth(frame, *playing.units_per_metre);
+    if (frame.depth) feed.send_depth(frame, playing.depth->units_per_metre);
     feed.send(frame);
   }
   std::this_thread::sleep_for(std::chrono::seconds(2));
@@ -142,7 +141,9 @@ Tracked track(const Playing& playing, Workers workers) {
   const double before = processor_seconds(RUSAGE_SELF);
   SlamOptions options;
   options.workers = workers;
-  Slam slam = Slam::on_map(read_calibration(playing.calibration), playing.map, options);
+  Calibration calibration = read_calibration(playing.calibration);
+  calibration.depth = playing.depth;
+  Slam slam = Slam::on_map(calibration, playing.map, options);
   Clock::time_point next = Clock::now();
   for (const ImageFrame& frame : playing.frames) {
     std::this_thread::sleep_until(next);
@@ -177,7 +178,7 @@ int run(const fs::path& recording_path, const fs::path& map, double rate) {
   Playing playing{{}, folder, fs::absolute(map), folder / "camchain.yaml", rate};
   const auto recording = open_recording(recording_path, {});
   std::ofstream(playing.calibration) << write_calibration(recording->calibration());
-  if (recording->calibration().depth) playing.units_per_metre = recording->calibration().depth->units_per_metre;
+  playing.depth = recording->calibration().depth;
   for (int i = 0; i < recording->size(); ++i) {
     if (auto frame = recording->read(i)) playing.frames.push_back(std::move(*frame));
   }
