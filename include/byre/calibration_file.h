@@ -27,7 +27,7 @@ struct CalibrationReading {
 //   VINS-Fusion                  model_type, or cam0_calib and body_T_cam0, which name and place such files
 //   okvis2, basalt, maplab       cameras, value0, ncameras
 //   DepthAI, ZED, KITTI, COLMAP  cameraData, [LEFT_CAM_HD], P0 and P1, a line of cameras.txt
-//   other programs               fx, fy, cx, cy, with names of RealSense, SVO, NeRF and DSO
+//   other programs               OpenSfM, OpenMVG, Metashape, MATLAB, Middlebury, and any with fx, fy, cx, cy
 // Fields of one camera or pair are also found inside other fields.
 // right: file of the right camera if each camera has its own; its pose comes from the files' P and R (ROS), T_BS or
 // body_T_cam. size: width and height of the images, for files with several sizes (ZED). A folder stands for left.yaml

@@ -46,11 +46,20 @@ YAML::Node parse_yaml(std::string text) {
 YAML::Node parse_any(const std::filesystem::path& path) {
   std::string text = text_of_file(path);
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin != std::string::npos && text[begin] == '<') return parse_opencv_xml(text, path.string());
+  if (begin != std::string::npos && text[begin] == '<') return parse_xml(text, path.string());
   if (is_ros_ini(text)) return parse_ros_ini(text, path.string());
   if (is_sections(text)) return parse_sections(text);
   if (auto fields = parse_camera_lines(text)) return *std::move(fields);
-  return parse_yaml(std::move(text));
+  const bool is_yaml =
+      text.starts_with("%YAML") || (begin != std::string::npos && (text[begin] == '{' || text[begin] == '['));
+  if (!is_yaml) {
+    if (auto fields = parse_assignments(text)) return *std::move(fields);
+  }
+  YAML::Node node = parse_yaml(std::move(text));
+  if (!node.IsSequence()) return node;
+  YAML::Node fields(YAML::NodeType::Map);  // a list without a name
+  fields[node.size() > 0 && node[0].IsMap() ? "entries" : "K"] = node;
+  return fields;
 }
 
 void append_numbers(const YAML::Node& list, const std::string& place, std::vector<double>& numbers) {
@@ -95,10 +104,46 @@ bool CalibrationFields::is_group(const std::string& field) const {
   return has(field) && find(field).IsMap();
 }
 
+bool CalibrationFields::has_list(const std::string& field) const {
+  return has(field) && find(field).IsSequence() && find(field).size() > 0;
+}
+
 std::vector<std::string> CalibrationFields::names() const {
   std::vector<std::string> names;
   for (const auto& field : node_) names.push_back(field.first.IsScalar() ? field.first.Scalar() : "");
   return names;
+}
+
+void CalibrationFields::complete_size(int width, int height) {
+  if (has("image_width") || has("image_height")) return;
+  node_["image_width"] = width;
+  node_["image_height"] = height;
+}
+
+std::vector<std::pair<std::string, CalibrationFields>> CalibrationFields::inner() const {
+  std::vector<std::pair<std::string, CalibrationFields>> result;
+  for (const auto& field : node_) {
+    if (!field.first.IsScalar()) continue;
+    const std::string name = field.first.Scalar();
+    if (field.second.IsMap()) result.push_back({name, {place(name) + ".", field.second}});
+    if (!field.second.IsSequence()) continue;
+    for (std::size_t i = 0; i < field.second.size(); ++i) {
+      const std::string entry = name + "[" + std::to_string(i) + "]";
+      if (field.second[i].IsMap()) result.push_back({entry, {place(entry) + ".", field.second[i]}});
+    }
+  }
+  return result;
+}
+
+CalibrationFields CalibrationFields::completed(const CalibrationFields& outer,
+                                               bool (*is_wanted)(std::string_view name)) const {
+  YAML::Node node(YAML::NodeType::Map);
+  for (const auto& field : node_) node[field.first] = field.second;
+  for (const auto& field : outer.node_) {
+    if (!field.first.IsScalar() || !is_wanted(field.first.Scalar()) || has(field.first.Scalar())) continue;
+    node[field.first] = field.second;
+  }
+  return {place_, node};
 }
 
 CalibrationFields CalibrationFields::group(const std::string& field) const {

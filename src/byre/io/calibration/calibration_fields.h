@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,8 +14,8 @@
 namespace byre {
 
 // Named fields of a file that describes cameras: YAML, with OpenCV's directive in the first line allowed, JSON,
-// OpenCV's XML, ROS' .ini, or sections of NAME=VALUE, which are groups of fields. Errors in a field throw InputError
-// with the place "FILE: FIELD".
+// XML, ROS' .ini, statements of MATLAB, or sections of NAME=VALUE, which are groups of fields. Errors in a field throw
+// InputError with the place "FILE: FIELD".
 class CalibrationFields {
  public:
   // Throws InputError if the file cannot be read, is in none of these formats, or has no named fields.
@@ -23,7 +24,15 @@ class CalibrationFields {
   std::string place(const std::string& field) const;  // place of the field for an InputError
   bool has(const std::string& field) const;
   bool is_group(const std::string& field) const;  // whether it has named fields
+  bool has_list(const std::string& field) const;  // whether it has numbers, or other values without names
   std::vector<std::string> names() const;         // names of all fields, in their order
+
+  std::vector<std::pair<std::string, CalibrationFields>> inner() const;  // groups of fields, and those of lists
+  // These fields, and the missing ones that the group around them has, of wanted names.
+  CalibrationFields completed(const CalibrationFields& outer, bool (*is_wanted)(std::string_view name)) const;
+
+  void complete_size(int width,
+                     int height);  // adds image_width and image_height unless there are fields of these names
 
   // Each throws InputError if the field is missing or has another type.
   CalibrationFields group(const std::string& field) const;              // fields inside this field

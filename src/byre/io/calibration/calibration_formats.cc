@@ -74,6 +74,15 @@ bool is_plain_camera(const Fields& fields, const std::string& name) {
 }
 
 constexpr std::array kFormats = {
+    Format{[](const Fields& f) { return f.has_numbers("cam0", 9) && f.has_numbers("cam1", 9) && f.has("baseline"); },
+           read_middlebury},
+    Format{[](const Fields& f) { return f.has("projection_type") && f.has("width"); }, read_opensfm, true},
+    Format{[](const Fields& f) { return f.is_group("CameraParameters1") && f.is_group("CameraParameters2"); },
+           read_matlab_pair, true},
+    Format{has_matlab_camera, read_matlab, true},
+    Format{[](const Fields& f) { return f.has("fc") || (f.has("fc_left") && f.has("fc_right")); }, read_bouguet},
+    Format{has_metashape_camera, read_metashape, true},
+    Format{[](const Fields& f) { return f.has("sfm_data_version"); }, read_openmvg},
     Format{[](const Fields& f) { return f.has("cam0") && !is_plain_camera(f, "cam0"); }, kalibr_cameras, true},
     Format{[](const Fields& f) { return f.has("relative_config_imucam"); }, openvins_config},
     Format{[](const Fields& f) { return f.has("value0"); }, read_basalt},
@@ -99,37 +108,89 @@ constexpr std::array kFormats = {
            },
            ros_ini_pair},
     Format{has_camera_fields, sensor_camera, true},
-    Format{[](const Fields& f) { return f.has("image_width") && f.has("image_height") && f.has("type"); },
+    Format{[](const Fields& f) {
+             return f.has("image_width") && f.has("image_height") && f.has("type") && f.has("intrinsics");
+           },
            read_maplab_camera},
     Format{has_flat_camera, read_flat_camera, true},
 };
 
-// Names of the sides of a pair, as in cam0 and cam1, camera_left and camera_right: 0, 1, or neither.
-std::optional<int> side_of(std::string_view name) {
+std::string small_letters(std::string_view name) {
   std::string lower(name);
   std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+// Whether a name has one of these words, between other signs than letters.
+bool has_word(std::string_view name, std::initializer_list<std::string_view> words) {
+  const std::string lower = small_letters(name);
+  const auto is_letter = [&](std::size_t at) {
+    return at < lower.size() && std::isalpha(static_cast<unsigned char>(lower[at])) != 0;
+  };
+  return std::ranges::any_of(words, [&](std::string_view word) {
+    const std::size_t at = lower.find(word);
+    return at != std::string::npos && (at == 0 || !is_letter(at - 1)) && !is_letter(at + word.size());
+  });
+}
+
+// Names of the sides of a pair, as in cam0 and cam1, camera_left and camera_right: 0, 1, or neither.
+std::optional<int> side_of(std::string_view name) {
+  const std::string lower = small_letters(name);
   const bool is_left = lower.find("left") != std::string::npos;
   if (is_left || lower.find("right") != std::string::npos) return is_left ? 0 : 1;
-  if (lower.ends_with('0')) return 0;
-  if (lower.ends_with('1')) return 1;
+  if (lower.ends_with('0') || lower.ends_with("[0]")) return 0;
+  if (lower.ends_with('1') || lower.ends_with("[1]")) return 1;
   return std::nullopt;
 }
 
+using FoundCameras = std::vector<std::pair<std::string, CameraList>>;
+
+// Keeps one of the entries of a list that repeats a camera for each image, as "frames" of NeRF.
+void keep_one_of_equals(FoundCameras& found) {
+  const std::string_view first = found.front().first;
+  const bool is_list = found.size() > 1 && first.ends_with("[0]");
+  const bool is_repeated =
+      is_list && std::ranges::all_of(found, [&](const auto& each) {
+        return each.second.cameras.size() == 1 && each.second.cameras[0].camera == found[0].second.cameras[0].camera;
+      });
+  if (!is_repeated || (found.size() == 2 && !first.starts_with("frames"))) return;
+  found[0].second.notes.push_back(fmt::format("{} entries have the same camera", found.size()));
+  found.erase(found.begin() + 1, found.end());
+}
+
+// Keeps the colour camera of a device that has other kinds of cameras next to it.
+void keep_the_colour_camera(FoundCameras& found) {
+  const auto is_colour = [](const auto& each) { return has_word(each.first, {"color", "colour", "rgb"}); };
+  const auto is_other = [](const auto& each) {
+    return has_word(each.first, {"depth", "ir", "infra", "thermal", "tof"});
+  };
+  const auto colour = std::ranges::find_if(found, is_colour);
+  if (colour == found.end() || std::ranges::count_if(found, is_colour) != 1 || found.size() < 2 ||
+      static_cast<std::size_t>(std::ranges::count_if(found, is_other)) != found.size() - 1) {
+    return;
+  }
+  std::swap(found.front(), *colour);
+  found[0].second.notes.push_back(fmt::format("of {} cameras, {} is used", found.size(), found[0].first));
+  found.erase(found.begin() + 1, found.end());
+}
+
 // Cameras inside other fields: the only camera or pair, or the left and right of two. Empty if there is none.
-std::optional<CameraList> nested_cameras(const Fields& fields, const fs::path& path) {
-  std::vector<std::pair<std::string, CameraList>> found;
-  for (const std::string& name : fields.names()) {
-    if (!fields.is_group(name)) continue;
-    const Fields inner = fields.group(name);
+// own: fields without those of the groups around them.
+std::optional<CameraList> nested_cameras(const Fields& own, const Fields& fields, const fs::path& path) {
+  FoundCameras found;
+  for (const auto& [name, inner] : own.inner()) {
+    const Fields group = inner.completed(fields, is_shared_field);
     const auto format =
         std::ranges::find_if(kFormats, [&](const Format& each) { return each.is_nested && each.matches(inner); });
     if (format != kFormats.end()) {
-      found.emplace_back(name, format->read(inner, path));
-    } else if (auto list = nested_cameras(inner, path)) {
+      found.emplace_back(name, format->read(group, path));
+    } else if (auto list = nested_cameras(inner, group, path)) {
       found.emplace_back(name, std::move(*list));
     }
   }
   if (found.empty()) return std::nullopt;
+  keep_one_of_equals(found);
+  keep_the_colour_camera(found);
   if (found.size() == 2 && found[0].second.cameras[0].camera == found[1].second.cameras[0].camera &&
       !side_of(found[1].first)) {
     found.pop_back();  // one camera, in two notations
@@ -137,7 +198,8 @@ std::optional<CameraList> nested_cameras(const Fields& fields, const fs::path& p
   if (found.size() == 1) return std::move(found.front().second);
   std::vector<std::string> names;
   for (const auto& [name, list] : found) names.push_back(name);
-  if (found.size() > 2) std::erase_if(found, [](const auto& each) { return !side_of(each.first); });
+  if (found.size() > 2 && !found.front().first.ends_with(']'))
+    std::erase_if(found, [](const auto& each) { return !side_of(each.first); });
   const bool is_pair = found.size() == 2 && found[0].second.cameras.size() == 1 && found[1].second.cameras.size() == 1;
   if (!is_pair) {
     throw InputError(path.string(), fmt::format("has {} cameras: {}", names.size(), fmt::join(names, ", ")),
@@ -219,17 +281,20 @@ std::optional<Pose> read_opencv_extrinsics(const fs::path& path) {
 }
 
 CameraList read_cameras(const fs::path& path, std::optional<std::pair<int, int>> size) {
-  const CalibrationFields fields = CalibrationFields::load(path);
+  CalibrationFields fields = CalibrationFields::load(path);
+  if (size) fields.complete_size(size->first, size->second);
   if (fields.has("STEREO") && fields.is_group("STEREO")) return read_zed(fields, size);
   if (fields.has("colmap")) return read_colmap(fields, path);
   const auto format = std::ranges::find_if(kFormats, [&](const Format& each) { return each.matches(fields); });
   if (format != kFormats.end()) return format->read(fields, path);
-  if (auto list = nested_cameras(fields, path)) return std::move(*list);
-  throw InputError(path.string(), "is not a supported calibration file",
-                   "supported files have the field intrinsics (EuRoC sensor.yaml), camera_matrix or K (OpenCV, ROS), "
-                   "M1 or K1 (OpenCV stereo), cam0 (Kalibr camchain, OpenVINS), Camera.fx or Camera1.fx (ORB-SLAM), "
-                   "Camera (stella_vslam), model_type or cam0_calib (VINS), cameras (okvis, maplab), value0 (basalt), "
-                   "cameraData (DepthAI), P0 (KITTI), or fx, fy, cx, cy");
+  if (auto list = nested_cameras(fields, fields, path)) return std::move(*list);
+  throw InputError(
+      path.string(), "is not a supported calibration file",
+      "supported files have the field intrinsics (EuRoC sensor.yaml), camera_matrix or K (OpenCV, ROS), "
+      "M1 or K1 (OpenCV stereo), cam0 (Kalibr camchain, OpenVINS), Camera.fx or Camera1.fx (ORB-SLAM), "
+      "Camera (stella_vslam), model_type or cam0_calib (VINS), cameras (okvis, maplab), value0 (basalt), "
+      "cameraData (DepthAI), P0 (KITTI), projection_type (OpenSfM), RadialDistortion (MATLAB), fc (Bouguet), "
+      "calibration (Metashape), or fx, fy, cx, cy");
 }
 
 }  // namespace byre

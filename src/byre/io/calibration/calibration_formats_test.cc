@@ -141,6 +141,19 @@ TEST_F(CalibrationFormats, ReadsOrbSlam2) {
   expect_pair(read("euroc.yaml", text), "ORB-SLAM2", 0.001, false);
 }
 
+TEST_F(CalibrationFormats, ReadsOrbSlamWithPlaceholdersOfARectification) {
+  std::string text =
+      "%YAML:1.0\nCamera.fx: 400.0\nCamera.fy: 400.0\nCamera.cx: 370.0\nCamera.cy: 240.0\nCamera.bf: 44.0\n"
+      "Camera.width: 752\nCamera.height: 480\n";
+  for (const std::string side : {"LEFT", "RIGHT"}) {
+    text += side + ".K: " + matrix(3, 3, kMatrix) + side + ".R: " + matrix(3, 3, "[0, 0, 0, 0, 0, 0, 0, 0, 0]");
+  }
+  const CalibrationReading reading = read("airsim.yaml", text);
+  EXPECT_EQ(reading.calibration.left.model, CameraModel::pinhole);
+  EXPECT_NEAR(reading.calibration.right->right_from_left.translation.x(), -0.11, 1e-12);
+  EXPECT_THAT(reading.notes, Contains(HasSubstr("LEFT.R is zero")));
+}
+
 TEST_F(CalibrationFormats, ReadsOrbSlam3) {
   std::string text =
       "%YAML:1.0\nFile.version: \"1.0\"\nCamera.type: \"PinHole\"\nCamera.width: 752\nCamera.height: 480\n";
@@ -289,8 +302,9 @@ TEST_F(CalibrationFormats, ReadsOpencvXml) {
   const CalibrationReading reading = read("out_camera_data.xml", start + matrices + "</opencv_storage>\n");
   EXPECT_EQ(reading.format, "OpenCV");
   EXPECT_EQ(reading.calibration.left, expected_camera(0.001));
-  EXPECT_THAT(error_of([&] { read("page.xml", "<html><body></html>"); }),
-              HasSubstr("page.xml: is not XML that OpenCV wrote"));
+  EXPECT_THAT(error_of([&] { read("page.xml", "<html><body></html>"); }), HasSubstr("page.xml:1: is not valid XML"));
+  EXPECT_THAT(error_of([&] { read("storage.xml", "<opencv_storage><a></opencv_storage>"); }),
+              HasSubstr("storage.xml: is not XML that OpenCV wrote"));
 }
 
 TEST_F(CalibrationFormats, ReadsLongListsOfOpencv) {

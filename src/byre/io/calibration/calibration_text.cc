@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -15,6 +16,7 @@
 
 #include <fmt/core.h>
 #include <opencv2/core.hpp>
+#include <tinyxml2.h>
 
 namespace byre {
 namespace {
@@ -34,6 +36,36 @@ YAML::Node yaml_of(const cv::FileNode& node) {
     }
   }
   return children;
+}
+
+// Fields of an element: its attributes and children, or its text. Of a first and an adjusted calibration (Metashape),
+// the adjusted one.
+YAML::Node yaml_of(const tinyxml2::XMLElement& element) {
+  const tinyxml2::XMLElement* child = element.FirstChildElement();
+  const char* const text = element.GetText();
+  if (child == nullptr && element.FirstAttribute() == nullptr) return YAML::Node(std::string(text ? text : ""));
+  YAML::Node fields(YAML::NodeType::Map);
+  for (const auto* each = element.FirstAttribute(); each != nullptr; each = each->Next()) {
+    fields[each->Name()] = std::string(each->Value());
+  }
+  if (child == nullptr && text != nullptr) fields["data"] = std::string(text);
+  for (int count = 1; child != nullptr; child = child->NextSiblingElement(), ++count) {
+    const std::string name = child->Name();
+    const bool is_first = element.FirstChildElement(child->Name()) == child;
+    const bool is_replaced = child->Attribute("class", "initial") && child->NextSiblingElement(child->Name());
+    if (!is_replaced) fields[is_first || !fields[name] ? name : fmt::format("{}_{}", name, count)] = yaml_of(*child);
+  }
+  return fields;
+}
+
+YAML::Node parse_other_xml(const std::string& text, const std::string& place) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) {
+    throw InputError(fmt::format("{}:{}", place, document.ErrorLineNum()), "is not valid XML", "correct the file");
+  }
+  YAML::Node fields(YAML::NodeType::Map);
+  fields[document.RootElement()->Name()] = yaml_of(*document.RootElement());
+  return fields;
 }
 
 std::string_view trimmed(std::string_view line) {
@@ -69,7 +101,8 @@ std::string_view yaml_name(std::string_view name) {
 
 }  // namespace
 
-YAML::Node parse_opencv_xml(const std::string& text, const std::string& place) {
+YAML::Node parse_xml(const std::string& text, const std::string& place) {
+  if (text.find("<opencv_storage") == std::string::npos) return parse_other_xml(text, place);
   try {
     const cv::FileStorage storage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_XML);
     YAML::Node fields(YAML::NodeType::Map);
@@ -145,13 +178,135 @@ YAML::Node parse_sections(const std::string& text) {
     const std::string_view content = trimmed(line);
     if (content.empty() || content.front() == '#' || content.front() == ';') continue;
     const std::size_t equals = content.find('=');
-    if (content.front() == '[') {
-      section = content.substr(1, content.size() - 2);
+    if (content.front() == '[' && equals == std::string_view::npos) {
+      section = content.substr(1, content.find(']') - 1);
     } else if (equals != std::string_view::npos && !section.empty()) {
       const std::string name(trimmed(content.substr(0, equals)));
-      file[section][name] = YAML::Load(std::string(content.substr(equals + 1)));
+      std::string value(content.substr(equals + 1));
+      while (std::ranges::count(value, '[') > std::ranges::count(value, ']') && std::getline(lines, line)) {
+        value += ' ' + line;
+      }
+      file[section][name] = YAML::Load(value);
     }
   }
+  return file;
+}
+
+namespace {
+
+bool is_of_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+}
+
+// Text without comments of MATLAB, Python and C, and without continued lines.
+std::string without_comments(const std::string& text) {
+  std::string result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    line.resize(std::min({line.size(), line.find('%'), line.find('#'), line.find("//")}));
+    const std::size_t dots = line.find("...");
+    result += dots == std::string::npos ? line + '\n' : line.substr(0, dots) + ' ';
+  }
+  return result;
+}
+
+// Numbers of the matrix whose bracket opens at begin, row by row; also transposed by an apostrophe. Empty unless all
+// are numbers.
+std::vector<std::string> matrix_at(const std::string& text, std::size_t begin) {
+  int depth = 0;
+  std::size_t end = begin, rows = 0;
+  std::string numbers;
+  bool is_row = false;
+  do {
+    const char c = text[end];
+    depth += c == '[' || c == '(' ? 1 : c == ']' || c == ')' ? -1 : 0;
+    const bool is_end = c == ';' || c == '\n' || c == ']' || c == ')';
+    if (is_end && is_row) ++rows;
+    if (is_end || c == '[' || c == '(') is_row = false;
+    is_row = is_row || std::isdigit(static_cast<unsigned char>(c)) != 0;
+    numbers += is_end || c == '[' || c == '(' || c == ',' ? ' ' : c;
+    ++end;
+  } while (depth > 0 && end < text.size());
+  std::vector<std::string> matrix = numbers_of(numbers);
+  if (depth != 0 || matrix.empty() || end >= text.size() || text[end] != '\'' || matrix.size() % rows != 0) {
+    return depth == 0 ? matrix : std::vector<std::string>{};
+  }
+  const std::size_t columns = matrix.size() / rows;
+  std::vector<std::string> transposed;
+  for (std::size_t column = 0; column < columns; ++column) {
+    for (std::size_t row = 0; row < rows; ++row) transposed.push_back(matrix[row * columns + column]);
+  }
+  return transposed;
+}
+
+// Value of a statement or argument that begins at begin: numbers, one number, or a quoted word. Null for any other.
+YAML::Node value_at(const std::string& text, std::size_t begin) {
+  begin = std::min(text.find_first_not_of(" \t", begin), text.size());
+  std::size_t bracket = begin;
+  while (bracket < text.size() && is_of_name(text[bracket])) ++bracket;
+  const bool is_function = bracket > begin && bracket < text.size() && text[bracket] == '(' &&
+                           std::isdigit(static_cast<unsigned char>(text[begin])) == 0;
+  if (is_function) bracket = std::min(text.find_first_not_of(" \t\n", bracket + 1), text.size());
+  if (bracket < text.size() && text[bracket] == '[' && (is_function || bracket == begin)) {
+    const std::vector<std::string> numbers = matrix_at(text, bracket);
+    if (numbers.size() == 1) return YAML::Node(numbers.front());
+    YAML::Node node;
+    for (const std::string& number : numbers) node.push_back(number);
+    return node;
+  }
+  const std::string value(trimmed(std::string_view(text).substr(begin, text.find_first_of(";,\n)", begin) - begin)));
+  const bool is_quoted = value.size() > 2 && (value.front() == '\'' || value.front() == '"');
+  if (is_quoted && value.back() == value.front()) return YAML::Node(value.substr(1, value.size() - 2));
+  return parse_number(value) ? YAML::Node(value) : YAML::Node();
+}
+
+// Sets a field; a dot in its name separates groups.
+void set_field(YAML::Node fields, std::string_view name, const YAML::Node& value) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string_view::npos) {
+    fields[std::string(name)] = value;
+  } else {
+    const std::string group(name.substr(0, dot));
+    if (!fields[group].IsMap()) fields[group] = YAML::Node(YAML::NodeType::Map);
+    set_field(fields[group], name.substr(dot + 1), value);
+  }
+}
+
+}  // namespace
+
+std::optional<YAML::Node> parse_assignments(const std::string& source) {
+  const std::string text = without_comments(source);
+  YAML::Node file(YAML::NodeType::Map);
+  int found = 0;
+  const auto add = [&](std::size_t name_begin, std::size_t name_end, std::size_t value) {
+    const std::string_view name = std::string_view(text).substr(name_begin, name_end - name_begin);
+    if (name.empty() || name.front() == '.' || name.back() == '.' || name.find("..") != std::string_view::npos ||
+        std::isdigit(static_cast<unsigned char>(name.front())) != 0) {
+      return;
+    }
+    const YAML::Node node = value_at(text, value);
+    if (node.IsNull()) return;
+    set_field(file, name, node);
+    ++found;
+  };
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const bool is_quote = text[at] == '\'' || text[at] == '"';
+    if (text[at] != '=' && !is_quote) continue;
+    if (is_quote) {
+      const std::size_t comma = text.find_first_not_of(" \t", at + 1);
+      std::size_t begin = at;
+      while (begin > 0 && is_of_name(text[begin - 1])) --begin;
+      const bool is_argument = begin > 0 && text[begin - 1] == text[at] && comma < text.size() && text[comma] == ',';
+      if (is_argument) add(begin, at, comma + 1);
+      continue;
+    }
+    std::size_t end = at;
+    while (end > 0 && (text[end - 1] == ' ' || text[end - 1] == '\t')) --end;
+    std::size_t begin = end;
+    while (begin > 0 && is_of_name(text[begin - 1])) --begin;
+    if (at + 1 < text.size() && text[at + 1] != '=') add(begin, end, at + 1);
+  }
+  if (found < 2) return std::nullopt;
   return file;
 }
 

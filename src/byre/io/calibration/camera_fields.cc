@@ -162,6 +162,18 @@ void set_camera_matrix(Camera& camera, const std::vector<double>& matrix, const 
   require_valid(camera, place);
 }
 
+void set_skewed_matrix(Camera& camera, std::vector<double> matrix, const std::string& place,
+                       std::vector<std::string>& notes) {
+  constexpr double kMostError = 0.25;  // pixels
+  const double reach = std::max(matrix[5], camera.height - matrix[5]) / std::max(matrix[4], 1.0);
+  if (const double error = std::abs(matrix[1]) * reach; matrix[1] != 0.0 && error < kMostError) {
+    notes.push_back(fmt::format("{}: a skew of {:.3g} is left out, which moves pixels by at most {:.2g} pixels", place,
+                                matrix[1], error));
+    matrix[1] = 0.0;
+  }
+  set_camera_matrix(camera, matrix, place);
+}
+
 void set_opencv_distortion(Camera& camera, std::span<const double> coefficients, bool is_fisheye,
                            const std::string& place) {
   constexpr std::size_t kLeast = 4;

@@ -22,6 +22,10 @@ Camera read_opencv_camera(const CalibrationFields& fields);
 // Sets focal lengths and principal point from a 3x3 matrix. Throws InputError for skew.
 void set_camera_matrix(Camera& camera, const std::vector<double>& matrix, const std::string& place);
 
+// The same with skew, which is left out, with a note, if it moves pixels by less than a quarter of a pixel.
+void set_skewed_matrix(Camera& camera, std::vector<double> matrix, const std::string& place,
+                       std::vector<std::string>& notes);
+
 // Sets model and coefficients in OpenCV's order: four of a fisheye; else four to fourteen. Without distortion the model
 // is pinhole. Throws InputError for another number of coefficients.
 void set_opencv_distortion(Camera& camera, std::span<const double> coefficients, bool is_fisheye,

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <initializer_list>
+#include <string_view>
 
 namespace byre {
 
@@ -29,6 +30,19 @@ CameraList read_matrix_pair(const CalibrationFields& fields, const std::filesyst
 bool has_flat_camera(const CalibrationFields& fields);
 CameraList read_flat_camera(const CalibrationFields& fields, const std::filesystem::path& path);
 
+// MATLAB's cameraParameters and stereoParameters as a structure; Bouguet's Calib_Results.m and its printed stereo
+// results.
+bool has_matlab_camera(const CalibrationFields& fields);
+CameraList read_matlab(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_matlab_pair(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_bouguet(const CalibrationFields& fields, const std::filesystem::path& path);
+
+bool has_metashape_camera(const CalibrationFields& fields);
+CameraList read_metashape(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_opensfm(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_openmvg(const CalibrationFields& fields, const std::filesystem::path& path);
+CameraList read_middlebury(const CalibrationFields& fields, const std::filesystem::path& path);
+
 CameraList read_kitti(const CalibrationFields& fields, const std::filesystem::path& path);
 CameraList read_depthai(const CalibrationFields& fields, const std::filesystem::path& path);
 CameraList read_colmap(const CalibrationFields& fields, const std::filesystem::path& path);
@@ -40,6 +54,8 @@ CameraList read_zed(const CalibrationFields& fields, std::optional<std::pair<int
 std::optional<Pose> pair_pose(const CalibrationFields& fields);
 
 // Helpers of the readers.
+// Whether cameras inside a group share a field of this name, as the image size.
+bool is_shared_field(std::string_view name);
 Pose baseline_pose(double x, double y = 0.0);
 std::string text_or(const CalibrationFields& fields, const std::string& field, const std::string& otherwise);
 bool has_all(const CalibrationFields& fields, std::initializer_list<const char*> names);

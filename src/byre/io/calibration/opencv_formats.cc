@@ -32,6 +32,7 @@ std::string plain_name(std::string_view name) {
 // The first field with one of these plain names, after the side is cut off; empty if there is none.
 std::string field_named(const Fields& fields, Names names, std::string_view side = {}) {
   for (const std::string& field : fields.names()) {
+    if (!fields.has(field)) continue;
     const std::string plain = plain_name(field);
     for (const std::string_view name : names) {
       const bool is_longer = plain.size() == name.size() + side.size();
@@ -46,8 +47,38 @@ std::string field_named(const Fields& fields, std::initializer_list<std::string_
   return field_named(fields, Names(names.begin(), names.size()));
 }
 
+constexpr std::array<std::string_view, 20> kDistortions = {"distortioncoefficients",
+                                                           "distortioncoeffs",
+                                                           "distortioncoeff",
+                                                           "distortioncoefs",
+                                                           "distcoeffs",
+                                                           "distcoeff",
+                                                           "distcoefs",
+                                                           "distcoef",
+                                                           "distortcoeffs",
+                                                           "distortcoeff",
+                                                           "distortion",
+                                                           "distortions",
+                                                           "distortionparameters",
+                                                           "distortionparams",
+                                                           "lensdistortion",
+                                                           "dist",
+                                                           "camdist",
+                                                           "d",
+                                                           "coeffs",
+                                                           "coefficients"};
+
+constexpr std::array<std::string_view, 5> kSizes = {"imagesize", "size", "resolution", "imgsize", "calibimagesize"};
+constexpr std::array<std::string_view, 7> kWidths = {"imagewidth", "width", "camwidth", "framewidth",
+                                                     "imgwidth",   "cols",  "w"};
+constexpr std::array<std::string_view, 7> kHeights = {"imageheight", "height", "camheight", "frameheight",
+                                                      "imgheight",   "rows",   "h"};
+constexpr std::array<std::string_view, 3> kFisheyeFlags = {"fisheyemodel", "fisheye", "isfisheye"};
+constexpr std::array<std::string_view, 6> kModels = {"distortionmodel", "distortiontype", "model",
+                                                     "cammodel",        "cameramodel",    "projectionmodel"};
+
 void read_any_size(const Fields& fields, Camera& camera) {
-  for (const std::string_view name : {"imagesize", "size", "resolution", "imgsize", "calibimagesize"}) {
+  for (const std::string_view name : kSizes) {
     const std::string field = field_named(fields, {name});
     if (field.empty()) continue;
     if (fields.is_group(field)) {
@@ -61,22 +92,21 @@ void read_any_size(const Fields& fields, Camera& camera) {
   }
   if (fields.has("image_width") != fields.has("image_height"))
     return read_size(fields, "image_width", "image_height", camera);
-  const std::string width =
-      field_named(fields, {"imagewidth", "width", "camwidth", "framewidth", "imgwidth", "cols", "w"});
-  const std::string height =
-      field_named(fields, {"imageheight", "height", "camheight", "frameheight", "imgheight", "rows", "h"});
+  const std::string width = field_named(fields, kWidths), height = field_named(fields, kHeights);
   if (!width.empty() && !height.empty()) read_size(fields, width, height, camera);
 }
 
-enum class LensName { opencv, fisheye, view_angle };
+enum class LensName { opencv, none, fisheye, view_angle };
 
 // Names of lens models in ROS, OpenCV, RealSense, SVO, DSO and NeRF.
 LensName lens_name_of(const Fields& fields) {
-  const std::string flag = field_named(fields, {"fisheyemodel", "fisheye", "isfisheye"});
+  const std::string flag = field_named(fields, kFisheyeFlags);
   if (!flag.empty() && (fields.text(flag) == "1" || plain_name(fields.text(flag)) == "true")) return LensName::fisheye;
-  const std::string field =
-      field_named(fields, {"distortionmodel", "distortiontype", "model", "cammodel", "cameramodel", "projectionmodel"});
-  if (field.empty()) return LensName::opencv;
+  const std::string field = field_named(fields, kModels);
+  if (field.empty()) {
+    const std::string group = field_named(fields, kDistortions);
+    return !group.empty() && fields.is_group(group) ? lens_name_of(fields.group(group)) : LensName::opencv;
+  }
   std::string name = plain_name(fields.text(field));
   if (name.starts_with("distortion")) name.erase(0, std::string_view("distortion").size());
   const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
@@ -87,10 +117,10 @@ LensName lens_name_of(const Fields& fields) {
     return LensName::fisheye;
   }
   if (is_one_of({"atan", "fov"})) return LensName::view_angle;
-  const bool is_opencv =
-      is_one_of({"", "none", "pinhole", "simplepinhole", "perspective", "opencv", "fullopencv", "plumbbob", "radtan",
-                 "radialtangential", "brown", "brownconrady", "modifiedbrownconrady", "inversebrownconrady",
-                 "rectilinear", "rational", "rationalpolynomial"});
+  if (is_one_of({"none", "ideal", "undistorted"})) return LensName::none;
+  const bool is_opencv = is_one_of({"", "pinhole", "simplepinhole", "perspective", "opencv", "fullopencv", "plumbbob",
+                                    "radtan", "radialtangential", "brown", "brownconrady", "modifiedbrownconrady",
+                                    "inversebrownconrady", "rectilinear", "rational", "rationalpolynomial"});
   // Another field than that of the distortion may name the product.
   const bool is_other = is_one_of({"equirectangular", "spherical", "cylindrical", "scaramuzza", "ocam", "mei", "omni",
                                    "unified", "ds", "doublesphere", "eucm", "division"});
@@ -101,30 +131,14 @@ LensName lens_name_of(const Fields& fields) {
 
 // ---- Matrix and coefficients
 
-constexpr std::array<std::string_view, 11> kMatrices = {
-    "cameramatrix",     "k",    "m",         "mtx",       "matrix",    "intrinsicmatrix",
-    "cameraintrinsics", "camk", "intmatrix", "intrinsic", "intrinsics"};
-constexpr std::array<std::string_view, 17> kDistortions = {"distortioncoefficients",
-                                                           "distortioncoeffs",
-                                                           "distortioncoeff",
-                                                           "distortioncoefs",
-                                                           "distcoeffs",
-                                                           "distcoeff",
-                                                           "distcoefs",
-                                                           "distcoef",
-                                                           "distortcoeffs",
-                                                           "distortcoeff",
-                                                           "distortion",
-                                                           "distortions",
-                                                           "distortionparameters",
-                                                           "dist",
-                                                           "camdist",
-                                                           "d",
-                                                           "coeffs"};
-
+constexpr std::array<std::string_view, 14> kMatrices = {
+    "cameramatrix",     "k",    "m",         "mtx",       "matrix",     "intrinsicmatrix", "intrinsicparameters",
+    "cameraintrinsics", "camk", "intmatrix", "intrinsic", "intrinsics", "kmatrix",         "intrinsicsmatrix"};
 std::string matrix_named(const Fields& fields, std::string_view side = {}) {
   const std::string field = field_named(fields, kMatrices, side);
-  if (field.empty() || plain_name(field).find("cameramatrix") != std::string::npos) return field;
+  if (field.empty()) return field;
+  const bool is_named = plain_name(field).find("cameramatrix") != std::string::npos;
+  if (is_named && (!fields.is_group(field) || !has_flat_camera(fields.group(field)))) return field;
   return fields.has_numbers(field, 9) || fields.has_numbers(field, 12) ? field : std::string();
 }
 
@@ -137,22 +151,79 @@ std::vector<double> matrix_of(const Fields& fields, const std::string& field) {
   return m.size() == 9 ? m : fields.numbers(field, 9);
 }
 
-// A skew that moves pixels by less than a quarter of a pixel is left out.
+// Sets intrinsics that are given as shares of the image size.
+void scale_intrinsics(Camera& camera, double fx, double fy, double cx, double cy, const std::string& place) {
+  if (camera.width == 0)
+    throw InputError(place, "is relative to the image size, which is missing", "give --size WIDTHxHEIGHT");
+  camera.fx = fx * camera.width, camera.fy = fy * camera.height;
+  camera.cx = cx * camera.width - 0.5, camera.cy = cy * camera.height - 0.5;
+}
+
 void set_any_matrix(Camera& camera, std::vector<double> matrix, const std::string& place,
                     std::vector<std::string>& notes) {
-  constexpr double kMostError = 0.25;  // pixels
   const bool is_by_columns = matrix[2] == 0.0 && matrix[5] == 0.0 && matrix[6] > 0.0 && matrix[7] > 0.0;
   if (is_by_columns) {
     std::swap(matrix[1], matrix[3]), std::swap(matrix[2], matrix[6]), std::swap(matrix[5], matrix[7]);
     notes.push_back(place + ": the matrix is stored column by column");
   }
-  const double reach = std::max(matrix[5], camera.height - matrix[5]) / std::max(matrix[4], 1.0);
-  if (const double error = std::abs(matrix[1]) * reach; matrix[1] != 0.0 && error < kMostError) {
-    notes.push_back(fmt::format("{}: a skew of {:.3g} is left out, which moves pixels by at most {:.2g} pixels", place,
-                                matrix[1], error));
-    matrix[1] = 0.0;
+  const bool is_relative = matrix[8] == 1.0 && matrix[2] < 1.0 && matrix[5] < 1.0 && matrix[0] < 10.0;
+  if (is_relative) {
+    scale_intrinsics(camera, matrix[0], matrix[4], matrix[2], matrix[5], place);
+    matrix = {camera.fx, matrix[1] * camera.width, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
+    notes.push_back(place + ": intrinsics are relative to the image size");
   }
-  set_camera_matrix(camera, matrix, place);
+  set_skewed_matrix(camera, matrix, place, notes);
+}
+
+// Field of one parameter, also behind the prefixes of other programs.
+std::string field_of(const Fields& fields, const std::string& name) {
+  for (const char* const prefix : {"", "cam", "dist", "radial", "tangential"}) {
+    const std::string plain = prefix + name;
+    const std::string field = field_named(fields, {std::string_view(plain)});
+    if (!field.empty()) return field;
+  }
+  return {};
+}
+
+// Coefficients of a list, or of fields k1, k2, p1, p2, k3 to k6, or d0 to d7. Throws InputError for a group of others.
+std::vector<double> coefficients_in(const Fields& fields, bool is_fisheye) {
+  const std::string list = field_named(fields, kDistortions);
+  if (!list.empty() && fields.is_group(list) && !fields.group(list).has("data")) {
+    const Fields group = fields.group(list);
+    std::vector<double> numbers = coefficients_in(group, is_fisheye);
+    if (numbers.empty() && lens_name_of(group) != LensName::none) {
+      throw InputError(fields.place(list), "has no coefficients k1, k2 or a list of them");
+    }
+    return numbers;
+  }
+  if (!list.empty()) return fields.numbers(list);
+  constexpr std::array<std::string_view, 8> kOpencv = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  constexpr std::array<std::string_view, 4> kFisheye = {"k1", "k2", "k3", "k4"};
+  constexpr std::array<std::string_view, 8> kNumbered = {"d0", "d1", "d2", "d3", "d4", "d5", "d6", "d7"};
+  for (const Names names :
+       {is_fisheye ? Names(kFisheye) : Names(kOpencv), is_fisheye ? Names(kNumbered).first(4) : Names(kNumbered)}) {
+    if (field_of(fields, std::string(names.front())).empty()) continue;
+    std::vector<double> numbers;
+    for (const std::string_view name : names) {
+      const std::string field = field_of(fields, std::string(name));
+      numbers.push_back(field.empty() ? 0.0 : fields.number(field));
+    }
+    return numbers;
+  }
+  return {};
+}
+
+// Throws InputError for numbers of a distortion whose name is unknown, which must not pass for undistorted images.
+void refuse_unknown_distortion(const Fields& fields) {
+  for (const auto& name : fields.names()) {
+    const std::string plain = plain_name(name);
+    const bool is_distortion =
+        plain.find("distortion") != std::string::npos || plain.starts_with("distco") || plain.starts_with("radial");
+    if (is_distortion && fields.has(name) && (fields.is_group(name) || fields.has_list(name))) {
+      throw InputError(fields.place(name), "is a distortion of an unknown form",
+                       "name the coefficients k1, k2, p1, p2, k3 \"distortion_coefficients\"");
+    }
+  }
 }
 
 PlacedCamera matrix_camera(const Fields& fields, std::string_view side, std::vector<std::string>& notes) {
@@ -166,11 +237,14 @@ PlacedCamera matrix_camera(const Fields& fields, std::string_view side, std::vec
   const LensName lens = lens_name_of(fields);
   if (distortion.empty()) {
     const std::string model = text_or(fields, "distortion_model", "none");
+    refuse_unknown_distortion(fields);
     if (model != "none") throw InputError(fields.place("distortion_coefficients"), "is missing");
     if (!fields.has("distortion_model")) notes.push_back("without distortion coefficients: undistorted images");
     return result;
   }
-  const std::vector<double> coefficients = fields.numbers(distortion);
+  const bool is_group = fields.is_group(distortion) && !fields.group(distortion).has("data");
+  const std::vector<double> coefficients =
+      is_group ? coefficients_in(fields, lens == LensName::fisheye) : fields.numbers(distortion);
   set_opencv_distortion(camera, coefficients, lens == LensName::fisheye, fields.place(distortion));
   if (coefficients.size() == kAmbiguous && camera.model == CameraModel::radial_tangential &&
       !fields.has("distortion_model")) {
@@ -201,29 +275,19 @@ std::optional<Pose> extrinsics_beside(const fs::path& path) {
 
 // ---- One field for each parameter
 
-// Coefficients k1, k2, p1, p2, k3 to k6, or d0 to d7, with the prefix of the focal length.
-std::vector<double> flat_coefficients(const Fields& fields, const std::string& prefix, bool is_fisheye) {
-  const std::string list = field_named(fields, kDistortions);
-  if (!list.empty()) return fields.numbers(list);
-  constexpr std::array<std::string_view, 8> kOpencv = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
-  constexpr std::array<std::string_view, 4> kFisheye = {"k1", "k2", "k3", "k4"};
-  constexpr std::array<std::string_view, 8> kNumbered = {"d0", "d1", "d2", "d3", "d4", "d5", "d6", "d7"};
-  for (const Names names :
-       {is_fisheye ? Names(kFisheye) : Names(kOpencv), is_fisheye ? Names(kNumbered).first(4) : Names(kNumbered)}) {
-    if (!fields.has(prefix + std::string(names.front()))) continue;
-    std::vector<double> numbers;
-    for (const std::string_view name : names) numbers.push_back(fields.number_or(prefix + std::string(name), 0.0));
-    return numbers;
-  }
-  return {};
-}
-
 std::array<std::string, 4> flat_names(const Fields& fields) {
   return {field_named(fields, {"fx", "camfx", "flx"}), field_named(fields, {"fy", "camfy", "fly"}),
           field_named(fields, {"cx", "camcx", "ppx"}), field_named(fields, {"cy", "camcy", "ppy"})};
 }
 
 }  // namespace
+
+bool is_shared_field(std::string_view name) {
+  const std::string plain = plain_name(name);
+  const auto contains = [&](Names names) { return std::ranges::find(names, plain) != names.end(); };
+  return contains(kDistortions) || contains(kSizes) || contains(kWidths) || contains(kHeights) || contains(kModels) ||
+         contains(kFisheyeFlags);
+}
 
 bool has_matrix_camera(const Fields& fields) {
   return !matrix_named(fields).empty();
@@ -299,21 +363,19 @@ CameraList read_flat_camera(const Fields& fields, const fs::path&) {
   camera.fx = fields.number(names[0]), camera.fy = fields.number(names[1]);
   camera.cx = fields.number(names[2]), camera.cy = fields.number(names[3]);
   if (camera.cx < 1.0 && camera.cy < 1.0) {
-    if (camera.width == 0) throw InputError(place, "is relative to the image size, which is missing");
-    camera.fx *= camera.width, camera.fy *= camera.height;
-    camera.cx = camera.cx * camera.width - 0.5, camera.cy = camera.cy * camera.height - 0.5;
+    scale_intrinsics(camera, camera.fx, camera.fy, camera.cx, camera.cy, place);
     list.notes.push_back("intrinsics are relative to the image size");
   }
   require_valid(camera, place);
   const LensName lens = lens_name_of(fields);
-  const std::string prefix = names[0].starts_with("cam_") ? "cam_" : "";
-  std::vector<double> coefficients = flat_coefficients(fields, prefix, lens == LensName::fisheye);
+  std::vector<double> coefficients = coefficients_in(fields, lens == LensName::fisheye);
   if (lens == LensName::view_angle) {
     coefficients.resize(1, 0.0);
     set_kalibr_lens(camera, {"pinhole", {camera.fx, camera.fy, camera.cx, camera.cy}, "fov", coefficients}, place);
   } else if (!coefficients.empty()) {
     set_opencv_distortion(camera, coefficients, lens == LensName::fisheye, place);
   } else {
+    refuse_unknown_distortion(fields);
     list.notes.push_back("without distortion coefficients: undistorted images");
   }
   const std::string model = field_named(fields, {"model", "distortionmodel"});

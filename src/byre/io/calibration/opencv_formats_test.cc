@@ -114,6 +114,48 @@ TEST_F(OtherCalibrations, AreFoundInsideOtherFields) {
   EXPECT_THAT(refusal("a:\n  left:\n" + inner + "  right:\n" + inner), HasSubstr("is missing (give the pose"));
 }
 
+TEST_F(OtherCalibrations, ShareFieldsOfTheGroupAroundThem) {
+  const std::string split =
+      "camera:\n  image_size: {width: 752, height: 480}\n  intrinsics: {fx: 458, fy: 457, cx: 367, cy: 248}\n";
+  EXPECT_EQ(camera(split + "  distortion: {model: radtan, k1: -0.28, k2: 0.07, p1: 0.0002, p2: 0.00002, k3: 0.001}\n"),
+            kExpected);
+  EXPECT_EQ(camera(split + "  distortion_coefficients: " + kLens + "\n"), kExpected);
+  EXPECT_EQ(camera(split + "  distortion: {model: equidistant, coeffs: [0.1, 0.2, 0.3, 0.4]}\n").model,
+            CameraModel::equidistant);
+  EXPECT_EQ(camera(split).model, CameraModel::pinhole);
+  EXPECT_THAT(refusal(split + "  distortion: {a: 1, b: 2}\n"), HasSubstr("distortion: has no coefficients"));
+}
+
+TEST_F(OtherCalibrations, AreReadOnceIfEveryFrameHasTheSame) {
+  const auto frame = [](const std::string& k1) {
+    return "{\"w\": 752, \"h\": 480, \"fl_x\": 458, \"fl_y\": 457, \"cx\": 367, \"cy\": 248, \"k1\": " + k1 +
+           ", \"k2\": 0.07, \"p1\": 0.0002, \"p2\": 0.00002, \"k3\": 0.001}";
+  };
+  const CalibrationReading reading =
+      read("transforms.json", "{\"frames\": [" + frame("-0.28") + ", " + frame("-0.28") + "]}");
+  EXPECT_EQ(reading.calibration.left, kExpected);
+  EXPECT_THAT(reading.notes, Contains(HasSubstr("2 entries have the same camera")));
+  EXPECT_THAT(refusal("{\"frames\": [" + frame("-0.28") + ", " + frame("-0.3") + ", " + frame("-0.4") + "]}"),
+              HasSubstr("has 3 cameras: frames[0], frames[1], frames[2]"));
+}
+
+TEST_F(OtherCalibrations, OfAColourCameraAreUsedAloneNextToItsDepthCamera) {
+  const std::string lens =
+      "{fx: 458, fy: 457, cx: 367, cy: 248, k1: -0.28, k2: 0.07, p1: 0.0002, p2: 0.00002, k3: 0.001}";
+  const CalibrationReading reading = read("rgbd.yaml", "ir_intrinsic: " + lens + "\ncolor_intrinsic: " + lens + "\n");
+  EXPECT_EQ(reading.calibration.left, without_size(kExpected));
+  EXPECT_FALSE(reading.calibration.right);
+  EXPECT_THAT(reading.notes, Contains(HasSubstr("of 2 cameras, color_intrinsic is used")));
+}
+
+TEST_F(OtherCalibrations, RelativeToTheImageSizeNeedIt) {
+  const std::string matrix = "[[0.6, 0, 0.5], [0, 0.9, 0.5], [0, 0, 1]]";
+  EXPECT_THAT(refusal(matrix), AllOf(HasSubstr("K: is relative to the image size"), HasSubstr("--size")));
+  write("k.json", matrix);
+  EXPECT_EQ(read_calibration_file(folder_ / "k.json", {}, std::pair(1000, 600)).calibration.left,
+            (Camera{CameraModel::pinhole, 1000, 600, 600.0, 540.0, 499.5, 299.5, {}}));
+}
+
 TEST_F(OtherCalibrations, AreReadWithOneFieldForEachNumber) {
   const CalibrationReading realsense =
       read("realsense.json",

@@ -215,7 +215,10 @@ Camera basalt_camera(const Fields& entry) {
 CameraList read_orb_slam(const Fields& fields, const fs::path&) {
   const bool is_third = fields.has("Camera1.fx") || fields.has("File.version");
   CameraList list{is_third ? "ORB-SLAM3" : "ORB-SLAM2", {}};
-  if (fields.has("LEFT.K") && fields.has("RIGHT.K")) {
+  const bool has_source = fields.has("LEFT.K") && fields.has("RIGHT.K");
+  const bool is_placeholder = has_source && fields.has("LEFT.R") && fields.matrix("LEFT.R").isZero();
+  if (is_placeholder) list.notes.push_back("LEFT.R is zero, so the fields LEFT and RIGHT are not used");
+  if (has_source && !is_placeholder) {
     require_own_rectification(fields);
     list.cameras = {orb_slam_rectified_camera(fields, "LEFT"), orb_slam_rectified_camera(fields, "RIGHT")};
   } else {
