@@ -6,6 +6,7 @@
 #include "byre/geometry/rectification.h"
 #include "byre/input_error.h"
 #include "byre/playback/report/report.h"
+#include "byre/viewer/calibration_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,20 +33,22 @@ struct CalibrationOptions {
   std::optional<fs::path> right;
   std::string size;
   fs::path output;
+  std::optional<fs::path> picture;
   bool json = false;
 };
 
 constexpr const char* kFooter = R"(Examples:
   byre calibration show calibration.yaml
-  byre calibration show left.yaml right.yaml
+  byre calibration show left.yaml right.yaml --picture grid.png
   byre calibration convert kalibr_imucam_chain.yaml -o calibration.yaml
   byre calibration convert intrinsics.yml extrinsics.yml --size 640x480 -o calibration.yaml
 
 The content determines the format: Kalibr, OpenVINS, EuRoC, ROS (.yaml, .ini, ost.txt), OpenCV (YAML, XML, one camera
 or a pair), ORB-SLAM2 and 3, stella_vslam, VINS-Fusion, okvis2, basalt, maplab, DepthAI, ZED (.conf), RealSense, KITTI,
-DSO, COLMAP (cameras.txt), and any file with fx, fy, cx, cy. Two files are those of the left and the right
-camera, or intrinsics and extrinsics. A folder stands for both. "convert" writes a Kalibr camchain, which loses nothing:
-all lens models are kept.)";
+DSO, COLMAP (cameras.txt), OpenSfM, OpenMVG, Metashape, MATLAB, Middlebury, and any file with fx, fy, cx, cy. Two files
+are those of the left and the right camera, or intrinsics and extrinsics. A folder stands for both. "convert" writes a
+Kalibr camchain, which loses nothing: all lens models are kept. "--picture" draws the pixel grid of the undistorted
+image in the image, and the reverse.)";
 
 // Sides of an image from "640x480"; zero if it is none.
 std::pair<int, int> sides_of(const std::string& text) {
@@ -189,7 +192,16 @@ Report calibration_report(const CalibrationOptions& options, const CalibrationRe
 }
 
 ExitCode run_show(const CalibrationOptions& options, std::ostream& result) {
-  const Report report = calibration_report(options, read(options));
+  const CalibrationReading reading = read(options);
+  Report report = calibration_report(options, reading);
+  if (options.picture) {
+    const Calibration& calibration = reading.calibration;
+    if (calibration.left.width == 0 || (calibration.right && calibration.right->camera.width == 0)) {
+      throw InputError(options.input.string(), "does not have the image size", "give it with --size WIDTHxHEIGHT");
+    }
+    write_picture(calibration_picture(calibration, options.input.filename().string()), *options.picture);
+    report.row("picture", "{path}", {{"path", options.picture->string()}});
+  }
   result << (options.json ? to_json(report) : report.text);
   return ExitCode::done;
 }
@@ -230,6 +242,9 @@ Action declare_calibration(CLI::App& command) {
   command.footer(kFooter);
   CLI::App& showing = *command.add_subcommand("show", "Print how a calibration file is understood");
   const auto shown = declare_input(showing);
+  add_output(showing, Output::picture, "--picture", shown->picture,
+             "Pixel grid of the undistorted image in the image of each camera: .svg or .png")
+      ->type_name("FILE");
   showing.callback([=] { *chosen = [=](std::ostream& result) { return run_show(*shown, result); }; });
   CLI::App& converting =
       *command.add_subcommand("convert", "Write a calibration file of any format as Kalibr camchain");

@@ -61,6 +61,15 @@ TEST_F(CalibrationProgram, ConvertsToAFileThatIsShownAlike) {
   EXPECT_EQ(run("calibration convert left.yaml -o left.yaml").exit_code, 2) << "the input";
 }
 
+TEST_F(CalibrationProgram, DrawsTheUndistortedGrid) {
+  const Outcome outcome = run("calibration show left.yaml right.yaml --picture grid.svg");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("picture       grid.svg\n"));
+  EXPECT_THAT(read("grid.svg"), AllOf(HasSubstr(">left: radial_tangential<"), HasSubstr(">right, undistorted<")));
+  EXPECT_THAT(run("calibration show k.yaml --picture k.png").errors, HasSubstr("give it with --size"));
+  EXPECT_EQ(run("calibration show left.yaml --picture left.yaml").exit_code, 2) << "the input";
+}
+
 TEST_F(CalibrationProgram, TakesTheImageSizeOfFilesWithoutIt) {
   EXPECT_THAT(run("calibration show k.yaml").output, HasSubstr("unknown image size"));
   EXPECT_THAT(run("calibration convert k.yaml -o k2.yaml").errors, HasSubstr("give it with --size"));
