@@ -104,6 +104,10 @@ bool CalibrationFields::is_group(const std::string& field) const {
   return has(field) && find(field).IsMap();
 }
 
+bool CalibrationFields::has_scalar(const std::string& field) const {
+  return has(field) && find(field).IsScalar();
+}
+
 bool CalibrationFields::has_list(const std::string& field) const {
   return has(field) && find(field).IsSequence() && find(field).size() > 0;
 }
@@ -114,10 +118,8 @@ std::vector<std::string> CalibrationFields::names() const {
   return names;
 }
 
-void CalibrationFields::complete_size(int width, int height) {
-  if (has("image_width") || has("image_height")) return;
-  node_["image_width"] = width;
-  node_["image_height"] = height;
+void CalibrationFields::set_size_of_images(int width, int height) {
+  node_[kSizeOfImages] = std::vector<int>{width, height};
 }
 
 std::vector<std::pair<std::string, CalibrationFields>> CalibrationFields::inner() const {

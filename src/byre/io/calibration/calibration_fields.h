@@ -13,6 +13,9 @@
 
 namespace byre {
 
+// Name of a field with the width and height of the images, which are not those of the file.
+inline constexpr const char* kSizeOfImages = "size of the images";
+
 // Named fields of a file that describes cameras: YAML, with OpenCV's directive in the first line allowed, JSON,
 // XML, ROS' .ini, statements of MATLAB, or sections of NAME=VALUE, which are groups of fields. Errors in a field throw
 // InputError with the place "FILE: FIELD".
@@ -24,6 +27,7 @@ class CalibrationFields {
   std::string place(const std::string& field) const;  // place of the field for an InputError
   bool has(const std::string& field) const;
   bool is_group(const std::string& field) const;  // whether it has named fields
+  bool has_scalar(const std::string& field) const;
   bool has_list(const std::string& field) const;  // whether it has numbers, or other values without names
   std::vector<std::string> names() const;         // names of all fields, in their order
 
@@ -31,8 +35,7 @@ class CalibrationFields {
   // These fields, and the missing ones that the group around them has, of wanted names.
   CalibrationFields completed(const CalibrationFields& outer, bool (*is_wanted)(std::string_view name)) const;
 
-  void complete_size(int width,
-                     int height);  // adds image_width and image_height unless there are fields of these names
+  void set_size_of_images(int width, int height);  // as the field kSizeOfImages
 
   // Each throws InputError if the field is missing or has another type.
   CalibrationFields group(const std::string& field) const;              // fields inside this field

@@ -65,7 +65,7 @@ struct Format {
 };
 
 bool has_camera_fields(const Fields& fields) {
-  return fields.has("intrinsics") && (fields.has("camera_model") || fields.has("distortion_coeffs"));
+  return fields.has_list("intrinsics") && (fields.has("camera_model") || fields.has("distortion_coeffs"));
 }
 
 // Whether a field holds a camera of another format than Kalibr's.
@@ -100,7 +100,7 @@ constexpr std::array kFormats = {
              return f.has("Camera.fx") || f.has("Camera1.fx") || f.has("LEFT.K") || f.has("Camera.type");
            },
            read_orb_slam},
-    Format{[](const Fields& f) { return f.has("P0") || f.has("P_rect_00"); }, read_kitti},
+    Format{[](const Fields& f) { return f.has("P0") || f.has("P_rect_00") || f.has_numbers("P2", 12); }, read_kitti},
     Format{has_matrix_pair, read_matrix_pair, true},
     Format{has_matrix_camera, read_matrix_camera, true},
     Format{[](const Fields& f) {
@@ -113,6 +113,7 @@ constexpr std::array kFormats = {
            },
            read_maplab_camera},
     Format{has_flat_camera, read_flat_camera, true},
+    Format{has_vector_camera, read_matrix_camera, true},
 };
 
 std::string small_letters(std::string_view name) {
@@ -158,6 +159,13 @@ void keep_one_of_equals(FoundCameras& found) {
   found.erase(found.begin() + 1, found.end());
 }
 
+// Keeps the model with distortion of the two that ViSP has for one camera.
+void keep_the_distorted_model(FoundCameras& found) {
+  const bool is_visp = found.size() == 2 && found[0].first == "model" && found[1].first.starts_with("model_");
+  if (!is_visp) return;
+  std::erase_if(found, [](const auto& each) { return each.second.cameras[0].camera.model == CameraModel::pinhole; });
+}
+
 // Keeps the colour camera of a device that has other kinds of cameras next to it.
 void keep_the_colour_camera(FoundCameras& found) {
   const auto is_colour = [](const auto& each) { return has_word(each.first, {"color", "colour", "rgb"}); };
@@ -172,6 +180,11 @@ void keep_the_colour_camera(FoundCameras& found) {
   std::swap(found.front(), *colour);
   found[0].second.notes.push_back(fmt::format("of {} cameras, {} is used", found.size(), found[0].first));
   found.erase(found.begin() + 1, found.end());
+}
+
+[[noreturn]] void refuse_many_cameras(const fs::path& path, const std::vector<std::string>& names) {
+  throw InputError(path.string(), fmt::format("has {} cameras: {}", names.size(), fmt::join(names, ", ")),
+                   "give a file of one camera or of a stereo pair");
 }
 
 // Cameras inside other fields: the only camera or pair, or the left and right of two. Empty if there is none.
@@ -190,6 +203,8 @@ std::optional<CameraList> nested_cameras(const Fields& own, const Fields& fields
   }
   if (found.empty()) return std::nullopt;
   keep_one_of_equals(found);
+  keep_the_distorted_model(found);
+  if (found.empty()) return std::nullopt;
   keep_the_colour_camera(found);
   if (found.size() == 2 && found[0].second.cameras[0].camera == found[1].second.cameras[0].camera &&
       !side_of(found[1].first)) {
@@ -201,15 +216,14 @@ std::optional<CameraList> nested_cameras(const Fields& own, const Fields& fields
   if (found.size() > 2 && !found.front().first.ends_with(']'))
     std::erase_if(found, [](const auto& each) { return !side_of(each.first); });
   const bool is_pair = found.size() == 2 && found[0].second.cameras.size() == 1 && found[1].second.cameras.size() == 1;
-  if (!is_pair) {
-    throw InputError(path.string(), fmt::format("has {} cameras: {}", names.size(), fmt::join(names, ", ")),
-                     "give a file of one camera or of a stereo pair");
-  }
+  if (!is_pair) refuse_many_cameras(path, names);
   if (side_of(found[0].first).value_or(0) > side_of(found[1].first).value_or(1)) std::swap(found[0], found[1]);
   CameraList list = std::move(found[0].second);
   list.cameras.push_back(found[1].second.cameras.front());
   list.notes.insert(list.notes.end(), found[1].second.notes.begin(), found[1].second.notes.end());
-  if (!list.cameras[1].from_previous) list.cameras[1].from_previous = pair_pose(fields);
+  if (!list.cameras[1].from_previous) place_pair(fields, list.cameras[0], list.cameras[1]);
+  const bool is_placed = list.cameras[1].from_previous || list.cameras[1].rectified || list.cameras[1].body_from_camera;
+  if (names.size() > 2 && !is_placed) refuse_many_cameras(path, names);
   if (list.cameras[1].pose_place.empty()) list.cameras[1].pose_place = fields.place("R, T");
   if (names.size() > 2)
     list.notes.push_back(fmt::format("of {} cameras, a left and a right one are used", names.size()));
@@ -282,9 +296,13 @@ std::optional<Pose> read_opencv_extrinsics(const fs::path& path) {
 
 CameraList read_cameras(const fs::path& path, std::optional<std::pair<int, int>> size) {
   CalibrationFields fields = CalibrationFields::load(path);
-  if (size) fields.complete_size(size->first, size->second);
+  if (size) fields.set_size_of_images(size->first, size->second);
   if (fields.has("STEREO") && fields.is_group("STEREO")) return read_zed(fields, size);
   if (fields.has("colmap")) return read_colmap(fields, path);
+  if (fields.has("ocam")) {
+    throw InputError(path.string(), "is a calibration of OCamCalib (Scaramuzza), which is not supported",
+                     "calibrate with Kalibr, by --models omni-radtan, ds-none or pinhole-equi");
+  }
   const auto format = std::ranges::find_if(kFormats, [&](const Format& each) { return each.matches(fields); });
   if (format != kFormats.end()) return format->read(fields, path);
   if (auto list = nested_cameras(fields, fields, path)) return std::move(*list);

@@ -154,6 +154,24 @@ TEST_F(CalibrationFormats, ReadsOrbSlamWithPlaceholdersOfARectification) {
   EXPECT_THAT(reading.notes, Contains(HasSubstr("LEFT.R is zero")));
 }
 
+TEST_F(CalibrationFormats, ReadsSsvoWithTheSizeOfItsImage) {
+  const Camera camera = read("ssvo.yaml",
+                             "%YAML:1.0\nCamera.fx: 458\nCamera.fy: 457\nCamera.cx: 367\nCamera.cy: 248\n"
+                             "Camera.k1: -0.28\nImage.width: 752\nImage.height: 480\n")
+                            .calibration.left;
+  EXPECT_EQ(camera, (Camera{CameraModel::radial_tangential, 752, 480, 458, 457, 367, 248, {-0.28}}));
+}
+
+TEST_F(CalibrationFormats, ReadsTheColourCamerasOfKitti) {
+  const Calibration kitti = read("calib.txt",
+                                 "P2: 700 0 600 45 0 700 180 0 0 0 1 0.003\nP3: 700 0 600 -340 0 700 180 0 0 0 1 "
+                                 "0.004\nR0_rect: 1 0 0 0 1 0 0 0 1\n")
+                                .calibration;
+  EXPECT_EQ(kitti.left.fx, 700.0);
+  ASSERT_TRUE(kitti.right);
+  EXPECT_NEAR(kitti.right->right_from_left.translation.x(), -385.0 / 700.0, 1e-12);
+}
+
 TEST_F(CalibrationFormats, ReadsOrbSlam3) {
   std::string text =
       "%YAML:1.0\nFile.version: \"1.0\"\nCamera.type: \"PinHole\"\nCamera.width: 752\nCamera.height: 480\n";

@@ -326,6 +326,71 @@ YAML::Node colmap_camera_of(const std::vector<std::string_view>& words) {
 
 }  // namespace
 
+namespace {
+
+// All numbers of a text, separated by commas, brackets or white space; empty if there is anything else.
+std::vector<std::string> numbers_of_lines(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + ' ';
+  std::ranges::replace_if(
+      text, [](char c) { return c == ',' || c == ';' || c == '[' || c == ']'; }, ' ');
+  return numbers_of(text);
+}
+
+// Rows of a camera matrix, 3x3, 3x4 or 4x4, which coefficients may follow.
+std::optional<YAML::Node> parse_matrix_lines(const std::vector<std::string>& lines) {
+  const std::vector<std::string> numbers = numbers_of_lines(lines);
+  const auto value = [&](std::size_t i) { return *parse_number(numbers[i]); };
+  if (numbers.size() < 9 || numbers.size() > 30) return std::nullopt;
+  for (const std::size_t columns : {std::size_t{3}, std::size_t{4}}) {
+    const bool is_square = columns == 4 && numbers.size() >= 16 && value(15) == 1.0;
+    const std::size_t end = is_square ? 16 : 3 * columns;
+    if (numbers.size() < end) continue;
+    const auto at = [&](std::size_t row, std::size_t column) { return value(row * columns + column); };
+    const bool is_matrix = at(0, 0) > 0.0 && at(1, 1) > 0.0 && at(1, 0) == 0.0 && at(2, 0) == 0.0 && at(2, 1) == 0.0 &&
+                           at(2, 2) == 1.0 && at(0, 2) != 0.0 && at(1, 2) != 0.0;
+    const bool has_shift = columns == 4 && (at(0, 3) != 0.0 || at(1, 3) != 0.0 || at(2, 3) != 0.0);
+    const std::size_t rest = numbers.size() - end;
+    if (!is_matrix || has_shift || (rest != 0 && rest != 4 && rest != 5 && rest != 8 && rest != 14)) continue;
+    YAML::Node camera(YAML::NodeType::Map);
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 3; ++column) camera["K"].push_back(numbers[row * columns + column]);
+    }
+    for (std::size_t i = end; i < numbers.size(); ++i) camera["D"].push_back(numbers[i]);
+    return camera;
+  }
+  return std::nullopt;
+}
+
+// Lines of a name and a number, with nothing in between.
+std::optional<YAML::Node> parse_named_lines(const std::vector<std::string>& lines) {
+  YAML::Node fields(YAML::NodeType::Map);
+  for (const std::string& line : lines) {
+    const std::vector<std::string_view> words = split_fields(line);
+    const bool is_named = words.size() == 2 && !words[0].empty() && parse_number(words[1]) &&
+                          std::ranges::all_of(words[0], is_of_name) && !parse_number(words[0]);
+    if (!is_named) return std::nullopt;
+    fields[std::string(words[0])] = std::string(words[1]);
+  }
+  if (lines.size() < 4) return std::nullopt;
+  return fields;
+}
+
+// calib_results.txt of OCamCalib: both polynomials with their lengths, centre, affine parameters, image size.
+bool is_ocam(const std::vector<std::string>& lines) {
+  constexpr std::array<std::size_t, 3> kCounts = {2, 3, 2};
+  if (lines.size() != kCounts.size() + 2) return false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::vector<std::string> numbers = numbers_of(lines[i]);
+    if (numbers.empty()) return false;
+    const double expected = i < 2 ? *parse_number(numbers.front()) + 1.0 : static_cast<double>(kCounts[i - 2]);
+    if (static_cast<double>(numbers.size()) != expected) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 std::optional<YAML::Node> parse_camera_lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -341,6 +406,12 @@ std::optional<YAML::Node> parse_camera_lines(const std::string& text) {
     file["colmap"].push_back(camera);
   }
   if (file["colmap"].size() == lines.size()) return file;
+  if (auto matrix = parse_matrix_lines(lines)) return matrix;
+  if (auto fields = parse_named_lines(lines)) return fields;
+  if (is_ocam(lines)) {
+    file["ocam"] = true;
+    return file;
+  }
   // DSO: an optional model, intrinsics and coefficients; the image size; what is cut off; the new size.
   const std::vector<std::string_view> words = split_fields(lines.front());
   const bool has_model = !words.empty() && !parse_number(words.front());

@@ -25,8 +25,9 @@ YAML::Node parse_sections(const std::string& text);
 // "'NAME', [MATRIX]" of functions. Matrices are stored row by row. Empty for less than two of them.
 std::optional<YAML::Node> parse_assignments(const std::string& text);
 
-// Lines without names: cameras.txt of COLMAP as list "colmap"; camera.txt of DSO, and fx fy cx cy with coefficients, as
-// in DROID-SLAM, as fields of these names. Empty for any other text.
+// Lines without names or colons: cameras.txt of COLMAP as list "colmap"; camera.txt of DSO, and fx fy cx cy with
+// coefficients, as in DROID-SLAM, as fields of these names; rows of a matrix, then coefficients, as K and D; names,
+// each with a number, as fields; results of OCamCalib as "ocam". Empty for any other text.
 std::optional<YAML::Node> parse_camera_lines(const std::string& text);
 
 }  // namespace byre

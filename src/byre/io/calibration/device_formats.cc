@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -175,9 +176,12 @@ CameraList read_colmap(const Fields& fields, const fs::path& path) {
 
 CameraList read_kitti(const Fields& fields, const fs::path&) {
   CameraList list{"KITTI", {}};
-  for (const auto& [projection, size] : {std::pair("P0", "S0"), std::pair("P1", "S1"),
-                                         std::pair("P_rect_00", "S_rect_00"), std::pair("P_rect_01", "S_rect_01")}) {
-    if (!fields.has(projection) || list.cameras.size() == 2) continue;
+  for (const auto& [projection, size] :
+       {std::pair("P0", "S0"), std::pair("P1", "S1"), std::pair("P_rect_00", "S_rect_00"),
+        std::pair("P_rect_01", "S_rect_01"), std::pair("P2", "S2"), std::pair("P3", "S3")}) {
+    const bool is_colour = std::string_view(projection) == "P2" || std::string_view(projection) == "P3";
+    const bool is_other_pair = is_colour && (fields.has("P0") || fields.has("P_rect_00"));
+    if (!fields.has(projection) || list.cameras.size() == 2 || is_other_pair) continue;
     PlacedCamera camera;
     if (fields.has(size)) {
       const std::vector<double> sides = fields.numbers(size, 2);

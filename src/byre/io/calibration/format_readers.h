@@ -23,8 +23,11 @@ CameraList read_basalt(const CalibrationFields& file, const std::filesystem::pat
 // programs that copy them; a pair has two of each, whose names begin or end with 1 and 2, left and right, or l and r.
 bool has_matrix_camera(const CalibrationFields& fields);
 CameraList read_matrix_camera(const CalibrationFields& fields, const std::filesystem::path& path);
-bool has_matrix_pair(const CalibrationFields& fields);
+bool has_matrix_pair(const CalibrationFields& fields);  // matrices, or lists of fx, fy, cx, cy
 CameraList read_matrix_pair(const CalibrationFields& fields, const std::filesystem::path& path);
+
+// A camera with one list of fx, fy, cx, cy instead of the matrix, which read_matrix_camera reads.
+bool has_vector_camera(const CalibrationFields& fields);
 
 // A camera with one field for each focal length and coefficient, as of RealSense, SVO, FAST-LIVO, NeRF and simulators.
 bool has_flat_camera(const CalibrationFields& fields);
@@ -52,6 +55,10 @@ CameraList read_zed(const CalibrationFields& fields, std::optional<std::pair<int
 
 // Rotation R, a matrix or a rotation vector, and translation T from the first to the second camera; empty without.
 std::optional<Pose> pair_pose(const CalibrationFields& fields);
+// Pose of a camera in the body by T_BS, T_imu_cam, T_cam_imu and the like, with a side; empty without.
+std::optional<Pose> body_pose(const CalibrationFields& fields, std::string_view side = {});
+// Poses of two cameras by fields around them: rotation and translation, or the pose of each in the body.
+void place_pair(const CalibrationFields& fields, PlacedCamera& left, PlacedCamera& right);
 
 // Helpers of the readers.
 // Whether cameras inside a group share a field of this name, as the image size.

@@ -68,20 +68,27 @@ constexpr std::array<std::string_view, 20> kDistortions = {"distortioncoefficien
                                                            "coeffs",
                                                            "coefficients"};
 
-constexpr std::array<std::string_view, 5> kSizes = {"imagesize", "size", "resolution", "imgsize", "calibimagesize"};
-constexpr std::array<std::string_view, 7> kWidths = {"imagewidth", "width", "camwidth", "framewidth",
-                                                     "imgwidth",   "cols",  "w"};
-constexpr std::array<std::string_view, 7> kHeights = {"imageheight", "height", "camheight", "frameheight",
-                                                      "imgheight",   "rows",   "h"};
+constexpr std::array<std::string_view, 8> kSizes = {
+    "imagesize", "size", "resolution", "imgsize", "calibimagesize", "imageresolution", "imageshape", "imagedimension"};
+constexpr std::array<std::string_view, 9> kWidths = {
+    "imagewidth", "width", "camwidth", "cameraimagewidth", "resolutionwidth", "framewidth", "imgwidth", "cols", "w"};
+constexpr std::array<std::string_view, 9> kHeights = {
+    "imageheight", "height", "camheight", "cameraimageheight", "resolutionheight", "frameheight",
+    "imgheight",   "rows",   "h"};
 constexpr std::array<std::string_view, 3> kFisheyeFlags = {"fisheyemodel", "fisheye", "isfisheye"};
-constexpr std::array<std::string_view, 6> kModels = {"distortionmodel", "distortiontype", "model",
-                                                     "cammodel",        "cameramodel",    "projectionmodel"};
+constexpr std::array<std::string_view, 11> kModels = {
+    "distortionmodel", "distmodel",  "distortiontype", "model",    "cammodel", "cameramodel",
+    "projectionmodel", "cameratype", "lensmodel",      "lenstype", "type"};
+// Poses of a camera in the body, and of the body in a camera.
+constexpr std::array<std::string_view, 6> kBodyPoses = {"tbs", "timucam", "tbc", "tsc", "tbodycam", "bodytcam"};
+constexpr std::array<std::string_view, 4> kCameraPoses = {"tcamimu", "tcb", "tcambody", "tcs"};
 
-void read_any_size(const Fields& fields, Camera& camera) {
+void read_any_size(const Fields& fields, Camera& camera, std::string_view side = {}) {
   for (const std::string_view name : kSizes) {
-    const std::string field = field_named(fields, {name});
+    std::string field = field_named(fields, Names(&name, 1), side);
+    if (field.empty()) field = field_named(fields, {name});
     if (field.empty()) continue;
-    if (fields.is_group(field)) {
+    if (fields.is_group(field) && !fields.group(field).has("data")) {
       read_any_size(fields.group(field), camera);
       if (camera.width > 0) return;
     }
@@ -98,15 +105,26 @@ void read_any_size(const Fields& fields, Camera& camera) {
 
 enum class LensName { opencv, none, fisheye, view_angle };
 
-// Names of lens models in ROS, OpenCV, RealSense, SVO, DSO and NeRF.
-LensName lens_name_of(const Fields& fields) {
-  const std::string flag = field_named(fields, kFisheyeFlags);
-  if (!flag.empty() && (fields.text(flag) == "1" || plain_name(fields.text(flag)) == "true")) return LensName::fisheye;
-  const std::string field = field_named(fields, kModels);
-  if (field.empty()) {
-    const std::string group = field_named(fields, kDistortions);
-    return !group.empty() && fields.is_group(group) ? lens_name_of(fields.group(group)) : LensName::opencv;
+// Field that names the lens model, of the distortion if there are several; empty without.
+std::string model_named(const Fields& fields, std::string_view side) {
+  for (const std::string_view name : kModels) {
+    for (const std::string_view each : {side, std::string_view()}) {
+      const std::string field = field_named(fields, Names(&name, 1), each);
+      if (fields.has_scalar(field)) return field;
+    }
   }
+  return {};
+}
+
+// Names of lens models in ROS, OpenCV, RealSense, SVO, DSO and NeRF.
+LensName lens_name_of(const Fields& fields, std::string_view side = {}) {
+  const std::string flag = field_named(fields, kFisheyeFlags);
+  if (fields.has_scalar(flag) && (fields.text(flag) == "1" || plain_name(fields.text(flag)) == "true"))
+    return LensName::fisheye;
+  const std::string group = field_named(fields, kDistortions);
+  if (fields.is_group(group) && !model_named(fields.group(group), {}).empty()) return lens_name_of(fields.group(group));
+  const std::string field = model_named(fields, side);
+  if (field.empty()) return LensName::opencv;
   std::string name = plain_name(fields.text(field));
   if (name.starts_with("distortion")) name.erase(0, std::string_view("distortion").size());
   const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
@@ -142,6 +160,26 @@ std::string matrix_named(const Fields& fields, std::string_view side = {}) {
   return fields.has_numbers(field, 9) || fields.has_numbers(field, 12) ? field : std::string();
 }
 
+constexpr std::array<std::string_view, 9> kVectors = {
+    "intrinsics",    "intrinsic",        "intrinsicparams",      "intrinsicparameters", "cameraintrinsics",
+    "camintrinsics", "cameraparameters", "projectionparameters", "calibration"};
+
+// Field with fx, fy, cx, cy, which may be followed by k1, k2, p1, p2 and k3; empty if there is none.
+std::string vector_named(const Fields& fields, std::string_view side = {}) {
+  constexpr double kMostRatio = 1.5;  // larger focal length over the smaller one
+  for (const std::string_view name : kVectors) {
+    const std::string field = field_named(fields, Names(&name, 1), side);
+    if (field.empty() ||
+        !(fields.has_numbers(field, 4) || fields.has_numbers(field, 8) || fields.has_numbers(field, 9)))
+      continue;
+    const std::vector<double> numbers = fields.numbers(field);
+    const bool is_plausible = numbers[0] > 0.0 && numbers[1] > 0.0 && numbers[0] < kMostRatio * numbers[1] &&
+                              numbers[1] < kMostRatio * numbers[0];
+    if (is_plausible) return field;
+  }
+  return {};
+}
+
 // The 3x3 part, row by row.
 std::vector<double> matrix_of(const Fields& fields, const std::string& field) {
   std::vector<double> m = fields.numbers(field);
@@ -151,15 +189,22 @@ std::vector<double> matrix_of(const Fields& fields, const std::string& field) {
   return m.size() == 9 ? m : fields.numbers(field, 9);
 }
 
-// Sets intrinsics that are given as shares of the image size.
-void scale_intrinsics(Camera& camera, double fx, double fy, double cx, double cy, const std::string& place) {
-  if (camera.width == 0)
+// Sets intrinsics that are given as shares of the image size, of the images if the file does not have it.
+void scale_intrinsics(const Fields& fields, Camera& camera, double fx, double fy, double cx, double cy,
+                      const std::string& place) {
+  if (camera.width == 0 && fields.has(kSizeOfImages)) {
+    const std::vector<double> size = fields.numbers(kSizeOfImages, 2);
+    camera.width = to_image_side(size[0], place);
+    camera.height = to_image_side(size[1], place);
+  }
+  if (camera.width == 0) {
     throw InputError(place, "is relative to the image size, which is missing", "give --size WIDTHxHEIGHT");
+  }
   camera.fx = fx * camera.width, camera.fy = fy * camera.height;
   camera.cx = cx * camera.width - 0.5, camera.cy = cy * camera.height - 0.5;
 }
 
-void set_any_matrix(Camera& camera, std::vector<double> matrix, const std::string& place,
+void set_any_matrix(const Fields& fields, Camera& camera, std::vector<double> matrix, const std::string& place,
                     std::vector<std::string>& notes) {
   const bool is_by_columns = matrix[2] == 0.0 && matrix[5] == 0.0 && matrix[6] > 0.0 && matrix[7] > 0.0;
   if (is_by_columns) {
@@ -168,7 +213,7 @@ void set_any_matrix(Camera& camera, std::vector<double> matrix, const std::strin
   }
   const bool is_relative = matrix[8] == 1.0 && matrix[2] < 1.0 && matrix[5] < 1.0 && matrix[0] < 10.0;
   if (is_relative) {
-    scale_intrinsics(camera, matrix[0], matrix[4], matrix[2], matrix[5], place);
+    scale_intrinsics(fields, camera, matrix[0], matrix[4], matrix[2], matrix[5], place);
     matrix = {camera.fx, matrix[1] * camera.width, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0};
     notes.push_back(place + ": intrinsics are relative to the image size");
   }
@@ -177,11 +222,12 @@ void set_any_matrix(Camera& camera, std::vector<double> matrix, const std::strin
 
 // Field of one parameter, also behind the prefixes of other programs.
 std::string field_of(const Fields& fields, const std::string& name) {
-  for (const char* const prefix : {"", "cam", "dist", "radial", "tangential"}) {
+  for (const char* const prefix : {"", "cam", "camera", "dist", "radial", "tangential"}) {
     const std::string plain = prefix + name;
     const std::string field = field_named(fields, {std::string_view(plain)});
     if (!field.empty()) return field;
   }
+  if (name == "k1") return field_named(fields, {"kud"});  // ViSP
   return {};
 }
 
@@ -200,8 +246,12 @@ std::vector<double> coefficients_in(const Fields& fields, bool is_fisheye) {
   constexpr std::array<std::string_view, 8> kOpencv = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
   constexpr std::array<std::string_view, 4> kFisheye = {"k1", "k2", "k3", "k4"};
   constexpr std::array<std::string_view, 8> kNumbered = {"d0", "d1", "d2", "d3", "d4", "d5", "d6", "d7"};
-  for (const Names names :
-       {is_fisheye ? Names(kFisheye) : Names(kOpencv), is_fisheye ? Names(kNumbered).first(4) : Names(kNumbered)}) {
+  // LARVIO names the coefficients of a fisheye as those of OpenCV.
+  const bool is_renamed = is_fisheye && field_of(fields, "k3").empty() && !field_of(fields, "p1").empty();
+  for (const Names names : {is_renamed   ? Names(kOpencv).first(4)
+                            : is_fisheye ? Names(kFisheye)
+                                         : Names(kOpencv),
+                            is_fisheye ? Names(kNumbered).first(4) : Names(kNumbered)}) {
     if (field_of(fields, std::string(names.front())).empty()) continue;
     std::vector<double> numbers;
     for (const std::string_view name : names) {
@@ -227,25 +277,38 @@ void refuse_unknown_distortion(const Fields& fields) {
 }
 
 PlacedCamera matrix_camera(const Fields& fields, std::string_view side, std::vector<std::string>& notes) {
-  constexpr std::size_t kAmbiguous = 4;
+  constexpr std::size_t kIntrinsics = 4, kAmbiguous = 4;
   PlacedCamera result;
   Camera& camera = result.camera;
-  const std::string matrix = matrix_named(fields, side);
+  std::string matrix = matrix_named(fields, side);
   const std::string distortion = field_named(fields, kDistortions, side);
-  read_any_size(fields, camera);
-  set_any_matrix(camera, matrix_of(fields, matrix), fields.place(matrix), notes);
-  const LensName lens = lens_name_of(fields);
-  if (distortion.empty()) {
+  read_any_size(fields, camera, side);
+  std::vector<double> coefficients;
+  const LensName lens = lens_name_of(fields, side);
+  if (!matrix.empty()) {
+    set_any_matrix(fields, camera, matrix_of(fields, matrix), fields.place(matrix), notes);
+  } else {
+    matrix = vector_named(fields, side);
+    const std::vector<double> numbers = fields.numbers(matrix);
+    set_any_matrix(fields, camera, {numbers[0], 0.0, numbers[2], 0.0, numbers[1], numbers[3], 0.0, 0.0, 1.0},
+                   fields.place(matrix), notes);
+    coefficients.assign(numbers.begin() + kIntrinsics, numbers.end());
+    notes.push_back(matrix + ": the numbers are read as fx, fy, cx, cy" +
+                    (coefficients.empty() ? "" : ", k1, k2, p1, p2"));
+  }
+  if (distortion.empty() && coefficients.empty()) {
     const std::string model = text_or(fields, "distortion_model", "none");
     refuse_unknown_distortion(fields);
     if (model != "none") throw InputError(fields.place("distortion_coefficients"), "is missing");
     if (!fields.has("distortion_model")) notes.push_back("without distortion coefficients: undistorted images");
     return result;
   }
-  const bool is_group = fields.is_group(distortion) && !fields.group(distortion).has("data");
-  const std::vector<double> coefficients =
-      is_group ? coefficients_in(fields, lens == LensName::fisheye) : fields.numbers(distortion);
-  set_opencv_distortion(camera, coefficients, lens == LensName::fisheye, fields.place(distortion));
+  const bool is_fisheye = lens == LensName::fisheye;
+  if (!distortion.empty()) {
+    const bool is_group = fields.is_group(distortion) && !fields.group(distortion).has("data");
+    coefficients = is_group ? coefficients_in(fields, is_fisheye) : fields.numbers(distortion);
+  }
+  set_opencv_distortion(camera, coefficients, is_fisheye, fields.place(distortion.empty() ? matrix : distortion));
   if (coefficients.size() == kAmbiguous && camera.model == CameraModel::radial_tangential &&
       !fields.has("distortion_model")) {
     notes.push_back(
@@ -255,11 +318,16 @@ PlacedCamera matrix_camera(const Fields& fields, std::string_view side, std::vec
   return result;
 }
 
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kSides = {
+    {{"1", "2"}, {"left", "right"}, {"l", "r"}, {"0", "1"}}};
+
 // Sides in the names of a pair; empty if the file has none.
 std::optional<std::pair<std::string_view, std::string_view>> sides_of_pair(const Fields& fields) {
-  for (const auto& sides :
-       {std::pair<std::string_view, std::string_view>{"1", "2"}, {"left", "right"}, {"l", "r"}, {"0", "1"}}) {
+  for (const auto& sides : kSides) {
     if (!matrix_named(fields, sides.first).empty() && !matrix_named(fields, sides.second).empty()) return sides;
+  }
+  for (const auto& sides : kSides) {
+    if (!vector_named(fields, sides.first).empty() && !vector_named(fields, sides.second).empty()) return sides;
   }
   return std::nullopt;
 }
@@ -276,8 +344,10 @@ std::optional<Pose> extrinsics_beside(const fs::path& path) {
 // ---- One field for each parameter
 
 std::array<std::string, 4> flat_names(const Fields& fields) {
-  return {field_named(fields, {"fx", "camfx", "flx"}), field_named(fields, {"fy", "camfy", "fly"}),
-          field_named(fields, {"cx", "camcx", "ppx"}), field_named(fields, {"cy", "camcy", "ppy"})};
+  return {field_named(fields, {"fx", "camfx", "flx", "camerafx", "focallengthx", "focalx", "fu", "px"}),
+          field_named(fields, {"fy", "camfy", "fly", "camerafy", "focallengthy", "focaly", "fv", "py"}),
+          field_named(fields, {"cx", "camcx", "ppx", "cameracx", "centerx", "principalpointx", "u0", "camu0", "cu"}),
+          field_named(fields, {"cy", "camcy", "ppy", "cameracy", "centery", "principalpointy", "v0", "camv0", "cv"})};
 }
 
 }  // namespace
@@ -286,7 +356,7 @@ bool is_shared_field(std::string_view name) {
   const std::string plain = plain_name(name);
   const auto contains = [&](Names names) { return std::ranges::find(names, plain) != names.end(); };
   return contains(kDistortions) || contains(kSizes) || contains(kWidths) || contains(kHeights) || contains(kModels) ||
-         contains(kFisheyeFlags);
+         contains(kFisheyeFlags) || name == kSizeOfImages || contains(kBodyPoses) || contains(kCameraPoses);
 }
 
 bool has_matrix_camera(const Fields& fields) {
@@ -298,7 +368,7 @@ CameraList read_matrix_camera(const Fields& fields, const fs::path&) {
                       (fields.has("distortion_model") && fields.has("p"));
   CameraList list{is_ros ? "ROS camera_info" : "OpenCV", {}};
   PlacedCamera camera = matrix_camera(fields, {}, list.notes);
-  if (fields.has("T_BS")) camera.body_from_camera = fields.pose("T_BS");
+  camera.body_from_camera = body_pose(fields);
   for (const auto& [rotation, projection] :
        {std::pair("rectification_matrix", "projection_matrix"), std::pair("R", "P"), std::pair("r", "p")}) {
     if (camera.rectified || !fields.has_numbers(projection, 12)) continue;
@@ -308,6 +378,32 @@ CameraList read_matrix_camera(const Fields& fields, const fs::path&) {
   camera.readout_time = read_readout_time(fields, camera.camera);
   list.cameras.push_back(camera);
   return list;
+}
+
+bool has_vector_camera(const Fields& fields) {
+  return !vector_named(fields).empty();
+}
+
+void place_pair(const Fields& fields, PlacedCamera& left, PlacedCamera& right) {
+  right.from_previous = pair_pose(fields);
+  for (const auto& [first, second] : kSides) {
+    const auto left_pose = body_pose(fields, first), right_pose = body_pose(fields, second);
+    if (right.from_previous || !left_pose || !right_pose) continue;
+    left.body_from_camera = left_pose;
+    right.body_from_camera = right_pose;
+    return;
+  }
+}
+
+std::optional<Pose> body_pose(const Fields& fields, std::string_view side) {
+  const auto is_pose = [&](const std::string& field) {
+    return !field.empty() && (fields.has_numbers(field, 16) || fields.has_numbers(field, 12));
+  };
+  if (const std::string field = field_named(fields, kBodyPoses, side); is_pose(field)) return fields.pose(field);
+  if (const std::string field = field_named(fields, kCameraPoses, side); is_pose(field)) {
+    return inverse(fields.pose(field));
+  }
+  return std::nullopt;
 }
 
 bool has_matrix_pair(const Fields& fields) {
@@ -320,20 +416,27 @@ CameraList read_matrix_pair(const Fields& fields, const fs::path& path) {
   list.cameras = {matrix_camera(fields, sides.first, list.notes), matrix_camera(fields, sides.second, list.notes)};
   list.cameras[1].from_previous = pair_pose(fields);
   if (!list.cameras[1].from_previous) list.cameras[1].from_previous = extrinsics_beside(path);
+  list.cameras[0].body_from_camera = body_pose(fields, sides.first);
+  list.cameras[1].body_from_camera = body_pose(fields, sides.second);
   list.cameras[1].pose_place = fields.place("R, T");
   return list;
 }
 
 std::optional<Pose> pair_pose(const Fields& fields) {
-  constexpr std::array kNames = {std::pair("R", "T"),
-                                 std::pair("R", "t"),
-                                 std::pair("r", "t"),
-                                 std::pair("rotation", "translation"),
-                                 std::pair("rotation_matrix", "translation_vector"),
-                                 std::pair("rotation_left_to_right", "translation_left_to_right"),
-                                 std::pair("om", "T")};
-  for (const auto& [rotation_name, translation_name] : kNames) {
-    if (!fields.has(rotation_name) || !fields.has(translation_name)) continue;
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kNames = {
+      {{"r", "t"},
+       {"rotation", "translation"},
+       {"rotationmatrix", "translationvector"},
+       {"rotationmatrix", "translationmatrix"},
+       {"rotationmatrix", "translation"},
+       {"rotationlefttoright", "translationlefttoright"},
+       {"rstereo", "tstereo"},
+       {"stereor", "stereot"},
+       {"om", "t"}}};
+  for (const auto& [rotation_names, translation_names] : kNames) {
+    const std::string rotation_name = field_named(fields, {rotation_names});
+    const std::string translation_name = field_named(fields, {translation_names});
+    if (rotation_name.empty() || translation_name.empty()) continue;
     const std::vector<double> numbers = fields.numbers(rotation_name);
     const std::vector<double> translation = fields.numbers(translation_name, 3);
     Pose pose{Eigen::Quaterniond::Identity(), Eigen::Vector3d(translation.data())};
@@ -363,9 +466,10 @@ CameraList read_flat_camera(const Fields& fields, const fs::path&) {
   camera.fx = fields.number(names[0]), camera.fy = fields.number(names[1]);
   camera.cx = fields.number(names[2]), camera.cy = fields.number(names[3]);
   if (camera.cx < 1.0 && camera.cy < 1.0) {
-    scale_intrinsics(camera, camera.fx, camera.fy, camera.cx, camera.cy, place);
+    scale_intrinsics(fields, camera, camera.fx, camera.fy, camera.cx, camera.cy, place);
     list.notes.push_back("intrinsics are relative to the image size");
   }
+  result.body_from_camera = body_pose(fields);
   require_valid(camera, place);
   const LensName lens = lens_name_of(fields);
   std::vector<double> coefficients = coefficients_in(fields, lens == LensName::fisheye);
@@ -378,7 +482,7 @@ CameraList read_flat_camera(const Fields& fields, const fs::path&) {
     refuse_unknown_distortion(fields);
     list.notes.push_back("without distortion coefficients: undistorted images");
   }
-  const std::string model = field_named(fields, {"model", "distortionmodel"});
+  const std::string model = model_named(fields, {});
   if (camera.model != CameraModel::pinhole && !model.empty() &&
       plain_name(fields.text(model)).ends_with("inversebrownconrady")) {
     throw InputError(fields.place(model), "an inverse model with distortion is not supported",

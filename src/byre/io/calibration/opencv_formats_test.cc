@@ -126,6 +126,106 @@ TEST_F(OtherCalibrations, ShareFieldsOfTheGroupAroundThem) {
   EXPECT_THAT(refusal(split + "  distortion: {a: 1, b: 2}\n"), HasSubstr("distortion: has no coefficients"));
 }
 
+const std::string kBodyFromLeft = "[0, 0, 1, 0.3, -1, 0, 0, 0.1, 0, -1, 0, 0.2, 0, 0, 0, 1]";
+const std::string kBodyFromRight = "[0, 0, 1, 0.3, -1, 0, 0, -0.01, 0, -1, 0, 0.2, 0, 0, 0, 1]";
+
+void expect_placed_pair(const Calibration& calibration, const Camera& expected) {
+  EXPECT_EQ(calibration.left, expected);
+  ASSERT_TRUE(calibration.right);
+  EXPECT_EQ(calibration.right->camera, expected);
+  EXPECT_THAT(calibration.right->right_from_left,
+              PoseNear(Pose{Eigen::Quaterniond::Identity(), {-0.11, 0.0, 0.0}}, 1e-9, 1e-9));
+  EXPECT_THAT(calibration.body_from_left.translation, PointNear(Eigen::Vector3d(0.3, 0.1, 0.2), 1e-9));
+}
+
+TEST_F(OtherCalibrations, HaveAListOfFourIntrinsics) {
+  const std::string size = "width: 752\nheight: 480\n";
+  const CalibrationReading reading =
+      read("mast3r.yaml", size + "calibration: [458, 457, 367, 248, -0.28, 0.07, 0.0002, 0.00002, 0.001]\n");
+  EXPECT_EQ(reading.calibration.left, kExpected);
+  EXPECT_THAT(reading.notes, Contains(HasSubstr("are read as fx, fy, cx, cy, k1, k2, p1, p2")));
+  EXPECT_THAT(refusal(size + "intrinsics: [458, 900, 367, 248]\n"), HasSubstr("is not a supported calibration file"))
+      << "focal lengths are not alike";
+  std::string pair = "camera:\n";
+  for (const std::string side : {"left", "right"}) {
+    pair += "  intrinsics_" + side + ": [458, 457, 367, 248]\n  distortion_coeffs_" + side + ": " + kLens +
+            "\n  resolution_" + side + ": [752, 480]\n  distortion_model_" + side + ": radtan\n";
+  }
+  expect_placed_pair(
+      read("pair.yaml", pair + "  T_imu_cam_left: " + kBodyFromLeft + "\n  T_imu_cam_right: " + kBodyFromRight + "\n")
+          .calibration,
+      kExpected);
+}
+
+TEST_F(OtherCalibrations, ArePlacedByPosesNextToTheCameras) {
+  const std::string lens = "{fx: 458, fy: 457, cx: 367, cy: 248, distortion: " + kLens + "}\n";
+  expect_placed_pair(read("ekf.yaml", "camera:\n  image_width: 752\n  image_height: 480\n  cam0: " + lens + "  cam1: " +
+                                          lens + "  T_BS0: " + kBodyFromLeft + "\n  T_BS1: " + kBodyFromRight + "\n")
+                         .calibration,
+                     kExpected);
+}
+
+TEST_F(OtherCalibrations, OfLarvioHaveTheirPoseAndSizeAround) {
+  const auto text = [](const std::string& model) {
+    return "%YAML:1.0\ncamera_model: \"pinhole\"\ndistortion_model: \"" + model +
+           "\"\nresolution_width: 752\nresolution_height: 480\nintrinsics:\n   fx: 458\n   fy: 457\n   cx: 367\n   cy: "
+           "248\ndistortion_coeffs:\n   k1: 0.1\n   k2: 0.2\n   p1: 0.3\n   p2: 0.4\nT_cam_imu: [1, 0, 0, -0.5, 0, 1, "
+           "0, "
+           "0, 0, 0, 1, 0, 0, 0, 0, 1]\n";
+  };
+  const Calibration fisheye = read("larvio.yaml", text("equidistant")).calibration;
+  EXPECT_EQ(fisheye.left, (Camera{CameraModel::equidistant, 752, 480, 458, 457, 367, 248, {0.1, 0.2, 0.3, 0.4}}));
+  EXPECT_EQ(fisheye.body_from_left.translation.x(), 0.5);
+  EXPECT_EQ(camera(text("radtan")).model, CameraModel::radial_tangential);
+}
+
+TEST_F(OtherCalibrations, NameTheLensByTheModelOfTheDistortion) {
+  const std::string four = "[0.1, 0.2, 0.3, 0.4]";
+  EXPECT_EQ(camera("camera_model: pinhole\ndistortion_model: equidistant\nK: " + kMatrix + "\nD: " + four + "\n").model,
+            CameraModel::equidistant);
+  EXPECT_EQ(
+      camera("model: pinhole\nfx: 458\nfy: 457\ncx: 367\ncy: 248\ndistortion: {type: fisheye, coeffs: " + four + "}\n")
+          .model,
+      CameraModel::equidistant);
+}
+
+TEST_F(OtherCalibrations, NameTheLensAsTypeOfTheCamera) {
+  EXPECT_EQ(camera("camera:\n  camera_matrix: " + kMatrix +
+                   "\n  dist_coeffs: [0.1, 0.2, 0.3, 0.4]\n  camera_type: \"fisheye\"\n")
+                .model,
+            CameraModel::equidistant);
+}
+
+TEST_F(OtherCalibrations, AreLinesOfAMatrix) {
+  const std::string rows = "458 0 367\n0 457 248\n0 0 1\n";
+  EXPECT_EQ(camera(rows), without_size(Camera{CameraModel::pinhole, 0, 0, 458, 457, 367, 248, {}}));
+  EXPECT_EQ(camera(rows + "-0.28 0.07 0.0002 0.00002 0.001\n"), without_size(kExpected));
+  EXPECT_EQ(camera("458,0,367 0,457,248 0,0,1\n-0.28,0.07,0.0002,0.00002,0.001\n"), without_size(kExpected));
+  EXPECT_EQ(camera("458 0 367 0\n0 457 248 0\n0 0 1 0\n0 0 0 1\n").fx, 458.0);
+  EXPECT_EQ(camera("fx 458\nfy 457\ncx 367\ncy 248\nw 752\nh 480\n").width, 752);
+}
+
+TEST_F(OtherCalibrations, OfVispHaveOneModelWithDistortion) {
+  const std::string start = "<root><camera><image_width>752</image_width><image_height>480</image_height>";
+  const std::string ideal = "<model><px>450</px><py>451</py><u0>360</u0><v0>240</v0></model>";
+  const std::string full =
+      "<model><px>458</px><py>457</py><u0>367</u0><v0>248</v0><kud>0.02</kud><kdu>-0.02</kdu></model>";
+  const Camera visp = read("camera.xml", start + ideal + full + "</camera></root>").calibration.left;
+  EXPECT_EQ(visp, (Camera{CameraModel::radial_tangential, 752, 480, 458, 457, 367, 248, {0.02}}));
+}
+
+TEST_F(OtherCalibrations, OfOcamcalibAreRefusedByName) {
+  EXPECT_THAT(refusal("#direct\n3 -7e+02 0 8e-04\n#inverse\n2 976 423\n#centre\n630 958\n#affine\n0.99 -0.01 0.01\n"
+                      "#size\n1208 1920\n"),
+              AllOf(HasSubstr("OCamCalib"), HasSubstr("omni-radtan")));
+}
+
+TEST_F(OtherCalibrations, WithManyUnplacedCamerasAreRefusedByTheirNames) {
+  const std::string lens = "{K: " + kMatrix + ", D: " + kLens + "}\n";
+  EXPECT_THAT(refusal("cam_front: " + lens + "cam_left: " + lens + "cam_right: " + lens),
+              HasSubstr("has 3 cameras: cam_front, cam_left, cam_right"));
+}
+
 TEST_F(OtherCalibrations, AreReadOnceIfEveryFrameHasTheSame) {
   const auto frame = [](const std::string& k1) {
     return "{\"w\": 752, \"h\": 480, \"fl_x\": 458, \"fl_y\": 457, \"cx\": 367, \"cy\": 248, \"k1\": " + k1 +

@@ -27,7 +27,8 @@ PlacedCamera orb_slam_camera(const Fields& fields, const std::string& prefix) {
   }
   PlacedCamera result;
   Camera& camera = result.camera;
-  read_size(fields, "Camera.width", "Camera.height", camera);
+  const std::string owner = fields.has("Camera.width") ? "Camera" : "Image";  // Image: SSVO
+  read_size(fields, owner + ".width", owner + ".height", camera);
   set_intrinsics(fields, {prefix + "fx", prefix + "fy", prefix + "cx", prefix + "cy"}, camera);
   if (type == "KannalaBrandt8") {
     set_opencv_distortion(camera, coefficients_of(fields, prefix, {"k1", "k2", "k3", "k4"}), true,
