@@ -98,7 +98,7 @@ if(BYRE_HAS_APRILTAG)
   set(byre_apriltag_package "libapriltag-dev, ")
 endif()
 byre_add_package(development PACKAGE libbyre-dev SECTION libdevel NEEDS runtime DEPENDS libeigen3-dev
-  RECOMMENDS "libceres-dev, libopencv-dev, libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libtinyxml2-dev, libxxhash-dev, libhwy-dev, libdeflate-dev, ${byre_embree_package}${byre_apriltag_package}libsqlite3-dev, libzstd-dev, liblz4-dev, libbz2-dev, zlib1g-dev"
+  RECOMMENDS "libceres-dev, libopencv-dev, libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev, libtinyxml2-dev, libxxhash-dev, libhwy-dev, libdeflate-dev, libjpeg-dev, ${byre_embree_package}${byre_apriltag_package}libsqlite3-dev, libzstd-dev, liblz4-dev, libbz2-dev, zlib1g-dev"
   SUMMARY "visual SLAM for robots - development files"
   DESCRIPTION "${about}\n.\nThis package contains the headers, the CMake and pkg-config packages, and the\nstatic libraries, which need the recommended packages at link time.")
 byre_add_package(doc PACKAGE byre-doc SECTION doc ARCHITECTURE all

@@ -116,7 +116,7 @@ set(BYRE_TESTED_FIRST slam_session slam playback simulation)
 set(BYRE_FOLDERS_WITH_DATA io/recording geometry/evaluation place)
 
 set(BYRE_ROOM_LIBRARIES Eigen3::Eigen ${OpenCV_LIBS} Ceres::ceres yaml-cpp nlohmann_json::nlohmann_json Threads::Threads
-    ${BYRE_TINYXML2} ${BYRE_FMT} ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_APRILTAG} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
+    ${BYRE_TINYXML2} ${BYRE_FMT} ${BYRE_XXHASH} ${BYRE_HIGHWAY} ${BYRE_JPEG} ${BYRE_APRILTAG} ${BYRE_DEFLATE} ${BYRE_EMBREE} ${BYRE_BAGS} $<BUILD_INTERFACE:Boost::headers>)
 
 # Sets a variable to the objects of rooms.
 function(byre_objects_of variable)

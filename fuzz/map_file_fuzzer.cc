@@ -6,6 +6,7 @@
 #include "byre/map/map_upkeep.h"
 #include "byre/map/stored_map_scene.h"
 
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 
@@ -21,6 +22,7 @@ bool read_whole_map(std::span<const std::byte> bytes) {
     };
     const byre::StoredMap opened = byre::open_map(read_at, bytes.size(), "fuzz.byre");
     byre::find_faults(opened);
+    for (const byre::KeyframeId id : opened.map.keyframe_ids()) opened.map.keyframe_header(id)->picture.jpeg();
     opened.map.visit_words([](byre::KeyframeId, std::span<const byre::Word>) {});
     return true;
   } catch (const byre::InputError&) {
@@ -38,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!is_valid) std::abort();
     if (!byre::find_faults(map).empty()) std::abort();
     const byre::MapUpkeep upkeep = byre::read_upkeep(bytes, "fuzz.byre");
-    const bool has_upkeep = byre::sections_in({bytes.begin(), bytes.end()}) > byre::kSections;
+    const bool has_upkeep = byre::section_of({bytes.begin(), bytes.end()}, "upkeep").name == "upkeep";
     const byre::MapBytes again = has_upkeep ? byre::write_map(map, upkeep) : byre::write_map(map);
     if (!std::ranges::equal(again, bytes)) std::abort();
   } catch (const byre::InputError&) {
@@ -54,12 +56,15 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     static const byre::MapBytes with_plan = byre::write_map(byre::StoredMapScene(2, 4).stored_with_plan());
     static const byre::MapBytes session = byre::write_map(byre::StoredMapScene(2, 4).stored(),
                                                           byre::upkeep_of_session(byre::StoredMapScene(2, 4).stored()));
-    const byre::MapBytes& original = seed % 3 == 0 ? without_plan : seed % 3 == 1 ? with_plan : session;
+    static const byre::MapBytes with_pictures =
+        byre::write_map(byre::with_pictures(byre::StoredMapScene(2, 4).stored()));
+    const std::array originals = {&without_plan, &with_plan, &session, &with_pictures};
+    const byre::MapBytes& original = *originals[seed % originals.size()];
     size = std::min(original.size(), max_size);
     std::memcpy(data, original.data(), size);
   }
   size = LLVMFuzzerMutate(data, size, max_size);
-  if (seed % 4 == 0) return size;
+  if (seed % 5 == 0) return size;
   byre::MapBytes bytes(size);
   std::memcpy(bytes.data(), data, size);
   byre::refresh_checksums(bytes);

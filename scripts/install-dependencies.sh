@@ -19,7 +19,7 @@ packages=(
   # library. OpenCV's CMake files are only in libopencv-dev, not in the packages of single modules. libembree-dev is
   # Embree 3 in Debian 12, and Embree 4 in Debian 13.
   libeigen3-dev libopencv-dev libceres-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev
-  libtinyxml2-dev libdeflate-dev libembree-dev libboost-dev
+  libtinyxml2-dev libdeflate-dev libjpeg-dev libembree-dev libboost-dev
   # bags
   libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
   # program

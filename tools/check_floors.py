@@ -56,6 +56,7 @@ KEPT_IN = {
     r"ceres/.*": {"optimise"},
     r"embree[34]/.*": {"simulation"},
     r"apriltag/.*": {"features"},
+    r"jpeglib\.h": {"features"},
     r"boost/.*": {"viewer/web"},
     r"dds/.*": {"ros2/dds"},
     r"opencv2/.*": {"features", "io/calibration", "io/image", "io/recording", "simulation", "viewer", "camera", "ros2/node"},

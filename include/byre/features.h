@@ -20,6 +20,8 @@
 
 namespace byre {
 
+struct Image;
+
 using Descriptor = std::array<std::uint64_t, 4>;  // 256-bit rotated BRIEF; bit i of byte j as packed by cv::ORB
 
 // Scale pyramid: octave o is the image scaled down by kOctaveScale^o.
@@ -180,6 +182,7 @@ struct Frame {
   std::optional<ImageCondition> right_condition = {};  // condition of the right image; empty without one
   std::uint64_t content = 0;                           // checksum of the left image's pixels; 0 for simulated frames
   std::vector<TagSighting> tags = {};                  // tags detected; empty as well if detection was not due
+  std::shared_ptr<const Image> picture = {};           // left image, rectified and reduced; null unless extracted
 };
 
 template <typename Visitor>

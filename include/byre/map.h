@@ -82,6 +82,9 @@ class Map {
   std::vector<MappedTag> tags() const;                      // AprilTags, by id
 
   MapKeyframe keyframe(int id) const;
+  // Small grey picture of a keyframe's left image, as rectified; pixel x is at (x + 0.5) * rig.width / width - 0.5 of
+  // the rig. Empty without one. Throws InputError if it is no JPEG file.
+  std::optional<Image> picture(int keyframe) const;
   // map_from_body of the keyframes of a recording, by time.
   Trajectory trajectory(int recording) const;
 

@@ -40,6 +40,7 @@ struct SlamOptions {
   bool map_online = true;              // whether a mission maps; false: localises on the offline map only
   double max_pair_difference = 0.005;  // largest time difference between left and right or depth image, seconds
   double max_gap = 1.0;                // largest time difference between frames without InputFault::after_gap, seconds
+  bool pictures = true;                // whether keyframes of a new or extended map keep a small grey picture
   int max_features = 1000;             // features per frame
   int image_threads = 2;               // threads for the images of a frame; no effect on poses
   int max_waiting = 1;                 // frames of submit() that wait for its thread

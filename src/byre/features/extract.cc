@@ -104,6 +104,27 @@ Patch cut_patch(const cv::Mat& level, int x, int y) {
   return patch;
 }
 
+// Octave that is small enough, further reduced if none is.
+void fill_picture(const Pyramid& pyramid, Image& picture) {
+  constexpr int kSide = 376;  // pixels, longer side; up to a half more if it is not reduced further
+  const auto side = [](const cv::Mat& level) { return std::max(level.cols, level.rows); };
+  std::size_t octave = 0;
+  while (octave + 1 < kOctaves && side(pyramid.levels[octave]) > kSide && !pyramid.levels[octave + 1].empty()) ++octave;
+  const cv::Mat& level = pyramid.levels[octave];
+  const int step = std::max(1, static_cast<int>(std::lround(static_cast<double>(side(level)) / kSide)));
+  picture.width = std::max(1, level.cols / step);
+  picture.height = std::max(1, level.rows / step);
+  picture.pixels.clear();
+  for (int row = 0; row < picture.height; ++row) {
+    const std::uint8_t* const source = level.ptr<std::uint8_t>(std::min(row * step, level.rows - 1));
+    if (step == 1) {
+      picture.pixels.insert(picture.pixels.end(), source, source + picture.width);
+    } else {
+      for (int column = 0; column < picture.width; ++column) picture.pixels.push_back(source[column * step]);
+    }
+  }
+}
+
 }  // namespace
 
 struct Described {
@@ -176,6 +197,7 @@ struct Extractor::State {
   std::vector<Descriptor> descriptors;
   ObjectPool<std::vector<Patch>> patches_of_frames;
   ObjectPool<Features> features_of_frames;
+  ObjectPool<Image> pictures_of_frames;
   std::vector<std::optional<StereoMatch>> stereo_matches;
   TaskThreads threads;
 
@@ -318,6 +340,7 @@ void Extractor::rest() {
   state_->descriptors = {};
   state_->patches_of_frames = {};
   state_->features_of_frames = {};
+  state_->pictures_of_frames = {};
   state_->stereo_matches = {};
 }
 
@@ -339,6 +362,11 @@ Extraction Extractor::extract(const ImageFrame& images, ImagesUsed used) {
   const std::shared_ptr<Features>& features = state_->features_of_frames.take();
   features->refill(rig().width, rig().height, state_->keypoints, state_->descriptors, patches);
   frame.features = features;
+  if (state_->options.picture) {
+    const std::shared_ptr<Image>& picture = state_->pictures_of_frames.take();
+    fill_picture(state_->left, *picture);
+    frame.picture = picture;
+  }
   extraction.times = {seconds_between(start, rectified), seconds_between(rectified, extracted),
                       seconds_between(extracted, Clock::now())};
   return extraction;

@@ -16,7 +16,8 @@ struct ExtractOptions {
   int fast_threshold = 20;     // grey values
   int min_fast_threshold = 7;  // used in dull parts of the image
   DepthOptions depth{};
-  int threads = 2;  // threads per frame, including the caller's; does not affect the result
+  bool picture = false;  // whether frames have a picture, see Frame
+  int threads = 2;       // threads per frame, including the caller's; does not affect the result
 };
 
 // Wall time of the stages of one extraction, seconds.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -72,6 +73,25 @@ TEST(Extractor, ReturnsADescriptorAndAPatchPerKeypoint) {
   EXPECT_LE(features.size(), ExtractOptions().max_features);
   EXPECT_EQ(features.descriptors().size(), features.keypoints().size());
   for (int i = 0; i < features.size(); ++i) EXPECT_NE(features.find_patch(i), nullptr);
+}
+
+double mean_of(const Image& image) {
+  return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0) / static_cast<double>(image.pixels.size());
+}
+
+TEST(Extractor, ReturnsAReducedPictureIfRequested) {
+  ImageFrame images = wall().render_view(ideal_pair());
+  Extractor extractor(ideal_pair(), {.picture = true});
+  const std::shared_ptr<const Image> picture = extractor.extract(images).frame.picture;
+  ASSERT_TRUE(picture);
+  EXPECT_LE(std::max(picture->width, picture->height), 376);
+  EXPECT_EQ(picture->pixels.size(), static_cast<std::size_t>(picture->width * picture->height));
+  EXPECT_NEAR(mean_of(*picture), mean_of(images.left), 1.5);
+  const Image kept = *picture;
+  std::ranges::fill(images.left.pixels, std::uint8_t{0});
+  for (int i = 0; i < 10; ++i) extractor.extract(images);
+  EXPECT_EQ(picture->pixels, kept.pixels) << "later frames do not change it";
+  EXPECT_FALSE(Extractor(ideal_pair(), {}).extract(images).frame.picture);
 }
 
 TEST(Extractor, ReturnsTheReadoutTimeOfKeypointRows) {

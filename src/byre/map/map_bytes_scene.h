@@ -23,7 +23,7 @@ inline constexpr std::size_t kSectionCountAt = 12;
 inline constexpr std::size_t kFileSizeAt = 16;
 inline constexpr std::size_t kTableAt = 24;
 inline constexpr std::size_t kTableEntrySize = 40;
-inline constexpr std::size_t kSections = 16;  // without the optional section `upkeep`
+inline constexpr std::size_t kSections = 16;  // without the optional sections `pictures` and `upkeep`
 inline constexpr std::size_t kHeaderChecksumAt = kTableAt + kSections * kTableEntrySize;
 inline constexpr std::size_t kHeaderSize = kHeaderChecksumAt + 8;
 
@@ -40,7 +40,8 @@ void put_at(MapBytes& bytes, std::size_t place, T value) {
 }
 
 inline std::size_t sections_in(const MapBytes& bytes) {
-  return value_at<std::uint32_t>(bytes, kSectionCountAt) == kSections + 1 ? kSections + 1 : kSections;
+  const std::size_t count = value_at<std::uint32_t>(bytes, kSectionCountAt);
+  return count == kSections + 1 || count == kSections + 2 ? count : kSections;
 }
 inline std::size_t header_checksum_at(const MapBytes& bytes) {
   return kTableAt + sections_in(bytes) * kTableEntrySize;
@@ -128,11 +129,30 @@ inline void refresh_part_checksums(MapBytes& bytes) {
   refresh(sections_from({{"points", 4}, {"observers", 0}}), blocks, kBlockSize, 0);
 }
 
+// Recomputes the checksums in the section pictures as far as its sizes are valid. Precondition: as for section_bytes().
+inline void refresh_picture_checksums(MapBytes& bytes) {
+  constexpr std::size_t kEntrySize = 12;
+  const std::span<std::byte> keyframes = section_bytes(bytes, "keyframes"), section = section_bytes(bytes, "pictures");
+  std::uint32_t count = 0;
+  if (keyframes.size() >= sizeof(count)) std::memcpy(&count, keyframes.data(), sizeof(count));
+  if (section.size() / kEntrySize < count) return;
+  std::span<std::byte> pictures = section.subspan(count * kEntrySize);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, section.data() + i * kEntrySize, sizeof(size));
+    if (size > pictures.size()) return;
+    const std::uint64_t sum = size == 0 ? 0 : checksum(pictures.first(size));
+    std::memcpy(section.data() + i * kEntrySize + sizeof(size), &sum, sizeof(sum));
+    pictures = pictures.subspan(size);
+  }
+}
+
 // Recomputes all checksums, so that they do not reveal a change. Skips sections that the table places outside the
 // bytes. Does nothing without a complete header.
 inline void refresh_checksums(MapBytes& bytes) {
   if (bytes.size() < kHeaderSize || bytes.size() < header_checksum_at(bytes) + 8) return;
   refresh_part_checksums(bytes);
+  refresh_picture_checksums(bytes);
   for (std::size_t i = 0; i < sections_in(bytes); ++i) {
     const TableEntry entry = table_entry(bytes, i);
     if (entry.offset > bytes.size() || entry.size > bytes.size() - entry.offset) continue;

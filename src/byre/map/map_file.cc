@@ -24,6 +24,7 @@ namespace {
 // Like PNG's: a non-text byte, and line ends that text-mode transfers would change.
 constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'B', 'Y', 'R', 'E', '\r', '\n', 0x1a};
 constexpr std::uint32_t kFormat = 7;
+constexpr std::uint32_t kFormatWithPictures = 8;  // format 7 with a section more
 
 enum Section : std::size_t {
   kSummary,
@@ -42,12 +43,15 @@ enum Section : std::size_t {
   kDescriptors,
   kObservers,
   kLookup,
-  kUpkeep,  // optional
+  kPictures,  // in kFormatWithPictures
+  kUpkeep,    // optional
   kSectionCount
 };
+constexpr std::size_t kMandatorySections = kPictures;
+
 constexpr std::array<std::string_view, kSectionCount> kSectionNames = {
-    "summary", "notes", "provenance",   "rigs",     "keyframes",   "features",  "patches", "points", "observations",
-    "words",   "plan",  "calibrations", "shutters", "descriptors", "observers", "lookup",  "upkeep"};
+    "summary", "notes", "provenance",   "rigs",     "keyframes",   "features",  "patches", "points",   "observations",
+    "words",   "plan",  "calibrations", "shutters", "descriptors", "observers", "lookup",  "pictures", "upkeep"};
 
 constexpr std::size_t kNameBytes = 16;
 constexpr std::size_t kFixedHeaderBytes = kSignature.size() + 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
@@ -61,8 +65,17 @@ constexpr std::size_t header_bytes(std::size_t sections) {
 
 using Bytes = std::span<const std::byte>;
 
-// End offsets of consecutive sections.
-using SectionEnds = std::vector<std::size_t>;
+// A section and its end offset after those before it.
+struct WrittenSection {
+  std::size_t section = 0;
+  std::size_t end = 0;
+};
+using WrittenSections = std::vector<WrittenSection>;
+
+bool has_pictures(const MapGraph& map) {
+  return std::ranges::any_of(map.keyframe_ids(),
+                             [&map](KeyframeId id) { return bool{map.keyframe_header(id)->picture}; });
+}
 
 bool is_refined(const StoredMap& stored) {
   return std::ranges::any_of(stored.recordings,
@@ -128,16 +141,16 @@ PartSections part_sections(SectionBytes section) {
 }
 
 // Appends to the file. upkeep: nullptr for a file without that section.
-SectionEnds write_sections(const StoredMap& stored, const MapUpkeep* upkeep, std::vector<std::byte>& file) {
+WrittenSections write_sections(const StoredMap& stored, const MapUpkeep* upkeep, std::vector<std::byte>& file) {
   const Keyframes all = keyframes_of(stored.map);
   ViewWriters views;
   PartSizes sizes;
   write_views(stored.map, all, views, sizes);
   const std::size_t begin = file.size();
-  SectionEnds ends;
-  const auto append = [&](const ByteWriter& writer) {
+  WrittenSections sections;
+  const auto append = [&](std::size_t section, const ByteWriter& writer) {
     file.insert(file.end(), writer.bytes().begin(), writer.bytes().end());
-    ends.push_back(file.size() - begin);
+    sections.push_back({section, file.size() - begin});
   };
   for (std::size_t section = 0; section < kObservers; ++section) {
     ByteWriter writer;
@@ -146,21 +159,27 @@ SectionEnds write_sections(const StoredMap& stored, const MapUpkeep* upkeep, std
     } else {
       write_section(section, stored, all, writer, sizes);
     }
-    append(writer);
+    append(section, writer);
   }
   ByteWriter observers, lookup;
   const auto written = [&](Section section) {
-    return Bytes(file).subspan(begin + ends[section - 1], ends[section] - ends[section - 1]);
+    const std::size_t previous = sections[section - 1].end;
+    return Bytes(file).subspan(begin + previous, sections[section].end - previous);
   };
   write_lookup(stored.map, sizes, part_sections(written), observers, lookup);
-  append(observers);
-  append(lookup);
+  append(kObservers, observers);
+  append(kLookup, lookup);
+  if (has_pictures(stored.map)) {
+    ByteWriter writer;
+    write_pictures(all, writer);
+    append(kPictures, writer);
+  }
   if (upkeep != nullptr) {
     ByteWriter writer;
     write_upkeep(*upkeep, writer);
-    append(writer);
+    append(kUpkeep, writer);
   }
-  return ends;
+  return sections;
 }
 
 void write_name(std::string_view name, ByteWriter& writer) {
@@ -169,20 +188,20 @@ void write_name(std::string_view name, ByteWriter& writer) {
   writer.write_all<char>(padded);
 }
 
-void write_header(Bytes content, const SectionEnds& ends, ByteWriter& writer) {
+void write_header(Bytes content, const WrittenSections& sections, ByteWriter& writer) {
   writer.write_all<std::uint8_t>(kSignature);
-  writer.write(kFormat);
-  const std::size_t header_size = header_bytes(ends.size());
-  writer.write(static_cast<std::uint32_t>(ends.size()));
+  writer.write(sections.size() > kPictures && sections[kPictures].section == kPictures ? kFormatWithPictures : kFormat);
+  const std::size_t header_size = header_bytes(sections.size());
+  writer.write(static_cast<std::uint32_t>(sections.size()));
   writer.write(std::uint64_t{header_size + content.size()});
   std::size_t begin = 0;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    const Bytes section = content.subspan(begin, ends[i] - begin);
-    write_name(kSectionNames[i], writer);
+  for (const WrittenSection& section : sections) {
+    const Bytes bytes = content.subspan(begin, section.end - begin);
+    write_name(kSectionNames[section.section], writer);
     writer.write(std::uint64_t{header_size + begin});
-    writer.write(std::uint64_t{section.size()});
-    writer.write(checksum(section));
-    begin = ends[i];
+    writer.write(std::uint64_t{bytes.size()});
+    writer.write(checksum(bytes));
+    begin = section.end;
   }
   writer.write(checksum(writer.bytes()));
 }
@@ -194,16 +213,18 @@ struct SectionPlace {
   std::uint64_t checksum = 0;
 };
 struct SectionTable {
-  std::vector<SectionPlace> places;  // without a place for an optional section that is missing
+  std::array<std::optional<SectionPlace>, kSectionCount> places;  // empty for a missing optional section
   std::size_t header_bytes = 0;
   std::uint64_t checksum = 0;  // checksum of the header
 };
 
 void require_format(std::uint32_t format, const std::string& name) {
-  if (format == kFormat) return;
-  throw InputError(name + ": header", fmt::format("has format {}; this program reads format {}", format, kFormat),
-                   format < kFormat ? "map the recordings again with byre map"
-                                    : "use the version of byre that wrote the map, or a newer one");
+  if (format == kFormat || format == kFormatWithPictures) return;
+  throw InputError(
+      name + ": header",
+      fmt::format("has format {}; this program reads formats {} and {}", format, kFormat, kFormatWithPictures),
+      format < kFormat ? "map the recordings again with byre map"
+                       : "use the version of byre that wrote the map, or a newer one");
 }
 
 SectionPlace read_place(ByteReader& header, std::string_view expected_name, std::size_t expected_offset,
@@ -232,18 +253,22 @@ SectionTable read_table(Bytes bytes, std::size_t file_size, const std::string& n
   }
   ByteReader header(bytes, name + ": header", 0);
   header.take(kSignature.size());
-  require_format(header.read<std::uint32_t>(), name);
+  const auto format = header.read<std::uint32_t>();
+  require_format(format, name);
   const auto sections = header.read<std::uint32_t>();
-  if (sections != kUpkeep && sections != kSectionCount) header.fail("has a wrong number of sections for its format");
+  const std::size_t least = format == kFormat ? kMandatorySections : kMandatorySections + 1;
+  if (sections != least && sections != least + 1) header.fail("has a wrong number of sections for its format");
   if (header.read<std::uint64_t>() != file_size) {
     header.fail("has a file size other than the actual " + std::to_string(file_size) + " bytes");
   }
   SectionTable table;
   table.header_bytes = header_bytes(sections);
   std::size_t offset = table.header_bytes;
-  for (std::size_t i = 0; i < sections; ++i) {
-    table.places.push_back(read_place(header, kSectionNames[i], offset, file_size));
-    offset += table.places.back().size;
+  for (std::size_t i = 0; i < kSectionCount; ++i) {
+    if (i == kPictures && format == kFormat) continue;
+    if (i == kUpkeep && sections == least) continue;
+    table.places[i] = read_place(header, kSectionNames[i], offset, file_size);
+    offset += table.places[i]->size;
   }
   table.checksum = header.read<std::uint64_t>();
   if (table.checksum != checksum(bytes.first(table.header_bytes - sizeof(std::uint64_t)))) {
@@ -266,7 +291,7 @@ class SectionOpener {
             read_table(bytes, bytes.size(), name),
             [bytes](std::size_t offset, std::size_t size) { return bytes.subspan(offset, size); }, name) {}
 
-  bool has_upkeep() const { return table_.places.size() > kUpkeep; }
+  bool has(Section section) const { return table_.places[section].has_value(); }
   bool is_empty(Section section) const { return place_of(section).size == 0; }
 
   ByteReader operator()(Section section) const {
@@ -279,7 +304,7 @@ class SectionOpener {
 
   // Unchecked.
   Bytes bytes_of(Section section) const { return bring_(place_of(section).offset, place_of(section).size); }
-  const SectionPlace& place_of(Section section) const { return table_.places[section]; }
+  const SectionPlace& place_of(Section section) const { return *table_.places[section]; }  // precondition: has(section)
 
  private:
   SectionTable table_;
@@ -334,9 +359,10 @@ void require_checksums(const ReadAt& read_at, std::size_t size, const std::strin
   read_at(0, header);
   const SectionTable table = read_table(header, size, name);
   for (std::size_t i = 0; i < table.places.size(); ++i) {
-    const SectionPlace& place = table.places[i];
-    if (checksum_of_file(read_at, place.offset, place.size) == place.checksum) continue;
-    ByteReader({}, name + ": section " + std::string(kSectionNames[i]), place.offset).fail("has a wrong checksum");
+    const std::optional<SectionPlace>& place = table.places[i];
+    if (!place || i == kPictures) continue;  // each picture has its own checksum
+    if (checksum_of_file(read_at, place->offset, place->size) == place->checksum) continue;
+    ByteReader({}, name + ": section " + std::string(kSectionNames[i]), place->offset).fail("has a wrong checksum");
   }
 }
 
@@ -354,11 +380,12 @@ MapFileSource::File file_of(const SectionOpener& open, ReadAt read_at, const std
 }
 
 std::vector<std::byte> written(const StoredMap& stored, const MapUpkeep* upkeep) {
-  std::vector<std::byte> file(header_bytes(upkeep != nullptr ? kSectionCount : kUpkeep));
-  const SectionEnds ends = write_sections(stored, upkeep, file);
+  const std::size_t optional = (upkeep != nullptr ? 1 : 0) + (has_pictures(stored.map) ? 1 : 0);
+  std::vector<std::byte> file(header_bytes(kMandatorySections + optional));
+  const WrittenSections sections = write_sections(stored, upkeep, file);
   if (const InputError* const fault = stored.map.damage()) throw InputError(*fault);
   ByteWriter header;
-  write_header(Bytes(file).subspan(file.size() - ends.back()), ends, header);
+  write_header(Bytes(file).subspan(file.size() - sections.back().end), sections, header);
   std::ranges::copy(header.bytes(), file.begin());
   return file;
 }
@@ -383,6 +410,7 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
              parts.keyframes, sizes);
   parts.points = std::move(points.points);
   stored.vocabulary_checksum = read_words(open(kWords), parts.keyframes, sizes);
+  if (open.has(kPictures)) read_pictures(open(kPictures), parts.keyframes);
   stored.map = MapGraph(Origin::offline, std::move(parts));
   read_rest(open, stored);
 
@@ -390,13 +418,13 @@ StoredMap read_map(std::span<const std::byte> bytes, const std::string& name) {
   if (read_summary(summary) != summarise(stored.map)) summary.fail("does not match the other sections");
   const PartSections sections = part_sections([&open](Section section) { return open.bytes_of(section); });
   require_lookup(stored.map, sizes, sections, open(kObservers), open(kLookup));
-  if (open.has_upkeep()) read_upkeep(open(kUpkeep), static_cast<std::size_t>(stored.map.point_count()));
+  if (open.has(kUpkeep)) read_upkeep(open(kUpkeep), static_cast<std::size_t>(stored.map.point_count()));
   return stored;
 }
 
 MapUpkeep read_upkeep(std::span<const std::byte> bytes, const std::string& name) {
   const SectionOpener open(bytes, name);
-  return open.has_upkeep() ? read_upkeep(open(kUpkeep), read_summary(open(kSummary)).points) : MapUpkeep{};
+  return open.has(kUpkeep) ? read_upkeep(open(kUpkeep), read_summary(open(kSummary)).points) : MapUpkeep{};
 }
 
 std::uint64_t map_id(std::span<const std::byte> bytes, const std::string& name) {
@@ -433,6 +461,12 @@ StoredMap open_map(const ReadAt& read_at, std::size_t size, const std::string& n
   file.point_count = static_cast<std::uint32_t>(summary.points);
   file.rigs = parts.rigs;
   file.words = head;
+  if (open.has(kPictures)) {
+    const auto& [offset, bytes, unused] = open.place_of(kPictures);
+    const std::string place = name + ": section pictures";
+    const Bytes table = bring(offset, std::min(bytes, bytes_of_picture_table(parts.keyframes.size())));
+    open_pictures(ByteReader(table, place, offset), {read_at, place, offset, bytes}, parts.keyframes);
+  }
   stored.map = MapGraph(std::move(parts.rigs), std::move(parts.keyframes), static_cast<int>(summary.points),
                         std::make_shared<const MapFileSource>(std::move(file), std::move(lookup)));
   read_rest(open, stored);
@@ -443,7 +477,7 @@ std::vector<SectionSize> section_sizes(std::span<const std::byte> bytes, const s
   const SectionTable table = read_table(bytes, bytes.size(), name);
   std::vector<SectionSize> sizes = {{"header", table.header_bytes}};
   for (std::size_t i = 0; i < table.places.size(); ++i) {
-    sizes.push_back({std::string(kSectionNames[i]), table.places[i].size});
+    if (table.places[i]) sizes.push_back({std::string(kSectionNames[i]), table.places[i]->size});
   }
   return sizes;
 }

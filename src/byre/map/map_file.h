@@ -64,7 +64,8 @@ struct StoredMap {
 };
 
 // Copy of a session's map for storage: ids become offline without gaps. Omits removed keyframes, sightings of another
-// map's points, features without a point, and patches that are no point's reference. Precondition: a map without
+// map's points, features without a point, and patches that are no point's reference. Encodes the rest of the pictures.
+// Precondition: a map without
 // faults, with features for images of its rigs' size.
 MapGraph offline_copy(const MapGraph& online);
 // Consumes the map keyframe by keyframe, so that the two are never in memory together. Leaves it empty.

@@ -258,10 +258,10 @@ TEST(MapFile, RejectsOtherFormatsWithARemedy) {
     return refusal_of(bytes);
   };
   EXPECT_EQ(refusal_of_format(6),
-            "barn.byre: header: has format 6; this program reads format 7 "
+            "barn.byre: header: has format 6; this program reads formats 7 and 8 "
             "(map the recordings again with byre map)");
-  EXPECT_EQ(refusal_of_format(8),
-            "barn.byre: header: has format 8; this program reads format 7 "
+  EXPECT_EQ(refusal_of_format(9),
+            "barn.byre: header: has format 9; this program reads formats 7 and 8 "
             "(use the version of byre that wrote the map, or a newer one)");
 }
 

@@ -174,6 +174,14 @@ void MapGraph::set_words(KeyframeId id, std::vector<Word> words) {
   edit_keyframe(id).words = std::move(words);
 }
 
+void MapGraph::set_picture(KeyframeId id, StoredPicture picture) {
+  read_all();
+  if (!find_own_keyframe(id)) return;
+  Keyframe& keyframe = edit_keyframe(id);
+  keyframe.picture = std::move(picture);
+  keyframe.frame.picture.reset();
+}
+
 void MapGraph::move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance) {
   read_all();
   if (!find_own_keyframe(id)) return;

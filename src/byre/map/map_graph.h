@@ -7,6 +7,7 @@
 #include "byre/input_error.h"
 #include "byre/map/block_list.h"
 #include "byre/map/ids.h"
+#include "byre/map/stored_picture.h"
 
 #include <cassert>
 #include <cstdint>
@@ -111,6 +112,7 @@ struct Keyframe {
   std::vector<Sighting> sightings;   // one per feature
   std::optional<KeyframeId> parent;  // keyframe of the same map from which it was tracked; empty for the first
   std::vector<Word> words;           // one per feature, or empty before they are computed
+  StoredPicture picture = {};        // see Frame::picture; replaces it once encoded
 };
 
 // Pose of a removed keyframe relative to its parent, so that frames tracked from it keep their poses.
@@ -201,6 +203,8 @@ class MapGraph {
   Keyframe take_keyframe(KeyframeId id);
 
   void set_words(KeyframeId id, std::vector<Word> words);
+  // Replaces the picture of the keyframe's frame.
+  void set_picture(KeyframeId id, StoredPicture picture);
   void move_keyframe(KeyframeId id, const Pose& camera_from_world, const Matrix6& covariance);
   // Applies another calibration of the camera to a rig and to its keyframes' features, sightings and poses. Points do
   // not move. made: converted features of some keyframes, ascending; used for keyframes that still have the features

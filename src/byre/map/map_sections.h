@@ -165,6 +165,20 @@ void read_readout_times(ByteReader reader, std::vector<SourceRecording>& recordi
 void write_plan(const PlanRegistration& registration, ByteWriter& writer);
 PlanRegistration read_plan(ByteReader reader);
 
+// Precondition: a keyframe has a picture.
+void write_pictures(const Keyframes& keyframes, ByteWriter& writer);
+// Sets those of the keyframes.
+void read_pictures(ByteReader reader, std::vector<Keyframe>& keyframes);
+// Same, but each picture is read and checked on access. table: the first bytes of the section.
+struct PictureSection {
+  ReadAt read_at;
+  std::string place;       // for messages
+  std::size_t offset = 0;  // in the file
+  std::size_t size = 0;    // bytes
+};
+std::size_t bytes_of_picture_table(std::size_t keyframes);
+void open_pictures(ByteReader table, const PictureSection& section, std::vector<Keyframe>& keyframes);
+
 void write_upkeep(const MapUpkeep& upkeep, ByteWriter& writer);
 // points: number of points of the map.
 MapUpkeep read_upkeep(ByteReader reader, std::size_t points);

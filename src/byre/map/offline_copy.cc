@@ -1,3 +1,4 @@
+#include "byre/features/jpeg.h"
 #include "byre/map/map_file.h"
 
 #include <algorithm>
@@ -111,6 +112,9 @@ MapGraph made_offline(const MapGraph& online, const std::function<Keyframe(Keyfr
     feature_numbers.push_back(keep_features_with_points(keyframe, rig, defining));
     keyframe.parent = keyframes(keyframe.parent);
     keyframe.covariance = symmetric(keyframe.covariance);
+    if (const auto picture = std::exchange(keyframe.frame.picture, nullptr)) {
+      keyframe.picture = StoredPicture(encode_jpeg(*picture, StoredPicture::kMadeBytes));
+    }
     parts.keyframes.push_back(std::move(keyframe));
   }
   parts.points.reserve(points.ids().size());

@@ -75,6 +75,8 @@ void declare_building(CLI::App& command, MapOptions& options) {
       ->check(between(0.1, 1e6));
   declare_method_flag(command, "--no-loops", "loops.close", "false", options.method,
                       "Disable place recognition and finishing; for comparison");
+  declare_method_flag(command, "--no-pictures", "map.pictures", "false", options.method,
+                      "Store no pictures of keyframes in the map, up to 12 kB each");
   declare_method_flag(command, "--no-self-calibration", "calibration.refine", "false", options.method,
                       "Use the given calibration unchanged, without refinement");
 }

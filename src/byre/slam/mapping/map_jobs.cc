@@ -1,5 +1,6 @@
 #include "byre/slam/mapping/map_jobs.h"
 
+#include "byre/features/jpeg.h"
 #include "byre/slam/loops/recent_map.h"
 #include "byre/slam/window/paged_features.h"
 
@@ -7,10 +8,21 @@
 
 namespace byre {
 
-LocalOutcome extend_map_locally(const MapWindow& window, const MappingOptions& options,
-                                std::vector<KeyframeFeatures> to_page_out, ScratchFile& page_file) {
+StoredPicture page_out(const StoredPicture& picture, ScratchFile& file) {
+  const std::vector<std::byte> jpeg = picture.jpeg();
+  const std::shared_ptr<const std::byte> place = jpeg.empty() ? nullptr : file.put(jpeg);
+  if (!place) return picture;
+  return {jpeg.size(), [place, size = jpeg.size()] { return std::vector(place.get(), place.get() + size); }};
+}
+
+LocalOutcome extend_map_locally(const MapWindow& window, const MappingOptions& options, ToPageOut to_page_out,
+                                ScratchFile& page_file) {
   LocalOutcome outcome{extend_map(window, options), std::move(to_page_out)};
-  for (KeyframeFeatures& of : outcome.paged) of.paged = page_out(of.features, page_file);
+  for (KeyframeFeatures& of : outcome.paged.features) of.paged = page_out(of.features, page_file);
+  for (KeyframePicture& of : outcome.paged.pictures) {
+    of.encoded = page_out(StoredPicture(encode_jpeg(*of.image, StoredPicture::kMadeBytes)), page_file);
+    of.image.reset();
+  }
   page_file.release_pages();
   return outcome;
 }

@@ -2,6 +2,8 @@
 
 #include "byre/base/scratch_file.h"
 #include "byre/base/shared.h"
+#include "byre/image.h"
+#include "byre/map/stored_picture.h"
 #include "byre/place/place_index.h"
 #include "byre/slam/calibration/self_calibration.h"
 #include "byre/slam/loops/global_mapping.h"
@@ -28,14 +30,29 @@ struct KeyframeFeatures {
   std::shared_ptr<const Features> paged = nullptr;  // copy in the scratch file
 };
 
+struct KeyframePicture {
+  KeyframeId keyframe;
+  std::shared_ptr<const Image> image;
+  StoredPicture encoded = {};
+};
+
+// Copy of a picture in the file; the picture itself if the disk is full.
+StoredPicture page_out(const StoredPicture& picture, ScratchFile& file);
+
+// Data for a local job to write to the scratch file.
+struct ToPageOut {
+  std::vector<KeyframeFeatures> features;  // old keyframes
+  std::vector<KeyframePicture> pictures;   // new keyframes, to be encoded before
+};
+
 // Result of a local job.
 struct LocalOutcome {
   MapDelta delta;
-  std::vector<KeyframeFeatures> paged = {};
+  ToPageOut paged = {};
 };
-// Extends and refines the map around new keyframes, and writes features of old keyframes to the file.
-LocalOutcome extend_map_locally(const MapWindow& window, const MappingOptions& options,
-                                std::vector<KeyframeFeatures> to_page_out, ScratchFile& page_file);
+// Extends and refines the map around new keyframes, encodes pictures, and writes to the file.
+LocalOutcome extend_map_locally(const MapWindow& window, const MappingOptions& options, ToPageOut to_page_out,
+                                ScratchFile& page_file);
 
 // Result of indexing a keyframe.
 struct IndexedKeyframe {

@@ -32,6 +32,10 @@ void Mapper::continue_map(MapGraph online) {
   for (const KeyframeId id : online_.keyframe_ids()) places_.edit()->add(id, online_.find_keyframe(id)->words);
   newest_ = online_.keyframe_ids().back();
   first_new_ = next_keyframe_number();
+  for (const KeyframeId id : online_.keyframe_ids()) {
+    const StoredPicture& picture = online_.find_keyframe(id)->picture;
+    if (picture) online_.set_picture(id, page_out(picture, *page_file_));
+  }
   submaps_.begin_in_map_frame(0);
   page_out_all();
 }
@@ -46,6 +50,7 @@ Mapper::Beginning Mapper::begin(const Frame& frame, const Rig& rig, const std::o
                                     : begin_monocular(frame, rig, camera_from_world, trajectory);
   if (begun.keyframes.empty()) return begun;
   newest_ = begun.keyframes.back();
+  for (const KeyframeId id : begun.keyframes) encode_later(id);
   if (places()) {
     for (IndexedKeyframe& indexed : index_keyframes(online_, **places_, begun.keyframes, false, options_.loops)) {
       store(std::move(indexed));
@@ -168,6 +173,7 @@ KeyframeId Mapper::add_keyframe(const Frame& frame, const HybridTrack& track, co
   if (places()) unindexed_.push_back(id);
   ++revision_;
   pending_.push_back(id);
+  encode_later(id);
   request_local_job();
   page_out_old_keyframe();
   return id;
@@ -192,12 +198,17 @@ void Mapper::page_out_old_keyframe() {
 
 void Mapper::page_out_later(KeyframeId id) {
   const Keyframe* const keyframe = online_.find_keyframe(id);
-  if (keyframe != nullptr) to_page_out_.push_back({id, keyframe->frame.features});
+  if (keyframe != nullptr) to_page_out_.features.push_back({id, keyframe->frame.features});
+}
+
+void Mapper::encode_later(KeyframeId id) {
+  const std::shared_ptr<const Image>& picture = online_.find_keyframe(id)->frame.picture;
+  if (picture) to_page_out_.pictures.push_back({id, picture});
 }
 
 // A loaded map has all features in memory, and features that moved have new keypoints.
 void Mapper::page_out_all() {
-  to_page_out_.clear();
+  to_page_out_.features.clear();
   for (const KeyframeId id : online_.keyframe_ids()) {
     if (id.number + kNewKeyframes <= newest_->number) page_out_later(id);
   }
@@ -257,7 +268,8 @@ void Mapper::apply_update(const LocalOutcome& outcome) {
   apply(outcome.delta, online_);
   ++revision_;
   forget_places(outcome.delta);
-  for (const KeyframeFeatures& of : outcome.paged) {
+  for (const KeyframePicture& of : outcome.paged.pictures) online_.set_picture(of.keyframe, of.encoded);
+  for (const KeyframeFeatures& of : outcome.paged.features) {
     const Keyframe* const keyframe = online_.find_keyframe(of.keyframe);
     if (keyframe != nullptr && keyframe->frame.features == of.features) online_.replace_features(of.keyframe, of.paged);
   }
@@ -487,7 +499,7 @@ FinishReport Mapper::finish_map(const FinishHooks& hooks) {
   assert(places());
   const auto disagrees = [&](const LoopEdge& loop) { return disagreement(online_, loop) > kMaxLoopDisagreement; };
   const std::uint32_t first_new = std::ranges::any_of(loops(), disagrees) ? 0 : first_new_;
-  to_page_out_.clear();  // no more jobs
+  to_page_out_ = {};  // no more jobs
   if (first_new == 0) page_out_features(online_, *page_file_);
   const FinishHooks frugal{releasing_pages(*page_file_, hooks.should_stop), hooks.before_step};
   FinishReport report = byre::finish_map(

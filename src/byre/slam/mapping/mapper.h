@@ -159,6 +159,7 @@ class Mapper {
   void page_out_old_keyframe();
   void page_out_all();
   void page_out_later(KeyframeId id);
+  void encode_later(KeyframeId id);
   void close_loop(const LoopHypothesis& loop);
   // Whether no job on the whole map is due, in flight, or finished and not applied.
   bool may_request_map_job() const { return whole_.is_idle() && !outcome_ && due_ == MapJob::none; }
@@ -199,7 +200,7 @@ class Mapper {
   std::optional<KeyframeId> newest_;
   std::uint32_t first_new_ = 0;  // number of the first keyframe after those of a continued map
   std::vector<KeyframeId> pending_;
-  std::vector<KeyframeFeatures> to_page_out_;           // for the next job to write to the file
+  ToPageOut to_page_out_;                               // for the next local job
   std::optional<OnlineCorrection> waiting_correction_;  // until no local job is in flight
   std::vector<KeyframeId> unindexed_;                   // new keyframes without words, for the next index job
   int rig_to_calibrate_ = 0;                            // index into the map's rigs

@@ -1,6 +1,7 @@
 #include "byre/slam/mapping/mapper.h"
 
 #include "byre/base/job_slot_scene.h"
+#include "byre/features/jpeg.h"
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/places/place_scene.h"
 
@@ -132,6 +133,33 @@ TEST_F(MapperOfAMission, StoresTheFeaturesOfOlderKeyframesInAFile) {
     EXPECT_NE(paged[i].data(), before[i].data()) << i;
     EXPECT_TRUE(std::ranges::equal(paged[i], before[i])) << i;
   }
+}
+
+TEST_F(MapperOfAMission, EncodesPicturesOfKeyframesInAJob) {
+  Mapper mapper = this->mapper();
+  const auto with_picture = [&](std::size_t number) {
+    Frame frame = mission_.frames[number];
+    const auto grey = static_cast<std::uint8_t>(60 + 10 * number);
+    frame.picture = std::make_shared<const Image>(Image{32, 16, std::vector<std::uint8_t>(512, grey)});
+    return frame;
+  };
+  const KeyframeId first = mapper.begin(with_picture(0), mission_.rig, {}, AnchoredTrajectory({})).keyframes.front();
+  const KeyframeId second = mapper.add_keyframe(with_picture(4), track(mapper, 4), mission_.rig);
+  EXPECT_FALSE(mapper.online().find_keyframe(second)->picture);
+  run_jobs(mapper);
+  mapper.collect();
+  for (const auto& [id, grey] : {std::pair(first, 60), std::pair(second, 100)}) {
+    const Keyframe& keyframe = *mapper.online().find_keyframe(id);
+    EXPECT_FALSE(keyframe.frame.picture);
+    const std::optional<Image> decoded = decode_jpeg(keyframe.picture.jpeg());
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(decoded->width, 32);
+    EXPECT_NEAR(decoded->pixels.front(), grey, 2);
+  }
+  const KeyframeId third = mapper.add_keyframe(mission_.frames[8], track(mapper, 8), mission_.rig);
+  run_jobs(mapper);
+  mapper.collect();
+  EXPECT_FALSE(mapper.online().find_keyframe(third)->picture);
 }
 
 TEST_F(MapperOfAMission, KeepsKeyframesPendingWhileAJobRuns) {

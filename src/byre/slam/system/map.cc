@@ -1,5 +1,6 @@
 #include "byre/map.h"
 
+#include "byre/features/jpeg.h"
 #include "byre/input_error.h"
 #include "byre/map/map_file.h"
 #include "byre/map/mapped_tag.h"
@@ -180,6 +181,17 @@ MapKeyframe Map::keyframe(int id) const {
     result.points.push_back(number_of(sighting.point));
   }
   return result;
+}
+
+std::optional<Image> Map::picture(int keyframe) const {
+  const StoredPicture& stored = keyframe_at(*stored_, keyframe).picture;
+  if (!stored) return std::nullopt;
+  std::optional<Image> picture = decode_jpeg(stored.jpeg());
+  if (!picture) {
+    throw InputError("map", fmt::format("has a picture of keyframe {} that is no JPEG file", keyframe),
+                     "restore the map from a copy, or make it again");
+  }
+  return picture;
 }
 
 Trajectory Map::trajectory(int recording) const {

@@ -29,7 +29,8 @@ struct MethodOptions {
   SessionOptions session;
   bool self_calibrate = true;  // refine the given calibration from the map
   SelfCalibrationOptions self_calibration;
-  bool close_loops = true;  // place recognition and finishing of the map
+  bool close_loops = true;    // place recognition and finishing of the map
+  bool keep_pictures = true;  // whether mapping keeps pictures of keyframes
   bool use_saved_extrinsics = true;
   MotionLimits motion_limits;
   // Lower bound of the relative standard deviation of a monocular map's scale, if measured by wheels only.

@@ -99,6 +99,9 @@ void add_run(Table& table) {
   table.push_back(flag(
       "map_online", [](auto& o) -> auto& { return o.session.map_online; },
       "online mapping; false: a mission tracks the offline map only"));
+  table.push_back(flag(
+      "map.pictures", [](auto& o) -> auto& { return o.keep_pictures; },
+      "small grey pictures of keyframes in a map being made, up to 12 kB each"));
   table.push_back(number(
       "trajectory.max_poses", "poses", 0, 1e8, [](auto& o) -> auto& { return o.session.trajectory.max_poses; },
       "maximum number of stored trajectory poses: the newer half is complete, older poses are thinned out evenly; 0: "

@@ -81,6 +81,7 @@ MethodOptions method_options(const SlamOptions& options) {
   method.extract.max_features = options.max_features;
   method.self_calibrate = options.refine_calibration;
   method.extract.threads = options.image_threads;
+  method.keep_pictures = options.pictures;
   method.session.map_online = options.map_online;
   for (const auto& [name, value] : options.settings) {
     if (const auto fault = set_option(method, name, value)) {

@@ -80,6 +80,13 @@ std::vector<TagFamily> tag_families(const SlamInputs& inputs) {
   return inputs.offline ? families_of(inputs.offline->tags()) : families_of(inputs.tags);
 }
 
+// Missions keep no pictures.
+ExtractOptions extract_options(const MethodOptions& options, const SlamInputs& inputs) {
+  ExtractOptions extract = options.extract;
+  extract.picture = options.keep_pictures && !inputs.offline;
+  return extract;
+}
+
 // Often in mapping, as only tags in keyframes are mapped.
 Timestamp tag_interval(const SlamInputs& inputs) {
   return std::chrono::milliseconds(inputs.offline ? 250 : 60);
@@ -107,7 +114,7 @@ SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamI
       is_extended_(inputs_.before.has_value()),
       body_from_left_(given.body_from_left.rotation),
       initial_calibration_(stored_calibration(earlier_recordings(inputs_), given)),
-      extractor_(initial_calibration_ ? initial_calibration_->calibration : given, options.extract,
+      extractor_(initial_calibration_ ? initial_calibration_->calibration : given, extract_options(options, inputs_),
                  tag_families(inputs_), tag_interval(inputs_)),
       check_(given, extractor_.rig(), check),
       prior_(options.motion_limits),
