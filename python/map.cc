@@ -468,6 +468,20 @@ void bind_contents(MapClass& type) {
           ">>> bool((m.recording_counts == 1).all())  # this map has one recording\n"
           "True")
       .def(
+          "picture",
+          [](const CachedMap& self, int keyframe) -> py::object {
+            std::optional<Image> picture = self.map.picture(checked(keyframe, self.map.keyframes(), "keyframe"));
+            if (!picture) return py::none();
+            const py::ssize_t width = picture->width;
+            const py::array rows = array_of<std::uint8_t>(std::move(picture->pixels), {});
+            return rows.attr("reshape")(-1, width);
+          },
+          py::arg("keyframe"),
+          "Small grey picture of a keyframe's left image, as rectified: rows x columns, uint8. None without one.\n\n"
+          ">>> picture = m.picture(0)  # shown by matplotlib.pyplot.imshow(picture, cmap=\"gray\")\n"
+          ">>> picture.dtype.name, picture.shape[1] <= m.keyframes[0].camera.width\n"
+          "('uint8', True)")
+      .def(
           "observations",
           [](const CachedMap& self, int point) {
             return self.map.observations(checked(point, self.map.points(), "point"));

@@ -242,6 +242,8 @@ void bind_options(py::module_& module) {
                      "Largest time difference between left and right or depth image, seconds.")
       .def_readwrite("max_gap", &SlamOptions::max_gap,
                      "Largest time difference between frames without InputFault.after_gap, seconds.")
+      .def_readwrite("pictures", &SlamOptions::pictures,
+                     "Whether keyframes of a new or extended map keep a small grey picture.")
       .def_readwrite("max_features", &SlamOptions::max_features, "Features per frame.")
       .def_readwrite("image_threads", &SlamOptions::image_threads,
                      "Threads for the images of a frame; no effect on poses.")

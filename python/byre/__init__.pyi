@@ -477,6 +477,7 @@ class Map:
     def observation_counts(self) -> _Ids: ...
     @property
     def recording_counts(self) -> _Ids: ...
+    def picture(self, keyframe: int) -> Optional[NDArray[np.uint8]]: ...
     def observations(self, point: int) -> list[MapObservation]: ...
     def trajectory(self, recording: int = 0) -> Trajectory: ...
     def points_in_view(self, map_from_body: _Matrix4, max_distance: float, recording: int = 0) -> _Ids: ...
@@ -517,6 +518,7 @@ class SlamOptions:
     map_online: bool
     max_pair_difference: float
     max_gap: float
+    pictures: bool
     max_features: int
     image_threads: int
     max_waiting: int
@@ -536,6 +538,7 @@ class SlamOptions:
         map_online: bool = True,
         max_pair_difference: float = 0.005,
         max_gap: float = 1.0,
+        pictures: bool = True,
         max_features: int = 1000,
         image_threads: int = 2,
         max_waiting: int = 1,

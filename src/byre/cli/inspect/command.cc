@@ -3,6 +3,7 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/map_extrinsics.h"
+#include "byre/cli/shared/outputs.h"
 #include "byre/extrinsics_file.h"
 #include "byre/playback/archive/point_cloud.h"
 #include "byre/playback/report/inspection_report.h"
@@ -13,6 +14,7 @@
 #include <ostream>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -23,6 +25,7 @@ struct InspectOptions {
   fs::path map;
   std::optional<fs::path> points;
   std::optional<fs::path> extrinsics;
+  std::optional<fs::path> pictures;
   bool json = false;
   bool verbose = false;
 };
@@ -32,8 +35,18 @@ constexpr const char* kInspectFooter = R"(Examples:
   byre inspect barn.byre --json
   byre inspect barn.byre --points points.ply
   byre inspect barn.byre --extrinsics robot.yaml
+  byre inspect barn.byre --pictures pictures
 
 Errors are distances in the rectified image between the measured point and the projection of the map point.)";
+
+// Named by keyframe: 000012.jpg.
+void write_pictures(const MapGraph& map, const fs::path& folder) {
+  make_folder(folder);
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const std::vector<std::byte> jpeg = map.find_keyframe(id)->picture.jpeg();
+    if (!jpeg.empty()) write_atomically(folder / fmt::format("{:06}.jpg", id.number), jpeg, Durability::unsynced);
+  }
+}
 
 ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
   if (options.points) require_writable(*options.points);
@@ -42,6 +55,7 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
   const std::vector<std::byte> bytes = read_file(options.map);
   const StoredMap stored = read_map(bytes, name);
   if (options.extrinsics) write_extrinsics(*options.extrinsics, extrinsics_of(stored, name));
+  if (options.pictures) write_pictures(stored.map, *options.pictures);
   if (options.points) write_atomically(*options.points, point_cloud(stored.map));
   const MapInspection inspection = inspect(stored);
   Report report = inspection_report(stored, inspection, {name, bytes.size(), section_sizes(bytes, name)});
@@ -66,6 +80,9 @@ Action declare_inspect(CLI::App& command) {
   add_output(command, Output::calibration, "--extrinsics", options->extrinsics,
              "Also write the extrinsics of the robot that drives with wheel odometry estimated. YAML format")
       ->type_name("FILE");
+  add_output(command, Output::folder, "--pictures", options->pictures,
+             "Also write the pictures of the keyframes to this new folder. JPEG format")
+      ->type_name("FOLDER");
   command.footer(kInspectFooter);
   return [options](std::ostream& result) { return run_inspect(*options, result); };
 }

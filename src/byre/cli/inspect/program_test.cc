@@ -43,6 +43,16 @@ TEST_F(InspectProgram, PrintsJsonAndWritesThePoints) {
   EXPECT_THAT(read("points.ply"), HasSubstr("element vertex 16\n"));
 }
 
+TEST_F(InspectProgram, CountsAndWritesPictures) {
+  save_map(with_pictures(StoredMapScene(4, 9).stored()), folder_ / "pictured.byre");
+  const Outcome outcome = run("inspect pictured.byre --pictures pictures");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("pictures       of 3 keyframes, 66 B\n"));
+  EXPECT_EQ(read("pictures/000002.jpg"), std::string(22, '\2'));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "pictures" / "000001.jpg"));
+  EXPECT_THAT(run("inspect barn.byre").output, HasSubstr("pictures       none\n"));
+}
+
 TEST_F(InspectProgram, WritesExtrinsicsOfTheRobot) {
   StoredMap stored = StoredMapScene(4, 9).stored();
   OdometryCalibration known;

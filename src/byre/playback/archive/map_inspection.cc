@@ -26,6 +26,8 @@ MapCounts count(const MapGraph& map) {
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.find_keyframe(id);
     counts.keyframes_with_words += keyframe.words.empty() ? 0 : 1;
+    counts.keyframes_with_picture += keyframe.picture ? 1 : 0;
+    counts.picture_bytes += keyframe.picture.size();
     counts.features += static_cast<int>(keyframe.sightings.size());
     counts.observations += static_cast<int>(
         std::ranges::count_if(keyframe.sightings, [](const Sighting& s) { return s.point.has_value(); }));
@@ -131,7 +133,8 @@ std::vector<PartSize> memory_of(const MapGraph& map, const MapCounts& counts) {
           {"points", size(counts.points, sizeof(MapPoint))},
           {"observations", size(counts.observations, sizeof(Observation))},
           {"covisibility", covisible_count(map) * sizeof(Covisible)},
-          {"words", words * sizeof(Word)}};
+          {"words", words * sizeof(Word)},
+          {"pictures", counts.picture_bytes}};
 }
 
 }  // namespace

@@ -12,6 +12,8 @@ namespace byre {
 struct MapCounts {
   int keyframes = 0;
   int keyframes_with_words = 0;
+  int keyframes_with_picture = 0;
+  std::size_t picture_bytes = 0;
   std::vector<int> keyframes_of_recordings;
   int points = 0;
   int features = 0;

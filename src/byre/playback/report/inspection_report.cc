@@ -150,6 +150,8 @@ Report inspection_report(const StoredMap& stored, const MapInspection& inspectio
        {"counts",
         {{"keyframes", counts.keyframes},
          {"keyframes_with_words", counts.keyframes_with_words},
+         {"keyframes_with_picture", counts.keyframes_with_picture},
+         {"picture_bytes", counts.picture_bytes},
          {"points", counts.points},
          {"features", counts.features},
          {"observations", counts.observations},
@@ -171,6 +173,8 @@ Report inspection_report(const StoredMap& stored, const MapInspection& inspectio
   add_notes(stored, report);
   if (stored.plan) report.row("plan", "{origin}", {{"origin", describe_origin(*stored.plan)}});
   report.row("keyframes", "{counts.keyframes}, with {counts.features} features, {counts.patches} with a patch");
+  report.row("pictures", "[{?counts.keyframes_with_picture}of {counts.keyframes_with_picture} keyframes, {size}|none]",
+             {{"size", size_text(counts.picture_bytes)}});
   report.row("points", "{counts.points}, with {counts.observations} observations");
   add_distribution("seen by", report.figures["observations_per_point"], " keyframes", report);
   report.detail("words",
