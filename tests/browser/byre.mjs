@@ -1,5 +1,6 @@
 // Starts and stops byre and a browser.
 import { spawn, spawnSync } from "node:child_process";
+import axe from "axe-core";
 import { chromium } from "playwright-core";
 
 const kPatience = 60_000; // milliseconds
@@ -70,6 +71,13 @@ export async function openPage(browser, url, options = {}) {
   page.on("pageerror", (error) => page.problems.push(String(error)));
   await page.goto(url);
   return page;
+}
+
+/** Violations of the rules of axe on the present page: rule and elements each. */
+export async function accessibilityFaults(page) {
+  await page.evaluate(axe.source);
+  const { violations } = await page.evaluate(() => window.axe.run());
+  return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" ")}`);
 }
 
 /** Polls until isSo() holds. Throws after a minute; what: description of the condition, for the error. */

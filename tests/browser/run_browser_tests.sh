@@ -15,10 +15,11 @@ source "$source/../node_packages.sh"
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) ||
   skip "no Chromium is installed"
 mkdir -p "$folder/screenshots"
-fetch_packages "$source" "$folder" playwright-core
+fetch_packages "$source" "$folder" "playwright-core and axe-core"
 
 rm -rf room
 "$render_room" room --frames 60 --rate 3 --laps 0.4 2>/dev/null # twenty seconds
 "$byre" map room -o room.byre --quiet >/dev/null
+"$byre" map room -o plain.byre --no-pictures --quiet >/dev/null
 "$byre" map room --end 12 -o part.byre --quiet >/dev/null # the rest of the recording is outside this map
 BYRE=$byre BROWSER=$browser node --test --test-concurrency=1 viewer_test.mjs

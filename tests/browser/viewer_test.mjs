@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, rmSync } from "node:fs";
 import { afterEach, beforeEach, describe, test } from "node:test";
-import { eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
+import { accessibilityFaults, eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
 import { differentPixels, pictureOf, settledPictureOf } from "./pixels.mjs";
 import { writePlan } from "./plan.mjs";
 
@@ -31,7 +31,11 @@ async function pointCount(page) {
 }
 
 async function openMap(options, ...commandLine) {
-  viewer = await Viewer.start("view", "room.byre", "--port", "0", ...commandLine);
+  return openMapFile("room.byre", options, ...commandLine);
+}
+
+async function openMapFile(file, options, ...commandLine) {
+  viewer = await Viewer.start("view", file, "--port", "0", ...commandLine);
   const page = await openPage(browser, viewer.url, options);
   await eventually(async () => (await pointCount(page)) > 0, () => "points of the map");
   return page;
@@ -90,6 +94,123 @@ describe("A map", () => {
   test("ends by Ctrl-C with an open page", async () => {
     await openMap();
     assert.equal(await viewer.interrupt(), 0);
+  });
+});
+
+describe("Pictures of a map", () => {
+  const kPicture = "figure.keyframe-picture";
+
+  async function openPictures(options) {
+    const page = await openMap(options);
+    await page.getByRole("button", { name: "Next picture" }).waitFor();
+    return page;
+  }
+
+  async function shownPicture(page) {
+    const width = () => document.querySelector("figure.keyframe-picture img").naturalWidth;
+    await eventually(async () => (await page.evaluate(width)) > 100, () => "a picture");
+    return page.locator(`${kPicture} figcaption`).innerText();
+  }
+
+  /** Presses places in a spiral around the middle of the map until a picture is shown. */
+  async function findPicture(page, press) {
+    const box = await page.locator(kStage).boundingBox();
+    for (let turn = 0; turn < 400; ++turn) {
+      const radius = 6 * Math.sqrt(turn);
+      const [x, y] = [radius * Math.cos(2.4 * turn), radius * Math.sin(2.4 * turn)];
+      await press(box.x + box.width / 2 + x, box.y + box.height / 2 + y);
+      if (await page.locator(kPicture).isVisible()) return;
+    }
+    throw new Error("no picture found");
+  }
+
+  test("are shown by keys and buttons", async () => {
+    const page = await openPictures();
+    assert.ok(await page.locator(kPicture).isHidden());
+    await page.keyboard.press("n");
+    const first = await shownPicture(page);
+    assert.match(first, /^Picture 1 of \d+: room, \d+\.\d s$/);
+    await page.getByRole("button", { name: "Next", exact: true }).click();
+    assert.match(await shownPicture(page), /^Picture 2 of/);
+    await page.keyboard.press("p");
+    assert.equal(await shownPicture(page), first);
+    await screenshot(page, "picture");
+    await page.keyboard.press("Escape");
+    assert.ok(await page.locator(kPicture).isHidden());
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("are shown by a click on their place", async () => {
+    const page = await openPictures();
+    await findPicture(page, (x, y) => page.mouse.click(x, y));
+    await shownPicture(page);
+    await page.getByRole("button", { name: "Pictures" }).click();
+    assert.ok(await page.locator(kPicture).isHidden());
+  });
+
+  test("are shown by a tap on a narrow, dark screen", async () => {
+    const options = { colorScheme: "dark", viewport: { width: 360, height: 740 }, hasTouch: true };
+    const page = await openPictures(options);
+    await findPicture(page, (x, y) => page.touchscreen.tap(x, y));
+    await shownPicture(page);
+    const box = await page.locator(kPicture).boundingBox();
+    assert.ok(box.x >= 0 && box.x + box.width <= 360, "the picture fits on the screen");
+    await page.screenshot({ path: "screenshots/picture_dark_narrow.png", fullPage: true });
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("are not offered for a map without", async () => {
+    const page = await openMapFile("plain.byre");
+    await page.getByRole("button", { name: "Grey values" }).waitFor();
+    assert.equal(await page.getByRole("button", { name: "Pictures" }).count(), 0);
+    await page.keyboard.press("n");
+    assert.equal(await page.locator(kPicture).count(), 0);
+    assert.deepEqual(page.problems, []);
+  });
+
+  test("keep the page accessible, light and dark", async () => {
+    for (const colorScheme of ["light", "dark"]) {
+      const page = await openPictures({ colorScheme });
+      await page.keyboard.press("n");
+      await shownPicture(page);
+      assert.deepEqual(await accessibilityFaults(page), [], colorScheme);
+      await page.close();
+      viewer.end();
+    }
+  });
+});
+
+describe("Points of a map", () => {
+  test("have the grey values of the images, light and dark", async () => {
+    const page = await openMap();
+    await page.getByRole("button", { name: "Pictures" }).click();
+    const grey = await settledPictureOf(page, kStage);
+    await page.getByRole("button", { name: "Grey values" }).click();
+    const green = await settledPictureOf(page, kStage);
+    assert.ok((await differentPixels(page, grey, green)) > 500, "the colour of the points changes");
+    await page.getByRole("button", { name: "Grey values" }).click();
+    assert.equal(await differentPixels(page, grey, await settledPictureOf(page, kStage)), 0);
+    await page.getByRole("button", { name: "Dark" }).click();
+    await settledPictureOf(page, kStage);
+    await screenshot(page, "grey_dark");
+  });
+
+  test("have a scale bar that grows when zoomed", async () => {
+    const page = await openMap();
+    const metresPerPixel = async () => {
+      const bar = page.locator(".scale-bar");
+      const [length, unit] = (await bar.innerText()).split(" ");
+      assert.equal(unit, "m");
+      const { width } = await bar.boundingBox();
+      assert.ok(width > 40 && width <= 141, `${width} pixels`);
+      return Number(length) / width;
+    };
+    const before = await metresPerPixel();
+    await page.locator(kStage).focus();
+    for (let i = 0; i < 10; ++i) await page.keyboard.press("+");
+    await settledPictureOf(page, kStage);
+    const ratio = before / (await metresPerPixel());
+    assert.ok(Math.abs(ratio / 1.15 ** 10 - 1) < 0.05, `ratio ${ratio}`);
   });
 });
 

@@ -2,10 +2,12 @@ import { Vector3 } from "three";
 import type { MapData } from "./decode";
 import { isConfirmed } from "./confirm";
 import { byId } from "./dom";
+import { KeyframePictures } from "./keyframe_pictures";
 import { MapSpace } from "./map_space";
 import { PickList } from "./panels/pick_list";
 import { PlanCanvas } from "./panels/plan_canvas";
-import { address, loadMap, register, save } from "./server";
+import { startScaleBar } from "./panels/scale_bar";
+import { address, loadGreys, loadMap, register, save } from "./server";
 import { pathLines } from "./space/keyframes";
 import { planFromMap } from "./space/frames";
 import { PickLabels } from "./space/pick_labels";
@@ -13,7 +15,6 @@ import { pointAt } from "./space/point_picking";
 import type { Stage } from "./space/stage";
 import type { MapScene, Pick, PlanFields, PlanFit, RegistrationFields, Vector2Fields } from "./types";
 
-const kClick = 4; // largest motion of the pointer during a click, pixels
 const kPointsOnPlan = 20000;
 
 /** Page of a map; with a plan also for picking points in both. */
@@ -21,11 +22,17 @@ export async function startMapPage(scene: MapScene, space: MapSpace): Promise<vo
   const map = await loadMap("offline");
   space.showOffline(map);
   byId("subtitle").textContent = `${map.points.length / 3} points, ${map.keyframes.length / 7} views`;
-  if (!scene.plan) {
+  const greys = loadGreys();
+  const { stage } = space;
+  if (stage) startScaleBar(stage, scene.is_metric ? "m" : "map units");
+  const pictures = stage && scene.pictures.length ? new KeyframePictures(stage, map.keyframes, scene.pictures) : null;
+  if (scene.plan) {
+    new Picking(scene, scene.plan, map, space, pictures);
+  } else {
     byId("main").classList.add("alone");
-    return;
+    stage?.onClick((click) => pictures?.openAt(click));
   }
-  new Picking(scene, scene.plan, map, space);
+  space.showGreys(await greys);
 }
 
 function farOffWarning({ residual_m }: PlanFit): string {
@@ -39,6 +46,7 @@ class Picking {
   readonly #scene: MapScene;
   readonly #map: MapData;
   readonly #space: MapSpace;
+  readonly #pictures: KeyframePictures | null;
   readonly #plan: PlanCanvas;
   readonly #list: PickList;
   readonly #labels: PickLabels | null = null;
@@ -48,10 +56,17 @@ class Picking {
   #hovered: number | null = null;
   #fit: PlanFit | null = null;
 
-  constructor(scene: MapScene, plan: PlanFields, map: MapData, space: MapSpace) {
+  constructor(
+    scene: MapScene,
+    plan: PlanFields,
+    map: MapData,
+    space: MapSpace,
+    pictures: KeyframePictures | null,
+  ) {
     this.#scene = scene;
     this.#map = map;
     this.#space = space;
+    this.#pictures = pictures;
     this.#plan = new PlanCanvas(plan, address("/plan.png"), (point) => this.#pickOnPlan(point));
     this.#list = new PickList(scene.output, {
       rename: (index, name) => this.#rename(index, name),
@@ -68,17 +83,11 @@ class Picking {
   }
 
   #listen(stage: Stage): void {
-    let pressed: { x: number; y: number } | null = null;
-    stage.canvas.addEventListener("pointerdown", ({ offsetX: x, offsetY: y }) => (pressed = { x, y }));
-    stage.canvas.addEventListener("pointerup", ({ offsetX: x, offsetY: y, button }) => {
-      if (pressed && button === 0 && Math.hypot(x - pressed.x, y - pressed.y) <= kClick) this.#pickInMap(stage, x, y);
-      pressed = null;
+    stage.onClick((click) => {
+      if (!this.#pictures?.openAt(click)) this.#pickInMap(stage, click.x, click.y);
     });
     stage.canvas.addEventListener("pointermove", ({ offsetX, offsetY, buttons }) => {
       if (buttons === 0) this.#hover(this.#pointAt(stage, offsetX, offsetY));
-    });
-    stage.canvas.addEventListener("keydown", ({ key }) => {
-      if (key === "Enter") this.#pickInMap(stage, stage.canvas.clientWidth / 2, stage.canvas.clientHeight / 2);
     });
   }
 

@@ -73,6 +73,21 @@ export class MapSpace {
     );
   }
 
+  /** Draws the saved map's points in their grey values, with a button to switch. */
+  showGreys(greys: Uint8Array): void {
+    const { stage } = this;
+    if (!stage || greys.length !== this.#pointCount()) return;
+    const show = (isOn: boolean) => {
+      this.#offline.setGreys(isOn ? greys : null);
+      byId("layers").classList.toggle("greyed", isOn);
+      stage.redraw();
+    };
+    byId("layers").append(
+      layerButton({ name: "Grey values", title: "Draw points as bright as in the image", isOn: true, set: show }),
+    );
+    show(true);
+  }
+
   onlineButton(): HTMLElement {
     const things = [this.#online.points];
     return layerButton({

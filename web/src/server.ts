@@ -36,6 +36,11 @@ export async function loadMap(which: "offline" | "online"): Promise<MapData> {
   return decodeMap(await (await answerOf(await fetch(address(`/map/${which}`)))).arrayBuffer());
 }
 
+/** Grey value of each point of the map. */
+export async function loadGreys(): Promise<Uint8Array> {
+  return new Uint8Array(await (await answerOf(await fetch(address("/map/greys")))).arrayBuffer());
+}
+
 /** Image of the frame, or of the nearest frame with a stored image. */
 export async function loadImage(frame: number): Promise<SeenImage> {
   return decodeImage(await (await answerOf(await fetch(address(`/images/${frame}`)))).arrayBuffer());

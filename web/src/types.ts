@@ -47,9 +47,17 @@ export interface RunScene extends SceneBase {
   camera: CameraFields;
 }
 
+/** Keyframe with a picture; time since the start of its recording. */
+export interface PictureFields {
+  keyframe: number;
+  recording: string;
+  time_s: number;
+}
+
 export interface MapScene extends SceneBase {
   mode: "map";
   is_metric: boolean;
+  pictures: PictureFields[];
   output: string | null;
 }
 

@@ -4,25 +4,32 @@ import {
   Float32BufferAttribute,
   Points,
   ShaderMaterial,
+  Uint8BufferAttribute,
   type BufferAttribute,
 } from "three";
-import { colour, onThemeChange } from "../theme";
+import { colour, currentTheme, onThemeChange } from "../theme";
 
 /** Shapes, distinct without colours. */
 export const kDisc = 0;
 export const kDiamond = 1;
 export const kCross = 2;
 
+// Grey of black and of white points, distinct from the background; 0 to 1.
+const kGreysOnDark = [0.35, 1];
+const kGreysOnLight = [0, 0.72];
+
 const kVertexShader = `
   attribute float kind;
+  attribute float grey;
   uniform float size;
+  uniform vec2 greys; // of black and white points; equal: points have the colour of their kind
   uniform vec3 colours[3];
   uniform float forms[3];
   varying vec3 colour;
   varying float form;
   void main() {
     int index = int(kind + 0.5);
-    colour = colours[index];
+    colour = greys.x == greys.y ? colours[index] : vec3(mix(greys.x, greys.y, grey));
     form = forms[index];
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
     gl_PointSize = size;
@@ -49,6 +56,7 @@ export interface MarkerKind {
 export class Markers {
   readonly points: Points<BufferGeometry, ShaderMaterial>;
   readonly #kinds: MarkerKind[];
+  #isGrey = false;
 
   constructor(kinds: MarkerKind[], pixels: number, opacity = 1) {
     this.#kinds = kinds;
@@ -62,6 +70,7 @@ export class Markers {
         opacity: { value: opacity },
         colours: { value: [new Color(), new Color(), new Color()] },
         forms: { value: forms },
+        greys: { value: [0, 0] },
       },
     });
     this.points = new Points(new BufferGeometry(), material);
@@ -78,6 +87,13 @@ export class Markers {
     geometry.setAttribute("kind", new Float32BufferAttribute(kinds ?? new Float32Array(count), 1));
     this.points.geometry.dispose();
     this.points.geometry = geometry;
+  }
+
+  /** Draws each marker in its grey value, or in the colour of its kind without values. */
+  setGreys(greys: Uint8Array | null): void {
+    this.#isGrey = greys !== null;
+    if (greys) this.points.geometry.setAttribute("grey", new Uint8BufferAttribute(greys, 1, true));
+    this.#recolour();
   }
 
   /** Replaces all markers by reserved ones that are not drawn. */
@@ -103,6 +119,8 @@ export class Markers {
   }
 
   #recolour(): void {
+    const greys = currentTheme() === "dark" ? kGreysOnDark : kGreysOnLight;
+    this.points.material.uniforms.greys.value = this.#isGrey ? greys : [0, 0];
     this.points.material.uniforms.colours.value.forEach((value: Color, i: number) => {
       const kind = this.#kinds[Math.min(i, this.#kinds.length - 1)];
       // The shader writes colours without conversion from linear light.

@@ -1,16 +1,16 @@
 import { Matrix4, Vector4 } from "three";
 
-const kReach = 12; // largest distance of a point from the pointer, pixels
+const kReach = 12; // pixels
 const kSlack = 3; // points this much farther from the pointer than the closest one are candidates too, pixels
 
 /**
  * Index of the map point at a pixel of the view: the candidate nearest to the camera; null without one.
- * clipFromMap: see Stage; x, y, width and height in pixels.
+ * clipFromMap: see Stage; x, y, width, height and reach, the largest distance of a point, in pixels.
  */
 export function pointAt(
   points: Float32Array,
   clipFromMap: Matrix4,
-  { x, y, width, height }: { x: number; y: number; width: number; height: number },
+  { x, y, width, height, reach = kReach }: { x: number; y: number; width: number; height: number; reach?: number },
 ): number | null {
   const near: { point: number; distance: number; depth: number }[] = [];
   const clip = new Vector4();
@@ -20,7 +20,7 @@ export function pointAt(
     const dx = ((clip.x / clip.w + 1) / 2) * width - x;
     const dy = ((1 - clip.y / clip.w) / 2) * height - y;
     const distance = Math.hypot(dx, dy);
-    if (distance <= kReach) near.push({ point, distance, depth: clip.w });
+    if (distance <= reach) near.push({ point, distance, depth: clip.w });
   }
   const closest = Math.min(...near.map(({ distance }) => distance));
   const meant = near.filter(({ distance }) => distance <= closest + kSlack);

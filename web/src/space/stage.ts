@@ -15,6 +15,15 @@ import { onThemeChange } from "../theme";
 const kUp = new Vector3(0, 0, 1);
 const kOrbitStep = 0.12; // radians per key press
 const kZoomStep = 1.15;
+const kClick = 4; // largest motion of the pointer during a click, pixels
+const kTap = 10; // of a finger
+
+/** Position on the canvas, CSS pixels. */
+export interface Click {
+  x: number;
+  y: number;
+  isTouch: boolean;
+}
 
 /** Whether WebGL is rendered in software, where antialiasing takes most of the time. */
 function isDrawnInSoftware(): boolean {
@@ -125,6 +134,28 @@ export class Stage {
   /** Calls back after each drawing, for overlays. */
   afterDrawing(callback: () => void): void {
     this.#afterDrawing.push(callback);
+  }
+
+  /** Calls back after each click or tap, and after Enter with the middle of the view. */
+  onClick(callback: (click: Click) => void): void {
+    let pressed: { x: number; y: number } | null = null;
+    this.canvas.addEventListener("pointerdown", ({ offsetX: x, offsetY: y }) => (pressed = { x, y }));
+    this.canvas.addEventListener("pointerup", ({ offsetX: x, offsetY: y, button, pointerType }) => {
+      const isTouch = pointerType === "touch";
+      const moved = pressed ? Math.hypot(x - pressed.x, y - pressed.y) : Infinity;
+      if (button === 0 && moved <= (isTouch ? kTap : kClick)) callback({ x, y, isTouch });
+      pressed = null;
+    });
+    this.canvas.addEventListener("keydown", ({ key }) => {
+      if (key !== "Enter") return;
+      callback({ x: this.canvas.clientWidth / 2, y: this.canvas.clientHeight / 2, isTouch: false });
+    });
+  }
+
+  /** Pixels per length of the view at the middle of the view. */
+  pixelsPerUnit(): number {
+    const distance = this.camera.position.distanceTo(this.#controls.target);
+    return this.canvas.clientHeight / (2 * distance * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
   /** Position on the canvas, CSS pixels; null behind the camera. */

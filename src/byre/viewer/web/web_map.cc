@@ -3,10 +3,14 @@
 #include "byre/base/output_file.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/input_files.h"
+#include "byre/map/point_grey.h"
 #include "byre/viewer/plan_picks.h"
 #include "byre/viewer/scene.h"
 #include "byre/viewer/web/web_messages.h"
 
+#include <charconv>
+#include <cstdint>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -15,6 +19,29 @@ namespace byre {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr std::string_view kPicturesFolder = "/pictures/";
+
+// Keyframe of a path "/pictures/NUMBER" that has a picture.
+const Keyframe* find_pictured(const MapGraph& map, std::string_view path) {
+  if (!path.starts_with(kPicturesFolder)) return nullptr;
+  path.remove_prefix(kPicturesFolder.size());
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
+  if (error != std::errc() || end != path.data() + path.size()) return nullptr;
+  const Keyframe* const keyframe = map.find_keyframe({map.origin(), number});
+  return keyframe != nullptr && keyframe->picture ? keyframe : nullptr;
+}
+
+// Grey value of each point, in order of ids; those without a patch are medium grey.
+std::string grey_bytes(const MapGraph& map) {
+  constexpr std::uint8_t kUnknown = 128;
+  std::string greys;
+  for (const PointId id : map.point_ids()) {
+    greys += static_cast<char>(grey_of(map, *map.find_point(id)).value_or(kUnknown));
+  }
+  return greys;
+}
 
 Json fit_fields(const PlanFit& fit) {
   Json fields = {{"registration", registration_fields(fit.registration)},
@@ -29,6 +56,24 @@ Json fit_fields(const PlanFit& fit) {
   }
   for (const PlanDoubt doubt : fit.doubts) fields["doubts"].push_back(to_string(doubt));
   return fields;
+}
+
+// Keyframes with a picture.
+Json picture_fields(const StoredMap& stored) {
+  Json fields = Json::array();
+  for (const KeyframeId id : stored.map.keyframe_ids()) {
+    const Keyframe& keyframe = *stored.map.keyframe_header(id);
+    if (!keyframe.picture) continue;
+    const SourceRecording& recording = stored.recordings[static_cast<std::size_t>(keyframe.recording)];
+    fields.push_back({{"keyframe", id.number},
+                      {"recording", recording.name},
+                      {"time_s", to_seconds(keyframe.frame.time - recording.first_time)}});
+  }
+  return fields;
+}
+
+std::string string_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 WebResponse json_response(const Json& fields) {
@@ -50,6 +95,10 @@ class MapSite : public WebSite {
     if (request.path == "/") return page_response();
     if (request.path == "/scene") return json_response(scene_fields());
     if (request.path == "/map/offline") return bytes_response(points_);
+    if (request.path == "/map/greys") return bytes_response(grey_bytes(map_.stored.map));
+    if (const Keyframe* const keyframe = find_pictured(map_.stored.map, request.path)) {
+      return bytes_response(string_of(keyframe->picture.jpeg()), "image/jpeg");
+    }
     if (request.path == "/plan.png" && map_.plan) return bytes_response(plan_, "image/png");
     return not_found(request);
   }
@@ -64,6 +113,7 @@ class MapSite : public WebSite {
             {"up_in_map", fields_or_null(driving_plane_, up_of)},
             {"plan", fields_or_null(map_.plan, plan_fields)},
             {"registration", fields_or_null(map_.stored.plan, registration_fields)},
+            {"pictures", picture_fields(map_.stored)},
             {"output", fields_or_null(map_.output, text_of)}};
   }
 

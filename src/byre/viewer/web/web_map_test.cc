@@ -76,6 +76,23 @@ TEST_F(MapViewerTest, ServesTheMapAndThePlan) {
   EXPECT_EQ(client.get("/nothing").status, 404);
 }
 
+TEST_F(MapViewerTest, ServesPicturesOfKeyframesAndGreyValuesOfPoints) {
+  const std::vector<std::byte> jpeg(5, std::byte{7});
+  viewed_.stored.map.set_picture({Origin::offline, 2}, StoredPicture(jpeg));
+  const MapViewer viewer(viewed_, any_port_);
+  const WebClient client = client_of(viewer);
+  const Json pictures = client.get("/scene").json().at("pictures");
+  ASSERT_THAT(pictures, SizeIs(1));
+  EXPECT_EQ(pictures[0].at("keyframe"), 2);
+  EXPECT_EQ(pictures[0].at("recording"), "barn_morning");
+  EXPECT_EQ(client.get("/pictures/2").content_type, "image/jpeg");
+  EXPECT_EQ(client.get("/pictures/2").body, std::string(5, 7));
+  for (const char* path : {"/pictures/", "/pictures/1", "/pictures/-2", "/pictures/2x", "/pictures/99999999999"}) {
+    EXPECT_EQ(client.get(path).status, 404) << path;
+  }
+  EXPECT_EQ(client.get("/map/greys").body, std::string(6, 0)) << "patches of the scene are black";
+}
+
 TEST_F(MapViewerTest, RegistersTheMapOnThePlanByPicks) {
   const MapViewer viewer(viewed_, any_port_);
   const Json fit = client_of(viewer).post("/registration", picks(6)).json();
