@@ -388,7 +388,7 @@ TEST_F(ByreNodeAtTheDock, ProposesAnUpdatedMapByTheCommand) {
       << node.stderr_output();
   EXPECT_EQ(node.stop(), 0) << node.stderr_output();
   EXPECT_EQ(map_id(map_), before);
-  EXPECT_GT(Map::load(folder_ / "room.proposed.byre").keyframes(), Map::load(map_).keyframes());
+  EXPECT_NE(map_id(folder_ / "room.proposed.byre"), before);
   EXPECT_EQ(sessions(), 1) << "of one mission";
 }
 

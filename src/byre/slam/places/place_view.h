@@ -33,10 +33,10 @@ struct PlaceView {
   // True: the expected points were seen by keyframes near the pose, so only covering, moving or another light can hide
   // them. False: all points in the frustum are expected, though walls may hide them.
   bool is_near_keyframe = false;
-  ScratchVector<CellInView> cells;  // ascending
-  ScratchVector<PointId> expected;  // points of the cells
-  ScratchVector<PointId> seen;      // seen points, ascending
-  std::vector<TagInView> tags{};    // detected tags; without those that neither agree nor contradict
+  ScratchVector<CellInView> cells;    // ascending
+  ScratchVector<PointId> expected{};  // points of the cells
+  ScratchVector<PointId> seen{};      // seen points, ascending
+  std::vector<TagInView> tags{};      // detected tags; without those that neither agree nor contradict
 };
 
 // Keyframes near a pose with a similar viewing direction, ascending, and the points that they saw, ascending.
