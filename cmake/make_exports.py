@@ -12,7 +12,8 @@ import sys
 COMMENT = re.compile(r"//[^\n]*")
 CLASS = re.compile(r"^(?:class|struct) (\w+)[^;{]*\{\n(.*?)^\};", re.MULTILINE | re.DOTALL)
 MEMBER = re.compile(r"^  (?! )(?:[A-Za-z][^(;{}\n]*[ >&*])?(~?\w+|operator\S+?)\(", re.MULTILINE)
-FUNCTION = re.compile(r"^(?!inline\b|template\b|constexpr\b)[A-Za-z][\w:<>, ]*?[ >&*](\w+)\(([^;{]*)\);", re.MULTILINE)
+FUNCTION = re.compile(r"^(?!inline\b|template\b|constexpr\b)[A-Za-z][\w:<>, ]*?[ >&*](\w+)\(((?:[^;{]|\{\})*)\);",
+                      re.MULTILINE)
 TYPE = re.compile(r"^(?:class|struct|enum class) (\w+)", re.MULTILINE)
 
 
