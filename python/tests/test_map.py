@@ -146,6 +146,29 @@ def test_an_edited_map_can_be_saved_and_continued(m, room, frames, tmp_path):
     assert np.abs(reports[-1].map_from_body - turn @ original)[:3, 3].max() < 0.03
 
 
+def test_a_map_file_is_updated_by_the_session_of_a_mission(room, frames, tmp_path):
+    calibration = byre.Recording(room).calibration
+    options = byre.SlamOptions(workers=byre.Workers.repeatable)
+    part, session, child = (tmp_path / name for name in ("part.byre", "evening.session", "child.byre"))
+    mapping = byre.Slam.mapping(calibration, options)
+    for images in frames[: len(frames) // 2]:
+        mapping.process(images)
+    mapping.finish()
+    mapping.save(part)
+    mission = byre.Slam.on_map(calibration, part, options)
+    for images in frames:
+        mission.process(images)
+    mission.save_session(session)
+    result = byre.update_map_file(part, [session], child)
+    assert result.refusal is None, result
+    assert len(byre.Map.load(child).keyframes) == len(byre.Map.load(part).keyframes) + result.keyframes_added
+    child.unlink()
+    assert "no session" in byre.update_map_file(part, [], child).refusal
+    assert not child.exists()
+    with pytest.raises(byre.InputError, match="stays as it is"):
+        byre.update_map_file(part, [session], part)
+
+
 def test_images_are_localised_by_any_thread(m, room, truth, frames):
     found = [None] * 4
     calibration = byre.Recording(room).calibration
