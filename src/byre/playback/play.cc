@@ -89,14 +89,25 @@ MotionEstimates motion_estimates(const OdometryCalibrator& prior, const Session&
 // Final poses of all located frames; those of a finished map include frames located in it afterwards.
 Trajectory located_frames(SlamImpl& slam, FrameSource& frames, const PlayHooks& hooks, RunResult& run) {
   Trajectory seen = slam.session().final_trajectory();
-  if (!run.finishing || seen.empty() || seen.size() == run.frames.size()) return seen;
+  constexpr double kOtherCamera = 3.0;  // pixels by which the calibration changed since frames were tracked
+  if (!run.finishing || seen.empty()) return seen;
+  const auto refined = slam.calibration();
+  const bool is_other_camera = refined && !refined->was_refused() && refined->shift > kOtherCamera;
+  if (seen.size() == run.frames.size() && !is_other_camera) return seen;
   FramesAgain again;
   for (const PlayedFrame& frame : run.frames) again.times.push_back(frame.time);
   again.read = [&](int number) {
     return run.frames[static_cast<std::size_t>(number)].report ? frames.read_again(number) : std::nullopt;
   };
   again.should_stop = hooks.should_stop;
-  if (hooks.before_finishing_step) hooks.before_finishing_step("locating frames without a pose");
+  const auto announce = [&](const char* step) {
+    if (hooks.before_finishing_step) hooks.before_finishing_step(step);
+  };
+  if (is_other_camera) {
+    announce("locating frames by the refined calibration");
+    locate_again(slam, seen, again);
+  }
+  announce("locating frames without a pose");
   Trajectory all = with_missing_poses(slam, seen, again);
   run.located_afterwards = static_cast<int>(all.size() - seen.size());
   return all;
