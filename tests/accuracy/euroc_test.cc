@@ -4,7 +4,12 @@
 
 #include "byre/io/recording/trajectory_input.h"
 
+#include <filesystem>
+#include <string>
+#include <utility>
+
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 namespace byre {
 namespace {
@@ -54,6 +59,30 @@ TEST_F(EurocMh01, FinalTrajectoryIsAccurateToMillimetres) {
 TEST_F(EurocMh01, CausalTrajectoryIsNearlyAsAccurate) {
   EXPECT_EQ(inline_run().causal.size(), 300);
   EXPECT_LE(position_error(inline_run().causal, truth_), 0.006);
+}
+
+// Creates the recording of `source` with the images of the two cameras exchanged.
+void exchange_image_folders(const std::filesystem::path& source, const std::filesystem::path& folder) {
+  for (const auto& [camera, other] : {std::pair("cam0", "cam1"), std::pair("cam1", "cam0")}) {
+    const std::filesystem::path from = source / "mav0", to = folder / "mav0" / camera;
+    std::filesystem::create_directories(to);
+    std::filesystem::copy_file(from / camera / "sensor.yaml", to / "sensor.yaml");
+    std::filesystem::copy_file(from / other / "data.csv", to / "data.csv");
+    std::filesystem::create_directory_symlink(std::filesystem::absolute(from / other / "data"), to / "data");
+  }
+}
+
+TEST_F(EurocMh01, HasTheSamePosesWithExchangedImageFolders) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("byre_exchanged." + std::to_string(getpid()));
+  exchange_image_folders(*find_recording(kRecordingName), folder);
+  const FrameRange start{.last = 60};
+  const MappedRecording exchanged = map_recording(folder, start, make_inline_executor());
+  const MappedRecording right = map_recording(*find_recording(kRecordingName), start, make_inline_executor());
+  std::filesystem::remove_all(folder);
+  ASSERT_EQ(right.causal.size(), 60U);
+  EXPECT_EQ(written(exchanged.causal), written(right.causal));
+  EXPECT_EQ(written(exchanged.final), written(right.final));
 }
 
 // Determinism on real images. Session.IsDeterministic* tests it on simulated features, MapProgram on rendered images.

@@ -6,6 +6,7 @@
 #include "byre/io/bag/bag.h"
 #include "byre/io/image/image_file.h"
 #include "byre/io/recording/bag_recording.h"
+#include "byre/io/recording/fitting_pair.h"
 #include "byre/io/recording/frame_selection.h"
 #include "byre/io/recording/motion_files.h"
 #include "byre/io/recording/recording_index.h"
@@ -316,7 +317,7 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
   }
   if (format == RecordingFormat::bag) {
     require_untimed(format, path, options);
-    return open_bag_recording(path, range, options);
+    return with_fitting_pair(open_bag_recording(path, range, options), path.string());
   }
   const RecordingIndex whole = index_recording(path, options);
   const ExtraImages extra = extra_images_of(whole);
@@ -327,7 +328,8 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
   FileMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);
   chosen.warnings.insert(chosen.warnings.end(), motion.warnings.begin(), motion.warnings.end());
   const int bits = whole.frames.empty() ? kWordBits : bits_in_use(whole.frames);
-  return std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples), bits);
+  return with_fitting_pair(std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples), bits),
+                           path.string());
 }
 
 CameraChoice camera_of(const Recording& recording, const OpenOptions& options) {
