@@ -135,9 +135,13 @@ class ReadingEvidence {
   double matched_ = 0.0;
 };
 
+// Whether a frame fits a reading well. Stricter than for a pair as recorded: a camera turned by degrees since
+// calibration may fit a wrong reading, but with fewer matches off their rows.
 bool is_evidence(const FrameFit& fit) {
-  constexpr int kLeast = 40;  // matches
-  return fit.near >= kMinMatchedShare && fit.near * fit.features >= kLeast && fit.row_error <= kMaxRowOffset;
+  constexpr int kLeastMatches = 40;
+  constexpr double kLeastShare = 0.2;
+  constexpr double kLargestRowError = 0.5;  // pixels
+  return fit.near >= kLeastShare && fit.near * fit.features >= kLeastMatches && fit.row_error <= kLargestRowError;
 }
 
 // Frames spread over the first seconds, or the first frames of a slow recording.
@@ -162,7 +166,7 @@ struct Verdict {
 std::optional<Verdict> choose_reading(Recording& recording) {
   constexpr int kLeastFeatures = 100;  // frames with fewer are no evidence
   constexpr int kLeastFrames = 3;
-  constexpr double kLeastRatio = 4.0;  // matches of the other reading to those of the pair as recorded
+  constexpr double kLeastRatio = 8.0;  // matches of the other reading to those of the pair as recorded
   const std::vector<PairReading> readings = readings_of(recording.calibration());
   if (readings.empty()) return std::nullopt;
   std::vector<ReadingEvidence> evidence;
