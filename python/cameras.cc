@@ -115,10 +115,12 @@ void bind_calibration(py::module_& module) {
                     "Rolling-shutter readout time from the first row to the last, seconds; negative if the last row is "
                     "read first; zero for a global shutter.")
       .def("__eq__", [](const Calibration& calibration, const Calibration& other) { return calibration == other; });
-  module.def("read_calibration", &read_calibration, py::arg("path"), py::arg("right") = py::none(),
-             "Reads the calibration of one camera or a stereo pair in any format of the reference page "
-             "\"calibration_files\". right: file of the right camera, if each camera has its own. "
-             "Raises InputError with the field for an unsupported model and for a missing or invalid value.");
+  module.def(
+      "read_calibration", &read_calibration, py::arg("path"), py::arg("right") = py::none(),
+      "Reads the calibration of one camera or a stereo pair in any format of the reference page "
+      "\"calibration_files\". right: file of the right camera, if each camera has its own. \"FILE#NAME\" reads one "
+      "of several cameras. "
+      "Raises InputError with the field for an unsupported model and for a missing or invalid value.");
 }
 
 // A view of the pixels; keeps the frame alive.

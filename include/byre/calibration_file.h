@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/calibration.h"
+#include "byre/input_error.h"
 
 #include <filesystem>
 #include <optional>
@@ -17,6 +18,25 @@ struct CalibrationReading {
   std::vector<std::string> notes;  // assumptions, and parts of the files that are not used
 };
 
+// Several cameras in one file without their relative poses. None is chosen: "FILE#NAME" reads one of them.
+class UnplacedCameras : public InputError {
+ public:
+  UnplacedCameras(const InputError& fault, std::filesystem::path file, std::vector<std::string> names);
+
+  const std::vector<std::string>& names() const { return names_; }
+  std::filesystem::path camera(const std::string& name) const;  // FILE#NAME
+  // FILE#NAME of the left or right camera: the only one with this word in its name, else the first or second of two.
+  // Throws InputError for any other names.
+  std::filesystem::path side(bool is_right) const;
+
+ private:
+  std::filesystem::path file_;
+  std::vector<std::string> names_;
+};
+
+// FILE of the path "FILE#NAME", which names a camera in an existing file; any other path unchanged.
+std::filesystem::path file_of_camera(const std::filesystem::path& path);
+
 // Reads the calibration of one camera or a stereo pair. The content of the file determines the format:
 //   Kalibr camchain, OpenVINS    cam0 and optionally cam1
 //   EuRoC sensor.yaml            intrinsics, T_BS
@@ -31,9 +51,10 @@ struct CalibrationReading {
 // Fields of one camera or pair are also found inside other fields.
 // right: file of the right camera if each camera has its own; its pose comes from the files' P and R (ROS), T_BS or
 // body_T_cam. size: width and height of the images, for files with several sizes (ZED). A folder stands for left.yaml
-// and right.yaml, or intrinsics.yml and extrinsics.yml in it. Optional per camera, read from the first: readout_time or
-// Kalibr's line_delay, seconds for all rows or one row. Throws InputError with the field for an unsupported model and
-// for a missing or invalid value.
+// and right.yaml, or intrinsics.yml and extrinsics.yml in it. The path "FILE#NAME" reads one of several cameras: NAME
+// is its field, "left" or "right" of a pair, or the number in cameras.txt. Optional per camera, read from the first:
+// readout_time or Kalibr's line_delay, seconds for all rows or one row. Throws UnplacedCameras for several cameras
+// without relative poses, and InputError with the field for an unsupported model and for a missing or invalid value.
 CalibrationReading read_calibration_file(const std::filesystem::path& path,
                                          const std::optional<std::filesystem::path>& right = std::nullopt,
                                          std::optional<std::pair<int, int>> size = std::nullopt);

@@ -17,6 +17,7 @@
 #include <ostream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -40,13 +41,15 @@ struct CalibrationOptions {
 constexpr const char* kFooter = R"(Examples:
   byre calibration show calibration.yaml
   byre calibration show left.yaml right.yaml --picture grid.png
+  byre calibration show cameras.json#cam3
   byre calibration convert kalibr_imucam_chain.yaml -o calibration.yaml
   byre calibration convert intrinsics.yml extrinsics.yml --size 640x480 -o calibration.yaml
 
 The content determines the format: Kalibr, OpenVINS, EuRoC, ROS (.yaml, .ini, ost.txt), OpenCV (YAML, XML, one camera
 or a pair), ORB-SLAM2 and 3, stella_vslam, VINS-Fusion, okvis2, basalt, maplab, DepthAI, ZED (.conf), RealSense, KITTI,
 DSO, COLMAP (cameras.txt), OpenSfM, OpenMVG, Metashape, MATLAB, Middlebury, and any file with fx, fy, cx, cy. Two files
-are those of the left and the right camera, or intrinsics and extrinsics. A folder stands for both. "convert" writes a
+are those of the left and the right camera, or intrinsics and extrinsics. A folder stands for both. FILE#NAME is one of several
+cameras. "convert" writes a
 Kalibr camchain, which loses nothing: all lens models are kept. "--picture" draws the pixel grid of the undistorted
 image in the image, and the reverse.)";
 
@@ -191,7 +194,42 @@ Report calibration_report(const CalibrationOptions& options, const CalibrationRe
   return report;
 }
 
-ExitCode run_show(const CalibrationOptions& options, std::ostream& result) {
+// All cameras of a file without relative poses, each of which is usable alone.
+Report unplaced_report(const CalibrationOptions& options, const UnplacedCameras& unplaced) {
+  Report report{{{"program", "byre calibration"},
+                 {"version", BYRE_VERSION},
+                 {"file", options.input.string()},
+                 {"cameras", ordered_json::object()},
+                 {"notes", ordered_json::array()}}};
+  report.label_width = 13;
+  std::vector<std::string> notes = {fmt::format("no relative poses: usable with one camera, as {}",
+                                                unplaced.camera(unplaced.names().front()).string()),
+                                    fmt::format("{}: {}", unplaced.place(), unplaced.reason())};
+  for (const std::string& name : unplaced.names()) {
+    CalibrationOptions one = options;
+    one.input = unplaced.camera(name);
+    const CalibrationReading reading = read(one);
+    if (!report.figures.contains("format")) {
+      report.figures["format"] = reading.format;
+      report.row("format", "{format}");
+    }
+    const ordered_json camera = report.figures["cameras"][name] = camera_json(reading.calibration.left);
+    report.row("camera", "{text}", {{"text", name + ": " + camera_text(camera)}});
+    report.row("distortion", "{text}", {{"text", distortion_text(reading.calibration.left)}});
+    for (const std::string& note : reading.notes) notes.push_back(name + ": " + note);
+  }
+  report.figures["notes"] = notes;
+  for (const std::string& note : notes) report.row("note", "{text}", {{"text", note}});
+  return report;
+}
+
+ExitCode show_unplaced(const CalibrationOptions& options, const UnplacedCameras& unplaced, std::ostream& result) {
+  const Report report = unplaced_report(options, unplaced);
+  result << (options.json ? to_json(report) : report.text);
+  return ExitCode::done;
+}
+
+ExitCode run_show(const CalibrationOptions& options, std::ostream& result) try {
   const CalibrationReading reading = read(options);
   Report report = calibration_report(options, reading);
   if (options.picture) {
@@ -204,6 +242,9 @@ ExitCode run_show(const CalibrationOptions& options, std::ostream& result) {
   }
   result << (options.json ? to_json(report) : report.text);
   return ExitCode::done;
+} catch (const UnplacedCameras& unplaced) {
+  if (options.picture) throw;
+  return show_unplaced(options, unplaced, result);
 }
 
 ExitCode run_convert(const CalibrationOptions& options, std::ostream& result) {

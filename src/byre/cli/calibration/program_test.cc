@@ -79,6 +79,26 @@ TEST_F(CalibrationProgram, TakesTheImageSizeOfFilesWithoutIt) {
   EXPECT_EQ(run("calibration show k.yaml --size large").exit_code, 2);
 }
 
+TEST_F(CalibrationProgram, ShowsAllCamerasWithoutRelativePoses) {
+  const std::string rest = ", D: [0, 0, 0, 0], width: 752, height: 480}\n";
+  const std::string text = "a: {K: [458, 0, 367, 0, 457, 248, 0, 0, 1]" + rest +
+                           "b: {K: [500, 0, 367, 0, 500, 248, 0, 0, 1]" + rest +
+                           "c: {K: [600, 0, 367, 0, 600, 248, 0, 0, 1]" + rest;
+  write("cameras.yaml", text);
+  const Outcome outcome = run("calibration show cameras.yaml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(
+      outcome.output,
+      AllOf(HasSubstr("camera        a: pinhole, 752x480, fx 458.000"), HasSubstr("c: pinhole, 752x480, fx 600"),
+            HasSubstr("note          no relative poses: usable with one camera, as cameras.yaml#a\n")));
+  EXPECT_EQ(json::parse(run("calibration show cameras.yaml --json").output).at("cameras").at("b").at("fx"), 500.0);
+  EXPECT_THAT(run("calibration show cameras.yaml#b").output, HasSubstr("left          pinhole, 752x480, fx 500.000"));
+  EXPECT_EQ(run("calibration convert cameras.yaml -o one.yaml").exit_code, 3) << "no camera is chosen";
+  EXPECT_EQ(run("calibration convert cameras.yaml#b -o one.yaml").exit_code, 0);
+  EXPECT_EQ(run("calibration convert cameras.yaml#b -o cameras.yaml").exit_code, 2) << "the input";
+  EXPECT_EQ(read("cameras.yaml"), text);
+}
+
 TEST_F(CalibrationProgram, ReportsFilesOfOtherKinds) {
   write("text.yaml", "a: 1\n");
   const Outcome outcome = run("calibration show text.yaml");

@@ -1,6 +1,7 @@
 #include "byre/cli/shared/file_arguments.h"
 
 #include "byre/base/regular_file.h"
+#include "byre/calibration_file.h"
 
 #include <algorithm>
 #include <array>
@@ -94,7 +95,7 @@ NamedFiles arguments_of(CLI::App& command) {
       const auto input = input_of(*option);
       const auto output = output_of(*option);
       for (const std::string& path : option->results()) {
-        if (input) arguments.inputs.push_back({*input, option->get_name(), path});
+        if (input) arguments.inputs.push_back({*input, option->get_name(), file_of_camera(path)});
         if (output) arguments.outputs.push_back({kind_of(*output, path), option->get_name(), path});
       }
     }

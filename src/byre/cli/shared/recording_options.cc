@@ -1,6 +1,7 @@
 #include "byre/cli/shared/recording_options.h"
 
 #include "byre/base/text_file.h"
+#include "byre/calibration_file.h"
 #include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
@@ -31,7 +32,7 @@ std::vector<std::string> with_right_calibration(std::vector<std::string> argumen
   constexpr std::array kExtensions = {".yaml", ".yml", ".xml", ".json", ".ini"};
   for (std::size_t i = 0; i + 2 < arguments.size(); ++i) {
     if (arguments[i] != "--calibration" || arguments[i + 2].starts_with("-")) continue;
-    const std::string& second = arguments[i + 2];
+    const std::string second = file_of_camera(arguments[i + 2]).string();
     const bool is_calibration =
         std::ranges::any_of(kExtensions, [&](const char* extension) { return second.ends_with(extension); });
     if (is_calibration) arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(i) + 2, kRightCalibration);
@@ -56,7 +57,7 @@ void declare_open_options(CLI::App& command, OpenOptions& options) {
       ->type_name("stereo|left|right|rgbd");
   add_input(command, Input::file, "--calibration", options.calibration,
             "Calibration, replaces that of the recording, in any format that \"byre calibration show\" reads; "
-            "two files, LEFT and RIGHT, if each camera has its own")
+            "two files, LEFT and RIGHT, if each camera has its own; FILE#NAME is one of several cameras")
       ->type_name("FILE");
   add_input(command, Input::file, kRightCalibration, options.right_calibration,
             "Calibration of the right camera, if each camera has its own")

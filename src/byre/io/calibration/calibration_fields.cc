@@ -5,12 +5,15 @@
 #include "byre/input_error.h"
 #include "byre/io/calibration/calibration_text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <fstream>
 #include <optional>
 #include <string_view>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -29,10 +32,60 @@ std::string text_of_file(const std::filesystem::path& path) {
   return text;
 }
 
+// Separates the numbers and rows of arrays that numpy printed.
+std::string with_commas(const std::string& text) {
+  const auto is_number = [](char c, std::string_view signs) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0 || signs.find(c) != std::string_view::npos;
+  };
+  std::string result;
+  int depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    result += text[i];
+    depth += text[i] == '[' ? 1 : text[i] == ']' ? -1 : 0;
+    const std::size_t next = text.find_first_not_of(" \t\r\n", i + 1);
+    const bool is_gap = depth > 0 && next != std::string::npos && next > i + 1;
+    if (is_gap && is_number(text[i], ".]") && is_number(text[next], "+-.[")) result += ',';
+  }
+  return result;
+}
+
+// Documents with different names become one mapping, others a list.
+YAML::Node joined(const std::vector<YAML::Node>& documents, std::string& note) {
+  YAML::Node all(YAML::NodeType::Map), list;
+  bool is_repeated = false;
+  for (const YAML::Node& document : documents) {
+    list.push_back(document);
+    for (const auto& field : document) {
+      const YAML::Node& found = all;
+      is_repeated = is_repeated || found[field.first.Scalar()];
+      if (!is_repeated) all[field.first.Scalar()] = field.second;  // an assignment would change the first document
+    }
+  }
+  note = fmt::format("{} YAML documents of the file are read together", documents.size());
+  if (!is_repeated) return all;
+  YAML::Node repeated(YAML::NodeType::Map);
+  repeated[kDocuments] = list;
+  return repeated;
+}
+
+YAML::Node load_yaml(const std::string& text, std::string& note) {
+  try {
+    std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    const YAML::Node first = documents.empty() ? YAML::Node() : documents.front();
+    std::erase_if(documents, [](const YAML::Node& each) { return !each.IsMap(); });
+    return documents.size() > 1 ? joined(documents, note) : documents.empty() ? first : documents.front();
+  } catch (const YAML::Exception&) {
+    const std::string separated = with_commas(text);
+    const YAML::Node node = YAML::Load(separated);
+    if (separated == text) note = "a YAML document after the first one is not valid and is not used";
+    return node;
+  }
+}
+
 // OpenCV writes "%YAML:1.0" in the first line, which is an invalid directive; a comment keeps the line numbers. Its
 // parser needs no space after the colon of a name.
-YAML::Node parse_yaml(std::string text) {
-  if (!text.starts_with("%YAML:")) return YAML::Load(text);
+YAML::Node parse_yaml(std::string text, std::string& note) {
+  if (!text.starts_with("%YAML:")) return load_yaml(text, note);
   text.front() = '#';
   const auto is_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; };
   for (std::size_t line = 0; line < text.size(); line = text.find('\n', line + 1)) {
@@ -40,10 +93,11 @@ YAML::Node parse_yaml(std::string text) {
     while (end < text.size() && is_name(text[end])) ++end;
     if (end < text.size() - 1 && text[end] == ':' && text[end + 1] > ' ') text.insert(end + 1, 1, ' ');
   }
-  return YAML::Load(text);
+  return load_yaml(text, note);
 }
 
-YAML::Node parse_any(const std::filesystem::path& path) {
+// note: see CalibrationFields::note.
+YAML::Node parse_any(const std::filesystem::path& path, std::string& note) {
   std::string text = text_of_file(path);
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin != std::string::npos && text[begin] == '<') return parse_xml(text, path.string());
@@ -55,7 +109,7 @@ YAML::Node parse_any(const std::filesystem::path& path) {
   if (!is_yaml) {
     if (auto fields = parse_assignments(text)) return *std::move(fields);
   }
-  YAML::Node node = parse_yaml(std::move(text));
+  YAML::Node node = parse_yaml(std::move(text), note);
   if (!node.IsSequence()) return node;
   YAML::Node fields(YAML::NodeType::Map);  // a list without a name
   fields[node.size() > 0 && node[0].IsMap() ? "entries" : "K"] = node;
@@ -78,7 +132,9 @@ void append_numbers(const YAML::Node& list, const std::string& place, std::vecto
 
 CalibrationFields CalibrationFields::load(const std::filesystem::path& path) {
   try {
-    CalibrationFields fields(path.string() + ": ", parse_any(path));
+    std::string note;
+    CalibrationFields fields(path.string() + ": ", parse_any(path, note));
+    fields.note_ = note;
     if (!fields.node_.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
     return fields;
   } catch (const YAML::Exception& error) {
@@ -137,6 +193,23 @@ std::vector<std::pair<std::string, CalibrationFields>> CalibrationFields::inner(
   return result;
 }
 
+CalibrationFields CalibrationFields::grouped_by(const std::vector<std::string>& affixes) const {
+  YAML::Node node(YAML::NodeType::Map);
+  for (const auto& field : node_) {
+    const std::string name = field.first.IsScalar() ? field.first.Scalar() : "";
+    bool is_moved = false;
+    for (const std::string& affix : affixes) {
+      const bool is_first = name.starts_with(affix + "_"), is_last = name.ends_with("_" + affix);
+      const std::size_t rest = name.size() - std::min(name.size(), affix.size() + 1);
+      if (rest == 0 || (!is_first && !is_last)) continue;
+      node[affix][is_first ? name.substr(affix.size() + 1) : name.substr(0, rest)] = field.second;
+      is_moved = true;
+    }
+    if (!is_moved) node[field.first] = field.second;
+  }
+  return {place_, node};
+}
+
 CalibrationFields CalibrationFields::completed(const CalibrationFields& outer,
                                                bool (*is_wanted)(std::string_view name)) const {
   YAML::Node node(YAML::NodeType::Map);
@@ -167,7 +240,10 @@ std::vector<double> CalibrationFields::numbers(const std::string& field) const {
   if (!list) throw InputError(place(field), "has no data");
   if (list.IsScalar()) {
     std::vector<double> numbers;
-    for (const std::string_view part : split_fields(list.Scalar())) {
+    std::string text = list.Scalar();
+    const auto is_separator = [](char c) { return c == '[' || c == ']' || c == ','; };
+    if (text.starts_with('[')) std::ranges::replace_if(text, is_separator, ' ');
+    for (const std::string_view part : split_fields(text)) {
       const std::optional<double> number = parse_number(part);
       if (!number) throw InputError(place(field), "is not a list of numbers");
       numbers.push_back(*number);

@@ -16,6 +16,9 @@ namespace byre {
 // Name of a field with the width and height of the images, which are not those of the file.
 inline constexpr const char* kSizeOfImages = "size of the images";
 
+// List of the documents of a YAML file that have fields of the same names.
+inline constexpr const char* kDocuments = "documents";
+
 // Named fields of a file that describes cameras: YAML, with OpenCV's directive in the first line allowed, JSON,
 // XML, ROS' .ini, statements of MATLAB, or sections of NAME=VALUE, which are groups of fields. Errors in a field throw
 // InputError with the place "FILE: FIELD".
@@ -34,6 +37,12 @@ class CalibrationFields {
   std::vector<std::pair<std::string, CalibrationFields>> inner() const;  // groups of fields, and those of lists
   // These fields, and the missing ones that the group around them has, of wanted names.
   CalibrationFields completed(const CalibrationFields& outer, bool (*is_wanted)(std::string_view name)) const;
+
+  // These fields, with those named AFFIX_NAME or NAME_AFFIX as fields NAME of a group AFFIX.
+  CalibrationFields grouped_by(const std::vector<std::string>& affixes) const;
+
+  // How several documents of a YAML file were read; empty for one.
+  const std::string& note() const { return note_; }
 
   void set_size_of_images(int width, int height);  // as the field kSizeOfImages
 
@@ -61,6 +70,7 @@ class CalibrationFields {
 
   std::string place_;  // prefix of the place of each field, with the separator
   YAML::Node node_;
+  std::string note_{};
 };
 
 // A width or height in pixels. Throws InputError with this place if it is not a valid image size.

@@ -1,14 +1,17 @@
 #include "byre/calibration_file.h"
 
-#include "byre/input_error.h"
 #include "byre/io/calibration/calibration_formats.h"
 #include "byre/io/calibration/camera_fields.h"
+#include "byre/io/calibration/format_readers.h"
 
 #include <array>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 
 namespace byre {
@@ -16,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLeaveRightOut = "give the pose of the right camera, or a file with the left camera alone";
+constexpr const char* kLeaveRightOut =
+    "give the pose of the right camera: R and T in a second file, or a Kalibr camchain";
 
 Pose pose_of_right(const CameraList& list) {
   const PlacedCamera& left = list.cameras[0];
@@ -30,12 +34,27 @@ Pose pose_of_right(const CameraList& list) {
   }
   if (left.rectified && right.rectified) {
     throw InputError(right.pose_place, "has no baseline, or a rotation matrix of the pair is not a rotation",
-                     "calibrate both cameras as a stereo pair, or give a file with the left camera alone");
+                     "calibrate both cameras as a stereo pair");
   }
   throw InputError(right.pose_place, "is missing", kLeaveRightOut);
 }
 
-CalibrationReading combined(CameraList list) {
+std::vector<std::string> names_of(const CameraList& list) {
+  return list.names.empty() ? std::vector<std::string>{"left", "right"} : list.names;
+}
+
+bool has_place_of_pose(const CameraList& list) {
+  const PlacedCamera& right = list.cameras[1];
+  return !right.pose_place.empty() || right.from_previous || right.rectified || right.body_from_camera;
+}
+
+CalibrationReading combined(CameraList list, const fs::path& path) {
+  if (list.cameras.size() > 2 || (list.cameras.size() == 2 && !has_place_of_pose(list))) {
+    const std::vector<std::string> names = names_of(list);
+    throw InputError(path.string(),
+                     fmt::format("has {} cameras: {}, without relative poses", names.size(), fmt::join(names, ", ")),
+                     list.cameras.size() > 2 ? "give a file of one camera or of a stereo pair" : kLeaveRightOut);
+  }
   const PlacedCamera& left = list.cameras.front();
   CalibrationReading reading{{.left = left.camera,
                               .right = std::nullopt,
@@ -50,6 +69,16 @@ CalibrationReading combined(CameraList list) {
     reading.notes.push_back("a camera of a stereo pair; give the files of both cameras for the pair");
   }
   return reading;
+}
+
+CalibrationReading read_one(const fs::path& path, std::optional<std::pair<int, int>> size = std::nullopt) {
+  CameraList list = read_cameras(path, size);
+  const std::vector<std::string> names = names_of(list);
+  try {
+    return combined(std::move(list), path);
+  } catch (const InputError& fault) {
+    throw UnplacedCameras(fault, path, names);
+  }
 }
 
 // Names of files of a pair in a folder.
@@ -70,7 +99,7 @@ CalibrationReading read_pair(const fs::path& left, const fs::path& right) {
     CameraList list = read_cameras(left);
     if (list.cameras.size() == 2) {
       list.cameras[1].from_previous = extrinsics;
-      return combined(std::move(list));
+      return combined(std::move(list), left);
     }
   }
   CameraList list = read_cameras(left);
@@ -81,7 +110,7 @@ CalibrationReading read_pair(const fs::path& left, const fs::path& right) {
   }
   list.cameras.push_back(second.cameras.front());
   list.notes.insert(list.notes.end(), second.notes.begin(), second.notes.end());
-  return combined(std::move(list));
+  return combined(std::move(list), left);
 }
 
 void write_list(YAML::Emitter& yaml, const char* name, const std::vector<double>& values) {
@@ -130,12 +159,35 @@ void write_depth_camera(YAML::Emitter& yaml, const DepthCamera& depth) {
 
 }  // namespace
 
+UnplacedCameras::UnplacedCameras(const InputError& fault, fs::path file, std::vector<std::string> names)
+    : InputError(fault.place(), fault.reason(),
+                 fmt::format("{}; one camera alone: {}#{}", fault.remedy(), file.string(), names.front())),
+      file_(std::move(file)),
+      names_(std::move(names)) {}
+
+fs::path UnplacedCameras::camera(const std::string& name) const {
+  return file_.string() + "#" + name;
+}
+
+fs::path UnplacedCameras::side(bool is_right) const {
+  const std::string_view word = is_right ? "right" : "left";
+  std::vector<std::string> found;
+  for (const std::string& name : names_) {
+    if (small_letters(name).find(word) != std::string::npos) found.push_back(name);
+  }
+  if (found.size() == 1) return camera(found.front());
+  if (found.empty() && names_.size() == 2) return camera(names_[is_right ? 1 : 0]);
+  throw InputError(file_.string(),
+                   fmt::format("does not name one of its cameras {}: {}", word, fmt::join(names_, ", ")),
+                   "give one by its name: " + camera(names_.front()).string());
+}
+
 CalibrationReading read_calibration_file(const fs::path& path, const std::optional<fs::path>& right,
                                          std::optional<std::pair<int, int>> size) {
   if (right) return read_pair(path, *right);
-  if (!fs::is_directory(path)) return combined(read_cameras(path, size));
+  if (!fs::is_directory(path)) return read_one(path, size);
   if (const auto pair = pair_in(path)) return read_pair(pair->first, pair->second);
-  if (const auto file = find_calibration(path)) return combined(read_cameras(*file));
+  if (const auto file = find_calibration(path)) return read_one(*file);
   throw InputError(
       path.string(), "contains no camera calibration",
       "give the file, or add it as calibration.yaml, camera.yaml, sensor.yaml, or left.yaml and right.yaml");
@@ -170,7 +222,7 @@ std::string write_calibration(const Calibration& calibration) {
 DepthCamera read_depth_camera(const fs::path& path) {
   DepthCamera depth;
   if (fs::is_directory(path)) return depth;
-  const CalibrationFields fields = CalibrationFields::load(path);
+  const CalibrationFields fields = CalibrationFields::load(file_of_camera(path));
   for (const char* const field : kOrbSlamDepthScales) {
     if (fields.has(field)) depth.units_per_metre = fields.positive(field);
   }
@@ -185,7 +237,7 @@ DepthCamera read_depth_camera(const fs::path& path) {
 
 bool has_depth_camera_fields(const fs::path& path) {
   if (fs::is_directory(path)) return false;
-  const CalibrationFields fields = CalibrationFields::load(path);
+  const CalibrationFields fields = CalibrationFields::load(file_of_camera(path));
   for (const char* const field : kOrbSlamDepthScales) {
     if (fields.has(field)) return true;
   }
@@ -196,7 +248,7 @@ void require_baseline(const StereoPartner& partner, const std::string& place) {
   constexpr double kLeast = 1e-3;  // metres
   if (partner.right_from_left.translation.norm() >= kLeast) return;
   throw InputError(place, "places both cameras at the same position",
-                   "calibrate the stereo pair, or give a file with the left camera alone");
+                   "calibrate the stereo pair, or use one camera alone");
 }
 
 std::optional<fs::path> find_calibration(const fs::path& folder) {

@@ -32,10 +32,18 @@ PlacedCamera kalibr_camera(const Fields& fields) {
   return result;
 }
 
-CameraList kalibr_cameras(const Fields& fields, const fs::path&) {
+// Name of a field with those of the groups around it.
+std::string full_name(const Fields& fields, const std::string& name, const fs::path& path) {
+  return fields.place(name).substr(path.string().size() + 2);
+}
+
+CameraList kalibr_cameras(const Fields& fields, const fs::path& path) {
   CameraList list{fields.has("cam0") && fields.group("cam0").has("T_imu_cam") ? "OpenVINS" : "Kalibr camchain",
                   {kalibr_camera(fields.group("cam0"))}};
   if (fields.has("cam1")) list.cameras.push_back(kalibr_camera(fields.group("cam1")));
+  for (int i = 0; fields.has(fmt::format("cam{}", i)); ++i) {
+    list.names.push_back(full_name(fields, fmt::format("cam{}", i), path));
+  }
   if (fields.has("cam2")) list.notes.push_back("cameras after cam1 are not used");
   return list;
 }
@@ -43,6 +51,7 @@ CameraList kalibr_cameras(const Fields& fields, const fs::path&) {
 CameraList openvins_config(const Fields& fields, const fs::path& path) {
   CameraList list = read_cameras(path.parent_path() / fields.text("relative_config_imucam"));
   list.format = "OpenVINS";
+  list.names.clear();  // fields of the other file
   return list;
 }
 
@@ -116,12 +125,6 @@ constexpr std::array kFormats = {
     Format{has_vector_camera, read_matrix_camera, true},
 };
 
-std::string small_letters(std::string_view name) {
-  std::string lower(name);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
 // Whether a name has one of these words, between other signs than letters.
 bool has_word(std::string_view name, std::initializer_list<std::string_view> words) {
   const std::string lower = small_letters(name);
@@ -154,7 +157,8 @@ void keep_one_of_equals(FoundCameras& found) {
       is_list && std::ranges::all_of(found, [&](const auto& each) {
         return each.second.cameras.size() == 1 && each.second.cameras[0].camera == found[0].second.cameras[0].camera;
       });
-  if (!is_repeated || (found.size() == 2 && !first.starts_with("frames"))) return;
+  const bool is_of_one = first.starts_with("frames") || first.starts_with(kDocuments);
+  if (!is_repeated || (found.size() == 2 && !is_of_one)) return;
   found[0].second.notes.push_back(fmt::format("{} entries have the same camera", found.size()));
   found.erase(found.begin() + 1, found.end());
 }
@@ -182,24 +186,37 @@ void keep_the_colour_camera(FoundCameras& found) {
   found.erase(found.begin() + 1, found.end());
 }
 
-[[noreturn]] void refuse_many_cameras(const fs::path& path, const std::vector<std::string>& names) {
-  throw InputError(path.string(), fmt::format("has {} cameras: {}", names.size(), fmt::join(names, ", ")),
-                   "give a file of one camera or of a stereo pair");
+// All cameras, with the names of their fields.
+CameraList unplaced_cameras(const FoundCameras& found, const std::vector<std::string>& names) {
+  CameraList all{found.front().second.format, {}};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const CameraList& list = found[i].second;
+    all.cameras.insert(all.cameras.end(), list.cameras.begin(), list.cameras.end());
+    if (list.cameras.size() > 2) {
+      all.names.insert(all.names.end(), list.names.begin(), list.names.end());
+    } else {
+      all.names.push_back(names[i]);
+    }
+  }
+  return all;
 }
 
-// Cameras inside other fields: the only camera or pair, or the left and right of two. Empty if there is none.
-// own: fields without those of the groups around them.
+std::optional<CameraList> nested_cameras(const Fields& own, const Fields& fields, const fs::path& path);
+
+// Cameras of a group. own: without the fields of the groups around it.
+std::optional<CameraList> cameras_of_group(const Fields& own, const Fields& group, const fs::path& path) {
+  const auto format =
+      std::ranges::find_if(kFormats, [&](const Format& each) { return each.is_nested && each.matches(own); });
+  return format != kFormats.end() ? format->read(group, path) : nested_cameras(own, group, path);
+}
+
+// Cameras inside other fields: the only camera or pair, the left and right of two, or all that have no relative poses.
+// Empty if there is none. own: fields without those of the groups around them.
 std::optional<CameraList> nested_cameras(const Fields& own, const Fields& fields, const fs::path& path) {
   FoundCameras found;
   for (const auto& [name, inner] : own.inner()) {
     const Fields group = inner.completed(fields, is_shared_field);
-    const auto format =
-        std::ranges::find_if(kFormats, [&](const Format& each) { return each.is_nested && each.matches(inner); });
-    if (format != kFormats.end()) {
-      found.emplace_back(name, format->read(group, path));
-    } else if (auto list = nested_cameras(inner, group, path)) {
-      found.emplace_back(name, std::move(*list));
-    }
+    if (auto list = cameras_of_group(inner, group, path)) found.emplace_back(name, std::move(*list));
   }
   if (found.empty()) return std::nullopt;
   keep_one_of_equals(found);
@@ -211,26 +228,140 @@ std::optional<CameraList> nested_cameras(const Fields& own, const Fields& fields
     found.pop_back();  // one camera, in two notations
   }
   if (found.size() == 1) return std::move(found.front().second);
+  const FoundCameras all = found;
   std::vector<std::string> names;
-  for (const auto& [name, list] : found) names.push_back(name);
+  for (const auto& each : all) names.push_back(full_name(own, each.first, path));
   if (found.size() > 2 && !found.front().first.ends_with(']'))
     std::erase_if(found, [](const auto& each) { return !side_of(each.first); });
   const bool is_pair = found.size() == 2 && found[0].second.cameras.size() == 1 && found[1].second.cameras.size() == 1;
-  if (!is_pair) refuse_many_cameras(path, names);
+  if (!is_pair) return unplaced_cameras(all, names);
   if (side_of(found[0].first).value_or(0) > side_of(found[1].first).value_or(1)) std::swap(found[0], found[1]);
   CameraList list = std::move(found[0].second);
+  list.names = {full_name(own, found[0].first, path), full_name(own, found[1].first, path)};
   list.cameras.push_back(found[1].second.cameras.front());
   list.notes.insert(list.notes.end(), found[1].second.notes.begin(), found[1].second.notes.end());
   if (!list.cameras[1].from_previous) place_pair(fields, list.cameras[0], list.cameras[1]);
-  const bool is_placed = list.cameras[1].from_previous || list.cameras[1].rectified || list.cameras[1].body_from_camera;
-  if (names.size() > 2 && !is_placed) refuse_many_cameras(path, names);
+  const PlacedCamera &left = list.cameras[0], &right = list.cameras[1];
+  const bool is_placed =
+      right.from_previous || (left.rectified && right.rectified) || (left.body_from_camera && right.body_from_camera);
+  if (names.size() > 2 && !is_placed) return unplaced_cameras(all, names);
   if (list.cameras[1].pose_place.empty()) list.cameras[1].pose_place = fields.place("R, T");
   if (names.size() > 2)
     list.notes.push_back(fmt::format("of {} cameras, a left and a right one are used", names.size()));
   return list;
 }
 
+// The group of this name, also inside other groups, and the same with the fields that it shares with them.
+std::optional<std::pair<Fields, Fields>> group_named(const Fields& own, const Fields& fields, std::string_view wanted) {
+  for (const auto& [name, inner] : own.inner()) {
+    const Fields group = inner.completed(fields, is_shared_field);
+    if (name == wanted) return std::pair(inner, group);
+    if (!wanted.starts_with(name + ".")) continue;
+    if (auto found = group_named(inner, group, wanted.substr(name.size() + 1))) return found;
+  }
+  return std::nullopt;
+}
+
+// Whether a group has a rotation and translation, valid or not.
+bool has_own_pose(const Fields& fields) {
+  try {
+    return pair_pose(fields).has_value();
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
+std::optional<CameraList> camera_of_group(const Fields& fields, const std::string& name, const fs::path& path) {
+  const auto found = group_named(fields, fields, name);
+  if (!found) return std::nullopt;
+  auto list = cameras_of_group(found->first, found->second, path);
+  if (!list || list->cameras.size() != 1) return list;
+  const PlacedCamera& camera = list->cameras.front();
+  if (!camera.body_from_camera && (camera.from_previous || has_own_pose(found->first))) {
+    list->notes.push_back("the pose of " + name + " is not used: it is not a pose in a body (T_BS, T_cam_imu)");
+  }
+  return list;
+}
+
+void refuse_known_model(const Fields& fields) {
+  for (const std::string& name : fields.names()) {
+    if (!fields.has_scalar(name) || fields.text(name) != "FishPoly") continue;
+    throw InputError(fields.place(name), "\"FishPoly\" is not supported",
+                     "calibrate with Kalibr, by --models pinhole-equi, omni-radtan or ds-none");
+  }
+  for (const auto& [name, inner] : fields.inner()) refuse_known_model(inner);
+}
+
+CameraList cameras_of_file(const Fields& fields, const fs::path& path, std::optional<std::pair<int, int>> size) {
+  if (fields.has("STEREO") && fields.is_group("STEREO")) return read_zed(fields, size);
+  if (fields.has("colmap")) return read_colmap(fields, path);
+  if (fields.has("ocam")) {
+    throw InputError(path.string(), "is a calibration of OCamCalib (Scaramuzza), which is not supported",
+                     "calibrate with Kalibr, by --models omni-radtan, ds-none or pinhole-equi");
+  }
+  const auto format = std::ranges::find_if(kFormats, [&](const Format& each) { return each.matches(fields); });
+  if (format != kFormats.end()) return format->read(fields, path);
+  const Fields grouped = with_affix_groups(fields);
+  if (auto list = nested_cameras(grouped, grouped, path)) return std::move(*list);
+  refuse_known_model(fields);
+  throw InputError(
+      path.string(), "is not a supported calibration file",
+      "supported files have the field intrinsics (EuRoC sensor.yaml), camera_matrix or K (OpenCV, ROS), "
+      "M1 or K1 (OpenCV stereo), cam0 (Kalibr camchain, OpenVINS), Camera.fx or Camera1.fx (ORB-SLAM), "
+      "Camera (stella_vslam), model_type or cam0_calib (VINS), cameras (okvis, maplab), value0 (basalt), "
+      "cameraData (DepthAI), P0 (KITTI), projection_type (OpenSfM), RadialDistortion (MATLAB), fc (Bouguet), "
+      "calibration (Metashape), or fx, fy, cx, cy");
+}
+
+// Pose of the right camera in the body of the left one; empty if the file has none.
+std::optional<Pose> body_from_right(const PlacedCamera& left, const PlacedCamera& right) {
+  std::optional<Pose> pose = right.from_previous;
+  if (!pose && left.rectified && right.rectified) pose = right_from_left(*left.rectified, *right.rectified);
+  if (right.body_from_camera || !pose || !left.body_from_camera) return right.body_from_camera;
+  return *left.body_from_camera * inverse(*pose);
+}
+
+// One camera of a list. Throws InputError for an unknown name.
+CameraList camera_of_list(CameraList list, const std::string& name, const fs::path& path) {
+  std::vector<std::string> names = list.names;
+  if (names.empty() && list.cameras.size() == 2) names = {"left", "right"};
+  auto found = std::ranges::find(names, name);
+  if (list.cameras.size() == 2 && (name == "left" || name == "right"))
+    found = names.begin() + (name == "right" ? 1 : 0);
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  if (index >= std::min(list.cameras.size(), names.size())) {
+    throw InputError(path.string(), fmt::format("has no camera \"{}\"", name),
+                     names.empty() ? "it has one camera: give the file without a name"
+                                   : fmt::format("cameras: {}", fmt::join(names, ", ")));
+  }
+  if (index == 1) list.cameras[1].body_from_camera = body_from_right(list.cameras[0], list.cameras[1]);
+  PlacedCamera chosen = list.cameras[index];
+  chosen.rectified.reset();
+  if (*found != name) list.notes.push_back("the " + name + " camera is " + *found);
+  return {list.format, {chosen}, list.notes};
+}
+
+// File of "FILE#NAME", and the name of the camera.
+std::pair<fs::path, std::optional<std::string>> split_camera(const fs::path& path) {
+  const std::string text = path.string();
+  if (fs::exists(path)) return {path, std::nullopt};
+  for (std::size_t at = text.find('#'); at != std::string::npos; at = text.find('#', at + 1)) {
+    if (fs::is_regular_file(text.substr(0, at))) return {text.substr(0, at), text.substr(at + 1)};
+  }
+  return {path, std::nullopt};
+}
+
 }  // namespace
+
+fs::path file_of_camera(const fs::path& path) {
+  return split_camera(path).first;
+}
+
+std::string small_letters(std::string_view name) {
+  std::string lower(name);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
 
 Pose baseline_pose(double x, double y) {
   return {Eigen::Quaterniond::Identity(), {x, y, 0.0}};
@@ -291,28 +422,21 @@ std::optional<Pose> right_from_left(const RectifiedView& left, const RectifiedVi
 }
 
 std::optional<Pose> read_opencv_extrinsics(const fs::path& path) {
-  return pair_pose(CalibrationFields::load(path));
+  return pair_pose(CalibrationFields::load(file_of_camera(path)));
 }
 
 CameraList read_cameras(const fs::path& path, std::optional<std::pair<int, int>> size) {
-  CalibrationFields fields = CalibrationFields::load(path);
+  const auto [file, name] = split_camera(path);
+  CalibrationFields fields = CalibrationFields::load(file);
   if (size) fields.set_size_of_images(size->first, size->second);
-  if (fields.has("STEREO") && fields.is_group("STEREO")) return read_zed(fields, size);
-  if (fields.has("colmap")) return read_colmap(fields, path);
-  if (fields.has("ocam")) {
-    throw InputError(path.string(), "is a calibration of OCamCalib (Scaramuzza), which is not supported",
-                     "calibrate with Kalibr, by --models omni-radtan, ds-none or pinhole-equi");
-  }
-  const auto format = std::ranges::find_if(kFormats, [&](const Format& each) { return each.matches(fields); });
-  if (format != kFormats.end()) return format->read(fields, path);
-  if (auto list = nested_cameras(fields, fields, path)) return std::move(*list);
-  throw InputError(
-      path.string(), "is not a supported calibration file",
-      "supported files have the field intrinsics (EuRoC sensor.yaml), camera_matrix or K (OpenCV, ROS), "
-      "M1 or K1 (OpenCV stereo), cam0 (Kalibr camchain, OpenVINS), Camera.fx or Camera1.fx (ORB-SLAM), "
-      "Camera (stella_vslam), model_type or cam0_calib (VINS), cameras (okvis, maplab), value0 (basalt), "
-      "cameraData (DepthAI), P0 (KITTI), projection_type (OpenSfM), RadialDistortion (MATLAB), fc (Bouguet), "
-      "calibration (Metashape), or fx, fy, cx, cy");
+  CameraList list = [&] {
+    if (!name) return cameras_of_file(fields, file, size);
+    if (auto camera = camera_of_group(fields, *name, file)) return std::move(*camera);
+    if (auto camera = camera_of_group(with_affix_groups(fields), *name, file)) return std::move(*camera);
+    return camera_of_list(cameras_of_file(fields, file, size), *name, file);
+  }();
+  if (!fields.note().empty()) list.notes.push_back(fields.note());
+  return list;
 }
 
 }  // namespace byre

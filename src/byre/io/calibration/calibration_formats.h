@@ -37,10 +37,11 @@ struct CameraList {
   std::string format;
   std::vector<PlacedCamera> cameras;  // at least one
   std::vector<std::string> notes{};
+  std::vector<std::string> names{};  // names of the cameras; empty: left and right
 };
 
 // Cameras of a file in the first matching format, also inside other fields. size: width and height, for files with
-// several. Throws InputError if there is no camera, and for invalid fields.
+// several. The path may name one camera. Throws InputError if there is no camera, and for invalid fields.
 CameraList read_cameras(const std::filesystem::path& path, std::optional<std::pair<int, int>> size = std::nullopt);
 
 // Rotation and translation of a pair that is stored apart from its intrinsics, as OpenCV's extrinsics.yml; empty if the

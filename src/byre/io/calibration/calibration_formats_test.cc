@@ -308,6 +308,90 @@ TEST_F(CalibrationFormats, ReadsOpencvPairs) {
               AllOf(HasSubstr("intrinsics.yml: does not have the image size"), HasSubstr("--size")));
 }
 
+TEST_F(CalibrationFormats, ReadsOneOfSeveralCamerasByItsName) {
+  const std::string rest = ", D: " + kLens + ", width: 752, height: 480}\n";
+  const std::string text = "cam0: {K: [500, 0, 300, 0, 500, 200, 0, 0, 1]" + rest + "cam1: {K: " + kMatrix +
+                           ", T_BS: " + kBodyFromLeft + rest + "cam2: {K: [600, 0, 300, 0, 600, 200, 0, 0, 1]" + rest;
+  const std::string refusal = error_of([&] { read("cameras.yaml", text); });
+  EXPECT_THAT(refusal, AllOf(HasSubstr("has 3 cameras: cam0, cam1, cam2, without relative poses"),
+                             HasSubstr("one camera alone: "), HasSubstr("cameras.yaml#cam0")));
+  const Calibration second = read_calibration(folder_ / "cameras.yaml#cam1");
+  EXPECT_EQ(second.left, expected_camera(0.001));
+  EXPECT_EQ(second.body_from_left.translation.z(), 0.05);
+  EXPECT_FALSE(second.right);
+  EXPECT_EQ(read_calibration(folder_ / "cameras.yaml#cam2").left.fx, 600.0);
+  EXPECT_THAT(error_of([&] { read_calibration(folder_ / "cameras.yaml#cam3"); }),
+              AllOf(HasSubstr("has no camera \"cam3\""), HasSubstr("cam0, cam1, cam2")));
+  EXPECT_THAT(error_of([&] { read_calibration(folder_ / "absent.yaml#cam0"); }), HasSubstr("cannot be opened"));
+  EXPECT_EQ(file_of_camera(folder_ / "cameras.yaml#cam1"), folder_ / "cameras.yaml");
+  write("odd#name.yaml", ros_camera("0"));
+  EXPECT_EQ(file_of_camera(folder_ / "odd#name.yaml"), folder_ / "odd#name.yaml");
+}
+
+TEST_F(CalibrationFormats, ReadsOneCameraOfAPairWithoutPose) {
+  const std::string other = "M2: [500, 0, 300, 0, 500, 200, 0, 0, 1]\nD2: " + kLens + "\n";
+  write("pair.yml", "image_width: 752\nimage_height: 480\nM1: " + kMatrix + "\nD1: " + kLens + "\n" + other);
+  EXPECT_EQ(read_calibration(folder_ / "pair.yml#left").left, expected_camera(0.001));
+  EXPECT_EQ(read_calibration(folder_ / "pair.yml#right").left.fx, 500.0);
+  try {
+    read_calibration(folder_ / "pair.yml");
+    FAIL() << "no camera is chosen";
+  } catch (const UnplacedCameras& unplaced) {
+    EXPECT_THAT(unplaced.names(), testing::ElementsAre("left", "right"));
+    EXPECT_EQ(unplaced.side(true), folder_ / "pair.yml#right");
+    EXPECT_THAT(unplaced.what(), AllOf(HasSubstr("R, T: is missing"), HasSubstr("pair.yml#left")));
+  }
+}
+
+TEST_F(CalibrationFormats, NamesTheCamerasOfAKalibrFileWithoutPoses) {
+  const std::string text = kalibr_camera("cam0", "rostopic: /a") + kalibr_camera("cam1", "rostopic: /b");
+  EXPECT_THAT(error_of([&] { read("a.yaml", text); }),
+              AllOf(HasSubstr("cam1.T_cn_cnm1: is missing"), HasSubstr("a.yaml#cam0")));
+  EXPECT_EQ(read_calibration(folder_ / "a.yaml#cam1").left, expected_camera(0.0));
+  EXPECT_THAT(read_calibration_file(folder_ / "a.yaml#right").notes, Contains("the right camera is cam1"));
+  const std::string third = "T_cn_cnm1: " + kBodyFromRight;
+  write("b.yaml", kalibr_camera("cam0", third) + kalibr_camera("cam1", third) + kalibr_camera("cam2", third));
+  const CalibrationReading alone = read_calibration_file(folder_ / "b.yaml#cam2");
+  EXPECT_EQ(alone.calibration.left, expected_camera(0.0));
+  EXPECT_THAT(alone.notes, Contains(HasSubstr("the pose of cam2 is not used")));
+}
+
+TEST_F(CalibrationFormats, ReadsArraysThatNumpyPrinted) {
+  const std::string k = "K:\n [[458.   0. 367.]\n [  0. 457. 248.]\n [  0.   0.   1.]]\n";
+  EXPECT_EQ(read("k.txt", k + "D:\n [[-2.8e-01  0.07  0.0002\n   0.00002 0.001]]\nsize: [752, 480]\n").calibration.left,
+            expected_camera(0.001));
+  EXPECT_THAT(error_of([&] { read("k.txt", "K: [[1, 2\nD: 3\n"); }), HasSubstr("correct the YAML"));
+}
+
+TEST_F(CalibrationFormats, ReadsSeveralDocumentsOfAFile) {
+  const std::string k = "{K: '[[458, 0, 367], [0, 457, 248], [0, 0, 1]]', size: [752, 480]}\n";
+  const CalibrationReading apart = read("a.yaml", k + "---\n{D: " + kLens + "}\n");
+  EXPECT_EQ(apart.calibration.left, expected_camera(0.001)) << "the distortion is in the second document";
+  EXPECT_THAT(apart.notes, Contains("2 YAML documents of the file are read together"));
+  const std::string other = "K: [500, 0, 300, 0, 500, 200, 0, 0, 1]\nsize: [752, 480]\n";
+  EXPECT_EQ(read("a.yaml", other + "---\n" + other).calibration.left.fx, 500.0) << "the same camera twice";
+  EXPECT_THAT(error_of([&] { read("a.yaml", k + "---\n" + other); }), HasSubstr("a.yaml#documents[0]"));
+  EXPECT_EQ(read_calibration(folder_ / "a.yaml#documents[1]").left.fx, 500.0);
+  EXPECT_THAT(read("a.yaml", other + "---\n{K: [1\n").notes, Contains(HasSubstr("is not valid and is not used")));
+}
+
+TEST_F(CalibrationFormats, ReadsFieldsWithTheNameOfTheCamera) {
+  const std::string size = "width: 752\nheight: 480\n";
+  EXPECT_EQ(read("zed.yaml", size + "zed_K: " + kMatrix + "\nzed_D: " + kLens + "\n").calibration.left,
+            expected_camera(0.001));
+  write("groups.yaml", size + "top_projection_parameters: {fx: 458, fy: 457, cx: 367, cy: 248}\n" +
+                           "top_distortion_parameters: {k1: -0.28, k2: 0.07, p1: 0.0002, p2: 0.00002}\n" +
+                           "low_projection_parameters: {fx: 500, fy: 500, cx: 300, cy: 200}\n" +
+                           "low_distortion_parameters: {k1: 0.1, k2: 0, p1: 0, p2: 0}\n");
+  EXPECT_EQ(read_calibration(folder_ / "groups.yaml#top").left, expected_camera(0.0));
+  EXPECT_EQ(read_calibration(folder_ / "groups.yaml#low").left.distortion[0], 0.1);
+}
+
+TEST_F(CalibrationFormats, NamesFishPolyAsUnsupported) {
+  EXPECT_THAT(error_of([&] { read("odin.yaml", "cam_0:\n  cam_model: FishPoly\n  A11: 734\n"); }),
+              AllOf(HasSubstr("cam_0.cam_model: \"FishPoly\" is not supported"), HasSubstr("--models")));
+}
+
 TEST_F(CalibrationFormats, ReadsOpencvXml) {
   const std::string start =
       "<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>752</image_width>\n<image_height>480</image_height>\n";

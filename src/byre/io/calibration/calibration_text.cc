@@ -317,6 +317,7 @@ YAML::Node colmap_camera_of(const std::vector<std::string_view>& words) {
   const auto is_capital = [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; };
   if (words.size() < 5 || !parse_number(words[0]) || !std::ranges::all_of(words[1], is_capital)) return {};
   YAML::Node camera(YAML::NodeType::Map);
+  camera["id"] = std::string(words[0]);
   camera["model"] = std::string(words[1]);
   camera["width"] = std::string(words[2]);
   camera["height"] = std::string(words[3]);

@@ -144,14 +144,10 @@ CameraList read_zed(const Fields& fields, std::optional<std::pair<int, int>> siz
 
 // ---- COLMAP, KITTI
 
-CameraList read_colmap(const Fields& fields, const fs::path& path) {
+namespace {
+
+PlacedCamera colmap_camera(const Fields& row) {
   constexpr double kHalf = 0.5;  // COLMAP's principal points minus byre's, pixels
-  const std::vector<Fields> rows = fields.list("colmap");
-  if (rows.size() != 1) {
-    throw InputError(path.string(), fmt::format("has {} cameras instead of one", rows.size()),
-                     "give the line of the camera that took the images in a file of its own");
-  }
-  const Fields& row = rows.front();
   const std::string model = row.text("model");
   std::vector<double> numbers = row.numbers("parameters");
   if (model.starts_with("SIMPLE") || model.starts_with("RADIAL")) numbers.insert(numbers.begin(), numbers.front());
@@ -171,7 +167,18 @@ CameraList read_colmap(const Fields& fields, const fs::path& path) {
     coefficients.resize(std::max<std::size_t>(coefficients.size(), 4), 0.0);
     set_opencv_distortion(camera, coefficients, model.ends_with("FISHEYE"), row.place("parameters"));
   }
-  return {"COLMAP cameras.txt", {result}};
+  return result;
+}
+
+}  // namespace
+
+CameraList read_colmap(const Fields& fields, const fs::path&) {
+  CameraList list{"COLMAP cameras.txt", {}};
+  for (const Fields& row : fields.list("colmap")) {
+    list.cameras.push_back(colmap_camera(row));
+    list.names.push_back(row.text("id"));
+  }
+  return list;
 }
 
 CameraList read_kitti(const Fields& fields, const fs::path&) {

@@ -70,6 +70,8 @@ void require_known(const CalibrationFields& fields, Names known, bool has_others
 bool is_calibration(const fs::path& path) {
   try {
     return has_depth_camera_fields(path) || read_calibration_file(path).calibration.left.fx > 0.0;
+  } catch (const UnplacedCameras&) {
+    return true;
   } catch (const InputError&) {
     return false;
   }

@@ -47,7 +47,8 @@ std::string field_named(const Fields& fields, std::initializer_list<std::string_
   return field_named(fields, Names(names.begin(), names.size()));
 }
 
-constexpr std::array<std::string_view, 20> kDistortions = {"distortioncoefficients",
+constexpr std::array<std::string_view, 21> kDistortions = {"distortioncoefficients",
+                                                           "distortioncofficients",
                                                            "distortioncoeffs",
                                                            "distortioncoeff",
                                                            "distortioncoefs",
@@ -357,6 +358,32 @@ bool is_shared_field(std::string_view name) {
   const auto contains = [&](Names names) { return std::ranges::find(names, plain) != names.end(); };
   return contains(kDistortions) || contains(kSizes) || contains(kWidths) || contains(kHeights) || contains(kModels) ||
          contains(kFisheyeFlags) || name == kSizeOfImages || contains(kBodyPoses) || contains(kCameraPoses);
+}
+
+Fields with_affix_groups(const Fields& fields) {
+  constexpr std::array<std::string_view, 9> kCameras = {
+      "k",        "mtx",        "cameramatrix",         "intrinsicmatrix",
+      "kmatrix",  "intrinsics", "projectionparameters", "cameraintrinsics",
+      "intrinsic"};
+  const std::vector<std::string> all = fields.names();
+  std::vector<std::string> affixes;
+  for (const std::string& name : all) {
+    const bool is_group = fields.is_group(name) && has_flat_camera(fields.group(name));
+    const bool is_camera = is_group || fields.has_numbers(name, 9) || fields.has_numbers(name, 4);
+    for (std::size_t at = name.find('_'); is_camera && at != std::string::npos; at = name.find('_', at + 1)) {
+      const std::string first = name.substr(0, at), second = name.substr(at + 1);
+      for (const auto& [affix, rest] : {std::pair(first, second), std::pair(second, first)}) {
+        const bool is_of_camera = std::ranges::find(kCameras, plain_name(rest)) != kCameras.end();
+        const bool is_new = std::ranges::find(affixes, affix) == affixes.end();
+        const auto is_named = [&](const std::string& other) {
+          return other.starts_with(affix + "_") || other.ends_with("_" + affix);
+        };
+        const bool is_alone = is_group && std::ranges::count_if(all, is_named) < 2;
+        if (is_of_camera && is_new && !is_alone && !affix.empty() && !fields.has(affix)) affixes.push_back(affix);
+      }
+    }
+  }
+  return affixes.empty() ? fields : fields.grouped_by(affixes);
 }
 
 bool has_matrix_camera(const Fields& fields) {

@@ -110,7 +110,7 @@ TEST_F(OtherCalibrations, AreFoundInsideOtherFields) {
   ASSERT_TRUE(both.right);
   EXPECT_THAT(both.right->right_from_left.translation, PointNear(Eigen::Vector3d(-0.11, 0.0, 0.0), 1e-12));
   EXPECT_THAT(refusal("a:\n  x:\n" + inner + "  y:\n" + inner + "  z:\n" + inner),
-              AllOf(HasSubstr("has 3 cameras: x, y, z"), HasSubstr("one camera or of a stereo pair")));
+              AllOf(HasSubstr("has 3 cameras: a.x, a.y, a.z"), HasSubstr("one camera or of a stereo pair")));
   EXPECT_THAT(refusal("a:\n  left:\n" + inner + "  right:\n" + inner), HasSubstr("is missing (give the pose"));
 }
 
@@ -292,7 +292,7 @@ TEST_F(OtherCalibrations, AreReadWithoutNames) {
   EXPECT_EQ(camera("1 SIMPLE_RADIAL 752 480 458 367.5 248.5 -0.1\n"),
             (Camera{CameraModel::radial_tangential, 752, 480, 458.0, 458.0, 367.0, 248.0, {-0.1}}));
   EXPECT_THAT(refusal("1 PINHOLE 752 480 458 457 367 248\n2 PINHOLE 752 480 458 457 367 248\n"),
-              HasSubstr("has 2 cameras instead of one"));
+              HasSubstr("has 2 cameras: 1, 2, without relative poses"));
   EXPECT_THAT(refusal("458 457\n"), HasSubstr("is not a YAML mapping"));
 }
 

@@ -363,9 +363,9 @@ CameraList read_openmvg(const Fields& fields, const fs::path& path) {
     type = text_or(value, "polymorphic_name", type);
     list.cameras.push_back(openmvg_camera(value.group("ptr_wrapper").group("data"), type));
   }
-  if (list.cameras.size() == 1) return list;
-  throw InputError(path.string(), fmt::format("has {} cameras instead of one", entries.size()),
-                   "keep the camera that took the images in \"intrinsics\"");
+  if (list.cameras.empty()) throw InputError(path.string(), "has no cameras in \"intrinsics\"");
+  for (const Fields& entry : entries) list.names.push_back(entry.text("key"));
+  return list;
 }
 
 CameraList read_middlebury(const Fields& fields, const fs::path&) {

@@ -384,7 +384,7 @@ void require_calibrated_sizes(Bag& bag, const std::vector<BagFrame>& frames, con
     left.push_back(frame.left);
     if (frame.right) right.push_back(*frame.right);
   }
-  const auto& [cameras, left_size, right_size, depth_size] = calibration;
+  const auto& [cameras, left_size, right_size, depth_size, warnings] = calibration;
   require_calibrated_size(bag, left, cameras.left, left_size, path);
   if (cameras.right) require_calibrated_size(bag, right, cameras.right->camera, right_size, path);
 }
@@ -416,6 +416,7 @@ std::unique_ptr<Recording> open_bag_recording(const fs::path& path, const FrameR
   warnings.insert(warnings.end(), frame_warnings.begin(), frame_warnings.end());
 
   CalibrationWithSource calibration = calibration_of(*bag, path, topics, options, warnings);
+  warnings.insert(warnings.end(), calibration.warnings.begin(), calibration.warnings.end());
   complete_sizes(*bag, frames, calibration);
   if (topics.depth) {
     const TimedMessages depth = timed_messages(content, *topics.depth, {place, "image", "frame"}, clock);

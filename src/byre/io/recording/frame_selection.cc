@@ -110,6 +110,8 @@ RecordingIndex choose_camera(RecordingIndex index, const ExtraImages& extra, con
   if (extra.right && !index.calibration.cameras.right && !choice) {
     index.warnings.push_back(path.string() + ": the calibration has one camera only; right images are ignored");
   }
+  const std::vector<std::string>& warnings = index.calibration.warnings;
+  index.warnings.insert(index.warnings.end(), warnings.begin(), warnings.end());
   index.calibration = choose_calibration(index.calibration, extra, choice, path);
   if (index.calibration.cameras.right) return index;
   if (extra.right && choice == CameraChoice::right) {

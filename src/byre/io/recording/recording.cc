@@ -130,7 +130,7 @@ void require_calibrated_sizes(const RecordingIndex& index) {
     if (frame.right) right.push_back(*frame.right);
     if (frame.depth) depth.push_back(*frame.depth);
   }
-  const auto& [cameras, left_size, right_size, depth_size] = index.calibration;
+  const auto& [cameras, left_size, right_size, depth_size, warnings] = index.calibration;
   const Image first_left = first_readable(left);
   require_calibrated_size(first_left.width, first_left.height, cameras.left, left_size);
   if (cameras.depth && !depth.empty()) {
@@ -144,7 +144,7 @@ void require_calibrated_sizes(const RecordingIndex& index) {
 
 // Completes sizes that the calibration file does not have from the first readable images.
 void complete_sizes(RecordingIndex& index) {
-  auto& [cameras, left_size, right_size, depth_size] = index.calibration;
+  auto& [cameras, left_size, right_size, depth_size, warnings] = index.calibration;
   if (cameras.left.width != 0 && (!cameras.right || cameras.right->camera.width != 0)) return;
   std::vector<fs::path> left, right;
   for (const FrameFiles& frame : index.frames) {
@@ -221,7 +221,24 @@ std::string place_of_calibration(const fs::path& recording, const OpenOptions& o
 CalibrationWithSource calibration_for(const fs::path& folder, const OpenOptions& options) {
   const fs::path file = calibration_file_for(folder, options);
   const std::string right = options.right_calibration ? options.right_calibration->string() : file.string();
-  return {read_calibration_file(file, options.right_calibration).calibration, file.string(), right};
+  const bool is_right = options.camera == CameraChoice::right;
+  // Holds the camera in both places, of which choose_calibration takes one.
+  const auto camera_alone = [&](const fs::path& camera) {
+    Calibration alone = read_calibration_file(camera).calibration;
+    if (is_right && !alone.right) alone.right = StereoPartner{alone.left, Pose{}};
+    return CalibrationWithSource{alone, camera.string(), camera.string()};
+  };
+  const bool is_named = file_of_camera(file) != file && !options.right_calibration;
+  if (is_named && is_right) return camera_alone(file);
+  try {
+    return {read_calibration_file(file, options.right_calibration).calibration, file.string(), right};
+  } catch (const UnplacedCameras& unplaced) {
+    if (!is_right && options.camera != CameraChoice::left) throw;
+    const fs::path camera = unplaced.side(is_right);
+    CalibrationWithSource alone = camera_alone(camera);
+    alone.warnings.push_back(camera.string() + ": this camera is used alone; the file has no relative pose");
+    return alone;
+  }
 }
 
 void complete_size(Camera& camera, int width, int height, const std::string& place) {

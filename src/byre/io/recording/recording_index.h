@@ -27,6 +27,7 @@ struct CalibrationWithSource {
   std::string left_size;
   std::string right_size;
   std::string depth_size{};
+  std::vector<std::string> warnings{};
 };
 
 // Place of the calibration in messages: the file that the options name, else the recording.
@@ -59,7 +60,8 @@ RecordingIndex index_images(const std::filesystem::path& folder, const OpenOptio
 // All frames and cameras of a recording of image files. Throws InputError also for a video, which has none.
 RecordingIndex index_recording(const std::filesystem::path& path, const OpenOptions& options);
 
-// The calibration of the options, else the one in the folder. Throws InputError if there is neither.
+// The calibration of the options, else the one in the folder. Of cameras without relative poses, the left or right one
+// that the options choose, with a warning. Throws InputError if there is neither.
 CalibrationWithSource calibration_for(const std::filesystem::path& folder, const OpenOptions& options);
 
 // Sets the size of the images where the calibration file does not have it. Throws InputError with the file if the

@@ -100,6 +100,24 @@ TEST_F(SingleCameraOfPair, OpensTheRightAloneWithItsBodyPose) {
   EXPECT_FALSE(recording->read(0)->right);
 }
 
+TEST_F(SingleCameraOfPair, OpensOneOfCamerasWithoutRelativePose) {
+  std::string text = kPair;
+  text.replace(text.find("T_cn_cnm1"), 9, "other_pose");
+  const fs::path file = calibration(text);
+  for (const auto& [camera, name, cx] :
+       {std::tuple(CameraChoice::left, "#cam0", 15.5), std::tuple(CameraChoice::right, "#cam1", 16.5)}) {
+    const auto recording = open({camera, file});
+    EXPECT_EQ(recording->calibration().left.cx, cx);
+    EXPECT_FALSE(recording->calibration().right);
+    EXPECT_THAT(recording->warnings(), ElementsAre(HasSubstr(name))) << "names the camera";
+    const auto named = open({camera, file.string() + "#cam1"});
+    EXPECT_EQ(named->calibration().left.cx, 16.5) << "the given camera, with images of either side";
+    EXPECT_EQ(greys_of(*named), greys_of(*recording));
+  }
+  EXPECT_THAT(open_error({CameraChoice::stereo, file}), HasSubstr("cameras.yaml: cam1."));
+  EXPECT_THAT(open_error({{}, file}), HasSubstr("one camera alone: "));
+}
+
 TEST_F(SingleCameraOfPair, KeepsTheGivenReadoutTime) {
   for (const CameraChoice camera : {CameraChoice::left, CameraChoice::right}) {
     const OpenOptions options{

@@ -135,8 +135,8 @@ bool is_video_file(const fs::path& path) {
 
 std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& range, const OpenOptions& options) {
   std::unique_ptr<cv::VideoCapture> capture = open_capture(file);
-  CalibrationWithSource calibration =
-      choose_calibration(calibration_for(file.parent_path(), options), {}, options.camera, file);
+  const CalibrationWithSource whole = calibration_for(file.parent_path(), options);
+  CalibrationWithSource calibration = choose_calibration(whole, {}, options.camera, file);
   complete_size(calibration.cameras.left, static_cast<int>(capture->get(cv::CAP_PROP_FRAME_WIDTH)),
                 static_cast<int>(capture->get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.left_size);
   with_checked_baseline(calibration.cameras, options.baseline, place_of_calibration(file, options), "--baseline ");
@@ -144,7 +144,7 @@ std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& ra
                           static_cast<int>(capture->get(cv::CAP_PROP_FRAME_HEIGHT)), calibration.cameras.left,
                           calibration.left_size);
   const std::optional<double> rate = options.frame_rate_hz ? options.frame_rate_hz : stated_frame_rate(*capture);
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = whole.warnings;
   if (!rate) warnings.push_back(file.string() + ": has no frame rate; 30 frames per second are assumed");
   const std::vector<Timestamp> times = uniform_times(frame_count(file, *capture), rate.value_or(kAssumedFrameRate));
   auto video = std::make_unique<Video>(file, std::move(capture), calibration.cameras, std::move(warnings));
