@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -344,9 +345,10 @@ CameraList camera_of_list(CameraList list, const std::string& name, const fs::pa
 // File of "FILE#NAME", and the name of the camera.
 std::pair<fs::path, std::optional<std::string>> split_camera(const fs::path& path) {
   const std::string text = path.string();
-  if (fs::exists(path)) return {path, std::nullopt};
+  std::error_code error;  // ignored: cyclic links and the like have no camera
+  if (fs::exists(path, error)) return {path, std::nullopt};
   for (std::size_t at = text.find('#'); at != std::string::npos; at = text.find('#', at + 1)) {
-    if (fs::is_regular_file(text.substr(0, at))) return {text.substr(0, at), text.substr(at + 1)};
+    if (fs::is_regular_file(text.substr(0, at), error)) return {text.substr(0, at), text.substr(at + 1)};
   }
   return {path, std::nullopt};
 }
