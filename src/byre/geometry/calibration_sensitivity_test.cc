@@ -45,7 +45,7 @@ TEST(CalibrationSensitivity, IsZeroForOtherCameras) {
   EXPECT_EQ(jacobian.rightCols(kCalibrationParameters - kRightCamera).norm(), 0.0);
 }
 
-TEST(IsNominal, TellsNumbersOfDriversFromMeasuredOnes) {
+TEST(IsNominal, HoldsForNumbersOfDriversOnly) {
   Calibration given;
   given.left = {
       .model = CameraModel::pinhole, .width = 640, .height = 480, .fx = 570.34, .fy = 570.34, .cx = 314.5, .cy = 235.5};

@@ -48,10 +48,9 @@ constexpr const char* kFooter = R"(Examples:
 The content determines the format: Kalibr, OpenVINS, EuRoC, ROS (.yaml, .ini, ost.txt), OpenCV (YAML, XML, one camera
 or a pair), ORB-SLAM2 and 3, stella_vslam, VINS-Fusion, okvis2, basalt, maplab, DepthAI, ZED (.conf), RealSense, KITTI,
 DSO, COLMAP (cameras.txt), OpenSfM, OpenMVG, Metashape, MATLAB, Middlebury, and any file with fx, fy, cx, cy. Two files
-are those of the left and the right camera, or intrinsics and extrinsics. A folder stands for both. FILE#NAME is one of several
-cameras. "convert" writes a
-Kalibr camchain, which loses nothing: all lens models are kept. "--picture" draws the pixel grid of the undistorted
-image in the image, and the reverse.)";
+are those of the left and the right camera, or intrinsics and extrinsics. A folder stands for both. FILE#NAME is one of
+several cameras. "convert" writes a Kalibr camchain, which loses nothing: all lens models are kept. "--picture" draws
+the pixel grid of the undistorted image in the image, and the reverse.)";
 
 // Sides of an image from "640x480"; zero if it is none.
 std::pair<int, int> sides_of(const std::string& text) {

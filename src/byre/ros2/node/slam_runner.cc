@@ -102,10 +102,7 @@ void require_safe_save(const NodeConfig& config) {
 }  // namespace
 
 fs::path previous_map(const fs::path& map) {
-  fs::path previous = map.parent_path() / map.stem();
-  previous += ".previous";
-  previous += map.extension();
-  return previous;
+  return beside(map, "previous", map.extension());
 }
 
 void keep_as_previous(const fs::path& map) {
@@ -250,7 +247,7 @@ std::string SlamRunner::save() {
   return "saved " + config_.save->string();
 }
 
-std::string SlamRunner::update() {
+CommandResult SlamRunner::update() {
   require_running();
   if (config_.update == MapUpdates::off) {
     throw InputError("update", "is switched off", "set slam.update to propose or automatic");
@@ -265,15 +262,19 @@ std::string SlamRunner::update() {
   const MapUpdateResult result = update_map_file(*map_, sessions, child, config_.vocabulary);
   const std::string changes = fmt::format("{} keyframes and {} points added, {} points retired", result.keyframes_added,
                                           result.points_added, result.points_retired);
-  if (!result.refusal.empty()) return last_update_ = map_->string() + " stays as it is: " + result.refusal;
-  if (config_.update == MapUpdates::propose) return last_update_ = "proposed " + child.string() + ": " + changes;
+  if (!result.refusal.empty() || config_.update == MapUpdates::propose) {
+    last_update_ = result.refusal.empty() ? "proposed " + child.string() + ": " + changes
+                                          : map_->string() + " stays as it is: " + result.refusal;
+    return {last_update_};
+  }
   keep_as_previous(*map_);
   std::error_code error;
   fs::rename(child, *map_, error);
   if (error) throw InputError(map_->string(), "cannot be replaced: " + error.message(), "check its folder");
   for (const fs::path& session : sessions) fs::remove(session, error);
   replace(make(&*map_));
-  return last_update_ = "updated " + map_->string() + ": " + changes;
+  last_update_ = "updated " + map_->string() + ": " + changes;
+  return {last_update_, true, true};
 }
 
 std::string SlamRunner::load(const std::string& name) {
@@ -315,11 +316,7 @@ CommandResult execute(SlamRunner& runner, const std::string& line) {
   if (line.starts_with(kLoad)) return {runner.load(line.substr(kLoad.size())), true, true};
   if (line == "relocalise") return {runner.relocalise(), true};
   if (line == "save") return {runner.save()};
-  if (line == "update") {
-    const std::string answer = runner.update();
-    const bool is_replaced = answer.starts_with("updated ");
-    return {answer, is_replaced, is_replaced};
-  }
+  if (line == "update") return runner.update();
   if (line == "pause mapping") return {runner.pause_mapping(true)};
   if (line == "resume mapping") return {runner.pause_mapping(false)};
   throw InputError("'" + printable(line, 100) + "'", "is not a command",

@@ -18,6 +18,12 @@ std::filesystem::path previous_map(const std::filesystem::path& map);
 // complete map at any time. Throws InputError on failure.
 void keep_as_previous(const std::filesystem::path& map);
 
+struct CommandResult {
+  std::string answer;
+  bool restarts = false;  // starts global relocalisation
+  bool loads = false;     // uses another map
+};
+
 // The node's Slam. Made once the calibration is available, and again for another map or for global relocalisation.
 class SlamRunner {
  public:
@@ -62,7 +68,7 @@ class SlamRunner {
   std::string save();
   // Writes what the mission learned beside the map, and updates the map by all such files, see NodeConfig::update. A
   // map updated in place is used from here on; its former version becomes the previous one.
-  std::string update();
+  CommandResult update();
   std::string load(const std::string& name);  // map in the same folder, by file name
   std::string relocalise();                   // global relocalisation in the same map
   std::string pause_mapping(bool is_paused);  // see Slam::pause_mapping
@@ -91,11 +97,6 @@ class SlamRunner {
 };
 
 // Executes a line of the command topic. Throws InputError for an unknown command, or one that is impossible now.
-struct CommandResult {
-  std::string answer;
-  bool restarts = false;  // starts global relocalisation
-  bool loads = false;     // uses another map
-};
 CommandResult execute(SlamRunner& runner, const std::string& line);
 
 }  // namespace byre

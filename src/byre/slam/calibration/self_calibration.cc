@@ -111,12 +111,19 @@ double variance_factor(const BundleProblem& problem, const std::vector<double>& 
   return ratios.empty() ? 1.0 : std::max(1.0, median(std::move(ratios)));
 }
 
+BundleProblem with_solved_geometry(BundleProblem problem, const BundleResult& solved) {
+  for (std::size_t i = 0; i < problem.poses.size(); ++i)
+    problem.poses[i].camera_from_world = solved.camera_from_world[i];
+  for (std::size_t i = 0; i < problem.points.size(); ++i) {
+    problem.points[i].position_in_world = solved.points_in_world[i];
+  }
+  return problem;
+}
+
 // The problem with measurements, poses and points at the solution.
 BundleProblem at_solution(const BundleProblem& problem, const BundleResult& solved) {
-  BundleProblem moved = with_change(problem, solved.calibration_change);
+  BundleProblem moved = with_solved_geometry(with_change(problem, solved.calibration_change), solved);
   moved.calibration = problem.calibration;
-  for (std::size_t i = 0; i < moved.poses.size(); ++i) moved.poses[i].camera_from_world = solved.camera_from_world[i];
-  for (std::size_t i = 0; i < moved.points.size(); ++i) moved.points[i].position_in_world = solved.points_in_world[i];
   return moved;
 }
 
@@ -154,15 +161,10 @@ double image_shift(const BundleProblem& problem, const CalibrationSensitivity& s
 // The problem at the solution, with measurements in images rectified by another calibration of the rig.
 BundleProblem rectified_anew(BundleProblem problem, const BundleResult& solved, int rig,
                              const RectifiedChange& change) {
-  problem.calibration.reset();
+  problem = with_solved_geometry(std::move(problem), solved);
   problem.rigs[static_cast<std::size_t>(rig)] = change.rig();
-  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
-    Pose& camera_from_world = problem.poses[i].camera_from_world;
-    camera_from_world = solved.camera_from_world[i];
-    if (problem.poses[i].rig == rig) camera_from_world = change.after_from_before() * camera_from_world;
-  }
-  for (std::size_t i = 0; i < problem.points.size(); ++i) {
-    problem.points[i].position_in_world = solved.points_in_world[i];
+  for (BundlePose& pose : problem.poses) {
+    if (pose.rig == rig) pose.camera_from_world = change.after_from_before() * pose.camera_from_world;
   }
   for (BundleObservation& seen : problem.observations) {
     if (problem.poses[static_cast<std::size_t>(seen.pose)].rig == rig) seen.measured = change({seen.measured}).pixel;
