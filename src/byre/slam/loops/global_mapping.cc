@@ -307,6 +307,29 @@ void optimise_with_motions(MapWindow& window) {
   if (settled.usable) write_back(window, index_of, settled);
 }
 
+// Motion that fits points, without those that disagree: a point with few views may have moved by many metres.
+Similarity align_most(std::vector<Eigen::Vector3d> from, std::vector<Eigen::Vector3d> to, Scale scale) {
+  constexpr int kRounds = 5;
+  constexpr double kDisagrees = 10.0;  // times the median error
+  Similarity fit = align(from, to, scale).value_or(Similarity{});
+  for (int round = 0; round < kRounds && !from.empty(); ++round) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < from.size(); ++i) errors.push_back((fit * from[i] - to[i]).norm());
+    const double limit = kDisagrees * median(errors);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      if (errors[i] > limit) continue;
+      from[kept] = from[i];
+      to[kept++] = to[i];
+    }
+    if (kept == from.size()) break;
+    from.resize(kept);
+    to.resize(kept);
+    fit = align(from, to, scale).value_or(fit);
+  }
+  return fit;
+}
+
 // Motion of an adjusted copy of both maps that fits its offline points to their earlier positions; the more precise
 // half of them, as distant points move freely. Images of one camera do not determine the scale.
 Similarity offline_from_adjusted(const MapWindow& adjusted, const MapWindow& before) {
@@ -327,7 +350,7 @@ Similarity offline_from_adjusted(const MapWindow& adjusted, const MapWindow& bef
     to.push_back(point.point.position_in_world);
   }
   const bool is_scale_known = std::ranges::any_of(adjusted.keyframes, sees_depth);
-  return align(from, to, is_scale_known ? Scale::fixed : Scale::free).value_or(Similarity{});
+  return align_most(std::move(from), std::move(to), is_scale_known ? Scale::fixed : Scale::free);
 }
 
 }  // namespace

@@ -226,5 +226,27 @@ TEST(OnlineCopy, EqualsTheMapWithOnlineIds) {
   EXPECT_THAT(find_faults(online), testing::IsEmpty());
 }
 
+TEST(AdjustedMaps, KeepTheFrameOfTheOfflineMapDespitePointsThatMovedFar) {
+  MapWindow before;
+  before.rigs = {simulated_rig()};
+  before.keyframes = {{.id = {Origin::online, 0}, .keyframe = {}}, {.id = {Origin::offline, 0}, .keyframe = {}}};
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    WindowPoint& point = before.points.emplace_back();
+    point.id = {Origin::offline, i};
+    point.point.position_in_world = {0.1 * (i % 10), 0.3 * (i / 10), 2.0 + 0.05 * (i % 7)};
+    point.point.covariance = (i < 100 ? 1e-6 : 1e-4) * Eigen::Matrix3d::Identity();
+  }
+  const Pose moved{rotation_exp({0.01, 0.02, 0.0}), {0.02, 0.0, 0.01}};
+  MapWindow adjusted = before;
+  for (WindowKeyframe& entry : adjusted.keyframes) {
+    entry.keyframe.camera_from_world = entry.keyframe.camera_from_world * inverse(moved);
+  }
+  for (WindowPoint& point : adjusted.points) point.point.position_in_world = moved * point.point.position_in_world;
+  adjusted.points[3].point.position_in_world.z() += 500.0;
+  const AdjustedOffline offline = detach_offline(adjusted, before);
+  EXPECT_LT(offline.camera_from_world.at({Origin::offline, 0}).translation.norm(), 1e-6);
+  EXPECT_LT(adjusted.keyframes[0].keyframe.camera_from_world.translation.norm(), 1e-6);
+}
+
 }  // namespace
 }  // namespace byre

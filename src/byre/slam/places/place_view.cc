@@ -25,6 +25,37 @@ std::array<int, 3> cell_at(const Eigen::Vector3d& position) {
   return {static_cast<int>(along.x()), static_cast<int>(along.y()), static_cast<int>(along.z())};
 }
 
+// Leaves out points of recordings that the frame hardly shows, compared with another one: in another light, corners are
+// found elsewhere. A frame at a wrong pose shows little of every recording. shown: ascending.
+void leave_out_other_lights(const MapGraph& map, const ScratchVector<PointId>& shown,
+                            std::vector<ExpectedPoint>& expected) {
+  constexpr double kHardly = 0.5;  // relative to the recording of which the largest share is seen
+  constexpr double kPrior = 30.0;  // points, seen like the whole, of each recording
+  struct Count {
+    double expected = 0.0, seen = 0.0;
+  };
+  ScratchVector<Count> counts;
+  const auto count_of = [&](PointId id) -> Count& {
+    const auto recording =
+        static_cast<std::size_t>(map.keyframe_header(map.find_point(id)->reference.keyframe)->recording);
+    if (recording >= counts.size()) counts.resize(recording + 1);
+    return counts[recording];
+  };
+  Count all;
+  for (const ExpectedPoint& point : expected) {
+    const double seen = std::ranges::binary_search(shown, point.id) ? 1.0 : 0.0;
+    for (Count* const count : {&all, &count_of(point.id)}) {
+      ++count->expected;
+      count->seen += seen;
+    }
+  }
+  const auto share_of = [&](const Count& count) {
+    return (count.seen + kPrior * all.seen / all.expected) / (count.expected + kPrior);
+  };
+  const double largest = share_of(*std::ranges::max_element(counts, {}, share_of));
+  std::erase_if(expected, [&](const ExpectedPoint& point) { return share_of(count_of(point.id)) < kHardly * largest; });
+}
+
 // Mean distance of a tag's corners from those predicted by the pose, pixels; empty behind the camera.
 std::optional<double> corner_error(const TagSighting& seen, const MappedTag& tag, const Pose& camera_from_world,
                                    const Rig& rig) {
@@ -78,6 +109,7 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   view.is_near_keyframe = expected.size() >= kEnough;
   if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
   ScratchVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
+  if (view.is_near_keyframe) leave_out_other_lights(query.map, shown, expected);
   const auto position_of = [&](PointId id) -> Eigen::Vector3d {
     return map.find_point(id)->position_in_world / query.metre;
   };

@@ -77,6 +77,37 @@ TEST_F(ViewOfAPlace, ExpectsSeenPointsOfOtherKeyframes) {
   EXPECT_LT(counts.expected, all.expected);
 }
 
+TEST_F(ViewOfAPlace, LeavesOutRecordingsThatTheFrameHardlyShows) {
+  const TrackedFrame tracked = tracked_at(pose_);
+  MapGraph map = offline_->map();
+  const KeyframeId by_night = map.add_keyframe([&] {
+    Keyframe keyframe = *map.find_keyframe(map.keyframe_ids()[kFrame / 4]);
+    keyframe.recording = 1;
+    keyframe.parent = map.keyframe_ids().front();
+    for (Sighting& sighting : keyframe.sightings) sighting.point.reset();
+    return keyframe;
+  }());
+  ScratchVector<PointId> points = nearby_;
+  const std::vector<Sighting> by_day = map.find_keyframe(map.keyframe_ids()[kFrame / 4])->sightings;
+  for (int feature = 0; feature < static_cast<int>(by_day.size()); ++feature) {
+    const Sighting& seen = by_day[static_cast<std::size_t>(feature)];
+    if (!seen.point) continue;
+    MapPoint point = *map.find_point(*seen.point);
+    point.reference = {by_night, feature};
+    points.push_back(map.add_point(point));
+    map.add_observation({by_night, feature}, {points.back(), seen.pixel, seen.pixel_sigma});
+  }
+  PlaceViewQuery of_both = query(tracked);
+  const PlaceViewQuery both{map, of_both.rig, of_both.frame, tracked, points, {}};
+  EXPECT_EQ(counts_of(view_of_place(both)).expected, counts_of(view_of_place(query(tracked))).expected);
+
+  TrackedFrame lost = tracked;
+  lost.features.clear();
+  const PlaceViewQuery unseen{map, of_both.rig, of_both.frame, lost, points, {}};
+  EXPECT_GT(counts_of(view_of_place(unseen)).expected, counts_of(view_of_place(both)).expected)
+      << "a frame that shows nothing of any recording is evidence against all";
+}
+
 TEST_F(ViewOfAPlace, IsEmptyForAFrameWithoutMatches) {
   TrackedFrame tracked = tracked_at(pose_);
   tracked.features.clear();

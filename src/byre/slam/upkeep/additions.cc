@@ -1,5 +1,7 @@
 #include "byre/slam/upkeep/additions.h"
 
+#include "byre/slam/upkeep/place_budget.h"
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -25,17 +27,13 @@ struct KnownPlace {
 };
 
 KnownPlace known_place(const MapGraph& map, std::span<const KeyframeId> keyframes, const Pose& camera_from_world) {
-  constexpr double kNear = 1.0;     // metres
-  constexpr double kMaxTurn = 0.5;  // radians
   KnownPlace place;
-  for (const KeyframeId id : keyframes) {
+  for (const KeyframeId id : keyframes_at(map, keyframes, camera_from_world)) {
     const Keyframe& keyframe = *map.find_keyframe(id);
     const Pose change = camera_from_world * inverse(keyframe.camera_from_world);
-    const double distance = change.translation.norm(), turn = rotation_log(change.rotation).norm();
-    if (distance > kNear || turn > kMaxTurn) continue;
     ++place.keyframes;
     place.points = std::max(place.points, sightings_of(keyframe));
-    place.nearest = std::min(place.nearest, distance + turn);
+    place.nearest = std::min(place.nearest, change.translation.norm() + rotation_log(change.rotation).norm());
   }
   return place;
 }
@@ -72,10 +70,9 @@ std::optional<KeyframeId> most_shared(const MapGraph& map, const Keyframe& keyfr
 
 std::vector<KeyframeId> keyframes_to_add(const MapGraph& map, const MapGraph& child, const MapGraph& online) {
   constexpr double kFew = 0.5;        // known points seen, as a share of those that the map has at this place
-  constexpr double kEnough = 100.0;   // known points that are never few
   constexpr double kSeparate = 0.4;   // least distance of added keyframes, metres plus radians
   constexpr double kMaxSigma = 0.05;  // metres, of the position
-  constexpr int kKeyframesOfPlace = 8;
+  constexpr int kKeyframesOfPlace = 4;
   const std::vector<KeyframeId> present = map.keyframe_ids();
   std::vector<KeyframeId> others;  // added by other missions
   std::ranges::set_difference(child.keyframe_ids(), present, std::back_inserter(others));
@@ -87,9 +84,9 @@ std::vector<KeyframeId> keyframes_to_add(const MapGraph& map, const MapGraph& ch
     const KnownPlace before = known_place(map, present, keyframe.camera_from_world);
     const KnownPlace added = known_place(online, chosen, keyframe.camera_from_world);
     const bool is_new = before.keyframes == 0;
-    const bool has_few = sightings_of(keyframe, Origin::offline) < std::min(kFew * before.points, kEnough);
+    const bool has_few = sightings_of(keyframe, Origin::offline) < kFew * before.points;
     if (!is_new && !has_few) continue;
-    if (added.nearest < kSeparate || before.keyframes + added.keyframes >= kKeyframesOfPlace) continue;
+    if (added.nearest < kSeparate || added.keyframes >= kKeyframesOfPlace) continue;
     chosen.push_back(id);
   }
   return chosen;

@@ -28,6 +28,10 @@ int points_of(const Keyframe& keyframe) {
 
 }  // namespace
 
+double probability_of(Survival log_odds) {
+  return 1.0 / (1.0 + std::exp(-log_odds / kSteps));
+}
+
 Survival survival_after(Survival before, const PointRecord& record) {
   constexpr std::uint32_t kMoved = 5;  // frames that show a point elsewhere, and none at its position
   if (record.expected == 0 && record.elsewhere < kMoved) return before;

@@ -13,6 +13,8 @@ namespace byre {
 // Log-odds of a new point, which several keyframes of a mission saw.
 inline constexpr Survival kSurvivalOfNewPoint = 32;
 
+double probability_of(Survival log_odds);
+
 // Log-odds after a mission. A mission that did not expect the point does not change it.
 Survival survival_after(Survival before, const PointRecord& record);
 

@@ -2,6 +2,7 @@
 
 #include "byre/slam/loops/global_mapping.h"
 #include "byre/slam/upkeep/additions.h"
+#include "byre/slam/upkeep/place_budget.h"
 #include "byre/slam/upkeep/point_survival.h"
 
 #include <algorithm>
@@ -106,10 +107,15 @@ void retire(std::vector<PointId> points, const SparedPlaces& spared, MapGraph& m
   }
 }
 
-// Ids without gaps, and the survival of each point.
-void renumber(StoredMap& child, std::vector<Survival> survival, MapUpdate& update) {
-  survival.resize(std::max(survival.size(), static_cast<std::size_t>(child.map.point_ids().back().number) + 1),
+// By point number.
+std::vector<Survival> survival_with(std::vector<Survival> survival, const MapGraph& added_points) {
+  survival.resize(std::max(survival.size(), static_cast<std::size_t>(added_points.point_ids().back().number) + 1),
                   kSurvivalOfNewPoint);
+  return survival;
+}
+
+// Ids without gaps, and the survival of each point.
+void renumber(StoredMap& child, const std::vector<Survival>& survival, MapUpdate& update) {
   update.survival.clear();
   for (const PointId id : child.map.point_ids()) update.survival.push_back(survival[id.number]);
   child.map = offline_copy(std::move(child.map));
@@ -188,7 +194,10 @@ MapUpdate update_map(const MapVersion& parent, const std::vector<StoredSession>&
       add_session(fits, parent.stored.map, spared, child, update.sessions[fits.number]);
     }
     retire(unlikely, spared, child.map, update);
-    renumber(child, survival, update);
+    const std::vector<Survival> of_child = survival_with(survival, child.map);
+    update.keyframes_removed += keep_to_budget(
+        parent.stored.map, of_child, [&](const Keyframe& keyframe) { return is_spared(spared, keyframe); }, child.map);
+    renumber(child, of_child, update);
     before_step("replaying the sessions on both maps");
     prove(fitting, index_of(child.map, vocabulary), child, update);
     const std::size_t spared_before = spared.size();

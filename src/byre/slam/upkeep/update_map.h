@@ -29,7 +29,7 @@ struct SessionUse {
 struct MapUpdate {
   std::vector<SessionUse> sessions;
   int points_retired = 0;
-  int keyframes_removed = 0;       // retired points were all that they saw
+  int keyframes_removed = 0;       // without points that are left, or over the budget of their place
   std::vector<PlaceProof> places;  // by the frames of all used sessions
   int places_spared = 0;           // left as they are, since a first attempt made them worse
   std::string refusal{};           // why there is no child; empty: there is one
@@ -41,9 +41,10 @@ struct MapUpdate {
 using StepHook = std::function<void(const char* step)>;
 
 // Updates a map by sessions of missions that ran on it. Points that are unlikely to exist by now are removed; keyframes
-// and points of new or changed places are added and adjusted around the others, which do not move. Places that an
-// attempt makes worse are left as they are in the next one. There is a child only if no place of the sessions' frames
-// is worse than before, see PlaceProof. Preconditions: keyframes have words of the vocabulary; the map is metric.
+// and points of new or changed places are added and adjusted around the others, which do not move. Places keep to a
+// budget of keyframes. Places that an attempt makes worse are left as they are in the next one. There is a child only
+// if no place of the sessions' frames is worse than before, see PlaceProof. Preconditions: keyframes have words of the
+// vocabulary; the map is metric.
 MapUpdate update_map(
     const MapVersion& parent, const std::vector<StoredSession>& sessions, const Vocabulary& vocabulary,
     const StepHook& before_step = [](const char*) {});
