@@ -34,16 +34,18 @@ const std::string kBegin =
     "\x89"
     "BYRE\r\n";
 
-TEST_F(KeptMaps, AreTheSavedMapAndThePreviousOne) {
+TEST_F(KeptMaps, AreTheSavedMapAndThreePreviousOnes) {
   keep_as_previous(map_);
   EXPECT_FALSE(fs::exists(previous_map(map_))) << "there was none";
-  for (const char* const day : {"monday", "tuesday", "wednesday"}) {
+  for (const char* const day : {"friday", "saturday", "sunday", "monday", "tuesday"}) {
     keep_as_previous(map_);
     write_atomically(map_, kBegin + day);
   }
-  EXPECT_EQ(content(map_), kBegin + "wednesday");
-  EXPECT_EQ(content(folder_ / "barn.previous.byre"), kBegin + "tuesday");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+  EXPECT_EQ(content(map_), kBegin + "tuesday");
+  EXPECT_EQ(content(folder_ / "barn.previous.byre"), kBegin + "monday");
+  EXPECT_EQ(content(folder_ / "barn.previous_2.byre"), kBegin + "sunday");
+  EXPECT_EQ(content(folder_ / "barn.previous_3.byre"), kBegin + "saturday");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 4);
 }
 
 TEST_F(KeptMaps, LeaveNoFilesAfterASaveInterruptedBeforeReplacement) {

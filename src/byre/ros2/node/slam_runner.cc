@@ -106,7 +106,16 @@ fs::path previous_map(const fs::path& map) {
 }
 
 void keep_as_previous(const fs::path& map) {
-  if (content_of(map) == FileContent::map) link_or_copy(map, previous_map(map));
+  if (content_of(map) != FileContent::map) return;
+  const auto version = [&](int age) {
+    return age == 0 ? map : beside(map, age == 1 ? "previous" : fmt::format("previous_{}", age), map.extension());
+  };
+  std::error_code error;
+  if (fs::equivalent(map, version(1), error)) return;
+  constexpr int kKept = 3;
+  for (int age = kKept; age > 0; --age) {
+    if (content_of(version(age - 1)) == FileContent::map) link_or_copy(version(age - 1), version(age));
+  }
 }
 
 SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(slam_options(config)), map_(config.map) {
