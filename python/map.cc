@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
 namespace byre::python {
 namespace {
 
@@ -387,6 +389,34 @@ void bind_contents(MapClass& type) {
           "Text by key, such as 'site' and 'software', dict.\n\n"
           ">>> 'byre' in m.notes['software']\n"
           "True")
+      .def_property_readonly(
+          "history",
+          [](const CachedMap& self) {
+            std::vector<std::pair<std::string, std::string>> history;
+            for (const MapHistory& entry : self.map.history()) {
+              history.emplace_back(fmt::format("{:016x}", entry.parent), entry.change);
+            }
+            return history;
+          },
+          "Updates that the map was made by, the newest first: list of the updated map's id and the change, str.\n\n"
+          ">>> m.history\n"
+          "[]")
+      .def(
+          "difference",
+          [](const CachedMap& self, const CachedMap& after) {
+            const MapDifference difference = self.map.difference(after.map);
+            py::dict ids;
+            ids["removed_keyframes"] = ids_of(difference.removed_keyframes);
+            ids["removed_points"] = ids_of(difference.removed_points);
+            ids["added_keyframes"] = ids_of(difference.added_keyframes);
+            ids["added_points"] = ids_of(difference.added_points);
+            return ids;
+          },
+          py::arg("after"),
+          "What one map has and another one does not, at exactly the same position: dict of ids, int32, ascending. "
+          "removed_keyframes and removed_points are of this map, added_keyframes and added_points of the other.\n\n"
+          ">>> m.difference(m.without_points([0]))['removed_points']\n"
+          "array([0], dtype=int32)")
       .def_property_readonly(
           "plan", [](const CachedMap& self) { return self.map.plan(); },
           "Registration on a floor plan, PlanRegistration, or None.\n\n"

@@ -56,6 +56,21 @@ struct MapObservation {
   float sigma = 1.0f;                               // pixels, of column and of row
 };
 
+// What one map has and another one does not, at exactly the same position: updates, cuts and merges leave what they
+// keep where it is. Ids, ascending.
+struct MapDifference {
+  std::vector<int> removed_keyframes;  // in the map before
+  std::vector<int> removed_points;
+  std::vector<int> added_keyframes;  // in the map after
+  std::vector<int> added_points;
+};
+
+// An update that a map was made by.
+struct MapHistory {
+  std::uint64_t parent = 0;  // content hash of the map file that was updated, as in `byre history`
+  std::string change;        // "evening, night: 31 keyframes and 904 points added, 12 points retired (byre 0.1.0)"
+};
+
 // A saved map: keyframes, points and their observations. An immutable value whose copies share memory, so any number of
 // threads may read it. Edits return another map. Keyframes and points are numbered from 0 without gaps; an edit that
 // removes some renumbers the others. Map frame: that of the first keyframe's body, unless transformed. Lengths are
@@ -80,6 +95,8 @@ class Map {
   const std::map<std::string, std::string>& notes() const;  // text by key, such as "site"
   const std::optional<PlanRegistration>& plan() const;      // registration on a floor plan
   std::vector<MappedTag> tags() const;                      // AprilTags, by id
+  std::vector<MapHistory> history() const;                  // updates that the map was made by, the newest first
+  MapDifference difference(const Map& after) const;
 
   MapKeyframe keyframe(int id) const;
   // Small grey picture of a keyframe's left image, as rectified; pixel x is at (x + 0.5) * rig.width / width - 0.5 of

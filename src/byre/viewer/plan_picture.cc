@@ -117,7 +117,7 @@ PictureSymbols dots(const PlanScene& scene, const HeightBand& heights, Origin or
   dots.symbol = Symbol::square;
   dots.centres = distinct_pixels(points_on_ground(scene, heights, origin), view, pane);
   dots.size = 1.5;
-  dots.colour = palette::of(origin);
+  dots.colour = scene.style_of(origin).colour;
   dots.opacity = origin == Origin::offline ? 0.7 : 0.85;
   return dots;
 }
@@ -152,8 +152,8 @@ MarksWithLegend ground_marks(const PlanScene& scene, const PlanPictureOptions& o
   for (const Origin origin : {Origin::offline, Origin::online}) {
     PictureSymbols points = dots(scene, options.heights, origin, view, pane);
     if (points.centres.empty()) continue;
-    const char* const meaning = origin == Origin::offline ? "offline map" : "online map";
-    all.legend.push_back({meaning, palette::of(origin), Symbol::square});
+    const PointStyle& style = scene.style_of(origin);
+    all.legend.push_back({style.meaning, style.colour, Symbol::square});
     all.marks.emplace_back(std::move(points));
   }
   return all;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/viewer/ground.h"
+#include "byre/viewer/palette.h"
 #include "byre/viewer/picture.h"
 #include "byre/viewer/scene.h"
 
@@ -26,6 +27,12 @@ struct PlanCamera {
 };
 PlanCamera plan_camera(const Pose& map_from_body, const Rig& rig);
 
+// How points of one origin are drawn.
+struct PointStyle {
+  std::string meaning;
+  Colour colour;
+};
+
 // Content of a plan picture.
 struct PlanScene {
   std::string title;
@@ -33,6 +40,10 @@ struct PlanScene {
   MapScene map;
   std::vector<PlanPath> paths;
   std::optional<PlanCamera> camera;
+  PointStyle offline{"offline map", palette::kOffline};
+  PointStyle online{"online map", palette::kOnline};
+
+  const PointStyle& style_of(Origin origin) const { return origin == Origin::offline ? offline : online; }
 };
 
 // Heights above the ground, metres.

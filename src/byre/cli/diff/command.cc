@@ -1,13 +1,16 @@
 #include "byre/cli/commands.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/input_error.h"
+#include "byre/io/image/plan_file.h"
+#include "byre/map.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/report/report.h"
+#include "byre/viewer/palette.h"
+#include "byre/viewer/plan_picture.h"
 
-#include <algorithm>
-#include <array>
 #include <filesystem>
-#include <iterator>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <vector>
 
@@ -16,55 +19,55 @@
 namespace byre::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct DiffOptions {
-  std::filesystem::path before, after;
+  fs::path before, after;
+  std::optional<fs::path> picture, plan;
   bool json = false;
 };
 
-constexpr const char* kDiffFooter = R"(Example:
+constexpr const char* kDiffFooter = R"(Examples:
   byre diff barn.byre barn_2.byre
+  byre diff barn.byre barn_2.byre --picture changes.svg --plan plan.yaml
 
-Counts the points and keyframes of one map that the other does not have at exactly the same position.)";
+Counts the points and keyframes of one map that the other does not have at exactly the same position. The picture shows
+removed and added points from above, with the keyframes of the second map.)";
 
-using Numbers = std::array<double, 3>;
-
-std::vector<Numbers> sorted(std::vector<Numbers> positions) {
-  std::ranges::sort(positions);
-  return positions;
+nlohmann::ordered_json changes(int before, const std::vector<int>& removed, const std::vector<int>& added) {
+  return {{"same", before - static_cast<int>(removed.size())}, {"removed", removed.size()}, {"added", added.size()}};
 }
 
-Numbers numbers_of(const Eigen::Vector3d& position) {
-  return {position.x(), position.y(), position.z()};
+void add_points(const Map& map, const std::vector<int>& points, Origin origin, MapScene& scene) {
+  for (const int id : points) scene.points.push_back({map.position(id).cast<float>(), origin});
 }
 
-std::vector<Numbers> points_of(const MapGraph& map) {
-  std::vector<Numbers> points;
-  for (const PointId id : map.point_ids()) points.push_back(numbers_of(map.find_point(id)->position_in_world));
-  return sorted(std::move(points));
-}
-
-std::vector<Numbers> cameras_of(const MapGraph& map) {
-  std::vector<Numbers> cameras;
-  for (const KeyframeId id : map.keyframe_ids()) {
-    cameras.push_back(numbers_of(inverse(map.keyframe_header(id)->camera_from_world).translation));
+Picture picture_of(const Map& before, const Map& after, const MapDifference& difference, const DiffOptions& options) {
+  if (options.plan && !after.plan()) {
+    throw InputError(options.after.string(), "is not registered on a floor plan, so it cannot be drawn on one",
+                     "see \"byre register\"");
   }
-  return sorted(std::move(cameras));
-}
-
-nlohmann::ordered_json changes(const std::vector<Numbers>& before, const std::vector<Numbers>& after) {
-  std::vector<Numbers> same;
-  std::ranges::set_intersection(before, after, std::back_inserter(same));
-  return {{"same", same.size()}, {"removed", before.size() - same.size()}, {"added", after.size() - same.size()}};
+  PlanScene scene;
+  scene.title = options.before.stem().string() + " -> " + options.after.stem().string();
+  scene.ground = ground_of(after.stored(), options.plan ? std::optional(read_floor_plan(*options.plan)) : std::nullopt);
+  scene.map.keyframes = scene_of(after.stored().map).keyframes;
+  scene.offline = {"removed points", palette::kUntrusted};
+  scene.online = {"added points", palette::kTrusted};
+  add_points(before, difference.removed_points, Origin::offline, scene.map);
+  add_points(after, difference.added_points, Origin::online, scene.map);
+  return plan_picture(scene);
 }
 
 ExitCode run_diff(const DiffOptions& options, std::ostream& result) {
-  const MapGraph before = load_map(options.before).map, after = load_map(options.after).map;
+  const Map before(load_map(options.before)), after(load_map(options.after));
+  const MapDifference difference = before.difference(after);
+  if (options.picture) write_picture(picture_of(before, after, difference, options), *options.picture);
   Report report{{{"program", "byre diff"},
                  {"version", BYRE_VERSION},
                  {"before", options.before.string()},
                  {"after", options.after.string()},
-                 {"keyframes", changes(cameras_of(before), cameras_of(after))},
-                 {"points", changes(points_of(before), points_of(after))}}};
+                 {"keyframes", changes(before.keyframes(), difference.removed_keyframes, difference.added_keyframes)},
+                 {"points", changes(before.points(), difference.removed_points, difference.added_points)}}};
   report.row("maps", "{before} -> {after}");
   report.row("keyframes", "{keyframes.same} the same, {keyframes.removed} removed, {keyframes.added} added");
   report.row("points", "{points.same} the same, {points.removed} removed, {points.added} added");
@@ -78,6 +81,12 @@ Action declare_diff(CLI::App& command) {
   const auto options = std::make_shared<DiffOptions>();
   add_input(command, Input::file, "BEFORE", options->before, "Map")->type_name("MAP")->required();
   add_input(command, Input::file, "AFTER", options->after, "Map to compare with it")->type_name("MAP")->required();
+  CLI::Option* const picture = add_output(command, Output::picture, "--picture", options->picture,
+                                          "Picture of the changes from above: .svg or .png")
+                                   ->type_name("FILE");
+  add_input(command, Input::plan, "--plan", options->plan, "Floor plan under the picture")
+      ->type_name("FILE")
+      ->needs(picture);
   command.add_flag("--json", options->json, "Print the figures as JSON");
   command.footer(kDiffFooter);
   return [options](std::ostream& result) { return run_diff(*options, result); };

@@ -54,6 +54,8 @@ TEST_F(UpdateProgram, WritesAChildThatIsNowhereWorse) {
   EXPECT_EQ(diff.at("keyframes").at("removed"), 0);
   EXPECT_EQ(diff.at("points").at("removed"), 0);
   EXPECT_EQ(diff.at("points").at("same"), load_map(folder_ / "room.byre").map.point_count());
+  EXPECT_EQ(run("diff room.byre room_2.byre --picture changes.svg").exit_code, 0);
+  EXPECT_THAT(read("changes.svg"), AllOf(HasSubstr("room -&gt; room_2"), HasSubstr("keyframes")));
 }
 
 TEST_F(UpdateProgram, PrintsTheReportAsJson) {

@@ -11,10 +11,13 @@
 #include "byre/place/map_words.h"
 #include "byre/slam/system/merge_maps.h"
 #include "byre/slam/system/stored_map.h"
+#include "byre/slam/upkeep/update_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include <fmt/core.h>
@@ -32,6 +35,36 @@ PointId point_id(int number) {
 
 int number_of(const OptionalPoint& point) {
   return point ? static_cast<int>(point->number) : -1;
+}
+
+// Ids by position, metres.
+using Positions = std::multimap<std::array<double, 3>, int>;
+
+void add(const Eigen::Vector3d& position, std::uint32_t number, Positions& positions) {
+  positions.insert({{position.x(), position.y(), position.z()}, static_cast<int>(number)});
+}
+
+Positions point_positions(const MapGraph& map) {
+  Positions positions;
+  for (const PointId id : map.point_ids()) add(map.find_point(id)->position_in_world, id.number, positions);
+  return positions;
+}
+
+Positions camera_positions(const MapGraph& map) {
+  Positions positions;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    add(inverse(map.keyframe_header(id)->camera_from_world).translation, id.number, positions);
+  }
+  return positions;
+}
+
+std::vector<int> missing_in(const Positions& others, const Positions& positions) {
+  std::vector<int> missing;
+  for (const auto& [position, id] : positions) {
+    if (!others.contains(position)) missing.push_back(id);
+  }
+  std::ranges::sort(missing);
+  return missing;
 }
 
 const Keyframe& keyframe_at(const StoredMap& stored, int id) {
@@ -154,6 +187,19 @@ std::vector<MapRecording> Map::recordings() const {
 
 const std::map<std::string, std::string>& Map::notes() const {
   return stored_->notes;
+}
+
+std::vector<MapHistory> Map::history() const {
+  return history_of(*stored_);
+}
+
+MapDifference Map::difference(const Map& after) const {
+  const Positions points_before = point_positions(stored_->map), points_after = point_positions(after.stored_->map);
+  const Positions cameras_before = camera_positions(stored_->map), cameras_after = camera_positions(after.stored_->map);
+  return {.removed_keyframes = missing_in(cameras_after, cameras_before),
+          .removed_points = missing_in(points_after, points_before),
+          .added_keyframes = missing_in(cameras_before, cameras_after),
+          .added_points = missing_in(points_before, points_after)};
 }
 
 const std::optional<PlanRegistration>& Map::plan() const {

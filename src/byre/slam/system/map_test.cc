@@ -180,6 +180,17 @@ TEST(Map, WithoutPointsIsValidAndKeepsTheOthers) {
   EXPECT_EQ(Map::from_bytes(edited.to_bytes(), "edited").to_bytes(), edited.to_bytes());
 }
 
+TEST(Map, DiffersFromItsEditByTheRemovedPoints) {
+  const Map map = small_map();
+  const std::vector<int> removed = {2, 5, 7};
+  const MapDifference difference = map.difference(map.without_points(removed));
+  EXPECT_EQ(difference.removed_points, removed);
+  EXPECT_THAT(difference.added_points, IsEmpty());
+  EXPECT_THAT(difference.removed_keyframes, IsEmpty());
+  const MapDifference reversed = map.without_points(removed).difference(map);
+  EXPECT_EQ(reversed.added_points, removed);
+}
+
 TEST(Map, WithoutPointsHasNoKeyframesThatLostAllOfThem) {
   const Map map = small_map();
   std::vector<int> first_half(8);  // points of keyframes 0 to 2; keyframe 0 has no parent

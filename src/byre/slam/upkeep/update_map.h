@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/map.h"
 #include "byre/place/vocabulary.h"
 #include "byre/slam/upkeep/replay.h"
 #include "byre/slam/upkeep/stored_session.h"
@@ -49,11 +50,7 @@ MapUpdate update_map(
     const MapVersion& parent, const std::vector<StoredSession>& sessions, const Vocabulary& vocabulary,
     const StepHook& before_step = [](const char*) {});
 
-// Ids of the versions that a map was made of, the newest first, by its notes.
-struct MapHistory {
-  std::uint64_t parent = 0;
-  std::string change;  // "evening, night: 31 keyframes and 904 points added, 12 points retired (byre 0.1.0)"
-};
+// Updates that a map was made by, the newest first, by its notes.
 std::vector<MapHistory> history_of(const StoredMap& stored);
 
 }  // namespace byre
