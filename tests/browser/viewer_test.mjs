@@ -46,10 +46,10 @@ describe("A map", () => {
     const page = await openMap();
     assert.ok((await pointCount(page)) > 500);
     const withPoints = await settledPictureOf(page, kStage);
-    await page.getByRole("button", { name: "Known map" }).click();
+    await page.getByRole("button", { name: "Offline map" }).click();
     const without = await settledPictureOf(page, kStage);
     assert.ok((await differentPixels(page, withPoints, without)) > 500, "hiding the points changes the view");
-    await page.getByRole("button", { name: "Known map" }).click();
+    await page.getByRole("button", { name: "Offline map" }).click();
     assert.equal(await differentPixels(page, withPoints, await settledPictureOf(page, kStage)), 0);
     await screenshot(page, "map");
     assert.deepEqual(page.problems, []);
@@ -205,6 +205,7 @@ describe("Points of a map", () => {
       assert.ok(width > 40 && width <= 141, `${width} pixels`);
       return Number(length) / width;
     };
+    await eventually(async () => (await page.locator(".scale-bar").innerText()) !== "", () => "a scale bar");
     const before = await metresPerPixel();
     await page.locator(kStage).focus();
     for (let i = 0; i < 10; ++i) await page.keyboard.press("+");
@@ -222,12 +223,25 @@ describe("A run", () => {
       assert.ok((await name.getAttribute("title")).length > 20, await name.innerText());
     }
     const text = await page.locator(".health dl").innerText();
-    assert.doesNotMatch(text, /inlier|keyframe|covariance|sigma|offline|online/i);
+    for (const term of ["Offline points", "Online points", "Suspended points"]) assert.ok(text.includes(term), term);
   });
 
-  async function openRun() {
+  test("is in German in a German browser", async () => {
+    const page = await openRun({ locale: "de-DE" });
+    await eventually(async () => (await frameOf(page, "valuenow")) > 5, () => "frames");
+    assert.equal(await page.locator("html").getAttribute("lang"), "de");
+    await eventually(async () => /vertrauenswürdig|eingeschränkt/i.test(await page.locator(".verdict").innerText()), () => "a verdict");
+    const texts = await page.locator("button:visible, .health dt, .health dd, .meaning, .advice, figcaption").allInnerTexts();
+    const titles = await page.locator("[title]").evaluateAll((all) => all.map(({ title }) => title));
+    for (const text of [...texts, ...titles]) {
+      assert.doesNotMatch(text, /\b(the|of|points?|show|run|map|and|views)\b/i, "not translated");
+    }
+    assert.deepEqual(page.problems, []);
+  });
+
+  async function openRun(options) {
     viewer = await Viewer.start("run", "room", "--map", "part.byre", "--pace", "live", "--view", "0", "--view-for", "1000000");
-    return openPage(browser, viewer.url);
+    return openPage(browser, viewer.url, options);
   }
 
   const hasEnded = (page) => () => page.getByRole("button", { name: "Live" }).isHidden();

@@ -1,5 +1,6 @@
 import "./style.css";
 import { byId } from "./dom";
+import { startLanguage } from "./language";
 import { startMapPage } from "./map_page";
 import { MapSpace } from "./map_space";
 import { startRunPage } from "./run_page";
@@ -15,6 +16,7 @@ declare global {
 }
 
 async function start(): Promise<void> {
+  startLanguage();
   startTheme();
   const scene = await loadScene();
   document.title = `${scene.name} – byre`;

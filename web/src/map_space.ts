@@ -62,7 +62,7 @@ export class MapSpace {
         },
       });
     byId("layers").append(
-      shown("Known map", "Show or hide the points of the saved map", "●", "offline", [this.#offline.points]),
+      shown("Offline map", "Show or hide the points of the offline map", "●", "offline", [this.#offline.points]),
       shown("Camera paths", "Show or hide the camera paths of mapping", "—", "path", [
         this.#offlinePath.lines,
         this.#onlinePath.lines,
@@ -91,7 +91,7 @@ export class MapSpace {
   onlineButton(): HTMLElement {
     const things = [this.#online.points];
     return layerButton({
-      name: "New map",
+      name: "Online map",
       title: "Show or hide the points mapped during this run",
       mark: "◆",
       colour: "online",

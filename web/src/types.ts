@@ -68,6 +68,7 @@ export interface FrameFields {
   state: string;
   verdict: Verdict;
   doubt: string;
+  advice?: string; // what to do about the doubt
   pose: PoseFields | null;
   offline_inliers: number;
   offline_expected: number;

@@ -26,8 +26,8 @@ export class CameraImage {
       element(
         "p",
         { class: "legend" },
-        element("span", { class: "key offline", title: "Point of the saved map that fits the pose" }, "● known point"),
-        element("span", { class: "key online", title: "Point mapped during this run that fits the pose" }, "■ new point"),
+        element("span", { class: "key offline", title: "Point of the offline map that fits the pose" }, "● offline point"),
+        element("span", { class: "key online", title: "Point mapped during this run that fits the pose" }, "■ online point"),
         element("span", { class: "key", title: "Matched point that does not fit the pose: moved object or wrong match" },
           "✕ does not fit"),
       ),
@@ -78,7 +78,7 @@ export class CameraImage {
   #describe(image: SeenImage): void {
     const inliers = image.kinds.filter((kind) => kind & kInlier);
     const online = inliers.filter((kind) => kind & kOnline).length;
-    const said = `Image ${image.frame}: ${inliers.length - online} known and ${online} new points fit, ${
+    const said = `Image ${image.frame}: ${inliers.length - online} offline and ${online} online points fit, ${
       image.kinds.length - inliers.length
     } do not`;
     this.#caption.textContent = said;

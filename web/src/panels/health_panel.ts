@@ -14,19 +14,19 @@ const percent = (share: number) => `${Math.round(100 * share)} %`;
 
 const kRows: Row[] = [
   {
-    name: "Known points",
+    name: "Offline points",
     value: ({ offline_inliers, offline_expected }) => `${offline_inliers} of ${offline_expected}`,
     title:
-      "Points of the saved map that fit the pose, of those expected in view. " +
+      "Points of the offline map that fit the pose, of those expected in view. " +
       "A small share indicates moved objects or a wrong pose.",
   },
   {
-    name: "New points",
+    name: "Online points",
     value: ({ online_inliers }) => `${online_inliers}`,
     title: "Points mapped during this run that fit the pose",
   },
   {
-    name: "Matches that fit",
+    name: "Inliers of the matches",
     value: ({ inlier_share, matches }) => `${percent(inlier_share)} of ${matches}`,
     title: "Share of the points matched in this image that fit the pose. Below one half the pose is doubtful.",
   },
@@ -43,22 +43,22 @@ const kRows: Row[] = [
     title: "Estimated standard deviation of the position",
   },
   {
-    name: "Known–new distance",
+    name: "Distance of the maps",
     value: ({ disagreement_mm }) => (disagreement_mm === undefined ? "–" : `${disagreement_mm.toFixed(1)} mm`),
-    title: "Distance between the positions estimated from known points alone and from new points alone",
+    title: "Distance between the positions by offline points alone and by online points alone",
   },
   {
-    name: "Path without known points",
+    name: "Path without offline points",
     value: ({ since_offline_m }) => `${since_offline_m.toFixed(1)} m`,
-    title: "Path length since known points last held the pose. Drift grows with it.",
+    title: "Path length since offline points last held the pose. Drift grows with it.",
   },
   {
-    name: "Moved points",
+    name: "Suspended points",
     value: ({ suspended }) => `${suspended}`,
-    title: "Known points excluded for this run, as they have moved",
+    title: "Offline points excluded for this mission, as they have moved",
   },
   {
-    name: "New map",
+    name: "Online map",
     value: ({ online_points, online_keyframes }) => `${online_points} points, ${online_keyframes} views`,
     title: "Points and camera views mapped during this run",
   },
@@ -72,6 +72,7 @@ export class HealthPanel {
   readonly panel: HTMLElement;
   readonly #verdict = element("p", { class: "verdict", title: kVerdictHelp });
   readonly #meaning = element("p", { class: "meaning" });
+  readonly #advice = element("p", { class: "advice" });
   readonly #values = kRows.map(() => element("dd"));
   readonly #events = element("ol", { class: "events" });
 
@@ -85,6 +86,7 @@ export class HealthPanel {
       { class: "panel health", ariaLabel: "Health" },
       this.#verdict,
       this.#meaning,
+      this.#advice,
       element("dl", {}, ...rows),
       element("h2", { title: "Events up to the frame shown, newest first. Click an event to show its frame." }, "Events"),
       this.#events,
@@ -99,6 +101,7 @@ export class HealthPanel {
     this.#verdict.textContent = `${kSigns[frame.verdict]} ${frame.verdict}`;
     this.#verdict.className = `verdict ${frame.verdict}`;
     this.#meaning.textContent = `${meaning(frame)} (${frame.state})`;
+    this.#advice.textContent = frame.advice ? `Advice: ${frame.advice}.` : "";
     kRows.forEach((row, i) => (this.#values[i].textContent = row.value(frame)));
   }
 

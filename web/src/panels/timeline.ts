@@ -45,7 +45,7 @@ export class Timeline {
     this.#canvas.setAttribute("role", "slider");
     this.#canvas.setAttribute("aria-label", "Frame of the run");
     this.#canvas.title =
-      "Timeline of the run. Top: number of points that hold the pose, known in green, new in purple. " +
+      "Timeline of the run. Top: number of points that hold the pose, offline in green, online in purple. " +
       "Bottom: verdict. Click to show a frame.";
     this.panel = element("div", { class: "timeline" }, this.#play, this.#live, this.#canvas, this.#time);
     this.#play.addEventListener("click", () => playback.togglePlay());

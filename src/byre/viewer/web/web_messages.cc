@@ -84,6 +84,7 @@ Json frame_fields(const ShownFrame& frame) {
                  {"track_ms", rounded(kMillisecondsPerSecond * report.track_seconds)},
                  {"online_keyframes", frame.online_keyframes},
                  {"online_points", frame.online_points}};
+  if (const std::string_view advice = advice_for(health.doubt); !advice.empty()) fields["advice"] = advice;
   if (health.agreement) fields["disagreement_mm"] = rounded(kMillimetresPerMetre * health.agreement->translation);
   for (const SessionEvent event : report.events) fields["events"].push_back(to_string(event));
   return fields;
