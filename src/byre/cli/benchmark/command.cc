@@ -3,6 +3,7 @@
 #include "byre/base/stopwatch.h"
 #include "byre/base/task_threads.h"
 #include "byre/benchmark/benchmark_run.h"
+#include "byre/benchmark/life.h"
 #include "byre/benchmark/plots.h"
 #include "byre/benchmark/report.h"
 #include "byre/benchmark/speed.h"
@@ -32,6 +33,7 @@ namespace fs = std::filesystem;
 struct BenchmarkCommandOptions {
   std::string protocol;
   SpeedCase speed;  // measured instead of a protocol if it names a recording
+  fs::path life;    // measured instead of a protocol unless empty
   BenchmarkOptions run{.data = ".", .output = {}, .only = {}, .vocabulary = {}, .method = {}};
   MethodArguments method;
   std::optional<int> runs;
@@ -47,11 +49,15 @@ constexpr const char* kBenchmarkFooter = R"(Examples:
   byre benchmark my_barn.yaml --data /data --only "tuesday*" monday --pace live
   byre benchmark --speed ~/recordings/euroc/MH_01_easy --runs 3
   byre benchmark --speed monday --map barn.byre --camera left -o out
+  byre benchmark --life life -o out
 
 Each case of the protocol is run with each of its arms: no_map (plain SLAM), localise_only (on the map of another
 recording, without mapping) and hybrid (on that map, with an online map). Maps are made once. The folder receives
 benchmark.md (the printed tables), benchmark.json, plots as SVG, the maps, and the trajectories of all runs, for
 "byre evaluate". Cases without their recordings are skipped.
+With --life the first recording of a folder, by name, is mapped; each later one runs on the first version of the map
+and on its newest version, which is then updated by that mission. life.md, life.json, life.svg and the versions are
+written to the folder, also after Ctrl-C.
 With --speed one recording is run, at live pace unless --pace is given. The times of the stages of a frame are
 printed, with CPU time, memory, and number of instructions if the machine counts them; -o also writes speed.md and
 speed.json. Ctrl-C keeps the measurements so far, with exit code 130. docs/reference/benchmark.md explains protocol
@@ -140,6 +146,31 @@ ExitCode measure_speed_command(BenchmarkCommandOptions options, std::ostream& re
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }
 
+void write_life(const LifeResult& result, const fs::path& folder) {
+  write_atomically(folder / "life.md", life_markdown(result) + "\n![Curves over the days](life.svg)\n");
+  write_atomically(folder / "life.json", life_json(result));
+  if (!result.days.empty()) write_atomically(folder / "life.svg", life_plot(result));
+}
+
+ExitCode measure_life_command(const BenchmarkCommandOptions& options, std::ostream& result) {
+  const LifeCase life{options.life, options.run.output.empty() ? "benchmark_life" : options.run.output,
+                      options.vocabulary, options.method.options()};
+  make_folder(life.output);
+  limit_image_threads(1);
+  const InterruptCatcher interrupt;
+  BenchmarkProgress progress(options.quiet);
+  LifeHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.before_run = [&progress](const std::string& what, int frames) { progress.begin(what, frames); };
+  hooks.after_frame = [&progress](int done, const PlayedFrame& frame) { progress.update(done, frame); };
+  hooks.after_day = [&](const LifeResult& so_far) { write_life(so_far, life.output); };
+  const LifeResult measured = measure_life(life, hooks);
+  progress.end();
+  write_life(measured, life.output);
+  result << life_markdown(measured);
+  return measured.stopped ? ExitCode::interrupted : ExitCode::done;
+}
+
 ExitCode run_benchmark_command(BenchmarkCommandOptions options, std::ostream& result) {
   const fs::path file = find_benchmark_protocol(options.protocol);
   BenchmarkProtocol protocol = read_benchmark_protocol(file);
@@ -196,11 +227,16 @@ Action declare_benchmark(CLI::App& command) {
             "Protocol file, or a built-in protocol: euroc, twin, mh_short")
       ->type_name("FILE|NAME")
       ->excludes(speed);
+  add_input(command, Input::folder, "--life", options->life,
+            "Measure a map over the recordings of this folder, updated after each")
+      ->type_name("FOLDER")
+      ->excludes(speed)
+      ->excludes("PROTOCOL");
   add_input(command, Input::folder, "--data", options->run.data, "Folder of the protocol's recordings (.)")
       ->type_name("FOLDER")
       ->excludes(speed);
   add_output(command, Output::folder, "-o,--output", options->run.output,
-             "Folder for results, created if missing (benchmark_PROTOCOL; with --speed none)")
+             "Folder for results, created if missing (benchmark_PROTOCOL, benchmark_life; with --speed none)")
       ->type_name("FOLDER");
   command
       .add_option("--runs", options->runs,
@@ -217,10 +253,12 @@ Action declare_benchmark(CLI::App& command) {
   command.footer(kBenchmarkFooter);
   check_when_parsed(command, [options = options.get()] {
     require_valid(options->speed.range);
-    if (options->protocol.empty() && !options->is_of_speed()) throw CLI::RequiredError("PROTOCOL or --speed");
+    const bool is_given = !options->protocol.empty() || options->is_of_speed() || !options->life.empty();
+    if (!is_given) throw CLI::RequiredError("PROTOCOL, --speed or --life");
   });
   return [options](std::ostream& result) {
     if (options->is_of_speed()) return measure_speed_command(*options, result);
+    if (!options->life.empty()) return measure_life_command(*options, result);
     return run_benchmark_command(*options, result);
   };
 }

@@ -50,6 +50,29 @@ TEST_F(BenchmarkProgram, RepeatsResultsWithQuiet) {
   EXPECT_EQ(read("a/trajectories/room.no_map.1.final.txt"), read("b/trajectories/room.no_map.1.final.txt"));
 }
 
+TEST_F(BenchmarkProgram, MeasuresALifeOfAMap) {
+  fs::create_directory(folder_ / "life");
+  for (const char* const day : {"day_1", "day_2", "day_3"}) {
+    fs::create_directory_symlink(fs::absolute(RenderedFixture::shared().folder()), folder_ / "life" / day);
+  }
+  const Outcome outcome = run("benchmark --life life -o lived");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("day_3, newest version"));
+  EXPECT_THAT(outcome.output, HasSubstr("| day_2 | "));
+  EXPECT_THAT(outcome.output, HasSubstr("Localised without a prediction, "));
+  EXPECT_THAT(read("lived/life.md"), HasSubstr(outcome.output));
+  const auto parsed = nlohmann::json::parse(read("lived/life.json"));
+  ASSERT_THAT(parsed["days"], SizeIs(2));
+  EXPECT_GT(parsed["days"][0]["first"]["trusted"], 0.5);
+  EXPECT_EQ(parsed["days"][0]["newest"]["wrongly_trusted"], 0);
+  EXPECT_THAT(read("lived/life.svg"), HasSubstr("Offline inliers"));
+  EXPECT_TRUE(fs::exists(folder_ / "lived/first.byre"));
+
+  const Outcome refused = run("benchmark --life lived");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.errors, HasSubstr("holds fewer than two recordings"));
+}
+
 TEST_F(BenchmarkProgram, MeasuresTheSpeedOfARecording) {
   const std::string room = "'" + RenderedFixture::shared().folder().string() + "'";
   const Outcome outcome = run("benchmark --speed " + room + " --frames 0:6 --runs 2 --pace paced -o speed");

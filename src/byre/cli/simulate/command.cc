@@ -7,16 +7,20 @@
 #include "byre/cli/shared/render_with_progress.h"
 #include "byre/cli/simulate/imperfection_options.h"
 #include "byre/playback/report/report.h"
+#include "byre/simulation/cowshed/barn_life.h"
 
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
@@ -29,6 +33,8 @@ struct SimulateOptions {
   fs::path output;
   bool has_motion = false;
   MotionSensorOptions motion;
+  int visits = 60;          // of a life
+  std::vector<int> only{};  // visits to render; empty: all
   bool json = false;
   bool quiet = false;
 };
@@ -51,6 +57,17 @@ recording (plan). With calibration errors, sensor.yaml contains them, and true_s
 for rendering. With --motion it also receives the measurements of two driven wheels and a gyroscope (wheel.txt,
 mav0/imu0), with their errors. The same options give the same bytes, for any number of threads. Ctrl-C leaves no
 files. docs/reference/simulation.md describes both.)";
+
+constexpr const char* kLifeFooter = R"(Examples:
+  byre simulate life --motion --imperfection good -o life
+  byre simulate life --visits 60 --only 1 2 3 --duration 30 --rate 8 --divide 2 -o life
+
+FOLDER receives a recording for each day, day_01 to day_60, as of "byre simulate cowshed". Day 1 is the mapping run.
+Things stay where the last visit left them; feed changes daily, tools are moved often, the gate is open on two days of
+the week. A third each of the visits is by day, at dusk, and by night with the headlight. Dirt is wiped off at the end
+of a week, the eastern gable is painted in week five, a stall is built in week seven, and the calibration error grows by
+half. A visit depends on the seed and its number only. Finished recordings are kept: the same command goes on after
+Ctrl-C.)";
 
 nlohmann::ordered_json imperfection_json(const CameraImperfection& camera) {
   return {{"calibration_level", camera.calibration_level},
@@ -97,11 +114,49 @@ ExitCode run_simulate(const SimulateOptions& options, std::ostream& result) {
   return ExitCode::done;
 }
 
+ExitCode run_life(const SimulateOptions& options, std::ostream& result) {
+  const InterruptCatcher interrupt;
+  std::vector<int> visits = options.only;
+  for (int visit = 1; options.only.empty() && visit <= options.visits; ++visit) visits.push_back(visit);
+  int rendered = 0;
+  for (const int visit : visits) {
+    const fs::path folder = options.output / fmt::format("day_{:02}", visit);
+    if (fs::exists(folder)) continue;
+    fs::path unfinished = folder;
+    unfinished += ".unfinished";
+    fs::remove_all(unfinished);  // of a run that was killed
+    if (!options.quiet) std::cerr << folder.filename().string() << "\n";
+    const Rendering rendering =
+        render_with_progress(visit_of_life(options.recording, visit), unfinished, interrupt, options.quiet);
+    if (rendering.stopped) {
+      fs::remove_all(unfinished);
+      return ExitCode::interrupted;
+    }
+    fs::rename(unfinished, folder);
+    ++rendered;
+  }
+  Report report{{{"program", "byre simulate"},
+                 {"version", BYRE_VERSION},
+                 {"scene", "life"},
+                 {"folder", options.output.string()},
+                 {"seed", options.recording.barn.seed},
+                 {"rendered", rendered},
+                 {"kept", visits.size() - static_cast<std::size_t>(rendered)}}};
+  report.row("rendered", "{rendered} visits; {kept} were there already");
+  report.row("folder", "{folder}");
+  result << (options.json ? to_json(report) : report.text);
+  return ExitCode::done;
+}
+
+CLI::Option* add_seed(CLI::App& command, CowshedOptions& barn) {
+  return command.add_option("--seed", barn.seed, "Seed of the barn")->type_name("N")->capture_default_str();
+}
+
 void declare_visit(CLI::App& command, CowshedRecordingOptions& options) {
   const std::map<std::string, BarnTime> times = {{"day", BarnTime::day}, {"dusk", BarnTime::dusk}};
   const std::map<std::string, BarnGate> gates = {{"closed", BarnGate::closed}, {"open", BarnGate::open}};
   CowshedOptions& barn = options.barn;
-  command.add_option("--seed", barn.seed, "Seed of the barn")->type_name("N")->capture_default_str();
+  add_seed(command, barn);
   command.add_option("--mission", barn.mission, "Number of the visit, counted from 1")
       ->type_name("N")
       ->check(between(1, 1'000'000))
@@ -227,25 +282,51 @@ void declare_motion(CLI::App& command, SimulateOptions& options) {
       ->needs(flag);
 }
 
+namespace {
+
+void declare_life(CLI::App& command, SimulateOptions& options) {
+  add_seed(command, options.recording.barn);
+  command.add_option("--visits", options.visits, "Number of visits, one a day")
+      ->type_name("N")
+      ->check(between(1, 1000))
+      ->capture_default_str();
+  command.add_option("--only", options.only, "Render these visits only")->type_name("N")->check(between(1, 1000));
+  command
+      .add_option("--change", options.recording.barn.change,
+                  "Share of the tools moved at each visit; of other things a third of it")
+      ->type_name("NUMBER")
+      ->check(between(0.0, 1.0))
+      ->capture_default_str();
+}
+
+// Options of both scenes.
+void declare_rendering(CLI::App& command, SimulateOptions& options, const char* output) {
+  declare_camera(command, options.recording);
+  declare_imperfection(command, options.imperfection);
+  declare_motion(command, options);
+  add_output(command, Output::folder, "-o,--output", options.output, output)->type_name("FOLDER")->required();
+  command.add_flag("--json", options.json, "Print the report as JSON");
+  command.add_flag("--quiet", options.quiet, "Show no progress");
+}
+
+}  // namespace
+
 Action declare_simulate(CLI::App& command) {
   const auto options = std::make_shared<SimulateOptions>();
   command.require_subcommand(1);
   CLI::App& cowshed = *command.add_subcommand("cowshed", "A barn with a feed alley, fences, cubicles and cows");
   declare_visit(cowshed, options->recording);
   declare_night(cowshed, options->recording.night);
-  declare_camera(cowshed, options->recording);
-  declare_imperfection(cowshed, options->imperfection);
-  declare_motion(cowshed, *options);
-  add_output(cowshed, Output::folder, "-o,--output", options->output, "Folder for the recording")
-      ->type_name("FOLDER")
-      ->required();
-  cowshed.add_flag("--json", options->json, "Print the report as JSON");
-  cowshed.add_flag("--quiet", options->quiet, "Show no progress");
+  declare_rendering(cowshed, *options, "Folder for the recording");
   cowshed.footer(kSimulateFooter);
-  return [options](std::ostream& result) {
+  CLI::App& life = *command.add_subcommand("life", "The same barn over two months, a recording for each day");
+  declare_life(life, *options);
+  declare_rendering(life, *options, "Folder for the recordings");
+  life.footer(kLifeFooter);
+  return [options, &life](std::ostream& result) {
     options->recording.camera = make_imperfection(options->imperfection);
     if (options->has_motion) options->recording.motion = options->motion;
-    return run_simulate(*options, result);
+    return life.parsed() ? run_life(*options, result) : run_simulate(*options, result);
   };
 }
 

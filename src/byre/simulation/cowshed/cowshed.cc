@@ -36,12 +36,13 @@ Cowshed build_cowshed(const CowshedOptions& options) {
   Cowshed barn;
   barn.light.ambient = time == BarnTime::day ? 0.35f : 0.045f;
   barn.air = {0.05f * static_cast<float>(options.dust), time == BarnTime::day ? 0.35f : 0.06f};
-  add_shell(barn, time, options.seed);
+  add_shell(barn, options);
   add_gates(barn, gate_of(options));
   add_store(barn, time, options.seed);
   add_frame(barn, options.seed);
   add_fences(barn, options.seed);
   add_cubicles(barn, options.seed);
+  if (options.has_stall) add_stall(barn, options.seed);
   add_fittings(barn, options.seed);
   add_tags(barn, options);
   add_lamps(barn, time);

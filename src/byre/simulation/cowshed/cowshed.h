@@ -21,6 +21,9 @@ struct CowshedOptions {
   std::uint64_t seed = 1;          // draws the building
   int mission = 1;                 // from 1; draws the changes between visits
   double change = 0.25;            // share of movable objects that later missions find moved
+  bool keeps_places = false;       // the share is moved at each mission, from where the last one left it, see barn_life
+  bool painted = false;            // the eastern gable was painted
+  bool has_stall = false;          // a stall was built behind the northern fence
   std::optional<BarnTime> time{};  // empty: day, in even missions dusk
   std::optional<int> cows{};       // empty: 3 in the first mission, 8 in later ones
   std::optional<BarnGate> gate{};  // empty: closed in the first mission, open in later ones

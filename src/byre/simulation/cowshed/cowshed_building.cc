@@ -196,12 +196,14 @@ void add_outline_of_box(Cowshed& barn, const Eigen::Isometry3f& world_from_box, 
   barn.outlines.push_back(outline);
 }
 
-void add_shell(Cowshed& barn, BarnTime time, std::uint64_t seed) {
-  const bool is_day = time == BarnTime::day;
-  SeededDraws draws(seed, 12);
+void add_shell(Cowshed& barn, const CowshedOptions& options) {
+  const bool is_day = time_of(options) == BarnTime::day;
+  SeededDraws draws(options.seed, 12), paint(options.seed, 13);
   add_floor(barn, draws);
   add_gable(barn, 0.0f, 1.0f, draws);
-  add_gable(barn, kLength, -1.0f, draws);
+  Cowshed unpainted;
+  add_gable(options.painted ? unpainted : barn, kLength, -1.0f, draws);
+  if (options.painted) add_gable(barn, kLength, -1.0f, paint);
   for (float x = 0.0f; x < kLength - 0.1f; x += kCowshedSize.bay) {
     add_side_bay(barn, x, 1.0f, is_day ? 3.6f : 0.16f, draws);  // the sun is south, behind the other wall
     add_side_bay(barn, x, -1.0f, is_day ? 5.2f : 0.3f, draws);

@@ -16,6 +16,7 @@ constexpr float kAlleyLength = kCowshedSize.length;
 constexpr float kFence = kCowshedSize.alley_half_width;
 
 const Material kSteel{.texture = BarnTexture::rust, .texture_width = 0.7f};
+const Material kStallPlanks{.texture = BarnTexture::planks, .texture_width = 1.7f};
 const Material kFloorConcrete{.texture = BarnTexture::concrete, .texture_width = 1.5f};
 
 // A feeding place: two bars leaning towards each other, one with a shackle.
@@ -161,6 +162,18 @@ void add_cubicles(Cowshed& barn, std::uint64_t seed) {
       add_outline_of_box(barn, make_isometry({x, side * 6.95f, 0.0f}), {0.03f, 1.4f, 1.0f});
     }
   }
+}
+
+void add_stall(Cowshed& barn, std::uint64_t seed) {
+  SeededDraws draws(seed, 24);
+  const float x = draws.between(12.0f, 20.0f);
+  for (const float side : {-1.0f, 1.0f}) {
+    const Eigen::Isometry3f wall = make_isometry({x + 1.5f * side, 4.0f, 0.8f});
+    add_box(barn.still, wall, {0.04f, 0.9f, 0.8f}, varied(kStallPlanks, draws));
+  }
+  const Eigen::Isometry3f front = make_isometry({x, 3.1f, 0.8f});
+  add_box(barn.still, front, {1.5f, 0.04f, 0.8f}, varied(kStallPlanks, draws));
+  add_outline_of_box(barn, make_isometry({x, 4.0f, 0.0f}), {1.5f, 0.9f, 0.8f});
 }
 
 void add_fittings(Cowshed& barn, std::uint64_t seed) {

@@ -89,6 +89,24 @@ std::vector<std::size_t> shuffled(std::size_t count, SeededDraws& draws) {
   return order;
 }
 
+// The share of tools that a mission moves; other things are moved three times less often.
+double share_moved(ObjectKind kind, double change) {
+  const bool is_tool = kind == ObjectKind::bucket || kind == ObjectKind::wheelbarrow || kind == ObjectKind::broom;
+  return is_tool ? change : change / 3.0;
+}
+
+// Moves each object as the last mission that moved it did.
+void move_as_last_left(const CowshedOptions& options, std::vector<MovableObject>& objects) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    for (int mission = options.mission; mission > 1; --mission) {
+      SeededDraws draws(hash(options.seed, static_cast<std::uint64_t>(mission), i + 2), 34);
+      if (draws.between(0.0f, 1.0f) >= share_moved(objects[i].kind, options.change)) continue;
+      objects[i] = draw_object(objects[i].kind, draws);
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<MovableObject> make_objects(const CowshedOptions& options) {
@@ -96,6 +114,10 @@ std::vector<MovableObject> make_objects(const CowshedOptions& options) {
   std::vector<MovableObject> objects;
   for (int i = 0; i < kObjects; ++i) objects.push_back(draw_object(static_cast<ObjectKind>(i % kObjectKinds), first));
   if (options.mission == 1) return objects;
+  if (options.keeps_places) {
+    move_as_last_left(options, objects);
+    return objects;
+  }
   SeededDraws later(hash(options.seed, static_cast<std::uint64_t>(options.mission), 1), 33);
   const auto moved = static_cast<std::size_t>(std::lround(options.change * kObjects));
   const std::vector<std::size_t> order = shuffled(objects.size(), later);

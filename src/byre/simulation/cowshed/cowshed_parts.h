@@ -17,12 +17,13 @@ Material varied(Material material, SeededDraws& draws);
 
 void add_outline_of_box(Cowshed& barn, const Eigen::Isometry3f& world_from_box, const Eigen::Vector3f& half_size);
 
-void add_shell(Cowshed& barn, BarnTime time, std::uint64_t seed);  // floor, walls, roof, windows
+void add_shell(Cowshed& barn, const CowshedOptions& options);  // floor, walls, roof, windows
 void add_gates(Cowshed& barn, BarnGate eastern);
 void add_store(Cowshed& barn, BarnTime time, std::uint64_t seed);  // feed store behind the eastern gable
 void add_frame(Cowshed& barn, std::uint64_t seed);                 // columns, trusses, purlins
 void add_fences(Cowshed& barn, std::uint64_t seed);
 void add_cubicles(Cowshed& barn, std::uint64_t seed);
+void add_stall(Cowshed& barn, std::uint64_t seed);
 void add_fittings(Cowshed& barn, std::uint64_t seed);  // signs, pipes, troughs, barrels
 void add_tags(Cowshed& barn, const CowshedOptions& options);
 // A tube lamp along x that hangs from the ceiling and is lit at dusk.

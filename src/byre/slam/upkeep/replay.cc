@@ -66,6 +66,7 @@ std::vector<ReplayFrame> frames_to_replay(const MapGraph& map) {
     frame.rig = map.rigs()[static_cast<std::size_t>(keyframe.rig)];
     frame.frame.features = measured_features(keyframe, frame.rig);
     frame.camera_from_world = keyframe.camera_from_world;
+    frame.covariance = keyframe.covariance;
   }
   return frames;
 }

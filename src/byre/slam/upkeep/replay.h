@@ -14,7 +14,8 @@ namespace byre {
 struct ReplayFrame {
   Frame frame;
   Rig rig;
-  Pose camera_from_world;  // pose in its mission
+  Pose camera_from_world;                // pose in its mission
+  Matrix6 covariance = Matrix6::Zero();  // covariance of that pose, see Keyframe::covariance
 };
 
 std::vector<ReplayFrame> frames_to_replay(const MapGraph& map);

@@ -2,6 +2,7 @@
 
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/rectified_change.h"
+#include "byre/health.h"
 #include "byre/slam/window/online_copy.h"
 
 #include <algorithm>
@@ -54,11 +55,38 @@ double calibration_difference(Calibration one, Calibration other) {
   return std::sqrt(sum / static_cast<double>(moves.size())) / change.rig().focal;
 }
 
+struct CountedPoses {
+  int on_map = 0;
+  int trusted = 0;
+};
+
+// Poses at places that the map shows. Others may be untrusted, because the robot was outside.
+CountedPoses count_on_map(std::span<const PoseRecord> poses, const MapGraph& map) {
+  constexpr double kNear = 1.5;     // metres
+  constexpr double kMaxTurn = 0.6;  // radians
+  std::vector<Pose> mapped;         // map_from_body
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Rig& rig = map.rigs()[static_cast<std::size_t>(map.rig_of(id))];
+    mapped.push_back(inverse(rig.body_from_camera * map.keyframe_header(id)->camera_from_world));
+  }
+  CountedPoses count;
+  for (const PoseRecord& pose : poses) {
+    const bool is_on_map = std::ranges::any_of(mapped, [&](const Pose& known) {
+      return (known.translation - pose.map_from_body.translation).norm() <= kNear &&
+             angle_between(known.rotation, pose.map_from_body.rotation) <= kMaxTurn;
+    });
+    count.on_map += is_on_map;
+    count.trusted += is_on_map && pose.verdict == static_cast<std::uint8_t>(Verdict::trusted);
+  }
+  return count;
+}
+
 }  // namespace
 
 std::string fault_of(const StoredSession& session, const StoredMap& map, std::span<const std::uint64_t> maps) {
   constexpr double kMaxDifference = 0.005;  // share of the focal length: 2 pixels of 400
-  constexpr double kLeastTrusted = 0.8;     // share of frames
+  constexpr double kMaxUntrusted = 0.2;     // share of the poses on the map
+  constexpr int kFirst = 10;                // poses before a place is confirmed
   const SessionRecord& record = session.record;
   if (std::ranges::find(maps, record.map_id) == maps.end()) {
     return "ran on another map (" + to_text(record.map_id) + ") than this one and the versions it was made of";
@@ -71,8 +99,10 @@ std::string fault_of(const StoredSession& session, const StoredMap& map, std::sp
     return fmt::format("has another calibration than the map: pixels differ by {:.2f} % of the focal length",
                        1e2 * difference);
   }
-  if (record.trusted < kLeastTrusted * record.frames || record.frames == 0) {
-    return fmt::format("has a trusted pose in {} of {} frames only", record.trusted, record.frames);
+  const auto [on_map, trusted] = count_on_map(record.poses, map.map);
+  if (on_map == 0) return "was never on the map";
+  if (trusted == 0 || on_map - trusted > std::max<double>(kFirst, kMaxUntrusted * on_map)) {
+    return fmt::format("has a trusted pose in {} of {} frames on the map only", trusted, on_map);
   }
   return {};
 }
@@ -80,15 +110,20 @@ std::string fault_of(const StoredSession& session, const StoredMap& map, std::sp
 SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found) {
   constexpr double kMaxShift = 0.1;  // metres
   constexpr double kMaxTurn = 1.0 * kDegree;
+  constexpr double kSigmas = 3.0;  // a mission drifts where the map shows little
   constexpr int kLeastFound = 2;
-  constexpr double kMaxElsewhere = 0.1;  // share of the frames found; one is never enough
+  constexpr double kMaxElsewhere = 0.2;  // share of the frames found; one is never enough
   SessionPlace place;
   place.frames = static_cast<int>(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!found[i].camera_from_world) continue;
     ++place.found;
     const Pose change = frames[i].camera_from_world * inverse(*found[i].camera_from_world);
-    place.elsewhere += change.translation.norm() > kMaxShift || rotation_log(change.rotation).norm() > kMaxTurn;
+    const Matrix6 covariance = frames[i].covariance + found[i].covariance;
+    const double shift_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+    const double turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+    place.elsewhere += change.translation.norm() > std::max(kMaxShift, kSigmas * shift_sigma) ||
+                       rotation_log(change.rotation).norm() > std::max(kMaxTurn, kSigmas * turn_sigma);
   }
   if (place.frames < kLeastFound) {
     place.fault = fmt::format("mapped too little to be placed: it has {} keyframes", place.frames);

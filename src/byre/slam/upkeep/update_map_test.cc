@@ -48,8 +48,12 @@ StoredSession session_of(const SimulatedMission& mission, const MapVersion& vers
                   simulated_vocabulary(), offline);
   StoredSession stored{"evening", {}, {}};
   for (const Frame& frame : mission.frames) {
-    stored.record.trusted += session.process(frame).health.verdict == Verdict::trusted;
+    const FrameReport report = session.process(frame);
     ++stored.record.frames;
+    if (!report.map_from_body) continue;
+    stored.record.poses.push_back({.time = report.time,
+                                   .map_from_body = *report.map_from_body,
+                                   .verdict = static_cast<std::uint8_t>(report.health.verdict)});
   }
   session.finish();
   const MapGraph map = standalone_copy(session.map());
@@ -97,7 +101,6 @@ class MapUpdates : public testing::Test {
 };
 
 TEST_F(MapUpdates, AddPlacesThatTheMapLacks) {
-  session_.record.trusted = session_.record.frames;  // most of the lap is not on the map
   const MapUpdate update = updated(parent_, {session_});
   ASSERT_TRUE(update.child) << update.refusal << update.sessions[0].place.fault;
   EXPECT_GT(update.sessions[0].keyframes_added, 3);
@@ -109,7 +112,7 @@ TEST_F(MapUpdates, AddPlacesThatTheMapLacks) {
 }
 
 TEST_F(MapUpdates, MoveNoPointAndNoKeyframeThatStays) {
-  session_.record.trusted = session_.record.frames;
+  for (PoseRecord& pose : session_.record.poses) pose.verdict = static_cast<std::uint8_t>(Verdict::trusted);
   const MapUpdate update = updated(parent_, {session_});
   ASSERT_TRUE(update.child);
   const StoredMap written = read_map(write_map(parent_.stored), "parent");
@@ -126,7 +129,7 @@ TEST_F(MapUpdates, MoveNoPointAndNoKeyframeThatStays) {
 }
 
 TEST_F(MapUpdates, RefuseSessionsWithAReason) {
-  session_.record.trusted = session_.record.frames;
+  for (PoseRecord& pose : session_.record.poses) pose.verdict = static_cast<std::uint8_t>(Verdict::trusted);
   const auto fault_with = [&](auto change) {
     StoredSession session = session_;
     change(session);
@@ -136,8 +139,16 @@ TEST_F(MapUpdates, RefuseSessionsWithAReason) {
     return update.sessions[0].place.fault;
   };
   EXPECT_THAT(fault_with([](StoredSession& session) { session.record.map_id = 7; }), HasSubstr("ran on another map"));
-  EXPECT_THAT(fault_with([](StoredSession& session) { session.record.trusted /= 2; }),
-              HasSubstr("has a trusted pose in"));
+  EXPECT_THAT(fault_with([](StoredSession& session) {
+                for (PoseRecord& pose : session.record.poses) {
+                  pose.verdict = static_cast<std::uint8_t>(Verdict::untrusted);
+                }
+              }),
+              HasSubstr("has a trusted pose in 0 of"));
+  EXPECT_THAT(fault_with([](StoredSession& session) {
+                for (PoseRecord& pose : session.record.poses) pose.map_from_body.translation.z() += 5.0;
+              }),
+              HasSubstr("was never on the map"));
   EXPECT_THAT(fault_with([](StoredSession& session) {
                 session.stored.recordings[0].calibration.left.fx *= 1.05;
                 session.stored.recordings[0].calibration.left.fy *= 1.05;
@@ -167,7 +178,6 @@ TEST_F(MapUpdates, RefuseSessionsWithAReason) {
 
 TEST_F(MapUpdates, RetirePointsThatMissionsMissRepeatedly) {
   StoredSession session = session_;
-  session.record.trusted = session.record.frames;
   constexpr std::uint32_t kGone = 20;
   for (std::uint32_t i = 0; i < kGone; ++i) session.record.points[7 * i] = {40, 0, 0, 30.0f};
   const MapUpdate once = updated(parent_, {session});
@@ -198,9 +208,8 @@ TEST_F(MapUpdates, IgnorePartsThatNoPointConnectsToTheMap) {
 }
 
 TEST_F(MapUpdates, TakeAPlaceFromOneMissionOnly) {
-  session_.record.trusted = session_.record.frames;
+  for (PoseRecord& pose : session_.record.poses) pose.verdict = static_cast<std::uint8_t>(Verdict::trusted);
   StoredSession again = session_of(circling(1.0, 4), parent_);
-  again.record.trusted = again.record.frames;
   const MapUpdate update = updated(parent_, {session_, again});
   ASSERT_TRUE(update.child) << update.refusal;
   EXPECT_LT(update.sessions[1].keyframes_added, update.sessions[0].keyframes_added / 2);
@@ -225,7 +234,7 @@ TEST(SessionSummary, KeepsSeparateKeyframesUpToALimit) {
 }
 
 TEST_F(MapUpdates, AreNotedInTheChild) {
-  session_.record.trusted = session_.record.frames;
+  for (PoseRecord& pose : session_.record.poses) pose.verdict = static_cast<std::uint8_t>(Verdict::trusted);
   MapUpdate update = updated(parent_, {session_});
   ASSERT_TRUE(update.child);
   const std::vector<MapHistory> history = history_of(*update.child);

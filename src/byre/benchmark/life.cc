@@ -1,0 +1,227 @@
+#include "byre/benchmark/life.h"
+
+#include "byre/base/stopwatch.h"
+#include "byre/benchmark/run_cost.h"
+#include "byre/geometry/degrees.h"
+#include "byre/geometry/evaluation/map_frame_error.h"
+#include "byre/geometry/median.h"
+#include "byre/input_error.h"
+#include "byre/io/recording/trajectory_input.h"
+#include "byre/playback/report/mission_errors.h"
+#include "byre/slam/system/option_table.h"
+#include "byre/slam/system/stored_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace byre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kBytesPerMegabyte = 1e6;
+constexpr std::size_t kDaysLocalised = 6;
+constexpr int kLocalisedStride = 10;  // frames
+
+std::vector<fs::path> recordings_in(const fs::path& folder) {
+  std::vector<fs::path> recordings;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_directory() && fs::exists(entry.path() / "mav0")) recordings.push_back(entry.path());
+  }
+  std::ranges::sort(recordings);
+  if (recordings.size() < 2) {
+    throw InputError(folder.string(), "holds fewer than two recordings",
+                     "render some: byre simulate life -o " + folder.string());
+  }
+  return recordings;
+}
+
+double megabytes(const fs::path& file) {
+  return static_cast<double>(fs::file_size(file)) / kBytesPerMegabyte;
+}
+
+LifeMission measures_of(const RunResult& run, const MapAlignment& alignment, const Trajectory& truth) {
+  constexpr double kClose = 0.05;  // metres
+  const MissionErrors errors = mission_errors(run, alignment, truth);
+  LifeMission mission;
+  std::vector<double> metres, inliers;
+  for (const PoseError& error : errors.causal) metres.push_back(error.position());
+  int trusted = 0;
+  for (const PlayedFrame& frame : run.frames) {
+    if (!frame.report) continue;
+    trusted += frame.report->health.verdict == Verdict::trusted;
+    inliers.push_back(frame.report->health.offline_inliers);
+  }
+  const auto frames = static_cast<double>(run.frames.size());
+  mission.trusted = trusted / frames;
+  mission.within_5_cm =
+      static_cast<double>(std::ranges::count_if(metres, [](double error) { return error <= kClose; })) / frames;
+  mission.wrongly_trusted = errors.wrongly_trusted;
+  mission.offline_inliers = median_or(std::move(inliers), 0.0);
+  if (metres.empty()) return mission;
+  mission.greatest_error = std::ranges::max(metres);
+  mission.median_error = median(std::move(metres));
+  return mission;
+}
+
+class LifeRunner {
+ public:
+  LifeRunner(const LifeCase& life, const LifeHooks& hooks)
+      : life_(life), hooks_(hooks), recordings_(recordings_in(life.folder)) {}
+
+  LifeResult run() {
+    map_first_day();
+    for (std::size_t day = 1; day < recordings_.size() && !hooks_.should_stop(); ++day) {
+      LifeDay lived = live(recordings_[day]);
+      if (hooks_.should_stop()) break;
+      result_.days.push_back(std::move(lived));
+      hooks_.after_day(result_);
+    }
+    if (!hooks_.should_stop()) result_.localisation = localise_last_days();
+    result_.stopped = hooks_.should_stop();
+    return std::move(result_);
+  }
+
+ private:
+  SlamOptions slam_options_for(const fs::path& recording) const {
+    SlamOptions options = slam_options(life_.method);
+    options.recording = recording.filename().string();
+    options.vocabulary = life_.vocabulary;
+    return options;
+  }
+
+  RunResult play_through(Slam& slam, Recording& recording, const std::string& what) const {
+    hooks_.before_run(what, recording.size());
+    PlayHooks hooks;
+    hooks.should_stop = hooks_.should_stop;
+    hooks.after_frame = hooks_.after_frame;
+    return play(slam, recording, hooks);
+  }
+
+  void map_first_day() {
+    const fs::path& day = recordings_.front();
+    const auto recording = open_recording(day, {});
+    Slam slam = Slam::mapping(recording->calibration(), slam_options_for(day));
+    RunResult run = play_through(slam, *recording, "map of " + day.filename().string());
+    if (hooks_.should_stop()) return;
+    if (run.final.empty()) throw InputError(day.string(), "gave no map", "see \"byre map\"");
+    alignment_ = align_to_truth(run.final, Scale::fixed, load_truth(day));
+    save_for_missions(std::move(run.stored), *slam.impl().inputs().vocabulary, "", first_);
+    result_.first_map_mb = megabytes(first_);
+  }
+
+  LifeDay live(const fs::path& day) {
+    LifeDay lived{.name = day.filename().string()};
+    const Trajectory truth = load_truth(day);
+    lived.first = mission_on(first_, day, truth, lived.name + ", first version", nullptr);
+    if (hooks_.should_stop()) return lived;
+    const fs::path session = life_.output / (lived.name + ".session");
+    fs::remove(session);
+    lived.newest = mission_on(newest_, day, truth, lived.name + ", newest version", &session);
+    if (hooks_.should_stop()) return lived;
+    if (fs::exists(session)) update(session, lived);
+    lived.map_mb = megabytes(newest_);
+    return lived;
+  }
+
+  // Saves a session unless null or the mission mapped nothing.
+  LifeMission mission_on(const fs::path& map, const fs::path& day, const Trajectory& truth, const std::string& what,
+                         const fs::path* session) const {
+    const auto recording = open_recording(day, {});
+    Slam slam = Slam::on_map(recording->calibration(), map, slam_options_for(day));
+    const RunResult run = play_through(slam, *recording, what);
+    if (run.map_damage) throw InputError(*run.map_damage);
+    if (session != nullptr && !hooks_.should_stop() && slam.impl().has_mapped()) slam.save_session(*session);
+    return measures_of(run, alignment_, truth);
+  }
+
+  void update(const fs::path& session, LifeDay& lived) {
+    const fs::path child = life_.output / (lived.name + ".byre");
+    reset_peak_memory();
+    const Stopwatch watch;
+    lived.update = update_map_file(newest_, std::array{session}, child, life_.vocabulary);
+    lived.update_seconds = watch.seconds();
+    lived.update_memory_mb = peak_memory_mb().value_or(0.0);
+    lived.session_mb = megabytes(session);
+    if (lived.update->refusal.empty()) newest_ = child;
+  }
+
+  LifeLocalisation localise_last_days() const {
+    const Map first_map = Map::load(first_), newest_map = Map::load(newest_);
+    LifeLocalisation all;
+    std::map<std::array<int, 2>, std::vector<Pose>> changes;  // by place
+    const std::size_t begin = recordings_.size() - std::min(kDaysLocalised, recordings_.size() - 1);
+    for (std::size_t day = begin; day < recordings_.size() && !hooks_.should_stop(); ++day) {
+      const auto recording = open_recording(recordings_[day], {});
+      const Trajectory truth = load_truth(recordings_[day]);
+      Localiser first(first_map, recording->calibration(), life_.vocabulary);
+      Localiser newest(newest_map, recording->calibration(), life_.vocabulary);
+      for (int i = 0; i < recording->size(); i += kLocalisedStride) {
+        const auto frame = recording->read(i);
+        if (!frame) continue;
+        ++all.frames;
+        const std::optional<Pose> before = found(first, *frame, truth, all.found_first, all.false_first);
+        const std::optional<Pose> now = found(newest, *frame, truth, all.found_newest, all.false_newest);
+        if (!before || !now) continue;
+        const Eigen::Vector2d place = (before->translation.head<2>() / 2.0).array().floor();
+        changes[{static_cast<int>(place.x()), static_cast<int>(place.y())}].push_back(*now * inverse(*before));
+      }
+    }
+    for (const auto& [place, poses] : changes) note_change(poses, all);
+    return all;
+  }
+
+  // Counts the localisation as found or false. Empty unless it is right.
+  std::optional<Pose> found(Localiser& localiser, const ImageFrame& frame, const Trajectory& truth, int& right,
+                            int& wrong) const {
+    const LocalisationReport report = localiser.localise(view_of(frame));
+    if (!report.map_from_body) return std::nullopt;
+    const std::vector<PosePair> pairs = associate({{frame.time, *report.map_from_body}}, truth, {});
+    if (pairs.empty()) return std::nullopt;
+    const Eigen::Vector3d position = alignment_.truth_from_map * report.map_from_body->translation;
+    const bool is_right = (position - pairs[0].true_world_from_body.translation).norm() <= kFarMetres;
+    ++(is_right ? right : wrong);
+    return is_right ? report.map_from_body : std::nullopt;
+  }
+
+  static void note_change(const std::vector<Pose>& newest_from_first, LifeLocalisation& all) {
+    constexpr std::size_t kLeastFrames = 5;
+    if (newest_from_first.size() < kLeastFrames) return;
+    ++all.places;
+    Eigen::Vector3d shift, turn;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double> shifts, turns;
+      for (const Pose& change : newest_from_first) {
+        shifts.push_back(change.translation[axis]);
+        turns.push_back(rotation_log(change.rotation)[axis]);
+      }
+      shift[axis] = median(std::move(shifts));
+      turn[axis] = median(std::move(turns));
+    }
+    all.shift = std::max(all.shift, shift.norm());
+    all.turn = std::max(all.turn, turn.norm() / kDegree);
+  }
+
+  // Constant after construction; borrowed.
+  const LifeCase& life_;
+  const LifeHooks& hooks_;
+
+  const std::vector<fs::path> recordings_;
+  const fs::path first_ = life_.output / "first.byre";
+  fs::path newest_ = first_;
+  MapAlignment alignment_;
+  LifeResult result_;
+};
+
+}  // namespace
+
+LifeResult measure_life(const LifeCase& life, const LifeHooks& hooks) {
+  return LifeRunner(life, hooks).run();
+}
+
+}  // namespace byre
