@@ -115,7 +115,8 @@ void bind_enums_of_reports(py::module_& module) {
                            {"recalibrated", SessionEvent::recalibrated},
                            {"dirt_found", SessionEvent::dirt_found},
                            {"dirt_gone", SessionEvent::dirt_gone},
-                           {"tag_moved", SessionEvent::tag_moved}});
+                           {"tag_moved", SessionEvent::tag_moved},
+                           {"map_changed", SessionEvent::map_changed}});
   bind_enum<LocalisationFailure>(module, "LocalisationFailure",
                                  "Reason why an image was not localised, ordered by the progress of the attempt.",
                                  {{"none", LocalisationFailure::none},

@@ -63,6 +63,8 @@ void bind_reports(py::module_& module) {
       .def_property_readonly(
           "map_from_body", [](const FrameReport& report) { return matrix_of(report.map_from_body); },
           "Pose in the offline map, or in the session's own map; jumps when the map is corrected. None while unknown.")
+      .def_readonly("map", &FrameReport::map,
+                    "Name in the site of the map that map_from_body refers to; empty without a site.")
       .def_property_readonly(
           "covariance",
           [](const FrameReport& report) { return covariance_of(report.map_from_body, report.covariance); },

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of map files, bags, messages, URDF and tags with address and undefined-behaviour sanitizers, on the
+# Fuzzes the readers of map files, bags, messages, URDF, tags and sites with address and undefined-behaviour sanitizers, on the
 # objects of the preset dev. Needs Clang.
 # Usage: fuzz.sh [SECONDS]        per fuzzer, 30 by default; inputs with new coverage are stored in build/fuzz/corpus
 set -euo pipefail
@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:-30}
 [[ $seconds =~ ^[0-9]+$ ]] || { echo "usage: fuzz.sh [SECONDS]" >&2; exit 2; }
-scripts/build.sh dev map_file_fuzzer bag_fuzzer urdf_fuzzer tag_file_fuzzer
+scripts/build.sh dev map_file_fuzzer bag_fuzzer urdf_fuzzer tag_file_fuzzer site_file_fuzzer
 mkdir -p build/fuzz
 # Sanitizers fail to start if the kernel randomises addresses beyond their expected range.
 runner=()
@@ -26,10 +26,13 @@ fuzz urdf_fuzzer 16 >build/fuzz/urdf.log 2>&1 &
 urdfs=$!
 fuzz tag_file_fuzzer 16 >build/fuzz/tag_file.log 2>&1 &
 tags=$!
+fuzz site_file_fuzzer 16 >build/fuzz/site_file.log 2>&1 &
+sites=$!
 failed=0
 fuzz bag_fuzzer 512 >build/fuzz/bag.log 2>&1 || failed=1
 wait "$maps" || failed=1
 wait "$urdfs" || failed=1
 wait "$tags" || failed=1
-cat build/fuzz/map_file.log build/fuzz/bag.log build/fuzz/urdf.log build/fuzz/tag_file.log
+wait "$sites" || failed=1
+cat build/fuzz/map_file.log build/fuzz/bag.log build/fuzz/urdf.log build/fuzz/tag_file.log build/fuzz/site_file.log
 exit "$failed"

@@ -35,7 +35,7 @@ PUBLIC = {
     "features.h": "features", "floor_plan.h": "features", "image.h": "features", "image_condition.h": "features",
     "plan_registration.h": "map",
     "body_motion.h": "odometry", "motion_warning.h": "odometry",
-    "calibration_file.h": "io", "extrinsics_file.h": "io", "recording.h": "io", "tag_file.h": "io",
+    "calibration_file.h": "io", "extrinsics_file.h": "io", "recording.h": "io", "site.h": "io", "tag_file.h": "io",
     "frame_cuts.h": "slam", "frame_report.h": "slam", "health.h": "slam", "session_event.h": "slam",
     "localisation_failure.h": "slam", "map.h": "slam", "slam.h": "slam", "state.h": "slam",
     "byre.h": "playback", "colmap.h": "playback",

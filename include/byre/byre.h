@@ -24,6 +24,7 @@
 #include "byre/pose_hint.h"
 #include "byre/recording.h"
 #include "byre/rig.h"
+#include "byre/site.h"
 #include "byre/slam.h"
 #include "byre/tag.h"
 #include "byre/tag_file.h"

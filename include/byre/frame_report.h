@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -50,6 +51,7 @@ struct FrameReport {
   // Pose in the frame of the offline map; without one in the frame of the session's own map. Corrected as the map is
   // refined, so it may jump. Empty while the pose is unknown.
   std::optional<Pose> map_from_body;
+  std::string map;  // name in the site of the map that map_from_body refers to; empty without a site
   // Covariance of delta in map_from_body * exp_pose(delta), relative to the map's origin.
   Matrix6 covariance = Matrix6::Zero();
   // Correction of the map since the previous frame, applied to the pose: after_from_before, both in the map frame.

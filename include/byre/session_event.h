@@ -24,7 +24,8 @@ enum class SessionEvent : std::uint8_t {
   recalibrated,      // refined calibration applied
   dirt_found,        // dirt on a lens detected; again when the hidden share has grown by half
   dirt_gone,
-  tag_moved  // tag contradicts the accepted pose repeatedly, see FrameReport::moved_tags
+  tag_moved,   // tag contradicts the accepted pose repeatedly, see FrameReport::moved_tags
+  map_changed  // first frame on another map of the site, or after a lift; see FrameReport::map
 };
 
 std::string_view to_string(SessionEvent event);

@@ -79,7 +79,9 @@ class Slam {
   static Slam extending(const Calibration& calibration, const std::filesystem::path& map,
                         const SlamOptions& options = {});
 
-  // Mission on an offline map, which is not modified. Poses are in its frame, with verdicts.
+  // Mission on an offline map, which is not modified. Poses are in its frame, with verdicts. map: also a site file
+  // (byre/site.h). The mission then begins on any of its maps and changes between them; poses are in the frame of
+  // FrameReport::map. Sessions and saved maps are of the active map.
   static Slam on_map(const Calibration& calibration, const std::filesystem::path& map, const SlamOptions& options = {});
 
   Slam(Slam&&) noexcept;
@@ -149,8 +151,8 @@ class Slam {
   // map.
   void save_session(const std::filesystem::path& path) const;
 
-  // map_from_body of all tracked frames, with all corrections so far. Gaps, also before the first pose, are filled by
-  // wheel odometry.
+  // map_from_body of all tracked frames, with all corrections so far; on a site each in its FrameReport::map. Gaps,
+  // also before the first pose, are filled by wheel odometry.
   Trajectory trajectory() const;
 
   // Pose on the floor plan of a pose in the map; empty if the map is not registered on a plan.

@@ -7,6 +7,7 @@
 #include "byre/io/image/image_names.h"
 #include "byre/playback/decode_ahead.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
@@ -21,14 +22,26 @@ Calibration best_calibration(const std::vector<SourceRecording>& recordings, con
   return known ? known->calibration : given;
 }
 
-// Extracts features of one camera and localises each frame in the map.
+std::vector<TagFamily> families_in(std::span<const SearchableMap> maps) {
+  std::vector<MappedTag> tags;
+  for (const SearchableMap& map : maps) tags.insert(tags.end(), map.tags.begin(), map.tags.end());
+  return families_of(tags);
+}
+
+// Inliers of the best place; negative without one, ascending by progress.
+int fit_of(const Localisation& found) {
+  if (!found.places_found.empty()) return static_cast<int>(found.places_found.front().features.size());
+  return static_cast<int>(found.failure) - static_cast<int>(LocalisationFailure::ambiguous) - 1;
+}
+
+// Extracts features of one camera and localises each frame in the maps.
 class Finder {
  public:
-  Finder(const SearchableMap& map, const Calibration& given)
-      : map_(map), extractor_(best_calibration(map.recordings, given), {}, families_of(map.tags)) {}
+  Finder(std::span<const SearchableMap> maps, const Calibration& given)
+      : maps_(maps), extractor_(best_calibration(maps.front().recordings, given), {}, families_in(maps)) {}
 
   LocalisedFrame find(ImageFrame images, std::string name) {
-    if (!map_.is_metric) {
+    if (!std::ranges::all_of(maps_, &SearchableMap::is_metric)) {
       images.right.reset();
       images.depth.reset();
     }
@@ -39,9 +52,7 @@ class Finder {
     const Frame frame = extractor_.extract(images).frame;
     result.extract_seconds = extraction.seconds();
     const Stopwatch search;
-    LocaliseOptions options;
-    options.tags = map_.tags;
-    result.localisation = localise(frame, extractor_.rig(), map_.view(), map_.index, options);
+    find_in_maps(frame, result);
     result.localise_seconds = search.seconds();
     if (result.localisation.tracked) {
       result.world_from_body =
@@ -51,7 +62,27 @@ class Finder {
   }
 
  private:
-  const SearchableMap& map_;
+  void find_in_maps(const Frame& frame, LocalisedFrame& result) const {
+    int rival = -1;  // inliers in another map
+    for (const SearchableMap& map : maps_) {
+      LocaliseOptions options;
+      options.tags = map.tags;
+      Localisation found = localise(frame, extractor_.rig(), map.view(), map.index, options);
+      const bool is_best = &map == &maps_.front() || fit_of(found) > fit_of(result.localisation);
+      if (&map != &maps_.front()) rival = std::max(rival, fit_of(is_best ? result.localisation : found));
+      if (!is_best) continue;
+      result.localisation = std::move(found);
+      result.map = map.name;
+    }
+    Localisation& best = result.localisation;
+    if (best.tracked && rival > 0 && rival >= kRivalShare * best.inliers) {
+      best.tracked.reset();
+      best.failure = LocalisationFailure::ambiguous;
+    }
+    if (!best.tracked) result.map.clear();
+  }
+
+  std::span<const SearchableMap> maps_;
   Extractor extractor_;
 };
 
@@ -83,8 +114,8 @@ std::vector<Timestamp> times_of(const std::vector<fs::path>& images) {
 
 }  // namespace
 
-LocaliseRun localise_recording(const SearchableMap& map, Recording& recording, const LocaliseHooks& hooks) {
-  Finder finder(map, recording.calibration());
+LocaliseRun localise_recording(std::span<const SearchableMap> maps, Recording& recording, const LocaliseHooks& hooks) {
+  Finder finder(maps, recording.calibration());
   DecodeAhead decoder(recording);
   LocaliseRun run;
   int done = 0;
@@ -99,9 +130,9 @@ LocaliseRun localise_recording(const SearchableMap& map, Recording& recording, c
   return run;
 }
 
-LocaliseRun localise_images(const SearchableMap& map, const std::vector<fs::path>& images, const Calibration& camera,
-                            const LocaliseHooks& hooks) {
-  Finder finder(map, {.left = camera.left, .right = std::nullopt, .body_from_left = camera.body_from_left});
+LocaliseRun localise_images(std::span<const SearchableMap> maps, const std::vector<fs::path>& images,
+                            const Calibration& camera, const LocaliseHooks& hooks) {
+  Finder finder(maps, {.left = camera.left, .right = std::nullopt, .body_from_left = camera.body_from_left});
   const std::vector<Timestamp> times = times_of(images);
   LocaliseRun run;
   for (std::size_t i = 0; i < images.size() && !hooks.should_stop(); ++i) {

@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -17,6 +19,7 @@ namespace byre {
 // Result of localising one frame independently.
 struct LocalisedFrame {
   std::string name;                     // image file, or time stamp in seconds
+  std::string map{};                    // SearchableMap::name; empty if not localised
   Timestamp time{};                     // time in the image's name, else its index in seconds
   std::optional<Pose> world_from_body;  // empty if not localised
   Localisation localisation;
@@ -36,14 +39,16 @@ struct LocaliseHooks {
 
 // Map with a place index. Borrows the map.
 struct SearchableMap {
-  SearchableMap(const StoredMap& stored, const Vocabulary& vocabulary)
-      : is_metric(stored.scale == MapScale::metric),
+  SearchableMap(const StoredMap& stored, const Vocabulary& vocabulary, std::string name_in_site = "")
+      : name(std::move(name_in_site)),
+        is_metric(stored.scale == MapScale::metric),
         map(stored.map),
         recordings(stored.recordings),
         tags(stored_tags(stored.notes)),
         index(index_of(stored.map, vocabulary)) {}
 
-  bool is_metric;  // whether disparities are comparable with the map
+  std::string name;  // in the site; empty without a site
+  bool is_metric;    // whether disparities are comparable with the map
   const MapGraph& map;
   const std::vector<SourceRecording>& recordings;
   std::vector<MappedTag> tags;
@@ -53,11 +58,12 @@ struct SearchableMap {
   MapView view() const { return {&map, empty_online_map}; }
 };
 
-// Localises each frame of a recording. Throws InputError if its calibration cannot be rectified.
-LocaliseRun localise_recording(const SearchableMap& map, Recording& recording, const LocaliseHooks& hooks);
+// Localises each frame of a recording in the maps of a site, or in one map. A frame that fits two maps is ambiguous.
+// Throws InputError if its calibration cannot be rectified.
+LocaliseRun localise_recording(std::span<const SearchableMap> maps, Recording& recording, const LocaliseHooks& hooks);
 
 // Localises images of a camera. Images of another size are scaled, with a warning.
-LocaliseRun localise_images(const SearchableMap& map, const std::vector<std::filesystem::path>& images,
+LocaliseRun localise_images(std::span<const SearchableMap> maps, const std::vector<std::filesystem::path>& images,
                             const Calibration& camera, const LocaliseHooks& hooks);
 
 }  // namespace byre

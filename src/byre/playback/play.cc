@@ -114,7 +114,7 @@ Trajectory located_frames(SlamImpl& slam, FrameSource& frames, const PlayHooks& 
 }
 
 void collect_results(SlamImpl& slam, const Trajectory& seen, RunResult& run) {
-  run.final = slam.prior().fill_gaps(seen);
+  run.final = slam.with_filled_gaps(seen);
   run.offline = slam.inputs().offline;
   run.calibration = slam.calibration();
   run.row_error = slam.row_error().pixels();
@@ -127,7 +127,7 @@ void collect_results(SlamImpl& slam, const Trajectory& seen, RunResult& run) {
   if (!run.offline) run.not_joined = slam.session().frames_not_joined();
   std::erase_if(run.not_joined,
                 [&](Timestamp time) { return std::ranges::binary_search(seen, time, {}, &StampedPose::time); });
-  run.motion.filled_poses = static_cast<int>(run.final.size() - seen.size());
+  if (slam.inputs().maps.size() < 2) run.motion.filled_poses = static_cast<int>(run.final.size() - seen.size());
   for (const PlayedFrame& frame : run.frames) {
     if (has_pose(frame)) run.causal.push_back({frame.time, *frame.report->map_from_body});
     if (frame.report && frame.report->odometry_from_body) {

@@ -5,8 +5,11 @@
 #include "byre/cli/shared/map_extrinsics.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/extrinsics_file.h"
+#include "byre/input_error.h"
+#include "byre/map/map_file.h"
 #include "byre/playback/archive/point_cloud.h"
 #include "byre/playback/report/inspection_report.h"
+#include "byre/site.h"
 
 #include <filesystem>
 #include <memory>
@@ -20,6 +23,7 @@ namespace byre::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 struct InspectOptions {
   fs::path map;
@@ -36,6 +40,7 @@ constexpr const char* kInspectFooter = R"(Examples:
   byre inspect barn.byre --points points.ply
   byre inspect barn.byre --extrinsics robot.yaml
   byre inspect barn.byre --pictures pictures
+  byre inspect farm.yaml
 
 Errors are distances in the rectified image between the measured point and the projection of the map point.)";
 
@@ -48,7 +53,51 @@ void write_pictures(const MapGraph& map, const fs::path& folder) {
   }
 }
 
+ExitCode inspect_site(const InspectOptions& options, std::ostream& result) {
+  if (options.points || options.extrinsics || options.pictures) {
+    throw InputError(options.map.string(), "is a site, and --points, --extrinsics and --pictures are of one map",
+                     "give one of its maps");
+  }
+  const Site site = read_site(options.map);
+  Report report{{{"site", site.name}, {"maps", Json::array()}, {"links", Json::array()}}};
+  report.row("site", "{site}");
+  for (const SiteMap& map : site.maps) {
+    const StoredMap stored = open_map(map.map);
+    Json figures = {{"name", map.name},
+                    {"map", map.map.string()},
+                    {"building", map.building},
+                    {"height_m", map.height},
+                    {"keyframes", stored.map.keyframe_count()},
+                    {"points", stored.map.point_count()},
+                    {"plan", stored.plan ? Json(stored.plan->plan) : Json()}};
+    report.row("map",
+               "{name}: {map}[{?building}, {building}], {height_m:g} m, {keyframes} keyframes, {points} points"
+               "[, on the plan {plan}|, not registered on a plan]",
+               figures);
+    report.figures["maps"].push_back(std::move(figures));
+  }
+  for (const SiteLink& link : site.links) {
+    Json figures = {{"kind", to_string(link.kind)},
+                    {"from", site.maps[link.from].name},
+                    {"to", site.maps[link.to].name},
+                    {"on_plan", !link.polygon.empty()}};
+    if (link.polygon.empty()) {
+      figures["centre_m"] = {link.centre.x(), link.centre.y(), link.centre.z()};
+      figures["radius_m"] = link.radius;
+    }
+    for (const Eigen::Vector2d& corner : link.polygon) figures["polygon_m"].push_back({corner.x(), corner.y()});
+    report.row("link",
+               "{kind} from {from} to {to}[{?on_plan}, {#polygon_m} corners on the plan"
+               "|, {radius_m:g} m around {centre_m} in the map]",
+               figures);
+    report.figures["links"].push_back(std::move(figures));
+  }
+  result << (options.json ? to_json(report) : to_text(report, options.verbose));
+  return ExitCode::done;
+}
+
 ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
+  if (is_site_file(options.map)) return inspect_site(options, result);
   if (options.points) require_writable(*options.points);
   if (options.extrinsics) require_writable(*options.extrinsics);
   const std::string name = options.map.string();
@@ -71,7 +120,9 @@ ExitCode run_inspect(const InspectOptions& options, std::ostream& result) {
 
 Action declare_inspect(CLI::App& command) {
   const auto options = std::make_shared<InspectOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\", or site file")
+      ->type_name("MAP|SITE")
+      ->required();
   command.add_flag("--verbose", options->verbose, "Print figures for developers too: features, words, errors, sizes");
   command.add_flag("--json", options->json, "Print the report as JSON, sizes in bytes, lengths in the map's unit");
   add_output(command, Output::point_cloud, "--points", options->points,

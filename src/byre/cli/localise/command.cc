@@ -17,6 +17,7 @@
 #include "byre/playback/localise_run.h"
 #include "byre/playback/report/localisation_report.h"
 #include "byre/playback/run_on_plan.h"
+#include "byre/site.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_file.h"
 
@@ -51,12 +52,14 @@ constexpr const char* kLocaliseFooter = R"(Examples:
   byre localise barn.byre evening_round --camera right
   byre localise barn.byre walk.mp4 --calibration phone.yaml --stride 30
   byre localise barn.byre photo1.png photo2.png --json
+  byre localise farm.yaml photo1.png --json
 
 Each frame is localised in the whole map, without tracking and without prediction. Images are those of the left
 camera of the map's first recording, unless --camera or --calibration is given. With truth, errors are in the map's
 frame: the map, not the frames, is aligned to the truth by its keyframes where the truth covers them; for a map of
 another recording also give the truth of that recording (--map-truth). The time of an image is in its name,
-nanoseconds or decimal seconds; images without a time are one second apart. Exit code 0 even if no frame is found.)";
+nanoseconds or decimal seconds; images without a time are one second apart. In a site of several maps a frame that fits
+two of them is not found; --json names the map of each frame. Exit code 0 even if no frame is found.)";
 
 bool is_recording(const fs::path& input) {
   return fs::is_directory(input) || is_video_file(input) || is_bag(input);
@@ -92,9 +95,38 @@ struct Work {
   LocaliseProtocol protocol;
 };
 
-Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored, const Vocabulary& vocabulary,
+// One map, or those of a site, with words.
+struct GivenMaps {
+  std::vector<std::string> names;  // in the site; empty without a site
+  std::vector<StoredMap> stored;
+};
+
+GivenMaps open_maps(const LocaliseCommandOptions& options, const Vocabulary& vocabulary) {
+  GivenMaps maps;
+  const auto add = [&](const std::string& name, const fs::path& file) {
+    maps.names.push_back(name);
+    add_words(maps.stored.emplace_back(open_map(file)), vocabulary);
+  };
+  if (!is_site_file(options.map)) {
+    add("", options.map);
+    if (options.frame == PoseFrame::plan) require_plan(maps.stored.front().plan, options.map);
+    return maps;
+  }
+  if (options.frame == PoseFrame::plan || options.truth) {
+    throw InputError(options.map.string(), "is a site, and --truth and --frame plan are of one map", "give one map");
+  }
+  for (const SiteMap& map : read_site(options.map).maps) add(map.name, map.map);
+  return maps;
+}
+
+Work localise_all(const LocaliseCommandOptions& options, const GivenMaps& given, const Vocabulary& vocabulary,
                   const InterruptCatcher& interrupt) {
-  const SearchableMap map(stored, vocabulary);
+  const StoredMap& stored = given.stored.front();
+  std::vector<SearchableMap> maps;
+  maps.reserve(given.stored.size());
+  for (std::size_t i = 0; i < given.stored.size(); ++i) {
+    maps.emplace_back(given.stored[i], vocabulary, given.names[i]);
+  }
   std::unique_ptr<Recording> recording;
   if (is_recording(options.inputs.front())) {
     recording = open_recording(options.inputs.front(), options.range, options.open);
@@ -110,8 +142,8 @@ Work localise_all(const LocaliseCommandOptions& options, const StoredMap& stored
     progress.update(done, watch.seconds(), is_found ? "found" : to_string(frame.localisation.failure),
                     is_found ? Tone::good : Tone::bad);
   };
-  LocaliseRun run = recording ? localise_recording(map, *recording, hooks)
-                              : localise_images(map, options.inputs, camera_of_images(options, stored), hooks);
+  LocaliseRun run = recording ? localise_recording(maps, *recording, hooks)
+                              : localise_images(maps, options.inputs, camera_of_images(options, stored), hooks);
   progress.close();
   LocaliseProtocol protocol{options.map.string(), recording ? options.inputs.front().string() : "images", frames};
   if (options.frame == PoseFrame::plan) protocol.plan = stored.plan;
@@ -140,25 +172,27 @@ void write_found(const Work& work, const fs::path& path) {
 ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
   require_inputs(options.inputs);
   if (options.trajectory) require_writable(*options.trajectory);
-  StoredMap stored = open_map(options.map);
-  if (options.frame == PoseFrame::plan) require_plan(stored.plan, options.map);
   const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
-  add_words(stored, vocabulary);
+  const GivenMaps maps = open_maps(options, vocabulary);
 
   limit_image_threads(1);
   const InterruptCatcher interrupt;
-  const Work work = localise_all(options, stored, vocabulary, interrupt);
+  const Work work = localise_all(options, maps, vocabulary, interrupt);
   if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
   if (options.trajectory) write_found(work, *options.trajectory);
-  const std::optional<LocalisationErrors> errors = judge(options, work.run, stored);
+  const std::optional<LocalisationErrors> errors = judge(options, work.run, maps.stored.front());
   const Report report = localisation_report(work.run, work.protocol, errors);
   result << (options.json ? to_json(report, 1) : report.text);
-  if (const InputError* const damage = stored.map.damage()) throw InputError(*damage);
+  for (const StoredMap& stored : maps.stored) {
+    if (const InputError* const damage = stored.map.damage()) throw InputError(*damage);
+  }
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
 }
 
 void declare_inputs(CLI::App& command, LocaliseCommandOptions& options) {
-  add_input(command, Input::file, "MAP", options.map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options.map, "Map file of \"byre map -o\", or site file")
+      ->type_name("MAP|SITE")
+      ->required();
   add_input(command, Input::recording, "INPUT", options.inputs,
             "Recording (EuRoC, KITTI odometry, TUM RGB-D, images, video), or image files")
       ->type_name("RECORDING|IMAGES...")

@@ -24,6 +24,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/core.h>
+
 namespace byre::cli {
 namespace {
 
@@ -132,11 +134,27 @@ RunResult play_and_log(Slam& slam, RunInput& input, const RunProtocol& protocol,
   return input.play(slam, hooks, interrupt);
 }
 
+// Times, in seconds, from which poses are in the frame of a map of a site: "TRAJECTORY.maps".
+void write_maps(const fs::path& trajectory, const RunResult& run) {
+  std::string text, map;
+  for (const PlayedFrame& frame : run.frames) {
+    if (!frame.report || frame.report->map == map) continue;
+    map = frame.report->map;
+    text += fmt::format("{:.9f} {}\n", to_seconds(frame.time), map);
+  }
+  if (!text.empty()) write_atomically(trajectory.string() + ".maps", text);
+}
+
 void write_results(const RunOptions& options, const RunResult& run, const Report& report, const MissionOutcome& mission,
                    OutputWriter& outputs) {
   outputs.attempt(options.trajectory, run.final, options.trajectory_format);
   outputs.attempt(options.causal_trajectory, run.causal, options.trajectory_format);
   outputs.attempt(options.odometry, run.odometry, options.trajectory_format);
+  outputs.attempt([&] {
+    for (const auto& trajectory : {options.trajectory, options.causal_trajectory}) {
+      if (trajectory) write_maps(*trajectory, run);
+    }
+  });
   outputs.attempt([&] {
     if (options.stats) write_atomically(*options.stats, to_json(report, run, mission));
   });

@@ -6,6 +6,7 @@
 #include "byre/cli/shared/pose_options.h"
 #include "byre/cli/shared/record_options.h"
 #include "byre/cli/shared/recording_options.h"
+#include "byre/site.h"
 
 #include <string>
 
@@ -21,6 +22,7 @@ constexpr const char* kRunFooter = R"(Examples:
   byre run evening_round --map barn.byre --events events.jsonl
   byre run evening_round --map barn.byre --trajectory map.txt --odometry odometry.txt --save-online changes.byre
   byre run evening_round --map barn.byre --save-session evening.session
+  byre run evening_round --map farm.yaml --trajectory poses.txt --events events.jsonl
   byre run evening_round --map barn.byre --truth evening_round --map-truth morning_round --stats stats.json
   byre run evening_round --map barn.byre --localise-only --causal-trajectory causal.txt
   byre run evening_round --map barn.byre --camera left --events events.jsonl
@@ -35,7 +37,9 @@ constexpr const char* kRunFooter = R"(Examples:
 With a map the run is a mission: it localises without an initial pose, tracks the offline map's points, maps new
 points online, and gives each frame a verdict on its pose. The file of the offline map is only read. Poses are in the
 map's frame; odometry is in a frame that begins at the start of the robot and never jumps. --localise-only disables
-online mapping; --save-session keeps what "byre update" needs; --frame plan converts poses in the map to poses on the floor plan of "byre register". Without --map
+online mapping; --save-session keeps what "byre update" needs. On a site of several maps (docs/reference/site_file.md) the robot may
+begin and wake up on any of them; each pose is in the frame of the map active then, named in events, statistics and
+TRAJECTORY.maps; what is saved is of the last map. --frame plan converts poses in the map to poses on the floor plan of "byre register". Without --map
 the whole recording is mapped as by "byre map", including finishing. With truth, errors are in the map's frame: the
 map, not the mission, is aligned to the truth by its own keyframes; for a map of another recording also give the
 truth of that recording (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
@@ -49,9 +53,9 @@ docs/reference/health_and_events.md describes events and health.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
   add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
-  CLI::Option* const map =
-      add_input(command, Input::file, "--map", options.map, "Offline map of the mission (none: plain SLAM)")
-          ->type_name("MAP");
+  CLI::Option* const map = add_input(command, Input::file, "--map", options.map,
+                                     "Offline map of the mission, or site file (none: plain SLAM)")
+                               ->type_name("MAP|SITE");
   declare_method_flag(command, "--localise-only", "map_online", "false", options.method,
                       "Track the offline map only, without online mapping")
       ->needs(map);
@@ -118,6 +122,12 @@ void require_consistent(const RunOptions& options) {
   }
   if (options.session && !options.method.options().session.map_online) {
     throw CLI::ValidationError("--localise-only", "disables online mapping, so --save-session has nothing to save");
+  }
+  if (options.map && is_site_file(*options.map)) {
+    const bool is_of_one_map = options.truth || options.view.is_wanted || options.view.plan;
+    if (is_of_one_map || options.frame == PoseFrame::plan) {
+      throw CLI::ValidationError("--map", "is a site, and --truth, --frame plan, --plan and --view are of one map");
+    }
   }
   if (options.view.plan && !options.map) {
     throw CLI::ValidationError("--plan", "needs a map that is registered on it: --map");

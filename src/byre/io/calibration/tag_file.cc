@@ -1,7 +1,5 @@
 #include "byre/tag_file.h"
 
-#include "byre/base/printable.h"
-#include "byre/base/text_file.h"
 #include "byre/features/tag_detector.h"
 #include "byre/geometry/degrees.h"
 #include "byre/input_error.h"
@@ -9,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -22,24 +21,6 @@ namespace fs = std::filesystem;
 constexpr std::array kFamilies = {TagFamily::tag36h11, TagFamily::tag25h9, TagFamily::tag_standard41h12};
 constexpr double kLargest = 10.0;  // metres, side of a tag
 constexpr double kFarthest = 1e6;  // metres, coordinate on a plan
-
-template <std::size_t Count>
-void require_known(const YAML::Node& fields, const std::array<const char*, Count>& known, const std::string& place) {
-  for (const auto& field : fields) {
-    const std::string name = field.first.IsScalar() ? field.first.Scalar() : "";
-    if (std::ranges::find(known, name) == known.end()) {
-      throw InputError(place + ": " + printable(name), "is not a field of tags",
-                       fmt::format("fields: {}", fmt::join(known, ", ")));
-    }
-  }
-}
-
-double number(const YAML::Node& node, const std::string& place, double low, double high) {
-  const std::optional<double> value = node && node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
-  if (!value) throw InputError(place, node ? "is not a number" : "is missing");
-  if (*value >= low && *value <= high) return *value;
-  throw InputError(place, fmt::format("is {:g}, outside {:g} to {:g}", *value, low, high));
-}
 
 TagFamily family_of(const YAML::Node& node, const std::string& place) {
   const std::string name = node.IsScalar() ? node.Scalar() : "";
@@ -63,11 +44,12 @@ std::optional<SurveyedTag> survey_of(const YAML::Node& fields, const std::string
   }
   SurveyedTag survey;
   for (int i = 0; i < 3; ++i) {
-    survey.position[i] = number(position[static_cast<std::size_t>(i)], place + ": position", -kFarthest, kFarthest);
+    survey.position[i] =
+        checked_number(position[static_cast<std::size_t>(i)], place + ": position", -kFarthest, kFarthest);
   }
-  if (const auto sigma = fields["sigma_m"]) survey.sigma = number(sigma, place + ": sigma_m", 1e-4, 100.0);
+  if (const auto sigma = fields["sigma_m"]) survey.sigma = checked_number(sigma, place + ": sigma_m", 1e-4, 100.0);
   if (const auto heading = fields["heading_deg"]) {
-    survey.heading = kDegree * number(heading, place + ": heading_deg", -360.0, 360.0);
+    survey.heading = kDegree * checked_number(heading, place + ": heading_deg", -360.0, 360.0);
   }
   return survey;
 }
@@ -82,7 +64,7 @@ std::vector<Tag> read_tags(const fs::path& path) {
                      "install libapriltag-dev and build byre again");
   }
   const YAML::Node root = load_yaml_mapping(path);
-  require_known(root, kFields, path.string());
+  require_known_fields(root, kFields, path.string(), "tags");
   const YAML::Node list = root["tags"];
   if (!list || !list.IsSequence() || list.size() == 0) {
     throw InputError(path.string() + ": tags", "is not a list of tags", "give one entry per tag, such as \"- id: 7\"");
@@ -91,16 +73,15 @@ std::vector<Tag> read_tags(const fs::path& path) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string place = fmt::format("{}: tags: entry {}", path.string(), i + 1);
     const YAML::Node fields = list[i];
-    if (!fields.IsMap()) throw InputError(place, "is not a YAML mapping of named fields");
-    require_known(fields, kFieldsOfTag, place);
+    require_known_fields(fields, kFieldsOfTag, place, "tags");
     const auto given = [&](const char* field) { return fields[field] ? fields[field] : root[field]; };
     Tag tag;
     if (const auto family = given("family")) tag.id.family = family_of(family, place + ": family");
     const int count = count_of(tag.id.family);
-    const double id = number(fields["id"], place + ": id", 0.0, count - 1.0);
+    const double id = checked_number(fields["id"], place + ": id", 0.0, count - 1.0);
     tag.id.number = static_cast<int>(id);
     if (tag.id.number != id) throw InputError(place + ": id", "is not a whole number");
-    tag.size = number(given("size"), place + ": size", 0.005, kLargest);
+    tag.size = checked_number(given("size"), place + ": size", 0.005, kLargest);
     tag.survey = survey_of(fields, place);
     if (std::ranges::count(tags, tag.id, &Tag::id) > 0) throw InputError(place + ": id", "is given twice");
     tags.push_back(tag);

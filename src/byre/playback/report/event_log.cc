@@ -14,16 +14,18 @@ using Json = nlohmann::ordered_json;
 
 // Fields of every line.
 Json line_of(int number, const FrameReport& report, std::string_view event) {
-  return {{"time_s", to_seconds(report.time)},
-          {"time_ns", report.time.count()},
-          {"frame", number},
-          {"event", event},
-          {"state", to_string(report.state)},
-          {"verdict", to_string(report.health.verdict)},
-          {"doubt", to_string(report.health.doubt)},
-          {"position_m", position_json(report.map_from_body)},
-          {"distance_since_offline_m", report.health.distance_since_offline},
-          {"seconds_since_offline", report.health.seconds_since_offline}};
+  Json line = {{"time_s", to_seconds(report.time)},
+               {"time_ns", report.time.count()},
+               {"frame", number},
+               {"event", event},
+               {"state", to_string(report.state)},
+               {"verdict", to_string(report.health.verdict)},
+               {"doubt", to_string(report.health.doubt)},
+               {"position_m", position_json(report.map_from_body)},
+               {"distance_since_offline_m", report.health.distance_since_offline},
+               {"seconds_since_offline", report.health.seconds_since_offline}};
+  if (!report.map.empty()) line["map"] = report.map;
+  return line;
 }
 
 bool moves_the_pose(SessionEvent event) {

@@ -64,6 +64,7 @@ Json localised_frame_json(const LocalisedFrame& frame, const std::optional<PlanR
                {"extract_ms", 1e3 * frame.extract_seconds},
                {"localise_ms", 1e3 * frame.localise_seconds}};
   if (!frame.world_from_body) return json;
+  if (!frame.map.empty()) json["map"] = frame.map;
   json["position_in_map_m"] = list_json(frame.world_from_body->translation);
   json["rotation_map_from_body_xyzw"] = list_json(frame.world_from_body->rotation.coeffs());
   if (!plan) return json;

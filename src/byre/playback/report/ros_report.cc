@@ -40,6 +40,7 @@ void put(std::vector<std::uint8_t>& bytes, const void* value, std::size_t size) 
 
 std::vector<ros::KeyValue> health_values(const FrameReport& report) {
   nlohmann::ordered_json figures = {{"state", to_string(report.state)}};
+  if (!report.map.empty()) figures["map"] = report.map;
   figures.update(health_json(report.health));
   figures.update({{"features", report.features},
                   {"matches", report.matches},

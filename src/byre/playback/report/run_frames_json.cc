@@ -48,6 +48,7 @@ Json frame_json(const PlayedFrame& frame, const PoseError* error) {
   json["expected"] = report.expected_points;
   json["matches"] = report.matches;
   json["inliers"] = report.inliers;
+  if (!report.map.empty()) json["map"] = report.map;
   if (report.map_from_body) json.update(pose_json(*report.map_from_body, report.covariance));
   if (report.odometry_from_body) json["odometry"] = pose_json(*report.odometry_from_body, report.odometry_covariance);
   json["health"] = health_json(report.health);

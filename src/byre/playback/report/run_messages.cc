@@ -41,7 +41,9 @@ RunMessages::CameraTopics RunMessages::add_camera(const std::string& name) {
 }
 
 void RunMessages::note(const RunView& view) {
-  if (!std::exchange(has_begun_, true)) note_first(view);
+  const bool is_map_new = view.frame.report->has(SessionEvent::map_changed);
+  if (is_map_new) path_.clear();
+  if (!std::exchange(has_begun_, true) || is_map_new) note_first(view);
   note_report(frames_++, view.frame);
   if (left_) note_images(view.images);
   note_map(view.frame.time, view.session.map().online());

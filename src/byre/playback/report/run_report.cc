@@ -249,6 +249,24 @@ void add_map_rows(const RunResult& run, const RunProtocol& protocol, const Frame
   add_finishing(run, protocol, report);
 }
 
+// Frames on each map of a site, in order of first use; empty without a site.
+Json frames_by_map(const RunResult& run) {
+  Json maps = Json::array();
+  for (const PlayedFrame& frame : run.frames) {
+    if (!frame.report || frame.report->map.empty()) continue;
+    const FrameReport& report = *frame.report;
+    auto map = std::ranges::find_if(maps, [&](const Json& each) { return each["name"] == report.map; });
+    if (map == maps.end()) {
+      maps.push_back({{"name", report.map}, {"frames", 0}, {"frames_trusted", 0}});
+      map = std::prev(maps.end());
+    }
+    (*map)["frames"] = (*map)["frames"].get<int>() + 1;
+    (*map)["frames_trusted"] =
+        (*map)["frames_trusted"].get<int>() + (report.health.verdict == Verdict::trusted ? 1 : 0);
+  }
+  return maps;
+}
+
 // Rows of a "byre run" report, with or without an offline map.
 void add_mission_rows(const MissionOutcome& mission, const RunResult& run, const RunProtocol& protocol,
                       const FrameCounts& counts, Report& report) {
@@ -257,13 +275,19 @@ void add_mission_rows(const MissionOutcome& mission, const RunResult& run, const
   if (has_map) {
     const MapGraph& map = run.offline->map();
     report.row("offline map",
-               "{map}, {keyframes} keyframes, {points} points[{!maps}; no online mapping (--localise-only)]"
+               "[{?site}{map}, at the end|{map}], {keyframes} keyframes, {points} points[{!maps}; no online mapping "
+               "(--localise-only)]"
                "[{?plan}; poses on the plan {plan}]",
                {{"map", protocol.offline},
+                {"site", !run.frames.empty() && run.frames.front().report && !run.frames.front().report->map.empty()},
                 {"keyframes", map.keyframe_count()},
                 {"points", map.point_count()},
                 {"maps", maps},
                 {"plan", protocol.plan ? Json(protocol.plan->plan) : Json()}});
+    if (Json maps = frames_by_map(run); !maps.empty()) {
+      for (const Json& map : maps) report.row("on map", "{name}: {frames} frames, {frames_trusted} trusted", map);
+      report.figures["maps"] = std::move(maps);
+    }
   }
   report.row("poses",
              "{counts.frames_with_pose} of {counts.frames} frames ({counts.coverage*100:.1f} %)"

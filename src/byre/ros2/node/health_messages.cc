@@ -42,6 +42,10 @@ void log_changes(const FrameReport& report, const std::optional<FrameReport>& la
       log(LogLevel::warning, note_on_dirt(health));
       continue;
     }
+    if (event == SessionEvent::map_changed) {
+      log(LogLevel::notice, "map changed to " + report.map);
+      continue;
+    }
     log(event == SessionEvent::navigation_error ? LogLevel::error : LogLevel::info, std::string(to_string(event)));
   }
   const bool was_damaged = last && last->health.doubt == DistrustReason::map_damaged;
@@ -57,6 +61,7 @@ void log_changes(const FrameReport& report, const std::optional<FrameReport>& la
 
 std::string health_line(const FrameReport& report) {
   nlohmann::ordered_json line = {{"time_ns", report.time.count()}, {"state", to_string(report.state)}};
+  if (!report.map.empty()) line["map"] = report.map;
   line["pose"] = report.map_from_body ? pose_json(*report.map_from_body, report.covariance) : nlohmann::ordered_json();
   line["health"] = health_json(report.health);
   return dump_json(line);

@@ -428,6 +428,10 @@ void Node::process(const Pairs::Pair& pair) {
 
 void Node::publish(const ReceivedImage& left, const FrameReport& report) {
   if (is_dropped(report.input)) return;  // without a pose
+  if (report.has(SessionEvent::map_changed)) {
+    restart();
+    publish_grid_of_map();
+  }
   map_from_body_ = report.map_from_body;
   const Timestamp now = steady_now();
   take_transforms(now);

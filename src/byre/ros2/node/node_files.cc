@@ -5,6 +5,7 @@
 #include "byre/ros2/node/map_messages.h"
 #include "byre/ros2/node/node_config.h"
 #include "byre/ros2/node/slam_runner.h"
+#include "byre/site.h"
 #include "byre/slam/system/stored_map.h"
 
 #include <filesystem>
@@ -85,6 +86,9 @@ std::optional<FleetOptions> fleet_options(const NodeConfig& config) {
 
 void require_plan_of_map(const NodeConfig& config) {
   if (!config.plan) return;
+  if (is_site_file(*config.map)) {
+    throw InputError("slam.plan", "is of one map, but slam.map is a site", "name plans in the site file");
+  }
   const auto registration = load_plan_registration(*config.map);
   const std::string name = config.plan->filename().string();
   if (!registration) {

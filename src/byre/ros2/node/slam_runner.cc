@@ -12,6 +12,7 @@
 #include "byre/map/map_file.h"
 #include "byre/playback/options_file.h"
 #include "byre/ros2/node/mission_sessions.h"
+#include "byre/site.h"
 #include "byre/tag_file.h"
 
 #include <algorithm>
@@ -120,7 +121,8 @@ void keep_as_previous(const fs::path& map) {
 
 SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(slam_options(config)), map_(config.map) {
   require_safe_save(config);
-  if (config.update != MapUpdates::off && config.map) require_writable(proposed_map(*config.map), FileContent::map);
+  if (config.update != MapUpdates::off && config.map && !is_site_file(*config.map))
+    require_writable(proposed_map(*config.map), FileContent::map);
 }
 
 FrameReport SlamRunner::process(const CameraImages& images) {
@@ -143,7 +145,8 @@ void SlamRunner::replace(Slam slam) {
 
 SlamOptions SlamRunner::options_for(const fs::path& map) const {
   SlamOptions options = options_;
-  if (config_.plan && lies_on(map, *config_.plan)) options.plan = read_drawn_floor_plan(*config_.plan);
+  if (config_.plan && !is_site_file(map) && lies_on(map, *config_.plan))
+    options.plan = read_drawn_floor_plan(*config_.plan);
   return options;
 }
 
@@ -209,13 +212,20 @@ Pose SlamRunner::published(const Pose& map_from_body) const {
   return on_plan.value_or(map_from_body);
 }
 
+const MissionMap* SlamRunner::active_map() const {
+  if (!slam_ || makes_map()) return nullptr;
+  const SlamImpl& impl = slam_->impl();
+  return &impl.inputs().maps[impl.active_map()];
+}
+
 std::string SlamRunner::map_name() const {
+  if (const MissionMap* const active = active_map(); active != nullptr && !active->name.empty()) return active->name;
   const std::optional<fs::path>& file = map_ ? map_ : config_.save;
   return file ? file->stem().string() : "";
 }
 
 std::vector<CloudPoint> SlamRunner::points() const {
-  if (!makes_map()) return points_of(*map_, config_.in_plan);
+  if (!makes_map()) return points_of(active_map()->file, config_.in_plan);
   const Pose published_from_map = published(Pose{});
   const auto positions = slam_->point_positions();
   const auto greys = slam_->point_greys();
@@ -234,7 +244,8 @@ std::optional<ros::OccupancyGrid> SlamRunner::occupancy() const {
   options.footprint_radius = config_.grid_footprint;
   options.body_height = config_.body_height;
   try {
-    return grid_of(load_map(*map_), config_.in_plan, options);
+    const MissionMap* const active = active_map();
+    return grid_of(load_map(active != nullptr ? active->file : *map_), config_.in_plan, options);
   } catch (const InputError& error) {
     throw InputError("no occupancy grid of " + map_->string(), error.reason(),
                      error.remedy() + "; the settings are grid.body_height, grid.resolution and grid.from_map");
@@ -260,6 +271,9 @@ CommandResult SlamRunner::update() {
   require_running();
   if (config_.update == MapUpdates::off) {
     throw InputError("update", "is switched off", "set slam.update to propose or automatic");
+  }
+  if (is_site_file(*map_)) {
+    throw InputError("update", "is of one map, but slam.map is a site", "run each map alone, or use byre update");
   }
   if (!is_map_intact_) {
     throw InputError("update", "is impossible, as the previous map is used", "restore the damaged map first");

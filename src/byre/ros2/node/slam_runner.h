@@ -4,6 +4,7 @@
 #include "byre/ros2/node/map_messages.h"
 #include "byre/ros2/node/node_config.h"
 #include "byre/slam.h"
+#include "byre/slam/system/slam_impl.h"
 
 #include <filesystem>
 #include <optional>
@@ -59,7 +60,7 @@ class SlamRunner {
   // Occupancy grid of the current map, which is read from its file again. Empty without a map or if switched off.
   // Throws InputError if the map has none.
   std::optional<ros::OccupancyGrid> occupancy() const;
-  // File name of the current map without folder and extension.
+  // Name of the active map in its site; without a site its file name without folder and extension.
   std::string map_name() const;
   bool makes_map() const { return config_.task != NodeTask::mission; }
 
@@ -80,6 +81,7 @@ class SlamRunner {
 
  private:
   Slam make(const std::filesystem::path* map) const;
+  const MissionMap* active_map() const;  // nullptr unless a mission
   SlamOptions options_for(const std::filesystem::path& map) const;
   void replace(Slam slam);
   void require_running() const;

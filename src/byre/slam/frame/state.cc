@@ -6,10 +6,10 @@
 namespace byre {
 
 std::string_view to_string(SessionEvent event) {
-  return name_among<SessionEvent::tag_moved>(
+  return name_among<SessionEvent::map_changed>(
       {"initialised", "localised", "pose lost", "relocalised", "blinded", "left mapped area", "entered mapped area",
        "navigation error", "restarted", "place refused", "place refuted", "online map corrected", "loop found",
-       "map corrected", "recalibrated", "dirt on the lens", "lens is clean", "tag moved"},
+       "map corrected", "recalibrated", "dirt on the lens", "lens is clean", "tag moved", "map changed"},
       event);
 }
 

@@ -14,6 +14,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -46,6 +47,7 @@ class OfflineTracker {
 
   // Before the first frame.
   void refine_calibration(const Calibration& given, double prior_sigmas);
+  void continue_calibration(MissionCalibrator calibrator) { calibrator_ = std::move(calibrator); }
 
   // Once for each frame.
   std::optional<MissionCalibrator::Switch> collect_camera();

@@ -4,7 +4,9 @@
 #include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/tracking/keyframes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace byre {
@@ -23,6 +25,34 @@ PoseHint surroundings_of(const PoseHint& hint) {
   around.radius *= 2.0;
   around.turn += kTurnBetweenViews;
   return around;
+}
+
+// Places of a frame to try in one map; the words are those of the frame.
+struct Candidates {
+  std::span<const Word> words;
+  std::vector<PlaceCandidate> places{};
+};
+
+// Candidates of each map. Those of all maps compete by their group scores, which depend on frame and vocabulary alone.
+std::vector<Candidates> candidates_in(std::span<const std::shared_ptr<const OfflineMap>> maps,
+                                      std::span<const Word> words) {
+  constexpr std::size_t kLeastOfMap = 2;
+  const MapGraph nothing_online(Origin::online);
+  std::vector<Candidates> candidates;
+  std::vector<float> scores;
+  for (const auto& offline : maps) {
+    const MapView map(&offline->map(), nothing_online);
+    candidates.push_back({words, find_places(offline->places(), map, words, kPlacesTried)});
+    for (const PlaceCandidate& place : candidates.back().places) scores.push_back(place.group_score);
+  }
+  std::ranges::sort(scores, std::greater{});
+  const std::size_t most = std::min(scores.size(), static_cast<std::size_t>(kPlacesTried.max_candidates));
+  const float least = most > 0 ? std::max(scores[most - 1], kPlacesTried.min_score_share * scores.front()) : 0.0F;
+  for (Candidates& of_map : candidates) {
+    std::vector<PlaceCandidate>& places = of_map.places;
+    while (places.size() > kLeastOfMap && places.back().group_score < least) places.pop_back();
+  }
+  return candidates;
 }
 
 }  // namespace
@@ -46,7 +76,11 @@ void ActiveHint::expire(Timestamp frame) {
   if (to_seconds(frame - *first_frame_) >= hint_->seconds) hint_.reset();
 }
 
-BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options) {
+namespace {
+
+// candidates: nullptr: by a query of this map.
+BoundedLocalisation localise_at_candidates(const OfflineMap& offline, const PlaceQuery& query,
+                                           const PlaceSearchOptions& options, const Candidates* candidates) {
   const auto& [frame, rig, hint, reach, hidden] = query;
   LocaliseOptions localise_options = options.localise;
   localise_options.hidden = hidden;
@@ -68,7 +102,9 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& que
     };
   }
   Localisation& found = result.found;
-  found = localise(frame, rig, map, offline.places(), localise_options, filter);
+  found = candidates != nullptr ? localise_at(frame, candidates->words, rig, map, offline.places().vocabulary(),
+                                              candidates->places, localise_options, filter)
+                                : localise(frame, rig, map, offline.places(), localise_options, filter);
   if (!hint) return result;
   const auto is_elsewhere = [&](const TrackedFrame& tracked) {
     return !is_near(*hint, inverse(tracked.camera_from_world) * camera_from_body);
@@ -80,8 +116,9 @@ BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& que
   return result;
 }
 
-PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options) {
-  const auto [found, refused] = localise_in(offline, query, options);
+PlaceSearch search_at_candidates(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options,
+                                 const Candidates* candidates) {
+  const auto [found, refused] = localise_at_candidates(offline, query, options, candidates);
   PlaceSearch search{query.frame.time, query.rig, std::nullopt, refused};
   for (const TrackedFrame& place : found.places_found) search.places.push_back(place.camera_from_world);
   if (!found.tracked) return search;
@@ -105,6 +142,27 @@ PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, con
   search.found = FoundPlace{found.tracked->camera_from_world, depth, std::move(view)};
   search.refused = DistrustReason::none;
   return search;
+}
+
+}  // namespace
+
+BoundedLocalisation localise_in(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options) {
+  return localise_at_candidates(offline, query, options, nullptr);
+}
+
+PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options) {
+  return search_at_candidates(offline, query, options, nullptr);
+}
+
+std::vector<PlaceSearch> search_places(std::span<const std::shared_ptr<const OfflineMap>> maps, const PlaceQuery& query,
+                                       const PlaceSearchOptions& options) {
+  const std::vector<Word> words = maps.front()->places().vocabulary().words_of(*query.frame.features);
+  const std::vector<Candidates> candidates = candidates_in(maps, words);
+  std::vector<PlaceSearch> searches;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    searches.push_back(search_at_candidates(*maps[i], query, options, &candidates[i]));
+  }
+  return searches;
 }
 
 }  // namespace byre

@@ -7,7 +7,9 @@
 #include "byre/slam/places/place_view.h"
 #include "byre/trajectory.h"
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace byre {
@@ -67,5 +69,10 @@ struct PlaceSearch {
   std::vector<Pose> places{};                     // camera_from_offline at each place that shows the frame
 };
 PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);
+
+// Same in several maps with words of one vocabulary, by one query: candidates of all maps compete by their scores, but
+// each map keeps its best. Takes little longer than in one map. query: without hint and reach, which refer to one map.
+std::vector<PlaceSearch> search_places(std::span<const std::shared_ptr<const OfflineMap>> maps, const PlaceQuery& query,
+                                       const PlaceSearchOptions& options);
 
 }  // namespace byre

@@ -96,13 +96,11 @@ std::vector<PointMatch> most_similar(std::vector<PointMatch> matches) {
   return matches;
 }
 
-constexpr PlaceQueryOptions kPlaces{.max_candidates = 10, .group_size = 10, .min_score_share = 0.3f};
 constexpr int kMinFeatures = 50;        // corners in a frame
 constexpr int kMinMatches = 10;         // matches by words
 constexpr int kMinPoseInliers = 8;      // inliers of a first pose
 constexpr int kMaxDraws = 2000;         // RANSAC iterations
 constexpr double kMaxMatchError = 6.0;  // pixels, largest error of an inlier of a first pose
-constexpr double kRivalShare = 0.7;     // share of the best place's inliers from which a second place is a rival
 // Search around a first pose: default options, since it is no motion prediction.
 TrackOptions around_first_pose(const LocaliseOptions& options) {
   TrackOptions around;
@@ -193,7 +191,7 @@ std::vector<KeyframeId> keyframes_near(const MapGraph& map, const Pose& camera_f
   std::ranges::sort(near);
   std::vector<KeyframeId> ids;
   for (const auto& [distance, id] : near) {
-    if (std::ssize(ids) < kPlaces.group_size) ids.push_back(id);
+    if (std::ssize(ids) < kPlacesTried.group_size) ids.push_back(id);
   }
   return ids;
 }
@@ -305,7 +303,7 @@ Localisation localise(const Frame& frame, const Rig& rig, const MapView& map, co
                       const LocaliseOptions& options, const PlaceFilter& filter) {
   if (frame.features->size() < kMinFeatures) return failed(Failure::too_few_features, 0, 0);
   const std::vector<Word> words = index.vocabulary().words_of(*frame.features);
-  const std::vector<PlaceCandidate> places = find_places(index, map, words, kPlaces, filter.is_excluded);
+  const std::vector<PlaceCandidate> places = find_places(index, map, words, kPlacesTried, filter.is_excluded);
   return localise_at(frame, words, rig, map, index.vocabulary(), places, options, filter);
 }
 

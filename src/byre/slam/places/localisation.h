@@ -41,6 +41,12 @@ std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& 
                                     std::span<const KeyframeId> keyframes, const Vocabulary& vocabulary,
                                     const PlaceMatchOptions& options);
 
+// Candidate places of a frame.
+inline constexpr PlaceQueryOptions kPlacesTried{.max_candidates = 10, .group_size = 10, .min_score_share = 0.3f};
+
+// Share of the best place's inliers from which a second place is a rival.
+inline constexpr double kRivalShare = 0.7;
+
 inline constexpr int kKeyframesOfPlace = 20;  // keyframes whose points are matched around a first pose
 
 struct LocaliseOptions {

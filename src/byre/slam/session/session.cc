@@ -76,6 +76,26 @@ std::optional<RefinedCalibration> Session::self_calibration() const {
   return state_.rolling_shutter.refined(refined);
 }
 
+Session::KnownCameras Session::known_cameras() const {
+  KnownCameras known{state_.rig, {}, state_.rolling_shutter};
+  if (state_.mission && state_.mission->calibrator()) {
+    known.calibrator = state_.mission->calibrator();
+    known.calibrator->job().abandon();  // its job stays with this session
+  }
+  return known;
+}
+
+void Session::continue_cameras(KnownCameras known) {
+  assert(state_.mission && state_.pose_filter.trajectory().empty());
+  state_.rolling_shutter = std::move(known.rolling_shutter);
+  if (known.calibrator) state_.mission->continue_calibration(*std::move(known.calibrator));
+}
+
+double Session::log_odds_of_place() const {
+  const bool is_placed = state_.pose_filter.has_pose() && state_.is_registered();
+  return is_placed ? state_.pose_filter.place().log_odds_to_rivals() : kNoRivals;
+}
+
 FrameReport Session::process(const Frame& rectified, const std::optional<BodyMotion>& motion, FrameBudget* budget) {
   deliver_results(&Executor::collect, needs_points_soon(state_, options_.keyframes.min_tracked)
                                           ? &Executor::collect_early

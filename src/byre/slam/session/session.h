@@ -70,6 +70,19 @@ class Session {
   // The refined calibration; empty before the first refinement.
   std::optional<RefinedCalibration> self_calibration() const;
 
+  // Cameras as calibrated by another session; its next frame may be this session's first. The session began with
+  // known.rig. Call it before the first frame.
+  struct KnownCameras {
+    Rig rig;
+    std::optional<MissionCalibrator> calibrator;
+    RollingShutterCorrector rolling_shutter;
+  };
+  KnownCameras known_cameras() const;
+  void continue_cameras(KnownCameras known);
+
+  // Log-odds of the present place in the offline map against look-alikes; kNoRivals without a pose tracked there.
+  double log_odds_of_place() const;
+
   // Limits localisation in the offline map to the hint until it expires.
   void set_initial_pose(const PoseHint& hint) {
     state_.hint.set_hint(hint);
@@ -114,6 +127,7 @@ class Session {
   // both. The offline map does not change. Call it after finish().
   void finish_mission(const FinishHooks& hooks);
 
+  const SessionOptions& options() const { return options_; }
   MapView map() const { return state_.map(); }
 
   // Map points matched in the last frame; empty without a pose.

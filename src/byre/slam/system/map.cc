@@ -1,6 +1,7 @@
 #include "byre/map.h"
 
 #include "byre/features/jpeg.h"
+#include "byre/geometry/polygon.h"
 #include "byre/input_error.h"
 #include "byre/map/map_file.h"
 #include "byre/map/mapped_tag.h"
@@ -113,19 +114,6 @@ std::vector<int> numbers_of(const std::vector<AtDistance>& items) {
   std::vector<int> numbers;
   for (const AtDistance& item : items) numbers.push_back(item.number);
   return numbers;
-}
-
-// By the even-odd rule.
-bool is_inside(std::span<const Eigen::Vector2d> corners, const Eigen::Vector2d& point) {
-  bool is_odd = false;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Eigen::Vector2d& from = corners[i];
-    const Eigen::Vector2d& to = corners[(i + 1) % corners.size()];
-    if ((from.y() > point.y()) == (to.y() > point.y())) continue;
-    const double crossing = from.x() + (point.y() - from.y()) / (to.y() - from.y()) * (to.x() - from.x());
-    if (point.x() < crossing) is_odd = !is_odd;
-  }
-  return is_odd;
 }
 
 bool observes_points(const Keyframe& keyframe) {

@@ -6,6 +6,7 @@
 #include "byre/map/map_file.h"
 #include "byre/map/map_values.h"
 #include "byre/map/point_grey.h"
+#include "byre/site.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/slam_impl.h"
 #include "byre/slam/system/stored_map.h"
@@ -101,6 +102,28 @@ std::unique_ptr<SlamImpl> make(const Calibration& given, const SlamOptions& opti
                                     InputCheckOptions{options.max_pair_difference, options.max_gap});
 }
 
+MissionMap load_mission_map(const SiteMap& map, const Vocabulary& vocabulary,
+                            const std::optional<DrawnFloorPlan>& plan) {
+  return {map.name, load_offline_map(map.map, vocabulary, plan), map.map, map_id(map.map),
+          load_plan_registration(map.map)};
+}
+
+void load_site(const fs::path& path, const SlamOptions& options, SlamInputs& inputs) {
+  if (options.plan)
+    throw InputError("SlamOptions::plan", "is of one map, not of a site", "name plans in the site file");
+  const Site site = read_site(path);
+  for (const SiteMap& map : site.maps) {
+    const auto plan = map.plan ? std::optional(read_drawn_floor_plan(*map.plan)) : std::nullopt;
+    inputs.maps.push_back(load_mission_map(map, *inputs.vocabulary, plan));
+  }
+  for (const SiteLink& link : site.links) {
+    if (link.polygon.empty() || inputs.maps[link.from].plan) continue;
+    throw InputError(inputs.maps[link.from].file.string(), "is not registered on a floor plan, but has a link on it",
+                     "register it with byre register, or give centre as [x, y, z] in the map");
+  }
+  inputs.links = site.links;
+}
+
 }  // namespace
 
 Slam::Slam(std::unique_ptr<SlamImpl> impl) : impl_(std::move(impl)) {}
@@ -135,10 +158,13 @@ Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const Sla
   const Calibration given = checked(calibration, options);
   SlamInputs inputs;
   inputs.vocabulary = open_vocabulary(options.vocabulary);
-  inputs.offline = load_offline_map(map, *inputs.vocabulary, options.plan);
-  inputs.plan = load_plan_registration(map);
-  inputs.offline_file = map;
-  inputs.offline_id = map_id(map);
+  if (is_site_file(map)) {
+    load_site(map, options, inputs);
+  } else {
+    inputs.maps.push_back(load_mission_map({"", map}, *inputs.vocabulary, options.plan));
+  }
+  inputs.offline = inputs.maps.front().offline;
+  inputs.plan = inputs.maps.front().plan;
   return Slam(make(given, options, std::move(inputs)));
 }
 
@@ -224,9 +250,9 @@ auto take_for(const fs::path& path, SlamImpl& slam, Take take) {
     throw InputError(path.string(), "is not written, because the map is still empty",
                      "let the robot move, and check the frame reports");
   }
-  const auto& offline = slam.inputs().offline_file;
-  std::error_code none_there;
-  if (offline && fs::equivalent(path, *offline, none_there)) {
+  for (const MissionMap& map : slam.inputs().maps) {
+    std::error_code none_there;
+    if (!fs::equivalent(path, map.file, none_there)) continue;
     throw InputError(path.string(), "is the offline map of the mission and must not be replaced", "name another file");
   }
   return *std::move(stored);
@@ -256,12 +282,12 @@ Trajectory Slam::trajectory() const {
 }
 
 std::optional<Pose> Slam::plan_from_body(const Pose& map_from_body) const {
-  const auto& plan = impl_->inputs().plan;
+  const auto plan = impl_->plan();
   return plan && is_finite(map_from_body) ? std::optional(byre::plan_from_body(*plan, map_from_body)) : std::nullopt;
 }
 
 std::optional<Matrix6> Slam::plan_covariance(const Pose& map_from_body, const Matrix6& covariance) const {
-  const auto& plan = impl_->inputs().plan;
+  const auto plan = impl_->plan();
   const bool is_sound = is_finite(map_from_body) && covariance.allFinite();
   return plan && is_sound ? std::optional(covariance_on_plan(*plan, map_from_body, covariance)) : std::nullopt;
 }

@@ -77,7 +77,11 @@ SessionOptions session_options(const Calibration& given, const MethodOptions& op
 }
 
 std::vector<TagFamily> tag_families(const SlamInputs& inputs) {
-  return inputs.offline ? families_of(inputs.offline->tags()) : families_of(inputs.tags);
+  std::vector<MappedTag> of_maps;
+  for (const MissionMap& map : inputs.maps) {
+    of_maps.insert(of_maps.end(), map.offline->tags().begin(), map.offline->tags().end());
+  }
+  return inputs.offline ? families_of(of_maps) : families_of(inputs.tags);
 }
 
 // Missions keep no pictures.
@@ -119,31 +123,36 @@ SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamI
       check_(given, extractor_.rig(), check),
       prior_(options.motion_limits),
       is_metric_(given.is_metric() || inputs_.offline || is_extended_),
-      budget_(options.frame_deadline_ms / kMillisecondsPerSecond),
-      session_(extractor_.rig(), session_options(given, options, inputs_),
-               make_lanes(options.pace, inputs_.offline != nullptr, log_),
-               options.close_loops ? inputs_.vocabulary : std::nullopt, inputs_.offline) {
+      budget_(options.frame_deadline_ms / kMillisecondsPerSecond) {
   if (options.use_saved_extrinsics) prior_.begin_with(initial_extrinsics(given, inputs_));
   prior_.assume_upright(body_from_left_ * -Eigen::Vector3d::UnitY(), body_from_left_ * Eigen::Vector3d::UnitZ());
   if (inputs_.extrinsics) begin_with_extrinsics(*inputs_.extrinsics);
   if (!inputs_.offline) prior_.enable_mapping_mode();
   if (is_metric_) prior_.set_metric();
-  session_.set_odometry([this](Timestamp earlier, Timestamp later) { return prior_.path_between(earlier, later); },
-                        [this, is_metric = given.is_metric()](Timestamp earlier, Timestamp later) {
-                          return prior_.reach(earlier, later, is_metric);
-                        });
+  if (inputs_.offline) begin_site();
+  begin_session(extractor_.rig());
   if (options.self_calibrate) refine_calibration();
   is_nominal_ =
       is_nominal(given_) && options.self_calibrate && !initial_calibration_ && !is_extended_ && !inputs_.offline;
-  if (is_extended_) session_.continue_map(std::move(*inputs_.before));
+  if (is_extended_) session_->continue_map(std::move(*inputs_.before));
+}
+
+void SlamImpl::begin_session(const Rig& rig) {
+  session_.emplace(rig, session_options(given_, options_, inputs_),
+                   make_lanes(options_.pace, inputs_.offline != nullptr, log_),
+                   options_.close_loops ? inputs_.vocabulary : std::nullopt, inputs_.offline);
+  session_->set_odometry([this](Timestamp earlier, Timestamp later) { return prior_.path_between(earlier, later); },
+                         [this, is_metric = given_.is_metric()](Timestamp earlier, Timestamp later) {
+                           return prior_.reach(earlier, later, is_metric);
+                         });
 }
 
 // Refines only the readout time if the calibration is refined already, or an extended map depends on it.
 void SlamImpl::refine_calibration() {
   if (initial_calibration_ || is_extended_) {
-    session_.refine_readout(initial_calibration_.value_or(RefinedCalibration{given_}));
+    session_->refine_readout(initial_calibration_.value_or(RefinedCalibration{given_}));
   } else {
-    session_.refine_calibration(given_, options_.self_calibration);
+    session_->refine_calibration(given_, options_.self_calibration);
   }
 }
 
@@ -261,16 +270,17 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   const bool uses_samples = !motion && !prior_.is_empty();
   const Timestamp since = last_frame_.value_or(frame.time);  // the first frame is where the measured path begins
   const auto measured_motion = uses_samples ? prior_.between(since, frame.time) : motion;
-  session_.set_tilt(uses_samples ? prior_.tilt(frame.time) : std::nullopt);
-  if (measured_motion || !prior_.is_empty()) session_.require_odometry();
-  FrameReport report = session_.process(frame, measured_motion, &budget_);
+  session_->set_tilt(uses_samples ? prior_.tilt(frame.time) : std::nullopt);
+  if (measured_motion || !prior_.is_empty()) session_->require_odometry();
+  FrameReport report = session_->process(frame, measured_motion, &budget_);
   last_frame_ = frame.time;
+  const auto next_map = inputs_.offline ? choose_map(frame, report) : std::nullopt;
   const bool is_begun = std::ranges::find(report.events, SessionEvent::initialised) != report.events.end();
-  if (is_begun && session_.contradicts_odometry()) prior_.reject_extrinsics(frame.time);
-  if (is_begun && !is_metric_ && !session_.is_scaled_by_odometry()) prior_.forget_scale();
+  if (is_begun && session_->contradicts_odometry()) prior_.reject_extrinsics(frame.time);
+  if (is_begun && !is_metric_ && !session_->is_scaled_by_odometry()) prior_.forget_scale();
   const bool is_seen = report.inliers > 0;
   if (is_nominal_ && prior_.has_wheels()) {
-    session_.set_prior_sigmas(std::max(options_.self_calibration.prior_sigmas, kNominalSigmas));
+    session_->set_prior_sigmas(std::max(options_.self_calibration.prior_sigmas, kNominalSigmas));
     prior_.set_focal_change(focal_change());
   }
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
@@ -289,6 +299,7 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   const auto first_new = warnings().begin() + static_cast<std::ptrdiff_t>(warnings_reported_);
   report.warnings.assign(first_new, warnings().end());
   warnings_reported_ = warnings().size();
+  if (next_map) change_map(*next_map, report);
   return report;
 }
 
@@ -349,18 +360,18 @@ void SlamImpl::note_moved_tags(const FrameReport& report) {
 std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
   if (std::exchange(is_finished_, true)) return {};
   if (hooks.should_stop() || map_damage() != nullptr) finish_early();
-  session_.finish();
+  session_->finish();
   const bool is_mapped = had_pose_ && online().keyframe_count() > 0;
   if (hooks.should_stop() || !is_mapped || map_damage() != nullptr) return {};
   if (!inputs_.offline && (!options_.close_loops || !inputs_.vocabulary)) return {};
   const Stopwatch watch;
   FinishResult result;
   if (inputs_.offline) {
-    session_.finish_mission(hooks);
+    session_->finish_mission(hooks);
   } else {
     extractor_.rest();
-    result.report = session_.finish_map(hooks);
-    prior_.reestimate(session_.final_trajectory());
+    result.report = session_->finish_map(hooks);
+    prior_.reestimate(session_->final_trajectory());
     if (!given_.is_metric()) warn_of_focal_length();
     if (!is_metric_) scale_by_tags();
     if (!is_metric_) scale_by_wheels();
@@ -374,7 +385,7 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
 }
 
 double SlamImpl::focal_change() const {
-  const auto refined = session_.self_calibration();
+  const auto refined = session_->self_calibration();
   return refined ? refined->calibration.left.fx / given_.left.fx : 1.0;
 }
 
@@ -427,7 +438,7 @@ void SlamImpl::scale_by_tags() {
                     "measure the tags and the wheel radius again");
     }
   }
-  session_.rescale(factor);
+  session_->rescale(factor);
   prior_.rescale(factor);
   scale_sigma_ = unit->sigma;
   is_scaled_by_tags_ = true;
@@ -436,8 +447,8 @@ void SlamImpl::scale_by_tags() {
 
 // Keeps the map's own unit if motions do not determine the scale.
 void SlamImpl::scale_by_wheels() {
-  const double max_sigma = session_.is_scaled_by_odometry() ? 0.05 : 0.02;  // share
-  constexpr double kMaxTurnScale = 0.1;                                     // natural logarithm
+  const double max_sigma = session_->is_scaled_by_odometry() ? 0.05 : 0.02;  // share
+  constexpr double kMaxTurnScale = 0.1;                                      // natural logarithm
   const auto& wheels = prior_.wheels();
   if (!wheels || wheels->scale_sigma() > max_sigma) return;
   // A wrong wheel radius scales path lengths and turns by the same factor.
@@ -452,7 +463,7 @@ void SlamImpl::scale_by_wheels() {
   }
   const auto& extrinsics = inputs_.extrinsics;
   const double factor = wheels->metres_per_unit * (extrinsics ? extrinsics->wheel_scale : 1.0);
-  session_.rescale(factor);
+  session_->rescale(factor);
   scale_sigma_ =
       std::hypot(wheels->scale_sigma(), extrinsics ? extrinsics->wheel_scale_sigma : options_.wheel_scale_sigma);
   prior_.rescale(factor);
@@ -460,7 +471,7 @@ void SlamImpl::scale_by_wheels() {
 }
 
 std::optional<RefinedCalibration> SlamImpl::calibration() const {
-  const auto refined = session_.self_calibration();
+  const auto refined = session_->self_calibration();
   return refined ? refined : initial_calibration_;
 }
 
@@ -480,9 +491,9 @@ StoredMap SlamImpl::stored_metadata() const {
 }
 
 StoredMap SlamImpl::stored_map() const {
-  const MapView map = session_.map();
+  const MapView map = session_->map();
   StoredMap stored = stored_metadata();
-  stored.map = map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(session_.joined_online());
+  stored.map = map.offline() ? offline_copy(standalone_copy(map)) : offline_copy(session_->joined_online());
   return stored;
 }
 
@@ -490,10 +501,10 @@ std::pair<StoredMap, SessionRecord> SlamImpl::session_to_store() const {
   constexpr int kMaxKeyframes = 75;  // 4 MB of images of 752x480
   MapGraph thin = online();
   thin_out(thin, kMaxKeyframes);
-  MapGraph map = standalone_copy(MapView(session_.map().offline(), thin));
+  MapGraph map = standalone_copy(MapView(session_->map().offline(), thin));
   SessionRecord record = record_;
-  record.map_id = inputs_.offline_id;
-  record.points = session_.point_records();
+  record.map_id = inputs_.maps[active_->index()].id;
+  record.points = session_->point_records();
   record.copied_points = static_cast<std::uint32_t>(map.point_count() - thin.point_count());
   StoredMap stored = stored_metadata();
   stored.map = offline_copy(std::move(map));
@@ -501,9 +512,9 @@ std::pair<StoredMap, SessionRecord> SlamImpl::session_to_store() const {
 }
 
 StoredMap SlamImpl::take_stored_map() {
-  if (session_.map().offline()) return stored_map();
+  if (session_->map().offline()) return stored_map();
   StoredMap stored = stored_metadata();
-  stored.map = offline_copy(session_.take_online());
+  stored.map = offline_copy(session_->take_online());
   return stored;
 }
 

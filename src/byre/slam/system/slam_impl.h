@@ -3,6 +3,7 @@
 #include "byre/base/serial_queue.h"
 #include "byre/map/map_upkeep.h"
 #include "byre/slam.h"
+#include "byre/slam/system/active_map.h"
 #include "byre/slam/system/input_check.h"
 #include "byre/slam/system/logged_executor.h"
 #include "byre/slam/system/method_options.h"
@@ -37,19 +38,28 @@ struct FinishResult {
   std::vector<std::string> faults;  // faults of the saved map
 };
 
+// Offline map of a mission, alone or one of a site.
+struct MissionMap {
+  std::string name;  // in the site; empty without a site
+  std::shared_ptr<const OfflineMap> offline;
+  std::filesystem::path file;
+  std::uint64_t id = 0;                    // see map_id
+  std::optional<PlanRegistration> plan{};  // registration on a floor plan
+};
+
 // Maps and names of a Slam.
 struct SlamInputs {
-  std::optional<Vocabulary> vocabulary{};               // without it neither loop closing nor finishing
-  std::string recording = "live";                       // name of this session in a saved map
-  std::optional<Extrinsics> extrinsics{};               // robot's, with its camera
-  std::string site{};                                   // place where the map is made, stored in it unless empty
-  std::shared_ptr<const OfflineMap> offline{};          // offline map of a mission; null otherwise
-  std::optional<std::filesystem::path> offline_file{};  // its file
-  std::uint64_t offline_id = 0;                         // see map_id
-  std::optional<PlanRegistration> plan{};               // registration of the offline or extended map on a floor plan
-  int max_waiting = 1;                                  // frames of submit() that wait for its thread
-  StoredMap extended{};                                 // data of the map to extend, without keyframes and points
-  std::vector<Tag> tags{};                              // tags to map
+  std::optional<Vocabulary> vocabulary{};       // without it neither loop closing nor finishing
+  std::string recording = "live";               // name of this session in a saved map
+  std::optional<Extrinsics> extrinsics{};       // robot's, with its camera
+  std::string site{};                           // place where the map is made, stored in it unless empty
+  std::vector<MissionMap> maps{};               // offline maps; empty unless a mission
+  std::vector<SiteLink> links{};                // between the maps
+  std::shared_ptr<const OfflineMap> offline{};  // active map of a mission; null otherwise
+  std::optional<PlanRegistration> plan{};       // registration of the active or extended map on a floor plan
+  int max_waiting = 1;                          // frames of submit() that wait for its thread
+  StoredMap extended{};                         // data of the map to extend, without keyframes and points
+  std::vector<Tag> tags{};                      // tags to map
   std::optional<MapGraph> before{};  // keyframes and points of that map: an online copy with words of the vocabulary
 };
 
@@ -84,8 +94,8 @@ class SlamImpl {
               const std::optional<BodyMotion>& motion);
   // Calls of Slam, in order.
   SerialQueue& calls() const { return calls_; }
-  void set_initial_pose(const PoseHint& hint) { session_.set_initial_pose(hint); }
-  void pause_mapping(bool is_paused) { session_.pause_mapping(is_paused); }
+  void set_initial_pose(const PoseHint& hint) { session_->set_initial_pose(hint); }
+  void pause_mapping(bool is_paused) { session_->pause_mapping(is_paused); }
 
   // Ends tracking, then finishes the map, or the online map of a mission. Empty if already finished, stopped, without a
   // pose or vocabulary, or after damage of the offline map. Does not fill in FinishResult::faults.
@@ -94,12 +104,12 @@ class SlamImpl {
   // Pose world_from_body of a frame without a pose in the finished map; empty if not located. predicted: by frames
   // close in time. Call it after finish().
   std::optional<Pose> locate_in_finished_map(const ImageFrame& images, const Pose& predicted) {
-    return session_.locate_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame, predicted);
+    return session_->locate_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame, predicted);
   }
 
   // Same without a prediction.
   std::optional<Pose> find_in_finished_map(const ImageFrame& images) {
-    return session_.find_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame);
+    return session_->find_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame);
   }
 
   // Damage of the offline map's file, with section and remedy; nullptr if undamaged. Parts already read stay in use;
@@ -111,16 +121,22 @@ class SlamImpl {
   const SlamInputs& inputs() const { return inputs_; }
   const InputCheck& input() const { return check_; }
   const Rig& rig() const { return extractor_.rig(); }
-  const MapGraph& online() const { return session_.map().online(); }
-  const Session& session() const { return session_; }
+  const MapGraph& online() const { return session_->map().online(); }
+  const Session& session() const { return *session_; }
   const JobLog& log() const { return log_; }
   const OdometryCalibrator& prior() const { return prior_; }
   // Faults of motion inputs and tags so far.
   const std::vector<MotionWarning>& warnings() const { return prior_.warnings(); }
   // Times of the last frame, zero for a dropped one. Features of the caller have times of track, map and total only.
   const StageSeconds& seconds() const { return seconds_; }
-  // Current poses of all tracked frames, with gaps filled by wheel odometry.
-  Trajectory trajectory() const { return prior_.fill_gaps(session_.final_trajectory()); }
+  // Current poses of all tracked frames, with gaps filled by wheel odometry; each in the map active in its frame.
+  Trajectory trajectory() const { return with_filled_gaps(session_->final_trajectory()); }
+  // The same from the present session's poses.
+  Trajectory with_filled_gaps(Trajectory seen) const;
+  // Index of the active map. Precondition: a mission.
+  std::size_t active_map() const { return active_->index(); }
+  // Registration of the active map on a floor plan. For callers of any thread.
+  std::optional<PlanRegistration> plan() const;
   // Calibration of the map; empty if only the given one is available.
   std::optional<RefinedCalibration> calibration() const;
   // Row error of the rectification in use, over all stereo pairs so far.
@@ -150,13 +166,18 @@ class SlamImpl {
   void warn_of_focal_length();
   void scale_by_tags();
   void scale_by_wheels();
-  void finish_early() { session_.finish_early(); }
+  void finish_early() { session_->finish_early(); }
   std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);
   // Motion of the body since the last frame that was not dropped.
   std::optional<BodyMotion> take_motion(const std::optional<BodyMotion>& motion, Timestamp time, bool is_dropped);
   FrameReport process_images(const ImageFrame& images, const std::optional<BodyMotion>& motion);
   // Precondition: the frame's budget has begun.
   FrameReport process_in_time(const Frame& frame, const std::optional<BodyMotion>& motion);
+  void begin_session(const Rig& rig);
+  void begin_site();
+  // Notes a mission's frame for the choice of the map. Poses are not trusted before their map is proved.
+  std::optional<std::size_t> choose_map(const Frame& frame, FrameReport& report);
+  void change_map(std::size_t map, const FrameReport& last);
   void note_moved_tags(const FrameReport& report);
   FrameReport completed(FrameReport report);
   FrameReport dropped(Timestamp time);
@@ -184,7 +205,15 @@ class SlamImpl {
   std::size_t warnings_reported_ = 0;
   FrameBudget budget_;
   StageSeconds seconds_;
-  Session session_;
+  std::optional<Session> session_;       // another one for each change of the map
+  std::optional<ActiveMap> active_;      // mission alone
+  std::unique_ptr<Executor> site_lane_;  // searches in the maps of a site; null with one map
+  std::optional<Timestamp> last_search_;
+  Trajectory earlier_poses_;                                // poses of sessions on maps before
+  std::optional<Timestamp> map_since_;                      // last frame on the map before
+  Pose odometry_before_;                                    // odometry at that frame
+  bool was_proved_ = false;                                 // the active map, in this session
+  bool is_map_changed_ = false;                             // to be reported
   ImageFrame buffer_;                                       // holds the caller's images during a call
   std::optional<BodyMotion> dropped_motion_ = no_motion();  // motion over dropped frames; empty: unknown
   State state_ = State::initialising;                       // state after the last frame
