@@ -16,7 +16,7 @@ namespace byre {
 // later one is a mission on the first version of the map, and another on its newest version, which is then updated by
 // what that mission learned.
 struct LifeCase {
-  std::filesystem::path folder;                     // of the recordings, each with ground truth
+  std::filesystem::path folder;                     // folder of the recordings, each with ground truth
   std::filesystem::path output;                     // receives versions of the map and sessions
   std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
   MethodOptions method;
@@ -40,7 +40,7 @@ struct LifeDay {
   double update_seconds = 0.0;
   double update_memory_mb = 0.0;  // peak, with the program's own
   double session_mb = 0.0;
-  double map_mb = 0.0;  // of the newest version after the day
+  double map_mb = 0.0;  // newest version after the day
 };
 
 // Frames of the last days, each localised without a prediction in the first and in the newest version.

@@ -1,6 +1,7 @@
 #include "byre/benchmark/chart.h"
 #include "byre/benchmark/life.h"
 #include "byre/benchmark/markdown_table.h"
+#include "byre/playback/report/report_json.h"
 
 #include <functional>
 
@@ -138,7 +139,7 @@ std::string life_json(const LifeResult& result) {
                             {"shift_m", found.shift},
                             {"turn_deg", found.turn}};
   }
-  return json.dump(2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 std::string life_plot(const LifeResult& result) {

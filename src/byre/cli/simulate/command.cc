@@ -33,7 +33,7 @@ struct SimulateOptions {
   fs::path output;
   bool has_motion = false;
   MotionSensorOptions motion;
-  int visits = 60;          // of a life
+  int visits = 60;          // number of visits of a life
   std::vector<int> only{};  // visits to render; empty: all
   bool json = false;
   bool quiet = false;
@@ -124,7 +124,7 @@ ExitCode run_life(const SimulateOptions& options, std::ostream& result) {
     if (fs::exists(folder)) continue;
     fs::path unfinished = folder;
     unfinished += ".unfinished";
-    fs::remove_all(unfinished);  // of a run that was killed
+    fs::remove_all(unfinished);  // left by a run that was killed
     if (!options.quiet) std::cerr << folder.filename().string() << "\n";
     const Rendering rendering =
         render_with_progress(visit_of_life(options.recording, visit), unfinished, interrupt, options.quiet);
