@@ -1,6 +1,7 @@
 // Slam and its reports.
 
 #include "byre/slam.h"
+#include "byre/site.h"
 
 #include "enums.h"
 
@@ -300,10 +301,16 @@ void bind_making(SlamClass& type) {
           Released(),
           "Continues a saved map: relocalises in it first, then adds to it. Raises InputError as mapping(), and if the "
           "map cannot be loaded.")
-      .def_static("on_map", &Slam::on_map, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
-                  Released(),
-                  "Mission on an offline map, which is not modified. Poses are in its frame, with verdicts. Raises "
-                  "InputError as mapping(), and if the map cannot be loaded.");
+      .def_static(
+          "on_map",
+          [](const Calibration& calibration, const std::filesystem::path& map, const SlamOptions& options) {
+            return is_site_file(map) ? Slam::on_site(calibration, read_site_with_plans(map), options)
+                                     : Slam::on_map(calibration, map, options);
+          },
+          py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{}, Released(),
+          "Mission on an offline map, which is not modified, or on a site file. Poses are in the frame of the map, or "
+          "of "
+          "FrameReport.map, with verdicts. Raises InputError as mapping(), and if a map cannot be loaded.");
 }
 
 void bind_input(SlamClass& type) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "byre/floor_plan.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -15,7 +17,8 @@ namespace byre {
 struct SiteMap {
   std::string name;
   std::filesystem::path map;
-  std::optional<std::filesystem::path> plan{};  // floor plan, whose walls limit relocalisation
+  std::optional<std::filesystem::path> plan{};  // floor plan on which the map is registered
+  std::optional<DrawnFloorPlan> drawn_plan{};   // the plan's walls, which limit relocalisation; empty: no walls
   double height = 0.0;                          // metres, of the floor above a reference of the site
   std::string building{};
 };
@@ -43,10 +46,14 @@ struct Site {
 };
 
 // Whether a file is read as a site where a map is expected: by its extension, .yaml or .yml.
-bool is_site_file(const std::filesystem::path& path);
+inline bool is_site_file(const std::filesystem::path& path) {
+  return path.extension() == ".yaml" || path.extension() == ".yml";
+}
 
 // Reads docs/reference/site_file.md. Paths are relative to its folder. Throws InputError naming file and field; maps
 // and plans are not opened.
 Site read_site(const std::filesystem::path& path);
+// read_site, then read_drawn_floor_plan of each plan. Throws InputError like both.
+Site read_site_with_plans(const std::filesystem::path& path);
 
 }  // namespace byre

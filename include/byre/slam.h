@@ -26,6 +26,7 @@
 
 namespace byre {
 
+struct Site;
 class SlamImpl;
 
 // Threads of mapping.
@@ -79,10 +80,11 @@ class Slam {
   static Slam extending(const Calibration& calibration, const std::filesystem::path& map,
                         const SlamOptions& options = {});
 
-  // Mission on an offline map, which is not modified. Poses are in its frame, with verdicts. map: also a site file
-  // (byre/site.h). The mission then begins on any of its maps and changes between them; poses are in the frame of
-  // FrameReport::map. Sessions and saved maps are of the active map.
+  // Mission on an offline map, which is not modified. Poses are in its frame, with verdicts.
   static Slam on_map(const Calibration& calibration, const std::filesystem::path& map, const SlamOptions& options = {});
+  // Mission on the maps of a site. Begins on any of them and changes between them; poses are in the frame of
+  // FrameReport::map. Sessions and saved maps are of the active map.
+  static Slam on_site(const Calibration& calibration, const Site& site, const SlamOptions& options = {});
 
   Slam(Slam&&) noexcept;
   Slam& operator=(Slam&&) noexcept;

@@ -116,7 +116,8 @@ class LifeRunner {
   }
 
   LifeDay live(const fs::path& day) {
-    LifeDay lived{.name = day.filename().string()};
+    LifeDay lived;
+    lived.name = day.filename().string();
     const Trajectory truth = load_truth(day);
     lived.first = mission_on(first_, day, truth, lived.name + ", first version", nullptr);
     if (hooks_.should_stop()) return lived;

@@ -99,8 +99,11 @@ std::string life_markdown(const LifeResult& result) {
               fmt::format("{:.2f}", day.map_mb)});
   }
   if (!result.days.empty()) {
-    add({.name = "mean", .first = mean_of(result, &LifeDay::first), .newest = mean_of(result, &LifeDay::newest)},
-        {"", "", "", fmt::format("{:.2f} at first", result.first_map_mb)});
+    LifeDay mean;
+    mean.name = "mean";
+    mean.first = mean_of(result, &LifeDay::first);
+    mean.newest = mean_of(result, &LifeDay::newest);
+    add(mean, {"", "", "", fmt::format("{:.2f} at first", result.first_map_mb)});
   }
   std::string text = "Missions on the first version of the map, and on its updates.\n\n" + table.text();
   if (result.localisation) {

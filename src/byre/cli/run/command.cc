@@ -65,6 +65,9 @@ Slam make_slam(const RunOptions& options, const RunInput& input) {
   slam_settings.baseline = options.open.baseline;
   slam_settings.extrinsics = options.extrinsics.read(options.open);
   if (!options.map) return Slam::mapping(input.calibration(), slam_settings);
+  if (is_site_file(*options.map)) {
+    return Slam::on_site(input.calibration(), read_site_with_plans(*options.map), slam_settings);
+  }
   if (options.view.plan) slam_settings.plan = read_drawn_floor_plan(*options.view.plan);
   Slam slam = Slam::on_map(input.calibration(), *options.map, slam_settings);
   if (slam_settings.plan) check_walls(*slam_settings.plan, slam);

@@ -33,8 +33,8 @@ YAML::Node entries_of(const YAML::Node& node, const std::string& place, std::siz
 }
 
 SiteMap map_of(const YAML::Node& fields, const std::string& place, const fs::path& folder) {
-  constexpr std::array kFields = {"name", "map", "plan", "height", "building"};
-  require_known_fields(fields, kFields, place, "maps of a site");
+  constexpr std::array kMapFields = {"name", "map", "plan", "height", "building"};
+  require_known_fields(fields, kMapFields, place, "maps of a site");
   SiteMap map;
   map.name = scalar_of(fields["name"], place + ": name");
   map.map = folder / scalar_of(fields["map"], place + ": map");
@@ -86,8 +86,8 @@ void read_circle(const YAML::Node& fields, const std::string& place, SiteLink& l
 }
 
 SiteLink link_of(const YAML::Node& fields, const std::string& place, const std::vector<SiteMap>& maps) {
-  constexpr std::array kFields = {"kind", "from", "to", "polygon", "centre", "radius"};
-  require_known_fields(fields, kFields, place, "links");
+  constexpr std::array kLinkFields = {"kind", "from", "to", "polygon", "centre", "radius"};
+  require_known_fields(fields, kLinkFields, place, "links");
   SiteLink link;
   link.kind = kind_of(fields["kind"], place + ": kind");
   link.from = index_of(maps, fields["from"], place + ": from");
@@ -111,10 +111,6 @@ SiteLink link_of(const YAML::Node& fields, const std::string& place, const std::
 
 std::string_view to_string(LinkKind kind) {
   return name_among<LinkKind::lift>({"gate", "stairs", "lift"}, kind);
-}
-
-bool is_site_file(const fs::path& path) {
-  return path.extension() == ".yaml" || path.extension() == ".yml";
 }
 
 Site read_site(const fs::path& path) {

@@ -5,6 +5,7 @@
 #include "byre/io/calibration/yaml_mapping.h"
 #include "byre/io/image/image_file.h"
 #include "byre/io/image/image_size.h"
+#include "byre/site.h"
 
 #include <algorithm>
 #include <array>
@@ -195,6 +196,14 @@ FloorPlan read_geo_referenced_plan(const fs::path& path) {
 
 DrawnFloorPlan read_drawn_floor_plan(const fs::path& path) {
   return read_plan_pixels(read_floor_plan(path));
+}
+
+Site read_site_with_plans(const fs::path& path) {
+  Site site = read_site(path);
+  for (SiteMap& map : site.maps) {
+    if (map.plan) map.drawn_plan = read_drawn_floor_plan(*map.plan);
+  }
+  return site;
 }
 
 std::optional<fs::path> find_world_file(const fs::path& image) {

@@ -145,14 +145,14 @@ void SlamRunner::replace(Slam slam) {
 
 SlamOptions SlamRunner::options_for(const fs::path& map) const {
   SlamOptions options = options_;
-  if (config_.plan && !is_site_file(map) && lies_on(map, *config_.plan))
-    options.plan = read_drawn_floor_plan(*config_.plan);
+  if (config_.plan && lies_on(map, *config_.plan)) options.plan = read_drawn_floor_plan(*config_.plan);
   return options;
 }
 
 Slam SlamRunner::make(const fs::path* map) const {
   switch (config_.task) {
     case NodeTask::mission:
+      if (is_site_file(*map)) return Slam::on_site(*calibration_, read_site_with_plans(*map), options_);
       return Slam::on_map(*calibration_, *map, options_for(*map));
     case NodeTask::extend:
       return Slam::extending(*calibration_, *map, options_);

@@ -229,7 +229,9 @@ TEST(OnlineCopy, EqualsTheMapWithOnlineIds) {
 TEST(AdjustedMaps, KeepTheFrameOfTheOfflineMapDespitePointsThatMovedFar) {
   MapWindow before;
   before.rigs = {simulated_rig()};
-  before.keyframes = {{.id = {Origin::online, 0}, .keyframe = {}}, {.id = {Origin::offline, 0}, .keyframe = {}}};
+  before.keyframes.resize(2);
+  before.keyframes[0].id = {Origin::online, 0};
+  before.keyframes[1].id = {Origin::offline, 0};
   for (std::uint32_t i = 0; i < 200; ++i) {
     WindowPoint& point = before.points.emplace_back();
     point.id = {Origin::offline, i};

@@ -64,7 +64,9 @@ TEST_P(StepOf, AFrameLeadsToItsStateAndReport) {
   const FrameReport report = step(state, {given.frame()}, {}).report;
   EXPECT_EQ(report.state, given.state);
   EXPECT_EQ(report.map_from_body.has_value(), given.has_map_pose);
-  if (given.event) EXPECT_THAT(report.events, Contains(*given.event));
+  if (given.event) {
+    EXPECT_THAT(report.events, Contains(*given.event));
+  }
 }
 
 Frame whole(std::size_t number) {

@@ -1,8 +1,8 @@
+#include "byre/site.h"
 #include "byre/slam/system/slam_scene.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -26,16 +26,17 @@ class SiteTest : public testing::Test {
   }
   ~SiteTest() override { fs::remove_all(folder_); }
 
-  fs::path write_site(const std::string& maps, const std::string& links = "") const {
-    fs::path file = folder_ / "site.yaml";
-    std::ofstream(file) << "name: farm\nmaps:\n" << maps << links;
-    return file;
+  SiteMap map_named(const std::string& name) const {
+    if (const fs::path copy = folder_ / (name + ".byre"); !fs::exists(copy)) fs::copy_file(folder_ / "room.byre", copy);
+    return {name, folder_ / (name + ".byre")};
   }
-  static std::vector<FrameReport> mission_on(const fs::path& map) {
-    Slam slam = Slam::on_map(open_shared()->calibration(), map, repeatable());
+  static std::vector<FrameReport> reports_of(Slam slam) {
     std::vector<FrameReport> reports;
     for (const ImageFrame& frame : shared_frames()) reports.push_back(slam.process(view_of(frame)));
     return reports;
+  }
+  static std::vector<FrameReport> mission_on(const Site& site) {
+    return reports_of(Slam::on_site(open_shared()->calibration(), site, repeatable()));
   }
   static auto trusted(const std::vector<FrameReport>& reports) {
     return std::ranges::count(reports, Verdict::trusted,
@@ -46,8 +47,8 @@ class SiteTest : public testing::Test {
 };
 
 TEST_F(SiteTest, OfOneMapEqualsItsMap) {
-  const auto alone = mission_on(folder_ / "room.byre");
-  const auto in_site = mission_on(write_site("  - {name: room, map: room.byre}\n"));
+  const auto alone = reports_of(Slam::on_map(open_shared()->calibration(), folder_ / "room.byre", repeatable()));
+  const auto in_site = mission_on({"farm", {map_named("room")}, {}});
   ASSERT_GT(trusted(alone), 0);
   EXPECT_EQ(trusted(in_site), trusted(alone));
   EXPECT_EQ(in_site.back().map, "room");
@@ -56,16 +57,23 @@ TEST_F(SiteTest, OfOneMapEqualsItsMap) {
 }
 
 TEST_F(SiteTest, TrustsNoPoseInTwoRoomsThatLookAlike) {
-  fs::copy_file(folder_ / "room.byre", folder_ / "twin.byre");
-  EXPECT_EQ(trusted(mission_on(write_site("  - {name: room, map: room.byre}\n  - {name: twin, map: twin.byre}\n"))), 0);
+  EXPECT_EQ(trusted(mission_on({"farm", {map_named("room"), map_named("twin")}, {}})), 0);
 }
 
 TEST_F(SiteTest, RefusesALinkOnThePlanOfAMapWithoutOne) {
-  fs::copy_file(folder_ / "room.byre", folder_ / "twin.byre");
-  const fs::path site = write_site("  - {name: room, map: room.byre}\n  - {name: twin, map: twin.byre}\n",
-                                   "links:\n  - {kind: gate, from: room, to: twin, centre: [0, 0], radius: 1}\n");
-  EXPECT_THAT(error_by([&] { Slam::on_map(open_shared()->calibration(), site, repeatable()); }),
+  SiteLink link;
+  link.to = 1;
+  link.polygon = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}};
+  EXPECT_THAT(error_by([&] {
+                mission_on({"farm", {map_named("room"), map_named("twin")}, {link}});
+              }),
               HasSubstr("room.byre: is not registered on a floor plan"));
+}
+
+TEST_F(SiteTest, NeedsAMapAndIsNoMapItself) {
+  EXPECT_THAT(error_by([&] { mission_on({"farm", {}, {}}); }), HasSubstr("has no map"));
+  EXPECT_THAT(error_by([&] { Slam::on_map(open_shared()->calibration(), folder_ / "site.yaml", repeatable()); }),
+              HasSubstr("is a site, not a map"));
 }
 
 }  // namespace

@@ -108,13 +108,12 @@ MissionMap load_mission_map(const SiteMap& map, const Vocabulary& vocabulary,
           load_plan_registration(map.map)};
 }
 
-void load_site(const fs::path& path, const SlamOptions& options, SlamInputs& inputs) {
+void load_site(const Site& site, const SlamOptions& options, SlamInputs& inputs) {
   if (options.plan)
     throw InputError("SlamOptions::plan", "is of one map, not of a site", "name plans in the site file");
-  const Site site = read_site(path);
+  if (site.maps.empty()) throw InputError("site " + site.name, "has no map", "see byre/site.h");
   for (const SiteMap& map : site.maps) {
-    const auto plan = map.plan ? std::optional(read_drawn_floor_plan(*map.plan)) : std::nullopt;
-    inputs.maps.push_back(load_mission_map(map, *inputs.vocabulary, plan));
+    inputs.maps.push_back(load_mission_map(map, *inputs.vocabulary, map.drawn_plan));
   }
   for (const SiteLink& link : site.links) {
     if (link.polygon.empty() || inputs.maps[link.from].plan) continue;
@@ -155,14 +154,21 @@ Slam Slam::extending(const Calibration& calibration, const fs::path& map, const 
 }
 
 Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
+  if (is_site_file(map)) throw InputError(map.string(), "is a site, not a map", "give read_site() to Slam::on_site");
   const Calibration given = checked(calibration, options);
   SlamInputs inputs;
   inputs.vocabulary = open_vocabulary(options.vocabulary);
-  if (is_site_file(map)) {
-    load_site(map, options, inputs);
-  } else {
-    inputs.maps.push_back(load_mission_map({"", map}, *inputs.vocabulary, options.plan));
-  }
+  inputs.maps.push_back(load_mission_map({"", map}, *inputs.vocabulary, options.plan));
+  inputs.offline = inputs.maps.front().offline;
+  inputs.plan = inputs.maps.front().plan;
+  return Slam(make(given, options, std::move(inputs)));
+}
+
+Slam Slam::on_site(const Calibration& calibration, const Site& site, const SlamOptions& options) {
+  const Calibration given = checked(calibration, options);
+  SlamInputs inputs;
+  inputs.vocabulary = open_vocabulary(options.vocabulary);
+  load_site(site, options, inputs);
   inputs.offline = inputs.maps.front().offline;
   inputs.plan = inputs.maps.front().plan;
   return Slam(make(given, options, std::move(inputs)));

@@ -51,9 +51,10 @@ StoredSession session_of(const SimulatedMission& mission, const MapVersion& vers
     const FrameReport report = session.process(frame);
     ++stored.record.frames;
     if (!report.map_from_body) continue;
-    stored.record.poses.push_back({.time = report.time,
-                                   .map_from_body = *report.map_from_body,
-                                   .verdict = static_cast<std::uint8_t>(report.health.verdict)});
+    PoseRecord& pose = stored.record.poses.emplace_back();
+    pose.time = report.time;
+    pose.map_from_body = *report.map_from_body;
+    pose.verdict = static_cast<std::uint8_t>(report.health.verdict);
   }
   session.finish();
   const MapGraph map = standalone_copy(session.map());
