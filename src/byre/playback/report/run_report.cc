@@ -284,9 +284,9 @@ void add_mission_rows(const MissionOutcome& mission, const RunResult& run, const
                 {"points", map.point_count()},
                 {"maps", maps},
                 {"plan", protocol.plan ? Json(protocol.plan->plan) : Json()}});
-    if (Json maps = frames_by_map(run); !maps.empty()) {
-      for (const Json& map : maps) report.row("on map", "{name}: {frames} frames, {frames_trusted} trusted", map);
-      report.figures["maps"] = std::move(maps);
+    if (Json by_map = frames_by_map(run); !by_map.empty()) {
+      for (const Json& one : by_map) report.row("on map", "{name}: {frames} frames, {frames_trusted} trusted", one);
+      report.figures["maps"] = std::move(by_map);
     }
   }
   report.row("poses",

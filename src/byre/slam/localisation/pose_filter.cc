@@ -1,5 +1,6 @@
 #include "byre/slam/localisation/pose_filter.h"
 
+#include "byre/slam/localisation/mission.h"
 #include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/tracking/keyframes.h"
 #include "byre/slam/tracking/planar_prior.h"
@@ -63,7 +64,7 @@ Matrix6 PoseFilter::bridged_odometry_covariance() const {
 
 Matrix6 PoseFilter::jump_covariance() const {
   Matrix6 covariance = Matrix6::Zero();
-  covariance.topLeftCorner<3, 3>().diagonal().setConstant(jump_variance_ / 3.0);
+  covariance.topLeftCorner<3, 3>().diagonal().setConstant(std::max(jump_variance_, disagreement_variance_) / 3.0);
   return covariance;
 }
 
@@ -94,6 +95,18 @@ void PoseFilter::note_jump(const TrackedPose& seen, const Pose& body, const Rig&
     jump = std::min(jump.value_or(by_measured), by_measured);
   }
   if (jump) jump_variance_ = std::max(jump_variance_, *jump);
+}
+
+// A disagreement of the maps stays open until many offline points agree with the pose again: beyond the offline map
+// nothing shows which of them was right.
+void PoseFilter::note_disagreement(const HybridTrack& track) {
+  if (!track.maps_disagree) {
+    if (track.offline_inliers >= kOfflineThatHolds) disagreement_variance_ = 0.0;
+    return;
+  }
+  if (track.offline_prevails || !track.from_offline || !track.from_online) return;
+  const double distance = agreement_of(*track.from_offline, *track.from_online).translation;
+  disagreement_variance_ = std::max(disagreement_variance_, distance * distance);
 }
 
 // Adds the covariance of a measured motion that ends at a found place, which the odometry follows.
@@ -272,6 +285,7 @@ PoseFilter::Progress PoseFilter::note(const TrackedPose& seen, const Rig& rig, c
   if (seen.is_relocalised && !trajectory_.empty() && last_odometry_)
     odometry_motion = bridge_ ? *bridge_ * *last_odometry_ : *last_odometry_;
   note_jump(seen, body, rig, map);
+  note_disagreement(track);
   progress.step = move_to(seen, body, rig, map);
   add_odometry_covariance(odometry_motion);
   if (const double depth = median_depth(track.tracked, map); depth > 0.0) scene_depth_ = depth;
@@ -321,6 +335,7 @@ void PoseFilter::mark_lost() {
   has_pose_ = false;
   is_by_hint_ = false;
   motion_.mark_lost();
+  disagreement_variance_ = 0.0;
   if (trajectory_.has_unconfirmed()) motion_.restore_measured(since_confirmed_);
   trajectory_.drop_unconfirmed();
   bridge_end_.reset();

@@ -157,6 +157,7 @@ class PoseFilter {
   Accepted last_known(const Rig& rig, const MapView& map) const;  // precondition: there is a last accepted pose
   void propagate_before_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
+  void note_disagreement(const HybridTrack& track);
   void note_jump(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   bool is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const;
   void add_odometry_covariance(const std::optional<BodyMotion>& odometry_motion);
@@ -202,7 +203,8 @@ class PoseFilter {
   // Covariance due to bridges, at the odometry pose at the end of the last one.
   std::optional<Carried> odometry_open_;
   Odometry odometry_;
-  double jump_variance_ = 0.0;  // square metres, see jump_covariance()
+  double jump_variance_ = 0.0;          // square metres, see jump_covariance()
+  double disagreement_variance_ = 0.0;  // square metres, of an open disagreement of the maps
   PlaceHypothesis place_;
   PlaceHypothesis place_before_;  // last confirmed and accepted place before its pose was lost
   bool is_by_hint_ = false;

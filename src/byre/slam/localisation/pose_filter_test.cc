@@ -119,6 +119,26 @@ TEST_F(WhereaboutsOnATrueMap, ReportAnUnexplainedJumpInTheCovariance) {
   EXPECT_NEAR(note_elsewhere(0.0, {}), 0.5, 0.1);
 }
 
+TEST_F(WhereaboutsOnATrueMap, KeepADisagreementOfTheMapsInTheCovarianceUntilOfflinePointsHold) {
+  find_and_confirm(0);
+  const auto sigma_after = [&](bool maps_disagree, int offline_inliers) {
+    const std::size_t frame = pose_filter_.trajectory().size();
+    HybridTrack track = track_of(frame);
+    track.maps_disagree = maps_disagree;
+    track.offline_inliers = offline_inliers;
+    track.from_offline = track.from_online = track.tracked.camera_from_world;
+    track.from_offline->translation.x() += 0.15;
+    pose_filter_.add_odometry({});
+    pose_filter_.note({mission_.frames[frame], track, false, true, 0, false, &view_}, mission_.rig, map_);
+    return std::sqrt(pose_filter_.jump_covariance().topLeftCorner<3, 3>().trace());
+  };
+  EXPECT_EQ(sigma_after(false, 100), 0.0);
+  EXPECT_NEAR(sigma_after(true, 20), 0.15, 1e-9);
+  EXPECT_NEAR(sigma_after(false, 0), 0.15, 1e-9);
+  EXPECT_NEAR(sigma_after(false, 10), 0.15, 1e-9) << "too few points";
+  EXPECT_EQ(sigma_after(false, 100), 0.0);
+}
+
 TEST_F(WhereaboutsOnATrueMap, ForgetAJumpAfterConsistentMotion) {
   find_and_confirm(0);
   const std::size_t frame = pose_filter_.trajectory().size();
