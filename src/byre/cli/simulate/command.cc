@@ -63,11 +63,11 @@ constexpr const char* kLifeFooter = R"(Examples:
   byre simulate life --visits 60 --only 1 2 3 --duration 30 --rate 8 --divide 2 -o life
 
 FOLDER receives a recording for each day, day_01 to day_60, as of "byre simulate cowshed". Day 1 is the mapping run.
-Things stay where the last visit left them; feed changes daily, tools are moved often, the gate is open on two days of
-the week. A third each of the visits is by day, at dusk, and by night with the headlight. Dirt is wiped off at the end
-of a week, the eastern gable is painted in week five, a stall is built in week seven, and the calibration error grows by
-half. A visit depends on the seed and its number only. Finished recordings are kept: the same command goes on after
-Ctrl-C.)";
+Things stay where the last visit left them; feed changes daily, tools are moved often. On two days of the week the
+gate is open, and the drive 24 s longer. A third each of the visits is by day, at dusk, and by night with the
+headlight. Dirt is wiped off at the end of a week, the eastern gable is painted in week five, a stall is built in
+week seven, and the calibration error grows by half. A visit depends on the seed and its number only. Finished
+recordings are kept: the same command goes on after Ctrl-C.)";
 
 nlohmann::ordered_json imperfection_json(const CameraImperfection& camera) {
   return {{"calibration_level", camera.calibration_level},

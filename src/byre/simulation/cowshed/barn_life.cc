@@ -10,6 +10,7 @@ CowshedRecordingOptions visit_of_life(const CowshedRecordingOptions& first, int 
   assert(visit >= 1);
   constexpr int kWeek = 7, kPainted = 4 * kWeek, kBuilt = 6 * kWeek;  // days
   constexpr double kLife = 60.0;                                      // days
+  constexpr double kInStore = 24.0;                                   // seconds
   CowshedRecordingOptions options = first;
   CowshedOptions& barn = options.barn;
   barn.mission = visit;
@@ -20,7 +21,10 @@ CowshedRecordingOptions visit_of_life(const CowshedRecordingOptions& first, int 
   barn.gate = BarnGate::closed;
   if (visit == 1) return options;
   SeededDraws draws(hash(barn.seed, static_cast<std::uint64_t>(visit), 2), 41);
-  barn.gate = weekday == 1 || weekday == 4 ? BarnGate::open : BarnGate::closed;
+  if (weekday == 1 || weekday == 4) {
+    barn.gate = BarnGate::open;
+    options.duration_s += kInStore;
+  }
   barn.cows = 3 + draws.below(8);
   barn.painted = day >= kPainted;
   barn.has_stall = day >= kBuilt;
