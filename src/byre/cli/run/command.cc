@@ -174,7 +174,7 @@ void conclude(const RunOptions& options, const RunResult& run, const RunProtocol
   }
   nlohmann::ordered_json more = {{"is_mostly_trusted", report.figures["mission"]["trusted_share"] >= kMostly},
                                  {"map", options.map->string()},
-                                 {"is_on_plan", protocol.plan.has_value()}};
+                                 {"is_on_plan", protocol.plan.has_value() || is_site_file(*options.map)}};
   if (!mission.statistics.doubts.empty()) {
     const DistrustReason doubt = mission.statistics.doubts.front().first;
     more["doubt"] = to_string(doubt);
