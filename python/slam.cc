@@ -304,8 +304,12 @@ void bind_making(SlamClass& type) {
       .def_static(
           "on_map",
           [](const Calibration& calibration, const std::filesystem::path& map, const SlamOptions& options) {
-            return is_site_file(map) ? Slam::on_site(calibration, read_site_with_plans(map), options)
-                                     : Slam::on_map(calibration, map, options);
+            if (!is_site_file(map)) return Slam::on_map(calibration, map, options);
+            Site site = read_site(map);
+            for (SiteMap& one : site.maps) {
+              if (one.plan) one.drawn_plan = read_drawn_floor_plan(*one.plan);
+            }
+            return Slam::on_site(calibration, site, options);
           },
           py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{}, Released(),
           "Mission on an offline map, which is not modified, or on a site file. Poses are in the frame of the map, or "

@@ -18,7 +18,7 @@ struct SiteMap {
   std::string name;
   std::filesystem::path map;
   std::optional<std::filesystem::path> plan{};  // floor plan on which the map is registered
-  std::optional<DrawnFloorPlan> drawn_plan{};   // the plan's walls, which limit relocalisation; empty: no walls
+  std::optional<DrawnFloorPlan> drawn_plan{};   // walls of the plan (read_drawn_floor_plan), which limit relocalisation
   double height = 0.0;                          // metres, of the floor above a reference of the site
   std::string building{};
 };
@@ -53,7 +53,5 @@ inline bool is_site_file(const std::filesystem::path& path) {
 // Reads docs/reference/site_file.md. Paths are relative to its folder. Throws InputError naming file and field; maps
 // and plans are not opened.
 Site read_site(const std::filesystem::path& path);
-// read_site, then read_drawn_floor_plan of each plan. Throws InputError like both.
-Site read_site_with_plans(const std::filesystem::path& path);
 
 }  // namespace byre

@@ -202,11 +202,14 @@ class KilledRobot {
     for (const auto& entry : fs::directory_iterator(task_.saved.parent_path())) {
       names.insert(entry.path().filename().string());
     }
-    const fs::path previous = task_.saved.parent_path() / (task_.saved.stem().string() + ".previous.byre");
-    for (const fs::path& file : {task_.saved, previous}) names.erase(file.filename().string());
+    const std::string stem = task_.saved.stem().string();
+    names.erase(task_.saved.filename().string());
+    for (const char* const version : {".previous.byre", ".previous_2.byre", ".previous_3.byre"}) {
+      names.erase(stem + version);
+    }
     if (const auto file = unfinished()) names.erase(file->filename().string());
     std::erase_if(names, [&](const std::string& name) {  // a link left by a kill before its rename
-      return name.starts_with(previous.filename().string() + ".") && name.ends_with(".unfinished");
+      return name.starts_with(stem + ".previous") && name.ends_with(".unfinished");
     });
     EXPECT_THAT(names, testing::IsEmpty()) << "no backlog";
     const int most = task_.is_extended() ? sessions_before + 1 : 1;
@@ -214,7 +217,7 @@ class KilledRobot {
     if (!task_.is_extended()) {
       EXPECT_EQ(read_file(task_.map), map_bytes_) << "a mission's map stays as it is";
     }
-    for (const fs::path& file : {task_.saved, previous}) {
+    for (const fs::path& file : {task_.saved, task_.saved.parent_path() / (stem + ".previous.byre")}) {
       if (!fs::exists(file)) continue;
       const std::string validate = std::string(BYRE_PROGRAM) + " validate " + file.string() + " > " +
                                    (folder_ / "faults.txt").string() + " 2>&1";

@@ -97,7 +97,7 @@ TEST_F(BenchmarkProgram, AcceptsEitherAProtocolOrARecording) {
   EXPECT_EQ(run("benchmark room.yaml --stride 2").exit_code, 2);
   const Outcome neither = run("benchmark --runs 2");
   EXPECT_EQ(neither.exit_code, 2);
-  EXPECT_THAT(neither.errors, HasSubstr("PROTOCOL or --speed"));
+  EXPECT_THAT(neither.errors, HasSubstr("PROTOCOL, --speed or --life"));
 }
 
 TEST_F(BenchmarkProgram, ReportsFaultsOfItsInput) {

@@ -9,6 +9,7 @@
 #include "byre/features/image_threads.h"
 #include "byre/floor_plan.h"
 #include "byre/input_error.h"
+#include "byre/io/image/plan_file.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/report/event_log.h"
 #include "byre/playback/report/mission_evaluation.h"

@@ -53,15 +53,15 @@ TEST_F(SimulateProgram, WritesTheSameBytesForTheSameOptions) {
 
 TEST_F(SimulateProgram, RendersTheDaysOfALife) {
   const std::string life = "simulate life --duration 0.2 --rate 10 --divide 8 -o life ";
-  const Outcome first = run(life + "--visits 2");
+  const Outcome first = run(life + "--only 1 3");
   EXPECT_EQ(first.exit_code, 0) << first.errors;
   EXPECT_THAT(first.output, HasSubstr("2 visits; 0 were there already"));
-  EXPECT_EQ(open_recording(folder_ / "life" / "day_02", {})->size(), 2);
-  fs::create_directories(folder_ / "life" / "day_50.unfinished" / "mav0");
-  const Outcome later = run(life + "--only 2 50 --quiet");
+  EXPECT_EQ(open_recording(folder_ / "life" / "day_03", {})->size(), 2);
+  fs::create_directories(folder_ / "life" / "day_46.unfinished" / "mav0");
+  const Outcome later = run(life + "--only 3 46 --quiet");
   EXPECT_THAT(later.output, HasSubstr("1 visits; 1 were there already"));
-  EXPECT_TRUE(fs::exists(folder_ / "life" / "day_50" / "mav0"));
-  EXPECT_FALSE(fs::exists(folder_ / "life" / "day_50.unfinished"));
+  EXPECT_TRUE(fs::exists(folder_ / "life" / "day_46" / "mav0"));
+  EXPECT_FALSE(fs::exists(folder_ / "life" / "day_46.unfinished"));
 }
 
 TEST_F(SimulateProgram, WritesTheTrueCalibrationToo) {

@@ -5,6 +5,7 @@
 #include "byre/io/calibration/yaml_mapping.h"
 #include "byre/io/image/image_file.h"
 #include "byre/io/image/image_size.h"
+#include "byre/io/image/plan_file.h"
 #include "byre/site.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/floor_plan.h"
+#include "byre/site.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -16,5 +17,8 @@ std::filesystem::path plan_description(const std::filesystem::path& image);
 // the plan's pixels, as in DrawnFloorPlan. Preconditions: square pixels, not mirrored. Throws InputError on failure.
 void write_floor_plan(const FloorPlan& plan, std::span<const std::int8_t> occupancy,
                       const std::filesystem::path& image);
+
+// read_site, then read_drawn_floor_plan of each plan. Throws InputError like both.
+Site read_site_with_plans(const std::filesystem::path& path);
 
 }  // namespace byre

@@ -5,6 +5,7 @@
 #include "byre/extrinsics_file.h"
 #include "byre/floor_plan.h"
 #include "byre/geometry/baseline.h"
+#include "byre/io/image/plan_file.h"
 #include "byre/io/recording/file_safety.h"
 #include "byre/io/recording/settings_file.h"
 #include "byre/io/recording/static_frames.h"

@@ -23,6 +23,7 @@ std::unique_ptr<Executor> make_search_lane(Pace pace) {
 }  // namespace
 
 void SlamImpl::begin_site() {
+  if (inputs_.maps.empty()) inputs_.maps.push_back({"", inputs_.offline, {}, 0, inputs_.plan});
   std::vector<std::optional<PlanRegistration>> plans;
   for (const MissionMap& map : inputs_.maps) plans.push_back(map.plan);
   active_.emplace(inputs_.links, std::move(plans), options_.session.mission.registration);
