@@ -312,9 +312,9 @@ void bind_making(SlamClass& type) {
             return Slam::on_site(calibration, site, options);
           },
           py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{}, Released(),
-          "Mission on an offline map, which is not modified, or on a site file. Poses are in the frame of the map, or "
-          "of "
-          "FrameReport.map, with verdicts. Raises InputError as mapping(), and if a map cannot be loaded.");
+          "Mission on an offline map, which is not modified, or on a site file. Poses are in the frame of the map, "
+          "on a site of FrameReport.map, with verdicts. Raises InputError as mapping(), and if a map cannot be "
+          "loaded.");
 }
 
 void bind_input(SlamClass& type) {

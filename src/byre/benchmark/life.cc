@@ -1,6 +1,7 @@
 #include "byre/benchmark/life.h"
 
 #include "byre/base/stopwatch.h"
+#include "byre/benchmark/evaluate_run.h"
 #include "byre/benchmark/run_cost.h"
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/evaluation/map_frame_error.h"
@@ -16,8 +17,6 @@
 #include <cmath>
 #include <map>
 #include <utility>
-
-#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -45,28 +44,22 @@ double megabytes(const fs::path& file) {
   return static_cast<double>(fs::file_size(file)) / kBytesPerMegabyte;
 }
 
-LifeMission measures_of(const RunResult& run, const MapAlignment& alignment, const Trajectory& truth) {
+LifeMission measures_of(const RunResult& run, const MapAlignment& alignment, const Trajectory& poses) {
   constexpr double kClose = 0.05;  // metres
-  const MissionErrors errors = mission_errors(run, alignment, truth);
-  LifeMission mission;
-  std::vector<double> metres, inliers;
-  for (const PoseError& error : errors.causal) metres.push_back(error.position());
-  int trusted = 0;
+  const RunTruth truth{poses, alignment};
+  const RunMeasures measures = evaluate_run(run, truth);
+  const auto close =
+      std::ranges::count_if(trace_of(run.causal, truth), [](const TracePoint& point) { return point.error <= kClose; });
+  std::vector<double> inliers;
   for (const PlayedFrame& frame : run.frames) {
-    if (!frame.report) continue;
-    trusted += frame.report->health.verdict == Verdict::trusted;
-    inliers.push_back(frame.report->health.offline_inliers);
+    if (frame.report) inliers.push_back(frame.report->health.offline_inliers);
   }
-  const auto frames = static_cast<double>(run.frames.size());
-  mission.trusted = trusted / frames;
-  mission.within_5_cm =
-      static_cast<double>(std::ranges::count_if(metres, [](double error) { return error <= kClose; })) / frames;
-  mission.wrongly_trusted = errors.wrongly_trusted;
-  mission.offline_inliers = median_or(std::move(inliers), 0.0);
-  if (metres.empty()) return mission;
-  mission.greatest_error = std::ranges::max(metres);
-  mission.median_error = median(std::move(metres));
-  return mission;
+  return {.trusted = measures.behaviour.trusted_share.value_or(0.0),
+          .within_5_cm = static_cast<double>(close) / static_cast<double>(run.frames.size()),
+          .wrongly_trusted = static_cast<int>(measures.behaviour.wrongly_trusted.value_or(0.0)),
+          .median_error = measures.causal_poses.map_error_median.value_or(0.0),
+          .greatest_error = measures.causal_poses.map_error_max.value_or(0.0),
+          .offline_inliers = median_or(std::move(inliers), 0.0)};
 }
 
 class LifeRunner {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "byre/benchmark/measures.h"
 #include "byre/map.h"
 #include "byre/playback/play.h"
 

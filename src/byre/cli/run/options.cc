@@ -37,12 +37,13 @@ constexpr const char* kRunFooter = R"(Examples:
 With a map the run is a mission: it localises without an initial pose, tracks the offline map's points, maps new
 points online, and gives each frame a verdict on its pose. The file of the offline map is only read. Poses are in the
 map's frame; odometry is in a frame that begins at the start of the robot and never jumps. --localise-only disables
-online mapping; --save-session keeps what "byre update" needs. On a site of several maps (docs/reference/site_file.md) the robot may
-begin and wake up on any of them; each pose is in the frame of the map active then, named in events, statistics and
-TRAJECTORY.maps; what is saved is of the last map. --frame plan converts poses in the map to poses on the floor plan of "byre register". Without --map
-the whole recording is mapped as by "byre map", including finishing. With truth, errors are in the map's frame: the
-map, not the mission, is aligned to the truth by its own keyframes; for a map of another recording also give the
-truth of that recording (--map-truth), and for a small map the trajectory of the run that made it (--map-trajectory).
+online mapping; --save-session keeps what "byre update" needs; --frame plan converts poses in the map to poses on the
+floor plan of "byre register". On a site of several maps the robot begins on any of them. Each pose is in the frame of
+the map active then, which events, statistics and TRAJECTORY.maps name. Saved files are of the last map
+(docs/reference/site_file.md). Without --map the whole recording is mapped as by "byre map", including finishing. With
+truth, errors are in the map's frame: the map, not the mission, is aligned to the truth by its own keyframes; for a
+map of another recording also give the truth of that recording (--map-truth), and for a small map the trajectory of
+the run that made it (--map-trajectory).
 With --live the newest frame of the cameras is taken, at live pace unless --pace is given. The run lasts until
 --duration or Ctrl-C; see docs/how-to/live_cameras.md.
 With --view the run can be watched in a browser, and afterwards until Ctrl-C, or without a terminal for --view-for

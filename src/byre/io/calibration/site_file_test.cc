@@ -1,36 +1,14 @@
-#include "byre/input_error.h"
+#include "byre/io/calibration/yaml_file_fixture.h"
 #include "byre/site.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 namespace byre {
 namespace {
 
 using testing::HasSubstr;
 
-class SiteFile : public testing::Test {
- protected:
-  SiteFile() : path_(std::filesystem::path(testing::TempDir()) / ("site." + std::to_string(getpid()) + ".yaml")) {}
-  ~SiteFile() override { std::filesystem::remove(path_); }
-
-  Site read(const std::string& text) {
-    std::ofstream(path_) << text;
-    return read_site(path_);
-  }
-  std::string fault_of(const std::string& text) {
-    try {
-      read(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  std::filesystem::path path_;
-};
+using SiteFile = YamlFileTest<&read_site>;
 
 const std::string kMaps =
     "name: farm\n"

@@ -1,38 +1,16 @@
 #include "byre/tag_file.h"
 
 #include "byre/geometry/degrees.h"
-#include "byre/input_error.h"
-
-#include <fstream>
+#include "byre/io/calibration/yaml_file_fixture.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 namespace byre {
 namespace {
 
 using testing::HasSubstr;
 
-class TagFile : public testing::Test {
- protected:
-  TagFile() : path_(std::filesystem::path(testing::TempDir()) / ("tags." + std::to_string(getpid()) + ".yaml")) {}
-  ~TagFile() override { std::filesystem::remove(path_); }
-
-  std::vector<Tag> read(const std::string& text) {
-    std::ofstream(path_) << text;
-    return read_tags(path_);
-  }
-  std::string fault_of(const std::string& text) {
-    try {
-      read(text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  std::filesystem::path path_;
-};
+using TagFile = YamlFileTest<&read_tags>;
 
 TEST_F(TagFile, ReadsCommonAndOwnFields) {
   const auto tags = read(

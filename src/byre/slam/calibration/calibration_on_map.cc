@@ -62,6 +62,18 @@ std::optional<CalibrationRow> row_of(const TrackedFeature& feature, const Keypoi
 
 }  // namespace
 
+double length_sigma(const Features& features) {
+  constexpr double kCommonError = 0.08;  // pixels
+  double sum = 0.0, squares = 0.0;
+  for (const Keypoint& keypoint : features.keypoints()) {
+    if (!keypoint.has_disparity()) continue;
+    const double disparity = keypoint.disparity;
+    sum += disparity;
+    squares += disparity * disparity;
+  }
+  return squares > 0.0 ? kCommonError * sum / squares : 0.0;
+}
+
 CalibrationOnMap::CalibrationOnMap(const Calibration& given, double prior_sigmas)
     : given_(given), prior_sigmas_(prior_sigmas), sensitivity_(given) {}
 
@@ -119,8 +131,30 @@ void CalibrationOnMap::add_rows(const Features& features, const CalibrationVecto
   }
 }
 
+CalibrationMatrix CalibrationOnMap::posterior() const {
+  return information_ + CalibrationMatrix::Identity() / (prior_sigmas_ * prior_sigmas_);
+}
+
+double CalibrationOnMap::length_sigma(const Features& features, const CalibrationVector& change) const {
+  Eigen::Matrix<double, 1, kCalibrationParameters> by_calibration;
+  by_calibration.setZero();
+  double squares = 0.0;
+  for (const Keypoint& keypoint : features.keypoints()) {
+    if (!keypoint.has_disparity()) continue;
+    const StereoPixel pixel(keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity);
+    by_calibration += pixel.z() * sensitivity_.at(pixel).row(2);
+    squares += pixel.z() * pixel.z();
+  }
+  if (!(squares > 0.0)) return 0.0;
+  by_calibration /= squares;
+  const Eigen::LDLT<CalibrationMatrix> factor(posterior());
+  const double variance = by_calibration * factor.solve(by_calibration.transpose());
+  const double open = by_calibration * (factor.solve(right_side_) - change);
+  return std::hypot(byre::length_sigma(features), std::sqrt(variance), open);
+}
+
 RefinedCalibration CalibrationOnMap::estimate() const {
-  const CalibrationMatrix posterior = information_ + CalibrationMatrix::Identity() / (prior_sigmas_ * prior_sigmas_);
+  const CalibrationMatrix posterior = this->posterior();
   const CalibrationVector expected = posterior.ldlt().solve(right_side_);
   RefinedCalibration result = determined_calibration(given_, posterior, expected, prior_sigmas_);
   reject_implausible(result, expected, given_, prior_sigmas_);

@@ -29,7 +29,8 @@ class LookingAbout {
     }
   }
 
-  void look(int number, CalibrationOnMap& calibration) {
+  // Returns what the robot sees.
+  std::shared_ptr<const Features> look(int number, CalibrationOnMap& calibration) {
     const double t = 0.11 * number;
     const Pose world_from_left{rotation_exp({0.2 * std::sin(0.9 * t), 0.6 * std::sin(t), 0.3 * std::sin(1.7 * t)}),
                                {std::sin(t), 0.4 * std::sin(1.3 * t), 0.8 * std::cos(0.8 * t)}};
@@ -56,6 +57,7 @@ class LookingAbout {
     }
     const MapGraph nothing_online(Origin::online);
     calibration.add(frame, rig, tracked, {&offline_, nothing_online}, CalibrationVector::Zero());
+    return frame.features;
   }
 
  private:
@@ -108,6 +110,25 @@ TEST(CalibrationOnMap, EstimatesTheErrorOfAGoodCalibration) {
     EXPECT_LT(disparity_error(found.calibration, truth), 0.02) << "seed " << seed;
     EXPECT_LT((found.change - error).cwiseQuotient(found.sigma_after).cwiseAbs().maxCoeff(), 4.0) << "seed " << seed;
   }
+}
+
+// All disparities err by half a pixel, so lengths err by half a pixel's share of the disparities.
+TEST(CalibrationOnMap, TellsTheErrorOfLengthsUntilItsEstimateIsApplied) {
+  constexpr double kOff = 0.5;    // pixels
+  constexpr double kLeft = 0.08;  // pixels, see length_sigma()
+  constexpr int kCentreOfRight = kRightCamera + 2;
+  const Calibration given = scene_calibration();
+  CalibrationVector error = CalibrationVector::Zero();
+  error[kCentreOfRight] = kOff / calibration_parameters()[kCentreOfRight].sigma;
+  LookingAbout robot(given, error);
+  CalibrationOnMap calibration(given, SelfCalibrationOptions{}.prior_sigmas);
+  std::shared_ptr<const Features> seen;
+  for (int i = 0; i < 40; ++i) seen = robot.look(i, calibration);
+  const double left = length_sigma(*seen);
+  EXPECT_GT(left, 0.001);
+  EXPECT_NEAR(calibration.length_sigma(*seen, CalibrationVector::Zero()), left * kOff / kLeft,
+              0.3 * left * kOff / kLeft);
+  EXPECT_LT(calibration.length_sigma(*seen, calibration.estimate().change), 1.5 * left);
 }
 
 TEST(CalibrationOnMap, KeepsTheGivenCalibrationWithFewObservations) {

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kManyOfflinePoints = 80;     // expected offline points, from which some must be found
 constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; one moved object may fill the rest
+constexpr double kFar = 1.0;               // metres of path without offline points
 constexpr double kMinOfflineShare = 0.04;  // share of expected points; fewer agree by chance in repetitive buildings
 
 double drift_of(const Health& health, const HealthOptions& options) {
@@ -49,8 +50,7 @@ DistrustReason distrust_reason(const Health& health, const HealthEvidence& evide
   if (evidence.is_miscalibrated) return DistrustReason::calibration;
   if (!evidence.confirmed) return DistrustReason::unconfirmed;
   if (position_error(health, options) > options.trusted_error) {
-    return drift_of(health, options) > uncertainty_of(health, options) ? DistrustReason::off_the_map
-                                                                       : DistrustReason::uncertain;
+    return health.distance_since_offline > kFar ? DistrustReason::off_the_map : DistrustReason::uncertain;
   }
   return DistrustReason::none;
 }
@@ -188,7 +188,7 @@ HealthEvidence FaultLatches::latch(Timestamp time, const HealthEvidence& evidenc
 }
 
 double position_error(const Health& measured, const HealthOptions& options) {
-  return uncertainty_of(measured, options) + drift_of(measured, options);
+  return std::hypot(uncertainty_of(measured, options), drift_of(measured, options));
 }
 
 Health assess(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options) {

@@ -57,7 +57,7 @@ class FaultLatches {
   bool may_be_timing_ = false;                 // the images disagreed in motion: only a pair in step ends that doubt
 };
 
-// Bound on the position error, metres: sigmas of the pose plus drift.
+// Bound on the position error, metres: sigmas of the pose, and the drift, which is independent of them.
 double position_error(const Health& measured, const HealthOptions& options);
 
 // Whether dirt hides so much of an image that one moved object may fill the rest.

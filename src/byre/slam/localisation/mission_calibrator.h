@@ -20,6 +20,11 @@ class MissionCalibrator {
   Frame corrected(const Frame& frame) { return calibrator_.corrected(frame); }
   const std::optional<RefinedCalibration>& result() const { return calibrator_.result(); }
 
+  // See CalibrationOnMap. For the features of a corrected frame.
+  double length_sigma(const Features& features) const {
+    return on_map_.length_sigma(features, calibrator_.state().change);
+  }
+
   // Adds a corrected frame whose pose is beyond doubt.
   void note(const Frame& frame, const Rig& rig, const TrackedFrame& tracked, const MapView& map);
 
@@ -40,7 +45,7 @@ class MissionCalibrator {
   CalibrationOnMap on_map_;
   Calibrator calibrator_;
   JobSlot<Outcome> job_;
-  int next_frames_ = 60;  // frames noted before the next estimate
+  int next_frames_ = 20;  // frames noted before the next estimate
 };
 
 }  // namespace byre

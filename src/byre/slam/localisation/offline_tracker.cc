@@ -222,11 +222,17 @@ double OfflineTracker::log_odds_of_rivals() const {
   return std::log(untestable_ + std::exp(rivals_.log_odds()));
 }
 
+double OfflineTracker::length_sigma_of(const Features& features) const {
+  if (is_drift_closed_) return 0.0;
+  return calibrator_ ? calibrator_->length_sigma(features) : byre::length_sigma(features);
+}
+
 OfflineTracker::MissionUpdate OfflineTracker::note(const Seen& seen, const PoseFilter& pose_filter,
                                                    const Mapper& mapper) {
   MissionUpdate update{.events = note_view(seen, mapper)};
   update.moved_tags = find_moved_tags(seen, pose_filter);
   if (!update.moved_tags.empty()) update.events.push_back(SessionEvent::tag_moved);
+  length_sigma_ = length_sigma_of(*seen.frame.features);
   if (is_certain(pose_filter)) rivals_.forget();
   rivals_.note_place(seen.frame.time, seen.track.tracked.camera_from_world, pose_filter.place());
   if (!pose_filter.place().is_confirmed()) return update;
@@ -274,8 +280,10 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   mission_.note(track, seen.frame.time, seen.step,
                 {track.offline_expected, track.offline_inliers, seen.image_is_faulty, seen.frame.features->size()});
   const OfflineView now = mission_.view();
-  const bool is_held = now == OfflineView::held && !track.maps_disagree && track.offline_inliers >= kOfflineThatHolds;
+  const bool is_agreed = now == OfflineView::held && !track.maps_disagree;
+  const bool is_held = is_agreed && track.offline_inliers >= kOfflineThatHolds;
   if (is_held && mapper.newest_keyframe()) last_held_keyframe_ = mapper.newest_keyframe()->number;
+  is_drift_closed_ = is_held || (is_agreed && track.offline_inliers >= track.online_inliers());
   const ScratchVector<PointId> due = mission_.due_for_retest(seen.offline_around);
   if (!due.empty()) {
     TrackOptions options = options_.track;

@@ -118,10 +118,16 @@ class OfflineTracker {
   // What the frames showed of the offline map's points, by number.
   const std::vector<PointRecord>& point_records() const { return point_records_; }
 
+  // The last frame showed enough offline points, or more than online ones, to end the drift.
+  bool is_drift_closed() const { return is_drift_closed_; }
+  // Standard error of the lengths in the last frame, as a share; 0 if the drift ended.
+  double length_sigma() const { return length_sigma_; }
+
   // Adds measures of the offline map.
   Health with_map_health(Health health, Timestamp now, Timestamp first_frame) const;
 
  private:
+  double length_sigma_of(const Features& features) const;
   std::vector<SessionEvent> note_view(const Seen& seen, const Mapper& mapper);
   void record_points(const Seen& seen);
   PointRecord& record_of(PointId point);
@@ -168,6 +174,8 @@ class OfflineTracker {
   bool is_verifying_search_ = false;  // the running search is due to doubt, not to need
   JobSlot<PlaceSearch> search_;
   std::optional<MissionCalibrator> calibrator_;
+  bool is_drift_closed_ = false;
+  double length_sigma_ = 0.0;
   FocalCheck focal_check_;
   std::vector<PointRecord> point_records_;  // by number of the offline point
   // Number of the newest online keyframe when offline points last constrained the pose.

@@ -68,6 +68,16 @@ Matrix6 PoseFilter::jump_covariance() const {
   return covariance;
 }
 
+// The error is along the way since then, because all lengths err by the same share.
+Matrix6 PoseFilter::drift_covariance(double length_sigma) const {
+  Matrix6 covariance = Matrix6::Zero();
+  if (!held_) return covariance;
+  const Eigen::Vector3d error =
+      length_sigma * (inverse(odometry_.map_from_body()) * *held_).translation;  // in the body
+  covariance.topLeftCorner<3, 3>() = error * error.transpose();
+  return covariance;
+}
+
 // Compares a tracked pose with its prediction by measured motion and by velocity; the closer one counts, because wheels
 // slip and velocities change. Precondition: the pose is not in the trajectory yet.
 void PoseFilter::note_jump(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map) {

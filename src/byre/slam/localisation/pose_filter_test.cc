@@ -139,6 +139,24 @@ TEST_F(WhereaboutsOnATrueMap, KeepADisagreementOfTheMapsInTheCovarianceUntilOffl
   EXPECT_EQ(sigma_after(false, 100), 0.0);
 }
 
+TEST_F(WhereaboutsOnATrueMap, AddTheErrorOfLengthsSinceOfflinePointsHeldToTheCovariance) {
+  constexpr double kShare = 0.02;
+  find_and_confirm(0);
+  const auto drift = [&] { return pose_filter_.drift_covariance(kShare); };
+  EXPECT_EQ(drift().norm(), 0.0) << "no offline point held the pose yet";
+  pose_filter_.note_held();
+  EXPECT_EQ(drift().norm(), 0.0);
+  const Eigen::Vector3d held = pose_filter_.odometry().map_from_body().translation;
+  const std::size_t first = pose_filter_.trajectory().size();
+  for (std::size_t i = first; i < first + 10; ++i) note(i);
+  const Pose& body = pose_filter_.odometry().map_from_body();
+  const Eigen::Vector3d error = kShare * (body.rotation.conjugate() * (body.translation - held));
+  EXPECT_GT(error.norm(), 0.01);
+  EXPECT_LT((drift().topLeftCorner<3, 3>() - error * error.transpose()).norm(), 1e-9);
+  pose_filter_.note_held();
+  EXPECT_EQ(drift().norm(), 0.0);
+}
+
 TEST_F(WhereaboutsOnATrueMap, ForgetAJumpAfterConsistentMotion) {
   find_and_confirm(0);
   const std::size_t frame = pose_filter_.trajectory().size();

@@ -3,6 +3,7 @@
 #include "byre/slam/mapping/anchored_trajectory.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace byre {
 namespace {
@@ -24,10 +25,22 @@ void KeyframePolicy::note_track(KeyframeId reference, int inliers) {
   reference_ = reference;
 }
 
-void KeyframePolicy::restart() {
+void KeyframePolicy::restart(KeyframeId keyframe) {
+  last_keyframe_ = keyframe;
   frames_since_keyframe_ = 0;
   reference_.reset();
   is_required_ = false;
+}
+
+// Offline references change along the way, so motion from them needs no keyframe. Online points take over where the
+// offline ones end: while the frame shows few of both, motion counts from the last online keyframe. Empty without one.
+std::optional<KeyframeId> KeyframePolicy::reference_of(const HybridTrack& track, const MapView& map) const {
+  constexpr int kManyOnline = 100, kManyOffline = kEnoughOffline / 2;  // points
+  const KeyframeId& reference = track.tracked.reference;
+  const bool has_many = track.online_inliers() >= kManyOnline || track.offline_inliers >= kManyOffline;
+  if (reference.origin == Origin::online || has_many) return reference;
+  const bool is_known = last_keyframe_ && map.find_keyframe(*last_keyframe_) != nullptr;
+  return is_known ? last_keyframe_ : std::nullopt;
 }
 
 KeyframeEvidence KeyframePolicy::evidence(const HybridTrack& track, const MapView& map, int pending) const {
@@ -37,7 +50,10 @@ KeyframeEvidence KeyframePolicy::evidence(const HybridTrack& track, const MapVie
   evidence.without_depth = frames_without_depth_;
   evidence.pending = pending;
   evidence.offline_inliers = track.offline_inliers;
-  const Pose motion = track.tracked.camera_from_world * inverse(camera_from_world(map, track.tracked.reference));
+  const std::optional<KeyframeId> reference = reference_of(track, map);
+  evidence.shift_share = std::numeric_limits<double>::infinity();
+  if (!reference) return evidence;
+  const Pose motion = track.tracked.camera_from_world * inverse(camera_from_world(map, *reference));
   evidence.turn = rotation_log(motion.rotation).norm();
   evidence.shift_share = motion.translation.norm() / std::max(1e-3, median_depth(track.tracked, map));
   return evidence;

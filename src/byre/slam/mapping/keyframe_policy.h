@@ -19,7 +19,7 @@ class KeyframePolicy {
   // the earlier map to this place by that motion.
   void require_keyframe() { is_required_ = true; }
   // A keyframe was made.
-  void restart();
+  void restart(KeyframeId keyframe);
 
   // For the frame noted last. pending: number of keyframes not yet processed by mapping.
   KeyframeEvidence evidence(const HybridTrack& track, const MapView& map, int pending) const;
@@ -32,10 +32,13 @@ class KeyframePolicy {
   bool is_short() const { return is_short_; }
 
  private:
+  std::optional<KeyframeId> reference_of(const HybridTrack& track, const MapView& map) const;
+
   int frames_since_keyframe_ = 0;
-  int frames_without_depth_ = 0;         // consecutive frames without disparities, stereo rigs only
-  std::optional<KeyframeId> reference_;  // reference of the last tracked frame
-  int fresh_inliers_ = 0;                // in the first frame tracked with that reference
+  int frames_without_depth_ = 0;             // consecutive frames without disparities, stereo rigs only
+  std::optional<KeyframeId> last_keyframe_;  // online
+  std::optional<KeyframeId> reference_;      // reference of the last tracked frame
+  int fresh_inliers_ = 0;                    // in the first frame tracked with that reference
   bool is_short_ = false;
   bool is_required_ = false;
 };

@@ -27,7 +27,7 @@ class KeyframeWatchTest : public ::testing::Test {
 TEST_F(KeyframeWatchTest, CountsFramesSinceTheLastKeyframe) {
   for (int i = 0; i < 3; ++i) watch_.note_frame(mission_.frames[1], mission_.rig);
   EXPECT_EQ(evidence().frames_since_last, 3);
-  watch_.restart();
+  watch_.restart(map_.keyframe_ids().front());
   EXPECT_EQ(evidence().frames_since_last, 0);
   EXPECT_EQ(evidence().pending, 2);
 }
@@ -51,9 +51,20 @@ TEST_F(KeyframeWatchTest, KeepsTheInliersOfTheFirstFrameOfAReference) {
   EXPECT_EQ(evidence().fresh_inliers, 200);
   watch_.note_track(keyframes[1], 180);
   EXPECT_EQ(evidence().fresh_inliers, 180);
-  watch_.restart();
+  watch_.restart(map_.keyframe_ids().front());
   watch_.note_track(keyframes[1], 170);
   EXPECT_EQ(evidence().fresh_inliers, 170);
+}
+
+// The reference in the offline map is always near.
+TEST_F(KeyframeWatchTest, CountsMotionFromTheLastOnlineKeyframeWhileTheFrameShowsFewOnlinePoints) {
+  HybridTrack track;
+  track.tracked.reference = {Origin::offline, 0};
+  track.tracked.camera_from_world = Pose{rotation_exp({0.0, 0.2, 0.0}), Eigen::Vector3d::Zero()} *
+                                    map_.camera_from_world(map_.keyframe_ids().front());
+  EXPECT_TRUE(needs_keyframe(track.tracked, watch_.evidence(track, map_, 0), {.min_tracked = 0, .min_frames = 0}));
+  watch_.restart(map_.keyframe_ids().front());
+  EXPECT_NEAR(watch_.evidence(track, map_, 0).turn, 0.2, 1e-9);
 }
 
 TEST_F(KeyframeWatchTest, MeasuresTheRotationFromTheReference) {
@@ -110,7 +121,7 @@ TEST(KeyframeOfAFoundFrame, IsAddedAfterMeasuredMotion) {
   EXPECT_FALSE(watch.should_add_keyframe(tracked_on(180), nothing_new, kNoCuts, {}));
   watch.require_keyframe();
   EXPECT_TRUE(watch.should_add_keyframe(tracked_on(180), nothing_new, kNoCuts, {}));
-  watch.restart();
+  watch.restart({Origin::online, 0});
   EXPECT_FALSE(watch.should_add_keyframe(tracked_on(180), nothing_new, kNoCuts, {}));
 }
 

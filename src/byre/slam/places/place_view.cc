@@ -49,6 +49,7 @@ void leave_out_other_lights(const MapGraph& map, const ScratchVector<PointId>& s
       count->seen += seen;
     }
   }
+  if (counts.size() < 2) return;
   const auto share_of = [&](const Count& count) {
     return (count.seen + kPrior * all.seen / all.expected) / (count.expected + kPrior);
   };

@@ -269,7 +269,7 @@ TEST(Mission, AddsFewKeyframesInAMappedPlace) {
   const auto count_keyframes = [](const std::vector<FrameReport>& reports) {
     return std::ranges::count(reports, true, &FrameReport::keyframe_added);
   };
-  EXPECT_LE(10 * count_keyframes(reports_of(on_map, mission.frames)),
+  EXPECT_LE(8 * count_keyframes(reports_of(on_map, mission.frames)),
             count_keyframes(reports_of(plain, mission.frames)));
 }
 

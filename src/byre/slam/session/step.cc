@@ -214,7 +214,7 @@ Located begin_submap(RobotState& state, const Frame& frame) {
   if (begun.keyframes.empty()) return {.track = {}, .elsewhere = {}, .start_failure = begun.failure};
   pose_filter.begin(begun.keyframes, state.mapper.submaps().present(), state.rig, state.mapper.online());
   state.tracker.restart_from(begun.keyframes.back());
-  state.keyframe_policy.restart();
+  state.keyframe_policy.restart(begun.keyframes.back());
   if (state.mission) state.mission->begin_submap();
   return {.track = {}, .elsewhere = {}, .begins_submap = true, .start_failure = begun.failure};
 }
@@ -288,6 +288,7 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
         state.mission->note({input.frame, track, state.rig, progress.step, input.fault != ImageFault::none,
                              state.tracker.offline_points(), hidden, view ? &*view : nullptr},
                             pose_filter, state.mapper);
+    if (state.mission->is_drift_closed()) pose_filter.note_held();
     report.events.insert(report.events.end(), update.events.begin(), update.events.end());
     report.moved_tags = update.moved_tags;
     if (update.correction) state.mapper.correct_later(*update.correction);
@@ -333,7 +334,7 @@ void extend_map(RobotState& state, const InputFrame& input, const HybridTrack& t
     const KeyframeId id = state.mapper.add_keyframe(input.frame, track, state.rig);
     state.rolling_shutter.note_keyframe(id);
     state.tracker.restart_from(id);
-    state.keyframe_policy.restart();
+    state.keyframe_policy.restart(id);
     state.pose_filter.anchor_to(id);
     report.keyframe_added = true;
   }

@@ -102,18 +102,13 @@ std::unique_ptr<SlamImpl> make(const Calibration& given, const SlamOptions& opti
                                     InputCheckOptions{options.max_pair_difference, options.max_gap});
 }
 
-MissionMap load_mission_map(const SiteMap& map, const Vocabulary& vocabulary,
-                            const std::optional<DrawnFloorPlan>& plan) {
-  return {map.name, load_offline_map(map.map, vocabulary, plan), map.map, map_id(map.map),
-          load_plan_registration(map.map)};
-}
-
 void load_site(const Site& site, const SlamOptions& options, SlamInputs& inputs) {
   if (options.plan)
     throw InputError("SlamOptions::plan", "is of one map, not of a site", "name plans in the site file");
   if (site.maps.empty()) throw InputError("site " + site.name, "has no map", "see byre/site.h");
   for (const SiteMap& map : site.maps) {
-    inputs.maps.push_back(load_mission_map(map, *inputs.vocabulary, map.drawn_plan));
+    inputs.maps.push_back({map.name, load_offline_map(map.map, *inputs.vocabulary, map.drawn_plan), map.map,
+                           map_id(map.map), load_plan_registration(map.map)});
   }
   for (const SiteLink& link : site.links) {
     if (link.polygon.empty() || inputs.maps[link.from].plan) continue;
@@ -155,13 +150,9 @@ Slam Slam::extending(const Calibration& calibration, const fs::path& map, const 
 
 Slam Slam::on_map(const Calibration& calibration, const fs::path& map, const SlamOptions& options) {
   if (is_site_file(map)) throw InputError(map.string(), "is a site, not a map", "give read_site() to Slam::on_site");
-  const Calibration given = checked(calibration, options);
-  SlamInputs inputs;
-  inputs.vocabulary = open_vocabulary(options.vocabulary);
-  inputs.maps.push_back(load_mission_map({"", map}, *inputs.vocabulary, options.plan));
-  inputs.offline = inputs.maps.front().offline;
-  inputs.plan = inputs.maps.front().plan;
-  return Slam(make(given, options, std::move(inputs)));
+  SlamOptions of_map = options;
+  SiteMap only{.name = "", .map = map, .drawn_plan = std::exchange(of_map.plan, {})};
+  return on_site(calibration, {.name = "", .maps = {std::move(only)}, .links = {}}, of_map);
 }
 
 Slam Slam::on_site(const Calibration& calibration, const Site& site, const SlamOptions& options) {

@@ -1,9 +1,11 @@
 #include "byre/slam/upkeep/additions.h"
 
+#include "byre/slam/calibration/calibration_on_map.h"
 #include "byre/slam/upkeep/place_budget.h"
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -17,6 +19,10 @@ int sightings_of(const Keyframe& keyframe, std::optional<Origin> origin = {}) {
   return static_cast<int>(std::ranges::count_if(keyframe.sightings, [&](const Sighting& sighting) {
     return sighting.point && (!origin || sighting.point->origin == *origin);
   }));
+}
+
+double position_variance(const Keyframe& keyframe) {
+  return keyframe.covariance.topLeftCorner<3, 3>().trace();  // square metres
 }
 
 // What a map has near a camera, in a similar viewing direction.
@@ -36,6 +42,20 @@ KnownPlace known_place(const MapGraph& map, std::span<const KeyframeId> keyframe
     place.nearest = std::min(place.nearest, change.translation.norm() + rotation_log(change.rotation).norm());
   }
   return place;
+}
+
+// Variance of a camera's position by the drift from the map: its lengths err by a share since the place where the
+// mission left the map, whose own variance is added. Square metres.
+double drift_variance(const MapGraph& map, std::span<const KeyframeId> keyframes, const Keyframe& keyframe) {
+  const Eigen::Vector3d position = inverse(keyframe.camera_from_world).translation;
+  const double share = length_sigma(*keyframe.frame.features);
+  double least = std::numeric_limits<double>::infinity();
+  for (const KeyframeId id : keyframes) {
+    const Keyframe& known = *map.find_keyframe(id);
+    const double way = (position - inverse(known.camera_from_world).translation).norm();
+    least = std::min(least, position_variance(known) + share * share * way * way);
+  }
+  return least;
 }
 
 // Keyframes that see the offline map, and those connected with them by common points; ascending.
@@ -79,11 +99,12 @@ std::vector<KeyframeId> keyframes_to_add(const MapGraph& map, const MapGraph& ch
   std::vector<KeyframeId> chosen;
   for (const KeyframeId id : connected_keyframes(online)) {
     const Keyframe& keyframe = *online.find_keyframe(id);
-    if (keyframe.covariance.topLeftCorner<3, 3>().trace() > kMaxSigma * kMaxSigma) continue;
     if (known_place(child, others, keyframe.camera_from_world).keyframes > 0) continue;
     const KnownPlace before = known_place(map, present, keyframe.camera_from_world);
     const KnownPlace added = known_place(online, chosen, keyframe.camera_from_world);
     const bool is_new = before.keyframes == 0;
+    const double drift = is_new ? drift_variance(map, present, keyframe) : 0.0;
+    if (position_variance(keyframe) + drift > kMaxSigma * kMaxSigma) continue;
     const bool has_few = sightings_of(keyframe, Origin::offline) < kFew * before.points;
     if (!is_new && !has_few) continue;
     if (added.nearest < kSeparate || added.keyframes >= kKeyframesOfPlace) continue;
@@ -94,6 +115,7 @@ std::vector<KeyframeId> keyframes_to_add(const MapGraph& map, const MapGraph& ch
 
 Added add_keyframes(const MapGraph& online, const std::vector<KeyframeId>& keyframes, int recording, MapGraph& map) {
   constexpr std::size_t kViews = 3;
+  const std::vector<KeyframeId> present = map.keyframe_ids();
   std::map<PointId, PointId> points;  // in the map, by point in the mission
   for (const PointId id : online.point_ids()) {
     const MapPoint& point = *online.find_point(id);
@@ -103,6 +125,7 @@ Added add_keyframes(const MapGraph& online, const std::vector<KeyframeId>& keyfr
   std::map<KeyframeId, KeyframeId> added;
   for (const KeyframeId id : keyframes) {
     Keyframe keyframe = *online.find_keyframe(id);
+    keyframe.covariance.topLeftCorner<3, 3>().diagonal().array() += drift_variance(map, present, keyframe) / 3.0;
     keyframe.recording = recording;
     keyframe.rig = map.add_rig(online.rigs()[static_cast<std::size_t>(keyframe.rig)]);
     for (Sighting& sighting : keyframe.sightings) {

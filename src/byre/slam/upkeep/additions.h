@@ -7,9 +7,10 @@
 namespace byre {
 
 // Online keyframes of a mission to add to a map, ascending: those with a new view, or at places where the mission saw
-// few of the map's points. At most a few at each place, and none near additions of another mission, which may disagree
-// by their drift. Only keyframes that points connect to the map; others may be of a part that was never located in it.
-// child: the map with additions of other missions.
+// few of the map's points. New places only while the drift since the mission left the map is below 5 cm (one sigma). At
+// most a few at each place, and none near additions of another mission, which may disagree by their drift. Only
+// keyframes that points connect to the map; others may be of a part that was never located in it. child: the map with
+// additions of other missions.
 std::vector<KeyframeId> keyframes_to_add(const MapGraph& map, const MapGraph& child, const MapGraph& online);
 
 struct Added {

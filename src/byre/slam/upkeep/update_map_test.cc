@@ -112,6 +112,17 @@ TEST_F(MapUpdates, AddPlacesThatTheMapLacks) {
   EXPECT_GT(share_found(update.child->map, later), 0.85);
 }
 
+// Where the map itself is known to 6 cm only, the drift of a mission beyond it adds to that.
+TEST_F(MapUpdates, AddNoPlaceWhoseDriftFromTheMapIsLarge) {
+  constexpr double kSigma = 0.06;  // metres
+  const MapGraph online = online_beside(session_, parent_.stored.map);
+  const std::size_t near_a_good_map = keyframes_to_add(parent_.stored.map, parent_.stored.map, online).size();
+  MapGraph vague = parent_.stored.map;
+  const Matrix6 covariance = kSigma * kSigma / 3.0 * Matrix6::Identity();
+  for (const KeyframeId id : vague.keyframe_ids()) vague.move_keyframe(id, vague.camera_from_world(id), covariance);
+  EXPECT_LT(keyframes_to_add(vague, vague, online).size(), near_a_good_map / 2);
+}
+
 TEST_F(MapUpdates, MoveNoPointAndNoKeyframeThatStays) {
   for (PoseRecord& pose : session_.record.poses) pose.verdict = static_cast<std::uint8_t>(Verdict::trusted);
   const MapUpdate update = updated(parent_, {session_});
@@ -191,7 +202,9 @@ TEST_F(MapUpdates, RetirePointsThatMissionsMissRepeatedly) {
 }
 
 TEST_F(MapUpdates, NeedKeyframesOfTheMission) {
-  const StoredSession session = session_of(circling(0.4, 2), parent_);
+  SimulatedMission mission = circling(0.4, 2);
+  mission.frames.resize(10);
+  const StoredSession session = session_of(mission, parent_);
   EXPECT_THAT(updated(parent_, {session}).sessions[0].place.fault, HasSubstr("mapped too little to be placed"));
 }
 
