@@ -1,6 +1,7 @@
 #include "byre/ros2/fleet/fleet_position.h"
 
 #include <chrono>
+#include <cmath>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -53,12 +54,12 @@ TEST_F(FleetPositionTest, ProjectsThePoseToThePlane) {
 
 TEST_F(FleetPositionTest, ReportsTheErrorBoundAsDeviation) {
   note(report(Verdict::trusted, Pose{}));
-  EXPECT_THAT(keeper_.at(1s).deviation, Optional(DoubleNear(3 * 0.01 + 0.005 * 2.0, 1e-12)));
+  EXPECT_THAT(keeper_.at(1s).deviation, Optional(DoubleNear(std::hypot(3 * 0.01, 0.005 * 2.0), 1e-12)));
 }
 
 TEST_F(FleetPositionTest, ScoresByVerdictAndErrorBound) {
   FrameReport frame = report(Verdict::trusted, Pose{});
-  EXPECT_NEAR(localization_score(frame), 1.0 - 0.5 * 0.04 / 0.2, 1e-12);
+  EXPECT_NEAR(localization_score(frame), 1.0 - 0.5 * std::hypot(0.03, 0.01) / 0.2, 1e-12);
   frame.health.position_sigma = 1.0;
   EXPECT_EQ(localization_score(frame), 0.5);
   EXPECT_EQ(localization_score(report(Verdict::degraded, Pose{})), 0.4);

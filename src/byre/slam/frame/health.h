@@ -63,7 +63,7 @@ double position_error(const Health& measured, const HealthOptions& options);
 // Whether dirt hides so much of an image that one moved object may fill the rest.
 bool is_mostly_hidden(double hidden_share);
 
-// Sets verdict and doubt. Untrusted if uncertainty plus drift exceed the error bound of a trusted pose. Degraded while
+// Sets verdict and doubt. Untrusted if position_error() exceeds the error bound of a trusted pose. Degraded while
 // few, clustered or contradicting points constrain the pose.
 Health assess(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options);
 
