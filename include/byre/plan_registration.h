@@ -3,6 +3,7 @@
 #include "byre/alignment.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,12 +37,22 @@ Eigen::Matrix2d plan_covariance_at(const PlanRegistration& registration, const E
 using PlanJacobian = Eigen::Matrix<double, 3, 7>;
 PlanJacobian plan_jacobian(const Similarity& plan_from_map, const Eigen::Vector3d& point_in_map);
 
-// A point of the map that was picked on the floor plan.
+// Second point of a wall. In the map and on the plan the wall is the line through both; the points need not coincide.
+struct PlanWall {
+  Eigen::Vector3d end_in_map = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_in_map = Eigen::Matrix3d::Zero();  // as of PlanCorrespondence
+  Eigen::Vector2d end_in_plan = Eigen::Vector2d::Zero();        // metres
+};
+
+// A point of the map that was picked on the floor plan, or a wall.
 struct PlanCorrespondence {
   std::string name;
   Eigen::Vector3d point_in_map = Eigen::Vector3d::Zero();
   Eigen::Vector2d point_in_plan = Eigen::Vector2d::Zero();  // metres
   double sigma = 0.05;  // metres, of x and of y, in the map and on the plan together
+  // Covariance of point_in_map in the map's unit, in addition to sigma.
+  Eigen::Matrix3d covariance_in_map = Eigen::Matrix3d::Zero();
+  std::optional<PlanWall> wall = {};
 };
 
 struct PlanRegistrationOptions {
@@ -50,8 +61,10 @@ struct PlanRegistrationOptions {
 };
 
 struct PlanResidual {
-  Eigen::Vector2d error_in_plan = Eigen::Vector2d::Zero();  // by the map less as picked, metres
-  bool is_outlier = false;                                  // excluded from the fit
+  // By the map less as picked, metres; of a wall the larger distance from its line.
+  Eigen::Vector2d error_in_plan = Eigen::Vector2d::Zero();
+  bool is_outlier = false;  // excluded from the fit
+  double sigma = 0.0;       // metres, standard deviation of the error per axis, without that of the registration
 };
 
 // Reasons to doubt a registration.

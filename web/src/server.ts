@@ -1,5 +1,5 @@
 import { decodeImage, decodeMap, type MapData, type SeenImage } from "./decode";
-import type { LiveMessage, Pick, PlanFit, SceneFields } from "./types";
+import type { LiveMessage, Pick, PicturePixel, PlanFit, Proposal, SceneFields } from "./types";
 
 const kRetryMilliseconds = 2000;
 
@@ -50,9 +50,28 @@ export function register(picks: Pick[]): Promise<PlanFit> {
   return post("/registration", { picks });
 }
 
-/** Saves the registered map. accepted: residual confirmed by the user, metres. Returns the files written. */
-export async function save(picks: Pick[], accepted?: number): Promise<string[]> {
-  return (await post<{ written: string[] }>("/save", { picks, accepted_residual_m: accepted })).written;
+/** Matches the walls of the map with the plan; takes seconds. */
+export function propose(): Promise<Proposal> {
+  return post("/proposal", {});
+}
+
+/** Further pictures of the place at a pixel, the best to triangulate by first. */
+export async function furtherViews(pixel: PicturePixel): Promise<PicturePixel[]> {
+  return (await post<{ views: PicturePixel[] }>("/place", { pixels: [pixel] })).views;
+}
+
+/** Standard deviation of the place seen at pixels of several pictures, map units. Throws if they are of different places. */
+export async function sigmaOfPlace(pixels: PicturePixel[]): Promise<number> {
+  return (await post<{ sigma: number }>("/place", { pixels })).sigma;
+}
+
+/**
+ * Saves the registered map. picks: null for the proposal. accepted: residual confirmed by the user, metres. Returns the
+ * files written.
+ */
+export async function save(picks: Pick[] | null, accepted?: number): Promise<string[]> {
+  const what = picks ? { picks } : { proposal: true };
+  return (await post<{ written: string[] }>("/save", { ...what, accepted_residual_m: accepted })).written;
 }
 
 export interface LiveListener {

@@ -52,13 +52,18 @@ export interface PictureFields {
   keyframe: number;
   recording: string;
   time_s: number;
+  width_of_view: number; // size of the area that it sees; 0 without a plan
 }
+
+/** keyframe, u, v: shares of its picture's width and height. */
+export type PicturePixel = [number, number, number];
 
 export interface MapScene extends SceneBase {
   mode: "map";
   is_metric: boolean;
   pictures: PictureFields[];
   output: string | null;
+  tags: number; // surveyed ones, which are picks as well
 }
 
 export type SceneFields = RunScene | MapScene;
@@ -94,10 +99,22 @@ export interface LiveMessage {
   ended?: boolean;
 }
 
+/** A map point, the robot at a keyframe, a place in pictures, or with plan_end the foot of a wall in one picture. */
 export interface Pick {
   name: string;
-  point: number;
   plan: Vector2Fields;
+  point?: number;
+  station?: number;
+  pixels?: PicturePixel[];
+  plan_end?: Vector2Fields;
+}
+
+/** Place at which a further pick reduces the uncertainty most; sigmas: mean along the path. */
+export interface NextPick {
+  plan: Vector2Fields;
+  pixels: PicturePixel[];
+  sigma_before_m: number;
+  sigma_after_m: number;
 }
 
 export interface PlanFit {
@@ -105,6 +122,13 @@ export interface PlanFit {
   rms_m: number;
   residual_m: number; // root mean square; over all picks if the outliers may be correct
   is_far_off: boolean; // saving requires confirmation of the residual
-  residuals: { error_m: Vector2Fields; is_outlier: boolean }[];
+  residuals: { error_m: Vector2Fields; sigma_m: number; is_outlier: boolean }[]; // of picks, then of tags
   doubts: string[];
+  next?: NextPick | null;
+}
+
+/** Registration by the walls alone. doubt: why it must not be trusted. */
+export interface Proposal extends PlanFit {
+  description: string;
+  doubt: string | null;
 }

@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 struct RegisterCommandOptions {
   fs::path map;
   fs::path plan;
-  fs::path picks;  // empty: tags alone
+  fs::path picks;  // empty: tags alone, or automatic
+  bool automatic = false;
   std::optional<fs::path> tags;
   std::optional<fs::path> output;
   RegisterOptions registering;
@@ -41,6 +42,7 @@ constexpr const char* kRegisterFooter = R"(Examples:
   byre register site.byre --plan plan.png --points picks.csv -o site-plan.byre
   byre register barn.byre --plan plan.yaml --tags tags.yaml -o barn-plan.byre
   byre register barn.byre --plan plan.yaml --points picks.csv --fix-scale -o barn-plan.byre
+  byre register barn.byre --plan plan.yaml --auto -o barn-plan.byre
 
 Estimates the pose of a map on a floor plan from points picked in both. -o writes a copy of the map with its
 registration, with which "byre run" and "byre localise" give poses on the plan (--frame plan). The plan is a
@@ -48,11 +50,19 @@ map_server YAML file, or an image with a world file. The vertical and the height
 path of the robot. Wrong picks are detected from four picks on; six are better. A map without a metric scale gets the
 scale of the plan; the scale of a metric map is compared with the plan. A wrong scale of a stereo map is a wrong
 baseline: --fix-scale corrects both, if the plan is to scale. Doubts are reported and are not errors, but a map that
-is off its plan by more than half a metre is not written unless --accept-residual allows it.
+is off its plan by more than half a metre is not written unless --accept-residual allows it. --auto needs no picks: it
+matches the walls of the map with those of the plan, and is refused unless one pose explains the map significantly
+better than all others.
 docs/reference/floor_plan.md describes the files and the figures.)";
 
 ScaleCorrectedMap register_with_options(const RegisterCommandOptions& options, const FloorPlan& plan) {
   StoredMap stored = load_map(options.map);
+  if (options.automatic) {
+    const auto body_height =
+        options.is_height_given ? std::optional(options.registering.registration.body_height) : std::optional<double>();
+    Registering registering = register_by_walls(stored, options.map, read_plan_pixels(plan), body_height);
+    return {std::move(stored), std::move(registering), 1.0};
+  }
   if (options.fix_scale) return correct_scale(std::move(stored), options.map, plan, options.picks, options.registering);
   Registering registering = register_map(stored, options.map, plan, options.picks, options.registering);
   return {std::move(stored), std::move(registering), 1.0};
@@ -65,7 +75,9 @@ bool is_close_enough(const PlanFit& fit, const RegisterCommandOptions& options) 
 [[noreturn]] void refuse_to_write(const PlanFit& fit, const RegisterCommandOptions& options) {
   const double residual = residual_of(fit);
   throw InputError(
-      options.picks.empty() ? options.tags->string() : options.picks.string(),
+      !options.picks.empty() ? options.picks.string()
+      : options.tags         ? options.tags->string()
+                             : options.map.string(),
       fmt::format("has residuals of {:.2f} m on the map, so the map is not written: poses on the plan would have the "
                   "same error",
                   residual),
@@ -128,11 +140,14 @@ Action declare_register(CLI::App& command) {
       ->needs(output);
   command.add_flag("--fix-scale", options->fix_scale, "Correct the scale of a stereo map and its baseline by the plan")
       ->needs(output);
+  command.add_flag("--auto", options->automatic, "Match the map's walls with the plan's, without picks")
+      ->excludes("--points", "--tags", "--fix-scale");
   command.add_flag("--json", options->json, "Print the result as JSON");
   check_when_parsed(command, [options, height] {
     options->is_height_given = height->count() > 0;
-    if (options->picks.empty() && !options->tags) {
-      throw CLI::ValidationError("--points", "give points picked in map and plan, surveyed tags (--tags), or both");
+    if (options->picks.empty() && !options->tags && !options->automatic) {
+      throw CLI::ValidationError("--points",
+                                 "give points picked in map and plan, surveyed tags (--tags), or both; or --auto");
     }
   });
   command.footer(kRegisterFooter);

@@ -141,6 +141,13 @@ TEST_F(RegisterProgram, RejectsImpossibleScaleCorrections) {
   EXPECT_EQ(run("register barn.byre --plan plan.yaml --points picks.csv --fix-scale").exit_code, 2) << "without -o";
 }
 
+TEST_F(RegisterProgram, RefusesToMatchAPlanWithoutWalls) {
+  const Outcome outcome = run("register barn.byre --plan plan.yaml --auto -o out.byre");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("barn.byre: has no obstacles to match, or the plan has no walls"));
+  EXPECT_EQ(run("register barn.byre --plan plan.yaml --auto --points picks.csv").exit_code, 2);
+}
+
 TEST_F(RegisterProgram, ReportsDoubtsForTooFewPicks) {
   write("picks.csv", picks_csv(scene_.correspondences(2)));
   const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv");

@@ -6,6 +6,7 @@
 #include "byre/cli/shared/view_run.h"
 #include "byre/io/recording/input_files.h"
 #include "byre/slam/system/resources.h"
+#include "byre/tag_file.h"
 #include "byre/viewer/web/web_map.h"
 
 #include <memory>
@@ -26,7 +27,8 @@ struct ViewCommandOptions {
   std::optional<fs::path> output;
   bool overwrite = false;
   double pick_sigma = PlanCorrespondence{}.sigma;  // metres
-  PlanRegistrationOptions registration;
+  std::optional<double> body_height;               // metres
+  std::optional<fs::path> tags;
   bool quiet = false;
 };
 
@@ -54,7 +56,9 @@ ExitCode view(const ViewCommandOptions& options) {
   viewed.output = options.output;
   for (const fs::path& output : outputs_of(options)) require_writable(output);
   viewed.pick_sigma = options.pick_sigma;
-  viewed.registration = options.registration;
+  viewed.body_height = options.body_height;
+  viewed.registration.body_height = options.body_height.value_or(0.0);
+  if (options.tags) viewed.tags = read_tags(*options.tags);
   raise_descriptor_limit();
   const MapViewer viewer(std::move(viewed), options.view.server);
   announce(viewer.urls());
@@ -87,10 +91,13 @@ Action declare_view(CLI::App& command) {
   command.add_option("--pick-sigma", options->pick_sigma, "Standard deviation of the picks (0.05)")
       ->type_name("METRES")
       ->check(between(1e-4, 100.0));
-  command
-      .add_option("--body-height", options->registration.body_height, "Height of the body's origin above the floor (0)")
+  command.add_option("--body-height", options->body_height, "Height of the body's origin above the floor (0)")
       ->type_name("METRES")
       ->check(between(-100.0, 100.0));
+  add_input(command, Input::file, "--tags", options->tags,
+            "AprilTags surveyed on the plan, in addition to picks: YAML, see docs/how-to/use_apriltags.md")
+      ->type_name("FILE")
+      ->needs("--plan");
   command.add_flag("--quiet", options->quiet, "Print only the address");
   check_when_parsed(command, [options] { require_consistent(*options); });
   command.footer(kViewFooter);

@@ -1,42 +1,17 @@
 #include "byre/map/plan/floor_plan.h"
 
 #include "byre/geometry/decompositions.h"
-#include "byre/geometry/median.h"
+#include "byre/map/plan/planar_consensus.h"
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <limits>
-#include <numeric>
-#include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace byre {
 namespace {
 
-// A position seen from above in two frames, x and y as real and imaginary part.
-struct PlanarPair {
-  std::complex<double> in_source;
-  std::complex<double> in_target;
-  double sigma = 1.0;  // standard error per axis, in the target
-};
-
-// in_target = turn * in_source + shift. The argument of turn is the rotation, its magnitude the scale.
-struct PlanarSimilarity {
-  std::complex<double> turn = 1.0;
-  std::complex<double> shift = 0.0;
-};
-
-// Pairs consistent with one planar similarity or rigid motion.
-struct PlanarConsensus {
-  PlanarSimilarity target_from_source;  // least squares over the inliers
-  std::vector<bool> is_inlier;          // one per pair
-};
-
-using Complex = std::complex<double>;
-using Pairs = std::span<const PlanarPair>;
-using Subset = std::vector<std::size_t>;  // indices of pairs
 using Correspondences = std::span<const PlanCorrespondence>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 
@@ -54,139 +29,46 @@ Pose level_from_map(const DrivingPlane& plane) {
   return {rotation, -(rotation * plane.point_in_map)};
 }
 
-constexpr double kRayleighMedian = 1.1774;  // median length of a vector of two standard normal variables
-constexpr double kRayleigh99 = 3.0349;      // 99 % quantile of that length
-constexpr std::size_t kMostSubsets = 20000;
-constexpr int kMostSteps = 20;
-
-// Least squares weighted by 1/sigma^2; Umeyama's solution in the plane. Empty if all pairs coincide in one frame.
-std::optional<PlanarSimilarity> fit(Pairs pairs, const Subset& subset, Scale scale) {
-  Complex source_sum = 0.0, target_sum = 0.0;
-  double weights = 0.0;
-  for (const std::size_t i : subset) {
-    const double weight = 1.0 / (pairs[i].sigma * pairs[i].sigma);
-    source_sum += weight * pairs[i].in_source;
-    target_sum += weight * pairs[i].in_target;
-    weights += weight;
-  }
-  const Complex source_mean = source_sum / weights, target_mean = target_sum / weights;
-  Complex product = 0.0;
-  double source_variance = 0.0;
-  for (const std::size_t i : subset) {
-    const double weight = 1.0 / (pairs[i].sigma * pairs[i].sigma);
-    const Complex source = pairs[i].in_source - source_mean;
-    product += weight * (pairs[i].in_target - target_mean) * std::conj(source);
-    source_variance += weight * std::norm(source);
-  }
-  const double length = scale == Scale::free ? source_variance : std::abs(product);
-  if (!(std::abs(product) > 0.0) || !(length > 0.0)) return std::nullopt;
-  const Complex turn = product / length;
-  return PlanarSimilarity{turn, target_mean - turn * source_mean};
-}
-
-// Lengths, in sigmas.
-std::vector<double> residuals_of(Pairs pairs, const PlanarSimilarity& motion) {
-  std::vector<double> residuals;
-  for (const PlanarPair& pair : pairs) {
-    residuals.push_back(std::abs(motion.turn * pair.in_source + motion.shift - pair.in_target) / pair.sigma);
-  }
-  return residuals;
-}
-
-// Size of the half of `count` pairs, two of which determine a motion. In a larger subset outliers might be a majority.
-std::size_t trusted_half(std::size_t count) {
-  return std::min((count + 3) / 2, count);
-}
-
-struct TrimmedFit {
-  PlanarSimilarity motion;
-  Subset nearest;  // indices of the half with the best fit, ascending
-  double cost = std::numeric_limits<double>::infinity();
-};
-
-TrimmedFit trim(Pairs pairs, const PlanarSimilarity& motion) {
-  const std::vector<double> residuals = residuals_of(pairs, motion);
-  TrimmedFit trimmed{motion, Subset(pairs.size()), 0.0};
-  std::iota(trimmed.nearest.begin(), trimmed.nearest.end(), std::size_t{0});
-  std::ranges::stable_sort(trimmed.nearest, {}, [&residuals](std::size_t i) { return residuals[i]; });
-  trimmed.nearest.resize(trusted_half(pairs.size()));
-  std::ranges::sort(trimmed.nearest);
-  for (const std::size_t i : trimmed.nearest) trimmed.cost += residuals[i] * residuals[i];
-  return trimmed;
-}
-
-// The best motion determined by two pairs. With very many pairs only some of the sets are tried.
-std::optional<TrimmedFit> best_of_twos(Pairs pairs, Scale scale) {
-  const std::size_t stride = 1 + pairs.size() * pairs.size() / 2 / kMostSubsets;
-  std::optional<TrimmedFit> best;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    for (std::size_t j = i + 1; j < pairs.size(); ++j) {
-      if (count++ % stride != 0) continue;
-      const std::optional<PlanarSimilarity> motion = fit(pairs, {i, j}, scale);
-      if (!motion) continue;
-      TrimmedFit trimmed = trim(pairs, *motion);
-      if (!best || trimmed.cost < best->cost) best = std::move(trimmed);
-    }
-  }
-  return best;
-}
-
-TrimmedFit concentrate(Pairs pairs, TrimmedFit best, Scale scale) {
-  for (int step = 0; step < kMostSteps; ++step) {
-    const std::optional<PlanarSimilarity> motion = fit(pairs, best.nearest, scale);
-    if (!motion) break;
-    TrimmedFit better = trim(pairs, *motion);
-    if (!(better.cost < best.cost)) break;
-    best = std::move(better);
-  }
-  return best;
-}
-
-// Bound of inlier residuals, in the given sigmas: the 99 % quantile for normally distributed errors. More than three
-// sigmas if more than a few residuals exceed their sigmas.
-double largest_agreeing_residual(std::vector<double> residuals) {
-  const auto count = static_cast<double>(residuals.size());
-  // Finite-sample correction for the exact fit to two pairs, which lowers the residuals (Rousseeuw and Leroy 1987).
-  const double few = count > 2.0 ? 1.0 + 5.0 / (count - 2.0) : 1.0;
-  return kRayleigh99 * std::max(1.0, few * median(std::move(residuals)) / kRayleighMedian);
-}
-
-// Least trimmed squares: of the motions determined by two pairs, the one that best fits its nearest half of the pairs,
-// improved by refits to that half (Rousseeuw and Van Driessen 2006, theorem 1). Empty if no two pairs are separate in
-// both frames.
-std::optional<PlanarConsensus> find_planar_consensus(Pairs pairs, Scale scale) {
-  const std::optional<TrimmedFit> start = best_of_twos(pairs, scale);
-  if (!start) return std::nullopt;
-  const TrimmedFit trimmed = concentrate(pairs, *start, scale);
-  const std::vector<double> residuals = residuals_of(pairs, trimmed.motion);
-  const double limit = largest_agreeing_residual(residuals);
-  PlanarConsensus consensus{trimmed.motion, {}};
-  Subset inliers;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    consensus.is_inlier.push_back(residuals[i] <= limit);
-    if (consensus.is_inlier.back()) inliers.push_back(i);
-  }
-  if (const auto motion = fit(pairs, inliers, scale)) consensus.target_from_source = *motion;
-  return consensus;
-}
-
 double largest_tilt_sigma(const DrivingPlane& plane) {
   return 1.0 / std::sqrt(symmetric_eigenvalues(plane.up_information)[0]);
 }
 
-// Correspondences seen from above. The tilt's uncertainty adds to the sigma of points high above the floor.
+PlanarPoint planar(const Eigen::Vector2d& point) {
+  return {point.x(), point.y()};
+}
+
+// Standard deviation per axis of a point with the sigma of its pick. A free scale is unknown here: sigma alone.
+double sigma_per_axis(double sigma, const Eigen::Matrix3d& covariance_in_map, Scale scale) {
+  return scale == Scale::free ? sigma : std::sqrt(sigma * sigma + covariance_in_map.trace() / 3.0);
+}
+
+// Correspondences seen from above. The tilt's uncertainty adds to the sigma of points high above the floor. Walls add
+// pairs if there are few points.
 std::vector<PlanarPair> seen_from_above(Correspondences correspondences, const DrivingPlane& plane, Scale scale,
                                         const Eigen::Vector2d& offset_in_plan) {
+  constexpr std::size_t kEnoughPoints = 4;  // one may be wrong
   const Pose level = level_from_map(plane);
   const double tilt = scale == Scale::fixed ? largest_tilt_sigma(plane) : 0.0;
-  std::vector<PlanarPair> pairs;
+  const auto pair_of = [&](const Eigen::Vector3d& point_in_map, const Eigen::Vector2d& point_in_plan, double sigma) {
+    const Eigen::Vector3d point = level * point_in_map;
+    return PlanarPair{planar(point.head<2>()), planar(point_in_plan - offset_in_plan),
+                      std::hypot(sigma, tilt * point.z())};
+  };
+  std::vector<PlanarPair> points;
+  std::vector<PlanarWall> walls;
   for (const PlanCorrespondence& each : correspondences) {
-    const Eigen::Vector3d point = level * each.point_in_map;
-    const Eigen::Vector2d target = each.point_in_plan - offset_in_plan;
-    pairs.push_back({{point.x(), point.y()}, {target.x(), target.y()}, std::hypot(each.sigma, tilt * point.z())});
+    const PlanarPair pair =
+        pair_of(each.point_in_map, each.point_in_plan, sigma_per_axis(each.sigma, each.covariance_in_map, scale));
+    if (each.wall) {
+      walls.push_back({pair, pair_of(each.wall->end_in_map, each.wall->end_in_plan, pair.sigma)});
+    } else {
+      points.push_back(pair);
+    }
   }
-  return pairs;
+  if (points.size() >= kEnoughPoints) return points;
+  const std::vector<PlanarPair> of_walls = pairs_of_walls(points, walls);
+  points.insert(points.end(), of_walls.begin(), of_walls.end());
+  return points;
 }
 
 Similarity lifted(const PlanarSimilarity& plan_from_level, const DrivingPlane& plane, Scale scale, double body_height) {
@@ -257,28 +139,66 @@ class PlanRefinement {
     return Matrix7(covariance.selfadjointView<Eigen::Upper>());
   }
 
-  Eigen::Vector2d error_of(const PlanCorrespondence& each, const Similarity& plan_from_map) const {
-    return (plan_from_map * each.point_in_map).head<2>() - (each.point_in_plan - offset_in_plan_);
+  // Errors of a correspondence with their covariance, square metres: of a point x and y, of a wall the distances of its
+  // start and end from the line on the plan.
+  struct Measurement {
+    Eigen::Vector2d error;
+    Eigen::Matrix<double, 2, 7> jacobian;
+    Eigen::Matrix2d covariance;
+  };
+
+  Measurement measure(const PlanCorrespondence& each, const Similarity& plan_from_map) const {
+    Measurement start = measure_point(each.point_in_map, each.covariance_in_map, each, plan_from_map);
+    if (!each.wall) return start;
+    const Measurement end = measure_point(each.wall->end_in_map, each.wall->covariance_in_map, each, plan_from_map);
+    const Eigen::RowVector2d normal = normal_of(each).transpose();
+    Measurement wall;
+    wall.error << normal * start.error, normal * end.error;
+    wall.jacobian << normal * start.jacobian, normal * end.jacobian;
+    wall.covariance << normal * start.covariance * normal.transpose(), 0.0, 0.0,
+        normal * end.covariance * normal.transpose();
+    return wall;
+  }
+
+  PlanResidual residual(const PlanCorrespondence& each, const Similarity& plan_from_map) const {
+    const Measurement measured = measure(each, plan_from_map);
+    if (!each.wall) return {measured.error, false, std::sqrt(0.5 * measured.covariance.trace())};
+    const int larger = std::abs(measured.error[1]) > std::abs(measured.error[0]) ? 1 : 0;
+    return {measured.error[larger] * normal_of(each), false, std::sqrt(measured.covariance(larger, larger))};
   }
 
   // Lengths, in sigmas.
   std::vector<double> residuals(const Similarity& plan_from_map) const {
     std::vector<double> residuals;
     for (const PlanCorrespondence& each : correspondences_) {
-      residuals.push_back(error_of(each, plan_from_map).norm() / each.sigma);
+      const Measurement measured = measure(each, plan_from_map);
+      residuals.push_back(std::sqrt(measured.error.dot(measured.covariance.inverse() * measured.error)));
     }
     return residuals;
   }
 
  private:
+  Measurement measure_point(const Eigen::Vector3d& point_in_map, const Eigen::Matrix3d& covariance_in_map,
+                            const PlanCorrespondence& each, const Similarity& plan_from_map) const {
+    const Eigen::Matrix<double, 2, 3> rotation =
+        plan_from_map.scale * plan_from_map.target_from_source.rotation.toRotationMatrix().topRows<2>();
+    return {
+        (plan_from_map * point_in_map).head<2>() - (each.point_in_plan - offset_in_plan_),
+        plan_jacobian(plan_from_map, point_in_map).topRows<2>(),
+        rotation * covariance_in_map * rotation.transpose() + each.sigma * each.sigma * Eigen::Matrix2d::Identity()};
+  }
+
+  static Eigen::Vector2d normal_of(const PlanCorrespondence& each) {
+    const Eigen::Vector2d along = (each.wall->end_in_plan - each.point_in_plan).normalized();
+    return {-along.y(), along.x()};
+  }
+
   NormalEquations picks(const Similarity& plan_from_map, const std::vector<bool>& is_inlier) const {
     NormalEquations equations;
     for (std::size_t i = 0; i < correspondences_.size(); ++i) {
       if (!is_inlier[i]) continue;
-      const PlanCorrespondence& each = correspondences_[i];
-      const Eigen::Matrix<double, 2, 7> jacobian = plan_jacobian(plan_from_map, each.point_in_map).topRows<2>();
-      equations.add<2>(jacobian, error_of(each, plan_from_map),
-                       Eigen::Matrix2d::Identity() / (each.sigma * each.sigma));
+      const Measurement measured = measure(correspondences_[i], plan_from_map);
+      equations.add<2>(measured.jacobian, measured.error, measured.covariance.inverse());
     }
     return equations;
   }
@@ -316,7 +236,9 @@ std::vector<bool> within(const std::vector<double>& residuals) {
 std::vector<Eigen::Vector2d> used_points(Correspondences correspondences, const PlanFit& fit) {
   std::vector<Eigen::Vector2d> points;
   for (std::size_t i = 0; i < correspondences.size(); ++i) {
-    if (!fit.residuals[i].is_outlier) points.push_back(correspondences[i].point_in_plan);
+    if (fit.residuals[i].is_outlier) continue;
+    points.push_back(correspondences[i].point_in_plan);
+    if (correspondences[i].wall) points.push_back(correspondences[i].wall->end_in_plan);
   }
   return points;
 }
@@ -354,7 +276,7 @@ bool agree(Correspondences correspondences, const PlanFit& fit) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < correspondences.size(); ++i) {
     if (fit.residuals[i].is_outlier) continue;
-    sum += fit.residuals[i].error_in_plan.squaredNorm() / (correspondences[i].sigma * correspondences[i].sigma);
+    sum += fit.residuals[i].error_in_plan.squaredNorm() / (fit.residuals[i].sigma * fit.residuals[i].sigma);
     ++count;
   }
   return sum <= kLargestRms * kLargestRms * static_cast<double>(count) && 3 * count >= 2 * correspondences.size();
@@ -363,7 +285,7 @@ bool agree(Correspondences correspondences, const PlanFit& fit) {
 std::vector<PlanDoubt> doubts_about(Correspondences correspondences, const DrivingPlane& plane, const PlanFit& fit) {
   const std::vector<Eigen::Vector2d> used = used_points(correspondences, fit);
   std::vector<PlanDoubt> doubts;
-  if (used.size() < 3) {
+  if (std::ranges::count(fit.residuals, false, &PlanResidual::is_outlier) < 3) {
     doubts.push_back(PlanDoubt::few_points);
   } else if (lie_in_line(used)) {
     doubts.push_back(PlanDoubt::in_line);
@@ -413,11 +335,19 @@ std::optional<PlanFit> register_on_plan(Correspondences correspondences, const D
   const Eigen::Vector2d offset_in_plan = correspondences.front().point_in_plan;  // may be millions of metres
   const auto consensus = find_planar_consensus(seen_from_above(correspondences, plane, scale, offset_in_plan), scale);
   if (!consensus) return std::nullopt;
+  Similarity start = lifted(*consensus, plane, scale, options.body_height);
+  start.target_from_source.translation.head<2>() += offset_in_plan;
+  return register_from(start, correspondences, plane, scale, options);
+}
 
+PlanFit register_from(const Similarity& start, Correspondences correspondences, const DrivingPlane& plane, Scale scale,
+                      const PlanRegistrationOptions& options) {
+  const Eigen::Vector2d offset_in_plan = correspondences.front().point_in_plan;
   const PlanRefinement refinement(correspondences, plane, scale, options, offset_in_plan);
-  std::vector<bool> is_inlier = consensus->is_inlier;
-  Similarity plan_from_map =
-      refinement.refine(lifted(consensus->target_from_source, plane, scale, options.body_height), is_inlier);
+  Similarity plan_from_map = start;
+  plan_from_map.target_from_source.translation.head<2>() -= offset_in_plan;
+  std::vector<bool> is_inlier = within(refinement.residuals(plan_from_map));
+  plan_from_map = refinement.refine(plan_from_map, is_inlier);
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<bool> next = within(refinement.residuals(plan_from_map));
     if (next == is_inlier || std::ranges::count(next, true) < 2) break;
@@ -428,7 +358,8 @@ std::optional<PlanFit> register_on_plan(Correspondences correspondences, const D
   PlanFit fit;
   double squares = 0.0;
   for (std::size_t i = 0; i < correspondences.size(); ++i) {
-    fit.residuals.push_back({refinement.error_of(correspondences[i], plan_from_map), !is_inlier[i]});
+    fit.residuals.push_back(refinement.residual(correspondences[i], plan_from_map));
+    fit.residuals.back().is_outlier = !is_inlier[i];
     if (is_inlier[i]) squares += fit.residuals.back().error_in_plan.squaredNorm();
   }
   fit.rms = std::sqrt(squares / static_cast<double>(std::ranges::count(is_inlier, true)));

@@ -15,4 +15,8 @@ namespace byre {
 std::optional<PlanFit> register_on_plan(std::span<const PlanCorrespondence> correspondences, const DrivingPlane& plane,
                                         Scale scale, const PlanRegistrationOptions& options = {});
 
+// The same from an initial estimate, near which correspondences may have repeated errors. Precondition: there are any.
+PlanFit register_from(const Similarity& start, std::span<const PlanCorrespondence> correspondences,
+                      const DrivingPlane& plane, Scale scale, const PlanRegistrationOptions& options = {});
+
 }  // namespace byre

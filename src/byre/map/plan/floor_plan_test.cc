@@ -198,6 +198,61 @@ TEST(FloorPlan, IsLessCertainWithLargerResiduals) {
             20.0 * plan_covariance_at(good->registration, centre_in_map).trace());
 }
 
+// A wall between two points of the floor, picked at other points of its line on the plan.
+PlanCorrespondence wall_of(const FloorPlanScene& scene, const Eigen::Vector2d& start, const Eigen::Vector2d& end) {
+  const Eigen::Vector2d along = end - start;
+  PlanCorrespondence wall{"wall", scene.in_map({start.x(), start.y(), 0.0}), start + 0.3 * along};
+  wall.wall = PlanWall{scene.in_map({end.x(), end.y(), 0.0}), Eigen::Matrix3d::Zero(), start + 0.8 * along};
+  return wall;
+}
+
+TEST(FloorPlan, IsRegisteredByWallsAndFewPoints) {
+  FloorPlanScene scene;
+  const auto sign = scene.correspondences(1).front();
+  const PlanCorrespondence south = wall_of(scene, {3.0, -6.0}, {9.0, -6.0});
+  const PlanCorrespondence north = wall_of(scene, {25.0, 6.0}, {19.0, 6.0});
+  const PlanCorrespondence west = wall_of(scene, {0.0, -4.0}, {0.0, 4.0});
+  for (const auto& picks : {std::vector{south, north, west}, std::vector{south, west, sign}, std::vector{sign, west}}) {
+    const auto fit = register_on_plan(picks, scene.plane(), Scale::fixed);
+    ASSERT_TRUE(fit.has_value());
+    EXPECT_LT(scene.worst_error(fit->registration.plan_from_map), 1e-5);
+    EXPECT_LT(fit->rms, 1e-6);
+  }
+  EXPECT_FALSE(register_on_plan(std::vector{south, north}, scene.plane(), Scale::fixed)) << "parallel";
+}
+
+TEST(FloorPlan, ReportsAWrongWall) {
+  FloorPlanScene scene;
+  auto picks = scene.correspondences(5, kPickNoise);
+  picks.push_back(wall_of(scene, {3.0, -6.0}, {9.0, -6.0}));
+  picks.push_back(wall_of(scene, {0.0, -4.0}, {0.0, 4.0}));
+  picks[6].name = "wrong wall";
+  picks[6].point_in_plan.x() += 0.6;
+  picks[6].wall->end_in_plan.x() += 0.6;
+  const auto fit = register_on_plan(picks, scene.plane(), Scale::fixed);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_THAT(outliers_of(picks, *fit), ElementsAre("wrong wall"));
+  EXPECT_NEAR(fit->residuals[6].error_in_plan.x(), -0.6, 0.08);
+  EXPECT_NEAR(fit->residuals[6].error_in_plan.y(), 0.0, 1e-9);
+}
+
+// Points with errors of 0.5 m along the barn, where their covariance is as large.
+TEST(FloorPlan, WeighsPicksByTheirCovariance) {
+  FloorPlanScene scene;
+  auto picks = scene.correspondences(6);
+  const Eigen::Vector3d along = scene.in_map({1.0, 0.0, 0.0}) - scene.in_map({0.0, 0.0, 0.0});
+  for (std::size_t i = 0; i < picks.size(); ++i) {
+    if (i % 2 == 0) continue;
+    picks[i].point_in_map += (i == 3 ? -0.5 : 0.5) * along;
+    picks[i].covariance_in_map = 0.25 * along * along.transpose();
+  }
+  const auto fit = register_on_plan(picks, scene.plane(), Scale::fixed);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_THAT(outliers_of(picks, *fit), IsEmpty());
+  EXPECT_LT(scene.worst_error(fit->registration.plan_from_map), 0.01);
+  EXPECT_NEAR(fit->residuals[1].sigma, std::sqrt(0.05 * 0.05 + 0.125), 1e-3);
+}
+
 TEST(FloorPlan, IsEmptyForLessThanTwoPositions) {
   FloorPlanScene scene;
   EXPECT_FALSE(register_on_plan({}, scene.plane(), Scale::fixed).has_value());

@@ -1,7 +1,6 @@
 #include "byre/playback/archive/register_map.h"
 
 #include "byre/input_error.h"
-#include "byre/map/mapped_tag.h"
 #include "byre/map/scaled_copy.h"
 
 #include <algorithm>
@@ -64,26 +63,16 @@ void require_unambiguous(const StoredMap& stored, const std::filesystem::path& p
   }
 }
 
-// Centres of the surveyed tags that the map has.
-std::vector<PlanCorrespondence> correspondences_of(const StoredMap& stored, const std::vector<Tag>& tags) {
-  std::vector<PlanCorrespondence> picks;
-  for (const MappedTag& mapped : stored_tags(stored.notes)) {
-    const auto tag = std::ranges::find(tags, mapped.id, &Tag::id);
-    if (tag == tags.end() || !tag->survey) continue;
-    picks.push_back({to_string(mapped.id), mapped.map_from_tag.translation, tag->survey->position.head<2>(),
-                     std::hypot(tag->survey->sigma, mapped.sigma)});
-  }
-  return picks;
-}
-
 }  // namespace
 
 Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
                          const std::filesystem::path& picks, const RegisterOptions& options) {
   const DrivingPlane plane = require_driving_plane(stored.map, map.string());
   Registering result;
-  if (!picks.empty()) result.correspondences = read_plan_correspondences(picks, plan, stored, options.picks);
-  const std::vector<PlanCorrespondence> of_tags = correspondences_of(stored, options.tags);
+  PickOptions of_picks = options.picks;
+  of_picks.body_height = options.registration.body_height;
+  if (!picks.empty()) result.correspondences = read_plan_correspondences(picks, plan, stored, of_picks);
+  const std::vector<PlanCorrespondence> of_tags = tag_correspondences(stored, options.tags);
   result.correspondences.insert(result.correspondences.end(), of_tags.begin(), of_tags.end());
   const Scale scale = stored.scale == MapScale::metric ? Scale::fixed : Scale::free;
   std::optional<PlanFit> fit = register_on_plan(result.correspondences, plane, scale, options.registration);
@@ -100,6 +89,25 @@ Registering register_map(const StoredMap& stored, const std::filesystem::path& m
   result.largest_path_sigma = largest_sigma(result.fit.registration, plane.path_in_map);
   if (scale == Scale::fixed) result.measured_scale = measure_scale(result.correspondences, plane, options.registration);
   result.has_baseline = has_scale_of_baseline(stored);
+  return result;
+}
+
+Registering register_by_walls(const StoredMap& stored, const std::filesystem::path& map, const DrawnFloorPlan& plan,
+                              std::optional<double> body_height) {
+  const std::string remedy = "pick points of the map and the plan: byre view MAP --plan PLAN";
+  if (stored.scale != MapScale::metric) throw InputError(map.string(), "has no metric scale to match a plan", remedy);
+  const DrivingPlane plane = require_driving_plane(stored.map, map.string());
+  std::optional<PlanMatch> match = match_with_plan(stored.map, plane, plan, body_height);
+  if (!match) throw InputError(map.string(), "has no obstacles to match, or the plan has no walls", remedy);
+  if (match->doubt) {
+    throw InputError(map.string(), "is not registered: " + describe_match(*match),
+                     std::string(to_string(*match->doubt)));
+  }
+  Registering result;
+  result.fit = match->fit;
+  result.largest_path_sigma = largest_sigma(result.fit.registration, plane.path_in_map);
+  result.has_baseline = has_scale_of_baseline(stored);
+  result.match = std::move(match);
   return result;
 }
 

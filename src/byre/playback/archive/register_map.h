@@ -2,6 +2,7 @@
 
 #include "byre/floor_plan.h"
 #include "byre/map/map_file.h"
+#include "byre/map/plan/plan_matching.h"
 #include "byre/map/plan/plan_scale.h"
 #include "byre/playback/archive/register_picks.h"
 
@@ -25,6 +26,7 @@ struct Registering {
   double largest_path_sigma = 0.0;          // metres, position on the plan; largest along the path
   std::optional<PlanScale> measured_scale;  // scale by the picks, for a metric map
   bool has_baseline = false;                // whether the map's scale comes from a stereo baseline
+  std::optional<PlanMatch> match = {};      // with register_by_walls(): without correspondences
 };
 
 // A map after correction of its scale, and its registration.
@@ -38,6 +40,11 @@ struct ScaleCorrectedMap {
 // impossible.
 Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
                          const std::filesystem::path& picks, const RegisterOptions& options);
+
+// Registers the map by its walls, see match_with_plan(). body_height: empty if unknown. Throws InputError naming the
+// map and the rival pose unless the result is unambiguous, and for maps without a metric scale.
+Registering register_by_walls(const StoredMap& stored, const std::filesystem::path& map, const DrawnFloorPlan& plan,
+                              std::optional<double> body_height);
 
 // Registers the map and corrects its scale and baselines by the picks if the difference is significant. Throws
 // InputError also if the map's scale does not come from a baseline, or the picks do not determine it.

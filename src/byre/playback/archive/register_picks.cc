@@ -9,9 +9,12 @@
 #include <array>
 #include <cstdlib>
 #include <initializer_list>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include <fmt/core.h>
 
 namespace byre {
 namespace {
@@ -28,13 +31,16 @@ constexpr std::array kPosition = {"map_x_m"sv, "map_y_m"sv, "map_z_m"sv};
 constexpr std::array kPositionOfPoint = {"point_x_m"sv, "point_y_m"sv, "point_z_m"sv};  // aliases of kPosition
 constexpr std::array kBody = {"time_s"sv};
 constexpr std::array kImagePixel = {"time_ns"sv, "u_px"sv, "v_px"sv};
+constexpr std::array kEndPixel = {"u_end_px"sv, "v_end_px"sv};  // end of a wall, in the same image
+constexpr std::array kPlanEnd = {"plan_end_x_m"sv, "plan_end_y_m"sv};
 
 constexpr auto kNearestKeyframe = std::chrono::milliseconds(1);
 
 std::vector<std::string_view> all_columns() {
   std::vector<std::string_view> all;
-  for (const Columns columns : std::initializer_list<Columns>{kName, kSigma, kPlanMetres, kPlanPixel, kPoint, kPosition,
-                                                              kPositionOfPoint, kBody, kImagePixel}) {
+  for (const Columns columns :
+       std::initializer_list<Columns>{kName, kSigma, kPlanMetres, kPlanPixel, kPoint, kPosition, kPositionOfPoint,
+                                      kBody, kImagePixel, kEndPixel, kPlanEnd}) {
     all.insert(all.end(), columns.begin(), columns.end());
   }
   return all;
@@ -101,18 +107,22 @@ std::string seconds_text(Timestamp time) {
 }
 
 // The keyframe nearest in time; fails unless exactly one is within kNearestKeyframe.
-const Keyframe& find_keyframe_at(const Pick& pick, Timestamp time, const MapGraph& map) {
-  const Keyframe* nearest = nullptr;
+KeyframeId find_keyframe_at(const Pick& pick, Timestamp time, const MapGraph& map) {
+  std::optional<KeyframeId> nearest;
+  Timestamp nearest_time{};
   int count = 0;
   for (const KeyframeId id : map.keyframe_ids()) {
-    const Keyframe& keyframe = *map.find_keyframe(id);
-    const Timestamp gap = std::chrono::abs(keyframe.frame.time - time);
-    if (nearest == nullptr || gap < std::chrono::abs(nearest->frame.time - time)) nearest = &keyframe;
+    const Timestamp at = map.keyframe_header(id)->frame.time;
+    const Timestamp gap = std::chrono::abs(at - time);
+    if (!nearest || gap < std::chrono::abs(nearest_time - time)) {
+      nearest = id;
+      nearest_time = at;
+    }
     if (gap <= kNearestKeyframe) ++count;
   }
-  if (nearest == nullptr) pick.fail("refers to a keyframe, but the map has none", "map a recording first");
+  if (!nearest) pick.fail("refers to a keyframe, but the map has none", "map a recording first");
   if (count == 0) {
-    pick.fail("has a time without keyframe", "the nearest keyframe is at " + seconds_text(nearest->frame.time) + " s");
+    pick.fail("has a time without keyframe", "the nearest keyframe is at " + seconds_text(nearest_time) + " s");
   }
   if (count > 1) pick.fail("has a time of two keyframes", "give the position instead");
   return *nearest;
@@ -121,17 +131,32 @@ const Keyframe& find_keyframe_at(const Pick& pick, Timestamp time, const MapGrap
 MapPosition read_body(const Pick& pick, const StoredMap& stored) {
   const std::optional<Timestamp> time = parse_seconds(pick.text(kBody[0]));
   if (!time) pick.fail("has no time in seconds in time_s", "give the time stamp of a keyframe");
-  return {body_at(stored.map, find_keyframe_at(pick, *time, stored.map))};
+  return {body_at(stored.map, *stored.map.find_keyframe(find_keyframe_at(pick, *time, stored.map)))};
+}
+
+KeyframeId read_keyframe(const Pick& pick, const MapGraph& map) {
+  const std::optional<Timestamp> time = parse_nanoseconds(pick.text(kImagePixel[0]));
+  if (!time) pick.fail("has no integer in time_ns", "give the time stamp of a keyframe's image");
+  return find_keyframe_at(pick, *time, map);
+}
+
+Eigen::Vector2d read_pair(const Pick& pick, std::string_view first, std::string_view second) {
+  return {pick.number(first), pick.number(second)};
 }
 
 MapPosition read_image_pixel(const Pick& pick, const StoredMap& stored) {
-  const std::optional<Timestamp> time = parse_nanoseconds(pick.text(kImagePixel[0]));
-  if (!time) pick.fail("has no integer in time_ns", "give the time stamp of a keyframe's image");
-  const Keyframe& keyframe = find_keyframe_at(pick, *time, stored.map);
-  const Eigen::Vector2d pixel(pick.number(kImagePixel[1]), pick.number(kImagePixel[2]));
-  const std::optional<MapPosition> place = position_at_pixel(stored, keyframe, pixel);
-  if (!place) pick.fail("has a pixel without a map point nearby", "pick another keyframe or another pixel");
+  const Keyframe& keyframe = *stored.map.find_keyframe(read_keyframe(pick, stored.map));
+  const std::optional<MapPosition> place =
+      position_at_pixel(stored, keyframe, read_pair(pick, kImagePixel[1], kImagePixel[2]));
+  if (!place) pick.fail("has a pixel without a map point nearby", "add a row with its pixel in another keyframe");
   return *place;
+}
+
+KeyframePixel read_keyframe_pixel(const Pick& pick, const StoredMap& stored, std::string_view u, std::string_view v) {
+  const KeyframeId keyframe = read_keyframe(pick, stored.map);
+  const auto pixel = rectified_pixel(stored, *stored.map.find_keyframe(keyframe), read_pair(pick, u, v));
+  if (!pixel) pick.fail("has a pixel outside the rectified image", "pick another pixel");
+  return {keyframe, *pixel};
 }
 
 MapPosition read_position(const Pick& pick, double scale) {
@@ -155,10 +180,46 @@ double read_sigma(const Pick& pick, const PickOptions& options) {
   return sigma;
 }
 
-PlanCorrespondence read_correspondence(const Pick& pick, const FloorPlan& plan, const StoredMap& stored,
+// A pick in the pictures of several keyframes: the first row has the position on the plan.
+PlanCorrespondence read_triangulated(std::span<const Pick> rows, const FloorPlan& plan, const StoredMap& stored,
+                                     const PickOptions& options) {
+  const Pick& first = rows.front();
+  std::vector<KeyframePixel> pixels;
+  for (const Pick& row : rows) pixels.push_back(read_keyframe_pixel(row, stored, kImagePixel[1], kImagePixel[2]));
+  const std::optional<TriangulatedPoint> point = triangulate_pixels(stored.map, pixels);
+  if (!point) first.fail("is seen from too similar directions", "pick it in keyframes that are farther apart");
+  if (!point->is_same_place) {
+    first.fail(fmt::format("has pixels of different places: errors of {:.1f} sigmas", point->error),
+               "pick the same place in each image");
+  }
+  return correspondence(first.name(), point->position, read_point_in_plan(first, plan), read_sigma(first, options));
+}
+
+PlanCorrespondence read_wall(const Pick& pick, const FloorPlan& plan, const StoredMap& stored,
+                             const PickOptions& options) {
+  const DrivingPlane driven = require_driving_plane(stored.map, "map");
+  const auto foot = [&](std::string_view u, std::string_view v) {
+    const auto found = floor_at_pixel(stored.map, read_keyframe_pixel(pick, stored, u, v), driven, options.body_height);
+    if (!found) pick.fail("has a pixel that shows no floor", "pick the foot of the wall nearer to the camera");
+    return *found;
+  };
+  return wall_correspondence(pick.name(), foot(kImagePixel[1], kImagePixel[2]), foot(kEndPixel[0], kEndPixel[1]),
+                             read_point_in_plan(pick, plan), read_pair(pick, kPlanEnd[0], kPlanEnd[1]),
+                             read_sigma(pick, options));
+}
+
+// rows: the pick, and rows with its pixels in further keyframes.
+PlanCorrespondence read_correspondence(std::span<const Pick> rows, const FloorPlan& plan, const StoredMap& stored,
                                        const PickOptions& options) {
+  if (rows.size() > 1) return read_triangulated(rows, plan, stored, options);
+  const Pick& pick = rows.front();
+  if (pick.has(kEndPixel) || pick.has(kPlanEnd)) return read_wall(pick, plan, stored, options);
   return correspondence(pick.name(), read_place_in_map(pick, stored, options.positions_scale),
                         read_point_in_plan(pick, plan), read_sigma(pick, options));
+}
+
+bool is_further_pixel(const Pick& pick) {
+  return pick.has(kImagePixel) && !pick.has(kPlanMetres) && !pick.has(kPlanPixel);
 }
 
 }  // namespace
@@ -167,8 +228,13 @@ std::vector<PlanCorrespondence> read_plan_correspondences(const std::filesystem:
                                                           const StoredMap& stored, const PickOptions& options) {
   const CsvTable table = read_csv_table(path, all_columns());
   std::vector<PlanCorrespondence> correspondences;
-  for (const CsvTable::Row& row : table.rows) {
-    correspondences.push_back(read_correspondence({table, row}, plan, stored, options));
+  std::vector<Pick> rows;
+  for (const CsvTable::Row& row : table.rows) rows.emplace_back(table, row);
+  for (auto first = rows.begin(); first != rows.end();) {
+    auto end = std::next(first);
+    if (first->has(kImagePixel)) end = std::find_if_not(end, rows.end(), is_further_pixel);
+    correspondences.push_back(read_correspondence({first, end}, plan, stored, options));
+    first = end;
   }
   return correspondences;
 }

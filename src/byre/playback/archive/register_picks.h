@@ -11,6 +11,7 @@ namespace byre {
 struct PickOptions {
   double sigma = PlanCorrespondence{}.sigma;  // metres, for picks without a sigma
   double positions_scale = 1.0;               // current length over length at the time of picking positions
+  double body_height = 0.0;                   // metres, of the body's origin above the floor: for feet of walls
 };
 
 // Correspondences of a map and a plan from a table (CSV) with column names in its first line;

@@ -2,6 +2,7 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"
+#include "byre/playback/archive/register_scene.h"
 
 #include <fstream>
 
@@ -100,6 +101,33 @@ TEST_F(RegisterPicks, AcceptPixelsOfKeyframeImages) {
   EXPECT_EQ(picks.at(0).point_in_map, Eigen::Vector3d(4.0, 5.0, 6.0));
 }
 
+TEST_F(RegisterPicks, TriangulatePixelsOfSeveralKeyframes) {
+  const std::string columns = "name,time_ns,u_px,v_px,plan_x_m,plan_y_m\n";
+  const std::string first = columns + "corner,100000000000,189.3333,134.6667,7,8\n";
+  const auto picks = read(first + ",102000000000,126.6667,134.6667,,\nother,100000000000,163,121,1,2\n");
+  ASSERT_THAT(picks, SizeIs(2));
+  EXPECT_EQ(picks[0].name, "corner");
+  EXPECT_THAT(picks[0].point_in_map, PointNear(Eigen::Vector3d(1.0, 0.5, 6.0), 1e-3));
+  EXPECT_GT(picks[0].covariance_in_map(2, 2), picks[0].covariance_in_map(0, 0));
+  EXPECT_EQ(picks[0].point_in_plan, Eigen::Vector2d(7.0, 8.0));
+  EXPECT_THAT(refusal_of(first + ",102000000000,126.6667,160,,\n"), HasSubstr(":2: has pixels of different places"));
+  EXPECT_THAT(refusal_of(first + ",100000000000,189,134,,\n"), HasSubstr("is seen from too similar directions"));
+  EXPECT_THAT(refusal_of(columns + ",100000000000,163,121,,\n"), HasSubstr("does not give its position on the plan"));
+}
+
+TEST_F(RegisterPicks, AcceptFeetOfWalls) {
+  FloorPlanScene scene;
+  map_ = driven_barn(scene);
+  map_.recordings[0].calibration.body_from_left = map_.map.rigs()[0].body_from_camera;
+  const std::string columns = "time_ns,u_px,v_px,u_end_px,v_end_px,plan_x_m,plan_y_m,plan_end_x_m,plan_end_y_m\n";
+  const auto picks = read(columns + "0,100,200,220,200,1,2,3,2\n");
+  ASSERT_TRUE(picks.at(0).wall);
+  EXPECT_NEAR((scene.plan_from_map * picks[0].point_in_map).z(), 0.0, 1e-6);
+  EXPECT_NEAR((scene.plan_from_map * picks[0].wall->end_in_map).z(), 0.0, 1e-6);
+  EXPECT_EQ(picks[0].wall->end_in_plan, Eigen::Vector2d(3.0, 2.0));
+  EXPECT_THAT(refusal_of(columns + "0,100,50,220,50,1,2,3,2\n"), HasSubstr("has a pixel that shows no floor"));
+}
+
 TEST_F(RegisterPicks, AcceptPointsKeyframesAndPixels) {
   const auto picks = read(
       "name,point,time_s,plan_column_px,plan_row_px,plan_x_m,plan_y_m,sigma_m\n"
@@ -108,7 +136,8 @@ TEST_F(RegisterPicks, AcceptPointsKeyframesAndPixels) {
   ASSERT_THAT(picks, SizeIs(2));
   EXPECT_EQ(picks[0].point_in_map, Eigen::Vector3d(4.0, 5.0, 6.0));
   EXPECT_THAT(picks[0].point_in_plan, PointNear(Eigen::Vector2d(1.0, 18.0), 1e-12));
-  EXPECT_NEAR(picks[0].sigma, std::hypot(0.2, 0.1), 1e-12);
+  EXPECT_EQ(picks[0].sigma, 0.2);
+  EXPECT_TRUE(picks[0].covariance_in_map.isApprox(0.01 * Eigen::Matrix3d::Identity()));
   EXPECT_EQ(picks[1].name, "row 3");
   EXPECT_THAT(picks[1].point_in_map, PointNear(Eigen::Vector3d(2.0, 0.0, 0.0), 1e-12));
   EXPECT_EQ(picks[1].point_in_plan, Eigen::Vector2d(7.0, 8.0));
@@ -116,7 +145,9 @@ TEST_F(RegisterPicks, AcceptPointsKeyframesAndPixels) {
 
 TEST_F(RegisterPicks, HaveOnlyThePickSigmaInAnUnscaledMap) {
   map_.scale = MapScale::unknown;
-  EXPECT_EQ(read("point,plan_x_m,plan_y_m\n0,1,2\n").at(0).sigma, kPickSigma);
+  const auto picks = read("point,plan_x_m,plan_y_m\n0,1,2\n");
+  EXPECT_EQ(picks.at(0).sigma, kPickSigma);
+  EXPECT_EQ(picks[0].covariance_in_map.norm(), 0.0);
 }
 
 TEST_F(RegisterPicks, AreRejectedIfNotInTheMap) {

@@ -56,11 +56,19 @@ Json measured_scale_json(const PlanScale& scale) {
           {"doubt", scale.doubt ? Json(to_string(*scale.doubt)) : Json()}};
 }
 
+Json match_json(const PlanMatch& match) {
+  return {{"explained", match.explained},
+          {"margin", match.rival.margin},
+          {"rival_shift_m", list_json(match.rival.shift)},
+          {"rival_turn_deg", kDegreesPerRadian * match.rival.turn}};
+}
+
 Json correspondence_json(const PlanCorrespondence& correspondence, const PlanResidual& residual) {
   return {{"name", correspondence.name},
           {"point_in_map", list_json(correspondence.point_in_map)},
           {"point_in_plan_m", list_json(correspondence.point_in_plan)},
-          {"sigma_m", correspondence.sigma},
+          {"wall", correspondence.wall.has_value()},
+          {"sigma_m", residual.sigma},
           {"error_in_plan_m", list_json(residual.error_in_plan)},
           {"outlier", residual.is_outlier}};
 }
@@ -70,6 +78,7 @@ Json correspondence_json(const PlanCorrespondence& correspondence, const PlanRes
 Report registration_report(const Registering& registering, const RegisterProtocol& protocol) {
   const PlanRegistration& registration = registering.fit.registration;
   const std::optional<PlanScale>& measured = registering.measured_scale;
+  const std::optional<PlanMatch>& match = registering.match;
   Report report{{{"program", "byre register"},
                  {"version", BYRE_VERSION},
                  {"map", protocol.map},
@@ -80,6 +89,7 @@ Report registration_report(const Registering& registering, const RegisterProtoco
                  {"yaw_sigma_deg", yaw_sigma(registration)},
                  {"measured_scale", measured ? measured_scale_json(*measured) : Json()},
                  {"scaled_by", or_null(protocol.scaled_by)},
+                 {"match", match ? match_json(*match) : Json()},
                  {"doubts", Json::array()},
                  {"points", Json::array()},
                  {"written", protocol.written.empty() ? Json() : Json(protocol.written)}}};
@@ -89,8 +99,9 @@ Report registration_report(const Registering& registering, const RegisterProtoco
               {"width", protocol.plan.width},
               {"height", protocol.plan.height},
               {"pixel_mm", 1e3 * protocol.plan.metres_per_pixel.col(0).norm()}});
+  if (match) report.row("walls", "{match}", {{"match", describe_match(*match)}});
   report.row("points", "{count}; {inliers} inliers, RMSE {rms_m:.3f} m",
-             {{"count", registering.correspondences.size()},
+             {{"count", registering.fit.residuals.size()},
               {"inliers", std::ranges::count(registering.fit.residuals, false, &PlanResidual::is_outlier)}});
   for (std::size_t i = 0; i < registering.correspondences.size(); ++i) {
     const PlanResidual& residual = registering.fit.residuals[i];

@@ -3,11 +3,13 @@
 #include "byre/floor_plan.h"
 #include "byre/map/map_file.h"
 #include "byre/map/plan/floor_plan.h"
+#include "byre/tag.h"
 #include "byre/viewer/web/web_server.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre {
 
@@ -19,6 +21,8 @@ struct ViewedMap {
   std::optional<std::filesystem::path> output;     // file for the registered copy; empty: saving is disabled
   double pick_sigma = PlanCorrespondence{}.sigma;  // metres
   PlanRegistrationOptions registration;
+  std::optional<double> body_height;  // metres; empty: not given, so that of the registration is assumed
+  std::vector<Tag> tags;              // surveyed ones of the map are picks as well
 };
 
 // Shows a map in a browser, and registers it on a plan by picked points.

@@ -104,6 +104,25 @@ TEST_F(MapViewerTest, RegistersTheMapOnThePlanByPicks) {
   EXPECT_LT((found - scene_.plan_from_map.target_from_source.translation).norm(), 0.01);
 }
 
+TEST_F(MapViewerTest, SuggestsPicturesAndReportsPixelsOfDifferentPlaces) {
+  const MapViewer viewer(viewed_, any_port_);
+  const WebClient client = client_of(viewer);
+  EXPECT_THAT(client.post("/place", R"({"pixels": [[0, 0.5, 0.5]]})").json().at("views"), SizeIs(0)) << "no points";
+  const auto problem = [&client](const char* pixels) {
+    return client.post("/place", pixels).json().at("problem").get<std::string>();
+  };
+  EXPECT_THAT(problem(R"({"pixels": [[0, 0.5, 0.5], [0, 0.5, 0.5]]})"), HasSubstr("from too similar directions"));
+  EXPECT_THAT(problem(R"({"pixels": [[0, 0.7, 0.2], [2, 0.9, 0.8]]})"), HasSubstr("is not the same place"));
+  EXPECT_THAT(problem(R"({"pixels": [[0, 0.5]]})"), HasSubstr("have an invalid format"));
+}
+
+TEST_F(MapViewerTest, ProposesNothingWithoutWalls) {
+  const MapViewer viewer(viewed_, any_port_);
+  const WebClient::Answer answer = client_of(viewer).post("/proposal", "{}");
+  EXPECT_EQ(answer.status, 400);
+  EXPECT_THAT(answer.json().at("problem").get<std::string>(), HasSubstr("has no obstacles to match"));
+}
+
 TEST_F(MapViewerTest, SavesTheRegisteredMapAndThePicks) {
   const MapViewer viewer(viewed_, any_port_);
   const Json saved = client_of(viewer).post("/save", picks(3)).json();
@@ -115,7 +134,8 @@ TEST_F(MapViewerTest, SavesTheRegisteredMapAndThePicks) {
   std::ifstream csv(folder_ / "barn-plan.picks.csv");
   std::string header;
   std::getline(csv, header);
-  EXPECT_EQ(header, "name,point,plan_x_m,plan_y_m");
+  EXPECT_EQ(header,
+            "name,point,time_s,time_ns,u_px,v_px,u_end_px,v_end_px,plan_x_m,plan_y_m,plan_end_x_m,plan_end_y_m");
 }
 
 TEST_F(MapViewerTest, SavesLargeResidualsOnlyWhenConfirmed) {
