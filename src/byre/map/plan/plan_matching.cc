@@ -151,7 +151,7 @@ std::vector<MapCell> cells_of(const OccupancyGrid& grid, const std::vector<Vecto
     for (int column = 0; column < grid.plan.width; ++column) {
       const std::int8_t value = grid.occupancy[static_cast<std::size_t>(row) * grid.plan.width + column];
       if (value == kOccupiedPixel) add(grid.plan.point_at({column, row}), CellKind::obstacle);
-      if (value == kFreePixel && row % 2 == 0 && column % 2 == 0) {
+      if (value == kFreePixel && row % 3 == 0 && column % 3 == 0) {
         add(grid.plan.point_at({column, row}), CellKind::free);
       }
     }
@@ -213,7 +213,7 @@ class PlanMatcher {
   PlanarPose refined(PlanarPose pose) const {
     double best = score(pose);
     for (double step = 0.16; step > 0.008; step *= 0.5) {
-      for (int tries = 0; tries < 20; ++tries) {
+      for (int tries = 0; tries < 8; ++tries) {
         bool is_better = false;
         for (const auto& [x, y, turn] : kDirections) {
           const PlanarPose next{pose.position + step * Vector2d(x, y), pose.yaw + 8.0 * kDegree * step * turn};
@@ -261,7 +261,7 @@ std::vector<PlanarPose> PlanMatcher::search() const {
   constexpr int kHeadings = 240;           // 1.5 degrees
   constexpr double kCoarseSigma = 0.3;     // metres
   constexpr std::size_t kMostCells = 400;  // limit for each kind
-  constexpr std::size_t kMostPeaks = 80;
+  constexpr std::size_t kMostPeaks = 40;
   const int columns = static_cast<int>(walls_.size().x() / kStep) + 1;
   const int rows = static_cast<int>(walls_.size().y() / kStep) + 1;
   std::array<std::vector<float>, 3> fields;
