@@ -66,9 +66,9 @@ PlanPick parse_pick(const nlohmann::json& fields, const MapGraph& map) {
 
 // parse: callable with the JSON.
 template <typename Parse>
-auto parsed(const std::string& json, Parse parse) {
+auto parsed(const std::string& text, Parse parse) {
   try {
-    return parse(nlohmann::json::parse(json));
+    return parse(nlohmann::json::parse(text));
   } catch (const nlohmann::json::exception& error) {
     throw InputError(kPlace, std::string("have an invalid format: ") + error.what());
   }
