@@ -20,7 +20,7 @@ using Eigen::Vector2d;
 
 constexpr double kCell = 0.1;      // metres, of the map's occupancy grid
 constexpr double kReach = 0.6;     // metres, largest distance of a cell from a wall that is measured
-constexpr double kBlock = 1.0;     // metres, edge of a square whose cells are correlated
+constexpr double kBlock = 0.5;     // metres, edge of a square whose cells are correlated
 constexpr double kDistinct = 0.5;  // metres between distinct poses
 constexpr double kDistinctTurn = 5.0 * kDegree;
 constexpr double kOnWall = 0.2;  // metres, largest distance of an obstacle that is on a wall
@@ -127,9 +127,10 @@ class WallDistances {
   std::vector<float> distances_;  // metres, row-major from the lower left
 };
 
+constexpr double kNotDrawn = 0.1;  // share of obstacles that the plan does not have
+
 // Log-likelihood of a cell by the distance of the nearest wall. sigma: of obstacles, metres.
 double log_likelihood(CellKind kind, double distance, double sigma, double cell) {
-  constexpr double kNotDrawn = 0.1;  // share of obstacles that the plan does not have
   if (kind == CellKind::obstacle) {
     return std::log(kNotDrawn + (1.0 - kNotDrawn) * std::exp(-0.5 * distance * distance / (sigma * sigma)));
   }
@@ -341,12 +342,13 @@ std::vector<PlanarPose> PlanMatcher::search() const {
   return poses;
 }
 
-// Vuong's statistic: mean over standard error of the differences of log-likelihoods.
+// Vuong's statistic: mean over standard error of the differences of log-likelihoods. A block counts at most as one
+// obstacle, because its cells are correlated.
 double margin_between(const std::vector<double>& best, const std::vector<double>& rival) {
   const auto count = static_cast<double>(best.size());
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < best.size(); ++i) {
-    const double difference = best[i] - rival[i];
+    const double difference = std::clamp(best[i] - rival[i], std::log(kNotDrawn), -std::log(kNotDrawn));
     sum += difference;
     squares += difference * difference;
   }

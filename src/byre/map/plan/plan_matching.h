@@ -27,7 +27,7 @@ struct PlanRival {
 
 // Result of matching a map with a plan.
 struct PlanMatch {
-  PlanFit fit;             // best pose; residuals of obstacles on walls, one per metre
+  PlanFit fit;             // best pose; residuals of obstacles on walls, one per half metre
   double explained = 0.0;  // share of the obstacles that are on walls of the plan
   PlanRival rival;         // with the smallest margin
   std::optional<PlanMatchDoubt> doubt;
@@ -43,7 +43,7 @@ inline constexpr double kLeastMatchMargin = 2.5;
 // Finds the pose of a metric map on a plan by its occupancy grid, over all positions and headings. Obstacles are
 // expected on walls of the plan; free and driven ground is not (correlative matching, Olson 2009). The best pose is
 // compared with each local maximum of the likelihood that is more than 0.5 m or 5 degrees away, and with poses at that
-// distance, by the test of Vuong (1989) on the log-likelihoods of squares of 1 m: neighbouring cells are correlated.
+// distance, by the test of Vuong (1989) on the log-likelihoods of squares of 0.5 m: neighbouring cells are correlated.
 // The best pose is fitted by register_on_plan. Empty for a plan without walls, and for a map without obstacles or a
 // planar path. Throws InputError as occupancy_grid().
 std::optional<PlanMatch> match_with_plan(const MapGraph& map, const DrivingPlane& plane, const DrawnFloorPlan& plan,

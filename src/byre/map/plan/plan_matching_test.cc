@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr double kMargin = 1.0;  // metres of the plan around the building
 
 // A hall with walls that reach from its sides towards the lane in the middle, and a robot that drives up and down the
-// lane. It sees walls within 8 m, and objects that the plan does not have.
+// lane. It sees walls within 12 m, and objects that the plan does not have.
 class Hall {
  public:
   enum class Shape { unambiguous, symmetric, endless };
@@ -76,7 +76,7 @@ class Hall {
     map.add_rig(looking_down());
     std::vector<std::pair<Vector3d, int>> points;  // in the level frame, with the first of two keyframes
     for (int i = 0; i + 1 < static_cast<int>(path.size()); ++i) {
-      for (int ray = 0; ray < 24; ++ray) add_point(path[static_cast<std::size_t>(i)], i, points);
+      for (int ray = 0; ray < 30; ++ray) add_point(path[static_cast<std::size_t>(i)], i, points);
     }
     for (const Pose& body : path) {
       Keyframe keyframe;
@@ -115,7 +115,7 @@ class Hall {
     const Vector3d ahead = body.rotation * Vector3d::UnitX();
     const double angle = std::atan2(ahead.y(), ahead.x()) + uniform(-40.0, 40.0) * kDegree;
     const Vector2d start = body.translation.head<2>(), ray(std::cos(angle), std::sin(angle));
-    double range = 8.0;
+    double range = 12.0;
     bool is_hit = false;
     for (const auto& [from, to] : walls_) {
       Eigen::Matrix2d system;

@@ -112,7 +112,7 @@ TEST_F(MapViewerTest, SuggestsPicturesAndReportsPixelsOfDifferentPlaces) {
     return client.post("/place", pixels).json().at("problem").get<std::string>();
   };
   EXPECT_THAT(problem(R"({"pixels": [[0, 0.5, 0.5], [0, 0.5, 0.5]]})"), HasSubstr("from too similar directions"));
-  EXPECT_THAT(problem(R"({"pixels": [[0, 0.7, 0.2], [2, 0.9, 0.8]]})"), HasSubstr("is not the same place"));
+  EXPECT_THAT(problem(R"({"pixels": [[0, 0.7, 0.4], [2, 0.9, 0.6]]})"), HasSubstr("is not the same place"));
   EXPECT_THAT(problem(R"({"pixels": [[0, 0.5]]})"), HasSubstr("have an invalid format"));
 }
 
