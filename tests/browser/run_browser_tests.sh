@@ -23,7 +23,7 @@ rm -rf room
 "$byre" map room -o plain.byre --no-pictures --quiet >/dev/null
 "$byre" map room --end 12 -o part.byre --quiet >/dev/null # the rest of the recording is outside this map
 rm -rf barn_1 barn_2
-"$byre" simulate cowshed --divide 2 --rate 8 --duration 12 -o barn_1 --quiet
+"$byre" simulate cowshed --divide 2 --rate 8 --duration 25 -o barn_1 --quiet
 "$byre" simulate cowshed --divide 2 --rate 8 --duration 5 --mission 2 -o barn_2 --quiet
 "$byre" map barn_1 -o barn_1.byre --quiet >/dev/null
 BYRE=$byre BROWSER=$browser node --test --test-concurrency=1 viewer_test.mjs registration_test.mjs

@@ -6,7 +6,7 @@ import { accessibilityFaults, eventually, openPage, outputOf, startBrowser, View
 import { differentPixels, pictureOf, settledPictureOf } from "./pixels.mjs";
 import { writePlan } from "./plan.mjs";
 
-const kStage = "#stage canvas";
+const kStage = "#stage > canvas";
 const kTrack = "[role=slider]";
 
 let browser;

@@ -450,7 +450,7 @@ std::string_view to_string(PlanMatchDoubt doubt) {
 
 std::string describe_match(const PlanMatch& match) {
   return fmt::format(
-      "{:.0f} % of the obstacles are on walls; the next best pose, shifted by {:.2f} m and turned by {:.0f} deg, is "
+      "obstacles on walls: {:.0f} %; the next best pose, shifted by {:.2f} m and turned by {:.0f} deg, is "
       "worse by {:.1f} sigmas ({:.1f} needed)",
       1e2 * match.explained, match.rival.shift.norm(), match.rival.turn / kDegree, match.rival.margin,
       kLeastMatchMargin);

@@ -33,8 +33,8 @@ struct PlanMatch {
   std::optional<PlanMatchDoubt> doubt;
 };
 
-// "94 % of the obstacles are on walls; the next best pose, shifted by 3.20 m and turned by 180 deg, is worse by 7.1
-// sigmas"
+// "obstacles on walls: 94 %; the next best pose, shifted by 3.20 m and turned by 180 deg, is worse by 7.1 sigmas (2.5
+// needed)"
 std::string describe_match(const PlanMatch& match);
 
 // Margin, sigmas, by which the best pose must exceed each distinct rival.
