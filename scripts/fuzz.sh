@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 seconds=${1:-30}
 [[ $seconds =~ ^[0-9]+$ ]] || { echo "usage: fuzz.sh [SECONDS]" >&2; exit 2; }
-scripts/build.sh dev map_file_fuzzer bag_fuzzer urdf_fuzzer tag_file_fuzzer site_file_fuzzer
+scripts/build.sh dev byre_fuzzers
 mkdir -p build/fuzz
 # Sanitizers fail to start if the kernel randomises addresses beyond their expected range.
 runner=()

@@ -88,6 +88,24 @@ run_tests() {
   print_slowest "$preset"
 }
 
+# Builds a preset in the background, at the lowest priority, with the processor time that foreground parts leave.
+background=
+begin_build() { # PRESET TARGET...
+  setsid nice -n 19 scripts/build.sh "$@" >"build/$1.log" 2>&1 &
+  background=$!
+}
+trap '[[ -z $background ]] || kill -- "-$background" 2>/dev/null || true' EXIT
+
+# Waits for the build of a preset. Prints the end of its log if it failed.
+end_build() { # PRESET
+  local build=$background
+  renice -n 0 -g "$build" >/dev/null 2>&1 || true # only root may
+  if wait "$build"; then background=; return; fi
+  echo "test.sh: the build of $1 failed" >&2
+  tail -n 60 "build/$1.log" >&2
+  exit 1
+}
+
 check_format() {
   local folders=()
   for folder in include src tests examples benchmarks python; do
@@ -106,6 +124,7 @@ check_format() {
 headline "Release: default suite"
 scripts/build.sh release
 end_part "release: build"
+$quick || begin_build dev byre_unit_tests byre_fuzzers
 run_tests release
 end_part "release: default suite"
 
@@ -121,14 +140,15 @@ end_part "formatting"
 
 if ! $quick; then
   headline "Address and undefined-behaviour sanitizers: unit tests of the library"
-  scripts/build.sh dev byre_unit_tests
-  end_part "address and undefined-behaviour sanitizers: build"
+  end_build dev
+  end_part "address and undefined-behaviour sanitizers: rest of the build"
+  begin_build tsan
   run_tests dev
   end_part "address and undefined-behaviour sanitizers: unit tests"
 
   headline "Thread sanitizer: tests of folders with threads"
-  scripts/build.sh tsan
-  end_part "thread sanitizer: build"
+  end_build tsan
+  end_part "thread sanitizer: rest of the build"
   run_tests tsan
   end_part "thread sanitizer: tests"
 
