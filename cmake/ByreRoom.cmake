@@ -20,6 +20,11 @@ if(BYRE_SANITIZE)
   if(BYRE_SANITIZE STREQUAL thread)
     target_compile_definitions(byre_flags INTERFACE BYRE_THREAD_SANITIZED) # see base/sanitizer_scene.h
   endif()
+  # Each test program contains all objects of the floors below it, with line tables.
+  find_program(BYRE_LLD ld.lld DOC "LLVM's linker, several times faster than that of binutils; used with sanitizers if installed")
+  if(BYRE_LLD AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    target_link_options(byre_flags INTERFACE -fuse-ld=lld)
+  endif()
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL Clang AND BYRE_UNITY) # Clang reports constants of other files as shadowed
   target_compile_options(byre_flags INTERFACE -Wno-shadow)

@@ -43,8 +43,9 @@ if [[ $scope == all ]]; then
     # tests, fuzzing, benchmarks, rules
     python3-numpy python3-pytest python3-pip python3-wheel pkg-config
     libgtest-dev libgmock-dev libbenchmark-dev valgrind clang-format zsh
-    # sanitizers and fuzzing; sanitized tests take less than half the time of those by g++ 12
-    clang-16 libclang-rt-16-dev
+    # sanitizers and fuzzing; sanitized tests take less than half the time of those by g++ 12. llvm-16 adds names and
+    # lines to reports.
+    clang-16 libclang-rt-16-dev llvm-16 lld
   )
   test_packages+=(
     # byre node with an MQTT broker and another DDS, whose type generator needs Java
