@@ -4,13 +4,6 @@
 # after a name was added, configure again.
 option(BYRE_UNITY "Compile several files of a folder as one (unity build)" ON)
 
-# Folders whose tests compile separately, with the optimisation of the library. In large files, or with less
-# optimisation, the compiler does not inline Eigen's allocation functions, see tools/check_allocations.sh, which checks
-# only this build.
-if(NOT BYRE_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
-  set(BYRE_TESTS_APART optimise)
-endif()
-
 # Files that include themselves once per instruction set. GCC 12 for ARM crashes on the vectors of arm_sve.h after a
 # precompiled header.
 set(BYRE_FILES_BY_PROCESSOR features/downscale.cc features/remap.cc features/gaussian_blur.cc features/fast_corners.cc

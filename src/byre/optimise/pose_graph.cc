@@ -16,6 +16,10 @@
 namespace byre {
 namespace {
 
+// Eigen allocates by this alignment. Debian's Ceres has 16 bytes; with another alignment byre and Ceres would free each
+// other's matrices wrongly wherever the linker shares Eigen's functions between them.
+static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 16, "compile with EIGEN_MAX_ALIGN_BYTES=16");
+
 // Parts of a graph that take part in the solution.
 struct GraphRoles {
   std::vector<bool> node_moves;
