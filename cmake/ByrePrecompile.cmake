@@ -7,6 +7,7 @@ set(BYRE_PRECOMPILED_room <algorithm> <array> <chrono> <cmath> <cstdint> <filesy
     <utility> <variant> <vector> <Eigen/Dense>)
 set(BYRE_PRECOMPILED_cold_room ${BYRE_PRECOMPILED_room})
 set(BYRE_PRECOMPILED_test ${BYRE_PRECOMPILED_room} <gmock/gmock.h> <gtest/gtest.h>)
+set(BYRE_PRECOMPILED_light_test ${BYRE_PRECOMPILED_test})
 set(BYRE_PRECOMPILED_program ${BYRE_PRECOMPILED_room})
 set(BYRE_PRECOMPILED_program_test ${BYRE_PRECOMPILED_test})
 set(BYRE_PRECOMPILED_command ${BYRE_PRECOMPILED_room} <iostream> <nlohmann/json.hpp> <CLI/CLI.hpp>)

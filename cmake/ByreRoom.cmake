@@ -94,6 +94,11 @@ endfunction()
 # that robots link or that produces figures; see also cli/CMakeLists.txt.
 set(BYRE_FOLDERS_COLD io/ros io/bag viewer viewer/web benchmark benchmark/demo ros2/dds ros2/fleet ros2/node)
 
+# Folders whose tests compute little: without optimisation they compile in half the time. The tests of the others render
+# images or simulate missions by functions of their headers.
+set(BYRE_FOLDERS_TESTED_LIGHTLY base io/bag io/calibration io/colmap io/recording io/ros map map/plan benchmark/demo
+    ros2/dds ros2/fleet ros2/node)
+
 # Compiles a target for short build time instead of speed.
 function(byre_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -190,8 +195,13 @@ function(byre_add_folder folder)
     if(folder IN_LIST BYRE_FOLDERS_WITH_DATA)
       target_compile_definitions(byre_${name}_test_files PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     endif()
-    byre_compile_quickly(byre_${name}_test_files)
-    byre_precompile(test byre_${name}_test_files)
+    if(folder IN_LIST BYRE_FOLDERS_TESTED_LIGHTLY)
+      target_compile_options(byre_${name}_test_files PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O0>)
+      byre_precompile(light_test byre_${name}_test_files)
+    else()
+      byre_compile_quickly(byre_${name}_test_files)
+      byre_precompile(test byre_${name}_test_files)
+    endif()
     byre_unite(byre_${name}_test_files)
   endif()
 endfunction()
