@@ -22,6 +22,7 @@ rm -rf room
 "$byre" map room -o room.byre --quiet >/dev/null
 "$byre" map room -o plain.byre --no-pictures --quiet >/dev/null
 "$byre" map room --end 12 -o part.byre --quiet >/dev/null # the rest of the recording is outside this map
+"$byre" cut room.byre --box 0 -9 -9 9 9 9 -o cut.byre >/dev/null
 rm -rf barn_1 barn_2
 "$byre" simulate cowshed --divide 2 --rate 8 --duration 25 -o barn_1 --quiet
 "$byre" simulate cowshed --divide 2 --rate 8 --duration 5 --mission 2 -o barn_2 --quiet

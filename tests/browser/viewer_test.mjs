@@ -97,6 +97,25 @@ describe("A map", () => {
   });
 });
 
+describe("A changed map", () => {
+  test("shows what it lost since an earlier version", async () => {
+    const page = await openMapFile("cut.byre", { locale: "de-DE" }, "--before", "room.byre");
+    const removed = page.getByRole("button", { name: /Entfernte Punkte: \d+/ });
+    await removed.waitFor();
+    await page.getByRole("button", { name: /Neue Punkte: 0/ }).waitFor();
+    const count = Number(/\d+/.exec(await removed.innerText())[0]);
+    const figures = JSON.parse(outputOf("diff", "room.byre", "cut.byre", "--json")).points;
+    assert.equal(count, figures.removed);
+    assert.ok(count > 50, `${count} points removed`);
+    const withRemoved = await settledPictureOf(page, kStage);
+    await removed.click();
+    assert.ok((await differentPixels(page, withRemoved, await settledPictureOf(page, kStage))) > 50);
+    await page.getByText(/^Bereit für Fahrten. Nächster Schritt: byre run RECORDING --map cut.byre oder/).waitFor();
+    await screenshot(page, "changes");
+    assert.deepEqual(page.problems, []);
+  });
+});
+
 describe("Pictures of a map", () => {
   const kPicture = "figure.keyframe-picture";
 

@@ -5,6 +5,8 @@ export interface MapData {
   points: Float32Array;
   /** map_from_body of each keyframe: x, y, z in metres and quaternion x, y, z, w. */
   keyframes: Float32Array;
+  /** Origin of each point: 0 offline, 1 online. */
+  origins: Uint8Array;
 }
 
 export interface SeenImage {
@@ -23,9 +25,11 @@ export const kPoseLength = 7;
 
 export function decodeMap(bytes: ArrayBuffer): MapData {
   const [points, keyframes] = new Uint32Array(bytes, 0, 2);
+  const afterPoints = 8 + 12 * points;
   return {
     points: new Float32Array(bytes, 8, 3 * points),
-    keyframes: new Float32Array(bytes, 8 + 12 * points, kPoseLength * keyframes),
+    keyframes: new Float32Array(bytes, afterPoints, kPoseLength * keyframes),
+    origins: new Uint8Array(bytes, afterPoints + 4 * kPoseLength * keyframes, points),
   };
 }
 

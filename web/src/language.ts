@@ -47,8 +47,10 @@ export function startLanguage(): void {
 }
 
 function translator(texts: Record<string, string>): (text: string) => string {
+  const lengthOfWords = (form: string) => form.replaceAll("{}", "").length;
   const forms: Form[] = Object.entries(texts)
     .filter(([english]) => english.includes("{}"))
+    .sort(([a], [b]) => lengthOfWords(b) - lengthOfWords(a)) // the most specific first
     .map(([english, translation]) => ({
       pattern: new RegExp(`^${english.split("{}").map(escaped).join("(.+)")}$`),
       translation,

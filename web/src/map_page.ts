@@ -35,6 +35,7 @@ export async function startMapPage(scene: MapScene, space: MapSpace): Promise<vo
   space.showOffline(map);
   byId("subtitle").textContent = `${map.points.length / 3} points, ${map.keyframes.length / 7} views`;
   const greys = loadGreys();
+  const changes = scene.before === null ? null : loadMap("changes");
   const { stage } = space;
   if (stage) startScaleBar(stage, scene.is_metric ? "m" : "map units");
   const pictures = stage && scene.pictures.length ? new KeyframePictures(stage, map.keyframes, scene.pictures) : null;
@@ -42,9 +43,11 @@ export async function startMapPage(scene: MapScene, space: MapSpace): Promise<vo
     new Picking(scene, scene.plan, map, space, pictures);
   } else {
     byId("main").classList.add("alone");
+    byId("next-step").textContent = scene.next_step;
     stage?.onClick((click) => pictures?.openAt(click));
   }
   space.showGreys(await greys);
+  if (changes && scene.before !== null) space.showChanges(await changes, scene.before);
 }
 
 function farOffWarning({ residual_m }: PlanFit): string {

@@ -1,4 +1,4 @@
-import { Box3, type Matrix4, type Mesh } from "three";
+import { Box3, type Matrix4, type Mesh, Vector3 } from "three";
 import type { MapData } from "./decode";
 import { byId, element } from "./dom";
 import { actionButton, layerButton } from "./panels/layers";
@@ -7,12 +7,13 @@ import { extentOf } from "./space/extent";
 import { viewFromMap, viewFromPlan } from "./space/frames";
 import { Grid } from "./space/grid";
 import { KeyframePath } from "./space/keyframes";
-import { kDiamond, kDisc, Markers } from "./space/markers";
+import { kCross, kDiamond, kDisc, Markers } from "./space/markers";
 import { planFloor } from "./space/plan_floor";
 import { Stage } from "./space/stage";
 import type { SceneFields } from "./types";
 
 const kPointPixels = 2.6;
+const kMarginOfNear = 0.1; // of the extent's size on each side; points outside are far, and dimmed
 
 function makeStage(): Stage | null {
   try {
@@ -35,6 +36,10 @@ export class MapSpace {
   readonly #online = new Markers([{ colour: "online", form: kDiamond }], kPointPixels + 0.8);
   readonly #offlinePath = new KeyframePath("path");
   readonly #onlinePath = new KeyframePath("online");
+  readonly #changes = [
+    new Markers([{ colour: "untrusted", form: kCross }], kPointPixels + 2),
+    new Markers([{ colour: "trusted", form: kDiamond }], kPointPixels + 2),
+  ];
   readonly #grid = new Grid();
   #floor: Mesh | null = null;
   #offlineMap: MapData | null = null;
@@ -86,6 +91,26 @@ export class MapSpace {
       layerButton({ name: "Grey values", title: "Draw points as bright as in the image", isOn: true, set: show }),
     );
     show(true);
+  }
+
+  /** Draws the points that a map lost since an earlier version, and those that it gained, with a button for each. */
+  showChanges({ points, origins }: MapData, before: string): void {
+    const { stage } = this;
+    if (!stage) return;
+    const show = (online: number, name: string, title: string, mark: string, colour: string) => {
+      const markers = this.#changes[online];
+      const chosen = points.filter((_, i) => origins[Math.floor(i / 3)] === online);
+      markers.set(chosen);
+      stage.map.add(markers.points);
+      const set = (isOn: boolean) => {
+        markers.points.visible = isOn;
+        stage.redraw();
+      };
+      byId("layers").append(layerButton({ name: `${name}: ${chosen.length / 3}`, title, mark, colour, isOn: true, set }));
+    };
+    show(0, "Removed points", `Show or hide points that only ${before} has`, "×", "untrusted");
+    show(1, "Added points", `Show or hide points that ${before} does not have`, "◆", "trusted");
+    stage.redraw();
   }
 
   onlineButton(): HTMLElement {
@@ -147,6 +172,12 @@ export class MapSpace {
     }
     if (extent.isEmpty()) return;
     stage.setExtent(extent);
+    for (const { points } of [this.#offline, this.#online]) {
+      const { low, high } = points.material.uniforms;
+      const margin = extent.getSize(new Vector3()).multiplyScalar(kMarginOfNear);
+      low.value.copy(extent.min).sub(margin);
+      high.value.copy(extent.max).add(margin);
+    }
     if (this.#floor) this.#grid.lines?.removeFromParent();
     else stage.add(this.#grid.fit(extent));
     stage.redraw();

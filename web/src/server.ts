@@ -32,7 +32,7 @@ export async function loadScene(): Promise<SceneFields> {
   return (await answerOf(await fetch(address("/scene")))).json();
 }
 
-export async function loadMap(which: "offline" | "online"): Promise<MapData> {
+export async function loadMap(which: "offline" | "online" | "changes"): Promise<MapData> {
   return decodeMap(await (await answerOf(await fetch(address(`/map/${which}`)))).arrayBuffer());
 }
 

@@ -64,6 +64,8 @@ export interface MapScene extends SceneBase {
   pictures: PictureFields[];
   output: string | null;
   tags: number; // surveyed ones, which are picks as well
+  next_step: string; // sentence with a command
+  before: string | null; // name of the earlier version that it is compared with
 }
 
 export type SceneFields = RunScene | MapScene;

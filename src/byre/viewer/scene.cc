@@ -24,4 +24,14 @@ MapScene scene_of(const MapView& map) {
   return scene;
 }
 
+MapScene scene_of(const Map& before, const Map& after, const MapDifference& difference) {
+  MapScene scene;
+  const auto add = [&scene](const Map& map, const std::vector<int>& points, Origin origin) {
+    for (const int id : points) scene.points.push_back({map.position(id).cast<float>(), origin});
+  };
+  add(before, difference.removed_points, Origin::offline);
+  add(after, difference.added_points, Origin::online);
+  return scene;
+}
+
 }  // namespace byre

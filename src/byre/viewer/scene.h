@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/image.h"
+#include "byre/map.h"
 #include "byre/map/map_view.h"
 #include "byre/slam/session/session.h"
 
@@ -30,6 +31,9 @@ struct MapScene {
 
 // Points and keyframes of both maps: offline first, each in order of ids.
 MapScene scene_of(const MapView& map);
+
+// Points of a map that a later version lacks, as offline points, and those that it added, as online points.
+MapScene scene_of(const Map& before, const Map& after, const MapDifference& difference);
 
 // Frame of a run to draw.
 struct FrameScene {

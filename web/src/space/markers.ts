@@ -5,6 +5,7 @@ import {
   Points,
   ShaderMaterial,
   Uint8BufferAttribute,
+  Vector3,
   type BufferAttribute,
 } from "three";
 import { colour, currentTheme, onThemeChange } from "../theme";
@@ -18,6 +19,8 @@ export const kCross = 2;
 const kGreysOnDark = [0.35, 1];
 const kGreysOnLight = [0, 0.72];
 
+const kUnlimited = 1e30; // metres
+
 const kVertexShader = `
   attribute float kind;
   attribute float grey;
@@ -25,21 +28,28 @@ const kVertexShader = `
   uniform vec2 greys; // of black and white points; equal: points have the colour of their kind
   uniform vec3 colours[3];
   uniform float forms[3];
+  uniform vec3 low; // box in the view frame, outside which points are far
+  uniform vec3 high;
   varying vec3 colour;
   varying float form;
+  varying float isFar;
   void main() {
     int index = int(kind + 0.5);
     colour = greys.x == greys.y ? colours[index] : vec3(mix(greys.x, greys.y, grey));
     form = forms[index];
+    vec3 placed = (modelMatrix * vec4(position, 1.0)).xyz;
+    isFar = any(lessThan(placed, low)) || any(greaterThan(placed, high)) ? 1.0 : 0.0;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-    gl_PointSize = size;
+    gl_PointSize = isFar > 0.5 ? 0.6 * size : size;
   }`;
 
 const kFragmentShader = `
   uniform float opacity;
   varying vec3 colour;
   varying float form;
+  varying float isFar;
   void main() {
+    if (isFar > 0.5 && mod(floor(gl_FragCoord.x) + floor(gl_FragCoord.y), 2.0) > 0.5) discard;
     vec2 p = abs(2.0 * gl_PointCoord - 1.0);
     bool inside = form < 0.5 ? dot(p, p) <= 1.0 : form < 1.5 ? p.x + p.y <= 1.0 : abs(p.x - p.y) < 0.35;
     if (!inside) discard;
@@ -71,6 +81,8 @@ export class Markers {
         colours: { value: [new Color(), new Color(), new Color()] },
         forms: { value: forms },
         greys: { value: [0, 0] },
+        low: { value: new Vector3().setScalar(-kUnlimited) },
+        high: { value: new Vector3().setScalar(kUnlimited) },
       },
     });
     this.points = new Points(new BufferGeometry(), material);

@@ -32,14 +32,11 @@ constexpr const char* kDiffFooter = R"(Examples:
   byre diff barn.byre barn_2.byre --picture changes.svg --plan plan.yaml
 
 Counts the points and keyframes of one map that the other does not have at exactly the same position. The picture shows
-removed and added points from above, with the keyframes of the second map.)";
+removed and added points from above, with the keyframes of the second map. byre view AFTER --before BEFORE shows them in
+a browser, with pictures.)";
 
 nlohmann::ordered_json changes(int before, const std::vector<int>& removed, const std::vector<int>& added) {
   return {{"same", before - static_cast<int>(removed.size())}, {"removed", removed.size()}, {"added", added.size()}};
-}
-
-void add_points(const Map& map, const std::vector<int>& points, Origin origin, MapScene& scene) {
-  for (const int id : points) scene.points.push_back({map.position(id).cast<float>(), origin});
 }
 
 Picture picture_of(const Map& before, const Map& after, const MapDifference& difference, const DiffOptions& options) {
@@ -50,11 +47,10 @@ Picture picture_of(const Map& before, const Map& after, const MapDifference& dif
   PlanScene scene;
   scene.title = options.before.stem().string() + " -> " + options.after.stem().string();
   scene.ground = ground_of(after.stored(), options.plan ? std::optional(read_floor_plan(*options.plan)) : std::nullopt);
+  scene.map = scene_of(before, after, difference);
   scene.map.keyframes = scene_of(after.stored().map).keyframes;
   scene.offline = {"removed points", palette::kUntrusted};
   scene.online = {"added points", palette::kTrusted};
-  add_points(before, difference.removed_points, Origin::offline, scene.map);
-  add_points(after, difference.added_points, Origin::online, scene.map);
   return plan_picture(scene);
 }
 

@@ -148,6 +148,20 @@ TEST_F(RegisterProgram, RefusesToMatchAPlanWithoutWalls) {
   EXPECT_EQ(run("register barn.byre --plan plan.yaml --auto --points picks.csv").exit_code, 2);
 }
 
+using LongRunRegisterProgram = ProgramTest;
+
+// Through the gate, as the hall alone is symmetric.
+TEST_F(LongRunRegisterProgram, MatchesABarnWithItsPlan) {
+  ASSERT_EQ(run("simulate cowshed --divide 2 --rate 8 --gate open --duration 60 -o day --quiet").exit_code, 0);
+  ASSERT_EQ(run("map day -o barn.byre --quiet").exit_code, 0);
+  const Outcome matched = run("register barn.byre --plan day/plan/plan.yaml --auto -o auto.byre");
+  ASSERT_EQ(matched.exit_code, 0) << matched.errors;
+  ASSERT_EQ(run("register barn.byre --plan day/plan/plan.yaml --points day/plan/picks.csv -o picked.byre").exit_code,
+            0);
+  EXPECT_THAT(load_map(folder_ / "auto.byre").plan->plan_from_map.target_from_source,
+              PoseNear(load_map(folder_ / "picked.byre").plan->plan_from_map.target_from_source, 0.15, 0.01));
+}
+
 TEST_F(RegisterProgram, ReportsDoubtsForTooFewPicks) {
   write("picks.csv", picks_csv(scene_.correspondences(2)));
   const Outcome outcome = run("register barn.byre --plan plan.yaml --points picks.csv");

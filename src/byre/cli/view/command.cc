@@ -5,6 +5,9 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/io/recording/input_files.h"
+#include "byre/map.h"
+#include "byre/playback/archive/map_inspection.h"
+#include "byre/playback/report/inspection_report.h"
 #include "byre/slam/system/resources.h"
 #include "byre/tag_file.h"
 #include "byre/viewer/web/web_map.h"
@@ -23,6 +26,7 @@ namespace fs = std::filesystem;
 
 struct ViewCommandOptions {
   fs::path map;
+  std::optional<fs::path> before;
   ViewOptions view;
   std::optional<fs::path> output;
   bool overwrite = false;
@@ -35,6 +39,7 @@ struct ViewCommandOptions {
 constexpr const char* kViewFooter = R"(Examples:
   byre view barn.byre
   byre view barn.byre --plan plan.yaml -o barn-plan.byre
+  byre view barn_2.byre --before barn.byre
   byre view barn.byre --bind 0.0.0.0
 
 Shows a map in a browser, at the address printed on the standard error stream, until Ctrl-C. With a floor plan,
@@ -47,11 +52,18 @@ std::vector<fs::path> outputs_of(const ViewCommandOptions& options) {
   return {*options.output, picks_path(*options.output)};
 }
 
+MapChanges changes_since(const fs::path& file, const StoredMap& after_file) {
+  const Map before(load_map(file)), after(after_file);
+  return {file.filename().string(), scene_of(before, after, before.difference(after))};
+}
+
 ExitCode view(const ViewCommandOptions& options) {
   const InterruptCatcher interrupt;
   ViewedMap viewed;
   viewed.name = options.map.filename().string();
   viewed.stored = load_map(options.map);
+  viewed.next_step = inspection_report(viewed.stored, inspect(viewed.stored), {viewed.name, 0, {}}).conclusion;
+  if (options.before) viewed.changes = changes_since(*options.before, viewed.stored);
   if (options.view.plan) viewed.plan = read_floor_plan(*options.view.plan);
   viewed.output = options.output;
   for (const fs::path& output : outputs_of(options)) require_writable(output);
@@ -83,6 +95,9 @@ Action declare_view(CLI::App& command) {
   const auto options = std::make_shared<ViewCommandOptions>();
   add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
   declare_viewer_options(command, options->view);
+  add_input(command, Input::file, "--before", options->before,
+            "Earlier version of the map: the page shows removed and added points")
+      ->type_name("MAP");
   CLI::Option* const output = add_output(command, Output::viewed_map, "-o,--output", options->output,
                                          "File to which the page saves the map with its registration on the plan")
                                   ->type_name("MAP")

@@ -56,12 +56,11 @@ class WallDistances {
       corner_ = corner_.cwiseMin(plan.point_at(at));
       top = top.cwiseMax(plan.point_at(at));
     }
-    corner_.array() -= kReach;
-    top.array() += kReach;
+    corner_.array() -= kReach + 0.5 * cell_;  // pixels have their centre in the middle of a cell
+    top.array() += kReach + 0.5 * cell_;
     columns_ = static_cast<int>((top.x() - corner_.x()) / cell_) + 1;
     rows_ = static_cast<int>((top.y() - corner_.y()) / cell_) + 1;
-    distances_.assign(static_cast<std::size_t>(columns_) * rows_, static_cast<float>(kReach));
-    std::vector<std::uint8_t> is_wall(distances_.size());
+    std::vector<std::uint8_t> is_wall(static_cast<std::size_t>(columns_) * rows_);
     for (int row = 0; row < plan.height; ++row) {
       for (int column = 0; column < plan.width; ++column) {
         if (drawn.occupancy[static_cast<std::size_t>(row) * plan.width + column] != kOccupiedPixel) continue;
@@ -69,7 +68,8 @@ class WallDistances {
         is_wall[static_cast<std::size_t>(at.y()) * columns_ + static_cast<std::size_t>(at.x())] = 1;
       }
     }
-    spread(is_wall);
+    distances_ = distances_from(is_wall, 1);
+    depths_ = distances_from(is_wall, 0);
   }
 
   bool has_walls() const { return std::ranges::find(distances_, 0.0F) != distances_.end(); }
@@ -87,44 +87,70 @@ class WallDistances {
 
   double at(const Vector2d& position) const { return distances_[index_at(position)]; }
 
-  // The nearest wall's surface: the position moved against the gradient of the distance. Empty far from walls and
-  // inside them.
-  struct Surface {
+  // Nearest line of a wall: its middle, or the surface of what is thicker than kThickest.
+  struct WallLine {
     Vector2d position;
     Vector2d normal;
+    double distance = 0.0;  // metres from the surface
   };
-  std::optional<Surface> surface_near(const Vector2d& position) const {
-    const double distance = at(position);
-    if (distance >= kReach - cell_) return std::nullopt;
-    const double step = 2.0 * cell_;
-    const Vector2d gradient(at(position + Vector2d(step, 0.0)) - at(position - Vector2d(step, 0.0)),
-                            at(position + Vector2d(0.0, step)) - at(position - Vector2d(0.0, step)));
-    if (!(gradient.norm() > step)) return std::nullopt;
-    const Vector2d normal = gradient.normalized();
-    return Surface{position - (distance - 0.5 * cell_) * normal, normal};
+  std::optional<WallLine> line_near(const Vector2d& position) const {
+    constexpr double kThickest = 0.4;  // metres
+    const double distance = distance_from_surface(position);
+    if (std::abs(distance) >= kReach - 2.0 * cell_) return std::nullopt;
+    const Vector2d x(cell_, 0.0), y(0.0, cell_);
+    const Vector2d gradient(distance_from_surface(position + x) - distance_from_surface(position - x),
+                            distance_from_surface(position + y) - distance_from_surface(position - y));
+    if (!(gradient.norm() > cell_)) return std::nullopt;  // half-way between surfaces
+    const Vector2d normal = gradient.normalized(), surface = position - distance * normal;
+    double thickness = cell_;
+    while (thickness < kThickest && distance_from_surface(surface - thickness * normal) < 0.0) thickness += 0.5 * cell_;
+    return WallLine{surface - (thickness < kThickest ? 0.5 * thickness : 0.0) * normal, normal, std::abs(distance)};
   }
 
  private:
-  void spread(const std::vector<std::uint8_t>& is_wall) {
+  // Metres, negative inside walls; bilinear.
+  double distance_from_surface(const Vector2d& position) const {
+    const Vector2d at = position / cell_ - Vector2d::Constant(0.5);
+    const double column = std::clamp(at.x(), 0.0, columns_ - 1.001), row = std::clamp(at.y(), 0.0, rows_ - 1.001);
+    const auto left = static_cast<std::size_t>(column), low = static_cast<std::size_t>(row);
+    const double u = column - static_cast<double>(left), v = row - static_cast<double>(low);
+    const auto value = [&](std::size_t right, std::size_t up) {
+      const std::size_t index = (low + up) * static_cast<std::size_t>(columns_) + left + right;
+      // The surface is half-way between a cell of the wall and a free one.
+      return depths_[index] > 0.0F ? 0.5 * cell_ - depths_[index] : distances_[index] - 0.5 * cell_;
+    };
+    return (1.0 - v) * ((1.0 - u) * value(0, 0) + u * value(1, 0)) + v * ((1.0 - u) * value(0, 1) + u * value(1, 1));
+  }
+
+  // Distances of all cells from the nearest cell of a kind, up to kReach.
+  std::vector<float> distances_from(const std::vector<std::uint8_t>& kinds, std::uint8_t kind) const {
+    std::vector<float> distances(kinds.size(), static_cast<float>(kReach));
     const int reach = static_cast<int>(kReach / cell_);
+    const auto kind_at = [&](int row, int column) { return kinds[static_cast<std::size_t>(row) * columns_ + column]; };
     for (int row = 0; row < rows_; ++row) {
       for (int column = 0; column < columns_; ++column) {
-        if (!is_wall[static_cast<std::size_t>(row) * columns_ + column]) continue;
-        for (int y = std::max(0, row - reach); y <= std::min(rows_ - 1, row + reach); ++y) {
-          for (int x = std::max(0, column - reach); x <= std::min(columns_ - 1, column + reach); ++x) {
-            float& distance = distances_[static_cast<std::size_t>(y) * columns_ + x];
+        if (kind_at(row, column) != kind) continue;
+        const bool is_inside = row > 0 && column > 0 && row < rows_ - 1 && column < columns_ - 1 &&
+                               kind_at(row - 1, column) == kind && kind_at(row + 1, column) == kind &&
+                               kind_at(row, column - 1) == kind && kind_at(row, column + 1) == kind;
+        const int spread = is_inside ? 0 : reach;  // others are nearer to the cells around it
+        for (int y = std::max(0, row - spread); y <= std::min(rows_ - 1, row + spread); ++y) {
+          for (int x = std::max(0, column - spread); x <= std::min(columns_ - 1, column + spread); ++x) {
+            float& distance = distances[static_cast<std::size_t>(y) * columns_ + x];
             distance = std::min(distance, static_cast<float>(cell_ * std::hypot(x - column, y - row)));
           }
         }
       }
     }
+    return distances;
   }
 
   double cell_ = 0.0;                   // metres
   Vector2d corner_ = Vector2d::Zero();  // lower left, on the plan
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<float> distances_;  // metres, row-major from the lower left
+  // Metres, row-major from the lower left: from the nearest wall, and inside walls from the nearest free cell.
+  std::vector<float> distances_, depths_;
 };
 
 constexpr double kNotDrawn = 0.1;  // share of obstacles that the plan does not have
@@ -391,28 +417,43 @@ WeakestRival weakest_rival(const PlanMatcher& matcher, const std::vector<PlanarP
   return weakest;
 }
 
-// Obstacles on walls, one per block, as correspondences: a line on the plan through the surface of the wall.
+// Obstacles on walls as correspondences: a line on the plan along the wall's surface. Those of a block have the weight
+// of one, because they are correlated.
 std::vector<PlanCorrespondence> correspondences_at(const Similarity& plan_from_map, const WallDistances& walls,
                                                    const PlanMatcher& matcher, const Vector2d& middle,
                                                    const Similarity& ground_from_map) {
   const Pose map_from_ground = inverse(ground_from_map.target_from_source);
   std::vector<PlanCorrespondence> all;
-  std::vector<bool> is_used(matcher.cells().size());
+  std::vector<int> blocks;
+  std::map<int, int> in_block;
   for (const MapCell& cell : matcher.cells()) {
-    if (cell.kind != CellKind::obstacle || is_used[static_cast<std::size_t>(cell.block)]) continue;
+    if (cell.kind != CellKind::obstacle) continue;
     const Eigen::Vector3d in_map =
         map_from_ground * Eigen::Vector3d(cell.position.x() + middle.x(), cell.position.y() + middle.y(), 1.0);
     const Vector2d on_plan = (plan_from_map * in_map).head<2>() - walls.corner_in_plan();
-    const auto surface = walls.at(on_plan) <= kOnWall ? walls.surface_near(on_plan) : std::nullopt;
-    if (!surface) continue;
-    is_used[static_cast<std::size_t>(cell.block)] = true;
-    const Vector2d at = surface->position + walls.corner_in_plan();
+    const auto line = walls.line_near(on_plan);
+    if (!line || line->distance > kOnWall) continue;
+    const Vector2d at = line->position + walls.corner_in_plan();
     PlanCorrespondence made{"wall", in_map, at};
-    made.sigma = 0.1;  // metres, of a cell and of the plan
-    made.wall = PlanWall{in_map, Eigen::Matrix3d::Zero(), at + Vector2d(-surface->normal.y(), surface->normal.x())};
+    made.wall = PlanWall{in_map, Eigen::Matrix3d::Zero(), at + Vector2d(-line->normal.y(), line->normal.x())};
     all.push_back(made);
+    blocks.push_back(cell.block);
+    ++in_block[cell.block];
   }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].sigma = kOnWall * std::sqrt(in_block.at(blocks[i]));
   return all;
+}
+
+// Scales the covariance of position and heading for the few independent errors of walls: a wall is drawn or mapped
+// wrong along its length.
+void correlate_errors(double measurements, PlanRegistration& registration) {
+  constexpr double kIndependent = 16.0;
+  const double scale = std::sqrt(std::max(1.0, measurements / kIndependent));
+  const Eigen::Matrix3d turn = registration.plan_from_map.target_from_source.rotation.toRotationMatrix();
+  Matrix7 scales = Matrix7::Identity();
+  scales.block<3, 3>(0, 0) = turn.transpose() * Eigen::Vector3d(scale, scale, 1.0).asDiagonal() * turn;
+  scales.block<3, 3>(3, 3) = turn.transpose() * Eigen::Vector3d(1.0, 1.0, scale).asDiagonal() * turn;
+  registration.covariance = (scales * registration.covariance * scales).eval();
 }
 
 Similarity on_plan(const PlanarPose& pose, const WallDistances& walls, const Vector2d& middle,
@@ -458,7 +499,7 @@ std::string describe_match(const PlanMatch& match) {
 
 std::optional<PlanMatch> match_with_plan(const MapGraph& map, const DrivingPlane& plane, const DrawnFloorPlan& plan,
                                          std::optional<double> body_height) {
-  constexpr int kRounds = 5;
+  constexpr int kRounds = 20;
   GridOptions options;
   options.resolution = kCell;
   options.body_height = body_height;
@@ -486,6 +527,7 @@ std::optional<PlanMatch> match_with_plan(const MapGraph& map, const DrivingPlane
   }
   PlanMatch match{*fit, share(matcher, walls, poses.front(), CellKind::obstacle, kOnWall), {}, {}};
   match.fit.registration.plan = plan.plan.name;
+  correlate_errors(static_cast<double>(match.fit.residuals.size()), match.fit.registration);
   const WeakestRival weakest = weakest_rival(matcher, poses);
   match.rival = weakest.rival;
   if (match.rival.margin < kLeastMatchMargin) {

@@ -44,8 +44,8 @@ inline constexpr double kLeastMatchMargin = 2.5;
 // expected on walls of the plan; free and driven ground is not (correlative matching, Olson 2009). The best pose is
 // compared with each local maximum of the likelihood that is more than 0.5 m or 5 degrees away, and with poses at that
 // distance, by the test of Vuong (1989) on the log-likelihoods of squares of 0.5 m: neighbouring cells are correlated.
-// The best pose is fitted by register_on_plan. Empty for a plan without walls, and for a map without obstacles or a
-// planar path. Throws InputError as occupancy_grid().
+// The best pose is fitted to the middle lines of the walls; its covariance counts the errors of walls as few. Empty for
+// a plan without walls, and for a map without obstacles or a planar path. Throws InputError as occupancy_grid().
 std::optional<PlanMatch> match_with_plan(const MapGraph& map, const DrivingPlane& plane, const DrawnFloorPlan& plan,
                                          std::optional<double> body_height = {});
 

@@ -153,6 +153,10 @@ TEST(PlanMatching, FindsTheMapInTwentyHalls) {
     const Pose error = found->fit.registration.plan_from_map.target_from_source * hall.map_from_plan();
     EXPECT_LT(error.translation.head<2>().norm(), 0.1) << "seed " << seed;
     EXPECT_LT(angle_between(error.rotation, Eigen::Quaterniond::Identity()), 0.5 * kDegree) << "seed " << seed;
+    const Vector3d centre = inverse(found->fit.registration.plan_from_map.target_from_source) * Vector3d(8.0, 0.0, 0.0);
+    const double sigma = std::sqrt(0.5 * plan_covariance_at(found->fit.registration, centre).trace());
+    EXPECT_LT((error * Vector3d(8.0, 0.0, 0.0) - Vector3d(8.0, 0.0, 0.0)).head<2>().norm(), 4.0 * sigma)
+        << "seed " << seed;
   }
 }
 

@@ -113,6 +113,7 @@ class MapSite : public WebSite {
     if (request.path == "/") return page_response();
     if (request.path == "/scene") return json_response(scene_fields());
     if (request.path == "/map/offline") return bytes_response(points_);
+    if (request.path == "/map/changes" && map_.changes) return bytes_response(map_bytes(map_.changes->scene));
     if (request.path == "/map/greys") return bytes_response(grey_bytes(map_.stored.map));
     if (const Keyframe* const keyframe = find_pictured(map_.stored.map, request.path)) {
       return bytes_response(string_of(keyframe->picture.jpeg()), "image/jpeg");
@@ -125,6 +126,7 @@ class MapSite : public WebSite {
   Json scene_fields() const {
     const auto up_of = [](const DrivingPlane& plane) { return vector_fields(plane.up_in_map); };
     const auto text_of = [](const std::filesystem::path& path) { return path.string(); };
+    const auto before_of = [](const MapChanges& changes) { return changes.before; };
     return {
         {"mode", "map"},
         {"name", map_.name},
@@ -135,6 +137,8 @@ class MapSite : public WebSite {
         {"pictures", picture_fields(map_.stored, driving_plane_ && map_.plan ? std::optional(driving_plane_->up_in_map)
                                                                              : std::nullopt)},
         {"output", fields_or_null(map_.output, text_of)},
+        {"next_step", map_.next_step},
+        {"before", fields_or_null(map_.changes, before_of)},
         {"tags", tag_correspondences(map_.stored, map_.tags).size()}};
   }
 

@@ -4,6 +4,7 @@
 #include "byre/map/map_file.h"
 #include "byre/map/plan/floor_plan.h"
 #include "byre/tag.h"
+#include "byre/viewer/scene.h"
 #include "byre/viewer/web/web_server.h"
 
 #include <filesystem>
@@ -12,6 +13,12 @@
 #include <vector>
 
 namespace byre {
+
+// Changes of a map since an earlier version of it.
+struct MapChanges {
+  std::string before;  // name of the earlier version
+  MapScene scene;      // points that only the earlier version has (offline) and that only this one has (online)
+};
 
 // Map to view and, with a plan, to register on it.
 struct ViewedMap {
@@ -23,6 +30,8 @@ struct ViewedMap {
   PlanRegistrationOptions registration;
   std::optional<double> body_height;  // metres; empty: not given, so that of the registration is assumed
   std::vector<Tag> tags;              // surveyed ones of the map are picks as well
+  std::string next_step;              // sentence with a command
+  std::optional<MapChanges> changes;
 };
 
 // Shows a map in a browser, and registers it on a plan by picked points.
