@@ -36,11 +36,11 @@ constexpr const char* kDemoFooter = R"(Examples:
 
 Compares runs with and without a map on simulated input, in a few minutes. Two visits of a robot to a cowshed are
 rendered. The first is mapped by day, and its map is registered on the floor plan. In the second the robot is switched
-on at another place at dusk, and half of the things have moved. It is run in three ways, none of which is given the
-start. FOLDER receives index.html, a page that needs neither server nor network, mission.svg and mission.png with the
-result in one picture, and the recordings, the map, the trajectories and further pictures. --animation writes an
-animated PNG: the camera image with matched points of both maps, beside the plan with the path as it grows. Ctrl-C keeps
-the files written so far, but no page. docs/tutorials/demo.md explains the page.)";
+on at another place at dusk, and half of the objects have moved. It is run in three ways, without the start. FOLDER
+receives index.html, a page that needs neither server nor network, mission.svg and mission.png with the result in one
+picture, and the recordings, the map, the trajectories and further pictures. --animation writes an animated PNG: the
+camera image with matched points of both maps, beside the plan with the path as it grows. Ctrl-C keeps the files written
+so far, but no page. docs/tutorials/demo.md explains the page.)";
 
 void make_new_folder(const fs::path& folder) {
   make_folder(folder);

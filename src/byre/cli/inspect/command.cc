@@ -129,7 +129,7 @@ Action declare_inspect(CLI::App& command) {
              "Also write the points, coloured by their observations. PLY format")
       ->type_name("FILE");
   add_output(command, Output::calibration, "--extrinsics", options->extrinsics,
-             "Also write the extrinsics of the robot that drives with wheel odometry estimated. YAML format")
+             "Also write the extrinsics of the robot, estimated from wheel odometry. YAML format")
       ->type_name("FILE");
   add_output(command, Output::folder, "--pictures", options->pictures,
              "Also write the pictures of the keyframes to this new folder. JPEG format")

@@ -92,7 +92,7 @@ void declare_outputs(CLI::App& command, RunOptions& options) {
   add_output(command, Output::map, "--save-online", options.online_map, "Online map of the mission, as a separate map")
       ->type_name("MAP");
   add_output(command, Output::map, "--save-session", options.session,
-             "What the mission learned about its map, for \"byre update\"")
+             "Session file: what the mission mapped, saw and missed, for \"byre update\"")
       ->type_name("SESSION")
       ->needs("--map");
   add_output(command, Output::json, "--events", options.events, "Events during the run, as JSON lines")

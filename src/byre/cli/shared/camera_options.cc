@@ -71,8 +71,8 @@ void declare_camera_options(CLI::App& command, CameraOptions& options, CLI::Opti
                ->capture_default_str());
   let_need(command
                .add_option("--exposure-limit", options.exposure_limit_ms,
-                           "Control exposure and gain by byre, for corners all over the image, up to this exposure "
-                           "time, which limits motion blur (default: control by the device)")
+                           "Longest exposure time: byre controls exposure and gain so that corners are found all over "
+                           "the image (default: control by the device)")
                ->type_name("MS")
                ->check(between(0.1, 10'000.0)));
 }

@@ -41,7 +41,7 @@ void declare_extrinsics(CLI::App& command, ExtrinsicsArguments& arguments) {
       add_input(
           command, Input::recording, "--extrinsics", arguments.file,
           "Poses of camera and IMU on the robot's base: YAML, URDF, or a bag with /tf_static (those in the file of "
-          "--calibration; without both, found while driving)")
+          "--calibration, else estimated while driving)")
           ->type_name("FILE");
   const auto add_frame = [&](const std::string& name, std::string& frame, const std::string& help) {
     add_text(command, name, frame, help)->type_name("NAME")->needs(file);

@@ -66,7 +66,7 @@ void declare_options_file(CLI::App& command, MethodArguments& arguments) {
   };
   command
       .add_option_function<std::vector<std::string>>(
-          "--set", keep, "One option of the method, as tracking.min_inliers=20; --print-options lists all")
+          "--set", keep, "One option of the method, such as tracking.min_inliers=20; --print-options lists all")
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->take_all();

@@ -56,7 +56,7 @@ FOLDER receives a EuRoC recording with exact truth (mav0), and a floor plan with
 recording (plan). With calibration errors, sensor.yaml contains them, and true_sensor.yaml is the calibration used
 for rendering. With --motion it also receives the measurements of two driven wheels and a gyroscope (wheel.txt,
 mav0/imu0), with their errors. The same options give the same bytes, for any number of threads. Ctrl-C leaves no
-files. docs/reference/simulation.md describes both.)";
+files. docs/reference/simulation.md describes the files and errors.)";
 
 constexpr const char* kLifeFooter = R"(Examples:
   byre simulate life --motion --imperfection good -o life
@@ -293,7 +293,7 @@ void declare_life(CLI::App& command, SimulateOptions& options) {
   command.add_option("--only", options.only, "Render these visits only")->type_name("N")->check(between(1, 1000));
   command
       .add_option("--change", options.recording.barn.change,
-                  "Share of the tools moved at each visit; of other things a third of it")
+                  "Share of the tools moved at each visit; of other objects a third of this share is moved")
       ->type_name("NUMBER")
       ->check(between(0.0, 1.0))
       ->capture_default_str();

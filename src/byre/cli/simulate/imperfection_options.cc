@@ -39,7 +39,7 @@ void declare_imperfection(CLI::App& command, ImperfectionOptions& options) {
       ->transform(one_of(conditions))
       ->group("Camera errors");
   add_number(command, "--calibration-level", options.calibration_level, {0.0, 10.0}, "NUMBER",
-             "Size of the calibration error: 1 as of a good calibration, 3 as of a worn camera");
+             "Size of the calibration error: 1 for a good calibration, 3 for a worn camera");
   command.add_option("--calibration-seed", options.calibration_seed, "Seed of the calibration error (1)")
       ->type_name("N")
       ->group("Camera errors");
@@ -54,7 +54,8 @@ void declare_imperfection(CLI::App& command, ImperfectionOptions& options) {
   add_number(command, "--offset", options.offset, {-50.0, 50.0}, "GREY", "Offset of the right camera, grey values");
   add_number(command, "--vignetting", options.vignetting, {0.0, 0.9}, "SHARE",
              "Vignetting: share of the light lost in the corners");
-  add_number(command, "--jpeg", options.jpeg_quality, {1, 100}, "QUALITY", "Store images as JPEG of this quality");
+  add_number(command, "--jpeg", options.jpeg_quality, {1, 100}, "QUALITY",
+             "Quality of JPEG compression, before images are stored as PNG");
 }
 
 CameraImperfection make_imperfection(const ImperfectionOptions& options) {

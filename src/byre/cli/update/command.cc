@@ -30,8 +30,8 @@ constexpr const char* kUpdateFooter = R"(Examples:
   byre update barn.byre monday.session tuesday.session -o barn_2.byre --json
 
 Adds what missions mapped at new and changed places, and removes points that they no longer see. All other keyframes and
-points keep their positions, so taught paths stay valid. A session is used if it ran on MAP, or on a version that MAP was
-made of, with the map's calibration, and if the map alone finds its keyframes where it was. Then all stored frames are
+points keep their positions, so taught paths stay valid. A session is used if it ran on MAP or an earlier version of it,
+with the map's calibration, and if its keyframes are localised in MAP at their poses. Then all stored frames are
 localised in both maps; NEW is written only if no place is worse. Misses count only for sessions that ran on MAP.
 "byre history" lists the updates of a map, "byre diff" compares versions.
 Exit code 1 if no session fits, or a place would be worse: NEW is then not written.)";
