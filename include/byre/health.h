@@ -23,7 +23,7 @@ enum class DistrustReason : std::uint8_t {
   no_pose,             // tracking and relocalisation failed
   blinded,             // the image is dark, overexposed, flat or blurred
   not_registered,      // tracked on an online map that is not registered in the offline map
-  unconfirmed,         // relocalised, but not confirmed by enough frames yet
+  unconfirmed,         // place found, but not accepted yet; without an offline map: calibration not refined yet
   off_the_map,         // so far outside the mapped area that drift may be large
   few_points,          // too few inliers
   few_offline_points,  // inside the mapped area, but supported by online points

@@ -56,8 +56,8 @@ struct MapObservation {
   float sigma = 1.0f;                               // pixels, of column and of row
 };
 
-// What one map has and another one does not, at exactly the same position: updates, cuts and merges leave what they
-// keep where it is. Ids, ascending.
+// Keyframes and points that only one of two maps has at their exact position. Updates, cuts and merges do not move
+// those that remain. Ids, ascending.
 struct MapDifference {
   std::vector<int> removed_keyframes;  // in the map before
   std::vector<int> removed_points;
@@ -170,8 +170,7 @@ struct LocalisationReport {
 };
 
 // Localises images of one camera in a map, each without a prediction. AprilTags of the map decide between places that
-// look alike. Construction takes some tenths of a second, an
-// image some hundredths. Not thread-safe.
+// look alike. Construction takes some tenths of a second, an image some hundredths of a second. Not thread-safe.
 class Localiser {
  public:
   // calibration: cameras of the images; empty: those of the map's newest recording. A refinement stored in the map is

@@ -73,7 +73,8 @@ using ReportCallback = std::function<void(const FrameReport&)>;
 // result, save() and finish() wait for frames submitted before; after the first submit() the others return at once.
 class Slam {
  public:
-  // Makes a new map. One camera without depth has an arbitrary scale, and poses are those of the camera.
+  // Makes a new map. One camera without depth has an arbitrary scale until extrinsics, wheels or tags determine it, and
+  // poses are those of the camera.
   static Slam mapping(const Calibration& calibration, const SlamOptions& options = {});
 
   // Continues a saved map: relocalises in it first, then adds to it.
@@ -128,7 +129,7 @@ class Slam {
   void set_gyro_extrinsics(const Eigen::Quaterniond& left_from_gyroscope);
 
   // Limits relocalisation to the surroundings of a pose for the hint's lifetime, for buildings with similar-looking
-  // places. Does not affect tracking. Replaces an earlier hint. Invalid poses are ignored. Only for on_map().
+  // places. Does not affect tracking. Replaces an earlier hint. Invalid poses are ignored. Only for missions.
   void set_initial_pose(const PoseHint& hint);
 
   // While paused, frames are tracked, but the map is neither initialised nor extended, for example among cows.
