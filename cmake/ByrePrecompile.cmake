@@ -34,13 +34,19 @@ function(byre_precompile kind target)
 endfunction()
 
 # Precompiled header for programs. Their compile definitions differ, so a separate target owns it. KIND: program, or
-# program_test if linked with GoogleTest.
+# program_test if linked with GoogleTest; these are compiled lightly.
 function(byre_precompile_program kind target)
   set(owner byre_precompiled_${kind})
+  if(kind STREQUAL program_test)
+    byre_compile_lightly(${target})
+  endif()
   if(BYRE_PRECOMPILE AND NOT TARGET ${owner})
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${owner}.cc CONTENT "")
     add_library(${owner} OBJECT ${PROJECT_BINARY_DIR}/${owner}.cc)
     target_link_libraries(${owner} PRIVATE byre_flags Eigen3::Eigen $<$<STREQUAL:${kind},program_test>:GTest::gmock>)
+    if(kind STREQUAL program_test)
+      byre_compile_lightly(${owner})
+    endif()
     byre_precompile(${kind} ${owner})
   endif()
   byre_precompile(${kind} ${target})

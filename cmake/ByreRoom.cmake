@@ -96,12 +96,17 @@ set(BYRE_FOLDERS_COLD io/ros io/bag viewer viewer/web benchmark benchmark/demo r
 
 # Folders whose tests compute little: without optimisation they compile in half the time. The tests of the others render
 # images or simulate missions by functions of their headers.
-set(BYRE_FOLDERS_TESTED_LIGHTLY base io/bag io/calibration io/colmap io/recording io/ros map map/plan benchmark/demo
-    ros2/dds ros2/fleet ros2/node)
+set(BYRE_FOLDERS_TESTED_LIGHTLY base io/bag io/calibration io/colmap io/image io/recording io/ros map map/plan playback
+    playback/archive playback/report viewer viewer/web benchmark benchmark/demo ros2/dds ros2/fleet ros2/node)
 
 # Compiles a target for short build time instead of speed.
 function(byre_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
+# Compiles a target without optimisation: tests that compute little.
+function(byre_compile_lightly target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O0>)
 endfunction()
 
 # Folders with the code that fuzz/ tests. Builds with Clang's address sanitizer record its coverage and detect all
@@ -196,7 +201,7 @@ function(byre_add_folder folder)
       target_compile_definitions(byre_${name}_test_files PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     endif()
     if(folder IN_LIST BYRE_FOLDERS_TESTED_LIGHTLY)
-      target_compile_options(byre_${name}_test_files PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O0>)
+      byre_compile_lightly(byre_${name}_test_files)
       byre_precompile(light_test byre_${name}_test_files)
     else()
       byre_compile_quickly(byre_${name}_test_files)
