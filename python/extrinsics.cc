@@ -66,12 +66,12 @@ void bind_values(py::module_& module) {
            py::arg("wheel_scale") = defaults.wheel_scale, py::arg("wheel_scale_sigma") = defaults.wheel_scale_sigma,
            py::arg("wheel_delay") = py::none(), "A Slam requires the camera.")
       .def_readonly("camera", &Extrinsics::camera,
-                    "Left or only camera: x to the right of the image, y down, z ahead. None: found while driving.")
-      .def_readonly("imu", &Extrinsics::imu, "Gyroscope and accelerometer. None: found while driving.")
+                    "Left or only camera: x to the right of the image, y down, z ahead. None: estimated while driving.")
+      .def_readonly("imu", &Extrinsics::imu, "Gyroscope and accelerometer. None: estimated while driving.")
       .def_readonly("wheel_scale", &Extrinsics::wheel_scale, "True metres per metre of the wheel odometry.")
       .def_readonly("wheel_scale_sigma", &Extrinsics::wheel_scale_sigma, "Relative standard deviation of wheel_scale.")
       .def_readonly("wheel_delay", &Extrinsics::wheel_delay,
-                    "Delay of the wheels' stamps against the images', seconds. None: found while driving.")
+                    "Delay of the wheels' stamps against the images', seconds. None: estimated while driving.")
       .def("__repr__", [](const Extrinsics& extrinsics) { return repr_of(extrinsics); });
 }
 

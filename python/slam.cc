@@ -272,7 +272,7 @@ void bind_options(py::module_& module) {
           [](SlamOptions& options, const std::optional<Extrinsics>& extrinsics) { options.extrinsics = extrinsics; },
           "How camera and IMU are mounted on the robot's base. With it wheels yield poses from the first "
           "frame on, and one camera makes a map in metres. The camera's is required. None: taken from the "
-          "map, or found while driving.")
+          "map, or estimated while driving.")
       .def_readwrite(
           "tags", &SlamOptions::tags,
           "AprilTags on the robot's way, whose poses the map stores, see read_tags. One camera makes a map "

@@ -18,9 +18,9 @@ struct SensorMounting {
 // Extrinsics of a robot as measured by hand, designed, or found on an earlier drive. They are the start of an estimate:
 // driving refines them, and a mounting that motions contradict is reported and dropped.
 struct Extrinsics {
-  // Left or only camera: x to the right of the image, y down, z ahead. Empty: found while driving.
+  // Left or only camera: x to the right of the image, y down, z ahead. Empty: estimated while driving.
   std::optional<SensorMounting> camera;
-  // Gyroscope and accelerometer. Empty: found while driving.
+  // Gyroscope and accelerometer. Empty: estimated while driving.
   std::optional<SensorMounting> imu;
   double wheel_scale = 1.0;           // true metres per metre of the wheel odometry
   double wheel_scale_sigma = 0.03;    // relative standard deviation

@@ -57,7 +57,8 @@ struct SlamOptions {
   // Empty: no walls.
   std::optional<DrawnFloorPlan> plan{};
   // How camera and IMU are mounted on the robot's base. With it wheels yield poses from their second sample on, and
-  // one camera begins its map in metres. Empty: taken from the map, or found while driving. The camera's is required.
+  // one camera begins its map in metres. Empty: taken from the map, or estimated while driving. The camera's is
+  // required.
   std::optional<Extrinsics> extrinsics{};
   // AprilTags on the robot's way (read_tags), whose poses the map stores. One camera makes a map in metres by the sizes
   // of two or more. Missions detect the tags of their map without this option, as evidence for a place.

@@ -1,4 +1,4 @@
-// byre node keeps its maps intact and relocalises, whenever it is killed: BYRE_NODE_KILLS, docs/reference/ros2.md.
+// byre node keeps its maps intact and relocalises, whenever it is killed: BYRE_NODE_KILLS, docs/lab/ros2.md.
 
 #include "byre/base/binary_file.h"
 #include "byre/map/map_file.h"

@@ -1,4 +1,4 @@
-// Long-run test of byre node: BYRE_NODE_SOAK_FRAMES, docs/reference/ros2.md.
+// Long-run test of byre node: BYRE_NODE_SOAK_FRAMES, docs/lab/ros2.md.
 
 #include "staying_up_scene.h"
 

@@ -36,7 +36,7 @@ class Vocabulary {
   static Vocabulary train(std::span<const std::vector<Descriptor>> descriptors_of_images,
                           const VocabularyOptions& options, const std::function<void(double)>& progress = {});
 
-  // Maps a file written by save() (docs/reference/vocabulary_format.md) into memory. Throws InputError naming section
+  // Maps a file written by save() (docs/lab/vocabulary.md) into memory. Throws InputError naming section
   // and byte for damage, a wrong checksum or a newer format.
   static Vocabulary load(const std::filesystem::path& path);
   void save(const std::filesystem::path& path) const;

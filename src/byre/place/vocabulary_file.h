@@ -31,7 +31,7 @@ struct VocabularyView {
 // One per node: the number of leaves left of its subtree. Precondition: as in VocabularyTree, nodes before children.
 std::vector<std::uint32_t> first_words(std::span<const std::uint32_t> first_child);
 
-// Format: docs/reference/vocabulary_format.md. Equal trees give equal bytes.
+// Format: docs/lab/vocabulary.md. Equal trees give equal bytes.
 std::vector<std::byte> write_vocabulary(const VocabularyTree& tree);
 
 // Views into the bytes, which must be aligned to 8. Throws InputError naming section and byte for damage or a newer

@@ -36,7 +36,7 @@ void add_motion(const RunResult& run, bool has_metric_source, Report& report) {
         "wheels",
         "body {ahead_m:.2f} m ahead and {left_m:.2f} m to the left of the base; time offset {offset_s*1e3:.0f} ms "
         "to the images; {lengths}ignored {slips} times for slip[{?has_changed}; motions "
-        "contradict the initial extrinsics]",
+        "contradict the given extrinsics]",
         {{"ahead_m", arm.x()},
          {"left_m", arm.y()},
          {"offset_s", motion.time_offset},
@@ -56,7 +56,7 @@ void add_motion(const RunResult& run, bool has_metric_source, Report& report) {
               {"up_sigma_deg", up ? nlohmann::ordered_json(up->sigma / kDegree) : nullptr},
               {"tilts", motion.tilts_applied}});
   if (!motion.wheels && motion.has_calibration_changed) {
-    report.row("wheels", "not used: motions contradict the initial extrinsics, and others are not estimated yet");
+    report.row("wheels", "not used: motions contradict the given extrinsics, and others are not estimated yet");
   } else if (!motion.wheels && !motion.gyroscope) {
     return report.row("motion", "not used: too little motion to estimate the extrinsics");
   }

@@ -82,7 +82,7 @@ struct NodeConfig {
 
   std::optional<std::filesystem::path> calibration;  // empty: camera info
   std::optional<double> baseline;                    // metres; empty: that of the calibration
-  // Extrinsics of the robot with names of frames in a URDF; empty: from /tf_static, or found while driving.
+  // Extrinsics of the robot with names of frames in a URDF; empty: from /tf_static, or estimated while driving.
   std::optional<std::filesystem::path> extrinsics_file;
   ExtrinsicsFrames extrinsics_frames;
   std::string left_info = "/left/camera_info";

@@ -170,7 +170,7 @@ const std::vector<NodeSetting>& node_settings() {
       choice<Workers>(
           "slam.workers", {{"live", Workers::live}, {"repeatable", Workers::repeatable}, {"none", Workers::none}},
           &NodeConfig::workers, "mapping results applied when ready, after a fixed number of frames, or at once"),
-      file("slam.plan", &NodeConfig::plan, "floor plan published as an occupancy grid"),
+      file("slam.plan", &NodeConfig::plan, "floor plan: its walls reject poses; published as an occupancy grid"),
       file("slam.tags", &NodeConfig::tags, "AprilTags to map, see docs/how-to/use_apriltags.md"),
       flag("grid.from_map", &NodeConfig::has_grid_of_map,
            "occupancy grid computed from slam.map, published if slam.plan is empty"),
