@@ -47,6 +47,7 @@ export class MapSpace {
 
   constructor(scene: SceneFields) {
     this.stage?.map.add(this.#offline.points, this.#online.points, this.#offlinePath.lines, this.#onlinePath.lines);
+    if (this.stage) this.stage.onDetail = (isFull) => this.#offline.setDetail(isFull);
     this.place(scene);
   }
 
@@ -151,6 +152,7 @@ export class MapSpace {
     this.#offlineMap = map;
     this.#offline.set(map.points);
     this.#offlinePath.set(map.keyframes);
+    this.stage?.moved();
     this.#fitView();
   }
 

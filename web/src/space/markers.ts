@@ -62,6 +62,24 @@ export interface MarkerKind {
   form: number;
 }
 
+// Markers drawn at once while the view moves.
+const kCoarseMarkers = 100_000;
+
+/** Values of each marker in another order, in which the first markers are spread over all. stride: values of a marker. */
+function spread<Values extends Float32Array | Uint8Array | number[]>(values: Values, stride: number): Values {
+  const count = values.length / stride;
+  if (count <= kCoarseMarkers) return values;
+  const kept = values.slice() as Values;
+  const steps = Math.ceil(count / kCoarseMarkers);
+  let to = 0;
+  for (let first = 0; first < steps; ++first) {
+    for (let from = first; from < count; from += steps) {
+      for (let i = 0; i < stride; ++i) kept[to++] = values[stride * from + i];
+    }
+  }
+  return kept;
+}
+
 /** Points drawn as markers of constant size in pixels, of up to three kinds. */
 export class Markers {
   readonly points: Points<BufferGeometry, ShaderMaterial>;
@@ -95,8 +113,8 @@ export class Markers {
   set(positions: Float32Array | number[], kinds?: Uint8Array | number[]): void {
     const count = positions.length / 3;
     const geometry = new BufferGeometry();
-    geometry.setAttribute("position", new Float32BufferAttribute(positions, 3));
-    geometry.setAttribute("kind", new Float32BufferAttribute(kinds ?? new Float32Array(count), 1));
+    geometry.setAttribute("position", new Float32BufferAttribute(spread(positions, 3), 3));
+    geometry.setAttribute("kind", new Float32BufferAttribute(spread(kinds ?? new Float32Array(count), 1), 1));
     this.points.geometry.dispose();
     this.points.geometry = geometry;
   }
@@ -104,8 +122,13 @@ export class Markers {
   /** Draws each marker in its grey value, or in the colour of its kind without values. */
   setGreys(greys: Uint8Array | null): void {
     this.#isGrey = greys !== null;
-    if (greys) this.points.geometry.setAttribute("grey", new Uint8BufferAttribute(greys, 1, true));
+    if (greys) this.points.geometry.setAttribute("grey", new Uint8BufferAttribute(spread(greys, 1), 1, true));
     this.#recolour();
+  }
+
+  /** Draws all markers, or of many only some, spread over all. */
+  setDetail(isFull: boolean): void {
+    this.limit(isFull ? Infinity : kCoarseMarkers);
   }
 
   /** Replaces all markers by reserved ones that are not drawn. */

@@ -17,6 +17,7 @@ const kOrbitStep = 0.12; // radians per key press
 const kZoomStep = 1.15;
 const kClick = 4; // largest motion of the pointer during a click, pixels
 const kTap = 10; // of a finger
+const kSettling = 200; // ms without motion before all details are drawn
 
 /** Position on the canvas, CSS pixels. */
 export interface Click {
@@ -46,7 +47,10 @@ export class Stage {
   readonly #scene = new Scene();
   readonly #controls: OrbitControls;
   readonly #afterDrawing: (() => void)[] = [];
+  /** Called with false when the view begins to move, and with true after it. */
+  onDetail: (isFull: boolean) => void = () => {};
   readonly redraw = onceAFrame(() => this.#draw());
+  #settling: ReturnType<typeof setTimeout> | null = null; // until all details are drawn
   #isOwnView = false; // the user has changed the view
   #home = new Box3(new Vector3(-5, -5, 0), new Vector3(5, 5, 2));
 
@@ -74,9 +78,21 @@ export class Stage {
     const controls = new OrbitControls(this.camera, this.canvas);
     controls.zoomToCursor = true;
     controls.maxPolarAngle = 0.98 * Math.PI;
-    controls.addEventListener("change", this.redraw);
+    controls.addEventListener("change", () => this.moved());
     controls.addEventListener("start", () => (this.#isOwnView = true));
     return controls;
+  }
+
+  /** Redraws with few details, which takes less time, and soon after with all. */
+  moved(): void {
+    this.onDetail(false);
+    this.redraw();
+    if (this.#settling) clearTimeout(this.#settling);
+    this.#settling = setTimeout(() => {
+      this.#settling = null;
+      this.onDetail(true);
+      this.redraw();
+    }, kSettling);
   }
 
   /** Sets the pose of the map frame in the view. */
@@ -173,10 +189,11 @@ export class Stage {
       .multiply(this.map.matrixWorld);
   }
 
-  /** Draws continuously; returns frames per second. */
+  /** Draws continuously, as during motion; returns frames per second. */
   measure(seconds: number): number {
     const context = this.#renderer.getContext();
     const pixel = new Uint8Array(4);
+    this.onDetail(false);
     const start = performance.now();
     let frames = 0;
     while (performance.now() - start < 1000 * seconds) {
@@ -184,6 +201,7 @@ export class Stage {
       context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, pixel); // waits for the end of drawing
       ++frames;
     }
+    this.moved();
     return (1000 * frames) / (performance.now() - start);
   }
 
