@@ -1,16 +1,12 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/shared/changes_picture.h"
 #include "byre/cli/shared/file_arguments.h"
-#include "byre/input_error.h"
-#include "byre/io/image/plan_file.h"
 #include "byre/map.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/report/report.h"
-#include "byre/viewer/palette.h"
-#include "byre/viewer/plan_picture.h"
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <ostream>
 #include <vector>
 
@@ -23,7 +19,7 @@ namespace fs = std::filesystem;
 
 struct DiffOptions {
   fs::path before, after;
-  std::optional<fs::path> picture, plan;
+  ChangesPicture picture;
   bool json = false;
 };
 
@@ -39,25 +35,11 @@ nlohmann::ordered_json changes(int before, const std::vector<int>& removed, cons
   return {{"same", before - static_cast<int>(removed.size())}, {"removed", removed.size()}, {"added", added.size()}};
 }
 
-Picture picture_of(const Map& before, const Map& after, const MapDifference& difference, const DiffOptions& options) {
-  if (options.plan && !after.plan()) {
-    throw InputError(options.after.string(), "is not registered on a floor plan, so it cannot be drawn on one",
-                     "see \"byre register\"");
-  }
-  PlanScene scene;
-  scene.title = options.before.stem().string() + " -> " + options.after.stem().string();
-  scene.ground = ground_of(after.stored(), options.plan ? std::optional(read_floor_plan(*options.plan)) : std::nullopt);
-  scene.map = scene_of(before, after, difference);
-  scene.map.keyframes = scene_of(after.stored().map).keyframes;
-  scene.offline = {"removed points", palette::kUntrusted};
-  scene.online = {"added points", palette::kTrusted};
-  return plan_picture(scene);
-}
-
 ExitCode run_diff(const DiffOptions& options, std::ostream& result) {
   const Map before(load_map(options.before)), after(load_map(options.after));
   const MapDifference difference = before.difference(after);
-  if (options.picture) write_picture(picture_of(before, after, difference, options), *options.picture);
+  write_changes(before, after, difference, options.before.stem().string() + " -> " + options.after.stem().string(),
+                options.picture);
   Report report{{{"program", "byre diff"},
                  {"version", BYRE_VERSION},
                  {"before", options.before.string()},
@@ -77,12 +59,7 @@ Action declare_diff(CLI::App& command) {
   const auto options = std::make_shared<DiffOptions>();
   add_input(command, Input::file, "BEFORE", options->before, "Map")->type_name("MAP")->required();
   add_input(command, Input::file, "AFTER", options->after, "Map to compare with it")->type_name("MAP")->required();
-  CLI::Option* const picture = add_output(command, Output::picture, "--picture", options->picture,
-                                          "Picture of the changes from above: .svg or .png")
-                                   ->type_name("FILE");
-  add_input(command, Input::plan, "--plan", options->plan, "Floor plan under the picture")
-      ->type_name("FILE")
-      ->needs(picture);
+  declare_changes_picture(command, options->picture);
   command.add_flag("--json", options->json, "Print the figures as JSON");
   command.footer(kDiffFooter);
   return [options](std::ostream& result) { return run_diff(*options, result); };

@@ -42,7 +42,7 @@ TEST_F(UpdateProgram, SavesASessionThatIsAMapToo) {
 
 TEST_F(UpdateProgram, WritesAChildThatIsNowhereWorse) {
   const std::string before = read("room.byre");
-  const Outcome outcome = run("update room.byre evening.session -o room_2.byre");
+  const Outcome outcome = run("update room.byre evening.session -o room_2.byre --picture added.svg");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("session      evening: "), HasSubstr("written      room_2.byre\n"),
                                     HasSubstr("Next: byre run RECORDING --map room_2.byre\n")));
@@ -55,6 +55,7 @@ TEST_F(UpdateProgram, WritesAChildThatIsNowhereWorse) {
   EXPECT_EQ(diff.at("points").at("removed"), 0);
   EXPECT_EQ(diff.at("points").at("same"), load_map(folder_ / "room.byre").map.point_count());
   EXPECT_EQ(run("diff room.byre room_2.byre --picture changes.svg").exit_code, 0);
+  EXPECT_THAT(read("added.svg"), HasSubstr("keyframes"));
   EXPECT_THAT(read("changes.svg"), AllOf(HasSubstr("room -&gt; room_2"), HasSubstr("keyframes")));
 }
 
