@@ -94,10 +94,10 @@ endfunction()
 # that robots link or that produces figures; see also cli/CMakeLists.txt.
 set(BYRE_FOLDERS_COLD io/ros io/bag viewer viewer/web benchmark benchmark/demo ros2/dds ros2/fleet ros2/node)
 
-# Folders whose tests compute little: without optimisation they compile in half the time. The tests of the others render
-# images or simulate missions by functions of their headers.
-set(BYRE_FOLDERS_TESTED_LIGHTLY base io/bag io/calibration io/colmap io/image io/recording io/ros map map/plan playback
-    playback/archive playback/report viewer viewer/web benchmark benchmark/demo ros2/dds ros2/fleet ros2/node)
+# Folders whose tests compute much by themselves, or by inlined functions. The others are compiled without optimisation,
+# in half the time: what they render or simulate is in byre_scenes.
+set(BYRE_FOLDERS_TESTED_HEAVILY features geometry geometry/evaluation optimise odometry place simulation
+    simulation/cowshed)
 
 # Compiles a target for short build time instead of speed.
 function(byre_compile_quickly target)
@@ -149,6 +149,9 @@ function(byre_add_test_program name room)
   cmake_parse_arguments(PARSE_ARGV 2 its "" "" "TEST_FILES;LINKS;LABELS")
   get_property(rooms_below GLOBAL PROPERTY BYRE_ROOMS_ADDED)
   byre_objects_of(objects ${room} ${rooms_below})
+  if("simulation" IN_LIST rooms_below OR room STREQUAL simulation)
+    list(APPEND objects $<TARGET_OBJECTS:byre_scenes>)
+  endif()
   # Test objects are linked last, so that template instances of the library take precedence.
   set(files)
   foreach(target IN LISTS its_TEST_FILES)
@@ -179,6 +182,9 @@ function(byre_add_folder folder)
   set(tests ${sources})
   list(FILTER sources EXCLUDE REGEX "_(test|scene)\\.cc$")
   list(FILTER tests INCLUDE REGEX "_(test|scene)\\.cc$")
+  if(folder STREQUAL simulation) # byre_scenes
+    list(FILTER tests EXCLUDE REGEX "_scene\\.cc$")
+  endif()
   if(sources)
     add_library(byre_${name} OBJECT ${sources})
     target_link_libraries(byre_${name} PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES} ${its_LINKS})
@@ -200,15 +206,25 @@ function(byre_add_folder folder)
     if(folder IN_LIST BYRE_FOLDERS_WITH_DATA)
       target_compile_definitions(byre_${name}_test_files PRIVATE BYRE_SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
     endif()
-    if(folder IN_LIST BYRE_FOLDERS_TESTED_LIGHTLY)
-      byre_compile_lightly(byre_${name}_test_files)
-      byre_precompile(light_test byre_${name}_test_files)
-    else()
+    if(folder IN_LIST BYRE_FOLDERS_TESTED_HEAVILY)
       byre_compile_quickly(byre_${name}_test_files)
       byre_precompile(test byre_${name}_test_files)
+    else()
+      byre_compile_lightly(byre_${name}_test_files)
+      byre_precompile(light_test byre_${name}_test_files)
     endif()
     byre_unite(byre_${name}_test_files)
   endif()
+endfunction()
+
+# Adds byre_scenes, objects that render rooms and simulate missions for tests of the room simulation and those after it:
+# compiled once, with optimisation.
+function(byre_add_scenes)
+  file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/byre/simulation/*_scene.cc)
+  add_library(byre_scenes OBJECT EXCLUDE_FROM_ALL ${scenes})
+  target_link_libraries(byre_scenes PRIVATE byre_flags ${BYRE_ROOM_LIBRARIES})
+  set_target_properties(byre_scenes PROPERTIES POSITION_INDEPENDENT_CODE ON) # as the room that owns the header
+  byre_precompile(room byre_scenes)
 endfunction()
 
 # Adds the room src/byre/<room> with its folders and its tests, byre_<room>_tests. LINKS: libraries in addition to those
