@@ -48,6 +48,8 @@ endfunction()
 function(byre_install_data)
   set(folder share/byre)
   install(FILES ${folder}/default.vocabulary DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT data)
+  install(DIRECTORY ${folder}/registry DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT data)
+  install(PROGRAMS scripts/registry.sh DESTINATION ${CMAKE_INSTALL_DATADIR}/byre/registry COMPONENT data)
   install(DIRECTORY ${folder}/protocols DESTINATION ${CMAKE_INSTALL_DATADIR}/byre COMPONENT data)
   set_source_files_properties(src/byre/base/data_file.cc PROPERTIES COMPILE_DEFINITIONS
     "BYRE_DATA_IN_PREFIX=\"${CMAKE_INSTALL_DATADIR}/byre\";BYRE_INSTALLED_DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/byre\";BYRE_SOURCE_DATA=\"${CMAKE_CURRENT_SOURCE_DIR}/${folder}\"")

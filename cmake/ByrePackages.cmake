@@ -75,13 +75,17 @@ foreach(module imgcodecs videoio)
   endif()
 endforeach()
 list(JOIN byre_loaded ", " byre_loaded)
+set(byre_program_loaded ${byre_loaded})
+if(BYRE_HAS_LIBPQ)
+  string(APPEND byre_program_loaded ", libpq5")
+endif()
 
 set(CPACK_COMPONENTS_ALL)
 byre_add_package(data PACKAGE byre-data SECTION science ARCHITECTURE all
   SUMMARY "visual SLAM for robots - data"
-  DESCRIPTION "${about}\n.\nThis package contains the visual vocabulary for place recognition and the\nprotocols of benchmarks.")
+  DESCRIPTION "${about}\n.\nThis package contains the visual vocabulary for place recognition, the\nprotocols of benchmarks, and the schema of the registry.")
 if(BYRE_BUILD_CLI)
-  byre_add_package(program PACKAGE byre SECTION science NEEDS data DEPENDS "${byre_loaded}"
+  byre_add_package(program PACKAGE byre SECTION science NEEDS data DEPENDS "${byre_program_loaded}"
     SUMMARY "visual SLAM for robots - program"
     DESCRIPTION "${about}${processors}\n.\nThis package contains the program, its manual pages, and completions for\nbash and zsh.")
 endif()

@@ -26,7 +26,7 @@ packages=(
   libc6-dev libstdc++-12-dev libblas-dev liblapack-dev
   libeigen3-dev libopencv-dev libceres-dev libfmt-dev libyaml-cpp-dev nlohmann-json3-dev libxxhash-dev libhwy-dev
   libtinyxml2-dev libdeflate-dev libjpeg-dev libembree-dev libboost-dev libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev zlib1g-dev
-  libcli11-dev cyclonedds-dev libsystemd-dev libmosquitto-dev libapriltag-dev libgtest-dev libgmock-dev
+  libcli11-dev cyclonedds-dev libsystemd-dev libmosquitto-dev libapriltag-dev libpq-dev libgtest-dev libgmock-dev
 )
 export BYRE_SYSROOT=${BYRE_SYSROOT:-$PWD/build/sysroot-aarch64}
 

@@ -29,6 +29,8 @@ if [[ $scope != demo ]]; then
   packages+=(
     # byre node
     cyclonedds-dev libsystemd-dev libmosquitto-dev libapriltag-dev
+    # byre registry, byre worker
+    libpq-dev
     # Python package
     pybind11-dev python3-dev
     # Debian packages
@@ -54,6 +56,8 @@ if [[ $scope == all ]]; then
     python3-rosbag python3-sensor-msgs python3-nav-msgs python3-tf2-msgs
     # browser
     chromium
+    # registry
+    postgresql
   )
   # Node may come from another source: Debian's npm conflicts with other Node packages.
   command -v node >/dev/null || test_packages+=(nodejs)

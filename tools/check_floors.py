@@ -23,7 +23,7 @@ FLOORS = [
     {"place", "simulation"},
     {"slam"},
     {"playback", "viewer"},
-    {"benchmark", "camera", "ros2"},
+    {"benchmark", "camera", "registry", "ros2"},
     {"cli"},
 ]
 # Room of each header of include/byre. Its functions may be defined in a higher room, as those of floor_plan.h in io.
@@ -51,7 +51,8 @@ KEPT_IN = {
     r"atomic": {"base", "simulation", "slam/mapping", "playback/", "viewer/web", "camera", "ros2/fleet", "cli"},
     r"mutex|shared_mutex": {"base", "viewer/web"},
     r"filesystem|fstream": {"base", "geometry/evaluation", "map", "io", "place", "simulation", "slam/system",
-                            "playback/", "playback/archive", "viewer", "benchmark", "camera", "ros2/node", "cli"},
+                            "playback/", "playback/archive", "viewer", "benchmark", "camera", "registry", "ros2/node",
+                            "cli"},
     r"iostream|CLI/.*": {"cli"},
     r"ceres/.*": {"optimise"},
     r"embree[34]/.*": {"simulation"},
@@ -66,7 +67,9 @@ KEPT_IN = {
     r"nlohmann/.*": {"playback/report", "viewer", "ros2/fleet", "ros2/node", "benchmark", "cli"},
     r"mosquitto\.h": {"ros2/fleet"},
     r"systemd/.*": {"ros2/node"},
-    r"linux/videodev2\.h|poll\.h|sys/(ioctl|poll)\.h": {"camera"},
+    r"libpq-fe\.h|openssl/.*": {"registry"},
+    r"linux/videodev2\.h|sys/(ioctl|poll)\.h": {"camera"},
+    r"poll\.h": {"camera", "registry"},
 }
 
 

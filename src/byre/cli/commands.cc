@@ -25,6 +25,7 @@ constexpr std::array kCommands = {
     Command{"map", "Make a map and a trajectory of a recording", declare_map},
     Command{"run", "Run a mission on a map: track, map changes, rate each pose", declare_run},
     Command{"node", "Run the ROS 2 node: track images, publish poses and health", declare_node},
+    Command{"registry", "Exchange maps and sessions of many sites by a PostgreSQL database", declare_registry},
     Command{"localise", "Localise frames in a map, each without prediction", declare_localise, "localize"},
     Command{"register", "Register a map on a floor plan", declare_register},
     Command{"refine", "Close further loops of a map and adjust it as a whole", declare_refine},

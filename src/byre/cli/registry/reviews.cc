@@ -1,0 +1,113 @@
+#include "byre/base/report_row.h"
+#include "byre/cli/registry/commands.h"
+#include "byre/cli/shared/file_arguments.h"
+#include "byre/registry/schema.h"
+#include "byre/registry/versions.h"
+
+#include <memory>
+#include <ostream>
+
+#include <CLI/CLI.hpp>
+
+namespace byre::cli {
+namespace {
+
+struct ReviewOptions {
+  std::string uri;
+  std::string site;
+  std::string version;
+  std::string reason;
+};
+
+struct RequestOptions {
+  std::string uri;
+  std::string site;
+  std::vector<std::string> merged;
+};
+
+constexpr const char* kAcceptFooter = R"(Example:
+  byre registry accept barn 3f2a90cc51d07be4 --reason "diff looks right"
+
+The accepted version is the one that robots pull; the one before is retired. A version that was made of others is
+accepted only if the present one is among these, so that no update is lost. "byre registry pull --version" and "byre
+diff" show the changes.)";
+
+constexpr const char* kRejectFooter = R"(Example:
+  byre registry reject barn 3f2a90cc51d07be4 --reason "the gate is missing"
+
+The sessions that it was made of are not used again.)";
+
+constexpr const char* kRollbackFooter = R"(Examples:
+  byre registry rollback barn --reason "robots get lost at the feed store"
+  byre registry rollback barn --version 3f2a90cc51d07be4
+
+Retires the accepted version and accepts the one before again, or VERSION, which was accepted before.)";
+
+constexpr const char* kRequestFooter = R"(Examples:
+  byre registry request barn
+  byre registry request barn --merge 3f2a90cc51d07be4 90b1c2ffe0217a6d
+
+Sessions request updates of their site themselves; a request repeats one that was set aside. A merge puts the second
+version into the first. "byre worker" runs the job, whose result is a proposed version.)";
+
+// A statement on a version with a reason, which returns the id of the accepted or rejected version.
+ExitCode review(const ReviewOptions& options, const char* statement, const char* label, std::ostream& result) {
+  Connection connection = open_registry(options.uri);
+  const std::optional<std::string> version = options.version.empty() ? std::nullopt : std::optional(options.version);
+  const Rows rows = connection.run(statement, {site_number(connection, options.site), version, options.reason});
+  result << row(label, rows.text(0, 0));
+  return ExitCode::done;
+}
+
+Action declare_review(CLI::App& command, const char* statement, const char* label, bool is_version_required) {
+  const auto options = std::make_shared<ReviewOptions>();
+  add_site(command, options->site);
+  if (is_version_required) {
+    add_version_id(command, options->version);
+  } else {
+    add_text(command, "--version", options->version, "Another version than the one before")->type_name("ID");
+  }
+  add_reason(command, options->reason);
+  add_registry(command, options->uri);
+  return [=](std::ostream& result) { return review(*options, statement, label, result); };
+}
+
+ExitCode run_request(const RequestOptions& options, std::ostream& result) {
+  Connection connection = open_registry(options.uri);
+  const std::int64_t site = site_number(connection, options.site);
+  const Rows added =
+      connection.run("INSERT INTO byre.job (site, kind, maps) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
+                     {site, options.merged.empty() ? "update" : "merge", options.merged});
+  connection.run("SELECT pg_notify('byre_job', '')");
+  result << row("requested",
+                std::string(options.merged.empty() ? "update" : "merge") + (added.changed() == 0 ? ", as before" : ""));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Action declare_registry_accept(CLI::App& command) {
+  command.footer(kAcceptFooter);
+  return declare_review(command, "SELECT $2::text FROM byre.accept($1, $2, $3)", "accepted", true);
+}
+
+Action declare_registry_reject(CLI::App& command) {
+  command.footer(kRejectFooter);
+  return declare_review(command, "SELECT $2::text FROM byre.reject($1, $2, $3)", "rejected", true);
+}
+
+Action declare_registry_rollback(CLI::App& command) {
+  command.footer(kRollbackFooter);
+  return declare_review(command, "SELECT byre.rollback($1, $2, $3)", "accepted", false);
+}
+
+Action declare_registry_request(CLI::App& command) {
+  const auto options = std::make_shared<RequestOptions>();
+  add_site(command, options->site);
+  add_text(command, "--merge", options->merged, "Merge these versions")->type_name("FIRST SECOND")->expected(2);
+  add_registry(command, options->uri);
+  command.footer(kRequestFooter);
+  return [options](std::ostream& result) { return run_request(*options, result); };
+}
+
+}  // namespace byre::cli

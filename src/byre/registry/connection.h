@@ -1,0 +1,119 @@
+#pragma once
+
+#include <chrono>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+struct pg_conn;
+struct pg_result;
+
+namespace byre {
+
+// The server cannot be reached, or the connection broke. The last statement may or may not have been executed.
+class ConnectionLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Parameter of a statement: text, number, list of texts, bytes or null. Statements are constants; all else is a
+// parameter.
+class Parameter {
+ public:
+  Parameter(std::string text) : value_(std::move(text)) {}
+  Parameter(const char* text) : value_(text) {}
+  Parameter(std::integral auto number) : value_(std::to_string(number)) {}
+  Parameter(const std::vector<std::string>& list);
+  Parameter(std::span<const std::byte> bytes)
+      : value_(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())), is_binary_(true) {}
+  Parameter(const std::vector<std::byte>& bytes) : Parameter(std::span(bytes)) {}
+  Parameter(const std::optional<std::string>& text) : value_(text) {}
+
+  const char* data() const { return value_ ? value_->c_str() : nullptr; }
+  int size() const { return value_ ? static_cast<int>(value_->size()) : 0; }
+  bool is_binary() const { return is_binary_; }
+
+ private:
+  std::optional<std::string> value_;
+  bool is_binary_ = false;
+};
+
+// Result of a statement, as text. Rows and columns are counted from 0.
+class Rows {
+ public:
+  explicit Rows(pg_result* result) : result_(result) {}
+
+  const pg_result* get() const { return result_.get(); }
+  int size() const;
+  int changed() const;  // number of rows that the statement inserted or changed
+  bool is_null(int row, int column) const;
+  std::string text(int row, int column) const;  // empty if null
+  std::int64_t number(int row, int column) const;
+
+ private:
+  struct Clear {
+    void operator()(pg_result* result) const;
+  };
+  std::unique_ptr<pg_result, Clear> result_;
+};
+
+// Connection to a PostgreSQL server. All functions throw ConnectionLost, InputError for what the server refuses, and
+// std::runtime_error for other failures.
+class Connection {
+ public:
+  // uri: as of libpq, "postgresql://..." or "host=... dbname=..."; what it leaves out is in the environment (PGHOST,
+  // PGSERVICE, ...).
+  explicit Connection(const std::string& uri);
+
+  Rows run(const char* statement, const std::vector<Parameter>& parameters = {});
+  // Value of a bytea, the only one of its result. Empty without a row, or if null.
+  std::optional<std::vector<std::byte>> bytes(const char* statement, const std::vector<Parameter>& parameters);
+  // Several statements without parameters, such as a migration.
+  void run_script(const std::string& statements);
+
+  // Waits for a notification of a channel that was listened to. False after the time.
+  bool wait_for_notification(std::chrono::milliseconds most);
+
+  void reconnect();                                    // forgets channels and transactions
+  const std::string& place() const { return place_; }  // "registry HOST/DATABASE", for messages
+
+ private:
+  struct Close {
+    void operator()(pg_conn* connection) const;
+  };
+
+  void require_connected() const;
+  Rows execute(const char* statement, const std::vector<Parameter>& parameters, bool is_binary);
+  [[noreturn]] void fail(pg_result* result) const;
+
+  std::unique_ptr<pg_conn, Close> connection_;
+  std::string place_;
+};
+
+// Transaction that is rolled back unless committed.
+class Transaction {
+ public:
+  explicit Transaction(Connection& connection);
+  ~Transaction();
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+
+  void commit();
+
+ private:
+  Connection& connection_;
+  bool is_open_ = true;
+};
+
+// Runs a function that may be repeated. If the connection breaks, connects again and repeats it, for half a minute.
+void persist(Connection& connection, const std::function<void()>& action);
+
+}  // namespace byre

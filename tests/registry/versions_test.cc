@@ -1,0 +1,259 @@
+// "byre registry": files, versions, reviews, and a registry of another schema.
+
+#include "registry_fixture.h"
+
+#include "byre/input_error.h"
+#include "byre/registry/blobs.h"
+#include "byre/registry/schema.h"
+#include "byre/registry/versions.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <fmt/format.h>
+
+namespace byre {
+namespace {
+
+using cli::Outcome;
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr std::int64_t kBarn = 1;
+
+class RegistryVersions : public RegistryTest {
+ protected:
+  // Pushes a small map by the program, as the reviewer. Returns its id.
+  std::string push(const std::string& note) const {
+    const std::string id = write_small_map(note + ".byre", note);
+    EXPECT_EQ(registry("push barn " + note + ".byre", "reviewer").exit_code, 0);
+    return id;
+  }
+
+  std::string accepted() const {
+    return value("SELECT coalesce(max(id), '') FROM byre.version WHERE site = 1 AND state = 'accepted'");
+  }
+};
+
+TEST_F(RegistryVersions, AreProposedAcceptedAndPulled) {
+  const std::string id = write_small_map("barn.byre", "barn");
+  const Outcome pushed = registry("push barn barn.byre --note 'mapped by day'", "reviewer");
+  EXPECT_EQ(pushed.exit_code, 0) << pushed.errors;
+  EXPECT_EQ(pushed.output, "version      " + id + " barn.byre\n");
+  EXPECT_EQ(registry("push barn barn.byre", "reviewer").output, "version      " + id + " barn.byre, as before\n");
+  const Outcome early = registry("pull barn -o pulled.byre", "robot_barn");
+  EXPECT_EQ(early.exit_code, 3);
+  EXPECT_THAT(early.errors, HasSubstr("has no accepted version of this site, or the account may not read it"));
+
+  EXPECT_EQ(registry("accept barn " + id + " --reason 'looks right'", "reviewer").output, "accepted     " + id + "\n");
+  const json pulled = json::parse(registry("pull barn -o pulled.byre --json", "robot_barn").output);
+  EXPECT_EQ(pulled.at("id"), id);
+  EXPECT_EQ(pulled.at("bytes_received"), read("barn.byre").size());
+  EXPECT_EQ(read("pulled.byre"), read("barn.byre"));
+  EXPECT_THAT(registry("pull barn -o pulled.byre", "robot_barn").output,
+              HasSubstr("written      pulled.byre, as before"));
+
+  const Outcome history = registry("history barn", "reviewer");
+  EXPECT_THAT(history.output, testing::MatchesRegex("20[-0-9:TZ]+ accepted " + id +
+                                                    " by reviewer: looks right\n20[-0-9:TZ]+ "
+                                                    "proposed " +
+                                                    id + " by reviewer: mapped by day\n"));
+  EXPECT_THAT(registry("list barn", "reviewer").output,
+              AllOf(StartsWith("accepted     " + id), HasSubstr("mapped by day")));
+  EXPECT_THAT(registry("list", "robot_barn").output, testing::StrEq("barn: accepted " + id + "\n"));
+  const json shown = json::parse(registry("show barn " + id + " --json", "reviewer").output);
+  EXPECT_EQ(shown.at("note"), "mapped by day");
+  EXPECT_EQ(shown.at("events").size(), 2u);
+}
+
+TEST_F(RegistryVersions, OfManyChunksAreTheSameBytes) {
+  Connection reviewer = connect("reviewer");
+  const std::vector<std::byte> map = small_map("large", 3 << 20);
+  write("large.byre", std::string(reinterpret_cast<const char*>(map.data()), map.size()));
+  const PushedFile pushed = push_file(reviewer, kBarn, folder_ / "large.byre", "");
+  EXPECT_EQ(value("SELECT count(*) FROM byre.chunk"), "4");
+  EXPECT_EQ(pull_map(reviewer, kBarn, pushed.id, folder_ / "pulled.byre").received, map.size());
+  EXPECT_EQ(read("pulled.byre"), read("large.byre"));
+}
+
+TEST_F(RegistryVersions, ContinueAnInterruptedPush) {
+  Connection reviewer = connect("reviewer");
+  const std::vector<std::byte> map = small_map("large", 3 << 20);
+  reviewer.run("INSERT INTO byre.chunk SELECT sha256($1), $1", {std::span(map).first(1 << 20)});
+  const std::string first = value("SELECT xmin FROM byre.chunk");
+  push_blob(reviewer, map);
+  EXPECT_EQ(value("SELECT count(*) FROM byre.chunk"), "4");
+  EXPECT_EQ(value("SELECT count(*) FROM byre.chunk WHERE xmin::text = $1", {first}), "1") << "it was not sent again";
+}
+
+TEST_F(RegistryVersions, AreTransferredOverABrokenConnection) {
+  Connection reviewer = connect("reviewer"), owner = connect();
+  const auto cut = [&owner] {
+    owner.run("SELECT pg_terminate_backend(pid, 5000) FROM pg_stat_activity WHERE usename = 'reviewer'");
+  };
+  write_small_map("barn.byre", "barn");
+  cut();
+  const PushedFile pushed = push_file(reviewer, kBarn, folder_ / "barn.byre", "");
+  EXPECT_TRUE(pushed.is_new);
+  cut();
+  EXPECT_EQ(pull_map(reviewer, kBarn, pushed.id, folder_ / "pulled.byre").id, pushed.id);
+  EXPECT_EQ(read("pulled.byre"), read("barn.byre"));
+  cut();
+  EXPECT_THROW(site_number(reviewer, "barn"), ConnectionLost) << "other statements are not repeated";
+}
+
+TEST_F(RegistryVersions, AreRejectedAndRolledBack) {
+  const std::string first = push("first"), second = push("second"), third = push("third");
+  EXPECT_EQ(registry("accept barn " + first, "reviewer").exit_code, 0);
+  EXPECT_EQ(registry("accept barn " + second, "reviewer").exit_code, 0);
+  EXPECT_EQ(registry("reject barn " + third + " --reason 'no gate'", "reviewer").output,
+            "rejected     " + third + "\n");
+  EXPECT_EQ(registry("accept barn " + third, "reviewer").exit_code, 3);
+  EXPECT_EQ(accepted(), second);
+  EXPECT_EQ(registry("rollback barn --reason lost", "reviewer").output, "accepted     " + first + "\n");
+  EXPECT_EQ(accepted(), first);
+  const Outcome none = registry("rollback barn", "reviewer");
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.errors, HasSubstr("there is no earlier accepted version (byre registry history SITE shows"));
+  EXPECT_EQ(registry("rollback barn --version " + second, "reviewer").exit_code, 0);
+  EXPECT_EQ(accepted(), second);
+  EXPECT_EQ(registry("rollback barn --version " + third, "reviewer").exit_code, 3) << "it was never accepted";
+}
+
+TEST_F(RegistryVersions, MadeOfAnotherThanTheAcceptedOneAreNotAccepted) {
+  Connection reviewer = connect("reviewer");
+  const std::string first = push("first"), second = push("second");
+  const std::vector<std::byte> child = small_map("child");
+  const std::string id = to_text(map_id(child, ""));
+  add_version(reviewer, kBarn, id, push_blob(reviewer, child), {first}, "");
+  registry("accept barn " + second, "reviewer");
+  const Outcome refused = registry("accept barn " + id, "reviewer");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.errors, HasSubstr("was not made of " + second + ", which is accepted"));
+  registry("accept barn " + first, "reviewer");
+  EXPECT_EQ(registry("accept barn " + id, "reviewer").exit_code, 0);
+}
+
+TEST_F(RegistryVersions, WithDamagedBytesAreNotPulled) {
+  const std::string id = push("barn");
+  registry("accept barn " + id, "reviewer");
+  // By an administrator who removes the rules first.
+  connect().run_script(
+      "ALTER TABLE byre.chunk DISABLE TRIGGER ALL; ALTER TABLE byre.chunk DROP CONSTRAINT chunk_hash;"
+      "UPDATE byre.chunk SET data = set_byte(data, 200, get_byte(data, 200) # 1)");
+  write_small_map("robot.byre", "what the robot has");
+  const std::string before = read("robot.byre");
+  const Outcome outcome = registry("pull barn -o robot.byre", "robot_barn");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("is damaged: chunk 1 of a file does not have its SHA-256"));
+  EXPECT_EQ(read("robot.byre"), before);
+}
+
+TEST_F(RegistryVersions, TakeSqlInNamesAsNames) {
+  const std::string nasty = "'; DROP SCHEMA byre CASCADE; --\"$$";
+  const std::string quoted = "\"'; DROP SCHEMA byre CASCADE; --\\\"\\$\\$\"";
+  EXPECT_EQ(registry("init " + quoted).exit_code, 0);
+  EXPECT_EQ(value("SELECT name FROM byre.site ORDER BY id DESC LIMIT 1"), nasty);
+  write_small_map("barn.byre", "barn");
+  const Outcome pushed = registry("push " + quoted + " barn.byre --note " + quoted, "reviewer");
+  EXPECT_EQ(pushed.exit_code, 0) << pushed.errors;
+  EXPECT_EQ(registry("accept " + quoted + " \"x' OR '1'='1\" --reason " + quoted, "reviewer").exit_code, 3);
+  EXPECT_EQ(registry("admit " + quoted + " robot --site " + quoted).exit_code, 0);
+  EXPECT_EQ(value("SELECT account FROM byre.robot ORDER BY site DESC LIMIT 1"), nasty);
+  EXPECT_EQ(value("SELECT count(*) FROM byre.version WHERE note = $1", {nasty}), "1");
+  EXPECT_EQ(connect().run("SELECT FROM byre.site").size(), 3);
+}
+
+TEST_F(RegistryVersions, AreNotReadByAnOldClient) {
+  connect().run("INSERT INTO byre.schema_version VALUES ($1, $1)", {kRegistrySchema + 1});
+  for (const char* const arguments : {"list", "pull barn -o a.byre", "init", "migrate"}) {
+    const Outcome outcome = registry(arguments);
+    EXPECT_EQ(outcome.exit_code, 3) << arguments;
+    EXPECT_THAT(outcome.errors,
+                HasSubstr(fmt::format("has schema {}, and this byre is made for schema {} (install a newer "
+                                      "byre)",
+                                      kRegistrySchema + 1, kRegistrySchema)));
+  }
+  connect().run("UPDATE byre.schema_version SET oldest_client = $1", {kRegistrySchema});
+  EXPECT_EQ(registry("list").exit_code, 0) << "a newer schema that admits this client";
+}
+
+TEST_F(RegistryVersions, StayWhenTheSchemaIsUpdated) {
+  const std::string name = database_ + "_old";
+  connect().run_script("CREATE DATABASE " + name + " STRATEGY file_copy");
+  const std::string old = RegistryServer::shared().uri(name);
+  Connection owner(old);
+  const std::string at = " --registry '" + old + "'";
+  EXPECT_THAT(run("registry list" + at).errors, HasSubstr("is no registry of maps"));
+  EXPECT_EQ(run("registry migrate" + at).exit_code, 3);
+  std::ifstream file(BYRE_REGISTRY_SCHEMA "/1.sql");
+  owner.run_script({std::istreambuf_iterator<char>(file), {}});
+  owner.run_script("INSERT INTO byre.schema_version VALUES (1, 1); INSERT INTO byre.site (name) VALUES ('barn')");
+  EXPECT_THAT(run("registry list" + at).errors, HasSubstr("needs schema 2 (update it with byre registry migrate)"));
+  const std::vector<std::byte> map = small_map("barn"), session = small_session("evening", "0123456789abcdef");
+  const std::string id = to_text(map_id(map, ""));
+  add_version(owner, kBarn, id, push_blob(owner, map), {}, "by day");
+  add_session(owner, kBarn, to_text(map_id(session, "")), push_blob(owner, session), "0123456789abcdef", "evening");
+
+  EXPECT_THAT(run("registry migrate" + at).output, StartsWith("schema       1 -> 2 in "));
+  EXPECT_EQ(run("registry accept barn " + id + at).exit_code, 0);
+  EXPECT_EQ(run("registry pull barn -o barn.byre" + at).exit_code, 0);
+  EXPECT_EQ(to_text(map_id(folder_ / "barn.byre")), id);
+  EXPECT_EQ(owner.run("SELECT FROM byre.session WHERE state = 'open'").size(), 1);
+  EXPECT_EQ(owner.run("SELECT FROM byre.job WHERE state = 'waiting'").size(), 1) << "the session waits for an update";
+  owner = connect();
+  connect().run_script("DROP DATABASE " + name + " WITH (FORCE)");
+}
+
+TEST_F(RegistryVersions, AreInABackup) {
+  const std::string id = push("barn");
+  registry("accept barn " + id, "reviewer");
+  const std::string name = database_ + "_restored";
+  connect().run_script("CREATE DATABASE " + name + " STRATEGY file_copy");
+  const std::string restored = RegistryServer::shared().uri(name);
+  const std::string command = "pg_dump '" + uri() + "' | psql --quiet --set ON_ERROR_STOP=1 '" + restored + "' >'" +
+                              (folder_ / "restore.log").string() + "' 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0) << read("restore.log");
+  EXPECT_EQ(
+      run("registry pull barn -o restored.byre --registry '" + RegistryServer::shared().uri(name, "robot_barn") + "'")
+          .exit_code,
+      0);
+  EXPECT_EQ(read("restored.byre"), read("barn.byre"));
+  connect().run_script("DROP DATABASE " + name + " WITH (FORCE)");
+}
+
+TEST_F(RegistryVersions, AreWatched) {
+  const std::string first = push("first"), second = push("second");
+  registry("accept barn " + first, "reviewer");
+  const pid_t process = start({"registry", "watch", "barn", "--once", "--registry", uri("robot_barn")});
+  EXPECT_TRUE(appears(first + "\n", "stdout.txt"));
+  Connection reviewer = connect("reviewer");  // a run of the program would replace stdout.txt
+  reviewer.run("SELECT byre.accept($1, $2, '')", {kBarn, second});
+  EXPECT_EQ(exit_code_of(process), 0);
+  EXPECT_EQ(read("stdout.txt"), first + "\n" + second + "\n");
+}
+
+TEST_F(RegistryVersions, OfUnknownSitesAreExplained) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"list bran", "has no site 'bran', or the account may not see it (did you mean 'barn'?)"},
+      {"show barn 0123456789abcdef", "has no version 0123456789abcdef of this site"},
+      {"pull barn --version 0123456789abcdef -o a.byre", "has no version 0123456789abcdef, or"},
+      {"push barn absent.byre", "absent.byre: "},
+      {"admit robot_2 robot", "a robot has a site"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = registry(arguments);
+    EXPECT_EQ(outcome.exit_code, 3) << arguments;
+    EXPECT_THAT(outcome.errors, HasSubstr(message));
+  }
+  const Outcome unreachable = run("registry list --registry 'host=/nowhere dbname=byre'");
+  EXPECT_EQ(unreachable.exit_code, 1);
+  EXPECT_THAT(unreachable.errors,
+              AllOf(StartsWith("byre: error: registry /nowhere/byre: "), HasSubstr("check --registry")));
+}
+
+}  // namespace
+}  // namespace byre
