@@ -26,6 +26,7 @@ constexpr std::array kCommands = {
     Command{"run", "Run a mission on a map: track, map changes, rate each pose", declare_run},
     Command{"node", "Run the ROS 2 node: track images, publish poses and health", declare_node},
     Command{"registry", "Exchange maps and sessions of many sites by a PostgreSQL database", declare_registry},
+    Command{"worker", "Run the jobs of a registry: updates and merges", declare_worker},
     Command{"localise", "Localise frames in a map, each without prediction", declare_localise, "localize"},
     Command{"register", "Register a map on a floor plan", declare_register},
     Command{"refine", "Close further loops of a map and adjust it as a whole", declare_refine},

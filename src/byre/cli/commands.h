@@ -41,6 +41,7 @@ Action declare_benchmark(CLI::App& command);
 Action declare_localise(CLI::App& command);
 Action declare_node(CLI::App& command);
 Action declare_registry(CLI::App& command);
+Action declare_worker(CLI::App& command);
 Action declare_register(CLI::App& command);
 Action declare_draw(CLI::App& command);
 Action declare_view(CLI::App& command);

@@ -1,0 +1,114 @@
+// Load of many robots and of many waiting jobs. Prints the figures of docs/reference/registry.md.
+
+#include "registry_fixture.h"
+
+#include "byre/base/stopwatch.h"
+#include "byre/registry/blobs.h"
+#include "byre/registry/jobs.h"
+#include "byre/registry/versions.h"
+
+#include <algorithm>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+class LongRunRegistryLoad : public RegistryTest {
+ protected:
+  static double quantile(std::vector<double> values, double share) {
+    std::ranges::sort(values);
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  }
+};
+
+// Connections of a pool act for robots by SET ROLE, which the policies heed.
+TEST_F(LongRunRegistryLoad, AThousandRobotsPushSessionsAndPullMaps) {
+  constexpr int kSites = 200, kRobots = 1000, kSessions = 10, kConnections = 8;
+  Connection owner = connect();
+  owner.run_script(
+      "INSERT INTO byre.site (name) SELECT 'site ' || n FROM generate_series(3, 200) n;"
+      "SELECT byre.admit('load_' || n, 'robot', 1 + n % 200) FROM generate_series(0, 999) n");
+  std::vector<std::string> accepted;
+  for (int site = 1; site <= kSites; ++site) {
+    const std::vector<std::byte> map = small_map(fmt::format("site {}", site), 10'000'000);
+    accepted.push_back(to_text(map_id(map, "")));
+    add_version(owner, site, accepted.back(), push_blob(owner, map), {}, "");
+    owner.run("SELECT byre.accept($1, $2, '')", {site, accepted.back()});
+  }
+  std::vector<std::vector<double>> pushes(kConnections), pulls(kConnections);
+  const Stopwatch whole;
+  {
+    std::vector<std::jthread> pool;
+    for (int i = 0; i < kConnections; ++i) {
+      pool.emplace_back([&, i] {
+        Connection connection = connect();
+        for (int robot = i; robot < kRobots; robot += kConnections) {
+          const int site = 1 + robot % kSites;
+          const std::string& map = accepted[static_cast<std::size_t>(site - 1)];
+          connection.run_script(fmt::format("SET ROLE load_{}", robot));
+          for (int session = 0; session < kSessions; ++session) {
+            const std::vector<std::byte> bytes = small_session(fmt::format("{} {}", robot, session), map, 20'000);
+            const std::string id = to_text(map_id(bytes, ""));
+            const Stopwatch watch;
+            add_session(connection, site, id, push_blob(connection, bytes), map, "evening");
+            pushes[static_cast<std::size_t>(i)].push_back(watch.seconds());
+          }
+          const std::filesystem::path path = folder_ / fmt::format("{}.byre", i);
+          std::filesystem::remove(path);
+          const Stopwatch watch;
+          EXPECT_EQ(pull_map(connection, site, {}, path).id, map);
+          pulls[static_cast<std::size_t>(i)].push_back(watch.seconds());
+        }
+      });
+    }
+  }
+  const double seconds = whole.seconds();
+  std::vector<double> push, pull;
+  for (int i = 0; i < kConnections; ++i) {
+    push.insert(push.end(), pushes[static_cast<std::size_t>(i)].begin(), pushes[static_cast<std::size_t>(i)].end());
+    pull.insert(pull.end(), pulls[static_cast<std::size_t>(i)].begin(), pulls[static_cast<std::size_t>(i)].end());
+  }
+  EXPECT_EQ(value("SELECT count(*) FROM byre.session"), std::to_string(kRobots * kSessions));
+  EXPECT_EQ(
+      value("SELECT count(*) FROM byre.session s JOIN byre.robot r ON r.account = s.added_by AND r.site = s.site"),
+      std::to_string(kRobots * kSessions));
+  EXPECT_EQ(value("SELECT count(*) FROM byre.job WHERE state = 'waiting'"), std::to_string(kSites));
+  std::cout << fmt::format(
+      "{} sessions pushed, {} maps of 10 MB pulled in {:.0f} s; push median {:.1f} ms, p95 {:.1f} ms; pull median "
+      "{:.0f} "
+      "ms, p95 {:.0f} ms; database {}\n",
+      push.size(), pull.size(), seconds, 1e3 * quantile(push, 0.5), 1e3 * quantile(push, 0.95),
+      1e3 * quantile(pull, 0.5), 1e3 * quantile(pull, 0.95),
+      value("SELECT pg_size_pretty(pg_database_size(current_database()))"));
+}
+
+TEST_F(LongRunRegistryLoad, JobsWaitByTheThousand) {
+  connect().run("INSERT INTO byre.site (name) SELECT 'site ' || n FROM generate_series(3, 200) n");
+  Connection worker = connect("worker");
+  for (const int waiting : {1, 10, 100, 1000}) {
+    connect().run_script("DELETE FROM byre.job");
+    connect().run(
+        "INSERT INTO byre.job (site, kind, maps) SELECT 1 + n % 200, 'merge', '{0123456789abcdef, fedcba9876543210}' "
+        "FROM generate_series(1, $1::int) n",
+        {waiting});
+    connect().run_script("VACUUM ANALYZE byre.job");
+    std::vector<double> overheads;
+    while (true) {
+      const Stopwatch watch;
+      const auto job = take_job(worker, "worker", {});
+      if (!job) break;
+      EXPECT_TRUE(renew_lease(worker, *job, {}));
+      EXPECT_EQ(end_job(worker, *job, {.message = "nothing to do"}), JobEnd::done);
+      overheads.push_back(watch.seconds());
+    }
+    EXPECT_EQ(overheads.size(), static_cast<std::size_t>(waiting));
+    std::cout << fmt::format("{} waiting jobs: median {:.2f} ms, p95 {:.2f} ms to take, renew and end a job\n", waiting,
+                             1e3 * quantile(overheads, 0.5), 1e3 * quantile(overheads, 0.95));
+  }
+}
+
+}  // namespace
+}  // namespace byre

@@ -1,0 +1,164 @@
+// "byre worker" with maps and sessions of a rendered room.
+
+#include "registry_fixture.h"
+
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include <gmock/gmock.h>
+
+namespace byre {
+namespace {
+
+using cli::Outcome;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// A registry with a map of half of the recording, accepted, and a session of a mission on all of it.
+class RegistryWorker : public RegistryTest {
+ protected:
+  void SetUp() override {
+    RegistryTest::SetUp();
+    if (IsSkipped()) return;
+    map_room("--frames :12", "room.byre");
+    const Outcome mission =
+        run_once("run " + cli::rendered_room() + " --map room.byre --save-session evening.session --quiet");
+    ASSERT_EQ(mission.exit_code, 0) << mission.errors;
+    base_ = to_text(map_id(folder_ / "room.byre"));
+    ASSERT_EQ(registry("push barn room.byre", "reviewer").exit_code, 0);
+    ASSERT_EQ(registry("accept barn " + base_, "reviewer").exit_code, 0);
+    ASSERT_EQ(registry("push barn evening.session", "robot_barn").exit_code, 0);
+  }
+
+  std::string base_;
+};
+
+TEST_F(RegistryWorker, ProposesTheMapThatUpdateWrites) {
+  EXPECT_EQ(run("update room.byre evening.session -o expected.byre --quiet").exit_code, 0);
+  const std::string expected = to_text(map_id(folder_ / "expected.byre"));
+  const Outcome outcome = worker();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("job 1 done: evening: "));
+  EXPECT_EQ(value("SELECT id FROM byre.version WHERE state = 'proposed'"), expected);
+  EXPECT_EQ(value("SELECT parents FROM byre.version WHERE state = 'proposed'"), "{" + base_ + "}");
+  EXPECT_THAT(registry("show barn " + expected, "reviewer").output,
+              AllOf(HasSubstr("made of      " + base_), HasSubstr("evening, ran on " + base_ + ", by robot_barn")));
+  EXPECT_EQ(registry("accept barn " + expected, "reviewer").exit_code, 0);
+  EXPECT_EQ(value("SELECT state FROM byre.session"), "closed");
+  EXPECT_EQ(registry("pull barn -o pulled.byre", "robot_barn").exit_code, 0);
+  EXPECT_EQ(read("pulled.byre"), read("expected.byre"));
+  EXPECT_EQ(run("validate pulled.byre").exit_code, 0);
+}
+
+TEST_F(RegistryWorker, ClosesSessionsWithoutUse) {
+  write_small_session("empty.session", "without keyframes", base_);
+  EXPECT_EQ(registry("push barn empty.session", "robot_barn").exit_code, 0);
+  map_room("--stride 2", "other.byre");
+  EXPECT_EQ(registry("push annex other.byre", "reviewer").exit_code, 0);
+  EXPECT_EQ(registry("accept annex " + to_text(map_id(folder_ / "other.byre")), "reviewer").exit_code, 0);
+  EXPECT_EQ(registry("push annex evening.session", "robot_annex").exit_code, 0);
+  EXPECT_EQ(worker().exit_code, 0);
+  EXPECT_EQ(value("SELECT name || ': ' || reason FROM byre.session WHERE site = 1 AND state = 'closed'"),
+            "empty: contains no keyframes");
+  EXPECT_EQ(value("SELECT name || ': ' || reason FROM byre.session WHERE site = 2 AND state = 'closed'"),
+            "evening: it ran on another map (" + base_ + ") than this one and the versions it was made of");
+  EXPECT_EQ(value("SELECT string_agg(site::text, ' ') FROM byre.version WHERE state = 'proposed'"), "1");
+  EXPECT_EQ(value("SELECT message FROM byre.job WHERE site = 2"), "no session fits the map");
+}
+
+TEST_F(RegistryWorker, SetsAsideAJobThatFails) {
+  EXPECT_EQ(registry("request barn --merge " + base_ + " 0123456789abcdef", "reviewer").exit_code, 0);
+  const Outcome outcome = worker("--once --attempts 1");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("job 2 failed: "));
+  EXPECT_THAT(registry("list barn", "reviewer").output, HasSubstr("merge, failed, attempt 1: registry"));
+}
+
+TEST_F(RegistryWorker, MergesVersionsOrGivesTheReason) {
+  write_small_map("empty.byre", "without keyframes");
+  EXPECT_EQ(registry("push barn empty.byre", "reviewer").exit_code, 0);
+  const std::string empty = to_text(map_id(folder_ / "empty.byre"));
+  EXPECT_EQ(registry("request barn --merge " + base_ + " " + empty, "reviewer").exit_code, 0);
+  EXPECT_EQ(worker().exit_code, 0);
+  EXPECT_THAT(value("SELECT state || ' ' || message FROM byre.job WHERE kind = 'merge'"), HasSubstr("done "));
+  EXPECT_EQ(value("SELECT count(*) FROM byre.job WHERE kind = 'merge' AND result IS NULL"), "1");
+}
+
+TEST_F(RegistryWorker, SharesTheJobsWithAnotherWorker) {
+  for (const char* const site : {"annex", "annex", "barn"}) {
+    EXPECT_EQ(registry(std::string("request ") + site + " --merge " + base_ + " " + base_, "reviewer").exit_code, 0);
+  }
+  const std::vector<std::string> arguments = {"worker", "--once", "--attempts", "1", "--registry", uri("worker")};
+  const std::vector<pid_t> workers = {start(arguments), start(arguments)};
+  for (const pid_t process : workers) EXPECT_EQ(exit_code_of(process), 0);
+  EXPECT_EQ(worker("--once --attempts 1").exit_code, 0) << "jobs of a site that the other worker was at";
+  EXPECT_EQ(value("SELECT count(*) FROM byre.job WHERE state IN ('done', 'failed')"), "4");
+  EXPECT_EQ(value("SELECT max(attempts) FROM byre.job"), "1");
+  EXPECT_EQ(value("SELECT count(*) FROM byre.event WHERE kind SIMILAR TO '(merge|update) (done|failed)'"), "4");
+}
+
+// Starts the program and kills it at random moments of a job, then lets another worker finish.
+TEST_F(RegistryWorker, EndsItsJobOnceThoughKilledAtRandom) {
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 8; ++i) {
+    const pid_t process =
+        start({"worker", "--attempts", "100", "--scratch", folder_.string(), "--registry", uri("worker")});
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 400));
+    kill(process, SIGKILL);
+    exit_code_of(process);
+    connect().run("UPDATE byre.job SET due = now() - interval '1 s' WHERE state IN ('waiting', 'running')");
+  }
+  EXPECT_EQ(worker("--once --attempts 100 --scratch .").exit_code, 0);
+  EXPECT_EQ(value("SELECT count(*) FROM byre.job WHERE state = 'done' AND result IS NOT NULL"), "1");
+  EXPECT_EQ(value("SELECT count(*) FROM byre.version WHERE state = 'proposed'"), "1");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    EXPECT_FALSE(entry.is_directory()) << entry.path() << " is of a killed worker";
+  }
+}
+
+// The pull of a job waits for a lock, longer than the lease.
+TEST_F(RegistryWorker, RenewsTheLeaseOfItsJob) {
+  Connection owner = connect();
+  Transaction lock(owner);
+  owner.run("LOCK TABLE byre.blob_chunk IN ACCESS EXCLUSIVE MODE");
+  const pid_t process = start({"worker", "--once", "--lease", "1", "--registry", uri("worker")});
+  EXPECT_TRUE(appears("job 1: pulling the sessions", "stderr.txt"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  Connection other = connect("worker");
+  EXPECT_EQ(other.run("SELECT FROM byre.take_job('other', '1 s', 5)").size(), 0);
+  lock.commit();
+  EXPECT_EQ(exit_code_of(process), 0);
+  EXPECT_EQ(value("SELECT state || ' ' || attempts FROM byre.job"), "done 1");
+}
+
+TEST_F(RegistryWorker, StopsAtCtrlCAndReturnsItsJob) {
+  Connection owner = connect();
+  Transaction lock(owner);
+  owner.run("LOCK TABLE byre.blob_chunk IN ACCESS EXCLUSIVE MODE");
+  const pid_t process = start({"worker", "--registry", uri("worker")});
+  EXPECT_TRUE(appears("job 1: pulling the sessions", "stderr.txt"));
+  kill(process, SIGINT);
+  lock.commit();
+  EXPECT_EQ(exit_code_of(process), 130);
+  EXPECT_EQ(value("SELECT state || ': ' || message FROM byre.job"), "waiting: the worker was stopped");
+}
+
+TEST_F(RegistryWorker, ConnectsAgainAfterTheServerWasKilled) {
+  connect().run("UPDATE byre.job SET due = now() + interval '1 hour'");
+  const pid_t process = start({"worker", "--registry", uri("worker")});
+  const auto is_connected = [this] {
+    return value("SELECT count(*) FROM pg_stat_activity WHERE usename = 'worker' AND query LIKE '%take_job%'") != "0";
+  };
+  for (int i = 0; i < 3000 && !is_connected(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  RegistryServer::shared().kill();
+  EXPECT_TRUE(appears("connecting again", "stderr.txt"));
+  RegistryServer::shared().start();
+  connect().run("UPDATE byre.job SET due = now()");
+  EXPECT_TRUE(appears("job 1 done: evening", "stdout.txt"));
+  kill(process, SIGINT);
+  EXPECT_EQ(exit_code_of(process), 130);
+}
+
+}  // namespace
+}  // namespace byre
