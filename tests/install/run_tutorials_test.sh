@@ -22,6 +22,12 @@ if compgen -G "$work/prefix/lib/python3*/*/byre/__init__.py" >/dev/null; then
 else
   echo "left out: tutorials/program_in_python, as this build has no Python package"
 fi
+help=$("$work/prefix/bin/byre" registry --help)
+if [[ $help == *"Not available"* ]]; then
+  echo "left out: tutorials/registry, as this build has no byre registry"
+else
+  pages+=(tutorials/registry)
+fi
 pages=("${pages[@]/#/docs/}")
 cd "$source_dir"
 /usr/bin/python3 tools/run_tutorials.py --prefix "$work/prefix" "${pages[@]/%/.md}"
