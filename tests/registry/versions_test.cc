@@ -105,6 +105,18 @@ TEST_F(RegistryVersions, AreTransferredOverABrokenConnection) {
   EXPECT_THROW(site_number(reviewer, "barn"), ConnectionLost) << "other statements are not repeated";
 }
 
+TEST_F(RegistryVersions, AreTransferredOnceTheDiskOfTheServerHasSpace) {
+  Connection reviewer = connect("reviewer"), owner = connect();
+  owner.run_script(
+      "CREATE SEQUENCE byre.attempt; GRANT USAGE ON SEQUENCE byre.attempt TO byre_reviewer;"
+      "CREATE FUNCTION byre.fill() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN"
+      " IF nextval('byre.attempt') = 1 THEN RAISE EXCEPTION 'disk full' USING ERRCODE = 'disk_full'; END IF;"
+      " RETURN NEW; END $$; CREATE TRIGGER fill BEFORE INSERT ON byre.chunk FOR EACH ROW EXECUTE FUNCTION byre.fill()");
+  write_small_map("barn.byre", "barn");
+  EXPECT_TRUE(push_file(reviewer, kBarn, folder_ / "barn.byre", "").is_new);
+  EXPECT_EQ(value("SELECT last_value FROM byre.attempt"), "2");
+}
+
 TEST_F(RegistryVersions, AreRejectedAndRolledBack) {
   const std::string first = push("first"), second = push("second"), third = push("third");
   EXPECT_EQ(registry("accept barn " + first, "reviewer").exit_code, 0);

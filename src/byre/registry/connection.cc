@@ -173,9 +173,8 @@ void Connection::fail(pg_result* failed) const {
   if (field(failed, PG_DIAG_CONSTRAINT_NAME) == "chunk_hash") {
     throw InputError(place_, "refuses a chunk whose bytes do not have its SHA-256", "push the file again");
   }
-  if (kind == "53") {  // resources of the server
-    throw std::runtime_error(
-        fmt::format("{}: {} (free disk space, memory or connections of the server)", place_, reason));
+  if (kind == "53" || kind == "40") {  // a full disk, too many connections; a deadlock
+    throw ConnectionLost(fmt::format("{}: {} (free disk space, memory or connections of the server)", place_, reason));
   }
   throw InputError(place_, reason.empty() ? first_line(LIBPQ(PQerrorMessage)(connection_.get())) : reason, hint);
 }

@@ -18,7 +18,8 @@ struct pg_result;
 
 namespace byre {
 
-// The server cannot be reached, or the connection broke. The last statement may or may not have been executed.
+// The server cannot be reached or lacks resources, or the connection broke. The last statement may or may not have been
+// executed; another attempt may succeed.
 class ConnectionLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -65,8 +66,7 @@ class Rows {
   std::unique_ptr<pg_result, Clear> result_;
 };
 
-// Connection to a PostgreSQL server. All functions throw ConnectionLost, InputError for what the server refuses, and
-// std::runtime_error for other failures.
+// Connection to a PostgreSQL server. All functions throw ConnectionLost, and InputError for what the server refuses.
 class Connection {
  public:
   // uri: as of libpq, "postgresql://..." or "host=... dbname=..."; what it leaves out is in the environment (PGHOST,
