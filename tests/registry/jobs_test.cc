@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -51,6 +52,7 @@ class RegistryJobs : public RegistryTest {
   pid_t start_worker(std::uint64_t seed) const {
     const pid_t process = fork();
     if (process != 0) return process;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     std::mt19937_64 random(seed);
     const auto work = [&random] { std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000)); };
     while (true) {

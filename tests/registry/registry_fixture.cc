@@ -3,7 +3,10 @@
 #include "byre/input_error.h"
 #include "byre/registry/schema.h"
 
+#include <cerrno>
 #include <charconv>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <random>
@@ -27,6 +30,27 @@ StoredMap noted(const std::string& note, std::size_t bytes) {
   return stored;
 }
 
+int run_script(const fs::path& folder, const std::string& action) {
+  const std::string log = folder.string() + ".log";
+  const int status =
+      std::system(fmt::format("'{}' '{}' {} >'{}' 2>&1", BYRE_REGISTRY_SCRIPT, folder.string(), action, log).c_str());
+  fs::remove(log);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// Servers of test programs that crashed.
+void remove_abandoned(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    int process = 0;
+    const std::string name = entry.path().filename().string();
+    if (std::sscanf(name.c_str(), "byre_registry.%d", &process) != 1 || !entry.is_directory()) continue;
+    if (::kill(process, 0) == 0 || errno != ESRCH) continue;
+    run_script(entry.path(), "kill");
+    std::error_code error;
+    fs::remove_all(entry.path(), error);
+  }
+}
+
 }  // namespace
 
 RegistryServer& RegistryServer::shared() {
@@ -39,7 +63,8 @@ RegistryServer::RegistryServer()
       owner_(geteuid() == 0                   ? "postgres"
              : std::getenv("USER") != nullptr ? std::getenv("USER")
                                               : "") {
-  const int code = run("start");
+  remove_abandoned(folder_.parent_path());
+  const int code = run_script(folder_, "start");
   is_installed_ = code == 0;
   if (code != 0 && code != 77) throw std::runtime_error("scripts/registry.sh fails");
 }
@@ -50,25 +75,17 @@ RegistryServer::~RegistryServer() {
   fs::remove_all(folder_, error);
 }
 
-int RegistryServer::run(const std::string& action) const {
-  const int status = std::system(
-      fmt::format("'{}' '{}' {} >'{}.log' 2>&1", BYRE_REGISTRY_SCRIPT, folder_.string(), action, folder_.string())
-          .c_str());
-  fs::remove(folder_.string() + ".log");
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 std::string RegistryServer::uri(const std::string& database, const std::string& account) const {
   return fmt::format("host={} dbname={} user={}", (folder_ / "socket").string(), database,
                      account.empty() ? owner_ : account);
 }
 
 void RegistryServer::kill() const {
-  if (run("kill") != 0) throw std::runtime_error("the server was not killed");
+  if (run_script(folder_, "kill") != 0) throw std::runtime_error("the server was not killed");
 }
 
 void RegistryServer::start() const {
-  if (run("start") != 0) throw std::runtime_error("the server does not start");
+  if (run_script(folder_, "start") != 0) throw std::runtime_error("the server does not start");
 }
 
 std::vector<std::byte> small_map(const std::string& note, std::size_t bytes) {

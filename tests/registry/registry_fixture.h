@@ -32,7 +32,6 @@ class RegistryServer {
 
  private:
   RegistryServer();
-  int run(const std::string& action) const;
 
   std::filesystem::path folder_;
   std::string owner_;
