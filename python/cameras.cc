@@ -120,7 +120,9 @@ void bind_calibration(py::module_& module) {
       "Reads the calibration of one camera or a stereo pair in any format of the reference page "
       "\"calibration_files\". right: file of the right camera, if each camera has its own. \"FILE#NAME\" reads one "
       "of several cameras. "
-      "Raises InputError with the field for an unsupported model and for a missing or invalid value.");
+      "Raises InputError with the field for an unsupported model and for a missing or invalid value.\n"
+      ">>> byre.read_calibration(room + \"/mav0/cam0/sensor.yaml\", room + \"/mav0/cam1/sensor.yaml\").left.fx > 0\n"
+      "True");
 }
 
 // A view of the pixels; keeps the frame alive.
@@ -281,7 +283,9 @@ void bind_recording(py::module_& module) {
           "__iter__", [](const std::shared_ptr<SharedRecording>& recording) { return FrameIterator{recording}; },
           "Iterates over the frames, without unreadable ones.");
   module.def("find_ground_truth", &find_ground_truth, py::arg("path"),
-             "Path of the ground truth of a recording, or None.");
+             "Path of the ground truth of a recording, or None.\n"
+             ">>> byre.find_ground_truth(room) is None\n"
+             "False");
 }
 
 }  // namespace

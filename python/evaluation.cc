@@ -90,10 +90,13 @@ void bind_trajectory(py::module_& module) {
           },
           py::arg("path"), py::arg("format") = TrajectoryFormat::tum,
           "Writes a file; replaces an older trajectory atomically. Raises InputError if the file cannot be written, or "
-          "exists and is no trajectory.");
+          "exists and is no trajectory.\n"
+          ">>> byre.read_trajectory(byre.find_ground_truth(room)).write(\"truth.txt\")");
   module.def("read_trajectory", &read_trajectory, py::arg("path"),
              "Reads a trajectory in TUM or EuRoC format, or the ground truth inside a EuRoC folder. Raises InputError "
-             "with file and line for other formats and unordered times.");
+             "with file and line for other formats and unordered times.\n"
+             ">>> len(byre.read_trajectory(byre.find_ground_truth(room))) > 1\n"
+             "True");
 }
 
 }  // namespace
@@ -129,7 +132,10 @@ void bind_evaluation(py::module_& module) {
              "Pose error after alignment of the estimate to the truth (Sturm 2012).\n"
              "scale: whether to estimate the scale of the alignment.\n"
              "time_offset_s: added to the stamps of the truth, seconds.\n"
-             "Raises InputError for fewer than three common poses and for collinear positions.");
+             "Raises InputError for fewer than three common poses and for collinear positions.\n"
+             ">>> truth = byre.read_trajectory(byre.find_ground_truth(room))\n"
+             ">>> byre.absolute_trajectory_error(truth, truth).translation.rmse < 1e-9\n"
+             "True");
   module.def("relative_pose_error", &rpe, py::arg("estimate"), py::arg("truth"), py::kw_only(),
              py::arg("metres") = py::none(), py::arg("seconds") = py::none(), py::arg("scale") = 1.0,
              py::arg("time_offset_s") = 0.0,
@@ -137,7 +143,10 @@ void bind_evaluation(py::module_& module) {
              "metres: length of the true path; seconds: interval; without both: one frame.\n"
              "scale: factor of the estimated translations.\n"
              "time_offset_s: added to the stamps of the truth, seconds.\n"
-             "Raises ValueError if metres and seconds are given, and InputError without common poses.");
+             "Raises ValueError if metres and seconds are given, and InputError without common poses.\n"
+             ">>> truth = byre.read_trajectory(byre.find_ground_truth(room))\n"
+             ">>> byre.relative_pose_error(truth, truth, seconds=0.2).translation.rmse < 1e-9\n"
+             "True");
 }
 
 }  // namespace byre::python

@@ -88,11 +88,17 @@ void bind_files(py::module_& module) {
       "\"extrinsics\".\n"
       "base, camera, imu: frames in a URDF or bag; default: found by the conventions of that page.\n"
       "Raises InputError with the place for a missing, ambiguous or moving frame, an unknown field, and for a value "
-      "that is no rotation, not finite or likely in the wrong unit or axes.");
+      "that is no rotation, not finite or likely in the wrong unit or axes.\n"
+      ">>> mounting = byre.SensorMounting(np.eye(4), sigma_m=0.01)\n"
+      ">>> byre.write_extrinsics(\"robot.yaml\", byre.Extrinsics(mounting))\n"
+      ">>> byre.read_extrinsics(\"robot.yaml\").camera.sigma_m\n"
+      "0.01");
   module.def(
       "write_extrinsics", &write_extrinsics, py::arg("path"), py::arg("extrinsics"), released,
       "Writes the extrinsics as YAML, which read_extrinsics reads. Raises InputError for lengths and scales that "
-      "it would reject, and if the file cannot be written.");
+      "it would reject, and if the file cannot be written.\n"
+      ">>> mounting = byre.SensorMounting(np.eye(4), sigma_m=0.01)\n"
+      ">>> byre.write_extrinsics(\"robot.yaml\", byre.Extrinsics(mounting))");
 }
 
 }  // namespace

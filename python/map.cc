@@ -232,7 +232,10 @@ void bind_plan(py::module_& module) {
           },
           py::arg("map_from_body"),
           "Pose on the plan of a pose in the map, 4x4, metres. Raises InputError if map_from_body is not a rigid "
-          "motion.");
+          "motion.\n"
+          ">>> registration = m.register_on_plan(\"barn.pgm\", picks_in_map, picks_in_plan).registration\n"
+          ">>> registration.plan_from_body(np.eye(4)).shape\n"
+          "(4, 4)");
   py::class_<PlanFit>(module, "PlanFit", "Fit of a map to points picked on a floor plan.")
       .def_readonly("registration", &PlanFit::registration, "The registration; Map.with_plan stores it.")
       .def_property_readonly(

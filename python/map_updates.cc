@@ -36,7 +36,9 @@ void bind_map_updates(py::module_& module) {
       py::arg("map"), py::arg("sessions"), py::arg("output"), py::call_guard<py::gil_scoped_release>(),
       "Updates a map by sessions of missions on it, files of Slam.save_session, as \"byre update\": writes the new "
       "version to output unless no session fits or a place would be worse. Returns a MapUpdateResult. Takes seconds. "
-      "Raises InputError if a file cannot be read or written, or is not of its kind.");
+      "Raises InputError if a file cannot be read or written, or is not of its kind.\n"
+      ">>> mission.save_session(\"room.session\")\n"
+      ">>> result = byre.update_map_file(path, [\"room.session\"], \"room_2.byre\")");
 }
 
 }  // namespace byre::python

@@ -295,12 +295,16 @@ void bind_making(SlamClass& type) {
   type.def_static(
           "mapping", &Slam::mapping, py::arg("calibration"), py::arg("options") = SlamOptions{}, Released(),
           "Makes a new map. One camera without depth has an arbitrary scale, and poses are those of the camera. Raises "
-          "InputError for an invalid calibration, vocabulary or setting.")
+          "InputError for an invalid calibration, vocabulary or setting.\n"
+          ">>> byre.Slam.mapping(recording.calibration).process(images)\n"
+          "<FrameReport ...>")
       .def_static(
           "extending", &Slam::extending, py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{},
           Released(),
           "Continues a saved map: relocalises in it first, then adds to it. Raises InputError as mapping(), and if the "
-          "map cannot be loaded.")
+          "map cannot be loaded.\n"
+          ">>> byre.Slam.extending(recording.calibration, path).keyframes > 0\n"
+          "True")
       .def_static(
           "on_map",
           [](const Calibration& calibration, const std::filesystem::path& map, const SlamOptions& options) {
@@ -314,14 +318,19 @@ void bind_making(SlamClass& type) {
           py::arg("calibration"), py::arg("map"), py::arg("options") = SlamOptions{}, Released(),
           "Mission on an offline map, which is not modified, or on a site file. Poses are in the frame of the map, "
           "on a site of FrameReport.map, with verdicts. Raises InputError as mapping(), and if a map cannot be "
-          "loaded.");
+          "loaded.\n"
+          ">>> byre.Slam.on_map(recording.calibration, path).process(images)\n"
+          "<FrameReport ...>");
 }
 
 void bind_input(SlamClass& type) {
   type.def("process", &process_images, py::arg("images"), py::arg("last_from_body") = py::none(),
            "Tracks the next frame, with images of a Recording. last_from_body: measured motion of the body since the "
            "previous call, 4x4, metres; None: wheel and gyroscope samples are used, if any. Raises InputError if it is "
-           "not a rigid motion.")
+           "not a rigid motion.\n"
+           ">>> slam = byre.Slam.mapping(recording.calibration)\n"
+           ">>> slam.process(images).health.verdict\n"
+           "<Verdict...>")
       .def("process", &process, py::arg("time_ns"), py::arg("left"), py::arg("right") = py::none(),
            py::arg("depth") = py::none(), py::arg("last_from_body") = py::none(), py::arg("format") = py::none(),
            py::arg("bits") = 16, py::arg("right_time_ns") = py::none(), py::arg("depth_time_ns") = py::none(),
@@ -362,7 +371,9 @@ void bind_input(SlamClass& type) {
           py::arg("time_ns"), py::arg("odometry_from_base"), Released(),
           "Adds wheel odometry at any rate: pose of the base in a drifting odometry frame, 4x4, metres. Samples are in "
           "order of time, by the clock of the images, and precede the frame that they lead to. Raises InputError if "
-          "the matrix is not a rigid motion.")
+          "the matrix is not a rigid motion.\n"
+          ">>> slam = byre.Slam.mapping(recording.calibration)\n"
+          ">>> slam.add_wheel_odometry(0, np.eye(4))")
       .def(
           "add_wheel_velocity",
           [](Slam& slam, std::int64_t time_ns, double vx, double vy, double wz) {
@@ -370,7 +381,9 @@ void bind_input(SlamClass& type) {
           },
           py::arg("time_ns"), py::arg("vx"), py::arg("vy"), py::arg("wz"), Released(),
           "Adds wheel odometry as velocity of the base in its own axes, x ahead, y left: vx and vy in metres per "
-          "second, wz in radians per second, positive to the left. Give either poses or velocities.")
+          "second, wz in radians per second, positive to the left. Give either poses or velocities.\n"
+          ">>> slam = byre.Slam.mapping(recording.calibration)\n"
+          ">>> slam.add_wheel_velocity(0, vx=0.5, vy=0.0, wz=0.1)")
       .def(
           "add_gyro",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& rate) {
@@ -378,7 +391,8 @@ void bind_input(SlamClass& type) {
           },
           py::arg("time_ns"), py::arg("rate"), Released(),
           "Adds a gyroscope sample: rate about its axes, radians per second. Order and clock as for wheels. Bias and "
-          "rotation to the body are estimated.")
+          "rotation to the body are estimated.\n"
+          ">>> byre.Slam.mapping(recording.calibration).add_gyro(0, [0.0, 0.0, 0.1])")
       .def(
           "add_accel",
           [](Slam& slam, std::int64_t time_ns, const Eigen::Vector3d& acceleration) {
@@ -386,7 +400,8 @@ void bind_input(SlamClass& type) {
           },
           py::arg("time_ns"), py::arg("acceleration"), Released(),
           "Adds an accelerometer sample: specific force along the axes of the gyroscope, m/s^2. Order and clock as for "
-          "wheels. Only used at standstill, as the direction of gravity.")
+          "wheels. Only used at standstill, as the direction of gravity.\n"
+          ">>> byre.Slam.mapping(recording.calibration).add_accel(0, [0.0, 0.0, 9.81])")
       .def(
           "set_initial_pose",
           [](Slam& slam, const Eigen::Matrix4d& map_from_body, double radius, double turn, double seconds) {
@@ -398,24 +413,35 @@ void bind_input(SlamClass& type) {
           "Only for on_map().\n"
           "radius: largest position error, metres; turn: largest rotation error, radians.\n"
           "seconds: lifetime from the next frame on, seconds of frame time.\n"
-          "Raises InputError if map_from_body is not a rigid motion.")
+          "Raises InputError if map_from_body is not a rigid motion.\n"
+          ">>> mission = byre.Slam.on_map(recording.calibration, path)\n"
+          ">>> mission.set_initial_pose(np.eye(4), radius=3.0)")
       .def("pause_mapping", &Slam::pause_mapping, py::arg("is_paused"), Released(),
-           "While paused, frames are tracked, but the map is neither initialised nor extended.")
+           "While paused, frames are tracked, but the map is neither initialised nor extended.\n"
+           ">>> slam = byre.Slam.mapping(recording.calibration)\n"
+           ">>> slam.pause_mapping(True)\n"
+           ">>> slam.is_mapping_paused\n"
+           "True")
       .def_property_readonly("is_mapping_paused", released(&Slam::is_mapping_paused), "Whether mapping is paused.");
 }
 
 void bind_results(SlamClass& type) {
   type.def("finish", &finish,
            "Waits for mapping jobs, closes remaining loops and adjusts the whole map; takes seconds to minutes. Later "
-           "frames are dropped. Ctrl-C stops it and keeps the steps done.")
+           "frames are dropped. Ctrl-C stops it and keeps the steps done.\n"
+           ">>> mapped.finish()")
       .def("save", &Slam::save, py::arg("path"), Released(),
            "Writes the map, for a mission the online map. Replaces the file atomically. Raises InputError if nothing "
-           "was mapped yet, or if the file cannot be written, exists and is no map, or is the mission's offline map.")
+           "was mapped yet, or if the file cannot be written, exists and is no map, or is the mission's offline map.\n"
+           ">>> mapped.save(\"room.byre\")")
       .def("save_session", &Slam::save_session, py::arg("path"), Released(),
            "Writes what a mission learned about its offline map, without images, for \"byre update\". Raises "
-           "InputError as save(), and without an offline map.")
+           "InputError as save(), and without an offline map.\n"
+           ">>> mission.save_session(\"room.session\")")
       .def("trajectory", &Slam::trajectory, Released(),
-           "map_from_body of all tracked frames, with all corrections so far. Gaps are filled by wheel odometry.")
+           "map_from_body of all tracked frames, with all corrections so far. Gaps are filled by wheel odometry.\n"
+           ">>> len(mapped.trajectory()) > 0\n"
+           "True")
       .def(
           "plan_from_body",
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body) {
@@ -423,7 +449,9 @@ void bind_results(SlamClass& type) {
           },
           py::arg("map_from_body"), Released(),
           "Pose on the floor plan of a pose in the map, 4x4, metres; None if the map is not registered on a plan. "
-          "Raises InputError if map_from_body is not a rigid motion.")
+          "Raises InputError if map_from_body is not a rigid motion.\n"
+          ">>> mission.plan_from_body(np.eye(4)) is None\n"
+          "True")
       .def(
           "plan_covariance",
           [](const Slam& slam, const Eigen::Matrix4d& map_from_body, const Matrix6& covariance) {
@@ -431,7 +459,9 @@ void bind_results(SlamClass& type) {
           },
           py::arg("map_from_body"), py::arg("covariance"), Released(),
           "Covariance of plan_from_body(), 6x6 as FrameReport.covariance: the given covariance in the map plus that of "
-          "the registration. None if the map is not registered on a plan.")
+          "the registration. None if the map is not registered on a plan.\n"
+          ">>> mission.plan_covariance(np.eye(4), np.eye(6)) is None\n"
+          "True")
       .def_property_readonly("calibration", released(&Slam::calibration), "Calibration with all refinements so far.")
       .def_property_readonly("is_metric", released(&Slam::is_metric), "Whether lengths are metres.")
       .def_property_readonly("map_damage", released(&Slam::map_damage),
@@ -446,7 +476,9 @@ void bind_results(SlamClass& type) {
       .def_property_readonly("frames", released(py::overload_cast<>(&Slam::frames, py::const_)),
                              "Number of frames, including dropped ones.")
       .def("frames_with", py::overload_cast<InputFault>(&Slam::frames, py::const_), py::arg("fault"), Released(),
-           "Number of frames with this fault.");
+           "Number of frames with this fault.\n"
+           ">>> mapped.frames_with(byre.InputFault.after_gap)\n"
+           "0");
 }
 
 void bind_slam_itself(py::module_& module) {

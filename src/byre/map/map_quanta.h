@@ -10,7 +10,7 @@
 
 namespace byre {
 
-// Quantisation of a map's values in its file, far below their noise (docs/reference/map_format.md, "Quanta"). Each
+// Quantisation of a map's values in its file, far below their noise (docs/lab/map_file.md, "Rounding"). Each
 // value has a code of few bytes. Coding a decoded value gives the same code.
 
 // Pixel coordinate in an image of given width or height, in 64ths of a pixel from the image's edge. Decoded to the
