@@ -96,7 +96,7 @@ set(BYRE_FOLDERS_COLD io/ros io/bag viewer viewer/web benchmark benchmark/demo r
 
 # Folders whose tests compute much by themselves, or by inlined functions. The others are compiled without optimisation,
 # in half the time: what they render or simulate is in byre_scenes.
-set(BYRE_FOLDERS_TESTED_HEAVILY features geometry geometry/evaluation optimise odometry place simulation
+set(BYRE_FOLDERS_TESTED_HEAVILY features geometry geometry/evaluation optimise odometry map map/plan place simulation
     simulation/cowshed)
 
 # Compiles a target for short build time instead of speed.
