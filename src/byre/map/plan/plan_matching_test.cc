@@ -144,8 +144,8 @@ std::optional<PlanMatch> match(Hall& hall) {
   return match_with_plan(map, require_driving_plane(map, "hall"), hall.plan());
 }
 
-TEST(PlanMatching, FindsTheMapInTwentyHalls) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+void find_the_map_in_halls(std::uint64_t first, std::uint64_t last) {
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
     Hall hall(seed, Hall::Shape::unambiguous);
     const std::optional<PlanMatch> found = match(hall);
     ASSERT_TRUE(found.has_value());
@@ -160,14 +160,30 @@ TEST(PlanMatching, FindsTheMapInTwentyHalls) {
   }
 }
 
-TEST(PlanMatching, IsAmbiguousInTenSymmetricHalls) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+TEST(PlanMatching, FindsTheMapInHalls) {
+  find_the_map_in_halls(1, 4);
+}
+
+TEST(LongRunPlanMatching, FindsTheMapInFurtherHalls) {
+  find_the_map_in_halls(5, 20);
+}
+
+void doubt_symmetric_halls(std::uint64_t first, std::uint64_t last) {
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
     Hall hall(seed, Hall::Shape::symmetric);
     const std::optional<PlanMatch> found = match(hall);
     ASSERT_TRUE(found.has_value());
     EXPECT_EQ(found->doubt, PlanMatchDoubt::ambiguous) << "seed " << seed << ": " << describe_match(*found);
     EXPECT_NEAR(std::abs(found->rival.turn), std::numbers::pi, 2.0 * kDegree) << "seed " << seed;
   }
+}
+
+TEST(PlanMatching, IsAmbiguousInSymmetricHalls) {
+  doubt_symmetric_halls(1, 3);
+}
+
+TEST(LongRunPlanMatching, IsAmbiguousInFurtherSymmetricHalls) {
+  doubt_symmetric_halls(4, 10);
 }
 
 TEST(PlanMatching, IsDoubtedBetweenParallelWalls) {
