@@ -308,4 +308,9 @@ class MapGraph {
 // Describes every violated invariant. Empty for a valid map.
 std::vector<std::string> find_faults(const MapGraph& map);
 
+// Rig of a keyframe of the map.
+inline const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe) {
+  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
+}
+
 }  // namespace byre

@@ -33,7 +33,7 @@ std::vector<KeyframePixel> parse_pixels(const nlohmann::json& fields, const MapG
   std::vector<KeyframePixel> pixels;
   for (const nlohmann::json& pixel : fields) {
     const KeyframeId id = parse_keyframe(pixel.at(0), map);
-    const Rig& rig = map.rigs()[static_cast<std::size_t>(map.keyframe_header(id)->rig)];
+    const Rig& rig = rig_of(map, *map.keyframe_header(id));
     const Eigen::Vector2d share = parse_pair(pixel, 1);
     pixels.push_back({id, share.cwiseProduct(Eigen::Vector2d(rig.width, rig.height)).array() - 0.5});
   }

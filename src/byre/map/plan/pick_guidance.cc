@@ -18,10 +18,6 @@ constexpr std::size_t kMostViews = 6;          // further views offered
 constexpr std::size_t kMostCandidates = 3000;  // points compared for the next pick
 constexpr double kBestAngle = 20.0 * kDegree;  // between two views
 
-const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe) {
-  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-}
-
 Eigen::Vector3d centre_of(const Keyframe& keyframe) {
   return inverse(keyframe.camera_from_world).translation;
 }

@@ -1,6 +1,7 @@
 #include "byre/map/plan/plan_matching.h"
 
 #include "byre/geometry/degrees.h"
+#include "byre/map/plan/wall_distances.h"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +20,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kCell = 0.1;      // metres, of the map's occupancy grid
-constexpr double kReach = 0.6;     // metres, largest distance of a cell from a wall that is measured
 constexpr double kBlock = 0.5;     // metres, edge of a square whose cells are correlated
 constexpr double kDistinct = 0.5;  // metres between distinct poses
 constexpr double kDistinctTurn = 5.0 * kDegree;
@@ -40,117 +40,6 @@ struct MapCell {
   Vector2d position;
   CellKind kind = CellKind::free;
   int block = 0;
-};
-
-// Distances from the walls of a plan on a grid along its axes.
-class WallDistances {
- public:
-  explicit WallDistances(const DrawnFloorPlan& drawn) {
-    const FloorPlan& plan = drawn.plan;
-    const double pixel = std::sqrt(std::abs(plan.metres_per_pixel.determinant()));
-    cell_ = std::max(0.05, pixel);
-    Vector2d top = Vector2d::Constant(-std::numeric_limits<double>::infinity());
-    corner_ = -top;
-    for (const Vector2d& at :
-         {Vector2d(0, 0), Vector2d(plan.width, 0), Vector2d(0, plan.height), Vector2d(plan.width, plan.height)}) {
-      corner_ = corner_.cwiseMin(plan.point_at(at));
-      top = top.cwiseMax(plan.point_at(at));
-    }
-    corner_.array() -= kReach + 0.5 * cell_;  // pixels have their centre in the middle of a cell
-    top.array() += kReach + 0.5 * cell_;
-    columns_ = static_cast<int>((top.x() - corner_.x()) / cell_) + 1;
-    rows_ = static_cast<int>((top.y() - corner_.y()) / cell_) + 1;
-    std::vector<std::uint8_t> is_wall(static_cast<std::size_t>(columns_) * rows_);
-    for (int row = 0; row < plan.height; ++row) {
-      for (int column = 0; column < plan.width; ++column) {
-        if (drawn.occupancy[static_cast<std::size_t>(row) * plan.width + column] != kOccupiedPixel) continue;
-        const Vector2d at = (plan.point_at({column, row}) - corner_) / cell_;
-        is_wall[static_cast<std::size_t>(at.y()) * columns_ + static_cast<std::size_t>(at.x())] = 1;
-      }
-    }
-    distances_ = distances_from(is_wall, 1);
-    depths_ = distances_from(is_wall, 0);
-  }
-
-  bool has_walls() const { return std::ranges::find(distances_, 0.0F) != distances_.end(); }
-  const Vector2d& corner_in_plan() const { return corner_; }
-  Vector2d size() const { return cell_ * Vector2d(columns_, rows_); }
-
-  const std::vector<float>& distances() const { return distances_; }
-
-  // Index of a position's cell; 0 outside the grid, whose corners are far from walls.
-  std::size_t index_at(const Vector2d& position) const {
-    const double column = position.x() / cell_, row = position.y() / cell_;
-    if (!(column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_)) return 0;
-    return static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
-  }
-
-  double at(const Vector2d& position) const { return distances_[index_at(position)]; }
-
-  // Nearest line of a wall: its middle, or the surface of what is thicker than kThickest.
-  struct WallLine {
-    Vector2d position;
-    Vector2d normal;
-    double distance = 0.0;  // metres from the surface
-  };
-  std::optional<WallLine> line_near(const Vector2d& position) const {
-    constexpr double kThickest = 0.4;  // metres
-    const double distance = distance_from_surface(position);
-    if (std::abs(distance) >= kReach - 2.0 * cell_) return std::nullopt;
-    const Vector2d x(cell_, 0.0), y(0.0, cell_);
-    const Vector2d gradient(distance_from_surface(position + x) - distance_from_surface(position - x),
-                            distance_from_surface(position + y) - distance_from_surface(position - y));
-    if (!(gradient.norm() > cell_)) return std::nullopt;  // half-way between surfaces
-    const Vector2d normal = gradient.normalized(), surface = position - distance * normal;
-    double thickness = cell_;
-    while (thickness < kThickest && distance_from_surface(surface - thickness * normal) < 0.0) thickness += 0.5 * cell_;
-    return WallLine{surface - (thickness < kThickest ? 0.5 * thickness : 0.0) * normal, normal, std::abs(distance)};
-  }
-
- private:
-  // Metres, negative inside walls; bilinear.
-  double distance_from_surface(const Vector2d& position) const {
-    const Vector2d at = position / cell_ - Vector2d::Constant(0.5);
-    const double column = std::clamp(at.x(), 0.0, columns_ - 1.001), row = std::clamp(at.y(), 0.0, rows_ - 1.001);
-    const auto left = static_cast<std::size_t>(column), low = static_cast<std::size_t>(row);
-    const double u = column - static_cast<double>(left), v = row - static_cast<double>(low);
-    const auto value = [&](std::size_t right, std::size_t up) {
-      const std::size_t index = (low + up) * static_cast<std::size_t>(columns_) + left + right;
-      // The surface is half-way between a cell of the wall and a free one.
-      return depths_[index] > 0.0F ? 0.5 * cell_ - depths_[index] : distances_[index] - 0.5 * cell_;
-    };
-    return (1.0 - v) * ((1.0 - u) * value(0, 0) + u * value(1, 0)) + v * ((1.0 - u) * value(0, 1) + u * value(1, 1));
-  }
-
-  // Distances of all cells from the nearest cell of a kind, up to kReach.
-  std::vector<float> distances_from(const std::vector<std::uint8_t>& kinds, std::uint8_t kind) const {
-    std::vector<float> distances(kinds.size(), static_cast<float>(kReach));
-    const int reach = static_cast<int>(kReach / cell_);
-    const auto kind_at = [&](int row, int column) { return kinds[static_cast<std::size_t>(row) * columns_ + column]; };
-    for (int row = 0; row < rows_; ++row) {
-      for (int column = 0; column < columns_; ++column) {
-        if (kind_at(row, column) != kind) continue;
-        const bool is_inside = row > 0 && column > 0 && row < rows_ - 1 && column < columns_ - 1 &&
-                               kind_at(row - 1, column) == kind && kind_at(row + 1, column) == kind &&
-                               kind_at(row, column - 1) == kind && kind_at(row, column + 1) == kind;
-        const int spread = is_inside ? 0 : reach;  // others are nearer to the cells around it
-        for (int y = std::max(0, row - spread); y <= std::min(rows_ - 1, row + spread); ++y) {
-          for (int x = std::max(0, column - spread); x <= std::min(columns_ - 1, column + spread); ++x) {
-            float& distance = distances[static_cast<std::size_t>(y) * columns_ + x];
-            distance = std::min(distance, static_cast<float>(cell_ * std::hypot(x - column, y - row)));
-          }
-        }
-      }
-    }
-    return distances;
-  }
-
-  double cell_ = 0.0;                   // metres
-  Vector2d corner_ = Vector2d::Zero();  // lower left, on the plan
-  int columns_ = 0;
-  int rows_ = 0;
-  // Metres, row-major from the lower left: from the nearest wall, and inside walls from the nearest free cell.
-  std::vector<float> distances_, depths_;
 };
 
 constexpr double kNotDrawn = 0.1;  // share of obstacles that the plan does not have
@@ -283,70 +172,100 @@ bool is_distinct(const PlanarPose& a, const PlanarPose& b) {
          std::abs(std::remainder(a.yaw - b.yaw, 2.0 * std::numbers::pi)) > kDistinctTurn;
 }
 
-std::vector<PlanarPose> PlanMatcher::search() const {
-  constexpr double kStep = 0.25;           // metres
-  constexpr int kHeadings = 240;           // 1.5 degrees
-  constexpr double kCoarseSigma = 0.3;     // metres
-  constexpr std::size_t kMostCells = 400;  // limit for each kind
-  constexpr std::size_t kMostPeaks = 40;
-  const int columns = static_cast<int>(walls_.size().x() / kStep) + 1;
-  const int rows = static_cast<int>(walls_.size().y() / kStep) + 1;
-  std::array<std::vector<float>, 3> fields;
-  std::array<std::vector<Vector2d>, 3> positions;
-  std::array<float, 3> outside{};
-  for (const CellKind kind : {CellKind::obstacle, CellKind::free, CellKind::driven}) {
-    const auto k = static_cast<std::size_t>(kind);
-    const auto value = [kind](double distance) {
-      return static_cast<float>(log_likelihood(kind, distance, kCoarseSigma, kCell));
-    };
-    outside[k] = value(kReach);
-    for (int row = 0; row < rows; ++row) {
-      for (int column = 0; column < columns; ++column) {
-        fields[k].push_back(value(walls_.at(kStep * Vector2d(column, row))));
+// Log-likelihoods of all positions on a coarse grid, at one heading after another.
+class CoarseSearch {
+ public:
+  static constexpr double kStep = 0.25;  // metres
+
+  CoarseSearch(const WallDistances& walls, const std::vector<MapCell>& cells)
+      : columns_(static_cast<int>(walls.size().x() / kStep) + 1),
+        rows_(static_cast<int>(walls.size().y() / kStep) + 1),
+        scores_(static_cast<std::size_t>(columns_) * rows_) {
+    constexpr double kCoarseSigma = 0.3;     // metres
+    constexpr std::size_t kMostCells = 400;  // limit for each kind
+    for (const CellKind kind : {CellKind::obstacle, CellKind::free, CellKind::driven}) {
+      CellsOfKind of_kind;
+      const auto value = [kind](double distance) {
+        return static_cast<float>(log_likelihood(kind, distance, kCoarseSigma, kCell));
+      };
+      of_kind.outside = value(WallDistances::kReach);
+      for (int row = 0; row < rows_; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+          of_kind.values.push_back(value(walls.at(kStep * Vector2d(column, row))));
+        }
       }
+      std::vector<Vector2d> all;
+      for (const MapCell& cell : cells) {
+        if (cell.kind == kind) all.push_back(cell.position);
+      }
+      const std::size_t stride = 1 + all.size() / kMostCells;
+      for (std::size_t i = 0; i < all.size(); i += stride) of_kind.positions.push_back(all[i]);
+      kinds_.push_back(std::move(of_kind));
     }
-    std::vector<Vector2d> all;
-    for (const MapCell& cell : cells_) {
-      if (cell.kind == kind) all.push_back(cell.position);
-    }
-    const std::size_t stride = 1 + all.size() / kMostCells;
-    for (std::size_t i = 0; i < all.size(); i += stride) positions[k].push_back(all[i]);
   }
+
+  // Adds the local maxima of the positions at a heading.
+  void add_peaks(double yaw, std::vector<std::pair<float, PlanarPose>>& peaks) {
+    std::ranges::fill(scores_, 0.0F);
+    for (const CellsOfKind& kind : kinds_) {
+      for (const Vector2d& position : kind.positions) add_cell(kind, Eigen::Rotation2Dd(yaw) * position / kStep);
+    }
+    for (int row = 1; row + 1 < rows_; ++row) {
+      for (int column = 1; column + 1 < columns_; ++column) {
+        if (is_peak(row, column)) peaks.emplace_back(at(row, column), PlanarPose{kStep * Vector2d(column, row), yaw});
+      }
+    }
+  }
+
+ private:
+  struct CellsOfKind {
+    std::vector<Vector2d> positions;
+    std::vector<float> values;  // log-likelihood at each position of the grid
+    float outside = 0.0F;       // beyond the grid
+  };
+
+  float at(int row, int column) const { return scores_[static_cast<std::size_t>(row) * columns_ + column]; }
+
+  // Adds the values of a cell, shifted by its position in steps, to the scores of all positions.
+  void add_cell(const CellsOfKind& kind, const Vector2d& shift) {
+    const int right = static_cast<int>(std::lround(shift.x())), up = static_cast<int>(std::lround(shift.y()));
+    for (int row = 0; row < rows_; ++row) {
+      float* const sums = scores_.data() + static_cast<std::size_t>(row) * columns_;
+      const int source = row + up;
+      const bool is_inside = source >= 0 && source < rows_;
+      const int begin = is_inside ? std::clamp(-right, 0, columns_) : columns_;
+      const int end = is_inside ? std::clamp(columns_ - right, begin, columns_) : columns_;
+      for (int i = 0; i < begin; ++i) sums[i] += kind.outside;
+      if (is_inside) {
+        const float* const values = kind.values.data() + static_cast<std::size_t>(source) * columns_ + right;
+        for (int i = begin; i < end; ++i) sums[i] += values[i];
+      }
+      for (int i = end; i < columns_; ++i) sums[i] += kind.outside;
+    }
+  }
+
+  bool is_peak(int row, int column) const {
+    for (int y = row - 1; y <= row + 1; ++y) {
+      for (int x = column - 1; x <= column + 1; ++x) {
+        if (at(y, x) > at(row, column)) return false;
+      }
+    }
+    return true;
+  }
+
+  int columns_;
+  int rows_;
+  std::vector<CellsOfKind> kinds_;
+  std::vector<float> scores_;
+};
+
+std::vector<PlanarPose> PlanMatcher::search() const {
+  constexpr int kHeadings = 240;  // 1.5 degrees
+  constexpr std::size_t kMostPeaks = 40;
+  CoarseSearch coarse(walls_, cells_);
   std::vector<std::pair<float, PlanarPose>> peaks;
-  std::vector<float> scores(static_cast<std::size_t>(columns) * rows);
   for (int heading = 0; heading < kHeadings; ++heading) {
-    const double yaw = 2.0 * std::numbers::pi * heading / kHeadings;
-    const Eigen::Rotation2Dd turn(yaw);
-    std::ranges::fill(scores, 0.0F);
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (const Vector2d& position : positions[k]) {
-        const Vector2d shifted = turn * position / kStep;
-        const int right = static_cast<int>(std::lround(shifted.x())), up = static_cast<int>(std::lround(shifted.y()));
-        for (int row = 0; row < rows; ++row) {
-          float* const sums = scores.data() + static_cast<std::size_t>(row) * columns;
-          const int source = row + up;
-          const bool is_inside = source >= 0 && source < rows;
-          const int begin = is_inside ? std::clamp(-right, 0, columns) : columns;
-          const int end = is_inside ? std::clamp(columns - right, begin, columns) : columns;
-          for (int i = 0; i < begin; ++i) sums[i] += outside[k];
-          if (is_inside) {
-            const float* const values = fields[k].data() + static_cast<std::size_t>(source) * columns + right;
-            for (int i = begin; i < end; ++i) sums[i] += values[i];
-          }
-          for (int i = end; i < columns; ++i) sums[i] += outside[k];
-        }
-      }
-    }
-    const auto at = [&](int row, int column) { return scores[static_cast<std::size_t>(row) * columns + column]; };
-    for (int row = 1; row + 1 < rows; ++row) {
-      for (int column = 1; column + 1 < columns; ++column) {
-        bool is_peak = true;
-        for (int y = row - 1; y <= row + 1; ++y) {
-          for (int x = column - 1; x <= column + 1; ++x) is_peak = is_peak && at(y, x) <= at(row, column);
-        }
-        if (is_peak) peaks.emplace_back(at(row, column), PlanarPose{kStep * Vector2d(column, row), yaw});
-      }
-    }
+    coarse.add_peaks(2.0 * std::numbers::pi * heading / kHeadings, peaks);
   }
   std::ranges::stable_sort(peaks, std::ranges::greater(), [](const auto& peak) { return peak.first; });
   std::vector<PlanarPose> starts;
@@ -357,14 +276,9 @@ std::vector<PlanarPose> PlanMatcher::search() const {
       starts.push_back(candidate);
     }
   }
-  std::vector<std::pair<double, PlanarPose>> found;
-  for (const PlanarPose& start : starts) {
-    const PlanarPose pose = refined(start);
-    found.emplace_back(score(pose), pose);
-  }
-  std::ranges::stable_sort(found, std::ranges::greater(), [](const auto& each) { return each.first; });
   std::vector<PlanarPose> poses;
-  for (const auto& [score, pose] : found) poses.push_back(pose);
+  for (const PlanarPose& start : starts) poses.push_back(refined(start));
+  std::ranges::stable_sort(poses, std::ranges::greater(), [this](const PlanarPose& pose) { return score(pose); });
   return poses;
 }
 
@@ -417,11 +331,12 @@ WeakestRival weakest_rival(const PlanMatcher& matcher, const std::vector<PlanarP
   return weakest;
 }
 
-// Obstacles on walls as correspondences: a line on the plan along the wall's surface. Those of a block have the weight
-// of one, because they are correlated.
+// Obstacles on walls as correspondences with the middle lines of the walls: plans draw fences thicker than they are,
+// and walls are often seen from both sides. Obstacles of a block have the weight of one, because they are correlated.
 std::vector<PlanCorrespondence> correspondences_at(const Similarity& plan_from_map, const WallDistances& walls,
                                                    const PlanMatcher& matcher, const Vector2d& middle,
                                                    const Similarity& ground_from_map) {
+  constexpr double kHeight = 1.0;  // metres above the ground, typical of obstacles
   const Pose map_from_ground = inverse(ground_from_map.target_from_source);
   std::vector<PlanCorrespondence> all;
   std::vector<int> blocks;
@@ -429,7 +344,7 @@ std::vector<PlanCorrespondence> correspondences_at(const Similarity& plan_from_m
   for (const MapCell& cell : matcher.cells()) {
     if (cell.kind != CellKind::obstacle) continue;
     const Eigen::Vector3d in_map =
-        map_from_ground * Eigen::Vector3d(cell.position.x() + middle.x(), cell.position.y() + middle.y(), 1.0);
+        map_from_ground * Eigen::Vector3d(cell.position.x() + middle.x(), cell.position.y() + middle.y(), kHeight);
     const Vector2d on_plan = (plan_from_map * in_map).head<2>() - walls.corner_in_plan();
     const auto line = walls.line_near(on_plan);
     if (!line || line->distance > kOnWall) continue;

@@ -20,10 +20,6 @@ constexpr double kLeastAngle = 0.5 * kDegree;       // between the rays of a tri
 constexpr double kLeastDepression = 3.0 * kDegree;  // least angle of a ray below the horizon
 constexpr double kFloorSigma = 0.02;                // metres, of the floor's height
 
-const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe) {
-  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-}
-
 const Calibration* calibration_of(const StoredMap& stored, const Keyframe& keyframe) {
   const auto recording = static_cast<std::size_t>(keyframe.recording);
   return recording < stored.recordings.size() ? &stored.recordings[recording].present_calibration() : nullptr;

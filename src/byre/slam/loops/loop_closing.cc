@@ -225,10 +225,6 @@ std::optional<ScaleDrift> estimate_scale_drift(std::span<const DepthPair> pairs,
   return ScaleDrift{std::exp(weighted / weights), spread / std::sqrt(weights)};
 }
 
-const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe) {
-  return map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-}
-
 std::optional<LoopHypothesis> find_loop(const MapGraph& map, const PlaceIndex& index, KeyframeId newest,
                                         const LoopOptions& options) {
   const Keyframe* const keyframe = map.find_keyframe(newest);

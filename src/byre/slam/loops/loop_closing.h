@@ -109,9 +109,6 @@ std::optional<LoopHypothesis> find_join(const MapGraph& map, const PlaceIndex& i
 // Whether two joins of a submap agree up to its drift between their keyframes.
 bool agree(const LoopHypothesis& one, const LoopHypothesis& other, const MapGraph& map, const LoopOptions& options);
 
-// Rig of a keyframe.
-const Rig& rig_of(const MapGraph& map, const Keyframe& keyframe);
-
 // Tracks a frame that has a pose in the newer part of the map in the older part too. Returns the hypothesis with this
 // frame in its test, and with the drift by this frame if it was tracked.
 LoopHypothesis check_loop(const LoopHypothesis& hypothesis, const Frame& frame, const Pose& camera_from_world,

@@ -80,16 +80,12 @@ const MapPoint& point_at(const StoredMap& stored, int id) {
   return *point;
 }
 
-const Rig& rig_of(const StoredMap& stored, const Keyframe& keyframe) {
-  return stored.map.rigs()[static_cast<std::size_t>(keyframe.rig)];
-}
-
 // Camera of a recording's last keyframe; nullptr without keyframes.
 const Rig* rig_of_recording(const StoredMap& stored, int recording) {
   const Rig* rig = nullptr;
   for (int i = 0; i < stored.map.keyframe_count(); ++i) {
     const Keyframe& keyframe = keyframe_at(stored, i);
-    if (keyframe.recording == recording) rig = &rig_of(stored, keyframe);
+    if (keyframe.recording == recording) rig = &rig_of(stored.map, keyframe);
   }
   return rig;
 }
@@ -205,7 +201,7 @@ MapKeyframe Map::keyframe(int id) const {
   result.time = keyframe.frame.time;
   result.recording = keyframe.recording;
   if (keyframe.parent) result.parent = static_cast<int>(keyframe.parent->number);
-  result.rig = rig_of(*stored_, keyframe);
+  result.rig = rig_of(stored_->map, keyframe);
   result.map_from_camera = inverse(keyframe.camera_from_world);
   result.map_from_body = inverse(result.rig.body_from_camera * keyframe.camera_from_world);
   result.covariance = move_covariance(keyframe.covariance, result.rig.body_from_camera);
@@ -233,7 +229,7 @@ Trajectory Map::trajectory(int recording) const {
   for (int i = 0; i < keyframes(); ++i) {
     const Keyframe& keyframe = keyframe_at(*stored_, i);
     if (keyframe.recording != recording) continue;
-    const Rig& rig = rig_of(*stored_, keyframe);
+    const Rig& rig = rig_of(stored_->map, keyframe);
     poses.push_back({keyframe.frame.time, inverse(rig.body_from_camera * keyframe.camera_from_world)});
   }
   std::ranges::stable_sort(poses, {}, &StampedPose::time);

@@ -66,7 +66,7 @@ Json fit_fields(const PlanFit& fit) {
 Json view_fields(const MapGraph& map, const std::vector<KeyframePixel>& views) {
   Json fields = Json::array();
   for (const auto& [id, pixel] : views) {
-    const Rig& rig = map.rigs()[static_cast<std::size_t>(map.keyframe_header(id)->rig)];
+    const Rig& rig = rig_of(map, *map.keyframe_header(id));
     fields.push_back({id.number, (pixel.x() + 0.5) / rig.width, (pixel.y() + 0.5) / rig.height});
   }
   return fields;
