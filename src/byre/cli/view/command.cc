@@ -6,7 +6,6 @@
 #include "byre/cli/shared/view_run.h"
 #include "byre/io/recording/input_files.h"
 #include "byre/map.h"
-#include "byre/playback/archive/map_inspection.h"
 #include "byre/playback/report/inspection_report.h"
 #include "byre/slam/system/resources.h"
 #include "byre/tag_file.h"
@@ -62,7 +61,7 @@ ExitCode view(const ViewCommandOptions& options) {
   ViewedMap viewed;
   viewed.name = options.map.filename().string();
   viewed.stored = load_map(options.map);
-  viewed.next_step = inspection_report(viewed.stored, inspect(viewed.stored), {viewed.name, 0, {}}).conclusion;
+  viewed.next_step = next_step_with(viewed.stored, viewed.name);
   if (options.before) viewed.changes = changes_since(*options.before, viewed.stored);
   if (options.view.plan) viewed.plan = read_floor_plan(*options.view.plan);
   viewed.output = options.output;

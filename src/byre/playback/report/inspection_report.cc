@@ -134,7 +134,23 @@ void add_sizes(const InspectedFile& file, const MapInspection& inspection, Repor
   report.detail("memory", "{sizes}", {{"sizes", sizes_json(inspection.memory, true)}});
 }
 
+void conclude(const StoredMap& stored, Report& report) {
+  report.conclude(
+      "[{?faults}The map is damaged. Use a copy, or make the map again."
+      "|Ready for missions[{?is_unscaled}, of arbitrary scale (\"byre scale\" sets it)]. Next: byre run RECORDING "
+      "--map "
+      "{file.name}[{?is_on_plan}, whose poses are on the plan"
+      "|, or byre register {file.name} --plan PLAN.yaml --points PICKS.csv -o MAP.byre]]",
+      {{"is_unscaled", stored.scale == MapScale::unknown}, {"is_on_plan", stored.plan.has_value()}});
+}
+
 }  // namespace
+
+std::string next_step_with(const StoredMap& stored, const std::string& file_name) {
+  Report report{{{"file", {{"name", file_name}}}, {"faults", find_faults(stored)}}};
+  conclude(stored, report);
+  return report.conclusion;
+}
 
 Report inspection_report(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file) {
   const MapCounts& counts = inspection.counts;
@@ -190,13 +206,7 @@ Report inspection_report(const StoredMap& stored, const MapInspection& inspectio
   add_sizes(file, inspection, report);
   report.row("faults", "{!faults}none");
   for (const std::string& fault : inspection.faults) report.row("fault", "{fault}", {{"fault", fault}});
-  report.conclude(
-      "[{?faults}The map is damaged. Use a copy, or make the map again."
-      "|Ready for missions[{?is_unscaled}, of arbitrary scale (\"byre scale\" sets it)]. Next: byre run RECORDING "
-      "--map "
-      "{file.name}[{?is_on_plan}, whose poses are on the plan"
-      "|, or byre register {file.name} --plan PLAN.yaml --points PICKS.csv -o MAP.byre]]",
-      {{"is_unscaled", stored.scale == MapScale::unknown}, {"is_on_plan", stored.plan.has_value()}});
+  conclude(stored, report);
   return report;
 }
 

@@ -16,4 +16,7 @@ struct InspectedFile {
 
 Report inspection_report(const StoredMap& stored, const MapInspection& inspection, const InspectedFile& file);
 
+// Conclusion of the inspection alone: whether the map is ready for missions, and the next command.
+std::string next_step_with(const StoredMap& stored, const std::string& file_name);
+
 }  // namespace byre

@@ -132,7 +132,7 @@ Report registration_report(const Registering& registering, const RegisterProtoco
   report.conclude(
       "Fits the plan within {residual_m:.3f} m[{?doubts}, with doubts]"
       "[{?written}. Next: byre run RECORDING --map {written}, whose poses are on the plan"
-      "|; no map is saved. Next: correct the points, or save it with -o MAP.byre]");
+      "|; no map is saved. Next: [{!match}correct the points, or ]save it with -o MAP.byre]");
   return report;
 }
 
