@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Starts a PostgreSQL server of Debian in a folder, for tests and for trying out byre registry. It listens on a socket in
-# the folder only, and trusts all who may enter the folder; a registry for robots needs a server with TLS and passwords.
+# Starts a PostgreSQL server of Debian in a folder, for tests and for trying out byre registry. It listens only on
+# a socket in the folder, without passwords; a registry for robots needs a server with TLS and passwords.
 # Prints the settings of the environment by which clients find it. Root starts it as the user postgres.
 # Usage: registry.sh FOLDER [start | stop | kill]
 #   start   makes the server and the database byre unless they are there, and starts it (default)
@@ -56,7 +56,7 @@ case $action in
     workers=$(ps --no-headers --format pid --ppid "$postmaster" || true)
     # shellcheck disable=SC2086
     kill -9 "$postmaster" $workers
-    # The next start needs the end of all of them, and takes an ended process that nobody waited for as a running one.
+    # The next start fails while one of them runs. Zombies, which their parent does not wait for, count as ended.
     for process in $postmaster $workers; do
       while [[ $(ps --no-headers --format state --pid "$process") == [^Z]* ]]; do sleep 0.01; done
     done

@@ -134,7 +134,7 @@ TEST_F(RegistryAccess, TheOwnerRewritesNoVersionNoFileAndNoEvent) {
       "TRUNCATE byre.event",
       "UPDATE byre.blob SET size = 1",
       "UPDATE byre.blob_chunk SET number = 7",
-      "UPDATE byre.event SET actor = 'nobody'",
+      "UPDATE byre.event SET actor = 'robot_2'",
       "UPDATE byre.version SET blob = (SELECT max(hash::text)::bytea FROM byre.blob)",
       "UPDATE byre.version SET note = 'new'",
       "DELETE FROM byre.version",

@@ -209,6 +209,16 @@ BEGIN
 END $$;
 
 -- Reviews.
+CREATE FUNCTION byre.replace_accepted(at_site int, present text, why_retired text, wanted text, why text) RETURNS void
+  LANGUAGE plpgsql SET search_path = byre, pg_temp AS $$
+BEGIN
+  UPDATE version SET state = 'retired', reason = why_retired
+    WHERE site = at_site AND id = present AND state = 'accepted';
+  UPDATE version SET state = 'accepted', reason = why WHERE site = at_site AND id = wanted;
+EXCEPTION WHEN unique_violation THEN
+  RAISE EXCEPTION 'another version was accepted at the same time' USING HINT = 'compare with it, and try again';
+END $$;
+
 CREATE FUNCTION byre.accept(at_site int, wanted text, why text) RETURNS void
   LANGUAGE plpgsql SET search_path = byre, pg_temp AS $$
 DECLARE
@@ -224,10 +234,7 @@ BEGIN
     RAISE EXCEPTION 'version % was not made of %, which is accepted', wanted, present
       USING HINT = 'reject it; the next update is made of the accepted version';
   END IF;
-  UPDATE version SET state = 'retired', reason = 'replaced by ' || wanted WHERE site = at_site AND id = present AND state = 'accepted';
-  UPDATE version SET state = 'accepted', reason = why WHERE site = at_site AND id = wanted;
-EXCEPTION WHEN unique_violation THEN
-  RAISE EXCEPTION 'another version was accepted at the same time' USING HINT = 'compare with it, and try again';
+  PERFORM replace_accepted(at_site, present, 'replaced by ' || wanted, wanted, why);
 END $$;
 
 CREATE FUNCTION byre.reject(at_site int, wanted text, why text) RETURNS void
@@ -255,11 +262,8 @@ BEGIN
     RAISE EXCEPTION 'there is no earlier accepted version%', coalesce(' ' || wanted, '')
       USING HINT = 'byre registry history SITE shows what was accepted';
   END IF;
-  UPDATE version SET state = 'retired', reason = why WHERE site = at_site AND id = present.id AND state = 'accepted';
-  UPDATE version SET state = 'accepted', reason = why WHERE site = at_site AND id = chosen;
+  PERFORM replace_accepted(at_site, present.id, why, chosen, why);
   RETURN chosen;
-EXCEPTION WHEN unique_violation THEN
-  RAISE EXCEPTION 'another version was accepted at the same time' USING HINT = 'compare with it, and try again';
 END $$;
 
 -- Gives an account a role, and creates it without a password if missing. Needs the right to create roles.
@@ -282,7 +286,7 @@ END $$;
 REVOKE EXECUTE ON ALL FUNCTIONS IN SCHEMA byre FROM PUBLIC;
 GRANT USAGE ON SCHEMA byre TO byre_robot, byre_reviewer, byre_worker;
 GRANT EXECUTE ON FUNCTION byre.missing_chunks, byre.add_blob TO byre_robot, byre_reviewer, byre_worker;
-GRANT EXECUTE ON FUNCTION byre.accept, byre.reject, byre.rollback TO byre_reviewer;
+GRANT EXECUTE ON FUNCTION byre.accept, byre.reject, byre.rollback, byre.replace_accepted TO byre_reviewer;
 GRANT SELECT ON byre.schema_version, byre.site, byre.robot, byre.chunk, byre.blob, byre.blob_chunk, byre.version,
   byre.session TO byre_robot, byre_reviewer, byre_worker;
 GRANT SELECT ON byre.event TO byre_robot, byre_reviewer, byre_worker;  -- no policy lets a robot read a row
