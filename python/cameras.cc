@@ -121,7 +121,7 @@ void bind_calibration(py::module_& module) {
       "\"calibration_files\". right: file of the right camera, if each camera has its own. \"FILE#NAME\" reads one "
       "of several cameras. "
       "Raises InputError with the field for an unsupported model and for a missing or invalid value.\n"
-      ">>> byre.read_calibration(room + \"/mav0/cam0/sensor.yaml\", room + \"/mav0/cam1/sensor.yaml\").left.fx > 0\n"
+      ">>> byre.read_calibration(room / \"mav0/cam0/sensor.yaml\", room / \"mav0/cam1/sensor.yaml\").left.fx > 0\n"
       "True");
 }
 

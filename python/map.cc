@@ -341,8 +341,8 @@ void bind_files(MapClass& type) {
           "Raises InputError for a damaged or unsupported model, and for an image that is missing, damaged or of "
           "another "
           "size than its camera.\n\n"
-          ">>> m.export_colmap('model', images_of=recording)\n"
-          ">>> again = byre.Map.import_colmap('model', recording / 'mav0/cam0/data', metres_per_unit=1.0)\n"
+          ">>> m.export_colmap('model', images_of=room)\n"
+          ">>> again = byre.Map.import_colmap('model', room / 'mav0/cam0/data', metres_per_unit=1.0)\n"
           ">>> len(again.keyframes) == len(m.keyframes)\n"
           "True")
       .def(

@@ -1,8 +1,6 @@
 """Tests of the package byre on a small rendered recording of a room."""
-import doctest
 import enum
 import gc
-import inspect
 import os
 import pathlib
 import pickle
@@ -486,58 +484,6 @@ for images in list(recording)[:6]:
 """
     done = subprocess.run([sys.executable, "-c", script, room], check=True, capture_output=True, text=True)
     assert len(done.stdout.splitlines()) == 6, done.stderr
-
-
-def public_callables():
-    """Functions of the package, and methods of its classes, by name. Those of Map have a test of their own."""
-    for name in byre.__all__:
-        bound = getattr(byre, name)
-        if not inspect.isclass(bound):
-            yield name, bound
-            continue
-        for method in vars(bound):
-            value = getattr(bound, method)
-            if bound is not byre.Map and not method.startswith("_") and (inspect.isroutine(value) and value.__doc__):
-                yield f"{name}.{method}", value
-
-
-def test_functions_have_examples_that_run(room, room_map, frames, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "tags.yaml").write_text("size: 0.24\ntags:\n  - id: 3\n  - id: 7\n")
-    calibration = byre.Recording(room).calibration
-    mapped = byre.Slam.mapping(calibration, REPEATABLE)
-    for images in frames[: len(frames) // 2]:
-        mapped.process(images)
-    mapped.finish()
-    mapped.save("part.byre")
-    mission = byre.Slam.on_map(calibration, "part.byre", REPEATABLE)
-    for images in frames:
-        mission.process(images)
-    m = byre.Map.load(room_map)
-    picks_in_map = m.positions[:: len(m.positions) // 9]
-    in_world = picks_in_map @ np.linalg.inv(m.keyframes[0].map_from_body)[:3, :3].T
-    names = {
-        "byre": byre,
-        "np": np,
-        "recording": byre.Recording(room),
-        "room": str(room),
-        "path": "part.byre",
-        "images": frames[0],
-        "mapped": mapped,
-        "mission": mission,
-        "m": m,
-        "picks_in_map": picks_in_map,
-        "picks_in_plan": in_world[:, :2],
-    }
-    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
-    tested = dict(public_callables())
-    assert len(tested) > 25
-    for name, bound in tested.items():
-        examples = doctest.DocTestParser().get_doctest(bound.__doc__, dict(names), name, None, 0)
-        assert examples.examples, f"{name} has no example"
-        runner.run(examples)
-    assert runner.failures == 0
-    assert all(byre.advice_for(doubt) for doubt in byre.DistrustReason if doubt is not byre.DistrustReason.none)
 
 
 def test_everything_has_a_signature():

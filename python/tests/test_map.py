@@ -1,6 +1,6 @@
 """Tests of byre.Map on a map of a small rendered recording of a room."""
-import doctest
 import gc
+import os
 import pathlib
 import pickle
 import re
@@ -13,49 +13,7 @@ import pytest
 
 import byre
 
-DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
-
-
-@pytest.fixture(scope="module")
-def m(room_map):
-    return byre.Map.load(room_map)
-
-
-@pytest.fixture(scope="module")
-def truth(room):
-    return byre.read_trajectory(byre.find_ground_truth(room))
-
-
-@pytest.fixture(scope="module")
-def picks(m, truth):
-    """Points of the map, and the same on a plan along the plane of its path, which is not level in this room."""
-    in_map = m.positions[:: len(m.positions) // 9]
-    world_from_map = truth.poses[0]
-    in_world = in_map @ world_from_map[:3, :3].T + world_from_map[:3, 3]
-    plan_from_map = m.register_on_plan("world", in_map, in_world[:, :2]).registration.plan_from_map
-    return in_map, (in_map @ plan_from_map[:3, :3].T + plan_from_map[:3, 3])[:, :2]
-
-
-def test_every_member_has_an_example_that_runs(m, room, room_map, frames, picks, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    names = {
-        "byre": byre,
-        "np": np,
-        "m": m,
-        "path": room_map,
-        "recording": room,
-        "images": frames[10],
-        "picks_in_map": picks[0],
-        "picks_in_plan": picks[1],
-    }
-    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
-    members = [name for name in vars(byre.Map) if not name.startswith("_")]
-    assert len(members) > 20
-    for name in members:
-        examples = doctest.DocTestParser().get_doctest(getattr(byre.Map, name).__doc__, dict(names), name, None, 0)
-        assert examples.examples, f"{name} has no example"
-        runner.run(examples)
-    assert runner.failures == 0
+HERE = pathlib.Path(__file__).resolve().parent
 
 
 def test_a_loaded_map_has_what_was_mapped(m, room):
@@ -234,9 +192,8 @@ def test_a_colmap_round_trip_keeps_poses_and_points(m, room, tmp_path):
 
 def test_the_map_is_drawn_in_ten_lines(room_map, tmp_path):
     pytest.importorskip("matplotlib")
-    page = (DOCS / "how-to" / "draw_pictures.md").read_text()
-    code = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
-    assert len(code.splitlines()) <= 10
-    code = "import matplotlib\nmatplotlib.use('agg')\n" + code.replace("barn.byre", str(room_map))
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)
-    assert (tmp_path / "map.png").stat().st_size > 10_000
+    script = HERE.parent / "examples" / "draw_map.py"
+    assert len([line for line in script.read_text().splitlines() if line]) <= 10
+    picture = tmp_path / "map.png"
+    subprocess.run([sys.executable, script, room_map, picture], check=True, env={**os.environ, "MPLBACKEND": "agg"})
+    assert picture.stat().st_size > 10_000
