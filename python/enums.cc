@@ -128,6 +128,7 @@ void bind_enums_of_reports(py::module_& module) {
                                   {"clustered", LocalisationFailure::clustered},
                                   {"uncertain", LocalisationFailure::uncertain},
                                   {"impossible", LocalisationFailure::impossible},
+                                  {"unlikely", LocalisationFailure::unlikely},
                                   {"ambiguous", LocalisationFailure::ambiguous}});
 }
 

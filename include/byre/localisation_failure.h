@@ -16,6 +16,7 @@ enum class LocalisationFailure : std::uint8_t {
   clustered,            // the inliers lie in a small part of the image
   uncertain,            // the inliers do not constrain the pose enough
   impossible,           // the camera cannot be at the place found
+  unlikely,             // too few of the points that the place should show are found
   ambiguous             // two places fit the image
 };
 

@@ -6,6 +6,7 @@
 #include "byre/io/image/image_fit.h"
 #include "byre/io/image/image_names.h"
 #include "byre/playback/decode_ahead.h"
+#include "byre/slam/localisation/place_search.h"
 
 #include <algorithm>
 #include <utility>
@@ -24,21 +25,15 @@ Calibration best_calibration(const std::vector<SourceRecording>& recordings, con
 
 std::vector<TagFamily> families_in(std::span<const SearchableMap> maps) {
   std::vector<MappedTag> tags;
-  for (const SearchableMap& map : maps) tags.insert(tags.end(), map.tags.begin(), map.tags.end());
+  for (const SearchableMap& map : maps) tags.insert(tags.end(), map.map.tags().begin(), map.map.tags().end());
   return families_of(tags);
-}
-
-// Inliers of the best place; negative without one, ascending by progress.
-int fit_of(const Localisation& found) {
-  if (!found.places_found.empty()) return static_cast<int>(found.places_found.front().features.size());
-  return static_cast<int>(found.failure) - static_cast<int>(LocalisationFailure::ambiguous) - 1;
 }
 
 // Extracts features of one camera and localises each frame in the maps.
 class Finder {
  public:
   Finder(std::span<const SearchableMap> maps, const Calibration& given)
-      : maps_(maps), extractor_(best_calibration(maps.front().recordings, given), {}, families_in(maps)) {}
+      : maps_(maps), extractor_(best_calibration(maps.front().map.recordings(), given), {}, families_in(maps)) {}
 
   LocalisedFrame find(ImageFrame images, std::string name) {
     if (!std::ranges::all_of(maps_, &SearchableMap::is_metric)) {
@@ -52,9 +47,13 @@ class Finder {
     const Frame frame = extractor_.extract(images).frame;
     result.extract_seconds = extraction.seconds();
     const Stopwatch search;
-    find_in_maps(frame, result);
+    std::vector<const OfflineMap*> maps;
+    for (const SearchableMap& map : maps_) maps.push_back(&map.map);
+    ImageLocalisation found = localise_image(maps, frame, extractor_.rig());
+    result.localisation = std::move(found.found);
     result.localise_seconds = search.seconds();
     if (result.localisation.tracked) {
+      result.map = maps_[static_cast<std::size_t>(found.map)].name;
       result.world_from_body =
           inverse(extractor_.rig().body_from_camera * result.localisation.tracked->camera_from_world);
     }
@@ -62,26 +61,6 @@ class Finder {
   }
 
  private:
-  void find_in_maps(const Frame& frame, LocalisedFrame& result) const {
-    int rival = -1;  // inliers in another map
-    for (const SearchableMap& map : maps_) {
-      LocaliseOptions options;
-      options.tags = map.tags;
-      Localisation found = localise(frame, extractor_.rig(), map.view(), map.index, options);
-      const bool is_best = &map == &maps_.front() || fit_of(found) > fit_of(result.localisation);
-      if (&map != &maps_.front()) rival = std::max(rival, fit_of(is_best ? result.localisation : found));
-      if (!is_best) continue;
-      result.localisation = std::move(found);
-      result.map = map.name;
-    }
-    Localisation& best = result.localisation;
-    if (best.tracked && rival > 0 && rival >= kRivalShare * best.inliers) {
-      best.tracked.reset();
-      best.failure = LocalisationFailure::ambiguous;
-    }
-    if (!best.tracked) result.map.clear();
-  }
-
   std::span<const SearchableMap> maps_;
   Extractor extractor_;
 };

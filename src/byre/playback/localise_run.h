@@ -2,9 +2,9 @@
 
 #include "byre/features/extract.h"
 #include "byre/map/map_file.h"
-#include "byre/place/place_index.h"
 #include "byre/recording.h"
 #include "byre/slam/places/localisation.h"
+#include "byre/slam/places/offline_map.h"
 
 #include <filesystem>
 #include <functional>
@@ -37,25 +37,15 @@ struct LocaliseHooks {
   std::function<void(int done, const LocalisedFrame& frame)> after_frame;
 };
 
-// Map with a place index. Borrows the map.
 struct SearchableMap {
   SearchableMap(const StoredMap& stored, const Vocabulary& vocabulary, std::string name_in_site = "")
       : name(std::move(name_in_site)),
         is_metric(stored.scale == MapScale::metric),
-        map(stored.map),
-        recordings(stored.recordings),
-        tags(stored_tags(stored.notes)),
-        index(index_of(stored.map, vocabulary)) {}
+        map(stored.map, vocabulary, stored.recordings, {}, {}, stored_tags(stored.notes)) {}
 
   std::string name;  // in the site; empty without a site
   bool is_metric;    // whether disparities are comparable with the map
-  const MapGraph& map;
-  const std::vector<SourceRecording>& recordings;
-  std::vector<MappedTag> tags;
-  MapGraph empty_online_map{Origin::online};
-  PlaceIndex index;
-
-  MapView view() const { return {&map, empty_online_map}; }
+  OfflineMap map;
 };
 
 // Localises each frame of a recording in the maps of a site, or in one map. A frame that fits two maps is ambiguous.

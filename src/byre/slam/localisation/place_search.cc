@@ -78,6 +78,13 @@ void ActiveHint::expire(Timestamp frame) {
 
 namespace {
 
+// Attempts with places rank above those without, by inliers; the others by progress.
+std::pair<bool, int> rank_of(const Localisation& attempt) {
+  const bool has_place = !attempt.places_found.empty();
+  return {has_place, has_place ? static_cast<int>(attempt.places_found.front().features.size())
+                               : static_cast<int>(attempt.failure)};
+}
+
 // candidates: nullptr: by a query of this map.
 BoundedLocalisation localise_at_candidates(const OfflineMap& offline, const PlaceQuery& query,
                                            const PlaceSearchOptions& options, const Candidates* candidates) {
@@ -116,6 +123,17 @@ BoundedLocalisation localise_at_candidates(const OfflineMap& offline, const Plac
   return result;
 }
 
+PlaceView view_at(const OfflineMap& offline, const Frame& frame, const Rig& rig, const ImageMask& hidden,
+                  const TrackedFrame& tracked) {
+  const MapGraph nothing_online(Origin::online);
+  const ScratchVector<PointId> around =
+      local_points(MapView(&offline.map(), nothing_online), tracked.reference, kKeyframesOfPlace);
+  const ScratchVector<PointId> nearby =
+      points_of_place(offline, keyframes_of_place(offline, tracked.camera_from_world));
+  return view_of_place(
+      {offline.map(), rig, frame, tracked, nearby, around, hidden, offline.tags(), {}, {}, offline.cell_unit()});
+}
+
 PlaceSearch search_at_candidates(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options,
                                  const Candidates* candidates) {
   const auto [found, refused] = localise_at_candidates(offline, query, options, candidates);
@@ -124,21 +142,7 @@ PlaceSearch search_at_candidates(const OfflineMap& offline, const PlaceQuery& qu
   if (!found.tracked) return search;
   const MapGraph nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
-  const ScratchVector<PointId> around =
-      local_points(MapView(&offline.map(), nothing_online), found.tracked->reference, kKeyframesOfPlace);
-  const ScratchVector<PointId> nearby =
-      points_of_place(offline, keyframes_of_place(offline, found.tracked->camera_from_world));
-  PlaceView view = view_of_place({offline.map(),
-                                  query.rig,
-                                  query.frame,
-                                  *found.tracked,
-                                  nearby,
-                                  around,
-                                  query.hidden,
-                                  offline.tags(),
-                                  {},
-                                  {},
-                                  offline.cell_unit()});
+  PlaceView view = view_at(offline, query.frame, query.rig, query.hidden, *found.tracked);
   search.found = FoundPlace{found.tracked->camera_from_world, depth, std::move(view)};
   search.refused = DistrustReason::none;
   return search;
@@ -163,6 +167,46 @@ std::vector<PlaceSearch> search_places(std::span<const std::shared_ptr<const Off
     searches.push_back(search_at_candidates(*maps[i], query, options, &candidates[i]));
   }
   return searches;
+}
+
+ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const Frame& frame, const Rig& rig) {
+  const double unlikely = -std::log(10.0), much_less_likely = std::log(20.0);  // log-odds
+  struct LikelyPlace {
+    int map = 0;
+    TrackedFrame tracked;
+    double log_odds = 0.0;
+    bool is_near_keyframe = false;
+  };
+  const MapGraph nothing_online(Origin::online);
+  std::vector<LikelyPlace> places;
+  ImageLocalisation best;
+  for (int i = 0; i < std::ssize(maps); ++i) {
+    const OfflineMap& offline = *maps[static_cast<std::size_t>(i)];
+    LocaliseOptions options;
+    options.tags = offline.tags();
+    Localisation found = localise(frame, rig, MapView(&offline.map(), nothing_online), offline.places(), options);
+    for (const TrackedFrame& place : found.places_found) {
+      const PlaceView view = view_at(offline, frame, rig, {}, place);
+      places.push_back({i, place, log_odds_of(view), view.is_near_keyframe});
+    }
+    if (i == 0 || rank_of(found) > rank_of(best.found)) best = {std::move(found), i};
+  }
+  if (places.empty()) return best;
+  std::ranges::stable_sort(places, std::ranges::greater{}, &LikelyPlace::log_odds);
+  LikelyPlace& likeliest = places.front();
+  best.map = likeliest.map;
+  best.found.inliers = static_cast<int>(likeliest.tracked.features.size());
+  best.found.tracked.reset();
+  // Far from keyframes, walls may hide expected points.
+  if (likeliest.log_odds < unlikely && likeliest.is_near_keyframe) {
+    best.found.failure = LocalisationFailure::unlikely;
+  } else if (places.size() > 1 && likeliest.log_odds - places[1].log_odds < much_less_likely) {
+    best.found.failure = LocalisationFailure::ambiguous;
+  } else {
+    best.found.failure = LocalisationFailure::none;
+    best.found.tracked = std::move(likeliest.tracked);
+  }
+  return best;
 }
 
 }  // namespace byre

@@ -75,4 +75,13 @@ PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, con
 std::vector<PlaceSearch> search_places(std::span<const std::shared_ptr<const OfflineMap>> maps, const PlaceQuery& query,
                                        const PlaceSearchOptions& options);
 
+struct ImageLocalisation {
+  Localisation found;
+  int map = 0;  // index of the map of `found`
+};
+
+// Localises a frame by itself, without frames before it, in one of several maps. Of the places that fit, in all maps,
+// the likeliest is taken if all others are much less likely: by the points that a frame should show there, and by tags.
+ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const Frame& frame, const Rig& rig);
+
 }  // namespace byre

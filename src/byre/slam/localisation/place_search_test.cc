@@ -27,11 +27,51 @@ class PlaceSearchInTwinRooms : public ::testing::Test {
   const SimulatedMission mission_ = lap();
 };
 
+TEST_F(PlaceSearchInTwinRooms, LocalisesNoImageAlone) {
+  const OfflineMap* const map = &twins();
+  const ImageLocalisation found = localise_image({&map, 1}, mission_.frames[0], mission_.rig);
+  EXPECT_FALSE(found.found.tracked);
+  EXPECT_EQ(found.found.failure, LocalisationFailure::ambiguous);
+}
+
+TEST_F(PlaceSearchInTwinRooms, LocalisesNoImageAloneInOneOfTwoEqualMaps) {
+  const OfflineMap room(MappedPlace(mission_).map, twins().places().vocabulary());
+  const OfflineMap* const both[] = {&room, &room};
+  const ImageLocalisation found = localise_image(both, mission_.frames[0], mission_.rig);
+  EXPECT_FALSE(found.found.tracked);
+  EXPECT_EQ(found.found.failure, LocalisationFailure::ambiguous);
+}
+
 TEST_F(PlaceSearchInTwinRooms, ReturnsBothPlacesAndSelectsNone) {
   const PlaceSearch search = search_place(twins(), {mission_.frames[0], mission_.rig}, {});
   EXPECT_FALSE(search.found);
   EXPECT_THAT(search.places, SizeIs(2));
   EXPECT_EQ(search.time, mission_.frames[0].time);
+}
+
+// The other room has its upper points elsewhere, which is too few to decide by the number of inliers.
+TEST(ImageLocalisation, SelectsTheRoomWithMostOfItsPointsInView) {
+  const SimulatedMission mission = lap();
+  MappedPlace place = twin_rooms(mission);
+  const int of_one_room = place.map.point_count() / 2;
+  for (const PointId id : place.map.point_ids()) {
+    MapPoint point = *place.map.find_point(id);
+    if (static_cast<int>(id.number) < of_one_room || point.position_in_world.z() < 1.0) continue;
+    point.position_in_world.z() += 0.5;
+    place.map.update_point(id, point);
+  }
+  const OfflineMap map(place.map, place.index.vocabulary());
+  const OfflineMap* const maps[] = {&map};
+  int decided = 0;
+  for (std::size_t i = 0; i < mission.frames.size(); i += 6) {
+    const Frame& frame = mission.frames[i];
+    const Localisation by_inliers = localise(frame, mission.rig, place.view(), place.index, {});
+    const Localisation likeliest = localise_image(maps, frame, mission.rig).found;
+    if (!likeliest.tracked) continue;
+    decided += by_inliers.failure == LocalisationFailure::ambiguous;
+    EXPECT_LT(inverse(likeliest.tracked->camera_from_world).translation.x(), 5.0) << "frame " << i;
+  }
+  EXPECT_GE(decided, 3);
 }
 
 }  // namespace

@@ -5,8 +5,7 @@
 #include "byre/map.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"
-#include "byre/place/place_index.h"
-#include "byre/slam/places/localisation.h"
+#include "byre/slam/localisation/place_search.h"
 #include "byre/slam/system/input_check.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/slam/tracking/body_pose.h"
@@ -36,20 +35,18 @@ StoredMap with_words(StoredMap stored, const Vocabulary& vocabulary) {
 }  // namespace
 
 struct Localiser::State {
+  // Precondition: stored was made by with_words().
   State(const StoredMap& stored, const std::optional<Calibration>& given, const Vocabulary& vocabulary)
-      : map(with_words(stored, vocabulary)),
+      : is_metric(stored.scale == MapScale::metric),
+        map(stored.map, vocabulary, stored.recordings, {}, {}, stored_tags(stored.notes)),
         calibration(calibration_in(stored, given)),
-        index(index_of(map.map, vocabulary)),
-        tags(stored_tags(stored.notes)),
-        extractor(calibration, {}, families_of(tags)) {}
+        extractor(calibration, {}, families_of(map.tags())) {}
 
   ImageFrame images_of(const CameraImages& images) const;
 
-  StoredMap map;
-  MapGraph nothing_online{Origin::online};
+  bool is_metric;
+  OfflineMap map;
   Calibration calibration;
-  PlaceIndex index;
-  std::vector<MappedTag> tags;
   Extractor extractor;
 };
 
@@ -62,7 +59,6 @@ ImageFrame Localiser::State::images_of(const CameraImages& images) const {
   ImageFrame frame{images.left.time, {}, std::nullopt};
   copy_grey(images.left, frame.left);
   // Disparities are comparable with a metric map only.
-  const bool is_metric = map.scale == MapScale::metric;
   if (is_metric && check.may_use_right()) copy_grey(*images.right, frame.right.emplace());
   if (is_metric && check.may_use_depth()) {
     copy_depth(*images.depth, calibration.depth->units_per_metre, frame.depth.emplace());
@@ -72,7 +68,10 @@ ImageFrame Localiser::State::images_of(const CameraImages& images) const {
 
 Localiser::Localiser(const Map& map, const std::optional<Calibration>& calibration,
                      const std::optional<std::filesystem::path>& vocabulary)
-    : state_(std::make_unique<State>(map.stored(), calibration, open_vocabulary(vocabulary))) {}
+    : state_([&] {
+        const Vocabulary words = open_vocabulary(vocabulary);
+        return std::make_unique<State>(with_words(map.stored(), words), calibration, words);
+      }()) {}
 
 Localiser::Localiser(Localiser&&) noexcept = default;
 Localiser& Localiser::operator=(Localiser&&) noexcept = default;
@@ -82,10 +81,8 @@ LocalisationReport Localiser::localise(const CameraImages& images) {
   State& state = *state_;
   const Rig& rig = state.extractor.rig();
   const Frame frame = state.extractor.extract(state.images_of(images)).frame;
-  LocaliseOptions options;
-  options.tags = state.tags;
-  const Localisation found =
-      byre::localise(frame, rig, MapView(&state.map.map, state.nothing_online), state.index, options);
+  const OfflineMap* const map = &state.map;
+  const Localisation found = localise_image({&map, 1}, frame, rig).found;
   LocalisationReport report;
   report.failure = found.failure;
   report.inliers = found.inliers;
