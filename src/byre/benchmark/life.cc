@@ -3,12 +3,14 @@
 #include "byre/base/stopwatch.h"
 #include "byre/benchmark/evaluate_run.h"
 #include "byre/benchmark/run_cost.h"
+#include "byre/features/extract.h"
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/evaluation/map_frame_error.h"
 #include "byre/geometry/median.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/report/mission_errors.h"
+#include "byre/slam/places/place_view.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 
@@ -16,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <utility>
 
 namespace byre {
@@ -26,6 +29,7 @@ namespace fs = std::filesystem;
 constexpr double kBytesPerMegabyte = 1e6;
 constexpr std::size_t kDaysLocalised = 6;
 constexpr int kLocalisedStride = 10;  // frames
+constexpr int kPointsInView = 60;     // map points, from which a frame should be localised
 
 std::vector<fs::path> recordings_in(const fs::path& folder) {
   std::vector<fs::path> recordings;
@@ -147,20 +151,23 @@ class LifeRunner {
 
   LifeLocalisation localise_last_days() const {
     const Map first_map = Map::load(first_), newest_map = Map::load(newest_);
+    const Vocabulary vocabulary = open_vocabulary(life_.vocabulary);
+    const auto offline_first = load_offline_map(first_, vocabulary);
+    const auto offline_newest = load_offline_map(newest_, vocabulary);
     LifeLocalisation all;
     std::map<std::array<int, 2>, std::vector<Pose>> changes;  // by place
     const std::size_t begin = recordings_.size() - std::min(kDaysLocalised, recordings_.size() - 1);
     for (std::size_t day = begin; day < recordings_.size() && !hooks_.should_stop(); ++day) {
       const auto recording = open_recording(recordings_[day], {});
       const Trajectory truth = load_truth(recordings_[day]);
-      Localiser first(first_map, recording->calibration(), life_.vocabulary);
-      Localiser newest(newest_map, recording->calibration(), life_.vocabulary);
+      SearchedVersion first(first_map, offline_first, recording->calibration(), life_.vocabulary);
+      SearchedVersion newest(newest_map, offline_newest, recording->calibration(), life_.vocabulary);
       for (int i = 0; i < recording->size(); i += kLocalisedStride) {
         const auto frame = recording->read(i);
         if (!frame) continue;
         ++all.frames;
-        const std::optional<Pose> before = found(first, *frame, truth, all.found_first, all.false_first);
-        const std::optional<Pose> now = found(newest, *frame, truth, all.found_newest, all.false_newest);
+        const std::optional<Pose> before = found(first, *frame, truth, all.first);
+        const std::optional<Pose> now = found(newest, *frame, truth, all.newest);
         if (!before || !now) continue;
         const Eigen::Vector2d place = (before->translation.head<2>() / 2.0).array().floor();
         changes[{static_cast<int>(place.x()), static_cast<int>(place.y())}].push_back(*now * inverse(*before));
@@ -170,16 +177,41 @@ class LifeRunner {
     return all;
   }
 
-  // Counts the localisation as found or false. Empty unless it is right.
-  std::optional<Pose> found(Localiser& localiser, const ImageFrame& frame, const Trajectory& truth, int& right,
-                            int& wrong) const {
-    const LocalisationReport report = localiser.localise(view_of(frame));
-    if (!report.map_from_body) return std::nullopt;
-    const std::vector<PosePair> pairs = associate({{frame.time, *report.map_from_body}}, truth, {});
+  // A version of the map to localise in.
+  struct SearchedVersion {
+    SearchedVersion(const Map& version, std::shared_ptr<const OfflineMap> stored, const Calibration& calibration,
+                    const std::optional<fs::path>& vocabulary)
+        : localiser(version, calibration, vocabulary),
+          map(std::move(stored)),
+          rig(Extractor(calibration, {}, {}).rig()) {}
+
+    Localiser localiser;
+    std::shared_ptr<const OfflineMap> map;
+    Rig rig;
+  };
+
+  static int points_in_view(const SearchedVersion& version, const Pose& map_from_body) {
+    const Pose camera_from_map = inverse(map_from_body * version.rig.body_from_camera);
+    const auto points = points_of_place(*version.map, keyframes_of_place(*version.map, camera_from_map));
+    return static_cast<int>(std::ranges::count_if(points, [&](PointId id) {
+      const Eigen::Vector3d in_camera = camera_from_map * version.map->map().find_point(id)->position_in_world;
+      return in_camera.z() > 0.0 && version.rig.contains(version.rig.project(in_camera).head<2>());
+    }));
+  }
+
+  // Empty unless it is right.
+  std::optional<Pose> found(SearchedVersion& version, const ImageFrame& frame, const Trajectory& truth,
+                            VersionLocalisation& counts) const {
+    const std::vector<PosePair> pairs = associate({{frame.time, Pose()}}, truth, {});
     if (pairs.empty()) return std::nullopt;
-    const Eigen::Vector3d position = alignment_.truth_from_map * report.map_from_body->translation;
-    const bool is_right = (position - pairs[0].true_world_from_body.translation).norm() <= kFarMetres;
-    ++(is_right ? right : wrong);
+    const Pose map_from_body = inverse(alignment_.truth_from_map.target_from_source) * pairs[0].true_world_from_body;
+    const bool is_in_view = points_in_view(version, map_from_body) >= kPointsInView;
+    counts.in_view += is_in_view;
+    const LocalisationReport report = version.localiser.localise(view_of(frame));
+    if (!report.map_from_body) return std::nullopt;
+    const bool is_right = (report.map_from_body->translation - map_from_body.translation).norm() <= kFarMetres;
+    counts.found += is_right && is_in_view;
+    counts.falsely += !is_right;
     return is_right ? report.map_from_body : std::nullopt;
   }
 

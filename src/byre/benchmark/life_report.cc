@@ -13,6 +13,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json version_json(const VersionLocalisation& version) {
+  return {{"in_view", version.in_view}, {"found", version.found}, {"falsely", version.falsely}};
+}
+
 Json mission_json(const LifeMission& mission) {
   return {{"trusted", mission.trusted},
           {"within_5_cm", mission.within_5_cm},
@@ -109,11 +113,13 @@ std::string life_markdown(const LifeResult& result) {
   if (result.localisation) {
     const LifeLocalisation& found = *result.localisation;
     text += fmt::format(
-        "\nLocalised without a prediction, {} frames of the last days: {} and {} found, {} and {} falsely.\n"
+        "\nLocalised without a prediction, {} frames of the last days: {} of {} and {} of {} found where 60 points are "
+        "in "
+        "view, {} and {} of all frames falsely.\n"
         "Places, {}: median poses of the first and the newest version differ by at most {:.1f} mm and {:.3f} "
         "degrees.\n",
-        found.frames, found.found_first, found.found_newest, found.false_first, found.false_newest, found.places,
-        1e3 * found.shift, found.turn);
+        found.frames, found.first.found, found.first.in_view, found.newest.found, found.newest.in_view,
+        found.first.falsely, found.newest.falsely, found.places, 1e3 * found.shift, found.turn);
   }
   return text;
 }
@@ -134,10 +140,8 @@ std::string life_json(const LifeResult& result) {
   if (result.localisation) {
     const LifeLocalisation& found = *result.localisation;
     json["localisation"] = {{"frames", found.frames},
-                            {"found_first", found.found_first},
-                            {"found_newest", found.found_newest},
-                            {"false_first", found.false_first},
-                            {"false_newest", found.false_newest},
+                            {"first", version_json(found.first)},
+                            {"newest", version_json(found.newest)},
                             {"places", found.places},
                             {"shift_m", found.shift},
                             {"turn_deg", found.turn}};
