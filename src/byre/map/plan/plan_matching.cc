@@ -424,12 +424,11 @@ std::optional<PlanMatch> match_with_plan(const MapGraph& map, const DrivingPlane
   const std::vector<Vector2d> path = dense_path(map, grid->plan_from_map);
   Vector2d middle = Vector2d::Zero();
   for (const Vector2d& position : path) middle += position / static_cast<double>(path.size());
-  const PlanMatcher matcher(walls, cells_of(*grid, path, middle));
+  std::vector<MapCell> cells = cells_of(*grid, path, middle);
+  if (std::ranges::count(cells, CellKind::obstacle, &MapCell::kind) == 0) return std::nullopt;
+  const PlanMatcher matcher(walls, std::move(cells));
   const std::vector<PlanarPose> poses = matcher.search();
-  if (poses.empty() ||
-      std::ranges::none_of(matcher.cells(), [](const MapCell& cell) { return cell.kind == CellKind::obstacle; })) {
-    return std::nullopt;
-  }
+  if (poses.empty()) return std::nullopt;
   PlanRegistrationOptions registering;
   registering.body_height = body_height.value_or(0.0);
   Similarity start = on_plan(poses.front(), walls, middle, grid->plan_from_map);
