@@ -38,13 +38,12 @@ def measured_memory(program, names):
 
 
 def measured_instructions(program, names):
-    """Instructions of one pass, in the order of execution. Two functions of the benchmark library delimit a pass:
-    callgrind counts from the first and writes a file at the second."""
+    """Instructions of one pass, in the order of execution. The program starts the count of callgrind before a pass, and
+    lets it write a file after it."""
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run(
-            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out",
-             "--zero-before=benchmark::State::StartKeepRunning()",
-             "--dump-before=benchmark::State::FinishKeepRunning()", program, *chosen(names)],
+            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/out", "--instr-atstart=no", program,
+             *chosen(names)],
             capture_output=True, text=True)
         if run.returncode != 0:
             sys.exit(f"check_hot_loops.py: {program} failed under valgrind:\n{run.stderr}")
