@@ -30,9 +30,9 @@ class ViewProgram : public ProgramTest {
 TEST_F(ViewProgram, ShowsAMapUntilItIsInterrupted) {
   map_room("", "room.byre");
   const pid_t process = start({"view", (folder_ / "room.byre").string(), "--port", "0"});
-  ASSERT_TRUE(appears("until Ctrl-C", "stderr.txt"));
+  ASSERT_TRUE(appears("until Ctrl-C", "stderr.txt")) << read("stderr.txt");
   kill(process, SIGINT);
-  EXPECT_EQ(exit_code_of(process), 0);
+  EXPECT_EQ(exit_code_of(process), 0) << read("stderr.txt");
   EXPECT_THAT(read("stderr.txt"), HasSubstr("viewer: http://127.0.0.1:"));
   EXPECT_THAT(read("stdout.txt"), IsEmpty());
 }
@@ -41,9 +41,9 @@ TEST_F(ViewProgram, PrintsOnlyItsAddressWhenQuiet) {
   map_room("", "room.byre");
   const pid_t process =
       start({"view", (folder_ / "room.byre").string(), "--port", "0", "--bind", "0.0.0.0", "--quiet"});
-  ASSERT_TRUE(appears("?token=", "stderr.txt"));
+  ASSERT_TRUE(appears("?token=", "stderr.txt")) << read("stderr.txt");
   kill(process, SIGINT);
-  EXPECT_EQ(exit_code_of(process), 0);
+  EXPECT_EQ(exit_code_of(process), 0) << read("stderr.txt");
   EXPECT_THAT(read("stderr.txt"), MatchesRegex("(viewer: http://[0-9.]+:[0-9]+/\\?token=[0-9a-f]+\n)+"));
   EXPECT_THAT(read("stderr.txt"), AllOf(HasSubstr("viewer: http://127.0.0.1:"), Not(HasSubstr("0.0.0.0"))));
 }
