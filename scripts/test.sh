@@ -59,24 +59,24 @@ print_slowest() {
     sort -rn | head -n 8 | sed '1s/^/Slowest: /; 2,$s/^/         /'
 }
 
-# Stores names and last output of a preset's failed tests, for the summary at the end.
+# Stores names and last output of a preset's failed tests, without passed cases, for the summary at the end.
 keep_failures() {
   local preset=$1 name reason folder
   folder=$(folder_of "$preset")
   while read -r name reason; do
     failures+=("$preset: $name $reason")
     awk -v name="$name" '$2 == "Testing:" { mine = $3 == name } mine' "$folder/Testing/Temporary/LastTest.log" |
-      tail -n 60 >"build/failed_${preset}_$name.log"
+      grep -vE '^\[ +(RUN|OK) +\]' | tail -n 60 >"build/failed_${preset}_$name.log"
     failure_logs+=("build/failed_${preset}_$name.log")
   done < <(sed -nE 's/^[[:space:]]+[0-9]+ - ([^ ]+) \((.*)\)$/\1 (\2)/p' "$folder/tests.log" | grep -v '(Skipped)$')
 }
 
-# Runs the tests of a preset and sums ctest's closing lines, which count skipped tests as passed. Runs one test more
+# Runs the tests of a preset and sums ctest's closing lines, which count skipped tests as passed. Runs two tests more
 # than there are processors, because some tests mostly wait.
 run_tests() {
   local preset=$1 log closing skips
   log=$(folder_of "$preset")/tests.log
-  "${runner[@]}" ctest --preset "$preset" --parallel $(($(nproc) + 1)) | tee "$log" || true
+  "${runner[@]}" ctest --preset "$preset" --parallel $(($(nproc) + 2)) | tee "$log" || true
   closing=$(grep -E 'tests? failed out of' "$log") || { echo "test.sh: no tests ran under $preset" >&2; exit 1; }
   [[ $closing =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]
   failed=$((failed + BASH_REMATCH[1]))
@@ -88,10 +88,12 @@ run_tests() {
   print_slowest "$preset"
 }
 
-# Builds a preset in the background, at the lowest priority, with the processor time that foreground parts leave.
+# Builds a preset in the background, at the lowest priority, with the processor time that foreground parts leave. With
+# automatic groups, Linux compares only the priorities of the groups, one for each session.
 background=
 begin_build() { # PRESET TARGET...
-  setsid nice -n 19 scripts/build.sh "$@" >"build/$1.log" 2>&1 &
+  setsid bash -c 'echo 19 >/proc/self/autogroup; exec nice -n 19 scripts/build.sh "$@"' build "$@" \
+    >"build/$1.log" 2>&1 &
   background=$!
 }
 trap '[[ -z $background ]] || kill -- "-$background" 2>/dev/null || true' EXIT
@@ -99,7 +101,7 @@ trap '[[ -z $background ]] || kill -- "-$background" 2>/dev/null || true' EXIT
 # Waits for the build of a preset. Prints the end of its log if it failed.
 end_build() { # PRESET
   local build=$background
-  renice -n 0 -g "$build" >/dev/null 2>&1 || true # only root may
+  { renice -n 0 -g "$build" && echo 0 >"/proc/$build/autogroup"; } >/dev/null 2>&1 || true # only root may
   if wait "$build"; then background=; return; fi
   echo "test.sh: the build of $1 failed" >&2
   tail -n 60 "build/$1.log" >&2
