@@ -3,6 +3,7 @@
 #include "byre/slam/places/place_scene.h"
 #include "byre/slam/session/session.h"
 #include "byre/slam/upkeep/additions.h"
+#include "byre/slam/upkeep/replacement.h"
 #include "byre/slam/upkeep/session_summary.h"
 
 #include <array>
@@ -261,6 +262,22 @@ TEST_F(MapUpdates, AreNotedInTheChild) {
   EXPECT_FALSE(again.sessions[0].has_records);
   ASSERT_TRUE(again.child) << again.refusal;
   EXPECT_EQ(history_of(*again.child).size(), 2u);
+}
+
+TEST_F(MapUpdates, ReplaceAMapOnlyByAVersionThatIsAsGood) {
+  for (PoseRecord& pose : session_.record.poses) pose.verdict = static_cast<std::uint8_t>(Verdict::trusted);
+  MapUpdate update = updated(parent_, {session_});
+  ASSERT_TRUE(update.child);
+  const MapVersion child{0x5678, *std::move(update.child), update.survival};
+  const auto fault = [&](const MapVersion& map, const MapVersion& next) {
+    return fault_of_replacement(map, next, session_, simulated_vocabulary());
+  };
+  EXPECT_EQ(fault(parent_, child), "");
+  MapVersion other = version_of(circling(0.4, 1, kOtherRoom));
+  other.id = 0x9abc;
+  EXPECT_THAT(fault(parent_, other), HasSubstr("places would be worse than before"));
+  EXPECT_THAT(fault(other, child), HasSubstr("it is not proved, as session evening ran on another map"));
+  EXPECT_EQ(fault(child, parent_), "") << "the child was made of it";
 }
 
 TEST(PlaceProof, FindsPlacesThatBecomeWorse) {
