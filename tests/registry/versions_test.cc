@@ -204,13 +204,13 @@ TEST_F(RegistryVersions, StayWhenTheSchemaIsUpdated) {
   std::ifstream file(BYRE_REGISTRY_SCHEMA "/1.sql");
   owner.run_script({std::istreambuf_iterator<char>(file), {}});
   owner.run_script("INSERT INTO byre.schema_version VALUES (1, 1); INSERT INTO byre.site (name) VALUES ('barn')");
-  EXPECT_THAT(run("registry list" + at).errors, HasSubstr("needs schema 2 (update it with byre registry migrate)"));
+  EXPECT_THAT(run("registry list" + at).errors, HasSubstr("needs schema 3 (update it with byre registry migrate)"));
   const std::vector<std::byte> map = small_map("barn"), session = small_session("evening", "0123456789abcdef");
   const std::string id = to_text(map_id(map, ""));
   add_version(owner, kBarn, id, push_blob(owner, map), {}, "by day");
   add_session(owner, kBarn, to_text(map_id(session, "")), push_blob(owner, session), "0123456789abcdef", "evening");
 
-  EXPECT_THAT(run("registry migrate" + at).output, StartsWith("schema       1 -> 2 in "));
+  EXPECT_THAT(run("registry migrate" + at).output, StartsWith("schema       1 -> 3 in "));
   EXPECT_EQ(run("registry accept barn " + id + at).exit_code, 0);
   EXPECT_EQ(run("registry pull barn -o barn.byre" + at).exit_code, 0);
   EXPECT_EQ(to_text(map_id(folder_ / "barn.byre")), id);
@@ -226,8 +226,8 @@ TEST_F(RegistryVersions, AreInABackup) {
   const std::string name = database_ + "_restored";
   connect().run_script("CREATE DATABASE " + name + " STRATEGY file_copy");
   const std::string restored = RegistryServer::shared().uri(name);
-  const std::string command = "pg_dump '" + uri() + "' | psql --quiet --set ON_ERROR_STOP=1 '" + restored + "' >'" +
-                              (folder_ / "restore.log").string() + "' 2>&1";
+  const std::string command = "pg_dump --format=custom '" + uri() + "' | pg_restore --exit-on-error --dbname='" +
+                              restored + "' >'" + (folder_ / "restore.log").string() + "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << read("restore.log");
   EXPECT_EQ(
       run("registry pull barn -o restored.byre --registry '" + RegistryServer::shared().uri(name, "robot_barn") + "'")
@@ -235,6 +235,29 @@ TEST_F(RegistryVersions, AreInABackup) {
       0);
   EXPECT_EQ(read("restored.byre"), read("barn.byre"));
   connect().run_script("DROP DATABASE " + name + " WITH (FORCE)");
+}
+
+TEST_F(RegistryVersions, AreCountedForPrometheus) {
+  const std::string id = push("barn");
+  registry("accept barn " + id, "reviewer");
+  push("second");
+  connect("robot_barn").run("UPDATE byre.robot SET seen_at = to_timestamp(1700000000), runs = $1, waiting = 2", {id});
+  connect().run("UPDATE byre.site SET name = $1 WHERE name = 'annex'", {"the \"new\" \\ annex"});
+  const Outcome outcome = registry("metrics", "reviewer");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  for (const std::string& line : std::vector<std::string>{
+           "# TYPE byre_registry_versions gauge", "byre_registry_versions{site=\"barn\",state=\"accepted\"} 1",
+           "byre_registry_versions{site=\"barn\",state=\"proposed\"} 1",
+           "byre_registry_versions{site=\"the \\\"new\\\" \\\\ annex\",state=\"accepted\"} 0",
+           "byre_registry_jobs{site=\"barn\",state=\"failed\"} 0", "byre_registry_open_sessions{site=\"barn\"} 0",
+           "byre_registry_robot_seen_timestamp_seconds{site=\"barn\",robot=\"robot_barn\"} 1700000000",
+           "byre_registry_robot_sessions_waiting{site=\"barn\",robot=\"robot_barn\"} 2",
+           "byre_registry_robot_runs_accepted{site=\"barn\",robot=\"robot_barn\",version=\"" + id +
+               "\",refused=\"\"} 1"}) {
+    EXPECT_THAT(outcome.output, HasSubstr(line + "\n"));
+  }
+  EXPECT_THAT(registry("list barn", "reviewer").output,
+              HasSubstr("robot        robot_barn, seen 2023-11-14T22:13:20Z, runs " + id + ", 2 sessions wait\n"));
 }
 
 TEST_F(RegistryVersions, AreWatched) {

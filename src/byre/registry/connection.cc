@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <libpq-fe.h>
 #include <poll.h>
+#include <sys/socket.h>
 
 namespace byre {
 namespace {
@@ -39,7 +40,8 @@ std::string field(const PGresult* result, int code) {
 }
 
 constexpr const char* kUnreachable =
-    "check --registry or PGHOST, PGPORT, PGDATABASE, PGUSER, and that the server runs and admits the account";
+    "check --registry, registry.database or PGHOST, PGPORT, PGDATABASE, PGUSER, and that the server runs and admits "
+    "the account";
 
 }  // namespace
 
@@ -62,6 +64,10 @@ void Rows::Clear::operator()(pg_result* result) const {
 
 int Rows::size() const {
   return LIBPQ(PQntuples)(result_.get());
+}
+
+int Rows::columns() const {
+  return LIBPQ(PQnfields)(result_.get());
 }
 
 int Rows::changed() const {
@@ -118,6 +124,10 @@ void Connection::require_connected() const {
 void Connection::reconnect() {
   LIBPQ(PQreset)(connection_.get());
   require_connected();
+}
+
+void Connection::interrupt() const {
+  shutdown(LIBPQ(PQsocket)(connection_.get()), SHUT_RDWR);
 }
 
 Rows Connection::run(const char* statement, const std::vector<Parameter>& parameters) {
@@ -222,10 +232,11 @@ void persist(Connection& connection, const std::function<void()>& action) {
       if (is_broken) connection.reconnect();
       return action();
     } catch (const ConnectionLost&) {
-      if (wait_ms == 0) throw;
+      if (wait_ms == 0 || connection.is_stopped()) throw;
       is_broken = true;
     }
-    poll(nullptr, 0, wait_ms);
+    constexpr int kSlice = 100;  // milliseconds
+    for (int waited = 0; waited < wait_ms && !connection.is_stopped(); waited += kSlice) poll(nullptr, 0, kSlice);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,6 +55,7 @@ class Rows {
 
   const pg_result* get() const { return result_.get(); }
   int size() const;
+  int columns() const;
   int changed() const;  // number of rows that the statement inserted or changed
   bool is_null(int row, int column) const;
   std::string text(int row, int column) const;  // empty if null
@@ -82,7 +84,11 @@ class Connection {
   // Waits for a notification of a channel that was listened to. False after the time.
   bool wait_for_notification(std::chrono::milliseconds most);
 
-  void reconnect();                                    // forgets channels and transactions
+  void reconnect();  // forgets channels and transactions
+  // A token whose stop ends the attempts of persist().
+  void stop_by(std::stop_token stop) { stop_ = std::move(stop); }
+  bool is_stopped() const { return stop_.stop_requested(); }
+  void interrupt() const;  // breaks the connection, for another thread that waits for the server
   const std::string& place() const { return place_; }  // "registry HOST/DATABASE", for messages
 
  private:
@@ -96,6 +102,7 @@ class Connection {
 
   std::unique_ptr<pg_conn, Close> connection_;
   std::string place_;
+  std::stop_token stop_;
 };
 
 // Transaction that is rolled back unless committed.
@@ -113,7 +120,8 @@ class Transaction {
   bool is_open_ = true;
 };
 
-// Runs a function that may be repeated. If the connection breaks, connects again and repeats it, for half a minute.
+// Runs a function that may be repeated. If the connection breaks, connects again and repeats it, for half a minute or
+// until it is stopped.
 void persist(Connection& connection, const std::function<void()>& action);
 
 }  // namespace byre

@@ -30,6 +30,7 @@ constexpr std::array kRegistryCommands = {
     RegistryCommand{"request", "Request an update of a site, or a merge of two versions", declare_registry_request},
     RegistryCommand{"history", "Print who did what at a site, and why", declare_registry_history},
     RegistryCommand{"watch", "Print a line for each version of a site that is accepted", declare_registry_watch},
+    RegistryCommand{"metrics", "Print the state of all sites and robots for Prometheus", declare_registry_metrics},
 };
 
 }  // namespace

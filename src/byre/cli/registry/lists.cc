@@ -53,6 +53,12 @@ constexpr const char* kWatchFooter = R"(Examples:
 Prints the id of the accepted version, then that of each version that is accepted later, within a second. Connects again
 after a broken connection. --once ends after the first version that is accepted later.)";
 
+constexpr const char* kMetricsFooter = R"(Example:
+  byre registry metrics | sponge /var/lib/prometheus/node-exporter/byre.prom
+
+Text format of Prometheus, here for the textfile collector of its node exporter, by a timer: versions, jobs and open
+sessions of each site; when each robot was seen, what it runs, and sessions that it has not sent.)";
+
 Report sites_report(Connection& connection) {
   Report report{Json::parse(sites_json(connection))};
   for (const Json& site : report.figures) {
@@ -78,6 +84,13 @@ Report site_report(Connection& connection, const std::string& site) {
   }
   for (const Json& job : report.figures["jobs"]) {
     report.row("job", "{id} {kind}, {state}[{?attempts}, attempt {attempts}][{?message}: {message}]", job);
+  }
+  for (const Json& robot : report.figures["robots"]) {
+    report.row(
+        "robot",
+        "{account}[{?seen_at}, seen {seen_at}|, never seen][{?runs}, runs {runs}][{?waiting}, {waiting} sessions "
+        "wait][{?refused}, refuses {refused}: {reason}]",
+        robot);
   }
   return report;
 }
@@ -177,6 +190,17 @@ Action declare_registry_history(CLI::App& command) {
   return [options](std::ostream& result) {
     Connection connection = open_registry(options->uri);
     return print(events_report(connection, options->site), *options, result);
+  };
+}
+
+Action declare_registry_metrics(CLI::App& command) {
+  const auto uri = std::make_shared<std::string>();
+  add_registry(command, *uri);
+  command.footer(kMetricsFooter);
+  return [uri](std::ostream& result) {
+    Connection connection = open_registry(*uri);
+    result << registry_metrics(connection);
+    return ExitCode::done;
   };
 }
 
