@@ -139,6 +139,9 @@ if(BYRE_LIBPQ AND BYRE_LIBPQ_HEADERS AND BYRE_LIBCRYPTO AND BYRE_LIBCRYPTO_HEADE
 endif()
 byre_decide_part(LIBPQ NAME "libpq and libcrypto" FOUND ${found} PACKAGES libpq-dev
                  LOSS "byre registry and byre worker")
+if(NOT BYRE_HAS_LIBPQ)
+  set(BYRE_LIBCRYPTO "") # hides the cached path of the library
+endif()
 
 set(name pybind11)
 set(found FALSE)
@@ -190,8 +193,11 @@ else()
   list(APPEND BYRE_ABSENT_COMMANDS camera)
   list(APPEND BYRE_LEFT_OUT /cli/shared/live_input /cli/shared/camera_options)
 endif()
-if(NOT BYRE_HAS_LIBPQ)
+if(BYRE_HAS_LIBPQ)
+  list(APPEND BYRE_LEFT_OUT /registry/absent)
+else()
   list(APPEND BYRE_ABSENT_COMMANDS registry worker)
+  list(APPEND BYRE_LEFT_OUT "/registry/([^a]|a[^b])")
 endif()
 foreach(command IN ITEMS camera demo node registry simulate worker)
   if(command IN_LIST BYRE_ABSENT_COMMANDS)

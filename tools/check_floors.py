@@ -22,8 +22,8 @@ FLOORS = [
     {"map", "io"},
     {"place", "simulation"},
     {"slam"},
-    {"playback", "viewer"},
-    {"benchmark", "camera", "registry", "ros2"},
+    {"playback", "registry", "viewer"},
+    {"benchmark", "camera", "ros2"},
     {"cli"},
 ]
 # Room of each header of include/byre. Its functions may be defined in a higher room, as those of floor_plan.h in io.
@@ -47,9 +47,9 @@ EVERY_ROOM = frozenset(FLOOR)
 # Tests may include all.
 KEPT_IN = {
     r"thread|condition_variable|future|stop_token|semaphore|latch|barrier": {
-        "base", "simulation", "playback/", "viewer/web", "camera", "ros2/fleet", "cli"},
+        "base", "simulation", "playback/", "registry", "viewer/web", "camera", "ros2/fleet", "cli"},
     r"atomic": {"base", "simulation", "slam/mapping", "playback/", "viewer/web", "camera", "ros2/fleet", "cli"},
-    r"mutex|shared_mutex": {"base", "viewer/web"},
+    r"mutex|shared_mutex": {"base", "registry", "viewer/web"},
     r"filesystem|fstream": {"base", "geometry/evaluation", "map", "io", "place", "simulation", "slam/system",
                             "playback/", "playback/archive", "viewer", "benchmark", "camera", "registry", "ros2/node",
                             "cli"},
