@@ -33,6 +33,38 @@ ros::DiagnosticStatus localisation_status(const FrameReport& report) {
   return status;
 }
 
+ros::DiagnosticStatus registry_status(const RobotLinkState& state, std::chrono::system_clock::time_point now) {
+  ros::DiagnosticStatus status;
+  status.name = "byre: registry";
+  const auto add = [&status](std::byte level, const std::string& text) {
+    status.level = std::max(status.level, level);
+    status.message += (status.message.empty() ? "" : "; ") + text;
+  };
+  if (!state.fault.empty()) add(ros::DiagnosticStatus::kWarn, state.fault);
+  if (!state.refused.empty()) {
+    add(ros::DiagnosticStatus::kWarn, "version " + state.refused + " is refused: " + state.reason);
+  } else if (!state.fetched.empty()) {
+    add(ros::DiagnosticStatus::kOk, "version " + state.fetched + " waits for the command update");
+  }
+  if (state.left_out > 0) {
+    add(ros::DiagnosticStatus::kWarn,
+        fmt::format("{} sessions were not stored, as those that wait exceed registry.max_megabytes", state.left_out));
+  }
+  if (status.message.empty()) status.message = state.contact ? "in contact" : "not contacted yet";
+  const auto seconds_ago = [now](std::chrono::system_clock::time_point time) {
+    return fmt::format("{} s ago", std::chrono::duration_cast<std::chrono::seconds>(now - time).count());
+  };
+  status.values = {{"version in use", state.present},
+                   {"accepted version", state.accepted},
+                   {"fetched version", state.fetched},
+                   {"refused version", state.refused},
+                   {"sessions waiting", std::to_string(state.waiting)},
+                   {"megabytes waiting", fmt::format("{:.1f}", 1e-6 * static_cast<double>(state.waiting_bytes))},
+                   {"sessions not stored", std::to_string(state.left_out)},
+                   {"last contact", state.contact ? seconds_ago(*state.contact) : "never"}};
+  return status;
+}
+
 void log_changes(const FrameReport& report, const std::optional<FrameReport>& last,
                  const std::optional<std::string>& map_damage,
                  const std::function<std::string(MotionSensor sensor)>& source_of, const NodeLog& log) {

@@ -2,8 +2,10 @@
 
 #include "byre/frame_report.h"
 #include "byre/io/ros/messages.h"
+#include "byre/registry/robot_link.h"
 #include "byre/ros2/node/node_log.h"
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,6 +14,9 @@ namespace byre {
 
 // Diagnostic of the pose: OK for trusted, WARN for degraded, ERROR for untrusted.
 ros::DiagnosticStatus localisation_status(const FrameReport& report);
+
+// Diagnostic of the registry: WARN for a fault, a refused version and sessions that are not stored. now: time of day.
+ros::DiagnosticStatus registry_status(const RobotLinkState& state, std::chrono::system_clock::time_point now);
 
 // Logs events of a frame, new damage of the map, faults of motion inputs, and a change of the verdict.
 // last: report of the previous frame; map_damage: see Slam; source_of: topic of a sensor.

@@ -50,6 +50,33 @@ TEST(LocalisationStatus, HasTheLevelOfTheVerdict) {
             ros::DiagnosticStatus::kWarn);
 }
 
+TEST(RegistryStatus, WarnsOfFaultsRefusalsAndSessionsThatAreNotStored) {
+  const std::chrono::system_clock::time_point now(std::chrono::hours(500'000));
+  RobotLinkState state;
+  state.present = "3f2a90cc51d07be4";
+  EXPECT_EQ(registry_status(state, now).message, "not contacted yet");
+  state.contact = now - std::chrono::seconds(90);
+  state.waiting = 3;
+  state.fetched = "90b1c2ffe0217a6d";
+  const ros::DiagnosticStatus sound = registry_status(state, now);
+  EXPECT_EQ(sound.level, ros::DiagnosticStatus::kOk);
+  EXPECT_EQ(sound.message, "version 90b1c2ffe0217a6d waits for the command update");
+  std::string values;
+  for (const ros::KeyValue& value : sound.values) values += value.key + "=" + value.value + "|";
+  EXPECT_THAT(values,
+              testing::AllOf(testing::HasSubstr("version in use=3f2a90cc51d07be4|"),
+                             testing::HasSubstr("sessions waiting=3|"), testing::HasSubstr("last contact=90 s ago|")));
+  state.refused = state.fetched;
+  state.reason = "poses move";
+  state.fault = "no network";
+  state.left_out = 2;
+  const ros::DiagnosticStatus status = registry_status(state, now);
+  EXPECT_EQ(status.level, ros::DiagnosticStatus::kWarn);
+  EXPECT_EQ(status.message,
+            "no network; version 90b1c2ffe0217a6d is refused: poses move; 2 sessions were not stored, as those that "
+            "wait exceed registry.max_megabytes");
+}
+
 TEST(HealthLine, ReportsDamageOfTheMap) {
   const auto health = nlohmann::json::parse(health_line(kDamaged)).at("health");
   EXPECT_EQ(health.at("verdict"), "untrusted");

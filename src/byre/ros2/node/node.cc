@@ -474,10 +474,21 @@ void Node::publish_status(const ros::DiagnosticStatus& localisation, const ros::
       {is_healthy, summary, metrics_text({monitor_.arrived(), pairs_.counts().skipped, frames_, last_report_})});
 }
 
+void Node::log_registry(const ros::DiagnosticStatus& status) {
+  if (status.message == last_registry_) return;
+  last_registry_ = status.message;
+  log_(status.level == ros::DiagnosticStatus::kOk ? LogLevel::info : LogLevel::warning, "registry: " + last_registry_);
+}
+
 // Once a second, and immediately after a change.
 void Node::publish_state(Timestamp now) {
   std::vector<ros::DiagnosticStatus> statuses = {localisation(), monitor_.status(now), inputs_.status()};
-  const std::string diagnosis = without_digits(statuses[0].message + statuses[1].message + statuses[2].message);
+  if (const auto registry = runner_.registry()) {
+    statuses.push_back(registry_status(*registry, std::chrono::system_clock::now()));
+    log_registry(statuses.back());
+  }
+  std::string diagnosis;
+  for (const ros::DiagnosticStatus& status : statuses) diagnosis += without_digits(status.message);
   const bool has_changed = diagnosis != last_diagnosis_ && now - last_published_ > 100ms;
   if (has_changed || now - last_published_ > 1s) {
     publish_status(statuses[0], statuses[1]);

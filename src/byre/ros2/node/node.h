@@ -69,6 +69,7 @@ class Node {
   void publish(const ReceivedImage& left, const FrameReport& report);
   void publish_state(Timestamp now);
   void publish_fleet(Timestamp now);
+  void log_registry(const ros::DiagnosticStatus& status);
   void publish_status(const ros::DiagnosticStatus& localisation, const ros::DiagnosticStatus& cameras);
   ros::DiagnosticStatus localisation() const;
   void restart();
@@ -108,6 +109,7 @@ class Node {
   std::string last_diagnosis_;
   std::optional<Timestamp> without_odometry_since_;  // no odom -> base of its owner for the images since then
   std::string last_transforms_;                      // last reported state of the transforms
+  std::string last_registry_;                        // last reported state of the registry
   std::string last_fault_;                           // last reported fault of the calibration
   Timestamp last_checked_{};                         // time of the last check of the inputs
   std::optional<Timestamp> last_odometry_;           // arrival of the last odom -> base of its owner

@@ -124,6 +124,10 @@ void check(const NodeConfig& config, Consistency consistency) {
   }
   consistency.require(is_mission || config.update == MapUpdates::off, "slam.update", "needs a mission",
                       "set slam.task to mission, or slam.update to off");
+  consistency.require(config.registry.site.empty() || config.update != MapUpdates::off, "registry.site",
+                      "is set, but slam.update is off", "set slam.update: automatic, or leave this empty");
+  consistency.require(!config.registry.site.empty() || config.registry.database.empty(), "registry.database",
+                      "is set, but registry.site is empty", "set registry.site, or leave this empty");
   consistency.require(!is_mission || !config.save || config.save != config.map, "slam.save",
                       "is the offline map, which a mission must not replace", "name another file");
   check_topics(config, consistency);

@@ -43,6 +43,14 @@ struct FleetSettings {
   double rate = 2.0;            // messages per second
 };
 
+// Registry of maps, docs/reference/registry.md.
+struct RegistrySettings {
+  std::string database;           // as of libpq; empty: of the environment
+  std::string site;               // empty: disabled
+  double interval = 60.0;         // seconds between contacts
+  double max_megabytes = 2000.0;  // sessions that wait
+};
+
 // Settings of `byre node`. Topics without a leading slash are relative to the node: "/byre/odometry". An empty topic is
 // disabled. Paths can be opened as they are.
 struct NodeConfig {
@@ -119,6 +127,7 @@ struct NodeConfig {
   int priority = 0;           // real-time priority of tracking; 0: normal scheduling
 
   FleetSettings fleet;
+  RegistrySettings registry;
 
   ExtrinsicsSource extrinsics_source() const {
     return extrinsics.value_or(calibration ? ExtrinsicsSource::file : ExtrinsicsSource::tf);

@@ -79,6 +79,20 @@ TEST_F(NodeConfigFile, RejectsContradictingSettings) {
   EXPECT_THAT(faults("slam:\n  map: m\n"), IsEmpty());
 }
 
+TEST_F(NodeConfigFile, AcceptsARegistryWithUpdatesOfOneMap) {
+  EXPECT_THAT(faults("slam:\n  map: m\nregistry:\n  site: barn\n"),
+              HasSubstr("robot.yaml:4: registry.site is set, but slam.update is off (set slam.update: automatic"));
+  EXPECT_THAT(faults("slam:\n  map: m\n  update: automatic\nregistry:\n  database: postgresql:///byre\n"),
+              HasSubstr("robot.yaml:5: registry.database is set, but registry.site is empty"));
+  const std::string sound = "slam:\n  map: m\n  update: propose\nregistry:\n  site: barn\n  database: dbname=byre\n";
+  EXPECT_THAT(faults(sound), IsEmpty());
+  EXPECT_EQ(read(sound + "  interval: 5\n").config.registry.interval, 5.0);
+  EXPECT_THAT(faults(sound + "  interval: 0.1\n"), HasSubstr("give 1 to 86400 seconds"));
+  std::ofstream(folder_ / "m.yaml") << "maps:\n";
+  EXPECT_THAT(faults_in(read("slam:\n  map: m.yaml\n  update: propose\nregistry:\n  site: barn\n").config)[0].what(),
+              HasSubstr("registry.site: is of one map, but slam.map is a site"));
+}
+
 TEST_F(NodeConfigFile, AcceptsDepthImagesForOneCamera) {
   const std::string one = "slam:\n  task: map\n  save: s\nimages:\n  depth: /depth/image_raw\n";
   EXPECT_THAT(faults(one), HasSubstr("robot.yaml:5: images.depth is set, but so is images.right"));

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Member of a configuration, of its fleet settings or of its frames.
+// Member of a configuration, of its fleet or registry settings or of its frames.
 template <typename Value>
 auto& member_of(auto& config, Value NodeConfig::*member) {
   return config.*member;
@@ -24,6 +24,11 @@ auto& member_of(auto& config, Value NodeConfig::*member) {
 template <typename Value>
 auto& member_of(auto& config, Value FleetSettings::*member) {
   return config.fleet.*member;
+}
+
+template <typename Value>
+auto& member_of(auto& config, Value RegistrySettings::*member) {
+  return config.registry.*member;
 }
 
 template <typename Value>
@@ -267,6 +272,14 @@ const std::vector<NodeSetting>& node_settings() {
       any_text("mqtt.map_description", &FleetSettings::map_description, "human-readable description of the map"),
       number("mqtt.rate", "0.1 to 20", &FleetSettings::rate, "maximum number of messages per second on a topic", 0.1,
              20.0),
+      any_text("registry.site", &RegistrySettings::site,
+               "site in a registry of maps, to which sessions are sent and whose accepted map is used; empty: none"),
+      any_text("registry.database", &RegistrySettings::database,
+               "its PostgreSQL database, postgresql://ACCOUNT@HOST/DATABASE; empty: of the environment (PGHOST, ...)"),
+      number("registry.interval", "1 to 86400 seconds", &RegistrySettings::interval, "time between contacts", 1.0,
+             86400.0),
+      number("registry.max_megabytes", "1 to 1000000", &RegistrySettings::max_megabytes,
+             "disk space of sessions that wait; no session is stored beyond", 1.0, 1e6),
       flag("process.lock_memory", &NodeConfig::locks_memory, "memory locked against paging"),
       number("process.priority", "0 to 99", &NodeConfig::priority,
              "real-time priority of tracking (SCHED_RR), not of mapping; 0: normal priority", 0.0, 99.0)};

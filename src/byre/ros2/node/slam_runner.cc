@@ -14,6 +14,8 @@
 #include "byre/playback/options_file.h"
 #include "byre/ros2/node/mission_sessions.h"
 #include "byre/site.h"
+#include "byre/slam/system/stored_map.h"
+#include "byre/slam/upkeep/replacement.h"
 #include "byre/tag_file.h"
 
 #include <algorithm>
@@ -124,6 +126,17 @@ SlamRunner::SlamRunner(const NodeConfig& config) : config_(config), options_(sla
   require_safe_save(config);
   if (config.update != MapUpdates::off && config.map && !is_site_file(*config.map))
     require_writable(proposed_map(*config.map), FileContent::map);
+  const RegistrySettings& registry = config.registry;
+  if (registry.site.empty() || !config.map) return;
+  if (is_site_file(*config.map)) {
+    throw InputError("registry.site", "is of one map, but slam.map is a site", "name a map, or leave this empty");
+  }
+  registry_.emplace(RobotLinkOptions{registry.database, registry.site, *config.map, beside(*config.map, "registry", ""),
+                                     registry.interval, static_cast<std::uintmax_t>(1e6 * registry.max_megabytes)});
+}
+
+std::optional<RobotLinkState> SlamRunner::registry() const {
+  return registry_ ? std::optional(registry_->state()) : std::nullopt;
 }
 
 FrameReport SlamRunner::process(const CameraImages& images) {
@@ -202,6 +215,7 @@ std::string SlamRunner::start(const Calibration& calibration) {
     is_map_intact_ = false;
     note = std::string(error.what()) + "; the previous map is used, " + previous.string();
   }
+  if (registry_) registry_->start();
   if (slam_->is_metric()) return note;
   slam_.reset();
   throw InputError("the calibration", "is of one camera, which has no metric scale without a map",
@@ -279,6 +293,7 @@ CommandResult SlamRunner::update() {
   if (!is_map_intact_) {
     throw InputError("update", "is impossible, as the previous map is used", "restore the damaged map first");
   }
+  if (registry_) return update_from_registry();
   if (!session_) session_ = session_file(*map_, std::chrono::system_clock::now());
   slam_->save_session(*session_);
   const std::vector<fs::path> sessions = waiting_sessions(*map_);
@@ -299,6 +314,57 @@ CommandResult SlamRunner::update() {
   replace(make(&*map_));
   last_update_ = "updated " + map_->string() + ": " + changes;
   return {last_update_, true, true};
+}
+
+// A session that is queued ends: later ones have other keyframes.
+CommandResult SlamRunner::update_from_registry() {
+  if (map_ != config_.map) {
+    throw InputError("update", "is of " + config_.map->string() + ", but another map is used",
+                     "load " + config_.map->filename().string() + " first");
+  }
+  std::string queued = "no session to send";
+  const bool has_session = can_update();
+  if (has_session) {
+    const fs::path name = session_file(*map_, std::chrono::system_clock::now()).stem();
+    slam_->save_session(registry_->last_session());
+    queued = registry_->queue_last_session(name.string())
+                 ? "the session " + name.string() + " waits for the registry"
+                 : "the session is not sent, as " + std::to_string(registry_->state().waiting) +
+                       " others exceed registry.max_megabytes";
+  }
+  const std::string present = registry_->state().present;
+  last_update_ = use_fetched() + "; " + queued;
+  const bool is_replaced = registry_->state().present != present;
+  if (is_replaced || has_session) replace(make(&*map_));
+  return {last_update_, is_replaced || has_session, is_replaced};
+}
+
+std::string SlamRunner::use_fetched() {
+  const std::optional<fs::path> fetched = registry_->fetched();
+  if (!fetched) return map_->string() + " stays as it is: no other version is accepted";
+  const std::string version = "version " + fetched->stem().string();
+  const auto refuse = [&](const std::string& reason) {
+    registry_->refuse(*fetched, reason);
+    return map_->string() + " stays as it is: " + version + " is refused: " + reason;
+  };
+  std::error_code error;
+  if (!fs::exists(registry_->last_session(), error)) return refuse("no session proves it yet");
+  try {
+    const Vocabulary vocabulary = open_vocabulary(config_.vocabulary);
+    const std::string fault = fault_of_replacement(load_version(*map_, vocabulary), load_version(*fetched, vocabulary),
+                                                   load_session(registry_->last_session(), vocabulary), vocabulary);
+    if (!fault.empty()) return refuse(fault);
+    if (config_.update == MapUpdates::propose) {
+      link_or_copy(*fetched, proposed_map(*map_));
+      return "proposed " + proposed_map(*map_).string() + ": " + version;
+    }
+    keep_as_previous(*map_);
+    link_or_copy(*fetched, *map_);
+  } catch (const InputError& unusable) {
+    return refuse(unusable.what());
+  }
+  registry_->note_present();
+  return "updated " + map_->string() + " to " + version;
 }
 
 std::string SlamRunner::load(const std::string& name) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/io/ros/messages.h"
+#include "byre/registry/robot_link.h"
 #include "byre/ros2/node/map_messages.h"
 #include "byre/ros2/node/node_config.h"
 #include "byre/slam.h"
@@ -68,7 +69,8 @@ class SlamRunner {
   // previous version. All return a report.
   std::string save();
   // Writes what the mission learned beside the map, and updates the map by all such files, see NodeConfig::update. A
-  // map updated in place is used from here on; its former version becomes the previous one.
+  // map updated in place is used from here on; its former version becomes the previous one. With a registry, queues
+  // what the mission learned and begins a new session, on the version that the registry accepted if no place is worse.
   CommandResult update();
   std::string load(const std::string& name);  // map in the same folder, by file name
   std::string relocalise();                   // global relocalisation in the same map
@@ -77,6 +79,7 @@ class SlamRunner {
   bool set_initial_pose(PoseHint hint);
   bool can_update() const { return slam_ && config_.update != MapUpdates::off && had_pose_ && slam_->keyframes() > 0; }
   const std::string& last_update() const { return last_update_; }  // answer of update(); empty before the first
+  std::optional<RobotLinkState> registry() const;                  // empty without a registry
   bool can_save() const { return slam_ && config_.save && had_pose_ && slam_->keyframes() > 0; }
 
  private:
@@ -85,6 +88,8 @@ class SlamRunner {
   SlamOptions options_for(const std::filesystem::path& map) const;
   void replace(Slam slam);
   void require_running() const;
+  CommandResult update_from_registry();
+  std::string use_fetched();
 
   NodeConfig config_;    // constant after construction
   SlamOptions options_;  // constant once running
@@ -94,6 +99,7 @@ class SlamRunner {
   bool is_map_intact_ = true;                     // false after falling back to the previous version of the map
   std::optional<std::filesystem::path> session_;  // file of what slam_ learned, once written
   std::string last_update_;
+  std::optional<RobotLink> registry_;
   bool has_saved_ = false;  // whether slam_ has saved the file
   bool had_pose_ = false;   // whether any frame of slam_ had a pose
 };
