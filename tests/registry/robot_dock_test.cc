@@ -34,7 +34,7 @@ class RobotAtTheDock : public RegistryTest {
     config.map = folder_ / "room.byre";
     config.update = MapUpdates::automatic;
     config.workers = Workers::none;
-    config.registry = {uri("robot_barn"), "barn", 0.05};
+    config.registry = {uri("robot_barn"), "barn", 0.2};
     return config;
   }
 
@@ -50,7 +50,9 @@ class RobotAtTheDock : public RegistryTest {
   // first: frame, so that sessions differ.
   static void drive(SlamRunner& runner, int first = 0) {
     const auto recording = open_recording(RenderedFixture::shared().folder(), {});
-    if (!runner.is_running()) EXPECT_EQ(runner.start(recording->calibration()), "");
+    if (!runner.is_running()) {
+      EXPECT_EQ(runner.start(recording->calibration()), "");
+    }
     int localised = 0;
     for (int i = first; i < recording->size(); ++i) {
       localised += runner.process(view_of(recording->read(i).value())).map_from_body.has_value();

@@ -4,7 +4,9 @@
 
 #include "byre/registry/robot_link.h"
 
+#include <fstream>
 #include <functional>
+#include <sstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -27,7 +29,7 @@ class RobotRegistry : public RegistryTest {
   }
 
   RobotLinkOptions options(const std::string& account = "robot_barn") const {
-    return {uri(account), "barn", folder_ / "barn.byre", folder_ / "barn.registry", 0.05};
+    return {uri(account), "barn", folder_ / "barn.byre", folder_ / "barn.registry", 0.2};
   }
 
   // Pushes and accepts a map, and returns its id.
@@ -190,6 +192,34 @@ TEST_F(RobotRegistry, GoesOnWithAnAccountThatIsNotAdmitted) {
   EXPECT_TRUE(becomes(link, [](const RobotLinkState& state) { return !state.fault.empty(); }));
   EXPECT_THAT(link.state().fault, AllOf(HasSubstr("stranger"), HasSubstr("admits the account")));
   EXPECT_EQ(link.state().waiting, 1);
+}
+
+TEST_F(RobotRegistry, GoesOnWithAWrongPassword) {
+  const fs::path file = RegistryServer::shared().folder() / "data" / "pg_hba.conf";
+  std::ostringstream before;
+  before << std::ifstream(file).rdbuf();
+  const auto admit_by = [&](const std::string& lines) {
+    std::ofstream(file) << lines << before.str();
+    connect().run("SELECT pg_reload_conf()");
+  };
+  connect().run("ALTER ROLE robot_barn PASSWORD 'right'");
+  admit_by("local all robot_barn scram-sha-256\n");
+  RobotLinkOptions wrong = options(), right = options();
+  wrong.database += " password=wrong";
+  right.database += " password=right";
+  {
+    RobotLink link(wrong);
+    link.start();
+    EXPECT_TRUE(becomes(link, [](const RobotLinkState& state) { return !state.fault.empty(); }));
+    EXPECT_THAT(link.state().fault, HasSubstr("password authentication failed for user \"robot_barn\""));
+    EXPECT_TRUE(queue(link, "monday"));
+    EXPECT_EQ(link.state().waiting, 1);
+  }
+  RobotLink link(right);
+  link.start();
+  EXPECT_TRUE(becomes(link, has_sent_all));
+  admit_by("");
+  connect().run("ALTER ROLE robot_barn PASSWORD NULL");
 }
 
 TEST_F(RobotRegistry, EndsWhileTheServerHangs) {
