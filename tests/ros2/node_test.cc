@@ -358,8 +358,8 @@ class ByreNodeAtTheDock : public ByreNode {
   }
 
   // update: value of slam.update.
-  std::string mission_with(const std::string& update) const {
-    return config("  map: " + map_.string() + "\n  update: " + update + "\n");
+  std::string mission_with(const std::string& update, const std::string& more = {}) const {
+    return config("  map: " + map_.string() + "\n  update: " + update + "\n", more);
   }
 
   void drive(NodeProcess& node) {
@@ -401,6 +401,22 @@ TEST_F(ByreNodeAtTheDock, ReplacesItsMapAtTheEndAndKeepsThePreviousOne) {
   EXPECT_NE(map_id(map_), before);
   EXPECT_EQ(map_id(folder_ / "room.previous.byre"), before);
   EXPECT_EQ(sessions(), 0);
+}
+
+TEST_F(ByreNodeAtTheDock, QueuesItsSessionWithoutANetwork) {
+  if (!BYRE_HAS_REGISTRY) GTEST_SKIP() << "byre is built without a PostgreSQL client";
+  const std::uint64_t before = map_id(map_);
+  NodeProcess node(folder_, mission_with("automatic", "registry:\n  site: barn\n  database: host=/nowhere\n"), domain_);
+  drive(node);
+  EXPECT_TRUE(node.has_logged("registry: registry /nowhere/")) << node.stderr_output();
+  command("update");
+  EXPECT_TRUE(events_.find([](const auto& event) {
+    return event.data().find("waits for the registry") != std::string::npos;
+  })) << node.stderr_output();
+  EXPECT_EQ(node.stop(), 0) << node.stderr_output();
+  EXPECT_EQ(map_id(map_), before);
+  EXPECT_TRUE(fs::exists(folder_ / "room.registry" / "last.session"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "room.registry"), {}), 2);
 }
 
 TEST_F(ByreNode, RelocalisesIfAnInitialPoseContradictsItsPose) {
