@@ -16,14 +16,14 @@ using namespace std::chrono_literals;
 constexpr Timestamp kStride = 500ms;  // length of the compared motions
 constexpr std::size_t kMostMotions = 240;
 constexpr int kMotionsPerEstimate = 4;
-constexpr int kEstimatesUntilUsed = 24;   // the first estimates determine delay and bias badly
-constexpr int kConfirmed = 4;             // motions until the calibration of an earlier drive counts as confirmed
-constexpr int kEstimatesUntilStored = 8;  // estimates of a calibration until it is kept
-constexpr int kEstimatesPerOffset = 8;    // estimates of a calibration per estimate of the delay, which costs most
-constexpr double kMaxSigma = 0.05;        // relative for the scale, radians for the rotation, of an estimate
-constexpr double kMaxInitialSigma = 0.2;  // largest sigma of the first estimate
-constexpr double kMeasuredTilt = 0.03;    // radians, standard deviation of an up axis measured at standstill
-constexpr double kLeastInitialWay = 0.3;  // metres, sum of all paths of the first estimate
+constexpr int kEstimatesUntilUsed = 24;        // the first estimates determine delay and bias badly
+constexpr int kConfirmed = 4;                  // motions until the calibration of an earlier drive counts as confirmed
+constexpr int kEstimatesUntilStored = 8;       // estimates of a calibration until it is kept
+constexpr std::size_t kMotionsPerOffset = 30;  // motions per estimate of a calibration for each estimate of the delay
+constexpr double kMaxSigma = 0.05;             // relative for the scale, radians for the rotation, of an estimate
+constexpr double kMaxInitialSigma = 0.2;       // largest sigma of the first estimate
+constexpr double kMeasuredTilt = 0.03;         // radians, standard deviation of an up axis measured at standstill
+constexpr double kLeastInitialWay = 0.3;       // metres, sum of all paths of the first estimate
 
 // Metres, sum of all paths.
 double way_of(const std::vector<MotionPair>& motions) {
@@ -269,27 +269,26 @@ void OdometryCalibrator::estimate_calibrations() {
   if (wheels_.empty()) return;
   estimate_wheels();
   if (!wheel_calibration_) return;
-  if (estimates_++ % kEstimatesPerOffset == 0) {
-    const Eigen::Vector3d up = wheel_calibration_->base_from_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    if (const auto offset = find_time_offset(seen_, up, wheels_, time_offset_)) set_time_offset(*offset);
-  }
+  // The delay costs most: its estimates become rarer with the number of motions.
+  const auto period = static_cast<int>(1 + seen_.size() / kMotionsPerOffset);
+  if (estimates_++ % period == 0) estimate_time_offset(seen_);
   if (estimates_ >= kEstimatesUntilUsed || prior_.calibration.wheels) integrate(gaps_);
 }
 
 void OdometryCalibrator::reestimate(const Trajectory& seen) {
   stationary_.reestimate(seen);
   if (!wheel_calibration_ || seen.empty()) return;
-  std::vector<MotionPair> pairs;
+  std::deque<VisualMotion> motions;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < seen.size(); ++i) {
     const bool is_gap = seen[i].time - seen[i - 1].time > kMaxFrameGap;
     if (is_gap || !gaps_.is_seen(seen[i - 1].time, seen[i].time)) begin = i;
     if (seen[i].time - seen[begin].time < kStride) continue;
-    if (const auto base = base_between(odometry(), seen[begin].time, seen[i].time)) {
-      pairs.push_back({*base, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
-    }
+    motions.push_back({seen[begin].time, seen[i].time, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
     begin = i;
   }
+  estimate_time_offset(motions);
+  const std::vector<MotionPair> pairs = pairs_of(motions, odometry());
   const auto found = prior_.calibration.wheels ? estimate_with_prior(pairs, *prior_.calibration.wheels)
                                                : estimate_without_prior(pairs);
   if (found) wheel_calibration_ = found;
@@ -392,6 +391,12 @@ void OdometryCalibrator::discard_prior_wheels(Timestamp time) {
   estimates_ = 0;
   slip_.is_present = false;
   has_calibration_changed_ = true;
+}
+
+// Precondition: the calibration of wheels is estimated.
+void OdometryCalibrator::estimate_time_offset(const std::deque<VisualMotion>& seen) {
+  const auto offset = find_time_offset(seen, wheel_calibration_->up_in_body(), wheels_, time_offset_);
+  if (offset) set_time_offset(*offset);
 }
 
 void OdometryCalibrator::set_time_offset(double seconds) {

@@ -91,8 +91,8 @@ class OdometryCalibrator {
   // unknown. is_metric: the map's lengths are metres, so that the bound needs no calibration.
   std::optional<double> reach(Timestamp earlier, Timestamp later, bool is_metric) const;
 
-  // After the last frame: estimates the calibration of wheels anew from the final map poses of the tracked frames.
-  // Poses of untracked frames are ignored, because wheels themselves determined them.
+  // After the last frame: estimates delay and calibration of wheels anew from the final map poses of the tracked
+  // frames. Poses of untracked frames are ignored, because wheels themselves determined them.
   void reestimate(const Trajectory& seen);
 
   // After reestimate: lengths of the map are multiplied by this factor from here on.
@@ -136,6 +136,7 @@ class OdometryCalibrator {
   const WheelCalibration* active_calibration() const;  // nullptr if nothing is estimated or assumed
   void detect_slip(const VisualMotion& motion);
   void check_prior(double disagreement, const VisualMotion& motion);
+  void estimate_time_offset(const std::deque<VisualMotion>& seen);
   void set_time_offset(double seconds);
   void discard_prior_wheels(Timestamp time);
   CalibratedOdometry odometry() const;

@@ -39,6 +39,23 @@ TEST(OdometryCalibrator, EstimatesDelayAndScaleAndBridgesTheDark) {
   EXPECT_LT(error.transpose() * measured.covariance.ldlt().solve(error), 12.6);  // within 95 %
 }
 
+// The turns suffice only after the first estimates of the calibration.
+TEST(OdometryCalibrator, EstimatesTheDelayOnAShortDrive) {
+  const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.07, .noise = 0.001};
+  EXPECT_NEAR(followed(drive, {}, 14.0, 14.0).time_offset(), 0.07, 0.015);
+}
+
+// The final poses are those of 30 ms later.
+TEST(OdometryCalibrator, EstimatesTheDelayAnewFromTheFinalPoses) {
+  const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.07, .noise = 0.001};
+  OdometryCalibrator prior = followed(drive, {}, 60.0, 60.0);
+  std::mt19937 random(5);
+  Trajectory poses;
+  for (int i = 0; i < 1190; ++i) poses.push_back({from_seconds(0.05 * i), drive.seen(0.05 * i + 0.03, random)});
+  prior.reestimate(poses);
+  EXPECT_NEAR(prior.time_offset(), 0.10, 0.01);
+}
+
 // Wheel velocities at 50 Hz, with one gap in the stream while frames are tracked and one in the dark.
 TEST(OdometryCalibrator, BridgesTheDarkByVelocities) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 0.37, .noise = 0.001};

@@ -1,5 +1,7 @@
 #include "byre/odometry/time_offset.h"
 
+#include "byre/geometry/median.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -21,19 +23,40 @@ double turn_of(const VisualMotion& motion, const Eigen::Vector3d& up) {
   return rotation_log(motion.body.rotation).dot(up);
 }
 
-// Mean squared difference between turns from images and from wheels; empty if wheels measure too few of them.
+// The same turn from images and from wheels, radians.
+struct TurnPair {
+  double seen = 0.0;
+  double measured = 0.0;
+};
+
+// Median ratio of turns from images to those from wheels: a wrong focal length scales the former. One with few turns.
+double scale_of_turns(const std::vector<TurnPair>& turns) {
+  constexpr double kSmall = 0.08;    // radians, turns with a poorly determined ratio
+  constexpr std::size_t kLeast = 4;  // turns
+  std::vector<double> ratios;
+  for (const TurnPair& turn : turns) {
+    if (std::abs(turn.measured) > kSmall) ratios.push_back(turn.seen / turn.measured);
+  }
+  return ratios.size() < kLeast ? 1.0 : median(std::move(ratios));
+}
+
+// Mean squared difference between turns from images and from wheels, up to their scale; empty if wheels measure too few
+// of them.
 std::optional<double> difference(const std::deque<VisualMotion>& seen, const Eigen::Vector3d& up,
                                  const WheelTrack& wheels, Timestamp offset) {
-  double sum = 0.0;
-  std::size_t count = 0;
+  std::vector<TurnPair> turns;
   for (const VisualMotion& motion : seen) {
     const auto measured = wheels.between(motion.earlier + offset, motion.later + offset);
-    if (!measured) continue;
-    const double error = std::abs(rotation_log(measured->rotation).z() - turn_of(motion, up));
-    sum += std::pow(std::min(error, kMostError), 2);
-    ++count;
+    if (measured) turns.push_back({motion.focal_change * turn_of(motion, up), rotation_log(measured->rotation).z()});
   }
-  return 2 * count > seen.size() ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
+  if (2 * turns.size() <= seen.size()) return {};
+  const double scale = scale_of_turns(turns);
+  double sum = 0.0;
+  for (const TurnPair& turn : turns) {
+    const double error = std::abs(scale * turn.measured - turn.seen);
+    sum += std::pow(std::min(error, kMostError), 2);
+  }
+  return sum / static_cast<double>(turns.size());
 }
 
 }  // namespace
