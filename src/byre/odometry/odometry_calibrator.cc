@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 namespace byre {
 namespace {
@@ -291,7 +292,7 @@ void OdometryCalibrator::reestimate(const Trajectory& seen) {
   const std::vector<MotionPair> pairs = pairs_of(motions, odometry());
   const auto found = prior_.calibration.wheels ? estimate_with_prior(pairs, *prior_.calibration.wheels)
                                                : estimate_without_prior(pairs);
-  if (found) wheel_calibration_ = found;
+  if (found) set_wheels(*found);
 }
 
 std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() const {
@@ -319,10 +320,28 @@ void OdometryCalibrator::rescale(double factor) {
   prior_.calibration = scaled(prior_.calibration, factor);
 }
 
+// Motions since the last large change of the focal length, which distorts all earlier ones.
+std::deque<VisualMotion> OdometryCalibrator::undistorted_motions() const {
+  constexpr double kChange = 0.02;  // natural logarithm
+  std::deque<VisualMotion> motions;
+  std::ranges::copy_if(seen_, std::back_inserter(motions), [this](const VisualMotion& motion) {
+    return std::abs(std::log(motion.focal_change / focal_change_)) < kChange;
+  });
+  return motions;
+}
+
+// The noise and the drift of scale of one camera exceed the errors of wheels, so their difference is not that of
+// wheels.
+void OdometryCalibrator::set_wheels(WheelCalibration found) {
+  constexpr double kUsualError = 0.03;  // share of the path length
+  if (!is_metric_) found.translation_error = std::min(found.translation_error, kUsualError);
+  wheel_calibration_ = found;
+}
+
 // Motions that determine the calibration without the prior are compared with it.
 void OdometryCalibrator::estimate_wheels() {
   constexpr int kLooks = 3;  // consecutive contradictions
-  const std::vector<MotionPair> all = pairs_of(seen_, odometry());
+  const std::vector<MotionPair> all = pairs_of(undistorted_motions(), odometry());
   const auto alone = estimate_without_prior(all);
   if (prior_.calibration.wheels && alone) {
     prior_.contradicting_estimates =
@@ -330,7 +349,7 @@ void OdometryCalibrator::estimate_wheels() {
     if (prior_.contradicting_estimates >= kLooks) discard_prior_wheels(seen_.back().later);
   }
   const auto found = prior_.calibration.wheels ? estimate_with_prior(all, *prior_.calibration.wheels) : alone;
-  if (found) wheel_calibration_ = found;
+  if (found) set_wheels(*found);
   if (!is_metric_ || !alone || seen_.empty()) return;
   if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma(), seen_.back().later)) drop_wheels();
 }
@@ -343,10 +362,10 @@ void OdometryCalibrator::update_initial_calibration() {
   constexpr double kLeastError = 0.1;  // share of path lengths and turns
   initial_.reset();
   if (wheel_calibration_ || seen_.size() < kLeastMotions) return;
-  const std::vector<MotionPair> all = pairs_of(seen_, odometry());
+  const std::vector<MotionPair> all = pairs_of(undistorted_motions(), odometry());
   if (way_of(all) < kLeastInitialWay) return;
   if (prior_.calibration.wheels) {
-    wheel_calibration_ = estimate_with_prior(all, *prior_.calibration.wheels);
+    if (const auto found = estimate_with_prior(all, *prior_.calibration.wheels)) set_wheels(*found);
     return;
   }
   if (measured_up_) initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*measured_up_, kMeasuredTilt));

@@ -131,6 +131,8 @@ class OdometryCalibrator {
   void forget_old_samples();
   void update_standstill(Timestamp time, const std::optional<Pose>& seen);
   void estimate_calibrations();
+  std::deque<VisualMotion> undistorted_motions() const;
+  void set_wheels(WheelCalibration found);
   void estimate_wheels();
   void update_initial_calibration();
   const WheelCalibration* active_calibration() const;  // nullptr if nothing is estimated or assumed

@@ -45,6 +45,39 @@ TEST(OdometryCalibrator, EstimatesTheDelayOnAShortDrive) {
   EXPECT_NEAR(followed(drive, {}, 14.0, 14.0).time_offset(), 0.07, 0.015);
 }
 
+// Only a metric map shows errors of wheels.
+TEST(OdometryCalibrator, DoesNotTakeTheNoiseOfOneCameraForErrorsOfWheels) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.03};
+  for (const bool is_metric : {false, true}) {
+    OdometryCalibrator prior;
+    if (is_metric) prior.set_metric();
+    std::mt19937 random(5);
+    for (double t = 0.0; t < 60.0; t += 0.05) {
+      prior.add(drive.wheels(t));
+      prior.note(from_seconds(t), drive.seen(t, random));
+    }
+    ASSERT_TRUE(prior.wheels());
+    EXPECT_EQ(prior.wheels()->translation_error > 0.03, is_metric);
+  }
+}
+
+// Motions by a wrong focal length have other lengths.
+TEST(OdometryCalibrator, IgnoresMotionsBeforeAChangeOfTheFocalLength) {
+  constexpr double kRefined = 40.0;  // seconds
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  Drive distorted = drive;
+  distorted.metres_per_unit = 1.3;
+  OdometryCalibrator prior;
+  std::mt19937 random(5);
+  for (double t = 0.0; t < 60.0; t += 0.05) {
+    prior.add(drive.wheels(t));
+    prior.set_focal_change(t < kRefined ? 1.0 : 0.88);
+    prior.note(from_seconds(t), (t < kRefined ? distorted : drive).seen(t, random));
+  }
+  ASSERT_TRUE(prior.wheels());
+  EXPECT_NEAR(prior.wheels()->metres_per_unit, 1.0, 0.01);
+}
+
 // The final poses are those of 30 ms later.
 TEST(OdometryCalibrator, EstimatesTheDelayAnewFromTheFinalPoses) {
   const Drive drive{.base_from_body = camera_on_base(), .wheel_delay = 0.07, .noise = 0.001};
