@@ -233,7 +233,7 @@ TEST(LocalisationFailure, HasANameForEachReason) {
   for (int i = 0; i <= static_cast<int>(LocalisationFailure::ambiguous); ++i) {
     names.insert(to_string(static_cast<LocalisationFailure>(i)));
   }
-  EXPECT_EQ(names.size(), 10u);
+  EXPECT_EQ(names.size(), 11u);
   EXPECT_FALSE(names.contains(""));
 }
 
