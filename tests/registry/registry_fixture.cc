@@ -67,6 +67,11 @@ RegistryServer::RegistryServer()
   const int code = run_script(folder_, "start");
   is_installed_ = code == 0;
   if (code != 0 && code != 77) throw std::runtime_error("scripts/registry.sh fails");
+  if (!is_installed_) return;
+  // Its files outlive a killed server without it. Only a failure of the machine needs it.
+  Connection server(uri("byre"));
+  server.run("ALTER SYSTEM SET fsync = off");
+  server.run("SELECT pg_reload_conf()");
 }
 
 RegistryServer::~RegistryServer() {
