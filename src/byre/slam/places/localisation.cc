@@ -270,7 +270,8 @@ std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& 
 std::string_view to_string(LocalisationFailure failure) {
   return name_among<Failure::ambiguous>(
       {"none", "too few features", "no similar keyframe", "too few matches", "geometry does not agree",
-       "too few inliers", "inliers are clustered", "pose is uncertain", "place is impossible", "too few expected points", "two places fit"},
+       "too few inliers", "inliers are clustered", "pose is uncertain", "place is impossible",
+       "too few expected points", "two places fit"},
       failure);
 }
 
