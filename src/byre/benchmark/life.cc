@@ -9,6 +9,7 @@
 #include "byre/geometry/median.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/trajectory_input.h"
+#include "byre/playback/localise_run.h"
 #include "byre/playback/report/mission_errors.h"
 #include "byre/slam/places/place_view.h"
 #include "byre/slam/system/option_table.h"
@@ -18,7 +19,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <utility>
 
 namespace byre {
@@ -150,24 +150,21 @@ class LifeRunner {
   }
 
   LifeLocalisation localise_last_days() const {
-    const Map first_map = Map::load(first_), newest_map = Map::load(newest_);
     const Vocabulary vocabulary = open_vocabulary(life_.vocabulary);
-    const auto offline_first = load_offline_map(first_, vocabulary);
-    const auto offline_newest = load_offline_map(newest_, vocabulary);
+    const SearchableMap first(load_for_mapping(first_, vocabulary), vocabulary);
+    const SearchableMap newest(load_for_mapping(newest_, vocabulary), vocabulary);
     LifeLocalisation all;
     std::map<std::array<int, 2>, std::vector<Pose>> changes;  // by place
     const std::size_t begin = recordings_.size() - std::min(kDaysLocalised, recordings_.size() - 1);
     for (std::size_t day = begin; day < recordings_.size() && !hooks_.should_stop(); ++day) {
-      const auto recording = open_recording(recordings_[day], {});
+      const std::vector<LocalisedFrame> by_first = localised(first, recordings_[day]);
+      const std::vector<LocalisedFrame> by_newest = localised(newest, recordings_[day]);
+      const Rig rig = Extractor(open_recording(recordings_[day], {})->calibration(), {}, {}).rig();
       const Trajectory truth = load_truth(recordings_[day]);
-      SearchedVersion first(first_map, offline_first, recording->calibration(), life_.vocabulary);
-      SearchedVersion newest(newest_map, offline_newest, recording->calibration(), life_.vocabulary);
-      for (int i = 0; i < recording->size(); i += kLocalisedStride) {
-        const auto frame = recording->read(i);
-        if (!frame) continue;
+      for (std::size_t i = 0; i < std::min(by_first.size(), by_newest.size()); ++i) {
         ++all.frames;
-        const std::optional<Pose> before = found(first, *frame, truth, all.first);
-        const std::optional<Pose> now = found(newest, *frame, truth, all.newest);
+        const std::optional<Pose> before = right_pose(by_first[i], first.map, rig, truth, all.first);
+        const std::optional<Pose> now = right_pose(by_newest[i], newest.map, rig, truth, all.newest);
         if (!before || !now) continue;
         const Eigen::Vector2d place = (before->translation.head<2>() / 2.0).array().floor();
         changes[{static_cast<int>(place.x()), static_cast<int>(place.y())}].push_back(*now * inverse(*before));
@@ -177,42 +174,33 @@ class LifeRunner {
     return all;
   }
 
-  // A version of the map to localise in.
-  struct SearchedVersion {
-    SearchedVersion(const Map& version, std::shared_ptr<const OfflineMap> stored, const Calibration& calibration,
-                    const std::optional<fs::path>& vocabulary)
-        : localiser(version, calibration, vocabulary),
-          map(std::move(stored)),
-          rig(Extractor(calibration, {}, {}).rig()) {}
+  std::vector<LocalisedFrame> localised(const SearchableMap& version, const fs::path& day) const {
+    const auto recording = open_recording(day, FrameRange{.stride = kLocalisedStride});
+    const LocaliseHooks hooks{.should_stop = hooks_.should_stop, .after_frame = [](int, const LocalisedFrame&) {}};
+    return localise_recording({&version, 1}, *recording, hooks).frames;
+  }
 
-    Localiser localiser;
-    std::shared_ptr<const OfflineMap> map;
-    Rig rig;
-  };
-
-  static int points_in_view(const SearchedVersion& version, const Pose& map_from_body) {
-    const Pose camera_from_map = inverse(map_from_body * version.rig.body_from_camera);
-    const auto points = points_of_place(*version.map, keyframes_of_place(*version.map, camera_from_map));
+  static int points_in_view(const OfflineMap& map, const Rig& rig, const Pose& camera_from_map) {
+    const auto points = points_of_place(map, keyframes_of_place(map, camera_from_map));
     return static_cast<int>(std::ranges::count_if(points, [&](PointId id) {
-      const Eigen::Vector3d in_camera = camera_from_map * version.map->map().find_point(id)->position_in_world;
-      return in_camera.z() > 0.0 && version.rig.contains(version.rig.project(in_camera).head<2>());
+      const Eigen::Vector3d in_camera = camera_from_map * map.map().find_point(id)->position_in_world;
+      return in_camera.z() > 0.0 && rig.contains(rig.project(in_camera).head<2>());
     }));
   }
 
-  // Empty unless it is right.
-  std::optional<Pose> found(SearchedVersion& version, const ImageFrame& frame, const Trajectory& truth,
-                            VersionLocalisation& counts) const {
+  // The pose, counted; empty unless it is right.
+  std::optional<Pose> right_pose(const LocalisedFrame& frame, const OfflineMap& map, const Rig& rig,
+                                 const Trajectory& truth, VersionLocalisation& counts) const {
     const std::vector<PosePair> pairs = associate({{frame.time, Pose()}}, truth, {});
     if (pairs.empty()) return std::nullopt;
     const Pose map_from_body = inverse(alignment_.truth_from_map.target_from_source) * pairs[0].true_world_from_body;
-    const bool is_in_view = points_in_view(version, map_from_body) >= kPointsInView;
+    const bool is_in_view = points_in_view(map, rig, inverse(map_from_body * rig.body_from_camera)) >= kPointsInView;
     counts.in_view += is_in_view;
-    const LocalisationReport report = version.localiser.localise(view_of(frame));
-    if (!report.map_from_body) return std::nullopt;
-    const bool is_right = (report.map_from_body->translation - map_from_body.translation).norm() <= kFarMetres;
+    if (!frame.world_from_body) return std::nullopt;
+    const bool is_right = (frame.world_from_body->translation - map_from_body.translation).norm() <= kFarMetres;
     counts.found += is_right && is_in_view;
     counts.falsely += !is_right;
-    return is_right ? report.map_from_body : std::nullopt;
+    return is_right ? frame.world_from_body : std::nullopt;
   }
 
   static void note_change(const std::vector<Pose>& newest_from_first, LifeLocalisation& all) {

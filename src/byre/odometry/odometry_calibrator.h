@@ -91,8 +91,8 @@ class OdometryCalibrator {
   // unknown. is_metric: the map's lengths are metres, so that the bound needs no calibration.
   std::optional<double> reach(Timestamp earlier, Timestamp later, bool is_metric) const;
 
-  // After the last frame: estimates delay and calibration of wheels anew from the final map poses of the tracked
-  // frames. Poses of untracked frames are ignored, because wheels themselves determined them.
+  // Delay and calibration of the wheels by the final map poses of the tracked frames, after the last frame. Poses of
+  // untracked frames are ignored, because wheels themselves determined them.
   void reestimate(const Trajectory& seen);
 
   // After reestimate: lengths of the map are multiplied by this factor from here on.

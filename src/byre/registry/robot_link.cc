@@ -214,12 +214,12 @@ void RobotLink::Impl::remove_versions_but(const std::string& kept) const {
 void RobotLink::Impl::report(Connection& opened) {
   constexpr std::size_t kMaxReason = 1000;  // bytes; limit of the schema
   note_queue();
-  RobotLinkState told;
-  change([&](const RobotLinkState& now) { told = now; });
+  RobotLinkState reported;
+  change([&](const RobotLinkState& now) { reported = now; });
   opened.run(
       "UPDATE byre.robot SET seen_at = now(), runs = $1, refused = $2, reason = $3, waiting = $4 WHERE account = "
       "current_user",
-      {told.present, told.refused, printable(told.reason, kMaxReason), told.waiting});
+      {reported.present, reported.refused, printable(reported.reason, kMaxReason), reported.waiting});
 }
 
 RobotLink::RobotLink(const RobotLinkOptions& options) : impl_(std::make_unique<Impl>(options)) {

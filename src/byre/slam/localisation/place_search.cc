@@ -78,13 +78,6 @@ void ActiveHint::expire(Timestamp frame) {
 
 namespace {
 
-// Attempts with places rank above those without, by inliers; the others by progress.
-std::pair<bool, int> rank_of(const Localisation& attempt) {
-  const bool has_place = !attempt.places_found.empty();
-  return {has_place, has_place ? static_cast<int>(attempt.places_found.front().features.size())
-                               : static_cast<int>(attempt.failure)};
-}
-
 // candidates: nullptr: by a query of this map.
 BoundedLocalisation localise_at_candidates(const OfflineMap& offline, const PlaceQuery& query,
                                            const PlaceSearchOptions& options, const Candidates* candidates) {
@@ -173,40 +166,44 @@ ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const 
   const double unlikely = -std::log(10.0), much_less_likely = std::log(20.0);  // log-odds
   struct LikelyPlace {
     int map = 0;
-    TrackedFrame tracked;
+    const TrackedFrame* tracked = nullptr;
     double log_odds = 0.0;
     bool is_near_keyframe = false;
   };
   const MapGraph nothing_online(Origin::online);
-  std::vector<LikelyPlace> places;
-  ImageLocalisation best;
-  for (int i = 0; i < std::ssize(maps); ++i) {
-    const OfflineMap& offline = *maps[static_cast<std::size_t>(i)];
+  std::vector<Localisation> attempts;  // one for each map
+  for (const OfflineMap* const offline : maps) {
     LocaliseOptions options;
-    options.tags = offline.tags();
-    Localisation found = localise(frame, rig, MapView(&offline.map(), nothing_online), offline.places(), options);
-    for (const TrackedFrame& place : found.places_found) {
-      const PlaceView view = view_at(offline, frame, rig, {}, place);
-      places.push_back({i, place, log_odds_of(view), view.is_near_keyframe});
-    }
-    if (i == 0 || rank_of(found) > rank_of(best.found)) best = {std::move(found), i};
+    options.tags = offline->tags();
+    attempts.push_back(localise(frame, rig, MapView(&offline->map(), nothing_online), offline->places(), options));
   }
-  if (places.empty()) return best;
+  std::vector<LikelyPlace> places;
+  for (int map = 0; map < std::ssize(maps); ++map) {
+    for (const TrackedFrame& place : attempts[static_cast<std::size_t>(map)].places_found) {
+      const PlaceView view = view_at(*maps[static_cast<std::size_t>(map)], frame, rig, {}, place);
+      places.push_back({map, &place, log_odds_of(view), view.is_near_keyframe});
+    }
+  }
+  if (places.empty()) {
+    const auto best = std::ranges::max_element(attempts, {}, &Localisation::failure);
+    return {*best, static_cast<int>(best - attempts.begin())};
+  }
   std::ranges::stable_sort(places, std::ranges::greater{}, &LikelyPlace::log_odds);
-  LikelyPlace& likeliest = places.front();
-  best.map = likeliest.map;
-  best.found.inliers = static_cast<int>(likeliest.tracked.features.size());
-  best.found.tracked.reset();
+  const LikelyPlace& likeliest = places.front();
+  ImageLocalisation result{attempts[static_cast<std::size_t>(likeliest.map)], likeliest.map};
+  Localisation& found = result.found;
+  found.inliers = static_cast<int>(likeliest.tracked->features.size());
+  found.tracked.reset();
   // Far from keyframes, walls may hide expected points.
   if (likeliest.log_odds < unlikely && likeliest.is_near_keyframe) {
-    best.found.failure = LocalisationFailure::unlikely;
+    found.failure = LocalisationFailure::unlikely;
   } else if (places.size() > 1 && likeliest.log_odds - places[1].log_odds < much_less_likely) {
-    best.found.failure = LocalisationFailure::ambiguous;
+    found.failure = LocalisationFailure::ambiguous;
   } else {
-    best.found.failure = LocalisationFailure::none;
-    best.found.tracked = std::move(likeliest.tracked);
+    found.failure = LocalisationFailure::none;
+    found.tracked = *likeliest.tracked;
   }
-  return best;
+  return result;
 }
 
 }  // namespace byre

@@ -82,6 +82,7 @@ struct ImageLocalisation {
 
 // Localises a frame by itself, without frames before it, in one of several maps. Of the places that fit, in all maps,
 // the likeliest is taken if all others are much less likely: by the points that a frame should show there, and by tags.
+// Precondition: at least one map.
 ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const Frame& frame, const Rig& rig);
 
 }  // namespace byre
