@@ -205,7 +205,7 @@ bool prevails(const Query& query, const PoseRefinement& offline, const MeasuredP
 // Number of matches that fit a pose within noise and systematic errors.
 std::size_t count_fitting(const Query& query, const Pose& camera_from_world, const MeasuredPoints& measured) {
   PartedPoints& parted = query.memory.parted;
-  part_by_agreement(camera_from_world, query.rig, measured, 1.0, parted);
+  part_by_agreement(camera_from_world, Matrix6::Zero(), query.rig, measured, 1.0, parted);
   return parted.agreeing.features.size();
 }
 
@@ -232,8 +232,8 @@ Solution solve_guided(const Query& query, const PoseRefinement& leader, Origin l
   const bool offline_guides = leading == Origin::offline;
   const MeasuredPoints& of_leader = offline_guides ? measured.offline : measured.online;
   PartedPoints& followers = query.memory.parted;
-  part_by_agreement(leader.camera_from_world, query.rig, offline_guides ? measured.online : measured.offline,
-                    leader.variance_factor, followers);
+  part_by_agreement(leader.camera_from_world, leader.covariance, query.rig,
+                    offline_guides ? measured.online : measured.offline, leader.variance_factor, followers);
   auto solution = offline_guides ? solve_together(query, leader.camera_from_world, of_leader, followers.agreeing)
                                  : solve_together(query, leader.camera_from_world, followers.agreeing, of_leader);
   if (!solution) solution = Solution{leader, &of_leader, {}};
@@ -370,7 +370,7 @@ SearchedPoints search_points(const Frame& frame, const Pose& camera_from_world, 
   project_visible(map, points, camera_from_world, rig, options.hidden, found.expected.offline);
   match_and_measure(query, found.expected.offline, camera_from_world, found.measured.offline);
   PartedPoints& parted = query.memory.parted;
-  part_by_agreement(camera_from_world, rig, found.measured.offline, 1.0, parted);
+  part_by_agreement(camera_from_world, Matrix6::Zero(), rig, found.measured.offline, 1.0, parted);
   SearchedPoints searched;
   for (const TrackedFeature& feature : parted.agreeing.features) searched.agreed.push_back(feature.point);
   for (const TrackedFeature& feature : parted.disagreeing) {

@@ -226,7 +226,7 @@ PoseFilter::Accepted PoseFilter::last_known(const Rig& rig, const MapView& map) 
 
 double PoseFilter::log_odds_of_relocalisation(Timestamp time, const Pose& body, const Rig& rig,
                                               const MapView& map) const {
-  constexpr double kSlack = 0.5;  // metres, error of poses
+  constexpr double kSlack = 0.25;  // metres, error of poses
   if (!last_accepted_ || trajectory_.confirmed_count() == 0) return 0.0;
   const Accepted known = last_known(rig, map);
   const double reach = kSlack + registration_.max_speed * to_seconds(time - known.time);

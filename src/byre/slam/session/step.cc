@@ -129,6 +129,12 @@ void drop_non_finite(std::optional<HybridTrack>& track) {
   if (track && !is_finite(track->tracked.camera_from_world)) track.reset();
 }
 
+// A pose in the offline map that the robot cannot have reached is a find, which its place must confirm.
+bool is_jump(const RobotState& state, const Frame& frame, const HybridTrack& track) {
+  return state.mission && state.pose_filter.place().is_confirmed() &&
+         state.pose_filter.is_unreachable(frame, track, state.rig, state.map());
+}
+
 // Measured motion contradicts the pose, and the offline points in view do not outweigh it. The motion is then followed.
 bool contradicts_motion(RobotState& state, const Frame& frame, const HybridTrack& track) {
   if (!state.pose_filter.is_unreachable(frame, track, state.rig, state.map())) return false;
@@ -241,7 +247,7 @@ Located locate(RobotState& state, const InputFrame& input, const SessionOptions&
   if (!pose_filter.trajectory().empty() && (pose_filter.has_pose() || !can_search || returns_by_odometry)) {
     located.track = track_from_last_pose(state, frame, scene);
   }
-  located.is_relocalised = located.track && returns_by_odometry;
+  located.is_relocalised = located.track && (returns_by_odometry || is_jump(state, frame, *located.track));
   if (!located.track && can_search) located = find_place(state, frame, scene, false);
   state.mapper.allow_monocular_submap(
       state.rig, !located.track && (pose_filter.bridge() || state.mapper.may_begin_separate_submap()));

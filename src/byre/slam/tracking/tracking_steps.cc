@@ -22,6 +22,14 @@ PixelMeasurement measure(const MapView& map, const MapPoint& point, const Camera
   return measure_pixel({view, point.reference.feature, sighting.pixel}, point.position_in_world, frame, feature);
 }
 
+// Adds the error of the pose to that of the point: only their relative position shows in the image.
+void add_pose_error(PoseObservation& observation, const Pose& camera_from_world, const Matrix6& covariance) {
+  Eigen::Matrix<double, 3, 6> by_pose;
+  by_pose << Eigen::Matrix3d::Identity(), -skew(camera_from_world * observation.point_in_world);
+  by_pose = camera_from_world.rotation.conjugate().toRotationMatrix() * by_pose;
+  observation.point_covariance += by_pose * covariance * by_pose.transpose();
+}
+
 ScratchVector<TrackedFeature> matches_by(const PoseRefinement& refined, const MeasuredPoints& measured,
                                          bool agreement) {
   ScratchVector<TrackedFeature> matches;
@@ -68,15 +76,18 @@ void measure_matches(const Frame& frame, const Pose& camera_from_world, const Ri
   }
 }
 
-void part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
-                       double max_variance_factor, PartedPoints& parted) {
+void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance, const Rig& rig,
+                       const MeasuredPoints& measured, double max_variance_factor, PartedPoints& parted) {
   PoseRefinementOptions at_pose;
   at_pose.rounds = 0;
   at_pose.max_variance_factor = max_variance_factor;
   parted.agreeing.observations.clear();
   parted.agreeing.features.clear();
   parted.disagreeing.clear();
-  const auto judged = refine_pose(camera_from_world, rig, measured.observations, at_pose);
+  thread_local std::vector<PoseObservation> observations;  // buffer
+  observations = measured.observations;
+  for (PoseObservation& observation : observations) add_pose_error(observation, camera_from_world, covariance);
+  const auto judged = refine_pose(camera_from_world, rig, observations, at_pose);
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
     if (!judged || !judged->inliers[i]) {
       parted.disagreeing.push_back(measured.features[i]);

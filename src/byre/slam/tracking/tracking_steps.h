@@ -38,10 +38,10 @@ struct PartedPoints {
   std::vector<TrackedFeature> disagreeing;
 };
 
-// max_variance_factor: factor on the variances of the measurements, that of the points that gave the pose. Refills
-// `parted`.
-void part_by_agreement(const Pose& camera_from_world, const Rig& rig, const MeasuredPoints& measured,
-                       double max_variance_factor, PartedPoints& parted);
+// covariance: of delta in exp_pose(delta) * camera_from_world. max_variance_factor: factor on the variances of the
+// measurements, that of the points that gave the pose. Refills `parted`.
+void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance, const Rig& rig,
+                       const MeasuredPoints& measured, double max_variance_factor, PartedPoints& parted);
 
 // Whether enough of the matches agree on the pose.
 bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options);
