@@ -92,7 +92,8 @@ BundleResult bundle_adjust(const BundleProblem& problem, const BundleOptions& op
   result.squared_errors = squared_errors(calibrated, result);
   if (options.covariance_of_pose >= 0 && result.usable) {
     result.pose_covariance =
-        marginal_covariance(moved(calibrated, result, roles), scale, options.covariance_of_pose, options.huber_width);
+        marginal_covariance(with_shared_errors(moved(calibrated, result, roles), options.systematic_sigma), scale,
+                            options.covariance_of_pose, options.huber_width);
   }
   return result;
 }

@@ -65,6 +65,7 @@ struct BundleOptions {
   int covariance_of_pose = -1;  // index of the pose whose marginal covariance is computed, or -1
   // Poses whose marginal covariances are computed together, for large problems. Precondition: observed and not fixed.
   std::vector<int> covariances_of_poses;
+  double systematic_sigma = 0.0;  // pixels, for covariance_of_pose: see with_shared_errors()
   // Called before the first and after each iteration, on the calling thread; true stops the solver. The result is then
   // usable: the best poses and points so far. May be empty.
   std::function<bool()> should_stop;

@@ -1,5 +1,6 @@
 #include "byre/optimise/bundle_covariance.h"
 
+#include "byre/geometry/image_regions.h"
 #include "byre/optimise/bundle_motion.h"
 #include "byre/optimise/huber.h"
 #include "byre/optimise/reprojection.h"
@@ -175,6 +176,21 @@ std::optional<Matrix6> last_marginal(const Eigen::MatrixXd& lower_triangle) {
 }
 
 }  // namespace
+
+BundleProblem with_shared_errors(BundleProblem problem, double systematic_sigma) {
+  std::vector<ByImageRegion<int>> counts(problem.poses.size());
+  const auto count_of = [&](const BundleObservation& observation) -> int& {
+    const Rig& rig = problem.rigs[problem.poses[observation.pose].rig];
+    return counts[observation.pose][image_region_of(observation.measured.x(), observation.measured.y(), rig)];
+  };
+  for (const BundleObservation& observation : problem.observations) ++count_of(observation);
+  for (BundleObservation& observation : problem.observations) {
+    const double shared = std::sqrt(count_of(observation)) * systematic_sigma;
+    observation.pixel_sigma = std::hypot(observation.pixel_sigma, shared);
+    if (observation.is_stereo()) observation.disparity_sigma = std::hypot(observation.disparity_sigma, shared);
+  }
+  return problem;
+}
 
 std::vector<int> observations_by_point(const BundleProblem& solved) {
   std::vector<int> start(solved.points.size() + 1, 0);

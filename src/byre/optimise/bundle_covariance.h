@@ -15,6 +15,10 @@ struct FixedDistance {
   double sigma() const { return 1e-4 * distance; }  // metres
 };
 
+// The problem with sigmas at which the observations of a pose in an image region together weigh as much as with an
+// error that they share, of this sigma (pixels): it does not average out over points, see PoseRefinementOptions.
+BundleProblem with_shared_errors(BundleProblem problem, double systematic_sigma);
+
 // Covariance of delta in exp_pose(delta) * camera_from_world of one pose, marginalised over all other moving poses and
 // points: inverse of the robustly weighted normal matrix, by Schur complement over points, then poses. Empty if the
 // observations do not determine the pose. Dense over the moving poses: cubic in their number, intended for windows.

@@ -96,6 +96,20 @@ TEST(MarginalCovariance, IgnoresAPointObservedOnceWithoutDisparity) {
   EXPECT_LT((*after - *before).norm(), 1e-6 * before->norm());
 }
 
+// Four times as many observations halve the error by noise, not the error that neighbours share.
+TEST(MarginalCovariance, DoesNotAverageOutErrorsThatNeighboursShare) {
+  const BundleProblem few = make_scene(8, {.points = 40, .fixed_points = 40}).truth;
+  BundleProblem many = few;
+  for (int i = 0; i < 3; ++i) {
+    many.observations.insert(many.observations.end(), few.observations.begin(), few.observations.end());
+  }
+  const auto variance_of = [](const BundleProblem& problem, double systematic_sigma) {
+    return marginal_covariance(with_shared_errors(problem, systematic_sigma), {}, 4, kHuberWidth).value().trace();
+  };
+  EXPECT_NEAR(variance_of(many, 0.0), 0.25 * variance_of(few, 0.0), 1e-3 * variance_of(few, 0.0));
+  EXPECT_GT(variance_of(many, 10.0), 0.95 * variance_of(few, 10.0));
+}
+
 TEST(MarginalCovariance, IsEmptyForAFixedOrUnobservedPose) {
   BundleProblem problem = make_scene(5, {}).truth;
   problem.poses.push_back({Pose{}, 0, false});

@@ -361,6 +361,9 @@ void Mapper::request_local_job() {
   }
   add_motions(window, motions_between(online));
   MappingOptions mapping = options_.mapping;
+  // Nothing corrects the drift of a mission beyond its map, while finishing a map corrects that of mapping.
+  constexpr double kSharedError = 0.1;  // pixels, measured on drives through an unmapped store
+  if (offline_) mapping.systematic_sigma = kSharedError;
   mapping.hidden = hidden_;
   local_.request([window = std::move(window), options = mapping, to_page_out = std::exchange(to_page_out_, {}),
                   file = page_file_] { return extend_map_locally(window, options, to_page_out, *file); });

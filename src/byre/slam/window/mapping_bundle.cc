@@ -164,6 +164,7 @@ bool has_anchor(const BundleProblem& problem) {
 void adjust_in_two_rounds(MapWindow& window, const MappingOptions& options, const std::function<bool()>& should_stop) {
   BundleOptions bundle_options;
   bundle_options.should_stop = should_stop;
+  bundle_options.systematic_sigma = options.systematic_sigma;
   for (const bool last_round : {false, true}) {
     bundle_options.max_iterations = last_round ? options.second_bundle_iterations : options.first_bundle_iterations;
     const WindowBundle bundle = make_bundle(window, options.offline_weight);
