@@ -163,12 +163,15 @@ std::vector<PlaceSearch> search_places(std::span<const std::shared_ptr<const Off
 }
 
 ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const Frame& frame, const Rig& rig) {
-  const double unlikely = -std::log(10.0), much_less_likely = std::log(20.0);  // log-odds
+  // Log-odds.
+  const double unlikely = -std::log(10.0), much_less_likely = std::log(20.0), certain = std::log(1e4);
+  constexpr double kRepetition = 0.3;  // share of the inliers
   struct LikelyPlace {
     int map = 0;
     const TrackedFrame* tracked = nullptr;
     double log_odds = 0.0;
-    bool is_near_keyframe = false;
+
+    double inliers() const { return static_cast<double>(tracked->features.size()); }
   };
   const MapGraph nothing_online(Origin::online);
   std::vector<Localisation> attempts;  // one for each map
@@ -180,8 +183,8 @@ ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const 
   std::vector<LikelyPlace> places;
   for (int map = 0; map < std::ssize(maps); ++map) {
     for (const TrackedFrame& place : attempts[static_cast<std::size_t>(map)].places_found) {
-      const PlaceView view = view_at(*maps[static_cast<std::size_t>(map)], frame, rig, {}, place);
-      places.push_back({map, &place, log_odds_of(view), view.is_near_keyframe});
+      places.push_back(
+          {map, &place, log_odds_of(view_at(*maps[static_cast<std::size_t>(map)], frame, rig, {}, place))});
     }
   }
   if (places.empty()) {
@@ -192,12 +195,16 @@ ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const 
   const LikelyPlace& likeliest = places.front();
   ImageLocalisation result{attempts[static_cast<std::size_t>(likeliest.map)], likeliest.map};
   Localisation& found = result.found;
-  found.inliers = static_cast<int>(likeliest.tracked->features.size());
+  found.inliers = static_cast<int>(likeliest.inliers());
   found.tracked.reset();
-  // Far from keyframes, walls may hide expected points.
-  if (likeliest.log_odds < unlikely && likeliest.is_near_keyframe) {
+  // A building that repeats may do so beyond the map, where no place competes.
+  const bool is_repeated = std::ranges::any_of(places.begin() + 1, places.end(), [&](const LikelyPlace& place) {
+    return place.inliers() >= kRepetition * likeliest.inliers();
+  });
+  if (likeliest.log_odds < unlikely) {
     found.failure = LocalisationFailure::unlikely;
-  } else if (places.size() > 1 && likeliest.log_odds - places[1].log_odds < much_less_likely) {
+  } else if ((is_repeated && likeliest.log_odds < certain) ||
+             (places.size() > 1 && likeliest.log_odds - places[1].log_odds < much_less_likely)) {
     found.failure = LocalisationFailure::ambiguous;
   } else {
     found.failure = LocalisationFailure::none;

@@ -74,5 +74,28 @@ TEST(ImageLocalisation, SelectsTheRoomWithMostOfItsPointsInView) {
   EXPECT_GE(decided, 3);
 }
 
+// Two rooms of a row are mapped, the image is from a third one.
+TEST(ImageLocalisation, RefusesThePlaceOfABuildingThatRepeatsBeyondTheMap) {
+  const SimulatedMission mission = lap();
+  MappedPlace place = twin_rooms(mission);
+  const int of_one_room = place.map.point_count() / 2;
+  for (const PointId id : place.map.point_ids()) {
+    MapPoint point = *place.map.find_point(id);
+    const double lowest = static_cast<int>(id.number) < of_one_room ? 0.4 : 0.0;
+    if (point.position_in_world.z() < lowest) continue;
+    point.position_in_world.z() += 0.5;
+    place.map.update_point(id, point);
+  }
+  const OfflineMap map(place.map, place.index.vocabulary());
+  const OfflineMap* const maps[] = {&map};
+  int refused = 0;
+  for (std::size_t i = 0; i < mission.frames.size(); i += 6) {
+    const Localisation found = localise_image(maps, mission.frames[i], mission.rig).found;
+    EXPECT_FALSE(found.tracked) << "frame " << i;
+    refused += found.failure == LocalisationFailure::ambiguous;
+  }
+  EXPECT_GE(refused, 3);
+}
+
 }  // namespace
 }  // namespace byre
