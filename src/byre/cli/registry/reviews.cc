@@ -1,3 +1,4 @@
+#include "byre/registry/reviews.h"
 #include "byre/base/report_row.h"
 #include "byre/cli/registry/commands.h"
 #include "byre/cli/shared/file_arguments.h"
@@ -50,26 +51,26 @@ constexpr const char* kRequestFooter = R"(Examples:
 Sessions request updates of their site themselves; a request repeats one that was set aside. A merge puts the second
 version into the first. "byre worker" runs the job, whose result is a proposed version.)";
 
-// A statement on a version with a reason, which returns the id of the accepted or rejected version.
-ExitCode review(const ReviewOptions& options, const char* statement, const char* label, std::ostream& result) {
+ExitCode run_review(const ReviewOptions& options, Review review, std::ostream& result) {
   Connection connection = open_registry(options.uri);
   const std::optional<std::string> version = options.version.empty() ? std::nullopt : std::optional(options.version);
-  const Rows rows = connection.run(statement, {site_number(connection, options.site), version, options.reason});
-  result << row(label, rows.text(0, 0));
+  const std::int64_t site = site_number(connection, options.site);
+  result << row(review == Review::reject ? "rejected" : "accepted",
+                review_version(connection, review, site, version, options.reason));
   return ExitCode::done;
 }
 
-Action declare_review(CLI::App& command, const char* statement, const char* label, bool is_version_required) {
+Action declare_review(CLI::App& command, Review review) {
   const auto options = std::make_shared<ReviewOptions>();
   add_site(command, options->site);
-  if (is_version_required) {
-    add_version_id(command, options->version);
-  } else {
+  if (review == Review::rollback) {
     add_text(command, "--version", options->version, "Another version than the one before")->type_name("ID");
+  } else {
+    add_version_id(command, options->version);
   }
   add_reason(command, options->reason);
   add_registry(command, options->uri);
-  return [=](std::ostream& result) { return review(*options, statement, label, result); };
+  return [=](std::ostream& result) { return run_review(*options, review, result); };
 }
 
 ExitCode run_request(const RequestOptions& options, std::ostream& result) {
@@ -88,17 +89,17 @@ ExitCode run_request(const RequestOptions& options, std::ostream& result) {
 
 Action declare_registry_accept(CLI::App& command) {
   command.footer(kAcceptFooter);
-  return declare_review(command, "SELECT $2::text FROM byre.accept($1, $2, $3)", "accepted", true);
+  return declare_review(command, Review::accept);
 }
 
 Action declare_registry_reject(CLI::App& command) {
   command.footer(kRejectFooter);
-  return declare_review(command, "SELECT $2::text FROM byre.reject($1, $2, $3)", "rejected", true);
+  return declare_review(command, Review::reject);
 }
 
 Action declare_registry_rollback(CLI::App& command) {
   command.footer(kRollbackFooter);
-  return declare_review(command, "SELECT byre.rollback($1, $2, $3)", "accepted", false);
+  return declare_review(command, Review::rollback);
 }
 
 Action declare_registry_request(CLI::App& command) {
