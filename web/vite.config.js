@@ -38,7 +38,7 @@ export default defineConfig({
   build: { target: "es2022", modulePreload: false, cssCodeSplit: false, assetsInlineLimit: 0 },
   server: {
     proxy: Object.fromEntries(
-      ["/scene", "/map", "/plan.png", "/images", "/registration", "/place", "/proposal", "/save", "/live"].map((path) => [
+      ["/scene", "/map", "/plan.png", "/images", "/registration", "/place", "/proposal", "/save", "/live", "/sites", "/maps"].map((path) => [
         path,
         { target: "http://localhost:8017", ws: path === "/live" },
       ]),

@@ -27,4 +27,21 @@ rm -rf barn_1 barn_2
 "$byre" simulate cowshed --divide 2 --rate 8 --duration 25 -o barn_1 --quiet
 "$byre" simulate cowshed --divide 2 --rate 8 --duration 5 --mission 2 -o barn_2 --quiet
 "$byre" map barn_1 -o barn_1.byre --quiet >/dev/null
-BYRE=$byre BROWSER=$browser node --test --test-concurrency=1 viewer_test.mjs registration_test.mjs
+tests=(viewer_test.mjs registration_test.mjs)
+
+export REGISTRY_SCRIPT=$source/../../scripts/registry.sh
+REGISTRY=$(mktemp -d /tmp/byre_browser.XXXXXX) # short, as a socket's name is, and open to the account of the server
+export REGISTRY
+chmod 711 "$REGISTRY"
+if settings=$("$REGISTRY_SCRIPT" "$REGISTRY"); then
+  trap '"$REGISTRY_SCRIPT" "$REGISTRY" kill; rm -rf "$REGISTRY"' EXIT
+  eval "$settings"
+  "$byre" run barn_2 --map barn_1.byre --save-session all.session --quiet >/dev/null
+  "$byre" update barn_1.byre all.session -o updated.byre --quiet >/dev/null
+  "$byre" run barn_2 --end 3 --map barn_1.byre --save-session part.session --quiet >/dev/null
+  "$byre" update barn_1.byre part.session -o updated_by_part.byre --quiet >/dev/null
+  tests+=(registry_test.mjs)
+else
+  rm -rf "$REGISTRY"
+fi
+BYRE=$byre BROWSER=$browser node --test --test-concurrency=1 "${tests[@]}"

@@ -1,8 +1,8 @@
 import { element } from "./dom";
 
-/** Dialog before a step that is hard to undo; Enter selects "Do not save". True if confirmed. */
-export function isConfirmed(question: string, yes: string): Promise<boolean> {
-  const refuse = element("button", { type: "button", autofocus: true }, "Do not save");
+/** Dialog before a step that is hard to undo; Enter selects no. True if confirmed. */
+export function isConfirmed(question: string, yes: string, no: string): Promise<boolean> {
+  const refuse = element("button", { type: "button", autofocus: true }, no);
   const accept = element("button", { type: "button", class: "danger" }, yes);
   const dialog = element(
     "dialog",

@@ -11,7 +11,7 @@ interface Form {
   translation: string;
 }
 
-/** Translates the page, now and whenever it changes, to the browser's language or that of ?lang=; English without one. */
+/** Translates the page without elements of translate="no", now and whenever it changes, to the browser's language or that of ?lang=; English without one. */
 export function startLanguage(): void {
   const language = new URLSearchParams(location.search).get("lang") ?? navigator.language.slice(0, 2);
   const texts = kLanguages[language];
@@ -23,6 +23,8 @@ export function startLanguage(): void {
     observer.takeRecords(); // the changes by visit
   });
   const visit = (node: Node): void => {
+    const owner = node instanceof Text ? node.parentElement : node;
+    if (owner instanceof HTMLElement && !owner.translate) return;
     if (node instanceof Text) {
       const text = translate(node.data);
       if (text !== node.data) node.data = text;

@@ -3,6 +3,7 @@ import { byId } from "./dom";
 import { startLanguage } from "./language";
 import { startMapPage } from "./map_page";
 import { MapSpace } from "./map_space";
+import { startRegistryPage } from "./registry_page";
 import { startRunPage } from "./run_page";
 import { loadScene } from "./server";
 import { listenToKeys } from "./shortcuts";
@@ -18,9 +19,15 @@ declare global {
 async function start(): Promise<void> {
   startLanguage();
   startTheme();
-  const scene = await loadScene();
+  const notice = byId("notice");
+  const scene = await loadScene((text) => (notice.textContent = text));
+  notice.textContent = "";
   document.title = `${scene.name} – byre`;
   byId("name").textContent = scene.name;
+  if (scene.mode === "registry") {
+    startRegistryPage(scene);
+    return;
+  }
   const space = new MapSpace(scene);
   window.byreFramesPerSecond = (seconds) => space.stage?.measure(seconds) ?? 0;
   if (scene.mode === "run") {

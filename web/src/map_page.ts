@@ -3,6 +3,7 @@ import { KeyframePictures } from "./keyframe_pictures";
 import type { MapSpace } from "./map_space";
 import { startScaleBar } from "./panels/scale_bar";
 import { Picking } from "./picking";
+import { linkToReview } from "./registry_page";
 import { loadGreys, loadMap } from "./server";
 import type { MapScene } from "./types";
 
@@ -16,11 +17,12 @@ export async function startMapPage(scene: MapScene, space: MapSpace): Promise<vo
   const { stage } = space;
   if (stage) startScaleBar(stage, scene.is_metric ? "m" : "map units");
   const pictures = stage && scene.pictures.length ? new KeyframePictures(stage, map.keyframes, scene.pictures) : null;
-  if (scene.plan) {
+  if (scene.plan && !scene.is_read_only) {
     new Picking(scene, scene.plan, map, space, pictures);
   } else {
     byId("main").classList.add("alone");
     byId("next-step").textContent = scene.next_step;
+    if (scene.is_read_only) byId("next-step").append(" ", linkToReview());
     stage?.onClick((click) => pictures?.openAt(click));
   }
   space.showGreys(await greys);

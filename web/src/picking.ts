@@ -275,7 +275,7 @@ export class Picking {
     if (!fit) return;
     const doubt = this.#isProposal ? (fit as Proposal).doubt : null;
     const warning = fit.is_far_off ? farOffWarning(fit) : doubt;
-    if (warning && !(await isConfirmed(warning, "Save anyway"))) return;
+    if (warning && !(await isConfirmed(warning, "Save anyway", "Do not save"))) return;
     try {
       const written = await save(this.#isProposal ? null : this.#picks, fit.is_far_off ? fit.residual_m : undefined);
       this.#list.tellSaved(`Written: ${written.join(", ")}`);

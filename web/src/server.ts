@@ -1,18 +1,46 @@
 import { decodeImage, decodeMap, type MapData, type SeenImage } from "./decode";
-import type { LiveMessage, Pick, PicturePixel, PlanFit, Proposal, SceneFields } from "./types";
+import type {
+  EventFields,
+  LiveMessage,
+  Pick,
+  PicturePixel,
+  PlanFit,
+  Proposal,
+  RegistryScene,
+  ReviewAct,
+  SceneFields,
+  SiteFields,
+  SiteSummary,
+  VersionFields,
+} from "./types";
 
-const kRetryMilliseconds = 2000;
+export const kRetryMilliseconds = 2000;
+export const kUnavailable = 503; // status while the server has no connection to the registry
+const kWaitMilliseconds = 300;
 
-/** URL of a path on the server, with this page's token. */
+/** URL of a path below the page, with its token. */
 export function address(path: string): string {
   const token = new URLSearchParams(location.search).get("token");
-  return token === null ? path : `${path}?token=${encodeURIComponent(token)}`;
+  const below = location.pathname.replace(/\/[^/]*$/, "") + path;
+  return token === null ? below : `${below}?token=${encodeURIComponent(token)}`;
+}
+
+/** Answer of the server other than success. */
+export class Refusal extends Error {
+  readonly status: number;
+  constructor(status: number, problem: string) {
+    super(problem);
+    this.status = status;
+  }
 }
 
 async function answerOf(response: Response): Promise<Response> {
   if (response.ok) return response;
-  const said = await response.text();
-  throw new Error(problemIn(said));
+  throw new Refusal(response.status, problemIn(await response.text()));
+}
+
+async function get<Answer>(path: string): Promise<Answer> {
+  return (await answerOf(await fetch(address(path)))).json();
 }
 
 function problemIn(text: string): string {
@@ -28,8 +56,33 @@ async function post<Answer>(path: string, content: unknown): Promise<Answer> {
   return (await answerOf(response)).json();
 }
 
-export async function loadScene(): Promise<SceneFields> {
-  return (await answerOf(await fetch(address("/scene")))).json();
+/** notify: called while the server prepares the scene, with what it does. */
+export async function loadScene(notify: (text: string) => void): Promise<SceneFields | RegistryScene> {
+  const scene = await get<SceneFields | RegistryScene | { waiting: string }>("/scene");
+  if (!("waiting" in scene)) return scene;
+  notify(scene.waiting);
+  await new Promise((resolve) => setTimeout(resolve, kWaitMilliseconds));
+  return loadScene(notify);
+}
+
+export function loadSites(): Promise<SiteSummary[]> {
+  return get("/sites");
+}
+
+export function loadSite(site: string): Promise<SiteFields> {
+  return get(`/sites/${encodeURIComponent(site)}`);
+}
+
+export function loadEvents(site: string): Promise<EventFields[]> {
+  return get(`/sites/${encodeURIComponent(site)}/events`);
+}
+
+export function loadVersion(site: string, version: string): Promise<VersionFields> {
+  return get(`/sites/${encodeURIComponent(site)}/${version}`);
+}
+
+export function review(site: string, version: string, act: ReviewAct, reason: string): Promise<unknown> {
+  return post(`/sites/${encodeURIComponent(site)}/${version}/${act}`, { reason });
 }
 
 export async function loadMap(which: "offline" | "online" | "changes"): Promise<MapData> {

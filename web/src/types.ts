@@ -1,4 +1,5 @@
-// JSON messages of byre, written by web_messages.cc, web_run.cc and web_map.cc in src/byre/viewer/web.
+// JSON messages of byre, written by web_messages.cc, web_run.cc and web_map.cc in src/byre/viewer/web; those of a
+// registry by src/byre/registry/listing.cc and src/byre/cli/registry/review_site.cc.
 
 /** x, y, z in metres and quaternion x, y, z, w. */
 export type PoseFields = [number, number, number, number, number, number, number];
@@ -64,11 +65,84 @@ export interface MapScene extends SceneBase {
   pictures: PictureFields[];
   output: string | null;
   tags: number; // surveyed ones, which are picks as well
+  is_read_only: boolean; // version of a registry: no points are picked
   next_step: string; // sentence with a command
   before: string | null; // name of the earlier version that it is compared with
 }
 
 export type SceneFields = RunScene | MapScene;
+
+export interface RegistryScene {
+  mode: "registry";
+  name: string; // host and database
+  account: string;
+}
+
+export interface SiteSummary {
+  site: string;
+  accepted: string | null; // id of a version
+  proposed: number;
+  open_sessions: number;
+  jobs: number; // waiting or running
+  failed_jobs: number;
+}
+
+export type VersionState = "proposed" | "accepted" | "retired";
+
+interface VersionBase {
+  id: string;
+  state: VersionState;
+  bytes: number;
+  note: string;
+  added_by: string;
+  added_at: string;
+  reviewed_by: string | null;
+  reason: string | null;
+}
+
+export interface SessionFields {
+  id: string;
+  name: string;
+  ran_on: string; // id of a version
+  added_by: string;
+}
+
+export interface SiteFields {
+  versions: (VersionBase & { parent: string | null })[];
+  sessions: (SessionFields & { added_at: string })[];
+  jobs: { id: number; kind: string; state: string; attempts: number; worker: string | null; message: string }[];
+  robots: {
+    account: string;
+    runs: string;
+    refused: string;
+    reason: string;
+    waiting: number; // sessions that it has not sent
+    seen_at: string | null;
+  }[];
+}
+
+export interface EventFields {
+  at: string;
+  actor: string;
+  kind: string;
+  subject?: string; // id of a version or session, number of a job; not in VersionFields
+  reason: string;
+}
+
+export type ReviewAct = "accept" | "reject" | "rollback";
+
+/** refusal: why the review is not permitted now, or empty; version: the one that it accepts or rejects. */
+export interface ReviewTrial {
+  version: string;
+  refusal: string;
+}
+
+export interface VersionFields extends VersionBase {
+  parents: string[];
+  sessions: SessionFields[];
+  events: EventFields[];
+  reviews: Record<ReviewAct, ReviewTrial>;
+}
 
 export interface FrameFields {
   time_s: number;

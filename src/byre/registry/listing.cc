@@ -125,6 +125,17 @@ std::string version_json(Connection& connection, std::int64_t site, const std::s
                    "list the site with byre registry list");
 }
 
+std::string listing_key(Connection& connection) {
+  return connection
+      .run(R"(SELECT concat_ws(' ', (SELECT max(id) FROM byre.event),
+        (SELECT max(id) FROM byre.job),
+        (SELECT string_agg(concat_ws(',', id, state, attempts), ' ' ORDER BY id) FROM byre.job
+          WHERE state IN ('waiting', 'running')),
+        (SELECT string_agg(concat_ws(',', site, id), ' ') FROM byre.version WHERE state = 'accepted'),
+        (SELECT string_agg(concat_ws(',', account, runs, refused, waiting), ' ' ORDER BY account) FROM byre.robot)))")
+      .text(0, 0);
+}
+
 std::string events_json(Connection& connection, std::int64_t site) {
   return connection
       .run(R"(SELECT coalesce(json_agg(row_to_json(x)), '[]') FROM (

@@ -16,6 +16,9 @@ std::string site_json(Connection& connection, std::int64_t site);
 std::string version_json(Connection& connection, std::int64_t site, const std::string& id);
 std::string events_json(Connection& connection, std::int64_t site);  // the newest first
 
+// Text that differs after any change of a version, session, job or robot that the account may read.
+std::string listing_key(Connection& connection);
+
 // Sites, versions, sessions, jobs and robots in the text format of Prometheus,
 // https://prometheus.io/docs/instrumenting/exposition_formats
 std::string registry_metrics(Connection& connection);

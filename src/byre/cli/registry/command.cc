@@ -31,6 +31,7 @@ constexpr std::array kRegistryCommands = {
     RegistryCommand{"history", "Print who did what at a site, and why", declare_registry_history},
     RegistryCommand{"watch", "Print a line for each version of a site that is accepted", declare_registry_watch},
     RegistryCommand{"metrics", "Print the state of all sites and robots for Prometheus", declare_registry_metrics},
+    RegistryCommand{"serve", "Review versions of maps in a browser", declare_registry_serve},
 };
 
 }  // namespace

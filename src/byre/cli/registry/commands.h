@@ -22,6 +22,7 @@ Action declare_registry_request(CLI::App& command);
 Action declare_registry_history(CLI::App& command);
 Action declare_registry_watch(CLI::App& command);
 Action declare_registry_metrics(CLI::App& command);
+Action declare_registry_serve(CLI::App& command);
 
 void add_registry(CLI::App& command, std::string& uri);   // --registry
 void add_site(CLI::App& command, std::string& site);      // SITE

@@ -3,8 +3,6 @@
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/number_check.h"
 
-#include <string>
-
 #include <CLI/CLI.hpp>
 
 namespace byre::cli {
@@ -47,11 +45,11 @@ void declare_run_viewer_options(CLI::App& command, ViewOptions& options) {
                "--view shows it below the map");
 }
 
-void declare_viewer_options(CLI::App& command, ViewOptions& options) {
+void declare_viewer_options(CLI::App& command, ViewOptions& options, const std::string& plan) {
   options.is_wanted = true;
   declare_port(command, "--port", options.server.port, "Port to serve the page at");
   declare_address(command, options);
-  declare_plan(command, options, "Floor plan to pick points on: a map_server YAML file, or an image with a world file");
+  declare_plan(command, options, plan + ": a map_server YAML file, or an image with a world file");
 }
 
 }  // namespace byre::cli

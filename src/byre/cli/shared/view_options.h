@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace CLI {
 class App;
@@ -24,7 +25,7 @@ struct ViewOptions {
 // --view [PORT], --view-for, --bind and --plan of a command with a run.
 void declare_run_viewer_options(CLI::App& command, ViewOptions& options);
 
-// --port, --bind and --plan of "byre view".
-void declare_viewer_options(CLI::App& command, ViewOptions& options);
+// --port, --bind and --plan of a command without a run. plan: description of the plan.
+void declare_viewer_options(CLI::App& command, ViewOptions& options, const std::string& plan);
 
 }  // namespace byre::cli

@@ -5,7 +5,6 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/io/recording/input_files.h"
-#include "byre/map.h"
 #include "byre/playback/report/inspection_report.h"
 #include "byre/slam/system/resources.h"
 #include "byre/tag_file.h"
@@ -51,18 +50,15 @@ std::vector<fs::path> outputs_of(const ViewCommandOptions& options) {
   return {*options.output, picks_path(*options.output)};
 }
 
-MapChanges changes_since(const fs::path& file, const StoredMap& after_file) {
-  const Map before(load_map(file)), after(after_file);
-  return {file.filename().string(), scene_of(before, after, before.difference(after))};
-}
-
 ExitCode view(const ViewCommandOptions& options) {
   const InterruptCatcher interrupt;
   ViewedMap viewed;
   viewed.name = options.map.filename().string();
   viewed.stored = load_map(options.map);
   viewed.next_step = next_step_with(viewed.stored, viewed.name);
-  if (options.before) viewed.changes = changes_since(*options.before, viewed.stored);
+  if (options.before) {
+    viewed.changes = changes_between(options.before->filename().string(), load_map(*options.before), viewed.stored);
+  }
   if (options.view.plan) viewed.plan = read_floor_plan(*options.view.plan);
   viewed.output = options.output;
   for (const fs::path& output : outputs_of(options)) require_writable(output);
@@ -93,7 +89,7 @@ void require_consistent(const ViewCommandOptions& options) {
 Action declare_view(CLI::App& command) {
   const auto options = std::make_shared<ViewCommandOptions>();
   add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
-  declare_viewer_options(command, options->view);
+  declare_viewer_options(command, options->view, "Floor plan to pick points on");
   add_input(command, Input::file, "--before", options->before,
             "Earlier version of the map: the page shows removed and added points")
       ->type_name("MAP");

@@ -137,6 +137,7 @@ class MapSite : public WebSite {
         {"pictures", picture_fields(map_.stored, driving_plane_ && map_.plan ? std::optional(driving_plane_->up_in_map)
                                                                              : std::nullopt)},
         {"output", fields_or_null(map_.output, text_of)},
+        {"is_read_only", map_.is_read_only},
         {"next_step", map_.next_step},
         {"before", fields_or_null(map_.changes, before_of)},
         {"tags", tag_correspondences(map_.stored, map_.tags).size()}};
@@ -238,7 +239,15 @@ class MapSite : public WebSite {
 
 }  // namespace
 
-MapViewer::MapViewer(ViewedMap map, const WebServerOptions& server)
-    : server_(server, std::make_unique<MapSite>(std::move(map))) {}
+MapChanges changes_between(const std::string& name, const StoredMap& before, const StoredMap& after) {
+  const Map earlier(before), later(after);
+  return {name, scene_of(earlier, later, earlier.difference(later))};
+}
+
+std::unique_ptr<WebSite> make_map_site(ViewedMap map) {
+  return std::make_unique<MapSite>(std::move(map));
+}
+
+MapViewer::MapViewer(ViewedMap map, const WebServerOptions& server) : server_(server, make_map_site(std::move(map))) {}
 
 }  // namespace byre

@@ -8,6 +8,7 @@
 #include "byre/viewer/web/web_server.h"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,9 +31,16 @@ struct ViewedMap {
   PlanRegistrationOptions registration;
   std::optional<double> body_height;  // metres; empty: not given, so that of the registration is assumed
   std::vector<Tag> tags;              // surveyed ones of the map are picks as well
+  bool is_read_only = false;          // no points are picked
   std::string next_step;              // sentence with a command
   std::optional<MapChanges> changes;
 };
+
+// Changes since an earlier version, named as on the page.
+MapChanges changes_between(const std::string& name, const StoredMap& before, const StoredMap& after);
+
+// Page and data of a map.
+std::unique_ptr<WebSite> make_map_site(ViewedMap map);
 
 // Shows a map in a browser, and registers it on a plan by picked points.
 class MapViewer {
