@@ -34,8 +34,12 @@ class RegistryReviewPage : public RegistryTest {
   }
 
   // Starts the page as an account, and sets its token.
-  WebClient serve(const std::string& account, const std::string& address = "127.0.0.1") {
-    process_ = start({"registry", "serve", "--port", "0", "--bind", address, "--registry", uri(account)});
+  WebClient serve(const std::string& account, const std::string& address = "127.0.0.1",
+                  const std::vector<std::string>& options = {}) {
+    std::vector<std::string> command = {"registry", "serve", "--port",     "0",
+                                        "--bind",   address, "--registry", uri(account)};
+    command.insert(command.end(), options.begin(), options.end());
+    process_ = start(command);
     const std::string label = "viewer: http://127.0.0.1:";
     EXPECT_TRUE(appears(label, "stderr.txt")) << read("stderr.txt");
     const std::string rest = read("stderr.txt").substr(read("stderr.txt").find(label) + label.size());
@@ -62,6 +66,14 @@ class RegistryReviewPage : public RegistryTest {
   static std::string problem_of(const WebClient::Answer& answer) {
     EXPECT_GE(answer.status, 400) << answer.body;
     return answer.json().at("problem");
+  }
+
+  // Scene of the map of a version, once it is pulled.
+  static json scene_of(const WebClient& page, const std::string& version) {
+    const std::string target = "/maps/barn/" + version + "/scene";
+    WebClient::Answer answer = page.get(target);
+    while (answer.status == 202) answer = page.get(target);
+    return answer.json();
   }
 
   static std::string reason(const std::string& text) { return json{{"reason", text}}.dump(); }
@@ -265,32 +277,56 @@ TEST_F(RegistryReviewPage, ReconnectsToTheRegistry) {
   EXPECT_EQ(page.post("/sites/barn/" + id + "/accept", reason("x")).status, 200);
 }
 
+TEST_F(RegistryReviewPage, IsNotStoppedByALockOfAnotherClient) {
+  const std::string id = propose("barn");
+  const WebClient page = serve("reviewer");
+  Connection other = connect();
+  other.run_script("BEGIN; LOCK TABLE byre.version IN EXCLUSIVE MODE");
+  EXPECT_THAT(problem_of(page.post("/sites/barn/" + id + "/accept", reason("x"))),
+              HasSubstr("is in use by another client"));
+  other.run("ROLLBACK");
+  EXPECT_EQ(page.post("/sites/barn/" + id + "/accept", reason("x")).status, 200);
+}
+
+TEST_F(RegistryReviewPage, ShowsAMapOnThePlanThatItIsRegisteredOn) {
+  write("plan.pgm", "P5\n2 1\n255\n\xff\x01");
+  write("plan.yaml", "image: plan.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  Connection reviewer = connect("reviewer");
+  const auto registered_on = [&](const std::string& plan) {
+    StoredMap map;
+    map.plan.emplace();
+    map.plan->plan = plan;
+    save_map(map, folder_ / (plan + ".byre"));
+    return push_file(reviewer, kBarn, folder_ / (plan + ".byre"), "").id;
+  };
+  const std::string on_plan = registered_on("plan.yaml"), on_another = registered_on("another.yaml");
+  const WebClient page = serve("reviewer", "127.0.0.1", {"--plan", (folder_ / "plan.yaml").string()});
+  EXPECT_EQ(scene_of(page, on_plan).at("plan").at("name"), "plan.yaml");
+  EXPECT_EQ(page.get("/maps/barn/" + on_plan + "/plan.png").content_type, "image/png");
+  EXPECT_TRUE(scene_of(page, on_another).at("plan").is_null());
+}
+
 TEST_F(RegistryReviewPage, ShowsAMapWithItsChanges) {
   const std::string first = propose("first"), second = propose("second", {first, "0123456789abcdef"});
   const std::string orphan = propose("orphan", {"0123456789abcdef"});
   const WebClient page = serve("reviewer");
-  const auto scene_of = [&page](const std::string& map) {
-    WebClient::Answer answer = page.get(map + "scene");
-    while (answer.status == 202) answer = page.get(map + "scene");
-    return answer.json();
-  };
   const std::string map = "/maps/barn/" + second + "/";
   EXPECT_THAT(page.get(map).content_type, StartsWith("text/html"));
-  const json scene = scene_of(map);
+  const json scene = scene_of(page, second);
   EXPECT_EQ(scene.at("name"), "barn " + second);
   EXPECT_EQ(scene.at("before"), first);
   EXPECT_EQ(scene.at("is_read_only"), true);
   EXPECT_EQ(page.get(map + "map/changes").status, 200);
   EXPECT_EQ(page.get(map + "map/offline").body.size(), 8u) << "counts of a map without points";
   EXPECT_EQ(page.post(map + "save", "{}").status, 404);
-  const json alone = scene_of("/maps/barn/" + orphan + "/");
+  const json alone = scene_of(page, orphan);
   EXPECT_TRUE(alone.at("before").is_null());
   EXPECT_THAT(alone.at("next_step").get<std::string>(), HasSubstr("does not have its parent 0123456789abcdef"));
   for (const std::string& unknown : {"0123456789abcdef", "..%2F..%2Fetc"}) {
-    EXPECT_THAT(scene_of("/maps/barn/" + unknown + "/").at("problem").get<std::string>(), HasSubstr("has no version"));
+    EXPECT_THAT(scene_of(page, unknown).at("problem").get<std::string>(), HasSubstr("has no version"));
   }
   for (const std::string& each : {propose("third"), propose("fourth"), first}) {
-    EXPECT_EQ(scene_of("/maps/barn/" + each + "/").at("name"), "barn " + each) << "more than are kept in memory";
+    EXPECT_EQ(scene_of(page, each).at("name"), "barn " + each) << "more than are kept in memory";
   }
 }
 

@@ -180,6 +180,7 @@ void Connection::fail(pg_result* failed) const {
     const std::string account = LIBPQ(PQuser)(connection_.get());
     throw InputError(place_, reason + " for the account " + account, "use an account with the role that may do this");
   }
+  if (state == "55P03") throw InputError(place_, "is in use by another client: " + reason, "try again");
   if (field(failed, PG_DIAG_CONSTRAINT_NAME) == "chunk_hash") {
     throw InputError(place_, "refuses a chunk whose bytes do not have its SHA-256", "push the file again");
   }

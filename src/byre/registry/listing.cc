@@ -132,7 +132,8 @@ std::string listing_key(Connection& connection) {
         (SELECT string_agg(concat_ws(',', id, state, attempts), ' ' ORDER BY id) FROM byre.job
           WHERE state IN ('waiting', 'running')),
         (SELECT string_agg(concat_ws(',', site, id), ' ') FROM byre.version WHERE state = 'accepted'),
-        (SELECT string_agg(concat_ws(',', account, runs, refused, waiting), ' ' ORDER BY account) FROM byre.robot)))")
+        (SELECT string_agg(concat_ws(',', account, runs, refused, waiting, date_trunc('minute', seen_at)), ' '
+          ORDER BY account) FROM byre.robot)))")
       .text(0, 0);
 }
 

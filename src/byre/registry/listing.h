@@ -16,7 +16,8 @@ std::string site_json(Connection& connection, std::int64_t site);
 std::string version_json(Connection& connection, std::int64_t site, const std::string& id);
 std::string events_json(Connection& connection, std::int64_t site);  // the newest first
 
-// Text that differs after any change of a version, session, job or robot that the account may read.
+// Text that differs after any change of a version, session, job or robot that the account may read. Contacts of robots
+// count by minutes.
 std::string listing_key(Connection& connection);
 
 // Sites, versions, sessions, jobs and robots in the text format of Prometheus,

@@ -26,7 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxMaps = 3;  // in memory
+constexpr std::size_t kMaxMaps = 3;                               // in memory
+constexpr const char* kBoundWaiting = "SET lock_timeout = '2s'";  // a lock of another client must not stop the page
 
 constexpr std::array<std::pair<const char*, Review>, 3> kReviews = {
     {{"accept", Review::accept}, {"reject", Review::reject}, {"rollback", Review::rollback}}};
@@ -133,7 +134,9 @@ bool is_ready(const std::future<ViewedMap>& pulled) {
 }  // namespace
 
 ReviewSite::ReviewSite(ReviewSiteOptions options)
-    : options_(std::move(options)), connection_(open_registry(options_.uri)) {}
+    : options_(std::move(options)), connection_(open_registry(options_.uri)) {
+  connection_.run(kBoundWaiting);
+}
 
 std::optional<WebMessage> ReviewSite::next_message(ListenerProgress& progress) {
   if (progress.frames == news_) return std::nullopt;
@@ -147,13 +150,19 @@ WebResponse ReviewSite::answer(const WebRequest& request) {
   if (parts.empty()) return not_found(request);
   if (parts[0] == "maps") return request.method == WebRequest::Method::get ? map_response(parts) : not_found(request);
   try {
-    if (is_broken_) connection_.reconnect();
-    is_broken_ = false;
+    use_connection();
     return answer_at(parts, request);
   } catch (const ConnectionLost& lost) {
     is_broken_ = true;
     return problem_response(503, lost.what());
   }
+}
+
+void ReviewSite::use_connection() {
+  if (!is_broken_) return;
+  connection_.reconnect();
+  connection_.run(kBoundWaiting);
+  is_broken_ = false;
 }
 
 WebResponse ReviewSite::answer_at(const Parts& parts, const WebRequest& request) {

@@ -42,6 +42,7 @@ class ReviewSite : public WebSite {
     std::unique_ptr<WebSite> page;  // null: not pulled yet
   };
 
+  void use_connection();  // connects again if it is broken
   WebResponse answer_at(const Parts& parts, const WebRequest& request);
   WebResponse version_response(std::int64_t site, const std::string& version);
   WebResponse review(const Parts& parts, const WebRequest& request);
