@@ -33,7 +33,9 @@ export REGISTRY_SCRIPT=$source/../../scripts/registry.sh
 REGISTRY=$(mktemp -d /tmp/byre_browser.XXXXXX) # short, as a socket's name is, and open to the account of the server
 export REGISTRY
 chmod 711 "$REGISTRY"
-if settings=$("$REGISTRY_SCRIPT" "$REGISTRY"); then
+started=0
+settings=$("$REGISTRY_SCRIPT" "$REGISTRY") || started=$?
+if ((started == 0)); then
   trap '"$REGISTRY_SCRIPT" "$REGISTRY" kill; rm -rf "$REGISTRY"' EXIT
   eval "$settings"
   "$byre" run barn_2 --map barn_1.byre --save-session all.session --quiet >/dev/null
@@ -43,5 +45,7 @@ if settings=$("$REGISTRY_SCRIPT" "$REGISTRY"); then
   tests+=(registry_test.mjs)
 else
   rm -rf "$REGISTRY"
+  ((started == 77)) || exit "$started"
+  echo "Skipped without PostgreSQL: tests of the registry's page"
 fi
 BYRE=$byre BROWSER=$browser node --test --test-concurrency=1 "${tests[@]}"

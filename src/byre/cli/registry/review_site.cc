@@ -209,8 +209,9 @@ WebResponse ReviewSite::map_response(const Parts& parts) {
   if (path == "/") return page_response();
   if (path.empty()) return not_found(request);
   const auto map = map_page(parts[1], parts[2]);
-  if (!map->page) {
-    if (!is_ready(map->pulled)) return json_response({{"waiting", "Pulling the map from the registry"}}, 202);
+  if (map == maps_.end() || !map->page) {
+    if (map == maps_.end() || !is_ready(map->pulled))
+      return json_response({{"waiting", "Pulling the map from the registry"}}, 202);
     std::future<ViewedMap> pulled = std::move(map->pulled);
     try {
       map->page = make_map_site(pulled.get());
@@ -229,8 +230,12 @@ std::vector<ReviewSite::MapPage>::iterator ReviewSite::map_page(const std::strin
   const auto is_it = [&](const MapPage& each) { return each.site == site && each.version == version; };
   const auto found = std::ranges::find_if(maps_, is_it);
   if (found != maps_.end()) return found;
-  const auto oldest = std::ranges::find_if(maps_, [](const MapPage& each) { return each.page != nullptr; });
-  if (maps_.size() >= kMaxMaps && oldest != maps_.end()) maps_.erase(oldest);
+  if (maps_.size() == kMaxMaps) {
+    const auto oldest =
+        std::ranges::find_if(maps_, [](const MapPage& each) { return each.page || is_ready(each.pulled); });
+    if (oldest == maps_.end()) return oldest;
+    maps_.erase(oldest);
+  }
   maps_.push_back({site, version, std::async(std::launch::async, pull_viewed, options_, site, version), nullptr});
   return maps_.end() - 1;
 }

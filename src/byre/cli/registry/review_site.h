@@ -47,6 +47,7 @@ class ReviewSite : public WebSite {
   WebResponse version_response(std::int64_t site, const std::string& version);
   WebResponse review(const Parts& parts, const WebRequest& request);
   WebResponse map_response(const Parts& parts);
+  // Pulls the map unless it is there. The end of maps_ while too many others are being pulled.
   std::vector<MapPage>::iterator map_page(const std::string& site, const std::string& version);
 
   ReviewSiteOptions options_;  // constant after construction
