@@ -17,7 +17,7 @@ enum class LocalisationFailure : std::uint8_t {
   uncertain,            // the inliers do not constrain the pose enough
   impossible,           // the camera cannot be at the place found
   unlikely,             // too few of the points that the place should show are found
-  ambiguous             // two places fit the image
+  ambiguous             // two places fit the image, or the building repeats and may do so beyond the map
 };
 
 std::string_view to_string(LocalisationFailure failure);

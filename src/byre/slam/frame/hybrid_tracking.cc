@@ -5,6 +5,7 @@
 #include "byre/slam/tracking/tracking_steps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace byre {
@@ -226,19 +227,32 @@ std::optional<Solution> solve_together(const Query& query, const Pose& camera_fr
   return Solution{*std::move(refined), &both, {}};
 }
 
-// Pose by the points of one map, refined on those and on the points of the other map that agree with it.
-Solution solve_guided(const Query& query, const PoseRefinement& leader, Origin leading,
+// Pose by the points of one map, refined on those and on the points of the other map that agree with it, within this
+// covariance of its pose.
+Solution solve_guided(const Query& query, const PoseRefinement& leader, const Matrix6& covariance, Origin leading,
                       const ByMap<MeasuredPoints>& measured) {
   const bool offline_guides = leading == Origin::offline;
   const MeasuredPoints& of_leader = offline_guides ? measured.offline : measured.online;
   PartedPoints& followers = query.memory.parted;
-  part_by_agreement(leader.camera_from_world, leader.covariance, query.rig,
+  part_by_agreement(leader.camera_from_world, covariance, query.rig,
                     offline_guides ? measured.online : measured.offline, leader.variance_factor, followers);
   auto solution = offline_guides ? solve_together(query, leader.camera_from_world, of_leader, followers.agreeing)
                                  : solve_together(query, leader.camera_from_world, followers.agreeing, of_leader);
   if (!solution) solution = Solution{leader, &of_leader, {}};
   solution->left_out = followers.disagreeing;
   return *std::move(solution);
+}
+
+// The pose by offline points alone, with the online points that agree with it.
+Solution with_followers(const Query& query, PoseRefinement offline, const ByMap<MeasuredPoints>& measured) {
+  PartedPoints& followers = query.memory.parted;
+  part_by_agreement(offline.camera_from_world, Matrix6::Zero(), query.rig, measured.online, offline.variance_factor,
+                    followers);
+  MeasuredPoints& both = query.memory.joined;
+  join(measured.offline, followers.agreeing, query.options.offline_weight, both);
+  offline.inlier_count += static_cast<int>(both.features.size() - measured.offline.features.size());
+  offline.inliers.resize(both.features.size(), true);
+  return {std::move(offline), &both, followers.disagreeing};
 }
 
 // Poses by each map alone, and their agreement.
@@ -273,10 +287,31 @@ Opinions solve_each(const Query& query, const ByMap<Pose>& guesses, const Found&
   return opinions;
 }
 
+double position_sigma(const PoseRefinement& refined) {
+  return std::sqrt(refined.covariance.topLeftCorner<3, 3>().trace());
+}
+
+bool is_online_more_precise(const Query& query, const Opinions& opinions) {
+  return query.limits.online_sigma < position_sigma(*opinions.offline);
+}
+
+// The maps disagree, and the place of the online map has drifted by more than the offline pose errs.
+bool has_drifted(const Query& query, const Opinions& opinions) {
+  constexpr double kClearly = 2.0;
+  return opinions.maps_disagree && std::isfinite(query.limits.online_sigma) &&
+         query.limits.online_sigma > kClearly * position_sigma(*opinions.offline);
+}
+
 std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, const Opinions& opinions,
                               const ByMap<MeasuredPoints>& measured) {
-  if (opinions.offline_prevails) return solve_guided(query, *opinions.offline, Origin::offline, measured);
-  if (opinions.maps_disagree) return solve_guided(query, *opinions.online, Origin::online, measured);
+  if (opinions.offline_prevails) {
+    if (has_drifted(query, opinions)) return with_followers(query, *opinions.offline, measured);
+    const Matrix6 covariance = is_online_more_precise(query, opinions) ? opinions.offline->covariance : Matrix6::Zero();
+    return solve_guided(query, *opinions.offline, covariance, Origin::offline, measured);
+  }
+  if (opinions.maps_disagree) {
+    return solve_guided(query, *opinions.online, Matrix6::Zero(), Origin::online, measured);
+  }
   auto together =
       solve_together(query, opinions.offline ? guesses.offline : guesses.online, measured.offline, measured.online);
   if (together) return together;
@@ -304,13 +339,18 @@ void add_offline_points(const Query& query, const ByMap<MeasuredPoints>& measure
 
 HybridTrack to_result(const Query& query, const Found& found, const Opinions& opinions, const Solution& solution) {
   HybridTrack result;
-  if (opinions.offline) result.from_offline = opinions.offline->camera_from_world;
+  if (opinions.offline) {
+    result.from_offline = opinions.offline->camera_from_world;
+    result.offline_sigma = position_sigma(*opinions.offline);
+  }
   if (opinions.online) {
     result.from_online = opinions.online->camera_from_world;
     result.from_online_covariance = opinions.online->covariance;
   }
   result.maps_disagree = opinions.maps_disagree;
   result.offline_prevails = opinions.offline_prevails;
+  result.online_sigma = query.limits.online_sigma;
+  result.depends_on_online = !opinions.offline_prevails || is_online_more_precise(query, opinions);
 
   ScratchVector<TrackedFeature> inliers = inliers_of(solution.refined, *solution.measured);
   std::ranges::sort(inliers, {}, &TrackedFeature::feature);
@@ -340,6 +380,12 @@ Agreement agreement_of(const Pose& one, const Pose& other) {
 
 bool is_within(const Agreement& agreement, const DriftBound& drift) {
   return agreement.translation <= drift.translation && agreement.rotation <= drift.rotation;
+}
+
+double sigma_between_maps(const HybridTrack& track) {
+  if (!track.from_offline) return std::sqrt(track.tracked.match_covariance.topLeftCorner<3, 3>().trace());
+  if (!track.from_online) return track.offline_sigma;
+  return std::hypot(track.offline_sigma, agreement_of(*track.from_offline, *track.from_online).translation);
 }
 
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,

@@ -35,6 +35,9 @@ struct HybridTrack {
   bool maps_disagree = false;                        // the poses differ by more than their covariances explain
   // One rigid pose fits most offline points by their patches, all over the image: it takes precedence.
   bool offline_prevails = false;
+  double offline_sigma = 0.0;             // metres, position of from_offline
+  bool depends_on_online = false;         // the online map's place in the offline one counts for the pose
+  double online_sigma = 0.0;              // see HybridLimits
   std::optional<FocalEvidence> focal;     // evidence of offline points on the focal length, if weighed
   ScratchVector<PointId> offline_agreed;  // offline points that fit the pose
   ScratchVector<PointId> offline_moved;   // offline points found away from their predictions
@@ -44,19 +47,23 @@ struct HybridTrack {
   int online_inliers() const { return static_cast<int>(tracked.features.size()) - offline_inliers; }
 };
 
+// Error of the online map's place in the offline one, by the frame's poses on each: metres, one sigma.
+double sigma_between_maps(const HybridTrack& track);
+
 // Limits of a pose from offline points. A pose beyond them is that of a look-alike place.
 struct HybridLimits {
   DriftBound drift{kNoLimit, kNoLimit};  // from the pose by online points
   double stray = kNoLimit;               // metres from the prediction, without a pose by online points
   std::optional<PosePrior> prior{};      // prior of the pose, for points of both maps
+  double online_sigma = kNoLimit;        // metres, of the online map's place in the offline one
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 
 // Same as track(), for candidates of both maps. The points of each map give a pose. If one pose fits offline points all
 // over the image, it takes precedence over the online map within the limits, and online points that agree with it are
-// used. Offline points that fit one pose only in a part of the image may be on a moved object: if the maps disagree,
-// the online pose is used, with the offline points that agree with it. compares_focal_lengths: sets `focal`, see
-// FocalCheck.
+// used: within its covariance if the online map is placed more precisely, else within noise. Offline points that fit
+// one pose only in a part of the image may be on a moved object: if the maps disagree, the online pose is used, with
+// the offline points that agree with it. compares_focal_lengths: sets `focal`, see FocalCheck.
 std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                         const MapView& map, std::span<const PointId> candidates,
                                         const TrackOptions& options, const HybridLimits& limits = {},

@@ -124,6 +124,29 @@ TEST_F(TrackHybrid, FollowsTheOfflineMapDespiteADisplacedOnlineMap) {
   }
 }
 
+// On the return to the map the place of the online map has drifted.
+TEST_F(TrackHybrid, IgnoresTheOnlineMapIfItsPlaceIsLessPreciseThanTheOfflinePose) {
+  move(online_, shift_by(0.1));
+  HybridLimits limits;
+  limits.online_sigma = 0.1;
+  const auto track = track_frame(truth_ * inverse(shift_by(0.1)), limits);
+  ASSERT_TRUE(track);
+  EXPECT_TRUE(track->maps_disagree && track->offline_prevails);
+  EXPECT_FALSE(track->depends_on_online);
+  EXPECT_EQ(track->tracked.camera_from_world.translation, track->from_offline->translation);
+  EXPECT_NEAR(sigma_between_maps(*track), 0.1, 0.01);
+}
+
+TEST_F(TrackHybrid, DependsOnTheOnlineMapIfItsPlaceIsMorePrecise) {
+  HybridLimits limits;
+  limits.online_sigma = 1e-4;
+  const auto track = track_frame(truth_, limits);
+  ASSERT_TRUE(track);
+  EXPECT_TRUE(track->offline_prevails);
+  EXPECT_TRUE(track->depends_on_online);
+  EXPECT_LT(sigma_between_maps(*track), 0.01);
+}
+
 TEST_F(TrackHybrid, StaysOnTheOnlineMapIfTheOffsetExceedsTheDrift) {
   move(online_, shift_by(0.4));
   const Pose predicted = truth_ * inverse(shift_by(0.4));

@@ -223,7 +223,6 @@ double OfflineTracker::log_odds_of_rivals() const {
 }
 
 double OfflineTracker::length_sigma_of(const Features& features) const {
-  if (is_drift_closed_) return 0.0;
   return calibrator_ ? calibrator_->length_sigma(features) : byre::length_sigma(features);
 }
 

@@ -118,9 +118,9 @@ class OfflineTracker {
   // What the frames showed of the offline map's points, by number.
   const std::vector<PointRecord>& point_records() const { return point_records_; }
 
-  // The last frame showed enough offline points, or more than online ones, to end the drift.
+  // The last frame showed enough offline points, or more than online ones, to end the drift, see PoseFilter::note_held.
   bool is_drift_closed() const { return is_drift_closed_; }
-  // Standard error of the lengths in the last frame, as a share; 0 if the drift ended.
+  // Standard error of the lengths in the last frame, as a share.
   double length_sigma() const { return length_sigma_; }
 
   // Adds measures of the offline map.

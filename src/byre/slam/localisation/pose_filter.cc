@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -64,7 +65,8 @@ Matrix6 PoseFilter::bridged_odometry_covariance() const {
 
 Matrix6 PoseFilter::jump_covariance() const {
   Matrix6 covariance = Matrix6::Zero();
-  covariance.topLeftCorner<3, 3>().diagonal().setConstant(std::max(jump_variance_, disagreement_variance_) / 3.0);
+  covariance.topLeftCorner<3, 3>().diagonal().setConstant(
+      std::max({jump_variance_, disagreement_variance_, contradiction_variance_}) / 3.0);
   return covariance;
 }
 
@@ -73,9 +75,21 @@ Matrix6 PoseFilter::drift_covariance(double length_sigma) const {
   Matrix6 covariance = Matrix6::Zero();
   if (!held_) return covariance;
   const Eigen::Vector3d error =
-      length_sigma * (inverse(odometry_.map_from_body()) * *held_).translation;  // in the body
+      length_sigma * (inverse(odometry_.map_from_body()) * held_->map_from_body).translation;  // in the body
   covariance.topLeftCorner<3, 3>() = error * error.transpose();
+  covariance.topLeftCorner<3, 3>().diagonal().array() += held_->sigma * held_->sigma / 3.0;
   return covariance;
+}
+
+double PoseFilter::drift_sigma(double length_sigma) const {
+  constexpr double kShare = 0.01;  // share of the path
+  if (!held_) return std::numeric_limits<double>::infinity();
+  return std::hypot(std::sqrt(position_variance(drift_covariance(length_sigma))),
+                    kShare * (odometry_.travelled() - held_->travelled));
+}
+
+void PoseFilter::note_held(double sigma, double length_sigma) {
+  if (sigma < drift_sigma(length_sigma)) held_ = Held{odometry_.map_from_body(), sigma, odometry_.travelled()};
 }
 
 // Compares a tracked pose with its prediction by measured motion and by velocity; the closer one counts, because wheels
@@ -107,16 +121,20 @@ void PoseFilter::note_jump(const TrackedPose& seen, const Pose& body, const Rig&
   if (jump) jump_variance_ = std::max(jump_variance_, *jump);
 }
 
-// A disagreement of the maps stays open until many offline points agree with the pose again: beyond the offline map
-// nothing shows which of them was right.
+// Whichever pose is right, one is wrong by the distance. If the offline one prevails, drift may explain it. If the
+// online one is taken, the disagreement stays open until many offline points agree with the pose again: beyond the
+// offline map nothing shows which of them was right.
 void PoseFilter::note_disagreement(const HybridTrack& track) {
-  if (!track.maps_disagree) {
-    if (track.offline_inliers >= kOfflineThatHolds) disagreement_variance_ = 0.0;
-    return;
-  }
-  if (track.offline_prevails || !track.from_offline || !track.from_online) return;
+  constexpr double kSigmas = 4.0;
+  contradiction_variance_ = 0.0;
+  if (!track.maps_disagree && track.offline_inliers >= kOfflineThatHolds) disagreement_variance_ = 0.0;
+  if (!track.maps_disagree || !track.from_offline || !track.from_online) return;
   const double distance = agreement_of(*track.from_offline, *track.from_online).translation;
-  disagreement_variance_ = std::max(disagreement_variance_, distance * distance);
+  if (!track.offline_prevails) {
+    disagreement_variance_ = std::max(disagreement_variance_, distance * distance);
+  } else if (distance > kSigmas * std::hypot(track.online_sigma, track.offline_sigma)) {
+    contradiction_variance_ = distance * distance;
+  }
 }
 
 // Adds the covariance of a measured motion that ends at a found place, which the odometry follows.
@@ -226,10 +244,12 @@ PoseFilter::Accepted PoseFilter::last_known(const Rig& rig, const MapView& map) 
 
 double PoseFilter::log_odds_of_relocalisation(Timestamp time, const Pose& body, const Rig& rig,
                                               const MapView& map) const {
-  constexpr double kSlack = 0.25;  // metres, error of poses
+  constexpr double kSlack = 0.2;  // metres, that covariances neglect
+  constexpr double kSigmas = 3.0;
   if (!last_accepted_ || trajectory_.confirmed_count() == 0) return 0.0;
   const Accepted known = last_known(rig, map);
-  const double reach = kSlack + registration_.max_speed * to_seconds(time - known.time);
+  const double reach = kSlack + kSigmas * std::sqrt(position_variance(quality_.covariance)) +
+                       registration_.max_speed * to_seconds(time - known.time);
   if ((body.translation - known.map_from_body.translation).norm() > reach) return kLogOddsOfKidnapping;
   return log_odds_of_odometry(body, rig, map);
 }

@@ -68,9 +68,10 @@ class PoseFilter {
   // Covariance of the present pose by jumps of recent poses that neither the measured motion, nor the velocity, nor the
   // covariances explain: a pose before or after a jump is wrong. Decays within seconds of consistent motion.
   Matrix6 jump_covariance() const;
-  // Covariance of the present pose by the drift since offline points last constrained it: lengths by the cameras err by
-  // a share, length_sigma.
+  // Covariance of the online map's place in the offline one, at the present pose: what it was when offline points last
+  // constrained it, and the drift since then, lengths by the cameras err by a share, length_sigma.
   Matrix6 drift_covariance(double length_sigma) const;
+  double drift_sigma(double length_sigma) const;  // metres, of the position; infinite before offline points held a pose
   // Covariance of the odometry due to bridges that ended at found places; without the drift of visual odometry.
   Matrix6 bridged_odometry_covariance() const;
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last visual pose
@@ -127,8 +128,9 @@ class PoseFilter {
   bool propagate(Timestamp time, const Rig& rig, const MapView& map, const DrivenGround* ground = nullptr);
   // A map correction placed the present submap: the covariance of the bridge to it no longer applies.
   void forget_carried() { carried_.reset(); }
-  // Offline points determine the present pose: its drift begins here.
-  void note_held() { held_ = odometry_.map_from_body(); }
+  // Offline points constrain the present pose, with this error of the online map's place (metres, one sigma): the drift
+  // begins here if it was larger.
+  void note_held(double sigma, double length_sigma);
 
   void apply_length_changes(const LengthChanges& changes);
   void rotate_rig(const RigRotation& turn, const MapGraph& online);
@@ -208,9 +210,15 @@ class PoseFilter {
   // Covariance due to bridges, at the odometry pose at the end of the last one.
   std::optional<Carried> odometry_open_;
   Odometry odometry_;
-  std::optional<Pose> held_;            // map_from_body, the last pose that offline points constrained
-  double jump_variance_ = 0.0;          // square metres, see jump_covariance()
-  double disagreement_variance_ = 0.0;  // square metres, of an open disagreement of the maps
+  struct Held {
+    Pose map_from_body;
+    double sigma = 0.0;      // metres
+    double travelled = 0.0;  // metres
+  };
+  std::optional<Held> held_;             // begin of the drift
+  double jump_variance_ = 0.0;           // square metres, see jump_covariance()
+  double disagreement_variance_ = 0.0;   // square metres, of an open disagreement of the maps
+  double contradiction_variance_ = 0.0;  // square metres, of an offline pose against a precise online map, this frame
   PlaceHypothesis place_;
   PlaceHypothesis place_before_;  // last confirmed and accepted place before its pose was lost
   bool is_by_hint_ = false;

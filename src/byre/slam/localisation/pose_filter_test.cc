@@ -139,12 +139,32 @@ TEST_F(WhereaboutsOnATrueMap, KeepADisagreementOfTheMapsInTheCovarianceUntilOffl
   EXPECT_EQ(sigma_after(false, 100), 0.0);
 }
 
+TEST_F(WhereaboutsOnATrueMap, DoubtAnOfflinePoseThatPrevailsAgainstAPreciseOnlineMap) {
+  find_and_confirm(0);
+  const auto sigma_with = [&](double online_sigma) {
+    const std::size_t frame = pose_filter_.trajectory().size();
+    HybridTrack track = track_of(frame);
+    track.maps_disagree = track.offline_prevails = true;
+    track.offline_inliers = 100;
+    track.offline_sigma = 0.01;
+    track.online_sigma = online_sigma;
+    track.from_offline = track.from_online = track.tracked.camera_from_world;
+    track.from_offline->translation.x() += 0.15;
+    pose_filter_.add_odometry({});
+    pose_filter_.note({mission_.frames[frame], track, false, true, 0, false, &view_}, mission_.rig, map_);
+    return std::sqrt(pose_filter_.jump_covariance().topLeftCorner<3, 3>().trace());
+  };
+  EXPECT_NEAR(sigma_with(0.01), 0.15, 1e-9);
+  EXPECT_EQ(sigma_with(0.1), 0.0) << "drift explains it";
+}
+
 TEST_F(WhereaboutsOnATrueMap, AddTheErrorOfLengthsSinceOfflinePointsHeldToTheCovariance) {
   constexpr double kShare = 0.02;
   find_and_confirm(0);
   const auto drift = [&] { return pose_filter_.drift_covariance(kShare); };
   EXPECT_EQ(drift().norm(), 0.0) << "no offline point held the pose yet";
-  pose_filter_.note_held();
+  EXPECT_EQ(pose_filter_.drift_sigma(kShare), std::numeric_limits<double>::infinity());
+  pose_filter_.note_held(0.0, kShare);
   EXPECT_EQ(drift().norm(), 0.0);
   const Eigen::Vector3d held = pose_filter_.odometry().map_from_body().translation;
   const std::size_t first = pose_filter_.trajectory().size();
@@ -153,8 +173,11 @@ TEST_F(WhereaboutsOnATrueMap, AddTheErrorOfLengthsSinceOfflinePointsHeldToTheCov
   const Eigen::Vector3d error = kShare * (body.rotation.conjugate() * (body.translation - held));
   EXPECT_GT(error.norm(), 0.01);
   EXPECT_LT((drift().topLeftCorner<3, 3>() - error * error.transpose()).norm(), 1e-9);
-  pose_filter_.note_held();
-  EXPECT_EQ(drift().norm(), 0.0);
+  const Matrix6 before = drift();
+  pose_filter_.note_held(2.0 * error.norm(), kShare);
+  EXPECT_EQ(drift(), before) << "less precise than the drift";
+  pose_filter_.note_held(0.5 * error.norm(), kShare);
+  EXPECT_NEAR(pose_filter_.drift_sigma(kShare), 0.5 * error.norm(), 1e-9);
 }
 
 TEST_F(WhereaboutsOnATrueMap, ForgetAJumpAfterConsistentMotion) {

@@ -109,7 +109,9 @@ FrameReport fill_poses(FrameReport report, const FrameSummary& summary) {
   }
   if (summary.pose_filter.bridge()) return bridged(std::move(report), summary);
   report.covariance = summary.pose_filter.carried_covariance() + summary.pose_filter.jump_covariance();
-  if (summary.mission) report.covariance += summary.pose_filter.drift_covariance(summary.mission->length_sigma());
+  if (summary.mission && (!summary.track || summary.track->depends_on_online)) {
+    report.covariance += summary.pose_filter.drift_covariance(summary.mission->length_sigma());
+  }
   if (!summary.track) return report;
   const TrackedFrame& tracked = summary.track->tracked;
   report.expected_points = tracked.expected;

@@ -120,6 +120,7 @@ Tracker::Scene scene_of(RobotState& state, const InputFrame& input) {
           state.hint.get(),
           state.pose_filter.place().is_accepted(),
           state.trusted_place.reach_from_there(),
+          mission ? state.pose_filter.drift_sigma(mission->length_sigma()) : HybridLimits::kNoLimit,
           mission ? mission->ground_under(state.pose_filter, state.mapper) : nullptr,
           input.cuts.online_points,
           state.dirt_detector.hidden()};
@@ -294,7 +295,8 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
         state.mission->note({input.frame, track, state.rig, progress.step, input.fault != ImageFault::none,
                              state.tracker.offline_points(), hidden, view ? &*view : nullptr},
                             pose_filter, state.mapper);
-    if (state.mission->is_drift_closed()) pose_filter.note_held();
+    if (state.mission->is_drift_closed())
+      pose_filter.note_held(sigma_between_maps(track), state.mission->length_sigma());
     report.events.insert(report.events.end(), update.events.begin(), update.events.end());
     report.moved_tags = update.moved_tags;
     if (update.correction) state.mapper.correct_later(*update.correction);

@@ -103,6 +103,7 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
   const bool is_limited = scene.mission && scene.is_place_accepted;
   HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
+  limits.online_sigma = scene.online_sigma;
   const auto track_around = [&](const Pose& pose) {
     HybridLimits held = limits;
     if (scene.ground != nullptr) held.prior = planar_prior(*scene.ground, scene.rig, pose);

@@ -30,14 +30,15 @@ class Tracker {
   struct Scene {
     const Rig& rig;
     const Mapper& mapper;
-    const Mission* mission = nullptr;           // nullptr without an offline map
-    bool compare_focal_lengths = false;         // see FocalCheck
-    std::optional<PoseHint> hint{};             // limits localisation in the offline map
-    bool is_place_accepted = false;             // limits the pose from offline points
-    std::optional<PlaceBounds::Reach> reach{};  // motion since the last trusted pose
-    const DrivenGround* ground = nullptr;       // ground that constrains the body; nullptr: none
-    bool is_pressed = false;                    // few online points are matched, see FrameCuts
-    ImageMask hidden{};                         // image cells without expected points
+    const Mission* mission = nullptr;              // nullptr without an offline map
+    bool compare_focal_lengths = false;            // see FocalCheck
+    std::optional<PoseHint> hint{};                // limits localisation in the offline map
+    bool is_place_accepted = false;                // limits the pose from offline points
+    std::optional<PlaceBounds::Reach> reach{};     // motion since the last trusted pose
+    double online_sigma = HybridLimits::kNoLimit;  // see HybridLimits
+    const DrivenGround* ground = nullptr;          // ground that constrains the body; nullptr: none
+    bool is_pressed = false;                       // few online points are matched, see FrameCuts
+    ImageMask hidden{};                            // image cells without expected points
   };
   // The last frame that had a pose.
   struct LastPose {
