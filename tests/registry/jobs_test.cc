@@ -158,6 +158,25 @@ TEST_F(RegistryJobs, AreTakenOnceAndOneForEachSite) {
   EXPECT_TRUE(take_job(first, "first", {}));
 }
 
+TEST_F(RegistryJobs, HaveWhatTheirKindNeeds) {
+  Connection worker = connect("worker");
+  EXPECT_THAT(refusal("reviewer", "INSERT INTO byre.job (site, kind) VALUES (1, 'map')"), HasSubstr("job_recording"));
+  EXPECT_THAT(
+      refusal("reviewer", "INSERT INTO byre.job (site, kind, maps) VALUES (1, 'summarise', '{0123456789abcdef}')"),
+      HasSubstr("job_keyframes"));
+  EXPECT_THAT(refusal("reviewer", "INSERT INTO byre.job (site, kind) VALUES (1, 'merge')"), HasSubstr("job_maps"));
+  EXPECT_THAT(refusal("reviewer", "INSERT INTO byre.job (site, kind) VALUES (1, 'draw')"), HasSubstr("job_"));
+  EXPECT_THAT(refusal("robot_barn", "INSERT INTO byre.job (site, kind, recording) VALUES (1, 'map', '/day_1')"),
+              HasSubstr("permission denied"));
+  connect("reviewer").run("INSERT INTO byre.job (site, kind, recording) VALUES (1, 'map', '/day_1')");
+  EXPECT_EQ(worker.run("SELECT FROM byre.take_job('a worker of schema 3', '60 s', 5)").size(), 0);
+  EXPECT_FALSE(take_job(worker, "worker", {.kinds = {"update", "summarise"}}));
+  const auto job = take_job(worker, "worker", {});
+  ASSERT_TRUE(job);
+  EXPECT_EQ(job->kind + job->recording + job->calibration, "map/day_1");
+  EXPECT_EQ(job->maps.size(), 0u);
+}
+
 TEST_F(RegistryJobs, AreTakenAgainAfterTheirLease) {
   Connection first = connect("worker"), second = connect("worker");
   request_merge(kBarn);

@@ -204,13 +204,13 @@ TEST_F(RegistryVersions, StayWhenTheSchemaIsUpdated) {
   std::ifstream file(BYRE_REGISTRY_SCHEMA "/1.sql");
   owner.run_script({std::istreambuf_iterator<char>(file), {}});
   owner.run_script("INSERT INTO byre.schema_version VALUES (1, 1); INSERT INTO byre.site (name) VALUES ('barn')");
-  EXPECT_THAT(run("registry list" + at).errors, HasSubstr("needs schema 3 (update it with byre registry migrate)"));
+  EXPECT_THAT(run("registry list" + at).errors, HasSubstr("needs schema 4 (update it with byre registry migrate)"));
   const std::vector<std::byte> map = small_map("barn"), session = small_session("evening", "0123456789abcdef");
   const std::string id = to_text(map_id(map, ""));
   add_version(owner, kBarn, id, push_blob(owner, map), {}, "by day");
   add_session(owner, kBarn, to_text(map_id(session, "")), push_blob(owner, session), "0123456789abcdef", "evening");
 
-  EXPECT_THAT(run("registry migrate" + at).output, StartsWith("schema       1 -> 3 in "));
+  EXPECT_THAT(run("registry migrate" + at).output, StartsWith("schema       1 -> 4 in "));
   EXPECT_EQ(run("registry accept barn " + id + at).exit_code, 0);
   EXPECT_EQ(run("registry pull barn -o barn.byre" + at).exit_code, 0);
   EXPECT_EQ(to_text(map_id(folder_ / "barn.byre")), id);

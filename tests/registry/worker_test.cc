@@ -85,6 +85,52 @@ TEST_F(RegistryWorker, MergesVersionsOrGivesTheReason) {
   EXPECT_EQ(value("SELECT count(*) FROM byre.job WHERE kind = 'merge' AND result IS NULL"), "1");
 }
 
+TEST_F(RegistryWorker, ProposesTheMapOfARecording) {
+  EXPECT_EQ(registry("request barn --map " + cli::rendered_room(), "reviewer").output, "requested    map\n");
+  map_room("", "expected.byre");
+  const std::string expected = to_text(map_id(folder_ / "expected.byre"));
+  const Outcome outcome = worker("--once --kinds map summarise");
+  EXPECT_THAT(outcome.output, HasSubstr("job 2 done: ")) << outcome.errors;
+  EXPECT_EQ(value("SELECT id || ' ' || parents::text FROM byre.version WHERE state = 'proposed'"), expected + " {}");
+  EXPECT_EQ(value("SELECT state FROM byre.job WHERE kind = 'update'"), "waiting") << "not of these kinds";
+  EXPECT_EQ(registry("request barn --map " + cli::rendered_room(), "reviewer").exit_code, 0);
+  EXPECT_THAT(worker("--once --kinds map").output, HasSubstr("job 3 done: "));
+  EXPECT_EQ(value("SELECT count(*) FROM byre.version"), "2") << "the same map again";
+  EXPECT_EQ(registry("pull barn --version " + expected + " -o pulled.byre", "reviewer").exit_code, 0);
+  EXPECT_EQ(read("pulled.byre"), read("expected.byre"));
+  EXPECT_EQ(registry("accept barn " + expected, "reviewer").exit_code, 0) << "it replaces any version";
+}
+
+TEST_F(RegistryWorker, WaitsForARecordingThatItCannotRead) {
+  const std::string later = (folder_ / "later").string();
+  EXPECT_EQ(registry("request barn --map '" + later + "'", "reviewer").exit_code, 0);
+  EXPECT_THAT(worker("--once --kinds map").output, HasSubstr("job 2 failed: " + later));
+  EXPECT_THAT(registry("list barn", "reviewer").output, HasSubstr("map " + later + ", waiting, attempt 1: " + later));
+  std::filesystem::create_directory_symlink(RenderedFixture::shared().folder(), later);
+  connect().run("UPDATE byre.job SET due = now()");
+  EXPECT_THAT(worker("--once --kinds map").output, HasSubstr("mapped: 24 of 24 frames"));
+  EXPECT_EQ(value("SELECT count(*) FROM byre.version WHERE state = 'proposed'"), "1");
+}
+
+TEST_F(RegistryWorker, ProposesASummaryOfAVersion) {
+  map_room("--poses " + cli::rendered_room(), "dense.byre");  // each frame is a keyframe
+  const std::string dense = to_text(map_id(folder_ / "dense.byre"));
+  EXPECT_EQ(registry("push annex dense.byre", "reviewer").exit_code, 0);
+  EXPECT_EQ(registry("accept annex " + dense, "reviewer").exit_code, 0);
+  const std::string request = "request annex --summarise " + dense + " --keyframes ";
+  EXPECT_EQ(registry(request + "6", "reviewer").output, "requested    summarise\n");
+  EXPECT_THAT(worker("--once --kinds summarise").output, HasSubstr("job 2 done: summary: "));
+  const std::string child = value("SELECT id FROM byre.version WHERE state = 'proposed'");
+  EXPECT_EQ(value("SELECT parents FROM byre.version WHERE id = $1", {child}), "{" + dense + "}");
+  EXPECT_EQ(registry("pull annex --version " + child + " -o summary.byre", "reviewer").exit_code, 0);
+  EXPECT_LT(load_map(folder_ / "summary.byre").map.keyframe_count(), 24);
+  EXPECT_EQ(run("validate summary.byre").exit_code, 0);
+  EXPECT_EQ(registry("accept annex " + child, "reviewer").exit_code, 0);
+  EXPECT_EQ(registry(request + "1000", "reviewer").exit_code, 0);
+  EXPECT_THAT(worker("--once --kinds summarise").output, HasSubstr("no keyframe can be spared with 1000 for each"));
+  EXPECT_EQ(registry("request barn --keyframes 3", "reviewer").exit_code, 2) << "only of a summary";
+}
+
 TEST_F(RegistryWorker, SharesTheJobsWithAnotherWorker) {
   for (const char* const site : {"annex", "annex", "barn"}) {
     EXPECT_EQ(registry(std::string("request ") + site + " --merge " + base_ + " " + base_, "reviewer").exit_code, 0);

@@ -124,6 +124,18 @@ JobResult merge(Connection& connection, const RegistryJob& job, const fs::path& 
   return result;
 }
 
+JobResult summarise(Connection& connection, const RegistryJob& job, const fs::path& folder,
+                    const Vocabulary& vocabulary, const StepHook& before_step) {
+  const fs::path path = folder / "base.byre";
+  pull_map(connection, job.site, job.maps.at(0), path);
+  MapUpdate made = summarise_map(load_version(path, vocabulary), job.keyframes, vocabulary, before_step);
+  if (!made.child) return {.message = made.refusal};
+  JobResult result{.message = history_of(*made.child).front().change, .child = folder / "child.byre"};
+  save_child(std::move(made), vocabulary, *result.child);
+  result.parents = parents_of(*result.child);
+  return result;
+}
+
 // Stores the child beside the end of its job. Earlier proposals of the same parent are retired.
 void store_child(Connection& connection, const RegistryJob& job, const JobResult& result, const std::string& id,
                  std::span<const std::byte> blob) {
@@ -145,11 +157,20 @@ void store_child(Connection& connection, const RegistryJob& job, const JobResult
 
 std::optional<RegistryJob> take_job(Connection& connection, const std::string& worker, const QueueOptions& options) {
   const Rows rows = connection.run(
-      "SELECT id, site, kind, coalesce(maps[1], ''), coalesce(maps[2], ''), attempts FROM byre.take_job($1, $2, $3)",
-      {worker, seconds(options.lease_s), options.max_attempts});
+      "SELECT id, site, kind, attempts, recording, calibration, keyframes, maps[1], maps[2] FROM byre.take_job($1, $2, "
+      "$3, $4)",
+      {worker, seconds(options.lease_s), options.max_attempts, options.kinds});
   if (rows.size() == 0) return std::nullopt;
-  RegistryJob job{rows.number(0, 0), rows.number(0, 1), rows.text(0, 2), {}, static_cast<int>(rows.number(0, 5))};
-  if (job.kind == "merge") job.maps = {rows.text(0, 3), rows.text(0, 4)};
+  RegistryJob job{.id = rows.number(0, 0),
+                  .site = rows.number(0, 1),
+                  .kind = rows.text(0, 2),
+                  .recording = rows.text(0, 4),
+                  .calibration = rows.text(0, 5),
+                  .keyframes = static_cast<int>(rows.number(0, 6)),
+                  .attempt = static_cast<int>(rows.number(0, 3))};
+  for (const int column : {7, 8}) {
+    if (!rows.is_null(0, column)) job.maps.push_back(rows.text(0, column));
+  }
   return job;
 }
 
@@ -166,9 +187,12 @@ void fail_job(Connection& connection, const RegistryJob& job, const QueueOptions
 }
 
 JobResult work_on(Connection& connection, const RegistryJob& job, const fs::path& folder, const Vocabulary& vocabulary,
-                  const StepHook& before_step) {
-  return job.kind == "merge" ? merge(connection, job, folder, vocabulary, before_step)
-                             : update(connection, job, folder, vocabulary, before_step);
+                  const RecordingMapper& map_recording, const StepHook& before_step) {
+  if (job.kind == "update") return update(connection, job, folder, vocabulary, before_step);
+  if (job.kind == "merge") return merge(connection, job, folder, vocabulary, before_step);
+  if (job.kind == "summarise") return summarise(connection, job, folder, vocabulary, before_step);
+  const fs::path map = folder / "child.byre";
+  return {.message = map_recording(job, map), .child = map};
 }
 
 JobEnd end_job(Connection& connection, const RegistryJob& job, const JobResult& result) {

@@ -4,15 +4,21 @@
 #include "byre/registry/connection.h"
 #include "byre/slam/upkeep/update_map.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace byre {
 
+// Kinds of jobs.
+inline constexpr std::array kRegistryJobKinds = {"update", "merge", "map", "summarise"};
+
 struct QueueOptions {
+  std::vector<std::string> kinds{kRegistryJobKinds.begin(), kRegistryJobKinds.end()};  // kinds to take
   int lease_s = 60;      // a job whose worker does not renew its lease is taken again
   int max_attempts = 5;  // attempts after which it is set aside
 };
@@ -21,8 +27,11 @@ struct QueueOptions {
 struct RegistryJob {
   std::int64_t id = 0;
   std::int64_t site = 0;
-  std::string kind;               // "update" or "merge"
-  std::vector<std::string> maps;  // the two versions of a merge
+  std::string kind{};               // one of kRegistryJobKinds
+  std::vector<std::string> maps{};  // two versions to merge, or one to summarise
+  std::string recording{};          // path, of a recording to map
+  std::string calibration{};        // path of another calibration than that of the recording; empty: none
+  int keyframes = 0;                // keyframes of a place, to summarise
   int attempt = 0;
 };
 
@@ -43,15 +52,18 @@ struct JobResult {
   std::string message{};                         // for people
   std::optional<std::filesystem::path> child{};  // map file, in the folder of the job
   std::vector<std::string> parents{};
-  std::string base{};                   // updated version, which must still be accepted; empty for a merge
+  std::string base{};                   // updated version, which must still be accepted; empty for other kinds
   std::vector<std::string> sessions{};  // sessions in the child
   std::vector<SessionFault> closed{};   // sessions without use
 };
 
+// Writes the map of the recording of a job, as "byre map". Returns a description of it.
+using RecordingMapper = std::function<std::string(const RegistryJob& job, const std::filesystem::path& map)>;
+
 // Does the work of a job on maps and sessions that it pulls to a folder, by the functions of "byre update" and "byre
 // merge". Throws ConnectionLost, and InputError for maps that it cannot use.
 JobResult work_on(Connection& connection, const RegistryJob& job, const std::filesystem::path& folder,
-                  const Vocabulary& vocabulary, const StepHook& before_step);
+                  const Vocabulary& vocabulary, const RecordingMapper& map_recording, const StepHook& before_step);
 
 enum class JobEnd {
   done,

@@ -97,7 +97,7 @@ std::string site_json(Connection& connection, std::int64_t site) {
             to_char(added_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS"Z"') AS added_at
           FROM byre.session s WHERE site = $1 AND state = 'open' ORDER BY s.added_at DESC, s.id) x),
         'jobs', (SELECT coalesce(json_agg(row_to_json(x)), '[]') FROM (
-          SELECT id, kind, state, attempts, worker, message FROM byre.job
+          SELECT id, kind, recording, state, attempts, worker, message FROM byre.job
           WHERE site = $1 AND state <> 'done' ORDER BY id DESC) x),
         'robots', (SELECT coalesce(json_agg(row_to_json(x)), '[]') FROM (
           SELECT account, runs, refused, reason, waiting,

@@ -7,7 +7,7 @@
 namespace byre {
 
 // Schema that this client is made for: the newest file of share/byre/registry.
-inline constexpr int kRegistrySchema = 3;
+inline constexpr int kRegistrySchema = 4;
 
 // Schema of a database; 0: it is no registry.
 int registry_schema(Connection& connection);

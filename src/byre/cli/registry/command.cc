@@ -27,7 +27,7 @@ constexpr std::array kRegistryCommands = {
     RegistryCommand{"accept", "Accept a proposed version for all robots of the site", declare_registry_accept},
     RegistryCommand{"reject", "Reject a proposed version", declare_registry_reject},
     RegistryCommand{"rollback", "Accept an earlier version again", declare_registry_rollback},
-    RegistryCommand{"request", "Request an update of a site, or a merge of two versions", declare_registry_request},
+    RegistryCommand{"request", "Request an update, a merge, a map or a summary of a site", declare_registry_request},
     RegistryCommand{"history", "Print who did what at a site, and why", declare_registry_history},
     RegistryCommand{"watch", "Print a line for each version of a site that is accepted", declare_registry_watch},
     RegistryCommand{"metrics", "Print the state of all sites and robots for Prometheus", declare_registry_metrics},

@@ -2,8 +2,10 @@
 #include "byre/base/report_row.h"
 #include "byre/cli/registry/commands.h"
 #include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/number_check.h"
 #include "byre/registry/schema.h"
 #include "byre/registry/versions.h"
+#include "byre/slam/upkeep/place_budget.h"
 
 #include <memory>
 #include <ostream>
@@ -24,6 +26,10 @@ struct RequestOptions {
   std::string uri;
   std::string site;
   std::vector<std::string> merged;
+  std::string summarised;
+  std::string recording;
+  std::string calibration;
+  int keyframes = kPlaceBudget;
 };
 
 constexpr const char* kAcceptFooter = R"(Example:
@@ -47,9 +53,13 @@ Retires the accepted version and accepts the one before again, or VERSION, which
 constexpr const char* kRequestFooter = R"(Examples:
   byre registry request barn
   byre registry request barn --merge 3f2a90cc51d07be4 90b1c2ffe0217a6d
+  byre registry request barn --map /srv/recordings/barn_day_1
+  byre registry request barn --summarise 3f2a90cc51d07be4 --keyframes 6
 
 Sessions request updates of their site themselves; a request repeats one that was set aside. A merge puts the second
-version into the first. "byre worker" runs the job, whose result is a proposed version.)";
+version into the first. A recording is a path that workers read, on a file system that they share. A summary keeps the
+most useful keyframes of each place (1 m, 0.5 rad), and those without which frames would be localised worse. "byre
+worker" runs the job, whose result is a proposed version.)";
 
 ExitCode run_review(const ReviewOptions& options, Review review, std::ostream& result) {
   Connection connection = open_registry(options.uri);
@@ -76,12 +86,18 @@ Action declare_review(CLI::App& command, Review review) {
 ExitCode run_request(const RequestOptions& options, std::ostream& result) {
   Connection connection = open_registry(options.uri);
   const std::int64_t site = site_number(connection, options.site);
-  const Rows added =
-      connection.run("INSERT INTO byre.job (site, kind, maps) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
-                     {site, options.merged.empty() ? "update" : "merge", options.merged});
+  const bool is_summary = !options.summarised.empty();
+  const std::string kind = !options.recording.empty() ? "map"
+                           : is_summary               ? "summarise"
+                           : !options.merged.empty()  ? "merge"
+                                                      : "update";
+  const Rows added = connection.run(
+      "INSERT INTO byre.job (site, kind, maps, recording, calibration, keyframes) VALUES ($1, $2, $3, $4, $5, $6) "
+      "ON CONFLICT DO NOTHING",
+      {site, kind, is_summary ? std::vector{options.summarised} : options.merged, options.recording,
+       options.calibration, is_summary ? options.keyframes : 0});
   connection.run("SELECT pg_notify('byre_job', '')");
-  result << row("requested",
-                std::string(options.merged.empty() ? "update" : "merge") + (added.changed() == 0 ? ", as before" : ""));
+  result << row("requested", kind + (added.changed() == 0 ? ", as before" : ""));
   return ExitCode::done;
 }
 
@@ -105,7 +121,19 @@ Action declare_registry_rollback(CLI::App& command) {
 Action declare_registry_request(CLI::App& command) {
   const auto options = std::make_shared<RequestOptions>();
   add_site(command, options->site);
-  add_text(command, "--merge", options->merged, "Merge these versions")->type_name("FIRST SECOND")->expected(2);
+  CLI::Option* const merge = add_text(command, "--merge", options->merged, "Merge these versions");
+  merge->type_name("FIRST SECOND")->expected(2);
+  CLI::Option* const map = add_text(command, "--map", options->recording, "Map this recording, a path of workers");
+  map->type_name("PATH")->excludes(merge);
+  add_text(command, "--calibration", options->calibration, "Calibration of the recording (its own), a path of workers")
+      ->type_name("PATH")
+      ->needs(map);
+  CLI::Option* const summarise = add_text(command, "--summarise", options->summarised, "Reduce this version");
+  summarise->type_name("ID")->excludes(merge)->excludes(map);
+  command.add_option("--keyframes", options->keyframes, "Keyframes that a place keeps in the summary")
+      ->check(between(1, 1000))
+      ->capture_default_str()
+      ->needs(summarise);
   add_registry(command, options->uri);
   command.footer(kRequestFooter);
   return [options](std::ostream& result) { return run_request(*options, result); };

@@ -1,12 +1,16 @@
 #include "byre/base/printable.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/registry/commands.h"
+#include "byre/cli/shared/choice.h"
 #include "byre/cli/shared/file_arguments.h"
 #include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/run_input.h"
+#include "byre/features/image_threads.h"
 #include "byre/input_error.h"
 #include "byre/registry/jobs.h"
 #include "byre/registry/schema.h"
+#include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 
 #include <array>
@@ -42,10 +46,11 @@ struct WorkerOptions {
 
 constexpr const char* kWorkerFooter = R"(Examples:
   byre worker --registry postgresql://worker_1@db.example.org/byre
-  byre worker --once
+  byre worker --once --kinds update merge
 
-Takes jobs, one at a time: updates of sites by their sessions, as "byre update", and merges, as "byre merge". A result
-becomes a proposed version. Any number of workers may run, on any number of computers; a site has one job at a time. The
+Takes jobs, one at a time: updates of sites by their sessions, as "byre update", merges, as "byre merge", recordings to
+map, as "byre map", which the worker must be able to read, and versions to summarise. A result becomes a proposed
+version. Any number of workers may run, on any number of computers; a site has one job at a time. The
 job of a worker that ends or loses the server is taken again when its lease ends. A job that fails waits 10 s, then
 twice as long each time, and is set aside after --attempts ("byre registry list SITE").
 Ctrl-C ends the worker after the present step of its job, which is then taken again. --once ends it when no job is due.)";
@@ -115,6 +120,25 @@ void remove_abandoned(const fs::path& scratch) {
 
 struct Interrupted : std::exception {};
 
+std::string map_recording(const RegistryJob& job, const fs::path& map, const std::optional<fs::path>& vocabulary,
+                          const InterruptCatcher& interrupt) {
+  OpenOptions open;
+  if (!job.calibration.empty()) open.calibration = job.calibration;
+  RunInput input({job.recording, {}, open, {}, false, true});
+  SlamOptions options = slam_options(MethodOptions());
+  options.recording = input.name();
+  options.vocabulary = vocabulary;
+  Slam slam = Slam::mapping(input.calibration(), options);
+  RunResult run = input.play(slam, {}, interrupt);
+  if (interrupt.caught()) throw Interrupted();
+  require_frames(run);
+  require_poses(run, {});
+  const SlamInputs& inputs = slam.impl().inputs();
+  save_for_missions_and_reload(run.stored, *inputs.vocabulary, inputs.site, map);
+  return fmt::format("{} mapped: {} of {} frames, {} keyframes, {} points", options.recording, run.final.size(),
+                     run.frames.size(), run.stored.map.keyframe_count(), run.stored.map.point_count());
+}
+
 class JobRunner {
  public:
   JobRunner(const WorkerOptions& options, const InterruptCatcher& interrupt, std::ostream& result)
@@ -166,7 +190,10 @@ class JobRunner {
     const LeaseKeeper keeper(options_, job);
     try {
       const JobFolder folder(scratch_);
-      const JobResult made = work_on(connection_, job, folder.path(), vocabulary_, [this, &job](const char* step) {
+      const auto map = [this](const RegistryJob& of, const fs::path& path) {
+        return map_recording(of, path, options_.vocabulary, interrupt_);
+      };
+      const JobResult made = work_on(connection_, job, folder.path(), vocabulary_, map, [this, &job](const char* step) {
         if (interrupt_.caught()) throw Interrupted();
         note(fmt::format("job {}: {}", job.id, step));
       });
@@ -211,6 +238,7 @@ std::string default_name() {
 
 ExitCode run_worker(WorkerOptions options, std::ostream& result) {
   if (options.name.empty()) options.name = default_name();
+  limit_image_threads(1);
   const InterruptCatcher interrupt;
   JobRunner(options, interrupt, result).run();
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
@@ -227,6 +255,10 @@ Action declare_worker(CLI::App& command) {
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
             "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
+  command.add_option("--kinds", options->queue.kinds, "Kinds of jobs to take (all)")
+      ->type_name("update|merge|map|summarise")
+      ->transform(
+          one_of<std::string>({{"update", "update"}, {"merge", "merge"}, {"map", "map"}, {"summarise", "summarise"}}));
   command.add_option("--lease", options->queue.lease_s, "Time without a sign of life after which a job is taken again")
       ->type_name("SECONDS")
       ->check(between(1, 86400))

@@ -10,8 +10,6 @@
 namespace byre {
 namespace {
 
-constexpr std::size_t kKeyframesOfPlace = 12;
-
 // Expected number of points for which a map relies on a keyframe; a point counts for one, shared among its views.
 double usefulness(const MapGraph& map, const Keyframe& keyframe, std::span<const Survival> survival) {
   double sum = 0.0;
@@ -38,12 +36,13 @@ struct Place {
 };
 
 // Places around the keyframes of a map that are over their budget.
-std::vector<Place> overfull_places(const MapGraph& parent, const MapGraph& child) {
+std::vector<Place> overfull_places(const MapGraph& parent, int budget, const MapGraph& child) {
   const std::vector<KeyframeId> before = parent.keyframe_ids(), now = child.keyframe_ids();
   std::vector<Place> places;
   for (const KeyframeId id : now) {
     const Pose& pose = child.find_keyframe(id)->camera_from_world;
-    Place place{keyframes_at(child, now, pose), std::max(kKeyframesOfPlace, keyframes_at(parent, before, pose).size())};
+    Place place{keyframes_at(child, now, pose),
+                std::max(static_cast<std::size_t>(budget), keyframes_at(parent, before, pose).size())};
     if (place.keyframes.size() > place.budget) places.push_back(std::move(place));
   }
   return places;
@@ -63,9 +62,9 @@ std::vector<KeyframeId> keyframes_at(const MapGraph& map, std::span<const Keyfra
   return keyframes;
 }
 
-int keep_to_budget(const MapGraph& parent, std::span<const Survival> survival,
+int keep_to_budget(const MapGraph& parent, int budget, std::span<const Survival> survival,
                    const std::function<bool(const Keyframe&)>& is_kept, MapGraph& child) {
-  std::vector<Place> places = overfull_places(parent, child);
+  std::vector<Place> places = overfull_places(parent, budget, child);
   for (int removed = 0;; ++removed) {
     std::optional<KeyframeId> least_useful;
     double least = 0.0;

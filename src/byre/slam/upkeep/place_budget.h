@@ -12,11 +12,13 @@ namespace byre {
 std::vector<KeyframeId> keyframes_at(const MapGraph& map, std::span<const KeyframeId> among,
                                      const Pose& camera_from_world);
 
-// Removes keyframes from places that an update filled beyond their budget: twelve keyframes, or as many as the parent
-// has there. The least useful go first: those whose points are unlikely to exist, or are seen by many others. So a
-// place keeps what is seen in each light, and the size of a map depends on the building, not on the number of updates.
-// survival: by point number of the child. is_kept: keyframes that stay in any case. Returns the number removed.
-int keep_to_budget(const MapGraph& parent, std::span<const Survival> survival,
+inline constexpr int kPlaceBudget = 12;
+
+// Removes keyframes from places beyond their budget: that number of keyframes, or as many as the parent has there. The
+// least useful go first: those whose points are unlikely to exist, or are seen by many others. So a place keeps what is
+// seen in each light, and the size of a map depends on the building, not on the number of updates. survival: by point
+// number of the child. is_kept: keyframes that stay in any case. Returns the number removed.
+int keep_to_budget(const MapGraph& parent, int budget, std::span<const Survival> survival,
                    const std::function<bool(const Keyframe&)>& is_kept, MapGraph& child);
 
 }  // namespace byre

@@ -40,7 +40,7 @@ class PlaceBudget : public ::testing::Test {
   }
   int keep(const std::function<bool(const Keyframe&)>& is_kept = [](const Keyframe&) { return false; }) {
     survival_.resize(child_.point_ids().back().number + 1, kSurvivalOfNewPoint);
-    return keep_to_budget(parent_, survival_, is_kept, child_);
+    return keep_to_budget(parent_, kBudget, survival_, is_kept, child_);
   }
   std::size_t keyframes_at_first() const {
     const std::vector<KeyframeId> ids = child_.keyframe_ids();

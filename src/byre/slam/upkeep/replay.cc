@@ -37,12 +37,11 @@ std::array<int, 4> place_of(const ReplayFrame& frame) {
 
 // A change of the pose of 5 mm and 0.05 degrees is never a fault, one of 20 mm or 0.3 degrees always, one in between if
 // it exceeds the standard deviation of a pose before.
-std::string fault_of(const PlaceProof& place) {
-  constexpr double kLeastInliers = 0.9;  // share of the inliers before
+std::string fault_of(const PlaceProof& place, double least_inliers) {
   if (place.found_after < place.found_before) {
     return fmt::format("{} of {} frames are found instead of {}", place.found_after, place.frames, place.found_before);
   }
-  if (place.inliers_after < kLeastInliers * place.inliers_before) {
+  if (place.inliers_after < least_inliers * place.inliers_before) {
     return fmt::format("{} points fit instead of {}", place.inliers_after, place.inliers_before);
   }
   if (place.shift > std::clamp(place.shift_sigma, 0.005, 0.02)) {
@@ -87,7 +86,7 @@ std::vector<Replayed> replay(std::span<const ReplayFrame> frames, const MapGraph
 }
 
 std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std::span<const Replayed> before,
-                                       std::span<const Replayed> after) {
+                                       std::span<const Replayed> after, double least_inliers) {
   std::map<std::array<int, 4>, std::vector<std::size_t>> by_place;
   for (std::size_t i = 0; i < frames.size(); ++i) by_place[place_of(frames[i])].push_back(i);
   std::vector<PlaceProof> places;
@@ -116,7 +115,7 @@ std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std:
       place.shift_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace() / both);
       place.turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / both);
     }
-    place.fault = fault_of(place);
+    place.fault = fault_of(place, least_inliers);
     places.push_back(std::move(place));
   }
   return places;

@@ -42,8 +42,8 @@ struct PlaceProof {
   std::string fault{};                    // why the place is worse; empty: it is not
 };
 
-// Compares the places of frames. before, after: results of replay.
+// Compares the places of frames. before, after: results of replay. least_inliers: share of the inliers before.
 std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std::span<const Replayed> before,
-                                       std::span<const Replayed> after);
+                                       std::span<const Replayed> after, double least_inliers = 0.9);
 
 }  // namespace byre

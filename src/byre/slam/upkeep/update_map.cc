@@ -134,20 +134,44 @@ std::string describe(const MapUpdate& update) {
                      points, update.points_retired);
 }
 
-void note_history(const MapVersion& parent, const MapUpdate& update, StoredMap& child) {
+void note_history(const MapVersion& parent, const std::string& change, StoredMap& child) {
   std::string& history = child.notes[kHistoryNote];
-  history = to_text(parent.id) + " " + describe(update) + " (byre " BYRE_VERSION ")" + (history.empty() ? "" : "\n") +
-            history;
+  history = to_text(parent.id) + " " + change + " (byre " BYRE_VERSION ")" + (history.empty() ? "" : "\n") + history;
 }
 
-void prove(const std::vector<Fitting>& fitting, const PlaceIndex& index, const StoredMap& child, MapUpdate& update) {
+// Frames at places that a child must not make worse.
+struct Witnesses {
+  double least_inliers = 0.9;  // see compare_places()
   std::vector<ReplayFrame> frames;
-  std::vector<Replayed> before;
-  for (const Fitting& fits : fitting) {
-    frames.insert(frames.end(), fits.frames.begin(), fits.frames.end());
-    before.insert(before.end(), fits.found.begin(), fits.found.end());
+  std::vector<Replayed> found{};  // in the parent
+};
+
+// Keeps the places of keyframes as they are, except those spared. Returns the survival by point number of the child.
+using Change = std::function<std::vector<Survival>(const SparedPlaces&, StoredMap& child)>;
+
+// Changes a copy of the parent, by several attempts: places that one makes worse are spared in the next.
+void make_child(const MapVersion& parent, const Witnesses& witnesses, const Change& change,
+                const Vocabulary& vocabulary, const StepHook& before_step, MapUpdate& update) {
+  constexpr int kAttempts = 3;
+  SparedPlaces spared;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    StoredMap child = parent.stored;
+    renumber(child, change(spared, child), update);
+    before_step("replaying frames on both maps");
+    update.places =
+        compare_places(witnesses.frames, witnesses.found,
+                       replay(witnesses.frames, child.map, index_of(child.map, vocabulary)), witnesses.least_inliers);
+    const std::size_t spared_before = spared.size();
+    for (const PlaceProof& place : update.places) {
+      if (!place.fault.empty()) spared.push_back(place.centre_in_map);
+    }
+    if (spared.size() > spared_before) continue;
+    update.places_spared = static_cast<int>(spared.size());
+    update.child = std::move(child);
+    return;
   }
-  update.places = compare_places(frames, before, replay(frames, child.map, index));
+  const auto worse = std::ranges::count_if(update.places, [](const PlaceProof& place) { return !place.fault.empty(); });
+  update.refusal = fmt::format("{} of {} places would be worse than before", worse, update.places.size());
 }
 
 }  // namespace
@@ -186,33 +210,53 @@ MapUpdate update_map(const MapVersion& parent, const std::vector<StoredSession>&
   }
   const std::vector<Survival> survival = survival_by(parent, fitting, update.sessions);
   const std::vector<PointId> unlikely = points_to_retire(parent.stored.map, survival);
-  constexpr int kAttempts = 3;
-  SparedPlaces spared;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    StoredMap child = parent.stored;
+  Witnesses witnesses;
+  for (const Fitting& fits : fitting) {
+    witnesses.frames.insert(witnesses.frames.end(), fits.frames.begin(), fits.frames.end());
+    witnesses.found.insert(witnesses.found.end(), fits.found.begin(), fits.found.end());
+  }
+  const Change change = [&](const SparedPlaces& spared, StoredMap& child) {
     for (const Fitting& fits : fitting) {
       add_session(fits, parent.stored.map, spared, child, update.sessions[fits.number]);
     }
     retire(unlikely, spared, child.map, update);
     const std::vector<Survival> of_child = survival_with(survival, child.map);
     update.keyframes_removed += keep_to_budget(
-        parent.stored.map, of_child, [&](const Keyframe& keyframe) { return is_spared(spared, keyframe); }, child.map);
-    renumber(child, of_child, update);
-    before_step("replaying the sessions on both maps");
-    prove(fitting, index_of(child.map, vocabulary), child, update);
-    const std::size_t spared_before = spared.size();
-    for (const PlaceProof& place : update.places) {
-      if (!place.fault.empty()) spared.push_back(place.centre_in_map);
-    }
-    if (spared.size() == spared_before) {
-      update.places_spared = static_cast<int>(spared.size());
-      note_history(parent, update, child);
-      update.child = std::move(child);
-      return update;
-    }
+        parent.stored.map, kPlaceBudget, of_child,
+        [&](const Keyframe& keyframe) { return is_spared(spared, keyframe); }, child.map);
+    return of_child;
+  };
+  make_child(parent, witnesses, change, vocabulary, before_step, update);
+  if (update.child) note_history(parent, describe(update), *update.child);
+  return update;
+}
+
+MapUpdate summarise_map(const MapVersion& parent, int keyframes_of_place, const Vocabulary& vocabulary,
+                        const StepHook& before_step) {
+  const MapGraph& map = parent.stored.map;
+  before_step("replaying the keyframes on the map");
+  constexpr double kLeastInliers = 0.6;  // points go with keyframes, evenly
+  Witnesses witnesses{kLeastInliers, frames_to_replay(map)};
+  witnesses.found = replay(witnesses.frames, map, index_of(map, vocabulary));
+  const std::vector<Survival> survival = survival_by(parent, {}, {});
+  MapUpdate update;
+  const Change change = [&](const SparedPlaces& spared, StoredMap& child) {
+    update.keyframes_removed = keep_to_budget(
+        MapGraph(Origin::offline), keyframes_of_place, survival,
+        [&](const Keyframe& keyframe) { return is_spared(spared, keyframe); }, child.map);
+    return survival;
+  };
+  make_child(parent, witnesses, change, vocabulary, before_step, update);
+  if (update.child && update.keyframes_removed == 0) {
+    update.child.reset();
+    update.refusal = fmt::format("no keyframe can be spared with {} for each place", keyframes_of_place);
   }
-  const auto worse = std::ranges::count_if(update.places, [](const PlaceProof& place) { return !place.fault.empty(); });
-  update.refusal = fmt::format("{} of {} places would be worse than before", worse, update.places.size());
+  if (update.child) {
+    const std::string removed =
+        fmt::format("summary: {} of {} keyframes and {} of {} points removed", update.keyframes_removed,
+                    map.keyframe_count(), map.point_count() - update.child->map.point_count(), map.point_count());
+    note_history(parent, removed, *update.child);
+  }
   return update;
 }
 

@@ -50,6 +50,13 @@ MapUpdate update_map(
     const MapVersion& parent, const std::vector<StoredSession>& sessions, const Vocabulary& vocabulary,
     const StepHook& before_step = [](const char*) {});
 
+// Reduces a map to a number of keyframes for each place, within 1 m and 0.5 rad, by what the others cover: see
+// keep_to_budget(). The other keyframes and points do not move. Places whose keyframes would be localised worse are
+// left as they are. Without a child if no keyframe can be removed. Preconditions: as for update_map().
+MapUpdate summarise_map(
+    const MapVersion& parent, int keyframes_of_place, const Vocabulary& vocabulary,
+    const StepHook& before_step = [](const char*) {});
+
 // Updates that a map was made by, the newest first, by its notes.
 std::vector<MapHistory> history_of(const StoredMap& stored);
 

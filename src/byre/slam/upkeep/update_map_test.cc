@@ -264,6 +264,24 @@ TEST_F(MapUpdates, AreNotedInTheChild) {
   EXPECT_EQ(history_of(*again.child).size(), 2u);
 }
 
+TEST(MapSummaries, KeepWhatLocalisationNeeds) {
+  const MapVersion parent = version_of(circling(3.0, 1));
+  const MapUpdate summary = summarise_map(parent, 6, simulated_vocabulary());
+  ASSERT_TRUE(summary.child) << summary.refusal;
+  const MapGraph &before = parent.stored.map, &after = summary.child->map;
+  EXPECT_LT(after.keyframe_count(), before.keyframe_count() / 2);
+  EXPECT_EQ(summary.keyframes_removed, before.keyframe_count() - after.keyframe_count());
+  EXPECT_TRUE(std::ranges::includes(positions(before), positions(after))) << "points do not move";
+  EXPECT_THAT(find_faults(*summary.child), IsEmpty());
+  EXPECT_EQ(summary.survival.size(), static_cast<std::size_t>(after.point_count()));
+  const SimulatedMission later = circling(1.0, 3);
+  EXPECT_GE(share_found(after, later), share_found(before, later));
+  EXPECT_EQ(history_of(*summary.child).front().parent, kId);
+  EXPECT_THAT(summarise_map(parent, 1, simulated_vocabulary()).refusal, HasSubstr("no keyframe can be spared"))
+      << "one alone localises nothing";
+  EXPECT_THAT(summarise_map(parent, 1000, simulated_vocabulary()).refusal, HasSubstr("no keyframe can be spared"));
+}
+
 TEST_F(MapUpdates, ReplaceAMapOnlyByAVersionThatIsAsGood) {
   for (PoseRecord& pose : session_.record.poses) pose.verdict = static_cast<std::uint8_t>(Verdict::trusted);
   MapUpdate update = updated(parent_, {session_});
