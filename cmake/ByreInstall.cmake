@@ -66,10 +66,10 @@ function(byre_install_dir variable folder debian_folder component)
   set(${variable} "\${BYRE_${variable}}" PARENT_SCOPE)
 endfunction()
 
-# systemd service of `byre node`, not enabled by default.
-function(byre_install_service)
+# A systemd service, not enabled by default: of `byre node` or `byre worker`.
+function(byre_install_service name)
   byre_install_dir(service_dir ${CMAKE_INSTALL_LIBDIR}/systemd/system lib/systemd/system program)
-  install(FILES share/systemd/byre.service DESTINATION ${service_dir} COMPONENT program)
+  install(FILES share/systemd/${name} DESTINATION ${service_dir} COMPONENT program)
 endfunction()
 
 # Package of ROS 2, by the layout of its resource index, which needs no ament: `ros2 run byre node`, `ros2 launch byre

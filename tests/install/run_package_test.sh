@@ -59,6 +59,10 @@ if [[ $("$byre" node --help) != *"Not available: "* ]]; then
   "$usr/lib/byre/node" --print-config >/dev/null || fail "the executable of the ROS package does not start"
   "$byre" node --print-config >/dev/null || fail "byre node does not start"
 fi
+if [[ $("$byre" worker --help) != *"Not available: "* ]]; then
+  [[ -f $usr/lib/systemd/system/byre-worker@.service ]] || fail "missing service of workers"
+  [[ -f $usr/share/byre/registry/worker.sbatch ]] || fail "missing script of workers"
+fi
 "$byre" --version
 [[ "$("$byre" --version) " == "byre ${version%-*} " ]] || fail "the program has another version than its package, $version"
 [[ $("$byre" vocabulary show) == "vocabulary   $usr/share/byre/default.vocabulary"* ]] || fail "the vocabulary is not found"
