@@ -228,7 +228,7 @@ void Transaction::commit() {
 
 void persist(Connection& connection, const std::function<void()>& action) {
   bool is_broken = false;
-  for (const int wait_ms : {500, 1000, 2000, 4000, 8000, 15000, 0}) {
+  for (const int wait_ms : {100, 400, 1000, 2000, 4000, 8000, 15000, 0}) {
     try {
       if (is_broken) connection.reconnect();
       return action();
