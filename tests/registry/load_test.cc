@@ -1,4 +1,4 @@
-// Load of many robots and of many waiting jobs. Prints the figures of docs/reference/registry.md.
+// Load of many robots, of many waiting jobs and of updates. Prints the figures of docs/lab/registry.md.
 
 #include "registry_fixture.h"
 
@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 namespace byre {
 namespace {
@@ -107,6 +108,61 @@ TEST_F(LongRunRegistryLoad, JobsWaitByTheThousand) {
     EXPECT_EQ(overheads.size(), static_cast<std::size_t>(waiting));
     std::cout << fmt::format("{} waiting jobs: median {:.2f} ms, p95 {:.2f} ms to take, renew and end a job\n", waiting,
                              1e3 * quantile(overheads, 0.5), 1e3 * quantile(overheads, 0.95));
+  }
+}
+
+// CPU time of programs that ended, seconds.
+double cpu_seconds_of_children() {
+  rusage used{};
+  getrusage(RUSAGE_CHILDREN, &used);
+  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+// Updates of simulated barns, as many sites as the jobs of a measurement.
+TEST_F(LongRunRegistryLoad, WorkersUpdateSites) {
+  constexpr int kJobs = 12;
+  for (const auto& [day, mission] : {std::pair("day_1", "1"), std::pair("day_2", "2")}) {
+    ASSERT_EQ(
+        run(fmt::format("simulate cowshed --divide 2 --rate 8 --duration 60 --mission {} --quiet -o {}", mission, day))
+            .exit_code,
+        0);
+  }
+  ASSERT_EQ(run("map day_1 -o barn.byre --quiet").exit_code, 0);
+  ASSERT_EQ(run("run day_2 --map barn.byre --save-session evening.session --quiet").exit_code, 0);
+  Connection owner = connect();
+  const auto size = [this] { return std::stod(value("SELECT pg_database_size(current_database())")); };
+  int site = 2;  // sites before these
+  for (const int workers : {1, 2, 4}) {
+    const double bytes_before = size();
+    for (int i = 0; i < kJobs; ++i) {
+      ++site;
+      owner.run("INSERT INTO byre.site (name) VALUES ($1)", {fmt::format("site {}", site)});
+      const std::string id = push_file(owner, site, folder_ / "barn.byre", "").id;
+      owner.run("SELECT byre.accept($1, $2, '')", {site, id});
+      push_file(owner, site, folder_ / "evening.session", "");
+    }
+    const double cpu_before = cpu_seconds_of_children();
+    const Stopwatch watch;
+    std::vector<pid_t> processes;
+    for (int i = 0; i < workers; ++i) {
+      processes.push_back(start({"worker", "--once", "--quiet", "--registry", uri("worker")}));
+    }
+    for (const pid_t process : processes) EXPECT_EQ(exit_code_of(process), 0);
+    const double seconds = watch.seconds();
+    EXPECT_EQ(value("SELECT count(*) FROM byre.job WHERE state = 'done' AND result IS NOT NULL"),
+              std::to_string(site - 2));
+    std::cout << fmt::format(
+        "{} workers: {} updates in {:.0f} s, {:.0f} an hour, {:.2f} CPU s each; map {:.1f} MB, session {:.1f} MB, "
+        "child {} bytes, "
+        "database "
+        "+{:.1f} MB\n",
+        workers, kJobs, seconds, 3600.0 * kJobs / seconds, (cpu_seconds_of_children() - cpu_before) / kJobs,
+        1e-6 * static_cast<double>(read("barn.byre").size()),
+        1e-6 * static_cast<double>(read("evening.session").size()),
+        value("SELECT max(b.size) FROM byre.job j JOIN byre.version v ON v.site = j.site AND v.id = j.result JOIN "
+              "byre.blob b ON b.hash = v.blob"),
+        1e-6 * (size() - bytes_before));
   }
 }
 

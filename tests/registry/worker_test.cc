@@ -109,6 +109,8 @@ TEST_F(RegistryWorker, WaitsForARecordingThatItCannotRead) {
   std::filesystem::create_directory_symlink(RenderedFixture::shared().folder(), later);
   connect().run("UPDATE byre.job SET due = now()");
   EXPECT_THAT(worker("--once --kinds map").output, HasSubstr("mapped: 24 of 24 frames"));
+  EXPECT_EQ(registry("request barn --map '" + later + "' --calibration /absent.yaml", "reviewer").exit_code, 0);
+  EXPECT_THAT(worker("--once --kinds map").output, HasSubstr("job 3 failed: /absent.yaml"));
   EXPECT_EQ(value("SELECT count(*) FROM byre.version WHERE state = 'proposed'"), "1");
 }
 
