@@ -2,6 +2,8 @@
 
 #include "registry_fixture.h"
 
+#include "byre/base/binary_file.h"
+#include "byre/base/output_file.h"
 #include "byre/input_error.h"
 #include "byre/registry/blobs.h"
 #include "byre/registry/schema.h"
@@ -147,6 +149,30 @@ TEST_F(RegistryVersions, MadeOfAnotherThanTheAcceptedOneAreNotAccepted) {
   EXPECT_THAT(refused.errors, HasSubstr("was not made of " + second + ", which is accepted"));
   registry("accept barn " + first, "reviewer");
   EXPECT_EQ(registry("accept barn " + id, "reviewer").exit_code, 0);
+}
+
+TEST_F(RegistryVersions, ContinueAnInterruptedPull) {
+  constexpr std::size_t kChunk = 1 << 20;
+  const std::vector<std::byte> map = small_map("large", 3 * kChunk);
+  Connection reviewer = connect("reviewer");
+  const std::string id = to_text(map_id(map, ""));
+  add_version(reviewer, 1, id, push_blob(reviewer, map), {}, "");
+  const auto received_after = [&](std::vector<std::byte> interrupted) {
+    {
+      OutputFile file(folder_ / "robot.byre", FileContent::map);
+      file.keep_unpublished(true);
+      file.append(interrupted);
+    }
+    const std::size_t received = pull_map(reviewer, 1, id, folder_ / "robot.byre").received;
+    EXPECT_EQ(read_file(folder_ / "robot.byre"), map);
+    EXPECT_THAT(read_leftover(folder_ / "robot.byre", FileContent::map), testing::IsEmpty());
+    std::filesystem::remove(folder_ / "robot.byre");
+    return received;
+  };
+  std::vector<std::byte> interrupted(map.begin(), map.begin() + kChunk + 1000);
+  EXPECT_EQ(received_after(interrupted), map.size() - kChunk);
+  interrupted[10] = ~interrupted[10];
+  EXPECT_EQ(received_after(interrupted), map.size());
 }
 
 TEST_F(RegistryVersions, WithDamagedBytesAreNotPulled) {

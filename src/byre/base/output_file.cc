@@ -313,9 +313,14 @@ OutputFile::OutputFile(const fs::path& path, FileContent content, Durability dur
 }
 
 OutputFile::~OutputFile() {
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (!temporary_.empty() && !is_kept_) unlink(temporary_.c_str());
   remove_pending(pending_);
   close(descriptor_);
+}
+
+void OutputFile::keep_unpublished(bool is_kept) {
+  is_kept_ = is_kept;
+  if (is_kept) remove_pending(pending_);
 }
 
 void OutputFile::append(std::span<const std::byte> bytes) {
@@ -352,6 +357,18 @@ void write_atomically(const fs::path& path, std::span<const std::byte> bytes, Du
 
 void write_atomically(const fs::path& path, std::string_view text) {
   write_atomically(path, std::as_bytes(std::span(text)));
+}
+
+std::vector<std::byte> read_leftover(const fs::path& path, FileContent content) {
+  const fs::path target = target_of(path);
+  std::vector<std::byte> longest;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_of(target), error), end; !error && entry != end; entry.increment(error)) {
+    if (!is_temporary_of(entry->path(), target, content)) continue;
+    std::vector<std::byte> bytes = read_file(entry->path());
+    if (bytes.size() > longest.size()) longest = std::move(bytes);
+  }
+  return longest;
 }
 
 void link_or_copy(const fs::path& file, const fs::path& path) {

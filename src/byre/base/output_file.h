@@ -37,7 +37,7 @@ void write_atomically(const std::filesystem::path& path, std::string_view text);
 class OutputFile {
  public:
   OutputFile(const std::filesystem::path& path, FileContent content, Durability durability = Durability::synced);
-  ~OutputFile();  // removes the temporary file unless published
+  ~OutputFile();  // removes the temporary file unless published or kept
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
@@ -45,6 +45,9 @@ class OutputFile {
   // published, and if written directly.
   const std::filesystem::path& temporary() const { return temporary_; }
 
+  // Whether the temporary file is left if writing ends here, for read_leftover(). The next file with this path removes
+  // it.
+  void keep_unpublished(bool is_kept);
   void append(std::span<const std::byte> bytes);
   void append(std::string_view text);
   void sync();
@@ -58,9 +61,13 @@ class OutputFile {
   Durability durability_;
   bool is_direct_ = false;  // device or pipe
   bool replaces_ = false;   // whether there was a file before
+  bool is_kept_ = false;
   int descriptor_ = -1;
   int pending_ = -1;  // index in the list of unpublished files; -1: not in it
 };
+
+// Content of the temporary file that an interrupted writer kept for this path; empty without one.
+std::vector<std::byte> read_leftover(const std::filesystem::path& path, FileContent content);
 
 // Keeps the content of a file under a second path, by a hard link if the file system has them, else by a copy. Replaces
 // that path as write_atomically does.

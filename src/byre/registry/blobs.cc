@@ -45,6 +45,12 @@ Bytes chunk_hashes(std::span<const std::byte> file) {
   return hashes;
 }
 
+// Number of equal chunks at the beginning of two files.
+std::size_t common_chunks(const Bytes& one, const Bytes& other) {
+  const auto [end, other_end] = std::ranges::mismatch(one, other);
+  return static_cast<std::size_t>(end - one.begin()) / kHashBytes;
+}
+
 bool has_chunks(const std::filesystem::path& path, const Bytes& hashes) {
   std::error_code error;
   return std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) > 0 &&
@@ -84,17 +90,22 @@ std::size_t pull_blob(Connection& connection, std::span<const std::byte> name, c
   if (hashes.empty()) throw InputError(connection.place(), "has no such file, or the account may not read it");
   if (!std::ranges::equal(sha256(hashes), name)) refuse_damage(connection, "the list of chunks of a file");
   if (has_chunks(path, hashes)) return 0;
+  const Bytes leftover = read_leftover(path, FileContent::map);
+  const std::size_t kept = common_chunks(chunk_hashes(leftover), hashes);
   OutputFile file(path, FileContent::map);
+  file.append(std::span(leftover).first(std::min(leftover.size(), kept * kChunkBytes)));
   std::size_t received = 0;
-  for (std::size_t number = 0; number < hashes.size() / kHashBytes; ++number) {
-    persist(connection, [&] {
-      const auto data = connection.bytes("SELECT data FROM byre.chunk WHERE hash = $1", {hash_of(hashes, number)});
-      if (!data || !std::ranges::equal(sha256(*data), hash_of(hashes, number))) {
-        refuse_damage(connection, fmt::format("chunk {} of a file", number + 1));
-      }
-      file.append(*data);
-      received += data->size();
-    });
+  for (std::size_t number = kept; number < hashes.size() / kHashBytes; ++number) {
+    std::optional<Bytes> data;
+    file.keep_unpublished(true);
+    persist(connection,
+            [&] { data = connection.bytes("SELECT data FROM byre.chunk WHERE hash = $1", {hash_of(hashes, number)}); });
+    file.keep_unpublished(false);
+    if (!data || !std::ranges::equal(sha256(*data), hash_of(hashes, number))) {
+      refuse_damage(connection, fmt::format("chunk {} of a file", number + 1));
+    }
+    file.append(*data);
+    received += data->size();
   }
   if (!file.temporary().empty() && to_text(map_id(file.temporary())) != id) {
     throw InputError(connection.place(), "has a file of another id as " + id, "restore the registry from a backup");

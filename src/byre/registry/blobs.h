@@ -11,7 +11,7 @@
 namespace byre {
 
 // Files in a registry, in chunks of 1 MB. A chunk is named by the SHA-256 of its bytes, a file by the SHA-256 of the
-// names of its chunks in order. Transfers continue after a broken connection.
+// names of its chunks in order. Transfers continue after a broken connection, and after the end of the program.
 
 // Stores a file, unless it is there. Chunks that an earlier upload stored are not sent again. Returns its name.
 std::vector<std::byte> push_blob(Connection& connection, std::span<const std::byte> file);

@@ -190,6 +190,18 @@ bool PoseFilter::is_unreachable(const Frame& frame, const HybridTrack& track, co
   return (now.translation - before.translation).norm() > *reach + kSigmas * carried || is_elsewhere;
 }
 
+bool PoseFilter::is_jump(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const {
+  constexpr double kSlack = 0.2;  // metres, that covariances neglect
+  constexpr double kSigmas = 3.0;
+  if (!on_offline_map_ || !last_accepted_ || !place_.is_confirmed()) return false;
+  const Pose now = body_pose(rig, track.tracked.camera_from_world);
+  if (is_continued(frame.time, now, rig, map)) return false;
+  const Accepted known = last_known(rig, map);
+  const double reach = kSlack + kSigmas * std::sqrt(position_variance(quality_.covariance)) +
+                       registration_.max_speed * to_seconds(frame.time - known.time);
+  return (now.translation - known.map_from_body.translation).norm() > reach;
+}
+
 // Whether a pose differs from the predicted one by more than the error of measured motion.
 bool PoseFilter::is_beyond(const Matrix6& covariance, const Pose& predicted_from_body) const {
   constexpr double kLeastShare = 0.2;  // share of the scene depth
@@ -244,12 +256,10 @@ PoseFilter::Accepted PoseFilter::last_known(const Rig& rig, const MapView& map) 
 
 double PoseFilter::log_odds_of_relocalisation(Timestamp time, const Pose& body, const Rig& rig,
                                               const MapView& map) const {
-  constexpr double kSlack = 0.2;  // metres, that covariances neglect
-  constexpr double kSigmas = 3.0;
+  constexpr double kSlack = 0.5;  // metres, error of poses
   if (!last_accepted_ || trajectory_.confirmed_count() == 0) return 0.0;
   const Accepted known = last_known(rig, map);
-  const double reach = kSlack + kSigmas * std::sqrt(position_variance(quality_.covariance)) +
-                       registration_.max_speed * to_seconds(time - known.time);
+  const double reach = kSlack + registration_.max_speed * to_seconds(time - known.time);
   if ((body.translation - known.map_from_body.translation).norm() > reach) return kLogOddsOfKidnapping;
   return log_odds_of_odometry(body, rig, map);
 }
@@ -302,7 +312,8 @@ PoseFilter::Progress PoseFilter::note(const TrackedPose& seen, const Rig& rig, c
   const Pose body = body_pose(rig, track.tracked.camera_from_world);
   Progress progress{0.0, place_.is_accepted(), last_confirmed_.has_value()};
   if (seen.is_relocalised && on_offline_map_) {
-    place_ = hypothesis_of_relocalisation(seen.frame.time, body, seen.known_place, rig, map);
+    place_ = seen.is_jump ? PlaceHypothesis(kLogOddsOfKidnapping, kConfirmationsOfJump, registration_.accept_log_odds)
+                          : hypothesis_of_relocalisation(seen.frame.time, body, seen.known_place, rig, map);
     is_by_hint_ = seen.is_by_hint;
     bridged_beginning_.reset();
   }

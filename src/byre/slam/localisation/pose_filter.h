@@ -80,6 +80,9 @@ class PoseFilter {
   // log_odds_of_relocalisation. Without one: the measured motion alone, up to 30 s, after which the robot may have been
   // carried.
   bool is_unreachable(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
+  // Whether a tracked pose in the offline map is farther from the last accepted one than the robot can have driven. The
+  // test of its place begins anew.
+  bool is_jump(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
   // Prior log-odds that offline_from_online registers the present submap, by the measured motion up to its beginning. 0
   // if that motion is unknown.
   double log_odds_of_registration(const Pose& offline_from_online) const;
@@ -109,6 +112,7 @@ class PoseFilter {
     const PlaceHypothesis* known_place = nullptr;  // for finds: see hypothesis_of_relocalisation; nullptr: none
     double log_odds_of_rivals = kNoRivals;         // see PlaceHypothesis::observe
     double drift = 0.0;                            // metres, since offline points last constrained the pose
+    bool is_jump = false;                          // see is_jump(); counts as a find
   };
   struct Progress {
     double step = 0.0;                // metres of smooth motion

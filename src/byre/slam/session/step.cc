@@ -17,6 +17,7 @@ struct Located {
   std::optional<HybridTrack> track;
   std::vector<HybridTrack> elsewhere;  // other places that show the frame
   bool is_relocalised = false;
+  bool is_jump = false;         // see PoseFilter::is_jump
   bool is_by_hint = false;      // the search was limited to a hint
   bool returns_to_map = false;  // relocalised in the map frame, after a separate submap
   bool begins_submap = false;   // the frame became the first keyframe of a submap
@@ -128,12 +129,6 @@ Tracker::Scene scene_of(RobotState& state, const InputFrame& input) {
 
 void drop_non_finite(std::optional<HybridTrack>& track) {
   if (track && !is_finite(track->tracked.camera_from_world)) track.reset();
-}
-
-// A pose in the offline map that the robot cannot have reached is a find, which its place must confirm.
-bool is_jump(const RobotState& state, const Frame& frame, const HybridTrack& track) {
-  return state.mission && state.pose_filter.place().is_confirmed() &&
-         state.pose_filter.is_unreachable(frame, track, state.rig, state.map());
 }
 
 // Measured motion contradicts the pose, and the offline points in view do not outweigh it. The motion is then followed.
@@ -248,7 +243,9 @@ Located locate(RobotState& state, const InputFrame& input, const SessionOptions&
   if (!pose_filter.trajectory().empty() && (pose_filter.has_pose() || !can_search || returns_by_odometry)) {
     located.track = track_from_last_pose(state, frame, scene);
   }
-  located.is_relocalised = located.track && (returns_by_odometry || is_jump(state, frame, *located.track));
+  located.is_jump = state.mission && located.track && !returns_by_odometry &&
+                    pose_filter.is_jump(frame, *located.track, state.rig, state.map());
+  located.is_relocalised = located.track && (returns_by_odometry || located.is_jump);
   if (!located.track && can_search) located = find_place(state, frame, scene, false);
   state.mapper.allow_monocular_submap(
       state.rig, !located.track && (pose_filter.bridge() || state.mapper.may_begin_separate_submap()));
@@ -281,7 +278,7 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
       {input.frame, track, located.is_relocalised, state.is_registered(), state.mapper.submaps().present(),
        located.is_by_hint, view ? &*view : nullptr, known_place ? &*known_place : nullptr,
        is_on_map ? state.mission->log_odds_of_rivals() : kNoRivals,
-       is_on_map ? state.mission->mission().drift().translation : 0.0},
+       is_on_map ? state.mission->mission().drift().translation : 0.0, located.is_jump},
       state.rig, state.map());
   state.tracker.note(track);
   if (!input.cuts.online_points) {
