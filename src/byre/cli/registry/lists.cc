@@ -83,7 +83,9 @@ Report site_report(Connection& connection, const std::string& site) {
     report.row("session", "{id} {name}, ran on {ran_on}, by {added_by} {added_at}", session);
   }
   for (const Json& job : report.figures["jobs"]) {
-    report.row("job", "{id} {kind}[{?recording} {recording}], {state}[{?attempts}, attempt {attempts}][{?message}: {message}]", job);
+    report.row("job",
+               "{id} {kind}[{?recording} {recording}], {state}[{?attempts}, attempt {attempts}][{?message}: {message}]",
+               job);
   }
   for (const Json& robot : report.figures["robots"]) {
     report.row(
