@@ -66,7 +66,7 @@ class RegistryPage {
         byId("connection").replaceChildren();
         this.#load();
       },
-      told: () => this.#load(),
+      received: () => this.#load(),
       sawImage: () => {},
       lost: () => this.#report("No connection to byre; reconnecting"),
     });

@@ -80,7 +80,7 @@ class RunPage {
         this.#shownImage = -1;
         this.#playback.clear();
       },
-      told: (message) => {
+      received: (message) => {
         if (message.frames) this.#playback.append(message.frames);
         if (message.online_map) this.#loadOnline();
         if (message.ended) this.#playback.end();

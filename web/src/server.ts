@@ -130,7 +130,7 @@ export async function save(picks: Pick[] | null, accepted?: number): Promise<str
 export interface LiveListener {
   /** New connection: the server sends the whole run again. */
   opened(): void;
-  told(message: LiveMessage): void;
+  received(message: LiveMessage): void;
   sawImage(image: SeenImage): void;
   /** Connection lost; it is retried every kRetryMilliseconds. */
   lost(): void;
@@ -144,7 +144,7 @@ export function listen(listener: LiveListener): void {
   socket.binaryType = "arraybuffer";
   socket.onopen = () => listener.opened();
   socket.onmessage = ({ data }) => {
-    if (typeof data === "string") listener.told(JSON.parse(data));
+    if (typeof data === "string") listener.received(JSON.parse(data));
     else listener.sawImage(decodeImage(data));
   };
   socket.onclose = () => {

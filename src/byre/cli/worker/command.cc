@@ -20,6 +20,7 @@
 #include <csignal>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <ostream>
 #include <semaphore>
@@ -255,10 +256,11 @@ Action declare_worker(CLI::App& command) {
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
             "Vocabulary for place recognition (the built-in one)")
       ->type_name("FILE");
+  std::map<std::string, std::string> kinds;
+  for (const std::string kind : kRegistryJobKinds) kinds.emplace(kind, kind);
   command.add_option("--kinds", options->queue.kinds, "Kinds of jobs to take (all)")
       ->type_name("update|merge|map|summarise")
-      ->transform(
-          one_of<std::string>({{"update", "update"}, {"merge", "merge"}, {"map", "map"}, {"summarise", "summarise"}}));
+      ->transform(one_of(kinds));
   command.add_option("--lease", options->queue.lease_s, "Time without a sign of life after which a job is taken again")
       ->type_name("SECONDS")
       ->check(between(1, 86400))

@@ -295,7 +295,7 @@ bool is_online_more_precise(const Query& query, const Opinions& opinions) {
   return query.limits.online_sigma < position_sigma(*opinions.offline);
 }
 
-// The maps disagree, and the place of the online map has drifted by more than the offline pose errs.
+// The maps disagree, and the error of the online map's place clearly exceeds that of the offline pose.
 bool has_drifted(const Query& query, const Opinions& opinions) {
   constexpr double kClearly = 2.0;
   return opinions.maps_disagree && std::isfinite(query.limits.online_sigma) &&

@@ -36,7 +36,7 @@ struct HybridTrack {
   // One rigid pose fits most offline points by their patches, all over the image: it takes precedence.
   bool offline_prevails = false;
   double offline_sigma = 0.0;             // metres, position of from_offline
-  bool depends_on_online = false;         // the online map's place in the offline one counts for the pose
+  bool depends_on_online = false;         // an error of the online map's place is one of the pose
   double online_sigma = 0.0;              // see HybridLimits
   std::optional<FocalEvidence> focal;     // evidence of offline points on the focal length, if weighed
   ScratchVector<PointId> offline_agreed;  // offline points that fit the pose
@@ -55,7 +55,7 @@ struct HybridLimits {
   DriftBound drift{kNoLimit, kNoLimit};  // from the pose by online points
   double stray = kNoLimit;               // metres from the prediction, without a pose by online points
   std::optional<PosePrior> prior{};      // prior of the pose, for points of both maps
-  double online_sigma = kNoLimit;        // metres, of the online map's place in the offline one
+  double online_sigma = kNoLimit;        // metres, of the online map's place in the offline one; infinite: unknown
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 

@@ -2,6 +2,8 @@
 
 #include "byre/slam/places/place_scene.h"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 
 namespace byre {
@@ -49,17 +51,25 @@ TEST_F(PlaceSearchInTwinRooms, ReturnsBothPlacesAndSelectsNone) {
   EXPECT_EQ(search.time, mission_.frames[0].time);
 }
 
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+// Raises the points of twin rooms that are at least this high (metres), by 0.5 m.
+void raise_points(MapGraph& twins, double lowest_in_first, double lowest_in_second) {
+  const int of_one_room = twins.point_count() / 2;
+  for (const PointId id : twins.point_ids()) {
+    MapPoint point = *twins.find_point(id);
+    const double lowest = static_cast<int>(id.number) < of_one_room ? lowest_in_first : lowest_in_second;
+    if (point.position_in_world.z() < lowest) continue;
+    point.position_in_world.z() += 0.5;
+    twins.update_point(id, point);
+  }
+}
+
 // The other room has its upper points elsewhere, which is too few to decide by the number of inliers.
 TEST(ImageLocalisation, SelectsTheRoomWithMostOfItsPointsInView) {
   const SimulatedMission mission = lap();
   MappedPlace place = twin_rooms(mission);
-  const int of_one_room = place.map.point_count() / 2;
-  for (const PointId id : place.map.point_ids()) {
-    MapPoint point = *place.map.find_point(id);
-    if (static_cast<int>(id.number) < of_one_room || point.position_in_world.z() < 1.0) continue;
-    point.position_in_world.z() += 0.5;
-    place.map.update_point(id, point);
-  }
+  raise_points(place.map, kNone, 1.0);
   const OfflineMap map(place.map, place.index.vocabulary());
   const OfflineMap* const maps[] = {&map};
   int decided = 0;
@@ -78,14 +88,7 @@ TEST(ImageLocalisation, SelectsTheRoomWithMostOfItsPointsInView) {
 TEST(ImageLocalisation, RefusesThePlaceOfABuildingThatRepeatsBeyondTheMap) {
   const SimulatedMission mission = lap();
   MappedPlace place = twin_rooms(mission);
-  const int of_one_room = place.map.point_count() / 2;
-  for (const PointId id : place.map.point_ids()) {
-    MapPoint point = *place.map.find_point(id);
-    const double lowest = static_cast<int>(id.number) < of_one_room ? 0.4 : 0.0;
-    if (point.position_in_world.z() < lowest) continue;
-    point.position_in_world.z() += 0.5;
-    place.map.update_point(id, point);
-  }
+  raise_points(place.map, 0.4, 0.0);
   const OfflineMap map(place.map, place.index.vocabulary());
   const OfflineMap* const maps[] = {&map};
   int refused = 0;

@@ -68,10 +68,11 @@ class PoseFilter {
   // Covariance of the present pose by jumps of recent poses that neither the measured motion, nor the velocity, nor the
   // covariances explain: a pose before or after a jump is wrong. Decays within seconds of consistent motion.
   Matrix6 jump_covariance() const;
-  // Covariance of the online map's place in the offline one, at the present pose: what it was when offline points last
-  // constrained it, and the drift since then, lengths by the cameras err by a share, length_sigma.
+  // Covariance of the online map's place in the offline one, at the present pose: its covariance when offline points
+  // last constrained it, plus the drift since then. length_sigma: share by which lengths by the cameras err.
   Matrix6 drift_covariance(double length_sigma) const;
-  double drift_sigma(double length_sigma) const;  // metres, of the position; infinite before offline points held a pose
+  // Standard error of that place, metres, with 1 % of the path since then. Infinite before offline points held a pose.
+  double drift_sigma(double length_sigma) const;
   // Covariance of the odometry due to bridges that ended at found places; without the drift of visual odometry.
   Matrix6 bridged_odometry_covariance() const;
   std::optional<Timestamp> last_seen() const { return last_seen_; }  // time of the last visual pose
@@ -80,8 +81,8 @@ class PoseFilter {
   // log_odds_of_relocalisation. Without one: the measured motion alone, up to 30 s, after which the robot may have been
   // carried.
   bool is_unreachable(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
-  // Whether a tracked pose in the offline map is farther from the last accepted one than the robot can have driven. The
-  // test of its place begins anew.
+  // Whether a tracked pose in the offline map is farther from the last accepted one than the robot can have driven. Its
+  // place is then tested like that of a kidnapped robot.
   bool is_jump(const Frame& frame, const HybridTrack& track, const Rig& rig, const MapView& map) const;
   // Prior log-odds that offline_from_online registers the present submap, by the measured motion up to its beginning. 0
   // if that motion is unknown.
@@ -219,7 +220,7 @@ class PoseFilter {
     double sigma = 0.0;      // metres
     double travelled = 0.0;  // metres
   };
-  std::optional<Held> held_;             // begin of the drift
+  std::optional<Held> held_;             // beginning of the drift
   double jump_variance_ = 0.0;           // square metres, see jump_covariance()
   double disagreement_variance_ = 0.0;   // square metres, of an open disagreement of the maps
   double contradiction_variance_ = 0.0;  // square metres, of an offline pose against a precise online map, this frame

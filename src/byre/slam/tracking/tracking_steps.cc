@@ -84,9 +84,13 @@ void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance,
   parted.agreeing.observations.clear();
   parted.agreeing.features.clear();
   parted.disagreeing.clear();
-  thread_local std::vector<PoseObservation> observations;  // buffer
-  observations = measured.observations;
-  for (PoseObservation& observation : observations) add_pose_error(observation, camera_from_world, covariance);
+  std::span<const PoseObservation> observations = measured.observations;
+  ScratchVector<PoseObservation> widened;
+  if (!covariance.isZero(0.0)) {
+    widened.assign(observations.begin(), observations.end());
+    for (PoseObservation& observation : widened) add_pose_error(observation, camera_from_world, covariance);
+    observations = widened;
+  }
   const auto judged = refine_pose(camera_from_world, rig, observations, at_pose);
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
     if (!judged || !judged->inliers[i]) {

@@ -38,8 +38,8 @@ struct PartedPoints {
   std::vector<TrackedFeature> disagreeing;
 };
 
-// covariance: of delta in exp_pose(delta) * camera_from_world. max_variance_factor: factor on the variances of the
-// measurements, that of the points that gave the pose. Refills `parted`.
+// covariance: of delta in exp_pose(delta) * camera_from_world; zero: the pose is exact. max_variance_factor: factor on
+// the variances of the measurements, that of the points that gave the pose. Refills `parted`.
 void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance, const Rig& rig,
                        const MeasuredPoints& measured, double max_variance_factor, PartedPoints& parted);
 

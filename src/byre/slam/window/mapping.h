@@ -17,7 +17,7 @@ struct MappingOptions {
   double redundant_share = 0.9;
   // Weight of sightings of offline points in bundle adjustment; others have 1.
   double offline_weight = 2.0;
-  // Pixels, in covariances of new keyframes: errors that neighbouring points share, see with_shared_errors().
+  // Error that neighbouring points share, pixels, in covariances of new keyframes; see with_shared_errors().
   double systematic_sigma = 0.0;
   int first_bundle_iterations = 5;   // iterations before outlier removal
   int second_bundle_iterations = 8;  // iterations after outlier removal
