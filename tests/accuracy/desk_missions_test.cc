@@ -136,7 +136,7 @@ TEST_F(DeskMissions, EstimateTheShutterAndTrackATurnOnTheMap) {
   const double readout_time = desk().map->recordings().front().present_calibration().readout_time;
   EXPECT_GT(readout_time, 0.015);
   EXPECT_LT(readout_time, 0.035);
-  EXPECT_GT(hybrid().causal.size(), 470);
+  EXPECT_GT(hybrid().causal.size(), 455);
   EXPECT_LT(error_in_map(hybrid().causal), 0.022);
 }
 

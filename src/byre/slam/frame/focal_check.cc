@@ -13,18 +13,19 @@ namespace {
 constexpr double kMaxError = 0.01;
 constexpr double kMinSigmas = 3.0;     // sigmas of a significant error
 constexpr double kRelease = 0.5;       // share of both bounds below which a focal length is accepted again
-constexpr int kMinFramePoints = 60;    // points in a frame
+constexpr int kMinFramePoints = 36;    // points in a frame
 constexpr double kFocalMemory = 0.85;  // share of earlier evidence kept from frame to frame
 
-double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const PoseObservation> observations) {
-  constexpr double kMaxSquaredError = 16.0;  // square pixels; larger errors are wrong matches
+double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const PoseObservation> observations,
+               double max_error) {
+  const double max_squared = max_error * max_error;
   double sum = 0.0;
   for (const PoseObservation& observation : observations) {
     const Eigen::Vector3d point_in_camera = camera_from_world * observation.point_in_world;
     const double squared = point_in_camera.z() > 0.0
                                ? (observation.measured - rig.project(point_in_camera)).head<2>().squaredNorm()
-                               : kMaxSquaredError;
-    sum += std::min(squared, kMaxSquaredError);
+                               : max_squared;
+    sum += std::min(squared, max_squared);
   }
   return sum;
 }
@@ -43,16 +44,16 @@ struct Parabola {
 }  // namespace
 
 std::optional<FocalEvidence> compare_focal_lengths(const Pose& camera_from_world, const Rig& rig,
-                                                   std::span<const PoseObservation> observations) {
+                                                   std::span<const PoseObservation> observations, double max_error) {
   const auto cost_with = [&](double factor) -> std::optional<double> {
     Rig other = rig;
     other.focal *= factor;
     const auto refined = refine_pose(camera_from_world, other, observations, {});
-    return refined ? std::optional(cost_at(refined->camera_from_world, other, observations)) : std::nullopt;
+    return refined ? std::optional(cost_at(refined->camera_from_world, other, observations, max_error)) : std::nullopt;
   };
   const auto shorter = cost_with(1.0 - kFocalStep), longer = cost_with(1.0 + kFocalStep);
   if (!shorter || !longer) return std::nullopt;
-  return FocalEvidence{*shorter, cost_at(camera_from_world, rig, observations), *longer,
+  return FocalEvidence{*shorter, cost_at(camera_from_world, rig, observations, max_error), *longer,
                        static_cast<double>(observations.size())};
 }
 

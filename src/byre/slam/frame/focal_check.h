@@ -18,10 +18,11 @@ struct FocalEvidence {
 
 constexpr double kFocalStep = 0.05;
 
-// camera_from_world: refined with the present focal length; initial value for the other two. Empty if a refinement
-// fails.
+// camera_from_world: refined with the present focal length; initial value for the other two. max_error: bound of an
+// error, pixels; larger ones are wrong matches. Empty if a refinement fails.
 std::optional<FocalEvidence> compare_focal_lengths(const Pose& camera_from_world, const Rig& rig,
-                                                   std::span<const PoseObservation> observations);
+                                                   std::span<const PoseObservation> observations,
+                                                   double max_error = 4.0);
 
 struct FocalCheckOptions {
   int first_frames = 5;     // first frames, consecutive

@@ -11,7 +11,7 @@ namespace {
 constexpr int kManyOfflinePoints = 80;     // expected offline points, from which some must be found
 constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; one moved object may fill the rest
 constexpr double kFar = 1.0;               // metres of path without offline points
-constexpr double kMinOfflineShare = 0.04;  // share of expected points; fewer agree by chance in repetitive buildings
+constexpr double kMinOfflineShare = 0.02;  // share of expected points; fewer agree by chance in repetitive buildings
 
 double drift_of(const Health& health, const HealthOptions& options) {
   return options.drift_share * health.distance_since_offline;

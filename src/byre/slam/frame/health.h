@@ -13,11 +13,11 @@ struct HealthOptions {
   double drift_share = 0.005;         // drift per length of path since offline points last constrained the pose
   double max_rotation_sigma = 0.02;   // radians
   double max_bridged_rotation = 0.1;  // radians, `sigmas` times the rotation sigma of a dead-reckoned pose
-  int min_points = 40;                // inliers of both maps
+  int min_points = 30;                // inliers of both maps
   // Standard deviation of the inliers in their narrowest direction, share of the image diagonal.
   double min_spread = 0.04;
   double max_disagreement = 0.05;  // metres between the poses from offline and from online points
-  int min_offline_points = 15;     // offline inliers, if many are expected in view
+  int min_offline_points = 10;     // offline inliers, if many are expected in view
   double max_changed_path = 5.0;   // metres of path with fewer offline inliers until the pose is degraded
   double max_frozen = 0.15;        // seconds of a repeated image until the pose is untrusted
 };

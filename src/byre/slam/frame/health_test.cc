@@ -103,13 +103,13 @@ INSTANTIATE_TEST_SUITE_P(
                   }),
                   kPose, Verdict::trusted, DistrustReason::none},
         Judgement{"few points", with([](Health& h) {
-                    h.offline_inliers = 20;
+                    h.offline_inliers = 15;
                     h.online_inliers = 10;
                   }),
                   kPose, Verdict::degraded, DistrustReason::few_points},
         Judgement{"few points due to blur",
                   with([](Health& h) {
-                    h.offline_inliers = 20;
+                    h.offline_inliers = 15;
                     h.online_inliers = 10;
                   }),
                   {.pose_found = true, .image_fault = ImageFault::blurred},
@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
                   Verdict::degraded, DistrustReason::dirty},
         Judgement{"a lookalike place", with([](Health& h) {
                     h.offline_expected = 1800;
-                    h.offline_inliers = 50;
+                    h.offline_inliers = 30;
                     h.online_inliers = 300;
                   }),
                   kPose, Verdict::degraded, DistrustReason::few_offline_points},

@@ -161,9 +161,9 @@ void join(const MeasuredPoints& offline, const MeasuredPoints& online, double of
 
 // Pose by the points of one map alone; empty if it is not sound.
 std::optional<PoseRefinement> refine_alone(const Query& query, const Pose& camera_from_world,
-                                           const MeasuredPoints& measured) {
+                                           const MeasuredPoints& measured, int min_inliers) {
   auto refined = refine_pose(camera_from_world, query.rig, measured.observations, {}, query.limits.prior);
-  if (refined && !is_sound(*refined, measured.observations.size(), query.options)) refined.reset();
+  if (refined && !is_sound(*refined, measured.observations.size(), min_inliers)) refined.reset();
   return refined;
 }
 
@@ -181,9 +181,8 @@ Support support_of(const Query& query, const PoseRefinement& refined, const Meas
   };
   ByImageRegion<Part> parts;
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
-    const TrackedFeature& feature = measured.features[i];
-    if (!refined.inliers[i] && !shows_patch(feature, *query.frame.features)) continue;
-    Part& part = parts[image_region_of(feature.pixel.x(), feature.pixel.y(), query.rig)];
+    const Eigen::Vector2f& pixel = measured.features[i].pixel;
+    Part& part = parts[image_region_of(pixel.x(), pixel.y(), query.rig)];
     ++(refined.inliers[i] ? part.fit : part.elsewhere);
   }
   Support support;
@@ -223,7 +222,7 @@ std::optional<Solution> solve_together(const Query& query, const Pose& camera_fr
   MeasuredPoints& both = query.memory.joined;
   join(offline, online, query.options.offline_weight, both);
   auto refined = refine_pose(camera_from_world, query.rig, both.observations, {}, query.limits.prior);
-  if (!refined || !is_sound(*refined, both.observations.size(), query.options)) return std::nullopt;
+  if (!refined || !is_sound(*refined, both.observations.size(), query.options.min_inliers)) return std::nullopt;
   return Solution{*std::move(refined), &both, {}};
 }
 
@@ -265,8 +264,11 @@ struct Opinions {
 
 Opinions solve_each(const Query& query, const ByMap<Pose>& guesses, const Found& found) {
   Opinions opinions;
-  opinions.offline = refine_alone(query, guesses.offline, found.measured.offline);
-  opinions.online = refine_alone(query, guesses.online, found.measured.online);
+  constexpr double kOfflineShare = 0.7;  // fewer points suffice if their patches fit
+  const int min_inliers = query.options.min_inliers;
+  const auto min_offline = static_cast<int>(kOfflineShare * min_inliers);
+  opinions.offline = refine_alone(query, guesses.offline, found.measured.offline, min_offline);
+  opinions.online = refine_alone(query, guesses.online, found.measured.online, min_inliers);
   opinions.offline_prevails = opinions.offline && prevails(query, *opinions.offline, found.measured.offline);
   if (!opinions.offline || !opinions.online) return opinions;
   const double depth = median_depth(query, found.expected.offline, opinions.offline->camera_from_world);
@@ -274,7 +276,7 @@ Opinions solve_each(const Query& query, const ByMap<Pose>& guesses, const Found&
   // A compromise between static and moved points fits fewer offline points than the online pose does. Against an online
   // map the inliers must also exceed chance agreement, which is frequent if walls hide expected points.
   if (opinions.maps_disagree && opinions.offline_prevails) {
-    constexpr double kMinShare = 0.04;  // share of the offline points in the frustum
+    constexpr double kMinShare = 0.02;  // share of the offline points in the frustum
     const MeasuredPoints& points = found.measured.offline;
     const auto inliers = static_cast<double>(std::ranges::count(opinions.offline->inliers, true));
     if (inliers < kMinShare * static_cast<double>(found.expected.offline.size())) {
@@ -320,9 +322,8 @@ std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, co
   return std::nullopt;
 }
 
-// Splits the offline matches by the solution. A point has moved only if its own patch was found elsewhere, not just a
-// similar corner.
-void add_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
+// Splits the offline matches by the solution.
+void add_offline_points(const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
   ScratchVector<PointId>& inliers = result.offline_agreed;
   inliers.reserve(result.tracked.features.size());
   for (const TrackedFeature& feature : result.tracked.features) {
@@ -332,8 +333,7 @@ void add_offline_points(const Query& query, const ByMap<MeasuredPoints>& measure
   result.offline_inliers = static_cast<int>(inliers.size());
   result.offline_moved.reserve(measured.offline.features.size());
   for (const TrackedFeature& feature : measured.offline.features) {
-    if (std::ranges::binary_search(inliers, feature.point)) continue;
-    if (shows_patch(feature, *query.frame.features)) result.offline_moved.push_back(feature.point);
+    if (!std::ranges::binary_search(inliers, feature.point)) result.offline_moved.push_back(feature.point);
   }
 }
 
@@ -368,7 +368,7 @@ HybridTrack to_result(const Query& query, const Found& found, const Opinions& op
   result.offline_matches = static_cast<int>(found.measured.offline.features.size());
   result.tracked.expected = result.offline_expected + static_cast<int>(found.expected.online.size());
   result.tracked.matches = result.offline_matches + static_cast<int>(found.measured.online.features.size());
-  add_offline_points(query, found.measured, result);
+  add_offline_points(found.measured, result);
   return result;
 }
 
@@ -419,9 +419,7 @@ SearchedPoints search_points(const Frame& frame, const Pose& camera_from_world, 
   part_by_agreement(camera_from_world, Matrix6::Zero(), rig, found.measured.offline, 1.0, parted);
   SearchedPoints searched;
   for (const TrackedFeature& feature : parted.agreeing.features) searched.agreed.push_back(feature.point);
-  for (const TrackedFeature& feature : parted.disagreeing) {
-    if (shows_patch(feature, *frame.features)) searched.moved.push_back(feature.point);
-  }
+  for (const TrackedFeature& feature : parted.disagreeing) searched.moved.push_back(feature.point);
   return searched;
 }
 

@@ -172,13 +172,13 @@ class TrackHybridInClutter : public TrackHybrid {
 };
 
 TEST_F(TrackHybridInClutter, FollowsTheOnlineMapIfFewOfflinePointsAgree) {
-  hide_but_each(27);
+  hide_but_each(54);
   move(online_, shift_by(0.06));
   const Pose predicted = truth_ * inverse(shift_by(0.06));
   const auto track = track_frame(predicted);
   ASSERT_TRUE(track);
   ASSERT_TRUE(track->from_offline) << "they are enough for a pose";
-  EXPECT_LT(track->offline_matches, 0.04 * track->offline_expected);
+  EXPECT_LT(track->offline_matches, 0.02 * track->offline_expected);
   EXPECT_TRUE(track->maps_disagree);
   EXPECT_FALSE(track->offline_prevails);
   EXPECT_THAT(track->tracked.camera_from_world, PoseNear(predicted, 0.01, 0.2 * kDegree));

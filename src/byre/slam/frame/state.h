@@ -39,7 +39,7 @@ struct OfflineEvidence {
 };
 
 struct OfflineViewOptions {
-  int min_inliers = 20;   // offline inliers that constrain a pose
+  int min_inliers = 12;   // offline inliers that constrain a pose
   int min_expected = 40;  // offline points in the frustum; with fewer, off the map
   int min_features = 50;  // features in the image; with fewer, blinded
 };

@@ -15,7 +15,7 @@
 namespace byre {
 
 // Offline inliers from which nearby online keyframes count as aligned with the offline map.
-inline constexpr int kOfflineThatHolds = 60;
+inline constexpr int kOfflineThatHolds = 36;
 
 struct MissionOptions {
   double search_after = 0.3;   // metres without offline points before places are searched in parallel with tracking

@@ -132,6 +132,7 @@ PlaceSearch search_at_candidates(const OfflineMap& offline, const PlaceQuery& qu
   const auto [found, refused] = localise_at_candidates(offline, query, options, candidates);
   PlaceSearch search{query.frame.time, query.rig, std::nullopt, refused};
   for (const TrackedFrame& place : found.places_found) search.places.push_back(place.camera_from_world);
+  search.focal = found.focal;
   if (!found.tracked) return search;
   const MapGraph nothing_online(Origin::online);
   const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));

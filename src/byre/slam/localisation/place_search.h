@@ -67,6 +67,7 @@ struct PlaceSearch {
   std::optional<FoundPlace> found{};              // empty: not found
   DistrustReason refused = DistrustReason::none;  // see BoundedLocalisation
   std::vector<Pose> places{};                     // camera_from_offline at each place that shows the frame
+  std::optional<FocalEvidence> focal{};           // see Localisation
 };
 PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);
 

@@ -7,6 +7,7 @@
 #include "byre/geometry/tag_pose.h"
 #include "byre/slam/places/place_view.h"
 #include "byre/slam/tracking/keyframes.h"
+#include "byre/slam/tracking/tracking_steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -165,6 +166,23 @@ Localisation checked(const FrameQuery& query, const std::optional<TrackedFrame>&
   return {tracked, {}, Failure::none, 0, match_count, static_cast<int>(tracked->features.size())};
 }
 
+std::optional<FocalEvidence> focal_evidence(const FrameQuery& query, const AbsolutePose& pose,
+                                            const std::vector<PointMatch>& matches) {
+  constexpr int kMinAgreeing = 12;
+  constexpr double kMaxError = 30.0;  // pixels; no prediction bounds the errors of word matches
+  if (pose.inlier_count < kMinAgreeing) return std::nullopt;
+  std::vector<PoseObservation> seen;
+  for (const PointMatch& match : matches) {
+    const Keypoint& keypoint = query.frame.features->keypoint(match.feature);
+    const StereoPixel measured(keypoint.pixel.x(), keypoint.pixel.y(), keypoint.disparity);
+    const double disparity_sigma = keypoint.has_disparity() ? keypoint.disparity_sigma : -1.0;
+    seen.push_back(pose_observation(*query.map.find_point(match.point), measured, 1.0, disparity_sigma));
+  }
+  const auto refined = refine_pose(pose.camera_from_world, query.rig, seen, {});
+  if (!refined) return std::nullopt;
+  return compare_focal_lengths(refined->camera_from_world, query.rig, seen, kMaxError);
+}
+
 Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   const std::vector<PointMatch> matches =
       match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, {});
@@ -176,7 +194,9 @@ Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   if (agreeing < kMinPoseInliers) {
     return failed(Failure::geometry_disagrees, match_count, static_cast<std::size_t>(agreeing));
   }
-  return checked(query, refine(query, pose->camera_from_world, place.keyframe), match_count, agreeing);
+  Localisation result = checked(query, refine(query, pose->camera_from_world, place.keyframe), match_count, agreeing);
+  if (!result.tracked) result.focal = focal_evidence(query, *pose, matches);
+  return result;
 }
 
 // Keyframes with views from near a pose, nearest first, by the distance in metres plus the angle in radians.

@@ -5,6 +5,7 @@
 #include "byre/map/mapped_tag.h"
 #include "byre/place/place_index.h"
 #include "byre/place/vocabulary.h"
+#include "byre/slam/frame/focal_check.h"
 #include "byre/slam/tracking/tracking.h"
 
 #include <cstdint>
@@ -51,9 +52,9 @@ inline constexpr int kKeyframesOfPlace = 20;  // keyframes whose points are matc
 
 struct LocaliseOptions {
   std::uint64_t seed = 0;  // seed of RANSAC
-  int min_inliers = 40;    // final inliers
+  int min_inliers = 30;    // final inliers
   // Standard deviation of the inliers in their narrowest direction, share of the image diagonal.
-  double min_spread = 0.05;
+  double min_spread = 0.04;
   double max_position_sigma = 0.02;  // sigma of the position over the median depth of the inliers
   double max_rotation_sigma = 0.02;  // radians
   ImageMask hidden{};                // image cells without expected points
@@ -70,6 +71,8 @@ struct Localisation {
   int places = 0;   // places tried
   int matches = 0;  // word matches at the place with most progress; 0 before any was tried
   int inliers = 0;  // inliers of the last step reached
+  // By the word matches, if many agree on a pose that too few points confirm, as with a wrong focal length.
+  std::optional<FocalEvidence> focal{};
 };
 
 // Constraints on places besides the image. Empty functions: no constraint.

@@ -58,6 +58,7 @@ void apply_place_search(RobotState& state, FrameReport& report) {
   OfflineTracker& mission = *state.mission;
   const std::optional<PlaceSearch> search = mission.collect_place();
   if (search) report.refused_place = search->refused;
+  if (search && search->focal) mission.note_focal_length(*search->focal);
   const OfflineTracker::MissionUpdate update = mission.process_search(search, state.pose_filter, state.mapper);
   if (update.correction) state.mapper.correct_later(*update.correction);
   if (update.agrees_with_hint) state.pose_filter.note_agreement();
@@ -177,6 +178,7 @@ Located find_place(RobotState& state, const Frame& frame, const Tracker::Scene& 
   sort_by_log_odds(state, find.places, frame);
   Located located;
   located.refused = find.refused;
+  if (find.focal && state.mission) state.mission->note_focal_length(*find.focal);
   if (!find.places.empty()) {
     located.track = std::move(find.places.front());
     located.elsewhere.assign(std::make_move_iterator(find.places.begin() + 1),

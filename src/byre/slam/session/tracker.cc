@@ -142,6 +142,7 @@ Tracker::Find Tracker::find(const Frame& frame, const Scene& scene, bool is_in_m
     for (const TrackedFrame& place : found.places_found) result.places.push_back(found_in(Origin::offline, place));
     if (!result.places.empty()) return result;
     result.refused = refused;
+    result.focal = found.focal;
   }
   const PlaceIndex* const places = scene.mapper.places();
   if (!places || scene.mapper.online().keyframe_count() == 0) return result;

@@ -54,6 +54,7 @@ class Tracker {
     // Places that show the frame, most inliers first. Online or offline by their references; several only offline.
     std::vector<HybridTrack> places;
     DistrustReason refused = DistrustReason::none;  // why a place that shows the frame was rejected
+    std::optional<FocalEvidence> focal;             // see Localisation
   };
   // Localises in all of the maps, the offline one first, separate submaps last. is_in_map: not in separate submaps.
   Find find(const Frame& frame, const Scene& scene, bool is_in_map = false) const;

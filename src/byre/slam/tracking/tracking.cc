@@ -57,12 +57,12 @@ std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& ca
   thread_local SharedPoints shared;
   measure_matches(frame, camera_from_world, rig, map, matches, measured);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
-  if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
+  if (!refined || !is_sound(*refined, measured.features.size(), options.min_inliers)) return std::nullopt;
   ScratchVector<TrackedFeature> inliers = inliers_of(*refined, measured);
   count_shared_points(map, inliers, shared);
   const KeyframeId reference = most_shared(shared).value_or(KeyframeId{});
   TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
-  tracked.matches = static_cast<int>(matches.size());
+  tracked.matches = static_cast<int>(measured.features.size());
   tracked.outliers = outliers_of(*refined, measured);
   return tracked;
 }

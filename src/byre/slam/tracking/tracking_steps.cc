@@ -71,6 +71,8 @@ void measure_matches(const Frame& frame, const Pose& camera_from_world, const Ri
   for (const GuidedMatch& match : matches) {
     const MapPoint& point = *map.find_point(match.point);
     const PixelMeasurement pixel = measure(map, point, view, match.feature);
+    const bool has_patch = frame.features->find_patch(match.feature) != nullptr;
+    if (match.point.origin == Origin::offline && has_patch && !pixel.aligned) continue;
     measured.observations.push_back(observation_of(point, frame.features->keypoint(match.feature), pixel));
     measured.features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
   }
@@ -102,9 +104,8 @@ void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance,
   }
 }
 
-bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options) {
-  return refined.inlier_count >= options.min_inliers &&
-         refined.inlier_count >= kMinInlierShare * static_cast<double>(matches);
+bool is_sound(const PoseRefinement& refined, std::size_t matches, int min_inliers) {
+  return refined.inlier_count >= min_inliers && refined.inlier_count >= kMinInlierShare * static_cast<double>(matches);
 }
 
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
@@ -120,7 +121,7 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
     observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
   }
   const auto refined = refine_pose(predicted_camera_from_world, rig, observations, {});
-  if (!refined || !is_sound(*refined, matches.size(), options)) return std::nullopt;
+  if (!refined || !is_sound(*refined, matches.size(), options.min_inliers)) return std::nullopt;
   return refined->camera_from_world;
 }
 

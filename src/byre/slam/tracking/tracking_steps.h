@@ -28,7 +28,8 @@ struct MeasuredPoints {
 };
 
 // Measures each match by its point's reference patch if that keyframe still exists, else by its corner. Refills
-// `measured`.
+// `measured`. Matches of offline points whose patch does not fit are left out: their corner shows the point in one of
+// six, as the map was made in another light and from another place, and chance matches confirm any predicted pose.
 void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                      const std::vector<GuidedMatch>& matches, MeasuredPoints& measured);
 
@@ -44,7 +45,7 @@ void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance,
                        const MeasuredPoints& measured, double max_variance_factor, PartedPoints& parted);
 
 // Whether enough of the matches agree on the pose.
-bool is_sound(const PoseRefinement& refined, std::size_t matches, const TrackOptions& options);
+bool is_sound(const PoseRefinement& refined, std::size_t matches, int min_inliers);
 
 // First pose from detected corners, matched within a radius (pixels) around the predictions. Empty if it is not sound.
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,

@@ -1,7 +1,9 @@
 #include "byre/slam/tracking/tracking_steps.h"
 
 #include "byre/optimise/optimise_scene.h"
+#include "byre/slam/tracking/keyframes.h"
 
+#include <cmath>
 #include <numeric>
 
 #include <gmock/gmock.h>
@@ -48,6 +50,55 @@ TEST(PartByAgreement, AllowsForItInItsDirectionOnly) {
   const std::vector<int> agreed = agreeing(measured, Pose{}, 0.1);
   EXPECT_EQ(agreed.size(), kPoints - 1U);
   EXPECT_THAT(agreed, ::testing::Not(::testing::Contains(5)));
+}
+
+Patch patch_with(double phase) {
+  Patch patch;
+  patch.centre = {8.0F, 8.0F};
+  for (int row = 0; row < Patch::kSize; ++row) {
+    for (int column = 0; column < Patch::kSize; ++column) {
+      const double grey = 128.0 + 60.0 * std::sin(0.9 * column + phase) * std::cos(0.7 * row + 2.0 * phase);
+      patch.pixels[static_cast<std::size_t>(row * Patch::kSize + column)] = static_cast<std::uint8_t>(grey);
+    }
+  }
+  return patch;
+}
+
+// A point ahead, mapped from the origin, and a frame there whose patch has this phase; the map's has 0.
+std::size_t count_measured(Origin origin, const std::vector<Patch>& patches_of_frame) {
+  const Eigen::Vector3d ahead(0.0, 0.0, 3.0);
+  const Rig rig = stereo_rig();
+  Keypoint keypoint;
+  keypoint.pixel = rig.project(ahead).head<2>().cast<float>();
+  const auto features = [&](const std::vector<Patch>& patches) {
+    return std::make_shared<const Features>(rig.width, rig.height, std::vector{keypoint}, std::vector{Descriptor{}},
+                                            patches);
+  };
+  MapGraph map(origin);
+  Keyframe keyframe;
+  keyframe.frame.features = features({patch_with(0.0)});
+  keyframe.rig = map.add_rig(rig);
+  keyframe.sightings.resize(1);
+  keyframe.sightings[0].pixel = keypoint.pixel;
+  const KeyframeId id = map.add_keyframe(keyframe);
+  const PointId point =
+      map.add_point(make_point(ahead, Eigen::Matrix3d::Zero(), {id, 0}, *keyframe.frame.features, Pose{}));
+  const MapGraph nothing(Origin::online);
+  const MapView view = origin == Origin::offline ? MapView(&map, nothing) : MapView(map);
+  MeasuredPoints measured;
+  measure_matches({.features = features(patches_of_frame)}, Pose{}, rig, view, {{0, point}}, measured);
+  EXPECT_EQ(measured.features.size(), measured.observations.size());
+  return measured.features.size();
+}
+
+TEST(MeasureMatches, LeavesOutOfflinePointsWhosePatchDoesNotFit) {
+  EXPECT_EQ(count_measured(Origin::offline, {patch_with(0.0)}), 1U);
+  EXPECT_EQ(count_measured(Origin::offline, {patch_with(1.3)}), 0U);
+}
+
+TEST(MeasureMatches, MeasuresOnlinePointsAndFramesWithoutPatchesByTheirCorners) {
+  EXPECT_EQ(count_measured(Origin::online, {patch_with(1.3)}), 1U);
+  EXPECT_EQ(count_measured(Origin::offline, {}), 1U);
 }
 
 }  // namespace

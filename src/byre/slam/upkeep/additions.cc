@@ -60,7 +60,7 @@ double drift_variance(const MapGraph& map, std::span<const KeyframeId> keyframes
 
 // Keyframes that see the offline map, and those connected with them by common points; ascending.
 std::set<KeyframeId> connected_keyframes(const MapGraph& online) {
-  constexpr int kThatLocate = 60;  // offline points, see kOfflineThatHolds
+  constexpr int kThatLocate = 36;  // offline points, see kOfflineThatHolds
   constexpr int kAll = 1 << 20;
   std::set<KeyframeId> connected;
   for (const KeyframeId start : online.keyframe_ids()) {

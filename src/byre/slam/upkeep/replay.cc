@@ -35,8 +35,14 @@ std::array<int, 4> place_of(const ReplayFrame& frame) {
   return {static_cast<int>(along.x()), static_cast<int>(along.y()), static_cast<int>(along.z()), main_direction};
 }
 
+constexpr double kMostShift = 0.02;  // metres
+
+double position_sigma(const Replayed& frame) {
+  return std::sqrt(frame.covariance.topLeftCorner<3, 3>().trace());
+}
+
 // A change of the pose of 5 mm and 0.05 degrees is never a fault, one of 20 mm or 0.3 degrees always, one in between if
-// it exceeds the standard deviation of a pose before.
+// it exceeds the standard deviation of a pose before. Poses that were less certain than that are not compared.
 std::string fault_of(const PlaceProof& place, double least_inliers) {
   if (place.found_after < place.found_before) {
     return fmt::format("{} of {} frames are found instead of {}", place.found_after, place.frames, place.found_before);
@@ -44,7 +50,7 @@ std::string fault_of(const PlaceProof& place, double least_inliers) {
   if (place.inliers_after < least_inliers * place.inliers_before) {
     return fmt::format("{} points fit instead of {}", place.inliers_after, place.inliers_before);
   }
-  if (place.shift > std::clamp(place.shift_sigma, 0.005, 0.02)) {
+  if (place.shift > std::clamp(place.shift_sigma, 0.005, kMostShift)) {
     return fmt::format("poses move by {:.1f} mm", 1e3 * place.shift);
   }
   if (place.turn > std::clamp(place.turn_sigma, 0.05 * kDegree, 0.3 * kDegree)) {
@@ -101,9 +107,10 @@ std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std:
       place.found_before += before[i].camera_from_world.has_value();
       place.found_after += after[i].camera_from_world.has_value();
       if (!before[i].camera_from_world || !after[i].camera_from_world) continue;
-      ++both;
       place.inliers_before += before[i].inliers;
       place.inliers_after += after[i].inliers;
+      if (position_sigma(before[i]) > kMostShift) continue;
+      ++both;
       const Pose was = inverse(*before[i].camera_from_world), is = inverse(*after[i].camera_from_world);
       shift += is.translation - was.translation;
       turn += rotation_log(is.rotation * was.rotation.conjugate());
