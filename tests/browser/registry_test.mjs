@@ -141,6 +141,24 @@ describe("A registry of maps", () => {
     assert.deepEqual(page.problems, []);
   });
 
+  test("shows a map on the current plan of its site", async () => {
+    const files = ["--plan", "barn_1/plan/plan.yaml", "--points", "barn_1/plan/picks.csv", "-o", "on_plan.byre"];
+    outputOf("register", "barn_1.byre", ...files);
+    registry("ann", "push", "barn", "on_plan.byre", "--plan", "barn_1/plan/plan.yaml", "--name", "ground");
+    const page = await open("ann", "#site=barn");
+    const plans = page.getByRole("region", { name: "Floor plans" });
+    await plans.getByRole("row").filter({ hasText: "ground 1" }).getByText("plan.yaml").waitFor();
+    assert.deepEqual(await accessibilityFaults(page), []);
+    await page.getByRole("link", { name: idOf("on_plan.byre") }).first().click();
+    await page.getByRole("link", { name: "Show the map" }).click();
+    await page.getByText(/^Floor plan ground 1 \(plan.yaml\), added by ann at 20/).waitFor();
+    const loaded = await page.evaluate(() => performance.getEntriesByType("resource").map(({ name }) => name));
+    assert.ok(loaded.some((name) => name.includes("/plan.png")), "the picture of the plan");
+    await page.screenshot({ path: "screenshots/registry_plan.png" });
+    assert.deepEqual(await accessibilityFaults(page), []);
+    assert.deepEqual(page.problems, []);
+  });
+
   test("explains what it lacks", async () => {
     const page = await open("ann", "#site=bran");
     await page.getByText(/has no site 'bran', or the account may not see it \(did you mean 'barn'\?\)/).waitFor();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -40,7 +41,8 @@ CuttingProxy::CuttingProxy(std::filesystem::path socket) : socket_(std::move(soc
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof(address);
   require(bind(listener_, reinterpret_cast<const sockaddr*>(&address), size) == 0 && listen(listener_, 8) == 0 &&
-          getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) == 0 && pipe(wake_.data()) == 0);
+          getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+          pipe2(wake_.data(), O_CLOEXEC) == 0);
   port_ = ntohs(address.sin_port);
   thread_ = std::jthread([this] { serve(); });
 }
@@ -64,6 +66,11 @@ void CuttingProxy::begin(std::optional<Cut> cut) {
   sent_ = {};
   speaker_.reset();
   messages_.clear();
+}
+
+void CuttingProxy::be_silent(bool is_silent) {
+  const std::scoped_lock lock(mutex_);
+  is_silent_ = is_silent;
 }
 
 bool CuttingProxy::has_cut() const {
@@ -111,6 +118,7 @@ bool CuttingProxy::forward(const Pair& pair, Side from) {
     speaker_ = from;
     sent_[side] += size;
     is_cut = cut_ && cut_->side == from && cut_->byte < sent_[side];
+    if (is_silent_) return true;
     if (is_cut) {
       size -= std::min(size, sent_[side] - cut_->byte);
       cut_.reset();

@@ -33,6 +33,8 @@ class CuttingProxy {
   // Counts from zero; empty: cuts nothing.
   void begin(std::optional<Cut> cut);
   bool has_cut() const;
+  // While silent, all bytes are lost, as in a network without a route.
+  void be_silent(bool is_silent);
   // Cuts before and in the middle of each message since begin(): what one side sends until the other answers.
   std::vector<Cut> places_to_cut() const;
 
@@ -51,9 +53,10 @@ class CuttingProxy {
   int port_ = 0;
   std::array<int, 2> wake_{-1, -1};  // pipe that ends the thread
 
-  mutable std::mutex mutex_;  // guards the next five members
+  mutable std::mutex mutex_;  // guards the next six members
   std::optional<Cut> cut_;
   bool has_cut_ = false;
+  bool is_silent_ = false;
   std::array<std::size_t, 2> sent_{};  // bytes, by side
   std::optional<Side> speaker_;
   std::vector<Cut> messages_;  // first bytes

@@ -1,8 +1,10 @@
 // "byre registry serve": HTTP interface of the page, with the rights of PostgreSQL.
 
+#include "cutting_proxy.h"
 #include "registry_fixture.h"
 
 #include "byre/registry/blobs.h"
+#include "byre/registry/plans.h"
 #include "byre/registry/versions.h"
 #include "byre/viewer/web/web_client_scene.h"
 
@@ -26,18 +28,27 @@ constexpr std::int64_t kBarn = 1;
 class RegistryReviewPage : public RegistryTest {
  protected:
   void TearDown() override {
-    if (process_) {
-      kill(*process_, SIGINT);
-      EXPECT_EQ(exit_code_of(*process_), 0);
-    }
+    end_page();
     RegistryTest::TearDown();
+  }
+
+  void end_page() {
+    if (!process_) return;
+    kill(*process_, SIGINT);
+    EXPECT_EQ(exit_code_of(*process_), 0);
+    process_.reset();
   }
 
   // Starts the page as an account, and sets its token.
   WebClient serve(const std::string& account, const std::string& address = "127.0.0.1",
                   const std::vector<std::string>& options = {}) {
+    return serve_from(uri(account), address, options);
+  }
+
+  WebClient serve_from(const std::string& registry_uri, const std::string& address = "127.0.0.1",
+                       const std::vector<std::string>& options = {}) {
     std::vector<std::string> command = {"registry", "serve", "--port",     "0",
-                                        "--bind",   address, "--registry", uri(account)};
+                                        "--bind",   address, "--registry", registry_uri};
     command.insert(command.end(), options.begin(), options.end());
     process_ = start(command);
     const std::string label = "viewer: http://127.0.0.1:";
@@ -277,6 +288,19 @@ TEST_F(RegistryReviewPage, ReconnectsToTheRegistry) {
   EXPECT_EQ(page.post("/sites/barn/" + id + "/accept", reason("x")).status, 200);
 }
 
+TEST_F(RegistryReviewPage, ReportsAServerThatDoesNotAnswer) {
+  CuttingProxy proxy(RegistryServer::shared().folder() / "socket" / ".s.PGSQL.5432");
+  const WebClient page = serve_from(proxy.uri(database_, "reviewer"));
+  EXPECT_EQ(page.get("/sites").status, 200);
+  proxy.be_silent(true);
+  const WebClient::Answer silent = page.get("/sites");
+  EXPECT_EQ(silent.status, 503);
+  EXPECT_THAT(problem_of(silent), HasSubstr("the connection broke: no answer within 5 s"));
+  EXPECT_EQ(page.get("/sites").status, 503) << "nor to a new connection";
+  proxy.be_silent(false);
+  EXPECT_EQ(page.get("/sites").json().size(), 2u);
+}
+
 TEST_F(RegistryReviewPage, IsNotStoppedByALockOfAnotherClient) {
   const std::string id = propose("barn");
   const WebClient page = serve("reviewer");
@@ -300,10 +324,30 @@ TEST_F(RegistryReviewPage, ShowsAMapOnThePlanThatItIsRegisteredOn) {
     return push_file(reviewer, kBarn, folder_ / (plan + ".byre"), "").id;
   };
   const std::string on_plan = registered_on("plan.yaml"), on_another = registered_on("another.yaml");
-  const WebClient page = serve("reviewer", "127.0.0.1", {"--plan", (folder_ / "plan.yaml").string()});
-  EXPECT_EQ(scene_of(page, on_plan).at("plan").at("name"), "plan.yaml");
-  EXPECT_EQ(page.get("/maps/barn/" + on_plan + "/plan.png").content_type, "image/png");
-  EXPECT_TRUE(scene_of(page, on_another).at("plan").is_null());
+  const auto expect_plan = [&](const WebClient& page, std::size_t width, const std::string& note) {
+    const json scene = scene_of(page, on_plan);
+    EXPECT_EQ(scene.at("plan").at("name"), "plan.yaml");
+    EXPECT_EQ(scene.at("plan").at("width"), width);
+    EXPECT_THAT(scene.at("plan_note").get<std::string>(), testing::MatchesRegex(note));
+    EXPECT_EQ(page.get("/maps/barn/" + on_plan + "/plan.png").content_type, "image/png");
+    EXPECT_TRUE(scene_of(page, on_another).at("plan").is_null());
+  };
+  expect_plan(serve("reviewer", "127.0.0.1", {"--plan", (folder_ / "plan.yaml").string()}), 2, "");
+  end_page();
+  EXPECT_EQ(scene_of(serve("reviewer"), on_plan).at("plan_note"),
+            "The registry has no current plan plan.yaml, on which the map is registered.");
+  end_page();
+  std::filesystem::create_directories(folder_ / "registry");
+  write("registry/plan.pgm", "P5\n3 1\n255\n\xff\x01\xff");
+  write("registry/plan.yaml", read("plan.yaml"));
+  push_plan(reviewer, kBarn, folder_ / "registry/plan.yaml", "ground", "");
+  const WebClient page = serve("reviewer");
+  expect_plan(page, 3, "Floor plan ground 1 .plan.yaml., added by reviewer at 20[-0-9T:]+Z");
+  const json plans = page.get("/sites/barn").json().at("plans");
+  EXPECT_EQ(plans.at(0).at("name"), "ground");
+  EXPECT_EQ(plans.at(0).at("added_by"), "reviewer");
+  end_page();
+  expect_plan(serve("reviewer", "127.0.0.1", {"--plan", (folder_ / "plan.yaml").string()}), 2, "");
 }
 
 TEST_F(RegistryReviewPage, ShowsAMapWithItsChanges) {

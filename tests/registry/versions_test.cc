@@ -219,7 +219,11 @@ TEST_F(RegistryVersions, AreNotReadByAnOldClient) {
   EXPECT_EQ(registry("list").exit_code, 0) << "a newer schema that admits this client";
 }
 
-TEST_F(RegistryVersions, StayWhenTheSchemaIsUpdated) {
+class RegistryOfAnOldSchema : public RegistryVersions, public testing::WithParamInterface<int> {};
+INSTANTIATE_TEST_SUITE_P(AllWithTables, RegistryOfAnOldSchema, testing::Values(1, 2, 3, 4),
+                         testing::PrintToStringParamName());
+
+TEST_P(RegistryOfAnOldSchema, KeepsItsContentWhenItIsUpdated) {
   const std::string name = database_ + "_old";
   connect().run_script("CREATE DATABASE " + name + " STRATEGY file_copy");
   const std::string old = RegistryServer::shared().uri(name);
@@ -227,39 +231,55 @@ TEST_F(RegistryVersions, StayWhenTheSchemaIsUpdated) {
   const std::string at = " --registry '" + old + "'";
   EXPECT_THAT(run("registry list" + at).errors, HasSubstr("is no registry of maps"));
   EXPECT_EQ(run("registry migrate" + at).exit_code, 3);
-  std::ifstream file(BYRE_REGISTRY_SCHEMA "/1.sql");
-  owner.run_script({std::istreambuf_iterator<char>(file), {}});
-  owner.run_script("INSERT INTO byre.schema_version VALUES (1, 1); INSERT INTO byre.site (name) VALUES ('barn')");
-  EXPECT_THAT(run("registry list" + at).errors, HasSubstr("needs schema 4 (update it with byre registry migrate)"));
+  for (int schema = 1; schema <= GetParam(); ++schema) {
+    std::ifstream file(fmt::format(BYRE_REGISTRY_SCHEMA "/{}.sql", schema));
+    owner.run_script({std::istreambuf_iterator<char>(file), {}});
+    owner.run("INSERT INTO byre.schema_version VALUES ($1, 1)", {schema});
+  }
+  owner.run("INSERT INTO byre.site (name) VALUES ('barn')");
+  EXPECT_THAT(run("registry list" + at).errors,
+              HasSubstr(fmt::format("needs schema {} (update it with byre registry migrate)", kRegistrySchema)));
   const std::vector<std::byte> map = small_map("barn"), session = small_session("evening", "0123456789abcdef");
   const std::string id = to_text(map_id(map, ""));
   add_version(owner, kBarn, id, push_blob(owner, map), {}, "by day");
   add_session(owner, kBarn, to_text(map_id(session, "")), push_blob(owner, session), "0123456789abcdef", "evening");
 
-  EXPECT_THAT(run("registry migrate" + at).output, StartsWith("schema       1 -> 4 in "));
+  EXPECT_THAT(run("registry migrate" + at).output,
+              StartsWith(fmt::format("schema       {} -> {} in ", GetParam(), kRegistrySchema)));
   EXPECT_EQ(run("registry accept barn " + id + at).exit_code, 0);
   EXPECT_EQ(run("registry pull barn -o barn.byre" + at).exit_code, 0);
   EXPECT_EQ(to_text(map_id(folder_ / "barn.byre")), id);
   EXPECT_EQ(owner.run("SELECT FROM byre.session WHERE state = 'open'").size(), 1);
   EXPECT_EQ(owner.run("SELECT FROM byre.job WHERE state = 'waiting'").size(), 1) << "the session waits for an update";
+  write("plan.pgm", "P5\n2 1\n255\n\xff\x01");
+  write("plan.yaml", "image: plan.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  EXPECT_EQ(run("registry push barn --plan plan.yaml" + at).output, "plan         plan 1 plan.yaml\n");
   owner = connect();
   connect().run_script("DROP DATABASE " + name + " WITH (FORCE)");
 }
 
-TEST_F(RegistryVersions, AreInABackup) {
+TEST_F(RegistryVersions, AreInABackupWithThePlans) {
   const std::string id = push("barn");
   registry("accept barn " + id, "reviewer");
+  for (const char* const grey : {"\xff\x01", "\x01\xff"}) {
+    write("plan.pgm", std::string("P5\n2 1\n255\n") + grey);
+    write("plan.yaml", "image: plan.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+    EXPECT_EQ(registry("push barn --plan plan.yaml", "reviewer").exit_code, 0);
+  }
   const std::string name = database_ + "_restored";
   connect().run_script("CREATE DATABASE " + name + " STRATEGY file_copy");
   const std::string restored = RegistryServer::shared().uri(name);
   const std::string command = "pg_dump --format=custom '" + uri() + "' | pg_restore --exit-on-error --dbname='" +
                               restored + "' >'" + (folder_ / "restore.log").string() + "' 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << read("restore.log");
-  EXPECT_EQ(
-      run("registry pull barn -o restored.byre --registry '" + RegistryServer::shared().uri(name, "robot_barn") + "'")
-          .exit_code,
-      0);
+  const std::string robot = " --registry '" + RegistryServer::shared().uri(name, "robot_barn") + "'";
+  EXPECT_EQ(run("registry pull barn -o restored.byre --plan plans" + robot).exit_code, 0);
   EXPECT_EQ(read("restored.byre"), read("barn.byre"));
+  EXPECT_EQ(read("plans/plan.pgm"), read("plan.pgm"));
+  EXPECT_EQ(run("registry pull barn --plan plans --version 1" + robot).exit_code, 0);
+  EXPECT_NE(read("plans/plan.pgm"), read("plan.pgm"));
+  EXPECT_EQ(run("registry push barn --plan plan.yaml --registry '" + restored + "'").output,
+            "plan         plan 2 plan.yaml, as before\n");
   connect().run_script("DROP DATABASE " + name + " WITH (FORCE)");
 }
 

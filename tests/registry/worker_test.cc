@@ -101,6 +101,37 @@ TEST_F(RegistryWorker, ProposesTheMapOfARecording) {
   EXPECT_EQ(registry("accept barn " + expected, "reviewer").exit_code, 0) << "it replaces any version";
 }
 
+TEST_F(RegistryWorker, GivesTheReasonWhyAMapIsNotRegisteredOnAPlan) {
+  write("plan.pgm", "P5\n2 1\n255\n\xff\x01");
+  write("plan.yaml", "image: plan.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  EXPECT_EQ(registry("push barn --plan plan.yaml", "reviewer").exit_code, 0);
+  EXPECT_EQ(registry("request barn --map " + cli::rendered_room(), "reviewer").exit_code, 0);
+  EXPECT_THAT(
+      worker("--once --kinds map").output,
+      AllOf(HasSubstr("job 2 done: "), HasSubstr("; not on plan plan: has no obstacles to match, or the plan has "
+                                                 "no walls\n")));
+  EXPECT_EQ(value("SELECT count(*) FROM byre.version WHERE state = 'proposed'"), "1");
+}
+
+using LongRunRegistryWorker = RegistryTest;
+
+// Through the gate, as the hall alone is symmetric. The other floor has no walls.
+TEST_F(LongRunRegistryWorker, RegistersTheMapOfARecordingOnThePlanThatItFits) {
+  ASSERT_EQ(run("simulate cowshed --divide 2 --rate 8 --gate open --duration 60 -o day --quiet").exit_code, 0);
+  write("upper.pgm", "P5\n2 1\n255\n\xff\x01");
+  write("upper.yaml", "image: upper.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n");
+  for (const char* const plan : {"upper.yaml", "day/plan/plan.yaml"}) {
+    ASSERT_EQ(registry(std::string("push barn --plan ") + plan, "reviewer").exit_code, 0);
+  }
+  ASSERT_EQ(registry("request barn --map '" + (folder_ / "day").string() + "'", "reviewer").exit_code, 0);
+  EXPECT_THAT(worker().output, HasSubstr("; registered on plan.yaml\n"));
+  const std::string id = value("SELECT id FROM byre.version");
+  ASSERT_EQ(registry("pull barn --version " + id + " -o pulled.byre", "reviewer").exit_code, 0);
+  ASSERT_EQ(run("map day -o barn.byre --quiet").exit_code, 0);
+  ASSERT_EQ(run("register barn.byre --plan day/plan/plan.yaml --auto -o expected.byre").exit_code, 0);
+  EXPECT_EQ(read("pulled.byre"), read("expected.byre"));
+}
+
 TEST_F(RegistryWorker, WaitsForARecordingThatItCannotRead) {
   const std::string later = (folder_ / "later").string();
   EXPECT_EQ(registry("request barn --map '" + later + "'", "reviewer").exit_code, 0);

@@ -1,4 +1,4 @@
-import { byId } from "./dom";
+import { byId, element } from "./dom";
 import { KeyframePictures } from "./keyframe_pictures";
 import type { MapSpace } from "./map_space";
 import { startScaleBar } from "./panels/scale_bar";
@@ -22,6 +22,7 @@ export async function startMapPage(scene: MapScene, space: MapSpace): Promise<vo
   } else {
     byId("main").classList.add("alone");
     byId("next-step").textContent = scene.next_step;
+    if (scene.plan_note) byId("next-step").append(" ", element("span", {}, scene.plan_note));
     if (scene.is_read_only) byId("next-step").append(" ", linkToReview());
     stage?.onClick((click) => pictures?.openAt(click));
   }

@@ -4,6 +4,7 @@ import {
   given,
   jobsTable,
   linkTo,
+  plansTable,
   robotsTable,
   routeTo,
   sessionsTable,
@@ -108,6 +109,7 @@ class RegistryPage {
       const [content, events] = await Promise.all([loadSite(site), loadEvents(site)]);
       const panels = [
         versionsTable(site, content.versions),
+        plansTable(content.plans),
         sessionsTable(site, "Open sessions", content.sessions),
         jobsTable(content.jobs),
         robotsTable(site, content.robots),

@@ -66,6 +66,7 @@ export interface MapScene extends SceneBase {
   output: string | null;
   tags: number; // surveyed ones, which are picks as well
   is_read_only: boolean; // version of a registry: no points are picked
+  plan_note: string; // sentence on the origin of the plan, or on its absence
   next_step: string; // sentence with a command
   before: string | null; // name of the earlier version that it is compared with
 }
@@ -109,6 +110,7 @@ export interface SessionFields {
 
 export interface SiteFields {
   versions: (VersionBase & { parent: string | null })[];
+  plans: { name: string; number: number; file: string; note: string; added_by: string; added_at: string }[];
   sessions: (SessionFields & { added_at: string })[];
   jobs: { id: number; kind: string; state: string; attempts: number; worker: string | null; message: string }[];
   robots: {
@@ -125,7 +127,7 @@ export interface EventFields {
   at: string;
   actor: string;
   kind: string;
-  subject?: string; // id of a version or session, number of a job; not in VersionFields
+  subject?: string; // id of a version or session, name of a plan, number of a job; not in VersionFields
   reason: string;
 }
 

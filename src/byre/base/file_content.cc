@@ -107,6 +107,7 @@ FileContent content_of_beginning(std::string_view bytes, std::uintmax_t size, co
   if (bytes.starts_with("byrevoc\n")) return FileContent::vocabulary;
   if (bytes.starts_with("\x89PNG\r\n")) return FileContent::png;
   if (bytes.starts_with("P5\n")) return FileContent::pgm;
+  if (begins_with_any(bytes, {"\xff\xd8\xff", {"II*\0", 4}, {"MM\0*", 4}})) return FileContent::photograph;
   if (bytes.starts_with("\x89MCAP0\r\n")) return FileContent::mcap;
   if (bytes.starts_with("ply\n")) return FileContent::point_cloud;
   if (bytes.substr(std::min<std::size_t>(4, bytes.size())).starts_with("ftyp")) return FileContent::video;
@@ -128,6 +129,8 @@ std::string_view name_of(FileContent content) {
       return "PNG picture";
     case FileContent::pgm:
       return "PGM picture";
+    case FileContent::photograph:
+      return "JPEG or TIFF picture";
     case FileContent::video:
       return "video";
     case FileContent::point_cloud:

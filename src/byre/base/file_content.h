@@ -15,6 +15,7 @@ enum class FileContent : std::uint8_t {
   vocabulary,
   png,
   pgm,
+  photograph,  // JPEG or TIFF
   video,
   point_cloud,
   mcap,

@@ -80,7 +80,7 @@ Bytes push_blob(Connection& connection, std::span<const std::byte> file) {
 }
 
 std::size_t pull_blob(Connection& connection, std::span<const std::byte> name, const std::string& id,
-                      const std::filesystem::path& path) {
+                      const std::filesystem::path& path, FileContent content) {
   Bytes hashes;
   persist(connection, [&] {
     hashes =
@@ -90,9 +90,9 @@ std::size_t pull_blob(Connection& connection, std::span<const std::byte> name, c
   if (hashes.empty()) throw InputError(connection.place(), "has no such file, or the account may not read it");
   if (!std::ranges::equal(sha256(hashes), name)) refuse_damage(connection, "the list of chunks of a file");
   if (has_chunks(path, hashes)) return 0;
-  const Bytes leftover = read_leftover(path, FileContent::map);
+  const Bytes leftover = read_leftover(path, content);
   const std::size_t kept = common_chunks(chunk_hashes(leftover), hashes);
-  OutputFile file(path, FileContent::map);
+  OutputFile file(path, content);
   file.append(std::span(leftover).first(std::min(leftover.size(), kept * kChunkBytes)));
   std::size_t received = 0;
   for (std::size_t number = kept; number < hashes.size() / kHashBytes; ++number) {
@@ -107,7 +107,7 @@ std::size_t pull_blob(Connection& connection, std::span<const std::byte> name, c
     file.append(*data);
     received += data->size();
   }
-  if (!file.temporary().empty() && to_text(map_id(file.temporary())) != id) {
+  if (!id.empty() && !file.temporary().empty() && to_text(map_id(file.temporary())) != id) {
     throw InputError(connection.place(), "has a file of another id as " + id, "restore the registry from a backup");
   }
   file.publish();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/base/file_content.h"
 #include "byre/registry/connection.h"
 
 #include <cstddef>
@@ -16,9 +17,10 @@ namespace byre {
 // Stores a file, unless it is there. Chunks that an earlier upload stored are not sent again. Returns its name.
 std::vector<std::byte> push_blob(Connection& connection, std::span<const std::byte> file);
 
-// Writes a stored map or session with this id, unless the path has it already. Returns the bytes received. Throws
-// InputError for an unknown name, and for bytes that do not have their name or the id; the path is then unchanged.
+// Writes a stored file, unless the path has it already. id: of a map or session; empty: another content. Returns the
+// bytes received. Throws InputError for an unknown name, and for bytes that do not have their name or the id; the path
+// is then unchanged.
 std::size_t pull_blob(Connection& connection, std::span<const std::byte> name, const std::string& id,
-                      const std::filesystem::path& path);
+                      const std::filesystem::path& path, FileContent content = FileContent::map);
 
 }  // namespace byre

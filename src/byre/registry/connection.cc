@@ -91,20 +91,22 @@ void Connection::Close::operator()(pg_conn* connection) const {
   LIBPQ(PQfinish)(connection);
 }
 
-Connection::Connection(const std::string& uri) {
+Connection::Connection(const std::string& uri, std::optional<std::chrono::seconds> patience) : patience_(patience) {
   // Defaults first: parameters of the URI replace them. A cut network is noticed after 30 s.
   const std::array keys = {"connect_timeout",           "keepalives_idle",  "keepalives_interval",
                            "keepalives_count",          "tcp_user_timeout", "dbname",
                            "fallback_application_name", "client_encoding",  static_cast<const char*>(nullptr)};
-  const std::array values = {std::getenv("PGCONNECT_TIMEOUT") != nullptr ? std::getenv("PGCONNECT_TIMEOUT") : "10",
-                             "10",
-                             "5",
-                             "4",
-                             "30000",
-                             uri.c_str(),
-                             "byre",
-                             "UTF8",
-                             static_cast<const char*>(nullptr)};
+  const std::string connect_timeout = std::to_string(patience ? patience->count() : 10);
+  const std::array values = {
+      std::getenv("PGCONNECT_TIMEOUT") != nullptr ? std::getenv("PGCONNECT_TIMEOUT") : connect_timeout.c_str(),
+      "10",
+      "5",
+      "4",
+      "30000",
+      uri.c_str(),
+      "byre",
+      "UTF8",
+      static_cast<const char*>(nullptr)};
   connection_.reset(LIBPQ(PQconnectdbParams)(keys.data(), values.data(), 1));
   const auto or_empty = [](const char* text) { return std::string(text == nullptr ? "" : text); };
   place_ = fmt::format("registry {}/{}", or_empty(LIBPQ(PQhost)(connection_.get())),
@@ -150,22 +152,43 @@ Rows Connection::execute(const char* statement, const std::vector<Parameter>& pa
     sizes.push_back(parameter.size());
     formats.push_back(parameter.is_binary() ? 1 : 0);
   }
-  PGresult* const result = LIBPQ(PQexecParams)(connection_.get(), statement, static_cast<int>(parameters.size()),
-                                               nullptr, values.data(), sizes.data(), formats.data(), is_binary ? 1 : 0);
-  const ExecStatusType status = LIBPQ(PQresultStatus)(result);
-  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) fail(result);
-  return Rows(result);
+  Rows answer(nullptr);
+  if (LIBPQ(PQsendQueryParams)(connection_.get(), statement, static_cast<int>(parameters.size()), nullptr,
+                               values.data(), sizes.data(), formats.data(), is_binary ? 1 : 0) != 0) {
+    await_answer();
+    while (PGresult* const result = LIBPQ(PQgetResult)(connection_.get())) {
+      answer = Rows(result);
+      await_answer();
+    }
+  }
+  require_success(answer);
+  return answer;
+}
+
+// Returns once PQgetResult() does not wait for the server.
+void Connection::await_answer() const {
+  const auto end = std::chrono::steady_clock::now() + patience_.value_or(std::chrono::seconds(0));
+  while (LIBPQ(PQisBusy)(connection_.get()) != 0) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    pollfd socket{LIBPQ(PQsocket)(connection_.get()), POLLIN, 0};
+    const int ready =
+        patience_ && left.count() <= 0 ? 0 : poll(&socket, 1, patience_ ? static_cast<int>(left.count()) : -1);
+    if (ready == 0) {
+      interrupt();  // no later statement waits for this answer
+      throw ConnectionLost(fmt::format("{}: the connection broke: no answer within {} s", place_, patience_->count()));
+    }
+    if (ready > 0 && LIBPQ(PQconsumeInput)(connection_.get()) == 0) return;
+  }
 }
 
 void Connection::run_script(const std::string& statements) {
-  PGresult* const result = LIBPQ(PQexec)(connection_.get(), statements.c_str());
-  const ExecStatusType status = LIBPQ(PQresultStatus)(result);
-  if (status != PGRES_COMMAND_OK && status != PGRES_TUPLES_OK) fail(result);
-  LIBPQ(PQclear)(result);
+  require_success(Rows(LIBPQ(PQexec)(connection_.get(), statements.c_str())));
 }
 
-void Connection::fail(pg_result* failed) const {
-  const Rows owner(failed);
+void Connection::require_success(const Rows& answer) const {
+  const PGresult* const failed = answer.get();
+  const ExecStatusType status = LIBPQ(PQresultStatus)(failed);
+  if (status == PGRES_COMMAND_OK || status == PGRES_TUPLES_OK) return;
   const std::string state = field(failed, PG_DIAG_SQLSTATE), kind = state.substr(0, 2);
   const std::string reason = field(failed, PG_DIAG_MESSAGE_PRIMARY), hint = field(failed, PG_DIAG_MESSAGE_HINT);
   if (LIBPQ(PQstatus)(connection_.get()) != CONNECTION_OK || kind == "08" || state == "57P01" || state == "57P02" ||

@@ -72,8 +72,9 @@ class Rows {
 class Connection {
  public:
   // uri: as of libpq, "postgresql://..." or "host=... dbname=..."; what it leaves out is in the environment (PGHOST,
-  // PGSERVICE, ...).
-  explicit Connection(const std::string& uri);
+  // PGSERVICE, ...). patience: longest wait for the server, to connect and for each answer, after which the connection
+  // counts as broken. Empty: 10 s to connect; an answer may take any time unless the network is cut, for 30 s.
+  explicit Connection(const std::string& uri, std::optional<std::chrono::seconds> patience = {});
 
   Rows run(const char* statement, const std::vector<Parameter>& parameters = {});
   // Value of a bytea, the only one of its result. Empty without a row, or if null.
@@ -98,8 +99,10 @@ class Connection {
 
   void require_connected() const;
   Rows execute(const char* statement, const std::vector<Parameter>& parameters, bool is_binary);
-  [[noreturn]] void fail(pg_result* result) const;
+  void await_answer() const;
+  void require_success(const Rows& answer) const;
 
+  std::optional<std::chrono::seconds> patience_;  // constant after construction
   std::unique_ptr<pg_conn, Close> connection_;
   std::string place_;
   std::stop_token stop_;

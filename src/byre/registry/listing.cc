@@ -92,6 +92,10 @@ std::string site_json(Connection& connection, std::int64_t site) {
           SELECT v.id, state, b.size AS bytes, parents[1] AS parent, note, added_by,
             to_char(added_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS"Z"') AS added_at, reviewed_by, reason
           FROM byre.version v JOIN byre.blob b ON b.hash = v.blob WHERE site = $1 ORDER BY v.added_at DESC, v.id) x),
+        'plans', (SELECT coalesce(json_agg(row_to_json(x)), '[]') FROM (
+          SELECT DISTINCT ON (name) name, number, file, note, added_by,
+            to_char(added_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS"Z"') AS added_at
+          FROM byre.plan WHERE site = $1 ORDER BY name, number DESC) x),
         'sessions', (SELECT coalesce(json_agg(row_to_json(x)), '[]') FROM (
           SELECT id, name, ran_on, added_by,
             to_char(added_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS"Z"') AS added_at
@@ -125,10 +129,22 @@ std::string version_json(Connection& connection, std::int64_t site, const std::s
                    "list the site with byre registry list");
 }
 
+std::string plans_json(Connection& connection, std::int64_t site, const std::optional<std::string>& name) {
+  return connection
+      .run(R"(SELECT coalesce(json_agg(row_to_json(x)), '[]') FROM (
+        SELECT name, number, file, other_file, f.size + o.size AS bytes, note, added_by,
+          to_char(added_at AT TIME ZONE 'UTC', 'YYYY-MM-DD"T"HH24:MI:SS"Z"') AS added_at
+        FROM byre.plan p JOIN byre.blob f ON f.hash = p.blob JOIN byre.blob o ON o.hash = p.other_blob
+        WHERE site = $1 AND name = coalesce($2, name) ORDER BY name, number DESC) x)",
+           {site, name})
+      .text(0, 0);
+}
+
 std::string listing_key(Connection& connection) {
   return connection
       .run(R"(SELECT concat_ws(' ', (SELECT max(id) FROM byre.event),
         (SELECT max(id) FROM byre.job),
+        (SELECT count(*) FROM byre.plan),
         (SELECT string_agg(concat_ws(',', id, state, attempts), ' ' ORDER BY id) FROM byre.job
           WHERE state IN ('waiting', 'running')),
         (SELECT string_agg(concat_ws(',', site, id), ' ') FROM byre.version WHERE state = 'accepted'),

@@ -48,8 +48,8 @@ int migrate_registry(Connection& connection) {
   return before;
 }
 
-Connection open_registry(const std::string& uri) {
-  Connection connection(uri);
+Connection open_registry(const std::string& uri, std::optional<std::chrono::seconds> patience) {
+  Connection connection(uri, patience);
   const Rows rows = connection.run("SELECT max(version), max(oldest_client) FROM byre.schema_version");
   const auto schema = static_cast<int>(rows.number(0, 0));
   if (rows.number(0, 1) > kRegistrySchema) refuse_newer(connection, schema);

@@ -92,6 +92,17 @@ export function sessionsTable(
   return table(name, "No sessions.", ["Session", "Name", "Ran on", "Added by", "Added at"], rows);
 }
 
+export function plansTable(plans: SiteFields["plans"]): HTMLElement {
+  const rows = plans.map((each) => [
+    given(`${each.name} ${each.number}`),
+    given(each.file),
+    given(each.note),
+    given(each.added_by),
+    timeOf(each.added_at),
+  ]);
+  return table("Floor plans", "No floor plans.", ["Floor plan", "File", "Note", "Added by", "Added at"], rows);
+}
+
 export function jobsTable(jobs: SiteFields["jobs"]): HTMLElement {
   const rows = jobs.map((each) => [
     String(each.id),

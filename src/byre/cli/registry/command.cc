@@ -20,10 +20,10 @@ constexpr std::array kRegistryCommands = {
     RegistryCommand{"init", "Make a database a registry, and add sites", declare_registry_init},
     RegistryCommand{"migrate", "Update the schema of a registry to that of this byre", declare_registry_migrate},
     RegistryCommand{"admit", "Give an account a role: robot of a site, reviewer or worker", declare_registry_admit},
-    RegistryCommand{"push", "Propose maps, and add sessions of missions", declare_registry_push},
-    RegistryCommand{"pull", "Write the accepted version of a site's map, or another one", declare_registry_pull},
+    RegistryCommand{"push", "Propose maps, add sessions of missions and floor plans", declare_registry_push},
+    RegistryCommand{"pull", "Write the accepted version of a site's map, or its floor plan", declare_registry_pull},
     RegistryCommand{"list", "List sites, or versions, open sessions and jobs of a site", declare_registry_list},
-    RegistryCommand{"show", "Show a version with its sessions and reviews", declare_registry_show},
+    RegistryCommand{"show", "Show a version with its sessions and reviews, or plans", declare_registry_show},
     RegistryCommand{"accept", "Accept a proposed version for all robots of the site", declare_registry_accept},
     RegistryCommand{"reject", "Reject a proposed version", declare_registry_reject},
     RegistryCommand{"rollback", "Accept an earlier version again", declare_registry_rollback},
@@ -45,8 +45,8 @@ void add_site(CLI::App& command, std::string& site) {
   add_text(command, "SITE", site, "Name of the site")->type_name("SITE")->required();
 }
 
-void add_version_id(CLI::App& command, std::string& id) {
-  add_text(command, "VERSION", id, "Id of the version, as in \"byre history\"")->type_name("ID")->required();
+CLI::Option* add_version_id(CLI::App& command, std::string& id) {
+  return add_text(command, "VERSION", id, "Id of the version, as in \"byre history\"")->type_name("ID")->required();
 }
 
 void add_reason(CLI::App& command, std::string& reason) {

@@ -24,9 +24,9 @@ Action declare_registry_watch(CLI::App& command);
 Action declare_registry_metrics(CLI::App& command);
 Action declare_registry_serve(CLI::App& command);
 
-void add_registry(CLI::App& command, std::string& uri);   // --registry
-void add_site(CLI::App& command, std::string& site);      // SITE
-void add_version_id(CLI::App& command, std::string& id);  // VERSION
-void add_reason(CLI::App& command, std::string& reason);  // --reason
+void add_registry(CLI::App& command, std::string& uri);           // --registry
+void add_site(CLI::App& command, std::string& site);              // SITE
+CLI::Option* add_version_id(CLI::App& command, std::string& id);  // VERSION
+void add_reason(CLI::App& command, std::string& reason);          // --reason
 
 }  // namespace byre::cli

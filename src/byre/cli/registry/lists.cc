@@ -5,6 +5,7 @@
 #include "byre/playback/report/report.h"
 #include "byre/playback/report/report_json.h"
 #include "byre/registry/listing.h"
+#include "byre/registry/plans.h"
 #include "byre/registry/schema.h"
 #include "byre/registry/versions.h"
 
@@ -25,6 +26,8 @@ struct ListOptions {
   std::string uri;
   std::string site;  // empty: all
   std::string version;
+  bool plan = false;
+  std::optional<std::string> name;  // name of a plan
   bool json = false;
   bool once = false;
 };
@@ -33,18 +36,21 @@ constexpr const char* kListFooter = R"(Examples:
   byre registry list
   byre registry list barn --json
 
-Lists what the account may read: of a site versions, the newest first, sessions that no accepted version has yet, and
-jobs that wait, run, or were set aside.)";
+Lists what the account may read: of a site versions, the newest first, current floor plans, sessions that no accepted
+version has yet, and jobs that wait, run, or were set aside.)";
 
-constexpr const char* kShowFooter = R"(Example:
+constexpr const char* kShowFooter = R"(Examples:
   byre registry show barn 3f2a90cc51d07be4
+  byre registry show barn --plan --name ground
 
-Prints the versions that it was made of, its sessions, and who proposed, accepted and retired it, when and why.)";
+Prints the versions that it was made of, its sessions, and who proposed, accepted and retired it, when and why. --plan
+prints floor plans with earlier ones, the current ones first.)";
 
 constexpr const char* kHistoryFooter = R"(Example:
   byre registry history barn --json
 
-Prints the events of a site, the newest first: versions proposed, accepted and retired, sessions added, jobs ended.)";
+Prints the events of a site, the newest first: versions proposed, accepted and retired, sessions
+and plans added, jobs ended.)";
 
 constexpr const char* kWatchFooter = R"(Examples:
   byre registry watch barn
@@ -79,6 +85,9 @@ Report site_report(Connection& connection, const std::string& site) {
         "{id} {bytes*1e-6:.1f} MB, by {added_by} {added_at}[{?note}: {note}][{?reason} ({reviewed_by}: {reason})]",
         version);
   }
+  for (const Json& plan : report.figures["plans"]) {
+    report.row("plan", "{name} {number} {file}, by {added_by} {added_at}[{?note}: {note}]", plan);
+  }
   for (const Json& session : report.figures["sessions"]) {
     report.row("session", "{id} {name}, ran on {ran_on}, by {added_by} {added_at}", session);
   }
@@ -107,6 +116,19 @@ Report version_report(Connection& connection, const ListOptions& options) {
   }
   for (const Json& event : report.figures["events"]) {
     report.row(event["kind"].get<std::string>(), "{at} by {actor}[{?reason}: {reason}]", event);
+  }
+  return report;
+}
+
+Report plans_report(Connection& connection, const ListOptions& options) {
+  const std::int64_t site = site_number(connection, options.site);
+  Report report{Json::parse(plans_json(connection, site, options.name))};
+  if (report.figures.empty()) find_plan(connection, site, options.name, {});  // reports that there is none
+  for (const Json& plan : report.figures) {
+    report.row(
+        "plan",
+        "{name} {number} {file} with {other_file}, {bytes*1e-6:.1f} MB, by {added_by} {added_at}[{?note}: {note}]",
+        plan);
   }
   return report;
 }
@@ -179,10 +201,16 @@ Action declare_registry_list(CLI::App& command) {
 Action declare_registry_show(CLI::App& command) {
   const auto options = declare_list(command, kShowFooter);
   add_site(command, options->site);
-  add_version_id(command, options->version);
+  CLI::Option* const version = add_version_id(command, options->version)->required(false);
+  CLI::Option* const plan = command.add_flag("--plan", options->plan, "Floor plans instead of a version");
+  add_text(command, "--name", options->name, "Name of the plan (all)")->type_name("NAME")->needs(plan);
+  check_when_parsed(command, [options, version] {
+    if (options->plan == (version->count() > 0)) throw CLI::ValidationError("VERSION", "give a version, or --plan");
+  });
   return [options](std::ostream& result) {
     Connection connection = open_registry(options->uri);
-    return print(version_report(connection, *options), *options, result);
+    return print(options->plan ? plans_report(connection, *options) : version_report(connection, *options), *options,
+                 result);
   };
 }
 

@@ -3,9 +3,11 @@
 #include "byre/input_error.h"
 #include "byre/playback/report/report_json.h"
 #include "byre/registry/listing.h"
+#include "byre/registry/plans.h"
 #include "byre/registry/reviews.h"
 #include "byre/registry/schema.h"
 #include "byre/registry/versions.h"
+#include "byre/viewer/web/web_map.h"
 
 #include <algorithm>
 #include <array>
@@ -18,6 +20,7 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace byre::cli {
@@ -102,8 +105,27 @@ bool has_version(Connection& connection, std::int64_t site, const std::string& i
   return connection.run("SELECT FROM byre.version WHERE site = $1 AND id = $2", {site, id}).size() == 1;
 }
 
-// A version with its changes since its parent.
-ViewedMap pull_viewed(const ReviewSiteOptions& options, const std::string& site_name, const std::string& id) {
+// Sets the current plan that a map is registered on, or the reason why it is not shown.
+void pull_plan_of(Connection& connection, std::int64_t site, const fs::path& folder, ViewedMap& map) {
+  const std::vector<RegistryPlan> plans = current_plans(connection, site);
+  const auto plan = std::ranges::find(plans, map.stored.plan->plan, &RegistryPlan::file);
+  if (plan == plans.end()) {
+    map.plan_note =
+        fmt::format("The registry has no current plan {}, on which the map is registered.", map.stored.plan->plan);
+    return;
+  }
+  try {
+    map.plan = read_floor_plan(pull_plan(connection, site, *plan, folder).path);
+    map.plan_note = fmt::format("Floor plan {} {} ({}), added by {} at {}", plan->name, plan->number, plan->file,
+                                plan->added_by, plan->added_at);
+  } catch (const InputError& error) {
+    map.plan_note = fmt::format("Floor plan {} {}: {}", plan->name, plan->number, error.what());
+  }
+}
+
+// Page of a version with its changes since its parent.
+std::unique_ptr<WebSite> pull_page(const ReviewSiteOptions& options, const std::string& site_name,
+                                   const std::string& id) {
   Connection connection = open_registry(options.uri);
   const std::int64_t site = site_number(connection, site_name);
   const Json parents = Json::parse(version_json(connection, site, id)).at("parents");
@@ -114,27 +136,31 @@ ViewedMap pull_viewed(const ReviewSiteOptions& options, const std::string& site_
   map.is_read_only = true;
   pull_map(connection, site, id, file);
   map.stored = load_map(file);
-  if (options.plan && map.stored.plan && map.stored.plan->plan == options.plan->name) map.plan = options.plan;
-  if (parents.empty()) return map;
+  if (options.plan) {
+    if (map.stored.plan && map.stored.plan->plan == options.plan->name) map.plan = options.plan;
+  } else if (map.stored.plan) {
+    pull_plan_of(connection, site, folder.path() / "plan", map);
+  }
+  if (parents.empty()) return make_map_site(std::move(map));
   const auto parent = parents[0].get<std::string>();
   if (!has_version(connection, site, parent)) {
     map.next_step = "The registry does not have its parent " + parent + ": changes are not shown.";
-    return map;
+    return make_map_site(std::move(map));
   }
   const fs::path file_of_parent = folder.path() / "parent.byre";
   pull_map(connection, site, parent, file_of_parent);
   map.changes = changes_between(parent, load_map(file_of_parent), map.stored);
-  return map;
+  return make_map_site(std::move(map));
 }
 
-bool is_ready(const std::future<ViewedMap>& pulled) {
+bool is_ready(const std::future<std::unique_ptr<WebSite>>& pulled) {
   return pulled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 }  // namespace
 
 ReviewSite::ReviewSite(ReviewSiteOptions options)
-    : options_(std::move(options)), connection_(open_registry(options_.uri)) {
+    : options_(std::move(options)), connection_(open_registry(options_.uri, kPatience)) {
   connection_.run(kBoundWaiting);
 }
 
@@ -212,9 +238,9 @@ WebResponse ReviewSite::map_response(const Parts& parts) {
   if (map == maps_.end() || !map->page) {
     if (map == maps_.end() || !is_ready(map->pulled))
       return json_response({{"waiting", "Pulling the map from the registry"}}, 202);
-    std::future<ViewedMap> pulled = std::move(map->pulled);
+    std::future<std::unique_ptr<WebSite>> pulled = std::move(map->pulled);
     try {
-      map->page = make_map_site(pulled.get());
+      map->page = pulled.get();
     } catch (const ConnectionLost& lost) {
       maps_.erase(map);  // the next request pulls it again
       return problem_response(503, lost.what());
@@ -236,7 +262,7 @@ std::vector<ReviewSite::MapPage>::iterator ReviewSite::map_page(const std::strin
     if (oldest == maps_.end()) return oldest;
     maps_.erase(oldest);
   }
-  maps_.push_back({site, version, std::async(std::launch::async, pull_viewed, options_, site, version), nullptr});
+  maps_.push_back({site, version, std::async(std::launch::async, pull_page, options_, site, version), nullptr});
   return maps_.end() - 1;
 }
 

@@ -2,9 +2,9 @@
 
 #include "byre/floor_plan.h"
 #include "byre/registry/connection.h"
-#include "byre/viewer/web/web_map.h"
 #include "byre/viewer/web/web_site.h"
 
+#include <chrono>
 #include <cstddef>
 #include <future>
 #include <memory>
@@ -16,8 +16,11 @@ namespace byre::cli {
 
 struct ReviewSiteOptions {
   std::string uri;                // registry, see Connection
-  std::optional<FloorPlan> plan;  // shown with versions that are registered on a plan of this name
+  std::optional<FloorPlan> plan;  // shown with versions registered on it; empty: current plans of the registry
 };
+
+// Time after which the page reports a server without an answer.
+inline constexpr std::chrono::seconds kPatience{5};
 
 // Page of a registry, with the rights of one account. Paths: /sites, /sites/SITE, /sites/SITE/events,
 // /sites/SITE/VERSION: JSON of listing.h; POST /sites/SITE/VERSION/accept, reject, rollback: reviews;
@@ -38,7 +41,7 @@ class ReviewSite : public WebSite {
   struct MapPage {
     std::string site;
     std::string version;
-    std::future<ViewedMap> pulled;
+    std::future<std::unique_ptr<WebSite>> pulled;
     std::unique_ptr<WebSite> page;  // null: not pulled yet
   };
 

@@ -66,7 +66,7 @@ ExitCode run_serve(const ServeOptions& options) {
   const InterruptCatcher interrupt;
   ReviewSiteOptions site{options.uri, {}};
   if (options.view.plan) site.plan = read_floor_plan(*options.view.plan);
-  Connection watched = open_registry(options.uri);
+  Connection watched = open_registry(options.uri, kPatience);
   raise_descriptor_limit();
   WebServer server(options.view.server, std::make_unique<ReviewSite>(std::move(site)));
   announce(server.urls());
@@ -79,7 +79,9 @@ ExitCode run_serve(const ServeOptions& options) {
 Action declare_registry_serve(CLI::App& command) {
   const auto options = std::make_shared<ServeOptions>();
   add_registry(command, options->uri);
-  declare_viewer_options(command, options->view, "Floor plan, shown with versions that are registered on it");
+  declare_viewer_options(
+      command, options->view,
+      "Floor plan, shown with versions that are registered on it, instead of the current plans of the registry");
   command.footer(kServeFooter);
   return [options](std::ostream&) { return run_serve(*options); };
 }

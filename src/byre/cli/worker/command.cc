@@ -7,8 +7,11 @@
 #include "byre/cli/shared/number_check.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/features/image_threads.h"
+#include "byre/floor_plan.h"
 #include "byre/input_error.h"
+#include "byre/playback/archive/register_map.h"
 #include "byre/registry/jobs.h"
+#include "byre/registry/plans.h"
 #include "byre/registry/schema.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
@@ -140,6 +143,31 @@ std::string map_recording(const RegistryJob& job, const fs::path& map, const std
                      run.frames.size(), run.stored.map.keyframe_count(), run.stored.map.point_count());
 }
 
+// Registers a map by its walls on the current plan of the site that it fits, and writes it again. Returns the result in
+// words; empty for a site without plans.
+std::string register_on_plan(Connection& connection, std::int64_t site, const fs::path& map) {
+  StoredMap stored = load_map(map);
+  std::vector<PlanRegistration> found;
+  std::string refusals;
+  for (const RegistryPlan& plan : current_plans(connection, site)) {
+    try {
+      const fs::path folder = map.parent_path() / fmt::format("plan_{}", plan.file);
+      const fs::path pulled = pull_plan(connection, site, plan, folder).path;
+      const PlanFit fit = register_by_walls(stored, "the map", read_drawn_floor_plan(pulled), {}).fit;
+      if (has_large_residual(fit))
+        throw InputError("the map", fmt::format("has residuals of {:.2f} m", residual_of(fit)));
+      found.push_back(fit.registration);
+    } catch (const InputError& error) {
+      refusals += fmt::format("; not on plan {}: {}", plan.name, error.reason());
+    }
+  }
+  if (found.size() > 1) return "; not registered: it fits several plans";
+  if (found.empty()) return refusals;
+  stored.plan = found.front();
+  save_map(stored, map);
+  return "; registered on " + stored.plan->plan;
+}
+
 class JobRunner {
  public:
   JobRunner(const WorkerOptions& options, const InterruptCatcher& interrupt, std::ostream& result)
@@ -192,7 +220,8 @@ class JobRunner {
     try {
       const JobFolder folder(scratch_);
       const auto map = [this](const RegistryJob& of, const fs::path& path) {
-        return map_recording(of, path, options_.vocabulary, interrupt_);
+        const std::string mapped = map_recording(of, path, options_.vocabulary, interrupt_);
+        return mapped + register_on_plan(connection_, of.site, path);
       };
       const JobResult made = work_on(connection_, job, folder.path(), vocabulary_, map, [this, &job](const char* step) {
         if (interrupt_.caught()) throw Interrupted();

@@ -161,6 +161,10 @@ std::array<double, 6> read_six_numbers(const fs::path& path) {
   return numbers;
 }
 
+bool is_description(const fs::path& plan) {
+  return plan.extension() == ".yaml" || plan.extension() == ".yml";
+}
+
 void require_sound_pixels(const FloorPlan& plan, const fs::path& world_file) {
   if (plan.metres_per_pixel.colwise().norm().minCoeff() < kSmallestPixel) {
     throw InputError(world_file.string(), "has pixels smaller than 0.1 mm",
@@ -219,8 +223,16 @@ std::optional<fs::path> find_world_file(const fs::path& image) {
 }
 
 FloorPlan read_floor_plan(const fs::path& path) {
-  const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
-  return is_yaml ? read_map_server_plan(path) : read_geo_referenced_plan(path);
+  return is_description(path) ? read_map_server_plan(path) : read_geo_referenced_plan(path);
+}
+
+std::array<fs::path, 2> files_to_copy(const fs::path& plan) {
+  const DrawnFloorPlan drawn = read_drawn_floor_plan(plan);
+  if (!is_description(plan)) return {plan, find_world_file(plan).value()};
+  const fs::path image = load_yaml_mapping(plan)["image"].Scalar();
+  if (!image.has_parent_path()) return {plan, drawn.plan.image};
+  throw InputError(plan.string() + ": image", "is in another folder: " + image.string(),
+                   "put the image beside this file, and give its name alone: " + image.filename().string());
 }
 
 }  // namespace byre

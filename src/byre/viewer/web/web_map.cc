@@ -133,6 +133,7 @@ class MapSite : public WebSite {
         {"is_metric", map_.stored.scale == MapScale::metric},
         {"up_in_map", fields_or_null(driving_plane_, up_of)},
         {"plan", fields_or_null(map_.plan, plan_fields)},
+        {"plan_note", map_.plan_note},
         {"registration", fields_or_null(map_.stored.plan, registration_fields)},
         {"pictures", picture_fields(map_.stored, driving_plane_ && map_.plan ? std::optional(driving_plane_->up_in_map)
                                                                              : std::nullopt)},

@@ -26,6 +26,7 @@ struct ViewedMap {
   std::string name;
   StoredMap stored;
   std::optional<FloorPlan> plan;
+  std::string plan_note;                           // sentence on the origin of the plan, or on its absence
   std::optional<std::filesystem::path> output;     // file for the registered copy; empty: saving is disabled
   double pick_sigma = PlanCorrespondence{}.sigma;  // metres
   PlanRegistrationOptions registration;
