@@ -23,6 +23,16 @@ void recalibrate(Keyframe& keyframe, const RectifiedChange& change, const Recali
   keyframe.covariance = move_covariance(keyframe.covariance, change.after_from_before());
 }
 
+// The point at its depth in the view, where the image rectified anew shows it.
+Eigen::Vector3d recalibrated_point(const Eigen::Vector3d& point_in_world, const Pose& camera_from_world,
+                                   const Rig& before, const RectifiedChange& change) {
+  const Eigen::Vector3d point_in_camera = camera_from_world * point_in_world;
+  if (point_in_camera.z() <= 0.0) return point_in_world;
+  const Eigen::Vector2d pixel = change({before.project(point_in_camera)}).pixel.head<2>();
+  const Pose after_from_world = change.after_from_before() * camera_from_world;
+  return inverse(after_from_world) * ((after_from_world * point_in_world).z() * change.rig().ray(pixel));
+}
+
 }  // namespace
 
 void MapGraph::move_features(KeyframeId id, Features moved) {
@@ -60,6 +70,16 @@ void MapGraph::recalibrate(int rig, const RectifiedChange& change, std::span<con
     const auto found = std::ranges::lower_bound(made, id, {}, &RecalibratedFeatures::keyframe);
     return found != made.end() && found->keyframe == id ? &*found : nullptr;
   };
+  const Rig before = rigs_[static_cast<std::size_t>(rig)];
+  if (!before.is_stereo()) {
+    for (const PointId id : point_ids()) {
+      MapPoint point = *find_point(id);
+      const Keyframe* const view = find_own_keyframe(point.reference.keyframe);
+      if (view == nullptr || view->rig != rig) continue;
+      point.position_in_world = recalibrated_point(point.position_in_world, view->camera_from_world, before, change);
+      update_point(id, point);
+    }
+  }
   const auto turn_of = [&](int other) { return other == rig ? change.after_from_before() : Pose{}; };
   for (std::size_t number = 0; number < keyframes_.size(); ++number) {
     KeyframeSlot& slot = keyframes_[number].edit();

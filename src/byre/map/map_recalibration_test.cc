@@ -59,5 +59,18 @@ TEST_F(RecalibratedKeyframes, AreRecomputedIfTheirFeaturesHaveChanged) {
   EXPECT_FLOAT_EQ(column_of(added), moved(120.0f));
 }
 
+TEST_F(RecalibratedKeyframes, KeepTheirPointsInSight) {
+  const KeyframeId id = add(corner_at(520.0f, 240.0f));
+  const Rig before = map_.rigs()[0];
+  MapPoint point;
+  point.position_in_world = 3.0 * before.ray({520.0, 240.0});
+  point.reference = {id, 0};
+  const PointId seen = map_.add_point(point);
+  map_.recalibrate(rig_, change_, {});
+  const Eigen::Vector3d in_camera = map_.camera_from_world(id) * map_.find_point(seen)->position_in_world;
+  EXPECT_NEAR(in_camera.z(), 3.0, 0.05);
+  EXPECT_NEAR(map_.rigs()[0].project(in_camera).x(), moved(520.0f), 0.01);
+}
+
 }  // namespace
 }  // namespace byre

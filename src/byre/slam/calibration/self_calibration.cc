@@ -53,9 +53,14 @@ std::vector<int> choose_keyframes(const MapWindow& whole, int rig, int limit) {
   return chosen;
 }
 
-// Measurements of the points that at least two of the keyframes see.
-BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframes) {
+// The points that at least two of the keyframes see, and their measurements.
+struct CalibrationBundle {
   BundleProblem problem;
+  std::vector<int> points;  // index into the window of each point
+};
+CalibrationBundle bundle_of(const MapWindow& whole, const std::vector<int>& keyframes) {
+  CalibrationBundle bundle;
+  BundleProblem& problem = bundle.problem;
   problem.rigs = whole.rigs;
   std::vector<int> pose_of(whole.keyframes.size(), -1);
   for (const int i : keyframes) {
@@ -63,7 +68,8 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
     pose_of[static_cast<std::size_t>(i)] = static_cast<int>(problem.poses.size());
     problem.poses.push_back({keyframe.keyframe.camera_from_world, keyframe.keyframe.rig, false});
   }
-  for (const WindowPoint& point : whole.points) {
+  for (int index = 0; index < static_cast<int>(whole.points.size()); ++index) {
+    const WindowPoint& point = whole.point(index);
     if (point.removed) continue;
     const auto takes_part = [&](const WindowObservation& seen) {
       return pose_of[static_cast<std::size_t>(seen.keyframe)] >= 0;
@@ -78,8 +84,9 @@ BundleProblem bundle_of(const MapWindow& whole, const std::vector<int>& keyframe
       problem.observations.push_back(observation);
     }
     problem.points.push_back({point.point.position_in_world, false});
+    bundle.points.push_back(index);
   }
-  return problem;
+  return bundle;
 }
 
 std::vector<RowMeasurement> measure_rows(const MapWindow& whole, const std::vector<int>& keyframes, const Rig& rig,
@@ -174,13 +181,13 @@ BundleProblem rectified_anew(BundleProblem problem, const BundleResult& solved, 
 
 }  // namespace
 
-std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
-                                                 const SelfCalibrationOptions& options,
-                                                 const std::function<bool()>& should_stop) {
+std::optional<SelfCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
+                                              const SelfCalibrationOptions& options,
+                                              const std::function<bool()>& should_stop) {
   const std::vector<int> keyframes = choose_keyframes(whole, rig, options.max_keyframes);
   if (static_cast<int>(keyframes.size()) < kMinKeyframes) return std::nullopt;
   const Rig& present = whole.rigs[static_cast<std::size_t>(rig)];
-  BundleProblem problem = bundle_of(whole, keyframes);
+  auto [problem, points] = bundle_of(whole, keyframes);
   BundleOptions bundle_options;
   bundle_options.max_iterations = kIterations;
   bundle_options.huber_width = kHuberWidth;
@@ -211,12 +218,19 @@ std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const C
     of_motion /= variance_factor(problem, solved.squared_errors);
     const CalibrationEstimate posterior = joined(with_rows, with_shared_error(of_motion, focal_error(kFocalSigmas)));
     const CalibrationVector expected = at.change + posterior.expected;
-    RefinedCalibration result =
-        determined_calibration(state.given, posterior.information, expected, options.prior_sigmas);
+    SelfCalibration result{
+        determined_calibration(state.given, posterior.information, expected, options.prior_sigmas), {}, {}};
     result.keyframes = static_cast<int>(keyframes.size());
     result.observations = static_cast<int>(problem.observations.size());
     result.shift = image_shift(problem, sensitivity, result.change);
     reject_implausible(result, expected, state.given, options.prior_sigmas);
+    if (image_shift(problem, sensitivity, result.change - next.change) > kLinearShift) return result;
+    const Pose refined_from_solved = RectifiedChange(at.present(), result.calibration).after_from_before();
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+      result.keyframes_moved.push_back({keyframes[i], refined_from_solved * solved.camera_from_world[i]});
+    }
+    for (std::size_t i = 0; i < points.size(); ++i)
+      result.points_moved.push_back({points[i], solved.points_in_world[i]});
     return result;
   }
 }

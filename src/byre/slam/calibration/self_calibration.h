@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace byre {
 
@@ -21,12 +22,27 @@ struct CalibrationState {
   Calibration present() const { return changed(given, change); }
 };
 
+// A refined calibration, with the map's geometry in images rectified by it.
+struct SelfCalibration : RefinedCalibration {
+  struct MovedKeyframe {
+    int keyframe = 0;  // index into the window
+    Pose camera_from_world;
+  };
+  struct MovedPoint {
+    int point = 0;  // index into the window
+    Eigen::Vector3d position_in_world;
+  };
+  // Empty if the refined calibration is not that of the geometry: directions stay as given, or the change is refused.
+  std::vector<MovedKeyframe> keyframes_moved;
+  std::vector<MovedPoint> points_moved;
+};
+
 // Estimates the calibration error of a rig (index into whole.rigs) from a whole map: bundle adjustment with a free
 // calibration, together with the rows of corners matched between both images. The length of the baseline is fixed.
 // Directions that the data do not determine, as in degenerate motion, stay as given. Empty if too little was seen.
 // Precondition: the rig's images are rectified by state.present().
-std::optional<RefinedCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
-                                                 const SelfCalibrationOptions& options,
-                                                 const std::function<bool()>& should_stop = {});
+std::optional<SelfCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
+                                              const SelfCalibrationOptions& options,
+                                              const std::function<bool()>& should_stop = {});
 
 }  // namespace byre

@@ -1,10 +1,14 @@
 #include "byre/slam/calibration/self_calibration.h"
 
 #include "byre/geometry/calibration_scene.h"
+#include "byre/geometry/median.h"
 #include "byre/geometry/rectified_change.h"
+#include "byre/slam/window/mapping_steps.h"
 
 #include <functional>
+#include <map>
 #include <random>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -251,6 +255,22 @@ Calibration nominal_pair() {
   return {camera, StereoPartner{camera, {Eigen::Quaterniond::Identity(), {-0.1, 0.0, 0.0}}}, Pose{}};
 }
 
+// Median distance of the solved points from their corners in images rectified by the refined calibration.
+double pixel_error(const MapWindow& window, const SelfCalibration& solved, const Calibration& given) {
+  const RectifiedChange change(given, solved.calibration);
+  std::map<int, Pose> camera_from_world;
+  for (const auto& [keyframe, pose] : solved.keyframes_moved) camera_from_world[keyframe] = pose;
+  std::vector<double> errors;
+  for (const auto& [index, position] : solved.points_moved) {
+    for (const WindowObservation& seen : window.point(index).observations) {
+      const Eigen::Vector3d expected = change.rig().project(camera_from_world.at(seen.keyframe) * position);
+      const BundleObservation measured = bundle_observation(window.keyframe(seen.keyframe), seen.feature);
+      errors.push_back((expected - change({measured.measured}).pixel).head<2>().norm());
+    }
+  }
+  return median(std::move(errors));
+}
+
 TEST(SelfCalibration, EstimatesTheLensOfOneCameraWithNominalNumbers) {
   const Calibration pair = nominal_pair();
   Calibration given = pair;
@@ -266,8 +286,10 @@ TEST(SelfCalibration, EstimatesTheLensOfOneCameraWithNominalNumbers) {
     const Camera truth = changed(pair, error).left;
     EXPECT_NEAR(found->calibration.left.fx, truth.fx, 0.003 * truth.fx);
     EXPECT_NEAR(found->calibration.left.distortion[0], truth.distortion[0], 0.005);
+    EXPECT_LT(pixel_error(window, *found, given), 1.0);
     const auto refused = self_calibrate(window, {given, CalibrationVector::Zero()}, 0, {});
-    EXPECT_TRUE(refused && refused->was_refused()) << "too far from calibrated numbers";
+    ASSERT_TRUE(refused && refused->was_refused()) << "too far from calibrated numbers";
+    EXPECT_TRUE(refused->points_moved.empty()) << "no geometry of the given calibration";
   }
 }
 

@@ -175,12 +175,12 @@ std::vector<PlacedPoint> carried_points(const MapDelta& correction, const Earlie
   return carried;
 }
 
-// If lengths may grow, keyframes that the correction moved have its covariance.
-std::vector<MovedKeyframe> carried_keyframes(const MapDelta& correction, bool may_grow, const WorldMotion& motion,
-                                             const MapGraph& map) {
+// has_new_covariances: keyframes that the correction moved have its covariance.
+std::vector<MovedKeyframe> carried_keyframes(const MapDelta& correction, bool has_new_covariances,
+                                             const WorldMotion& motion, const MapGraph& map) {
   std::map<KeyframeId, const Matrix6*> found;
   for (const MovedKeyframe& moved : correction.moved_keyframes) {
-    if (may_grow) found[moved.id] = &moved.covariance;
+    if (has_new_covariances) found[moved.id] = &moved.covariance;
   }
   std::vector<MovedKeyframe> carried;
   for (const KeyframeId id : map.keyframe_ids()) {
@@ -207,11 +207,19 @@ LengthChanges length_changes(const WorldMotion& motion, const MapGraph& map) {
   }
 }
 
-LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_grow, MapGraph& online) {
+// Whether images leave the lengths of a window free, even where measured motion constrains them.
+bool may_grow(const MapWindow& window) {
+  const auto is_stereo = [&](const WindowKeyframe& keyframe) { return window.rig_of(keyframe).is_stereo(); };
+  const auto is_of_offline_map = [](const auto& entry) { return is_offline(entry); };
+  return std::ranges::none_of(window.keyframes, is_stereo) && std::ranges::none_of(window.keyframes, is_of_offline_map);
+}
+
+LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_grow, bool has_new_covariances,
+                          MapGraph& online) {
   const WorldMotion motion(correction, before, may_grow, online);
   const std::vector<PlacedPoint> points = carried_points(correction, before, motion, online);
   const LengthChanges changes = length_changes(motion, online);
-  correction.moved_keyframes = carried_keyframes(correction, may_grow, motion, online);
+  correction.moved_keyframes = carried_keyframes(correction, has_new_covariances, motion, online);
   apply(correction, online);
   for (const auto& [id, growth] : changes) online.scale_removed_keyframe(id, growth);
   for (const PlacedPoint& placed : points) {
@@ -227,17 +235,17 @@ LengthChanges apply_since(MapDelta correction, const Earlier& before, bool may_g
 }  // namespace
 
 LengthChanges apply_correction(const MapDelta& correction, const MapWindow& before, MapGraph& online) {
-  return apply_since(correction, EarlierWindow(before), scale_may_drift(before), online);
+  return apply_since(correction, EarlierWindow(before), may_grow(before), scale_may_drift(before), online);
 }
 
 LengthChanges adjust_at_once(MapWindow window, const std::vector<LoopEdge>& loops, const GlobalMappingOptions& options,
                              MapGraph& online, const std::function<bool()>& should_stop) {
-  const bool may_grow = scale_may_drift(window);
+  const bool grows = may_grow(window), may_drift = scale_may_drift(window);
   adjust_window(window, loops, options, should_stop);
   MapDelta correction = difference(online, window);
   const EarlierMap before(online, window);
   window = {};
-  return apply_since(std::move(correction), before, may_grow, online);
+  return apply_since(std::move(correction), before, grows, may_drift, online);
 }
 
 LoopEdge in_new_lengths(const LoopEdge& loop, const LengthChanges& changes) {

@@ -246,6 +246,13 @@ TEST_F(HalfWithScaleDrift, MovesLaterPointsAlong) {
   EXPECT_NEAR(map_.find_point(id)->max_distance, 1.2f * later.max_distance, 1e-3f);
 }
 
+TEST_F(HalfWithScaleDrift, MovesLaterKeyframesAlongIfWheelsHoldTheScale) {
+  MapWindow held = before_;
+  held.motions.push_back({0, 1, {Pose{}, Matrix6::Identity()}, true});
+  ASSERT_FALSE(scale_may_drift(held));
+  EXPECT_NEAR(apply_correction(correction_, held, map_).at(kNew), 1.2, 1e-6);
+}
+
 TEST_F(HalfWithScaleDrift, LeavesTheOlderHalf) {
   const LengthChanges changes = apply_correction(correction_, before_, map_);
   EXPECT_FALSE(changes.contains({Origin::online, kFirstNew - 1}));

@@ -7,6 +7,24 @@
 #include <utility>
 
 namespace byre {
+namespace {
+
+// The solution of a self-calibration as a change of the map. The covariances stay until the next adjustment.
+MapDelta geometry_of(const MapWindow& whole, const SelfCalibration& solved) {
+  MapDelta delta;
+  for (const auto& [index, camera_from_world] : solved.keyframes_moved) {
+    const WindowKeyframe& keyframe = whole.keyframe(index);
+    delta.moved_keyframes.push_back({{keyframe.id.number}, camera_from_world, keyframe.keyframe.covariance});
+  }
+  for (const auto& [index, position_in_world] : solved.points_moved) {
+    const WindowPoint& point = whole.point(index);
+    delta.updated_points.push_back({{point.id->number}, point.point});
+    delta.updated_points.back().point.position_in_world = position_in_world;
+  }
+  return delta;
+}
+
+}  // namespace
 
 StoredPicture page_out(const StoredPicture& picture, ScratchFile& file) {
   const std::vector<std::byte> jpeg = picture.jpeg();
@@ -55,10 +73,23 @@ MapCorrection close_loops(LoopClosureInput input, const GlobalMappingOptions& op
   return {std::move(delta), std::move(input.outline)};
 }
 
-MapCalibration calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
-                         const SelfCalibrationOptions& options, const std::function<bool()>& should_stop) {
-  const auto refined = self_calibrate(whole, state, rig, options, should_stop);
-  return refined ? MapCalibration(recalibration_by(*refined, state, whole, rig)) : std::nullopt;
+MapCalibration calibrate(CalibrationInput input, const SelfCalibrationOptions& options,
+                         const GlobalMappingOptions& global, const std::function<bool()>& should_stop) {
+  constexpr double kToAdjust = 0.5;  // sigmas of the parameters; smaller changes move the map by less than its noise
+  auto whole = std::make_unique<const MapWindow>(whole_map(input.map));
+  const auto refined = self_calibrate(*whole, input.state, input.rig, options, should_stop);
+  if (!refined) return std::nullopt;
+  CalibratedMap result{recalibration_by(*refined, input.state, *whole, input.rig), {}};
+  if ((refined->change - input.state.change).norm() <= kToAdjust) return result;
+  const MapDelta solved = geometry_of(*whole, *refined);
+  whole.reset();  // its memory is needed
+  input.map.recalibrate(input.rig, result.recalibration.from_present, result.recalibration.features);
+  auto before = std::make_shared<const MapWindow>(outline_of(whole_map(input.map)));
+  apply(solved, input.map);
+  LoopClosureInput adjusted = copy_for_loop_closure(input.map, 0, input.loops, input.motions);
+  adjusted.outline = std::move(before);
+  result.correction = close_loops(std::move(adjusted), global, should_stop);
+  return result;
 }
 
 }  // namespace byre

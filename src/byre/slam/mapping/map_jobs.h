@@ -70,8 +70,13 @@ struct MapCorrection {
   MapDelta delta;
   std::shared_ptr<const MapWindow> outline;  // outline of the map before the correction
 };
+// A refined calibration, and the correction of the map in its images after a large change.
+struct CalibratedMap {
+  Recalibration recalibration;
+  std::optional<MapCorrection> correction;
+};
 // Result of a calibration by the whole map; empty if it failed or was stopped.
-using MapCalibration = std::optional<Recalibration>;
+using MapCalibration = std::optional<CalibratedMap>;
 // Result of a job on the whole map.
 using MapOutcome = std::variant<MapCorrection, MapCalibration>;
 
@@ -87,8 +92,16 @@ LoopClosureInput copy_for_loop_closure(const MapGraph& map, std::uint32_t first_
 MapCorrection close_loops(LoopClosureInput input, const GlobalMappingOptions& options,
                           const std::function<bool()>& should_stop);
 
+// A copy of the map to calibrate; rig: index into its rigs.
+struct CalibrationInput {
+  MapGraph map;
+  CalibrationState state;
+  int rig = 0;
+  std::vector<LoopEdge> loops;
+  std::vector<KeyframeMotion> motions;  // see odometry_motions
+};
 // Refines the calibration of a rig of the map. should_stop ends it without a result.
-MapCalibration calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
-                         const SelfCalibrationOptions& options, const std::function<bool()>& should_stop);
+MapCalibration calibrate(CalibrationInput input, const SelfCalibrationOptions& options,
+                         const GlobalMappingOptions& global, const std::function<bool()>& should_stop);
 
 }  // namespace byre

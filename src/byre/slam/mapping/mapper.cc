@@ -290,11 +290,9 @@ bool Mapper::apply_readout_change(RollingShutterCorrector& corrector, const Rig&
 std::optional<RigRotation> Mapper::apply_calibration(const Rig& rig) {
   if (!calibrator_ || !local_.is_idle()) return std::nullopt;
   if (auto by = take_calibration()) {
-    constexpr double kToAdjust = 0.5;  // sigmas of the parameters; smaller changes move the map by less than its noise
-    const bool is_large = (by->refined.change - calibrator_->state().change).norm() > kToAdjust;
-    const RigRotation turn = recalibrate(*std::move(by), rig);
+    const RigRotation turn = recalibrate(std::move(by->recalibration), rig);
     page_out_all();
-    if (is_large && may_request_map_job()) due_ = MapJob::correct;
+    if (by->correction) outcome_ = std::move(*by->correction);
     return turn;
   }
   if (!may_request_map_job() || !calibrator_->is_due(online_.keyframe_count())) return std::nullopt;
@@ -315,7 +313,7 @@ RigRotation Mapper::recalibrate(Recalibration by, const Rig& rig) {
   return turn;
 }
 
-std::optional<Recalibration> Mapper::take_calibration() {
+MapCalibration Mapper::take_calibration() {
   if (!outcome_ || is_correction_waiting()) return std::nullopt;
   return std::get<MapCalibration>(*std::exchange(outcome_, std::nullopt));
 }
@@ -396,10 +394,10 @@ void Mapper::request_map_job() {
       return MapOutcome(close_loops(std::move(input), options, stop()));
     });
   } else if (due_ == MapJob::calibrate) {
-    whole_.request([map = joined_online(), offline = offline_, state = calibrator_->state(), rig = rig_to_calibrate_,
-                    options = calibrator_->options(), file = page_file_, stop] {
-      const MapWindow whole = whole_map({offline ? &offline->map() : nullptr, map});
-      MapCalibration calibration = calibrate(whole, state, rig, options, stop());
+    CalibrationInput input{joined_online(), calibrator_->state(), rig_to_calibrate_, loops(), all_motions()};
+    whole_.request([input = std::make_shared<CalibrationInput>(std::move(input)), options = calibrator_->options(),
+                    global = GlobalMappingOptions{options_.mapping}, file = page_file_, stop] {
+      MapCalibration calibration = calibrate(std::move(*input), options, global, stop());
       file->release_pages();
       return MapOutcome(std::move(calibration));
     });

@@ -164,7 +164,7 @@ class Mapper {
   // Whether no job on the whole map is due, in flight, or finished and not applied.
   bool may_request_map_job() const { return whole_.is_idle() && !outcome_ && due_ == MapJob::none; }
   bool is_correction_waiting() const { return outcome_ && std::holds_alternative<MapCorrection>(*outcome_); }
-  std::optional<Recalibration> take_calibration();  // empty if none is finished
+  MapCalibration take_calibration();  // empty if none is finished
   void request_index();
   void request_map_job();
   void collect_index();
