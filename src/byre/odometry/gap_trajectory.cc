@@ -58,7 +58,7 @@ void add_poses(const Chain& chain, Trajectory& added) {
 }  // namespace
 
 void GapTrajectory::note(Timestamp time, bool is_seen) {
-  if (last_ && !(is_seen && was_seen_)) pending_.push_back({*last_, time, is_seen});
+  if (last_ && !(is_seen && was_seen_)) pending_.push_back({*last_, time, was_seen_, is_seen});
   if (pending_.size() > kMaxPendingFrames) pending_.pop_front();
   last_ = time;
   was_seen_ = is_seen;
@@ -70,6 +70,16 @@ bool GapTrajectory::is_seen(Timestamp earlier, Timestamp later) const {
   if (step != steps_.end()) return step->frames.earlier >= later;
   const auto pending = std::ranges::partition_point(pending_, is_before);
   return pending == pending_.end() || pending->earlier >= later;
+}
+
+void GapTrajectory::note_located(const std::vector<Timestamp>& times) {
+  const auto is_tracked = [&](Frames& frames) {
+    frames.is_earlier_seen = frames.is_earlier_seen || std::ranges::binary_search(times, frames.earlier);
+    frames.is_later_seen = frames.is_later_seen || std::ranges::binary_search(times, frames.later);
+    return frames.is_earlier_seen && frames.is_later_seen;
+  };
+  std::erase_if(pending_, is_tracked);
+  std::erase_if(steps_, [&](Step& step) { return is_tracked(step.frames); });
 }
 
 std::optional<Timestamp> GapTrajectory::first_pending() const {

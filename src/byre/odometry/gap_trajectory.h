@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <vector>
 
 namespace byre {
 
@@ -25,6 +26,8 @@ class GapTrajectory {
   bool is_seen(Timestamp earlier, Timestamp later) const;
   // Start of the first step without a stored motion; empty if there is none.
   std::optional<Timestamp> first_pending() const;
+  // Counts frames as tracked that were located later, by ascending times.
+  void note_located(const std::vector<Timestamp>& times);
   // Stores the motions of these steps.
   void integrate(const BaseOdometry& odometry);
 
@@ -40,6 +43,7 @@ class GapTrajectory {
   struct Frames {
     Timestamp earlier{};
     Timestamp later{};
+    bool is_earlier_seen = false;
     bool is_later_seen = false;
   };
   struct Step {

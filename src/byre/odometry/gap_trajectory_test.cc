@@ -51,6 +51,19 @@ TEST(GapTrajectory, DistributesTheErrorBetweenTwoPoses) {
   }
 }
 
+TEST(GapTrajectory, KeepsPosesOfFramesLocatedLater) {
+  GapTrajectory gaps = way({false, false, false, true, true}, 1.2);
+  EXPECT_FALSE(gaps.is_seen(frame(0), frame(1)));
+  gaps.note_located({frame(0), frame(1)});
+  EXPECT_TRUE(gaps.is_seen(frame(0), frame(1)));
+  EXPECT_FALSE(gaps.is_seen(frame(1), frame(3)));
+  const Trajectory seen = {{frame(0), at(0.0)}, {frame(1), at(0.1)}, {frame(3), at(0.3)}, {frame(4), at(0.4)}};
+  const Trajectory all = gaps.fill_gaps(seen, as_it_is, GapTrajectory::OldPoses::recomputed);
+  ASSERT_THAT(all, SizeIs(5));
+  EXPECT_EQ(all[1].world_from_body.translation.x(), 0.1);
+  EXPECT_NEAR(all[2].world_from_body.translation.x(), 0.2, 1e-12);
+}
+
 TEST(GapTrajectory, ContinuesAfterTheLastPoseInMapUnits) {
   const auto in_map = [](const Pose& base) { return Pose{base.rotation, 0.5 * base.translation}; };
   const Trajectory all = way({true, false, false}).fill_gaps({{frame(0), at(1.0)}}, in_map);

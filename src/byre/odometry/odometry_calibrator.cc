@@ -113,6 +113,13 @@ void OdometryCalibrator::forget_scale() {
   wheel_calibration_.reset();
 }
 
+void OdometryCalibrator::begin_metric(const VisualMotion& first) {
+  metric_start_ = first;
+  if (prior_.calibration.wheels || !assumed_forward_) return;
+  prior_.calibration.wheels = assumed_forward_;
+  prior_.is_assumed = true;
+}
+
 // Forgets old samples also while no frame arrives.
 void OdometryCalibrator::add(const StampedPose& wheels) {
   const bool was_ignored = check_.are_wheels_ignored();
@@ -278,7 +285,7 @@ void OdometryCalibrator::estimate_calibrations() {
 
 void OdometryCalibrator::reestimate(const Trajectory& seen) {
   stationary_.reestimate(seen);
-  if (!wheel_calibration_ || seen.empty()) return;
+  if (wheels_.empty() || seen.empty()) return;
   std::deque<VisualMotion> motions;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < seen.size(); ++i) {
@@ -288,11 +295,17 @@ void OdometryCalibrator::reestimate(const Trajectory& seen) {
     motions.push_back({seen[begin].time, seen[i].time, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
     begin = i;
   }
+  const auto& prior = prior_.calibration.wheels;
+  const auto estimate = [&] {
+    const std::vector<MotionPair> pairs = pairs_of(motions, odometry());
+    const auto found = prior ? estimate_with_prior(pairs, is_metric_ ? *prior : with_unknown_scale(*prior))
+                             : estimate_without_prior(pairs);
+    if (found) set_wheels(*found);
+  };
+  if (!wheel_calibration_) estimate();  // the delay needs the base's up axis
+  if (!wheel_calibration_) return;
   estimate_time_offset(motions);
-  const std::vector<MotionPair> pairs = pairs_of(motions, odometry());
-  const auto found = prior_.calibration.wheels ? estimate_with_prior(pairs, *prior_.calibration.wheels)
-                                               : estimate_without_prior(pairs);
-  if (found) set_wheels(*found);
+  estimate();
 }
 
 std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() const {
@@ -320,10 +333,12 @@ void OdometryCalibrator::rescale(double factor) {
   prior_.calibration = scaled(prior_.calibration, factor);
 }
 
-// Motions since the last large change of the focal length, which distorts all earlier ones.
+// Motions since the last large change of the focal length, which distorts all earlier ones, and the one that gave the
+// map its unit.
 std::deque<VisualMotion> OdometryCalibrator::undistorted_motions() const {
   constexpr double kChange = 0.02;  // natural logarithm
   std::deque<VisualMotion> motions;
+  if (metric_start_) motions.push_back(*metric_start_);
   std::ranges::copy_if(seen_, std::back_inserter(motions), [this](const VisualMotion& motion) {
     return std::abs(std::log(motion.focal_change / focal_change_)) < kChange;
   });
@@ -348,7 +363,8 @@ void OdometryCalibrator::estimate_wheels() {
         is_contradicted(*prior_.calibration.wheels, *alone) ? prior_.contradicting_estimates + 1 : 0;
     if (prior_.contradicting_estimates >= kLooks) discard_prior_wheels(seen_.back().later);
   }
-  const auto found = prior_.calibration.wheels ? estimate_with_prior(all, *prior_.calibration.wheels) : alone;
+  const bool uses_prior = prior_.calibration.wheels && (!prior_.is_assumed || determine_calibration(all));
+  const auto found = uses_prior ? estimate_with_prior(all, *prior_.calibration.wheels) : alone;
   if (found) set_wheels(*found);
   if (!is_metric_ || !alone || seen_.empty()) return;
   if (check_.note_wheel_scale(alone->metres_per_unit, alone->scale_sigma(), seen_.back().later)) drop_wheels();
@@ -364,11 +380,13 @@ void OdometryCalibrator::update_initial_calibration() {
   if (wheel_calibration_ || seen_.size() < kLeastMotions) return;
   const std::vector<MotionPair> all = pairs_of(undistorted_motions(), odometry());
   if (way_of(all) < kLeastInitialWay) return;
-  if (prior_.calibration.wheels) {
+  if (prior_.calibration.wheels && !prior_.is_assumed) {
     if (const auto found = estimate_with_prior(all, *prior_.calibration.wheels)) set_wheels(*found);
     return;
   }
-  if (measured_up_) initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*measured_up_, kMeasuredTilt));
+  if (prior_.is_assumed) initial_ = estimate_wheel_calibration(all, *prior_.calibration.wheels);
+  if (!initial_ && measured_up_)
+    initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*measured_up_, kMeasuredTilt));
   if (!is_determined(initial_, kMaxInitialSigma) && up_in_body_) {
     initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*up_in_body_, kTilt));
   }
@@ -393,8 +411,10 @@ void OdometryCalibrator::check_prior(double disagreement, const VisualMotion& mo
   const double way = wheel_calibration_->metres_per_unit * motion.body.translation.norm();
   if (way < kMinPath && rotation_log(motion.body.rotation).norm() < kMinRotation) return;
   ++(disagreement > 1.0 ? prior_.contradicting : prior_.confirming);
-  if (prior_.contradicting >= kContradicting && prior_.contradicting > 2 * prior_.confirming)
-    discard_prior_wheels(motion.later);
+  if (prior_.contradicting < kContradicting || prior_.contradicting <= 2 * prior_.confirming) return;
+  if (!prior_.is_assumed) return discard_prior_wheels(motion.later);
+  wheel_calibration_.reset();  // the first estimate; the assumption is wider
+  prior_.contradicting = prior_.confirming = 0;
 }
 
 void OdometryCalibrator::discard_prior_wheels(Timestamp time) {
@@ -403,13 +423,14 @@ void OdometryCalibrator::discard_prior_wheels(Timestamp time) {
           "motions contradict the given extrinsics of camera and base; these are dropped, and estimated from motions",
           "compare the given pose of the camera on the base with the one that the report of the run shows"});
   }
-  prior_.is_measured = false;
+  const bool was_assumed = prior_.is_assumed;
+  prior_.is_measured = prior_.is_assumed = false;
   prior_.calibration.wheels.reset();
   wheel_calibration_.reset();
   time_offset_.reset();
   estimates_ = 0;
   slip_.is_present = false;
-  has_calibration_changed_ = true;
+  has_calibration_changed_ = !was_assumed;
 }
 
 // Precondition: the calibration of wheels is estimated.
@@ -426,7 +447,8 @@ void OdometryCalibrator::set_time_offset(double seconds) {
 
 OdometryCalibration OdometryCalibrator::calibration_to_store() const {
   OdometryCalibration keep = prior_.calibration;
-  const bool is_well_known = estimates_ >= kEstimatesUntilStored || prior_.calibration.wheels;
+  if (prior_.is_assumed) keep.wheels.reset();
+  const bool is_well_known = estimates_ >= kEstimatesUntilStored || keep.wheels;
   if (wheel_calibration_ && is_well_known) {
     keep.wheels = wheel_calibration_;
     keep.time_offset = time_offset();

@@ -32,6 +32,9 @@ class OdometryCalibrator {
   void begin_with_extrinsics(const WheelCalibration& measured, std::optional<double> time_offset);
   // Images contradict the given extrinsics, which are reported and dropped. time: of the frame.
   void reject_extrinsics(Timestamp time) { discard_prior_wheels(time); }
+  // The map began in metres of the wheels: by this motion, of the body in images. Without a prior, one from here on is
+  // a body that looks ahead, in metres.
+  void begin_metric(const VisualMotion& first);
   // The map began with a unit other than metres. The prior is in use again once the first motions determine the unit.
   void forget_scale();
   // Sets the approximate up and forward axes of the body. The first motions then yield an assumed calibration, used
@@ -90,6 +93,9 @@ class OdometryCalibrator {
   // Upper bound of the body's displacement, in lengths of the map, by the distance that the wheels measured. Empty if
   // unknown. is_metric: the map's lengths are metres, so that the bound needs no calibration.
   std::optional<double> reach(Timestamp earlier, Timestamp later, bool is_metric) const;
+
+  // Counts frames as tracked that were located in the finished map, by ascending times.
+  void note_located(const std::vector<Timestamp>& times) { gaps_.note_located(times); }
 
   // Delay and calibration of the wheels by the final map poses of the tracked frames, after the last frame. Poses of
   // untracked frames are ignored, because wheels themselves determined them.
@@ -153,9 +159,10 @@ class OdometryCalibrator {
   Timestamp samples_kept_ = kUsuallyKept;
   GapTrajectory gaps_;
   GapTrajectory::OldPoses old_poses_ = GapTrajectory::OldPoses::kept;
-  std::deque<VisualMotion> seen_;     // motions of the last minutes, half a second each
-  std::optional<StampedPose> begin_;  // first frame of the motion in progress
-  std::optional<StampedPose> last_;   // last frame, if tracked
+  std::deque<VisualMotion> seen_;             // motions of the last minutes, half a second each
+  std::optional<VisualMotion> metric_start_;  // see begin_metric
+  std::optional<StampedPose> begin_;          // first frame of the motion in progress
+  std::optional<StampedPose> last_;           // last frame, if tracked
   double focal_change_ = 1.0;
   std::optional<Vector6> velocity_;  // last visual velocity of the body, per second
   int motions_since_estimate_ = 0;   // tracked motions since the last estimation
@@ -179,6 +186,7 @@ class OdometryCalibrator {
   struct Prior {
     OdometryCalibration calibration;  // from an earlier drive, until contradicted
     bool is_measured = false;         // by hand, not on an earlier drive
+    bool is_assumed = false;          // see begin_metric
     int contradicting = 0;            // number of motions that contradict it
     int confirming = 0;               // number of motions that agree with it
     int contradicting_estimates = 0;  // consecutive estimates that contradict it

@@ -104,5 +104,35 @@ TEST(GivenExtrinsics, DetermineTheUnitOfAMapFromTheFirstMotions) {
   EXPECT_NEAR(calibrator.wheels()->metres_per_unit, 0.37, 0.01);
 }
 
+// The unit of a map of one camera drifts from that of its first motion.
+TEST(GivenExtrinsics, LeaveTheUnitOfTheFinalMapToItsMotions) {
+  Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  OdometryCalibrator calibrator = driven(drive, {measured_by_hand(drive)}, 0.0, 20.0, 20.0);
+  drive.metres_per_unit = 1.4;
+  std::mt19937 random(7);
+  Trajectory final;
+  for (int i = 0; i < 400; ++i) final.push_back({from_seconds(0.05 * i), drive.seen(0.05 * i, random)});
+  calibrator.reestimate(final);
+  EXPECT_NEAR(calibrator.wheels()->metres_per_unit, 1.4, 0.02);
+}
+
+// Frames before the map begins, located in the finished map.
+TEST(GivenExtrinsics, AreReestimatedByFramesLocatedLater) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  OdometryCalibrator calibrator = driven(drive, {measured_by_hand(drive)}, 9.0, 10.0, 10.0);
+  std::mt19937 random(7);
+  Trajectory final;
+  std::vector<Timestamp> times;
+  for (int i = 0; i < 200; ++i) {
+    times.push_back(from_seconds(0.05 * i));
+    final.push_back({times.back(), drive.seen(0.05 * i, random)});
+  }
+  calibrator.reestimate(final);
+  const double before = calibrator.wheels()->arm_sigma();
+  calibrator.note_located(times);
+  calibrator.reestimate(final);
+  EXPECT_LT(calibrator.wheels()->arm_sigma(), 0.5 * before);
+}
+
 }  // namespace
 }  // namespace byre

@@ -295,6 +295,25 @@ TEST(OdometryCalibrator, MeasuresTheDistanceBeforeTheFirstFrameOfANewMap) {
   }
 }
 
+// A turn alone shows the lever arm to a map in metres.
+TEST(OdometryCalibrator, KnowsTheUnitOfAMapThatBeganByWheels) {
+  const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+  OdometryCalibrator prior;
+  prior.enable_mapping_mode();
+  prior.assume_upright(-Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ());
+  std::mt19937 random(5);
+  for (int i = 0; i <= 60; ++i) {
+    const double t = 0.05 * i;
+    prior.add(drive.wheels(t));
+    if (i == 20) prior.begin_metric({from_seconds(0.0), from_seconds(t), true_motion(drive, 0.0, t)});
+    prior.note(from_seconds(t), i >= 20 ? std::optional(drive.seen(t, random)) : std::nullopt);
+    if (i == 21) EXPECT_FALSE(prior.calibration_to_store().wheels) << "assumed";
+  }
+  ASSERT_TRUE(prior.wheels());
+  EXPECT_NEAR(prior.wheels()->metres_per_unit, 1.0, 0.03);
+  EXPECT_NEAR(prior.wheels()->base_from_body.translation.x(), 0.4, 0.15);
+}
+
 TEST(OdometryCalibrator, FollowsAScaledMap) {
   const Drive drive{.base_from_body = camera_on_base(), .metres_per_unit = 2.0, .noise = 0.001};
   OdometryCalibrator prior = followed(drive, {}, 40.0, 50.0);

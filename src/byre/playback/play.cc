@@ -110,7 +110,12 @@ Trajectory located_frames(SlamImpl& slam, FrameSource& frames, const PlayHooks& 
   announce("locating frames without a pose");
   Trajectory all = with_missing_poses(slam, seen, again);
   run.located_afterwards = static_cast<int>(all.size() - seen.size());
-  return all;
+  if (run.located_afterwards == 0) return all;
+  std::vector<Timestamp> located;
+  for (const StampedPose& pose : all) {
+    if (!std::ranges::binary_search(seen, pose.time, {}, &StampedPose::time)) located.push_back(pose.time);
+  }
+  return slam.refine_by_located(std::move(all), located);
 }
 
 void collect_results(SlamImpl& slam, const Trajectory& seen, RunResult& run) {

@@ -105,7 +105,7 @@ Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Rig& rig,
       if (!scale && options.is_scaled_by_odometry) return {{}, TwoViewFailure::uncertain};
       start = align_to_odometry(start, measured, scale.value_or(1.0));
       contradicts_odometry_ = options.is_scaled_by_odometry && !agrees_with_odometry(start, measured);
-      is_scaled_by_odometry_ = options.is_scaled_by_odometry && !contradicts_odometry_;
+      is_scaled_by_odometry_ = scale && !contradicts_odometry_;
     }
     keyframes = {start.first, start.second};
     online_ = std::move(start.map);

@@ -6,6 +6,7 @@
 #include "byre/geometry/calibration_change.h"
 #include "byre/map/mapped_tag.h"
 #include "byre/map/stored_calibration.h"
+#include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/upkeep/session_summary.h"
 #include "byre/slam/window/online_copy.h"
 
@@ -277,7 +278,7 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   const auto next_map = inputs_.offline ? choose_map(frame, report) : std::nullopt;
   const bool is_begun = std::ranges::find(report.events, SessionEvent::initialised) != report.events.end();
   if (is_begun && session_->contradicts_odometry()) prior_.reject_extrinsics(frame.time);
-  if (is_begun && !is_metric_ && !session_->is_scaled_by_odometry()) prior_.forget_scale();
+  if (is_begun && !is_metric_) begin_wheels();
   const bool is_seen = report.inliers > 0;
   if (is_nominal_ && prior_.has_wheels()) {
     session_->set_prior_sigmas(std::max(options_.self_calibration.prior_sigmas, kNominalSigmas));
@@ -301,6 +302,16 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   warnings_reported_ = warnings().size();
   if (next_map) change_map(*next_map, report);
   return report;
+}
+
+// Wheels measured the motion between the first two keyframes of one camera, if that gave the map its unit.
+void SlamImpl::begin_wheels() {
+  const std::vector<KeyframeId> ids = online().keyframe_ids();
+  if (!session_->is_scaled_by_odometry() || ids.size() < 2) return prior_.forget_scale();
+  const Keyframe &first = *online().find_keyframe(ids[0]), &second = *online().find_keyframe(ids[1]);
+  prior_.begin_metric({first.frame.time, second.frame.time,
+                       inverse(body_pose(rig_of(online(), first), first.camera_from_world)) *
+                           body_pose(rig_of(online(), second), second.camera_from_world)});
 }
 
 // Thins out older poses of long missions evenly.
@@ -446,11 +457,11 @@ void SlamImpl::scale_by_tags() {
 }
 
 // Keeps the map's own unit if motions do not determine the scale.
-void SlamImpl::scale_by_wheels() {
+double SlamImpl::scale_by_wheels() {
   const double max_sigma = session_->is_scaled_by_odometry() ? 0.05 : 0.02;  // share
   constexpr double kMaxTurnScale = 0.1;                                      // natural logarithm
   const auto& wheels = prior_.wheels();
-  if (!wheels || wheels->scale_sigma() > max_sigma) return;
+  if (!wheels || wheels->scale_sigma() > max_sigma) return 1.0;
   // A wrong wheel radius scales path lengths and turns by the same factor.
   if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnScale) {
     prior_.warn(
@@ -459,7 +470,7 @@ void SlamImpl::scale_by_wheels() {
          fmt::format("wheels measure turns {:.3g} times as large as the camera does; the map has no metric scale",
                      1.0 / wheels->turn_errors.scale),
          "calibrate wheel radius and track width, or scale the map with byre scale"});
-    return;
+    return 1.0;
   }
   const auto& extrinsics = inputs_.extrinsics;
   const double factor = wheels->metres_per_unit * (extrinsics ? extrinsics->wheel_scale : 1.0);
@@ -468,6 +479,16 @@ void SlamImpl::scale_by_wheels() {
       std::hypot(wheels->scale_sigma(), extrinsics ? extrinsics->wheel_scale_sigma : options_.wheel_scale_sigma);
   prior_.rescale(factor);
   is_metric_ = true;
+  return factor;
+}
+
+Trajectory SlamImpl::refine_by_located(Trajectory all, const std::vector<Timestamp>& located) {
+  prior_.note_located(located);
+  prior_.reestimate(all);
+  const bool is_scaled_by_wheels = scale_sigma_ && !is_scaled_by_tags_;
+  const double factor = is_metric_ && !is_scaled_by_wheels ? 1.0 : scale_by_wheels();
+  for (StampedPose& pose : all) pose.world_from_body = scale_lengths(pose.world_from_body, factor);
+  return all;
 }
 
 std::optional<RefinedCalibration> SlamImpl::calibration() const {

@@ -112,6 +112,10 @@ class SlamImpl {
     return session_->find_in_finished_map(extractor_.extract(images, ImagesUsed::all).frame);
   }
 
+  // Refines the calibration of wheels, and the unit that they gave a monocular map, by frames located in the finished
+  // map. Returns these poses in the lengths of the map. all: poses of tracked and of located frames.
+  Trajectory refine_by_located(Trajectory all, const std::vector<Timestamp>& located);
+
   // Damage of the offline map's file, with section and remedy; nullptr if undamaged. Parts already read stay in use;
   // all later reports are untrusted.
   const InputError* map_damage() const { return inputs_.offline ? inputs_.offline->map().damage() : nullptr; }
@@ -163,9 +167,10 @@ class SlamImpl {
   void refine_calibration();
   void begin_with_extrinsics(const Extrinsics& extrinsics);
   double focal_change() const;  // focal length of the present calibration over that of the given one
+  void begin_wheels();
   void warn_of_focal_length();
   void scale_by_tags();
-  void scale_by_wheels();
+  double scale_by_wheels();  // factor of all lengths; 1 if the motions do not determine it
   void finish_early() { session_->finish_early(); }
   std::optional<BodyMotion> checked(const std::optional<BodyMotion>& motion, Timestamp time);
   // Motion of the body since the last frame that was not dropped.
