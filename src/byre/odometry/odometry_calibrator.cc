@@ -68,6 +68,26 @@ std::vector<MotionPair> pairs_of(const std::deque<VisualMotion>& seen, const Cal
   return pairs;
 }
 
+// Standard error of the scale by its scatter among parts of the drive, as a natural logarithm: larger than that of
+// independent errors if the unit of the map drifted. Zero if no part determines it.
+double scale_scatter(const std::vector<MotionPair>& motions, const WheelCalibration& whole) {
+  constexpr std::size_t kParts = 4;
+  const auto boundary = [&](std::size_t part) {
+    return motions.begin() + static_cast<std::ptrdiff_t>(part * motions.size() / kParts);
+  };
+  int parts = 0;
+  double information = 0.0, squares = 0.0;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const auto found = estimate_wheel_calibration({boundary(part), boundary(part + 1)}, with_unknown_scale(whole));
+    if (!found) continue;
+    const double weight = std::pow(found->scale_sigma(), -2);
+    ++parts;
+    information += weight;
+    squares += weight * std::pow(std::log(found->metres_per_unit / whole.metres_per_unit), 2);
+  }
+  return parts == 0 ? 0.0 : std::sqrt(squares / (std::max(1, parts - 1) * information));
+}
+
 // Stores the gyroscope's turns of the motions since the last estimation.
 void add_gyroscope_rotations(const RateTrack& rates, std::deque<VisualMotion>& seen) {
   for (auto motion = seen.rbegin(); motion != seen.rend() && !motion->gyroscope_turn; ++motion) {
@@ -301,6 +321,9 @@ void OdometryCalibrator::reestimate(const Trajectory& seen) {
     const auto found = prior ? estimate_with_prior(pairs, is_metric_ ? *prior : with_unknown_scale(*prior))
                              : estimate_without_prior(pairs);
     if (found) set_wheels(*found);
+    if (is_metric_ || !wheel_calibration_) return;
+    double& variance = wheel_calibration_->covariance(6, 6);
+    variance = std::max(variance, std::pow(scale_scatter(pairs, *wheel_calibration_), 2));
   };
   if (!wheel_calibration_) estimate();  // the delay needs the base's up axis
   if (!wheel_calibration_) return;

@@ -116,6 +116,27 @@ TEST(GivenExtrinsics, LeaveTheUnitOfTheFinalMapToItsMotions) {
   EXPECT_NEAR(calibrator.wheels()->metres_per_unit, 1.4, 0.02);
 }
 
+// A map of one camera whose unit has changed half way: no scale is that of the whole map.
+TEST(GivenExtrinsics, DoNotDetermineTheScaleOfAMapWhoseUnitDrifts) {
+  for (const double drift : {1.0, 1.5}) {
+    const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+    OdometryCalibrator calibrator = driven(drive, {measured_by_hand(drive)}, 0.0, 20.0, 20.0);
+    Drive drifted = drive;
+    drifted.metres_per_unit = drift;
+    std::mt19937 random(7);
+    Trajectory final;
+    for (int i = 0; i < 400; ++i) {
+      const Pose pose =
+          i <= 200 ? drive.seen(0.05 * i, random)
+                   : final[200].world_from_body * inverse(drifted.seen(10.0, random)) * drifted.seen(0.05 * i, random);
+      final.push_back({from_seconds(0.05 * i), pose});
+    }
+    calibrator.reestimate(final);
+    if (drift == 1.0) EXPECT_LT(calibrator.wheels()->scale_sigma(), 0.02);
+    if (drift != 1.0) EXPECT_GT(calibrator.wheels()->scale_sigma(), 0.05);
+  }
+}
+
 // Frames before the map begins, located in the finished map.
 TEST(GivenExtrinsics, AreReestimatedByFramesLocatedLater) {
   const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};

@@ -459,17 +459,19 @@ void SlamImpl::scale_by_tags() {
 // Keeps the map's own unit if motions do not determine the scale.
 double SlamImpl::scale_by_wheels() {
   const double max_sigma = session_->is_scaled_by_odometry() ? 0.05 : 0.02;  // share
-  constexpr double kMaxTurnScale = 0.1;                                      // natural logarithm
+  constexpr double kMaxTurnError = 0.1;                                      // share of the turns
   const auto& wheels = prior_.wheels();
   if (!wheels || wheels->scale_sigma() > max_sigma) return 1.0;
-  // A wrong wheel radius scales path lengths and turns by the same factor.
-  if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnScale) {
+  // A wrong wheel radius scales path lengths and turns by the same factor. Turns of a distorted map differ by various
+  // factors.
+  if (std::abs(std::log(wheels->turn_errors.scale)) > kMaxTurnError || wheels->rotation_error > kMaxTurnError) {
     prior_.warn(
         {MotionSensor::wheels,
          {},
-         fmt::format("wheels measure turns {:.3g} times as large as the camera does; the map has no metric scale",
-                     1.0 / wheels->turn_errors.scale),
-         "calibrate wheel radius and track width, or scale the map with byre scale"});
+         fmt::format("wheels measure turns {:.3g} times as large as the camera does, with differences of {:.3g} "
+                     "%; the map has no metric scale",
+                     1.0 / wheels->turn_errors.scale, 100.0 * wheels->rotation_error),
+         "calibrate the camera, wheel radius and track width, or scale the map with byre scale"});
     return 1.0;
   }
   const auto& extrinsics = inputs_.extrinsics;
@@ -485,8 +487,11 @@ double SlamImpl::scale_by_wheels() {
 Trajectory SlamImpl::refine_by_located(Trajectory all, const std::vector<Timestamp>& located) {
   prior_.note_located(located);
   prior_.reestimate(all);
-  const bool is_scaled_by_wheels = scale_sigma_ && !is_scaled_by_tags_;
-  const double factor = is_metric_ && !is_scaled_by_wheels ? 1.0 : scale_by_wheels();
+  if (scale_sigma_ && !is_scaled_by_tags_) {
+    scale_sigma_.reset();
+    is_metric_ = false;
+  }
+  const double factor = is_metric_ ? 1.0 : scale_by_wheels();
   for (StampedPose& pose : all) pose.world_from_body = scale_lengths(pose.world_from_body, factor);
   return all;
 }
