@@ -105,7 +105,7 @@ TEST_F(RegistryPlans, MayBeAnImageWithAWorldFile) {
   Connection robot = connect("robot_barn");
   const PulledPlan pulled = pull_plan(robot, kBarn, find_plan(robot, kBarn, {}, {}), folder_ / "plans");
   EXPECT_EQ(read_floor_plan(pulled.path).top_left_in_plan, Eigen::Vector2d(7.0, 8.0));
-  write("plans/plan.pmw", "0.05\n0\n0\n-0.05\n9\n9\n");  // which readers prefer
+  write("plans/plan.pmw", "0.05\n0\n0\n-0.05\n9\n9\n");  // preferred by readers
   EXPECT_THAT(registry("pull barn --plan plans", "robot_barn").errors,
               HasSubstr("plan.pmw: is read with plan.pgm instead of plan.wld (remove it"));
 }

@@ -61,7 +61,7 @@ TEST(ContentOf, RecognisesColmapFilesAndPages) {
                                 11),
                     "cameras.bin"),
             FileContent::other);
-  EXPECT_EQ(content(std::string("\xff\xd8\xff\xe0\0\x10JFIF", 10), "cameras.bin"), FileContent::other);
+  EXPECT_EQ(content(std::string("\xff\xd8\xff\xe0\0\x10JFIF", 10), "cameras.bin"), FileContent::photograph);
   EXPECT_EQ(content("<!doctype html>\n<svg>", "index.html"), FileContent::page);
   EXPECT_EQ(content("# Title\nname: text, more\n", "report.md"), FileContent::page);
 }

@@ -35,14 +35,12 @@ std::array<int, 4> place_of(const ReplayFrame& frame) {
   return {static_cast<int>(along.x()), static_cast<int>(along.y()), static_cast<int>(along.z()), main_direction};
 }
 
-constexpr double kMostShift = 0.02;  // metres
-
-double position_sigma(const Replayed& frame) {
-  return std::sqrt(frame.covariance.topLeftCorner<3, 3>().trace());
+// Largest change that is no fault, for a pose with this standard deviation before; below `never` it never is one.
+double largest_change(double sigma, double never, double certain) {
+  return sigma <= certain ? std::max(never, sigma) : std::min(1.5 * sigma, 3.0 * certain);
 }
 
-// A change of the pose of 5 mm and 0.05 degrees is never a fault, one of 20 mm or 0.3 degrees always, one in between if
-// it exceeds the standard deviation of a pose before. Poses that were less certain than that are not compared.
+// Poses known to 20 mm and 0.3 degrees may change by their standard deviation, others by 1.5 times as much.
 std::string fault_of(const PlaceProof& place, double least_inliers) {
   if (place.found_after < place.found_before) {
     return fmt::format("{} of {} frames are found instead of {}", place.found_after, place.frames, place.found_before);
@@ -50,10 +48,10 @@ std::string fault_of(const PlaceProof& place, double least_inliers) {
   if (place.inliers_after < least_inliers * place.inliers_before) {
     return fmt::format("{} points fit instead of {}", place.inliers_after, place.inliers_before);
   }
-  if (place.shift > std::clamp(place.shift_sigma, 0.005, kMostShift)) {
+  if (place.shift > largest_change(place.shift_sigma, 0.005, 0.02)) {
     return fmt::format("poses move by {:.1f} mm", 1e3 * place.shift);
   }
-  if (place.turn > std::clamp(place.turn_sigma, 0.05 * kDegree, 0.3 * kDegree)) {
+  if (place.turn > largest_change(place.turn_sigma, 0.05 * kDegree, 0.3 * kDegree)) {
     return fmt::format("poses turn by {:.3f} degrees", place.turn / kDegree);
   }
   return {};
@@ -79,9 +77,11 @@ std::vector<ReplayFrame> frames_to_replay(const MapGraph& map) {
 std::vector<Replayed> replay(std::span<const ReplayFrame> frames, const MapGraph& map, const PlaceIndex& index) {
   const MapGraph nothing_online(Origin::online);
   const MapView view(&map, nothing_online);
+  // Comparisons weigh poses by their covariance.
+  const LocaliseOptions options{.max_position_sigma = 0.05, .max_rotation_sigma = 0.05};
   std::vector<Replayed> results;
   for (const ReplayFrame& frame : frames) {
-    const Localisation found = localise(frame.frame, frame.rig, view, index, {});
+    const Localisation found = localise(frame.frame, frame.rig, view, index, options);
     Replayed& result = results.emplace_back();
     if (!found.tracked) continue;
     result.camera_from_world = found.tracked->camera_from_world;
@@ -107,10 +107,9 @@ std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std:
       place.found_before += before[i].camera_from_world.has_value();
       place.found_after += after[i].camera_from_world.has_value();
       if (!before[i].camera_from_world || !after[i].camera_from_world) continue;
+      ++both;
       place.inliers_before += before[i].inliers;
       place.inliers_after += after[i].inliers;
-      if (position_sigma(before[i]) > kMostShift) continue;
-      ++both;
       const Pose was = inverse(*before[i].camera_from_world), is = inverse(*after[i].camera_from_world);
       shift += is.translation - was.translation;
       turn += rotation_log(is.rotation * was.rotation.conjugate());
