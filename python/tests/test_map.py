@@ -106,7 +106,7 @@ def test_an_edited_map_can_be_saved_and_continued(m, room, frames, tmp_path):
 
 def test_a_map_file_is_updated_by_the_session_of_a_mission(room, frames, tmp_path):
     calibration = byre.Recording(room).calibration
-    options = byre.SlamOptions(workers=byre.Workers.repeatable, max_features=300)
+    options = byre.SlamOptions(workers=byre.Workers.repeatable)
     part, session, child = (tmp_path / name for name in ("part.byre", "evening.session", "child.byre"))
     mapping = byre.Slam.mapping(calibration, options)
     for images in frames[: len(frames) // 2]:

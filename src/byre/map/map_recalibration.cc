@@ -23,7 +23,7 @@ void recalibrate(Keyframe& keyframe, const RectifiedChange& change, const Recali
   keyframe.covariance = move_covariance(keyframe.covariance, change.after_from_before());
 }
 
-// The point at its depth in the view, where the image rectified anew shows it.
+// The point moved to the pixel of its image after the change, at the same depth in the view.
 Eigen::Vector3d recalibrated_point(const Eigen::Vector3d& point_in_world, const Pose& camera_from_world,
                                    const Rig& before, const RectifiedChange& change) {
   const Eigen::Vector3d point_in_camera = camera_from_world * point_in_world;

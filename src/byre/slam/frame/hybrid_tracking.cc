@@ -181,8 +181,9 @@ Support support_of(const Query& query, const PoseRefinement& refined, const Meas
   };
   ByImageRegion<Part> parts;
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
-    const Eigen::Vector2f& pixel = measured.features[i].pixel;
-    Part& part = parts[image_region_of(pixel.x(), pixel.y(), query.rig)];
+    const TrackedFeature& feature = measured.features[i];
+    if (!refined.inliers[i] && !shows_patch(feature, *query.frame.features)) continue;
+    Part& part = parts[image_region_of(feature.pixel.x(), feature.pixel.y(), query.rig)];
     ++(refined.inliers[i] ? part.fit : part.elsewhere);
   }
   Support support;
@@ -322,8 +323,9 @@ std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, co
   return std::nullopt;
 }
 
-// Splits the offline matches by the solution.
-void add_offline_points(const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
+// Splits the offline matches by the solution. A point has moved only if its own patch was found elsewhere, not just a
+// similar corner.
+void add_offline_points(const Query& query, const ByMap<MeasuredPoints>& measured, HybridTrack& result) {
   ScratchVector<PointId>& inliers = result.offline_agreed;
   inliers.reserve(result.tracked.features.size());
   for (const TrackedFeature& feature : result.tracked.features) {
@@ -333,7 +335,8 @@ void add_offline_points(const ByMap<MeasuredPoints>& measured, HybridTrack& resu
   result.offline_inliers = static_cast<int>(inliers.size());
   result.offline_moved.reserve(measured.offline.features.size());
   for (const TrackedFeature& feature : measured.offline.features) {
-    if (!std::ranges::binary_search(inliers, feature.point)) result.offline_moved.push_back(feature.point);
+    if (std::ranges::binary_search(inliers, feature.point)) continue;
+    if (shows_patch(feature, *query.frame.features)) result.offline_moved.push_back(feature.point);
   }
 }
 
@@ -368,7 +371,7 @@ HybridTrack to_result(const Query& query, const Found& found, const Opinions& op
   result.offline_matches = static_cast<int>(found.measured.offline.features.size());
   result.tracked.expected = result.offline_expected + static_cast<int>(found.expected.online.size());
   result.tracked.matches = result.offline_matches + static_cast<int>(found.measured.online.features.size());
-  add_offline_points(found.measured, result);
+  add_offline_points(query, found.measured, result);
   return result;
 }
 
@@ -419,7 +422,9 @@ SearchedPoints search_points(const Frame& frame, const Pose& camera_from_world, 
   part_by_agreement(camera_from_world, Matrix6::Zero(), rig, found.measured.offline, 1.0, parted);
   SearchedPoints searched;
   for (const TrackedFeature& feature : parted.agreeing.features) searched.agreed.push_back(feature.point);
-  for (const TrackedFeature& feature : parted.disagreeing) searched.moved.push_back(feature.point);
+  for (const TrackedFeature& feature : parted.disagreeing) {
+    if (shows_patch(feature, *frame.features)) searched.moved.push_back(feature.point);
+  }
   return searched;
 }
 

@@ -35,10 +35,10 @@ void KeyframePolicy::restart(KeyframeId keyframe) {
 // Offline references change along the way, so motion from them needs no keyframe. Online points take over where the
 // offline ones end: while the frame shows few of both, motion counts from the last online keyframe. Empty without one.
 std::optional<KeyframeId> KeyframePolicy::reference_of(const HybridTrack& track, const MapView& map) const {
-  constexpr int kManyOnline = 100, kManyOffline = kEnoughOffline / 2;  // points
+  constexpr int kManyOnline = 100;  // points
   const KeyframeId& reference = track.tracked.reference;
-  const bool has_many = track.online_inliers() >= kManyOnline || track.offline_inliers >= kManyOffline;
-  if (reference.origin == Origin::online || has_many) return reference;
+  if (track.offline_inliers >= kManyOffline) return track.offline_reference;
+  if (reference.origin == Origin::online || track.online_inliers() >= kManyOnline) return reference;
   const bool is_known = last_keyframe_ && map.find_keyframe(*last_keyframe_) != nullptr;
   return is_known ? last_keyframe_ : std::nullopt;
 }

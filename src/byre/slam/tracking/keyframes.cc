@@ -31,12 +31,13 @@ Eigen::Matrix3d stereo_covariance(const Rig& rig, const Pose& camera_from_world,
 bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidence, const KeyframeOptions& options) {
   if (evidence.offline_inliers >= kEnoughOffline) return false;
   const int inliers = static_cast<int>(tracked.features.size());
-  const bool weak = inliers < options.min_tracked;
+  const bool weak = inliers < options.min_tracked && evidence.offline_inliers < kManyOffline;
   if (evidence.pending >= (weak ? kMaxPendingWhenWeak : kMaxPending)) return false;
   if (weak) return true;
   if (evidence.frames_since_last < options.min_frames) return false;
   if (evidence.without_depth > 0 && evidence.without_depth <= kMaxWaitForDepth) return false;
-  return inliers < options.min_tracked_share * evidence.fresh_inliers || evidence.turn > options.max_turn ||
+  const bool has_lost_points = inliers < options.min_tracked_share * evidence.fresh_inliers;
+  return (has_lost_points && evidence.offline_inliers < kManyOffline) || evidence.turn > options.max_turn ||
          evidence.shift_share > options.max_shift_share;
 }
 

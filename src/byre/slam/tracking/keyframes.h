@@ -20,7 +20,8 @@ struct KeyframeOptions {
 inline constexpr int kMaxPending = 3;           // keyframes waiting for mapping
 inline constexpr int kMaxPendingWhenWeak = 10;  // waiting keyframes with fewer than min_tracked points
 inline constexpr int kMaxWaitForDepth = 8;      // frames that a keyframe waits for disparities
-inline constexpr int kEnoughOffline = 300;      // tracked offline points from which no keyframe is needed
+inline constexpr int kManyOffline = 75;         // offline inliers with which only motion requires a keyframe
+inline constexpr int kEnoughOffline = 300;      // offline inliers from which no keyframe is needed
 
 // Evidence for a new keyframe besides the tracked frame.
 struct KeyframeEvidence {

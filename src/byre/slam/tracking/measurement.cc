@@ -41,10 +41,11 @@ float reference_sigma(const Features& features, int feature) {
 PixelMeasurement measure_pixel(const ViewedFeature& reference, const Eigen::Vector3d& point_in_world,
                                const CameraView& current, int feature) {
   const Keypoint& keypoint = current.features.keypoint(feature);
-  const PixelMeasurement corner = corner_measurement(keypoint);
+  PixelMeasurement corner = corner_measurement(keypoint);
   const Patch* const patch = current.features.find_patch(feature);
   const Patch* const reference_patch = reference.view.features.find_patch(reference.feature);
   if (patch == nullptr || reference_patch == nullptr) return corner;
+  corner.differs = true;
 
   const Keypoint& reference_keypoint = reference.view.features.keypoint(reference.feature);
   const float reference_scale = scale_of(reference_keypoint);

@@ -23,6 +23,7 @@ struct PixelMeasurement {
   Eigen::Vector2f pixel;  // full-resolution pixels
   float sigma = 1.0f;     // pixels, of u and of v
   bool aligned = false;   // refined in the image, not only a corner
+  bool differs = false;   // both views have a patch, and these do not fit
 };
 
 // Subpixel measurement by the current view's feature of the point that the reference shows: the reference's patch,

@@ -71,8 +71,7 @@ void measure_matches(const Frame& frame, const Pose& camera_from_world, const Ri
   for (const GuidedMatch& match : matches) {
     const MapPoint& point = *map.find_point(match.point);
     const PixelMeasurement pixel = measure(map, point, view, match.feature);
-    const bool has_patch = frame.features->find_patch(match.feature) != nullptr;
-    if (match.point.origin == Origin::offline && has_patch && !pixel.aligned) continue;
+    if (match.point.origin == Origin::offline && pixel.differs) continue;
     measured.observations.push_back(observation_of(point, frame.features->keypoint(match.feature), pixel));
     measured.features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
   }

@@ -28,8 +28,8 @@ struct MeasuredPoints {
 };
 
 // Measures each match by its point's reference patch if that keyframe still exists, else by its corner. Refills
-// `measured`. Matches of offline points whose patch does not fit are left out: their corner shows the point in one of
-// six, as the map was made in another light and from another place, and chance matches confirm any predicted pose.
+// `measured`. Matches of offline points whose patch does not fit are left out: five of six are wrong, because the map
+// was made in another light and from another place. Chance matches around a prediction confirm it.
 void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                      const std::vector<GuidedMatch>& matches, MeasuredPoints& measured);
 

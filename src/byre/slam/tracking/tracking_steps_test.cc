@@ -64,8 +64,9 @@ Patch patch_with(double phase) {
   return patch;
 }
 
-// A point ahead, mapped from the origin, and a frame there whose patch has this phase; the map's has 0.
-std::size_t count_measured(Origin origin, const std::vector<Patch>& patches_of_frame) {
+// Number of measured matches of a point ahead, mapped from the origin, in a frame there.
+std::size_t count_measured(Origin origin, const std::vector<Patch>& patches_of_frame,
+                           const std::vector<Patch>& patches_of_map = {patch_with(0.0)}) {
   const Eigen::Vector3d ahead(0.0, 0.0, 3.0);
   const Rig rig = stereo_rig();
   Keypoint keypoint;
@@ -76,7 +77,7 @@ std::size_t count_measured(Origin origin, const std::vector<Patch>& patches_of_f
   };
   MapGraph map(origin);
   Keyframe keyframe;
-  keyframe.frame.features = features({patch_with(0.0)});
+  keyframe.frame.features = features(patches_of_map);
   keyframe.rig = map.add_rig(rig);
   keyframe.sightings.resize(1);
   keyframe.sightings[0].pixel = keypoint.pixel;
@@ -96,9 +97,13 @@ TEST(MeasureMatches, LeavesOutOfflinePointsWhosePatchDoesNotFit) {
   EXPECT_EQ(count_measured(Origin::offline, {patch_with(1.3)}), 0U);
 }
 
-TEST(MeasureMatches, MeasuresOnlinePointsAndFramesWithoutPatchesByTheirCorners) {
+TEST(MeasureMatches, MeasuresOnlinePointsWhosePatchDoesNotFitByTheirCorners) {
   EXPECT_EQ(count_measured(Origin::online, {patch_with(1.3)}), 1U);
+}
+
+TEST(MeasureMatches, MeasuresOfflinePointsByTheirCornersIfTheFrameOrTheMapHasNoPatch) {
   EXPECT_EQ(count_measured(Origin::offline, {}), 1U);
+  EXPECT_EQ(count_measured(Origin::offline, {patch_with(1.3)}, {}), 1U);
 }
 
 }  // namespace

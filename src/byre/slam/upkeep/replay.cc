@@ -35,12 +35,14 @@ std::array<int, 4> place_of(const ReplayFrame& frame) {
   return {static_cast<int>(along.x()), static_cast<int>(along.y()), static_cast<int>(along.z()), main_direction};
 }
 
-// Largest change that is no fault, for a pose with this standard deviation before; below `never` it never is one.
-double largest_change(double sigma, double never, double certain) {
-  return sigma <= certain ? std::max(never, sigma) : std::min(1.5 * sigma, 3.0 * certain);
+// Largest change of a pose that is no fault. sigma: of the pose before; least: change that is never a fault; certain:
+// sigma above which the pose was uncertain.
+double largest_change(double sigma, double least, double certain) {
+  return sigma <= certain ? std::max(least, sigma) : std::min(1.5 * sigma, 3.0 * certain);
 }
 
-// Poses known to 20 mm and 0.3 degrees may change by their standard deviation, others by 1.5 times as much.
+// Poses known to 20 mm and 0.3 degrees may change by their standard deviation, others by 1.5 times as much, at most by
+// 60 mm and 0.9 degrees.
 std::string fault_of(const PlaceProof& place, double least_inliers) {
   if (place.found_after < place.found_before) {
     return fmt::format("{} of {} frames are found instead of {}", place.found_after, place.frames, place.found_before);
