@@ -40,7 +40,7 @@ if ((started == 0)); then
   eval "$settings"
   "$byre" run barn_2 --map barn_1.byre --save-session all.session --quiet >/dev/null
   "$byre" update barn_1.byre all.session -o updated.byre --quiet >/dev/null
-  "$byre" run barn_2 --end 3 --map barn_1.byre --save-session part.session --quiet >/dev/null
+  "$byre" run barn_2 --end 4 --map barn_1.byre --save-session part.session --quiet >/dev/null
   "$byre" update barn_1.byre part.session -o updated_by_part.byre --quiet >/dev/null
   tests+=(registry_test.mjs)
 else
