@@ -97,6 +97,7 @@ double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track,
 
 std::optional<PlaceHypothesis> OfflineTracker::begin_place(Timestamp time, const Pose& camera_from_place) {
   is_refuted_ = false;
+  held_keyframes_.clear();
   return rivals_.begin(time, camera_from_place);
 }
 
@@ -181,9 +182,29 @@ void OfflineTracker::propose_rivals(const PlaceOfFrame& place, std::span<const P
                                     const PoseFilter& pose_filter, const Mapper& mapper) {
   for (const Pose& camera_from_rival : rivals) {
     const Pose body = body_pose(rig, camera_from_rival);
-    rivals_.propose(place.camera_from_offline, camera_from_rival,
-                    pose_filter.log_odds_of_relocalisation(place.time, body, rig, mapper.map()));
+    double prior = pose_filter.log_odds_of_relocalisation(place.time, body, rig, mapper.map());
+    if (pose_filter.place().is_accepted()) {
+      prior += log_odds_of_path(inverse(camera_from_rival) * place.camera_from_offline, rig, mapper);
+    }
+    rivals_.propose(place.camera_from_offline, camera_from_rival, prior);
   }
+}
+
+// Evidence against a rival by keyframes of the path on which offline points held the pose: a rival of an unbroken path
+// had the same relative pose there. 0 if they agree with it, or if the rival's path is outside the map.
+double OfflineTracker::log_odds_of_path(const Pose& rival_from_place, const Rig& rig, const Mapper& mapper) const {
+  constexpr std::size_t kMostKeyframes = 4;  // spread over the path, to save time
+  PlaceHypothesis of_path(0.0, 0);
+  const std::size_t held = held_keyframes_.size(), count = std::min(kMostKeyframes, held);
+  for (std::size_t i = 0; i < count; ++i) {
+    const KeyframeId id = held_keyframes_[count > 1 ? i * (held - 1) / (count - 1) : 0];
+    const Keyframe* const keyframe = mapper.online().find_keyframe(id);
+    if (keyframe == nullptr || !keyframe->frame.features) continue;
+    const Pose predicted = mapper.online().camera_from_world(id) * inverse(rival_from_place);
+    const RivalPlaces::View seen = view_at_rival(keyframe->frame, predicted, rig, {});
+    if (seen.is_tracked || seen.view.is_near_keyframe) of_path.observe(seen.view, seen.is_tracked);
+  }
+  return std::min(0.0, of_path.log_odds());
 }
 
 std::span<const LookAlikePlace> OfflineTracker::look_alikes_at(const Pose& camera_from_place) {
@@ -281,7 +302,10 @@ std::vector<SessionEvent> OfflineTracker::note_view(const Seen& seen, const Mapp
   const OfflineView now = mission_.view();
   const bool is_agreed = now == OfflineView::held && !track.maps_disagree;
   const bool is_held = is_agreed && track.offline_inliers >= kOfflineThatHolds;
-  if (is_held && mapper.newest_keyframe()) last_held_keyframe_ = mapper.newest_keyframe()->number;
+  if (const auto newest = mapper.newest_keyframe(); is_held && newest) {
+    last_held_keyframe_ = newest->number;
+    if (held_keyframes_.empty() || held_keyframes_.back() != *newest) held_keyframes_.push_back(*newest);
+  }
   is_drift_closed_ = is_held || (is_agreed && track.offline_inliers >= track.online_inliers());
   const ScratchVector<PointId> due = mission_.due_for_retest(seen.offline_around);
   if (!due.empty()) {

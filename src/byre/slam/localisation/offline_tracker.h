@@ -147,6 +147,7 @@ class OfflineTracker {
   };
   void propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
                       const PoseFilter& pose_filter, const Mapper& mapper);
+  double log_odds_of_path(const Pose& rival_from_place, const Rig& rig, const Mapper& mapper) const;
   bool is_search_needed(const PoseFilter& pose_filter, const Mapper& mapper) const;
   // Empty until enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const PoseFilter& pose_filter,
@@ -180,6 +181,7 @@ class OfflineTracker {
   std::vector<PointRecord> point_records_;  // by number of the offline point
   // Number of the newest online keyframe when offline points last constrained the pose.
   std::uint32_t last_held_keyframe_ = 0;
+  std::vector<KeyframeId> held_keyframes_;  // the newest ones at frames of this unbroken path that offline points held
 };
 
 }  // namespace byre

@@ -124,6 +124,38 @@ TEST_F(OfflineTrackerTest, KeepsAnAcceptedPlaceAfterOneContradictingSearch) {
   EXPECT_FALSE(update.correction);
 }
 
+// The place of later frames is 1 m off, where most of the map is not seen. A rival is at their true place.
+class PathBeforeARival : public OfflineTrackerTest {
+ protected:
+  double log_odds_of_rival_after_frame(int inliers) {
+    note_found(0);
+    mapper_.add_keyframe(mission_.frames[4], track_of(4), mission_.rig);
+    note(4, inliers);
+    const PlaceView view = view_of_room(4, 6);
+    for (std::size_t i = 5; i < 20; ++i) {
+      HybridTrack track = track_of(i, 20);
+      track.tracked.camera_from_world =
+          track.tracked.camera_from_world * Pose{Eigen::Quaterniond::Identity(), {1.0, 0.0, 0.0}};
+      const OfflineTracker::Seen seen{mission_.frames[i], track, mission_.rig, 0.1, false, {}, {}};
+      tracker_.test_rivals(seen, {}, pose_filter_, mapper_);
+      pose_filter_.note({mission_.frames[i], track, false, true, 0, false, &view}, mission_.rig, mapper_.map());
+      tracker_.note(seen, pose_filter_, mapper_);
+      tracker_.search_in_background({mission_.frames[i], mission_.rig}, pose_filter_, mapper_);
+      tracker_.process_search(collect_place(), pose_filter_, mapper_);
+    }
+    EXPECT_TRUE(pose_filter_.place().is_accepted());
+    return tracker_.log_odds_of_rivals();
+  }
+};
+
+TEST_F(PathBeforeARival, ShowsNothingWithoutOfflinePoints) {
+  EXPECT_GT(log_odds_of_rival_after_frame(0), 5.0);
+}
+
+TEST_F(PathBeforeARival, OutweighsItWhereOfflinePointsHeldThePose) {
+  EXPECT_LT(log_odds_of_rival_after_frame(100), 5.0);
+}
+
 TEST_F(OfflineTrackerTest, RequiresNoFurtherEvidenceForAConsistentHint) {
   mapper_.begin_at_relocalisation(track_of(0));
   for (std::size_t i = 0; i < 4; ++i) {

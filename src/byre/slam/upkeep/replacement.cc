@@ -17,7 +17,7 @@ std::string fault_of_replacement(const MapVersion& map, const MapVersion& next, 
   std::vector<Replayed> before;
   if (fault.empty()) {
     before = replay(frames, map.stored.map, index_of(map.stored.map, vocabulary));
-    fault = place_of(frames, before).fault;
+    fault = place_of(frames, before, map.stored.map).fault;
   }
   if (!fault.empty()) return "it is not proved, as session " + session.name + " " + fault;
   const std::vector<PlaceProof> places =

@@ -93,6 +93,19 @@ std::vector<Replayed> replay(std::span<const ReplayFrame> frames, const MapGraph
   return results;
 }
 
+bool is_elsewhere(const ReplayFrame& frame, const Replayed& found) {
+  constexpr double kMaxShift = 0.1;  // metres
+  constexpr double kMaxTurn = 1.0 * kDegree;
+  constexpr double kSigmas = 3.0;  // a mission drifts where the map shows little
+  if (!found.camera_from_world) return false;
+  const Pose change = frame.camera_from_world * inverse(*found.camera_from_world);
+  const Matrix6 covariance = frame.covariance + found.covariance;
+  const double shift_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  const double turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  return change.translation.norm() > std::max(kMaxShift, kSigmas * shift_sigma) ||
+         rotation_log(change.rotation).norm() > std::max(kMaxTurn, kSigmas * turn_sigma);
+}
+
 std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std::span<const Replayed> before,
                                        std::span<const Replayed> after, double least_inliers) {
   std::map<std::array<int, 4>, std::vector<std::size_t>> by_place;
@@ -106,9 +119,11 @@ std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std:
     int both = 0;
     for (const std::size_t i : members) {
       place.centre_in_map += inverse(frames[i].camera_from_world).translation / place.frames;
-      place.found_before += before[i].camera_from_world.has_value();
-      place.found_after += after[i].camera_from_world.has_value();
-      if (!before[i].camera_from_world || !after[i].camera_from_world) continue;
+      const bool is_found_before = before[i].camera_from_world && !is_elsewhere(frames[i], before[i]);
+      const bool is_found_after = after[i].camera_from_world && !is_elsewhere(frames[i], after[i]);
+      place.found_before += is_found_before;
+      place.found_after += is_found_after;
+      if (!is_found_before || !is_found_after) continue;
       ++both;
       place.inliers_before += before[i].inliers;
       place.inliers_after += after[i].inliers;

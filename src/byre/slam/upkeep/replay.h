@@ -29,6 +29,9 @@ struct Replayed {
 // Localises each frame in a map without a prediction.
 std::vector<Replayed> replay(std::span<const ReplayFrame> frames, const MapGraph& map, const PlaceIndex& index);
 
+// Whether a frame is found away from the pose in its mission; false if it is not found.
+bool is_elsewhere(const ReplayFrame& frame, const Replayed& found);
+
 // Frames of one place, a 4 m cube and one of six main directions, on a map and on its update.
 struct PlaceProof {
   Eigen::Vector3d centre_in_map = Eigen::Vector3d::Zero();  // mean position of the cameras
@@ -42,7 +45,8 @@ struct PlaceProof {
   std::string fault{};                    // why the place is worse; empty: it is not
 };
 
-// Compares the places of frames. before, after: results of replay. least_inliers: share of the inliers before.
+// Compares the places of frames; those found elsewhere count as not found. before, after: results of replay.
+// least_inliers: share of the inliers before.
 std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std::span<const Replayed> before,
                                        std::span<const Replayed> after, double least_inliers = 0.9);
 

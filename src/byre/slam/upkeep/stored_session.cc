@@ -1,6 +1,5 @@
 #include "byre/slam/upkeep/stored_session.h"
 
-#include "byre/geometry/degrees.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/health.h"
 #include "byre/slam/window/online_copy.h"
@@ -55,6 +54,25 @@ double calibration_difference(Calibration one, Calibration other) {
   return std::sqrt(sum / static_cast<double>(moves.size())) / change.rig().focal;
 }
 
+// map_from_body of the keyframes.
+std::vector<Pose> mapped_poses(const MapGraph& map) {
+  std::vector<Pose> mapped;
+  for (const KeyframeId id : map.keyframe_ids()) {
+    const Rig& rig = map.rigs()[static_cast<std::size_t>(map.rig_of(id))];
+    mapped.push_back(inverse(rig.body_from_camera * map.keyframe_header(id)->camera_from_world));
+  }
+  return mapped;
+}
+
+bool is_mapped(const Pose& map_from_body, std::span<const Pose> mapped) {
+  constexpr double kNear = 1.5;     // metres
+  constexpr double kMaxTurn = 0.6;  // radians
+  return std::ranges::any_of(mapped, [&](const Pose& known) {
+    return (known.translation - map_from_body.translation).norm() <= kNear &&
+           angle_between(known.rotation, map_from_body.rotation) <= kMaxTurn;
+  });
+}
+
 struct CountedPoses {
   int on_map = 0;
   int trusted = 0;
@@ -62,19 +80,10 @@ struct CountedPoses {
 
 // Poses at places that the map shows. Others may be untrusted, because the robot was outside.
 CountedPoses count_on_map(std::span<const PoseRecord> poses, const MapGraph& map) {
-  constexpr double kNear = 1.5;     // metres
-  constexpr double kMaxTurn = 0.6;  // radians
-  std::vector<Pose> mapped;         // map_from_body
-  for (const KeyframeId id : map.keyframe_ids()) {
-    const Rig& rig = map.rigs()[static_cast<std::size_t>(map.rig_of(id))];
-    mapped.push_back(inverse(rig.body_from_camera * map.keyframe_header(id)->camera_from_world));
-  }
+  const std::vector<Pose> mapped = mapped_poses(map);
   CountedPoses count;
   for (const PoseRecord& pose : poses) {
-    const bool is_on_map = std::ranges::any_of(mapped, [&](const Pose& known) {
-      return (known.translation - pose.map_from_body.translation).norm() <= kNear &&
-             angle_between(known.rotation, pose.map_from_body.rotation) <= kMaxTurn;
-    });
+    const bool is_on_map = is_mapped(pose.map_from_body, mapped);
     count.on_map += is_on_map;
     count.trusted += is_on_map && pose.verdict == static_cast<std::uint8_t>(Verdict::trusted);
   }
@@ -107,23 +116,19 @@ std::string fault_of(const StoredSession& session, const StoredMap& map, std::sp
   return {};
 }
 
-SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found) {
-  constexpr double kMaxShift = 0.1;  // metres
-  constexpr double kMaxTurn = 1.0 * kDegree;
-  constexpr double kSigmas = 3.0;  // a mission drifts where the map shows little
+SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found, const MapGraph& map) {
   constexpr int kLeastFound = 2;
-  constexpr double kMaxElsewhere = 0.2;  // share of the frames found; one is never enough
+  constexpr double kMaxElsewhere = 0.05;  // share of the frames found; one is never enough
+  const std::vector<Pose> mapped = mapped_poses(map);
   SessionPlace place;
   place.frames = static_cast<int>(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!found[i].camera_from_world) continue;
+    // Keyframes outside the map are found at places that look alike.
+    if (!found[i].camera_from_world ||
+        !is_mapped(inverse(frames[i].rig.body_from_camera * frames[i].camera_from_world), mapped))
+      continue;
     ++place.found;
-    const Pose change = frames[i].camera_from_world * inverse(*found[i].camera_from_world);
-    const Matrix6 covariance = frames[i].covariance + found[i].covariance;
-    const double shift_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-    const double turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-    place.elsewhere += change.translation.norm() > std::max(kMaxShift, kSigmas * shift_sigma) ||
-                       rotation_log(change.rotation).norm() > std::max(kMaxTurn, kSigmas * turn_sigma);
+    place.elsewhere += is_elsewhere(frames[i], found[i]);
   }
   if (place.frames < kLeastFound) {
     place.fault = fmt::format("mapped too little to be placed: it has {} keyframes", place.frames);

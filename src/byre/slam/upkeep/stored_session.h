@@ -19,14 +19,14 @@ struct StoredSession {
 // of the versions that it was made of.
 std::string fault_of(const StoredSession& session, const StoredMap& map, std::span<const std::uint64_t> maps);
 
-// Agreement of a session's poses with those found by offline points alone.
+// Agreement of a session's poses with those found by offline points alone, at places that the map shows.
 struct SessionPlace {
   int frames = 0;
   int found = 0;
   int elsewhere = 0;    // found away from the session's pose
   std::string fault{};  // empty: the session fits the map
 };
-SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found);
+SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found, const MapGraph& map);
 
 // The session's map beside the offline one: copies of offline points become sightings of them. Copies of points that
 // the offline map no longer has stay points.

@@ -57,7 +57,7 @@ std::vector<Fitting> place_sessions(const MapVersion& parent, const std::vector<
     if (!use.place.fault.empty()) continue;
     Fitting fits{&session, uses.size() - 1, frames_to_replay(session.stored.map)};
     fits.found = replay(fits.frames, parent.stored.map, index);
-    use.place = place_of(fits.frames, fits.found);
+    use.place = place_of(fits.frames, fits.found, parent.stored.map);
     use.has_records = session.record.map_id == parent.id &&
                       session.record.points.size() == static_cast<std::size_t>(parent.stored.map.point_count());
     if (use.place.fault.empty()) fitting.push_back(std::move(fits));

@@ -320,6 +320,25 @@ TEST(PlaceProof, FindsPlacesThatBecomeWorse) {
   EXPECT_THAT(faults_after([](Replayed& frame) { frame.camera_from_world->translation.z() += 0.02; }),
               HasSubstr("poses move by "));
   EXPECT_EQ(faults_after([](Replayed& frame) { frame.camera_from_world->translation.z() += 0.004; }), "");
+  const auto move_away = [](Replayed& frame) { frame.camera_from_world->translation.z() += 5.0; };
+  EXPECT_THAT(faults_after(move_away), HasSubstr("frames are found instead")) << "away from the poses of the mission";
+  std::ranges::for_each(before, move_away);
+  EXPECT_EQ(faults_after([](Replayed& frame) { frame.camera_from_world->translation.z() -= 5.0; }), "")
+      << "places that the map before confused";
+}
+
+// A building that repeats looks alike from outside its map.
+TEST_F(MapUpdates, PlaceASessionByItsKeyframesOnTheMap) {
+  std::vector<ReplayFrame> frames = frames_to_replay(parent_.stored.map);
+  std::vector<Replayed> found;
+  for (ReplayFrame& frame : frames) found.push_back({frame.camera_from_world, 1e-6 * Matrix6::Identity(), 100});
+  const std::size_t outside = frames.size() / 2;
+  for (std::size_t i = 0; i < outside; ++i) frames[i].camera_from_world.translation.z() += 50.0;
+  const auto place = [&] { return place_of(frames, found, parent_.stored.map); };
+  EXPECT_EQ(place().fault, "");
+  EXPECT_EQ(place().found, static_cast<int>(frames.size() - outside));
+  for (std::size_t i = outside; i < outside + 2; ++i) found[i].camera_from_world->translation.z() += 0.5;
+  EXPECT_THAT(place().fault, HasSubstr("contradicts the map: 2 of its"));
 }
 
 }  // namespace
