@@ -118,23 +118,32 @@ std::string fault_of(const StoredSession& session, const StoredMap& map, std::sp
 
 SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found, const MapGraph& map) {
   constexpr int kLeastFound = 2;
-  constexpr double kMaxElsewhere = 0.05;  // share of the frames found; one is never enough
+  constexpr double kMaxElsewhere = 0.2;  // share of the frames found; one is never enough
+  constexpr int kRun = 3;                // successive frames found at the same distance from their poses
+  constexpr double kSameDistance = 0.2;  // metres
   const std::vector<Pose> mapped = mapped_poses(map);
   SessionPlace place;
   place.frames = static_cast<int>(frames.size());
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // metres
+  int run = 0, longest = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Pose map_from_camera = inverse(frames[i].camera_from_world);
     // Keyframes outside the map are found at places that look alike.
-    if (!found[i].camera_from_world ||
-        !is_mapped(inverse(frames[i].rig.body_from_camera * frames[i].camera_from_world), mapped))
+    if (!found[i].camera_from_world || !is_mapped(map_from_camera * inverse(frames[i].rig.body_from_camera), mapped))
       continue;
     ++place.found;
-    place.elsewhere += is_elsewhere(frames[i], found[i]);
+    const Eigen::Vector3d before = shift;
+    shift = inverse(*found[i].camera_from_world).translation - map_from_camera.translation;
+    const bool is_away = is_elsewhere(frames[i], found[i]);
+    place.elsewhere += is_away;
+    run = !is_away ? 0 : (shift - before).norm() <= kSameDistance ? run + 1 : 1;
+    longest = std::max(longest, run);
   }
   if (place.frames < kLeastFound) {
     place.fault = fmt::format("mapped too little to be placed: it has {} keyframes", place.frames);
   } else if (place.found < kLeastFound) {
     place.fault = fmt::format("is not found in the map: {} of its {} keyframes are", place.found, place.frames);
-  } else if (place.elsewhere > std::max(1.0, kMaxElsewhere * place.found)) {
+  } else if (place.elsewhere > std::max(1.0, kMaxElsewhere * place.found) || longest >= kRun) {
     place.fault = fmt::format("contradicts the map: {} of its {} keyframes found are more than 10 cm or 1 degree away",
                               place.elsewhere, place.found);
   }

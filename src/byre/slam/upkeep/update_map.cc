@@ -77,10 +77,20 @@ std::vector<Survival> survival_by(const MapVersion& parent, const std::vector<Fi
   return survival;
 }
 
+bool is_found_elsewhere(const Fitting& fits, Timestamp time) {
+  for (std::size_t i = 0; i < fits.frames.size(); ++i) {
+    if (fits.frames[i].frame.time == time) return is_elsewhere(fits.frames[i], fits.found[i]);
+  }
+  return false;
+}
+
 void add_session(const Fitting& fits, const MapGraph& parent, const SparedPlaces& spared, StoredMap& child,
                  SessionUse& use) {
   std::vector<KeyframeId> keyframes = keyframes_to_add(parent, child.map, fits.online);
-  std::erase_if(keyframes, [&](KeyframeId id) { return is_spared(spared, *fits.online.find_keyframe(id)); });
+  std::erase_if(keyframes, [&](KeyframeId id) {
+    const Keyframe& keyframe = *fits.online.find_keyframe(id);
+    return is_spared(spared, keyframe) || is_found_elsewhere(fits, keyframe.frame.time);
+  });
   use.keyframes_added = use.points_added = 0;
   if (keyframes.empty()) return;
   const Added added = add_keyframes(fits.online, keyframes, static_cast<int>(child.recordings.size()), child.map);
