@@ -91,7 +91,7 @@ std::optional<KeyframeId> most_shared(const MapGraph& map, const Keyframe& keyfr
 std::vector<KeyframeId> keyframes_to_add(const MapGraph& map, const MapGraph& child, const MapGraph& online) {
   constexpr double kFew = 0.5;        // known points seen, as a share of those that the map has at this place
   constexpr double kSeparate = 0.4;   // least distance of added keyframes, metres plus radians
-  constexpr double kMaxSigma = 0.05;  // metres, of the position
+  constexpr double kMaxSigma = 0.03;  // metres, of the position
   constexpr int kKeyframesOfPlace = 4;
   const std::vector<KeyframeId> present = map.keyframe_ids();
   std::vector<KeyframeId> others;  // added by other missions
