@@ -127,14 +127,14 @@ SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Repla
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // metres
   int run = 0, longest = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!found[i].camera_from_world) continue;
     const Pose map_from_camera = inverse(frames[i].camera_from_world);
+    const bool is_away = is_elsewhere(frames[i], found[i]);
     // Keyframes outside the map are found at places that look alike.
-    if (!found[i].camera_from_world || !is_mapped(map_from_camera * inverse(frames[i].rig.body_from_camera), mapped))
-      continue;
+    if (is_away && !is_mapped(map_from_camera * inverse(frames[i].rig.body_from_camera), mapped)) continue;
     ++place.found;
     const Eigen::Vector3d before = shift;
     shift = inverse(*found[i].camera_from_world).translation - map_from_camera.translation;
-    const bool is_away = is_elsewhere(frames[i], found[i]);
     place.elsewhere += is_away;
     run = !is_away ? 0 : (shift - before).norm() <= kSameDistance ? run + 1 : 1;
     longest = std::max(longest, run);
