@@ -182,17 +182,14 @@ void OfflineTracker::propose_rivals(const PlaceOfFrame& place, std::span<const P
                                     const PoseFilter& pose_filter, const Mapper& mapper) {
   for (const Pose& camera_from_rival : rivals) {
     const Pose body = body_pose(rig, camera_from_rival);
-    double prior = pose_filter.log_odds_of_relocalisation(place.time, body, rig, mapper.map());
-    if (pose_filter.place().is_accepted()) {
-      prior += log_odds_of_path(inverse(camera_from_rival) * place.camera_from_offline, rig, mapper);
-    }
-    rivals_.propose(place.camera_from_offline, camera_from_rival, prior);
+    rivals_.propose(place.camera_from_offline, camera_from_rival,
+                    pose_filter.log_odds_of_relocalisation(place.time, body, rig, mapper.map()));
   }
 }
 
 // Evidence against a rival by keyframes of the path on which offline points held the pose: a rival of an unbroken path
 // had the same relative pose there. 0 if they agree with it, or if the rival's path is outside the map.
-double OfflineTracker::log_odds_of_path(const Pose& rival_from_place, const Rig& rig, const Mapper& mapper) const {
+double OfflineTracker::log_odds_of_path(const Pose& rival_from_place, const Mapper& mapper) const {
   constexpr std::size_t kMostKeyframes = 4;  // spread over the path, to save time
   PlaceHypothesis of_path(0.0, 0);
   const std::size_t held = held_keyframes_.size(), count = std::min(kMostKeyframes, held);
@@ -201,6 +198,7 @@ double OfflineTracker::log_odds_of_path(const Pose& rival_from_place, const Rig&
     const Keyframe* const keyframe = mapper.online().find_keyframe(id);
     if (keyframe == nullptr || !keyframe->frame.features) continue;
     const Pose predicted = mapper.online().camera_from_world(id) * inverse(rival_from_place);
+    const Rig& rig = mapper.online().rigs()[static_cast<std::size_t>(keyframe->rig)];
     const RivalPlaces::View seen = view_at_rival(keyframe->frame, predicted, rig, {});
     if (seen.is_tracked || seen.view.is_near_keyframe) of_path.observe(seen.view, seen.is_tracked);
   }
@@ -373,8 +371,9 @@ bool OfflineTracker::is_search_needed(const PoseFilter& pose_filter, const Mappe
 OfflineTracker::MissionUpdate OfflineTracker::process_search(const std::optional<PlaceSearch>& search,
                                                              const PoseFilter& pose_filter, const Mapper& mapper) {
   const PlaceHypothesis& place = pose_filter.place();
-  is_refuted_ =
-      pose_filter.has_pose() && mapper.submaps().is_registered() && rivals_.refute(place, pose_filter.is_by_hint());
+  const auto of_path = [&](const Pose& rival_from_place) { return log_odds_of_path(rival_from_place, mapper); };
+  is_refuted_ = pose_filter.has_pose() && mapper.submaps().is_registered() &&
+                rivals_.refute(place, pose_filter.is_by_hint(), of_path);
   if (is_refuted_)
     return {.refutes_pose = true, .refutes_earlier_poses = place.is_accepted() || pose_filter.is_by_hint()};
   if (!search) return {};

@@ -147,7 +147,7 @@ class OfflineTracker {
   };
   void propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
                       const PoseFilter& pose_filter, const Mapper& mapper);
-  double log_odds_of_path(const Pose& rival_from_place, const Rig& rig, const Mapper& mapper) const;
+  double log_odds_of_path(const Pose& rival_from_place, const Mapper& mapper) const;
   bool is_search_needed(const PoseFilter& pose_filter, const Mapper& mapper) const;
   // Empty until enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const PoseFilter& pose_filter,

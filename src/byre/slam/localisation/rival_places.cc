@@ -109,15 +109,18 @@ std::optional<Pose> RivalPlaces::camera_from_likeliest() const {
   return inverse(offline_from_last(*likeliest));
 }
 
-bool RivalPlaces::refute(const PlaceHypothesis& place, bool is_by_hint) const {
+bool RivalPlaces::refute(const PlaceHypothesis& place, bool is_by_hint, const OfPath& of_path) {
   constexpr int kFrames = 3;
   constexpr double kWay = 2.0;             // metres
   const double of_rival = std::log(20.0);  // log-likelihood ratio of the rival to an accepted place
-  return std::ranges::any_of(rivals_, [&](const Rival& rival) {
+  return std::ranges::any_of(rivals_, [&](Rival& rival) {
     const double log_odds = rival.test.log_odds();
     if (rival.frames < kFrames || log_odds < 0.0) return false;
     if (!place.is_accepted() && !is_by_hint) return log_odds > place.log_odds_to_rivals();
-    return rival.way >= kWay && log_odds >= place.log_odds_to_rivals() + of_rival;
+    const double least = std::max(0.0, place.log_odds_to_rivals() + of_rival);
+    if (rival.way < kWay || log_odds < least) return false;
+    if (!rival.of_path) rival.of_path = of_path ? of_path(rival.rival_from_place) : 0.0;
+    return log_odds + *rival.of_path >= least;
   });
 }
 

@@ -1,8 +1,9 @@
 #include "byre/slam/localisation/rival_places.h"
 
+#include "byre/geometry/geometry_matchers.h"
 #include "byre/slam/places/place_view_scene.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace byre {
 namespace {
@@ -95,6 +96,20 @@ TEST_F(RivalPlaceTest, RefutesAnAcceptedPlaceOnlyAlongAPath) {
   EXPECT_FALSE(rivals_.refute(accepted, false)) << "from one spot";
   observe_along(0.5, 2.0, shown_);
   EXPECT_TRUE(rivals_.refute(accepted, false));
+}
+
+TEST_F(RivalPlaceTest, RefutesNoAcceptedPlaceIfEarlierFramesOutweighIt) {
+  observe_along(0.0, 3.0, shown_);
+  const PlaceHypothesis accepted;
+  int calls = 0;
+  const auto of_path = [&](const Pose& rival_from_place) {
+    ++calls;
+    EXPECT_THAT(rival_from_place, PoseNear(inverse(camera_at(5.0)) * camera_at(0.0), 1e-9, 1e-9));
+    return -100.0;
+  };
+  EXPECT_FALSE(rivals_.refute(accepted, false, of_path));
+  EXPECT_FALSE(rivals_.refute(accepted, false, of_path));
+  EXPECT_EQ(calls, 1);
 }
 
 TEST_F(RivalPlaceTest, RefutesAPlaceFoundByAHintOnlyAlongAPath) {
