@@ -107,6 +107,7 @@ class OfflineTracker {
   void begin_submap() {
     mission_.forget_reference();
     rivals_.forget();
+    held_keyframes_.clear();
   }
   void mark_lost();
 
@@ -181,7 +182,7 @@ class OfflineTracker {
   std::vector<PointRecord> point_records_;  // by number of the offline point
   // Number of the newest online keyframe when offline points last constrained the pose.
   std::uint32_t last_held_keyframe_ = 0;
-  std::vector<KeyframeId> held_keyframes_;  // the newest ones at frames of this unbroken path that offline points held
+  std::vector<KeyframeId> held_keyframes_;  // newest keyframes of the unbroken path while offline points held the pose
 };
 
 }  // namespace byre

@@ -130,7 +130,7 @@ class PathBeforeARival : public OfflineTrackerTest {
   bool is_refuted_after(int inliers) {
     constexpr std::size_t kBegin = 7;
     note_found(0);
-    for (std::size_t i = 4; i < kBegin; i += 1) {
+    for (std::size_t i = 4; i < kBegin; ++i) {
       mapper_.add_keyframe(mission_.frames[i], track_of(i), mission_.rig);
       note(i, inliers);
     }

@@ -50,7 +50,10 @@ std::optional<PlaceHypothesis> RivalPlaces::begin(Timestamp time, const Pose& ca
     std::erase_if(rivals_, [&](const Rival& rival) {
       return (offline_from_last(rival).translation - camera).norm() <= reach(time);
     });
-    for (Rival& rival : rivals_) rival.rival_from_place = offline_from_last(rival) * camera_from_place;
+    for (Rival& rival : rivals_) {
+      rival.rival_from_place = offline_from_last(rival) * camera_from_place;
+      rival.of_path.reset();
+    }
   } else {
     rivals_.clear();
   }

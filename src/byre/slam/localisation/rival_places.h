@@ -37,11 +37,11 @@ class RivalPlaces {
 
   // Log of the sum of the odds of all rivals, which the robot's place must outweigh; kNoRivals without rivals.
   double log_odds() const;
-  // Whether a rival is so much more likely that the robot's place must be given up. An accepted place, or one found by
-  // a hint, is given up only after 2 m of path: places that look alike from one spot differ along a path. of_path: log
-  // of the likelihood ratio of a rival to the place by earlier frames, called once for each such rival; empty: no
-  // frames.
+  // Log of the likelihood ratio of a rival to the place by earlier frames of an unbroken path.
   using OfPath = std::function<double(const Pose& rival_from_place)>;
+  // Whether a rival is so much more likely that the robot's place must be given up. An accepted place, or one found by
+  // a hint, is given up only after 2 m of path: places that look alike from one spot differ along a path. of_path
+  // is called once for each such rival; empty: there are no earlier frames.
   bool refute(const PlaceHypothesis& place, bool is_by_hint, const OfPath& of_path = {});
   // Pose of the last frame at the likeliest rival; empty without rivals.
   std::optional<Pose> camera_from_likeliest() const;
@@ -58,7 +58,7 @@ class RivalPlaces {
     Eigen::Vector3d proposed_at;      // camera at the robot's place, metres
     double way = 0.0;                 // metres, largest distance from proposed_at
     int frames = 0;                   // frames tracked at the rival
-    std::optional<double> of_path{};  // see refute(); empty before
+    std::optional<double> of_path{};  // result of OfPath; empty before its call
   };
   struct LastFrame {
     Timestamp time{};

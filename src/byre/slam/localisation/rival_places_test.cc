@@ -112,6 +112,18 @@ TEST_F(RivalPlaceTest, RefutesNoAcceptedPlaceIfEarlierFramesOutweighIt) {
   EXPECT_EQ(calls, 1);
 }
 
+TEST_F(RivalPlaceTest, IsTestedOnThePathOfEachPlace) {
+  int calls = 0;
+  const auto of_path = [&](const Pose&) { return ++calls, -100.0; };
+  observe_along(0.0, 3.0, shown_);
+  EXPECT_FALSE(rivals_.refute({}, false, of_path));
+  rivals_.note_place(Timestamp{0}, camera_at(3.0), {});
+  rivals_.begin(from_seconds(0.1), camera_at(20.0));
+  observe_along(20.0, 23.0, shown_);
+  EXPECT_FALSE(rivals_.refute({}, false, of_path));
+  EXPECT_EQ(calls, 2);
+}
+
 TEST_F(RivalPlaceTest, RefutesAPlaceFoundByAHintOnlyAlongAPath) {
   for (int i = 0; i < 50; ++i) observe(0.01 * i, shown_);
   EXPECT_FALSE(rivals_.refute(open_place(not_shown_), true)) << "from one spot";

@@ -119,24 +119,24 @@ std::string fault_of(const StoredSession& session, const StoredMap& map, std::sp
 SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found, const MapGraph& map) {
   constexpr int kLeastFound = 2;
   constexpr double kMaxElsewhere = 0.2;  // share of the frames found; one is never enough
-  constexpr int kRun = 3;                // successive frames found at the same distance from their poses
-  constexpr double kSameDistance = 0.2;  // metres
+  constexpr int kRun = 3;                // successive frames found with the same shift
+  constexpr double kSameShift = 0.2;     // metres
   const std::vector<Pose> mapped = mapped_poses(map);
   SessionPlace place;
   place.frames = static_cast<int>(frames.size());
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // metres
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // shift of the last frame found, metres
   int run = 0, longest = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!found[i].camera_from_world) continue;
     const Pose map_from_camera = inverse(frames[i].camera_from_world);
     const bool is_away = is_elsewhere(frames[i], found[i]);
-    // Keyframes outside the map are found at places that look alike.
+    // Keyframes outside the map may be found at places that look alike.
     if (is_away && !is_mapped(map_from_camera * inverse(frames[i].rig.body_from_camera), mapped)) continue;
     ++place.found;
     const Eigen::Vector3d before = shift;
     shift = inverse(*found[i].camera_from_world).translation - map_from_camera.translation;
     place.elsewhere += is_away;
-    run = !is_away ? 0 : (shift - before).norm() <= kSameDistance ? run + 1 : 1;
+    run = !is_away ? 0 : (shift - before).norm() <= kSameShift ? run + 1 : 1;
     longest = std::max(longest, run);
   }
   if (place.frames < kLeastFound) {

@@ -19,7 +19,8 @@ struct StoredSession {
 // of the versions that it was made of.
 std::string fault_of(const StoredSession& session, const StoredMap& map, std::span<const std::uint64_t> maps);
 
-// Agreement of a session's poses with those found by offline points alone, at places that the map shows.
+// Agreement of a session's poses with those found by offline points alone. Frames from outside the map count only where
+// they are found at their poses: a building that repeats looks alike from there.
 struct SessionPlace {
   int frames = 0;
   int found = 0;
