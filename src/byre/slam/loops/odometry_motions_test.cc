@@ -58,6 +58,11 @@ TEST_F(MotionsOfATrueMap, AreRejectedIfTheyContradictImages) {
   EXPECT_THAT(odometry_motions(map_, ids, 0, odometry(1.0, spinning)), SizeIs(ids.size() - 4));
 }
 
+TEST_F(MotionsOfATrueMap, AreAcceptedIfTheMapErrsByAFifth) {
+  const std::vector<KeyframeId> ids = map_.keyframe_ids();
+  EXPECT_THAT(odometry_motions(map_, ids, 0, odometry(1.2)), SizeIs(ids.size() - 1));
+}
+
 // No image contradicts a motion between keyframes without common points.
 TEST_F(MotionsOfATrueMap, AreAcceptedBetweenKeyframesWithoutCommonPoints) {
   const std::vector<KeyframeId> ids = map_.keyframe_ids();

@@ -37,6 +37,7 @@ Frame Calibrator::corrected(const Frame& frame) {
 void Calibrator::apply_update(const RefinedCalibration& refined, RectifiedChange from_given) {
   state_.change = refined.change;
   result_ = refined;
+  is_attempt_open_ = false;
   from_given_.emplace(std::move(from_given));
 }
 

@@ -55,9 +55,12 @@ class Calibrator {
   }
   // Whether a last refinement at the end pays off. A refinement stopped by the end of the session has no result.
   bool is_final_run_useful(int keyframes) const {
-    return !last_keyframes_ || !result_ || 4 * keyframes >= 5 * *last_keyframes_;
+    return !last_keyframes_ || is_attempt_open_ || 4 * keyframes >= 5 * *last_keyframes_;
   }
-  void note_attempt(int keyframes) { last_keyframes_ = keyframes; }
+  void note_attempt(int keyframes) {
+    last_keyframes_ = keyframes;
+    is_attempt_open_ = true;
+  }
 
   // Makes refined the present calibration; from_given: its change of features from the given one.
   void apply_update(const RefinedCalibration& refined, RectifiedChange from_given);
@@ -71,6 +74,7 @@ class Calibrator {
   std::optional<RectifiedChange> from_given_;  // empty while the present calibration is the given one
   bool given_disagrees_ = false;               // with the images, while they were rectified by it
   std::optional<int> last_keyframes_;          // keyframes at the last refinement
+  bool is_attempt_open_ = false;               // the last refinement has no result yet
   ObjectPool<Features> features_of_frames_;    // reused memory
 };
 

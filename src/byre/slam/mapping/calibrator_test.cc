@@ -42,5 +42,14 @@ TEST_F(RefinedCalibrator, IsPendingLongerIfImagesContradictedTheGivenCalibration
   EXPECT_FALSE(calibrator_.is_open());
 }
 
+TEST_F(RefinedCalibrator, IsRefinedAtTheEndAfterAnAttemptWithoutResult) {
+  refine(16);
+  calibrator_.note_attempt(22);
+  EXPECT_TRUE(calibrator_.is_final_run_useful(23)) << "the result is that of 16 keyframes";
+  refine(22);
+  EXPECT_FALSE(calibrator_.is_final_run_useful(23));
+  EXPECT_TRUE(calibrator_.is_final_run_useful(28));
+}
+
 }  // namespace
 }  // namespace byre
