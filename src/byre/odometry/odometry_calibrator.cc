@@ -36,7 +36,7 @@ double way_of(const std::vector<MotionPair>& motions) {
 // Whether the base drove and turned enough for an estimate without a prior.
 bool determine_calibration(const std::vector<MotionPair>& motions) {
   constexpr double kLeastTurn = 0.8;  // radians, sum of all turns
-  constexpr double kLeastWay = 1.0;   // metres
+  constexpr double kLeastWay = 0.5;   // metres
   double turned = 0.0;
   for (const MotionPair& motion : motions) turned += std::abs(rotation_log(motion.base.rotation).z());
   return turned >= kLeastTurn && way_of(motions) >= kLeastWay;
@@ -57,6 +57,14 @@ std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair
                                                     const WheelCalibration& prior) {
   auto found = estimate_wheel_calibration(motions, prior);
   return is_determined(found, kMaxSigma) ? found : std::nullopt;
+}
+
+// Whether motions of a whole drive contradict the prior, and fit another calibration clearly better.
+bool do_motions_refute(const WheelCalibration& prior, const std::vector<MotionPair>& motions) {
+  constexpr double kClearly = 2.0;  // ratio of the usual errors
+  const auto alone = estimate_wheel_calibration(motions), with = estimate_wheel_calibration(motions, prior);
+  return with && is_determined(alone, kMaxInitialSigma) && is_contradicted(prior, *alone) &&
+         with->translation_error > kClearly * alone->translation_error;
 }
 
 // Motions that wheels measured as well.
@@ -303,9 +311,9 @@ void OdometryCalibrator::estimate_calibrations() {
   if (estimates_ >= kEstimatesUntilUsed || prior_.calibration.wheels) integrate(gaps_);
 }
 
-void OdometryCalibrator::reestimate(const Trajectory& seen) {
+bool OdometryCalibrator::reestimate(const Trajectory& seen) {
   stationary_.reestimate(seen);
-  if (wheels_.empty() || seen.empty()) return;
+  if (wheels_.empty() || seen.empty()) return false;
   std::deque<VisualMotion> motions;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < seen.size(); ++i) {
@@ -315,20 +323,29 @@ void OdometryCalibrator::reestimate(const Trajectory& seen) {
     motions.push_back({seen[begin].time, seen[i].time, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
     begin = i;
   }
-  const auto& prior = prior_.calibration.wheels;
+  const auto prior = [this] {
+    const auto& known = prior_.calibration.wheels;
+    return known && !is_metric_ ? std::optional(with_unknown_scale(*known)) : known;
+  };
   const auto estimate = [&] {
     const std::vector<MotionPair> pairs = pairs_of(motions, odometry());
-    const auto found = prior ? estimate_with_prior(pairs, is_metric_ ? *prior : with_unknown_scale(*prior))
-                             : estimate_without_prior(pairs);
+    const auto found = prior() ? estimate_with_prior(pairs, *prior()) : estimate_without_prior(pairs);
     if (found) set_wheels(*found);
     if (is_metric_ || !wheel_calibration_) return;
     double& variance = wheel_calibration_->covariance(6, 6);
     variance = std::max(variance, std::pow(scale_scatter(pairs, *wheel_calibration_), 2));
   };
-  if (!wheel_calibration_) estimate();  // the delay needs the base's up axis
-  if (!wheel_calibration_) return;
-  estimate_time_offset(motions);
-  estimate();
+  const auto estimate_with_delay = [&] {
+    if (!wheel_calibration_) estimate();  // the delay needs the base's up axis
+    if (!wheel_calibration_) return;
+    estimate_time_offset(motions);
+    estimate();
+  };
+  estimate_with_delay();
+  if (!prior_.is_measured || !prior() || !do_motions_refute(*prior(), pairs_of(motions, odometry()))) return false;
+  discard_prior_wheels(seen.back().time);
+  estimate_with_delay();
+  return true;
 }
 
 std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() const {

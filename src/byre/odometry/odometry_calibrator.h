@@ -98,8 +98,9 @@ class OdometryCalibrator {
   void note_located(const std::vector<Timestamp>& times) { gaps_.note_located(times); }
 
   // Delay and calibration of the wheels by the final map poses of the tracked frames, after the last frame. Poses of
-  // untracked frames are ignored, because wheels themselves determined them.
-  void reestimate(const Trajectory& seen);
+  // untracked frames are ignored, because wheels themselves determined them. Returns whether they contradict the given
+  // extrinsics, which are then reported and dropped.
+  bool reestimate(const Trajectory& seen);
 
   // After reestimate: lengths of the map are multiplied by this factor from here on.
   void rescale(double factor);

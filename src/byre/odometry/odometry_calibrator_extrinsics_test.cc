@@ -155,5 +155,25 @@ TEST(GivenExtrinsics, AreReestimatedByFramesLocatedLater) {
   EXPECT_LT(calibrator.wheels()->arm_sigma(), 0.5 * before);
 }
 
+// A drive too short for contradictions on the way: the final poses show them.
+TEST(GivenExtrinsics, AreDroppedAtTheEndIfFinalPosesContradictThem) {
+  for (const double error : {0.0, 0.3}) {  // metres, of the lever arm ahead
+    const Drive drive{.base_from_body = camera_on_base(), .noise = 0.001};
+    WheelCalibration measured = measured_by_hand(drive);
+    measured.base_from_body.translation.x() -= error;
+    OdometryCalibrator calibrator = driven(drive, {measured}, 0.0, 4.0, 4.0);
+    ASSERT_FALSE(calibrator.has_calibration_changed());
+    std::mt19937 random(7);
+    Trajectory final;
+    for (int i = 0; i < 80; ++i) final.push_back({from_seconds(0.05 * i), drive.seen(0.05 * i, random)});
+    EXPECT_EQ(calibrator.reestimate(final), error > 0.0);
+    EXPECT_EQ(calibrator.has_calibration_changed(), error > 0.0);
+    EXPECT_EQ(calibrator.warnings().size(), error > 0.0 ? 1u : 0u);
+    ASSERT_TRUE(calibrator.wheels()) << error;
+    EXPECT_NEAR(calibrator.wheels()->base_from_body.translation.x(), 0.4, 0.03) << error;
+    EXPECT_FALSE(calibrator.reestimate(final)) << "dropped already";
+  }
+}
+
 }  // namespace
 }  // namespace byre

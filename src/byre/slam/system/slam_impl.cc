@@ -382,7 +382,10 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
   } else {
     extractor_.rest();
     result.report = session_->finish_map(hooks);
-    prior_.reestimate(session_->final_trajectory());
+    if (prior_.reestimate(session_->final_trajectory())) {  // the map was adjusted to wrong extrinsics
+      result.report = session_->finish_map(hooks);
+      prior_.reestimate(session_->final_trajectory());
+    }
     if (!given_.is_metric()) warn_of_focal_length();
     if (!is_metric_) scale_by_tags();
     if (!is_metric_) scale_by_wheels();
