@@ -107,9 +107,9 @@ BENCHMARK(blur_image)->Unit(benchmark::kMillisecond);
 
 void detect_corners_of_image(benchmark::State& state) {
   const cv::Mat image = as_matrix(rendered_pair().images.left);
-  std::vector<Corner> corners;
+  cv::Mat strengths;
   measure_hot_loop(state, [&] {
-    detect_corners(image, 300, {}, corners);
+    const ScratchVector<Corner> corners = detect_corners(image, 300, {}, strengths);
     benchmark::DoNotOptimize(corners.data());
   });
 }

@@ -24,11 +24,10 @@ void find_expected_points(benchmark::State& state) {
   const Pose prediction_error{rotation_exp({0.003, 0.003, 0.003}), {0.01, 0.01, 0.01}};
   const Pose predicted = prediction_error * true_camera_from_world(mission, kFrame);
   const std::vector<PointId> points = map.point_ids();
-  std::vector<ExpectedPoint> expected;
-  std::vector<GuidedMatch> matches;
+  ScratchVector<GuidedMatch> matches;
   measure_hot_loop(state, [&] {
-    project_points(view, points, predicted, mission.rig, expected);
-    match_expected(*mission.frames[kFrame].features, view, expected, {}, matches);
+    const ScratchVector<ExpectedPoint> expected = project_points(view, points, predicted, mission.rig);
+    matches = match_expected(*mission.frames[kFrame].features, view, expected, {});
   });
   state.counters["points"] = static_cast<double>(points.size());
   state.counters["matched"] = static_cast<double>(matches.size());

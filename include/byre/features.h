@@ -80,7 +80,7 @@ class Features {
   // Copy with other keypoints: the same corners in the same order, slightly displaced. Precondition: equal number.
   Features moved(std::vector<Keypoint> keypoints) const;
   // Same result as features.moved(keypoints), reusing allocated memory.
-  void refill_moved(const Features& features, const std::vector<Keypoint>& keypoints);
+  void refill_moved(const Features& features, std::span<const Keypoint> keypoints);
 
   // Copy that keeps patches of these features only. Precondition: indices, ascending.
   Features with_patches_of(std::span<const int> features) const;

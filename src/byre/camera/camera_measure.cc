@@ -25,7 +25,7 @@ CornerGrid count_corners(const Image& image) {
   const cv::Rect area(kBorder, kBorder, image.width - 2 * kBorder, image.height - 2 * kBorder);
   cv::Mat strengths;
   measure_fast_strengths(pixels, area, kThreshold, strengths);
-  std::vector<Corner> corners;
+  ScratchVector<Corner> corners;
   append_peaks(strengths, area, kThreshold, corners);
   for (const Corner& corner : corners) {
     const int column = corner.x * CornerGrid::kColumns / image.width;

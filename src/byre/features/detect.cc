@@ -52,37 +52,19 @@ Key key_among_equal_ranks(Key key, std::size_t square) {
   return (key >> kStrengthShift & 0xff) << 32U | static_cast<Key>(square);
 }
 
-// Thread-local working memory of detections.
-struct Scratch {
-  std::vector<std::uint8_t> strengths;
-  std::vector<std::uint8_t> cell;
-  std::vector<Corner> corners;
-  std::vector<int> cell_of_column;
-  std::vector<int> found;
-  std::vector<bool> poor;
-  std::vector<int> square_of_corner;
-  std::vector<std::size_t> begin;  // start of each square in `ranked`, and the end
-  std::vector<Key> ranked;         // sorted by square, strongest first
-  std::vector<int> of_rank;        // number of squares with a corner of that rank
-  std::vector<Key> last;           // corners of the last rank used
+using Corners = ScratchVector<Corner>;
+
+// Corners by square.
+struct RankedCorners {
+  ScratchVector<std::size_t> begin;  // start of each square in `sorted`, and the end
+  ScratchVector<Key> sorted;         // by square, strongest first
 };
 
-Scratch& thread_scratch() {
-  thread_local Scratch memory;
-  return memory;
-}
-
-// Temporary image in the given memory.
-cv::Mat scratch_image(std::vector<std::uint8_t>& memory, cv::Size size) {
-  memory.resize(std::max(memory.size(), static_cast<std::size_t>(size.area())));
-  return {size, CV_8U, memory.data()};
-}
-
 // Corners of one cell at the lower threshold; local maxima within the cell.
-void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, std::vector<std::uint8_t>& memory,
-                 std::vector<Corner>& corners) {
-  cv::Mat widened = scratch_image(memory, {cell.width + 2, cell.height + 2});
-  std::fill_n(memory.begin(), widened.total(), std::uint8_t{0});
+void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, Corners& corners) {
+  const cv::Size size(cell.width + 2, cell.height + 2);
+  ScratchVector<std::uint8_t> memory(static_cast<std::size_t>(size.area()), 0);
+  cv::Mat widened(size, CV_8U, memory.data());
   const cv::Rect inside(1, 1, cell.width, cell.height);
   strengths(cell).copyTo(widened(inside));
   const std::size_t before = corners.size();
@@ -94,57 +76,54 @@ void search_cell(const cv::Mat& strengths, const cv::Rect& cell, int threshold, 
 }
 
 // Searches the cells with less than their share of corners again, at the lower threshold.
-void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options, Scratch& memory) {
-  std::vector<Corner>& corners = memory.corners;
+void search_poor_cells(const cv::Mat& strengths, int max_corners, const DetectOptions& options, Corners& corners) {
   const CellGrid grid{searched_area(strengths, options.border), options.cell_size};
-  std::vector<int>& cell_of_column = memory.cell_of_column;
-  cell_of_column.resize(static_cast<std::size_t>(grid.area.width));
+  ScratchVector<int> cell_of_column(static_cast<std::size_t>(grid.area.width));
   for (int x = 0; x < grid.area.width; ++x) cell_of_column[static_cast<std::size_t>(x)] = x / grid.cell_size;
   const auto cell_of = [&](const Corner& corner) {
     return static_cast<std::size_t>((corner.y - grid.area.y) / grid.cell_size * grid.columns() +
                                     cell_of_column[static_cast<std::size_t>(corner.x - grid.area.x)]);
   };
-  std::vector<int>& found = memory.found;
-  found.assign(grid.size(), 0);
+  ScratchVector<int> found(grid.size(), 0);
   for (const Corner& corner : corners) ++found[cell_of(corner)];
-  std::vector<bool>& poor = memory.poor;
-  poor.assign(grid.size(), false);
+  ScratchVector<bool> poor(grid.size(), false);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     poor[i] = static_cast<double>(found[i]) * grid.area.area() < static_cast<double>(max_corners) * grid.cell(i).area();
   }
   // The second search finds the corners of these cells again.
   std::erase_if(corners, [&](const Corner& corner) { return poor[cell_of(corner)]; });
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (poor[i]) search_cell(strengths, grid.cell(i), options.min_fast_threshold, memory.cell, corners);
+    if (poor[i]) search_cell(strengths, grid.cell(i), options.min_fast_threshold, corners);
   }
 }
 
-// Refills `ranked`, and the start of each square in it.
-void rank_in_squares(const cv::Size& size, int max_corners, Scratch& memory) {
+RankedCorners rank_in_squares(const cv::Size& size, int max_corners, const Corners& corners) {
   const double area = static_cast<double>(size.width) * size.height;
   const double side = std::max(1.0, std::sqrt(area / std::max(1, max_corners)));
   const int columns = static_cast<int>(size.width / side) + 1;
   const int rows = static_cast<int>(size.height / side) + 1;
-  std::vector<std::size_t>& begin = memory.begin;
+  RankedCorners ranked;
+  ScratchVector<std::size_t>& begin = ranked.begin;
   begin.assign(static_cast<std::size_t>(columns * rows) + 2, 0);
-  std::vector<int>& squares = memory.square_of_corner;
-  squares.clear();
-  for (const Corner& corner : memory.corners) {
+  ScratchVector<int> squares;
+  squares.reserve(corners.size());
+  for (const Corner& corner : corners) {
     squares.push_back(static_cast<int>(corner.y / side) * columns + static_cast<int>(corner.x / side));
     ++begin[static_cast<std::size_t>(squares.back()) + 2];
   }
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  memory.ranked.resize(memory.corners.size());
+  ranked.sorted.resize(corners.size());
   // Each begin advances to that of the next square.
   for (std::size_t i = 0; i < squares.size(); ++i) {
     const int square = squares[i];
-    memory.ranked[begin[static_cast<std::size_t>(square) + 1]++] = key_of(memory.corners[i], square);
+    ranked.sorted[begin[static_cast<std::size_t>(square) + 1]++] = key_of(corners[i], square);
   }
   begin.pop_back();
   for (std::size_t square = 0; square + 1 < begin.size(); ++square) {
-    const auto at = [&](std::size_t i) { return memory.ranked.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto at = [&](std::size_t i) { return ranked.sorted.begin() + static_cast<std::ptrdiff_t>(i); };
     std::sort(at(begin[square]), at(begin[square + 1]));
   }
+  return ranked;
 }
 
 // Number of corners that all squares contribute, and the end of the next rank's corners that are also used.
@@ -153,10 +132,9 @@ struct Selection {
   Key end_of_next = 0;  // see key_among_equal_ranks
 };
 
-Selection select_from_squares(std::size_t wanted, Scratch& memory) {
-  std::vector<int>& of_rank = memory.of_rank;
-  of_rank.clear();
-  const std::vector<std::size_t>& begin = memory.begin;
+Selection select_from_squares(std::size_t wanted, const RankedCorners& ranked) {
+  ScratchVector<int> of_rank;  // number of squares with a corner of that rank
+  const ScratchVector<std::size_t>& begin = ranked.begin;
   for (std::size_t square = 0; square + 1 < begin.size(); ++square) {
     const std::size_t count = begin[square + 1] - begin[square];
     if (count > of_rank.size()) of_rank.resize(count, 0);
@@ -167,11 +145,10 @@ Selection select_from_squares(std::size_t wanted, Scratch& memory) {
     wanted -= static_cast<std::size_t>(of_rank[share.of_all]);
   }
   if (share.of_all == of_rank.size()) return share;
-  std::vector<Key>& last = memory.last;
-  last.clear();
+  ScratchVector<Key> last;  // corners of the last rank used
   for (std::size_t square = 0; square + 1 < begin.size(); ++square) {
     const std::size_t next = begin[square] + share.of_all;
-    if (next < begin[square + 1]) last.push_back(key_among_equal_ranks(memory.ranked[next], square));
+    if (next < begin[square + 1]) last.push_back(key_among_equal_ranks(ranked.sorted[next], square));
   }
   const auto end = last.begin() + static_cast<std::ptrdiff_t>(wanted);
   std::nth_element(last.begin(), end, last.end());
@@ -181,31 +158,31 @@ Selection select_from_squares(std::size_t wanted, Scratch& memory) {
 
 }  // namespace
 
-void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, std::vector<Corner>& corners) {
-  corners.clear();
+Corners detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, cv::Mat& strengths) {
   const cv::Rect area = level.empty() ? cv::Rect() : searched_area(level, options.border);
-  if (std::min(area.width, area.height) <= 0) return;
-  Scratch& memory = thread_scratch();
-  cv::Mat strengths = scratch_image(memory.strengths, level.size());
+  if (std::min(area.width, area.height) <= 0) return {};
+  strengths.create(level.size(), CV_8U);
   measure_fast_strengths(level, area, std::min(options.fast_threshold, options.min_fast_threshold), strengths);
-  memory.corners.clear();
-  append_peaks(strengths, area, options.fast_threshold, memory.corners);
-  search_poor_cells(strengths, max_corners, options, memory);
+  Corners found;
+  append_peaks(strengths, area, options.fast_threshold, found);
+  search_poor_cells(strengths, max_corners, options, found);
 
-  rank_in_squares(level.size(), max_corners, memory);
-  const std::size_t wanted = std::min(memory.ranked.size(), static_cast<std::size_t>(std::max(0, max_corners)));
-  const Selection share = select_from_squares(wanted, memory);
+  const auto& [begin, sorted] = rank_in_squares(level.size(), max_corners, found);
+  const std::size_t wanted = std::min(sorted.size(), static_cast<std::size_t>(std::max(0, max_corners)));
+  const Selection share = select_from_squares(wanted, {begin, sorted});
+  Corners corners;
   corners.reserve(wanted);
-  for (std::size_t square = 0; square + 1 < memory.begin.size(); ++square) {
-    const std::size_t end = memory.begin[square + 1];
-    std::size_t i = memory.begin[square];
+  for (std::size_t square = 0; square + 1 < begin.size(); ++square) {
+    const std::size_t end = begin[square + 1];
+    std::size_t i = begin[square];
     for (const std::size_t next = std::min(end, i + share.of_all); i < next; ++i) {
-      corners.push_back(corner_of(memory.ranked[i]));
+      corners.push_back(corner_of(sorted[i]));
     }
-    if (i < end && key_among_equal_ranks(memory.ranked[i], square) < share.end_of_next) {
-      corners.push_back(corner_of(memory.ranked[i]));
+    if (i < end && key_among_equal_ranks(sorted[i], square) < share.end_of_next) {
+      corners.push_back(corner_of(sorted[i]));
     }
   }
+  return corners;
 }
 
 }  // namespace byre

@@ -2,8 +2,6 @@
 
 #include "byre/features/fast_corners.h"
 
-#include <vector>
-
 #include <opencv2/core.hpp>
 
 namespace byre {
@@ -17,7 +15,8 @@ struct DetectOptions {
 
 // FAST-9 corners (Rosten 2006) of one octave, at most max_corners, evenly distributed: the image is divided into about
 // max_corners squares; each contributes its strongest corner, then its second, until there are enough. Ordered by row
-// of squares. Deterministic. Refills `corners`.
-void detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options, std::vector<Corner>& corners);
+// of squares. Deterministic. strengths: working memory.
+ScratchVector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options,
+                                     cv::Mat& strengths);
 
 }  // namespace byre

@@ -27,7 +27,7 @@ bool same_corner(const Corner& a, const Corner& b) {
 }
 
 // Number of corners in each square inside the border.
-std::vector<int> count_by_square(const std::vector<Corner>& corners, const cv::Size& size, int border, int side) {
+std::vector<int> count_by_square(std::span<const Corner> corners, const cv::Size& size, int border, int side) {
   const int columns = (size.width - 2 * border) / side;
   const int rows = (size.height - 2 * border) / side;
   std::vector<int> counts(static_cast<std::size_t>(columns * rows), 0);

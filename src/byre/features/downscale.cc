@@ -1,5 +1,7 @@
 #include "byre/features/downscale.h"
 
+#include "byre/base/scratch_memory.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -120,9 +122,9 @@ Downscale::Downscale(cv::Size source, double factor)
 void Downscale::apply(const cv::Mat& image, cv::Mat& made) const {
   assert(image.type() == CV_8U && image.size() == source_);
   made.create(size_, CV_8U);
-  thread_local std::array<std::vector<std::int16_t>, 2> sums;  // the last two scaled rows
+  std::array<ScratchVector<std::int16_t>, 2> sums;  // the last two scaled rows
   std::array<int, 2> made_of = {-1, -1};
-  for (std::vector<std::int16_t>& row : sums) row.resize(groups_.size() * Group::kPixels);
+  for (ScratchVector<std::int16_t>& row : sums) row.resize(groups_.size() * Group::kPixels);
   const auto sums_of = [&](int row) {
     const auto slot = static_cast<std::size_t>(row % 2);
     if (made_of[slot] != row) {

@@ -191,7 +191,6 @@ struct Extractor::State {
   EnhancedImage left_enhanced;
   EnhancedImage right_enhanced;
   std::array<cv::Mat, kOctaves> blurred;
-  std::array<std::vector<Corner>, kOctaves> corners_of_octave;
   std::array<Described, kOctaves> described;
   std::vector<Keypoint> keypoints;  // all octaves, the finest first; working memory as the next members
   std::vector<Descriptor> descriptors;
@@ -240,13 +239,12 @@ void Extractor::State::describe_octave(int octave, int quota) {
   detect.fast_threshold = options.fast_threshold;
   detect.min_fast_threshold = options.min_fast_threshold;
   detect.border = kDescriptorRadius;
-  std::vector<Corner>& corners = corners_of_octave[slot];
-  detect_corners(level, quota, detect, corners);
+  cv::Mat& smooth = blurred[slot];
+  const ScratchVector<Corner> corners = detect_corners(level, quota, detect, smooth);
   if (corners.empty()) return;
   found.keypoints.reserve(corners.size());
   found.descriptors.reserve(corners.size());
   found.patches.reserve(corners.size());
-  cv::Mat& smooth = blurred[slot];
   gaussian_blur(level, smooth);
   for (const Corner& corner : corners) {
     Keypoint keypoint;
@@ -334,7 +332,6 @@ void Extractor::rest() {
   state_->left_enhanced = {};
   state_->right_enhanced = {};
   state_->blurred = {};
-  state_->corners_of_octave = {};
   state_->described = {};
   state_->keypoints = {};
   state_->descriptors = {};

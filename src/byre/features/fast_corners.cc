@@ -210,14 +210,13 @@ void measure_fast_strengths(const cv::Mat& image, const cv::Rect& area, int thre
   }
 }
 
-void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold, std::vector<Corner>& corners) {
+void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold, ScratchVector<Corner>& corners) {
   assert(area.x > 0 && area.x + area.width < strengths.cols && area.y > 0 && area.y + area.height < strengths.rows);
   const auto stride = static_cast<std::ptrdiff_t>(strengths.step);
   const auto width = static_cast<std::size_t>(area.width);
   const bool is_narrow = width < HWY_DYNAMIC_DISPATCH(lanes_of_rows)();
-  thread_local std::vector<std::uint64_t> marks;
   constexpr std::size_t kBits = 64;
-  marks.resize(std::max(marks.size(), width / kBits + 1));
+  ScratchVector<std::uint64_t> marks(width / kBits + 1);
   for (int y = area.y; y < area.y + area.height; ++y) {
     const std::uint8_t* const row = strengths.ptr<std::uint8_t>(y) + area.x;
     const auto append = [&](int x) { corners.push_back({area.x + x, y, static_cast<float>(row[x] - 1)}); };

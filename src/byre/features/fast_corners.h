@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include "byre/base/scratch_memory.h"
 
 #include <opencv2/core.hpp>
 
@@ -23,6 +23,6 @@ void measure_fast_strengths(const cv::Mat& image, const cv::Rect& area, int thre
 
 // Appends the pixels of the area that are stronger than the threshold and than each of their eight neighbours, row by
 // row. Precondition: the area keeps one pixel from the border.
-void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold, std::vector<Corner>& corners);
+void append_peaks(const cv::Mat& strengths, const cv::Rect& area, int threshold, ScratchVector<Corner>& corners);
 
 }  // namespace byre

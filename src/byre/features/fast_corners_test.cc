@@ -58,7 +58,7 @@ TEST_P(FastPeaks, MatchOpencv) {
     const cv::Rect area(4, 3, GetParam(), 54);
     cv::Mat strengths;
     measure_fast_strengths(image, area, 7, strengths);
-    std::vector<Corner> corners;
+    ScratchVector<Corner> corners;
     append_peaks(strengths, area, threshold, corners);
 
     std::vector<cv::KeyPoint> expected;

@@ -1,5 +1,7 @@
 #include "byre/features.h"
 
+#include "byre/base/scratch_memory.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -11,7 +13,7 @@ namespace byre {
 namespace {
 
 template <typename Item>
-std::vector<Item> reordered(std::vector<Item> items, const std::vector<int>& order) {
+std::vector<Item> reordered(std::vector<Item> items, std::span<const int> order) {
   if (items.empty() || std::ranges::is_sorted(order)) return items;
   std::vector<Item> sorted;
   sorted.reserve(items.size());
@@ -35,7 +37,7 @@ std::vector<int> identity_order(std::size_t count) {
 
 // Same, in the memory of the resulting vector.
 template <typename Item>
-void reorder_into(const std::vector<Item>& items, const std::vector<int>& order, std::vector<Item>& sorted) {
+void reorder_into(const std::vector<Item>& items, std::span<const int> order, std::vector<Item>& sorted) {
   sorted.clear();
   sorted.reserve(items.size());
   for (const int i : order) sorted.push_back(items[static_cast<std::size_t>(i)]);
@@ -46,34 +48,26 @@ struct Cells {
   int size = 0;  // pixels
   int columns = 0;
   int rows = 0;
-  // Indices of keypoints. Thread-local memory, reused by the next sort.
-  std::vector<int>& order;
+  ScratchVector<int> order;  // indices of keypoints
 
   // begin becomes Features::cell_begin_, and keeps its memory.
   Cells(int width, int height, const std::vector<Keypoint>& keypoints, std::vector<int>& begin)
       : size(cell_size_for(width, height, keypoints.size())),
         columns((width + size - 1) / size),
         rows((height + size - 1) / size),
-        order(memory()[0]) {
+        order(keypoints.size()) {
     begin.assign(static_cast<std::size_t>(columns * rows + 1), 0);
-    std::vector<int>& cells = memory()[1];
-    std::vector<int>& next = memory()[2];
-    order.resize(keypoints.size());
-    cells.clear();
+    ScratchVector<int> cells;
+    cells.reserve(keypoints.size());
     for (const Keypoint& keypoint : keypoints) {
       cells.push_back(cell_of(keypoint));
       ++begin[static_cast<std::size_t>(cells.back() + 1)];
     }
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    next.assign(begin.begin(), begin.end() - 1);
+    ScratchVector<int> next(begin.begin(), begin.end() - 1);
     for (std::size_t i = 0; i < keypoints.size(); ++i) {
       order[static_cast<std::size_t>(next[static_cast<std::size_t>(cells[i])]++)] = static_cast<int>(i);
     }
-  }
-
-  static std::array<std::vector<int>, 3>& memory() {
-    thread_local std::array<std::vector<int>, 3> kept;
-    return kept;
   }
 
   int cell_of(const Keypoint& keypoint) const {
@@ -110,25 +104,27 @@ void Features::refill(int width, int height, const std::vector<Keypoint>& keypoi
                       const std::shared_ptr<const std::vector<Patch>>& patches) {
   set_patches(patches);
   slack_ = 0.0f;
-  std::vector<int>* order = nullptr;
+  ScratchVector<int> order;
   cell_begin_.refill([&](std::vector<int>& begin) {
-    const Cells cells(width, height, keypoints, begin);
+    Cells cells(width, height, keypoints, begin);
     cell_size_ = cells.size;
     columns_ = keypoints.empty() ? 0 : cells.columns;
     rows_ = keypoints.empty() ? 0 : cells.rows;
-    order = &cells.order;
+    order = std::move(cells.order);
   });
-  keypoints_.refill([&](std::vector<Keypoint>& sorted) { reorder_into(keypoints, *order, sorted); });
-  descriptors_.refill([&](std::vector<Descriptor>& sorted) { reorder_into(descriptors, *order, sorted); });
+  keypoints_.refill([&](std::vector<Keypoint>& sorted) { reorder_into(keypoints, order, sorted); });
+  descriptors_.refill([&](std::vector<Descriptor>& sorted) { reorder_into(descriptors, order, sorted); });
   patch_of_keypoint_.refill([&](std::vector<int>& patch_of_keypoint) {
     patch_of_keypoint.clear();
-    if (!patches_.view().empty()) patch_of_keypoint = *order;
+    if (!patches_.view().empty()) patch_of_keypoint.assign(order.begin(), order.end());
   });
 }
 
 std::vector<int> Features::order_of(int width, int height, const std::vector<Keypoint>& keypoints) {
+  if (keypoints.empty()) return {};
   std::vector<int> begin;
-  return keypoints.empty() ? std::vector<int>{} : Cells(width, height, keypoints, begin).order;
+  const ScratchVector<int> order = Cells(width, height, keypoints, begin).order;
+  return {order.begin(), order.end()};
 }
 
 Features Features::moved(std::vector<Keypoint> keypoints) const {
@@ -139,11 +135,11 @@ Features Features::moved(std::vector<Keypoint> keypoints) const {
   return result;
 }
 
-void Features::refill_moved(const Features& features, const std::vector<Keypoint>& keypoints) {
+void Features::refill_moved(const Features& features, std::span<const Keypoint> keypoints) {
   assert(static_cast<int>(keypoints.size()) == features.size());
   *this = features;
   update_slack(keypoints);
-  keypoints_.refill([&](std::vector<Keypoint>& own) { own = keypoints; });
+  keypoints_.refill([&](std::vector<Keypoint>& own) { own.assign(keypoints.begin(), keypoints.end()); });
 }
 
 void Features::update_slack(std::span<const Keypoint> keypoints) {

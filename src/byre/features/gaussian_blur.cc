@@ -1,5 +1,7 @@
 #include "byre/features/gaussian_blur.h"
 
+#include "byre/base/scratch_memory.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -116,8 +118,7 @@ void gaussian_blur(const cv::Mat& image, cv::Mat& blurred) {
   }
   blurred.create(image.size(), CV_8U);
   constexpr std::size_t kBeyond = 64;  // read but not used
-  thread_local std::vector<std::uint16_t> sums;
-  sums.assign(width + 2 * kRadius + kBeyond, 0);
+  ScratchVector<std::uint16_t> sums(width + 2 * kRadius + kBeyond, 0);
   for (int y = 0; y < image.rows; ++y) {
     std::array<const std::uint8_t*, 2 * kRadius + 1> rows;
     for (int i = -kRadius; i <= kRadius; ++i) {

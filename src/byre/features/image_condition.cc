@@ -1,5 +1,7 @@
 #include "byre/image_condition.h"
 
+#include "byre/base/scratch_memory.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -93,12 +95,10 @@ float noise_of(const Image& image) {
   constexpr double kGain = 6.0;         // root of the sum of the squared weights
   // Two alternating histograms: incrementing the same one twice in a row would stall.
   std::array<std::array<int, kClipped + 1>, 2> raised{};
-  thread_local std::vector<std::int16_t> across;        // second differences between rows
-  thread_local std::vector<std::uint16_t> differences;  // second differences in both directions
   const std::ptrdiff_t stride = image.width;
   const auto width = static_cast<std::size_t>(image.width);
-  across.resize(width);
-  differences.resize(width);
+  ScratchVector<std::int16_t> across(width);        // second differences between rows
+  ScratchVector<std::uint16_t> differences(width);  // second differences in both directions
   for (int y = kRowStep; y + 1 < image.height; y += kRowStep) {
     const std::uint8_t* const row = image.pixels.data() + y * stride;
     const std::uint8_t* const above = row - stride;

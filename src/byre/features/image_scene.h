@@ -133,10 +133,9 @@ inline Image to_image(const cv::Mat& matrix) {
           std::vector<std::uint8_t>(matrix.begin<std::uint8_t>(), matrix.end<std::uint8_t>())};
 }
 
-inline std::vector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
-  std::vector<Corner> corners;
-  detect_corners(level, max_corners, options, corners);
-  return corners;
+inline ScratchVector<Corner> detect_corners(const cv::Mat& level, int max_corners, const DetectOptions& options) {
+  cv::Mat strengths;
+  return detect_corners(level, max_corners, options, strengths);
 }
 
 }  // namespace byre

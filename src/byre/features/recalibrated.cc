@@ -1,5 +1,6 @@
 #include "byre/features/recalibrated.h"
 
+#include "byre/base/scratch_memory.h"
 #include "byre/features/image_bounds.h"
 
 namespace byre {
@@ -26,8 +27,7 @@ Features recalibrated(const Features& features, const RectifiedChange& change) {
 }
 
 void recalibrate_into(const Features& features, const RectifiedChange& change, Features& result) {
-  thread_local std::vector<Keypoint> keypoints;  // working memory
-  keypoints.assign(features.keypoints().begin(), features.keypoints().end());
+  ScratchVector<Keypoint> keypoints(features.keypoints().begin(), features.keypoints().end());
   for (Keypoint& keypoint : keypoints) keypoint = recalibrated(keypoint, change);
   result.refill_moved(features, keypoints);
 }

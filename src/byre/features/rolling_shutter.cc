@@ -1,5 +1,6 @@
 #include "byre/features/rolling_shutter.h"
 
+#include "byre/base/scratch_memory.h"
 #include "byre/features/image_bounds.h"
 
 #include <utility>
@@ -29,8 +30,7 @@ Features correct_rolling_shutter(const Features& features, const Rig& rig, const
 
 void correct_rolling_shutter(const Features& features, const Rig& rig, const CameraMotion& motion, double readout_time,
                              Features& result) {
-  thread_local std::vector<Keypoint> keypoints;  // working memory
-  keypoints.assign(features.keypoints().begin(), features.keypoints().end());
+  ScratchVector<Keypoint> keypoints(features.keypoints().begin(), features.keypoints().end());
   for (Keypoint& keypoint : keypoints) keypoint = correct_rolling_shutter(keypoint, rig, motion, readout_time);
   result.refill_moved(features, keypoints);
 }

@@ -1,5 +1,6 @@
 #include "byre/features/stereo.h"
 
+#include "byre/base/scratch_memory.h"
 #include "byre/features/align_window.h"
 #include "byre/features/block_differences.h"
 #include "byre/features/row_costs.h"
@@ -35,7 +36,7 @@ struct RowMatch {
 };
 
 // Costs of neighbouring columns, in the layout of find_minimum_cost.
-using Costs = std::vector<std::uint16_t>;
+using Costs = ScratchVector<std::uint16_t>;
 
 // Costs of the block of `from` at (x, y) against those of `to` on columns [first, last] of the same row.
 void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last, Costs& costs) {
@@ -52,9 +53,9 @@ void compare_with_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int 
   }
 }
 
-// Searches the block of `from` at (x, y) in `to` over the columns [first, last] of the same row.
-RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last) {
-  thread_local Costs padded;
+// Searches the block of `from` at (x, y) in `to` over the columns [first, last] of the same row. padded: working
+// memory.
+RowMatch search_row(const cv::Mat& from, int x, int y, const cv::Mat& to, int first, int last, Costs& padded) {
   compare_with_row(from, x, y, to, first, last, padded);
   if (last < first) return {};
   const MinimumCost least = find_minimum_cost(padded.data() + 1, static_cast<std::size_t>(last - first + 1));
@@ -76,11 +77,12 @@ int clamp_column(const cv::Mat& level, int x) {
 
 // Right column of a left pixel, whole octave pixels, if the match is unique and mutual.
 std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x, int y, int max_disparity,
-                                const StereoOptions& options) {
-  const RowMatch there = search_row(left, x, y, right, clamp_column(right, x - max_disparity), clamp_column(right, x));
+                                const StereoOptions& options, Costs& costs) {
+  const RowMatch there =
+      search_row(left, x, y, right, clamp_column(right, x - max_disparity), clamp_column(right, x), costs);
   if (there.x < 0 || !there.is_unique(options.max_ratio)) return std::nullopt;
-  const RowMatch back =
-      search_row(right, there.x, y, left, clamp_column(left, there.x), clamp_column(left, there.x + max_disparity));
+  const RowMatch back = search_row(right, there.x, y, left, clamp_column(left, there.x),
+                                   clamp_column(left, there.x + max_disparity), costs);
   if (std::abs(back.x - x) > 1) return std::nullopt;
   return there.x;
 }
@@ -109,14 +111,14 @@ std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& rig
 }
 
 std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,
-                                     double max_disparity, const StereoOptions& options) {
+                                     double max_disparity, const StereoOptions& options, Costs& costs) {
   const float scale = kScaleOfOctave[keypoint.octave];
   const Eigen::Vector2f centre = octave_from_full(keypoint.pixel, keypoint.octave);
   const int x = static_cast<int>(std::lround(centre.x()));
   const int y = static_cast<int>(std::lround(centre.y()));
   if (left.cols < kBlockColumns + kBlockCandidates) return std::nullopt;
   if (y < kRowReach || y + kRowReach >= left.rows || x != clamp_column(left, x)) return std::nullopt;
-  const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options);
+  const auto right_x = search_right(left, right, x, y, static_cast<int>(max_disparity / scale) + 1, options, costs);
   if (!right_x) return std::nullopt;
   const auto match = refine_column(left, right, x, y, *right_x, options);
   if (!match || !(match->disparity > 0.0f)) return std::nullopt;
@@ -130,9 +132,10 @@ void match_stereo(const Pyramid& left, const Pyramid& right, const Rig& rig, std
   assert(matches.size() == keypoints.size());
   const double max_disparity =
       std::min(rig.focal * rig.baseline / options.min_depth, options.max_width_share * rig.width);
+  Costs costs;
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     const std::size_t octave = keypoints[i].octave;
-    matches[i] = match_one(left.levels[octave], right.levels[octave], keypoints[i], max_disparity, options);
+    matches[i] = match_one(left.levels[octave], right.levels[octave], keypoints[i], max_disparity, options, costs);
   }
 }
 

@@ -90,28 +90,28 @@ std::string MapFileSource::place_of(std::string_view section) const {
   return file_.name + ": section " + std::string(section);
 }
 
-void MapFileSource::read_parts(std::span<const Part> parts, std::uint64_t expected,
-                               std::vector<std::byte>& bytes) const {
+ScratchVector<std::byte> MapFileSource::read_parts(std::span<const Part> parts, std::uint64_t expected) const {
   std::size_t size = 0;
   for (const Part& part : parts) size += part.place.size;
-  bytes.resize(size);
+  ScratchVector<std::byte> bytes(size);
   std::size_t begin = 0;
   for (const Part& part : parts) {
     if (part.place.size == 0) continue;
     file_.read_at(part.section + part.place.begin, std::span(bytes).subspan(begin, part.place.size));
     begin += part.place.size;
   }
-  if (checksum(bytes) == expected) return;
-  ByteReader({}, place_of(parts.front().name), parts.front().section + parts.front().place.begin)
-      .fail("has a part with a wrong checksum, here or in the matching part of a later section");
+  if (checksum(bytes) != expected) {
+    ByteReader({}, place_of(parts.front().name), parts.front().section + parts.front().place.begin)
+        .fail("has a part with a wrong checksum, here or in the matching part of a later section");
+  }
+  return bytes;
 }
 
 Keyframe MapFileSource::read_keyframe(std::uint32_t number, const Keyframe& header) const {
   const KeyframeParts& known = lookup_.keyframes[number];
   std::array<Part, kViewSections> parts;
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i] = {file_.views[i], known.views[i], kViewNames[i]};
-  thread_local std::vector<std::byte> bytes;  // reused: a keyframe has many thousand bytes
-  read_parts(parts, known.checksum, bytes);
+  const ScratchVector<std::byte> bytes = read_parts(parts, known.checksum);
   std::size_t begin = 0;
   std::vector<ByteReader> readers;
   readers.reserve(parts.size());
@@ -136,8 +136,7 @@ MapFileSource::Block MapFileSource::read_block(std::uint32_t number) const {
   const PointBlock& known = lookup_.blocks[number];
   const std::array<Part, 2> parts = {
       {{file_.points, known.points, "points"}, {file_.observers, known.observers, "observers"}}};
-  thread_local std::vector<std::byte> bytes;
-  read_parts(parts, known.checksum, bytes);
+  const ScratchVector<std::byte> bytes = read_parts(parts, known.checksum);
   ByteReader points(Bytes(bytes).first(known.points.size), place_of("points"), file_.points + known.points.begin);
   ByteReader observers(Bytes(bytes).subspan(known.points.size), place_of("observers"),
                        file_.observers + known.observers.begin);

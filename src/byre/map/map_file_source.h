@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/base/lazy_array.h"
+#include "byre/base/scratch_memory.h"
 #include "byre/map/map_sections.h"
 
 #include <array>
@@ -43,7 +44,7 @@ class MapFileSource : public MapSource {
   };
 
   // Reads the concatenated bytes of the parts. Fails if their checksum is not the expected one.
-  void read_parts(std::span<const Part> parts, std::uint64_t expected, std::vector<std::byte>& bytes) const;
+  ScratchVector<std::byte> read_parts(std::span<const Part> parts, std::uint64_t expected) const;
   std::string place_of(std::string_view section) const;
   Keyframe read_keyframe(std::uint32_t number, const Keyframe& header) const;
   Block read_block(std::uint32_t number) const;

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
 namespace byre {
 
@@ -30,7 +29,7 @@ struct WeightedPoint {
 class WeightedPoints {
  public:
   void clear();  // keeps the memory
-  void reserve(std::size_t points) { reserve_pow2(blocks_, (points + kLanes - 1) / kLanes); }
+  void reserve(std::size_t points) { blocks_.reserve((points + kLanes - 1) / kLanes); }
   void add(const WeightedPoint& point);
   void square_weights();
 
@@ -49,7 +48,7 @@ class WeightedPoints {
   };
 
  private:
-  std::vector<Block> blocks_;
+  ScratchVector<Block> blocks_;
   std::size_t size_ = 0;  // points
 };
 

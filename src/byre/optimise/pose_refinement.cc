@@ -106,23 +106,26 @@ Sighting sight(const PoseObservation& observation, const Rig& rig, const Pose& c
   return sighting;
 }
 
-// Evaluates all observations at this pose; all in front of the camera become inliers. Refills `sightings`.
-void sight(std::span<const PoseObservation> observations, const Rig& rig, const Pose& camera_from_world,
-           double systematic_sigma, std::vector<Sighting>& sightings) {
+using Sightings = ScratchVector<Sighting>;
+
+// Evaluates all observations at this pose; all in front of the camera become inliers.
+Sightings sight(std::span<const PoseObservation> observations, const Rig& rig, const Pose& camera_from_world,
+                double systematic_sigma) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
-  sightings.clear();
-  reserve_pow2(sightings, observations.size());
+  Sightings sightings;
+  sightings.reserve(observations.size());
   for (const PoseObservation& observation : observations) {
     sightings.push_back(sight(observation, rig, camera_from_world, rotation, systematic_sigma));
   }
+  return sightings;
 }
 
 // Uses the median of the finite squared errors, which tolerates up to half of them as outliers.
-double variance_factor(const std::vector<Sighting>& sightings) {
+double variance_factor(const Sightings& sightings) {
   constexpr double kMedianMono = 1.386;    // median of chi-square with two degrees of freedom
   constexpr double kMedianStereo = 2.366;  // median of chi-square with three degrees of freedom
-  thread_local std::vector<double> ratios;
-  ratios.clear();
+  ScratchVector<double> ratios;
+  ratios.reserve(sightings.size());
   for (const Sighting& sighting : sightings) {
     if (!std::isfinite(sighting.squared_error)) continue;
     ratios.push_back(sighting.squared_error / (sighting.stereo ? kMedianStereo : kMedianMono));
@@ -130,17 +133,17 @@ double variance_factor(const std::vector<Sighting>& sightings) {
   return ratios.empty() ? 1.0 : std::max(1.0, median_of(std::span(ratios)));
 }
 
-void choose_inliers(std::vector<Sighting>& sightings, double factor) {
+void choose_inliers(Sightings& sightings, double factor) {
   for (Sighting& sighting : sightings) {
     sighting.inlier = sighting.tolerated || sighting.squared_error <= gate_of(sighting.stereo) * factor;
   }
 }
 
-int count_inliers(const std::vector<Sighting>& sightings) {
+int count_inliers(const Sightings& sightings) {
   return static_cast<int>(std::ranges::count(sightings, true, &Sighting::inlier));
 }
 
-void gather_inliers(const std::vector<Sighting>& sightings, WeightedPoints& points) {
+void gather_inliers(const Sightings& sightings, WeightedPoints& points) {
   points.clear();
   points.reserve(sightings.size());
   for (const Sighting& sighting : sightings) {
@@ -208,8 +211,7 @@ struct Region {
 
 using Regions = ByImageRegion<Region>;
 
-Regions gather_regions(const std::vector<Sighting>& sightings, const Rig& rig, const Pose& camera_from_world,
-                       double huber_width) {
+Regions gather_regions(const Sightings& sightings, const Rig& rig, const Pose& camera_from_world, double huber_width) {
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
   Regions regions;
   for (const Sighting& sighting : sightings) {
@@ -254,7 +256,7 @@ Matrix6 systematic_covariance(const Regions& regions, const Matrix6& inverse_nor
 }
 
 // Empty if inliers and prior leave a direction undetermined. points: reused memory.
-std::optional<PoseRefinement> with_covariance(PoseRefinement refined, const std::vector<Sighting>& sightings,
+std::optional<PoseRefinement> with_covariance(PoseRefinement refined, const Sightings& sightings,
                                               const std::optional<KnownPose>& known, const Rig& rig,
                                               const PoseRefinementOptions& options, WeightedPoints& points) {
   const Pose& pose = refined.camera_from_world;
@@ -284,10 +286,8 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
   const std::optional<KnownPose> known = known_pose(prior);
   PoseRefinement result;
   result.camera_from_world = predicted_camera_from_world;
-  // Kept between calls: a frame refines its pose several times.
-  thread_local std::vector<Sighting> sightings;
-  thread_local WeightedPoints inliers;
-  sight(observations, rig, predicted_camera_from_world, options.systematic_sigma, sightings);
+  Sightings sightings = sight(observations, rig, predicted_camera_from_world, options.systematic_sigma);
+  WeightedPoints inliers;
   // Far from the solution all errors are large. Gates and loss follow the decrease of their median, so that a minority
   // that fits by chance does not capture the pose.
   for (int round = 0; round < options.rounds; ++round) {
@@ -297,7 +297,7 @@ std::optional<PoseRefinement> refine_pose(const Pose& predicted_camera_from_worl
     gather_inliers(sightings, inliers);
     const Evidence evidence{rig, inliers, known, options.huber_width * std::sqrt(factor)};
     result.camera_from_world = descend(evidence, result.camera_from_world, options.iterations_per_round);
-    sight(observations, rig, result.camera_from_world, options.systematic_sigma, sightings);
+    sightings = sight(observations, rig, result.camera_from_world, options.systematic_sigma);
   }
   result.variance_factor = std::min(variance_factor(sightings), options.max_variance_factor);
   choose_inliers(sightings, result.variance_factor);

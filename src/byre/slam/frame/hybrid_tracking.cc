@@ -24,27 +24,9 @@ struct ByMap {
 
 // Points expected and matched around the first poses.
 struct Found {
-  ByMap<std::vector<ExpectedPoint>> expected;
+  ByMap<ScratchVector<ExpectedPoint>> expected;
   ByMap<MeasuredPoints> measured;
 };
-
-// Buffers of a thread, reused in each frame.
-struct Memory {
-  ByMap<std::vector<PointId>> points;
-  ByMap<std::vector<ExpectedPoint>> at_prediction;
-  std::vector<ExpectedPoint> all_at_prediction;
-  std::vector<GuidedMatch> matches;
-  Found found;
-  PartedPoints parted;
-  MeasuredPoints joined;
-  std::vector<double> depths;
-  SharedPoints shared;
-};
-
-Memory& memory_of_thread() {
-  thread_local Memory memory;
-  return memory;
-}
 
 struct Query {
   const Frame& frame;
@@ -52,18 +34,20 @@ struct Query {
   const MapView& map;
   const TrackOptions& options;
   HybridLimits limits{};
-  Memory& memory = memory_of_thread();
+  ByMap<ScratchVector<PointId>> points{};  // candidates
 };
 
-void split(std::span<const PointId> candidates, ByMap<std::vector<PointId>>& points) {
-  points.offline.clear();
-  points.online.clear();
+ByMap<ScratchVector<PointId>> split(std::span<const PointId> candidates) {
+  ByMap<ScratchVector<PointId>> points;
+  points.offline.reserve(candidates.size());
+  points.online.reserve(candidates.size());
   for (const PointId id : candidates) (id.origin == Origin::offline ? points.offline : points.online).push_back(id);
+  return points;
 }
 
-double median_depth(const Query& query, const std::vector<ExpectedPoint>& points, const Pose& camera_from_world) {
-  std::vector<double>& depths = query.memory.depths;
-  depths.clear();
+double median_depth(const Query& query, std::span<const ExpectedPoint> points, const Pose& camera_from_world) {
+  ScratchVector<double> depths;
+  depths.reserve(points.size());
   for (const ExpectedPoint& point : points) {
     depths.push_back((camera_from_world * query.map.find_point(point.id)->position_in_world).z());
   }
@@ -84,7 +68,7 @@ bool disagree(const PoseRefinement& one, const PoseRefinement& other, double dep
 }
 
 // First pose by the search radius, otherwise by the wide one.
-std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::vector<ExpectedPoint>& points) {
+std::optional<Pose> guess(const Query& query, const Pose& predicted, std::span<const ExpectedPoint> points) {
   if (points.empty()) return std::nullopt;
   for (const float radius : {query.options.search_radius, query.options.wide_radius}) {
     const auto pose = first_pose(query.frame, predicted, query.rig, query.map, points, radius, query.options);
@@ -93,11 +77,10 @@ std::optional<Pose> guess(const Query& query, const Pose& predicted, const std::
   return std::nullopt;
 }
 
-void project(const Query& query, const ByMap<Pose>& camera_from_world, ByMap<std::vector<ExpectedPoint>>& expected) {
-  const ByMap<std::vector<PointId>>& points = query.memory.points;
+ByMap<ScratchVector<ExpectedPoint>> project(const Query& query, const ByMap<Pose>& camera_from_world) {
   const ImageMask& hidden = query.options.hidden;
-  project_visible(query.map, points.offline, camera_from_world.offline, query.rig, hidden, expected.offline);
-  project_visible(query.map, points.online, camera_from_world.online, query.rig, hidden, expected.online);
+  return {project_visible(query.map, query.points.offline, camera_from_world.offline, query.rig, hidden),
+          project_visible(query.map, query.points.online, camera_from_world.online, query.rig, hidden)};
 }
 
 // Rows of columns and fences repeat, so offline points also fit a pose one bay off.
@@ -109,8 +92,7 @@ bool is_another_place(const Pose& offline, const std::optional<Pose>& online, co
 
 // First poses by the points of each map: equal, unless they contradict each other within the limits.
 std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted) {
-  ByMap<std::vector<ExpectedPoint>>& expected = query.memory.at_prediction;
-  project(query, {predicted, predicted}, expected);
+  const ByMap<ScratchVector<ExpectedPoint>> expected = project(query, {predicted, predicted});
   if (const auto offline = guess(query, predicted, expected.offline)) {
     const double depth = median_depth(query, expected.offline, predicted);
     const auto differ_by = [&](const Pose& other) { return apparent_shift(*offline, other, depth, query.rig); };
@@ -122,33 +104,31 @@ std::optional<ByMap<Pose>> guess_poses(const Query& query, const Pose& predicted
     const bool contradict = online && differ_by(*online) > 0.5 * kNarrowRadius;
     return ByMap<Pose>{*offline, contradict ? *online : *offline};
   }
-  std::vector<ExpectedPoint>& all = query.memory.all_at_prediction;
-  all = expected.offline;
+  ScratchVector<ExpectedPoint> all = expected.offline;
   all.insert(all.end(), expected.online.begin(), expected.online.end());
   const auto both = guess(query, predicted, all);
   if (!both) return std::nullopt;
   return ByMap<Pose>{*both, *both};
 }
 
-void match_and_measure(const Query& query, const std::vector<ExpectedPoint>& expected, const Pose& camera_from_world,
-                       MeasuredPoints& measured) {
-  const SearchOptions search{kNarrowRadius, 90, 0.9f};
-  match_expected(*query.frame.features, query.map, expected, search, query.memory.matches);
-  measure_matches(query.frame, camera_from_world, query.rig, query.map, query.memory.matches, measured);
+MeasuredPoints match_and_measure(const Query& query, std::span<const ExpectedPoint> expected,
+                                 const Pose& camera_from_world) {
+  const auto matches = match_expected(*query.frame.features, query.map, expected, {kNarrowRadius, 90, 0.9f});
+  return measure_matches(query.frame, camera_from_world, query.rig, query.map, matches);
 }
 
-const Found& look_for(const Query& query, const ByMap<Pose>& guesses) {
-  Found& found = query.memory.found;
-  project(query, guesses, found.expected);
-  match_and_measure(query, found.expected.offline, guesses.offline, found.measured.offline);
-  match_and_measure(query, found.expected.online, guesses.online, found.measured.online);
+Found look_for(const Query& query, const ByMap<Pose>& guesses) {
+  Found found{project(query, guesses), {}};
+  found.measured.offline = match_and_measure(query, found.expected.offline, guesses.offline);
+  found.measured.online = match_and_measure(query, found.expected.online, guesses.online);
   return found;
 }
 
 // A feature that matches points of both maps is left to the offline one.
-void join(const MeasuredPoints& offline, const MeasuredPoints& online, double offline_weight, MeasuredPoints& both) {
-  reserve_pow2(both.observations, offline.observations.size() + online.observations.size());
-  reserve_pow2(both.features, offline.features.size() + online.features.size());
+MeasuredPoints joined(const MeasuredPoints& offline, const MeasuredPoints& online, double offline_weight) {
+  MeasuredPoints both;
+  both.observations.reserve(offline.observations.size() + online.observations.size());
+  both.features.reserve(offline.features.size() + online.features.size());
   both = offline;
   for (PoseObservation& observation : both.observations) observation.weight = offline_weight;
   for (std::size_t i = 0; i < online.features.size(); ++i) {
@@ -157,6 +137,7 @@ void join(const MeasuredPoints& offline, const MeasuredPoints& online, double of
     both.observations.push_back(online.observations[i]);
     both.features.push_back(online.features[i]);
   }
+  return both;
 }
 
 // Pose by the points of one map alone; empty if it is not sound.
@@ -205,26 +186,22 @@ bool prevails(const Query& query, const PoseRefinement& offline, const MeasuredP
 
 // Number of matches that fit a pose within noise and systematic errors.
 std::size_t count_fitting(const Query& query, const Pose& camera_from_world, const MeasuredPoints& measured) {
-  PartedPoints& parted = query.memory.parted;
-  part_by_agreement(camera_from_world, Matrix6::Zero(), query.rig, measured, 1.0, parted);
-  return parted.agreeing.features.size();
+  return part_by_agreement(camera_from_world, Matrix6::Zero(), query.rig, measured, 1.0).agreeing.features.size();
 }
 
-// The final pose, the points that it was refined on, and the matches left out. Points are borrowed from the memory of
-// the query.
+// The final pose, the points that it was refined on, and the matches left out.
 struct Solution {
   PoseRefinement refined;
-  const MeasuredPoints* measured = nullptr;
-  std::span<const TrackedFeature> left_out;
+  MeasuredPoints measured;
+  ScratchVector<TrackedFeature> left_out{};
 };
 
 std::optional<Solution> solve_together(const Query& query, const Pose& camera_from_world, const MeasuredPoints& offline,
                                        const MeasuredPoints& online) {
-  MeasuredPoints& both = query.memory.joined;
-  join(offline, online, query.options.offline_weight, both);
+  MeasuredPoints both = joined(offline, online, query.options.offline_weight);
   auto refined = refine_pose(camera_from_world, query.rig, both.observations, {}, query.limits.prior);
   if (!refined || !is_sound(*refined, both.observations.size(), query.options.min_inliers)) return std::nullopt;
-  return Solution{*std::move(refined), &both, {}};
+  return Solution{*std::move(refined), std::move(both)};
 }
 
 // Pose by the points of one map, refined on those and on the points of the other map that agree with it, within this
@@ -233,26 +210,24 @@ Solution solve_guided(const Query& query, const PoseRefinement& leader, const Ma
                       const ByMap<MeasuredPoints>& measured) {
   const bool offline_guides = leading == Origin::offline;
   const MeasuredPoints& of_leader = offline_guides ? measured.offline : measured.online;
-  PartedPoints& followers = query.memory.parted;
-  part_by_agreement(leader.camera_from_world, covariance, query.rig,
-                    offline_guides ? measured.online : measured.offline, leader.variance_factor, followers);
+  PartedPoints followers =
+      part_by_agreement(leader.camera_from_world, covariance, query.rig,
+                        offline_guides ? measured.online : measured.offline, leader.variance_factor);
   auto solution = offline_guides ? solve_together(query, leader.camera_from_world, of_leader, followers.agreeing)
                                  : solve_together(query, leader.camera_from_world, followers.agreeing, of_leader);
-  if (!solution) solution = Solution{leader, &of_leader, {}};
-  solution->left_out = followers.disagreeing;
+  if (!solution) solution = Solution{leader, of_leader};
+  solution->left_out = std::move(followers.disagreeing);
   return *std::move(solution);
 }
 
 // The pose by offline points alone, with the online points that agree with it.
 Solution with_followers(const Query& query, PoseRefinement offline, const ByMap<MeasuredPoints>& measured) {
-  PartedPoints& followers = query.memory.parted;
-  part_by_agreement(offline.camera_from_world, Matrix6::Zero(), query.rig, measured.online, offline.variance_factor,
-                    followers);
-  MeasuredPoints& both = query.memory.joined;
-  join(measured.offline, followers.agreeing, query.options.offline_weight, both);
+  PartedPoints followers = part_by_agreement(offline.camera_from_world, Matrix6::Zero(), query.rig, measured.online,
+                                             offline.variance_factor);
+  MeasuredPoints both = joined(measured.offline, followers.agreeing, query.options.offline_weight);
   offline.inlier_count += static_cast<int>(both.features.size() - measured.offline.features.size());
   offline.inliers.resize(both.features.size(), true);
-  return {std::move(offline), &both, followers.disagreeing};
+  return {std::move(offline), std::move(both), std::move(followers.disagreeing)};
 }
 
 // Poses by each map alone, and their agreement.
@@ -318,8 +293,8 @@ std::optional<Solution> solve(const Query& query, const ByMap<Pose>& guesses, co
   auto together =
       solve_together(query, opinions.offline ? guesses.offline : guesses.online, measured.offline, measured.online);
   if (together) return together;
-  if (opinions.online) return Solution{*opinions.online, &measured.online, {}};
-  if (opinions.offline) return Solution{*opinions.offline, &measured.offline, {}};
+  if (opinions.online) return Solution{*opinions.online, measured.online};
+  if (opinions.offline) return Solution{*opinions.offline, measured.offline};
   return std::nullopt;
 }
 
@@ -355,16 +330,15 @@ HybridTrack to_result(const Query& query, const Found& found, const Opinions& op
   result.online_sigma = query.limits.online_sigma;
   result.depends_on_online = !opinions.offline_prevails || is_online_more_precise(query, opinions);
 
-  ScratchVector<TrackedFeature> inliers = inliers_of(solution.refined, *solution.measured);
+  ScratchVector<TrackedFeature> inliers = inliers_of(solution.refined, solution.measured);
   std::ranges::sort(inliers, {}, &TrackedFeature::feature);
-  SharedPoints& shared = query.memory.shared;
-  count_shared_points(query.map, inliers, shared);
+  const SharedPoints shared = count_shared_points(query.map, inliers);
   result.offline_reference = most_shared(shared, Origin::offline);
   result.online_reference = most_shared(shared, Origin::online);
   result.tracked =
       tracked_frame(solution.refined, std::move(inliers), most_shared(shared).value_or(KeyframeId{}), query.map);
   ScratchVector<TrackedFeature>& outliers = result.tracked.outliers;
-  outliers = outliers_of(solution.refined, *solution.measured);
+  outliers = outliers_of(solution.refined, solution.measured);
   outliers.insert(outliers.end(), solution.left_out.begin(), solution.left_out.end());
 
   result.offline_expected = static_cast<int>(found.expected.offline.size());
@@ -395,17 +369,16 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
                                         const MapView& map, std::span<const PointId> candidates,
                                         const TrackOptions& options, const HybridLimits& limits,
                                         bool compares_focal_lengths) {
-  const Query query{frame, rig, map, options, limits};
-  split(candidates, query.memory.points);
+  const Query query{frame, rig, map, options, limits, split(candidates)};
   const auto guesses = guess_poses(query, predicted_camera_from_world);
   if (!guesses) return std::nullopt;
-  const Found& found = look_for(query, *guesses);
+  const Found found = look_for(query, *guesses);
   const Opinions opinions = solve_each(query, *guesses, found);
   const auto solution = solve(query, *guesses, opinions, found.measured);
   if (!solution) return std::nullopt;
   HybridTrack result = to_result(query, found, opinions, *solution);
   if (compares_focal_lengths) {
-    const std::vector<PoseObservation>& seen = found.measured.offline.observations;
+    const ScratchVector<PoseObservation>& seen = found.measured.offline.observations;
     const auto refined = opinions.offline ? opinions.offline : refine_pose(guesses->offline, rig, seen, {});
     if (refined) result.focal = compare_focal_lengths(refined->camera_from_world, rig, seen);
   }
@@ -415,11 +388,9 @@ std::optional<HybridTrack> track_hybrid(const Frame& frame, const Pose& predicte
 SearchedPoints search_points(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
                              std::span<const PointId> points, const TrackOptions& options) {
   const Query query{frame, rig, map, options};
-  Found& found = query.memory.found;
-  project_visible(map, points, camera_from_world, rig, options.hidden, found.expected.offline);
-  match_and_measure(query, found.expected.offline, camera_from_world, found.measured.offline);
-  PartedPoints& parted = query.memory.parted;
-  part_by_agreement(camera_from_world, Matrix6::Zero(), rig, found.measured.offline, 1.0, parted);
+  const auto expected = project_visible(map, points, camera_from_world, rig, options.hidden);
+  const PartedPoints parted = part_by_agreement(camera_from_world, Matrix6::Zero(), rig,
+                                                match_and_measure(query, expected, camera_from_world), 1.0);
   SearchedPoints searched;
   for (const TrackedFeature& feature : parted.agreeing.features) searched.agreed.push_back(feature.point);
   for (const TrackedFeature& feature : parted.disagreeing) {

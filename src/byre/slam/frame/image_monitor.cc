@@ -56,8 +56,8 @@ void ImageMonitor::note_pair(const Frame& frame, const Rig& rig, InputEvidence& 
   if (fault_of(*frame.condition, image_) != ImageFault::none) return;
   evidence.right_fault = fault_of(*frame.right_condition, image_);
   if (evidence.right_fault != ImageFault::none || frame.features->size() < kMinFeaturesJudged) return;
-  thread_local std::vector<float> row_errors;
-  row_errors.clear();
+  ScratchVector<float> row_errors;
+  row_errors.reserve(static_cast<std::size_t>(frame.features->size()));
   for (const Keypoint& keypoint : frame.features->keypoints()) {
     if (keypoint.has_disparity()) row_errors.push_back(std::abs(keypoint.row_offset));
   }

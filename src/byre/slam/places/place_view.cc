@@ -28,7 +28,7 @@ std::array<int, 3> cell_at(const Eigen::Vector3d& position) {
 // Leaves out points of recordings that the frame hardly shows, compared with another one: in another light, corners are
 // found elsewhere. A frame at a wrong pose shows little of every recording. shown: ascending.
 void leave_out_other_lights(const MapGraph& map, const ScratchVector<PointId>& shown,
-                            std::vector<ExpectedPoint>& expected) {
+                            ScratchVector<ExpectedPoint>& expected) {
   constexpr double kHardly = 0.5;  // relative to the recording of which the largest share is seen
   constexpr double kPrior = 30.0;  // points, seen like the whole, of each recording
   struct Count {
@@ -105,10 +105,9 @@ PlaceView view_of_place(const PlaceViewQuery& query) {
   const MapView map = is_offline ? MapView(&query.map, nothing_online) : MapView(query.map);
   const Pose& pose = query.tracked.camera_from_world;
   PlaceView view;
-  thread_local std::vector<ExpectedPoint> expected;
-  project_visible(map, query.nearby, pose, query.rig, query.hidden, expected);
+  ScratchVector<ExpectedPoint> expected = project_visible(map, query.nearby, pose, query.rig, query.hidden);
   view.is_near_keyframe = expected.size() >= kEnough;
-  if (!view.is_near_keyframe) project_visible(map, query.candidates, pose, query.rig, query.hidden, expected);
+  if (!view.is_near_keyframe) expected = project_visible(map, query.candidates, pose, query.rig, query.hidden);
   ScratchVector<PointId> shown = points_shown(query.tracked, query.map.origin(), *query.frame.features);
   if (view.is_near_keyframe) leave_out_other_lights(query.map, shown, expected);
   const auto position_of = [&](PointId id) -> Eigen::Vector3d {

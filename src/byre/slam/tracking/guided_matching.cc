@@ -71,28 +71,27 @@ std::optional<FoundFeature> find_feature(const Features& features, const Descrip
   return FoundFeature{best.feature, best.distance};
 }
 
-void project_points(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
-                    std::vector<ExpectedPoint>& expected) {
+ScratchVector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
+                                            const Pose& camera_from_world, const Rig& rig) {
   const Eigen::Vector3d camera_in_world = inverse(camera_from_world).translation;
-  expected.clear();
-  reserve_pow2(expected, points.size());
+  ScratchVector<ExpectedPoint> expected;
+  expected.reserve(points.size());
   for (const PointId id : points) {
     const MapPoint* const point = map.find_point(id);
     if (point == nullptr) continue;
     const auto projection = project_point(*point, camera_from_world, camera_in_world, rig);
     if (projection) expected.push_back({id, *projection});
   }
+  return expected;
 }
 
-void match_expected(const Features& features, const MapView& map, const std::vector<ExpectedPoint>& expected,
-                    const SearchOptions& options, std::vector<GuidedMatch>& matches) {
+ScratchVector<GuidedMatch> match_expected(const Features& features, const MapView& map,
+                                          std::span<const ExpectedPoint> expected, const SearchOptions& options) {
   struct Claim {
     PointId point;
     int distance = std::numeric_limits<int>::max();
   };
-  thread_local std::vector<Claim> claims;
-  reserve_pow2(claims, static_cast<std::size_t>(features.size()));
-  claims.assign(static_cast<std::size_t>(features.size()), {});
+  ScratchVector<Claim> claims(static_cast<std::size_t>(features.size()));
   for (const ExpectedPoint& candidate : expected) {
     const MapPoint* const point = map.find_point(candidate.id);
     if (point == nullptr) continue;
@@ -101,12 +100,13 @@ void match_expected(const Features& features, const MapView& map, const std::vec
     Claim& claim = claims[static_cast<std::size_t>(found->feature)];
     if (found->distance < claim.distance) claim = {candidate.id, found->distance};
   }
-  matches.clear();
-  reserve_pow2(matches, claims.size());
+  ScratchVector<GuidedMatch> matches;
+  matches.reserve(claims.size());
   for (int feature = 0; feature < features.size(); ++feature) {
     const Claim& claim = claims[static_cast<std::size_t>(feature)];
     if (claim.distance <= options.max_distance) matches.push_back({feature, claim.point, claim.distance});
   }
+  return matches;
 }
 
 }  // namespace byre

@@ -1,9 +1,10 @@
 #pragma once
 
+#include "byre/base/scratch_memory.h"
 #include "byre/map/map_view.h"
 
 #include <optional>
-#include <vector>
+#include <span>
 
 namespace byre {
 
@@ -41,9 +42,8 @@ struct ExpectedPoint {
   Projection projection;
 };
 
-// Refills `expected`.
-void project_points(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
-                    std::vector<ExpectedPoint>& expected);
+ScratchVector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
+                                            const Pose& camera_from_world, const Rig& rig);
 
 struct GuidedMatch {
   int feature = 0;
@@ -52,8 +52,8 @@ struct GuidedMatch {
 };
 
 // At most one match for each expected point and each feature; the more similar point keeps the feature. Ordered by
-// feature. Refills `matches`.
-void match_expected(const Features& features, const MapView& map, const std::vector<ExpectedPoint>& expected,
-                    const SearchOptions& options, std::vector<GuidedMatch>& matches);
+// feature.
+ScratchVector<GuidedMatch> match_expected(const Features& features, const MapView& map,
+                                          std::span<const ExpectedPoint> expected, const SearchOptions& options);
 
 }  // namespace byre

@@ -22,17 +22,8 @@ Descriptor differing(int bits) {
   return descriptor;
 }
 
-std::vector<ExpectedPoint> expected_points(const MapView& map, const Pose& camera_from_world, const Rig& rig) {
-  std::vector<ExpectedPoint> expected;
-  project_points(map, map.online().point_ids(), camera_from_world, rig, expected);
-  return expected;
-}
-
-std::vector<GuidedMatch> matches_of(const Features& features, const MapView& map,
-                                    const std::vector<ExpectedPoint>& expected, const SearchOptions& options) {
-  std::vector<GuidedMatch> matches;
-  match_expected(features, map, expected, options, matches);
-  return matches;
+ScratchVector<ExpectedPoint> expected_points(const MapView& map, const Pose& camera_from_world, const Rig& rig) {
+  return project_points(map, map.online().point_ids(), camera_from_world, rig);
 }
 
 // A point on the optical axis of a camera at the world's origin, seen in octave 3.
@@ -176,8 +167,8 @@ TEST(MatchExpected, AssignsAFeatureToTheMostSimilarPoint) {
   const PointId less_similar = map.add_point(point);
   point.descriptor = differing(5);
   const PointId more_similar = map.add_point(point);
-  const auto matches = matches_of(features, MapView(nullptr, map),
-                                  {{less_similar, kAt100}, {more_similar, kAt100}, {less_similar, kAt100}}, kTenPixels);
+  const std::array<ExpectedPoint, 3> expected{{{less_similar, kAt100}, {more_similar, kAt100}, {less_similar, kAt100}}};
+  const auto matches = match_expected(features, MapView(nullptr, map), expected, kTenPixels);
   EXPECT_THAT(matches, ElementsAre(Field(&GuidedMatch::point, more_similar)));
 }
 
@@ -188,7 +179,8 @@ TEST(MatchExpected, SkipsRemovedPoints) {
   point.descriptor = kDescriptor;
   const PointId gone = map.add_point(point);
   map.remove_point(gone);
-  EXPECT_THAT(matches_of(features, MapView(nullptr, map), {{gone, kAt100}}, kTenPixels), IsEmpty());
+  const std::array<ExpectedPoint, 1> expected{{{gone, kAt100}}};
+  EXPECT_THAT(match_expected(features, MapView(nullptr, map), expected, kTenPixels), IsEmpty());
 }
 
 // A frame of a mission, at its true pose on the true map.
@@ -199,7 +191,8 @@ class GuidedMatching : public ::testing::Test {
   SimulatedMission mission_ = quarter_circle({});
   MapGraph map_ = true_map(mission_, 2, Origin::online);
   MapView view_{nullptr, map_};
-  std::vector<ExpectedPoint> expected_ = expected_points(view_, true_camera_from_world(mission_, kFrame), mission_.rig);
+  ScratchVector<ExpectedPoint> expected_ =
+      expected_points(view_, true_camera_from_world(mission_, kFrame), mission_.rig);
 };
 
 TEST_F(GuidedMatching, ExpectsPointsInsideTheImageOnly) {
@@ -208,7 +201,7 @@ TEST_F(GuidedMatching, ExpectsPointsInsideTheImageOnly) {
 }
 
 TEST_F(GuidedMatching, HasHighRecallAndPrecision) {
-  const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
+  const ScratchVector<GuidedMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
   const auto right = std::ranges::count_if(matches, [&](const GuidedMatch& match) {
     const int shown = mission_.landmark_of_feature[kFrame][static_cast<std::size_t>(match.feature)];
     return shown >= 0 && shown == true_landmark(mission_, map_, match.point);
@@ -219,7 +212,7 @@ TEST_F(GuidedMatching, HasHighRecallAndPrecision) {
 }
 
 TEST_F(GuidedMatching, ReturnsEveryFeatureOnceInAscendingOrder) {
-  const std::vector<GuidedMatch> matches = matches_of(*mission_.frames[kFrame].features, view_, expected_, {});
+  const ScratchVector<GuidedMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
   EXPECT_EQ(std::ranges::adjacent_find(matches, std::greater_equal<>{}, &GuidedMatch::feature), matches.end());
 }
 

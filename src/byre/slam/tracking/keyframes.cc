@@ -42,8 +42,8 @@ bool needs_keyframe(const TrackedFrame& tracked, const KeyframeEvidence& evidenc
 }
 
 double median_depth(const TrackedFrame& tracked, const MapView& map) {
-  thread_local std::vector<double> depths;  // buffer
-  depths.clear();
+  ScratchVector<double> depths;
+  depths.reserve(tracked.features.size());
   for (const TrackedFeature& feature : tracked.features) {
     const MapPoint* const point = map.find_point(feature.point);
     if (point != nullptr) depths.push_back((tracked.camera_from_world * point->position_in_world).z());

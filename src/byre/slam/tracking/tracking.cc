@@ -24,10 +24,7 @@ void append_distinct(Origin origin, std::span<const PointId> points, ScratchVect
   }
   if (first > last) return;
   constexpr std::size_t kBits = 64;
-  thread_local std::vector<std::uint64_t> marks;
-  const std::size_t words = std::size_t{last - first} / kBits + 1;
-  reserve_pow2(marks, words);
-  marks.assign(words, 0);
+  ScratchVector<std::uint64_t> marks(std::size_t{last - first} / kBits + 1, 0);
   for (const PointId id : points) {
     if (id.origin != origin) continue;
     const std::size_t bit = id.number - first;
@@ -51,16 +48,13 @@ ScratchVector<PointId> distinct(std::span<const PointId> points) {
 }
 
 std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
-                                              const MapView& map, const std::vector<GuidedMatch>& matches,
+                                              const MapView& map, std::span<const GuidedMatch> matches,
                                               const TrackOptions& options) {
-  thread_local MeasuredPoints measured;  // buffer
-  thread_local SharedPoints shared;
-  measure_matches(frame, camera_from_world, rig, map, matches, measured);
+  const MeasuredPoints measured = measure_matches(frame, camera_from_world, rig, map, matches);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
   if (!refined || !is_sound(*refined, measured.features.size(), options.min_inliers)) return std::nullopt;
   ScratchVector<TrackedFeature> inliers = inliers_of(*refined, measured);
-  count_shared_points(map, inliers, shared);
-  const KeyframeId reference = most_shared(shared).value_or(KeyframeId{});
+  const KeyframeId reference = most_shared(count_shared_points(map, inliers)).value_or(KeyframeId{});
   TrackedFrame tracked = tracked_frame(*refined, std::move(inliers), reference, map);
   tracked.matches = static_cast<int>(measured.features.size());
   tracked.outliers = outliers_of(*refined, measured);
@@ -85,8 +79,7 @@ void append_seen_points(const TrackedFrame& tracked, std::vector<SeenPoint>& see
 }
 
 ScratchVector<PointId> local_points(const MapView& map, KeyframeId reference, int max_keyframes) {
-  thread_local std::vector<PointId> points;  // buffer
-  points.clear();
+  ScratchVector<PointId> points;
   const auto append = [&](KeyframeId id) {
     const Keyframe* const keyframe = map.find_keyframe(id);
     if (keyframe == nullptr) return;
@@ -102,17 +95,16 @@ ScratchVector<PointId> local_points(const MapView& map, KeyframeId reference, in
 std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
                                   const MapView& map, std::span<const PointId> candidates,
                                   const TrackOptions& options) {
-  thread_local std::vector<ExpectedPoint> expected;  // buffer
-  thread_local std::vector<GuidedMatch> matches;
-  project_visible(map, candidates, predicted_camera_from_world, rig, options.hidden, expected);
+  ScratchVector<ExpectedPoint> expected =
+      project_visible(map, candidates, predicted_camera_from_world, rig, options.hidden);
   std::optional<Pose> first;
   for (const float radius : {options.search_radius, options.wide_radius}) {
     if (!first) first = first_pose(frame, predicted_camera_from_world, rig, map, expected, radius, options);
   }
   if (!first) return std::nullopt;
 
-  project_visible(map, candidates, *first, rig, options.hidden, expected);
-  match_expected(*frame.features, map, expected, {kNarrowRadius, 90, 0.9f}, matches);
+  expected = project_visible(map, candidates, *first, rig, options.hidden);
+  const auto matches = match_expected(*frame.features, map, expected, {kNarrowRadius, 90, 0.9f});
   auto tracked = refine_on_matches(frame, *first, rig, map, matches, options);
   if (tracked) tracked->expected = static_cast<int>(expected.size());
   return tracked;

@@ -53,21 +53,21 @@ PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measu
   return observation;
 }
 
-void project_visible(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
-                     const ImageMask& hidden, std::vector<ExpectedPoint>& expected) {
-  project_points(map, points, camera_from_world, rig, expected);
-  if (!hidden.any()) return;
+ScratchVector<ExpectedPoint> project_visible(const MapView& map, std::span<const PointId> points,
+                                             const Pose& camera_from_world, const Rig& rig, const ImageMask& hidden) {
+  ScratchVector<ExpectedPoint> expected = project_points(map, points, camera_from_world, rig);
+  if (!hidden.any()) return expected;
   std::erase_if(expected,
                 [&](const ExpectedPoint& point) { return hidden.hides(point.projection.predicted.head<2>(), rig); });
+  return expected;
 }
 
-void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                     const std::vector<GuidedMatch>& matches, MeasuredPoints& measured) {
+MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                               std::span<const GuidedMatch> matches) {
   const CameraView view{*frame.features, rig, camera_from_world};
-  measured.observations.clear();
-  measured.features.clear();
-  reserve_pow2(measured.observations, matches.size());
-  reserve_pow2(measured.features, matches.size());
+  MeasuredPoints measured;
+  measured.observations.reserve(matches.size());
+  measured.features.reserve(matches.size());
   for (const GuidedMatch& match : matches) {
     const MapPoint& point = *map.find_point(match.point);
     const PixelMeasurement pixel = measure(map, point, view, match.feature);
@@ -75,16 +75,14 @@ void measure_matches(const Frame& frame, const Pose& camera_from_world, const Ri
     measured.observations.push_back(observation_of(point, frame.features->keypoint(match.feature), pixel));
     measured.features.push_back({match.feature, match.point, pixel.pixel, pixel.sigma});
   }
+  return measured;
 }
 
-void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance, const Rig& rig,
-                       const MeasuredPoints& measured, double max_variance_factor, PartedPoints& parted) {
+PartedPoints part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance, const Rig& rig,
+                               const MeasuredPoints& measured, double max_variance_factor) {
   PoseRefinementOptions at_pose;
   at_pose.rounds = 0;
   at_pose.max_variance_factor = max_variance_factor;
-  parted.agreeing.observations.clear();
-  parted.agreeing.features.clear();
-  parted.disagreeing.clear();
   std::span<const PoseObservation> observations = measured.observations;
   ScratchVector<PoseObservation> widened;
   if (!covariance.isZero(0.0)) {
@@ -93,6 +91,7 @@ void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance,
     observations = widened;
   }
   const auto judged = refine_pose(camera_from_world, rig, observations, at_pose);
+  PartedPoints parted;
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
     if (!judged || !judged->inliers[i]) {
       parted.disagreeing.push_back(measured.features[i]);
@@ -101,6 +100,7 @@ void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance,
     parted.agreeing.observations.push_back(measured.observations[i]);
     parted.agreeing.features.push_back(measured.features[i]);
   }
+  return parted;
 }
 
 bool is_sound(const PoseRefinement& refined, std::size_t matches, int min_inliers) {
@@ -108,13 +108,11 @@ bool is_sound(const PoseRefinement& refined, std::size_t matches, int min_inlier
 }
 
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
+                               const MapView& map, std::span<const ExpectedPoint> expected, float radius,
                                const TrackOptions& options) {
-  thread_local std::vector<GuidedMatch> matches;  // buffer
-  thread_local std::vector<PoseObservation> observations;
-  match_expected(*frame.features, map, expected, {radius}, matches);
-  observations.clear();
-  reserve_pow2(observations, matches.size());
+  const ScratchVector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {radius});
+  ScratchVector<PoseObservation> observations;
+  observations.reserve(matches.size());
   for (const GuidedMatch& match : matches) {
     const Keypoint& keypoint = frame.features->keypoint(match.feature);
     observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
@@ -124,8 +122,8 @@ std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_
   return refined->camera_from_world;
 }
 
-void count_shared_points(const MapView& map, std::span<const TrackedFeature> features, SharedPoints& shared) {
-  shared.clear();
+SharedPoints count_shared_points(const MapView& map, std::span<const TrackedFeature> features) {
+  SharedPoints shared;
   for (const TrackedFeature& feature : features) {
     map.visit_observations(feature.point, [&](const Observation& observation) {
       const auto at = std::ranges::lower_bound(shared, observation.keyframe, {}, &std::pair<KeyframeId, int>::first);
@@ -136,6 +134,7 @@ void count_shared_points(const MapView& map, std::span<const TrackedFeature> fea
       }
     });
   }
+  return shared;
 }
 
 std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/base/scratch_memory.h"
 #include "byre/slam/tracking/guided_matching.h"
 #include "byre/slam/tracking/measurement.h"
 #include "byre/slam/tracking/tracking.h"
@@ -17,44 +18,44 @@ inline constexpr float kNarrowRadius = 4.0f;  // pixels at octave 0, around the 
 PoseObservation pose_observation(const MapPoint& point, const StereoPixel& measured, double pixel_sigma,
                                  double disparity_sigma);
 
-// Same as project_points(), without hidden points. Refills `expected`.
-void project_visible(const MapView& map, std::span<const PointId> points, const Pose& camera_from_world, const Rig& rig,
-                     const ImageMask& hidden, std::vector<ExpectedPoint>& expected);
+// Same as project_points(), without hidden points.
+ScratchVector<ExpectedPoint> project_visible(const MapView& map, std::span<const PointId> points,
+                                             const Pose& camera_from_world, const Rig& rig, const ImageMask& hidden);
 
 // Matches measured in the image: observations, and the features that inliers become; equal indices.
 struct MeasuredPoints {
-  std::vector<PoseObservation> observations;
-  std::vector<TrackedFeature> features;
+  ScratchVector<PoseObservation> observations;
+  ScratchVector<TrackedFeature> features;
 };
 
-// Measures each match by its point's reference patch if that keyframe still exists, else by its corner. Refills
-// `measured`. Matches of offline points whose patch does not fit are left out: five of six are wrong, because the map
-// was made in another light and from another place. Chance matches around a prediction confirm it.
-void measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                     const std::vector<GuidedMatch>& matches, MeasuredPoints& measured);
+// Measures each match by its point's reference patch if that keyframe still exists, else by its corner. Matches of
+// offline points whose patch does not fit are left out: five of six are wrong, because the map was made in another
+// light and from another place. Chance matches around a prediction confirm it.
+MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
+                               std::span<const GuidedMatch> matches);
 
 // Matches split by agreement with a given pose.
 struct PartedPoints {
   MeasuredPoints agreeing;
-  std::vector<TrackedFeature> disagreeing;
+  ScratchVector<TrackedFeature> disagreeing;
 };
 
 // covariance: of delta in exp_pose(delta) * camera_from_world; zero: the pose is exact. max_variance_factor: factor on
-// the variances of the measurements, that of the points that gave the pose. Refills `parted`.
-void part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance, const Rig& rig,
-                       const MeasuredPoints& measured, double max_variance_factor, PartedPoints& parted);
+// the variances of the measurements, that of the points that gave the pose.
+PartedPoints part_by_agreement(const Pose& camera_from_world, const Matrix6& covariance, const Rig& rig,
+                               const MeasuredPoints& measured, double max_variance_factor);
 
 // Whether enough of the matches agree on the pose.
 bool is_sound(const PoseRefinement& refined, std::size_t matches, int min_inliers);
 
 // First pose from detected corners, matched within a radius (pixels) around the predictions. Empty if it is not sound.
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                               const MapView& map, const std::vector<ExpectedPoint>& expected, float radius,
+                               const MapView& map, std::span<const ExpectedPoint> expected, float radius,
                                const TrackOptions& options);
 
-// Number of the points that each keyframe sees, by keyframe. Refills `shared`.
-using SharedPoints = std::vector<std::pair<KeyframeId, int>>;
-void count_shared_points(const MapView& map, std::span<const TrackedFeature> features, SharedPoints& shared);
+// Number of the points that each keyframe sees, by keyframe.
+using SharedPoints = ScratchVector<std::pair<KeyframeId, int>>;
+SharedPoints count_shared_points(const MapView& map, std::span<const TrackedFeature> features);
 
 // The keyframe that sees most of them; of one map only if origin is given.
 std::optional<KeyframeId> most_shared(const SharedPoints& shared, std::optional<Origin> origin = {});

@@ -27,8 +27,7 @@ MeasuredPoints wall() {
 std::vector<int> agreeing(const MeasuredPoints& measured, const Pose& camera_from_world, double sigma_to_the_right) {
   Matrix6 covariance = 1e-10 * Matrix6::Identity();
   covariance(0, 0) += sigma_to_the_right * sigma_to_the_right;
-  PartedPoints parted;
-  part_by_agreement(camera_from_world, covariance, stereo_rig(), measured, 1.0, parted);
+  const PartedPoints parted = part_by_agreement(camera_from_world, covariance, stereo_rig(), measured, 1.0);
   EXPECT_EQ(parted.agreeing.features.size() + parted.disagreeing.size(), measured.features.size());
   std::vector<int> features;
   for (const TrackedFeature& feature : parted.agreeing.features) features.push_back(feature.feature);
@@ -86,8 +85,8 @@ std::size_t count_measured(Origin origin, const std::vector<Patch>& patches_of_f
       map.add_point(make_point(ahead, Eigen::Matrix3d::Zero(), {id, 0}, *keyframe.frame.features, Pose{}));
   const MapGraph nothing(Origin::online);
   const MapView view = origin == Origin::offline ? MapView(&map, nothing) : MapView(map);
-  MeasuredPoints measured;
-  measure_matches({.features = features(patches_of_frame)}, Pose{}, rig, view, {{0, point}}, measured);
+  const std::array<GuidedMatch, 1> matches{{{0, point}}};
+  const MeasuredPoints measured = measure_matches({.features = features(patches_of_frame)}, Pose{}, rig, view, matches);
   EXPECT_EQ(measured.features.size(), measured.observations.size());
   return measured.features.size();
 }

@@ -25,8 +25,8 @@ ScratchVector<JudgedPoint> judged_points(const MapGraph& offline, std::span<cons
 
 // Share of moved points among the nearest judged ones.
 double share_around(std::span<const JudgedPoint> judged, std::size_t point) {
-  thread_local std::vector<std::pair<double, bool>> others;  // squared metres, moved; buffer
-  others.clear();
+  ScratchVector<std::pair<double, bool>> others;  // squared metres, moved
+  others.reserve(judged.size());
   for (std::size_t i = 0; i < judged.size(); ++i) {
     if (i == point) continue;
     others.push_back({(judged[i].position_in_world - judged[point].position_in_world).squaredNorm(), judged[i].moved});
