@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace byre {
 namespace {
@@ -26,6 +27,25 @@ int points_of(const Keyframe& keyframe) {
       std::ranges::count_if(keyframe.sightings, [](const Sighting& sighting) { return sighting.point.has_value(); }));
 }
 
+// Mean survival of the points that a keyframe sees with this one, within a tenth of its distance, and of a new point.
+double survival_nearby(const MapGraph& map, PointId id, std::span<const Survival> survival) {
+  constexpr double kNear = 0.1;  // share of the distance from the keyframe
+  const Eigen::Vector3d position = map.find_point(id)->position_in_world;
+  std::set<PointId> nearby;
+  for (const Observation& seen : map.observations(id)) {
+    const Keyframe& keyframe = *map.find_keyframe(seen.keyframe);
+    const double radius = kNear * (keyframe.camera_from_world * position).norm();
+    for (const Sighting& sighting : keyframe.sightings) {
+      if (!sighting.point || sighting.point == id) continue;
+      const Eigen::Vector3d& other = map.find_point(*sighting.point)->position_in_world;
+      if ((other - position).norm() <= radius) nearby.insert(*sighting.point);
+    }
+  }
+  double sum = kSurvivalOfNewPoint;
+  for (const PointId other : nearby) sum += survival[other.number];
+  return sum / static_cast<double>(nearby.size() + 1);
+}
+
 }  // namespace
 
 double probability_of(Survival log_odds) {
@@ -41,11 +61,11 @@ Survival survival_after(Survival before, const PointRecord& record) {
 }
 
 std::vector<PointId> points_to_retire(const MapGraph& map, std::span<const Survival> survival) {
-  constexpr Survival kUnlikely = -32;
   constexpr int kRecognisable = 60;  // points, see kOfflineThatHolds
   std::vector<PointId> unlikely;
   for (const PointId id : map.point_ids()) {
-    if (survival[id.number] <= kUnlikely) unlikely.push_back(id);
+    const double own = survival[id.number];
+    if (own < 0 && own + survival_nearby(map, id, survival) <= 0) unlikely.push_back(id);
   }
   std::ranges::stable_sort(unlikely, {}, [&](PointId id) { return survival[id.number]; });
   std::map<KeyframeId, int> to_spare;  // points that the keyframe can lose

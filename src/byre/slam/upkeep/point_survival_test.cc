@@ -49,6 +49,24 @@ TEST(PointsToRetire, AreTheUnlikelyOnes) {
   EXPECT_EQ(retired[1].number, 3u);
 }
 
+// A point, and those within a tenth of its distance from a keyframe that sees it.
+TEST(PointsToRetire, AreJudgedWithThoseNearThem) {
+  const MappedPlace place(quarter_circle(without_noise()));
+  const auto count = static_cast<std::size_t>(place.map.point_count());
+  constexpr Survival kDoubtful = -16;
+  const PointId point = place.map.point_ids()[3];
+  const auto is_retired = [&](Survival own, Survival others) {
+    std::vector<Survival> survival(count, others);
+    survival[point.number] = own;
+    return std::ranges::count(points_to_retire(place.map, survival), point) == 1;
+  };
+  EXPECT_TRUE(is_retired(-40, kSurvivalOfNewPoint));
+  EXPECT_FALSE(is_retired(-40, 80)) << "the others stay";
+  EXPECT_FALSE(is_retired(kDoubtful, kSurvivalOfNewPoint));
+  EXPECT_TRUE(is_retired(kDoubtful, 0)) << "the others are doubtful too";
+  EXPECT_FALSE(is_retired(2, -80)) << "it was seen";
+}
+
 TEST(PointsToRetire, LeaveEachKeyframeHalfOfItsPoints) {
   const MappedPlace place(quarter_circle(without_noise()));
   const std::vector<Survival> survival(static_cast<std::size_t>(place.map.point_count()), -80);

@@ -196,10 +196,10 @@ TEST_F(MapUpdates, RetirePointsThatMissionsMissRepeatedly) {
   const MapUpdate once = updated(parent_, {session});
   ASSERT_TRUE(once.child) << once.refusal << once.sessions[0].place.fault;
   EXPECT_EQ(once.points_retired, 0) << "one mission may be mistaken";
-  const MapUpdate thrice = updated(parent_, {session, session, session});
-  ASSERT_TRUE(thrice.child) << thrice.refusal;
-  EXPECT_EQ(thrice.points_retired, kGone);
-  EXPECT_EQ(thrice.survival.size(), static_cast<std::size_t>(thrice.child->map.point_count()));
+  const MapUpdate often = updated(parent_, {session, session, session, session});
+  ASSERT_TRUE(often.child) << often.refusal;
+  EXPECT_EQ(often.points_retired, kGone);
+  EXPECT_EQ(often.survival.size(), static_cast<std::size_t>(often.child->map.point_count()));
 }
 
 TEST_F(MapUpdates, NeedKeyframesOfTheMission) {
