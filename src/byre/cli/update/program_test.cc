@@ -45,7 +45,8 @@ TEST_F(UpdateProgram, WritesAChildThatIsNowhereWorse) {
   const Outcome outcome = run("update room.byre evening.session -o room_2.byre --picture added.svg");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("session      evening: "), HasSubstr("written      room_2.byre\n"),
-                                    HasSubstr("Next: byre run RECORDING --map room_2.byre\n")));
+                                    HasSubstr("Changes: byre view room_2.byre --before room.byre. "
+                                              "Next: byre run RECORDING --map room_2.byre\n")));
   EXPECT_EQ(read("room.byre"), before);
   EXPECT_EQ(run("validate room_2.byre").exit_code, 0);
   EXPECT_THAT(run("history room_2.byre").output,
@@ -65,6 +66,10 @@ TEST_F(UpdateProgram, PrintsTheReportAsJson) {
   const json report = json::parse(outcome.output);
   EXPECT_EQ(report.at("written"), "room_2.byre");
   EXPECT_TRUE(report.at("refusal").is_null());
+  const json& session = report.at("sessions").at(0);
+  EXPECT_GT(session.at("keyframes_found_after"), 0);
+  EXPECT_EQ(session.at("keyframes_found_after"), report.at("proof").at("found_after")) << "of one session";
+  EXPECT_GT(session.at("brightness"), 10.0);
   EXPECT_GE(report.at("proof").at("found_after"), report.at("proof").at("found_before"));
 }
 

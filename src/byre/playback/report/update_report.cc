@@ -10,12 +10,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json session_json(const SessionUse& use) {
+Json session_json(const SessionUse& use, bool has_child) {
   return {{"name", use.name},
           {"fault", use.place.fault.empty() ? Json() : Json(use.place.fault)},
           {"keyframes", use.place.frames},
           {"keyframes_found", use.place.found},
           {"keyframes_elsewhere", use.place.elsewhere},
+          {"keyframes_found_before", use.place.found - use.place.elsewhere},
+          {"keyframes_found_after", has_child && use.place.fault.empty() ? Json(use.found_after) : Json()},
+          {"brightness", use.image.brightness},
+          {"noise", use.image.noise},
           {"counts_misses", use.has_records},
           {"keyframes_added", use.keyframes_added},
           {"points_added", use.points_added}};
@@ -63,7 +67,7 @@ Report update_report(const MapUpdate& update, const UpdateProtocol& protocol) {
   Json sessions = Json::array();
   int keyframes = 0, points = 0;
   for (const SessionUse& use : update.sessions) {
-    sessions.push_back(session_json(use));
+    sessions.push_back(session_json(use, update.child.has_value()));
     keyframes += use.keyframes_added;
     points += use.points_added;
   }
@@ -85,10 +89,11 @@ Report update_report(const MapUpdate& update, const UpdateProtocol& protocol) {
   for (const SessionUse& use : update.sessions) {
     report.row(
         "session",
-        "{name}: [{?fault}not used, it {fault}|{keyframes_found} of {keyframes} keyframes found in the map, "
-        "{keyframes_added} keyframes and {points_added} points added[{!counts_misses}; misses do not count, as it "
-        "ran on an earlier version]]",
-        session_json(use));
+        "{name}: [{?fault}not used, it {fault}|{keyframes_found_before}[ -> {keyframes_found_after}] of {keyframes} "
+        "keyframes found at their poses, {keyframes_added} keyframes and {points_added} points added; image "
+        "brightness {brightness:.0f}, noise {noise:.1f}"
+        "[{!counts_misses}; misses do not count, as it ran on an earlier version]]",
+        session_json(use, update.child.has_value()));
   }
   if (!update.places.empty()) {
     report.row("added", "{keyframes_added} keyframes, {points_added} points");
@@ -107,7 +112,8 @@ Report update_report(const MapUpdate& update, const UpdateProtocol& protocol) {
   }
   report.row("written", "{written}");
   report.conclude(
-      "[{?written}No place is worse than before. Next: byre run RECORDING --map {written}|"
+      "[{?written}No place is worse than before. Changes: byre view {written} --before {map}. Next: byre run RECORDING "
+      "--map {written}|"
       "{map} stays as it is: {refusal}. Next: byre run RECORDING --map {map} --save-session SESSION]");
   return report;
 }

@@ -150,6 +150,19 @@ SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Repla
   return place;
 }
 
+ImageCondition mean_condition(const SessionRecord& record) {
+  ImageCondition mean;
+  const auto count = static_cast<float>(record.poses.size());
+  for (const PoseRecord& pose : record.poses) {
+    mean.brightness += pose.image.brightness / count;
+    mean.contrast += pose.image.contrast / count;
+    mean.clipped += pose.image.clipped / count;
+    mean.sharpness += pose.image.sharpness / count;
+    mean.noise += pose.image.noise / count;
+  }
+  return mean;
+}
+
 MapGraph online_beside(const StoredSession& session, const MapGraph& offline) {
   using Position = std::array<double, 3>;
   const auto position_of = [](const MapGraph& map, PointId id) {

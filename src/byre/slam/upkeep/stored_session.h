@@ -29,6 +29,9 @@ struct SessionPlace {
 };
 SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found, const MapGraph& map);
 
+// Mean condition of the images of a session.
+ImageCondition mean_condition(const SessionRecord& record);
+
 // The session's map beside the offline one: copies of offline points become sightings of them. Copies of points that
 // the offline map no longer has stay points.
 MapGraph online_beside(const StoredSession& session, const MapGraph& offline);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -53,6 +54,7 @@ std::vector<Fitting> place_sessions(const MapVersion& parent, const std::vector<
   for (const StoredSession& session : sessions) {
     SessionUse& use = uses.emplace_back();
     use.name = session.name;
+    use.image = mean_condition(session.record);
     use.place.fault = fault_of(session, parent.stored, versions);
     if (!use.place.fault.empty()) continue;
     Fitting fits{&session, uses.size() - 1, frames_to_replay(session.stored.map)};
@@ -159,18 +161,18 @@ struct Witnesses {
 // Keeps the places of keyframes as they are, except those spared. Returns the survival by point number of the child.
 using Change = std::function<std::vector<Survival>(const SparedPlaces&, StoredMap& child)>;
 
-// Changes a copy of the parent, by several attempts: places that one makes worse are spared in the next.
-void make_child(const MapVersion& parent, const Witnesses& witnesses, const Change& change,
-                const Vocabulary& vocabulary, const StepHook& before_step, MapUpdate& update) {
+// Changes a copy of the parent, by several attempts: places that one makes worse are spared in the next. Returns the
+// witnesses in the child.
+std::vector<Replayed> make_child(const MapVersion& parent, const Witnesses& witnesses, const Change& change,
+                                 const Vocabulary& vocabulary, const StepHook& before_step, MapUpdate& update) {
   constexpr int kAttempts = 3;
   SparedPlaces spared;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     StoredMap child = parent.stored;
     renumber(child, change(spared, child), update);
     before_step("replaying frames on both maps");
-    update.places =
-        compare_places(witnesses.frames, witnesses.found,
-                       replay(witnesses.frames, child.map, index_of(child.map, vocabulary)), witnesses.least_inliers);
+    std::vector<Replayed> after = replay(witnesses.frames, child.map, index_of(child.map, vocabulary));
+    update.places = compare_places(witnesses.frames, witnesses.found, after, witnesses.least_inliers);
     const std::size_t spared_before = spared.size();
     for (const PlaceProof& place : update.places) {
       if (!place.fault.empty()) spared.push_back(place.centre_in_map);
@@ -178,10 +180,22 @@ void make_child(const MapVersion& parent, const Witnesses& witnesses, const Chan
     if (spared.size() > spared_before) continue;
     update.places_spared = static_cast<int>(spared.size());
     update.child = std::move(child);
-    return;
+    return after;
   }
   const auto worse = std::ranges::count_if(update.places, [](const PlaceProof& place) { return !place.fault.empty(); });
   update.refusal = fmt::format("{} of {} places would be worse than before", worse, update.places.size());
+  return {};
+}
+
+// after: frames of all fitting sessions in the child.
+void count_found(const std::vector<Fitting>& fitting, std::span<const Replayed> after, std::vector<SessionUse>& uses) {
+  auto found = after.begin();
+  for (const Fitting& fits : fitting) {
+    for (const ReplayFrame& frame : fits.frames) {
+      uses[fits.number].found_after += found->camera_from_world && !is_elsewhere(frame, *found);
+      ++found;
+    }
+  }
 }
 
 }  // namespace
@@ -236,8 +250,10 @@ MapUpdate update_map(const MapVersion& parent, const std::vector<StoredSession>&
         [&](const Keyframe& keyframe) { return is_spared(spared, keyframe); }, child.map);
     return of_child;
   };
-  make_child(parent, witnesses, change, vocabulary, before_step, update);
-  if (update.child) note_history(parent, describe(update), *update.child);
+  const std::vector<Replayed> after = make_child(parent, witnesses, change, vocabulary, before_step, update);
+  if (!update.child) return update;
+  count_found(fitting, after, update.sessions);
+  note_history(parent, describe(update), *update.child);
   return update;
 }
 

@@ -23,6 +23,8 @@ struct SessionUse {
   std::string name;
   SessionPlace place;        // its fault excludes the session
   bool has_records = false;  // sightings and misses count: it ran on this very version
+  ImageCondition image;      // mean over its poses, shows the light
+  int found_after = 0;       // frames found at their poses in the child
   int keyframes_added = 0;
   int points_added = 0;
 };
