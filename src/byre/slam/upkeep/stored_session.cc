@@ -94,7 +94,7 @@ CountedPoses count_on_map(std::span<const PoseRecord> poses, const MapGraph& map
 
 std::string fault_of(const StoredSession& session, const StoredMap& map, std::span<const std::uint64_t> maps) {
   constexpr double kMaxDifference = 0.005;  // share of the focal length: 2 pixels of 400
-  constexpr double kMaxUntrusted = 0.2;     // share of the poses on the map
+  constexpr double kMaxUntrusted = 0.8;     // share of the poses on the map; sightings count at accepted places only
   constexpr int kFirst = 10;                // poses before a place is confirmed
   const SessionRecord& record = session.record;
   if (std::ranges::find(maps, record.map_id) == maps.end()) {

@@ -189,6 +189,20 @@ TEST_F(MapUpdates, RefuseSessionsWithAReason) {
               HasSubstr("contradicts the map"));
 }
 
+// A mission may confirm its place late.
+TEST_F(MapUpdates, UseSessionsThatAreTrustedInPart) {
+  std::vector<PoseRecord>& poses = session_.record.poses;
+  ASSERT_GT(poses.size(), 20u);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].verdict = static_cast<std::uint8_t>(3 * i < poses.size() ? Verdict::trusted : Verdict::untrusted);
+  }
+  const MapUpdate update = updated(parent_, {session_});
+  EXPECT_EQ(update.sessions[0].place.fault, "");
+  ASSERT_TRUE(update.child) << update.refusal;
+  EXPECT_GT(update.sessions[0].keyframes_added, 0);
+  EXPECT_GE(update.sessions[0].found_after, update.sessions[0].place.found);
+}
+
 TEST_F(MapUpdates, RetirePointsThatMissionsMissRepeatedly) {
   StoredSession session = session_;
   constexpr std::uint32_t kGone = 20;
