@@ -70,22 +70,22 @@ Matrix6 PoseFilter::jump_covariance() const {
   return covariance;
 }
 
-// The error is along the way since then, because all lengths err by the same share.
+// Two errors since then: along the way, because all lengths err by the same share, and in all directions.
 Matrix6 PoseFilter::drift_covariance(double length_sigma) const {
   Matrix6 covariance = Matrix6::Zero();
   if (!held_) return covariance;
   const Eigen::Vector3d error =
       length_sigma * (inverse(odometry_.map_from_body()) * held_->map_from_body).translation;  // in the body
   covariance.topLeftCorner<3, 3>() = error * error.transpose();
-  covariance.topLeftCorner<3, 3>().diagonal().array() += held_->sigma * held_->sigma / 3.0;
+  constexpr double kShare = 0.003;  // share of the path
+  const double path = kShare * (odometry_.travelled() - held_->travelled);
+  covariance.topLeftCorner<3, 3>().diagonal().array() += (held_->sigma * held_->sigma + path * path) / 3.0;
   return covariance;
 }
 
 double PoseFilter::drift_sigma(double length_sigma) const {
-  constexpr double kShare = 0.01;  // share of the path
   if (!held_) return std::numeric_limits<double>::infinity();
-  return std::hypot(std::sqrt(position_variance(drift_covariance(length_sigma))),
-                    kShare * (odometry_.travelled() - held_->travelled));
+  return std::sqrt(position_variance(drift_covariance(length_sigma)));
 }
 
 void PoseFilter::note_held(double sigma, double length_sigma) {
@@ -105,7 +105,7 @@ void PoseFilter::note_jump(const TrackedPose& seen, const Pose& body, const Rig&
   const Pose last = byre::camera_from_world(map, trajectory_.back());
   const Matrix6 now = move_covariance(seen.track.tracked.covariance, rig.body_from_camera);
   const double known =
-      std::max(0.0, position_variance(quality_.covariance) - before) + position_variance(now) + seen.drift * seen.drift;
+      std::max(0.0, position_variance(quality_.covariance) - before) + position_variance(now) + seen.drift_sigma * seen.drift_sigma;
   const auto unexplained = [&](const Pose& predicted, double variance) {
     return (predicted.translation - body.translation).squaredNorm() - kSigmas * kSigmas * (known + variance);
   };
@@ -202,15 +202,18 @@ bool PoseFilter::is_jump(const Frame& frame, const HybridTrack& track, const Rig
   return (now.translation - known.map_from_body.translation).norm() > reach;
 }
 
-// Whether a pose differs from the predicted one by more than the error of measured motion.
+// Whether a pose differs from the predicted one by more than the error of measured motion in that direction: the tilt
+// may be unknown where the heading is known.
 bool PoseFilter::is_beyond(const Matrix6& covariance, const Pose& predicted_from_body) const {
   constexpr double kLeastShare = 0.2;  // share of the scene depth
   constexpr double kLeastTurn = 0.5;   // radians
   constexpr double kSigmas = 3.0;
-  const double sigma = std::sqrt(position_variance(covariance));
-  const double turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
-  return predicted_from_body.translation.norm() > kLeastShare * scene_depth_ + kSigmas * sigma ||
-         rotation_log(predicted_from_body.rotation).norm() > kLeastTurn + kSigmas * turn_sigma;
+  const auto exceeds = [](const Eigen::Vector3d& apart, const Eigen::Matrix3d& error, double least) {
+    const Eigen::Vector3d along = apart.normalized();
+    return apart.norm() > least + kSigmas * std::sqrt(along.dot(error * along));
+  };
+  return exceeds(predicted_from_body.translation, covariance.topLeftCorner<3, 3>(), kLeastShare * scene_depth_) ||
+         exceeds(rotation_log(predicted_from_body.rotation), covariance.bottomRightCorner<3, 3>(), kLeastTurn);
 }
 
 // All poses so far are confirmed, and the last one is visual.

@@ -71,7 +71,7 @@ class PoseFilter {
   // Covariance of the online map's place in the offline one, at the present pose: its covariance when offline points
   // last constrained it, plus the drift since then. length_sigma: share by which lengths by the cameras err.
   Matrix6 drift_covariance(double length_sigma) const;
-  // Standard error of that place, metres, with 1 % of the path since then. Infinite before offline points held a pose.
+  // Standard error of that place, metres. Infinite before offline points held a pose.
   double drift_sigma(double length_sigma) const;
   // Covariance of the odometry due to bridges that ended at found places; without the drift of visual odometry.
   Matrix6 bridged_odometry_covariance() const;
@@ -112,7 +112,7 @@ class PoseFilter {
     const PlaceView* view = nullptr;               // part of the offline map in view; nullptr without a map
     const PlaceHypothesis* known_place = nullptr;  // for finds: see hypothesis_of_relocalisation; nullptr: none
     double log_odds_of_rivals = kNoRivals;         // see PlaceHypothesis::observe
-    double drift = 0.0;                            // metres, since offline points last constrained the pose
+    double drift_sigma = 0.0;                      // metres, see drift_sigma()
     bool is_jump = false;                          // see is_jump(); counts as a find
   };
   struct Progress {

@@ -280,7 +280,7 @@ void update_pose(RobotState& state, const InputFrame& input, const Located& loca
       {input.frame, track, located.is_relocalised, state.is_registered(), state.mapper.submaps().present(),
        located.is_by_hint, view ? &*view : nullptr, known_place ? &*known_place : nullptr,
        is_on_map ? state.mission->log_odds_of_rivals() : kNoRivals,
-       is_on_map ? state.mission->mission().drift().translation : 0.0, located.is_jump},
+       is_on_map ? pose_filter.drift_sigma(state.mission->length_sigma()) : 0.0, located.is_jump},
       state.rig, state.map());
   state.tracker.note(track);
   if (!input.cuts.online_points) {
