@@ -69,6 +69,7 @@ TEST_F(UpdateProgram, PrintsTheReportAsJson) {
   const json& session = report.at("sessions").at(0);
   EXPECT_GT(session.at("keyframes_found_after"), 0);
   EXPECT_EQ(session.at("keyframes_found_after"), report.at("proof").at("found_after")) << "of one session";
+  EXPECT_EQ(session.at("places"), report.at("proof").at("places"));
   EXPECT_GT(session.at("brightness"), 10.0);
   EXPECT_GE(report.at("proof").at("found_after"), report.at("proof").at("found_before"));
 }

@@ -10,21 +10,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json session_json(const SessionUse& use, bool has_child) {
-  return {{"name", use.name},
-          {"fault", use.place.fault.empty() ? Json() : Json(use.place.fault)},
-          {"keyframes", use.place.frames},
-          {"keyframes_found", use.place.found},
-          {"keyframes_elsewhere", use.place.elsewhere},
-          {"keyframes_found_before", use.place.found - use.place.elsewhere},
-          {"keyframes_found_after", has_child && use.place.fault.empty() ? Json(use.found_after) : Json()},
-          {"brightness", use.image.brightness},
-          {"noise", use.image.noise},
-          {"counts_misses", use.has_records},
-          {"keyframes_added", use.keyframes_added},
-          {"points_added", use.points_added}};
-}
-
 Json place_json(const PlaceProof& place) {
   return {{"centre_m", list_json(place.centre_in_map)},
           {"frames", place.frames},
@@ -37,6 +22,30 @@ Json place_json(const PlaceProof& place) {
           {"turn_deg", place.turn / kDegree},
           {"turn_sigma_deg", place.turn_sigma / kDegree},
           {"fault", place.fault.empty() ? Json() : Json(place.fault)}};
+}
+
+int found_after(const std::vector<PlaceProof>& places) {
+  int found = 0;
+  for (const PlaceProof& place : places) found += place.found_after;
+  return found;
+}
+
+Json session_json(const SessionUse& use) {
+  Json session = {{"name", use.name},
+                  {"fault", use.place.fault.empty() ? Json() : Json(use.place.fault)},
+                  {"keyframes", use.place.frames},
+                  {"keyframes_found", use.place.found},
+                  {"keyframes_elsewhere", use.place.elsewhere},
+                  {"keyframes_found_before", use.place.found - use.place.elsewhere},
+                  {"keyframes_found_after", use.places.empty() ? Json() : Json(found_after(use.places))},
+                  {"brightness", use.image.brightness},
+                  {"noise", use.image.noise},
+                  {"counts_misses", use.has_records},
+                  {"keyframes_added", use.keyframes_added},
+                  {"points_added", use.points_added},
+                  {"places", Json::array()}};
+  for (const PlaceProof& place : use.places) session["places"].push_back(place_json(place));
+  return session;
 }
 
 // Sums over places, and the greatest changes of poses.
@@ -67,7 +76,7 @@ Report update_report(const MapUpdate& update, const UpdateProtocol& protocol) {
   Json sessions = Json::array();
   int keyframes = 0, points = 0;
   for (const SessionUse& use : update.sessions) {
-    sessions.push_back(session_json(use, update.child.has_value()));
+    sessions.push_back(session_json(use));
     keyframes += use.keyframes_added;
     points += use.points_added;
   }
@@ -93,7 +102,7 @@ Report update_report(const MapUpdate& update, const UpdateProtocol& protocol) {
         "keyframes found at their poses, {keyframes_added} keyframes and {points_added} points added; image "
         "brightness {brightness:.0f}, noise {noise:.1f}"
         "[{!counts_misses}; misses do not count, as it ran on an earlier version]]",
-        session_json(use, update.child.has_value()));
+        session_json(use));
   }
   if (!update.places.empty()) {
     report.row("added", "{keyframes_added} keyframes, {points_added} points");

@@ -188,13 +188,11 @@ std::vector<Replayed> make_child(const MapVersion& parent, const Witnesses& witn
 }
 
 // after: frames of all fitting sessions in the child.
-void count_found(const std::vector<Fitting>& fitting, std::span<const Replayed> after, std::vector<SessionUse>& uses) {
-  auto found = after.begin();
+void compare_by_session(const std::vector<Fitting>& fitting, std::span<const Replayed> after,
+                        std::vector<SessionUse>& uses) {
   for (const Fitting& fits : fitting) {
-    for (const ReplayFrame& frame : fits.frames) {
-      uses[fits.number].found_after += found->camera_from_world && !is_elsewhere(frame, *found);
-      ++found;
-    }
+    uses[fits.number].places = compare_places(fits.frames, fits.found, after.first(fits.frames.size()));
+    after = after.subspan(fits.frames.size());
   }
 }
 
@@ -252,7 +250,7 @@ MapUpdate update_map(const MapVersion& parent, const std::vector<StoredSession>&
   };
   const std::vector<Replayed> after = make_child(parent, witnesses, change, vocabulary, before_step, update);
   if (!update.child) return update;
-  count_found(fitting, after, update.sessions);
+  compare_by_session(fitting, after, update.sessions);
   note_history(parent, describe(update), *update.child);
   return update;
 }

@@ -24,7 +24,8 @@ struct SessionUse {
   SessionPlace place;        // its fault excludes the session
   bool has_records = false;  // sightings and misses count: it ran on this very version
   ImageCondition image;      // mean over its poses, shows the light
-  int found_after = 0;       // frames found at their poses in the child
+  // Its frames by place, in its light; their faults alone do not refuse the child. Empty without a child.
+  std::vector<PlaceProof> places{};
   int keyframes_added = 0;
   int points_added = 0;
 };

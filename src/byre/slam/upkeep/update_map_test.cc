@@ -200,7 +200,8 @@ TEST_F(MapUpdates, UseSessionsThatAreTrustedInPart) {
   EXPECT_EQ(update.sessions[0].place.fault, "");
   ASSERT_TRUE(update.child) << update.refusal;
   EXPECT_GT(update.sessions[0].keyframes_added, 0);
-  EXPECT_GE(update.sessions[0].found_after, update.sessions[0].place.found);
+  ASSERT_EQ(update.sessions[0].places.size(), update.places.size()) << "of one session";
+  EXPECT_EQ(update.sessions[0].places[0].found_after, update.places[0].found_after);
 }
 
 TEST_F(MapUpdates, RetirePointsThatMissionsMissRepeatedly) {
