@@ -2,6 +2,7 @@
 
 #include "byre/alignment.h"
 #include "byre/geometry/geometry_matchers.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/map/stored_map_scene.h"
 
 #include <gmock/gmock.h>
@@ -168,6 +169,27 @@ TEST(KnownCalibration, AppliesToTheSameCameraOnAnotherBody) {
   EXPECT_EQ(known->calibration.body_from_left, given.body_from_left);
   given.left.fx += 1.0;
   EXPECT_FALSE(stored_body_from_body(stored.recordings, given));
+}
+
+TEST(UpOfBase, IsThatOfTheStoredMounting) {
+  StoredMap stored = consistent_map();
+  stored.recordings.resize(1);
+  EXPECT_FALSE(up_of_base(stored)) << "no wheels";
+  OdometryCalibration calibration;
+  calibration.wheels = upright_wheel_calibration(Eigen::Vector3d(0.0, -1.0, 0.2).normalized(), 0.02);
+  write_odometry_calibration(calibration, stored.notes);
+  const auto up = up_of_base(stored);
+  ASSERT_TRUE(up);
+  EXPECT_LT((up->up - Eigen::Vector3d(0.0, -1.0, 0.2).normalized()).norm(), 1e-6);
+  EXPECT_NEAR(up->sigma, 0.02, 1e-6);
+  stored.recordings.push_back(stored.recordings.front());
+  EXPECT_TRUE(up_of_base(stored)) << "the same cameras again";
+  stored.recordings.back().calibration.body_from_left.translation.x() += 0.1;
+  EXPECT_FALSE(up_of_base(stored)) << "another body";
+  stored.recordings.pop_back();
+  calibration.wheels = upright_wheel_calibration(-Eigen::Vector3d::UnitY(), 0.3);
+  write_odometry_calibration(calibration, stored.notes);
+  EXPECT_FALSE(up_of_base(stored)) << "hardly known";
 }
 
 TEST(Stretch, ScalesDistancesToRemovedKeyframesToo) {

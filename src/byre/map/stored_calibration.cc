@@ -35,6 +35,19 @@ OdometryCalibration odometry_calibration_for(const OdometryCalibration& of_map,
   return body ? moved(of_map, *body) : OdometryCalibration{};
 }
 
+std::optional<UpInBody> up_of_base(const OdometryCalibration& of_map, const std::vector<SourceRecording>& recordings) {
+  constexpr double kMostSigma = 0.1;  // radians
+  if (!of_map.wheels || of_map.wheels->tilt_sigma() > kMostSigma) return {};
+  const bool are_same = std::ranges::all_of(recordings, [&](const SourceRecording& recording) {
+    return has_same_cameras({recordings.front()}, recording.calibration);
+  });
+  return are_same ? std::optional(UpInBody{of_map.wheels->up_in_body(), of_map.wheels->tilt_sigma()}) : std::nullopt;
+}
+
+std::optional<UpInBody> up_of_base(const StoredMap& stored) {
+  return up_of_base(read_odometry_calibration(stored.notes), stored.recordings);
+}
+
 std::optional<RefinedCalibration> stored_calibration(const std::vector<SourceRecording>& recordings,
                                                      const Calibration& given) {
   for (auto recording = recordings.rbegin(); recording != recordings.rend(); ++recording) {

@@ -2,6 +2,7 @@
 
 #include "byre/geometry/decompositions.h"
 #include "byre/map/plan/driving_plane.h"
+#include "byre/map/stored_calibration.h"
 
 #include <cassert>
 
@@ -47,7 +48,7 @@ Similarity ground_from(const DrivingPlane& plane) {
 
 Ground ground_of(const StoredMap& stored, const std::optional<FloorPlan>& plan) {
   assert(stored.map.keyframe_count() > 0 && (!plan || stored.plan));
-  const std::optional<DrivingPlane> driven = fit_driving_plane(stored.map);
+  const std::optional<DrivingPlane> driven = fit_driving_plane(stored.map, up_of_base(stored));
   const DrivingPlane plane = driven ? *driven : plane_of_places(stored.map);
   Ground ground;
   ground.is_level = driven && plane.thickness <= kRoughest * plane.length;

@@ -8,6 +8,7 @@
 #include "byre/io/image/plan_file.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/map/plan/occupancy_grid.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/viewer/camera_picture.h"
 #include "byre/viewer/mission_input.h"
@@ -69,7 +70,8 @@ double share_of(const OccupancyGrid& grid, std::int8_t occupancy) {
 }
 
 void write_grid(const StoredMap& stored, const DrawOptions& options, std::ostream& result) {
-  const std::optional<OccupancyGrid> grid = occupancy_grid(stored.map, stored.plan, options.grid_options);
+  const std::optional<OccupancyGrid> grid =
+      occupancy_grid(stored.map, stored.plan, options.grid_options, fit_driving_plane(stored.map, up_of_base(stored)));
   if (!grid) {
     throw InputError(options.map_file().string(), "was not driven on a floor, so it has no occupancy grid",
                      "map with a camera on a wheeled robot");

@@ -3,6 +3,7 @@
 #include "byre/base/stopwatch.h"
 #include "byre/cli/shared/pose_options.h"
 #include "byre/map/plan/driving_plane.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/slam/system/resources.h"
 
 #include <algorithm>
@@ -28,7 +29,9 @@ RunDescription describe(const ViewOptions& options, const WatchedRun& run) {
   if (run.map) {
     description.map_name = run.map->filename().string();
     description.offline = scene_of({&run.offline->map(), MapGraph(Origin::online)});
-    if (const auto plane = fit_driving_plane(run.offline->map())) description.up_in_map = plane->up_in_map;
+    if (const auto plane =
+            fit_driving_plane(run.offline->map(), up_of_base(run.offline->extrinsics(), run.offline->recordings())))
+      description.up_in_map = plane->up_in_map;
   }
   if (options.plan) {
     description.plan = read_floor_plan(*options.plan);

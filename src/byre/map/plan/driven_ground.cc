@@ -71,7 +71,7 @@ DrivingPlane DrivenGround::plane_around(const Eigen::Vector3d& position_in_map) 
     around.push_back(body.translation);
     up += body.rotation * up_in_body_;
   }
-  return fit_driving_plane(std::move(around), up.normalized());
+  return fit_driving_plane(std::move(around), up.normalized(), up_sigma_);
 }
 
 DrivenGround::GroundOffset DrivenGround::offset_from_ground(const Pose& map_from_body) const {
@@ -91,18 +91,25 @@ DrivenGround::GroundOffset DrivenGround::offset_from_ground(const Pose& map_from
   return offset;
 }
 
-// Alternates between local planes, at first by the up direction of the whole path, and the attitude of bodies on them.
-std::optional<DrivenGround> DrivenGround::under(const MapGraph& map) {
+// Alternates between local planes, at first by the up direction of the base or of the whole path, and the attitude of
+// bodies on them.
+std::optional<DrivenGround> DrivenGround::under(const MapGraph& map, const std::optional<UpInBody>& base) {
   constexpr std::size_t kLeastPlaces = 20;
   constexpr double kLeastLength = 1.0;  // metres, standard deviation along the path's longest direction
-  const std::optional<DrivingPlane> whole = fit_driving_plane(map);
-  if (!whole || whole->path_in_map.size() < kLeastPlaces || whole->length < kLeastLength) return std::nullopt;
+  const std::optional<DrivingPlane> whole = fit_driving_plane(map, base);
+  if (!whole) return std::nullopt;
+  if (!base && (whole->path_in_map.size() < kLeastPlaces || whole->length < kLeastLength)) return std::nullopt;
   std::vector<Pose> path;
   for (const KeyframeId id : map.keyframe_ids()) path.push_back(world_from_body(map, *map.keyframe_header(id)));
   DrivenGround ground(std::move(path));
   constexpr int kRounds = 2;
   Eigen::Vector3d up_in_body = Eigen::Vector3d::Zero();
-  for (const Pose& body : ground.path_) up_in_body += body.rotation.conjugate() * whole->up_in_map;
+  if (base) {
+    up_in_body = base->up;
+    ground.up_sigma_ = base->sigma;
+  } else {
+    for (const Pose& body : ground.path_) up_in_body += body.rotation.conjugate() * whole->up_in_map;
+  }
   Spread spread;
   for (int round = 0; round < kRounds; ++round) {
     ground.up_in_body_ = up_in_body.normalized();

@@ -12,9 +12,10 @@ namespace byre {
 // floors. Lengths in the map's unit.
 class DrivenGround {
  public:
-  // Empty if the map was not driven: heights and tilts along its path vary as with a hand-held or flying camera, the
-  // path is too short, or the up direction is unknown.
-  static std::optional<DrivenGround> under(const MapGraph& map);
+  // base: up axis of the robot's base, normal to the ground; a path that turns refines it. Without a base the axis
+  // comes from the path. Empty if the map was not driven: heights and tilts along its path vary as with a hand-held or
+  // flying camera; without a base also if the path is short, or the up direction unknown.
+  static std::optional<DrivenGround> under(const MapGraph& map, const std::optional<UpInBody>& base = {});
 
   // A body relative to the ground nearest to it.
   struct GroundOffset {
@@ -41,6 +42,7 @@ class DrivenGround {
   std::vector<Pose> path_;  // map_from_body
   PathCells cells_;         // positions of the path
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
+  double up_sigma_ = kUprightSigma;  // radians
   double height_spread_ = 0.0;
   double tilt_spread_ = 0.0;
 };

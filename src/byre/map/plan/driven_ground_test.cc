@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -88,6 +89,37 @@ TEST(DrivenGround, IsNotFoundForHandheldOrFlownMaps) {
   for (std::size_t i = 0; i < flown.size(); ++i)
     flown[i].translation.z() = 0.5 * std::sin(0.7 * static_cast<double>(i));
   EXPECT_FALSE(DrivenGround::under(map_of(flown)));
+}
+
+// The camera looks to the left of the way and down, so that its images tilt about a straight way.
+TEST(DrivenGround, IsNormalToTheUpAxisOfTheBaseWhereThePathIsALine) {
+  std::vector<Pose> path;
+  for (int i = 0; i < 60; ++i) path.push_back(on_floor(0.5 * i, 0.0, std::numbers::pi / 2.0));
+  const auto by_images = DrivenGround::under(map_of(path));
+  const auto by_base = DrivenGround::under(map_of(path), UpInBody{Eigen::Vector3d::UnitZ(), 2.0 * kDegree});
+  ASSERT_TRUE(by_images && by_base);
+  const Pose beside = on_floor(15.0, 2.0, std::numbers::pi / 2.0);
+  EXPECT_GT(std::abs(offset(*by_images, beside).height), 0.5);
+  EXPECT_NEAR(offset(*by_base, beside).height, 0.0, 0.005);
+  EXPECT_LT(offset(*by_base, on_floor(15.0, 2.0, 0.3)).tilt, 0.1 * kDegree);
+  EXPECT_NEAR(offset(*by_base, beside).height_sigma, 2.0 * 2.0 * kDegree, 0.01) << "by the sigma of the base";
+}
+
+TEST(DrivenGround, IsRefinedByThePathWhereTheBaseIsGivenAFewDegreesOff) {
+  const Eigen::Vector3d given = rotation_exp({2.0 * kDegree, -2.0 * kDegree, 0.0}) * Eigen::Vector3d::UnitZ();
+  const auto ground = DrivenGround::under(map_of(driven()), UpInBody{given, 2.0 * kDegree});
+  ASSERT_TRUE(ground);
+  EXPECT_LT(offset(*ground, on_floor(14.2, 0.9, 1.0)).tilt, 0.5 * kDegree);
+  EXPECT_NEAR(offset(*ground, on_floor(14.2, 0.9, 1.0)).height, 0.0, 0.005);
+}
+
+TEST(DrivenGround, IsFoundForShortMapsByTheBase) {
+  const auto path = driven();
+  const auto ground = DrivenGround::under(map_of(std::vector<Pose>(path.begin(), path.begin() + 3)),
+                                          UpInBody{Eigen::Vector3d::UnitZ(), 1.0 * kDegree});
+  ASSERT_TRUE(ground);
+  EXPECT_LT(offset(*ground, path[1]).tilt, 0.1 * kDegree);
+  EXPECT_FALSE(DrivenGround::under(MapGraph(Origin::offline), UpInBody{}));
 }
 
 TEST(DrivenGround, IsNotFoundForShortMaps) {

@@ -14,7 +14,6 @@
 namespace byre {
 namespace {
 
-constexpr double kRigUpSigma = 0.05;          // radians, tilt of a camera mounted to look horizontally
 constexpr double kFloorUnevenness = 0.002;    // least unevenness, relative to the path's length
 constexpr double kIndependentPositions = 50;  // most that count; neighbouring positions share their errors
 constexpr double kLeastCommonUp = 0.5;        // length of the mean of unit vectors
@@ -37,10 +36,11 @@ double root(double variance) {
 
 }  // namespace
 
-// Minimises |up - up_of_rig|^2 / kRigUpSigma^2 + sum over the path ((position - mean) . up)^2 / unevenness^2 for |up| =
+// Minimises |up - up_of_rig|^2 / up_sigma^2 + sum over the path ((position - mean) . up)^2 / unevenness^2 for |up| =
 // 1. Stationary points solve a linear system except for the Lagrange multiplier of the constraint. The multiplier is
 // the least eigenvalue of the path's term if the path determines the plane, else it is negligible.
-DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map) {
+DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map,
+                               double up_sigma) {
   assert(!path_in_map.empty());
   DrivingPlane plane;
   plane.point_in_map = mean_of(path_in_map);
@@ -52,7 +52,7 @@ DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const E
 
   const double count = std::min(static_cast<double>(path_in_map.size()), kIndependentPositions);
   const double unevenness = std::max(plane.thickness, kFloorUnevenness * plane.length);
-  plane.up_information = Eigen::Matrix3d::Identity() / (kRigUpSigma * kRigUpSigma);
+  plane.up_information = Eigen::Matrix3d::Identity() / (up_sigma * up_sigma);
   if (unevenness > 0.0) {
     const Eigen::Matrix3d in_plane = covariance - squared_extents[0] * Eigen::Matrix3d::Identity();
     plane.up_information += count / (unevenness * unevenness) * in_plane;
@@ -62,8 +62,8 @@ DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const E
   return plane;
 }
 
-DrivingPlane require_driving_plane(const MapGraph& map, const std::string& name) {
-  const std::optional<DrivingPlane> plane = fit_driving_plane(map);
+DrivingPlane require_driving_plane(const MapGraph& map, const std::optional<UpInBody>& base, const std::string& name) {
+  const std::optional<DrivingPlane> plane = fit_driving_plane(map, base);
   if (!plane) {
     throw InputError(name,
                      "does not determine the vertical: it has no keyframes, or they have no common upright direction",
@@ -77,16 +77,19 @@ Eigen::Vector3d body_at(const MapGraph& map, const Keyframe& keyframe) {
   return (inverse(keyframe.camera_from_world) * inverse(body_from_camera)).translation;
 }
 
-std::optional<DrivingPlane> fit_driving_plane(const MapGraph& map) {
+std::optional<DrivingPlane> fit_driving_plane(const MapGraph& map, const std::optional<UpInBody>& base) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> path;
   for (const KeyframeId id : map.keyframe_ids()) {
     const Keyframe& keyframe = *map.keyframe_header(id);
-    up -= keyframe.camera_from_world.rotation.conjugate() * Eigen::Vector3d::UnitY();
+    const Pose& body_from_camera = map.rigs()[static_cast<std::size_t>(keyframe.rig)].body_from_camera;
+    const Eigen::Vector3d up_in_camera =
+        base ? body_from_camera.rotation.conjugate() * base->up : -Eigen::Vector3d::UnitY();
+    up += keyframe.camera_from_world.rotation.conjugate() * up_in_camera;
     path.push_back(body_at(map, keyframe));
   }
   if (!(up.norm() > kLeastCommonUp * map.keyframe_count())) return std::nullopt;
-  return fit_driving_plane(std::move(path), up.normalized());
+  return fit_driving_plane(std::move(path), up.normalized(), base ? base->sigma : kUprightSigma);
 }
 
 }  // namespace byre

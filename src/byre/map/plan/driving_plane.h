@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/map/map_graph.h"
+#include "byre/odometry/stationary_detector.h"
 
 #include <optional>
 #include <string>
@@ -23,15 +24,19 @@ struct DrivingPlane {
   double thickness = 0.0;
 };
 
-// Fits the plane to positions on a path; there must be one. On a line, the rotation about it comes from
-// up_of_rig_in_map (unit length), which is assumed correct within a few degrees and also selects the upper side of the
-// plane.
-DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map);
+constexpr double kUprightSigma = 0.05;  // radians, tilt of a camera mounted to look horizontally
 
-// Path of the body in a map, with the mean up direction of its images. Empty without keyframes or a common attitude.
-std::optional<DrivingPlane> fit_driving_plane(const MapGraph& map);
+// Fits the plane to positions on a path; there must be one. On a line, the rotation about it comes from
+// up_of_rig_in_map (unit length), whose standard deviation is up_sigma (radians), and which also selects the upper side
+// of the plane.
+DrivingPlane fit_driving_plane(std::vector<Eigen::Vector3d> path_in_map, const Eigen::Vector3d& up_of_rig_in_map,
+                               double up_sigma = kUprightSigma);
+
+// Path of the body in a map, with the mean up direction of its base, or else of its images. base: up axis of the base.
+// Empty without keyframes or a common attitude.
+std::optional<DrivingPlane> fit_driving_plane(const MapGraph& map, const std::optional<UpInBody>& base);
 // The same. Throws InputError naming the map if there is no plane.
-DrivingPlane require_driving_plane(const MapGraph& map, const std::string& name);
+DrivingPlane require_driving_plane(const MapGraph& map, const std::optional<UpInBody>& base, const std::string& name);
 
 Eigen::Vector3d body_at(const MapGraph& map, const Keyframe& keyframe);
 

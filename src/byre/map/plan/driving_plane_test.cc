@@ -63,7 +63,7 @@ TEST(DrivingPlane, IsTakenFromTheCameraWithoutMotion) {
 TEST(DrivingPlane, UsesTheBodyOfAMap) {
   FloorPlanScene scene;
   const std::vector<Eigen::Vector3d> path = scene.path_in_map(0.0);
-  const std::optional<DrivingPlane> plane = fit_driving_plane(scene.driven_map(path));
+  const std::optional<DrivingPlane> plane = fit_driving_plane(scene.driven_map(path), {});
   ASSERT_TRUE(plane.has_value());
   EXPECT_LT(tilt_error(*plane, scene), 1e-6);
   ASSERT_THAT(plane->path_in_map, SizeIs(path.size()));
@@ -71,7 +71,7 @@ TEST(DrivingPlane, UsesTheBodyOfAMap) {
 }
 
 TEST(DrivingPlane, IsEmptyWithoutKeyframesOrUpDirection) {
-  EXPECT_FALSE(fit_driving_plane(MapGraph(Origin::offline)).has_value());
+  EXPECT_FALSE(fit_driving_plane(MapGraph(Origin::offline), {}).has_value());
   MapGraph map(Origin::offline);
   map.add_rig({});
   for (const double turn : {0.0, std::numbers::pi}) {
@@ -79,7 +79,7 @@ TEST(DrivingPlane, IsEmptyWithoutKeyframesOrUpDirection) {
     keyframe.camera_from_world.rotation = rotation_exp({turn, 0.0, 0.0});
     map.add_keyframe(keyframe);
   }
-  EXPECT_FALSE(fit_driving_plane(map).has_value());
+  EXPECT_FALSE(fit_driving_plane(map, {}).has_value());
 }
 
 }  // namespace

@@ -191,9 +191,9 @@ void free_driven_cells(const std::vector<Vector2d>& places, double radius, Occup
 }  // namespace
 
 std::optional<OccupancyGrid> occupancy_grid(const MapGraph& map, const std::optional<PlanRegistration>& registration,
-                                            const GridOptions& options) {
+                                            const GridOptions& options, std::optional<DrivingPlane> plane) {
   constexpr double kRoughest = 0.1;  // largest thickness of the path relative to its length
-  const std::optional<DrivingPlane> plane = fit_driving_plane(map);
+  if (!plane) plane = fit_driving_plane(map, {});
   if (!plane || plane->thickness > kRoughest * plane->length) return std::nullopt;
   OccupancyGrid grid;
   grid.plan_from_map =

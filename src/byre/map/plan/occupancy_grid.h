@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/floor_plan.h"
-#include "byre/map/map_graph.h"
+#include "byre/map/plan/driving_plane.h"
 #include "byre/plan_registration.h"
 
 #include <cstdint>
@@ -40,9 +40,10 @@ inline constexpr double kMaxGridCells = 100e6;
 // keyframe observes together are also hits between them, if closer than the robot's width and 0.6 m. Driven cells are
 // free.
 //
-// The map is metric, or registered on a plan. Empty without keyframes, or if the path is not planar (flown or carried).
-// Throws InputError for more than kMaxGridCells, and if the height of the body is unknown.
+// The map is metric, or registered on a plan. plane: empty for that of the path and the images. Empty without
+// keyframes, or if the path is not planar (flown or carried). Throws InputError for more than kMaxGridCells, and if the
+// height of the body is unknown.
 std::optional<OccupancyGrid> occupancy_grid(const MapGraph& map, const std::optional<PlanRegistration>& registration,
-                                            const GridOptions& options = {});
+                                            const GridOptions& options = {}, std::optional<DrivingPlane> plane = {});
 
 }  // namespace byre

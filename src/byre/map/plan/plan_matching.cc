@@ -419,7 +419,7 @@ std::optional<PlanMatch> match_with_plan(const MapGraph& map, const DrivingPlane
   options.resolution = kCell;
   options.body_height = body_height;
   const WallDistances walls(plan);
-  const std::optional<OccupancyGrid> grid = occupancy_grid(map, std::nullopt, options);
+  const std::optional<OccupancyGrid> grid = occupancy_grid(map, std::nullopt, options, plane);
   if (!grid || !walls.has_walls()) return std::nullopt;
   const std::vector<Vector2d> path = dense_path(map, grid->plan_from_map);
   Vector2d middle = Vector2d::Zero();

@@ -141,7 +141,7 @@ class Hall {
 
 std::optional<PlanMatch> match(Hall& hall) {
   const MapGraph map = hall.map();
-  return match_with_plan(map, require_driving_plane(map, "hall"), hall.plan());
+  return match_with_plan(map, require_driving_plane(map, {}, "hall"), hall.plan());
 }
 
 void find_the_map_in_halls(std::uint64_t first, std::uint64_t last) {
@@ -202,7 +202,7 @@ TEST(PlanMatching, IsDoubtedBetweenParallelWalls) {
 TEST(PlanMatching, IsDoubtedOnThePlanOfAnotherBuilding) {
   Hall hall(1, Hall::Shape::unambiguous), other(2, Hall::Shape::unambiguous);
   const MapGraph map = hall.map();
-  const auto found = match_with_plan(map, require_driving_plane(map, "hall"), other.plan());
+  const auto found = match_with_plan(map, require_driving_plane(map, {}, "hall"), other.plan());
   ASSERT_TRUE(found.has_value());
   EXPECT_TRUE(found->doubt.has_value()) << describe_match(*found);
 }
@@ -212,7 +212,7 @@ TEST(PlanMatching, IsEmptyWithoutWalls) {
   const MapGraph map = hall.map();
   DrawnFloorPlan plan = hall.plan();
   std::ranges::fill(plan.occupancy, kFreePixel);
-  EXPECT_FALSE(match_with_plan(map, require_driving_plane(map, "hall"), plan).has_value());
+  EXPECT_FALSE(match_with_plan(map, require_driving_plane(map, {}, "hall"), plan).has_value());
 }
 
 TEST(PlanMatching, ReportsARemedyForEachDoubt) {

@@ -2,6 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/map/scaled_copy.h"
+#include "byre/map/stored_calibration.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +68,7 @@ void require_unambiguous(const StoredMap& stored, const std::filesystem::path& p
 
 Registering register_map(const StoredMap& stored, const std::filesystem::path& map, const FloorPlan& plan,
                          const std::filesystem::path& picks, const RegisterOptions& options) {
-  const DrivingPlane plane = require_driving_plane(stored.map, map.string());
+  const DrivingPlane plane = require_driving_plane(stored.map, up_of_base(stored), map.string());
   Registering result;
   PickOptions of_picks = options.picks;
   of_picks.body_height = options.registration.body_height;
@@ -96,7 +97,7 @@ Registering register_by_walls(const StoredMap& stored, const std::filesystem::pa
                               std::optional<double> body_height) {
   const std::string remedy = "pick points of the map and the plan: byre view MAP --plan PLAN";
   if (stored.scale != MapScale::metric) throw InputError(map.string(), "has no metric scale to match a plan", remedy);
-  const DrivingPlane plane = require_driving_plane(stored.map, map.string());
+  const DrivingPlane plane = require_driving_plane(stored.map, up_of_base(stored), map.string());
   std::optional<PlanMatch> match = match_with_plan(stored.map, plane, plan, body_height);
   if (!match) throw InputError(map.string(), "has no obstacles to match, or the plan has no walls", remedy);
   if (match->doubt) {

@@ -4,6 +4,7 @@
 #include "byre/base/text_file.h"
 #include "byre/input_error.h"
 #include "byre/map/plan/driving_plane.h"
+#include "byre/map/stored_calibration.h"
 
 #include <algorithm>
 #include <array>
@@ -197,7 +198,7 @@ PlanCorrespondence read_triangulated(std::span<const Pick> rows, const FloorPlan
 
 PlanCorrespondence read_wall(const Pick& pick, const FloorPlan& plan, const StoredMap& stored,
                              const PickOptions& options) {
-  const DrivingPlane driven = require_driving_plane(stored.map, "map");
+  const DrivingPlane driven = require_driving_plane(stored.map, up_of_base(stored), "map");
   const auto foot = [&](std::string_view u, std::string_view v) {
     const auto found = floor_at_pixel(stored.map, read_keyframe_pixel(pick, stored, u, v), driven, options.body_height);
     if (!found) pick.fail("has a pixel that shows no floor", "pick the foot of the wall nearer to the camera");

@@ -2,6 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/map/point_grey.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/playback/report/pose_messages.h"
 
 #include <cmath>
@@ -57,7 +58,8 @@ ros::OccupancyGrid grid_of(const StoredMap& stored, bool in_plan, const GridOpti
     throw InputError("the map", "has no metric scale, which occupancy grids need",
                      "set it with byre scale or byre register");
   }
-  const auto grid = occupancy_grid(stored.map, registration, options);
+  const auto grid =
+      occupancy_grid(stored.map, registration, options, fit_driving_plane(stored.map, up_of_base(stored)));
   if (!grid) {
     throw InputError("the map", "was not driven on a floor, so it has no occupancy grid",
                      "set grid.from_map: false, or map with a camera on a wheeled robot");

@@ -2,6 +2,7 @@
 
 #include "byre/geometry/median.h"
 #include "byre/map/keyframe_path.h"
+#include "byre/map/stored_calibration.h"
 
 #include <algorithm>
 #include <array>
@@ -74,7 +75,7 @@ OfflineMap::OfflineMap(MapGraph map, const Vocabulary& vocabulary, std::vector<S
       recordings_(std::move(recordings)),
       frame_covariance_(median_covariance(map_)),
       cell_unit_(share_of_room(map_)),
-      ground_(DrivenGround::under(map_)),
+      ground_(DrivenGround::under(map_, up_of_base(extrinsics, recordings_))),
       walls_(std::move(walls)),
       extrinsics_(extrinsics),
       tags_(std::move(tags)) {

@@ -8,6 +8,7 @@
 #include "byre/map/plan/driving_plane.h"
 #include "byre/map/plan/floor_plan.h"
 #include "byre/map/point_grey.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/map/transformed_copy.h"
 #include "byre/place/map_words.h"
 #include "byre/slam/system/merge_maps.h"
@@ -386,7 +387,7 @@ Map Map::merged_with(const Map& other, const std::optional<std::filesystem::path
 
 PlanFit Map::register_on_plan(const std::string& plan, std::span<const PlanCorrespondence> picks,
                               const PlanRegistrationOptions& options) const {
-  const DrivingPlane plane = require_driving_plane(stored_->map, "map");
+  const DrivingPlane plane = require_driving_plane(stored_->map, up_of_base(*stored_), "map");
   std::optional<PlanFit> fit = byre::register_on_plan(picks, plane, is_metric() ? Scale::fixed : Scale::free, options);
   if (!fit) {
     throw InputError("picks", "need two distant points to register the map on the plan",

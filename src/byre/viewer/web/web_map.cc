@@ -6,6 +6,7 @@
 #include "byre/map/plan/pick_guidance.h"
 #include "byre/map/plan/plan_matching.h"
 #include "byre/map/point_grey.h"
+#include "byre/map/stored_calibration.h"
 #include "byre/viewer/plan_picks.h"
 #include "byre/viewer/scene.h"
 #include "byre/viewer/web/web_messages.h"
@@ -100,7 +101,7 @@ class MapSite : public WebSite {
  public:
   explicit MapSite(ViewedMap map)
       : map_(std::move(map)),
-        driving_plane_(fit_driving_plane(map_.stored.map)),
+        driving_plane_(fit_driving_plane(map_.stored.map, up_of_base(map_.stored))),
         points_(map_bytes(scene_of(map_.stored.map))),
         plan_(map_.plan ? plan_png(*map_.plan) : "") {}
 
