@@ -24,7 +24,7 @@ struct DrivingPlane {
   double thickness = 0.0;
 };
 
-constexpr double kUprightSigma = 0.05;  // radians, tilt of a camera mounted to look horizontally
+inline constexpr double kUprightSigma = 0.05;  // radians, tilt of a camera mounted to look horizontally
 
 // Fits the plane to positions on a path; there must be one. On a line, the rotation about it comes from
 // up_of_rig_in_map (unit length), whose standard deviation is up_sigma (radians), and which also selects the upper side

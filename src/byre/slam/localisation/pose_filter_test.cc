@@ -267,6 +267,13 @@ TEST_F(WhereaboutsOnATrueMap, RejectAPoseThatContradictsWheels) {
   turned.rotation = turned.rotation * rotation_exp({0.0, 0.0, 2.0});
   mapping.add_odometry(turned);
   EXPECT_TRUE(is_unreachable(20)) << "contradicts the measured rotation";
+  BodyMotion tilted{turned, Matrix6::Zero()};
+  tilted.covariance.diagonal().tail<3>() << 1.0, 1.0, 1e-4;
+  mapping.add_odometry(tilted);
+  EXPECT_TRUE(is_unreachable(20)) << "the tilt is unknown, the heading is known";
+  tilted.covariance.diagonal().tail<3>() << 1e-4, 1e-4, 1.0;
+  mapping.add_odometry(tilted);
+  EXPECT_FALSE(is_unreachable(20)) << "the heading is unknown";
   BodyMotion unsure = motion_to(0);
   unsure.covariance = 100.0 * Matrix6::Identity();
   mapping.add_odometry(unsure);
