@@ -3,6 +3,7 @@
 #include "byre/geometry/median.h"
 #include "byre/odometry/calibrated_odometry.h"
 #include "byre/odometry/time_offset.h"
+#include "byre/odometry/wheel_estimate.h"
 
 #include <algorithm>
 #include <chrono>
@@ -21,51 +22,8 @@ constexpr int kEstimatesUntilUsed = 24;        // the first estimates determine 
 constexpr int kConfirmed = 4;                  // motions until the calibration of an earlier drive counts as confirmed
 constexpr int kEstimatesUntilStored = 8;       // estimates of a calibration until it is kept
 constexpr std::size_t kMotionsPerOffset = 30;  // motions per estimate of a calibration for each estimate of the delay
-constexpr double kMaxSigma = 0.05;             // relative for the scale, radians for the rotation, of an estimate
-constexpr double kMaxInitialSigma = 0.2;       // largest sigma of the first estimate
 constexpr double kMeasuredTilt = 0.03;         // radians, standard deviation of an up axis measured at standstill
 constexpr double kLeastInitialWay = 0.3;       // metres, sum of all paths of the first estimate
-
-// Metres, sum of all paths.
-double way_of(const std::vector<MotionPair>& motions) {
-  double way = 0.0;
-  for (const MotionPair& motion : motions) way += motion.base.translation.norm();
-  return way;
-}
-
-// Whether the base drove and turned enough for an estimate without a prior.
-bool determine_calibration(const std::vector<MotionPair>& motions) {
-  constexpr double kLeastTurn = 0.8;  // radians, sum of all turns
-  constexpr double kLeastWay = 0.5;   // metres
-  double turned = 0.0;
-  for (const MotionPair& motion : motions) turned += std::abs(rotation_log(motion.base.rotation).z());
-  return turned >= kLeastTurn && way_of(motions) >= kLeastWay;
-}
-
-bool is_determined(const std::optional<WheelCalibration>& calibration, double max_sigma) {
-  return calibration && calibration->scale_sigma() < max_sigma && calibration->heading_sigma() < max_sigma;
-}
-
-std::optional<WheelCalibration> estimate_without_prior(const std::vector<MotionPair>& motions) {
-  if (!determine_calibration(motions)) return {};
-  auto found = estimate_wheel_calibration(motions);
-  return is_determined(found, kMaxSigma) ? found : std::nullopt;
-}
-
-// Empty while prior and motions do not determine the calibration.
-std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair>& motions,
-                                                    const WheelCalibration& prior) {
-  auto found = estimate_wheel_calibration(motions, prior);
-  return is_determined(found, kMaxSigma) ? found : std::nullopt;
-}
-
-// Whether motions of a whole drive contradict the prior, and fit another calibration clearly better.
-bool do_motions_refute(const WheelCalibration& prior, const std::vector<MotionPair>& motions) {
-  constexpr double kClearly = 2.0;  // ratio of the usual errors
-  const auto alone = estimate_wheel_calibration(motions), with = estimate_wheel_calibration(motions, prior);
-  return with && is_determined(alone, kMaxInitialSigma) && is_contradicted(prior, *alone) &&
-         with->translation_error > kClearly * alone->translation_error;
-}
 
 // Motions that wheels measured as well.
 std::vector<MotionPair> pairs_of(const std::deque<VisualMotion>& seen, const CalibratedOdometry& odometry) {
@@ -74,26 +32,6 @@ std::vector<MotionPair> pairs_of(const std::deque<VisualMotion>& seen, const Cal
     if (const auto base = base_between(odometry, motion.earlier, motion.later)) pairs.push_back({*base, motion.body});
   }
   return pairs;
-}
-
-// Standard error of the scale by its scatter among parts of the drive, as a natural logarithm: larger than that of
-// independent errors if the unit of the map drifted. Zero if no part determines it.
-double scale_scatter(const std::vector<MotionPair>& motions, const WheelCalibration& whole) {
-  constexpr std::size_t kParts = 4;
-  const auto boundary = [&](std::size_t part) {
-    return motions.begin() + static_cast<std::ptrdiff_t>(part * motions.size() / kParts);
-  };
-  int parts = 0;
-  double information = 0.0, squares = 0.0;
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const auto found = estimate_wheel_calibration({boundary(part), boundary(part + 1)}, with_unknown_scale(whole));
-    if (!found) continue;
-    const double weight = std::pow(found->scale_sigma(), -2);
-    ++parts;
-    information += weight;
-    squares += weight * std::pow(std::log(found->metres_per_unit / whole.metres_per_unit), 2);
-  }
-  return parts == 0 ? 0.0 : std::sqrt(squares / (std::max(1, parts - 1) * information));
 }
 
 // Stores the gyroscope's turns of the motions since the last estimation.

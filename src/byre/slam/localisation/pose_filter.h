@@ -20,6 +20,11 @@ namespace byre {
 // Keyframe that a tracked frame's pose is stored relative to.
 KeyframeId anchor_of(const HybridTrack& track);
 
+// Variance of a pose's position, sum over its axes, square metres.
+inline double position_variance(const Matrix6& covariance) {
+  return covariance.topLeftCorner<3, 3>().trace();
+}
+
 // Pose state of the robot from frame to frame: updated by frames, measured motion and changes of the map. Reads maps,
 // changes only itself. Called from the session's thread.
 class PoseFilter {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "byre/odometry/wheel_calibration.h"
+
+#include <optional>
+#include <vector>
+
+namespace byre {
+
+// Largest sigmas of an estimate that is used: relative for the scale, radians for the rotation.
+inline constexpr double kMaxSigma = 0.05;
+inline constexpr double kMaxInitialSigma = 0.2;  // of the first estimate
+
+// Sum of all paths by wheels, metres.
+double way_of(const std::vector<MotionPair>& motions);
+
+// Whether the base drove and turned enough for an estimate without a prior.
+bool determine_calibration(const std::vector<MotionPair>& motions);
+
+bool is_determined(const std::optional<WheelCalibration>& calibration, double max_sigma);
+
+// Empty while motions do not determine the calibration.
+std::optional<WheelCalibration> estimate_without_prior(const std::vector<MotionPair>& motions);
+
+// Empty while prior and motions do not determine the calibration.
+std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair>& motions,
+                                                    const WheelCalibration& prior);
+
+// Whether motions of a whole drive contradict the prior, and fit another calibration clearly better.
+bool do_motions_refute(const WheelCalibration& prior, const std::vector<MotionPair>& motions);
+
+// Standard error of the scale by its scatter among parts of the drive, as a natural logarithm: larger than that of
+// independent errors if the unit of the map drifted. Zero if no part determines it.
+double scale_scatter(const std::vector<MotionPair>& motions, const WheelCalibration& whole);
+
+}  // namespace byre
