@@ -7,9 +7,9 @@
 
 namespace byre {
 
-// Largest sigmas of an estimate that is used: relative for the scale, radians for the rotation.
+// Largest sigma of a usable estimate: relative for the scale, radians for the rotation.
 inline constexpr double kMaxSigma = 0.05;
-inline constexpr double kMaxInitialSigma = 0.2;  // of the first estimate
+inline constexpr double kMaxInitialSigma = 0.2;  // for the first estimate
 
 // Sum of all paths by wheels, metres.
 double way_of(const std::vector<MotionPair>& motions);
