@@ -167,9 +167,10 @@ Corners detect_corners(const cv::Mat& level, int max_corners, const DetectOption
   append_peaks(strengths, area, options.fast_threshold, found);
   search_poor_cells(strengths, max_corners, options, found);
 
-  const auto& [begin, sorted] = rank_in_squares(level.size(), max_corners, found);
+  const RankedCorners ranked = rank_in_squares(level.size(), max_corners, found);
+  const auto& [begin, sorted] = ranked;
   const std::size_t wanted = std::min(sorted.size(), static_cast<std::size_t>(std::max(0, max_corners)));
-  const Selection share = select_from_squares(wanted, {begin, sorted});
+  const Selection share = select_from_squares(wanted, ranked);
   Corners corners;
   corners.reserve(wanted);
   for (std::size_t square = 0; square + 1 < begin.size(); ++square) {

@@ -25,15 +25,6 @@ constexpr std::size_t kMotionsPerOffset = 30;  // motions per estimate of a cali
 constexpr double kMeasuredTilt = 0.03;         // radians, standard deviation of an up axis measured at standstill
 constexpr double kLeastInitialWay = 0.3;       // metres, sum of all paths of the first estimate
 
-// Motions that wheels measured as well.
-std::vector<MotionPair> pairs_of(const std::deque<VisualMotion>& seen, const CalibratedOdometry& odometry) {
-  std::vector<MotionPair> pairs;
-  for (const VisualMotion& motion : seen) {
-    if (const auto base = base_between(odometry, motion.earlier, motion.later)) pairs.push_back({*base, motion.body});
-  }
-  return pairs;
-}
-
 // Stores the gyroscope's turns of the motions since the last estimation.
 void add_gyroscope_rotations(const RateTrack& rates, std::deque<VisualMotion>& seen) {
   for (auto motion = seen.rbegin(); motion != seen.rend() && !motion->gyroscope_turn; ++motion) {
@@ -70,7 +61,7 @@ void OdometryCalibrator::begin_with_extrinsics(const WheelCalibration& measured,
   if (prior_.calibration.wheels && !is_contradicted(measured, *wheel_calibration_)) return;
   prior_.calibration.wheels = measured;
   prior_.is_measured = true;
-  wheel_calibration_ = is_determined(measured, kMaxSigma) ? std::optional(measured) : std::nullopt;
+  wheel_calibration_ = is_determined(measured, kMaxEstimateSigma) ? std::optional(measured) : std::nullopt;
 }
 
 void OdometryCalibrator::forget_scale() {
@@ -280,7 +271,7 @@ bool OdometryCalibrator::reestimate(const Trajectory& seen) {
     estimate();
   };
   estimate_with_delay();
-  if (!prior_.is_measured || !prior() || !do_motions_refute(*prior(), pairs_of(motions, odometry()))) return false;
+  if (!prior_.is_measured || !prior() || !is_refuted(*prior(), pairs_of(motions, odometry()))) return false;
   discard_prior_wheels(seen.back().time);
   estimate_with_delay();
   return true;
@@ -365,10 +356,10 @@ void OdometryCalibrator::update_initial_calibration() {
   if (prior_.is_assumed) initial_ = estimate_wheel_calibration(all, *prior_.calibration.wheels);
   if (!initial_ && measured_up_)
     initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*measured_up_, kMeasuredTilt));
-  if (!is_determined(initial_, kMaxInitialSigma) && up_in_body_) {
+  if (!is_determined(initial_, kMaxFirstEstimateSigma) && up_in_body_) {
     initial_ = estimate_wheel_calibration(all, upright_wheel_calibration(*up_in_body_, kTilt));
   }
-  if (!is_determined(initial_, kMaxInitialSigma)) return initial_.reset();
+  if (!is_determined(initial_, kMaxFirstEstimateSigma)) return initial_.reset();
   initial_->translation_error = std::max(initial_->translation_error, kLeastError);
   initial_->rotation_error = std::max(initial_->rotation_error, kLeastError);
 }

@@ -8,6 +8,14 @@
 
 namespace byre {
 
+std::vector<MotionPair> pairs_of(const std::deque<VisualMotion>& seen, const CalibratedOdometry& odometry) {
+  std::vector<MotionPair> pairs;
+  for (const VisualMotion& motion : seen) {
+    if (const auto base = base_between(odometry, motion.earlier, motion.later)) pairs.push_back({*base, motion.body});
+  }
+  return pairs;
+}
+
 double way_of(const std::vector<MotionPair>& motions) {
   double way = 0.0;
   for (const MotionPair& motion : motions) way += motion.base.translation.norm();
@@ -29,19 +37,19 @@ bool is_determined(const std::optional<WheelCalibration>& calibration, double ma
 std::optional<WheelCalibration> estimate_without_prior(const std::vector<MotionPair>& motions) {
   if (!determine_calibration(motions)) return {};
   auto found = estimate_wheel_calibration(motions);
-  return is_determined(found, kMaxSigma) ? found : std::nullopt;
+  return is_determined(found, kMaxEstimateSigma) ? found : std::nullopt;
 }
 
 std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair>& motions,
                                                     const WheelCalibration& prior) {
   auto found = estimate_wheel_calibration(motions, prior);
-  return is_determined(found, kMaxSigma) ? found : std::nullopt;
+  return is_determined(found, kMaxEstimateSigma) ? found : std::nullopt;
 }
 
-bool do_motions_refute(const WheelCalibration& prior, const std::vector<MotionPair>& motions) {
+bool is_refuted(const WheelCalibration& prior, const std::vector<MotionPair>& motions) {
   constexpr double kClearly = 2.0;  // ratio of the usual errors
   const auto alone = estimate_wheel_calibration(motions), with = estimate_wheel_calibration(motions, prior);
-  return with && is_determined(alone, kMaxInitialSigma) && is_contradicted(prior, *alone) &&
+  return with && is_determined(alone, kMaxFirstEstimateSigma) && is_contradicted(prior, *alone) &&
          with->translation_error > kClearly * alone->translation_error;
 }
 

@@ -1,15 +1,21 @@
 #pragma once
 
+#include "byre/odometry/calibrated_odometry.h"
+#include "byre/odometry/visual_motion.h"
 #include "byre/odometry/wheel_calibration.h"
 
+#include <deque>
 #include <optional>
 #include <vector>
 
 namespace byre {
 
 // Largest sigma of a usable estimate: relative for the scale, radians for the rotation.
-inline constexpr double kMaxSigma = 0.05;
-inline constexpr double kMaxInitialSigma = 0.2;  // for the first estimate
+inline constexpr double kMaxEstimateSigma = 0.05;
+inline constexpr double kMaxFirstEstimateSigma = 0.2;  // for the first estimate
+
+// Motions that wheels measured as well.
+std::vector<MotionPair> pairs_of(const std::deque<VisualMotion>& seen, const CalibratedOdometry& odometry);
 
 // Sum of all paths by wheels, metres.
 double way_of(const std::vector<MotionPair>& motions);
@@ -27,7 +33,7 @@ std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair
                                                     const WheelCalibration& prior);
 
 // Whether motions of a whole drive contradict the prior, and fit another calibration clearly better.
-bool do_motions_refute(const WheelCalibration& prior, const std::vector<MotionPair>& motions);
+bool is_refuted(const WheelCalibration& prior, const std::vector<MotionPair>& motions);
 
 // Standard error of the scale by its scatter among parts of the drive, as a natural logarithm: larger than that of
 // independent errors if the unit of the map drifted. Zero if no part determines it.

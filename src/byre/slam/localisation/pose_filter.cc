@@ -112,7 +112,7 @@ bool PoseFilter::is_beyond(const Matrix6& covariance, const Pose& predicted_from
   constexpr double kSigmas = 3.0;
   const auto exceeds = [](const Eigen::Vector3d& apart, const Eigen::Matrix3d& error, double least) {
     const Eigen::Vector3d along = apart.normalized();
-    return apart.norm() > least + kSigmas * std::sqrt(along.dot(error * along));
+    return apart.norm() > least + kSigmas * std::sqrt(std::max(0.0, along.dot(error * along)));
   };
   return exceeds(predicted_from_body.translation, covariance.topLeftCorner<3, 3>(), kLeastShare * scene_depth_) ||
          exceeds(rotation_log(predicted_from_body.rotation), covariance.bottomRightCorner<3, 3>(), kLeastTurn);

@@ -371,7 +371,10 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
     extractor_.rest();
     result.report = session_->finish_map(hooks);
     if (prior_.reestimate(session_->final_trajectory())) {  // the map was adjusted to wrong extrinsics
-      result.report = session_->finish_map(hooks);
+      const FinishReport again = session_->finish_map(hooks);
+      result.report.after = again.after;
+      result.report.keyframes_removed += again.keyframes_removed;
+      result.report.points_removed += again.points_removed;
       prior_.reestimate(session_->final_trajectory());
     }
     if (!given_.is_metric()) warn_of_focal_length();
