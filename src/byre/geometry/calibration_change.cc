@@ -8,9 +8,6 @@
 namespace byre {
 namespace {
 
-// Order of a camera's parameters.
-enum : int { kFocal, kAspect, kCentreU, kCentreV, kFirstDistortion };
-
 // Standard errors of a good calibration, as left by tools that report 0.1 to 0.2 px of reprojection error.
 constexpr double kFocalSigma = 4e-4;         // relative
 constexpr double kAspectSigma = 1e-4;        // relative, of fy / fx

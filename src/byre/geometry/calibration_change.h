@@ -11,6 +11,8 @@ namespace byre {
 // coefficients 1 to 4. Also rotation and direction of the right camera, but not the baseline's length, which images
 // cannot measure.
 inline constexpr int kParametersPerCamera = 8;
+// Order of a camera's parameters.
+inline constexpr int kFocal = 0, kAspect = 1, kCentreU = 2, kCentreV = 3, kFirstDistortion = 4;
 inline constexpr int kLeftCamera = 0;                            // index of the left camera's first parameter
 inline constexpr int kRightCamera = kParametersPerCamera;        // index of the right camera's first parameter
 inline constexpr int kRightRotation = 2 * kParametersPerCamera;  // three: rotation about x, y, z of the right camera

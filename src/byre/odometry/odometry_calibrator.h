@@ -32,6 +32,7 @@ class OdometryCalibrator {
   void begin_with_extrinsics(const WheelCalibration& measured, std::optional<double> time_offset);
   // Images contradict the given extrinsics, which are reported and dropped. time: of the frame.
   void reject_extrinsics(Timestamp time) { discard_prior_wheels(time); }
+  bool uses_given_extrinsics() const { return prior_.is_measured; }
   // The map began in metres of the wheels: by this motion, of the body in images. Without a prior, one from here on is
   // a body that looks ahead, in metres.
   void begin_metric(const VisualMotion& first);

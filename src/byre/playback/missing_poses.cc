@@ -83,14 +83,18 @@ void find_places(SlamImpl& slam, const FramesAgain& frames, Poses& poses) {
 
 }  // namespace
 
-void locate_again(SlamImpl& slam, Trajectory& located, const FramesAgain& frames) {
-  for (StampedPose& pose : located) {
+Trajectory located_again(SlamImpl& slam, const Trajectory& located, const FramesAgain& frames) {
+  Trajectory found;
+  for (const StampedPose& pose : located) {
+    if (frames.should_stop()) return located;
     const auto time = std::ranges::lower_bound(frames.times, pose.time);
-    if (time == frames.times.end() || *time != pose.time || frames.should_stop()) continue;
+    if (time == frames.times.end() || *time != pose.time) continue;
     const std::optional<ImageFrame> shown = frames.read(static_cast<int>(time - frames.times.begin()));
     if (!shown) continue;
-    pose.world_from_body = slam.locate_in_finished_map(*shown, pose.world_from_body).value_or(pose.world_from_body);
+    if (const auto again = slam.locate_in_finished_map(*shown, pose.world_from_body))
+      found.push_back({pose.time, *again});
   }
+  return found;
 }
 
 Trajectory with_missing_poses(SlamImpl& slam, const Trajectory& located, const FramesAgain& frames) {

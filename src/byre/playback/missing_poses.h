@@ -16,9 +16,9 @@ struct FramesAgain {
   std::function<bool()> should_stop;                         // polled before each frame
 };
 
-// Locates frames in the finished map that were tracked by another calibration, each from its pose; frames that are not
-// found keep it.
-void locate_again(SlamImpl& slam, Trajectory& located, const FramesAgain& frames);
+// Locates frames in the finished map that were tracked by another calibration, each from its pose. Returns the poses
+// found; `located` if stopped.
+Trajectory located_again(SlamImpl& slam, const Trajectory& located, const FramesAgain& frames);
 
 // Locates frames without a pose in the finished map: those before the map begins, and those of gaps. Each gap is
 // searched from both of its sides, frame by frame from the last located one. With one camera and without odometry,

@@ -88,7 +88,7 @@ MotionEstimates motion_estimates(const OdometryCalibrator& prior, const Session&
 
 // Final poses of all located frames; those of a finished map include frames located in it afterwards.
 Trajectory located_frames(SlamImpl& slam, FrameSource& frames, const PlayHooks& hooks, RunResult& run) {
-  Trajectory seen = slam.session().final_trajectory();
+  const Trajectory seen = slam.session().final_trajectory();
   constexpr double kOtherCamera = 3.0;  // pixels by which the calibration changed since frames were tracked
   if (!run.finishing || seen.empty()) return seen;
   const auto refined = slam.calibration();
@@ -103,18 +103,19 @@ Trajectory located_frames(SlamImpl& slam, FrameSource& frames, const PlayHooks& 
   const auto announce = [&](const char* step) {
     if (hooks.before_finishing_step) hooks.before_finishing_step(step);
   };
+  Trajectory found = seen;
   if (is_other_camera) {
     announce("locating frames by the refined calibration");
-    locate_again(slam, seen, again);
+    found = located_again(slam, seen, again);
   }
   announce("locating frames without a pose");
-  Trajectory all = with_missing_poses(slam, seen, again);
-  run.located_afterwards = static_cast<int>(all.size() - seen.size());
-  if (run.located_afterwards == 0) return all;
+  Trajectory all = with_missing_poses(slam, found, again);
   std::vector<Timestamp> located;
   for (const StampedPose& pose : all) {
     if (!std::ranges::binary_search(seen, pose.time, {}, &StampedPose::time)) located.push_back(pose.time);
   }
+  run.located_afterwards = static_cast<int>(located.size());
+  if (located.empty()) return all;
   return slam.refine_by_located(std::move(all), located);
 }
 

@@ -156,8 +156,9 @@ double CalibrationOnMap::length_sigma(const Features& features, const Calibratio
 RefinedCalibration CalibrationOnMap::estimate() const {
   const CalibrationMatrix posterior = this->posterior();
   const CalibrationVector expected = posterior.ldlt().solve(right_side_);
-  RefinedCalibration result = determined_calibration(given_, posterior, expected, prior_sigmas_);
-  reject_implausible(result, expected, given_, prior_sigmas_);
+  const CalibrationVector prior_sigmas = calibrated_sigmas(prior_sigmas_);
+  RefinedCalibration result = determined_calibration(given_, posterior, expected, prior_sigmas);
+  reject_implausible(result, expected, given_, prior_sigmas);
   result.keyframes = frames_;
   result.observations = observations_;
   return result;

@@ -15,8 +15,9 @@ RefinedCalibration plausible_part(const CalibrationVector& expected) {
   CalibrationMatrix information = CalibrationMatrix::Identity() / (kPriorSigmas * kPriorSigmas);
   information(kKnown, kKnown) = 100.0;
   const Calibration given = scene_calibration();
-  RefinedCalibration found = determined_calibration(given, information, expected, kPriorSigmas);
-  reject_implausible(found, expected, given, kPriorSigmas);
+  const CalibrationVector prior_sigmas = calibrated_sigmas(kPriorSigmas);
+  RefinedCalibration found = determined_calibration(given, information, expected, prior_sigmas);
+  reject_implausible(found, expected, given, prior_sigmas);
   return found;
 }
 

@@ -39,6 +39,13 @@ struct FinishReport {
   LengthChanges length_changes;        // scale changes for poses relative to keyframes, see apply_correction
   MapQuality before;
   MapQuality after;
+
+  // Adds a later finishing of the same map, whose loops count once.
+  void add(const FinishReport& again) {
+    keyframes_removed += again.keyframes_removed;
+    points_removed += again.points_removed;
+    after = again.after;
+  }
 };
 
 struct FinishHooks {

@@ -35,6 +35,8 @@ Frame Calibrator::corrected(const Frame& frame) {
 }
 
 void Calibrator::apply_update(const RefinedCalibration& refined, RectifiedChange from_given) {
+  constexpr double kSettled = 25.0;  // sigmas of a good calibration: 1 % of the focal length
+  is_moving_ = (refined.change - state_.change).norm() > kSettled;
   state_.change = refined.change;
   result_ = refined;
   is_attempt_open_ = false;

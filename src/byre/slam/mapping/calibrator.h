@@ -41,7 +41,6 @@ class Calibrator {
   void note_images(bool disagree) {
     if (!from_given_) given_disagrees_ = disagree;
   }
-  void set_prior_sigmas(double sigmas) { options_.prior_sigmas = sigmas; }
   // Whether the result is not yet reliable. If images were inconsistent with the given calibration, a usual change that
   // explains a few keyframes is no proof: kCloseUntil keyframes are then required.
   bool is_open() const { return !result_ || (given_disagrees_ && last_keyframes_.value_or(0) < kCloseUntil); }
@@ -55,7 +54,7 @@ class Calibrator {
   }
   // Whether a last refinement at the end pays off. A refinement stopped by the end of the session has no result.
   bool is_final_run_useful(int keyframes) const {
-    return !last_keyframes_ || is_attempt_open_ || 4 * keyframes >= 5 * *last_keyframes_;
+    return !last_keyframes_ || is_attempt_open_ || is_moving_ || 4 * keyframes >= 5 * *last_keyframes_;
   }
   void note_attempt(int keyframes) {
     last_keyframes_ = keyframes;
@@ -75,6 +74,7 @@ class Calibrator {
   bool given_disagrees_ = false;               // with the images, while they were rectified by it
   std::optional<int> last_keyframes_;          // keyframes at the last refinement
   bool is_attempt_open_ = false;               // the last refinement has no result yet
+  bool is_moving_ = false;                     // the last refinement changed the calibration by more than its errors
   ObjectPool<Features> features_of_frames_;    // reused memory
 };
 

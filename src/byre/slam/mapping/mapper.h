@@ -72,10 +72,6 @@ class Mapper {
     if (calibrator_) calibrator_->note_images(disagree);
   }
 
-  void set_prior_sigmas(double sigmas) {  // see Calibrator
-    if (calibrator_) calibrator_->set_prior_sigmas(sigmas);
-  }
-
   // Called before the first frame. odometry: odometry between keyframes, called on the calling thread.
   void set_odometry(OdometryQuery odometry) { odometry_ = std::move(odometry); }
   void continue_map(MapGraph online);

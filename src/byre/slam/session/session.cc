@@ -133,12 +133,25 @@ void Session::finish() {
 }
 
 FinishReport Session::finish_map(const FinishHooks& hooks) {
-  if (const auto rotation = state_.mapper.calibrate_finally(state_.rig, hooks.should_stop)) {
-    state_.rig = rotation->after;
-    state_.pose_filter.rotate_rig(*rotation, state_.mapper.online());
+  constexpr int kMaxRuns =
+      4;  // a map of a wrong focal length has matches that fit it, and gives up to half of the error
+  FinishReport report;
+  for (int run = 1; run <= kMaxRuns; ++run) {
+    const auto rotation = state_.mapper.calibrate_finally(state_.rig, hooks.should_stop);
+    if (run > 1 && !rotation) break;
+    if (rotation) {
+      state_.rig = rotation->after;
+      state_.pose_filter.rotate_rig(*rotation, state_.mapper.online());
+    }
+    const FinishReport finished = state_.mapper.finish_map(hooks);
+    state_.pose_filter.apply_length_changes(finished.length_changes);
+    if (run == 1) {
+      report = finished;
+    } else {
+      report.add(finished);
+    }
+    if (hooks.should_stop && hooks.should_stop()) break;
   }
-  FinishReport report = state_.mapper.finish_map(hooks);
-  state_.pose_filter.apply_length_changes(report.length_changes);
   return report;
 }
 

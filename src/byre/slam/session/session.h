@@ -62,7 +62,6 @@ class Session {
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
   // Sets the assumed error of the given calibration, see SelfCalibrationOptions.
-  void set_prior_sigmas(double sigmas) { state_.mapper.set_prior_sigmas(sigmas); }
 
   // Refines the readout time alone; keeps the rest of the given calibration. Call it before the first frame.
   void refine_readout(const RefinedCalibration& known);

@@ -18,7 +18,6 @@ namespace byre {
 namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
-constexpr double kNominalSigmas = 150.0;  // prior of nominal calibrations: 6 % of the focal length, 0.15 of k1
 
 // The second executor of a mission searches places in the offline map.
 SessionExecutors make_lanes(Pace pace, bool is_mission, JobLog& log) {
@@ -131,8 +130,6 @@ SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamI
   if (inputs_.offline) begin_site();
   begin_session(extractor_.rig());
   if (options.self_calibrate) refine_calibration();
-  is_nominal_ =
-      is_nominal(given_) && options.self_calibrate && !initial_calibration_ && !is_extended_ && !inputs_.offline;
   if (is_extended_) session_->continue_map(std::move(*inputs_.before));
 }
 
@@ -278,10 +275,7 @@ FrameReport SlamImpl::process_in_time(const Frame& frame, const std::optional<Bo
   if (is_begun && session_->contradicts_odometry()) prior_.reject_extrinsics(frame.time);
   if (is_begun && !is_metric_) begin_wheels();
   const bool is_seen = report.inliers > 0;
-  if (is_nominal_ && prior_.has_wheels()) {
-    session_->set_prior_sigmas(std::max(options_.self_calibration.prior_sigmas, kNominalSigmas));
-    prior_.set_focal_change(focal_change());
-  }
+  if (!given_.is_metric() && prior_.has_wheels()) prior_.set_focal_change(focal_change());
   prior_.note(frame.time, is_seen ? report.odometry_from_body : std::nullopt);
   if (is_seen && report.map_from_body && report.health.verdict == Verdict::trusted) {
     prior_.note_place(*report.map_from_body);
@@ -371,10 +365,7 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
     extractor_.rest();
     result.report = session_->finish_map(hooks);
     if (prior_.reestimate(session_->final_trajectory())) {  // the map was adjusted to wrong extrinsics
-      const FinishReport again = session_->finish_map(hooks);
-      result.report.after = again.after;
-      result.report.keyframes_removed += again.keyframes_removed;
-      result.report.points_removed += again.points_removed;
+      result.report.add(session_->finish_map(hooks));
       prior_.reestimate(session_->final_trajectory());
     }
     if (!given_.is_metric()) warn_of_focal_length();

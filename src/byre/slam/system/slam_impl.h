@@ -203,7 +203,6 @@ class SlamImpl {
   CommonRowError row_error_;
   OdometryCalibrator prior_;
   bool is_metric_;
-  bool is_nominal_ = false;            // see is_nominal; refined in this run
   std::optional<double> scale_sigma_;  // see scale_sigma()
   bool is_scaled_by_tags_ = false;
   std::optional<Timestamp> last_frame_;

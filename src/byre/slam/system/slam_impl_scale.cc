@@ -86,8 +86,9 @@ void SlamImpl::scale_by_tags() {
 
 // Keeps the map's own unit if motions do not determine the scale.
 double SlamImpl::scale_by_wheels() {
-  const double max_sigma = session_->is_scaled_by_odometry() ? 0.05 : 0.02;  // share
-  constexpr double kMaxTurnError = 0.05;                                     // share of the turns
+  // Share. A lever arm that is estimated together with the scale has errors beyond its sigma.
+  const double max_sigma = prior_.uses_given_extrinsics() ? 0.08 : session_->is_scaled_by_odometry() ? 0.05 : 0.02;
+  constexpr double kMaxTurnError = 0.05;  // share of the turns
   const auto& wheels = prior_.wheels();
   if (!wheels || wheels->scale_sigma() > max_sigma) return 1.0;
   // A wrong wheel radius scales path lengths and turns by the same factor. Turns of a distorted map differ by various
