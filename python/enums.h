@@ -9,6 +9,8 @@
 #include "byre/slam.h"
 #include "byre/trajectory_file.h"
 
+#include <type_traits>
+
 namespace byre::python {
 
 // Enumerations use Python's enum module, one type each.
@@ -30,7 +32,8 @@ void bind_enums(py::module_& module);
 namespace pybind11::detail {
 
 template <typename Enum>
-struct byre_enum_caster {
+requires std::is_enum_v<Enum>
+struct type_caster<Enum> {
   PYBIND11_TYPE_CASTER(Enum, const_name("enum"));
 
   bool load(handle source, bool /*convert*/) {
@@ -43,28 +46,5 @@ struct byre_enum_caster {
     return byre::python::to_python(source).release();
   }
 };
-
-template <>
-struct type_caster<byre::CameraModel> : byre_enum_caster<byre::CameraModel> {};
-template <>
-struct type_caster<byre::CameraChoice> : byre_enum_caster<byre::CameraChoice> {};
-template <>
-struct type_caster<byre::State> : byre_enum_caster<byre::State> {};
-template <>
-struct type_caster<byre::Verdict> : byre_enum_caster<byre::Verdict> {};
-template <>
-struct type_caster<byre::DistrustReason> : byre_enum_caster<byre::DistrustReason> {};
-template <>
-struct type_caster<byre::InputFault> : byre_enum_caster<byre::InputFault> {};
-template <>
-struct type_caster<byre::SessionEvent> : byre_enum_caster<byre::SessionEvent> {};
-template <>
-struct type_caster<byre::LocalisationFailure> : byre_enum_caster<byre::LocalisationFailure> {};
-template <>
-struct type_caster<byre::Workers> : byre_enum_caster<byre::Workers> {};
-template <>
-struct type_caster<byre::PixelFormat> : byre_enum_caster<byre::PixelFormat> {};
-template <>
-struct type_caster<byre::TrajectoryFormat> : byre_enum_caster<byre::TrajectoryFormat> {};
 
 }  // namespace pybind11::detail
