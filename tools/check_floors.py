@@ -86,7 +86,7 @@ FORBIDDEN = [
     Rule(r"(?<![\w.>])(std::)?(exit|_Exit|quick_exit|abort|terminate)\s*\(", frozenset({"cli"}),
          "only cli ends the program: throw InputError for bad input, assert for bugs"),
     Rule(r"\.dump\s*\(", frozenset({"playback/report", "viewer/web", "ros2/fleet"}),
-         "JSON text needs printable_json(): call dump_json() of playback/report/report_json.h"),
+         "JSON text needs printable_json(): call dump_json() of playback/report/report.h"),
     Rule(r"\brandom_device\b|(?<![\w.>:])(std::)?s?rand\s*\(", frozenset(),
          "equal seeds must yield equal results: take the seed as an option"),
 ]

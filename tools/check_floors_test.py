@@ -138,7 +138,7 @@ class Fences(CheckFloorsTest):
         self.write("features/extract.cc", "#include <opencv2/imgproc.hpp>\n")
         self.write("cli/main.cc", "#include <iostream>\n#include <CLI/CLI.hpp>\n")
         self.write("cli/map/command.cc", "#include <CLI/CLI.hpp>\n")
-        self.write("playback/report/report_json.h", "#include <nlohmann/json.hpp>\n")
+        self.write("playback/report/report.h", "#include <nlohmann/json.hpp>\n")
         self.write("playback/map_run.cc", "#include <thread>\n")
         self.assertEqual([], self.found())
 

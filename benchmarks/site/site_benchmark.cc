@@ -6,7 +6,7 @@
 
 #include "byre/base/stopwatch.h"
 #include "byre/benchmark/markdown_table.h"
-#include "byre/benchmark/run_cost.h"
+#include "byre/benchmark/speed.h"
 #include "byre/features/image_threads.h"
 #include "byre/geometry/evaluation/distribution.h"
 #include "byre/input_error.h"

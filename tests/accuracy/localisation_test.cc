@@ -6,7 +6,6 @@
 #include "byre/features/extract.h"
 #include "byre/features/image_threads.h"
 #include "byre/io/image/image_file.h"
-#include "byre/io/image/image_fit.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/map/map_file.h"
 #include "byre/place/map_words.h"

@@ -1,7 +1,6 @@
 #include "imperfection.h"
 
-#include "byre/simulation/calibration_error.h"
-#include "byre/simulation/lens_blur.h"
+#include "byre/simulation/camera_imperfection.h"
 
 #include <algorithm>
 #include <memory>

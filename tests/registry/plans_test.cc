@@ -7,7 +7,6 @@
 #include "byre/floor_plan.h"
 #include "byre/input_error.h"
 #include "byre/registry/blobs.h"
-#include "byre/registry/plans.h"
 
 #include <chrono>
 #include <random>

@@ -1,7 +1,7 @@
 #include "registry_fixture.h"
 
 #include "byre/input_error.h"
-#include "byre/registry/schema.h"
+#include "byre/registry/connection.h"
 
 #include <cerrno>
 #include <charconv>

@@ -4,7 +4,6 @@
 #include "registry_fixture.h"
 
 #include "byre/registry/blobs.h"
-#include "byre/registry/plans.h"
 #include "byre/registry/versions.h"
 #include "byre/viewer/web/web_client_scene.h"
 

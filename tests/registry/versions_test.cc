@@ -6,7 +6,7 @@
 #include "byre/base/output_file.h"
 #include "byre/input_error.h"
 #include "byre/registry/blobs.h"
-#include "byre/registry/schema.h"
+#include "byre/registry/connection.h"
 #include "byre/registry/versions.h"
 
 #include <gmock/gmock.h>

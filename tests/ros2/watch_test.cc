@@ -1,6 +1,6 @@
 // byre node watched by a Foxglove client, on the port of /healthz and /metrics.
 
-#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/message_bytes.h"
 #include "byre/io/ros/messages.h"
 #include "byre/viewer/web/web_client_scene.h"
 #include "node_fixture.h"

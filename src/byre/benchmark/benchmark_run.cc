@@ -1,10 +1,9 @@
 #include "byre/benchmark/benchmark_run.h"
 
-#include "byre/benchmark/run_cost.h"
+#include "byre/benchmark/speed.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/scaled_recording.h"
-#include "byre/playback/source_recording.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/resources.h"
 #include "byre/slam/system/stored_map.h"
@@ -101,20 +100,15 @@ Trajectory truth_during(const Trajectory& truth, const Recording& recording) {
   return part;
 }
 
-struct TimedRun {
-  RunResult run;
-  CostMeasures cost;
-};
-
-TimedRun play_and_time(Slam slam, Recording& recording, const PlayHooks& hooks) {
+std::pair<RunResult, CostMeasures> play_and_time(Slam slam, Recording& recording, const PlayHooks& hooks) {
   const bool is_reset = reset_peak_memory();
   const double cpu_before = resource_usage().cpu_seconds;
-  TimedRun timed;
-  timed.run = play(slam, recording, hooks);
-  if (timed.run.map_damage) throw InputError(*timed.run.map_damage);
-  timed.cost.cpu_seconds = resource_usage().cpu_seconds - cpu_before;
-  if (is_reset) timed.cost.peak_memory_mb = peak_memory_mb();
-  return timed;
+  RunResult run = play(slam, recording, hooks);
+  if (run.map_damage) throw InputError(*run.map_damage);
+  CostMeasures cost;
+  cost.cpu_seconds = resource_usage().cpu_seconds - cpu_before;
+  if (is_reset) cost.peak_memory_mb = peak_memory_mb();
+  return {std::move(run), cost};
 }
 
 class BenchmarkRunner {
@@ -178,19 +172,19 @@ class BenchmarkRunner {
       const SlamOptions slam = options_for(arm, i, source);
       const Calibration& calibration = recording.calibration();
       hooks_.before_run(what + fmt::format(", run {} of {}", i + 1, protocol_.runs), recording.size());
-      const TimedRun timed =
+      const auto [run, cost] =
           play_and_time(map != nullptr ? Slam::on_map(calibration, map->file, slam) : Slam::mapping(calibration, slam),
                         recording, run_hooks());
       if (hooks_.should_stop()) return;
-      write_trajectories(timed.run, file_name_of(benchmark_case.name) + "." + std::string(name_of(arm)), i);
+      write_trajectories(run, file_name_of(benchmark_case.name) + "." + std::string(name_of(arm)), i);
       if (i == 0) {
-        result.final_trace = trace_of(timed.run.final, truth);
-        result.causal_trace = trace_of(timed.run.causal, truth);
+        result.final_trace = trace_of(run.final, truth);
+        result.causal_trace = trace_of(run.causal, truth);
       }
-      RunMeasures measures = evaluate_run(timed.run, truth);
-      measures.cost.peak_memory_mb = timed.cost.peak_memory_mb;
-      measures.cost.cpu_seconds = timed.cost.cpu_seconds;
-      result.runs.push_back({protocol_.seed_of_run(i), measures, timed.run.warnings});
+      RunMeasures measures = evaluate_run(run, truth);
+      measures.cost.peak_memory_mb = cost.peak_memory_mb;
+      measures.cost.cpu_seconds = cost.cpu_seconds;
+      result.runs.push_back({protocol_.seed_of_run(i), measures, run.warnings});
       keep(result);
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/benchmark/evaluate_run.h"
+#include "byre/benchmark/measures.h"
 #include "byre/benchmark/protocol.h"
 #include "byre/playback/play.h"
 

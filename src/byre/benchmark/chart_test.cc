@@ -1,5 +1,3 @@
-#include "byre/benchmark/chart.h"
-
 #include "byre/benchmark/plots.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "byre/benchmark/evaluate_run.h"
+#include "byre/benchmark/measures.h"
 
 #include <cmath>
 

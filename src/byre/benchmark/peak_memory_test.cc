@@ -1,4 +1,4 @@
-#include "byre/benchmark/run_cost.h"
+#include "byre/benchmark/speed.h"
 
 #include <cstring>
 

@@ -1,5 +1,5 @@
-#include "byre/playback/report/report_json.h"
 #include "byre/benchmark/report.h"
+#include "byre/playback/report/report.h"
 
 #include <nlohmann/json.hpp>
 

@@ -12,6 +12,29 @@
 
 namespace byre {
 
+// Returns free memory to the system and resets the peak. False if the system denies it.
+bool reset_peak_memory();
+
+// Peak resident memory of the program since the last reset, or since its start. Empty if the system does not report it.
+std::optional<double> peak_memory_mb();
+
+// Counts instructions by perf_event_open(2) in this thread and in threads it starts later; user space only. Starts
+// counting on construction.
+class InstructionCounter {
+ public:
+  InstructionCounter();
+  ~InstructionCounter();
+  InstructionCounter(const InstructionCounter&) = delete;
+  InstructionCounter& operator=(const InstructionCounter&) = delete;
+
+  // Since construction. Empty if the machine has no such counter, as many virtual ones, or denies access
+  // (kernel.perf_event_paranoid above 2).
+  std::optional<std::uint64_t> count() const;
+
+ private:
+  int descriptor_ = -1;  // owned; negative: unavailable
+};
+
 // A stage of a frame: its name and its field of StageSeconds.
 struct FrameStage {
   const char* name;
@@ -38,8 +61,8 @@ struct SpeedMeasures {
   int late = 0;                   // frames that missed their deadline, if there is one
   int without_online_points = 0;  // see FrameCounts, like the next
   int with_left_alone = 0;
-  std::vector<TimeSummary> stages;  // one per frame_stages()
-  TimeSummary jobs;
+  std::vector<Distribution> stages;  // one per frame_stages()
+  Distribution jobs;
   std::optional<double> first_pose_seconds;  // wall time from opening recording and map to the first pose
   double wall_seconds = 0.0;
   double cpu_seconds = 0.0;                   // in all threads, including decoding and finishing

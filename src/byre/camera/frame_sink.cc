@@ -4,7 +4,7 @@
 #include "byre/camera/still_image.h"
 #include "byre/input_error.h"
 #include "byre/io/bag/mcap_writer.h"
-#include "byre/io/recording/euroc_sensor.h"
+#include "byre/io/recording/euroc.h"
 #include "byre/playback/report/ros_report.h"
 
 #include <cassert>

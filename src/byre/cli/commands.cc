@@ -1,21 +1,15 @@
 #include "byre/cli/commands.h"
 
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include <CLI/CLI.hpp>
 
 namespace byre::cli {
 namespace {
-
-struct Command {
-  const char* name;
-  const char* summary;
-  Action (*declare)(CLI::App& command);
-  const char* alias = nullptr;  // another usual spelling
-};
 
 constexpr std::array kCommands = {
     Command{"demo", "Demonstrate byre on a simulated cowshed, as an HTML page", declare_demo},
@@ -70,6 +64,16 @@ void declare_commands(CLI::App& app, Action& action) {
       if (writes_files(*each)) declare_no_overwrite(*each);
     }
   }
+}
+
+Action declare_subcommands(CLI::App& command, std::initializer_list<Command> subcommands) {
+  const auto chosen = std::make_shared<Action>();
+  command.require_subcommand(1);
+  for (const Command& each : subcommands) {
+    CLI::App* const declared = command.add_subcommand(each.name, each.summary);
+    declared->callback([chosen, run = each.declare(*declared)] { *chosen = run; });
+  }
+  return [chosen](std::ostream& result) { return (*chosen)(result); };
 }
 
 }  // namespace byre::cli

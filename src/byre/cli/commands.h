@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <iosfwd>
 
 namespace CLI {
@@ -15,6 +16,16 @@ enum ExitCode : int { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, inte
 // Runs a command with its parsed options, and writes its result. Throws InputError for bad input, and any other
 // exception for a failure. Returns interrupted if stopped by a signal, else done.
 using Action = std::function<ExitCode(std::ostream& result)>;
+
+struct Command {
+  const char* name;
+  const char* summary;
+  Action (*declare)(CLI::App& command);
+  const char* alias = nullptr;  // another usual spelling
+};
+
+// Declares subcommands, one of which is required. Call the returned action after parsing.
+Action declare_subcommands(CLI::App& command, std::initializer_list<Command> subcommands);
 
 // Declares all commands; parsing sets the action of the one given.
 void declare_commands(CLI::App& app, Action& action);

@@ -1,9 +1,8 @@
 #include "byre/base/printable.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/recording_options.h"
-#include "byre/cli/shared/unknown_argument.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/input_error.h"
 
 #include <exception>

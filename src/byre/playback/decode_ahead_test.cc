@@ -1,4 +1,4 @@
-#include "byre/playback/decode_ahead.h"
+#include "byre/playback/frame_source.h"
 
 #include <atomic>
 #include <stdexcept>

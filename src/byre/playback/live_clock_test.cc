@@ -1,4 +1,4 @@
-#include "byre/playback/live_clock.h"
+#include "byre/playback/frame_source.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,8 @@
 #include "byre/base/stopwatch.h"
 #include "byre/features/tag_detector.h"
 #include "byre/io/image/image_file.h"
-#include "byre/io/image/image_fit.h"
 #include "byre/io/image/image_names.h"
-#include "byre/playback/decode_ahead.h"
+#include "byre/playback/frame_source.h"
 #include "byre/slam/localisation/place_search.h"
 
 #include <algorithm>

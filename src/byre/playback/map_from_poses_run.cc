@@ -2,13 +2,14 @@
 
 #include "byre/input_error.h"
 #include "byre/map/map_file.h"
-#include "byre/playback/decode_ahead.h"
+#include "byre/playback/frame_source.h"
 
 namespace byre {
 
-PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_body, const PosedRunOptions& options,
+PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_body, const ExtractOptions& extract,
                             const PosedRunHooks& hooks) {
-  Extractor extractor(recording.calibration(), options.extract);
+  constexpr Timestamp kMaxGap = std::chrono::milliseconds(100);  // between poses that are interpolated
+  Extractor extractor(recording.calibration(), extract);
   DecodeAhead decoder(recording);
   PosedRun run;
   std::vector<PosedFrame> frames;
@@ -16,7 +17,7 @@ PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_b
     if (hooks.should_stop()) break;
     run.warnings.insert(run.warnings.end(), decoded->warnings.begin(), decoded->warnings.end());
     ++run.frames;
-    const std::optional<Pose> pose = pose_at(world_from_body, decoded->time, options.max_gap);
+    const std::optional<Pose> pose = pose_at(world_from_body, decoded->time, kMaxGap);
     run.without_pose += pose ? 0 : 1;
     run.unreadable += decoded->images ? 0 : 1;
     if (pose && decoded->images) {
@@ -29,7 +30,7 @@ PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_b
     throw InputError("trajectory", "has no pose at the time of any frame of the recording",
                      "check that the times of both have the same epoch");
   }
-  run.map = offline_copy(map_from_poses({extractor.rig()}, frames, options.map));
+  run.map = offline_copy(map_from_poses({extractor.rig()}, frames, {}));
   return run;
 }
 

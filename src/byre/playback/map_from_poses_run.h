@@ -10,12 +10,6 @@
 
 namespace byre {
 
-struct PosedRunOptions {
-  ExtractOptions extract;
-  KnownPoseOptions map;
-  Timestamp max_gap = std::chrono::milliseconds(100);  // largest gap between poses that are interpolated
-};
-
 // Map made from a recording with given poses.
 struct PosedRun {
   MapGraph map{Origin::offline};
@@ -33,7 +27,7 @@ struct PosedRunHooks {
 
 // Turns each frame with a pose into a keyframe; the world frame is that of the trajectory. Throws InputError if the
 // calibration cannot be rectified, or no frame has a pose.
-PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_body, const PosedRunOptions& options,
+PosedRun run_map_from_poses(Recording& recording, const Trajectory& world_from_body, const ExtractOptions& extract,
                             const PosedRunHooks& hooks);
 
 }  // namespace byre

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/input_error.h"
+#include "byre/plan_registration.h"
 #include "byre/recording.h"
 #include "byre/slam/system/slam_impl.h"
 
@@ -85,5 +86,11 @@ struct PlayHooks {
 RunResult play(Slam& slam, FrameSource& frames, const PlayHooks& hooks);
 // Recordings are played as fast as possible, at live pace in real time.
 RunResult play(Slam& slam, Recording& recording, const PlayHooks& hooks);
+
+// Transforms poses from the map to its floor plan, and adds the covariance of the registration. Verdicts are still
+// those in the map, as the registration does not affect navigation.
+Trajectory on_plan(Trajectory trajectory, const PlanRegistration& registration);
+PlayedFrame on_plan(PlayedFrame frame, const PlanRegistration& registration);
+RunResult on_plan(RunResult run, const PlanRegistration& registration);  // without odometry and the map itself
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/playback/run_on_plan.h"
+#include "byre/playback/play.h"
 
 #include "byre/geometry/geometry_matchers.h"
 

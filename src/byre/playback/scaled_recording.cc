@@ -27,6 +27,10 @@ class OfCamera final : public Recording {
 
 }  // namespace
 
+std::string source_name(const std::filesystem::path& recording) {
+  return std::filesystem::weakly_canonical(recording).filename().string();
+}
+
 Trajectory ScaledRecording::path_of(const Trajectory& world_from_body) const {
   Trajectory path = world_from_body;
   for (StampedPose& sample : path) sample.world_from_body = sample.world_from_body * body_from_camera;

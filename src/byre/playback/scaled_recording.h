@@ -5,8 +5,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace byre {
+
+// Name of a recording in maps: that of its folder or file.
+std::string source_name(const std::filesystem::path& recording);
 
 // Recording for mapping or a mission. Monocular mapping has no metric scale, so a lever arm in metres is meaningless:
 // then the camera frame serves as the body frame.

@@ -1,12 +1,13 @@
 #include "byre/registry/connection.h"
 
+#include "byre/base/binary_file.h"
+#include "byre/base/data_file.h"
 #include "byre/base/printable.h"
 #include "byre/input_error.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <functional>
-#include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -42,6 +43,15 @@ std::string field(const PGresult* result, int code) {
 constexpr const char* kUnreachable =
     "check --registry, registry.database or PGHOST, PGPORT, PGDATABASE, PGUSER, and that the server runs and admits "
     "the account";
+
+// Clients for earlier schemas than this one cannot use the present one.
+constexpr int kOldestClient = 2;
+
+[[noreturn]] void refuse_newer(const Connection& connection, int schema) {
+  throw InputError(connection.place(),
+                   fmt::format("has schema {}, and this byre is made for schema {}", schema, kRegistrySchema),
+                   "install a newer byre");
+}
 
 }  // namespace
 
@@ -262,6 +272,43 @@ void persist(Connection& connection, const std::function<void()>& action) {
     constexpr int kSlice = 100;  // milliseconds
     for (int waited = 0; waited < wait_ms && !connection.is_stopped(); waited += kSlice) poll(nullptr, 0, kSlice);
   }
+}
+
+int registry_schema(Connection& connection) {
+  if (connection.run("SELECT to_regnamespace('byre')").is_null(0, 0)) return 0;
+  return static_cast<int>(connection.run("SELECT coalesce(max(version), 0) FROM byre.schema_version").number(0, 0));
+}
+
+int migrate_registry(Connection& connection) {
+  int before = -1;
+  for (int schema = 1; schema <= kRegistrySchema; ++schema) {
+    Transaction transaction(connection);
+    connection.run("SELECT pg_advisory_xact_lock(hashtext('byre'))");  // one migration at a time
+    const int present = registry_schema(connection);
+    if (before < 0) before = present;
+    if (present > kRegistrySchema) refuse_newer(connection, present);
+    if (present >= schema) continue;
+    const std::vector<std::byte> statements =
+        read_file(find_data_file(fmt::format("registry/{}.sql", schema), "install the package byre-data"));
+    connection.run_script({reinterpret_cast<const char*>(statements.data()), statements.size()});
+    connection.run("INSERT INTO byre.schema_version (version, oldest_client) VALUES ($1, $2)",
+                   {schema, std::min(schema, kOldestClient)});
+    transaction.commit();
+  }
+  return before;
+}
+
+Connection open_registry(const std::string& uri, std::optional<std::chrono::seconds> patience) {
+  Connection connection(uri, patience);
+  const Rows rows = connection.run("SELECT max(version), max(oldest_client) FROM byre.schema_version");
+  const auto schema = static_cast<int>(rows.number(0, 0));
+  if (rows.number(0, 1) > kRegistrySchema) refuse_newer(connection, schema);
+  if (schema < kRegistrySchema) {
+    throw InputError(connection.place(),
+                     fmt::format("has schema {}, and this byre needs schema {}", schema, kRegistrySchema),
+                     "update it with byre registry migrate");
+  }
+  return connection;
 }
 
 }  // namespace byre

@@ -5,7 +5,7 @@
 #include "byre/base/printable.h"
 #include "byre/input_error.h"
 #include "byre/map/map_upkeep.h"
-#include "byre/registry/schema.h"
+#include "byre/registry/connection.h"
 #include "byre/registry/versions.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "byre/simulation/calibration_error.h"
+#include "byre/simulation/camera_imperfection.h"
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/simulation/cowshed/feeding_robot.h"

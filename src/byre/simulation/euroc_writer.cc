@@ -4,7 +4,7 @@
 
 #include "byre/base/output_file.h"
 #include "byre/io/image/image_codec.h"
-#include "byre/io/recording/euroc_sensor.h"
+#include "byre/io/recording/euroc.h"
 #include "byre/trajectory_file.h"
 
 #include <algorithm>

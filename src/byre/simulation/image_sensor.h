@@ -2,7 +2,7 @@
 
 #include "byre/calibration.h"
 #include "byre/image.h"
-#include "byre/simulation/lens_blur.h"
+#include "byre/simulation/camera_imperfection.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "byre/simulation/lens_blur.h"
+#include "byre/simulation/camera_imperfection.h"
 
 #include <numeric>
 

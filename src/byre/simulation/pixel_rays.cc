@@ -6,6 +6,11 @@
 namespace byre {
 namespace {
 
+// u of a pixel centre after binning by divisor: the image border at -0.5 stays fixed.
+double downscaled_centre(double centre, double divisor) {
+  return (centre + 0.5) / divisor - 0.5;
+}
+
 Eigen::Vector3f ray_through(const Camera& camera, const Eigen::Vector2d& pixel) {
   const std::optional<Eigen::Vector3d> bearing = camera.bearing(pixel);
   if (!bearing || bearing->z() <= 0.0) return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
@@ -13,6 +18,28 @@ Eigen::Vector3f ray_through(const Camera& camera, const Eigen::Vector2d& pixel) 
 }
 
 }  // namespace
+
+Camera downscaled_camera(Camera camera, int divisor) {
+  camera.width /= divisor;
+  camera.height /= divisor;
+  camera.fx /= divisor;
+  camera.fy /= divisor;
+  camera.cx = downscaled_centre(camera.cx, divisor);
+  camera.cy = downscaled_centre(camera.cy, divisor);
+  return camera;
+}
+
+Camera resized_camera(Camera camera, int width, int height) {
+  const double divisor = static_cast<double>(camera.width) / width;
+  const double lost = 0.5 * (camera.height / divisor - height);  // rows cut off above, at the new size
+  camera.fx /= divisor;
+  camera.fy /= divisor;
+  camera.cx = downscaled_centre(camera.cx, divisor);
+  camera.cy = downscaled_centre(camera.cy, divisor) - lost;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
 
 PixelRays::PixelRays(const Camera& camera) : width_(camera.width), height_(camera.height) {
   rays_.reserve(static_cast<std::size_t>((width_ + 1) * (height_ + 1)));

@@ -1,8 +1,8 @@
 #include "byre/simulation/rendered_room_scene.h"
 
 #include "byre/input_error.h"
-#include "byre/simulation/downscaled_camera.h"
 #include "byre/simulation/euroc_writer.h"
+#include "byre/simulation/pixel_rays.h"
 #include "byre/simulation/surface_texture.h"
 
 #include <algorithm>

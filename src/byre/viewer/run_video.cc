@@ -1,7 +1,7 @@
 #include "byre/viewer/run_video.h"
 
 #include "byre/input_error.h"
-#include "byre/io/image/video_codec.h"
+#include "byre/io/image/image_codec.h"
 #include "byre/viewer/picture_shapes.h"
 
 #include <cassert>

@@ -1,10 +1,12 @@
 #pragma once
 
+#include "byre/calibration.h"
 #include "byre/image.h"
 #include "byre/map.h"
 #include "byre/map/map_view.h"
 #include "byre/slam/session/session.h"
 
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
@@ -40,6 +42,24 @@ struct FrameScene {
   FrameReport report;
   Image left;                   // rectified; the frame of `seen`
   std::vector<SeenPoint> seen;  // matched map points
+};
+
+// Rectifies left images with the calibration used for features, so that features match the images. Call it from one
+// thread.
+class FrameView {
+ public:
+  // Throws InputError if the calibration cannot be rectified.
+  explicit FrameView(const Calibration& calibration);
+  ~FrameView();
+
+  const Rig& rig() const;
+
+  // Precondition: the image has the calibrated size.
+  FrameScene scene_of(const Image& left, const FrameReport& report, const std::vector<SeenPoint>& seen) const;
+
+ private:
+  struct State;                   // hides OpenCV
+  std::unique_ptr<State> state_;  // constant after construction
 };
 
 }  // namespace byre

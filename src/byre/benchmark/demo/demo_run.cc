@@ -2,10 +2,9 @@
 
 #include "byre/base/stopwatch.h"
 #include "byre/benchmark/demo/animation.h"
-#include "byre/benchmark/demo/mission_picture.h"
-#include "byre/benchmark/demo/painter.h"
+#include "byre/benchmark/demo/plan_pane.h"
 #include "byre/benchmark/demo/table.h"
-#include "byre/benchmark/evaluate_run.h"
+#include "byre/benchmark/measures.h"
 #include "byre/features/image_threads.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/archive/register_map.h"

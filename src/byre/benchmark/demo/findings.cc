@@ -1,7 +1,7 @@
 #include "byre/benchmark/demo/findings.h"
 
 #include "byre/geometry/median.h"
-#include "byre/playback/report/mission_errors.h"
+#include "byre/playback/report/mission_report.h"
 
 #include <algorithm>
 

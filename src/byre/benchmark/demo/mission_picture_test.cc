@@ -1,6 +1,5 @@
-#include "byre/benchmark/demo/mission_picture.h"
-
 #include "byre/benchmark/demo/animation.h"
+
 #include "byre/benchmark/demo/findings_scene.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "byre/benchmark/demo/timeline.h"
 
-#include "byre/benchmark/chart.h"
 #include "byre/benchmark/demo/table.h"
+#include "byre/benchmark/plots.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "byre/io/bag/bag.h"
 
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/playback/report/bag_report.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/playback/report/recording_report.h"
 
 #include <filesystem>
 #include <memory>
@@ -37,20 +37,20 @@ ExitCode run_info(const InfoOptions& options, std::ostream& result) {
   return content.damage.empty() ? ExitCode::done : ExitCode::failed;
 }
 
+Action declare_info(CLI::App& command) {
+  const auto options = std::make_shared<InfoOptions>();
+  add_input(command, Input::recording, "BAG", options->bag, "rosbag2 folder, or .mcap, .db3 or .bag file")
+      ->type_name("PATH")
+      ->required();
+  command.add_flag("--json", options->json, "Print the report as JSON");
+  command.footer(kInfoFooter);
+  return [options](std::ostream& result) { return run_info(*options, result); };
+}
+
 }  // namespace
 
 Action declare_bag(CLI::App& command) {
-  const auto chosen = std::make_shared<Action>();
-  command.require_subcommand(1);
-  const auto info = std::make_shared<InfoOptions>();
-  CLI::App& telling = *command.add_subcommand("info", "Print topics, length and damage of a bag");
-  add_input(telling, Input::recording, "BAG", info->bag, "rosbag2 folder, or .mcap, .db3 or .bag file")
-      ->type_name("PATH")
-      ->required();
-  telling.add_flag("--json", info->json, "Print the report as JSON");
-  telling.footer(kInfoFooter);
-  telling.callback([=] { *chosen = [=](std::ostream& result) { return run_info(*info, result); }; });
-  return [chosen](std::ostream& result) { return (*chosen)(result); };
+  return declare_subcommands(command, {{"info", "Print topics, length and damage of a bag", declare_info}});
 }
 
 }  // namespace byre::cli

@@ -8,13 +8,10 @@
 #include "byre/benchmark/report.h"
 #include "byre/benchmark/speed.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/method_arguments.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/cli/shared/progress.h"
-#include "byre/cli/shared/recording_options.h"
 #include "byre/features/image_threads.h"
 #include "byre/slam/system/option_table.h"
 
@@ -229,15 +226,12 @@ Action declare_benchmark(CLI::App& command) {
       ->excludes(speed);
   add_input(command, Input::folder, "--life", options->life,
             "Measure a map over the recordings of this folder, updated after each")
-      ->type_name("FOLDER")
       ->excludes(speed)
       ->excludes("PROTOCOL");
   add_input(command, Input::folder, "--data", options->run.data, "Folder of the protocol's recordings (.)")
-      ->type_name("FOLDER")
       ->excludes(speed);
   add_output(command, Output::folder, "-o,--output", options->run.output,
-             "Folder for results, created if missing (benchmark_PROTOCOL, benchmark_life; with --speed none)")
-      ->type_name("FOLDER");
+             "Folder for results, created if missing (benchmark_PROTOCOL, benchmark_life; with --speed none)");
   command
       .add_option("--runs", options->runs,
                   "Runs of each arm, replaces the protocol's number; with --speed runs of the recording (1)")
@@ -245,9 +239,7 @@ Action declare_benchmark(CLI::App& command) {
       ->check(between(1, kMaxRuns));
   add_text(command, "--only", options->run.only, "Run only these cases")->type_name("CASE...")->excludes(speed);
   declare_pace(command, options->method);
-  add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary for place recognition (the built-in one)")
-      ->type_name("FILE");
+  declare_vocabulary_option(command, options->vocabulary);
   declare_options_file(command, options->method);
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kBenchmarkFooter);

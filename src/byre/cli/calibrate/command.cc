@@ -1,13 +1,10 @@
 #include "byre/base/output_file.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/map_extrinsics.h"
-#include "byre/cli/shared/method_arguments.h"
-#include "byre/cli/shared/recording_options.h"
-#include "byre/cli/shared/run_with_progress.h"
-#include "byre/cli/shared/warnings.h"
+#include "byre/cli/shared/options.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/extrinsics_file.h"
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"
@@ -133,8 +130,7 @@ Action declare_calibrate(CLI::App& command) {
       ->type_name("YAML")
       ->required();
   add_output(command, Output::calibration, "--extrinsics", options->extrinsics,
-             "Also write the extrinsics of the robot, estimated from wheel odometry. YAML format")
-      ->type_name("FILE");
+             "Also write the extrinsics of the robot, estimated from wheel odometry. YAML format");
   declare_open_options(command, options->open);
   declare_frame_range(command, options->range);
   declare_options_file(command, options->method);

@@ -1,7 +1,7 @@
 #include "byre/base/output_file.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/geometry/degrees.h"
 #include "byre/geometry/rectification.h"
 #include "byre/input_error.h"
@@ -274,26 +274,28 @@ std::shared_ptr<CalibrationOptions> declare_input(CLI::App& command) {
   return options;
 }
 
+Action declare_show(CLI::App& command) {
+  const auto options = declare_input(command);
+  add_output(command, Output::picture, "--picture", options->picture,
+             "Pixel grid of the undistorted image in the image of each camera: .svg or .png");
+  return [options](std::ostream& result) { return run_show(*options, result); };
+}
+
+Action declare_convert(CLI::App& command) {
+  const auto options = declare_input(command);
+  add_output(command, Output::calibration, "-o,--output", options->output, "Calibration file (Kalibr format)")
+      ->type_name("YAML")
+      ->required();
+  return [options](std::ostream& result) { return run_convert(*options, result); };
+}
+
 }  // namespace
 
 Action declare_calibration(CLI::App& command) {
-  const auto chosen = std::make_shared<Action>();
-  command.require_subcommand(1);
   command.footer(kFooter);
-  CLI::App& showing = *command.add_subcommand("show", "Print how a calibration file is understood");
-  const auto shown = declare_input(showing);
-  add_output(showing, Output::picture, "--picture", shown->picture,
-             "Pixel grid of the undistorted image in the image of each camera: .svg or .png")
-      ->type_name("FILE");
-  showing.callback([=] { *chosen = [=](std::ostream& result) { return run_show(*shown, result); }; });
-  CLI::App& converting =
-      *command.add_subcommand("convert", "Write a calibration file of any format as Kalibr camchain");
-  const auto converted = declare_input(converting);
-  add_output(converting, Output::calibration, "-o,--output", converted->output, "Calibration file (Kalibr format)")
-      ->type_name("YAML")
-      ->required();
-  converting.callback([=] { *chosen = [=](std::ostream& result) { return run_convert(*converted, result); }; });
-  return [chosen](std::ostream& result) { return (*chosen)(result); };
+  return declare_subcommands(
+      command, {{"show", "Print how a calibration file is understood", declare_show},
+                {"convert", "Write a calibration file of any format as Kalibr camchain", declare_convert}});
 }
 
 }  // namespace byre::cli

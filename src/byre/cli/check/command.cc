@@ -1,11 +1,10 @@
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/recording_options.h"
-#include "byre/cli/shared/warnings.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/features/image_threads.h"
 #include "byre/io/recording/motion_files.h"
-#include "byre/playback/report/recording_check_report.h"
+#include "byre/playback/report/recording_report.h"
 
 #include <algorithm>
 #include <iostream>

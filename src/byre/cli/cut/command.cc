@@ -1,8 +1,7 @@
 #include "byre/base/output_file.h"
 #include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/input_error.h"
 #include "byre/map.h"
 
@@ -74,7 +73,7 @@ ExitCode run_cut(const CutOptions& options, std::ostream& result) {
 
 Action declare_cut(CLI::App& command) {
   const auto options = std::make_shared<CutOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->required();
   CLI::Option* const box = command.add_option("--box", options->box, "Two opposite corners, lengths of the map")
                                ->type_name("X Y Z X Y Z")
                                ->expected(6)
@@ -91,9 +90,7 @@ Action declare_cut(CLI::App& command) {
     if (options->polygon.size() % 2 != 0) throw CLI::ValidationError("--polygon", "has a corner without y");
   });
   command.add_flag("--keep", options->keep, "Keep the region and remove the rest");
-  add_output(command, Output::map, "-o,--output", options->output, "Map without the region")
-      ->type_name("MAP")
-      ->required();
+  add_output(command, Output::map, "-o,--output", options->output, "Map without the region")->required();
   command.footer(kCutFooter);
   return [options](std::ostream& result) { return run_cut(*options, result); };
 }

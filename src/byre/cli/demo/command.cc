@@ -5,12 +5,11 @@
 #include "byre/benchmark/demo/page.h"
 #include "byre/benchmark/demo/table.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/render_with_progress.h"
-#include "byre/cli/shared/run_with_progress.h"
 #include "byre/input_error.h"
 
 #include <iostream>
@@ -88,8 +87,7 @@ ExitCode run_demo_command(const DemoCommandOptions& options, std::ostream& resul
 Action declare_demo(CLI::App& command) {
   const auto options = std::make_shared<DemoCommandOptions>();
   add_output(command, Output::folder, "-o,--output", options->demo.output,
-             "Folder for the page and its data (byre_demo)")
-      ->type_name("FOLDER");
+             "Folder for the page and its data (byre_demo)");
   command.add_option("--seed", options->demo.seed, "Seed of the barn")->type_name("N")->capture_default_str();
   command
       .add_option("--duration", options->demo.duration_s, "Duration of the first visit; the second is a quarter longer")
@@ -106,13 +104,10 @@ Action declare_demo(CLI::App& command) {
       ->check(between(1, 8))
       ->capture_default_str();
   add_output(command, Output::picture, "--animation", options->animation, "Animated PNG of the hybrid run: .png")
-      ->type_name("FILE")
       ->check([](const std::string& file) {
         return std::string(fs::path(file).extension() == ".png" ? "" : "must end in .png");
       });
-  add_input(command, Input::file, "--vocabulary", options->demo.vocabulary,
-            "Vocabulary for place recognition (the built-in one)")
-      ->type_name("FILE");
+  declare_vocabulary_option(command, options->demo.vocabulary);
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kDemoFooter);
   return [options](std::ostream& result) {

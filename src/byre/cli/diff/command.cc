@@ -1,6 +1,6 @@
 #include "byre/cli/commands.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/changes_picture.h"
-#include "byre/cli/shared/file_arguments.h"
 #include "byre/map.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/report/report.h"

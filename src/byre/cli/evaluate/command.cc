@@ -1,11 +1,8 @@
 #include "byre/base/output_file.h"
 #include "byre/benchmark/plots.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/choice.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/number_check.h"
-#include "byre/cli/shared/pose_options.h"
-#include "byre/cli/shared/recording_options.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/report/evaluation_report.h"
@@ -118,15 +115,13 @@ void run_evaluate(const EvaluateOptions& options, std::ostream& result) {
 void declare_inputs(CLI::App& command, EvaluateOptions& options) {
   add_input(command, Input::recording, "--estimate", options.estimate,
             "Estimated trajectory: TUM, EuRoC csv, or KITTI with --times")
-      ->type_name("FILE")
       ->required();
   add_input(command, Input::recording, "--truth", options.truth,
             "True trajectory in one of these formats, or a recording with truth")
       ->type_name("FILE|FOLDER")
       ->required();
   add_input(command, Input::file, "--times", options.times,
-            "Times of KITTI poses, and of the frames counted for coverage")
-      ->type_name("FILE");
+            "Times of KITTI poses, and of the frames counted for coverage");
   CLI::Option* const frames_of = add_input(command, Input::recording, "--frames-of", options.frames_of,
                                            "Recording whose frames are counted for coverage")
                                      ->type_name("FOLDER|VIDEO|BAG");
@@ -171,12 +166,10 @@ Action declare_evaluate(CLI::App& command) {
   declare_protocol(command, *options);
   command.add_flag("--json", options->json, "Print the report as JSON");
   add_output(command, Output::trajectory, "--aligned", options->aligned,
-             "Also write all poses of the estimate, aligned to the truth")
-      ->type_name("FILE");
+             "Also write all poses of the estimate, aligned to the truth");
   declare_trajectory_format(command, options->format);
   add_output(command, Output::picture, "--plot", options->plot,
-             "Also draw both paths from above and the error over time, as SVG")
-      ->type_name("FILE");
+             "Also draw both paths from above and the error over time, as SVG");
   command.footer(kEvaluateFooter);
   return [options](std::ostream& result) {
     run_evaluate(*options, result);

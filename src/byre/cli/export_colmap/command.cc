@@ -1,8 +1,8 @@
 #include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/cli/shared/outputs.h"
-#include "byre/cli/shared/recording_options.h"
 #include "byre/input_error.h"
 #include "byre/playback/archive/colmap_export.h"
 
@@ -53,10 +53,9 @@ ExitCode run_export(const ExportCommandOptions& options, std::ostream& result) {
 
 Action declare_export_colmap(CLI::App& command) {
   const auto options = std::make_shared<ExportCommandOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->required();
   add_output(command, Output::colmap_model, "-o,--output", options->model,
              "Folder for cameras, images and points3D, created if missing")
-      ->type_name("MODEL_DIR")
       ->required();
   add_input(command, Input::recording, "--images-of", options->recordings,
             "Recordings whose file names are used for the images (default: <nanoseconds>.png)")

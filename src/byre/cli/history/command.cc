@@ -1,6 +1,6 @@
 #include "byre/base/printable.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/slam/upkeep/update_map.h"
 
 #include <filesystem>
@@ -31,7 +31,7 @@ ExitCode run_history(const std::filesystem::path& path, std::ostream& result) {
 
 Action declare_history(CLI::App& command) {
   const auto path = std::make_shared<std::filesystem::path>();
-  add_input(command, Input::file, "MAP", *path, "Map file of \"byre update\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", *path, "Map file of \"byre update\"")->required();
   command.footer(kHistoryFooter);
   return [path](std::ostream& result) { return run_history(*path, result); };
 }

@@ -2,12 +2,9 @@
 #include "byre/base/printable.h"
 #include "byre/base/stopwatch.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/cli/shared/progress.h"
-#include "byre/cli/shared/recording_options.h"
-#include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/playback/archive/colmap_import.h"
 #include "byre/recording.h"
@@ -103,8 +100,7 @@ Action declare_import_colmap(CLI::App& command) {
                    "Add no points for corners without a model point");
   add_text(command, "--site", options->site, "Name of the building, stored in the map")->type_name("TEXT");
   add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary of the map's words (the built-in one)")
-      ->type_name("FILE");
+            "Vocabulary of the map's words (the built-in one)");
   command.add_flag("--quiet", options->quiet, "Show no progress and no warnings");
   command.footer(kImportColmapFooter);
   return [options](std::ostream& result) { return run_import(*options, result); };

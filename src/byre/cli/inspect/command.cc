@@ -1,7 +1,7 @@
 #include "byre/base/binary_file.h"
 #include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/map_extrinsics.h"
 #include "byre/cli/shared/outputs.h"
 #include "byre/extrinsics_file.h"
@@ -126,14 +126,11 @@ Action declare_inspect(CLI::App& command) {
   command.add_flag("--verbose", options->verbose, "Print figures for developers too: features, words, errors, sizes");
   command.add_flag("--json", options->json, "Print the report as JSON, sizes in bytes, lengths in the map's unit");
   add_output(command, Output::point_cloud, "--points", options->points,
-             "Also write the points, coloured by their observations. PLY format")
-      ->type_name("FILE");
+             "Also write the points, coloured by their observations. PLY format");
   add_output(command, Output::calibration, "--extrinsics", options->extrinsics,
-             "Also write the extrinsics of the robot, estimated from wheel odometry. YAML format")
-      ->type_name("FILE");
+             "Also write the extrinsics of the robot, estimated from wheel odometry. YAML format");
   add_output(command, Output::folder, "--pictures", options->pictures,
-             "Also write the pictures of the keyframes to this new folder. JPEG format")
-      ->type_name("FOLDER");
+             "Also write the pictures of the keyframes to this new folder. JPEG format");
   command.footer(kInspectFooter);
   return [options](std::ostream& result) { return run_inspect(*options, result); };
 }

@@ -2,12 +2,9 @@
 #include "byre/base/stopwatch.h"
 #include "byre/calibration_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/pose_options.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/cli/shared/progress.h"
-#include "byre/cli/shared/recording_options.h"
-#include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
 #include "byre/input_error.h"
 #include "byre/io/bag/bag.h"
@@ -15,8 +12,8 @@
 #include "byre/io/recording/trajectory_input.h"
 #include "byre/place/map_words.h"
 #include "byre/playback/localise_run.h"
+#include "byre/playback/play.h"
 #include "byre/playback/report/localisation_report.h"
-#include "byre/playback/run_on_plan.h"
 #include "byre/site.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_file.h"
@@ -24,6 +21,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -90,26 +88,17 @@ Calibration camera_of_images(const LocaliseCommandOptions& options, const Stored
   return choose_calibration({calibration, source.string(), source.string()}, {}, options.open.camera, source).cameras;
 }
 
-struct Work {
-  LocaliseRun run;
-  LocaliseProtocol protocol;
-};
-
-// One map, or those of a site, with words.
-struct GivenMaps {
-  std::vector<std::string> names;  // in the site; empty without a site
-  std::vector<StoredMap> stored;
-};
+// One map, or those of a site, with words: name in the site, empty without a site, and content.
+using GivenMaps = std::vector<std::pair<std::string, StoredMap>>;
 
 GivenMaps open_maps(const LocaliseCommandOptions& options, const Vocabulary& vocabulary) {
   GivenMaps maps;
   const auto add = [&](const std::string& name, const fs::path& file) {
-    maps.names.push_back(name);
-    add_words(maps.stored.emplace_back(open_map(file)), vocabulary);
+    add_words(maps.emplace_back(name, open_map(file)).second, vocabulary);
   };
   if (!is_site_file(options.map)) {
     add("", options.map);
-    if (options.frame == PoseFrame::plan) require_plan(maps.stored.front().plan, options.map);
+    if (options.frame == PoseFrame::plan) require_plan(maps.front().second.plan, options.map);
     return maps;
   }
   if (options.frame == PoseFrame::plan || options.truth) {
@@ -119,14 +108,12 @@ GivenMaps open_maps(const LocaliseCommandOptions& options, const Vocabulary& voc
   return maps;
 }
 
-Work localise_all(const LocaliseCommandOptions& options, const GivenMaps& given, const Vocabulary& vocabulary,
-                  const InterruptCatcher& interrupt) {
-  const StoredMap& stored = given.stored.front();
+std::pair<LocaliseRun, LocaliseProtocol> localise_all(const LocaliseCommandOptions& options, const GivenMaps& given,
+                                                      const Vocabulary& vocabulary, const InterruptCatcher& interrupt) {
+  const StoredMap& stored = given.front().second;
   std::vector<SearchableMap> maps;
-  maps.reserve(given.stored.size());
-  for (std::size_t i = 0; i < given.stored.size(); ++i) {
-    maps.emplace_back(given.stored[i], vocabulary, given.names[i]);
-  }
+  maps.reserve(given.size());
+  for (const auto& [name, map] : given) maps.emplace_back(map, vocabulary, name);
   std::unique_ptr<Recording> recording;
   if (is_recording(options.inputs.front())) {
     recording = open_recording(options.inputs.front(), options.range, options.open);
@@ -158,15 +145,15 @@ std::optional<LocalisationErrors> judge(const LocaliseCommandOptions& options, c
 }
 
 // In order of time, which may differ from the order of names; of equal times the first.
-void write_found(const Work& work, const fs::path& path) {
+void write_found(const LocaliseRun& run, const std::optional<PlanRegistration>& plan, const fs::path& path) {
   Trajectory found;
-  for (const LocalisedFrame& frame : work.run.frames) {
+  for (const LocalisedFrame& frame : run.frames) {
     if (frame.world_from_body) found.push_back({frame.time, *frame.world_from_body});
   }
   std::ranges::stable_sort(found, {}, &StampedPose::time);
   const auto repeated = std::ranges::unique(found, {}, &StampedPose::time);
   found.erase(repeated.begin(), repeated.end());
-  write_trajectory(work.protocol.plan ? on_plan(std::move(found), *work.protocol.plan) : found, path);
+  write_trajectory(plan ? on_plan(std::move(found), *plan) : found, path);
 }
 
 ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& result) {
@@ -177,13 +164,13 @@ ExitCode run_localise(const LocaliseCommandOptions& options, std::ostream& resul
 
   limit_image_threads(1);
   const InterruptCatcher interrupt;
-  const Work work = localise_all(options, maps, vocabulary, interrupt);
-  if (!options.quiet) show_warnings(std::cerr, work.run.warnings);
-  if (options.trajectory) write_found(work, *options.trajectory);
-  const std::optional<LocalisationErrors> errors = judge(options, work.run, maps.stored.front());
-  const Report report = localisation_report(work.run, work.protocol, errors);
+  const auto [run, protocol] = localise_all(options, maps, vocabulary, interrupt);
+  if (!options.quiet) show_warnings(std::cerr, run.warnings);
+  if (options.trajectory) write_found(run, protocol.plan, *options.trajectory);
+  const std::optional<LocalisationErrors> errors = judge(options, run, maps.front().second);
+  const Report report = localisation_report(run, protocol, errors);
   result << (options.json ? to_json(report, 1) : report.text);
-  for (const StoredMap& stored : maps.stored) {
+  for (const auto& [name, stored] : maps) {
     if (const InputError* const damage = stored.map.damage()) throw InputError(*damage);
   }
   return interrupt.caught() ? ExitCode::interrupted : ExitCode::done;
@@ -215,11 +202,8 @@ Action declare_localise(CLI::App& command) {
   const auto options = std::make_shared<LocaliseCommandOptions>();
   declare_inputs(command, *options);
   add_output(command, Output::trajectory, "--trajectory", options->trajectory,
-             "Write the estimated poses, in TUM format")
-      ->type_name("FILE");
-  add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary for place recognition (the built-in one)")
-      ->type_name("FILE");
+             "Write the estimated poses, in TUM format");
+  declare_vocabulary_option(command, options->vocabulary);
   command.add_flag("--json", options->json, "Print the result as JSON, with every frame");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   check_when_parsed(command, [options] { require_valid(options->range); });

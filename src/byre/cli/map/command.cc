@@ -1,30 +1,208 @@
 #include "byre/base/output_file.h"
+#include "byre/base/report_row.h"
+#include "byre/base/stopwatch.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/map/options.h"
-#include "byre/cli/map/posed_map.h"
-#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/cli/shared/outputs.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/run_input.h"
-#include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
+#include "byre/io/recording/trajectory_input.h"
 #include "byre/playback/autosave.h"
+#include "byre/playback/map_from_poses_run.h"
+#include "byre/playback/play.h"
 #include "byre/playback/report/calibration_report.h"
-#include "byre/playback/report/record_file.h"
+#include "byre/playback/report/run_record.h"
 #include "byre/playback/report/run_report.h"
+#include "byre/playback/scaled_recording.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/tag_file.h"
+#include "byre/trajectory_file.h"
 
+#include <filesystem>
+#include <iosfwd>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 namespace byre::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-RunResult play_and_autosave(Slam& slam, RunInput& input, const MapOptions& options, RecordFile& messages,
+// Options of "byre map".
+struct MapOptions {
+  fs::path recording;  // empty for live cameras
+  LiveOptions live;
+  std::optional<fs::path> map;
+  std::optional<fs::path> trajectory;
+  std::optional<fs::path> causal_trajectory;
+  std::optional<fs::path> stats;
+  std::optional<fs::path> given_poses;  // given trajectory of the recording; empty: it is estimated
+  std::optional<fs::path> vocabulary;   // empty: the vocabulary installed with byre
+  std::optional<fs::path> extended;     // map to extend
+  std::optional<fs::path> tags;         // file of AprilTags
+  std::optional<double> autosave_s;
+  std::string site;
+  FrameRange range;
+  OpenOptions open;
+  ExtrinsicsArguments extrinsics;
+  MethodArguments method;
+  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
+  std::optional<fs::path> record;  // bag of ROS 2 messages
+  bool record_images = false;
+  bool quiet = false;
+  bool verbose = false;
+
+  std::vector<fs::path> outputs() const { return given_paths({map, trajectory, causal_trajectory, stats, record}); }
+};
+
+constexpr const char* kMapFooter = R"(Examples:
+  byre map MH_01_easy -o barn.byre
+  byre map MH_01_easy -o barn.byre --trajectory out.txt --site "Barn 2"
+  byre map kitti/sequences/00 --trajectory out.txt --causal-trajectory causal.txt --stats stats.json
+  byre map MH_02_easy --extend barn.byre -o barn2.byre
+  byre map MH_01_easy -o barn.byre --pace live --autosave 60
+  byre map MH_01_easy --trajectory out.txt --start 10 --end 25.5 --stride 2
+  byre map MH_01_easy --trajectory out.txt --pace live --quiet
+  byre map images --calibration camchain.yaml --fps 20 -o barn.byre
+  byre map walk.bag --calibration camchain.yaml -o barn.byre
+  byre map rosbag2_2026_11_20 --left /cam0/image_raw --right /cam1/image_raw -o barn.byre --record mapping.mcap
+  byre map MH_01_easy --tags tags.yaml -o barn.byre
+  byre map --live /dev/video0 /dev/video2 --calibration camchain.yaml -o barn.byre --duration 120
+
+inline runs mapping between the frames, paced in parallel with reproducible results; both run as fast as they can.
+live feeds the frames at their time stamps and drops none; of cameras (--live) it takes the newest frame.
+Trajectories are of the body: EuRoC's is the IMU, KITTI's the left camera. After the last frame, finishing searches
+for loops again, adjusts the whole map, and removes weak points and redundant keyframes; with --extend only in the
+new part and its neighbourhood ("byre refine" does it for the whole map). Ctrl-C or SIGTERM stops after the current
+frame, skips finishing and still writes all files, with exit code 130 or 143; "byre refine" finishes the map later. A
+second signal ends the program at once.)";
+
+void declare_files(CLI::App& command, MapOptions& options) {
+  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
+  add_output(command, Output::map, "-o,--output", options.map,
+             "Map, for \"byre localise\", \"byre inspect\" and later missions");
+  add_output(command, Output::trajectory, "--trajectory", options.trajectory,
+             "Final poses: as corrected after the last frame");
+  add_output(command, Output::trajectory, "--causal-trajectory", options.causal_trajectory,
+             "Causal poses: as published with their frames");
+  add_output(command, Output::json, "--stats", options.stats, "Times, counts and the report of every frame, as JSON");
+}
+
+void declare_map_content(CLI::App& command, MapOptions& options) {
+  add_input(command, Input::recording, "--poses", options.given_poses,
+            "Trajectory of given body poses, which are held fixed; every frame becomes a keyframe");
+  add_input(command, Input::file, "--tags", options.tags,
+            "AprilTags on the robot's way, for missions: YAML, see docs/how-to/use_apriltags.md");
+  add_text(command, "--site", options.site, "Name of the building, stored in the map")->type_name("TEXT");
+  add_input(command, Input::file, "--vocabulary", options.vocabulary,
+            "Vocabulary of the map's words (the built-in one)");
+}
+
+void declare_building(CLI::App& command, MapOptions& options) {
+  add_input(command, Input::file, "--extend", options.extended,
+            "Extend this map: the recording is localised in it and adjusted together with its neighbourhood")
+      ->type_name("MAP");
+  command.add_option("--autosave", options.autosave_s, "Interval at which the map is saved during the run")
+      ->type_name("SECONDS")
+      ->check(between(0.1, 1e6));
+  declare_method_flag(command, "--no-loops", "loops.close", "false", options.method,
+                      "Disable place recognition and finishing; for comparison");
+  declare_method_flag(command, "--no-pictures", "map.pictures", "false", options.method,
+                      "Store no pictures of keyframes in the map, up to 12 kB each");
+  declare_method_flag(command, "--no-self-calibration", "calibration.refine", "false", options.method,
+                      "Use the given calibration unchanged, without refinement");
+}
+
+void require_consistent_extension(const MapOptions& options) {
+  if (!options.extended) return;
+  if (!options.map) throw CLI::ValidationError("--extend", "makes a new map: give a file for it (-o barn2.byre)");
+  if (!options.method.options().close_loops) {
+    throw CLI::ValidationError("--extend", "needs place recognition: leave out --no-loops, or set loops.close to true");
+  }
+}
+
+void require_consistent(const MapOptions& options) {
+  require_valid(options.range);
+  require_one_input(options.recording, options.live, options.open);
+  if (options.live.is_wanted() && options.given_poses) {
+    throw CLI::ValidationError("--poses", "are of a recording, which excludes --live");
+  }
+  if (!options.map && !options.trajectory) {
+    throw CLI::ValidationError("--output",
+                               "give a file for the map (-o barn.byre), the trajectory (--trajectory), or both");
+  }
+  if (options.given_poses && !options.map) {
+    throw CLI::ValidationError("--poses", "makes a map only: give a file for it (-o barn.byre)");
+  }
+  if (options.given_poses && (options.trajectory || options.causal_trajectory || options.stats || options.record)) {
+    throw CLI::ValidationError("--poses",
+                               "estimates no trajectory, so trajectories, statistics and records cannot be written");
+  }
+  if (options.given_poses && (options.extended || options.autosave_s || !options.method.options().close_loops)) {
+    throw CLI::ValidationError("--poses", "excludes --extend, --autosave and --no-loops");
+  }
+  if (options.autosave_s && !options.map) {
+    throw CLI::ValidationError("--autosave", "saves the map: give a file for it (-o barn.byre)");
+  }
+  require_consistent_extension(options);
+}
+
+PosedRun run_with_progress(Recording& recording, const MapOptions& options, const InterruptCatcher& interrupt) {
+  Progress progress(std::cerr, progress_style(options.quiet), recording.size());
+  const Stopwatch watch;
+  PosedRunHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  hooks.after_frame = [&](int done) { progress.update(done, watch.seconds(), "poses given"); };
+  PosedRun run =
+      run_map_from_poses(recording, load_truth(*options.given_poses), options.method.options().extract, hooks);
+  progress.close();
+  return run;
+}
+
+std::string to_text(const PosedRun& run, const MapOptions& options) {
+  std::string poses = "given by " + options.given_poses->string() + ", not estimated";
+  if (run.without_pose > 0) poses += fmt::format("; {} frames without pose are skipped", run.without_pose);
+  return row("recording", fmt::format("{}, {} frames", options.recording.string(), run.frames)) + row("poses", poses) +
+         row("map", fmt::format("{} keyframes, {} points", run.map.keyframe_count(), run.map.point_count())) +
+         row("written", options.map->string());
+}
+
+// "byre map --poses": map from externally estimated poses.
+ExitCode run_posed_map(const MapOptions& options, std::ostream& result) {
+  const Vocabulary vocabulary = open_vocabulary(options.vocabulary);
+  const std::unique_ptr<Recording> recording = open_recording(options.recording, options.range, options.open);
+  if (!options.quiet) show_warnings(std::cerr, recording->warnings());
+  limit_image_threads(1);
+  const InterruptCatcher interrupt;
+  const PosedRun run = run_with_progress(*recording, options, interrupt);
+  if (!options.quiet) show_warnings(std::cerr, run.warnings);
+
+  StoredMap stored;
+  stored.map = run.map;
+  stored.recordings = {{source_name(options.recording),
+                        recording->calibration(),
+                        recording->times().front(),
+                        recording->times().back(),
+                        {}}};
+  stored.pose_source = PoseSource::given;
+  save_for_missions(std::move(stored), vocabulary, options.site, *options.map);
+  result << to_text(run, options);
+  if (interrupt.caught()) return ExitCode::interrupted;
+  require_frames(run.unreadable, run.frames, run.warnings);
+  return ExitCode::done;
+}
+
+RunResult play_and_autosave(Slam& slam, RunInput& input, const MapOptions& options, RunRecord& messages,
                             const InterruptCatcher& interrupt) {
   const SlamInputs& inputs = slam.impl().inputs();
   Autosave autosave(options.autosave_s.value_or(0.0), [&](StoredMap stored) {
@@ -107,8 +285,8 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   limit_image_threads(1);
   input.show_check();
   const InterruptCatcher interrupt;
-  RecordFile messages(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
-                      [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
+  RunRecord messages(std::optional<McapWriter>(options.record), input.calibration(), options.record_images,
+                     [](const std::string& fault) { show_warnings(std::cerr, {fault}); });
   RunResult run = play_and_autosave(slam, input, options, messages, interrupt);
   messages.finish(run);
   if (!options.quiet) show_warnings(std::cerr, run.warnings);
@@ -132,6 +310,24 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   require_frames(run);
   require_poses(run, protocol);
   return ExitCode::done;
+}
+
+void declare_map_options(CLI::App& command, MapOptions& options) {
+  declare_files(command, options);
+  declare_map_content(command, options);
+  declare_building(command, options);
+  declare_open_options(command, options.open);
+  declare_extrinsics(command, options.extrinsics);
+  declare_frame_range(command, options.range);
+  declare_live_options(command, options.live, options.method);
+  declare_pace(command, options.method);
+  declare_trajectory_format(command, options.trajectory_format);
+  declare_recording(command, options.record, options.record_images);
+  declare_options_file(command, options.method);
+  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  command.add_flag("--verbose", options.verbose, "Print figures for developers too: loops, inliers, times, memory");
+  check_when_parsed(command, [&options] { require_consistent(options); });
+  command.footer(kMapFooter);
 }
 
 }  // namespace

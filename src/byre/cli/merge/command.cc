@@ -1,10 +1,10 @@
 #include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/run_with_progress.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/place/map_words.h"
-#include "byre/playback/report/finish_report.h"
+#include "byre/playback/report/map_report.h"
 #include "byre/slam/system/merge_maps.h"
 #include "byre/slam/system/stored_map.h"
 
@@ -88,12 +88,10 @@ ExitCode run_merge(const MergeOptions& options, std::ostream& result) {
 
 Action declare_merge(CLI::App& command) {
   const auto options = std::make_shared<MergeOptions>();
-  add_input(command, Input::file, "FIRST", options->first, "Map whose frame is kept")->type_name("FIRST")->required();
-  add_input(command, Input::file, "SECOND", options->second, "Map that overlaps it")->type_name("SECOND")->required();
+  add_input(command, Input::file, "FIRST", options->first, "Map whose frame is kept")->required();
+  add_input(command, Input::file, "SECOND", options->second, "Map that overlaps it")->required();
   add_output(command, Output::map, "-o,--output", options->output, "Merged map")->type_name("MERGED")->required();
-  add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary for place recognition (the built-in one)")
-      ->type_name("FILE");
+  declare_vocabulary_option(command, options->vocabulary);
   command.add_flag("--json", options->json, "Print the report as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kMergeFooter);

@@ -1,9 +1,9 @@
 #include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/run_with_progress.h"
-#include "byre/playback/report/finish_report.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
+#include "byre/cli/shared/progress.h"
+#include "byre/playback/report/map_report.h"
 #include "byre/slam/system/refine_map.h"
 #include "byre/slam/system/stored_map.h"
 
@@ -66,12 +66,9 @@ ExitCode run_refine(const RefineOptions& options, std::ostream& result) {
 
 Action declare_refine(CLI::App& command) {
   const auto options = std::make_shared<RefineOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
-  add_output(command, Output::refined_map, "-o,--output", options->output, "Refined map (default: replaces the input)")
-      ->type_name("MAP");
-  add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary for place recognition (the built-in one)")
-      ->type_name("FILE");
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->required();
+  add_output(command, Output::refined_map, "-o,--output", options->output, "Refined map (default: replaces the input)");
+  declare_vocabulary_option(command, options->vocabulary);
   command.add_flag("--json", options->json, "Print the changes as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");
   command.footer(kRefineFooter);

@@ -1,11 +1,10 @@
 #include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/input_error.h"
 #include "byre/map/mapped_tag.h"
 #include "byre/playback/archive/register_map.h"
-#include "byre/playback/report/registration_report.h"
+#include "byre/playback/report/map_report.h"
 #include "byre/tag_file.h"
 
 #include <cmath>
@@ -111,19 +110,15 @@ ExitCode run_register(RegisterCommandOptions options, std::ostream& result) {
 
 Action declare_register(CLI::App& command) {
   const auto options = std::make_shared<RegisterCommandOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->required();
   add_input(command, Input::plan, "--plan", options->plan,
             "Floor plan: a map_server YAML file, or an image with a world file")
-      ->type_name("FILE")
       ->required();
-  add_input(command, Input::file, "--points", options->picks, "CSV file of points picked in the map and on the plan")
-      ->type_name("FILE");
+  add_input(command, Input::file, "--points", options->picks, "CSV file of points picked in the map and on the plan");
   add_input(command, Input::file, "--tags", options->tags,
-            "AprilTags surveyed on the plan, with --points or instead: YAML, see docs/how-to/use_apriltags.md")
-      ->type_name("FILE");
+            "AprilTags surveyed on the plan, with --points or instead: YAML, see docs/how-to/use_apriltags.md");
   CLI::Option* const output = add_output(command, Output::updated_map, "-o,--output", options->output,
-                                         "Map with its registration on the plan (not written)")
-                                  ->type_name("MAP");
+                                         "Map with its registration on the plan (not written)");
   command.add_option("--pick-sigma", options->registering.picks.sigma, "Standard deviation of the picks (0.05)")
       ->type_name("METRES")
       ->check(between(1e-4, 100.0));

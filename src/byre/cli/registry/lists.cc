@@ -1,12 +1,10 @@
-#include "byre/cli/registry/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/warnings.h"
+#include "byre/cli/registry/command.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/playback/report/report.h"
-#include "byre/playback/report/report_json.h"
+#include "byre/registry/blobs.h"
+#include "byre/registry/connection.h"
 #include "byre/registry/listing.h"
-#include "byre/registry/plans.h"
-#include "byre/registry/schema.h"
 #include "byre/registry/versions.h"
 
 #include <chrono>

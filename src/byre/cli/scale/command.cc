@@ -1,8 +1,7 @@
 #include "byre/base/output_file.h"
 #include "byre/base/report_row.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/playback/archive/scale_by_distance.h"
 
 #include <filesystem>
@@ -48,15 +47,13 @@ ExitCode run_scale(const ScaleOptions& options, std::ostream& result) {
 
 Action declare_scale(CLI::App& command) {
   const auto options = std::make_shared<ScaleOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Monocular map of \"byre map\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Monocular map of \"byre map\"")->required();
   add_text(command, "--between", options->between, "Two places of the map")->type_name("PLACE PLACE")->required();
   command.add_option("--metres", options->metres, "Distance between the two places")
       ->type_name("METRES")
       ->check(above_zero())
       ->required();
-  add_output(command, Output::map, "-o,--output", options->output, "Map with lengths in metres")
-      ->type_name("MAP")
-      ->required();
+  add_output(command, Output::map, "-o,--output", options->output, "Map with lengths in metres")->required();
   command.footer(kScaleFooter);
   return [options](std::ostream& result) { return run_scale(*options, result); };
 }

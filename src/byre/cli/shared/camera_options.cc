@@ -1,7 +1,7 @@
 #include "byre/cli/shared/camera_options.h"
 
 #include "byre/base/text_file.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
 
 #include <CLI/CLI.hpp>
 

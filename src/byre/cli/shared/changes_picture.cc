@@ -1,6 +1,6 @@
 #include "byre/cli/shared/changes_picture.h"
 
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/input_error.h"
 #include "byre/io/image/plan_file.h"
 #include "byre/viewer/palette.h"
@@ -9,12 +9,9 @@
 namespace byre::cli {
 
 void declare_changes_picture(CLI::App& command, ChangesPicture& picture) {
-  CLI::Option* const file =
-      add_output(command, Output::picture, "--picture", picture.file, "Picture of the changes from above: .svg or .png")
-          ->type_name("FILE");
-  add_input(command, Input::plan, "--plan", picture.plan, "Floor plan under the picture")
-      ->type_name("FILE")
-      ->needs(file);
+  CLI::Option* const file = add_output(command, Output::picture, "--picture", picture.file,
+                                       "Picture of the changes from above: .svg or .png");
+  add_input(command, Input::plan, "--plan", picture.plan, "Floor plan under the picture")->needs(file);
 }
 
 void write_changes(const Map& before, const Map& after, const MapDifference& difference, const std::string& title,

@@ -1,5 +1,5 @@
 #include "byre/cli/shared/absent.h"
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/live_input.h"
 
 #include <stdexcept>

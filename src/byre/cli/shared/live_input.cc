@@ -2,9 +2,8 @@
 
 #include "byre/base/report_row.h"
 #include "byre/camera/live_frames.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/camera_options.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/number_check.h"
 
 #include <utility>
 

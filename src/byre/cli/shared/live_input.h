@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/cli/shared/method_arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/playback/frame_source.h"
 
 #include <functional>

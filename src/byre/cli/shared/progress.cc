@@ -1,17 +1,36 @@
 #include "byre/cli/shared/progress.h"
 
+#include "byre/base/output_file.h"
+#include "byre/base/printable.h"
 #include "byre/base/report_row.h"
+#include "byre/base/stopwatch.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <iostream>
 #include <ostream>
 
-#include <unistd.h>
-
 #include <fmt/core.h>
+#include <unistd.h>
 
 namespace byre::cli {
 namespace {
+
+constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
+constexpr int kSignalled = 128;  // added to a signal's number, as shells do
+
+std::atomic<int> noted_signal = 0;  // 0: none
+static_assert(std::atomic<int>::is_always_lock_free, "else a signal handler may not write it");
+
+// Async-signal-safe.
+extern "C" void note_signal(int signal) {
+  int none = 0;
+  if (noted_signal.compare_exchange_strong(none, signal) || signal == SIGHUP) return;
+  remove_unpublished_files();
+  _exit(kSignalled + signal);
+}
 
 constexpr double kBarInterval_s = 0.1;
 constexpr double kLineInterval_s = 10.0;
@@ -59,7 +78,63 @@ std::string describe_progress(int done, int total, const std::string& unit, doub
   return text + ", " + std::string(state);
 }
 
+std::string state_after(const PlayedFrame& frame, bool is_mission) {
+  if (!frame.report) return "unreadable frame";
+  std::string state(to_string(frame.report->state));
+  if (is_mission) state += ", " + std::string(to_string(frame.report->health.verdict));
+  return state + fmt::format(", {} keyframes, {} points, {:.0f} MB", frame.keyframes, frame.points, frame.memory_mb);
+}
+
+Tone tone_after(const PlayedFrame& frame, bool is_mission) {
+  if (!frame.report) return Tone::bad;
+  if (!is_mission) return Tone::plain;
+  switch (frame.report->health.verdict) {
+    case Verdict::trusted:
+      return Tone::good;
+    case Verdict::degraded:
+      return Tone::doubtful;
+    case Verdict::untrusted:
+      return Tone::bad;
+  }
+  return Tone::plain;
+}
+
 }  // namespace
+
+void show_warnings(std::ostream& stream, const std::vector<std::string>& warnings) {
+  constexpr std::size_t kShown = 20;
+  for (std::size_t i = 0; i < std::min(warnings.size(), kShown); ++i) {
+    stream << "byre: warning: " << printable(warnings[i]) << "\n";
+  }
+  if (warnings.size() > kShown) stream << "byre: warning: " << warnings.size() - kShown << " more of this kind\n";
+}
+
+InterruptCatcher::InterruptCatcher() {
+  noted_signal = 0;
+  struct sigaction noted {};
+  noted.sa_handler = note_signal;
+  noted.sa_flags = SA_RESTART;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    sigaction(kSignals[i], nullptr, &previous_[i]);
+    if (previous_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &noted, nullptr);
+  }
+}
+
+InterruptCatcher::~InterruptCatcher() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &previous_[i], nullptr);
+}
+
+bool InterruptCatcher::caught() const {
+  return noted_signal != 0;
+}
+
+int exit_code_of_interrupt() {
+  return kSignalled + (noted_signal == 0 ? SIGINT : noted_signal.load());
+}
+
+void ignore_write_signals() {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+}
 
 ProgressStyle progress_style(bool quiet) {
   if (quiet) return ProgressStyle::none;
@@ -95,6 +170,50 @@ void Progress::update(int done, double elapsed_s, std::string_view state, Tone t
 void Progress::close() {
   if (style_ != ProgressStyle::lines && shown_done_ > 0) stream_ << std::endl;
   shown_done_ = 0;
+}
+
+FinishHooks finish_hooks(const InterruptCatcher& interrupt, bool quiet) {
+  FinishHooks hooks;
+  hooks.should_stop = [&interrupt] { return interrupt.caught(); };
+  if (!quiet) hooks.before_step = [](const char* step) { std::cerr << "finishing: " << step << std::endl; };
+  return hooks;
+}
+
+namespace {
+
+// frames: number expected; zero: unknown.
+template <typename Source>
+RunResult play_source(Slam& slam, Source& source, int frames, const PlayHooks& more_hooks,
+                      const InterruptCatcher& interrupt, bool quiet) {
+  Progress progress(std::cerr, progress_style(quiet), frames);
+  const Stopwatch watch;
+  const FinishHooks finishing = finish_hooks(interrupt, quiet);
+  const bool is_mission = slam.impl().inputs().offline != nullptr;
+  PlayHooks hooks = more_hooks;
+  hooks.should_stop = finishing.should_stop;
+  hooks.after_frame = [&](int done, const PlayedFrame& frame) {
+    if (more_hooks.after_frame) more_hooks.after_frame(done, frame);
+    progress.update(done, watch.seconds(), state_after(frame, is_mission), tone_after(frame, is_mission));
+  };
+  hooks.before_finishing_step = [&progress, &finishing](const char* step) {
+    progress.close();
+    if (finishing.before_step) finishing.before_step(step);
+  };
+  RunResult run = play(slam, source, hooks);
+  progress.close();
+  return run;
+}
+
+}  // namespace
+
+RunResult play_with_progress(Slam& slam, Recording& recording, const PlayHooks& more_hooks,
+                             const InterruptCatcher& interrupt, bool quiet) {
+  return play_source(slam, recording, recording.size(), more_hooks, interrupt, quiet);
+}
+
+RunResult play_with_progress(Slam& slam, FrameSource& frames, const PlayHooks& more_hooks,
+                             const InterruptCatcher& interrupt, bool quiet) {
+  return play_source(slam, frames, 0, more_hooks, interrupt, quiet);
 }
 
 }  // namespace byre::cli

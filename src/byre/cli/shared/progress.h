@@ -1,12 +1,45 @@
 #pragma once
 
+#include "byre/playback/frame_source.h"
+#include "byre/playback/play.h"
+
+#include <array>
+#include <csignal>
 #include <cstdint>
 #include <iosfwd>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace byre::cli {
+
+// One per line; of a large number only the first, and the number of the rest.
+void show_warnings(std::ostream& stream, const std::vector<std::string>& warnings);
+
+// Records the first SIGINT (Ctrl-C), SIGTERM or SIGHUP (terminal closed) during its lifetime. A second signal removes
+// temporary files, so that outputs are unchanged, and ends the program with exit code 128 plus the signal's number.
+// SIGHUP never ends the program, because a closing terminal sends several. Ignored signals stay ignored, as with nohup.
+// At most one instance may exist.
+class InterruptCatcher {
+ public:
+  InterruptCatcher();
+  ~InterruptCatcher();
+  InterruptCatcher(const InterruptCatcher&) = delete;
+  InterruptCatcher& operator=(const InterruptCatcher&) = delete;
+
+  bool caught() const;
+
+ private:
+  std::array<struct sigaction, 3> previous_{};  // constant after construction
+};
+
+// Exit code for the signal that the last catcher recorded.
+int exit_code_of_interrupt();
+
+// From now on, writing to a closed pipe or beyond the file size limit fails, instead of ending the program before its
+// other outputs are written.
+void ignore_write_signals();
 
 //   bar           a line that is redrawn: for a terminal
 //   coloured_bar  a bar with a coloured state
@@ -42,5 +75,15 @@ class Progress {
   int shown_done_ = 0;
   double shown_elapsed_s_ = 0.0;
 };
+
+// Hooks that print finishing steps to stderr unless quiet, and stop at Ctrl-C. The catcher must outlive them.
+FinishHooks finish_hooks(const InterruptCatcher& interrupt, bool quiet);
+
+// play() with progress on stderr unless quiet; stopped by Ctrl-C. Calls after_frame, on_frame and on_map_update of
+// more_hooks unless empty; the other hooks are set here.
+RunResult play_with_progress(Slam& slam, Recording& recording, const PlayHooks& more_hooks,
+                             const InterruptCatcher& interrupt, bool quiet);
+RunResult play_with_progress(Slam& slam, FrameSource& frames, const PlayHooks& more_hooks,
+                             const InterruptCatcher& interrupt, bool quiet);
 
 }  // namespace byre::cli

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/cli/shared/interrupt.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/simulation/cowshed/cowshed_rendering.h"
 
 #include <filesystem>

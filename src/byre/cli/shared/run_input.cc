@@ -2,12 +2,11 @@
 
 #include "byre/base/report_row.h"
 #include "byre/calibration_file.h"
-#include "byre/cli/shared/run_with_progress.h"
-#include "byre/cli/shared/warnings.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/geometry/baseline.h"
 #include "byre/io/recording/motion_files.h"
-#include "byre/playback/report/recording_check_report.h"
-#include "byre/playback/source_recording.h"
+#include "byre/playback/report/recording_report.h"
+#include "byre/playback/scaled_recording.h"
 
 #include <iostream>
 #include <utility>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/cli/shared/interrupt.h"
 #include "byre/cli/shared/live_input.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/view_run.h"
 #include "byre/map/map_file.h"
 #include "byre/playback/report/run_report.h"

@@ -1,17 +1,38 @@
 #pragma once
 
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/view_options.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/playback/play.h"
 #include "byre/playback/report/run_messages.h"
 #include "byre/viewer/web/web_run.h"
+#include "byre/viewer/web/web_server.h"
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace byre::cli {
+
+// Options of the viewer.
+struct ViewOptions {
+  bool is_wanted = false;
+  WebServerOptions server;
+  std::optional<std::filesystem::path> plan;
+  std::optional<double> stay_s;  // time after a run; infinity: until Ctrl-C; empty: infinity with a terminal, else 0
+};
+
+// The options must outlive the parsing of the command line.
+
+// --view [PORT], --view-for, --bind and --plan of a command with a run.
+void declare_run_viewer_options(CLI::App& command, ViewOptions& options);
+
+// --port, --bind and --plan of a command without a run. plan: description of the plan.
+void declare_viewer_options(CLI::App& command, ViewOptions& options, const std::string& plan);
 
 // Description of a run for the viewer.
 struct WatchedRun {

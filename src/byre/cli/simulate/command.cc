@@ -1,22 +1,23 @@
 #include "byre/base/printable.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/choice.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/render_with_progress.h"
-#include "byre/cli/simulate/imperfection_options.h"
 #include "byre/playback/report/report.h"
+#include "byre/simulation/camera_imperfection.h"
 #include "byre/simulation/cowshed/barn_life.h"
 
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +30,8 @@ namespace fs = std::filesystem;
 
 struct SimulateOptions {
   CowshedRecordingOptions recording;
-  ImperfectionOptions imperfection;
+  std::optional<CameraCondition> condition{};                           // empty: exact
+  std::vector<std::function<void(CameraImperfection&)>> camera_errors;  // differences from the condition
   fs::path output;
   bool has_motion = false;
   MotionSensorOptions motion;
@@ -255,7 +257,46 @@ void declare_camera(CLI::App& command, CowshedRecordingOptions& options) {
       ->capture_default_str();
 }
 
-}  // namespace
+// Option that changes a number of the cameras, in units of the help.
+template <typename Number>
+void add_camera_error(CLI::App& command, SimulateOptions& options, const char* name, Number CameraImperfection::*member,
+                      CLI::Validator range, const char* unit, const char* meaning, Number per_unit = 1) {
+  const auto keep = [&options, member, per_unit](Number number) {
+    options.camera_errors.emplace_back([=](CameraImperfection& camera) { camera.*member = number * per_unit; });
+  };
+  command.add_option_function<Number>(name, keep, meaning)->type_name(unit)->check(range)->group("Camera errors");
+}
+
+void declare_imperfection(CLI::App& command, SimulateOptions& options) {
+  std::map<std::string, CameraCondition> conditions;
+  for (const CameraCondition condition : {CameraCondition::exact, CameraCondition::good, CameraCondition::worn}) {
+    conditions.emplace(to_string(condition), condition);
+  }
+  command.add_option("--imperfection", options.condition, "Preset of all camera errors by age and use (exact)")
+      ->type_name("exact|good|worn")
+      ->transform(one_of(conditions))
+      ->group("Camera errors");
+  using Camera = CameraImperfection;
+  constexpr double kSecondsPerMillisecond = 1e-3;
+  add_camera_error(command, options, "--calibration-level", &Camera::calibration_level, between(0.0, 10.0), "NUMBER",
+                   "Size of the calibration error: 1 for a good calibration, 3 for a worn camera");
+  add_camera_error(command, options, "--calibration-seed", &Camera::calibration_seed, {}, "N",
+                   "Seed of the calibration error (1)");
+  add_camera_error(command, options, "--rolling-shutter", &Camera::rolling_shutter_s, between(0.0, 100.0), "MS",
+                   "Rolling shutter: readout time of an image", kSecondsPerMillisecond);
+  add_camera_error(command, options, "--time-offset", &Camera::time_offset_s, between(-100.0, 100.0), "MS",
+                   "Delay of the right camera's exposure", kSecondsPerMillisecond);
+  add_camera_error(command, options, "--lens-blur", &Camera::lens_blur, between(0.0, 5.0), "PX",
+                   "Standard deviation of the blur in the corners of left images; 1.5 times as much in right images");
+  add_camera_error(command, options, "--gain", &Camera::gain, between(0.25, 4.0), "NUMBER",
+                   "Gain of the right camera relative to the left one");
+  add_camera_error(command, options, "--offset", &Camera::offset, between(-50.0, 50.0), "GREY",
+                   "Offset of the right camera, grey values");
+  add_camera_error(command, options, "--vignetting", &Camera::vignetting, between(0.0, 0.9), "SHARE",
+                   "Vignetting: share of the light lost in the corners");
+  add_camera_error(command, options, "--jpeg", &Camera::jpeg_quality, between(1, 100), "QUALITY",
+                   "Quality of JPEG compression, before images are stored as PNG");
+}
 
 void declare_motion(CLI::App& command, SimulateOptions& options) {
   MotionSensorOptions& motion = options.motion;
@@ -282,8 +323,6 @@ void declare_motion(CLI::App& command, SimulateOptions& options) {
       ->needs(flag);
 }
 
-namespace {
-
 void declare_life(CLI::App& command, SimulateOptions& options) {
   add_seed(command, options.recording.barn);
   command.add_option("--visits", options.visits, "Number of visits, one a day")
@@ -302,9 +341,9 @@ void declare_life(CLI::App& command, SimulateOptions& options) {
 // Options of both scenes.
 void declare_rendering(CLI::App& command, SimulateOptions& options, const char* output) {
   declare_camera(command, options.recording);
-  declare_imperfection(command, options.imperfection);
+  declare_imperfection(command, options);
   declare_motion(command, options);
-  add_output(command, Output::folder, "-o,--output", options.output, output)->type_name("FOLDER")->required();
+  add_output(command, Output::folder, "-o,--output", options.output, output)->required();
   command.add_flag("--json", options.json, "Print the report as JSON");
   command.add_flag("--quiet", options.quiet, "Show no progress");
 }
@@ -324,7 +363,8 @@ Action declare_simulate(CLI::App& command) {
   declare_rendering(life, *options, "Folder for the recordings");
   life.footer(kLifeFooter);
   return [options, &life](std::ostream& result) {
-    options->recording.camera = make_imperfection(options->imperfection);
+    options->recording.camera = imperfection_of(options->condition.value_or(CameraCondition::exact));
+    for (const auto& change : options->camera_errors) change(options->recording.camera);
     if (options->has_motion) options->recording.motion = options->motion;
     return life.parsed() ? run_life(*options, result) : run_simulate(*options, result);
   };

@@ -1,9 +1,10 @@
 #include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/changes_picture.h"
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/options.h"
 #include "byre/map/map_file.h"
-#include "byre/playback/report/update_report.h"
+#include "byre/playback/report/map_report.h"
 #include "byre/slam/system/stored_map.h"
 
 #include <iostream>
@@ -69,14 +70,10 @@ ExitCode run_update(const UpdateOptions& options, std::ostream& result) {
 
 Action declare_update(CLI::App& command) {
   const auto options = std::make_shared<UpdateOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map on which the missions ran")->type_name("MAP")->required();
-  add_input(command, Input::file, "SESSION", options->sessions, "Sessions of \"byre run --save-session\"")
-      ->type_name("SESSION")
-      ->required();
+  add_input(command, Input::file, "MAP", options->map, "Map on which the missions ran")->required();
+  add_input(command, Input::file, "SESSION", options->sessions, "Sessions of \"byre run --save-session\"")->required();
   add_output(command, Output::map, "-o,--output", options->output, "Updated map")->type_name("NEW")->required();
-  add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary for place recognition (the built-in one)")
-      ->type_name("FILE");
+  declare_vocabulary_option(command, options->vocabulary);
   declare_changes_picture(command, options->picture);
   command.add_flag("--json", options->json, "Print the report as JSON");
   command.add_flag("--quiet", options->quiet, "Show no progress");

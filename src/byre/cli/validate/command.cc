@@ -1,6 +1,6 @@
 #include "byre/base/printable.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/map/map_file.h"
 
 #include <filesystem>
@@ -31,7 +31,7 @@ ExitCode run_validate(const std::filesystem::path& path, std::ostream& result) {
 
 Action declare_validate(CLI::App& command) {
   const auto path = std::make_shared<std::filesystem::path>();
-  add_input(command, Input::file, "MAP", *path, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", *path, "Map file of \"byre map -o\"")->required();
   command.footer(kValidateFooter);
   return [path](std::ostream& result) { return run_validate(*path, result); };
 }

@@ -1,10 +1,9 @@
 #include "byre/base/output_file.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/view_run.h"
-#include "byre/io/recording/input_files.h"
+#include "byre/io/recording/timed_files.h"
 #include "byre/playback/report/inspection_report.h"
 #include "byre/slam/system/resources.h"
 #include "byre/tag_file.h"
@@ -88,14 +87,13 @@ void require_consistent(const ViewCommandOptions& options) {
 
 Action declare_view(CLI::App& command) {
   const auto options = std::make_shared<ViewCommandOptions>();
-  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->type_name("MAP")->required();
+  add_input(command, Input::file, "MAP", options->map, "Map file of \"byre map -o\"")->required();
   declare_viewer_options(command, options->view, "Floor plan to pick points on");
   add_input(command, Input::file, "--before", options->before,
             "Earlier version of the map: the page shows removed and added points")
       ->type_name("MAP");
   CLI::Option* const output = add_output(command, Output::viewed_map, "-o,--output", options->output,
                                          "File to which the page saves the map with its registration on the plan")
-                                  ->type_name("MAP")
                                   ->needs("--plan");
   command.add_flag("--overwrite", options->overwrite, "Allow the output to replace the map")->needs(output);
   command.add_option("--pick-sigma", options->pick_sigma, "Standard deviation of the picks (0.05)")
@@ -106,7 +104,6 @@ Action declare_view(CLI::App& command) {
       ->check(between(-100.0, 100.0));
   add_input(command, Input::file, "--tags", options->tags,
             "AprilTags surveyed on the plan, in addition to picks: YAML, see docs/how-to/use_apriltags.md")
-      ->type_name("FILE")
       ->needs("--plan");
   command.add_flag("--quiet", options->quiet, "Print only the address");
   check_when_parsed(command, [options] { require_consistent(*options); });

@@ -4,12 +4,10 @@
 #include "byre/base/report_row.h"
 #include "byre/base/stopwatch.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/progress.h"
-#include "byre/cli/shared/warnings.h"
 #include "byre/features/image_threads.h"
-#include "byre/io/image/image_descriptors.h"
+#include "byre/io/image/image_names.h"
 
 #include <iostream>
 #include <memory>
@@ -37,10 +35,6 @@ struct TrainOptions {
 struct ImportOptions {
   fs::path input;
   fs::path output;
-};
-
-struct VocabularyShowOptions {
-  std::optional<fs::path> file;  // empty: the vocabulary installed with byre
 };
 
 constexpr const char* kTrainFooter = R"(Examples:
@@ -90,7 +84,7 @@ std::string to_text(const Vocabulary& vocabulary, const fs::path& path) {
                      static_cast<unsigned long long>(vocabulary.checksum()));
 }
 
-void run_train(const TrainOptions& options, std::ostream& result) {
+ExitCode run_train(const TrainOptions& options, std::ostream& result) {
   require_writable(options.output);
   limit_image_threads(1);
   const std::vector<std::vector<Descriptor>> descriptors = describe_images(options);
@@ -100,78 +94,69 @@ void run_train(const TrainOptions& options, std::ostream& result) {
   for (const auto& image : descriptors) descriptor_count += image.size();
   result << to_text(vocabulary, options.output)
          << fmt::format("trained on   {} descriptors of {} images\n", descriptor_count, descriptors.size());
+  return ExitCode::done;
 }
 
-void run_import(const ImportOptions& options, std::ostream& result) {
+ExitCode run_import(const ImportOptions& options, std::ostream& result) {
   require_writable(options.output);
   const Vocabulary vocabulary = Vocabulary::import_dbow2(options.input);
   vocabulary.save(options.output);
   result << to_text(vocabulary, options.output);
+  return ExitCode::done;
 }
 
-void run_show(const VocabularyShowOptions& options, std::ostream& result) {
-  const fs::path path = options.file ? *options.file : default_vocabulary_path();
+ExitCode run_show(const std::optional<fs::path>& file, std::ostream& result) {
+  const fs::path path = file ? *file : default_vocabulary_path();
   result << to_text(Vocabulary::load(path), path);
+  return ExitCode::done;
 }
 
 void declare_output(CLI::App& command, fs::path& output) {
-  add_output(command, Output::vocabulary, "-o,--output", output, "Vocabulary file to write")
-      ->type_name("FILE")
-      ->required();
+  add_output(command, Output::vocabulary, "-o,--output", output, "Vocabulary file to write")->required();
 }
 
-void declare_train(CLI::App& command, TrainOptions& options) {
-  add_input(command, Input::images, "IMAGES", options.images, "Image files, and folders of image files")
+Action declare_train(CLI::App& command) {
+  const auto options = std::make_shared<TrainOptions>();
+  add_input(command, Input::images, "IMAGES", options->images, "Image files, and folders of image files")
       ->type_name("FILE|FOLDER")
       ->required();
-  declare_output(command, options.output);
+  declare_output(command, options->output);
   const auto add_number = [&command](const char* name, int& value, int min, int max, const char* meaning) {
     command.add_option(name, value, meaning)->type_name("N")->check(between(min, max))->capture_default_str();
   };
-  add_number("--branching", options.tree.branching, 2, 255, "Children of a node of the tree");
-  add_number("--depth", options.tree.depth, 1, 16, "Levels of the tree, with at most branching^depth words");
-  add_number("--features", options.features, 1, 1'000'000, "Maximum number of features per image");
-  command.add_option("--seed", options.tree.seed, "Random seed of the clustering")
+  add_number("--branching", options->tree.branching, 2, 255, "Children of a node of the tree");
+  add_number("--depth", options->tree.depth, 1, 16, "Levels of the tree, with at most branching^depth words");
+  add_number("--features", options->features, 1, 1'000'000, "Maximum number of features per image");
+  command.add_option("--seed", options->tree.seed, "Random seed of the clustering")
       ->type_name("N")
       ->check(from(0.0))
       ->capture_default_str();
-  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
+  command.add_flag("--quiet", options->quiet, "Show no progress and no warnings");
   command.footer(kTrainFooter);
+  return [options](std::ostream& result) { return run_train(*options, result); };
 }
 
-// Adds a subcommand that sets the chosen action when parsed.
-template <typename Options>
-CLI::App& add(CLI::App& command, const char* name, const char* summary, const std::shared_ptr<Options>& options,
-              void (*run)(const Options&, std::ostream&), const std::shared_ptr<Action>& chosen) {
-  CLI::App* const subcommand = command.add_subcommand(name, summary);
-  subcommand->callback([=] {
-    *chosen = [=](std::ostream& result) {
-      run(*options, result);
-      return ExitCode::done;
-    };
-  });
-  return *subcommand;
+Action declare_import(CLI::App& command) {
+  const auto options = std::make_shared<ImportOptions>();
+  add_input(command, Input::file, "INPUT", options->input, "DBoW2 text file of 256-bit descriptors")
+      ->type_name("FILE")
+      ->required();
+  declare_output(command, options->output);
+  return [options](std::ostream& result) { return run_import(*options, result); };
+}
+
+Action declare_show(CLI::App& command) {
+  const auto file = std::make_shared<std::optional<fs::path>>();
+  add_input(command, Input::file, "VOCABULARY", *file, "Vocabulary file (the one that byre uses)")->type_name("FILE");
+  return [file](std::ostream& result) { return run_show(*file, result); };
 }
 
 }  // namespace
 
 Action declare_vocabulary(CLI::App& command) {
-  const auto chosen = std::make_shared<Action>();
-  const auto train = std::make_shared<TrainOptions>();
-  const auto import = std::make_shared<ImportOptions>();
-  const auto show = std::make_shared<VocabularyShowOptions>();
-  command.require_subcommand(1);
-
-  declare_train(add(command, "train", "Train a vocabulary on images", train, run_train, chosen), *train);
-  CLI::App& importing = add(command, "import", "Import a DBoW2 vocabulary", import, run_import, chosen);
-  add_input(importing, Input::file, "INPUT", import->input, "DBoW2 text file of 256-bit descriptors")
-      ->type_name("FILE")
-      ->required();
-  declare_output(importing, import->output);
-  CLI::App& showing = add(command, "show", "Print size and checksum of a vocabulary", show, run_show, chosen);
-  add_input(showing, Input::file, "VOCABULARY", show->file, "Vocabulary file (the one that byre uses)")
-      ->type_name("FILE");
-  return [chosen](std::ostream& result) { return (*chosen)(result); };
+  return declare_subcommands(command, {{"train", "Train a vocabulary on images", declare_train},
+                                       {"import", "Import a DBoW2 vocabulary", declare_import},
+                                       {"show", "Print size and checksum of a vocabulary", declare_show}});
 }
 
 }  // namespace byre::cli

@@ -1,6 +1,6 @@
 
 #include "byre/cli/shared/program_fixture.h"
-#include "byre/io/image/image_descriptors.h"
+#include "byre/io/image/image_names.h"
 
 #include <random>
 #include <string>

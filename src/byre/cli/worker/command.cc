@@ -1,18 +1,17 @@
+#include "byre/cli/registry/command.h"
 #include "byre/base/printable.h"
 #include "byre/cli/commands.h"
-#include "byre/cli/registry/commands.h"
-#include "byre/cli/shared/choice.h"
-#include "byre/cli/shared/file_arguments.h"
-#include "byre/cli/shared/interrupt.h"
-#include "byre/cli/shared/number_check.h"
+#include "byre/cli/shared/arguments.h"
+#include "byre/cli/shared/options.h"
+#include "byre/cli/shared/progress.h"
 #include "byre/cli/shared/run_input.h"
 #include "byre/features/image_threads.h"
 #include "byre/floor_plan.h"
 #include "byre/input_error.h"
 #include "byre/playback/archive/register_map.h"
+#include "byre/registry/blobs.h"
+#include "byre/registry/connection.h"
 #include "byre/registry/jobs.h"
-#include "byre/registry/plans.h"
-#include "byre/registry/schema.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 
@@ -280,11 +279,8 @@ Action declare_worker(CLI::App& command) {
   const auto options = std::make_shared<WorkerOptions>();
   add_registry(command, options->uri);
   add_text(command, "--name", options->name, "Name in the list of jobs (HOST:PROCESS)")->type_name("NAME");
-  add_output(command, Output::folder, "--scratch", options->scratch, "Folder for maps of jobs ($TMPDIR, or /tmp)")
-      ->type_name("FOLDER");
-  add_input(command, Input::file, "--vocabulary", options->vocabulary,
-            "Vocabulary for place recognition (the built-in one)")
-      ->type_name("FILE");
+  add_output(command, Output::folder, "--scratch", options->scratch, "Folder for maps of jobs ($TMPDIR, or /tmp)");
+  declare_vocabulary_option(command, options->vocabulary);
   std::map<std::string, std::string> kinds;
   for (const std::string kind : kRegistryJobKinds) kinds.emplace(kind, kind);
   command.add_option("--kinds", options->queue.kinds, "Kinds of jobs to take (all)")

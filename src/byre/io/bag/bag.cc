@@ -1,7 +1,6 @@
 #include "byre/io/bag/bag.h"
 
 #include "byre/input_error.h"
-#include "byre/io/bag/byte_source.h"
 #include "byre/io/bag/compression.h"
 #include "byre/io/bag/mcap_bag.h"
 #include "byre/io/bag/mcap_format.h"

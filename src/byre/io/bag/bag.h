@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/io/ros/message.h"
+#include "byre/io/ros/message_bytes.h"
 #include "byre/trajectory.h"
 
 #include <array>

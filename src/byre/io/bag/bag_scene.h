@@ -5,8 +5,7 @@
 #include "byre/io/bag/compression.h"
 #include "byre/io/bag/mcap_format.h"
 #include "byre/io/bag/mcap_writer.h"
-#include "byre/io/ros/message_reader.h"
-#include "byre/io/ros/message_writer.h"
+#include "byre/io/ros/message_bytes.h"
 #include "byre/io/ros/messages.h"
 
 #include <filesystem>

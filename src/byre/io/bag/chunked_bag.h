@@ -1,7 +1,6 @@
 #pragma once
 
 #include "byre/io/bag/bag.h"
-#include "byre/io/bag/byte_source.h"
 #include "byre/io/bag/compression.h"
 
 #include <array>

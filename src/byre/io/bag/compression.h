@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +10,52 @@
 #include <vector>
 
 namespace byre {
+
+// Random access to bytes.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  virtual std::uint64_t size() const = 0;
+  // Fills the piece with the bytes at `begin`. Throws InputError if they cannot be read. Precondition: they are within
+  // size().
+  virtual void read(std::uint64_t begin, std::span<std::byte> piece) = 0;
+};
+
+// At most `most` bytes at `begin`, fewer at the end.
+std::vector<std::byte> read_piece(ByteSource& source, std::uint64_t begin, std::uint64_t most);
+
+// A file; neighbouring small reads cost one system call.
+class FileSource final : public ByteSource {
+ public:
+  explicit FileSource(const std::filesystem::path& path);  // throws InputError if it cannot be opened
+  ~FileSource() override;
+  FileSource(const FileSource&) = delete;
+  FileSource& operator=(const FileSource&) = delete;
+
+  std::uint64_t size() const override { return size_; }
+  void read(std::uint64_t begin, std::span<std::byte> piece) override;
+
+ private:
+  void read_directly(std::uint64_t begin, std::span<std::byte> piece) const;
+
+  std::filesystem::path path_;            // constant after construction
+  int descriptor_ = -1;                   // constant after construction
+  std::uint64_t size_ = 0;                // constant after construction
+  std::array<std::byte, 4096> window_{};  // bytes of the file around the last small piece
+  std::uint64_t window_begin_ = 0;
+  std::size_t window_size_ = 0;
+};
+
+// Bytes in memory, borrowed.
+class MemorySource final : public ByteSource {
+ public:
+  explicit MemorySource(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  std::uint64_t size() const override { return bytes_.size(); }
+  void read(std::uint64_t begin, std::span<std::byte> piece) override;
+
+ private:
+  std::span<const std::byte> bytes_;
+};
 
 enum class Compression : std::uint8_t { none, zstd, lz4, bz2 };  // lz4: frames, not bare blocks
 

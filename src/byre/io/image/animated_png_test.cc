@@ -1,6 +1,6 @@
 #include "byre/io/image/animated_png.h"
 
-#include "byre/io/image/png_chunks.h"
+#include "byre/io/image/grey_png.h"
 
 #include <random>
 #include <string>

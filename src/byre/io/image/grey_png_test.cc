@@ -1,7 +1,5 @@
 #include "byre/io/image/grey_png.h"
 
-#include "byre/io/image/png_chunks.h"
-
 #include <cstdint>
 #include <random>
 #include <utility>

@@ -2,14 +2,52 @@
 
 #include "byre/base/output_file.h"
 #include "byre/input_error.h"
-#include "byre/io/image/opencv_library.h"
 
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <span>
-#include <string>
+
+#include <dlfcn.h>
 
 namespace byre {
+namespace {
+
+std::string reason_of_failure() {
+  const char* const reason = dlerror();
+  return reason ? std::string("cannot be used: ") + reason : "cannot be used";
+}
+
+InputError unusable(const char* name) {
+  return {name, reason_of_failure(), "install this OpenCV module in the version used to build byre"};
+}
+
+// The library stays loaded.
+void* load(const char* name) {
+  void* const library = dlopen(name, RTLD_LAZY | RTLD_LOCAL);
+  if (library == nullptr) throw unusable(name);
+  return library;
+}
+
+// Calls the constructor with this symbol and exactly these argument types. The destructor is virtual, so the library's
+// own is called.
+template <typename Class, typename... Arguments>
+std::unique_ptr<Class> constructed(const char* constructor, Arguments... arguments) {
+  using Construct = void(void*, Arguments...);
+  auto* const construct = reinterpret_cast<Construct*>(find_function(OpencvLibrary::videos, constructor));
+  void* const memory = ::operator new(sizeof(Class));
+  construct(memory, arguments...);
+  return std::unique_ptr<Class>(static_cast<Class*>(memory));
+}
+
+}  // namespace
+
+void* find_function(OpencvLibrary library, const char* symbol) {
+  const char* const name = library == OpencvLibrary::images ? BYRE_OPENCV_IMAGES : BYRE_OPENCV_VIDEOS;
+  void* const function = dlsym(load(name), symbol);
+  if (function == nullptr) throw unusable(name);
+  return function;
+}
 
 cv::Mat decode_image(const std::vector<std::uint8_t>& bytes, int flags) {
   using Decode = cv::Mat(const cv::_InputArray&, int);  // cv::imdecode
@@ -43,6 +81,19 @@ std::vector<std::uint8_t> encode_image(const char* extension, const cv::Mat& pix
 void write_image_file(const std::filesystem::path& path, const cv::Mat& pixels, const std::vector<int>& parameters) {
   const std::vector<std::uint8_t> bytes = encode_image(path.extension().c_str(), pixels, parameters);
   write_atomically(path, std::as_bytes(std::span(bytes)), Durability::unsynced);
+}
+
+std::unique_ptr<cv::VideoCapture> open_video_capture(const std::string& file) {
+  return constructed<cv::VideoCapture, const std::string&, int>(
+      "_ZN2cv12VideoCaptureC1ERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEEi", file, cv::CAP_FFMPEG);
+}
+
+std::unique_ptr<cv::VideoWriter> open_video_writer(const std::string& file, const char* codec, double frame_rate_hz,
+                                                   const cv::Size& size) {
+  const int fourcc = codec[0] | codec[1] << 8 | codec[2] << 16 | codec[3] << 24;
+  return constructed<cv::VideoWriter, const std::string&, int, int, double, cv::Size, bool>(
+      "_ZN2cv11VideoWriterC1ERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEEiidNS_5Size_IiEEb", file,
+      cv::CAP_FFMPEG, fourcc, frame_rate_hz, size, true);
 }
 
 }  // namespace byre

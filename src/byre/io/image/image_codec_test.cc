@@ -1,7 +1,6 @@
 #include "byre/io/image/image_codec.h"
 
 #include "byre/input_error.h"
-#include "byre/io/image/opencv_library.h"
 #include "byre/io/recording/folder_scene.h"
 
 #include <gtest/gtest.h>

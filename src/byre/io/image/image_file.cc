@@ -3,18 +3,19 @@
 #include "byre/io/image/grey_png.h"
 #include "byre/io/image/image_codec.h"
 #include "byre/io/image/image_size.h"
-#include "byre/io/image/png_chunks.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <utility>
 
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <sys/stat.h>
 
 namespace byre {
@@ -160,6 +161,20 @@ std::optional<Image> read_image(const std::filesystem::path& path) {
 
 std::optional<DepthImage> read_depth_image(const std::filesystem::path& path) {
   return try_depth_image(path).image;
+}
+
+Image resize_to_cover(const Image& image, int width, int height) {
+  const cv::Mat source(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  const double scale = std::max(static_cast<double>(width) / image.width, static_cast<double>(height) / image.height);
+  const cv::Size covering(std::max(width, static_cast<int>(std::lround(image.width * scale))),
+                          std::max(height, static_cast<int>(std::lround(image.height * scale))));
+  cv::Mat scaled;
+  cv::resize(source, scaled, covering, 0.0, 0.0, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
+
+  Image result{width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(width) * height)};
+  const cv::Rect middle((covering.width - width) / 2, (covering.height - height) / 2, width, height);
+  scaled(middle).copyTo(cv::Mat(height, width, CV_8U, result.pixels.data()));
+  return result;
 }
 
 }  // namespace byre

@@ -43,4 +43,7 @@ ImageReading<DepthImage> decoded_depth_image(const std::vector<std::uint8_t>& by
 // A depth image: one channel of 16 bits. Empty if the file is missing, truncated or of another kind.
 std::optional<DepthImage> read_depth_image(const std::filesystem::path& path);
 
+// Scales the image to cover the size, and crops it about its centre.
+Image resize_to_cover(const Image& image, int width, int height);
+
 }  // namespace byre

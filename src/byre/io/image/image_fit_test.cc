@@ -1,4 +1,4 @@
-#include "byre/io/image/image_fit.h"
+#include "byre/io/image/image_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "byre/io/image/png_chunks.h"
+#include "byre/io/image/grey_png.h"
 
 #include <string>
 

@@ -3,7 +3,7 @@
 #include "byre/io/calibration/frame_tree.h"
 #include "byre/io/recording/bag_topics.h"
 #include "byre/io/recording/static_frames.h"
-#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/message_bytes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "byre/input_error.h"
 #include "byre/io/image/image_size.h"
-#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/message_bytes.h"
 
 #include <algorithm>
 #include <array>
@@ -51,7 +51,6 @@ constexpr std::array kLayouts = {
 
 // The beginning of a header, contained in a message's first bytes.
 struct HeaderStamp {
-  static constexpr std::string_view kType = ros::Header::kType;
   ros::Time stamp{};
   std::uint32_t seq = 0;
   static void fields(auto& self, auto& visit) {

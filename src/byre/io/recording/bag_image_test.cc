@@ -1,5 +1,6 @@
 #include "byre/io/recording/bag_image.h"
 
+#include "byre/io/ros/message_matchers.h"
 #include <gmock/gmock.h>
 
 namespace byre {

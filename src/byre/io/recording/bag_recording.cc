@@ -12,7 +12,7 @@
 #include "byre/io/recording/restored_times.h"
 #include "byre/io/recording/timed_files.h"
 #include "byre/io/recording/timed_messages.h"
-#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/message_bytes.h"
 
 #include <algorithm>
 #include <cassert>

@@ -2,7 +2,7 @@
 
 #include "byre/io/bag/bag_scene.h"
 #include "byre/io/recording/folder_scene.h"
-#include "byre/io/recording/input_files.h"
+#include "byre/io/recording/timed_files.h"
 
 #include <array>
 #include <cstring>

@@ -3,6 +3,7 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/folder_scene.h"
+#include "byre/io/ros/message_matchers.h"
 
 #include <functional>
 #include <limits>

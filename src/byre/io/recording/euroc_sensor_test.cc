@@ -1,4 +1,4 @@
-#include "byre/io/recording/euroc_sensor.h"
+#include "byre/io/recording/euroc.h"
 
 #include "byre/io/recording/folder_scene.h"
 

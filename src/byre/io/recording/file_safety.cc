@@ -2,7 +2,7 @@
 
 #include "byre/base/output_file.h"
 #include "byre/io/image/plan_file.h"
-#include "byre/io/recording/input_files.h"
+#include "byre/io/recording/timed_files.h"
 
 #include <algorithm>
 #include <array>

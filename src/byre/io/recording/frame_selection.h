@@ -1,11 +1,13 @@
 #pragma once
 
 #include "byre/io/recording/recording_index.h"
+#include "byre/recording.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace byre {
@@ -36,5 +38,16 @@ RecordingIndex choose_camera(RecordingIndex index, const ExtraImages& extra, con
 
 // Throws InputError if the size of images differs from the calibration. place: of the size in the calibration.
 void require_calibrated_size(int width, int height, const Camera& camera, const std::string& place);
+
+// Syntax of command lines and protocols for frames and cameras of a recording.
+
+// "FIRST:END", END exclusive; either may be omitted. Empty for anything else, and for an empty range.
+std::optional<FrameRange> parse_frames(std::string_view text);
+
+// One of stereo, left, right and rgbd; empty for anything else.
+std::optional<CameraChoice> parse_camera(std::string_view text);
+
+// Range of frame rates that may be given, Hz.
+inline constexpr double kLowestFrameRate = 0.01, kHighestFrameRate = 10'000.0;
 
 }  // namespace byre

@@ -1,4 +1,4 @@
-#include "byre/io/recording/input_files.h"
+#include "byre/io/recording/timed_files.h"
 
 #include "byre/io/recording/folder_scene.h"
 

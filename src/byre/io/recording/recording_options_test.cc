@@ -1,4 +1,4 @@
-#include "byre/io/recording/recording_options.h"
+#include "byre/io/recording/frame_selection.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,6 @@
 
 #include "byre/geometry/median.h"
 #include "byre/io/recording/stamp_clock.h"
-#include "byre/io/recording/stamp_spacing.h"
 
 #include <algorithm>
 #include <chrono>

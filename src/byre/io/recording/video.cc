@@ -2,8 +2,8 @@
 
 #include "byre/geometry/baseline.h"
 #include "byre/input_error.h"
+#include "byre/io/image/image_codec.h"
 #include "byre/io/image/image_names.h"
-#include "byre/io/image/video_codec.h"
 #include "byre/io/recording/frame_selection.h"
 
 #include <algorithm>

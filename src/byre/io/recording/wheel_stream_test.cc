@@ -1,4 +1,4 @@
-#include "byre/io/recording/wheel_stream.h"
+#include "byre/io/recording/motion_files.h"
 
 #include <gtest/gtest.h>
 

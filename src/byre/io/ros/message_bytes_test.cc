@@ -1,6 +1,6 @@
+#include "byre/io/ros/message_bytes.h"
 #include "byre/input_error.h"
-#include "byre/io/ros/message_reader.h"
-#include "byre/io/ros/message_writer.h"
+#include "byre/io/ros/message_matchers.h"
 #include "byre/io/ros/messages.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "byre/io/ros/message.h"
+#include "byre/io/ros/message_bytes.h"
 
 #include <algorithm>
 #include <array>
@@ -27,10 +27,9 @@ class SchemaWriter {
     std::swap(current_, definitions_[index].text);
   }
 
-  template <typename T>
-  void operator()(std::string_view name, const T& /*value*/) {
-    current_.append(type_name<T>()).append(" ").append(name).append("\n");
-    add_parts<T>();
+  template <typename... T>
+  void operator()(std::string_view names, const T&... /*values*/) {
+    (add_field<T>(names), ...);
   }
   void ros1_only(const std::uint32_t& /*value*/) {}
 
@@ -50,6 +49,14 @@ class SchemaWriter {
     std::string text;
   };
 
+  // Field of the first name, which is removed.
+  template <typename T>
+  void add_field(std::string_view& names) {
+    const std::string_view name = names.substr(0, names.find(' '));
+    names.remove_prefix(std::min(name.size() + 1, names.size()));
+    current_.append(type_name<T>()).append(" ").append(name).append("\n");
+    add_parts<T>();
+  }
   template <typename T>
   static std::string type_name() {
     if constexpr (Message<T>) {

@@ -1,5 +1,6 @@
 #include "byre/io/ros/message_schema.h"
 
+#include "byre/io/ros/message_matchers.h"
 #include "byre/io/ros/messages.h"
 
 #include <gmock/gmock.h>

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "byre/io/ros/message.h"
+#include "byre/io/ros/message_bytes.h"
 #include "byre/io/ros/message_schema.h"
-#include "byre/io/ros/message_writer.h"
 
 #include <chrono>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "byre/io/ros/messages.h"
 
-#include "byre/io/ros/message.h"
+#include "byre/io/ros/message_bytes.h"
 
 namespace byre::ros {
 

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-// ROS messages used by byre. Each lists its fields once, in wire order, for reading, writing and its definition
-// (message_schema.h). Frames, units and signs are those of REP-103 and REP-105.
+// ROS messages used by byre. Each lists the names of its fields, separated by spaces, and the fields, in wire order,
+// for reading, writing and its definition (message_schema.h). Frames, units and signs are those of REP-103 and REP-105.
 namespace byre::ros {
 
 // Usually since 1970.
@@ -17,11 +17,7 @@ struct Time {
   static constexpr std::string_view kType = "builtin_interfaces/msg/Time";
   std::int32_t sec = 0;
   std::uint32_t nanosec = 0;
-  static void fields(auto& self, auto& visit) {
-    visit("sec", self.sec);
-    visit("nanosec", self.nanosec);
-  }
-  bool operator==(const Time&) const = default;
+  static void fields(auto& self, auto& visit) { visit("sec nanosec", self.sec, self.nanosec); }
 };
 
 std::chrono::nanoseconds to_nanoseconds(const Time& time);
@@ -34,150 +30,95 @@ struct Header {
   std::uint32_t seq = 0;  // message counter, ROS 1 only
   static void fields(auto& self, auto& visit) {
     visit.ros1_only(self.seq);
-    visit("stamp", self.stamp);
-    visit("frame_id", self.frame_id);
+    visit("stamp frame_id", self.stamp, self.frame_id);
   }
-  bool operator==(const Header&) const = default;
 };
 
 struct String {
   static constexpr std::string_view kType = "std_msgs/msg/String";
   std::string data{};
   static void fields(auto& self, auto& visit) { visit("data", self.data); }
-  bool operator==(const String&) const = default;
 };
 
 struct Point {
   static constexpr std::string_view kType = "geometry_msgs/msg/Point";
   double x = 0.0, y = 0.0, z = 0.0;
-  static void fields(auto& self, auto& visit) {
-    visit("x", self.x);
-    visit("y", self.y);
-    visit("z", self.z);
-  }
-  bool operator==(const Point&) const = default;
+  static void fields(auto& self, auto& visit) { visit("x y z", self.x, self.y, self.z); }
 };
 
 struct Vector3 {
   static constexpr std::string_view kType = "geometry_msgs/msg/Vector3";
   double x = 0.0, y = 0.0, z = 0.0;
-  static void fields(auto& self, auto& visit) {
-    visit("x", self.x);
-    visit("y", self.y);
-    visit("z", self.z);
-  }
-  bool operator==(const Vector3&) const = default;
+  static void fields(auto& self, auto& visit) { visit("x y z", self.x, self.y, self.z); }
 };
 
 struct Quaternion {
   static constexpr std::string_view kType = "geometry_msgs/msg/Quaternion";
   double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
-  static void fields(auto& self, auto& visit) {
-    visit("x", self.x);
-    visit("y", self.y);
-    visit("z", self.z);
-    visit("w", self.w);
-  }
-  bool operator==(const Quaternion&) const = default;
+  static void fields(auto& self, auto& visit) { visit("x y z w", self.x, self.y, self.z, self.w); }
 };
 
 struct Pose {
   static constexpr std::string_view kType = "geometry_msgs/msg/Pose";
   Point position{};
   Quaternion orientation{};
-  static void fields(auto& self, auto& visit) {
-    visit("position", self.position);
-    visit("orientation", self.orientation);
-  }
-  bool operator==(const Pose&) const = default;
+  static void fields(auto& self, auto& visit) { visit("position orientation", self.position, self.orientation); }
 };
 
 struct PoseStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseStamped";
   Header header{};
   Pose pose{};
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("pose", self.pose);
-  }
-  bool operator==(const PoseStamped&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header pose", self.header, self.pose); }
 };
 
 struct PoseWithCovariance {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseWithCovariance";
   Pose pose{};
   std::array<double, 36> covariance{};  // x, y, z, then rotations about the parent's fixed axes; row-major
-  static void fields(auto& self, auto& visit) {
-    visit("pose", self.pose);
-    visit("covariance", self.covariance);
-  }
-  bool operator==(const PoseWithCovariance&) const = default;
+  static void fields(auto& self, auto& visit) { visit("pose covariance", self.pose, self.covariance); }
 };
 
 struct PoseWithCovarianceStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseWithCovarianceStamped";
   Header header{};
   PoseWithCovariance pose{};
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("pose", self.pose);
-  }
-  bool operator==(const PoseWithCovarianceStamped&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header pose", self.header, self.pose); }
 };
 
 struct Twist {
   static constexpr std::string_view kType = "geometry_msgs/msg/Twist";
   Vector3 linear{};   // m/s
   Vector3 angular{};  // rad/s
-  static void fields(auto& self, auto& visit) {
-    visit("linear", self.linear);
-    visit("angular", self.angular);
-  }
-  bool operator==(const Twist&) const = default;
+  static void fields(auto& self, auto& visit) { visit("linear angular", self.linear, self.angular); }
 };
 
 struct TwistWithCovariance {
   static constexpr std::string_view kType = "geometry_msgs/msg/TwistWithCovariance";
   Twist twist{};
   std::array<double, 36> covariance{};  // linear, then angular; row-major
-  static void fields(auto& self, auto& visit) {
-    visit("twist", self.twist);
-    visit("covariance", self.covariance);
-  }
-  bool operator==(const TwistWithCovariance&) const = default;
+  static void fields(auto& self, auto& visit) { visit("twist covariance", self.twist, self.covariance); }
 };
 
 struct TwistStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/TwistStamped";
   Header header{};
   Twist twist{};  // motion of the header's frame, in its own axes
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("twist", self.twist);
-  }
-  bool operator==(const TwistStamped&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header twist", self.header, self.twist); }
 };
 
 struct TwistWithCovarianceStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/TwistWithCovarianceStamped";
   Header header{};
   TwistWithCovariance twist{};  // motion of the header's frame, in its own axes
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("twist", self.twist);
-  }
-  bool operator==(const TwistWithCovarianceStamped&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header twist", self.header, self.twist); }
 };
 
 struct Transform {
   static constexpr std::string_view kType = "geometry_msgs/msg/Transform";
   Vector3 translation{};
   Quaternion rotation{};
-  static void fields(auto& self, auto& visit) {
-    visit("translation", self.translation);
-    visit("rotation", self.rotation);
-  }
-  bool operator==(const Transform&) const = default;
+  static void fields(auto& self, auto& visit) { visit("translation rotation", self.translation, self.rotation); }
 };
 
 // Transform from the child frame to the header's frame.
@@ -187,18 +128,14 @@ struct TransformStamped {
   std::string child_frame_id{};
   Transform transform{};
   static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("child_frame_id", self.child_frame_id);
-    visit("transform", self.transform);
+    visit("header child_frame_id transform", self.header, self.child_frame_id, self.transform);
   }
-  bool operator==(const TransformStamped&) const = default;
 };
 
 struct TFMessage {
   static constexpr std::string_view kType = "tf2_msgs/msg/TFMessage";
   std::vector<TransformStamped> transforms{};
   static void fields(auto& self, auto& visit) { visit("transforms", self.transforms); }
-  bool operator==(const TFMessage&) const = default;
 };
 
 struct Odometry {
@@ -208,23 +145,15 @@ struct Odometry {
   PoseWithCovariance pose{};    // pose of the child frame in the header's frame
   TwistWithCovariance twist{};  // motion in the child frame
   static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("child_frame_id", self.child_frame_id);
-    visit("pose", self.pose);
-    visit("twist", self.twist);
+    visit("header child_frame_id pose twist", self.header, self.child_frame_id, self.pose, self.twist);
   }
-  bool operator==(const Odometry&) const = default;
 };
 
 struct Path {
   static constexpr std::string_view kType = "nav_msgs/msg/Path";
   Header header{};
   std::vector<PoseStamped> poses{};
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("poses", self.poses);
-  }
-  bool operator==(const Path&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header poses", self.header, self.poses); }
 };
 
 struct MapMetaData {
@@ -235,13 +164,9 @@ struct MapMetaData {
   std::uint32_t height = 0;  // cells
   Pose origin{};             // pose of the lower left corner of the first cell
   static void fields(auto& self, auto& visit) {
-    visit("map_load_time", self.map_load_time);
-    visit("resolution", self.resolution);
-    visit("width", self.width);
-    visit("height", self.height);
-    visit("origin", self.origin);
+    visit("map_load_time resolution width height origin", self.map_load_time, self.resolution, self.width, self.height,
+          self.origin);
   }
-  bool operator==(const MapMetaData&) const = default;
 };
 
 struct OccupancyGrid {
@@ -249,12 +174,7 @@ struct OccupancyGrid {
   Header header{};
   MapMetaData info{};
   std::vector<std::int8_t> data{};  // rows from the bottom up; 0 free to 100 occupied, -1 unknown
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("info", self.info);
-    visit("data", self.data);
-  }
-  bool operator==(const OccupancyGrid&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header info data", self.header, self.info, self.data); }
 };
 
 struct Image {
@@ -267,15 +187,9 @@ struct Image {
   std::uint32_t step = 0;  // bytes from one row to the next
   std::vector<std::uint8_t> data{};
   static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("height", self.height);
-    visit("width", self.width);
-    visit("encoding", self.encoding);
-    visit("is_bigendian", self.is_bigendian);
-    visit("step", self.step);
-    visit("data", self.data);
+    visit("header height width encoding is_bigendian step data", self.header, self.height, self.width, self.encoding,
+          self.is_bigendian, self.step, self.data);
   }
-  bool operator==(const Image&) const = default;
 };
 
 struct CompressedImage {
@@ -283,12 +197,7 @@ struct CompressedImage {
   Header header{};
   std::string format{};  // "jpeg", "png", or "bgr8; jpeg compressed bgr8"
   std::vector<std::uint8_t> data{};
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("format", self.format);
-    visit("data", self.data);
-  }
-  bool operator==(const CompressedImage&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header format data", self.header, self.format, self.data); }
 };
 
 struct RegionOfInterest {
@@ -297,13 +206,9 @@ struct RegionOfInterest {
   std::uint32_t height = 0, width = 0;       // pixels; both zero: the whole image
   bool do_rectify = false;
   static void fields(auto& self, auto& visit) {
-    visit("x_offset", self.x_offset);
-    visit("y_offset", self.y_offset);
-    visit("height", self.height);
-    visit("width", self.width);
-    visit("do_rectify", self.do_rectify);
+    visit("x_offset y_offset height width do_rectify", self.x_offset, self.y_offset, self.height, self.width,
+          self.do_rectify);
   }
-  bool operator==(const RegionOfInterest&) const = default;
 };
 
 struct CameraInfo {
@@ -320,19 +225,9 @@ struct CameraInfo {
   std::uint32_t binning_y = 0;
   RegionOfInterest roi{};
   static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("height", self.height);
-    visit("width", self.width);
-    visit("distortion_model", self.distortion_model);
-    visit("d", self.d);
-    visit("k", self.k);
-    visit("r", self.r);
-    visit("p", self.p);
-    visit("binning_x", self.binning_x);
-    visit("binning_y", self.binning_y);
-    visit("roi", self.roi);
+    visit("header height width distortion_model d k r p binning_x binning_y roi", self.header, self.height, self.width,
+          self.distortion_model, self.d, self.k, self.r, self.p, self.binning_x, self.binning_y, self.roi);
   }
-  bool operator==(const CameraInfo&) const = default;
 };
 
 struct Imu {
@@ -345,15 +240,12 @@ struct Imu {
   Vector3 linear_acceleration{};  // m/s^2, including gravity
   std::array<double, 9> linear_acceleration_covariance{};
   static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("orientation", self.orientation);
-    visit("orientation_covariance", self.orientation_covariance);
-    visit("angular_velocity", self.angular_velocity);
-    visit("angular_velocity_covariance", self.angular_velocity_covariance);
-    visit("linear_acceleration", self.linear_acceleration);
-    visit("linear_acceleration_covariance", self.linear_acceleration_covariance);
+    visit(
+        "header orientation orientation_covariance angular_velocity angular_velocity_covariance linear_acceleration "
+        "linear_acceleration_covariance",
+        self.header, self.orientation, self.orientation_covariance, self.angular_velocity,
+        self.angular_velocity_covariance, self.linear_acceleration, self.linear_acceleration_covariance);
   }
-  bool operator==(const Imu&) const = default;
 };
 
 struct PointField {
@@ -367,12 +259,8 @@ struct PointField {
   std::uint8_t datatype = kFloat32;
   std::uint32_t count = 1;
   static void fields(auto& self, auto& visit) {
-    visit("name", self.name);
-    visit("offset", self.offset);
-    visit("datatype", self.datatype);
-    visit("count", self.count);
+    visit("name offset datatype count", self.name, self.offset, self.datatype, self.count);
   }
-  bool operator==(const PointField&) const = default;
 };
 
 struct PointCloud2 {
@@ -387,28 +275,16 @@ struct PointCloud2 {
   std::vector<std::uint8_t> data{};
   bool is_dense = false;  // all points are valid
   static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("height", self.height);
-    visit("width", self.width);
-    visit("fields", self.point_fields);
-    visit("is_bigendian", self.is_bigendian);
-    visit("point_step", self.point_step);
-    visit("row_step", self.row_step);
-    visit("data", self.data);
-    visit("is_dense", self.is_dense);
+    visit("header height width fields is_bigendian point_step row_step data is_dense", self.header, self.height,
+          self.width, self.point_fields, self.is_bigendian, self.point_step, self.row_step, self.data, self.is_dense);
   }
-  bool operator==(const PointCloud2&) const = default;
 };
 
 struct KeyValue {
   static constexpr std::string_view kType = "diagnostic_msgs/msg/KeyValue";
   std::string key{};
   std::string value{};
-  static void fields(auto& self, auto& visit) {
-    visit("key", self.key);
-    visit("value", self.value);
-  }
-  bool operator==(const KeyValue&) const = default;
+  static void fields(auto& self, auto& visit) { visit("key value", self.key, self.value); }
 };
 
 struct DiagnosticStatus {
@@ -421,24 +297,15 @@ struct DiagnosticStatus {
   std::string hardware_id{};
   std::vector<KeyValue> values{};
   static void fields(auto& self, auto& visit) {
-    visit("level", self.level);
-    visit("name", self.name);
-    visit("message", self.message);
-    visit("hardware_id", self.hardware_id);
-    visit("values", self.values);
+    visit("level name message hardware_id values", self.level, self.name, self.message, self.hardware_id, self.values);
   }
-  bool operator==(const DiagnosticStatus&) const = default;
 };
 
 struct DiagnosticArray {
   static constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
   Header header{};
   std::vector<DiagnosticStatus> status{};
-  static void fields(auto& self, auto& visit) {
-    visit("header", self.header);
-    visit("status", self.status);
-  }
-  bool operator==(const DiagnosticArray&) const = default;
+  static void fields(auto& self, auto& visit) { visit("header status", self.header, self.status); }
 };
 
 }  // namespace byre::ros

@@ -18,23 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An image of the model that becomes a keyframe.
-struct NamedImage {
-  std::uint32_t id = 0;
-  std::string name;
-  Timestamp time{};
-};
-
-std::vector<NamedImage> images_by_time(const ColmapModel& model) {
-  std::vector<NamedImage> images;
+// Times and ids of the images, which become keyframes.
+std::vector<std::pair<Timestamp, std::uint32_t>> images_by_time(const ColmapModel& model) {
   std::vector<std::string> names;
-  for (const auto& [id, image] : model.images) {
-    images.push_back({id, image.name, {}});
-    names.push_back(image.name);
-  }
+  for (const auto& [id, image] : model.images) names.push_back(image.name);
   const std::vector<Timestamp> times = times_of_names(names);
-  for (std::size_t i = 0; i < images.size(); ++i) images[i].time = times[i];
-  std::ranges::sort(images, {}, &NamedImage::time);
+  std::vector<std::pair<Timestamp, std::uint32_t>> images;
+  for (const auto& [id, image] : model.images) images.emplace_back(times[images.size()], id);
+  std::ranges::sort(images);
   return images;
 }
 
@@ -103,18 +94,18 @@ struct ConvertedModel {
 void extract_images(const ColmapModel& colmap, const fs::path& folder, double scale, Cameras& cameras,
                     const ColmapImportHooks& hooks, ConvertedModel& converted, std::vector<std::string>& warnings) {
   int done = 0;
-  for (const NamedImage& named : images_by_time(colmap)) {
+  for (const auto& [time, id] : images_by_time(colmap)) {
     if (hooks.should_stop()) break;
-    const ColmapImage& image = colmap.images.at(named.id);
+    const ColmapImage& image = colmap.images.at(id);
     const int camera = cameras.index_of(image.camera_id);
     std::optional<Image> pixels =
-        read_as_taken(folder / named.name, cameras.calibrations()[static_cast<std::size_t>(camera)].left, warnings);
+        read_as_taken(folder / image.name, cameras.calibrations()[static_cast<std::size_t>(camera)].left, warnings);
     if (pixels) {
       Pose camera_from_world = image.camera_from_world;
       camera_from_world.translation *= scale;
-      const Frame frame = cameras.extract(camera, {named.time, std::move(*pixels), std::nullopt});
+      const Frame frame = cameras.extract(camera, {time, std::move(*pixels), std::nullopt});
       converted.model.images.push_back({frame, camera_from_world, camera});
-      converted.image_ids.push_back(named.id);
+      converted.image_ids.push_back(id);
     }
     hooks.after_image(++done);
   }

@@ -69,16 +69,9 @@ ReprojectionErrors reprojection_errors(const MapGraph& map) {
   return errors;
 }
 
-std::optional<BoundingBox> bounding_box(const MapGraph& map) {
-  if (map.point_count() == 0) return std::nullopt;
-  BoundingBox box;
-  box.min.setConstant(std::numeric_limits<double>::infinity());
-  box.max.setConstant(-std::numeric_limits<double>::infinity());
-  for (const PointId id : map.point_ids()) {
-    const Eigen::Vector3d& position = map.find_point(id)->position_in_world;
-    box.min = box.min.cwiseMin(position);
-    box.max = box.max.cwiseMax(position);
-  }
+Eigen::AlignedBox3d bounding_box(const MapGraph& map) {
+  Eigen::AlignedBox3d box;
+  for (const PointId id : map.point_ids()) box.extend(map.find_point(id)->position_in_world);
   return box;
 }
 
@@ -122,7 +115,7 @@ std::size_t covisible_count(const MapGraph& map) {
 }
 
 // Size of the containers' elements, without spare capacity.
-std::vector<PartSize> memory_of(const MapGraph& map, const MapCounts& counts) {
+std::vector<SectionSize> memory_of(const MapGraph& map, const MapCounts& counts) {
   const auto size = [](int number, std::size_t bytes) { return static_cast<std::size_t>(number) * bytes; };
   std::size_t words = 0;
   for (const KeyframeId id : map.keyframe_ids()) words += map.find_keyframe(id)->words.size();

@@ -3,9 +3,10 @@
 #include "byre/geometry/evaluation/distribution.h"
 #include "byre/map/map_file.h"
 
-#include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 namespace byre {
 
@@ -28,24 +29,14 @@ struct ReprojectionErrors {
   int behind_camera = 0;   // observations of a point not in front of its camera; excluded from both distributions
 };
 
-struct BoundingBox {
-  Eigen::Vector3d min = Eigen::Vector3d::Zero();
-  Eigen::Vector3d max = Eigen::Vector3d::Zero();
-};
-
-struct PartSize {
-  std::string name;
-  std::size_t bytes = 0;
-};
-
 struct MapInspection {
   MapCounts counts;
   std::vector<std::string> cameras_of_recordings;  // stereo, rgbd or mono
   Distribution observations_per_point;
   ReprojectionErrors errors;
-  std::optional<BoundingBox> points_in_world;  // empty without points
-  double path_length = 0.0;                    // metres along the keyframes' body poses, summed over recordings
-  std::vector<PartSize> memory;                // size of the loaded map, per kind of data
+  Eigen::AlignedBox3d points_in_world;  // empty without points
+  double path_length = 0.0;             // metres along the keyframes' body poses, summed over recordings
+  std::vector<SectionSize> memory;      // size of the loaded map, per kind of data
   std::vector<std::string> faults;
 };
 

@@ -68,15 +68,14 @@ TEST(Inspect, FindsPointsBehindTheirCameras) {
 
 TEST(Inspect, MeasuresExtentAndPath) {
   const MapInspection inspection = inspect(simulated_map());
-  ASSERT_TRUE(inspection.points_in_world.has_value());
-  const Eigen::Vector3d size = inspection.points_in_world->max - inspection.points_in_world->min;
+  const Eigen::Vector3d size = inspection.points_in_world.sizes();
   EXPECT_TRUE(size.isApprox(Eigen::Vector3d(10.0, 8.0, 4.0), 0.05)) << size.transpose();
   EXPECT_NEAR(inspection.path_length, 2.0 * std::numbers::pi * kRadius, 0.3);
 }
 
 TEST(Inspect, AcceptsAnEmptyMap) {
   const MapInspection inspection = inspect({});
-  EXPECT_FALSE(inspection.points_in_world.has_value());
+  EXPECT_TRUE(inspection.points_in_world.isEmpty());
   EXPECT_EQ(inspection.errors.pixel.count, 0);
   EXPECT_THAT(inspection.faults, IsEmpty());
 }

@@ -1,4 +1,4 @@
-#include "byre/playback/archive/register_picks.h"
+#include "byre/playback/archive/register_map.h"
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/input_error.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "byre/geometry/calibration_change.h"
+#include "byre/playback/play.h"
 #include "byre/playback/report/report.h"
 
 #include <optional>
@@ -17,5 +18,9 @@ void add_calibration(const RefinedCalibration& refined, Report& report);
 // Warning if the calibration given is off, by row errors as in "byre check", or by an implausible change.
 std::optional<std::string> calibration_warning(const std::optional<RefinedCalibration>& refined,
                                                const std::optional<double>& row_error);
+
+// Adds rows on wheel and gyroscope calibration and on poses from dead reckoning. None without such sensors.
+// has_metric_source: the cameras are a metric source (a stereo pair, or a map).
+void add_motion(const RunResult& run, bool has_metric_source, Report& report);
 
 }  // namespace byre

@@ -1,6 +1,6 @@
 #include "byre/playback/report/evaluation_report.h"
 
-#include "byre/playback/report/report_json.h"
+#include "byre/playback/report/report.h"
 
 #include <string_view>
 #include <utility>

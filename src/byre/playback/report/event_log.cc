@@ -1,6 +1,6 @@
 #include "byre/playback/report/event_log.h"
 
-#include "byre/playback/report/report_json.h"
+#include "byre/playback/report/report.h"
 
 #include <ostream>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "byre/playback/report/finish_report.h"
+#include "byre/playback/report/map_report.h"
 
 #include <gmock/gmock.h>
 

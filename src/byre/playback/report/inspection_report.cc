@@ -3,7 +3,7 @@
 #include "byre/odometry/odometry_calibration.h"
 #include "byre/playback/archive/register_map.h"
 #include "byre/playback/report/calibration_report.h"
-#include "byre/playback/report/report_json.h"
+#include "byre/playback/report/report.h"
 
 #include <string_view>
 
@@ -66,16 +66,15 @@ void add_distribution(const char* label, Json figures, const char* unit, Report&
 }
 
 // Sizes in bytes by name; as text for the report's text.
-template <typename Size>
-Json sizes_json(const std::vector<Size>& sizes, bool as_text = false) {
+Json sizes_json(const std::vector<SectionSize>& sizes, bool as_text = false) {
   Json json = Json::object();
-  for (const Size& size : sizes) json[size.name] = as_text ? Json(size_text(size.bytes)) : Json(size.bytes);
+  for (const SectionSize& size : sizes) json[size.name] = as_text ? Json(size_text(size.bytes)) : Json(size.bytes);
   return json;
 }
 
-Json box_json(const std::optional<BoundingBox>& box) {
-  if (!box) return nullptr;
-  return {{"min", list_json(box->min)}, {"max", list_json(box->max)}};
+Json box_json(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return nullptr;
+  return {{"min", list_json(box.min())}, {"max", list_json(box.max())}};
 }
 
 Json recording_json(const SourceRecording& recording, int keyframes, const std::string& camera) {
@@ -111,8 +110,8 @@ void add_notes(const StoredMap& stored, Report& report) {
   }
 }
 
-void add_box(const std::optional<BoundingBox>& box, Json more, Report& report) {
-  if (box) more["size"] = list_json(box->max - box->min);
+void add_box(const Eigen::AlignedBox3d& box, Json more, Report& report) {
+  if (!box.isEmpty()) more["size"] = list_json(box.sizes());
   report.row("extent",
              "[{size.0:.1f} x {size.1:.1f} x {size.2:.1f} {unit}: "
              "x {bounding_box.min.0:.1f} to {bounding_box.max.0:.1f}, "
@@ -129,7 +128,7 @@ void add_sizes(const InspectedFile& file, const MapInspection& inspection, Repor
              {{"size", size_text(file.bytes)}, {"kilobytes_per_keyframe", per_keyframe}});
   report.detail("sections", "{sizes}", {{"sizes", sizes_json(file.sections, true)}});
   std::size_t memory = 0;
-  for (const PartSize& part : inspection.memory) memory += part.bytes;
+  for (const SectionSize& part : inspection.memory) memory += part.bytes;
   report.row("memory", "about {size}", {{"size", size_text(memory)}});
   report.detail("memory", "{sizes}", {{"sizes", sizes_json(inspection.memory, true)}});
 }

@@ -1,14 +1,12 @@
 #include "byre/playback/report/map_statistics.h"
 
-#include "byre/geometry/evaluation/distribution.h"
-
 #include <utility>
 
 namespace byre {
 namespace {
 
 template <typename SecondsOf>
-TimeSummary summarise_processed(const std::vector<PlayedFrame>& frames, SecondsOf seconds_of) {
+Distribution summarise_processed(const std::vector<PlayedFrame>& frames, SecondsOf seconds_of) {
   std::vector<double> seconds;
   for (const PlayedFrame& frame : frames) {
     if (frame.report) seconds.push_back(seconds_of(frame.seconds));
@@ -25,17 +23,16 @@ void count_events(const FrameReport& report, FrameCounts& counts) {
 
 }  // namespace
 
-TimeSummary summarise_times(std::vector<double> seconds) {
+Distribution summarise_times(std::vector<double> seconds) {
   for (double& each : seconds) each *= 1e3;
-  const Distribution ms = distribution_of(std::move(seconds));
-  return {ms.count, ms.mean, ms.p50, ms.p95, ms.p99, ms.max};
+  return distribution_of(std::move(seconds));
 }
 
-TimeSummary summarise_stage(const std::vector<PlayedFrame>& frames, double StageSeconds::*stage) {
+Distribution summarise_stage(const std::vector<PlayedFrame>& frames, double StageSeconds::*stage) {
   return summarise_processed(frames, [stage](const StageSeconds& seconds) { return seconds.*stage; });
 }
 
-TimeSummary summarise_without_jobs(const std::vector<PlayedFrame>& frames) {
+Distribution summarise_without_jobs(const std::vector<PlayedFrame>& frames) {
   return summarise_processed(frames, [](const StageSeconds& seconds) { return seconds.total - seconds.map_submit; });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/geometry/evaluation/distribution.h"
 #include "byre/playback/play.h"
 
 #include <map>
@@ -8,22 +9,13 @@
 
 namespace byre {
 
-// Statistics of wall times, milliseconds. Percentiles are interpolated.
-struct TimeSummary {
-  int count = 0;
-  double mean_ms = 0.0;
-  double p50_ms = 0.0;
-  double p95_ms = 0.0;
-  double p99_ms = 0.0;
-  double max_ms = 0.0;
-};
-
-TimeSummary summarise_times(std::vector<double> seconds);  // all zero for an empty vector
+// Statistics of wall times, milliseconds.
+Distribution summarise_times(std::vector<double> seconds);  // all zero for an empty vector
 
 // Times of one stage over the processed frames: summarise_stage(frames, &StageSeconds::track).
-TimeSummary summarise_stage(const std::vector<PlayedFrame>& frames, double StageSeconds::*stage);
+Distribution summarise_stage(const std::vector<PlayedFrame>& frames, double StageSeconds::*stage);
 // Times of whole frames, without mapping jobs on the frame thread.
-TimeSummary summarise_without_jobs(const std::vector<PlayedFrame>& frames);
+Distribution summarise_without_jobs(const std::vector<PlayedFrame>& frames);
 
 struct FrameCounts {
   int frames = 0;

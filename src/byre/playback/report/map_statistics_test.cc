@@ -17,26 +17,26 @@ PlayedFrame frame_in(State state) {
 TEST(SummariseTimes, GivesMillisecondsInAnyOrder) {
   std::vector<double> seconds;
   for (int i = 100; i >= 0; --i) seconds.push_back(1e-3 * i);
-  const TimeSummary summary = summarise_times(seconds);
+  const Distribution summary = summarise_times(seconds);
   EXPECT_EQ(summary.count, 101);
-  EXPECT_NEAR(summary.mean_ms, 50.0, 1e-9);
-  EXPECT_NEAR(summary.p50_ms, 50.0, 1e-9);
-  EXPECT_NEAR(summary.p95_ms, 95.0, 1e-9);
-  EXPECT_NEAR(summary.p99_ms, 99.0, 1e-9);
-  EXPECT_NEAR(summary.max_ms, 100.0, 1e-9);
+  EXPECT_NEAR(summary.mean, 50.0, 1e-9);
+  EXPECT_NEAR(summary.p50, 50.0, 1e-9);
+  EXPECT_NEAR(summary.p95, 95.0, 1e-9);
+  EXPECT_NEAR(summary.p99, 99.0, 1e-9);
+  EXPECT_NEAR(summary.max, 100.0, 1e-9);
 }
 
 TEST(SummariseTimes, InterpolatesPercentilesOfFewTimes) {
-  const TimeSummary summary = summarise_times({0.001, 0.003});
-  EXPECT_NEAR(summary.p50_ms, 2.0, 1e-9);
-  EXPECT_NEAR(summary.p99_ms, 2.98, 1e-9);
-  EXPECT_NEAR(summarise_times({0.004}).p95_ms, 4.0, 1e-9);
+  const Distribution summary = summarise_times({0.001, 0.003});
+  EXPECT_NEAR(summary.p50, 2.0, 1e-9);
+  EXPECT_NEAR(summary.p99, 2.98, 1e-9);
+  EXPECT_NEAR(summarise_times({0.004}).p95, 4.0, 1e-9);
 }
 
 TEST(SummariseTimes, IsZeroForNothing) {
-  const TimeSummary summary = summarise_times({});
+  const Distribution summary = summarise_times({});
   EXPECT_EQ(summary.count, 0);
-  EXPECT_EQ(summary.max_ms, 0.0);
+  EXPECT_EQ(summary.max, 0.0);
 }
 
 TEST(SummariseStage, SkipsUnprocessedFrames) {
@@ -44,16 +44,16 @@ TEST(SummariseStage, SkipsUnprocessedFrames) {
   frames[0].seconds.track = 0.010;
   frames[1].report.reset();
   frames[2].seconds.track = 0.020;
-  const TimeSummary track = summarise_stage(frames, &StageSeconds::track);
+  const Distribution track = summarise_stage(frames, &StageSeconds::track);
   EXPECT_EQ(track.count, 2);
-  EXPECT_NEAR(track.mean_ms, 15.0, 1e-9);
+  EXPECT_NEAR(track.mean, 15.0, 1e-9);
 }
 
 TEST(SummariseWithoutJobs, SubtractsTheTimeOfSubmittedJobs) {
   PlayedFrame frame = frame_in(State::tracking);
   frame.seconds.total = 0.100;
   frame.seconds.map_submit = 0.080;
-  EXPECT_NEAR(summarise_without_jobs({frame}).max_ms, 20.0, 1e-9);
+  EXPECT_NEAR(summarise_without_jobs({frame}).max, 20.0, 1e-9);
 }
 
 TEST(CountFrames, CountsLostEpisodesAndTheirFrames) {

@@ -1,4 +1,4 @@
-#include "byre/playback/report/mission_errors.h"
+#include "byre/playback/report/mission_report.h"
 
 #include "byre/map/keyframe_path.h"
 

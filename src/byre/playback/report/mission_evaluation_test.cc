@@ -1,4 +1,4 @@
-#include "byre/playback/report/mission_evaluation.h"
+#include "byre/playback/report/mission_report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "byre/playback/report/mission_statistics.h"
+#include "byre/playback/report/mission_report.h"
 
 #include <utility>
 #include <vector>

@@ -1,5 +1,6 @@
-#include "byre/playback/report/odometry_message.h"
+#include "byre/playback/report/ros_report.h"
 
+#include "byre/io/ros/message_matchers.h"
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 

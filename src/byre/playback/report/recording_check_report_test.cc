@@ -1,4 +1,4 @@
-#include "byre/playback/report/recording_check_report.h"
+#include "byre/playback/report/recording_report.h"
 
 #include <gmock/gmock.h>
 

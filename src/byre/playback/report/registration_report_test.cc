@@ -1,4 +1,4 @@
-#include "byre/playback/report/registration_report.h"
+#include "byre/playback/report/map_report.h"
 
 #include "byre/playback/archive/register_scene.h"
 

@@ -1,15 +1,48 @@
 #include "byre/playback/report/ros_report.h"
 
 #include "byre/map/point_grey.h"
-#include "byre/playback/report/pose_messages.h"
 #include "byre/playback/report/report.h"
-#include "byre/playback/report/report_json.h"
+#include "byre/slam/localisation/pose_filter.h"
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace byre {
 namespace {
+
+using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+ros::Quaternion ros_rotation(const Eigen::Quaterniond& rotation) {
+  return {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
+}
+
+ros::Vector3 ros_vector(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+// Standard deviations of the acceleration of an indoor robot: m/s^2, rad/s^2. Nav2 limits them to 2.5 and 3.2.
+constexpr double kAcceleration = 1.0;
+constexpr double kTurnAcceleration = 2.0;
+
+double rotation_variance(const Matrix6& covariance) {
+  return covariance.bottomRightCorner<3, 3>().trace();
+}
+
+bool is_known(const Matrix6& covariance) {
+  return covariance.allFinite() && position_variance(covariance) > 0.0 && rotation_variance(covariance) > 0.0;
+}
+
+Matrix6 twist_covariance(const OdometrySample& before, const OdometrySample& now) {
+  const double seconds = to_seconds(now.time - before.time);
+  const Pose now_from_before = inverse(now.odom_from_base) * before.odom_from_base;
+  Matrix6 covariance = (now.covariance + move_covariance(before.covariance, now_from_before)) / (seconds * seconds);
+  // The mean velocity is that of the middle of the interval.
+  const double speed_change = kAcceleration * seconds / 2.0, rate_change = kTurnAcceleration * seconds / 2.0;
+  covariance.topLeftCorner<3, 3>().diagonal().array() += speed_change * speed_change;
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += rate_change * rate_change;
+  return covariance;
+}
 
 ros::Header header(const char* frame, Timestamp time) {
   return {ros::to_time(time), frame};
@@ -37,6 +70,56 @@ void put(std::vector<std::uint8_t>& bytes, const void* value, std::size_t size) 
 }
 
 }  // namespace
+
+ros::Pose ros_pose(const Pose& parent_from_child) {
+  const Eigen::Vector3d& position = parent_from_child.translation;
+  return {{position.x(), position.y(), position.z()}, ros_rotation(parent_from_child.rotation)};
+}
+
+ros::TransformStamped transform_message(const ros::Header& header, const std::string& child_frame,
+                                        const Pose& parent_from_child) {
+  return {header, child_frame, {ros_vector(parent_from_child.translation), ros_rotation(parent_from_child.rotation)}};
+}
+
+std::array<double, 36> ros_covariance(const Matrix6& covariance_in_child, const Eigen::Quaterniond& parent_from_child) {
+  Matrix6 turn = Matrix6::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = parent_from_child.toRotationMatrix();
+  std::array<double, 36> covariance{};
+  Eigen::Map<RowMajor6>(covariance.data()) = turn * covariance_in_child * turn.transpose();
+  return covariance;
+}
+
+ros::PoseWithCovarianceStamped pose_message(const ros::Header& header, const Pose& parent_from_child,
+                                            const Matrix6& covariance_in_child) {
+  return {header, {ros_pose(parent_from_child), ros_covariance(covariance_in_child, parent_from_child.rotation)}};
+}
+
+ros::Twist twist_between(const Pose& parent_from_before, const Pose& parent_from_after, Timestamp passed) {
+  const double seconds = to_seconds(passed);
+  const Eigen::Vector3d step = parent_from_after.translation - parent_from_before.translation;
+  const Eigen::Vector3d turn = rotation_log(parent_from_before.rotation.conjugate() * parent_from_after.rotation);
+  return {ros_vector(parent_from_after.rotation.conjugate() * step / seconds), ros_vector(turn / seconds)};
+}
+
+OdometrySample odometry_sample(const FrameReport& report, const Pose& odom_from_base) {
+  OdometrySample sample{report.time, odom_from_base, report.odometry_covariance};
+  const bool is_smaller = is_known(report.covariance) &&
+                          position_variance(report.covariance) < position_variance(sample.covariance) &&
+                          rotation_variance(report.covariance) < rotation_variance(sample.covariance);
+  if (report.map_from_body && is_smaller) sample.covariance = report.covariance;
+  return sample;
+}
+
+ros::TwistWithCovariance twist_message(const std::optional<OdometrySample>& before, const OdometrySample& now) {
+  ros::TwistWithCovariance message;
+  Matrix6 covariance = kUnknownVariance * Matrix6::Identity();
+  if (before && now.time > before->time) {
+    message.twist = twist_between(before->odom_from_base, now.odom_from_base, now.time - before->time);
+    if (is_known(before->covariance) && is_known(now.covariance)) covariance = twist_covariance(*before, now);
+  }
+  message.covariance = ros_covariance(covariance, Eigen::Quaterniond::Identity());
+  return message;
+}
 
 std::vector<ros::KeyValue> health_values(const FrameReport& report) {
   nlohmann::ordered_json figures = {{"state", to_string(report.state)}};
@@ -145,13 +228,8 @@ ros::TFMessage ros_camera_extrinsics(const Calibration& calibration, Timestamp t
 
 namespace {
 
-struct RosLens {
-  std::string model;
-  int count = 0;  // coefficients
-};
-
-// Models that ROS does not define keep their name.
-RosLens ros_lens(const Camera& camera) {
+// Model and number of coefficients. Models that ROS does not define keep their name.
+std::pair<std::string, int> ros_lens(const Camera& camera) {
   const auto& d = camera.distortion;
   switch (camera.model) {
     case CameraModel::pinhole:

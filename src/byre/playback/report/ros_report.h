@@ -1,16 +1,54 @@
 #pragma once
 
 #include "byre/calibration.h"
+#include "byre/frame_report.h"
 #include "byre/io/ros/messages.h"
 #include "byre/map/map_graph.h"
 #include "byre/playback/play.h"
-#include "byre/playback/report/odometry_message.h"
+#include "byre/pose.h"
+#include "byre/trajectory.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace byre {
+
+ros::Pose ros_pose(const Pose& parent_from_child);
+ros::TransformStamped transform_message(const ros::Header& header, const std::string& child_frame,
+                                        const Pose& parent_from_child);
+
+// Converts to the convention of ROS: rotations about the parent's fixed axes and positions along them. byre's
+// covariances are of a small motion in the child's frame.
+std::array<double, 36> ros_covariance(const Matrix6& covariance_in_child, const Eigen::Quaterniond& parent_from_child);
+
+ros::PoseWithCovarianceStamped pose_message(const ros::Header& header, const Pose& parent_from_child,
+                                            const Matrix6& covariance_in_child);
+
+// Mean velocity between two poses in the body frame.
+ros::Twist twist_between(const Pose& parent_from_before, const Pose& parent_from_after, Timestamp passed);
+
+// Variance of each axis of a twist that is not known, as other ROS drivers write it.
+inline constexpr double kUnknownVariance = 1e6;
+
+// Smooth odometry of a frame.
+struct OdometrySample {
+  Timestamp time{};
+  Pose odom_from_base;
+  // Covariance of the pose in the map around the camera, in the base frame: an upper bound, without the drift that
+  // consecutive frames share. Zero if it is not known.
+  Matrix6 covariance = Matrix6::Zero();
+};
+
+// Sample of a report with odometry. Both covariances of the report contain that of the matches: that of odometry adds
+// the drift since the start, that of the map pose adds the map's. The smaller one bounds it.
+OdometrySample odometry_sample(const FrameReport& report, const Pose& odom_from_base);
+
+// Mean velocity between two frames, in the base frame of the second one. Covariance: errors of the two poses as if they
+// were independent (those of frames that share points partly cancel), and the change of velocity between mean and
+// stamp. Positive definite; kUnknownVariance without an earlier frame, or if a covariance is not known.
+ros::TwistWithCovariance twist_message(const std::optional<OdometrySample>& before, const OdometrySample& now);
 
 // Conversion of byre's results to ROS messages. Frames follow REP-105: map -> odom -> base_link, byre's body.
 

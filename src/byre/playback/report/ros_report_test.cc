@@ -1,6 +1,6 @@
 #include "byre/playback/report/ros_report.h"
 
-#include "byre/playback/report/pose_messages.h"
+#include "byre/io/ros/message_matchers.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "byre/playback/report/report_json.h"
+#include "byre/playback/report/report.h"
 #include "byre/playback/report/run_report.h"
 
 #include <cmath>

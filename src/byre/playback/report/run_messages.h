@@ -4,7 +4,7 @@
 #include "byre/io/ros/message_sink.h"
 #include "byre/playback/play.h"
 #include "byre/playback/report/event_log.h"
-#include "byre/playback/report/odometry_message.h"
+#include "byre/playback/report/ros_report.h"
 
 #include <chrono>
 #include <optional>

@@ -1,5 +1,6 @@
 #include "byre/playback/report/run_messages.h"
 
+#include "byre/io/ros/message_matchers.h"
 #include "byre/playback/play.h"
 #include "byre/recording.h"
 #include "byre/simulation/rendered_scene.h"

@@ -1,7 +1,8 @@
 #include "byre/playback/report/run_record.h"
 
 #include "byre/io/bag/bag.h"
-#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/message_bytes.h"
+#include "byre/io/ros/message_matchers.h"
 #include "byre/io/ros/messages.h"
 #include "byre/map/point_grey.h"
 #include "byre/playback/play.h"
@@ -29,7 +30,8 @@ class RecordedRun {
     const auto recording = open_recording(RenderedFixture::shared().folder(), {.last = kFramesRecorded});
     SlamOptions options;
     options.workers = Workers::none;
-    RunRecord record(McapWriter(path_), recording->calibration(), true);
+    RunRecord record(McapWriter(path_), recording->calibration(), true,
+                     [](const std::string& fault) { ADD_FAILURE() << fault; });
     PlayHooks hooks;
     hooks.should_stop = [] { return false; };
     hooks.after_frame = [](int, const PlayedFrame&) {};

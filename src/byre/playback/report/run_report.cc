@@ -2,10 +2,9 @@
 
 #include "byre/map/mapped_tag.h"
 #include "byre/playback/report/calibration_report.h"
-#include "byre/playback/report/finish_report.h"
-#include "byre/playback/report/motion_report.h"
-#include "byre/playback/report/recording_check_report.h"
-#include "byre/playback/report/report_json.h"
+#include "byre/playback/report/map_report.h"
+#include "byre/playback/report/recording_report.h"
+#include "byre/playback/report/report.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/trajectory_error.h"
@@ -114,13 +113,13 @@ Json extension_json(const RunResult& run, const RunProtocol& protocol, const Fra
   return {{"frames_until_found", or_null(counts.frames_to_first)}, {"recordings", recordings}};
 }
 
-Json summary_json(const TimeSummary& times) {
+Json summary_json(const Distribution& times) {
   if (times.count == 0) return nullptr;
-  return {{"mean", rounded_ms(times.mean_ms)},
-          {"p50", rounded_ms(times.p50_ms)},
-          {"p95", rounded_ms(times.p95_ms)},
-          {"p99", rounded_ms(times.p99_ms)},
-          {"max", rounded_ms(times.max_ms)}};
+  return {{"mean", rounded_ms(times.mean)},
+          {"p50", rounded_ms(times.p50)},
+          {"p95", rounded_ms(times.p95)},
+          {"p99", rounded_ms(times.p99)},
+          {"max", rounded_ms(times.max)}};
 }
 
 Json stages_json(const std::vector<PlayedFrame>& frames) {
@@ -131,13 +130,13 @@ Json stages_json(const std::vector<PlayedFrame>& frames) {
 }
 
 Json jobs_json(const std::vector<double>& job_seconds) {
-  const TimeSummary jobs = summarise_times(job_seconds);
-  return {{"count", jobs.count}, {"mean_ms", rounded_ms(jobs.mean_ms)}, {"max_ms", rounded_ms(jobs.max_ms)}};
+  const Distribution jobs = summarise_times(job_seconds);
+  return {{"count", jobs.count}, {"mean_ms", rounded_ms(jobs.mean)}, {"max_ms", rounded_ms(jobs.max)}};
 }
 
 Json late_json(const RunResult& run) {
-  const TimeSummary late = summarise_times(run.lateness);
-  return {{"frames", late.count}, {"max_ms", rounded_ms(late.max_ms)}};
+  const Distribution late = summarise_times(run.lateness);
+  return {{"frames", late.count}, {"max_ms", rounded_ms(late.max)}};
 }
 
 Json deadline_json(const FrameCounts& counts, double deadline_ms) {

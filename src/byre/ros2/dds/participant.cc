@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
@@ -30,13 +31,8 @@ void set_user_data(dds_qos_t* qos, const MessageType& type, std::string user_dat
   if (!user_data.empty()) dds_qset_userdata(qos, user_data.data(), user_data.size());
 }
 
-struct TypedTopic {
-  DdsEntity topic;
-  const ddsi_sertype* type = nullptr;
-};
-
-TypedTopic make_topic(std::int32_t participant, const std::string& topic, const MessageType& type,
-                      std::size_t max_bytes) {
+std::pair<DdsEntity, const ddsi_sertype*> make_topic(std::int32_t participant, const std::string& topic,
+                                                     const MessageType& type, std::size_t max_bytes) {
   const std::string name = topic.starts_with('/') ? dds_topic_name(topic) : topic;
   ddsi_sertype* cdr_type = make_cdr_type(dds_type_name(type.name), max_bytes);
   const dds_entity_t made = dds_create_topic_sertype(participant, name.c_str(), &cdr_type, nullptr, nullptr, nullptr);
@@ -134,7 +130,7 @@ Participant::Participant(const RosNetwork& network, const std::string& own_setti
 
 Publisher Participant::publish(const std::string& topic, const MessageType& type, const TopicQos& qos,
                                const std::string& note) {
-  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.max_bytes);
+  auto [made, cdr_type] = make_topic(participant_.handle(), topic, type, qos.max_bytes);
   const Qos wanted = make_qos(qos);
   set_user_data(wanted.get(), type, note, distribution_);
   dds_qset_writer_data_lifecycle(wanted.get(), false);
@@ -143,8 +139,8 @@ Publisher Participant::publish(const std::string& topic, const MessageType& type
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   }
   Publisher publisher;
-  publisher.topic_ = std::move(made.topic);
-  publisher.type_ = made.type;
+  publisher.topic_ = std::move(made);
+  publisher.type_ = cdr_type;
   publisher.writer_ = DdsEntity(
       dds_create_writer(participant_.handle(), publisher.topic_.handle(), wanted.get(), nullptr), "publish " + topic);
   return publisher;
@@ -152,12 +148,11 @@ Publisher Participant::publish(const std::string& topic, const MessageType& type
 
 Subscriber Participant::subscribe(const std::string& topic, const MessageType& type, const TopicQos& qos,
                                   const std::string& note) {
-  TypedTopic made = make_topic(participant_.handle(), topic, type, qos.max_bytes);
   const Qos wanted = make_qos(qos);
   set_user_data(wanted.get(), type, note, distribution_);
   if (qos.ignores_own) dds_qset_ignorelocal(wanted.get(), DDS_IGNORELOCAL_PARTICIPANT);
   Subscriber subscriber;
-  subscriber.topic_ = std::move(made.topic);
+  subscriber.topic_ = make_topic(participant_.handle(), topic, type, qos.max_bytes).first;
   subscriber.reader_ =
       DdsEntity(dds_create_reader(participant_.handle(), subscriber.topic_.handle(), wanted.get(), nullptr),
                 "subscribe to " + topic);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "byre/ros2/dds/ros_names.h"
 #include "byre/ros2/dds/ros_network.h"
 
 #include <array>

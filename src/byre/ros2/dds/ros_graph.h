@@ -1,8 +1,13 @@
 #pragma once
 
+#include "byre/io/ros/message_bytes.h"
 #include "byre/ros2/dds/participant.h"
 
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace byre {
@@ -36,6 +41,42 @@ class GraphAnnouncement {
   Participant& participant_;  // outlives this
   Publisher publisher_;
   NodeDescription node_;
+};
+
+// Request or reply on the wire. Body: a request or response of io/ros/services.h.
+template <typename Body>
+struct ServiceMessage {
+  std::uint64_t client = 0;
+  std::int64_t sequence = 0;
+  Body body{};
+  static void fields(auto& self, auto& visit) { visit("client sequence body", self.client, self.sequence, self.body); }
+};
+
+// ROS 2 service in the protocol of rmw_cyclonedds_cpp. Incompatible with other DDS vendors, which transfer the client
+// id outside of the message.
+class ServiceServer {
+ public:
+  // service: begins with a slash; type: "std_srvs/srv/Trigger". Both endpoints are added to the graph.
+  ServiceServer(GraphAnnouncement& graph, const std::string& service, const std::string& type);
+
+  // Requests since the previous call, oldest first, each a ServiceMessage.
+  std::vector<Message> take() { return requests_.take(); }
+
+  // Sends a reply, a ServiceMessage, once the client's reader is discovered, as DDS would lose it before. now: of a
+  // monotonic clock.
+  void reply(std::vector<std::byte> message, std::chrono::nanoseconds now);
+  // Sends delayed replies; call it periodically.
+  void send_waiting(std::chrono::nanoseconds now);
+
+ private:
+  struct Waiting {
+    std::vector<std::byte> message;
+    std::chrono::nanoseconds until{};
+  };
+
+  Subscriber requests_;
+  Publisher replies_;
+  std::vector<Waiting> waiting_;
 };
 
 }  // namespace byre

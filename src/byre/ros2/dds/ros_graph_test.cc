@@ -1,6 +1,6 @@
 #include "byre/ros2/dds/ros_graph.h"
 
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/ros2/dds/ros_network.h"
 
 #include <gmock/gmock.h>
 

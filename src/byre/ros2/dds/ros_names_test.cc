@@ -1,4 +1,4 @@
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/ros2/dds/ros_network.h"
 
 #include <gmock/gmock.h>
 

@@ -13,6 +13,34 @@
 namespace byre {
 namespace {
 
+using Entry = std::pair<std::string_view, std::string_view>;
+
+constexpr std::array kHashes = {
+    Entry{"rmw_dds_common/msg/ParticipantEntitiesInfo",
+          "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e"},
+    Entry{"sensor_msgs/msg/Image", "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
+    Entry{"sensor_msgs/msg/CompressedImage", "RIHS01_15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a"},
+    Entry{"sensor_msgs/msg/CameraInfo", "RIHS01_b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275"},
+    Entry{"sensor_msgs/msg/Imu", "RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b"},
+    Entry{"sensor_msgs/msg/PointCloud2", "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"},
+    Entry{"nav_msgs/msg/Odometry", "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0"},
+    Entry{"nav_msgs/msg/Path", "RIHS01_1957a5bb3cee5da65c4e52e52b65a93df227efce4c20f8458b36e73066ca334b"},
+    Entry{"nav_msgs/msg/OccupancyGrid", "RIHS01_8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7"},
+    Entry{"geometry_msgs/msg/PoseWithCovarianceStamped",
+          "RIHS01_26432f9803e43727d3c8f668d1fdb3c630f548af631e2f4e31382371bfea3b6e"},
+    Entry{"geometry_msgs/msg/TwistStamped", "RIHS01_5f0fcd4f81d5d06ad9b4c4c63e3ea51b82d6ae4d0558f1d475229b1121db6f64"},
+    Entry{"geometry_msgs/msg/TwistWithCovarianceStamped",
+          "RIHS01_77b67434531e6529b7a0091357b186b6ebdb17fd9ffd3e0c7ce9d3fb11a44563"},
+    Entry{"tf2_msgs/msg/TFMessage", "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"},
+    Entry{"diagnostic_msgs/msg/DiagnosticArray",
+          "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
+    Entry{"std_msgs/msg/String", "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"},
+};
+
+bool is_word_letter(char letter) {
+  return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_';
+}
+
 constexpr int kMaxDomain = 232;  // largest domain with valid ports
 
 int read_domain(const Environment& environment) {
@@ -95,6 +123,66 @@ std::string interface_settings(const RosNetwork& network) {
 }
 
 }  // namespace
+
+std::string dds_topic_name(std::string_view topic) {
+  return "rt" + std::string(topic);
+}
+
+std::string dds_request_name(std::string_view service) {
+  return "rq" + std::string(service) + "Request";
+}
+
+std::string dds_reply_name(std::string_view service) {
+  return "rr" + std::string(service) + "Reply";
+}
+
+std::string dds_type_name(std::string_view type_name) {
+  std::string name;
+  const std::size_t last = type_name.rfind('/');
+  for (std::size_t i = 0; i < type_name.size(); ++i) {
+    if (type_name[i] != '/') name += type_name[i];
+    if (type_name[i] == '/') name += i == last ? "::dds_::" : "::";
+  }
+  return name + "_";
+}
+
+std::string ros_type_name(std::string_view dds_type) {
+  constexpr std::string_view kMark = "dds_::";
+  const std::size_t mark = dds_type.find(kMark);
+  if (mark == std::string_view::npos || !dds_type.ends_with('_')) return "";
+  dds_type.remove_suffix(1);
+  std::string name = std::string(dds_type.substr(0, mark)) + std::string(dds_type.substr(mark + kMark.size()));
+  for (std::size_t at = 0; (at = name.find("::", at)) != std::string::npos;) name.replace(at, 2, "/");
+  return name;
+}
+
+std::string fault_in_name(std::string_view name) {
+  constexpr std::size_t kLongest = 240;  // characters; DDS accepts 256 including prefix and suffix
+  if (name.size() > kLongest) return "is longer than 240 characters";
+  if (!name.starts_with('/')) return "does not begin with a slash";
+  if (name == "/") return "";
+  bool is_word_begin = true;
+  for (const char letter : name.substr(1)) {
+    if (letter == '/' ? is_word_begin : !is_word_letter(letter)) {
+      return letter == '/' ? "has two consecutive slashes"
+                           : "contains characters other than letters, digits, underscores and slashes";
+    }
+    if (is_word_begin && std::isdigit(static_cast<unsigned char>(letter)) != 0)
+      return "has a part that begins with a digit";
+    is_word_begin = letter == '/';
+  }
+  return is_word_begin ? "ends with a slash" : "";
+}
+
+std::string resolve_name(std::string_view topic, std::string_view name_space) {
+  if (topic.starts_with('/')) return std::string(topic);
+  return std::string(name_space) + (name_space.ends_with('/') ? "" : "/") + std::string(topic);
+}
+
+std::string_view type_hash(std::string_view type_name) {
+  const auto* const found = std::ranges::find(kHashes, type_name, &Entry::first);
+  return found == kHashes.end() ? std::string_view() : found->second;
+}
 
 Environment program_environment() {
   return [](const char* name) -> std::optional<std::string> {

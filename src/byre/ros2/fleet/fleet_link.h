@@ -1,14 +1,100 @@
 #pragma once
 
+#include "byre/frame_report.h"
 #include "byre/ros2/fleet/mqtt_client.h"
-#include "byre/ros2/fleet/vda5050_messages.h"
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace byre {
+
+// Velocity of the robot in its own frame.
+struct FleetVelocity {
+  double vx = 0.0;     // m/s, ahead
+  double vy = 0.0;     // m/s, to the left
+  double omega = 0.0;  // rad/s, counterclockwise
+};
+
+// Position of a robot for fleet managers.
+struct FleetPosition {
+  double x = 0.0, y = 0.0;                // metres, in the frame of the map or of its floor plan
+  double theta = 0.0;                     // yaw, radians from -pi to pi, counterclockwise from the x axis
+  bool is_initialised = false;            // whether the position is valid
+  double score = 0.0;                     // confidence from 0 to 1, see localization_score
+  std::optional<double> deviation;        // metres, see position_error
+  std::optional<FleetVelocity> velocity;  // empty without odometry
+  std::string problem;                    // reason why the position is not trusted; empty if trusted
+  std::string advice;                     // remedy for the problem; may be empty
+};
+
+// 0.5 to 1 for trusted poses, falling with the share of the permitted error; at most 0.4 if degraded, 0.1 if untrusted,
+// and 0 without a pose.
+double localization_score(const FrameReport& report);
+
+// Position from the frames so far. Valid from the first trusted frame on, until the event navigation_error, or until
+// frames cease.
+class FleetPositionKeeper {
+ public:
+  // The report's pose is in the published frame. arrived: of a monotonic clock; advice: remedy for the frame's doubt.
+  void note(const FrameReport& report, Timestamp arrived, const std::string& advice);
+
+  // Starts over for another map or global relocalisation.
+  void restart();
+
+  FleetPosition at(Timestamp now) const;
+
+ private:
+  struct Odometry {
+    Timestamp time{};
+    Pose odometry_from_body;
+  };
+
+  FleetPosition position_;
+  std::optional<Odometry> odometry_;
+  std::optional<Timestamp> arrived_;
+};
+
+// Messages of VDA 5050, version 2.1, with the fields that byre can fill. See github.com/VDA5050/VDA5050, json_schemas/.
+
+// Identity of a robot: the leading parts of its topics.
+struct FleetIdentity {
+  std::string interface_name = "uagv";
+  std::string manufacturer = "byre";
+  std::string serial_number = "byre";
+};
+
+// Fault of a manufacturer or serial number; empty if valid.
+std::string_view fault_in_identity(std::string_view text);
+
+// Topic such as "uagv/v2/byre/robot7/state".
+std::string fleet_topic(const FleetIdentity& identity, std::string_view topic);
+
+struct FleetHeader {
+  std::uint32_t id = 0;  // number of the message on its topic
+  std::chrono::system_clock::time_point time;
+};
+
+// Map of the position.
+struct FleetMap {
+  std::string id;
+  std::string description;  // may be empty
+};
+
+enum class FleetConnection : std::uint8_t { online, offline, broken };
+
+std::string connection_text(const FleetIdentity& identity, const FleetHeader& header, FleetConnection state);
+
+std::string visualization_text(const FleetIdentity& identity, const FleetHeader& header, const FleetPosition& position,
+                               const FleetMap& map);
+
+// Fields without data have neutral values: no order, an empty battery, no emergency stop. The operating mode is MANUAL,
+// which prevents orders. A position that is not trusted is an error: FATAL if invalid, else WARNING.
+std::string state_text(const FleetIdentity& identity, const FleetHeader& header, const FleetPosition& position,
+                       const FleetMap& map);
 
 // Schedules VDA 5050 messages: visualization at a fixed rate; state on change, after each connection, and at least
 // every 30 s.

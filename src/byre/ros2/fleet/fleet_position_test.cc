@@ -1,4 +1,4 @@
-#include "byre/ros2/fleet/fleet_position.h"
+#include "byre/ros2/fleet/fleet_link.h"
 
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "byre/ros2/fleet/vda5050_messages.h"
+#include "byre/ros2/fleet/fleet_link.h"
 
 #include <limits>
 #include <vector>

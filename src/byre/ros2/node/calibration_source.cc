@@ -6,7 +6,7 @@
 #include "byre/io/recording/bag_topics.h"
 #include "byre/io/recording/camera_info.h"
 #include "byre/io/recording/frame_selection.h"
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/message_parsing.h"
 
 #include <utility>

@@ -1,6 +1,6 @@
 #include "byre/ros2/node/health_messages.h"
 
-#include "byre/playback/report/report_json.h"
+#include "byre/playback/report/report.h"
 #include "byre/playback/report/ros_report.h"
 
 #include <algorithm>

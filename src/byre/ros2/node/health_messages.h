@@ -3,7 +3,7 @@
 #include "byre/frame_report.h"
 #include "byre/io/ros/messages.h"
 #include "byre/registry/robot_link.h"
-#include "byre/ros2/node/node_log.h"
+#include "byre/ros2/node/process.h"
 
 #include <chrono>
 #include <functional>

@@ -1,5 +1,6 @@
 #include "byre/ros2/node/health_messages.h"
 
+#include "byre/io/ros/message_matchers.h"
 #include <string>
 #include <utility>
 #include <vector>

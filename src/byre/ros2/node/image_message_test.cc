@@ -2,6 +2,7 @@
 
 #include "byre/features/image_view.h"
 #include "byre/input_error.h"
+#include "byre/io/ros/message_matchers.h"
 
 #include <cstring>
 

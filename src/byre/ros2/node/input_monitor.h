@@ -2,7 +2,7 @@
 
 #include "byre/io/ros/messages.h"
 #include "byre/ros2/dds/participant.h"
-#include "byre/ros2/node/node_log.h"
+#include "byre/ros2/node/process.h"
 #include "byre/trajectory.h"
 
 #include <cstddef>

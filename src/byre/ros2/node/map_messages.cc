@@ -3,7 +3,7 @@
 #include "byre/input_error.h"
 #include "byre/map/point_grey.h"
 #include "byre/map/stored_calibration.h"
-#include "byre/playback/report/pose_messages.h"
+#include "byre/playback/report/ros_report.h"
 
 #include <cmath>
 #include <cstring>

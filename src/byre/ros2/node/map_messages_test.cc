@@ -1,6 +1,7 @@
 #include "byre/ros2/node/map_messages.h"
 
 #include "byre/input_error.h"
+#include "byre/io/ros/message_matchers.h"
 #include "byre/map/plan/driven_scene.h"
 #include "byre/map/point_grey.h"
 #include "byre/map/stored_map_scene.h"

@@ -1,6 +1,6 @@
 #include "byre/ros2/node/message_parsing.h"
 
-#include "byre/io/recording/motion_messages.h"
+#include "byre/io/recording/bag_motion.h"
 
 #include <algorithm>
 #include <cmath>

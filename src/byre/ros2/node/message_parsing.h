@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/input_error.h"
-#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/message_bytes.h"
 #include "byre/io/ros/messages.h"
 #include "byre/pose_hint.h"
 #include "byre/ros2/dds/participant.h"

@@ -1,8 +1,8 @@
 #include "byre/ros2/node/motion_input.h"
 
-#include "byre/io/recording/motion_messages.h"
+#include "byre/io/recording/bag_motion.h"
 #include "byre/io/recording/static_frames.h"
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/message_parsing.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "byre/io/recording/motion_files.h"
 #include "byre/io/recording/stamp_clock.h"
-#include "byre/io/recording/wheel_stream.h"
 #include "byre/ros2/dds/ros_graph.h"
 #include "byre/ros2/node/input_monitor.h"
 #include "byre/ros2/node/node_config.h"

@@ -2,7 +2,7 @@
 
 #include "byre/base/printable.h"
 #include "byre/io/recording/frame_selection.h"
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/health_messages.h"
 #include "byre/ros2/node/map_messages.h"
 #include "byre/ros2/node/message_parsing.h"

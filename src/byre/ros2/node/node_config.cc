@@ -1,8 +1,8 @@
 #include "byre/ros2/node/node_config.h"
 
 #include "byre/io/recording/settings_file.h"
-#include "byre/playback/report/report_json.h"
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/playback/report/report.h"
+#include "byre/ros2/dds/ros_network.h"
 
 #include <algorithm>
 #include <array>

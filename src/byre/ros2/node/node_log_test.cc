@@ -1,4 +1,4 @@
-#include "byre/ros2/node/node_log.h"
+#include "byre/ros2/node/process.h"
 
 #include <sstream>
 

@@ -1,9 +1,9 @@
 #include "byre/ros2/node/node_outputs.h"
 
 #include "byre/floor_plan.h"
-#include "byre/playback/report/pose_messages.h"
-#include "byre/playback/report/report_json.h"
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/playback/report/report.h"
+#include "byre/playback/report/ros_report.h"
+#include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/health_messages.h"
 #include "byre/ros2/node/map_messages.h"
 

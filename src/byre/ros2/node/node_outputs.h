@@ -3,11 +3,11 @@
 #include "byre/io/ros/message_sink.h"
 #include "byre/io/ros/messages.h"
 #include "byre/playback/report/event_log.h"
-#include "byre/playback/report/odometry_message.h"
+#include "byre/playback/report/ros_report.h"
 #include "byre/ros2/dds/participant.h"
 #include "byre/ros2/dds/ros_graph.h"
 #include "byre/ros2/node/node_config.h"
-#include "byre/ros2/node/pose_frames.h"
+#include "byre/ros2/node/robot_frames.h"
 #include "byre/ros2/node/slam_runner.h"
 
 #include <optional>

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "byre/io/ros/messages.h"
-#include "byre/ros2/dds/service_server.h"
+#include "byre/io/ros/services.h"
+#include "byre/ros2/dds/ros_graph.h"
 #include "byre/ros2/node/node_config.h"
-#include "byre/ros2/node/node_log.h"
+#include "byre/ros2/node/process.h"
 #include "byre/trajectory.h"
 
 #include <functional>
@@ -11,7 +12,22 @@
 #include <string>
 #include <vector>
 
+// Settings of a node as ROS parameters, all read-only. Answers have the order and length of the request; unknown
+// parameters have the type kNotSet, as in rclpy.
+
 namespace byre {
+
+// Names below the prefixes, or all without a prefix, down to a depth, as in rclcpp.
+ros::ListParametersResult parameter_names(const ros::ListParameters::Request& request);
+
+using ParameterNames = std::vector<std::string>;
+std::vector<ros::ParameterValue> parameter_values(const NodeConfig& config, const ParameterNames& names);
+std::vector<std::uint8_t> parameter_types(const NodeConfig& config, const ParameterNames& names);
+std::vector<ros::ParameterDescriptor> parameter_descriptions(const NodeConfig& config, const ParameterNames& names);
+
+// Refusals with their reasons.
+std::vector<ros::SetParametersResult> refused_parameters(const std::vector<ros::Parameter>& parameters);
+ros::SetParametersResult refused_atomically(const std::vector<ros::Parameter>& parameters);
 
 // Request of a service: a command as on the command topic, or a pose hint.
 struct ServiceCall {

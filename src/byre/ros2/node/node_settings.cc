@@ -1,5 +1,5 @@
 #include "byre/base/text_file.h"
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/node_config.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "byre/ros2/node/parameters.h"
+#include "byre/ros2/node/node_services.h"
 
 #include <string>
 #include <utility>
@@ -20,11 +20,11 @@ using testing::Not;
 using testing::SizeIs;
 
 std::vector<std::string> every_name() {
-  return parameter_names({}).result.names;
+  return parameter_names({}).names;
 }
 
 TEST(Parameters, AreAllSettingsWithTheirGroups) {
-  const auto listed = parameter_names({}).result;
+  const auto listed = parameter_names({});
   EXPECT_THAT(listed.names, SizeIs(node_settings().size()));
   EXPECT_THAT(listed.names, IsSupersetOf({"slam.map", "images.left", "http.port"}));
   EXPECT_THAT(listed.prefixes, AllOf(Contains("slam"), Contains("process"), Not(Contains("slam.map"))));
@@ -32,7 +32,7 @@ TEST(Parameters, AreAllSettingsWithTheirGroups) {
 
 TEST(Parameters, AreListedByPrefixAndDepth) {
   const auto names = [](std::vector<std::string> prefixes, std::uint64_t depth) {
-    return parameter_names({std::move(prefixes), depth}).result.names;
+    return parameter_names({std::move(prefixes), depth}).names;
   };
   EXPECT_THAT(names({"grid"}, ros::ListParameters::kRecursive), AllOf(Contains("grid.footprint"), SizeIs(4)));
   EXPECT_THAT(names({"grid"}, 1), SizeIs(4));
@@ -47,7 +47,7 @@ TEST(Parameters, HaveTypedValuesInTheOrderOfTheRequest) {
   config.map = "/maps/barn.byre";
   config.http_port = 8080;
   const auto values =
-      parameter_values(config, {{"grid.resolution", "slam.map", "no.such", "http.port", "images.rectified"}}).values;
+      parameter_values(config, {"grid.resolution", "slam.map", "no.such", "http.port", "images.rectified"});
   ASSERT_THAT(values, SizeIs(5));
   EXPECT_EQ(values[0].type, ParameterValue::kDouble);
   EXPECT_EQ(values[0].double_value, config.grid_resolution);
@@ -61,7 +61,7 @@ TEST(Parameters, HaveTypedValuesInTheOrderOfTheRequest) {
 }
 
 TEST(Parameters, OfEmptyNumbersAndChoicesAreText) {
-  const auto values = parameter_values({}, {{"http.port", "grid.body_height", "node.services"}}).values;
+  const auto values = parameter_values({}, {"http.port", "grid.body_height", "node.services"});
   for (const ParameterValue& value : values) EXPECT_EQ(value.type, ParameterValue::kString);
   EXPECT_EQ(values[0].string_value, "");
   EXPECT_EQ(values[2].string_value, "auto");
@@ -75,7 +75,7 @@ TEST(Parameters, SetTheSameSettingsAgain) {
   config.is_rectified = true;
   config.task = NodeTask::extend;
   const auto names = every_name();
-  const auto values = parameter_values(config, {names}).values;
+  const auto values = parameter_values(config, names);
   NodeConfig again;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const ParameterValue& value = values[i];
@@ -90,8 +90,8 @@ TEST(Parameters, SetTheSameSettingsAgain) {
 
 TEST(Parameters, HaveTypesAndDescriptions) {
   const auto names = every_name();
-  const auto types = parameter_types({}, {names}).types;
-  const auto descriptors = parameter_descriptions({}, {names}).descriptors;
+  const auto types = parameter_types({}, names);
+  const auto descriptors = parameter_descriptions({}, names);
   ASSERT_EQ(types.size(), names.size());
   ASSERT_EQ(descriptors.size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -101,20 +101,20 @@ TEST(Parameters, HaveTypesAndDescriptions) {
     EXPECT_NE(descriptors[i].description, "");
     EXPECT_EQ(descriptors[i].additional_constraints, node_settings()[i].range);
   }
-  const auto unknown = parameter_descriptions({}, {{"no.such"}}).descriptors;
+  const auto unknown = parameter_descriptions({}, {"no.such"});
   ASSERT_THAT(unknown, SizeIs(1));
   EXPECT_EQ(unknown[0].type, ParameterValue::kNotSet);
 }
 
 TEST(Parameters, AreReadOnly) {
-  const ros::SetParameters::Request request{{{"slam.map", {}}, {"no.such", {}}}};
-  const auto results = refused_parameters(request).results;
+  const std::vector<ros::Parameter> request{{"slam.map", {}}, {"no.such", {}}};
+  const auto results = refused_parameters(request);
   ASSERT_THAT(results, SizeIs(2));
   EXPECT_FALSE(results[0].successful);
   EXPECT_THAT(results[0].reason, HasSubstr("slam.map is read-only"));
   EXPECT_FALSE(results[1].successful);
   EXPECT_THAT(results[1].reason, HasSubstr("unknown parameter no.such"));
-  const auto together = refused_parameters(ros::SetParametersAtomically::Request{request.parameters}).result;
+  const auto together = refused_atomically(request);
   EXPECT_FALSE(together.successful);
   EXPECT_THAT(together.reason, HasSubstr("slam.map is read-only"));
 }

@@ -1,7 +1,7 @@
 #include "byre/ros2/node/robot_frames.h"
 
-#include "byre/playback/report/pose_messages.h"
-#include "byre/ros2/node/pose_frames.h"
+#include "byre/io/ros/message_matchers.h"
+#include "byre/playback/report/ros_report.h"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 #include "byre/ros2/node/ros_arguments.h"
 
 #include "byre/io/recording/settings_file.h"
-#include "byre/ros2/dds/ros_names.h"
+#include "byre/ros2/dds/ros_network.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "byre/ros2/node/node_config.h"
-#include "byre/ros2/node/node_log.h"
+#include "byre/ros2/node/process.h"
 
 #include <filesystem>
 #include <optional>

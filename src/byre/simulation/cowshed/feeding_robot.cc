@@ -1,6 +1,6 @@
 #include "byre/simulation/cowshed/feeding_robot.h"
 
-#include "byre/simulation/downscaled_camera.h"
+#include "byre/simulation/pixel_rays.h"
 #include "byre/simulation/seeded_draws.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "byre/simulation/cowshed/feeding_robot.h"
 
 #include "byre/geometry/geometry_matchers.h"
-#include "byre/simulation/downscaled_camera.h"
+#include "byre/simulation/pixel_rays.h"
 
 #include <algorithm>
 #include <cmath>

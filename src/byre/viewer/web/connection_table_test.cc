@@ -1,4 +1,4 @@
-#include "byre/viewer/web/connection_table.h"
+#include "byre/viewer/web/web_access.h"
 
 #include <gmock/gmock.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "byre/viewer/web/image_store.h"
+#include "byre/viewer/web/web_run.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,6 @@
 #include "byre/viewer/web/live_topics.h"
 
+#include "byre/io/ros/message_matchers.h"
 #include "byre/io/ros/messages.h"
 
 #include <vector>

@@ -1,4 +1,4 @@
-#include "byre/viewer/web/run_mailbox.h"
+#include "byre/viewer/web/web_run.h"
 
 #include <thread>
 

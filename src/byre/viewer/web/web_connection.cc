@@ -3,14 +3,12 @@
 #include "byre/input_error.h"
 #include "byre/viewer/web/foxglove_client.h"
 
-#include <string_view>
-#include <utility>
-
-#include <boost/beast/websocket.hpp>
+#include <array>
 
 namespace byre {
 namespace {
 
+namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
@@ -74,6 +72,83 @@ class PageFeed : public WebFeed {
 };
 
 }  // namespace
+
+void WebListener::start(const WebUpgrade& request, std::string_view protocol) {
+  socket_.accept(request, protocol, [self = shared_from_this()](bool is_open) {
+    if (!is_open) return;
+    self->is_open_ = true;
+    self->read();
+    self->send();
+  });
+}
+
+void WebListener::notify(const std::vector<LiveMessage>& messages) {
+  if (!is_open_) return;
+  for (const LiveMessage& message : messages) feed_->offer(message);
+  send();
+}
+
+void WebListener::send() {
+  if (!is_open_ || is_sending_) return;
+  std::optional<WebMessage> message = feed_->next();
+  if (!message) return;
+  is_sending_ = true;
+  message_ = std::move(*message);
+  const auto rest = message_.rest ? std::span(*message_.rest) : std::span<const std::byte>();
+  socket_.write({message_.bytes, message_.is_binary}, rest, [self = shared_from_this()](bool is_open) {
+    self->is_sending_ = false;
+    self->is_open_ = self->is_open_ && is_open;
+    self->send();
+  });
+}
+
+// Reading also detects a closed connection.
+void WebListener::read() {
+  socket_.read([self = shared_from_this()](const WebSocketMessage* message) {
+    if (message != nullptr && self->feed_->receive(message->bytes, message->is_binary)) {
+      self->send();
+      return self->read();
+    }
+    self->is_open_ = false;
+    if (message != nullptr) self->socket_.close();
+  });
+}
+
+// Largest message from a client: a list of subscriptions.
+constexpr std::size_t kMaxClientMessageBytes = 64 << 10;
+
+void WebSocket::accept(const WebUpgrade& request, std::string_view protocol, Done done) {
+  stream_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+  stream_.set_option(
+      websocket::stream_base::decorator([protocol = std::string(protocol)](websocket::response_type& response) {
+        if (!protocol.empty()) response.set(beast::http::field::sec_websocket_protocol, protocol);
+      }));
+  stream_.read_message_max(kMaxClientMessageBytes);
+  stream_.async_accept(request, [done = std::move(done)](error_code error) { done(!error); });
+}
+
+void WebSocket::write(const WebSocketMessage& head, std::span<const std::byte> rest, Done done) {
+  stream_.binary(head.is_binary);
+  const std::array<asio::const_buffer, 2> buffers = {asio::buffer(head.bytes), asio::buffer(rest.data(), rest.size())};
+  stream_.async_write(buffers, [done = std::move(done)](error_code error, std::size_t) { done(!error); });
+}
+
+void WebSocket::read(Received received) {
+  received_.clear();
+  stream_.async_read(received_, [this, received = std::move(received)](error_code error, std::size_t) {
+    if (error) {
+      received(nullptr);
+      return;
+    }
+    const auto bytes = received_.cdata();
+    const WebSocketMessage message{{static_cast<const char*>(bytes.data()), bytes.size()}, stream_.got_binary()};
+    received(&message);
+  });
+}
+
+void WebSocket::close() {
+  beast::get_lowest_layer(stream_).close();
+}
 
 void WebService::notify_listeners() {
   const std::vector<LiveMessage> messages = topics ? topics->take() : std::vector<LiveMessage>();

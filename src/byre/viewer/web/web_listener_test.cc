@@ -1,4 +1,4 @@
-#include "byre/io/ros/message_reader.h"
+#include "byre/io/ros/message_bytes.h"
 #include "byre/io/ros/messages.h"
 #include "byre/viewer/web/web_client_scene.h"
 #include "byre/viewer/web/web_server.h"

@@ -2,7 +2,7 @@
 
 #include "byre/base/output_file.h"
 #include "byre/input_error.h"
-#include "byre/io/recording/input_files.h"
+#include "byre/io/recording/timed_files.h"
 #include "byre/map/plan/pick_guidance.h"
 #include "byre/map/plan/plan_matching.h"
 #include "byre/map/point_grey.h"

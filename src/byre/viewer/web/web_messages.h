@@ -3,7 +3,7 @@
 #include "byre/floor_plan.h"
 #include "byre/plan_registration.h"
 #include "byre/viewer/scene.h"
-#include "byre/viewer/web/run_mailbox.h"
+#include "byre/viewer/web/web_run.h"
 
 #include <optional>
 #include <span>

@@ -2,11 +2,11 @@
 
 #include "byre/features/rectify.h"
 #include "byre/io/image/image_codec.h"
-#include "byre/viewer/web/image_store.h"
 #include "byre/viewer/web/web_messages.h"
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -133,6 +133,58 @@ class RunSite : public WebSite {
 };
 
 }  // namespace
+
+void ImageStore::add(std::size_t frame, std::string bytes) {
+  bytes_ += bytes.size();
+  const auto [place, is_new] = images_.try_emplace(frame);
+  bytes_ -= place->second.size();
+  place->second = std::move(bytes);
+  while (bytes_ > max_bytes_ && images_.size() > 2) thin_out();
+}
+
+void ImageStore::thin_out() {
+  const std::size_t older = images_.size() / 2;
+  auto image = images_.begin();
+  for (std::size_t i = 0; i < older; i += 2) {
+    ++image;  // keeps the first image
+    bytes_ -= image->second.size();
+    image = images_.erase(image);
+  }
+}
+
+const std::string* ImageStore::find_nearest(std::size_t frame) const {
+  if (images_.empty()) return nullptr;
+  const auto after = images_.lower_bound(frame);
+  if (after == images_.end()) return &images_.rbegin()->second;
+  if (after == images_.begin() || after->first == frame) return &after->second;
+  const auto before = std::prev(after);
+  return frame - before->first <= after->first - frame ? &before->second : &after->second;
+}
+
+// Replaced values are freed outside the lock.
+
+void RunMailbox::put(ShownFrame frame, FrameScene scene) {
+  std::optional<FrameScene> incoming = std::move(scene);
+  const std::lock_guard lock(mutex_);
+  content_.frames.push_back(std::move(frame));
+  content_.newest.swap(incoming);
+}
+
+void RunMailbox::put(MapScene online) {
+  std::optional<MapScene> incoming = std::move(online);
+  const std::lock_guard lock(mutex_);
+  content_.online.swap(incoming);
+}
+
+void RunMailbox::put_end() {
+  const std::lock_guard lock(mutex_);
+  content_.has_ended = true;
+}
+
+RunMailbox::Content RunMailbox::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(content_, {});
+}
 
 RunViewer::RunViewer(RunDescription description, const RunViewerOptions& options)
     : map_interval_(options.map_interval),

@@ -3,15 +3,71 @@
 #include "byre/calibration.h"
 #include "byre/floor_plan.h"
 #include "byre/plan_registration.h"
-#include "byre/viewer/web/run_mailbox.h"
+#include "byre/viewer/scene.h"
 #include "byre/viewer/web/web_server.h"
 
 #include <chrono>
+#include <cstddef>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace byre {
+
+// Encoded images of a run by frame number, in bounded memory: when full, every second image of the older half is
+// dropped.
+class ImageStore {
+ public:
+  explicit ImageStore(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+
+  void add(std::size_t frame, std::string bytes);
+
+  // Image of the frame, else of the nearest stored frame; nullptr if empty.
+  const std::string* find_nearest(std::size_t frame) const;
+
+  std::size_t count() const { return images_.size(); }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  void thin_out();
+
+  std::size_t max_bytes_;  // constant after construction
+  std::map<std::size_t, std::string> images_;
+  std::size_t bytes_ = 0;  // total size of all images
+};
+
+// Report of a frame, with the size of the online map at that time.
+struct ShownFrame {
+  FrameReport report;
+  int online_keyframes = 0;
+  int online_points = 0;
+};
+
+// Mailbox from the thread of a run to the viewer's thread; put() never waits. Reports accumulate; of images and maps
+// only the newest is held. Thread-safe.
+class RunMailbox {
+ public:
+  struct Content {
+    std::vector<ShownFrame> frames;
+    std::optional<FrameScene> newest;  // scene of the newest of these frames; the left image is not rectified
+    std::optional<MapScene> online;
+    bool has_ended = false;  // no more frames follow
+  };
+
+  void put(ShownFrame frame, FrameScene scene);
+  void put(MapScene online);
+  void put_end();
+
+  // Removes and returns all content.
+  Content take();
+
+ private:
+  std::mutex mutex_;
+  Content content_;  // guarded by the mutex
+};
 
 // Description of a run before its first frame.
 struct RunDescription {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "byre/viewer/web/connection_table.h"
 #include "byre/viewer/web/live_topics.h"
+#include "byre/viewer/web/web_access.h"
 #include "byre/viewer/web/web_site.h"
 
 #include <memory>
