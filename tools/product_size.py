@@ -5,7 +5,8 @@ documentation.
 Usage: product_size.py [FOLDER]      FOLDER: project, default: the current folder
 
 Lines: .h and .cc files in include, src and python, except tests (*_test.cc) and their helpers (*_scene.h,
-*_matchers.h). A type is a class, struct or enum with a body. Rooms and floors: FLOORS of tools/check_floors.py.
+*_matchers.h, *_fixture.h). A type is a class, struct or enum with a body. Rooms and floors: FLOORS of
+tools/check_floors.py.
 Documentation: README.md and the pages of docs, except experiments (docs/lab) and generated pages.
 """
 import pathlib
@@ -15,7 +16,7 @@ import sys
 import check_floors
 
 TYPE = re.compile(r"^\s*(?:template\s*<[^>]*>\s*)?(?:class|struct|enum class|enum)\s+\w+[^;=()]*\{", re.MULTILINE)
-OF_TESTS = re.compile(r"(_test|_scene|_matchers)\.(cc|h)$")
+OF_TESTS = re.compile(r"(_test|_scene|_matchers|_fixture)\.(cc|h)$")
 GENERATED = {"docs/reference/options.md", "docs/reference/ros2_settings.md"}  # by tools/options_table.py
 
 
