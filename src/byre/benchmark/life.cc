@@ -37,10 +37,12 @@ constexpr std::size_t kDaysLocalised = 6;
 constexpr int kLocalisedStride = 10;  // frames
 constexpr int kPointsInView = 60;     // map points, from which a frame should be localised
 
+// A recording that is being rendered has an extension.
 std::vector<fs::path> recordings_in(const fs::path& folder) {
   std::vector<fs::path> recordings;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.is_directory() && fs::exists(entry.path() / "mav0")) recordings.push_back(entry.path());
+    const fs::path& path = entry.path();
+    if (entry.is_directory() && !path.has_extension() && fs::exists(path / "mav0")) recordings.push_back(path);
   }
   std::ranges::sort(recordings);
   if (recordings.size() < 2) {

@@ -55,6 +55,7 @@ TEST_F(BenchmarkProgram, MeasuresALifeOfAMap) {
   for (const char* const day : {"day_1", "day_2", "day_3"}) {
     fs::create_directory_symlink(fs::absolute(RenderedFixture::shared().folder()), folder_ / "life" / day);
   }
+  fs::create_directories(folder_ / "life/day_4.unfinished/mav0");  // is being rendered
   const Outcome outcome = run("benchmark --life life -o lived");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, HasSubstr("day_3, newest version"));

@@ -47,6 +47,10 @@ struct Declaration {
   const char* name;
   const char* type = "FILE";
 };
+// Clang 16 deduces no arguments of aggregates.
+template <typename Kind, typename... Names>
+Declaration(Kind, Names...) -> Declaration<Kind>;
+
 constexpr const char* kText = "text";
 constexpr std::array kInputs = {
     Declaration{Input::file, "reads file"},     Declaration{Input::recording, "reads recording"},
