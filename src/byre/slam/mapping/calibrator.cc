@@ -3,6 +3,7 @@
 #include "byre/features/recalibrated.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace byre {
@@ -35,8 +36,8 @@ Frame Calibrator::corrected(const Frame& frame) {
 }
 
 void Calibrator::apply_update(const RefinedCalibration& refined, RectifiedChange from_given) {
-  constexpr double kSettled = 25.0;  // sigmas of a good calibration: 1 % of the focal length
-  is_moving_ = (refined.change - state_.change).norm() > kSettled;
+  constexpr double kSettled = 25.0;  // sigmas: 1 % of the focal length
+  is_moving_ = std::abs((refined.change - state_.change)[kLeftCamera + kFocal]) > kSettled;
   state_.change = refined.change;
   result_ = refined;
   is_attempt_open_ = false;

@@ -74,7 +74,7 @@ class Calibrator {
   bool given_disagrees_ = false;               // with the images, while they were rectified by it
   std::optional<int> last_keyframes_;          // keyframes at the last refinement
   bool is_attempt_open_ = false;               // the last refinement has no result yet
-  bool is_moving_ = false;                     // the last refinement changed the calibration by more than its errors
+  bool is_moving_ = false;                     // the last refinement changed the focal length noticeably
   ObjectPool<Features> features_of_frames_;    // reused memory
 };
 

@@ -489,6 +489,7 @@ bool Mapper::join_submap(Submaps::Frame frame, LengthChanges& changes) {
 
 std::optional<RigRotation> Mapper::calibrate_finally(const Rig& rig, const std::function<bool()>& should_stop) {
   if (!calibrator_ || !calibrator_->is_final_run_useful(online_.keyframe_count())) return std::nullopt;
+  calibrator_->note_attempt(online_.keyframe_count());
   // The copy of the map is freed before the features are converted, because it would store the old ones.
   const auto refined = self_calibrate(whole_map(map()), calibrator_->state(), online_.add_rig(rig),
                                       calibrator_->options(), releasing_pages(*page_file_, should_stop));
