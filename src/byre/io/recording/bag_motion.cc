@@ -131,7 +131,7 @@ std::optional<WheelSample> sample_of(const ros::TwistWithCovarianceStamped& mess
 }
 
 std::optional<ImuSample> sample_of(const ros::Imu& message, Timestamp time) {
-  const auto vector_of = [](const ros::Vector3& told) { return Eigen::Vector3d(told.x, told.y, told.z); };
+  const auto vector_of = [](const ros::Vector3& vector) { return Eigen::Vector3d(vector.x, vector.y, vector.z); };
   const Eigen::Vector3d rate = vector_of(message.angular_velocity);
   const Eigen::Vector3d acceleration = vector_of(message.linear_acceleration);
   const bool has_rate = message.angular_velocity_covariance[0] != -1.0;

@@ -39,7 +39,9 @@ struct SelfCalibration : RefinedCalibration {
 
 // Estimates the calibration error of a rig (index into whole.rigs) from a whole map: bundle adjustment with a free
 // calibration, together with the rows of corners matched between both images. The length of the baseline is fixed.
-// Directions that the data do not determine, as in degenerate motion, stay as given. Empty if too little was seen.
+// Directions that the data do not determine, as in degenerate motion, stay as given. A
+// calibration of one camera that its images refute is refined with the wide prior of nominal numbers instead. Empty if
+// too little was seen.
 // Precondition: the rig's images are rectified by state.present().
 std::optional<SelfCalibration> self_calibrate(const MapWindow& whole, const CalibrationState& state, int rig,
                                               const SelfCalibrationOptions& options,

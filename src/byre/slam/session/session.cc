@@ -133,8 +133,8 @@ void Session::finish() {
 }
 
 FinishReport Session::finish_map(const FinishHooks& hooks) {
-  constexpr int kMaxRuns =
-      4;  // a map of a wrong focal length has matches that fit it, and gives up to half of the error
+  // Matches of a map with a wrong focal length fit it, so that one refinement may give only half of its error.
+  constexpr int kMaxRuns = 4;
   FinishReport report;
   for (int run = 1; run <= kMaxRuns; ++run) {
     const auto rotation = state_.mapper.calibrate_finally(state_.rig, hooks.should_stop);

@@ -61,8 +61,6 @@ class Session {
   // first frame.
   void refine_calibration(const Calibration& given, const SelfCalibrationOptions& options);
 
-  // Sets the assumed error of the given calibration, see SelfCalibrationOptions.
-
   // Refines the readout time alone; keeps the rest of the given calibration. Call it before the first frame.
   void refine_readout(const RefinedCalibration& known);
 
