@@ -45,7 +45,7 @@ bool ActiveMap::is_linked(std::size_t map, Timestamp time) const {
 
 bool ActiveMap::is_search_due(Timestamp time) const {
   if (tests_.size() == 1) return false;
-  if (!is_proved_) return true;
+  if (!is_proved_ || is_far_) return true;
   for (std::size_t map = 0; map < linked_.size(); ++map) {
     if (is_linked(map, time)) return true;
   }
@@ -91,7 +91,7 @@ double ActiveMap::log_odds_of_rivals(std::size_t map, double log_odds_of_active)
 std::size_t ActiveMap::begin_on(std::size_t map) {
   index_ = map;
   is_proved_ = tests_.size() == 1;
-  is_in_lift_ = false;
+  is_in_lift_ = is_far_ = false;
   linked_.assign(linked_.size(), std::nullopt);
   placed_since_.reset();
   last_placed_.reset();
@@ -120,11 +120,14 @@ std::optional<std::size_t> ActiveMap::note(const FrameReport& report, double log
     tests_.assign(tests_.size(), std::nullopt);  // tests may be of the lift's inside
     return begin_on(index_);
   }
+  is_far_ = is_proved_ && report.health.doubt == DistrustReason::off_the_map;
   const bool is_left = is_proved_ && report.health.distance_since_offline > kOffTheMap;
-  const double of_active = is_left ? kNoRivals : std::max(log_odds, log_odds_of(index_));
+  const double of_active = is_far_   ? log_odds_of(index_)
+                           : is_left ? kNoRivals
+                                     : std::max(log_odds, log_odds_of(index_));
   for (std::size_t map = 0; map < tests_.size(); ++map) {
     if (map == index_ || !tests_[map] || !tests_[map]->place.is_confirmed()) continue;
-    if (is_proved_ && !is_linked(map, report.time)) continue;
+    if (is_proved_ && !is_far_ && !is_linked(map, report.time)) continue;
     const double of_map = log_odds_of(map);
     const double margin = of_map - log_odds_of_rivals(map, of_active);
     if (std::min(of_map, margin) >= options_.accept_log_odds) return begin_on(map);

@@ -19,7 +19,8 @@ namespace byre {
 //
 // The map is proved, and poses may be trusted, once the session has accepted a place and a few searches of its frames
 // in all maps found no likely rival. A loss of one second, a lift, and a change of the map end the proof. While it
-// lasts, nothing is searched but after a link's region was entered, and only the link's map can become the active one.
+// lasts, nothing is searched but after a link's region was entered, when only the link's map can become the active one,
+// and far outside the mapped area, when any can.
 class ActiveMap {
  public:
   // plans: registration of each map on a floor plan, if any.
@@ -62,6 +63,7 @@ class ActiveMap {
   std::optional<Timestamp> last_placed_;          // last frame with a place
   int searches_ = 0;                              // searches of frames since placed_since_
   bool is_in_lift_ = false;
+  bool is_far_ = false;  // outside the active map
   bool is_proved_ = false;
 };
 

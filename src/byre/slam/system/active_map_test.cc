@@ -10,7 +10,8 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 
-constexpr double kAccepted = 6.0;  // log-odds of the session's place
+constexpr double kAccepted = 6.0;   // log-odds of the session's place
+constexpr double kFarMetres = 5.0;  // outside the mapped area, from which poses are not trusted
 
 // Eight cells along a corridor, all points of which are seen.
 PlaceView convincing_view() {
@@ -46,8 +47,9 @@ class ActiveMapTest : public testing::Test {
     report.time = time_;
     if (x) {
       report.map_from_body = Pose{Eigen::Quaterniond::Identity(), Eigen::Vector3d(*x, 0.0, 0.0)};
-      report.health.verdict = Verdict::trusted;
       report.health.distance_since_offline = off_the_map;
+      report.health.doubt = off_the_map > kFarMetres ? DistrustReason::off_the_map : DistrustReason::none;
+      report.health.verdict = off_the_map > kFarMetres ? Verdict::untrusted : Verdict::trusted;
     }
     return map_.note(report, x ? kAccepted : kNoRivals);
   }
@@ -107,6 +109,18 @@ TEST_F(ActiveMapTest, StaysOnAProvedMapAwayFromLinks) {
   steps(5, 0.0, {true, false});
   ASSERT_TRUE(map_.is_proved());
   EXPECT_FALSE(steps(50, 2.0, {false, true}, 2.0));
+}
+
+TEST_F(ActiveMapTest, ChangesToTheMapFoundFarOutsideTheActiveOne) {
+  steps(5, 0.0, {true, false});
+  ASSERT_TRUE(map_.is_proved());
+  EXPECT_EQ(steps(10, 2.0, {false, true}, 6.0), 1U);
+}
+
+TEST_F(ActiveMapTest, StaysOnItsMapWhileBothAreFoundFarOutside) {
+  steps(5, 0.0, {true, false});
+  ASSERT_TRUE(map_.is_proved());
+  EXPECT_FALSE(steps(50, 2.0, {true, true}, 6.0));
 }
 
 class LiftTest : public ActiveMapTest {
