@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <thread>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -242,6 +244,62 @@ TEST_F(ByreNode, LocalisesInAMapAndPublishesToLateJoiners) {
   EXPECT_EQ(told->node_entities_info_seq()[0].node_name(), "byre");
   EXPECT_EQ(told->node_entities_info_seq()[0].node_namespace(), "/");
   EXPECT_GE(told->node_entities_info_seq()[0].writer_gid_seq().size(), 9u);
+  EXPECT_EQ(node.stop(), 0);
+}
+
+// Registered on a plan of one row of free pixels.
+void register_on_own_plan(const std::string& name, StoredMap stored, const fs::path& folder, int pixels) {
+  std::ofstream(folder / (name + ".pgm")) << fmt::format("P5\n{} 1\n255\n", pixels) << std::string(pixels, '\xff');
+  std::ofstream(folder / (name + ".yaml")) << "image: " << name << ".pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
+  stored.plan = PlanRegistration{name + ".yaml", {}};
+  save_map(stored, folder / (name + ".byre"));
+}
+
+// The robot is switched off in one building and on in another.
+TEST_F(ByreNode, ChangesTheMapOfASiteOnWakingUpElsewhere) {
+  const Room& room = Room::shared();
+  const Calibration calibration = read_calibration(room.calibration());
+  const RenderedFixture elsewhere("byre_ros2_elsewhere", calibration,
+                                  figure_eight_trajectory(75, 20.0, 3.0, 0.9, euroc_like_calibration(4).body_from_left),
+                                  {.seed = 2});
+  const auto recording = open_recording(elsewhere.folder(), {});
+  Slam mapping = Slam::mapping(calibration, Room::options());
+  for (int i = 0; i < recording->size(); ++i) mapping.process(view_of(*recording->read(i)));
+  mapping.finish();
+  mapping.save(folder_ / "elsewhere.byre");
+  register_on_own_plan("room", load_map(room.map()), folder_, 2);
+  register_on_own_plan("elsewhere", load_map(folder_ / "elsewhere.byre"), folder_, 3);
+  std::ofstream(folder_ / "farm.yaml") << "name: farm\nmaps:\n"
+                                          "  - {name: room, map: room.byre, plan: room.yaml}\n"
+                                          "  - {name: elsewhere, map: elsewhere.byre, plan: elsewhere.yaml}\n";
+  NodeProcess node(folder_, config("  map: farm.yaml\n"), domain_);
+  Grids grids(peer_, "rt/map", kLatched);
+  Texts health(peer_, "rt/byre/health", kVolatile);
+  ASSERT_TRUE(is_connected()) << node.stderr_output();
+  // Health of the last frame.
+  const auto drive = [&](int frames, const std::function<ImageFrame(int)>& frame_at, Timestamp later) {
+    nlohmann::json last;
+    for (int i = 0; i < frames; ++i) {
+      const ImageFrame frame = frame_at(i);
+      feed_.send(frame, later);
+      const std::string time = fmt::format("\"time_ns\":{},", (frame.time + later).count());
+      const auto answer = health.find([&](const auto& text) { return text.data().find(time) != std::string::npos; });
+      if (!answer) return nlohmann::json();
+      last = nlohmann::json::parse(answer->data());
+    }
+    return last;
+  };
+  const nlohmann::json at_home = drive(40, [&](int i) { return room.frames()[static_cast<std::size_t>(i)]; }, {});
+  ASSERT_FALSE(at_home.is_null()) << node.stderr_output();
+  EXPECT_EQ(at_home["map"], "room");
+  EXPECT_EQ(at_home["health"]["verdict"], "trusted");
+  const nlohmann::json away = drive(
+      recording->size(), [&](int i) { return *recording->read(i); }, std::chrono::seconds(2));
+  ASSERT_FALSE(away.is_null()) << node.stderr_output();
+  EXPECT_EQ(away["map"], "elsewhere");
+  EXPECT_EQ(away["health"]["verdict"], "trusted");
+  EXPECT_TRUE(node.has_logged("map changed to elsewhere"));
+  EXPECT_TRUE(grids.find([](const auto& grid) { return grid.info().width() == 3; })) << "of the plan of that map";
   EXPECT_EQ(node.stop(), 0);
 }
 

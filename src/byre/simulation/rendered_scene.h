@@ -19,10 +19,11 @@ class RenderedFixture {
       : RenderedFixture(name, euroc_like_calibration(4),
                         figure_eight_trajectory(frames, frame_rate_hz, 3.0, 0.012 * frames,
                                                 euroc_like_calibration(4).body_from_left)) {}
-  RenderedFixture(const std::string& name, const Calibration& calibration, Trajectory truth)
+  RenderedFixture(const std::string& name, const Calibration& calibration, Trajectory truth,
+                  const RenderedRoomOptions& room = {})
       : folder_(std::filesystem::path(testing::TempDir()) / (name + "." + std::to_string(getpid()))),
         truth_(std::move(truth)) {
-    write_euroc_recording(RenderedRoom({}), calibration, truth_, folder_, {});
+    write_euroc_recording(RenderedRoom(room), calibration, truth_, folder_, {});
   }
   ~RenderedFixture() { std::filesystem::remove_all(folder_); }
   RenderedFixture(const RenderedFixture&) = delete;

@@ -252,7 +252,7 @@ bool Node::is_waiting_for_wheels(Timestamp now) {
 void Node::publish_grid_of_map() {
   if (!outputs_.has_grid_of_map()) return;
   try {
-    if (auto grid = runner_.occupancy()) outputs_.publish_grid(std::move(*grid));
+    outputs_.publish_grid(runner_.occupancy().value_or(unknown_grid()));
   } catch (const InputError& error) {
     outputs_.publish_grid(unknown_grid());
     log_(LogLevel::warning, error.what());

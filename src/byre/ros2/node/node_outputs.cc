@@ -6,6 +6,7 @@
 #include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/health_messages.h"
 #include "byre/ros2/node/map_messages.h"
+#include "byre/site.h"
 
 #include <chrono>
 #include <utility>
@@ -57,7 +58,8 @@ NodeOutputs::NodeOutputs(const NodeConfig& config, GraphAnnouncement& graph, ros
   diagnostics_ = open<ros::DiagnosticArray>("/diagnostics", kReliable);
   path_ = open<ros::Path>(config.path, kLatched);
   points_ = open<ros::PointCloud2>(config.points, kLatched);
-  if (config.plan || (config.map && config.has_grid_of_map)) grid_ = open<ros::OccupancyGrid>(config.grid, kLatched);
+  const bool has_grid_of_map = config.map && (config.has_grid_of_map || is_site_file(*config.map));
+  if (config.plan || has_grid_of_map) grid_ = open<ros::OccupancyGrid>(config.grid, kLatched);
   health_ = open<ros::String>(config.health, kLatched);
   events_ = open<ros::String>(config.events, kEvents);
   if (watchers_ == nullptr) return;

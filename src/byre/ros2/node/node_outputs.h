@@ -37,7 +37,7 @@ class NodeOutputs {
   // Publishes the floor plan, if configured.
   void publish_plan();
   bool has_grid() const { return grid_.has_value(); }
-  // Whether the occupancy grid is that of the map.
+  // Whether the occupancy grid is that of the map, or of its plan in a site.
   bool has_grid_of_map() const { return grid_ && !config_.plan; }
   // grid: in the published map frame.
   void publish_grid(ros::OccupancyGrid grid);

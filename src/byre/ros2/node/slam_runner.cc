@@ -253,13 +253,14 @@ std::vector<CloudPoint> SlamRunner::points() const {
 }
 
 std::optional<ros::OccupancyGrid> SlamRunner::occupancy() const {
+  const MissionMap* const active = active_map();
+  if (active != nullptr && active->plan_file && config_.in_plan) return grid_of(read_floor_plan(*active->plan_file));
   if (!map_ || !config_.has_grid_of_map) return std::nullopt;
   GridOptions options;
   options.resolution = config_.grid_resolution;
   options.footprint_radius = config_.grid_footprint;
   options.body_height = config_.body_height;
   try {
-    const MissionMap* const active = active_map();
     return grid_of(load_map(active != nullptr ? active->file : *map_), config_.in_plan, options);
   } catch (const InputError& error) {
     throw InputError("no occupancy grid of " + map_->string(), error.reason(),

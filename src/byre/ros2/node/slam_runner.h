@@ -58,7 +58,8 @@ class SlamRunner {
   // Points of the new map, or of a mission's offline map, in the published frame. The offline map is read from its file
   // again, which takes as long as loading.
   std::vector<CloudPoint> points() const;
-  // Occupancy grid of the current map, which is read from its file again. Empty without a map or if switched off.
+  // Occupancy grid of the current map, which is read from its file again; in a site that of its plan, if the published
+  // frame is that of the plan. Empty without a map or if switched off.
   // Throws InputError if the map has none.
   std::optional<ros::OccupancyGrid> occupancy() const;
   // Name of the active map in its site; without a site its file name without folder and extension.

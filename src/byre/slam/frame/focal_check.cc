@@ -14,6 +14,7 @@ constexpr double kMaxError = 0.01;
 constexpr double kMinSigmas = 3.0;     // sigmas of a significant error
 constexpr double kRelease = 0.5;       // share of both bounds below which a focal length is accepted again
 constexpr int kMinFramePoints = 36;    // points in a frame
+constexpr int kMinFrames = 3;          // frames weighed: a single view may be of one plane
 constexpr double kFocalMemory = 0.85;  // share of earlier evidence kept from frame to frame
 
 double cost_at(const Pose& camera_from_world, const Rig& rig, std::span<const PoseObservation> observations,
@@ -72,7 +73,7 @@ void FocalCheck::note(const FocalEvidence& evidence) {
   blend(sum_.points, evidence.points);
   blend(weight_, 1.0);
   const double share = is_off_ ? kRelease : 1.0;
-  is_off_ = std::abs(error()) > share * kMaxError && std::abs(sigmas()) > share * kMinSigmas;
+  is_off_ = checked_ >= kMinFrames && std::abs(error()) > share * kMaxError && std::abs(sigmas()) > share * kMinSigmas;
 }
 
 double FocalCheck::error() const {

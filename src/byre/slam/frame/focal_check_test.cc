@@ -67,6 +67,10 @@ TEST(FocalCheck, IsEmptyWithoutFramesAndForFewPoints) {
   check.note({100.0, 500.0, 900.0, 20.0});
   EXPECT_EQ(check.error(), 0.0);
   EXPECT_FALSE(check.is_off());
+  for (int frame = 0; frame < 2; ++frame) {
+    check.note({100.0, 500.0, 900.0, 100.0});
+    EXPECT_FALSE(check.is_off()) << "one view may be of a plane";
+  }
   check.note({100.0, 500.0, 900.0, 100.0});
   EXPECT_TRUE(check.is_off());
 }

@@ -108,7 +108,7 @@ void load_site(const Site& site, const SlamOptions& options, SlamInputs& inputs)
   if (site.maps.empty()) throw InputError("site " + site.name, "has no map", "see byre/site.h");
   for (const SiteMap& map : site.maps) {
     inputs.maps.push_back({map.name, load_offline_map(map.map, *inputs.vocabulary, map.drawn_plan), map.map,
-                           map_id(map.map), load_plan_registration(map.map)});
+                           map_id(map.map), load_plan_registration(map.map), map.plan});
   }
   for (const SiteLink& link : site.links) {
     if (link.polygon.empty() || inputs.maps[link.from].plan) continue;

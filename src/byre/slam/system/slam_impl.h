@@ -43,8 +43,9 @@ struct MissionMap {
   std::string name;  // in the site; empty without a site
   std::shared_ptr<const OfflineMap> offline;
   std::filesystem::path file;
-  std::uint64_t id = 0;                    // see map_id
-  std::optional<PlanRegistration> plan{};  // registration on a floor plan
+  std::uint64_t id = 0;                              // see map_id
+  std::optional<PlanRegistration> plan{};            // registration on a floor plan
+  std::optional<std::filesystem::path> plan_file{};  // that plan, if a site names it
 };
 
 // Maps and names of a Slam.
