@@ -75,7 +75,7 @@ class SiteMissions : public testing::Test {
   }
 
   struct Tour {
-    std::vector<std::string> maps;  // of trusted poses, in order
+    std::vector<std::string> maps;  // maps of trusted poses, in order
     int trusted = 0;
     int changes = 0;
     double worst_trusted_error = 0.0;  // metres

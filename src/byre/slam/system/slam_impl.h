@@ -45,7 +45,7 @@ struct MissionMap {
   std::filesystem::path file;
   std::uint64_t id = 0;                              // see map_id
   std::optional<PlanRegistration> plan{};            // registration on a floor plan
-  std::optional<std::filesystem::path> plan_file{};  // that plan, if a site names it
+  std::optional<std::filesystem::path> plan_file{};  // file of the plan, if a site names it
 };
 
 // Maps and names of a Slam.
