@@ -66,21 +66,40 @@ ScratchVector<PointId> Mission::due_for_retest(std::span<const PointId> around) 
   return due;
 }
 
-std::optional<Pose> Mission::test_registration(const RegistrationEvidence& seen, const PlaceHypothesis& begun) {
+std::optional<Pose> Mission::test_registrations(
+    std::span<const RegistrationEvidence> places,
+    const std::function<PlaceHypothesis(const Pose& offline_from_online)>& begin) {
   constexpr double kMostApart = 0.01;  // share of the median depth, and radians
-  if (!registration_) registration_ = {seen.offline_from_online, begun};
-  const Pose& before = registration_->offline_from_online;
-  const double shift = (before * seen.camera_in_online - seen.offline_from_online * seen.camera_in_online).norm();
-  const double turn = angle_between(before.rotation, seen.offline_from_online.rotation);
-  if (shift > kMostApart * seen.median_depth || turn > kMostApart) {
-    if (++registration_->misses > options_.registration.max_misses) registration_.reset();
-    return std::nullopt;
+  for (Registration& registration : registrations_) ++registration.misses;
+  for (const RegistrationEvidence& seen : places) {
+    const auto agrees = [&](const Registration& before) {
+      const Eigen::Vector3d& camera = seen.camera_in_online;
+      return (before.offline_from_online * camera - seen.offline_from_online * camera).norm() <=
+                 kMostApart * seen.median_depth &&
+             angle_between(before.offline_from_online.rotation, seen.offline_from_online.rotation) <= kMostApart;
+    };
+    auto registration = std::ranges::find_if(registrations_, agrees);
+    if (registration == registrations_.end()) {
+      registrations_.push_back({seen.offline_from_online, begin(seen.offline_from_online)});
+      registration = std::prev(registrations_.end());
+    }
+    registration->misses = 0;
+    registration->offline_from_online = seen.offline_from_online;
+    registration->place.observe(seen.view, true);
   }
-  registration_->offline_from_online = seen.offline_from_online;
-  PlaceHypothesis& place = registration_->place;
-  place.observe(seen.view, true);
-  if (!place.is_confirmed() || (!place.is_accepted() && place.log_odds() < 0.0)) return std::nullopt;
-  return std::exchange(registration_, std::nullopt)->offline_from_online;
+  std::erase_if(registrations_, [this](const Registration& registration) {
+    return registration.misses > options_.registration.max_misses;
+  });
+  const Registration* likeliest = nullptr;
+  for (const Registration& registration : registrations_) {
+    const PlaceHypothesis& place = registration.place;
+    if (!place.is_confirmed() || (!place.is_accepted() && place.log_odds() < 0.0)) continue;
+    if (likeliest == nullptr || place.log_odds() > likeliest->place.log_odds()) likeliest = &registration;
+  }
+  if (likeliest == nullptr) return std::nullopt;
+  const Pose registered = likeliest->offline_from_online;
+  forget_registrations();
+  return registered;
 }
 
 }  // namespace byre

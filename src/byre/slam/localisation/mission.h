@@ -9,8 +9,11 @@
 #include "byre/slam/window/moved_points.h"
 #include "byre/slam/window/registration.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace byre {
 
@@ -56,17 +59,19 @@ class Mission {
   // Offline points do not constrain the pose now.
   void forget_reference() { reference_.reset(); }
 
-  // A frame tracked or localised in both maps, see test_registration().
+  // A frame tracked or localised in both maps, see test_registrations().
   struct RegistrationEvidence {
     Pose offline_from_online;
     Eigen::Vector3d camera_in_online;  // metres
     double median_depth = 0.0;         // metres
     const PlaceView& view;             // part of the offline map in view
   };
-  // Tests the pose of the online map in the offline one. begun: test to begin with. Returns the pose once enough frames
-  // agree and the cells in view do not contradict it.
-  std::optional<Pose> test_registration(const RegistrationEvidence& seen, const PlaceHypothesis& begun);
-  void forget_registration() { registration_.reset(); }
+  // Tests poses of the online map in the offline one. places: those at which a frame was found, which contradict each
+  // other. begin: test to begin with. Returns the likeliest pose with which enough frames agree, unless the cells in
+  // view contradict it.
+  std::optional<Pose> test_registrations(std::span<const RegistrationEvidence> places,
+                                         const std::function<PlaceHypothesis(const Pose& offline_from_online)>& begin);
+  void forget_registrations() { registrations_.clear(); }
 
  private:
   // Constant after construction.
@@ -82,9 +87,9 @@ class Mission {
   struct Registration {
     Pose offline_from_online;
     PlaceHypothesis place;
-    int misses = 0;  // contradicting frames
+    int misses = 0;  // frames found elsewhere only
   };
-  std::optional<Registration> registration_;
+  std::vector<Registration> registrations_;  // poses that contradict each other
 };
 
 }  // namespace byre

@@ -3,6 +3,8 @@
 #include "byre/slam/places/place_scene.h"
 #include "byre/slam/places/place_view_scene.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace byre {
@@ -16,7 +18,8 @@ class RegistrationOfAnOnlineMap : public ::testing::Test {
   // A camera with a median depth of 4 m.
   bool is_registered_by(const Pose& offline_from_online, const PlaceView& view = view_of_room(10, 0),
                         const Eigen::Vector3d& camera = {1.0, 2.0, 0.0}, double prior = 0.0) {
-    return mission_.test_registration({offline_from_online, camera, 4.0, view}, PlaceHypothesis(prior, 3)).has_value();
+    const Mission::RegistrationEvidence seen{offline_from_online, camera, 4.0, view};
+    return mission_.test_registrations({&seen, 1}, [&](const Pose&) { return PlaceHypothesis(prior, 3); }).has_value();
   }
 
   Mission mission_{offline_map_of(quarter_circle({})), {}};
@@ -44,10 +47,27 @@ TEST_F(RegistrationOfAnOnlineMap, RequiresMoreEvidenceAgainstMeasuredMotion) {
 TEST_F(RegistrationOfAnOnlineMap, RestartsAfterThreeFramesElsewhere) {
   is_registered_by(kOfflineFromOnline);
   is_registered_by(kOfflineFromOnline);
-  for (int frame = 0; frame < 3; ++frame) EXPECT_FALSE(is_registered_by(Pose{}));
+  for (const double metres : {1.0, 2.0, 3.0}) {
+    EXPECT_FALSE(is_registered_by({Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}}));
+  }
   EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
   EXPECT_FALSE(is_registered_by(kOfflineFromOnline));
   EXPECT_TRUE(is_registered_by(kOfflineFromOnline));
+}
+
+// Two places that look alike show each frame.
+TEST_F(RegistrationOfAnOnlineMap, EndsAtTheLikelierOfTwoPlaces) {
+  const Pose likelier{Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}};
+  const PlaceView four_cells = view_of_room(4, 0), ten_cells = view_of_room(10, 0);
+  const Eigen::Vector3d camera(1.0, 2.0, 0.0);
+  const std::vector<Mission::RegistrationEvidence> places = {{kOfflineFromOnline, camera, 4.0, four_cells},
+                                                             {likelier, camera, 4.0, ten_cells}};
+  const auto begin = [](const Pose&) { return PlaceHypothesis(0.0, 3); };
+  EXPECT_FALSE(mission_.test_registrations(places, begin));
+  EXPECT_FALSE(mission_.test_registrations(places, begin));
+  const auto registered = mission_.test_registrations(places, begin);
+  ASSERT_TRUE(registered);
+  EXPECT_EQ(registered->translation.x(), likelier.translation.x());
 }
 
 TEST_F(RegistrationOfAnOnlineMap, ComparesCameraPositions) {

@@ -6,6 +6,7 @@
 #include "byre/slam/tracking/keyframes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -18,9 +19,14 @@ bool is_certain(const PoseFilter& pose_filter) {
   return place.is_accepted() && place.log_odds() >= 0.0 && !place.is_contradicted_by_tag();
 }
 
-// camera_from_offline at the look-alike place.
-Pose camera_at(const LookAlikePlace& place, const Pose& camera_from_place) {
-  return camera_from_place * Pose{Eigen::Quaterniond::Identity(), -place.shift};
+// Shifts to the look-alike place and to the one on the other side, where the building may repeat beyond the map.
+std::array<Eigen::Vector3d, 2> both_ways(const LookAlikePlace& place) {
+  return {place.shift, -place.shift};
+}
+
+// camera_from_offline at the place that is shifted so far.
+Pose camera_at(const Eigen::Vector3d& shift, const Pose& camera_from_place) {
+  return camera_from_place * Pose{Eigen::Quaterniond::Identity(), -shift};
 }
 
 }  // namespace
@@ -84,7 +90,7 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     if (!reference) reference = mission_.keyframe_near(pose);
     if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
   }
-  const std::vector<PointId> in_common = finds_rivals ? points_in_common(pose) : std::vector<PointId>();
+  const std::vector<PointId> in_common = finds_rivals ? points_in_common(track.tracked) : std::vector<PointId>();
   return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden, offline_->tags(),
                         [this](PointId id) { return mission_.moved_points().is_suspended(id); },
                         [&](PointId id) { return std::ranges::binary_search(in_common, id); }, offline_->cell_unit()});
@@ -132,9 +138,12 @@ ScratchVector<PointId> OfflineTracker::points_around(const Pose& camera_from_off
 
 // Points that look alike proposed the rival, so they are no evidence for it.
 RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
-                                                const ImageMask& hidden) const {
+                                                const ImageMask& hidden, std::vector<int>* features) const {
   const ScratchVector<PointId> around = points_around(predicted);
   const auto tracked = track_at(frame, predicted, around, rig, hidden);
+  if (tracked && features != nullptr) {
+    for (const TrackedFeature& seen : tracked->features) features->push_back(seen.feature);
+  }
   TrackedFrame there;
   there.camera_from_world = predicted;
   if (tracked) there = *tracked;
@@ -162,6 +171,7 @@ RivalPlaces::View OfflineTracker::view_at_rival(const Frame& frame, const Pose& 
 void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> elsewhere,
                                  const PoseFilter& pose_filter, const Mapper& mapper) {
   constexpr int kFramesOfAcceptedPlace = 3;  // to save time
+  features_at_rivals_.clear();
   const Pose& camera_from_place = seen.track.tracked.camera_from_world;
   const bool is_accepted = pose_filter.place().is_accepted() && elsewhere.empty();
   std::vector<Pose> rivals = camera_by_contradicting_tags(seen);  // camera_from_offline
@@ -170,12 +180,14 @@ void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> 
   for (const HybridTrack& other : elsewhere) rivals.push_back(other.tracked.camera_from_world);
   if (!is_accepted) {
     for (const LookAlikePlace& place : look_alikes_at(camera_from_place)) {
-      rivals.push_back(camera_at(place, camera_from_place));
+      for (const Eigen::Vector3d& shift : both_ways(place)) rivals.push_back(camera_at(shift, camera_from_place));
     }
   }
   propose_rivals({seen.frame.time, camera_from_place}, rivals, seen.rig, pose_filter, mapper);
-  rivals_.observe(camera_from_place,
-                  [&](const Pose& predicted) { return view_at_rival(seen.frame, predicted, seen.rig, seen.hidden); });
+  rivals_.observe(camera_from_place, [&](const Pose& predicted) {
+    return view_at_rival(seen.frame, predicted, seen.rig, seen.hidden, &features_at_rivals_);
+  });
+  std::ranges::sort(features_at_rivals_);
 }
 
 void OfflineTracker::propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
@@ -214,31 +226,39 @@ std::span<const LookAlikePlace> OfflineTracker::look_alikes_at(const Pose& camer
   return look_alikes_;
 }
 
-// The robot may be at a look-alike place, but frames cannot be tested there: the map was driven nearby, and no keyframe
-// has this viewing direction.
-bool OfflineTracker::is_untestable(const Pose& camera_from_look_alike) const {
+// The robot may be at a look-alike place, but frames cannot be tested there: no keyframe has this viewing direction,
+// and the map was driven nearby, or ends within the shift.
+bool OfflineTracker::is_untestable(const Pose& camera_from_look_alike, double shift) const {
   constexpr double kNear = 3.0;  // metres
   return keyframes_of_place(*offline_, camera_from_look_alike).empty() &&
-         offline_->distance_to_keyframes(inverse(camera_from_look_alike).translation) <= kNear;
+         offline_->distance_to_keyframes(inverse(camera_from_look_alike).translation) <= std::max(kNear, shift);
 }
 
-// Points of a place, ascending, that may be those of a look-alike place.
-std::vector<PointId> OfflineTracker::points_in_common(const Pose& camera_from_place) {
+// Points of a place, ascending, that may be those of a look-alike place: by their descriptors, or by features of the
+// frame that are tracked at rivals too.
+std::vector<PointId> OfflineTracker::points_in_common(const TrackedFrame& tracked) {
+  const Pose& camera_from_place = tracked.camera_from_world;
   std::vector<PointId> in_common;
   untestable_ = 0;
   for (const LookAlikePlace& place : look_alikes_at(camera_from_place)) {
-    const Pose camera_from_look_alike = camera_at(place, camera_from_place);
-    const bool is_rival = rivals_.has_at(camera_from_place, camera_from_look_alike);
-    if (!is_rival && !is_untestable(camera_from_look_alike)) continue;
-    untestable_ += !is_rival;
-    in_common.insert(in_common.end(), place.repeated.begin(), place.repeated.end());
+    for (const Eigen::Vector3d& shift : both_ways(place)) {
+      const Pose camera_from_look_alike = camera_at(shift, camera_from_place);
+      const bool cannot_be_tested = is_untestable(camera_from_look_alike, shift.norm());
+      if (!cannot_be_tested && !rivals_.has_at(camera_from_place, camera_from_look_alike)) continue;
+      untestable_ += cannot_be_tested;
+      in_common.insert(in_common.end(), place.repeated.begin(), place.repeated.end());
+    }
+  }
+  for (const TrackedFeature& seen : tracked.features) {
+    if (std::ranges::binary_search(features_at_rivals_, seen.feature)) in_common.push_back(seen.point);
   }
   std::ranges::sort(in_common);
   return in_common;
 }
 
 double OfflineTracker::log_odds_of_rivals() const {
-  return std::log(untestable_ + std::exp(rivals_.log_odds()));
+  constexpr double kOddsOfUntestable = 7.4;  // typical odds of testable look-alikes, in barns with bays
+  return std::log(kOddsOfUntestable * untestable_ + std::exp(rivals_.log_odds()));
 }
 
 double OfflineTracker::length_sigma_of(const Features& features) const {
@@ -340,7 +360,7 @@ void OfflineTracker::record_points(const Seen& seen) {
 
 void OfflineTracker::mark_lost() {
   mission_.forget_reference();
-  mission_.forget_registration();
+  mission_.forget_registrations();
 }
 
 void OfflineTracker::search_in_background(const PlaceQuery& query, const PoseFilter& pose_filter,
@@ -384,9 +404,15 @@ OfflineTracker::MissionUpdate OfflineTracker::process_search(const std::optional
   const Pose camera_from_online = camera_from_world(mapper.map(), *then);
   const bool is_in_place = then->submap == submaps.present() && submaps.is_registered();
   if (is_in_place) {
-    propose_rivals({search->time, camera_from_online}, search->places, search->rig, pose_filter, mapper);
+    std::vector<Pose> places;
+    for (const FoundPlace& found : search->places) places.push_back(found.camera_from_offline);
+    propose_rivals({search->time, camera_from_online}, places, search->rig, pose_filter, mapper);
   }
-  if (!search->found || !place.is_confirmed()) return {};
+  if (!place.is_confirmed()) return {};
+  if (submaps.frame() != Submaps::kMapFrame) {
+    return {.correction = correction_by(search->places, camera_from_online, submaps.frame(), pose_filter)};
+  }
+  if (!search->found) return {};
   const FoundPlace& found = *search->found;
   if (is_in_place && (place.is_accepted() || pose_filter.is_by_hint())) {
     constexpr double kElsewhere = 0.5;  // metres
@@ -396,20 +422,26 @@ OfflineTracker::MissionUpdate OfflineTracker::process_search(const std::optional
     }
     if (is_verifying_search_) return {};
   }
-  return {.correction = correction_by(found, camera_from_online, submaps.frame(), pose_filter)};
+  return {.correction = correction_by({&found, 1}, camera_from_online, submaps.frame(), pose_filter)};
 }
 
 // Tracking was continuous, so the robot was not carried: a find beyond the drift bound is a look-alike place.
-std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& found, const Pose& camera_from_online,
-                                                              Submaps::Frame frame, const PoseFilter& pose_filter) {
+std::optional<OnlineCorrection> OfflineTracker::correction_by(std::span<const FoundPlace> places,
+                                                              const Pose& camera_from_online, Submaps::Frame frame,
+                                                              const PoseFilter& pose_filter) {
   const bool is_registered = frame == Submaps::kMapFrame;
-  if (is_registered && !is_within(agreement_of(found.camera_from_offline, camera_from_online), mission_.drift())) {
-    return std::nullopt;
+  std::vector<Mission::RegistrationEvidence> seen;
+  for (const FoundPlace& found : places) {
+    const bool is_possible =
+        !is_registered || is_within(agreement_of(found.camera_from_offline, camera_from_online), mission_.drift());
+    if (!is_possible) continue;
+    seen.push_back({inverse(found.camera_from_offline) * camera_from_online, inverse(camera_from_online).translation,
+                    found.median_depth, found.view});
   }
-  const Pose offline_from_online = inverse(found.camera_from_offline) * camera_from_online;
-  const auto confirmed = mission_.test_registration(
-      {offline_from_online, inverse(camera_from_online).translation, found.median_depth, found.view},
-      begun_registration(offline_from_online, is_registered, pose_filter));
+  if (seen.empty()) return std::nullopt;
+  const auto confirmed = mission_.test_registrations(seen, [&](const Pose& offline_from_online) {
+    return begun_registration(offline_from_online, is_registered, pose_filter);
+  });
   if (!confirmed) return std::nullopt;
   if (is_registered) return OnlineCorrection{frame, last_held_keyframe_, *confirmed, CorrectionShape::spread};
   return OnlineCorrection{frame, 0, *confirmed, CorrectionShape::rigid};
@@ -418,11 +450,13 @@ std::optional<OnlineCorrection> OfflineTracker::correction_by(const FoundPlace& 
 std::optional<OnlineCorrection> OfflineTracker::correction_by(const HybridTrack& track, const PoseFilter& pose_filter,
                                                               const Mapper& mapper) {
   if (!track.is_online_displaced()) return std::nullopt;
-  const Pose offline_from_online = inverse(*track.from_offline) * *track.from_online;
   const PlaceView tested_already;
-  const auto confirmed = mission_.test_registration({offline_from_online, inverse(*track.from_online).translation,
-                                                     median_depth(track.tracked, mapper.map()), tested_already},
-                                                    begun_registration(offline_from_online, true, pose_filter));
+  const Mission::RegistrationEvidence seen{inverse(*track.from_offline) * *track.from_online,
+                                           inverse(*track.from_online).translation,
+                                           median_depth(track.tracked, mapper.map()), tested_already};
+  const auto confirmed = mission_.test_registrations({&seen, 1}, [&](const Pose& offline_from_online) {
+    return begun_registration(offline_from_online, true, pose_filter);
+  });
   if (!confirmed) return std::nullopt;
   return OnlineCorrection{mapper.submaps().frame(), last_held_keyframe_, *confirmed, CorrectionShape::spread};
 }

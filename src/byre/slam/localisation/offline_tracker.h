@@ -41,6 +41,8 @@ class OfflineTracker {
   const std::optional<MissionCalibrator>& calibrator() const { return calibrator_; }
   // The frame by the refined calibration, if there is one, without the tags found moved.
   Frame corrected(const Frame& frame);
+  // A rival is to replace the place, see find_at_rival().
+  bool is_place_refuted() const { return is_refuted_; }
   bool is_focal_length_off() const { return focal_check_.is_off(); }
   // Ground that constrains the body; nullptr if unknown, or if the last pose is not in the map's frame.
   const DrivenGround* ground_under(const PoseFilter& pose_filter, const Mapper& mapper) const;
@@ -137,11 +139,11 @@ class OfflineTracker {
   ScratchVector<PointId> points_around(const Pose& camera_from_offline) const;
   std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, std::span<const PointId> points,
                                        const Rig& rig, const ImageMask& hidden) const;
-  RivalPlaces::View view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig,
-                                  const ImageMask& hidden) const;
+  RivalPlaces::View view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig, const ImageMask& hidden,
+                                  std::vector<int>* features = nullptr) const;
   std::span<const LookAlikePlace> look_alikes_at(const Pose& camera_from_place);
-  bool is_untestable(const Pose& camera_from_look_alike) const;
-  std::vector<PointId> points_in_common(const Pose& camera_from_place);
+  bool is_untestable(const Pose& camera_from_look_alike, double shift) const;
+  std::vector<PointId> points_in_common(const TrackedFrame& tracked);
   struct PlaceOfFrame {
     Timestamp time{};
     Pose camera_from_offline;
@@ -153,7 +155,8 @@ class OfflineTracker {
   // Empty until enough frames agree.
   std::optional<OnlineCorrection> correction_by(const HybridTrack& track, const PoseFilter& pose_filter,
                                                 const Mapper& mapper);
-  std::optional<OnlineCorrection> correction_by(const FoundPlace& found, const Pose& camera_from_online,
+  // places: those of one search, which contradict each other.
+  std::optional<OnlineCorrection> correction_by(std::span<const FoundPlace> places, const Pose& camera_from_online,
                                                 Submaps::Frame frame, const PoseFilter& pose_filter);
   PlaceHypothesis begun_registration(const Pose& offline_from_online, bool is_registered,
                                      const PoseFilter& pose_filter) const;
@@ -167,6 +170,7 @@ class OfflineTracker {
   ScratchVector<PointId> nearby_points_;        // points that these keyframes see
   RivalPlaces rivals_;
   ScratchVector<KeyframeId> keyframes_of_look_alikes_;  // keyframes of the last place that was not accepted
+  std::vector<int> features_at_rivals_;                 // features of the frame that were tracked at rivals, ascending
   std::vector<LookAlikePlace> look_alikes_;             // look-alikes of that place
   int untestable_ = 0;                                  // look-alike places of the last view_of that cannot be tested
   int frames_since_rivals_ = 0;

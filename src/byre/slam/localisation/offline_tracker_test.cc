@@ -54,7 +54,7 @@ class OfflineTrackerTest : public ::testing::Test {
     const Pose beside{Eigen::Quaterniond::Identity(), {metres, 0.0, 0.0}};
     PlaceSearch search{.time = mission_.frames[0].time, .rig = mission_.rig};
     search.found = FoundPlace{beside * true_camera_from_world(mission_, 0), 3.0, view_of_room(10, 0)};
-    search.places = {search.found->camera_from_offline};
+    search.places = {*search.found};
     return search;
   }
   // Tracks frames at a place 5 m off the true one, which the search finds.

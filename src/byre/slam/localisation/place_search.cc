@@ -131,13 +131,15 @@ PlaceSearch search_at_candidates(const OfflineMap& offline, const PlaceQuery& qu
                                  const Candidates* candidates) {
   const auto [found, refused] = localise_at_candidates(offline, query, options, candidates);
   PlaceSearch search{query.frame.time, query.rig, std::nullopt, refused};
-  for (const TrackedFrame& place : found.places_found) search.places.push_back(place.camera_from_world);
   search.focal = found.focal;
-  if (!found.tracked) return search;
   const MapGraph nothing_online(Origin::online);
-  const double depth = median_depth(*found.tracked, MapView(&offline.map(), nothing_online));
-  PlaceView view = view_at(offline, query.frame, query.rig, query.hidden, *found.tracked);
-  search.found = FoundPlace{found.tracked->camera_from_world, depth, std::move(view)};
+  const auto seen_at = [&](const TrackedFrame& place) {
+    return FoundPlace{place.camera_from_world, median_depth(place, MapView(&offline.map(), nothing_online)),
+                      view_at(offline, query.frame, query.rig, query.hidden, place)};
+  };
+  for (const TrackedFrame& place : found.places_found) search.places.push_back(seen_at(place));
+  if (!found.tracked) return search;
+  search.found = seen_at(*found.tracked);
   search.refused = DistrustReason::none;
   return search;
 }

@@ -64,9 +64,9 @@ struct FoundPlace {
 struct PlaceSearch {
   Timestamp time{};                               // time of the frame
   Rig rig{};                                      // cameras of the frame
-  std::optional<FoundPlace> found{};              // empty: not found
+  std::optional<FoundPlace> found{};              // empty: not found, or several places fit
   DistrustReason refused = DistrustReason::none;  // see BoundedLocalisation
-  std::vector<Pose> places{};                     // camera_from_offline at each place that shows the frame
+  std::vector<FoundPlace> places{};               // places that show the frame, contradicting each other
   std::optional<FocalEvidence> focal{};           // see Localisation
 };
 PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);

@@ -235,7 +235,8 @@ Located locate(RobotState& state, const InputFrame& input, const SessionOptions&
   const PoseFilter& pose_filter = state.pose_filter;
   const Tracker::Scene scene = scene_of(state, input);
   const bool can_search = state.mission || state.mapper.places();
-  const bool returns_by_odometry = can_search && pose_filter.can_return_by_odometry();
+  const bool is_refuted = state.mission && state.mission->is_place_refuted();
+  const bool returns_by_odometry = can_search && !is_refuted && pose_filter.can_return_by_odometry();
   Located located;
   if (is_separate(state) && pose_filter.has_pose()) {
     located = find_place(state, frame, scene, true);
