@@ -24,7 +24,7 @@ void find_expected_points(benchmark::State& state) {
   const Pose prediction_error{rotation_exp({0.003, 0.003, 0.003}), {0.01, 0.01, 0.01}};
   const Pose predicted = prediction_error * true_camera_from_world(mission, kFrame);
   const std::vector<PointId> points = map.point_ids();
-  ScratchVector<GuidedMatch> matches;
+  ScratchVector<PointMatch> matches;
   measure_hot_loop(state, [&] {
     const ScratchVector<ExpectedPoint> expected = project_points(view, points, predicted, mission.rig);
     matches = match_expected(*mission.frames[kFrame].features, view, expected, {});

@@ -58,6 +58,15 @@ Matrix6 adjoint(const Pose& a_from_b);
 // Covariance of a small motion in frame a, given its covariance in frame b.
 Matrix6 move_covariance(const Matrix6& covariance_in_b, const Pose& a_from_b);
 
+// Variances of a small motion, sums over the axes: square metres, square radians.
+inline double position_variance(const Matrix6& covariance) {
+  return covariance.topLeftCorner<3, 3>().trace();
+}
+
+inline double rotation_variance(const Matrix6& covariance) {
+  return covariance.bottomRightCorner<3, 3>().trace();
+}
+
 // Angle between two rotations, radians, 0 to pi.
 double angle_between(const Eigen::Quaterniond& first, const Eigen::Quaterniond& second);
 

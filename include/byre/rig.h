@@ -2,8 +2,6 @@
 
 #include "byre/pose.h"
 
-#include <optional>
-
 #include <Eigen/Core>
 
 namespace byre {

@@ -1,6 +1,5 @@
 #include "byre/base/csv_table.h"
 
-#include "byre/base/regular_file.h"
 #include "byre/base/text_file.h"
 #include "byre/input_error.h"
 
@@ -58,10 +57,7 @@ std::string CsvTable::place_of(const Row& row) const {
 }
 
 CsvTable read_csv_table(const std::filesystem::path& path, const std::vector<std::string_view>& known_columns) {
-  refuse_pipe(path);
-  if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "give a file");
-  std::ifstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
+  std::ifstream file = open_text_file(path);
   CsvTable table{path, {}, {}};
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {

@@ -1,5 +1,6 @@
 #include "byre/base/file_content.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/base/text_file.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <fstream>
 #include <initializer_list>
 #include <string>
-#include <string_view>
 
 namespace byre {
 namespace {
@@ -118,45 +118,11 @@ FileContent content_of_beginning(std::string_view bytes, std::uintmax_t size, co
 }  // namespace
 
 std::string_view name_of(FileContent content) {
-  switch (content) {
-    case FileContent::nothing:
-      return "empty file";
-    case FileContent::map:
-      return "map";
-    case FileContent::vocabulary:
-      return "vocabulary";
-    case FileContent::png:
-      return "PNG picture";
-    case FileContent::pgm:
-      return "PGM picture";
-    case FileContent::photograph:
-      return "JPEG or TIFF picture";
-    case FileContent::video:
-      return "video";
-    case FileContent::point_cloud:
-      return "point cloud";
-    case FileContent::mcap:
-      return "MCAP file";
-    case FileContent::svg:
-      return "SVG picture";
-    case FileContent::json:
-      return "JSON file";
-    case FileContent::trajectory:
-      return "trajectory";
-    case FileContent::yaml:
-      return "YAML file";
-    case FileContent::table:
-      return "table of comma-separated values";
-    case FileContent::colmap_model:
-      return "file of a COLMAP model";
-    case FileContent::page:
-      return "HTML or Markdown page";
-    case FileContent::text:
-      return "text file";
-    case FileContent::other:
-      break;
-  }
-  return "file of this kind";
+  return name_among<FileContent::other>(
+      {"empty file", "map", "vocabulary", "PNG picture", "PGM picture", "JPEG or TIFF picture", "video", "point cloud",
+       "MCAP file", "SVG picture", "JSON file", "trajectory", "YAML file", "table of comma-separated values",
+       "file of a COLMAP model", "HTML or Markdown page", "text file", "file of this kind"},
+      content);
 }
 
 FileContent content_of(std::span<const std::byte> bytes, const fs::path& name) {

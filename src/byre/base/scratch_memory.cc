@@ -1,7 +1,6 @@
 #include "byre/base/scratch_memory.h"
 
 #include <array>
-#include <bit>
 #include <new>
 
 namespace byre {

@@ -1,7 +1,6 @@
 #include "byre/base/task_threads.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace byre {

@@ -4,10 +4,8 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <utility>
 
 namespace byre {
@@ -23,14 +21,9 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kWhiteSpace) - begin + 1);
 }
 
-// Parses the whole text with std::from_chars, which rejects a leading plus sign.
-template <typename Value>
-std::optional<Value> parse_whole(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  Value value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
+// std::from_chars rejects a leading plus sign.
+std::string_view without_plus(std::string_view text) {
+  return text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text;
 }
 
 // The value of one digit at a decimal place, 0 for units; empty if it overflows 64 bits.
@@ -47,18 +40,29 @@ std::optional<std::int64_t> value_of_digit(char digit, int place) {
 std::optional<std::pair<std::string, int>> split_exponent(std::string_view text) {
   const std::size_t e = text.find_first_of("eE");
   if (e == std::string_view::npos) return std::pair(std::string(text), 0);
-  const std::optional<int> exponent = parse_whole<int>(text.substr(e + 1));
+  const std::optional<int> exponent = parse_whole<int>(without_plus(text.substr(e + 1)));
   if (!exponent || std::abs(*exponent) > kMaxExponent) return std::nullopt;
   return std::pair(std::string(text.substr(0, e)), *exponent);
 }
 
 }  // namespace
 
-std::vector<TextLine> read_lines(const std::filesystem::path& path) {
+std::ifstream open_text_file(const std::filesystem::path& path) {
   refuse_pipe(path);
   if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "give a file");
   std::ifstream file(path);
   if (!file) throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
+  return file;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return lower;
+}
+
+std::vector<TextLine> read_lines(const std::filesystem::path& path) {
+  std::ifstream file = open_text_file(path);
   std::vector<TextLine> lines;
   std::string text;
   for (int number = 1; std::getline(file, text); ++number) {
@@ -93,7 +97,7 @@ std::vector<std::string_view> split_fields(std::string_view text) {
 }
 
 std::optional<double> parse_number(std::string_view text) {
-  const std::optional<double> value = parse_whole<double>(text);
+  const std::optional<double> value = parse_whole<double>(without_plus(text));
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
@@ -118,7 +122,7 @@ std::optional<std::chrono::nanoseconds> parse_seconds(std::string_view text) {
 }
 
 std::optional<std::chrono::nanoseconds> parse_nanoseconds(std::string_view text) {
-  const std::optional<std::int64_t> count = parse_whole<std::int64_t>(text);
+  const std::optional<std::int64_t> count = parse_whole<std::int64_t>(without_plus(text));
   if (!count) return std::nullopt;
   return std::chrono::nanoseconds(*count);
 }

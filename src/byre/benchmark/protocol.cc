@@ -2,15 +2,14 @@
 
 #include "byre/base/data_file.h"
 #include "byre/base/enum_names.h"
-#include "byre/base/regular_file.h"
 #include "byre/base/text_file.h"
 #include "byre/input_error.h"
+#include "byre/io/calibration/yaml_mapping.h"
 #include "byre/io/recording/frame_selection.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include <fmt/core.h>
@@ -167,18 +166,7 @@ void read_runs(const YamlValue& root, BenchmarkProtocol& protocol) {
 namespace fs = std::filesystem;
 
 YamlValue YamlValue::load(const fs::path& path) {
-  refuse_pipe(path);
-  std::ifstream file(path);
-  if (!file || fs::is_directory(path)) {
-    throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
-  }
-  try {
-    const YamlValue root(path, YAML::Load(file));
-    if (!root.node_.IsMap()) throw InputError(path.string(), "is not a YAML mapping");
-    return root;
-  } catch (const YAML::Exception& error) {
-    throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
-  }
+  return {path, load_yaml_mapping(path)};
 }
 
 std::string YamlValue::text() const {

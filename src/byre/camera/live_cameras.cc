@@ -50,15 +50,8 @@ std::string describe(const DeviceReport& device) {
 std::string describe_stamps(const LiveCameraReport& report) {
   const std::string moment(to_string(report.devices.front().moment));
   if (!report.clock) return "none received";
-  switch (*report.clock) {
-    case CameraClock::monotonic:
-      return moment + ", kernel clock, converted to UTC";
-    case CameraClock::utc:
-      return moment + ", UTC";
-    case CameraClock::own:
-      return moment + ", clock of the device";
-  }
-  return moment;
+  return moment + std::string(name_among<CameraClock::own>(
+                      {", kernel clock, converted to UTC", ", UTC", ", clock of the device"}, *report.clock));
 }
 
 }  // namespace

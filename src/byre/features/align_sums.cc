@@ -1,7 +1,6 @@
 #include "byre/features/align_sums.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 
 // The vectorised part of this file is compiled once for each instruction set. Sums always use eight lanes, so that they

@@ -1,4 +1,4 @@
-#include "byre/features/downscale.h"
+#include "byre/features/pyramid.h"
 
 #include "byre/base/scratch_memory.h"
 
@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 // The vectorised part of this file is compiled once for each instruction set with vectors made of 16-byte blocks.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)

@@ -1,4 +1,4 @@
-#include "byre/features/downscale.h"
+#include "byre/features/pyramid.h"
 
 #include "byre/features/image_scene.h"
 

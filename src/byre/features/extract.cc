@@ -18,9 +18,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <functional>
-#include <span>
-#include <utility>
 
 namespace byre {
 namespace {

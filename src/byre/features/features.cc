@@ -2,12 +2,8 @@
 
 #include "byre/base/scratch_memory.h"
 
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace byre {
 namespace {

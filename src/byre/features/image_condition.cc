@@ -1,14 +1,13 @@
 #include "byre/image_condition.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/base/scratch_memory.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace byre {
 namespace {
@@ -151,19 +150,7 @@ ImageCondition measure_condition(const Image& image) {
 }
 
 std::string_view to_string(ImageFault fault) {
-  switch (fault) {
-    case ImageFault::none:
-      return "none";
-    case ImageFault::dark:
-      return "dark";
-    case ImageFault::overexposed:
-      return "overexposed";
-    case ImageFault::flat:
-      return "flat";
-    case ImageFault::blurred:
-      return "blurred";
-  }
-  return "";
+  return name_among<ImageFault::blurred>({"none", "dark", "overexposed", "flat", "blurred"}, fault);
 }
 
 ImageFault fault_of(const ImageCondition& condition, const ImageConditionOptions& options) {

@@ -12,43 +12,8 @@
 namespace byre {
 namespace {
 
-// Bytes per pixel in the first plane.
-std::size_t bytes_of_pixel(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::grey8:
-    case PixelFormat::nv12:
-      return 1;
-    case PixelFormat::grey16:
-    case PixelFormat::yuyv:
-    case PixelFormat::depth16:
-      return 2;
-    case PixelFormat::bgr8:
-    case PixelFormat::rgb8:
-      return 3;
-    case PixelFormat::depth_metres:
-      return 4;
-  }
-  return 0;
-}
-
-// Alignment of multi-byte numbers; 1 for single bytes.
-std::size_t alignment_of(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::grey16:
-    case PixelFormat::depth16:
-      return 2;
-    case PixelFormat::depth_metres:
-      return 4;
-    default:
-      return 1;
-  }
-}
-
-std::size_t stride_of(const ImageView& view) {
-  return view.stride != 0 ? view.stride : bytes_of_pixel(view.format) * static_cast<std::size_t>(view.width);
-}
-
-int channels_of(PixelFormat format) {
+// OpenCV's type of the pixels in the first plane.
+int type_of(PixelFormat format) {
   switch (format) {
     case PixelFormat::yuyv:
       return CV_8UC2;
@@ -65,9 +30,17 @@ int channels_of(PixelFormat format) {
   }
 }
 
+std::size_t bytes_of_row(const ImageView& view) {
+  return static_cast<std::size_t>(CV_ELEM_SIZE(type_of(view.format))) * static_cast<std::size_t>(view.width);
+}
+
+std::size_t stride_of(const ImageView& view) {
+  return view.stride != 0 ? view.stride : bytes_of_row(view);
+}
+
 // Without a copy; cv::Mat has no const pixels.
 cv::Mat pixels_of(const ImageView& view) {
-  return {view.height, view.width, channels_of(view.format), const_cast<void*>(view.data), stride_of(view)};
+  return {view.height, view.width, type_of(view.format), const_cast<void*>(view.data), stride_of(view)};
 }
 
 std::uint16_t units_of(float metres, double units_per_metre) {
@@ -99,9 +72,9 @@ bool is_depth(PixelFormat format) {
 bool is_sound(const ImageView& view) {
   if (view.width <= 0 || view.height <= 0) return false;
   if (view.format == PixelFormat::grey16 && (view.bits < 1 || view.bits > 16)) return false;
-  const std::size_t alignment = alignment_of(view.format);
+  const auto alignment = static_cast<std::size_t>(CV_ELEM_SIZE1(type_of(view.format)));  // multi-byte numbers
   if (stride_of(view) % alignment != 0 || std::bit_cast<std::uintptr_t>(view.data) % alignment != 0) return false;
-  if (stride_of(view) < bytes_of_pixel(view.format) * static_cast<std::size_t>(view.width)) return false;
+  if (stride_of(view) < bytes_of_row(view)) return false;
   if (view.format == PixelFormat::yuyv) return view.width % 2 == 0;
   return view.format != PixelFormat::nv12 || (view.width % 2 == 0 && view.height % 2 == 0);
 }
@@ -109,9 +82,8 @@ bool is_sound(const ImageView& view) {
 CopiedImages::CopiedImages(const CameraImages& images) : views_(images) {
   const auto copy = [this](ImageView& view) {
     if (view.data == nullptr || !is_sound(view)) return;
-    const std::size_t row = bytes_of_pixel(view.format) * static_cast<std::size_t>(view.width);
     const auto* const first = static_cast<const std::byte*>(view.data);
-    const std::size_t bytes = stride_of(view) * static_cast<std::size_t>(view.height - 1) + row;
+    const std::size_t bytes = stride_of(view) * static_cast<std::size_t>(view.height - 1) + bytes_of_row(view);
     view.data = pixels_.emplace_back(first, first + bytes).data();
   };
   copy(views_.left);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <csetjmp>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 

@@ -4,8 +4,6 @@
 #include "byre/features/remap.h"
 #include "byre/rig.h"
 
-#include <optional>
-
 #include <opencv2/core.hpp>
 
 namespace byre {

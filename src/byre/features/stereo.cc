@@ -87,14 +87,8 @@ std::optional<int> search_right(const cv::Mat& left, const cv::Mat& right, int x
   return there.x;
 }
 
-// Match of a left pixel with a right column, octave pixels.
-struct OctaveMatch {
-  float disparity = 0.0f;
-  float sigma = 0.0f;
-  float row_offset = 0.0f;
-};
-
-std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& right, int x, int y, int right_x,
+// Match of a left pixel with a right column, in octave pixels.
+std::optional<StereoMatch> refine_column(const cv::Mat& left, const cv::Mat& right, int x, int y, int right_x,
                                          const StereoOptions& options) {
   const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
   CentredTemplate<kAlignSize> reference;
@@ -107,7 +101,7 @@ std::optional<OctaveMatch> refine_column(const cv::Mat& left, const cv::Mat& rig
   const auto aligned =
       align_window<kAlignSize>(reference, window_of(right), {static_cast<float>(right_x), pixel.y()}, align);
   if (!aligned || std::abs(aligned->pixel.y() - pixel.y()) > options.max_vertical_error) return std::nullopt;
-  return OctaveMatch{pixel.x() - aligned->pixel.x(), aligned->sigma, aligned->pixel.y() - pixel.y()};
+  return StereoMatch{pixel.x() - aligned->pixel.x(), aligned->sigma, aligned->pixel.y() - pixel.y()};
 }
 
 std::optional<StereoMatch> match_one(const cv::Mat& left, const cv::Mat& right, const Keypoint& keypoint,

@@ -1,7 +1,6 @@
 #include "byre/features/stereo_quality.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>

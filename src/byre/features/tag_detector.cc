@@ -1,6 +1,5 @@
 #include "byre/features/tag_detector.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cstdlib>
 

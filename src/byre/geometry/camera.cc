@@ -1,3 +1,4 @@
+#include "byre/base/enum_names.h"
 #include "byre/calibration.h"
 
 #include <algorithm>
@@ -318,27 +319,10 @@ Eigen::Vector3d to_direction(const Lens& lens, const Eigen::Vector2d& v) {
 }  // namespace
 
 std::string_view to_string(CameraModel model) {
-  switch (model) {
-    case CameraModel::pinhole:
-      return "pinhole";
-    case CameraModel::radial_tangential:
-      return "radial_tangential";
-    case CameraModel::equidistant:
-      return "equidistant";
-    case CameraModel::rational:
-      return "rational";
-    case CameraModel::unified:
-      return "unified";
-    case CameraModel::extended_unified:
-      return "extended_unified";
-    case CameraModel::double_sphere:
-      return "double_sphere";
-    case CameraModel::field_of_view:
-      return "field_of_view";
-    case CameraModel::thin_prism_fisheye:
-      return "thin_prism_fisheye";
-  }
-  return "unknown";
+  return name_among<CameraModel::thin_prism_fisheye>(
+      {"pinhole", "radial_tangential", "equidistant", "rational", "unified", "extended_unified", "double_sphere",
+       "field_of_view", "thin_prism_fisheye"},
+      model);
 }
 
 std::optional<Eigen::Vector2d> Camera::project(const Eigen::Vector3d& point_in_camera) const {

@@ -2,7 +2,6 @@
 
 #include "byre/geometry/decompositions.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>

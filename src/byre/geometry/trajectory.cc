@@ -10,8 +10,7 @@ Timestamp from_seconds(double seconds) {
 }
 
 std::optional<Pose> pose_at(const Trajectory& trajectory, Timestamp time, Timestamp max_gap) {
-  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time,
-                                      [](const StampedPose& sample, Timestamp t) { return sample.time < t; });
+  const auto after = std::ranges::lower_bound(trajectory, time, {}, &StampedPose::time);
   if (after == trajectory.end()) return std::nullopt;
   if (after->time == time) return after->world_from_body;
   if (after == trajectory.begin()) return std::nullopt;

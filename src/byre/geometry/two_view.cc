@@ -1,5 +1,6 @@
 #include "byre/geometry/two_view.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/geometry/essential.h"
 #include "byre/geometry/homography.h"
 #include "byre/geometry/median.h"
@@ -135,25 +136,10 @@ TwoViewEstimate failed(TwoViewFailure failure) {
 }  // namespace
 
 std::string_view to_string(TwoViewFailure failure) {
-  switch (failure) {
-    case TwoViewFailure::none:
-      return "none";
-    case TwoViewFailure::too_few_matches:
-      return "too few matches";
-    case TwoViewFailure::no_common_motion:
-      return "no common motion";
-    case TwoViewFailure::rotation_only:
-      return "rotation only";
-    case TwoViewFailure::small_parallax:
-      return "small parallax";
-    case TwoViewFailure::planar_ambiguity:
-      return "planar ambiguity";
-    case TwoViewFailure::too_few_points:
-      return "too few points";
-    case TwoViewFailure::uncertain:
-      return "motion is uncertain";
-  }
-  return "";
+  return name_among<TwoViewFailure::uncertain>(
+      {"none", "too few matches", "no common motion", "rotation only", "small parallax", "planar ambiguity",
+       "too few points", "motion is uncertain"},
+      failure);
 }
 
 TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, StartParallax required) {

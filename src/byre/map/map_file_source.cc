@@ -3,8 +3,6 @@
 #include "byre/map/map_numbers.h"
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 #include <utility>
 
 namespace byre {

@@ -1,7 +1,6 @@
 #include "byre/map/map_graph.h"
 
 #include <algorithm>
-#include <cassert>
 #include <iterator>
 #include <utility>
 

@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -246,7 +247,7 @@ class MapGraph {
   std::optional<PointId> point_of_foreign_view(const Observation& observation) const;
 
   // Keyframes with points in common, most first (ties: lower id first). Maintained incrementally.
-  ScratchVector<Covisible> covisible_keyframes(KeyframeId id, int max_count) const;
+  ScratchVector<Covisible> covisible_keyframes(KeyframeId id, int max_count = std::numeric_limits<int>::max()) const;
 
   // Current pose of a keyframe, also of a removed one, by its parents. Precondition: the id was once assigned.
   Pose camera_from_world(KeyframeId id) const;

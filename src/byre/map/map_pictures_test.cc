@@ -3,7 +3,6 @@
 #include "byre/map/map_bytes_scene.h"
 #include "byre/map/scaled_copy.h"
 #include "byre/map/stored_map_scene.h"
-#include "byre/map/transformed_copy.h"
 
 #include <gmock/gmock.h>
 

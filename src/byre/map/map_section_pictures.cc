@@ -4,7 +4,6 @@
 #include "byre/map/map_sections.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace byre {
 namespace {

@@ -1,6 +1,18 @@
 #include "byre/map/map_view.h"
 
 namespace byre {
+namespace {
+
+const MapGraph& nothing_online() {
+  static const MapGraph nothing(Origin::online);
+  return nothing;
+}
+
+}  // namespace
+
+MapView::MapView(const MapGraph& map)
+    : MapView(map.origin() == Origin::offline ? &map : nullptr,
+              map.origin() == Origin::offline ? nothing_online() : map) {}
 
 const MapPoint* MapView::find_point(PointId id) const {
   const MapGraph* map = of(id.origin);

@@ -3,16 +3,15 @@
 #include "byre/map/map_graph.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace byre {
 
-// Reads the offline and the online map as one. Borrows both; the offline map may be absent (nullptr).
+// Reads the offline and the online map as one. Borrows both; each may be absent.
 class MapView {
  public:
   MapView(const MapGraph* offline, const MapGraph& online) : offline_(offline), online_(&online) {}
-  // NOLINTNEXTLINE(google-explicit-constructor): an online map alone can be read wherever two can
-  MapView(const MapGraph& online) : MapView(nullptr, online) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): one map, of either origin, can be read wherever two can
+  MapView(const MapGraph& map);
 
   const MapGraph* offline() const { return offline_; }
   const MapGraph& online() const { return *online_; }

@@ -2,12 +2,11 @@
 
 #include "byre/alignment.h"
 #include "byre/base/numbers_by_name.h"
+#include "byre/base/text_file.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -25,10 +24,8 @@ std::optional<TagId> id_of_note(std::string_view key) {
   for (const TagFamily family : kFamilies) {
     const std::string name = std::string(to_string(family)) + " ";
     if (!key.starts_with(name)) continue;
-    const std::string_view number = key.substr(name.size());
-    TagId id{family, 0};
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), id.number);
-    if (error == std::errc() && end == number.data() + number.size() && id.number >= 0) return id;
+    const auto number = parse_whole<int>(key.substr(name.size()));
+    if (number && *number >= 0) return TagId{family, *number};
   }
   return std::nullopt;
 }
@@ -101,7 +98,7 @@ double distance_between_places(std::span<const TagView> views, double size) {
     const auto estimates = estimate_tag_pose({&view, 1}, size);
     if (estimates.empty()) continue;
     const Matrix6& covariance = estimates[0].covariance;
-    const bool is_near = covariance.topLeftCorner<3, 3>().trace() <= kMaxSigma * kMaxSigma;
+    const bool is_near = position_variance(covariance) <= kMaxSigma * kMaxSigma;
     if (is_near) places.push_back(estimates[0].world_from_tag.translation);
   }
   double farthest = 0.0;
@@ -160,7 +157,7 @@ TagMapping map_tags(const MapGraph& map, std::span<const Tag> tags) {
       continue;
     }
     if (!unit || estimates.size() != 1) continue;
-    const double variance = estimates[0].covariance.topLeftCorner<3, 3>().trace() / 3.0;
+    const double variance = position_variance(estimates[0].covariance) / 3.0;
     mapping.tags.push_back({id, size, estimates[0].world_from_tag, std::sqrt(variance)});
   }
   return mapping;

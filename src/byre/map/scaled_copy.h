@@ -22,6 +22,13 @@ void rescale(MapGraph& map, double factor);
 // Precondition: an ancestor outside of the part has not been removed since the part was added.
 void move_part(MapGraph& map, const Similarity& after_from_before, const std::function<bool(KeyframeId)>& is_moved);
 
+// Point of a map whose contents move.
+MapPoint moved(MapPoint point, const Pose& target_from_world);
+
+// The map in another frame: poses, points and covariances, with lengths scaled by scaled_copy, and the registration on
+// a floor plan. Preconditions: ids without gaps, and a positive scale.
+StoredMap transformed_copy(const StoredMap& stored, const Similarity& target_from_map);
+
 // Ratio of the map's baseline to the given one of a stereo recording: 1 unless its scale was corrected. Also 1 for a
 // monocular recording and one without keyframes. Precondition: the recording exists.
 double baseline_factor(const StoredMap& stored, std::size_t recording);

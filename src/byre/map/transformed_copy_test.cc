@@ -1,4 +1,4 @@
-#include "byre/map/transformed_copy.h"
+#include "byre/map/scaled_copy.h"
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/map/mapped_tag.h"

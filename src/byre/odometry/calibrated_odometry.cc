@@ -1,6 +1,5 @@
 #include "byre/odometry/calibrated_odometry.h"
 
-#include "byre/odometry/motion_covariance.h"
 #include "byre/odometry/visual_motion.h"
 
 #include <algorithm>
@@ -8,6 +7,66 @@
 
 namespace byre {
 namespace {
+
+void set_translation_sigma(BodyMotion& motion, double sigma) {
+  motion.covariance.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+}
+
+void set_rotation_sigma(BodyMotion& motion, double sigma) {
+  motion.covariance.bottomRightCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
+}
+
+// Covariance of the body's motion from wheels, in lengths of the map. motion: of the body; base: of the base, metres.
+Matrix6 wheel_covariance(const Pose& motion, const Pose& base, const WheelCalibration& calibration) {
+  constexpr double kLeastShare = 0.01;
+  constexpr double kTurnPerMetre = 0.01;  // radians
+  constexpr double kLeastMetres = 1e-3;
+  constexpr double kLeastTurn = 5e-4;  // radians
+  const double way = motion.translation.norm();
+  const double turn = rotation_log(motion.rotation).norm();
+  const double direction_sigma = std::hypot(calibration.heading_sigma(), calibration.tilt_sigma());
+  const double translation_sigma = way * std::hypot(std::max(kLeastShare, calibration.translation_error),
+                                                    calibration.scale_sigma(), std::min(direction_sigma, 1.0)) +
+                                   (turn * calibration.arm_sigma() + kLeastMetres +
+                                    calibration.lateral_error * std::abs(lateral_displacement(base))) /
+                                       calibration.metres_per_unit;
+  const double turn_sigma =
+      turn * std::hypot(std::max(kLeastShare, calibration.rotation_error), std::min(calibration.tilt_sigma(), 1.0)) +
+      kTurnPerMetre * way * calibration.metres_per_unit + kLeastTurn;
+  Matrix6 covariance = Matrix6::Zero();
+  covariance.diagonal().head<3>().setConstant(translation_sigma * translation_sigma);
+  covariance.diagonal().tail<3>().setConstant(turn_sigma * turn_sigma);
+  return covariance;
+}
+
+// Sets the standard deviation of the translation to its length: spinning wheels may measure any path.
+void set_translation_unknown(BodyMotion& motion) {
+  constexpr double kLeast = 0.01;  // lengths of the map
+  set_translation_sigma(motion, motion.last_from_body.translation.norm() + kLeast);
+}
+
+// Sets the standard deviation of the rotation to its angle.
+void set_rotation_unknown(BodyMotion& motion) {
+  constexpr double kLeast = 0.02;  // radians
+  set_rotation_sigma(motion, rotation_log(motion.last_from_body.rotation).norm() + kLeast);
+}
+
+// Sets the covariance of a rotation that a gyroscope measured.
+void set_turn_covariance(BodyMotion& motion, const GyroscopeCalibration& gyroscope, double seconds) {
+  constexpr double kLeast = 1e-4;  // radians
+  set_rotation_sigma(motion, gyroscope.error * seconds + kLeast);
+}
+
+// Zero-velocity update: the motion with the small covariance of a body at standstill, which bounds drift.
+BodyMotion constrain_to_standstill(BodyMotion motion, double seconds) {
+  constexpr double kShare = 0.1;   // share of the motion from wheels
+  constexpr double kCreep = 2e-4;  // lengths of the map per second
+  constexpr double kTurn = 5e-5;   // radians per second
+  motion.covariance.setZero();
+  set_translation_sigma(motion, kShare * motion.last_from_body.translation.norm() + kCreep * seconds);
+  set_rotation_sigma(motion, kShare * rotation_log(motion.last_from_body.rotation).norm() + kTurn * seconds);
+  return motion;
+}
 
 constexpr double kUnprovenFactor = 9.0;  // factor of the covariance of motions by an unproven calibration
 
@@ -34,10 +93,8 @@ std::optional<Eigen::Quaterniond> gyroscope_rotation(const CalibratedOdometry& o
 
 // Whether the motion of the base changes from the previous span by more than a body can: wheels spin, or are faulty.
 bool exceeds_acceleration(const CalibratedOdometry& odometry, Timestamp earlier, Timestamp later, const Pose& base) {
-  constexpr double kMostAcceleration = 15.0;  // m/s^2
-  constexpr double kLeast = 0.02;             // metres, for encoder ticks
-  constexpr double kMostTurning = 30.0;       // radians per second squared
-  constexpr double kLeastTurn = 0.05;         // radians
+  constexpr double kLeast = 0.02;      // metres, for encoder ticks
+  constexpr double kLeastTurn = 0.05;  // radians
   const Timestamp span = later - earlier;
   if (span > kMaxFrameGap) return false;
   if (odometry.wheels.has_jump(wheel_time(odometry, earlier) - span, wheel_time(odometry, earlier))) return true;

@@ -71,12 +71,10 @@ StampCheck::Order StampCheck::check(Timestamp time) {
 }
 
 bool is_sound(const BodyMotion& motion) {
-  constexpr double kMostOff = 0.1;        // largest error of the length 1
   constexpr double kMostVariance = 1e12;  // square metres and square radians, so that sums and products stay finite
   const auto& [pose, covariance] = motion;
-  return pose.translation.allFinite() && pose.rotation.coeffs().allFinite() && covariance.allFinite() &&
-         std::abs(pose.rotation.norm() - 1.0) < kMostOff && (covariance.diagonal().array() >= 0.0).all() &&
-         (covariance.array().abs() <= kMostVariance).all();
+  return pose.translation.allFinite() && is_rotation(pose.rotation) && covariance.allFinite() &&
+         (covariance.diagonal().array() >= 0.0).all() && (covariance.array().abs() <= kMostVariance).all();
 }
 
 void MotionCheck::warn_once(MotionSensor sensor, Fault fault, Timestamp time, const std::string& what,

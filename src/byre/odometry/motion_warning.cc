@@ -1,23 +1,14 @@
 #include "byre/motion_warning.h"
 
+#include "byre/base/enum_names.h"
+
 #include <fmt/format.h>
 
 namespace byre {
 
 std::string_view to_string(MotionSensor sensor) {
-  switch (sensor) {
-    case MotionSensor::wheels:
-      return "wheels";
-    case MotionSensor::gyroscope:
-      return "gyroscope";
-    case MotionSensor::accelerometer:
-      return "accelerometer";
-    case MotionSensor::body_motion:
-      return "motion of the body";
-    case MotionSensor::tags:
-      return "AprilTags";
-  }
-  return "";
+  return name_among<MotionSensor::tags>({"wheels", "gyroscope", "accelerometer", "motion of the body", "AprilTags"},
+                                        sensor);
 }
 
 std::string to_text(const MotionWarning& warning, std::string_view source) {

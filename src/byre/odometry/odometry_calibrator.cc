@@ -1,12 +1,10 @@
 #include "byre/odometry/odometry_calibrator.h"
 
 #include "byre/geometry/median.h"
-#include "byre/odometry/calibrated_odometry.h"
 #include "byre/odometry/time_offset.h"
 #include "byre/odometry/wheel_estimate.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 
@@ -291,7 +289,8 @@ std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() co
   const double value = median(ratios);
   std::vector<double> deviations;
   for (const double ratio : ratios) deviations.push_back(std::abs(ratio - value) / value);
-  const double sigma = 1.4826 * median(std::move(deviations));  // for one turn, by the median absolute deviation
+  const double sigma =
+      kSigmasOfMedian * median(std::move(deviations));  // for one turn, by the median absolute deviation
   return TurnRatio{value, kOfMedian * sigma / std::sqrt(static_cast<double>(ratios.size()))};
 }
 

@@ -28,8 +28,8 @@ TEST(OdometryCalibrator, IncreasesTheCovarianceWhileWheelsSlip) {
   const DriveSensors lifted{.wheels = true, .gyroscope = true, .slip_from = 62.0, .slip_to = 65.0, .slip_turn = 0.03};
   const BodyMotion measured = over(followed(drive, lifted, 60.0, 72.0), 60.0, 70.0);
   const BodyMotion sound = over(followed(drive, {.wheels = true, .gyroscope = true}, 60.0, 72.0), 60.0, 70.0);
-  const double variance = measured.covariance.topLeftCorner<3, 3>().trace();
-  const double sound_variance = sound.covariance.topLeftCorner<3, 3>().trace();
+  const double variance = position_variance(measured.covariance);
+  const double sound_variance = position_variance(sound.covariance);
   EXPECT_GT(variance, 25.0 * sound_variance);
   const Vector6 error = log_pose(inverse(measured.last_from_body) * true_motion(drive, 60.0, 70.0));
   EXPECT_LT(error.transpose() * measured.covariance.ldlt().solve(error), 12.6);  // within 95 %

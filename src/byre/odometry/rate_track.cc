@@ -25,8 +25,7 @@ void RateTrack::forget_before(Timestamp time) {
 // not cover the span.
 template <typename Add>
 bool RateTrack::integrate(Timestamp earlier, Timestamp later, const Add& add) const {
-  auto next = std::upper_bound(samples_.begin(), samples_.end(), earlier,
-                               [](Timestamp t, const AngularRate& sample) { return t < sample.time; });
+  auto next = std::ranges::upper_bound(samples_, earlier, {}, &AngularRate::time);
   if (next == samples_.begin()) return false;
   Timestamp now = earlier;
   for (auto sample = std::prev(next); now < later; sample = next, ++next) {

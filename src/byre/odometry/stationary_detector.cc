@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -114,14 +113,14 @@ std::optional<bool> StationaryDetector::are_poses_stationary(double metres_per_u
 
 std::optional<SteadyWindow::Steady> StationaryDetector::at(Timestamp time, const StationaryEvidence& evidence,
                                                            const std::optional<Eigen::Vector3d>& bias) const {
-  constexpr double kMostTurning = 0.02;  // radians per second
+  constexpr double kMostTurnRate = 0.02;  // radians per second
   const bool any_stationary =
       evidence.are_wheels_stationary.value_or(false) || evidence.are_poses_stationary.value_or(false);
   const bool none_moving =
       evidence.are_wheels_stationary.value_or(true) && evidence.are_poses_stationary.value_or(true);
   if (!any_stationary || !none_moving) return {};
   const auto steady = track_.until(time);
-  if (!steady || (bias && (steady->rate - *bias).norm() > kMostTurning)) return {};
+  if (!steady || (bias && (steady->rate - *bias).norm() > kMostTurnRate)) return {};
   return steady;
 }
 

@@ -10,6 +10,10 @@ namespace byre {
 // Longest interval between tracked frames without a gap between them.
 inline constexpr Timestamp kMaxFrameGap = std::chrono::milliseconds(300);
 
+// Largest accelerations of a body.
+inline constexpr double kMostAcceleration = 15.0;  // m/s^2
+inline constexpr double kMostTurning = 30.0;       // radians per second squared
+
 // The body's motion between two tracked frames from images, earlier_from_later, in lengths of the map.
 struct VisualMotion {
   Timestamp earlier{};

@@ -3,7 +3,7 @@
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/geometry/median.h"
 #include "byre/optimise/bundle_scene.h"
-#include "byre/optimise/huber.h"
+#include "byre/optimise/robust_error.h"
 
 #include <algorithm>
 #include <cmath>

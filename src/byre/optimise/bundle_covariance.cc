@@ -2,15 +2,13 @@
 
 #include "byre/geometry/image_regions.h"
 #include "byre/optimise/bundle_motion.h"
-#include "byre/optimise/huber.h"
 #include "byre/optimise/reprojection.h"
+#include "byre/optimise/robust_error.h"
 
 #include <cassert>
 #include <cmath>
 #include <numeric>
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 namespace byre {
 
@@ -27,16 +25,7 @@ struct Block {
 };
 
 Block weighted_block(const BundleProblem& solved, const BundleObservation& observation, double huber_width) {
-  const BundlePose& pose = solved.poses[observation.pose];
-  const Eigen::Vector3d point_in_camera = pose.camera_from_world * solved.points[observation.point].position_in_world;
-  const Reprojection reprojection(solved.rigs[pose.rig], observation.measured, observation.pixel_sigma,
-                                  observation.disparity_sigma);
-  const double squared_error = reprojection.residual(point_in_camera).squaredNorm();
-  const Eigen::Matrix3d by_camera =
-      std::sqrt(huber_weight(squared_error, huber_width)) * reprojection.jacobian(point_in_camera);
-  Eigen::Matrix<double, 3, 6> by_pose;
-  by_pose << by_camera, -by_camera * skew(point_in_camera);
-  const Eigen::Matrix3d by_point = by_camera * pose.camera_from_world.rotation.toRotationMatrix();
+  const auto [weight, by_pose, by_point] = weighted_derivatives(solved, observation, huber_width);
   return {-1, by_pose.transpose() * by_pose, by_pose.transpose() * by_point, by_point.transpose() * by_point};
 }
 
@@ -56,14 +45,6 @@ std::vector<int> pose_slots(const BundleProblem& solved, const std::vector<int>&
   }
   if (slots[wanted] == 0) slots[wanted] = count;
   return slots;
-}
-
-// False if the elimination nearly cancels a pivot.
-template <typename Matrix>
-bool is_regular(const Eigen::LLT<Matrix>& factor, const Matrix& matrix) {
-  constexpr double kSingular = 1e-10;
-  return factor.info() == Eigen::Success &&
-         (factor.matrixLLT().diagonal().array().square() > kSingular * matrix.diagonal().array()).all();
 }
 
 // Empty if the point is not determined, such as one observed once without a disparity.
@@ -176,6 +157,20 @@ std::optional<Matrix6> last_marginal(const Eigen::MatrixXd& lower_triangle) {
 }
 
 }  // namespace
+
+WeightedDerivatives weighted_derivatives(const BundleProblem& solved, const BundleObservation& observation,
+                                         double huber_width) {
+  const BundlePose& pose = solved.poses[observation.pose];
+  const Eigen::Vector3d point_in_camera = pose.camera_from_world * solved.points[observation.point].position_in_world;
+  const Reprojection reprojection(solved.rigs[pose.rig], observation.measured, observation.pixel_sigma,
+                                  observation.disparity_sigma);
+  WeightedDerivatives derivatives;
+  derivatives.weight = std::sqrt(huber_weight(reprojection.residual(point_in_camera).squaredNorm(), huber_width));
+  const Eigen::Matrix3d by_camera = derivatives.weight * reprojection.jacobian(point_in_camera);
+  derivatives.by_pose << by_camera, -by_camera * skew(point_in_camera);
+  derivatives.by_point = by_camera * pose.camera_from_world.rotation.toRotationMatrix();
+  return derivatives;
+}
 
 BundleProblem with_shared_errors(BundleProblem problem, double systematic_sigma) {
   std::vector<ByImageRegion<int>> counts(problem.poses.size());

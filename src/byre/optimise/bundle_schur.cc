@@ -2,11 +2,10 @@
 
 #include "byre/optimise/bundle_estimate.h"
 #include "byre/optimise/bundle_motion.h"
-#include "byre/optimise/bundle_point.h"
 #include "byre/optimise/calibration_border.h"
-#include "byre/optimise/huber.h"
 #include "byre/optimise/reduced_system.h"
 #include "byre/optimise/reprojection.h"
+#include "byre/optimise/robust_error.h"
 #include "byre/optimise/trust_region.h"
 
 #include <algorithm>

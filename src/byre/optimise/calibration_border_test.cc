@@ -2,8 +2,8 @@
 
 #include "byre/geometry/geometry_matchers.h"
 #include "byre/optimise/bundle_scene.h"
-#include "byre/optimise/huber.h"
 #include "byre/optimise/reprojection.h"
+#include "byre/optimise/robust_error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,8 @@
 #include "byre/optimise/calibration_covariance.h"
 
 #include "byre/optimise/bundle_covariance.h"
-#include "byre/optimise/huber.h"
 #include "byre/optimise/reprojection.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <vector>
@@ -26,17 +24,9 @@ struct Share {
 };
 
 Share weighted_share(const BundleProblem& solved, const BundleObservation& observation, double huber_width) {
-  const BundlePose& pose = solved.poses[observation.pose];
-  const Eigen::Vector3d point_in_camera = pose.camera_from_world * solved.points[observation.point].position_in_world;
-  const Reprojection reprojection(solved.rigs[pose.rig], observation.measured, observation.pixel_sigma,
-                                  observation.disparity_sigma);
-  const double weight = std::sqrt(huber_weight(reprojection.residual(point_in_camera).squaredNorm(), huber_width));
-  const Eigen::Matrix3d by_camera = weight * reprojection.jacobian(point_in_camera);
-  Share share;
-  share.by_pose << by_camera, -by_camera * skew(point_in_camera);
-  share.by_point = by_camera * pose.camera_from_world.rotation.toRotationMatrix();
-  share.by_calibration.setZero();
-  if (solved.calibration->rig != pose.rig) return share;
+  const auto [weight, by_pose, by_point] = weighted_derivatives(solved, observation, huber_width);
+  Share share{-1, by_pose, by_point, CalibrationRow::Zero()};
+  if (solved.calibration->rig != solved.poses[observation.pose].rig) return share;
   const Eigen::Vector3d per_pixel(weight / observation.pixel_sigma, weight / observation.pixel_sigma,
                                   observation.is_stereo() ? weight / observation.disparity_sigma : 0.0);
   share.by_calibration =
@@ -57,10 +47,7 @@ class CalibrationSystem {
     for (const Share& share : shares) information += share.by_point.transpose() * share.by_point;
     information.diagonal().array() += kFreePoint * information.trace();
     const Eigen::LLT<Eigen::Matrix3d> factor(information);
-    const bool is_regular =
-        factor.info() == Eigen::Success &&
-        (factor.matrixLLT().diagonal().array().square() > kSingular * information.diagonal().array()).all();
-    if (!is_fixed && !is_regular) return;
+    if (!is_fixed && !is_regular(factor, information)) return;
     add_known(shares);
     if (!is_fixed) eliminate(shares, factor.solve(Eigen::Matrix3d::Identity()));
   }
@@ -80,7 +67,6 @@ class CalibrationSystem {
   }
 
  private:
-  static constexpr double kSingular = 1e-10;
   // Information added to each pose, 1 / m^2 and 1 / rad^2, which bounds undetermined directions such as the gauge.
   static constexpr double kFreePose = 1e-2;
   // Information added to each point, relative to its own: rounding errors of a nearly undetermined depth may exceed its

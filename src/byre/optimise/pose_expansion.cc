@@ -1,6 +1,6 @@
 #include "byre/optimise/pose_expansion.h"
 
-#include "byre/optimise/huber.h"
+#include "byre/optimise/robust_error.h"
 
 // The vectorised part of this file is compiled once per instruction set, except for those without arrays of vectors.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)

@@ -1,7 +1,7 @@
 #include "byre/optimise/pose_expansion.h"
 
-#include "byre/optimise/huber.h"
 #include "byre/optimise/optimise_scene.h"
+#include "byre/optimise/robust_error.h"
 #include "byre/pose.h"
 
 #include <vector>

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <memory>
 
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>

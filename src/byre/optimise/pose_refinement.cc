@@ -3,10 +3,9 @@
 #include "byre/geometry/decompositions.h"
 #include "byre/geometry/image_regions.h"
 #include "byre/geometry/median.h"
-#include "byre/optimise/huber.h"
 #include "byre/optimise/pose_expansion.h"
+#include "byre/optimise/robust_error.h"
 #include "byre/optimise/rotation_jacobian.h"
-#include "byre/optimise/squared_error.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,6 @@
 #include "byre/place/place_index.h"
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 namespace byre {

@@ -8,7 +8,6 @@
 #include "byre/slam/localisation/place_search.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -3,14 +3,13 @@
 #include "byre/base/binary_file.h"
 #include "byre/base/output_file.h"
 #include "byre/base/printable.h"
+#include "byre/base/text_file.h"
 #include "byre/input_error.h"
 #include "byre/io/image/plan_file.h"
 #include "byre/map/map_upkeep.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <functional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -91,8 +90,7 @@ std::vector<RegistryPlan> read_plans(Connection& connection, std::int64_t site, 
 
 // Kind of a plan's file, by its name.
 FileContent content_by_name(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  const std::string extension = lower_case(file.extension().string());
   if (extension == ".yaml" || extension == ".yml") return FileContent::yaml;
   if (extension == ".png") return FileContent::png;
   if (extension == ".pgm") return FileContent::pgm;

@@ -9,7 +9,6 @@
 #include "byre/slam/system/merge_maps.h"
 #include "byre/slam/system/stored_map.h"
 
-#include <functional>
 #include <utility>
 
 #include <fmt/format.h>

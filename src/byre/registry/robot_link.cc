@@ -14,7 +14,6 @@
 #include <stop_token>
 #include <system_error>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace byre {

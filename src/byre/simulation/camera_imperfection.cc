@@ -1,5 +1,6 @@
 #include "byre/simulation/camera_imperfection.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/input_error.h"
 #include "byre/io/image/image_codec.h"
 #include "byre/simulation/row_workers.h"
@@ -152,15 +153,7 @@ Calibration perturbed(const Calibration& calibration, double level, std::uint64_
 }
 
 std::string_view to_string(CameraCondition condition) {
-  switch (condition) {
-    case CameraCondition::exact:
-      return "exact";
-    case CameraCondition::good:
-      return "good";
-    case CameraCondition::worn:
-      return "worn";
-  }
-  return "";
+  return name_among<CameraCondition::worn>({"exact", "good", "worn"}, condition);
 }
 
 CameraImperfection imperfection_of(CameraCondition condition) {

@@ -2,8 +2,6 @@
 
 #include "byre/simulation/seeded_draws.h"
 
-#include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 

@@ -1,6 +1,5 @@
 #include "byre/viewer/camera_picture.h"
 
-#include "byre/slam/frame/state.h"
 #include "byre/viewer/legend.h"
 #include "byre/viewer/palette.h"
 

@@ -1,7 +1,6 @@
 #include "byre/viewer/plan_picks.h"
 
 #include "byre/input_error.h"
-#include "byre/map/plan/plan_places.h"
 
 #include <algorithm>
 

@@ -1,7 +1,6 @@
 #include "byre/viewer/plan_picture.h"
 
 #include "byre/viewer/legend.h"
-#include "byre/viewer/palette.h"
 #include "byre/viewer/plan_view.h"
 
 #include <algorithm>

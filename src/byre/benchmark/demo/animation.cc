@@ -1,5 +1,6 @@
 #include "byre/benchmark/demo/animation.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/viewer/camera_picture.h"
 #include "byre/viewer/palette.h"
 
@@ -165,15 +166,8 @@ Picture frame_of(const DemoPlace& place, const DemoArm& hybrid, FrameScene filme
 }  // namespace
 
 std::string plain_name(Arm arm) {
-  switch (arm) {
-    case Arm::no_map:
-      return "Without a map";
-    case Arm::localise_only:
-      return "With the map, mapping nothing new";
-    case Arm::hybrid:
-      break;
-  }
-  return "byre: with the map, and mapping what is new";
+  return std::string(name_among<Arm::hybrid>(
+      {"Without a map", "With the map, mapping nothing new", "byre: with the map, and mapping what is new"}, arm));
 }
 
 std::string figures_line(const DemoArm& arm) {

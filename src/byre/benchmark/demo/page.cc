@@ -1,5 +1,6 @@
 #include "byre/benchmark/demo/page.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/base/markup.h"
 #include "byre/base/report_row.h"
 #include "byre/benchmark/demo/table.h"
@@ -145,16 +146,9 @@ std::string header(const DemoFindings& findings) {
   return html + "</dl>\n";
 }
 
-const char* about(Arm arm) {
-  switch (arm) {
-    case Arm::no_map:
-      return "plain SLAM, from zero";
-    case Arm::localise_only:
-      return "on the offline map only";
-    case Arm::hybrid:
-      break;
-  }
-  return "on the offline map, with an online map";
+std::string about(Arm arm) {
+  return std::string(name_among<Arm::hybrid>(
+      {"plain SLAM, from zero", "on the offline map only", "on the offline map, with an online map"}, arm));
 }
 
 std::string table(const DemoFindings& findings) {

@@ -1,6 +1,7 @@
 #include "byre/benchmark/demo/table.h"
 
-#include <algorithm>
+#include "byre/base/enum_names.h"
+
 #include <functional>
 
 #include <fmt/core.h>
@@ -114,15 +115,7 @@ std::vector<DemoRow> demo_table(const std::vector<DemoArm>& arms) {
 }
 
 std::string shown_name(Arm arm) {
-  switch (arm) {
-    case Arm::no_map:
-      return "No map";
-    case Arm::localise_only:
-      return "Localise only";
-    case Arm::hybrid:
-      break;
-  }
-  return "Hybrid";
+  return std::string(name_among<Arm::hybrid>({"No map", "Localise only", "Hybrid"}, arm));
 }
 
 std::string to_text(const std::vector<DemoRow>& rows, const std::vector<DemoArm>& arms) {

@@ -14,7 +14,6 @@
 #include "byre/image_condition.h"
 #include "byre/input_error.h"
 
-#include <array>
 #include <iostream>
 #include <memory>
 #include <ostream>

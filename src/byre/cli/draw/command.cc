@@ -1,5 +1,6 @@
 #include "byre/base/output_file.h"
 #include "byre/base/report_row.h"
+#include "byre/base/text_file.h"
 #include "byre/cli/commands.h"
 #include "byre/cli/draw/mission.h"
 #include "byre/cli/shared/arguments.h"
@@ -12,13 +13,11 @@
 #include "byre/map/plan/occupancy_grid.h"
 #include "byre/map/stored_calibration.h"
 #include "byre/recording.h"
-#include "byre/slam/system/stored_map.h"
 #include "byre/viewer/camera_picture.h"
 #include "byre/viewer/mission_input.h"
 #include "byre/viewer/plan_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -59,9 +58,7 @@ symbols.
 FILE.yaml.)";
 
 std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  return extension;
+  return lower_case(path.extension().string());
 }
 
 std::optional<HeightBand> parse_heights(std::string_view text) {

@@ -3,11 +3,9 @@
 #include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/options.h"
 #include "byre/cli/shared/outputs.h"
-#include "byre/input_error.h"
 #include "byre/playback/archive/colmap_export.h"
 
 #include <memory>
-#include <optional>
 #include <ostream>
 
 #include <CLI/CLI.hpp>

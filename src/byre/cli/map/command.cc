@@ -19,7 +19,6 @@
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 #include "byre/tag_file.h"
-#include "byre/trajectory_file.h"
 
 #include <filesystem>
 #include <iosfwd>
@@ -39,28 +38,13 @@ namespace {
 namespace fs = std::filesystem;
 
 // Options of "byre map".
-struct MapOptions {
-  fs::path recording;  // empty for live cameras
-  LiveOptions live;
+struct MapOptions : RunInputOptions {
   std::optional<fs::path> map;
-  std::optional<fs::path> trajectory;
-  std::optional<fs::path> causal_trajectory;
-  std::optional<fs::path> stats;
   std::optional<fs::path> given_poses;  // given trajectory of the recording; empty: it is estimated
-  std::optional<fs::path> vocabulary;   // empty: the vocabulary installed with byre
   std::optional<fs::path> extended;     // map to extend
   std::optional<fs::path> tags;         // file of AprilTags
   std::optional<double> autosave_s;
   std::string site;
-  FrameRange range;
-  OpenOptions open;
-  ExtrinsicsArguments extrinsics;
-  MethodArguments method;
-  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
-  std::optional<fs::path> record;  // bag of ROS 2 messages
-  bool record_images = false;
-  bool quiet = false;
-  bool verbose = false;
 
   std::vector<fs::path> outputs() const { return given_paths({map, trajectory, causal_trajectory, stats, record}); }
 };
@@ -88,7 +72,7 @@ frame, skips finishing and still writes all files, with exit code 130 or 143; "b
 second signal ends the program at once.)";
 
 void declare_files(CLI::App& command, MapOptions& options) {
-  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
+  declare_recording_argument(command, options);
   add_output(command, Output::map, "-o,--output", options.map,
              "Map, for \"byre localise\", \"byre inspect\" and later missions");
   add_output(command, Output::trajectory, "--trajectory", options.trajectory,
@@ -132,8 +116,7 @@ void require_consistent_extension(const MapOptions& options) {
 }
 
 void require_consistent(const MapOptions& options) {
-  require_valid(options.range);
-  require_one_input(options.recording, options.live, options.open);
+  require_consistent_input(options);
   if (options.live.is_wanted() && options.given_poses) {
     throw CLI::ValidationError("--poses", "are of a recording, which excludes --live");
   }
@@ -234,13 +217,9 @@ void write_results(const MapOptions& options, const RunResult& run, const Report
 }
 
 Slam make_slam(const MapOptions& options, const RunInput& input) {
-  SlamOptions slam = slam_options(options.method.options());
-  slam.recording = input.name();
+  SlamOptions slam = options.slam(input.name());
   slam.site = options.site;
-  slam.vocabulary = options.vocabulary;
-  slam.baseline = options.open.baseline;
   if (options.tags) slam.tags = read_tags(*options.tags);
-  slam.extrinsics = options.extrinsics.read(options.open);
   return options.extended ? Slam::extending(input.calibration(), *options.extended, slam)
                           : Slam::mapping(input.calibration(), slam);
 }
@@ -277,8 +256,7 @@ ExitCode run_map_command(MapOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
   if (options.given_poses) return run_posed_map(options, result);
   open_vocabulary(options.vocabulary);  // detects a missing vocabulary before the recording is opened
-  RunInput input(
-      {options.recording, options.range, options.open, options.live, options.extended.has_value(), options.quiet});
+  RunInput input(options, options.extended.has_value());
   Slam slam = make_slam(options, input);
   RunProtocol protocol = protocol_of(options, slam, input);
 
@@ -316,16 +294,8 @@ void declare_map_options(CLI::App& command, MapOptions& options) {
   declare_files(command, options);
   declare_map_content(command, options);
   declare_building(command, options);
-  declare_open_options(command, options.open);
-  declare_extrinsics(command, options.extrinsics);
-  declare_frame_range(command, options.range);
-  declare_live_options(command, options.live, options.method);
-  declare_pace(command, options.method);
-  declare_trajectory_format(command, options.trajectory_format);
-  declare_recording(command, options.record, options.record_images);
-  declare_options_file(command, options.method);
-  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
-  command.add_flag("--verbose", options.verbose, "Print figures for developers too: loops, inliers, times, memory");
+  declare_run_input(command, options);
+  declare_run_output(command, options);
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kMapFooter);
 }

@@ -5,15 +5,12 @@
 #include "byre/cli/shared/arguments.h"
 #include "byre/playback/report/report.h"
 #include "byre/registry/blobs.h"
-#include "byre/registry/connection.h"
 #include "byre/registry/versions.h"
 #include "byre/slam/upkeep/place_budget.h"
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <ostream>
-#include <stdexcept>
 #include <vector>
 
 #include <CLI/CLI.hpp>

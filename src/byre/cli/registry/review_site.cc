@@ -6,7 +6,6 @@
 #include "byre/input_error.h"
 #include "byre/playback/report/report.h"
 #include "byre/registry/blobs.h"
-#include "byre/registry/connection.h"
 #include "byre/registry/listing.h"
 #include "byre/registry/versions.h"
 #include "byre/slam/system/resources.h"

@@ -19,7 +19,6 @@
 #include "byre/site.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
-#include "byre/trajectory_file.h"
 
 #include <filesystem>
 #include <iostream>
@@ -40,34 +39,19 @@ namespace {
 namespace fs = std::filesystem;
 
 // Options of "byre run".
-struct RunOptions {
-  fs::path recording;  // empty for live cameras
-  LiveOptions live;
+struct RunOptions : RunInputOptions {
   std::optional<fs::path> map;  // offline map; empty: plain SLAM
   PoseFrame frame = PoseFrame::map;
   std::optional<fs::path> online_map;
   std::optional<fs::path> session;
   std::optional<fs::path> events;
-  std::optional<fs::path> trajectory;
-  std::optional<fs::path> causal_trajectory;
   std::optional<fs::path> odometry;
-  std::optional<fs::path> stats;
   std::optional<fs::path> truth;
   std::optional<fs::path> map_truth;       // truth of the map's recording, if that is another one
   std::optional<fs::path> map_trajectory;  // trajectory of the run that made the map
   bool align_scale = false;                // aligns the map to the truth with scale, which a wrong baseline changes
   double time_offset_s = 0.0;              // added to the time stamps of truth and map truth
-  std::optional<fs::path> vocabulary;      // empty: the vocabulary installed with byre
-  FrameRange range;
-  OpenOptions open;
-  ExtrinsicsArguments extrinsics;
-  MethodArguments method;
   ViewOptions view;
-  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
-  std::optional<fs::path> record;  // bag of ROS 2 messages
-  bool record_images = false;
-  bool quiet = false;
-  bool verbose = false;
 
   std::vector<fs::path> outputs() const {
     return given_paths({online_map, session, events, trajectory, causal_trajectory, odometry, stats, record});
@@ -109,7 +93,7 @@ no frame got a pose, more than one frame in twenty could not be read, or events 
 docs/reference/health_and_events.md describes events and health.)";
 
 void declare_inputs(CLI::App& command, RunOptions& options) {
-  add_input(command, Input::recording, "RECORDING", options.recording, kRecordingHelp)->type_name("FOLDER|VIDEO|BAG");
+  declare_recording_argument(command, options);
   CLI::Option* const map = add_input(command, Input::file, "--map", options.map,
                                      "Offline map of the mission, or site file (none: plain SLAM)")
                                ->type_name("MAP|SITE");
@@ -159,8 +143,7 @@ void declare_outputs(CLI::App& command, RunOptions& options) {
 }
 
 void require_consistent(const RunOptions& options) {
-  require_valid(options.range);
-  require_one_input(options.recording, options.live, options.open);
+  require_consistent_input(options);
   if (options.live.is_wanted() && options.truth) {
     throw CLI::ValidationError("--truth",
                                "is for recordings: record the cameras (--record-images), then run on the record");
@@ -210,11 +193,7 @@ void check_walls(const DrawnFloorPlan& plan, const Slam& slam) {
 }
 
 Slam make_slam(const RunOptions& options, const RunInput& input) {
-  SlamOptions slam_settings = slam_options(options.method.options());
-  slam_settings.recording = input.name();
-  slam_settings.vocabulary = options.vocabulary;
-  slam_settings.baseline = options.open.baseline;
-  slam_settings.extrinsics = options.extrinsics.read(options.open);
+  SlamOptions slam_settings = options.slam(input.name());
   if (!options.map) return Slam::mapping(input.calibration(), slam_settings);
   if (is_site_file(*options.map)) {
     return Slam::on_site(input.calibration(), read_site_with_plans(*options.map), slam_settings);
@@ -341,8 +320,7 @@ void conclude(const RunOptions& options, const RunResult& run, const RunProtocol
 
 ExitCode run_mission(RunOptions options, std::ostream& result) {
   for (const fs::path& output : options.outputs()) require_writable(output);
-  RunInput input(
-      {options.recording, options.range, options.open, options.live, options.map.has_value(), options.quiet});
+  RunInput input(options, options.map.has_value());
   const std::optional<MissionTruth> truth = load_truths(options);
   Slam slam = make_slam(options, input);
   RunProtocol protocol = protocol_of(options, slam, input);
@@ -401,19 +379,11 @@ ExitCode run_mission(RunOptions options, std::ostream& result) {
 void declare_run_options(CLI::App& command, RunOptions& options) {
   declare_inputs(command, options);
   declare_outputs(command, options);
-  declare_open_options(command, options.open);
-  declare_extrinsics(command, options.extrinsics);
-  declare_frame_range(command, options.range);
-  declare_live_options(command, options.live, options.method);
-  declare_pace(command, options.method);
+  declare_run_input(command, options);
   declare_method_option(command, "--offline-weight", "tracking.offline_weight", options.method,
                         "Weight of an observation of an offline point; online points have 1");
   declare_run_viewer_options(command, options.view);
-  declare_trajectory_format(command, options.trajectory_format);
-  declare_recording(command, options.record, options.record_images);
-  declare_options_file(command, options.method);
-  command.add_flag("--quiet", options.quiet, "Show no progress and no warnings");
-  command.add_flag("--verbose", options.verbose, "Print figures for developers too: loops, inliers, times, memory");
+  declare_run_output(command, options);
   check_when_parsed(command, [&options] { require_consistent(options); });
   command.footer(kRunFooter);
 }

@@ -2,7 +2,6 @@
 
 #include "byre/cli/shared/arguments.h"
 #include "byre/input_error.h"
-#include "byre/io/image/plan_file.h"
 #include "byre/viewer/palette.h"
 #include "byre/viewer/plan_picture.h"
 

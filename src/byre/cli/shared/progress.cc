@@ -1,5 +1,6 @@
 #include "byre/cli/shared/progress.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/base/output_file.h"
 #include "byre/base/printable.h"
 #include "byre/base/report_row.h"
@@ -44,17 +45,7 @@ std::string bar(int done, int total) {
 }
 
 std::string_view colour_of(Tone tone) {
-  switch (tone) {
-    case Tone::plain:
-      return "";
-    case Tone::good:
-      return "\x1b[32m";
-    case Tone::doubtful:
-      return "\x1b[33m";
-    case Tone::bad:
-      return "\x1b[31m";
-  }
-  return "";
+  return name_among<Tone::bad>({"", "\x1b[32m", "\x1b[33m", "\x1b[31m"}, tone);
 }
 
 std::string coloured(std::string_view state, Tone tone) {

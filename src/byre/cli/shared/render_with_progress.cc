@@ -1,7 +1,6 @@
 #include "byre/cli/shared/render_with_progress.h"
 
 #include "byre/base/stopwatch.h"
-#include "byre/cli/shared/progress.h"
 
 #include <iostream>
 #include <optional>

@@ -6,6 +6,7 @@
 #include "byre/map/map_file.h"
 #include "byre/playback/report/run_report.h"
 #include "byre/playback/scaled_recording.h"
+#include "byre/slam.h"
 
 #include <filesystem>
 #include <memory>
@@ -14,23 +15,49 @@
 
 namespace byre::cli {
 
-// Throws CLI::ValidationError unless there is either a recording, or live cameras with a calibration.
-void require_one_input(const std::filesystem::path& recording, const LiveOptions& live, const OpenOptions& open);
+// Options of commands that run SLAM on a recording or on live cameras: "byre map" and "byre run".
+struct RunInputOptions {
+  std::filesystem::path recording;  // empty for live cameras
+  LiveOptions live;
+  std::optional<std::filesystem::path> trajectory;
+  std::optional<std::filesystem::path> causal_trajectory;
+  std::optional<std::filesystem::path> stats;
+  std::optional<std::filesystem::path> vocabulary;  // empty: the vocabulary installed with byre
+  FrameRange range;
+  OpenOptions open;
+  ExtrinsicsArguments extrinsics;
+  MethodArguments method;
+  TrajectoryFormat trajectory_format = TrajectoryFormat::tum;
+  std::optional<std::filesystem::path> record;  // bag of ROS 2 messages
+  bool record_images = false;
+  bool quiet = false;
+  bool verbose = false;
+
+  // Options of a Slam on frames of this name.
+  SlamOptions slam(const std::string& name) const;
+};
+
+// The options must outlive the parsing of the command line.
+
+// RECORDING
+void declare_recording_argument(CLI::App& command, RunInputOptions& options);
+
+// Options of the input: cameras, calibration, extrinsics, frame range, live cameras and pace.
+void declare_run_input(CLI::App& command, RunInputOptions& options);
+
+// Declare these last: format of trajectories, --record, options of the method, --quiet and --verbose.
+void declare_run_output(CLI::App& command, RunInputOptions& options);
+
+// Throws CLI::ValidationError for an empty range, and unless there is either a recording, or live cameras with a
+// calibration.
+void require_consistent_input(const RunInputOptions& options);
 
 // Frames of a run: a recording or live cameras.
 class RunInput {
  public:
-  struct Choice {
-    std::filesystem::path recording;
-    FrameRange range;
-    OpenOptions open;
-    LiveOptions live;
-    bool has_metric_map = false;  // a map provides the scale for one camera
-    bool quiet = false;           // suppresses warnings
-  };
-
-  // Throws InputError if the recording or the cameras cannot be opened.
-  explicit RunInput(Choice choice);
+  // has_metric_map: a map provides the scale for one camera. Throws InputError if the recording or the cameras cannot
+  // be opened.
+  RunInput(const RunInputOptions& options, bool has_metric_map);
 
   const ScaledRecording& scaled() const { return scaled_; }  // without a recording for live cameras
   const Calibration& calibration() const;
@@ -51,7 +78,7 @@ class RunInput {
   std::string report();
 
  private:
-  Choice choice_;  // constant after construction
+  RunInputOptions options_;  // constant after construction
   ScaledRecording scaled_;
   std::optional<LiveInput> live_;
 };

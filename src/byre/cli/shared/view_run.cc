@@ -7,12 +7,10 @@
 #include "byre/map/stored_calibration.h"
 #include "byre/slam/system/resources.h"
 
-#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <limits>
 #include <thread>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>

@@ -1,6 +1,6 @@
 #include "byre/cli/registry/command.h"
 #include "byre/base/printable.h"
-#include "byre/cli/commands.h"
+#include "byre/base/text_file.h"
 #include "byre/cli/shared/arguments.h"
 #include "byre/cli/shared/options.h"
 #include "byre/cli/shared/progress.h"
@@ -10,14 +10,12 @@
 #include "byre/input_error.h"
 #include "byre/playback/archive/register_map.h"
 #include "byre/registry/blobs.h"
-#include "byre/registry/connection.h"
 #include "byre/registry/jobs.h"
 #include "byre/slam/system/option_table.h"
 #include "byre/slam/system/stored_map.h"
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -113,11 +111,8 @@ void remove_abandoned(const fs::path& scratch) {
   for (const auto& entry : fs::directory_iterator(scratch, error)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(kFolderPrefix)) continue;
-    pid_t process = 0;
-    const char* const digits = name.data() + std::string_view(kFolderPrefix).size();
-    const auto parsed = std::from_chars(digits, name.data() + name.size(), process);
-    const bool is_ours = parsed.ec == std::errc() && parsed.ptr == name.data() + name.size() && process > 0;
-    if (is_ours && kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), error);
+    const auto process = parse_whole<pid_t>(std::string_view(name).substr(std::string_view(kFolderPrefix).size()));
+    if (process && *process > 0 && kill(*process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), error);
   }
 }
 
@@ -125,9 +120,11 @@ struct Interrupted : std::exception {};
 
 std::string map_recording(const RegistryJob& job, const fs::path& map, const std::optional<fs::path>& vocabulary,
                           const InterruptCatcher& interrupt) {
-  OpenOptions open;
-  if (!job.calibration.empty()) open.calibration = job.calibration;
-  RunInput input({job.recording, {}, open, {}, false, true});
+  RunInputOptions source;
+  source.recording = job.recording;
+  if (!job.calibration.empty()) source.open.calibration = job.calibration;
+  source.quiet = true;
+  RunInput input(source, false);
   SlamOptions options = slam_options(MethodOptions());
   options.recording = input.name();
   options.vocabulary = vocabulary;

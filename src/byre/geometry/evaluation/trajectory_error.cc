@@ -20,8 +20,7 @@ double to_degrees(double radians) {
 
 // The sample nearest to a time, if within max_difference.
 std::optional<Pose> nearest_pose(const Trajectory& trajectory, Timestamp time, Timestamp max_difference) {
-  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time,
-                                      [](const StampedPose& sample, Timestamp t) { return sample.time < t; });
+  const auto after = std::ranges::lower_bound(trajectory, time, {}, &StampedPose::time);
   const StampedPose* nearest = after == trajectory.end() ? nullptr : &*after;
   if (after != trajectory.begin()) {
     const StampedPose* const before = &*std::prev(after);

@@ -5,8 +5,8 @@
 #include "byre/geometry/evaluation/trajectory_lines.h"
 #include "byre/input_error.h"
 
+#include <array>
 #include <cstdlib>
-#include <fstream>
 #include <span>
 
 #include <fmt/format.h>
@@ -102,29 +102,17 @@ std::string kitti_line(const StampedPose& sample) {
   return fmt::format("{:.9f}\n", fmt::join(world_from_body.reshaped<Eigen::RowMajor>(), " "));
 }
 
-std::string line_of(const StampedPose& sample, TrajectoryFormat format) {
-  switch (format) {
-    case TrajectoryFormat::tum:
-      return tum_line(sample);
-    case TrajectoryFormat::euroc:
-      return euroc_line(sample);
-    case TrajectoryFormat::kitti:
-      return kitti_line(sample);
-  }
-  return "";
-}
+struct WrittenFormat {
+  const char* head;
+  std::string (*line)(const StampedPose& sample);
+};
 
-const char* head_of(TrajectoryFormat format) {
-  switch (format) {
-    case TrajectoryFormat::tum:
-      return "# timestamp tx ty tz qx qy qz qw\n";
-    case TrajectoryFormat::euroc:
-      return "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n";
-    case TrajectoryFormat::kitti:
-      break;
-  }
-  return "";
-}
+// By TrajectoryFormat.
+constexpr std::array kWrittenFormats = {
+    WrittenFormat{"# timestamp tx ty tz qx qy qz qw\n", tum_line},
+    WrittenFormat{"#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n",
+                  euroc_line},
+    WrittenFormat{"", kitti_line}};
 
 // Calls use(pose, place) for each pose; place: file and line.
 template <typename Use>
@@ -216,8 +204,9 @@ std::vector<Timestamp> read_times(const fs::path& path) {
 
 void write_trajectory(const Trajectory& trajectory, const fs::path& path, TrajectoryFormat format) {
   OutputFile file(path, FileContent::trajectory);
-  std::string text(head_of(format));
-  for (const StampedPose& sample : trajectory) text += line_of(sample, format);
+  const auto [head, line] = kWrittenFormats.at(static_cast<std::size_t>(format));
+  std::string text(head);
+  for (const StampedPose& sample : trajectory) text += line(sample);
   file.append(text);
   file.publish();
 }

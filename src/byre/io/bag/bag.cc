@@ -5,17 +5,17 @@
 #include "byre/io/bag/mcap_bag.h"
 #include "byre/io/bag/mcap_format.h"
 #include "byre/io/bag/ros1_bag.h"
-#include "byre/io/bag/rosbag2_metadata.h"
 #include "byre/io/bag/sqlite_bag.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 #include <system_error>
-#include <utility>
 
 #include <unistd.h>
+#include <yaml-cpp/yaml.h>
 
 namespace byre {
 namespace {
@@ -25,6 +25,87 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMaxSmallMessageBytes = 64u << 20;  // decompressed bytes allowed for a message of any size
 constexpr std::string_view kRos1Begin = "#ROSBAG V";
 constexpr std::string_view kSqliteBegin = "SQLite format 3";
+
+// Metadata file of a rosbag2 folder.
+constexpr const char* kRosbag2Metadata = "metadata.yaml";
+constexpr const char* kRosbag2Key = "rosbag2_bagfile_information";
+
+struct Rosbag2Files {
+  std::vector<fs::path> files;
+  std::vector<std::string> warnings{};
+};
+
+// Whether the name is that of a file in a rosbag2 folder: .mcap, .db3, .mcap.zstd, .db3.zstd.
+bool has_rosbag2_name(const fs::path& file) {
+  constexpr std::array<std::string_view, 4> kEndings = {".mcap", ".db3", ".mcap.zstd", ".db3.zstd"};
+  const std::string name = file.filename().string();
+  return std::ranges::any_of(kEndings, [&](std::string_view ending) { return name.ends_with(ending); });
+}
+
+std::vector<fs::path> sibling_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code unreadable;
+    if (has_rosbag2_name(entry->path()) && entry->is_regular_file(unreadable)) files.push_back(entry->path());
+  }
+  // Recorders number the files; "bag_10" sorts after "bag_9".
+  std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
+    const std::string name = a.filename().string(), other = b.filename().string();
+    return name.size() != other.size() ? name.size() < other.size() : name < other;
+  });
+  return files;
+}
+
+// Path relative to the folder; the first versions prefix the folder's own name.
+fs::path resolve_file(const fs::path& folder, const fs::path& named) {
+  const std::array<fs::path, 2> places = {folder / named, folder / named.filename()};
+  std::error_code error;
+  return fs::exists(places[0], error) || !fs::exists(places[1], error) ? places[0] : places[1];
+}
+
+// The files of metadata.yaml without duplicates, with a warning about these.
+Rosbag2Files listed_files(const fs::path& metadata) {
+  const YAML::Node bag = YAML::LoadFile(metadata.string())[kRosbag2Key];
+  Rosbag2Files named;
+  std::set<fs::path> known;
+  int repeated = 0;
+  for (const YAML::Node& file : bag["relative_file_paths"]) {
+    fs::path path = resolve_file(metadata.parent_path(), file.as<std::string>());
+    std::error_code error;
+    const bool is_new = known.insert(fs::weakly_canonical(path, error)).second;
+    if (is_new || error) {
+      named.files.push_back(std::move(path));
+    } else {
+      ++repeated;
+    }
+  }
+  if (repeated > 0) {
+    named.warnings.push_back(metadata.string() + ": has " + std::to_string(repeated) +
+                             " duplicate file names; each file is read once");
+  }
+  return named;
+}
+
+// Files of the bag in a folder: those in its metadata.yaml, in order; without it, all files with a rosbag2 name.
+// Warnings list missing and invalid entries.
+Rosbag2Files rosbag2_files(const fs::path& folder) {
+  const fs::path metadata = folder / kRosbag2Metadata;
+  std::error_code error;
+  std::string why;
+  if (!fs::is_regular_file(metadata, error)) {
+    why = "is missing, as after a killed recorder";
+  } else {
+    try {
+      Rosbag2Files named = listed_files(metadata);
+      if (!named.files.empty()) return named;
+      why = "lists no files";
+    } catch (const YAML::Exception& exception) {
+      why = std::string("cannot be parsed (") + exception.what() + ")";
+    }
+  }
+  return {sibling_files(folder), {metadata.string() + ": " + why + "; bag files in its folder are used"}};
+}
 
 bool begins_with(std::span<const std::byte> bytes, std::string_view text) {
   return bytes.size() >= text.size() && std::ranges::equal(bytes.first(text.size()), std::as_bytes(std::span(text)));
@@ -78,8 +159,6 @@ class TemporaryFile {
 class BagFile final : public Bag {
  public:
   BagFile(const fs::path& path, const TypeFilter& wanted, const BagLimits& limits);
-  const BagContent& content() const override { return content_; }
-  BagContent take_content() override { return std::exchange(content_, {}); }
   std::vector<std::byte> read(const BagMessage& message) override;
 
  private:
@@ -90,7 +169,6 @@ class BagFile final : public Bag {
   BagLimits limits_;                             // constant after construction
   std::unique_ptr<TemporaryFile> decompressed_;  // must outlive bag_, which reads it
   std::unique_ptr<Bag> bag_;
-  BagContent content_;
 };
 
 std::unique_ptr<Bag> open_file(const fs::path& path, const std::string& place, const TypeFilter& wanted,
@@ -153,8 +231,6 @@ std::vector<std::byte> BagFile::read(const BagMessage& message) {
 class BagFolder final : public Bag {
  public:
   BagFolder(const fs::path& folder, const TypeFilter& wanted, const BagLimits& limits);
-  const BagContent& content() const override { return content_; }
-  BagContent take_content() override { return std::exchange(content_, {}); }
   std::vector<std::byte> read(const BagMessage& message) override { return files_[message.place.file]->read(message); }
 
  private:
@@ -162,7 +238,6 @@ class BagFolder final : public Bag {
   std::size_t topic_number(const BagTopic& topic);
 
   std::vector<std::unique_ptr<Bag>> files_;
-  BagContent content_;
 };
 
 BagFolder::BagFolder(const fs::path& folder, const TypeFilter& wanted, const BagLimits& limits) {

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace byre {
@@ -67,10 +68,13 @@ struct BagContent {
 class Bag {
  public:
   virtual ~Bag() = default;
-  virtual const BagContent& content() const = 0;
-  virtual BagContent take_content() = 0;  // leaves the content empty
+  const BagContent& content() const { return content_; }
+  BagContent take_content() { return std::exchange(content_, {}); }  // leaves the content empty
   // The bytes of a message. Throws InputError if they cannot be read any more.
   virtual std::vector<std::byte> read(const BagMessage& message) = 0;
+
+ protected:
+  BagContent content_;
 };
 
 // Whether to list messages of a type; types have their ROS 2 names.

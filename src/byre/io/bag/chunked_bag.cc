@@ -3,7 +3,6 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace byre {
 

@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 namespace byre {
@@ -25,11 +24,17 @@ struct CompressedPiece {
 // A bag in one file, with messages directly in it or in compressed chunks. Derived classes implement the formats.
 class ChunkedBag : public Bag {
  public:
-  const BagContent& content() const final { return content_; }
-  BagContent take_content() final { return std::exchange(content_, {}); }
   std::vector<std::byte> read(const BagMessage& message) final;
 
  protected:
+  // A sequence of records: the file or a chunk.
+  struct Region {
+    ByteSource& source;
+    std::uint64_t begin = 0, end = 0;
+    bool is_chunk = false;
+    std::optional<std::uint64_t> compressed_chunk{};  // position of its record in the file
+  };
+
   // storage: name of the format; place: name of the file in errors.
   ChunkedBag(std::string storage, std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted,
              const BagLimits& limits);
@@ -62,9 +67,8 @@ class ChunkedBag : public Bag {
   Decompressed decompress_piece(const CompressedPiece& piece);
 
   std::unique_ptr<ByteSource> source_;
-  std::string place_;  // constant after construction
-  TypeFilter wanted_;  // constant after construction
-  BagContent content_;
+  std::string place_;            // constant after construction
+  TypeFilter wanted_;            // constant after construction
   std::vector<bool> is_wanted_;  // indexed by topic
   std::unordered_map<std::string, std::size_t> topic_numbers_;
   std::uint64_t max_decompressed_;  // bound of all chunks, bytes; constant after construction

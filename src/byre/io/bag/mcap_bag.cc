@@ -2,7 +2,6 @@
 
 #include "byre/base/byte_stream.h"
 #include "byre/input_error.h"
-#include "byre/io/bag/mcap_format.h"
 
 #include <algorithm>
 #include <utility>

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -23,14 +22,6 @@ class McapBag final : public ChunkedBag {
     std::uint32_t checksum = 0;  // CRC-32 of the content, 0 if not recorded
     CompressedPiece piece{};
     bool is_supported = true;  // whether its compression is supported
-  };
-
-  // A sequence of records: the file or a chunk.
-  struct Region {
-    ByteSource& source;
-    std::uint64_t begin = 0, end = 0;
-    bool is_chunk = false;
-    std::optional<std::uint64_t> compressed_chunk{};  // position of its record in the file
   };
 
   CompressedPiece piece_at(std::uint64_t chunk) override;

@@ -6,9 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -22,13 +20,6 @@ class Ros1Bag final : public ChunkedBag {
   Ros1Bag(std::unique_ptr<ByteSource> source, std::string place, TypeFilter wanted, const BagLimits& limits = {});
 
  private:
-  // A sequence of records: the file or a chunk.
-  struct Region {
-    ByteSource& source;
-    std::uint64_t begin = 0, end = 0;
-    bool is_chunk = false;
-    std::optional<std::uint64_t> compressed_chunk{};  // position of its record in the file
-  };
   struct Record {
     std::map<std::string, std::vector<std::byte>, std::less<>> fields;
     std::uint64_t data_begin = 0;  // position in its source

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 struct sqlite3;
@@ -21,8 +20,6 @@ class SqliteBag final : public Bag {
   SqliteBag(const std::filesystem::path& path, std::string place, const TypeFilter& wanted);
   ~SqliteBag() override;
 
-  const BagContent& content() const override { return content_; }
-  BagContent take_content() override { return std::exchange(content_, {}); }
   std::vector<std::byte> read(const BagMessage& message) override;
 
  private:
@@ -39,8 +36,7 @@ class SqliteBag final : public Bag {
 
   std::string place_;  // constant after construction
   Database database_;
-  Statement message_;  // selects the bytes of a row
-  BagContent content_;
+  Statement message_;                    // selects the bytes of a row
   std::vector<std::int64_t> topic_ids_;  // ids in the database, by topic
   std::vector<bool> is_wanted_;          // indexed by topic
 };

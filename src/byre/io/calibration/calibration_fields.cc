@@ -10,8 +10,6 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
-#include <string_view>
-#include <utility>
 
 #include <fmt/core.h>
 

@@ -1,5 +1,6 @@
 #include "byre/calibration_file.h"
 
+#include "byre/base/text_file.h"
 #include "byre/io/calibration/calibration_formats.h"
 #include "byre/io/calibration/camera_fields.h"
 #include "byre/io/calibration/format_readers.h"
@@ -7,8 +8,6 @@
 #include <array>
 #include <limits>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -173,7 +172,7 @@ fs::path UnplacedCameras::side(bool is_right) const {
   const std::string_view word = is_right ? "right" : "left";
   std::vector<std::string> found;
   for (const std::string& name : names_) {
-    if (small_letters(name).find(word) != std::string::npos) found.push_back(name);
+    if (lower_case(name).find(word) != std::string::npos) found.push_back(name);
   }
   if (found.size() == 1) return camera(found.front());
   if (found.empty() && names_.size() == 2) return camera(names_[is_right ? 1 : 0]);

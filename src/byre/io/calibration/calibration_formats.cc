@@ -1,5 +1,6 @@
 #include "byre/io/calibration/calibration_formats.h"
 
+#include "byre/base/text_file.h"
 #include "byre/input_error.h"
 #include "byre/io/calibration/camera_fields.h"
 #include "byre/io/calibration/format_readers.h"
@@ -8,7 +9,6 @@
 #include <cctype>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -128,7 +128,7 @@ constexpr std::array kFormats = {
 
 // Whether a name has one of these words, between other signs than letters.
 bool has_word(std::string_view name, std::initializer_list<std::string_view> words) {
-  const std::string lower = small_letters(name);
+  const std::string lower = lower_case(name);
   const auto is_letter = [&](std::size_t at) {
     return at < lower.size() && std::isalpha(static_cast<unsigned char>(lower[at])) != 0;
   };
@@ -140,7 +140,7 @@ bool has_word(std::string_view name, std::initializer_list<std::string_view> wor
 
 // Names of the sides of a pair, as in cam0 and cam1, camera_left and camera_right: 0, 1, or neither.
 std::optional<int> side_of(std::string_view name) {
-  const std::string lower = small_letters(name);
+  const std::string lower = lower_case(name);
   const bool is_left = lower.find("left") != std::string::npos;
   if (is_left || lower.find("right") != std::string::npos) return is_left ? 0 : 1;
   if (lower.ends_with('0') || lower.ends_with("[0]")) return 0;
@@ -357,12 +357,6 @@ std::pair<fs::path, std::optional<std::string>> split_camera(const fs::path& pat
 
 fs::path file_of_camera(const fs::path& path) {
   return split_camera(path).first;
-}
-
-std::string small_letters(std::string_view name) {
-  std::string lower(name);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
 }
 
 Pose baseline_pose(double x, double y) {

@@ -7,8 +7,6 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
-#include <limits>
-#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>

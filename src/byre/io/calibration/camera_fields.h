@@ -3,7 +3,6 @@
 #include "byre/calibration.h"
 #include "byre/io/calibration/calibration_fields.h"
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

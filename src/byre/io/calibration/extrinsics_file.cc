@@ -13,7 +13,6 @@
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>

@@ -63,7 +63,6 @@ void place_pair(const CalibrationFields& fields, PlacedCamera& left, PlacedCamer
 // Helpers of the readers.
 // Whether cameras inside a group share a field of this name, as the image size.
 bool is_shared_field(std::string_view name);
-std::string small_letters(std::string_view name);
 // Fields with a common prefix or suffix of their names, as zed_K and zed_D, or K_left and D_left, as groups of this
 // name, if one of them is a camera matrix or a camera.
 CalibrationFields with_affix_groups(const CalibrationFields& fields);

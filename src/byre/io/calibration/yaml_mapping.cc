@@ -13,17 +13,22 @@
 
 namespace byre {
 
-YAML::Node load_yaml_mapping(const std::filesystem::path& path) {
+YAML::Node load_yaml(const std::filesystem::path& path) {
   refuse_pipe(path);
+  if (std::filesystem::is_directory(path)) throw InputError(path.string(), "is a folder", "give a file");
   try {
-    YAML::Node root = YAML::LoadFile(path.string());
-    if (!root.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
-    return root;
+    return YAML::LoadFile(path.string());
   } catch (const YAML::BadFile&) {
     throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
   } catch (const YAML::Exception& error) {
     throw InputError(path.string() + ":" + std::to_string(error.mark.line + 1), error.msg, "correct the YAML");
   }
+}
+
+YAML::Node load_yaml_mapping(const std::filesystem::path& path) {
+  const YAML::Node root = load_yaml(path);
+  if (!root.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields");
+  return root;
 }
 
 void require_known_fields(const YAML::Node& fields, std::span<const char* const> known, const std::string& place,

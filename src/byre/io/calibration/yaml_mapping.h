@@ -8,8 +8,9 @@
 
 namespace byre {
 
-// Reads a YAML file of named fields. Throws InputError for a file that is missing, a pipe, invalid, or another
-// document.
+// Reads a YAML file. Throws InputError for a file that is missing, a folder, a pipe or invalid.
+YAML::Node load_yaml(const std::filesystem::path& path);
+// Same for a file of named fields. Throws InputError for another document too.
 YAML::Node load_yaml_mapping(const std::filesystem::path& path);
 
 // place: of the fields, for InputError. Throws it for a node without named fields, or with a field that is not known.

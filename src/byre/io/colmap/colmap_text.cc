@@ -76,10 +76,9 @@ class Fields {
   template <typename Whole>
   Whole whole(const char* what) {
     const std::string_view text = word(what);
-    Whole value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) fail(what, text);
-    return value;
+    const auto value = parse_whole<Whole>(text);
+    if (!value) fail(what, text);
+    return *value;
   }
 
   Eigen::Vector3d vector(const char* what) {

@@ -8,11 +8,7 @@
 #include "byre/io/image/plan_file.h"
 #include "byre/site.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
-#include <optional>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <yaml-cpp/yaml.h>
@@ -115,8 +111,7 @@ bool read_is_negated(const YAML::Node& root, const fs::path& path) {
 PlanMode read_mode(const YAML::Node& root, const fs::path& path) {
   const YAML::Node mode = root["mode"];
   if (!mode) return PlanMode::trinary;
-  std::string word = mode.IsScalar() ? mode.Scalar() : "";
-  std::ranges::transform(word, word.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  const std::string word = mode.IsScalar() ? lower_case(mode.Scalar()) : "";
   if (word == "trinary") return PlanMode::trinary;
   if (word == "scale") return PlanMode::scale;
   if (word == "raw") return PlanMode::raw;

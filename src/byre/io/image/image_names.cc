@@ -75,9 +75,7 @@ Calibration ideal_calibration(int width, int height) {
 bool has_image_name(const fs::path& path) {
   constexpr std::array<std::string_view, 8> kExtensions = {".png", ".jpg", ".jpeg", ".bmp",
                                                            ".pgm", ".ppm", ".tif",  ".tiff"};
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  return std::ranges::find(kExtensions, extension) != kExtensions.end();
+  return std::ranges::find(kExtensions, lower_case(path.extension().string())) != kExtensions.end();
 }
 
 std::vector<fs::path> images_in(const fs::path& folder) {

@@ -1,13 +1,11 @@
 #include "byre/io/recording/bag_motion.h"
 
 #include "byre/input_error.h"
-#include "byre/io/recording/bag_image.h"
 #include "byre/io/recording/motion_files.h"
 #include "byre/io/recording/timed_messages.h"
 #include "byre/io/ros/message_bytes.h"
 
 #include <cmath>
-#include <utility>
 
 namespace byre {
 namespace {
@@ -150,8 +148,9 @@ bool is_motion_type(std::string_view type, const OpenOptions& options) {
   return (options.wheels_topic && is_of_wheels) || (wants_gyroscope(options) && holds<ros::Imu>(topic));
 }
 
-BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place, const SensorClock& images) {
-  BagMotion motion;
+SensorMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place,
+                             const SensorClock& images) {
+  SensorMotion motion;
   if (options.wheels) {
     motion.samples.wheels = read_wheel_file(*options.wheels, images, motion.warnings);
   } else if (options.wheels_topic) {

@@ -45,9 +45,10 @@ inline constexpr const char* kRatesNotMeasured =
     "angular_velocity_covariance[0] is -1, which marks rates as not measured; these messages are ignored; choose the "
     "topic of the gyroscope, or correct the driver";
 
-struct BagMotion {
+// Samples of motion sensors recorded with images.
+struct SensorMotion {
   MotionSamples samples;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;  // corrections of times and dropped lines, with counts
 };
 
 // Whether the options require messages of this type, other than images.
@@ -60,7 +61,7 @@ bool is_motion_type(std::string_view type, const OpenOptions& options);
 // place: name of the bag in errors and warnings. Warnings count damaged and non-finite messages, and corrections of
 // times. images: clock of the left images. Throws InputError, with a list of topics of that kind, for an absent topic
 // and if several topics qualify.
-BagMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place,
-                          const SensorClock& images = {});
+SensorMotion read_bag_motion(Bag& bag, const OpenOptions& options, const std::string& place,
+                             const SensorClock& images = {});
 
 }  // namespace byre

@@ -38,7 +38,7 @@ SceneMessage imu(const std::string& topic, int stamp_ms, double rate) {
 
 class BagMotions : public BagFolderTest {
  protected:
-  BagMotion read(const std::vector<SceneMessage>& messages, const OpenOptions& options) const {
+  SensorMotion read(const std::vector<SceneMessage>& messages, const OpenOptions& options) const {
     const auto bag = open_bag(write("walk.mcap", mcap_bytes(messages, "zstd")),
                               [&](std::string_view type) { return is_motion_type(type, options); });
     return read_bag_motion(*bag, options, "walk.mcap");
@@ -49,9 +49,9 @@ class BagMotions : public BagFolderTest {
 };
 
 TEST_F(BagMotions, ReturnWheelsAndRatesAtHeaderTimes) {
-  const BagMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2),
-                                 imu(kImuData, 1010, 0.25), odometry(kOdometry, 1020, 1023, 0.6)},
-                                {.wheels_topic = kOdometry, .imu_topic = kImuData});
+  const SensorMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2),
+                                    imu(kImuData, 1010, 0.25), odometry(kOdometry, 1020, 1023, 0.6)},
+                                   {.wheels_topic = kOdometry, .imu_topic = kImuData});
   EXPECT_THAT(motion.warnings, IsEmpty());
   ASSERT_THAT(motion.samples.wheels, SizeIs(2));
   EXPECT_EQ(motion.samples.wheels[1].time, at_ms(1020));
@@ -70,9 +70,9 @@ SceneMessage twist(const std::string& topic, int stamp_ms, double ahead, double 
 }
 
 TEST_F(BagMotions, ReadVelocitiesOfTwistTopics) {
-  const BagMotion motion = read({twist("/wheel/twist", 1000, 0.5, 0.2), twist("/wheel/twist", 1020, 0.6, 0.3),
-                                 odometry(kOdometry, 1010, 1013, 0.5)},
-                                {.wheels_topic = "/wheel/twist"});
+  const SensorMotion motion = read({twist("/wheel/twist", 1000, 0.5, 0.2), twist("/wheel/twist", 1020, 0.6, 0.3),
+                                    odometry(kOdometry, 1010, 1013, 0.5)},
+                                   {.wheels_topic = "/wheel/twist"});
   EXPECT_THAT(motion.samples.wheels, IsEmpty());
   ASSERT_THAT(motion.samples.velocities, SizeIs(2));
   const BaseTwist& last = motion.samples.velocities.back();
@@ -93,7 +93,7 @@ TEST_F(BagMotions, ReadVelocitiesOfOdometryWithoutPoses) {
     messages.push_back(scene_message("/odom", at_ms(1002 + 20 * i), message));
   }
   for (const char* const topic : {kOdometry, "/odom"}) {
-    const BagMotion motion = read(messages, {.wheels_topic = topic});
+    const SensorMotion motion = read(messages, {.wheels_topic = topic});
     EXPECT_THAT(motion.samples.wheels, IsEmpty());
     EXPECT_THAT(motion.samples.velocities, SizeIs(20));
     EXPECT_THAT(motion.warnings, IsEmpty());
@@ -101,7 +101,7 @@ TEST_F(BagMotions, ReadVelocitiesOfOdometryWithoutPoses) {
 }
 
 TEST_F(BagMotions, AreReadOnRequestOnly) {
-  const BagMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2)}, {});
+  const SensorMotion motion = read({odometry(kOdometry, 1000, 1003, 0.5), imu(kImuData, 1005, 0.2)}, {});
   EXPECT_THAT(motion.samples.wheels, IsEmpty());
   EXPECT_THAT(motion.samples.rates, IsEmpty());
 }
@@ -114,7 +114,7 @@ TEST_F(BagMotions, ReadAccelerationsIfPresent) {
     if (i == 0) message.linear_acceleration_covariance[0] = -1.0;
     messages.push_back(scene_message(kImuData, at_ms(1002 + i), message));
   }
-  const BagMotion motion = read(messages, {.use_gyroscope = true});
+  const SensorMotion motion = read(messages, {.use_gyroscope = true});
   EXPECT_THAT(motion.samples.rates, SizeIs(3));
   ASSERT_THAT(motion.samples.accelerations, SizeIs(1));
   EXPECT_EQ(motion.samples.accelerations[0].time, at_ms(1001));
@@ -129,7 +129,7 @@ TEST_F(BagMotions, SkipRatesMarkedAsNotMeasured) {
     message.linear_acceleration = {0.1, -0.2, 9.8};
     messages.push_back(scene_message(kImuData, at_ms(1002 + i), message));
   }
-  const BagMotion motion = read(messages, {.use_gyroscope = true});
+  const SensorMotion motion = read(messages, {.use_gyroscope = true});
   EXPECT_THAT(motion.samples.rates, IsEmpty());
   EXPECT_THAT(motion.samples.accelerations, SizeIs(3));
   ASSERT_THAT(motion.warnings, SizeIs(1));
@@ -152,7 +152,7 @@ TEST_F(BagMotions, ReportTheAvailableTopics) {
 }
 
 TEST_F(BagMotions, SortSamplesByTime) {
-  const BagMotion motion = read(
+  const SensorMotion motion = read(
       {odometry(kOdometry, 1000, 1003, 0.5), odometry(kOdometry, 1040, 1043, 0.7), odometry(kOdometry, 1020, 1050, 0.6),
        odometry(kOdometry, 1020, 1060, 0.6), odometry(kOdometry, 1060, 1070, std::numeric_limits<double>::quiet_NaN())},
       {.wheels_topic = kOdometry});
@@ -164,7 +164,7 @@ TEST_F(BagMotions, SortSamplesByTime) {
 }
 
 TEST_F(BagMotions, UseReceiveTimesWithoutHeaderTimes) {
-  const BagMotion motion =
+  const SensorMotion motion =
       read({odometry(kOdometry, 0, 1003, 0.5), odometry(kOdometry, 0, 1023, 0.6)}, {.wheels_topic = kOdometry});
   ASSERT_THAT(motion.samples.wheels, SizeIs(2));
   EXPECT_EQ(motion.samples.wheels[1].time, at_ms(1023));

@@ -9,7 +9,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <string_view>
 #include <system_error>
 
 #include <sys/stat.h>

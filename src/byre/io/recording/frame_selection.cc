@@ -1,11 +1,10 @@
 #include "byre/io/recording/frame_selection.h"
 
+#include "byre/base/text_file.h"
 #include "byre/input_error.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <utility>
 
 namespace byre {
 namespace {
@@ -62,10 +61,8 @@ void require_depth(const CalibrationWithSource& calibration, const ExtraImages& 
 constexpr std::array kChoices = {CameraChoice::stereo, CameraChoice::left, CameraChoice::right, CameraChoice::rgbd};
 
 std::optional<int> parse_index(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || value < 0) return std::nullopt;
-  return value;
+  const auto value = parse_whole<int>(text);
+  return value && *value >= 0 ? value : std::nullopt;
 }
 
 }  // namespace

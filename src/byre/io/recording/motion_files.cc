@@ -64,7 +64,7 @@ RestoredTimes restore_lines(std::vector<Timestamp> stamps, const fs::path& path,
   return restored;
 }
 
-void read_imu(const fs::path& path, const SensorClock& images, FileMotion& motion) {
+void read_imu(const fs::path& path, const SensorClock& images, SensorMotion& motion) {
   std::vector<ImuSample> listed;
   std::vector<Timestamp> stamps;
   for (const TextLine& line : read_lines(path)) {
@@ -145,9 +145,9 @@ Trajectory read_wheel_file(const fs::path& path, const SensorClock& images, std:
   return in_order;
 }
 
-FileMotion read_motion(const fs::path& recording, const OpenOptions& options, const Pose& body_from_left,
-                       const SensorClock& images) {
-  FileMotion motion;
+SensorMotion read_motion(const fs::path& recording, const OpenOptions& options, const Pose& body_from_left,
+                         const SensorClock& images) {
+  SensorMotion motion;
   const fs::path beside = recording / "wheel.txt";
   if (options.wheels) {
     motion.samples.wheels = read_wheel_file(*options.wheels, images, motion.warnings);

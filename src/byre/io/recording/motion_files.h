@@ -45,15 +45,10 @@ class WheelStream {
 //                           if available
 //   mav0/imu0/sensor.yaml   EuRoC: rotation of the sensor relative to the body (T_BS)
 // Wheels are used if the file exists or the options name one; the gyroscope if the options request it. Throws
-// InputError with file and line if a named file is missing or cannot be parsed.
-struct FileMotion {
-  MotionSamples samples;
-  std::vector<std::string> warnings;  // corrections of times and dropped lines, with counts
-};
-
-// body_from_left: from the recording's own calibration. images: clock of the left images.
-FileMotion read_motion(const std::filesystem::path& recording, const OpenOptions& options,
-                       const Pose& body_from_left = {}, const SensorClock& images = {});
+// InputError with file and line if a named file is missing or cannot be parsed. body_from_left: from the recording's
+// own calibration. images: clock of the left images.
+SensorMotion read_motion(const std::filesystem::path& recording, const OpenOptions& options,
+                         const Pose& body_from_left = {}, const SensorClock& images = {});
 
 // Poses of a wheel file, with continuous times (restore_times).
 Trajectory read_wheel_file(const std::filesystem::path& path, const SensorClock& images,

@@ -66,7 +66,7 @@ TEST_F(MotionFiles, ReadTheAccelerometerWithTheGyroscope) {
 
 TEST_F(MotionFiles, CountLateAndRepeatedLines) {
   write("wheel.txt", "1.0 0 0 0 0 0 0 1\n1.2 2 0 0 0 0 0 1\n1.1 1 0 0 0 0 0 1\n1.3 3 0 0 0 0 0 1\n1.3 4 0 0 0 0 0 1\n");
-  const FileMotion motion = read_motion(folder_, {});
+  const SensorMotion motion = read_motion(folder_, {});
   ASSERT_EQ(motion.samples.wheels.size(), 4u);
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(motion.samples.wheels[static_cast<std::size_t>(i)].world_from_body.translation.x(), i);

@@ -1,5 +1,6 @@
 #include "byre/recording.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/calibration_file.h"
 #include "byre/geometry/baseline.h"
 #include "byre/input_error.h"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdint>
 #include <utility>
 
 namespace byre {
@@ -269,35 +269,11 @@ const TimeCorrections& Recording::time_corrections() const {
 }
 
 std::string_view to_string(RecordingFormat format) {
-  switch (format) {
-    case RecordingFormat::euroc:
-      return "euroc";
-    case RecordingFormat::kitti:
-      return "kitti";
-    case RecordingFormat::tum:
-      return "tum";
-    case RecordingFormat::images:
-      return "images";
-    case RecordingFormat::video:
-      return "video";
-    case RecordingFormat::bag:
-      return "bag";
-  }
-  return "";
+  return name_among<RecordingFormat::bag>({"euroc", "kitti", "tum", "images", "video", "bag"}, format);
 }
 
 std::string_view to_string(CameraChoice choice) {
-  switch (choice) {
-    case CameraChoice::stereo:
-      return "stereo";
-    case CameraChoice::left:
-      return "left";
-    case CameraChoice::right:
-      return "right";
-    case CameraChoice::rgbd:
-      return "rgbd";
-  }
-  return "";
+  return name_among<CameraChoice::rgbd>({"stereo", "left", "right", "rgbd"}, choice);
 }
 
 RecordingFormat guess_format(const fs::path& path) {
@@ -342,7 +318,7 @@ std::unique_ptr<Recording> open_recording(const fs::path& path, const FrameRange
   RecordingIndex chosen = choose_camera(select(whole, range, path), extra, options.camera, path);
   chosen.calibration.cameras = with_checked_baseline(chosen.calibration.cameras, options.baseline,
                                                      place_of_calibration(path, options), "--baseline ");
-  FileMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);
+  SensorMotion motion = read_motion(path, options, chosen.calibration.cameras.body_from_left, whole.clock);
   chosen.warnings.insert(chosen.warnings.end(), motion.warnings.begin(), motion.warnings.end());
   const int bits = whole.frames.empty() ? kWordBits : bits_in_use(whole.frames);
   return with_fitting_pair(std::make_unique<ImageFiles>(std::move(chosen), std::move(motion.samples), bits),

@@ -1,5 +1,6 @@
 #include "byre/io/recording/restored_times.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/geometry/median.h"
 #include "byre/io/recording/stamp_clock.h"
 
@@ -420,15 +421,7 @@ RestoredTimes restore_times(const RecordedStamps& recorded, const SensorClock& o
 }
 
 std::string_view to_string(TimeSource source) {
-  switch (source) {
-    case TimeSource::stamps:
-      return "stamps";
-    case TimeSource::receive_times:
-      return "receive times";
-    case TimeSource::even_spacing:
-      return "even spacing";
-  }
-  return "";
+  return name_among<TimeSource::even_spacing>({"stamps", "receive times", "even spacing"}, source);
 }
 
 std::vector<std::string> describe(const TimeCorrections& corrections, const ItemNames& names) {

@@ -1,7 +1,7 @@
 #include "byre/io/recording/settings_file.h"
 
-#include "byre/base/regular_file.h"
 #include "byre/input_error.h"
+#include "byre/io/calibration/yaml_mapping.h"
 
 #include <algorithm>
 
@@ -18,18 +18,6 @@ std::string place_of_line(const fs::path& path, int line) {
 
 int line_of(const YAML::Node& node) {
   return node.Mark().line + 1;
-}
-
-YAML::Node load_settings(const fs::path& path) {
-  refuse_pipe(path);
-  if (fs::is_directory(path)) throw InputError(path.string(), "is a folder", "give a file");
-  try {
-    return YAML::LoadFile(path.string());
-  } catch (const YAML::BadFile&) {
-    throw InputError(path.string(), "cannot be opened", "check that it exists and is readable");
-  } catch (const YAML::Exception& error) {
-    throw InputError(place_of_line(path, error.mark.line + 1), error.msg, "correct the YAML");
-  }
 }
 
 // depth: number of enclosing groups. With YAML's aliases a group may contain itself.
@@ -56,7 +44,7 @@ void append_settings(const YAML::Node& group, const std::string& prefix, int dep
 }  // namespace
 
 std::vector<Setting> read_settings(const fs::path& path) {
-  const YAML::Node root = load_settings(path);
+  const YAML::Node root = load_yaml(path);
   std::vector<Setting> settings;
   if (root.IsNull()) return settings;
   if (!root.IsMap()) throw InputError(path.string(), "is not a YAML mapping of named fields", "write NAME: VALUE");

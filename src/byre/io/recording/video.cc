@@ -1,5 +1,6 @@
 #include "byre/io/recording/video.h"
 
+#include "byre/base/text_file.h"
 #include "byre/geometry/baseline.h"
 #include "byre/input_error.h"
 #include "byre/io/image/image_codec.h"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cctype>
 #include <string>
 #include <utility>
 
@@ -128,9 +128,8 @@ std::optional<ImageFrame> Video::read(int index) {
 bool is_video_file(const fs::path& path) {
   constexpr std::array<std::string_view, 10> kExtensions = {".mp4", ".mov", ".avi", ".mkv",  ".webm",
                                                             ".m4v", ".mpg", ".ts",  ".mpeg", ".wmv"};
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  return fs::is_regular_file(path) && std::ranges::find(kExtensions, extension) != kExtensions.end();
+  return fs::is_regular_file(path) &&
+         std::ranges::find(kExtensions, lower_case(path.extension().string())) != kExtensions.end();
 }
 
 std::unique_ptr<Recording> open_video(const fs::path& file, const FrameRange& range, const OpenOptions& options) {

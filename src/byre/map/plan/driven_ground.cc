@@ -1,5 +1,6 @@
 #include "byre/map/plan/driven_ground.h"
 
+#include "byre/geometry/median.h"
 #include "byre/map/keyframe_path.h"
 
 #include <algorithm>
@@ -14,13 +15,6 @@ constexpr double kAround = 3.0;  // metres, radius of the positions that a local
 
 double angle_of(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   return std::atan2(one.cross(other).norm(), one.dot(other));
-}
-
-// The quantile of the values at the given share.
-double value_above(std::vector<double> values, double share) {
-  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, values.begin() + place);
-  return values[static_cast<std::size_t>(place)];
 }
 
 double root_mean_square(const std::vector<double>& values) {
@@ -38,7 +32,7 @@ bool is_of_wheels(const Spread& spread) {
   constexpr double kShare = 0.95;      // share of the path within both limits
   constexpr double kMostHeight = 0.1;  // metres
   constexpr double kMostTilt = 0.06;   // radians; hand-held cameras tilt more
-  return value_above(spread.heights, kShare) <= kMostHeight && value_above(spread.tilts, kShare) <= kMostTilt;
+  return quantile(spread.heights, kShare) <= kMostHeight && quantile(spread.tilts, kShare) <= kMostTilt;
 }
 
 std::vector<Eigen::Vector3d> places_of(const std::vector<Pose>& path) {

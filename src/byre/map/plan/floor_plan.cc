@@ -1,5 +1,6 @@
 #include "byre/map/plan/floor_plan.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/geometry/decompositions.h"
 #include "byre/map/plan/planar_consensus.h"
 
@@ -300,19 +301,13 @@ std::vector<PlanDoubt> doubts_about(Correspondences correspondences, const Drivi
 }  // namespace
 
 std::string_view to_string(PlanDoubt doubt) {
-  switch (doubt) {
-    case PlanDoubt::few_points:
-      return "fewer than three correspondences are used, so errors cannot be detected: pick more";
-    case PlanDoubt::in_line:
-      return "the correspondences are nearly collinear: pick some to the side of the line";
-    case PlanDoubt::in_a_corner:
-      return "the correspondences cover a small part of the map: pick some at its other end";
-    case PlanDoubt::disagreement:
-      return "the correspondences are inconsistent: check them, the scale of the plan and the scale of the map";
-    case PlanDoubt::uneven_path:
-      return "the path is not planar: the up direction is taken from the orientation of the camera";
-  }
-  return "";
+  return name_among<PlanDoubt::uneven_path>(
+      {"fewer than three correspondences are used, so errors cannot be detected: pick more",
+       "the correspondences are nearly collinear: pick some to the side of the line",
+       "the correspondences cover a small part of the map: pick some at its other end",
+       "the correspondences are inconsistent: check them, the scale of the plan and the scale of the map",
+       "the path is not planar: the up direction is taken from the orientation of the camera"},
+      doubt);
 }
 
 double residual_of(const PlanFit& fit) {

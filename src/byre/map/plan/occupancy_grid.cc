@@ -3,12 +3,10 @@
 #include "byre/geometry/decompositions.h"
 #include "byre/input_error.h"
 #include "byre/map/keyframe_path.h"
-#include "byre/map/plan/driving_plane.h"
 #include "byre/map/plan/grid_evidence.h"
 #include "byre/map/plan/path_cells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>

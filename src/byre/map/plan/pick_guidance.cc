@@ -2,6 +2,7 @@
 
 #include "byre/geometry/decompositions.h"
 #include "byre/geometry/degrees.h"
+#include "byre/geometry/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,9 +89,8 @@ std::vector<KeyframePixel> further_views(const MapGraph& map, const KeyframePixe
     depths.push_back((keyframe->camera_from_world * map.find_point(id)->position_in_world).z());
     for (const Observation& observation : map.observations(id)) ++votes[observation.keyframe];
   }
-  std::ranges::nth_element(depths, depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2));
   const Eigen::Vector3d place = inverse(keyframe->camera_from_world) *
-                                Eigen::Vector3d(depths[depths.size() / 2] * rig_of(map, *keyframe).ray(pixel.pixel));
+                                Eigen::Vector3d(median(std::move(depths)) * rig_of(map, *keyframe).ray(pixel.pixel));
   std::vector<std::pair<double, KeyframePixel>> views;
   for (const auto& [id, count] : votes) {
     const auto at = id == pixel.keyframe ? std::optional<Eigen::Vector2d>() : pixel_in_picture(map, id, place);

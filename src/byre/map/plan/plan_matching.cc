@@ -1,5 +1,6 @@
 #include "byre/map/plan/plan_matching.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/geometry/degrees.h"
 #include "byre/map/plan/wall_distances.h"
 
@@ -393,15 +394,11 @@ double share(const PlanMatcher& matcher, const WallDistances& walls, const Plana
 }  // namespace
 
 std::string_view to_string(PlanMatchDoubt doubt) {
-  switch (doubt) {
-    case PlanMatchDoubt::ambiguous:
-      return "another pose explains the map nearly as well, as on a symmetric plan: pick points";
-    case PlanMatchDoubt::undetermined:
-      return "the walls seen do not determine the position, as between parallel walls: pick points";
-    case PlanMatchDoubt::poor:
-      return "too few obstacles of the map are walls of the plan: check the plan and its resolution, or pick points";
-  }
-  return "";
+  return name_among<PlanMatchDoubt::poor>(
+      {"another pose explains the map nearly as well, as on a symmetric plan: pick points",
+       "the walls seen do not determine the position, as between parallel walls: pick points",
+       "too few obstacles of the map are walls of the plan: check the plan and its resolution, or pick points"},
+      doubt);
 }
 
 std::string describe_match(const PlanMatch& match) {

@@ -1,5 +1,7 @@
 #include "byre/map/plan/plan_scale.h"
 
+#include "byre/base/enum_names.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,17 +24,12 @@ std::optional<PlanScaleDoubt> doubt_about(const PlanFit& fit, const PlanScale& s
 }  // namespace
 
 std::string_view to_string(PlanScaleDoubt doubt) {
-  switch (doubt) {
-    case PlanScaleDoubt::few_points:
-      return "fewer than four correspondences are used, so a wrong one cannot be detected: pick more";
-    case PlanScaleDoubt::small_spread:
-      return "the uncertainty of the scale exceeds 1 %: pick more correspondences, farther apart";
-    case PlanScaleDoubt::disagreement:
-      return "the correspondences are inconsistent: check them";
-    case PlanScaleDoubt::implausible:
-      return "map and plan differ by more than 10 %, too much for a baseline error: check the resolution of the plan";
-  }
-  return "";
+  return name_among<PlanScaleDoubt::implausible>(
+      {"fewer than four correspondences are used, so a wrong one cannot be detected: pick more",
+       "the uncertainty of the scale exceeds 1 %: pick more correspondences, farther apart",
+       "the correspondences are inconsistent: check them",
+       "map and plan differ by more than 10 %, too much for a baseline error: check the resolution of the plan"},
+      doubt);
 }
 
 bool PlanScale::differs_from_one() const {

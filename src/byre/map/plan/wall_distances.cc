@@ -1,6 +1,5 @@
 #include "byre/map/plan/wall_distances.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,5 @@
 #include "byre/playback/archive/colmap_export.h"
 
-#include "byre/base/output_file.h"
 #include "byre/colmap.h"
 #include "byre/input_error.h"
 #include "byre/io/colmap/colmap_camera.h"

@@ -1,10 +1,10 @@
 #include "byre/playback/archive/scale_by_distance.h"
 
+#include "byre/base/text_file.h"
 #include "byre/input_error.h"
 #include "byre/map/scaled_copy.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -15,15 +15,6 @@
 namespace byre {
 namespace {
 
-// The whole text as a number; empty if it is not a number.
-template <typename Number>
-std::optional<Number> parse(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
 std::optional<std::string_view> after(std::string_view prefix, std::string_view text) {
   return text.starts_with(prefix) ? std::optional(text.substr(prefix.size())) : std::nullopt;
 }
@@ -33,7 +24,7 @@ std::optional<std::string_view> after(std::string_view prefix, std::string_view 
 }
 
 Eigen::Vector3d point_position(const StoredMap& stored, const std::string& text, std::string_view number) {
-  const auto parsed = parse<std::uint32_t>(number);
+  const auto parsed = parse_whole<std::uint32_t>(number);
   if (!parsed) reject(text, "is not a point number");
   const MapPoint* const point = stored.map.find_point({Origin::offline, *parsed});
   if (point == nullptr) reject(text, "is not in the map");
@@ -52,7 +43,7 @@ std::string time_span(const MapGraph& map) {
 
 Eigen::Vector3d camera_position_at(const StoredMap& stored, const std::string& text, std::string_view seconds) {
   constexpr double kMaxGap = 1.0;  // seconds
-  const auto parsed = parse<double>(seconds);
+  const auto parsed = parse_whole<double>(seconds);
   if (!parsed) reject(text, "is not a time");
   const Keyframe* nearest = nullptr;
   double nearest_gap = kMaxGap;
@@ -73,7 +64,7 @@ Eigen::Vector3d position(const std::string& text) {
   std::string_view rest = text;
   while (true) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
-    const auto number = parse<double>(rest.substr(0, comma));
+    const auto number = parse_whole<double>(rest.substr(0, comma));
     if (!number || !std::isfinite(*number)) reject(text, "is not a place");
     numbers.push_back(*number);
     if (comma == rest.size()) break;

@@ -1,6 +1,6 @@
 #include "byre/playback/report/evaluation_report.h"
 
-#include "byre/playback/report/report.h"
+#include "byre/base/enum_names.h"
 
 #include <string_view>
 #include <utility>
@@ -13,32 +13,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string_view name_of(PoseAlignment alignment) {
-  switch (alignment) {
-    case PoseAlignment::se3:
-      return "se3";
-    case PoseAlignment::sim3:
-      return "sim3";
-    case PoseAlignment::origin:
-      return "origin";
-    case PoseAlignment::none:
-      return "none";
-  }
-  return "";
+  return name_among<PoseAlignment::none>({"se3", "sim3", "origin", "none"}, alignment);
 }
 
 std::string_view describe_alignment(const EvaluationReport& evaluation) {
-  switch (evaluation.protocol.alignment) {
-    case PoseAlignment::none:
-      return "none, estimate and truth are in the same frame";
-    case PoseAlignment::origin:
-      return "origin: the first pose equals the true one, including rotation";
-    case PoseAlignment::se3:
-      return "[{?ate}SE(3) over all pairs (Umeyama)|impossible: collinear positions, or fewer than three]";
-    case PoseAlignment::sim3:
-      break;
-  }
-  return "[Sim(3) over all pairs (Umeyama), scale {ate.truth_from_estimate.scale:.6f}"
-         "|impossible: collinear positions, or fewer than three]";
+  return name_among<PoseAlignment::none>(
+      {"[{?ate}SE(3) over all pairs (Umeyama)|impossible: collinear positions, or fewer than three]",
+       "[Sim(3) over all pairs (Umeyama), scale {ate.truth_from_estimate.scale:.6f}"
+       "|impossible: collinear positions, or fewer than three]",
+       "origin: the first pose equals the true one, including rotation",
+       "none, estimate and truth are in the same frame"},
+      evaluation.protocol.alignment);
 }
 
 bool has_arbitrary_rotation(const EvaluationReport& evaluation) {

@@ -1,9 +1,9 @@
 #include "byre/playback/report/inspection_report.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/odometry/odometry_calibration.h"
 #include "byre/playback/archive/register_map.h"
 #include "byre/playback/report/calibration_report.h"
-#include "byre/playback/report/report.h"
 
 #include <string_view>
 
@@ -27,27 +27,12 @@ std::string_view name_of(MapScale scale) {
 }
 
 std::string_view name_of(PoseSource source) {
-  switch (source) {
-    case PoseSource::slam:
-      return "slam";
-    case PoseSource::given:
-      return "given";
-    case PoseSource::imported:
-      return "imported";
-  }
-  return "";
+  return name_among<PoseSource::imported>({"slam", "given", "imported"}, source);
 }
 
 std::string_view describe(PoseSource source) {
-  switch (source) {
-    case PoseSource::slam:
-      return "byre's own tracking and mapping";
-    case PoseSource::given:
-      return "a given trajectory";
-    case PoseSource::imported:
-      return "an imported model";
-  }
-  return "";
+  return name_among<PoseSource::imported>(
+      {"byre's own tracking and mapping", "a given trajectory", "an imported model"}, source);
 }
 
 Json distribution_json(const Distribution& values) {

@@ -1,7 +1,6 @@
 #include "byre/playback/report/localisation_report.h"
 
 #include "byre/map/keyframe_path.h"
-#include "byre/playback/report/report.h"
 
 #include <algorithm>
 #include <map>

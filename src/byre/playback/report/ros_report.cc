@@ -25,10 +25,6 @@ ros::Vector3 ros_vector(const Eigen::Vector3d& vector) {
 constexpr double kAcceleration = 1.0;
 constexpr double kTurnAcceleration = 2.0;
 
-double rotation_variance(const Matrix6& covariance) {
-  return covariance.bottomRightCorner<3, 3>().trace();
-}
-
 bool is_known(const Matrix6& covariance) {
   return covariance.allFinite() && position_variance(covariance) > 0.0 && rotation_variance(covariance) > 0.0;
 }

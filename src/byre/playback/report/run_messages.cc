@@ -1,7 +1,5 @@
 #include "byre/playback/report/run_messages.h"
 
-#include "byre/playback/report/ros_report.h"
-
 #include <string>
 #include <utility>
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>

@@ -1,6 +1,5 @@
 #include "byre/ros2/dds/ros_graph.h"
 
-#include "byre/io/ros/message_bytes.h"
 #include "byre/ros2/dds/ros_network.h"
 
 #include <algorithm>

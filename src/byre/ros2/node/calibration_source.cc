@@ -9,8 +9,6 @@
 #include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/message_parsing.h"
 
-#include <utility>
-
 namespace byre {
 namespace {
 

@@ -3,7 +3,6 @@
 #include "byre/input_error.h"
 
 #include <algorithm>
-#include <string>
 
 #include <fmt/chrono.h>
 

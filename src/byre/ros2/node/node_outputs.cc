@@ -2,7 +2,6 @@
 
 #include "byre/floor_plan.h"
 #include "byre/playback/report/report.h"
-#include "byre/playback/report/ros_report.h"
 #include "byre/ros2/dds/ros_network.h"
 #include "byre/ros2/node/health_messages.h"
 #include "byre/ros2/node/map_messages.h"

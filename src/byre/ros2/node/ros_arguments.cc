@@ -1,11 +1,10 @@
 #include "byre/ros2/node/ros_arguments.h"
 
-#include "byre/io/recording/settings_file.h"
+#include "byre/base/text_file.h"
 #include "byre/ros2/dds/ros_network.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 namespace byre {
@@ -147,8 +146,7 @@ std::optional<LogLevel> log_level_of(std::string_view text, const std::string& n
     if (text.substr(0, assign) != node_name) return std::nullopt;
     text.remove_prefix(assign + kAssign.size());
   }
-  std::string level(text);
-  std::ranges::transform(level, level.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  const std::string level = lower_case(text);
   const auto* const found = std::ranges::find(kLevels, level, &std::pair<std::string_view, LogLevel>::first);
   return found == kLevels.end() ? std::nullopt : std::optional(found->second);
 }

@@ -15,7 +15,7 @@
 #include "byre/ros2/node/mission_sessions.h"
 #include "byre/site.h"
 #include "byre/slam/system/stored_map.h"
-#include "byre/slam/upkeep/replacement.h"
+#include "byre/slam/upkeep/update_map.h"
 #include "byre/tag_file.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 
 #include "byre/simulation/mip_texture.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include "byre/simulation/cowshed/cowshed_parts.h"
 
-#include <algorithm>
 #include <numeric>
 
 namespace byre {

@@ -1,13 +1,11 @@
 #include "byre/simulation/cowshed/cowshed_recording.h"
 
 #include "byre/input_error.h"
-#include "byre/simulation/camera_imperfection.h"
 #include "byre/simulation/euroc_writer.h"
 #include "byre/simulation/pixel_rays.h"
 #include "byre/simulation/seeded_draws.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <future>

@@ -3,7 +3,6 @@
 #include "byre/simulation/pixel_rays.h"
 #include "byre/simulation/seeded_draws.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

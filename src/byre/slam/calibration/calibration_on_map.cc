@@ -1,6 +1,6 @@
 #include "byre/slam/calibration/calibration_on_map.h"
 
-#include "byre/optimise/huber.h"
+#include "byre/optimise/robust_error.h"
 #include "byre/slam/calibration/determined_calibration.h"
 
 #include <cmath>

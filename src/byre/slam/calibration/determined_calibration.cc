@@ -2,8 +2,6 @@
 
 #include "byre/geometry/rectification.h"
 
-#include <algorithm>
-
 #include <Eigen/Eigenvalues>
 
 namespace byre {

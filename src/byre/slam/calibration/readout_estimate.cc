@@ -1,6 +1,6 @@
 #include "byre/slam/calibration/readout_estimate.h"
 
-#include "byre/optimise/huber.h"
+#include "byre/optimise/robust_error.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "byre/slam/calibration/row_evidence.h"
 
 #include "byre/geometry/median.h"
-#include "byre/optimise/huber.h"
+#include "byre/optimise/robust_error.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include "byre/geometry/median.h"
 #include "byre/geometry/rectified_change.h"
 #include "byre/optimise/calibration_covariance.h"
-#include "byre/optimise/huber.h"
+#include "byre/optimise/robust_error.h"
 #include "byre/slam/calibration/determined_calibration.h"
 #include "byre/slam/calibration/row_evidence.h"
 #include "byre/slam/window/mapping_steps.h"
@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 namespace byre {
 namespace {
@@ -245,10 +244,10 @@ std::optional<CalibrationFit::Result> CalibrationFit::with_prior(const Calibrati
     if (image_shift(problem, sensitivity, refined.change - next.change) > kLinearShift) return result;
     const Pose refined_from_solved = RectifiedChange(at.present(), refined.calibration).after_from_before();
     for (std::size_t i = 0; i < keyframes.size(); ++i) {
-      refined.keyframes_moved.push_back({keyframes[i], refined_from_solved * solved.camera_from_world[i]});
+      refined.keyframes_moved.emplace_back(keyframes[i], refined_from_solved * solved.camera_from_world[i]);
     }
     for (std::size_t i = 0; i < bundle.points.size(); ++i) {
-      refined.points_moved.push_back({bundle.points[i], solved.points_in_world[i]});
+      refined.points_moved.emplace_back(bundle.points[i], solved.points_in_world[i]);
     }
     return result;
   }

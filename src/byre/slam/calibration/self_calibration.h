@@ -24,17 +24,10 @@ struct CalibrationState {
 
 // A refined calibration, with the map's geometry in images rectified by it.
 struct SelfCalibration : RefinedCalibration {
-  struct MovedKeyframe {
-    int keyframe = 0;  // index into the window
-    Pose camera_from_world;
-  };
-  struct MovedPoint {
-    int point = 0;  // index into the window
-    Eigen::Vector3d position_in_world;
-  };
-  // Empty if the refined calibration is not that of the geometry: directions stay as given, or the change is refused.
-  std::vector<MovedKeyframe> keyframes_moved;
-  std::vector<MovedPoint> points_moved;
+  // New poses camera_from_world and positions in world, with indices into the window. Empty if the refined calibration
+  // is not that of the geometry: directions stay as given, or the change is refused.
+  std::vector<std::pair<int, Pose>> keyframes_moved;
+  std::vector<std::pair<int, Eigen::Vector3d>> points_moved;
 };
 
 // Estimates the calibration error of a rig (index into whole.rigs) from a whole map: bundle adjustment with a free

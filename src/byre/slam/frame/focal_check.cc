@@ -59,8 +59,10 @@ std::optional<FocalEvidence> compare_focal_lengths(const Pose& camera_from_world
 }
 
 bool FocalCheck::is_due() {
+  constexpr int kFirstFrames = 5;
+  constexpr int kFrameInterval = 20;
   const int frame = frames_++;
-  return checked_ < options_.first_frames || frame % options_.frame_interval == 0;
+  return checked_ < kFirstFrames || frame % kFrameInterval == 0;
 }
 
 void FocalCheck::note(const FocalEvidence& evidence) {

@@ -24,18 +24,11 @@ std::optional<FocalEvidence> compare_focal_lengths(const Pose& camera_from_world
                                                    std::span<const PoseObservation> observations,
                                                    double max_error = 4.0);
 
-struct FocalCheckOptions {
-  int first_frames = 5;     // first frames, consecutive
-  int frame_interval = 20;  // interval afterwards, frames
-};
-
 // Detects a wrong focal length of the calibration from points of a correct map. A pose alone compensates a wrong focal
 // length by its distance; points at different depths then disagree.
 class FocalCheck {
  public:
-  explicit FocalCheck(const FocalCheckOptions& options = {}) : options_(options) {}
-
-  // Whether to weigh the next frame. Call it once for each frame.
+  // Whether to weigh the next frame: each until five were weighed, then every twentieth. Call it once for each frame.
   bool is_due();
   void note(const FocalEvidence& evidence);
 
@@ -46,7 +39,6 @@ class FocalCheck {
   bool is_off() const { return is_off_; }
 
  private:
-  FocalCheckOptions options_;
   FocalEvidence sum_;
   double weight_ = 0.0;  // number of frames in the sum, with decay
   bool is_off_ = false;

@@ -100,17 +100,14 @@ TEST(FocalCheck, KeepsAnErrorUntilItIsClearlyGone) {
 }
 
 TEST(FocalCheck, EvaluatesTheFirstFramesThenOccasionalOnes) {
-  FocalCheckOptions options;
-  options.first_frames = 2;
-  options.frame_interval = 10;
-  FocalCheck check(options);
+  FocalCheck check;
   int asked = 0;
-  for (int frame = 0; frame < 41; ++frame) {
+  for (int frame = 0; frame < 81; ++frame) {
     if (!check.is_due()) continue;
     ++asked;
     check.note({900.0, 100.0, 900.0, 100.0});
   }
-  EXPECT_EQ(asked, 2 + 4);
+  EXPECT_EQ(asked, 5 + 4);
 }
 
 TEST(FocalCheck, RequiresEnoughPointsForAPose) {

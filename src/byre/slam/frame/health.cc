@@ -3,23 +3,49 @@
 #include "byre/base/enum_names.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace byre {
 namespace {
+
+constexpr std::string_view kImpossible =
+    "set the initial pose, move the robot to a distinctive place, or check the floor plan";
+
+// Name and advice of each reason, in their order.
+constexpr auto kReasons = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"none", ""},
+    {"no pose", "move the robot into the mapped area"},
+    {"blinded", "check for covered lenses, darkness and glare"},
+    {"not registered in the map", "drive on through mapped places"},
+    {"not confirmed yet", "drive on: other parts of the map in view confirm the place"},
+    {"far outside the mapped area", "return to the mapped area, or extend the map (byre map --extend)"},
+    {"too few points", "check light and lenses, and turn to things with texture"},
+    {"too few offline points", "extend the map, as much has changed here"},
+    {"points are clustered", "turn to things with texture in more of the image"},
+    {"pose is uncertain", "approach mapped things, or drive on"},
+    {"offline and online points disagree", "drive on; if things were moved for good, extend the map"},
+    {"camera repeats its image", "restart the camera's driver"},
+    {"right camera is blinded", "check lens and exposure of the right camera"},
+    {"left and right images do not fit",
+     "check whether the cameras are synchronised, swapped or displaced; calibrate them"},
+    {"calibration does not fit the map", "calibrate the cameras"},
+    {"bridged by wheels or a gyroscope",
+     "check for covered lenses and darkness; dead reckoning by wheels is usable for some metres only"},
+    {"dirt hides most of the image", "clean the lens"},
+    {"map file is damaged", "replace the map file by a copy and load it again"},
+    {"place found is off the driving plane", kImpossible},
+    {"place found is inside a wall", kImpossible},
+    {"place found is outside of the building", kImpossible},
+    {"place found is behind a wall", kImpossible},
+});
+static_assert(kReasons.size() == static_cast<std::size_t>(DistrustReason::behind_wall) + 1);
 
 constexpr int kManyOfflinePoints = 80;     // expected offline points, from which some must be found
 constexpr double kMostHidden = 2.0 / 3.0;  // share of the image; one moved object may fill the rest
 constexpr double kFar = 1.0;               // metres of path without offline points
 constexpr double kMinOfflineShare = 0.02;  // share of expected points; fewer agree by chance in repetitive buildings
-
-double drift_of(const Health& health, const HealthOptions& options) {
-  return options.drift_share * health.distance_since_offline;
-}
-
-double uncertainty_of(const Health& health, const HealthOptions& options) {
-  return options.sigmas * health.position_sigma;
-}
 
 // Fault of the input that may explain a lost pose; none without one.
 DistrustReason fault_of_input(const HealthEvidence& evidence) {
@@ -90,58 +116,11 @@ std::string_view to_string(Verdict verdict) {
 }
 
 std::string_view to_string(DistrustReason doubt) {
-  return name_among<DistrustReason::behind_wall>({"none",
-                                                  "no pose",
-                                                  "blinded",
-                                                  "not registered in the map",
-                                                  "not confirmed yet",
-                                                  "far outside the mapped area",
-                                                  "too few points",
-                                                  "too few offline points",
-                                                  "points are clustered",
-                                                  "pose is uncertain",
-                                                  "offline and online points disagree",
-                                                  "camera repeats its image",
-                                                  "right camera is blinded",
-                                                  "left and right images do not fit",
-                                                  "calibration does not fit the map",
-                                                  "bridged by wheels or a gyroscope",
-                                                  "dirt hides most of the image",
-                                                  "map file is damaged",
-                                                  "place found is off the driving plane",
-                                                  "place found is inside a wall",
-                                                  "place found is outside of the building",
-                                                  "place found is behind a wall"},
-                                                 doubt);
+  return kReasons.at(static_cast<std::size_t>(doubt)).first;
 }
 
 std::string_view advice_for(DistrustReason doubt) {
-  constexpr std::string_view kImpossible =
-      "set the initial pose, move the robot to a distinctive place, or check the floor plan";
-  return name_among<DistrustReason::behind_wall>(
-      {"",
-       "move the robot into the mapped area",
-       "check for covered lenses, darkness and glare",
-       "drive on through mapped places",
-       "drive on: other parts of the map in view confirm the place",
-       "return to the mapped area, or extend the map (byre map --extend)",
-       "check light and lenses, and turn to things with texture",
-       "extend the map, as much has changed here",
-       "turn to things with texture in more of the image",
-       "approach mapped things, or drive on",
-       "drive on; if things were moved for good, extend the map",
-       "restart the camera's driver",
-       "check lens and exposure of the right camera",
-       "check whether the cameras are synchronised, swapped or displaced; calibrate them",
-       "calibrate the cameras",
-       "check for covered lenses and darkness; dead reckoning by wheels is usable for some metres only",
-       "clean the lens",
-       "replace the map file by a copy and load it again",
-       kImpossible,
-       kImpossible,
-       kImpossible,
-       kImpossible},
-      doubt);
+  return kReasons.at(static_cast<std::size_t>(doubt)).second;
 }
 
 std::string note_on_dirt(const Health& health) {
@@ -188,7 +167,7 @@ HealthEvidence FaultLatches::latch(Timestamp time, const HealthEvidence& evidenc
 }
 
 double position_error(const Health& measured, const HealthOptions& options) {
-  return std::hypot(uncertainty_of(measured, options), drift_of(measured, options));
+  return std::hypot(options.sigmas * measured.position_sigma, options.drift_share * measured.distance_since_offline);
 }
 
 Health assess(const Health& measured, const HealthEvidence& evidence, const HealthOptions& options) {

@@ -67,14 +67,9 @@ bool disagree(const PoseRefinement& one, const PoseRefinement& other, double dep
   return deviation.dot(covariance.ldlt().solve(deviation)) > kMaxSquaredDeviation;
 }
 
-// First pose by the search radius, otherwise by the wide one.
 std::optional<Pose> guess(const Query& query, const Pose& predicted, std::span<const ExpectedPoint> points) {
   if (points.empty()) return std::nullopt;
-  for (const float radius : {query.options.search_radius, query.options.wide_radius}) {
-    const auto pose = first_pose(query.frame, predicted, query.rig, query.map, points, radius, query.options);
-    if (pose) return pose;
-  }
-  return std::nullopt;
+  return first_pose(query.frame, predicted, query.rig, query.map, points, query.options);
 }
 
 ByMap<ScratchVector<ExpectedPoint>> project(const Query& query, const ByMap<Pose>& camera_from_world) {
@@ -148,14 +143,11 @@ std::optional<PoseRefinement> refine_alone(const Query& query, const Pose& camer
   return refined;
 }
 
-// Regions of the image with evidence on an offline pose, and those where most matches fit it.
-struct Support {
-  int telling = 0;
-  int fitting = 0;
-};
-
-Support support_of(const Query& query, const PoseRefinement& refined, const MeasuredPoints& measured) {
-  constexpr int kMinMatches = 3;
+// A moved object fits a pose of its own as well, but does not fill the image. Precondition: the pose is sound.
+bool prevails(const Query& query, const PoseRefinement& offline, const MeasuredPoints& measured) {
+  constexpr int kMinMatches = 3;     // matches in a region with evidence
+  constexpr int kMinParts = 4;       // image regions with fitting points, a third of all
+  constexpr double kMinShare = 0.6;  // share of the regions with evidence that must fit
   struct Part {
     int fit = 0;
     int elsewhere = 0;
@@ -163,25 +155,17 @@ Support support_of(const Query& query, const PoseRefinement& refined, const Meas
   ByImageRegion<Part> parts;
   for (std::size_t i = 0; i < measured.features.size(); ++i) {
     const TrackedFeature& feature = measured.features[i];
-    if (!refined.inliers[i] && !shows_patch(feature, *query.frame.features)) continue;
+    if (!offline.inliers[i] && !shows_patch(feature, *query.frame.features)) continue;
     Part& part = parts[image_region_of(feature.pixel.x(), feature.pixel.y(), query.rig)];
-    ++(refined.inliers[i] ? part.fit : part.elsewhere);
+    ++(offline.inliers[i] ? part.fit : part.elsewhere);
   }
-  Support support;
+  int telling = 0, fitting = 0;  // regions
   for (const Part& part : parts) {
     if (part.fit + part.elsewhere < kMinMatches) continue;
-    ++support.telling;
-    support.fitting += part.fit > part.elsewhere ? 1 : 0;
+    ++telling;
+    fitting += part.fit > part.elsewhere ? 1 : 0;
   }
-  return support;
-}
-
-// A moved object fits a pose of its own as well, but does not fill the image. Precondition: the pose is sound.
-bool prevails(const Query& query, const PoseRefinement& offline, const MeasuredPoints& measured) {
-  constexpr int kMinParts = 4;       // image regions with fitting points, a third of all
-  constexpr double kMinShare = 0.6;  // share of the regions with evidence that must fit
-  const Support support = support_of(query, offline, measured);
-  return support.fitting >= kMinParts && support.fitting >= kMinShare * support.telling;
+  return fitting >= kMinParts && fitting >= kMinShare * telling;
 }
 
 // Number of matches that fit a pose within noise and systematic errors.
@@ -266,7 +250,7 @@ Opinions solve_each(const Query& query, const ByMap<Pose>& guesses, const Found&
 }
 
 double position_sigma(const PoseRefinement& refined) {
-  return std::sqrt(refined.covariance.topLeftCorner<3, 3>().trace());
+  return std::sqrt(position_variance(refined.covariance));
 }
 
 bool is_online_more_precise(const Query& query, const Opinions& opinions) {
@@ -355,12 +339,12 @@ Agreement agreement_of(const Pose& one, const Pose& other) {
   return {(inverse(one).translation - inverse(other).translation).norm(), angle_between(one.rotation, other.rotation)};
 }
 
-bool is_within(const Agreement& agreement, const DriftBound& drift) {
-  return agreement.translation <= drift.translation && agreement.rotation <= drift.rotation;
+bool is_within(const Agreement& agreement, const Agreement& bound) {
+  return agreement.translation <= bound.translation && agreement.rotation <= bound.rotation;
 }
 
 double sigma_between_maps(const HybridTrack& track) {
-  if (!track.from_offline) return std::sqrt(track.tracked.match_covariance.topLeftCorner<3, 3>().trace());
+  if (!track.from_offline) return std::sqrt(position_variance(track.tracked.match_covariance));
   if (!track.from_online) return track.offline_sigma;
   return std::hypot(track.offline_sigma, agreement_of(*track.from_offline, *track.from_online).translation);
 }

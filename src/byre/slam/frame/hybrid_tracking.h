@@ -10,16 +10,10 @@
 
 namespace byre {
 
-// Bound on the offset between online and offline map.
-struct DriftBound {
-  double translation = 0.05;  // metres
-  double rotation = 0.02;     // radians
-};
-
 // Difference of two poses camera_from_world.
 Agreement agreement_of(const Pose& one, const Pose& other);
 
-bool is_within(const Agreement& agreement, const DriftBound& drift);
+bool is_within(const Agreement& agreement, const Agreement& bound);
 
 // A frame tracked on the points of an offline and an online map.
 struct HybridTrack {
@@ -52,10 +46,10 @@ double sigma_between_maps(const HybridTrack& track);
 
 // Limits of a pose from offline points. A pose beyond them is that of a look-alike place.
 struct HybridLimits {
-  DriftBound drift{kNoLimit, kNoLimit};  // from the pose by online points
-  double stray = kNoLimit;               // metres from the prediction, without a pose by online points
-  std::optional<PosePrior> prior{};      // prior of the pose, for points of both maps
-  double online_sigma = kNoLimit;        // metres, of the online map's place in the offline one; infinite: unknown
+  Agreement drift{kNoLimit, kNoLimit};  // from the pose by online points
+  double stray = kNoLimit;              // metres from the prediction, without a pose by online points
+  std::optional<PosePrior> prior{};     // prior of the pose, for points of both maps
+  double online_sigma = kNoLimit;       // metres, of the online map's place in the offline one; infinite: unknown
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 };
 

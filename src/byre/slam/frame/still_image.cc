@@ -42,8 +42,8 @@ Pose least_motion(const BodyMotion& measured) {
   const Eigen::Vector3d& way = measured.last_from_body.translation;
   const Eigen::Vector3d turn = rotation_log(measured.last_from_body.rotation);
   const Matrix6& covariance = measured.covariance;
-  return {rotation_exp(share_left(turn.norm(), covariance.bottomRightCorner<3, 3>().trace()) * turn),
-          share_left(way.norm(), covariance.topLeftCorner<3, 3>().trace()) * way};
+  return {rotation_exp(share_left(turn.norm(), rotation_variance(covariance)) * turn),
+          share_left(way.norm(), position_variance(covariance)) * way};
 }
 
 // The motion of the camera, now_from_then.
@@ -62,8 +62,8 @@ bool is_small(const Pose& motion) {
 bool is_known_better(const BodyMotion& measured, const Vector6& velocity, double seconds) {
   constexpr double kShare = 0.3;
   constexpr double kLeast = 1e-3;  // metres and radians
-  const double way_sigma = std::sqrt(std::max(0.0, measured.covariance.topLeftCorner<3, 3>().trace()));
-  const double turn_sigma = std::sqrt(std::max(0.0, measured.covariance.bottomRightCorner<3, 3>().trace()));
+  const double way_sigma = std::sqrt(std::max(0.0, position_variance(measured.covariance)));
+  const double turn_sigma = std::sqrt(std::max(0.0, rotation_variance(measured.covariance)));
   return way_sigma <= kShare * velocity.head<3>().norm() * seconds + kLeast &&
          turn_sigma <= kShare * velocity.tail<3>().norm() * seconds + kLeast;
 }

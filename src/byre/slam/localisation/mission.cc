@@ -18,7 +18,7 @@ constexpr int kLookAgainEvery = 5;       // frames between searches for suspende
 
 }  // namespace
 
-DriftBound Mission::drift() const {
+Agreement Mission::drift() const {
   return {kMinDrift + kDriftShare * distance_since_offline_, kMinTurn + kTurnPerMetre * distance_since_offline_};
 }
 

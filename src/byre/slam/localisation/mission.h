@@ -41,7 +41,7 @@ class Mission {
   OfflineView view() const { return view_; }
   double distance_since_offline() const { return distance_since_offline_; }
   std::optional<Timestamp> last_offline_time() const { return last_offline_time_; }
-  DriftBound drift() const;
+  Agreement drift() const;  // bound on the offset between online and offline map
   // Limits of the pose from offline points at an accepted place. seconds: time since the last tracked frame.
   HybridLimits limits(bool is_stereo, double seconds) const;
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace byre {
 namespace {
@@ -85,10 +84,9 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
   ScratchVector<PointId> around;
   constexpr std::size_t kFew = 200;  // nearby points; with fewer, too few may be in view
   if (nearby_points_.size() < kFew) {
-    const MapGraph nothing_online(Origin::online);
     auto reference = track.offline_reference;
     if (!reference) reference = mission_.keyframe_near(pose);
-    if (reference) around = local_points({&offline_->map(), nothing_online}, *reference, options_.local_keyframes);
+    if (reference) around = local_points(offline_->map(), *reference, options_.local_keyframes);
   }
   const std::vector<PointId> in_common = finds_rivals ? points_in_common(track.tracked) : std::vector<PointId>();
   return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden, offline_->tags(),
@@ -116,19 +114,17 @@ std::optional<TrackedFrame> OfflineTracker::find_at_rival(const Frame& frame, co
 std::optional<TrackedFrame> OfflineTracker::track_at(const Frame& frame, const Pose& predicted,
                                                      std::span<const PointId> points, const Rig& rig,
                                                      const ImageMask& hidden) const {
-  const MapGraph nothing_online(Origin::online);
   TrackOptions options = options_.track;
   options.hidden = hidden;
-  return track(frame, predicted, rig, {&offline_->map(), nothing_online}, points, options);
+  return track(frame, predicted, rig, offline_->map(), points, options);
 }
 
 ScratchVector<PointId> OfflineTracker::points_around(const Pose& camera_from_offline) const {
   constexpr double kNear = 10.0;  // metres; keyframes far from a place may have seen its points
   constexpr int kKeyframes = 5;
-  const MapGraph nothing_online(Origin::online);
   ScratchVector<PointId> around;
   for (const KeyframeId id : offline_->keyframes_near(camera_from_offline, kNear, kKeyframes)) {
-    const ScratchVector<PointId> points = local_points({&offline_->map(), nothing_online}, id, kKeyframesOfPlace);
+    const ScratchVector<PointId> points = local_points(offline_->map(), id, kKeyframesOfPlace);
     around.insert(around.end(), points.begin(), points.end());
   }
   std::ranges::sort(around);
@@ -183,19 +179,19 @@ void OfflineTracker::test_rivals(const Seen& seen, std::span<const HybridTrack> 
       for (const Eigen::Vector3d& shift : both_ways(place)) rivals.push_back(camera_at(shift, camera_from_place));
     }
   }
-  propose_rivals({seen.frame.time, camera_from_place}, rivals, seen.rig, pose_filter, mapper);
+  propose_rivals(seen.frame.time, camera_from_place, rivals, seen.rig, pose_filter, mapper);
   rivals_.observe(camera_from_place, [&](const Pose& predicted) {
     return view_at_rival(seen.frame, predicted, seen.rig, seen.hidden, &features_at_rivals_);
   });
   std::ranges::sort(features_at_rivals_);
 }
 
-void OfflineTracker::propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
-                                    const PoseFilter& pose_filter, const Mapper& mapper) {
+void OfflineTracker::propose_rivals(Timestamp time, const Pose& camera_from_place, std::span<const Pose> rivals,
+                                    const Rig& rig, const PoseFilter& pose_filter, const Mapper& mapper) {
   for (const Pose& camera_from_rival : rivals) {
     const Pose body = body_pose(rig, camera_from_rival);
-    rivals_.propose(place.camera_from_offline, camera_from_rival,
-                    pose_filter.log_odds_of_relocalisation(place.time, body, rig, mapper.map()));
+    rivals_.propose(camera_from_place, camera_from_rival,
+                    pose_filter.log_odds_of_relocalisation(time, body, rig, mapper.map()));
   }
 }
 
@@ -406,7 +402,7 @@ OfflineTracker::MissionUpdate OfflineTracker::process_search(const std::optional
   if (is_in_place) {
     std::vector<Pose> places;
     for (const FoundPlace& found : search->places) places.push_back(found.camera_from_offline);
-    propose_rivals({search->time, camera_from_online}, places, search->rig, pose_filter, mapper);
+    propose_rivals(search->time, camera_from_online, places, search->rig, pose_filter, mapper);
   }
   if (!place.is_confirmed()) return {};
   if (submaps.frame() != Submaps::kMapFrame) {

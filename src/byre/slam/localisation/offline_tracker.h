@@ -144,11 +144,7 @@ class OfflineTracker {
   std::span<const LookAlikePlace> look_alikes_at(const Pose& camera_from_place);
   bool is_untestable(const Pose& camera_from_look_alike, double shift) const;
   std::vector<PointId> points_in_common(const TrackedFrame& tracked);
-  struct PlaceOfFrame {
-    Timestamp time{};
-    Pose camera_from_offline;
-  };
-  void propose_rivals(const PlaceOfFrame& place, std::span<const Pose> rivals, const Rig& rig,
+  void propose_rivals(Timestamp time, const Pose& camera_from_place, std::span<const Pose> rivals, const Rig& rig,
                       const PoseFilter& pose_filter, const Mapper& mapper);
   double log_odds_of_path(const Pose& rival_from_place, const Mapper& mapper) const;
   bool is_search_needed(const PoseFilter& pose_filter, const Mapper& mapper) const;

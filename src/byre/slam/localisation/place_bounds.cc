@@ -21,7 +21,7 @@ bool PlaceBounds::is_off_the_ground(const PlaceCandidatePose& place) const {
   const DrivenGround::GroundOffset offset = ground_->offset_from_ground(place.map_from_body);
   const Eigen::Vector3d& up = offset.up_in_body;
   const double height_variance = up.dot(place.covariance.topLeftCorner<3, 3>() * up);
-  const double tilt_variance = place.covariance.bottomRightCorner<3, 3>().trace();
+  const double tilt_variance = rotation_variance(place.covariance);
   const double height_bound =
       options_.plane_margin + kSigmasOfLine * std::hypot(offset.height_sigma, std::sqrt(height_variance));
   const double tilt_bound =
@@ -49,7 +49,7 @@ DistrustReason PlaceBounds::wall_rejection(const PlaceCandidatePose& place, cons
   if (!reach) return DistrustReason::none;
   const double seconds = to_seconds(place.time - reach->before.time);
   if (seconds >= kUntilItIsCarried) return DistrustReason::none;
-  const PlanDisc before = disc_around(reach->before.map_from_body, Matrix6::Zero());
+  const PlanDisc before = disc_around(reach->before.world_from_body, Matrix6::Zero());
   // The straight distance is always allowed: a place beyond the reach of max_speed needs more frames to be confirmed,
   // but is no evidence of a wall.
   const double longest = kSlack + std::max(reach->max_speed * seconds, (here.centre - before.centre).norm());

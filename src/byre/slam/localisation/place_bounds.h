@@ -23,12 +23,6 @@ struct PlaceCandidatePose {
   Matrix6 covariance = Matrix6::Zero();  // see FrameReport
 };
 
-// An earlier pose of the robot, beyond doubt.
-struct PreviousPlace {
-  Timestamp time{};
-  Pose map_from_body;
-};
-
 // Poses that are possible for the robot: on the ground that the map was driven on, and between the walls of the floor
 // plan. Each bound is the 95 % quantile of all uncertainty plus a margin. Constant after construction.
 class PlaceBounds {
@@ -39,7 +33,7 @@ class PlaceBounds {
 
   // Motion since an earlier pose, at most max_speed metres per second.
   struct Reach {
-    PreviousPlace before;
+    StampedPose before;  // beyond doubt
     double max_speed = 3.0;
   };
   // Reason why the robot cannot be at a place; DistrustReason::none if it can.
@@ -60,7 +54,7 @@ class TrustedPlace {
  public:
   explicit TrustedPlace(double max_speed) : max_speed_(max_speed) {}  // metres per second
 
-  void note(const PreviousPlace& place) { place_ = place; }
+  void note(const StampedPose& place) { place_ = place; }
   void forget() { place_.reset(); }  // the robot may have been carried, or the pose was wrong
 
   std::optional<PlaceBounds::Reach> reach_from_there() const;  // empty without a trusted pose
@@ -70,7 +64,7 @@ class TrustedPlace {
 
  private:
   double max_speed_;  // constant after construction
-  std::optional<PreviousPlace> place_;
+  std::optional<StampedPose> place_;
   DistrustReason reported_ = DistrustReason::none;
 };
 

@@ -37,12 +37,10 @@ struct Candidates {
 std::vector<Candidates> candidates_in(std::span<const std::shared_ptr<const OfflineMap>> maps,
                                       std::span<const Word> words) {
   constexpr std::size_t kLeastOfMap = 2;
-  const MapGraph nothing_online(Origin::online);
   std::vector<Candidates> candidates;
   std::vector<float> scores;
   for (const auto& offline : maps) {
-    const MapView map(&offline->map(), nothing_online);
-    candidates.push_back({words, find_places(offline->places(), map, words, kPlacesTried)});
+    candidates.push_back({words, find_places(offline->places(), offline->map(), words, kPlacesTried)});
     for (const PlaceCandidate& place : candidates.back().places) scores.push_back(place.group_score);
   }
   std::ranges::sort(scores, std::greater{});
@@ -85,8 +83,7 @@ BoundedLocalisation localise_at_candidates(const OfflineMap& offline, const Plac
   LocaliseOptions localise_options = options.localise;
   localise_options.hidden = hidden;
   localise_options.tags = offline.tags();
-  const MapGraph nothing_online(Origin::online);
-  const MapView map(&offline.map(), nothing_online);
+  const MapView map(offline.map());
   const PlaceBounds bounds(offline, options.bounds);
   BoundedLocalisation result;
   PlaceFilter filter;
@@ -118,9 +115,7 @@ BoundedLocalisation localise_at_candidates(const OfflineMap& offline, const Plac
 
 PlaceView view_at(const OfflineMap& offline, const Frame& frame, const Rig& rig, const ImageMask& hidden,
                   const TrackedFrame& tracked) {
-  const MapGraph nothing_online(Origin::online);
-  const ScratchVector<PointId> around =
-      local_points(MapView(&offline.map(), nothing_online), tracked.reference, kKeyframesOfPlace);
+  const ScratchVector<PointId> around = local_points(offline.map(), tracked.reference, kKeyframesOfPlace);
   const ScratchVector<PointId> nearby =
       points_of_place(offline, keyframes_of_place(offline, tracked.camera_from_world));
   return view_of_place(
@@ -132,9 +127,8 @@ PlaceSearch search_at_candidates(const OfflineMap& offline, const PlaceQuery& qu
   const auto [found, refused] = localise_at_candidates(offline, query, options, candidates);
   PlaceSearch search{query.frame.time, query.rig, std::nullopt, refused};
   search.focal = found.focal;
-  const MapGraph nothing_online(Origin::online);
   const auto seen_at = [&](const TrackedFrame& place) {
-    return FoundPlace{place.camera_from_world, median_depth(place, MapView(&offline.map(), nothing_online)),
+    return FoundPlace{place.camera_from_world, median_depth(place, offline.map()),
                       view_at(offline, query.frame, query.rig, query.hidden, place)};
   };
   for (const TrackedFrame& place : found.places_found) search.places.push_back(seen_at(place));
@@ -176,12 +170,11 @@ ImageLocalisation localise_image(std::span<const OfflineMap* const> maps, const 
 
     double inliers() const { return static_cast<double>(tracked->features.size()); }
   };
-  const MapGraph nothing_online(Origin::online);
   std::vector<Localisation> attempts;  // one for each map
   for (const OfflineMap* const offline : maps) {
     LocaliseOptions options;
     options.tags = offline->tags();
-    attempts.push_back(localise(frame, rig, MapView(&offline->map(), nothing_online), offline->places(), options));
+    attempts.push_back(localise(frame, rig, offline->map(), offline->places(), options));
   }
   std::vector<LikelyPlace> places;
   for (int map = 0; map < std::ssize(maps); ++map) {

@@ -1,5 +1,6 @@
 #include "byre/slam/localisation/pose_filter.h"
 
+#include "byre/odometry/visual_motion.h"
 #include "byre/slam/localisation/mission.h"
 #include "byre/slam/tracking/body_pose.h"
 #include "byre/slam/tracking/keyframes.h"
@@ -38,7 +39,7 @@ bool PoseFilter::is_accurate(const BodyMotion& measured) const {
   constexpr double kMostShare = 0.15;  // share of the scene depth
   constexpr double kMostTurn = 0.1;    // radians
   return std::sqrt(position_variance(measured.covariance)) <= kMostShare * scene_depth_ &&
-         std::sqrt(measured.covariance.bottomRightCorner<3, 3>().trace()) <= kMostTurn;
+         std::sqrt(rotation_variance(measured.covariance)) <= kMostTurn;
 }
 
 bool PoseFilter::is_odometry_accurate() const {
@@ -48,10 +49,8 @@ bool PoseFilter::is_odometry_accurate() const {
 
 // Whether the pose continues the camera's motion from the last one, within the acceleration of a body.
 bool PoseFilter::is_continued(Timestamp time, const Pose& now, const Rig& rig, const MapView& map) const {
-  constexpr double kMostAcceleration = 15.0;  // m/s^2
-  constexpr double kMostTurning = 30.0;       // radians per second squared
-  constexpr double kShare = 0.05;             // share of the median depth of the scene
-  constexpr double kTurn = 0.1;               // radians
+  constexpr double kShare = 0.05;   // share of the median depth of the scene
+  constexpr double kTurn = 0.1;     // radians
   constexpr double kLongest = 0.3;  // longest frame interval over which the velocity predicts the motion, seconds
   if (!has_pose_ || trajectory_.empty() || !place_.is_confirmed()) return false;
   const double seconds = to_seconds(time - trajectory_.back().time);
@@ -63,12 +62,12 @@ bool PoseFilter::is_continued(Timestamp time, const Pose& now, const Rig& rig, c
          rotation_log(apart.rotation).norm() <= kTurn + kMostTurning * seconds * seconds;
 }
 
-std::optional<PoseFilter::MeasuredPose> PoseFilter::measured_pose(const Rig& rig, const MapView& map) const {
+std::optional<PoseFilter::UncertainPose> PoseFilter::measured_pose(const Rig& rig, const MapView& map) const {
   if (!since_confirmed_ || trajectory_.confirmed_count() == 0) return std::nullopt;
   const AnchoredPose& confirmed = trajectory_[trajectory_.confirmed_count() - 1];
   const BodyMotion since_seen = bridge_ ? *bridge_ * *since_confirmed_ : *since_confirmed_;
-  return MeasuredPose{body_pose(rig, byre::camera_from_world(map, confirmed)) * since_confirmed_->last_from_body,
-                      since_seen.covariance};
+  return UncertainPose{body_pose(rig, byre::camera_from_world(map, confirmed)) * since_confirmed_->last_from_body,
+                       since_seen.covariance};
 }
 
 bool PoseFilter::is_unreachable(const Frame& frame, const HybridTrack& track, const Rig& rig,
@@ -83,7 +82,7 @@ bool PoseFilter::is_unreachable(const Frame& frame, const HybridTrack& track, co
   const AnchoredPose& confirmed = trajectory_[trajectory_.confirmed_count() - 1];
   const AnchoredPose& last_seen = bridge_ ? trajectory_[bridge_begin_] : confirmed;
   if (frame.time - last_seen.time > kLongest) return false;
-  const std::optional<MeasuredPose> measured = measured_pose(rig, map);
+  const std::optional<UncertainPose> measured = measured_pose(rig, map);
   const bool is_elsewhere = measured && is_beyond(measured->covariance, inverse(measured->map_from_body) * now);
   const auto reach = reach_(last_seen.time, frame.time);
   if (!reach) return false;
@@ -98,10 +97,10 @@ bool PoseFilter::is_jump(const Frame& frame, const HybridTrack& track, const Rig
   if (!on_offline_map_ || !last_accepted_ || !place_.is_confirmed()) return false;
   const Pose now = body_pose(rig, track.tracked.camera_from_world);
   if (is_continued(frame.time, now, rig, map)) return false;
-  const Accepted known = last_known(rig, map);
+  const StampedPose known = last_known(rig, map);
   const double reach = kSlack + kSigmas * std::sqrt(position_variance(quality_.covariance)) +
                        registration_.max_speed * to_seconds(frame.time - known.time);
-  return (now.translation - known.map_from_body.translation).norm() > reach;
+  return (now.translation - known.world_from_body.translation).norm() > reach;
 }
 
 // Whether a pose differs from the predicted one by more than the error of measured motion in that direction: the tilt
@@ -141,7 +140,7 @@ void PoseFilter::record_bridge_end(const Rig& rig, const MapView& map) {
 double PoseFilter::log_odds_of_odometry(const Pose& body, const Rig& rig, const MapView& map) const {
   constexpr double kSlack = 0.05;  // share of the scene depth, and radians
   constexpr double kUsual = 6.0;   // squared distance, the mean for six dimensions
-  const std::optional<MeasuredPose> measured = measured_pose(rig, map);
+  const std::optional<UncertainPose> measured = measured_pose(rig, map);
   if (!reach_ || !measured || quality_.verdict == Verdict::untrusted) return 0.0;
   Matrix6 covariance = measured->covariance;
   covariance.diagonal().head<3>().array() += std::pow(kSlack * scene_depth_, 2);
@@ -152,7 +151,7 @@ double PoseFilter::log_odds_of_odometry(const Pose& body, const Rig& rig, const 
 }
 
 // Reference of a find: the last accepted pose, or the pose by measured motion since then.
-PoseFilter::Accepted PoseFilter::last_known(const Rig& rig, const MapView& map) const {
+StampedPose PoseFilter::last_known(const Rig& rig, const MapView& map) const {
   const bool is_bridged = bridge_ && is_odometry_accurate() && quality_.verdict != Verdict::untrusted;
   if (!is_bridged) return *last_accepted_;
   const AnchoredPose& bridged = trajectory_[trajectory_.confirmed_count() - 1];
@@ -163,9 +162,9 @@ double PoseFilter::log_odds_of_relocalisation(Timestamp time, const Pose& body, 
                                               const MapView& map) const {
   constexpr double kSlack = 0.5;  // metres, error of poses
   if (!last_accepted_ || trajectory_.confirmed_count() == 0) return 0.0;
-  const Accepted known = last_known(rig, map);
+  const StampedPose known = last_known(rig, map);
   const double reach = kSlack + registration_.max_speed * to_seconds(time - known.time);
-  if ((body.translation - known.map_from_body.translation).norm() > reach) return kLogOddsOfKidnapping;
+  if ((body.translation - known.world_from_body.translation).norm() > reach) return kLogOddsOfKidnapping;
   return log_odds_of_odometry(body, rig, map);
 }
 
@@ -331,7 +330,7 @@ Pose PoseFilter::constrained_by(const BodyTilt& tilt, const Rig& rig, const Pose
   const PosePrior prior = tilt_prior(tilt, rig, camera_from_map);
   const PosePrior measured{camera_from_map, move_covariance(covariance_of_bridge(), inverse(rig.body_from_camera))};
   const double apart = angle_between(measured.camera_from_world.rotation, prior.camera_from_world.rotation);
-  const double turn_variance = measured.covariance.bottomRightCorner<3, 3>().trace();
+  const double turn_variance = rotation_variance(measured.covariance);
   if (apart > kSigmas * std::sqrt(turn_variance + tilt.sigma * tilt.sigma)) return camera_from_map;
   const PosePrior held = combined(measured, prior);
   bridge_covariance_ = move_covariance(held.covariance, rig.body_from_camera);

@@ -20,11 +20,6 @@ namespace byre {
 // Keyframe that a tracked frame's pose is stored relative to.
 KeyframeId anchor_of(const HybridTrack& track);
 
-// Variance of a pose's position, sum over its axes, square metres.
-inline double position_variance(const Matrix6& covariance) {
-  return covariance.topLeftCorner<3, 3>().trace();
-}
-
 // Pose state of the robot from frame to frame: updated by frames, measured motion and changes of the map. Reads maps,
 // changes only itself. Called from the session's thread.
 class PoseFilter {
@@ -160,18 +155,15 @@ class PoseFilter {
   }
 
  private:
-  // Pose by measured motion since the last confirmed pose, with the covariance since the last visual pose.
-  struct MeasuredPose {
+  struct UncertainPose {
     Pose map_from_body;
     Matrix6 covariance;
   };
-  std::optional<MeasuredPose> measured_pose(const Rig& rig, const MapView& map) const;  // empty: unknown motion
-  struct Accepted {
-    Timestamp time{};
-    Pose map_from_body;
-  };
+  // Pose by measured motion since the last confirmed pose, with the covariance since the last visual pose; empty:
+  // unknown motion.
+  std::optional<UncertainPose> measured_pose(const Rig& rig, const MapView& map) const;
   double log_odds_of_odometry(const Pose& body, const Rig& rig, const MapView& map) const;
-  Accepted last_known(const Rig& rig, const MapView& map) const;  // precondition: there is a last accepted pose
+  StampedPose last_known(const Rig& rig, const MapView& map) const;  // precondition: there is a last accepted pose
   void propagate_before_map();
   double move_to(const TrackedPose& seen, const Pose& body, const Rig& rig, const MapView& map);
   void note_disagreement(const HybridTrack& track);
@@ -210,15 +202,10 @@ class PoseFilter {
   std::optional<BridgeEnd> bridge_end_;
   PoseQuality quality_;
   std::optional<Timestamp> last_seen_;
-  // Pose of a submap's beginning after a bridge, with its covariance.
-  struct Carried {
-    Pose map_from_body;
-    Matrix6 covariance;
-  };
-  std::optional<Carried> carried_;
-  std::optional<Carried> bridged_beginning_;  // beginning of a mission's submap after a bridge, until it is registered
+  std::optional<UncertainPose> carried_;            // beginning of a submap after a bridge
+  std::optional<UncertainPose> bridged_beginning_;  // such a beginning in a mission, until it is registered
   // Covariance due to bridges, at the odometry pose at the end of the last one.
-  std::optional<Carried> odometry_open_;
+  std::optional<UncertainPose> odometry_open_;
   Odometry odometry_;
   struct Held {
     Pose map_from_body;
@@ -232,8 +219,8 @@ class PoseFilter {
   PlaceHypothesis place_;
   PlaceHypothesis place_before_;  // last confirmed and accepted place before its pose was lost
   bool is_by_hint_ = false;
-  std::optional<Timestamp> last_confirmed_;  // in the reports' frame
-  std::optional<Accepted> last_accepted_;    // the last pose at an accepted place, in the reports' frame
+  std::optional<Timestamp> last_confirmed_;   // in the reports' frame
+  std::optional<StampedPose> last_accepted_;  // the last pose at an accepted place, in the reports' frame
   bool has_pose_ = false;
   bool is_path_measured_ = true;  // motion since the last confirmed pose is known
   double scene_depth_ = 1.0;      // metres, median depth of the points in the last frame

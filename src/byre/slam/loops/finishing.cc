@@ -93,7 +93,6 @@ void thin_out(MapGraph& online, std::uint32_t first_new, const FinishOptions& op
 }
 
 int count_parts(const MapGraph& map) {
-  constexpr int kAll = 1 << 20;
   std::set<KeyframeId> seen;
   int parts = 0;
   for (const KeyframeId start : map.keyframe_ids()) {
@@ -103,7 +102,7 @@ int count_parts(const MapGraph& map) {
     while (!reached.empty()) {
       const KeyframeId id = reached.back();
       reached.pop_back();
-      for (const Covisible& next : map.covisible_keyframes(id, kAll)) {
+      for (const Covisible& next : map.covisible_keyframes(id)) {
         if (seen.insert(next.keyframe).second) reached.push_back(next.keyframe);
       }
     }

@@ -44,12 +44,11 @@ constexpr double kMaxDriftDepths = 0.1;  // median depths of drift; replaces max
 
 // The newest keyframe, those that share points with it, and those that share points with the nearest of these.
 std::set<KeyframeId> surroundings_of(const MapGraph& map, KeyframeId id) {
-  constexpr int kAll = 1 << 20;
   constexpr int kNearest = 15;
   std::set<KeyframeId> surroundings = {id};
-  for (const Covisible& neighbour : map.covisible_keyframes(id, kAll)) surroundings.insert(neighbour.keyframe);
+  for (const Covisible& neighbour : map.covisible_keyframes(id)) surroundings.insert(neighbour.keyframe);
   for (const Covisible& neighbour : map.covisible_keyframes(id, kNearest)) {
-    for (const Covisible& next : map.covisible_keyframes(neighbour.keyframe, kAll)) surroundings.insert(next.keyframe);
+    for (const Covisible& next : map.covisible_keyframes(neighbour.keyframe)) surroundings.insert(next.keyframe);
   }
   return surroundings;
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace byre {
@@ -21,15 +20,14 @@ bool contradicts(const BodyMotion& measured, const Pose& seen) {
   constexpr double kSigmas = 5.0;
   constexpr double kShare = 0.3;
   const Vector6 error = log_pose(inverse(measured.last_from_body) * seen);
-  const double way = std::sqrt(measured.covariance.topLeftCorner<3, 3>().trace());
-  const double turn = std::sqrt(measured.covariance.bottomRightCorner<3, 3>().trace());
+  const double way = std::sqrt(position_variance(measured.covariance));
+  const double turn = std::sqrt(rotation_variance(measured.covariance));
   return error.head<3>().norm() > kSigmas * way + kShare * seen.translation.norm() ||
          error.tail<3>().norm() > kSigmas * turn + kShare * rotation_log(seen.rotation).norm();
 }
 
 int shared_points(const MapGraph& online, KeyframeId one, KeyframeId other) {
-  constexpr int kEvery = std::numeric_limits<int>::max();
-  for (const Covisible& seen : online.covisible_keyframes(one, kEvery)) {
+  for (const Covisible& seen : online.covisible_keyframes(one)) {
     if (seen.keyframe == other) return seen.shared_points;
   }
   return 0;
@@ -55,7 +53,7 @@ Pose seen_between(const MapGraph& online, KeyframeId earlier, KeyframeId later) 
 
 void LengthRatio::add(const BodyMotion& measured, const Pose& seen) {
   const Eigen::Vector3d& way = measured.last_from_body.translation;
-  const double weight = 1.0 / measured.covariance.topLeftCorner<3, 3>().trace();
+  const double weight = 1.0 / position_variance(measured.covariance);
   ++count_;
   measured_squared_ += weight * way.squaredNorm();
   visual_by_measured_ += weight * seen.translation.dot(way);

@@ -5,7 +5,6 @@
 namespace byre {
 namespace {
 
-constexpr int kAll = 1 << 20;
 constexpr int kMinSharedWithNew = 30;  // points shared with a new keyframe by a keyframe that moves as well
 constexpr int kAroundLoopEnd = 15;     // keyframes around the end of a loop that move as well
 
@@ -16,7 +15,7 @@ Keyframes movable_keyframes(const MapGraph& map, std::uint32_t first_new, const 
   for (const KeyframeId id : map.keyframe_ids()) {
     if (id.number < first_new) continue;
     movable.insert(id);
-    for (const Covisible& other : map.covisible_keyframes(id, kAll)) {
+    for (const Covisible& other : map.covisible_keyframes(id)) {
       if (other.shared_points < kMinSharedWithNew) break;
       movable.insert(other.keyframe);
     }
@@ -34,7 +33,7 @@ Keyframes movable_keyframes(const MapGraph& map, std::uint32_t first_new, const 
 Keyframes keyframes_around(const MapGraph& map, const Keyframes& movable) {
   Keyframes around;
   for (const KeyframeId id : movable) {
-    for (const Covisible& other : map.covisible_keyframes(id, kAll)) {
+    for (const Covisible& other : map.covisible_keyframes(id)) {
       if (!movable.contains(other.keyframe)) around.insert(other.keyframe);
     }
   }

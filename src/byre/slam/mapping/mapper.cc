@@ -15,9 +15,10 @@ constexpr std::uint32_t kNewKeyframes = 32;  // the size of a window, whose feat
 
 }  // namespace
 
-Mapper::Mapper(const Rig& rig, const MapperOptions& options, MapperResources resources)
-    : options_(options), offline_(std::move(resources.offline)) {
-  if (resources.vocabulary) places_.edit().emplace(*std::move(resources.vocabulary));
+Mapper::Mapper(const Rig& rig, const MapperOptions& options, std::optional<Vocabulary> vocabulary,
+               std::shared_ptr<const OfflineMap> offline)
+    : options_(options), offline_(std::move(offline)) {
+  if (vocabulary) places_.edit().emplace(*std::move(vocabulary));
   if (!rig.is_stereo() && !offline_) initialiser_.emplace(rig, options.monocular_start, options.mapping);
 }
 

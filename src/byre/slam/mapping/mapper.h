@@ -33,17 +33,13 @@ struct OnlineCorrection {
   CorrectionShape shape = CorrectionShape::spread;
 };
 
-// Vocabulary for place recognition, and offline map of a mission; each may be missing.
-struct MapperResources {
-  std::optional<Vocabulary> vocabulary;
-  std::shared_ptr<const OfflineMap> offline;
-};
-
 // The online map, and the state of mapping. A value: it changes the map by new keyframes at once, and by results of
 // jobs once they are delivered. Jobs read snapshots, so they never block a change.
 class Mapper {
  public:
-  Mapper(const Rig& rig, const MapperOptions& options, MapperResources resources);
+  // vocabulary: for place recognition, may be missing. offline: map of a mission, otherwise null.
+  Mapper(const Rig& rig, const MapperOptions& options, std::optional<Vocabulary> vocabulary = {},
+         std::shared_ptr<const OfflineMap> offline = nullptr);
 
   // Jobs, for the owner to run: around new keyframes; words of new keyframes, with a loop search; on the whole map.
   JobState& local_job() { return local_; }

@@ -26,7 +26,9 @@ class MapperOfAMission : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
 
-  Mapper mapper(MapperResources resources = {}) const { return {mission_.rig, {}, std::move(resources)}; }
+  Mapper mapper(std::optional<Vocabulary> vocabulary = {}, std::shared_ptr<const OfflineMap> offline = nullptr) const {
+    return {mission_.rig, {}, std::move(vocabulary), std::move(offline)};
+  }
   Pose true_pose(std::size_t frame) const {  // in the map of the first frame
     return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
   }
@@ -173,7 +175,7 @@ TEST_F(MapperOfAMission, KeepsKeyframesPendingWhileAJobRuns) {
 }
 
 TEST_F(MapperOfAMission, HasTheWordsOfAKeyframeAfterAJob) {
-  Mapper mapper = this->mapper({simulated_vocabulary(), nullptr});
+  Mapper mapper = this->mapper(simulated_vocabulary());
   const auto words_of = [&](KeyframeId id) { return mapper.online().find_keyframe(id)->words.size(); };
   const Mapper::Beginning begun = mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   EXPECT_GT(words_of(begun.keyframes[0]), 0u) << "at once, for relocalisation";
@@ -190,7 +192,7 @@ TEST_F(MapperOfAMission, HasTheWordsOfAKeyframeAfterAJob) {
 
 // Jobs read a snapshot, so the map may change meanwhile.
 TEST_F(MapperOfAMission, IndexesKeyframesAddedWhileAJobRuns) {
-  Mapper mapper = this->mapper({simulated_vocabulary(), nullptr});
+  Mapper mapper = this->mapper(simulated_vocabulary());
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   mapper.request_jobs();
@@ -212,7 +214,7 @@ TEST_F(MapperOfAMission, IndexesKeyframesAddedWhileAJobRuns) {
 }
 
 TEST_F(MapperOfAMission, IndexesRemainingKeyframesAtTheEnd) {
-  Mapper mapper = this->mapper({simulated_vocabulary(), nullptr});
+  Mapper mapper = this->mapper(simulated_vocabulary());
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
   finish(mapper);
@@ -234,7 +236,7 @@ TEST_F(MapperOfAMission, HasIndependentCopies) {
 }
 
 TEST_F(MapperOfAMission, AppliesACorrectionOnceNoJobRuns) {
-  Mapper mapper = this->mapper({simulated_vocabulary(), offline_map_of(mission_)});
+  Mapper mapper = this->mapper(simulated_vocabulary(), offline_map_of(mission_));
   mapper.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({}));
   EXPECT_FALSE(mapper.submaps().is_registered()) << "its pose in the map is unknown";
   const KeyframeId id = mapper.add_keyframe(mission_.frames[4], track(mapper, 4), mission_.rig);
@@ -263,7 +265,7 @@ SimulatedMission one_camera_circling(int frames, double laps) {
 TEST(MapperOfOneCamera, StartsOneMap) {
   const SimulatedMission mission = one_camera_circling(120, 1.0);
   const Rig& rig = mission.rig;
-  Mapper mapper(rig, {}, {});
+  Mapper mapper(rig, {});
   EXPECT_TRUE(mapper.can_begin(rig));
   std::size_t frame = 0;
   Mapper::Beginning begun;
@@ -281,7 +283,7 @@ TEST(MapperOfOneCamera, StartsAtTheGivenPose) {
   const SimulatedMission mission = one_camera_circling(60, 0.5);
   const Rig& rig = mission.rig;
   const Pose world_from_truth{rotation_exp({0.0, 0.0, 2.0}), {1.0, 2.0, 3.0}};
-  Mapper mapper(rig, {}, {});
+  Mapper mapper(rig, {});
   std::size_t frame = 0;
   Mapper::Beginning begun;
   Pose measured;

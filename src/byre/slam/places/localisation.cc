@@ -185,7 +185,7 @@ std::optional<FocalEvidence> focal_evidence(const FrameQuery& query, const Absol
 
 Localisation try_place(const PlaceCandidate& place, const FrameQuery& query) {
   const std::vector<PointMatch> matches =
-      match_place({*query.frame.features, query.words}, query.map, place.group, query.vocabulary, {});
+      match_place(*query.frame.features, query.words, query.map, place.group, query.vocabulary, {});
   const int match_count = static_cast<int>(matches.size());
   if (match_count < kMinMatches) return failed(Failure::too_few_matches, match_count, matches.size());
 
@@ -260,11 +260,11 @@ std::vector<TrackedFrame> distinct_places(std::vector<TrackedFrame> found, const
 
 }  // namespace
 
-std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& map,
+std::vector<PointMatch> match_place(const Features& frame, std::span<const Word> words, const MapView& map,
                                     std::span<const KeyframeId> keyframes, const Vocabulary& vocabulary,
                                     const PlaceMatchOptions& options) {
   const NodeFeatures of_frame =
-      features_by_node(frame.words, vocabulary, options.levels_up, [](std::size_t) { return true; });
+      features_by_node(words, vocabulary, options.levels_up, [](std::size_t) { return true; });
   std::vector<PointMatch> matches;
   for (const KeyframeId id : keyframes) {
     const Keyframe* const keyframe = map.find_keyframe(id);
@@ -275,9 +275,9 @@ std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& 
                          [&](std::size_t i) { return shows_known_point(map, keyframe->sightings[i]); });
     visit_shared_nodes(of_keyframe, of_frame, [&](NodeRange of_points, NodeRange candidates) {
       for (const NodeFeature& seen : of_points) {
-        const Nearest nearest = nearest_of(features.descriptor(seen.feature), frame.features, candidates);
+        const Nearest nearest = nearest_of(features.descriptor(seen.feature), frame, candidates);
         if (!is_distinct(nearest, options)) continue;
-        const Nearest back = nearest_of(frame.features.descriptor(nearest.feature), features, of_points);
+        const Nearest back = nearest_of(frame.descriptor(nearest.feature), features, of_points);
         if (back.feature != seen.feature) continue;
         const PointId point = *keyframe->sightings[static_cast<std::size_t>(seen.feature)].point;
         matches.push_back({nearest.feature, point, nearest.distance});
@@ -313,8 +313,8 @@ LocalisationFailure rejection_reason(const TrackedFrame& tracked, const Rig& rig
                                      const LocaliseOptions& options) {
   if (static_cast<int>(tracked.features.size()) < options.min_inliers) return Failure::too_few_inliers;
   if (spread_of(tracked.features, rig) < options.min_spread) return Failure::clustered;
-  const double position_sigma = std::sqrt(tracked.match_covariance.topLeftCorner<3, 3>().trace());
-  const double rotation_sigma = std::sqrt(tracked.match_covariance.bottomRightCorner<3, 3>().trace());
+  const double position_sigma = std::sqrt(position_variance(tracked.match_covariance));
+  const double rotation_sigma = std::sqrt(rotation_variance(tracked.match_covariance));
   const bool determined = position_sigma <= options.max_position_sigma * median_depth(tracked, map) &&
                           rotation_sigma <= options.max_rotation_sigma;
   return determined ? Failure::none : Failure::uncertain;

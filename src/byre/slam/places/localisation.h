@@ -6,6 +6,7 @@
 #include "byre/place/place_index.h"
 #include "byre/place/vocabulary.h"
 #include "byre/slam/frame/focal_check.h"
+#include "byre/slam/tracking/guided_matching.h"
 #include "byre/slam/tracking/tracking.h"
 
 #include <cstdint>
@@ -22,23 +23,10 @@ struct PlaceMatchOptions {
   float max_ratio = 0.85f;  // best over second best distance
 };
 
-// A feature of a frame that looks like a map point.
-struct PointMatch {
-  int feature = 0;
-  PointId point;
-  int distance = 0;  // Hamming bits
-};
-
-// A frame's features with their words.
-struct WordedFeatures {
-  const Features& features;
-  std::span<const Word> words;  // one per feature
-};
-
 // Matches a frame without a predicted pose: its features with those of each keyframe that see a point, among features
 // of similar words, if mutually best. A feature keeps the most similar point of all keyframes, and a point the most
-// similar feature. Ordered by feature. Skips keyframes without words.
-std::vector<PointMatch> match_place(const WordedFeatures& frame, const MapView& map,
+// similar feature. Ordered by feature. Skips keyframes without words. words: of the frame, one per feature.
+std::vector<PointMatch> match_place(const Features& frame, std::span<const Word> words, const MapView& map,
                                     std::span<const KeyframeId> keyframes, const Vocabulary& vocabulary,
                                     const PlaceMatchOptions& options);
 

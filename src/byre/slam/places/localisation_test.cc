@@ -197,7 +197,7 @@ TEST(MatchPlace, MatchesMostlyTruePoints) {
   const SimulatedMission mission = lap(visit(1)), later = lap(visit(2));
   const auto words = mapped().index.vocabulary().words_of(*later.frames[0].features);
   const std::vector<KeyframeId> keyframes = {{Origin::offline, 0}, {Origin::offline, 1}};
-  const auto matches = match_place({*later.frames[0].features, words}, mapped().view(), keyframes,
+  const auto matches = match_place(*later.frames[0].features, words, mapped().view(), keyframes,
                                    mapped().index.vocabulary(), {.levels_up = 2});
   int right = 0;
   std::set<int> features;
@@ -220,7 +220,7 @@ TEST(MatchPlace, MatchesMorePointsWithoutWords) {
   const auto words = vocabulary.words_of(*later.frames[0].features);
   const std::vector<KeyframeId> keyframes = {{Origin::offline, 0}};
   const auto count = [&](int levels_up) {
-    return match_place({*later.frames[0].features, words}, mapped().view(), keyframes, vocabulary,
+    return match_place(*later.frames[0].features, words, mapped().view(), keyframes, vocabulary,
                        {.levels_up = levels_up})
         .size();
   };

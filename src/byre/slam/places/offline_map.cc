@@ -17,8 +17,8 @@ Matrix6 median_covariance(const MapGraph& map) {
   std::vector<double> position_variances, rotation_variances;
   for (const KeyframeId id : map.keyframe_ids()) {
     const Matrix6& covariance = map.keyframe_header(id)->covariance;
-    position_variances.push_back(covariance.topLeftCorner<3, 3>().trace() / 3.0);
-    rotation_variances.push_back(covariance.bottomRightCorner<3, 3>().trace() / 3.0);
+    position_variances.push_back(position_variance(covariance) / 3.0);
+    rotation_variances.push_back(rotation_variance(covariance) / 3.0);
   }
   Matrix6 result = Matrix6::Zero();
   result.topLeftCorner<3, 3>().diagonal().setConstant(median(position_variances));
@@ -42,9 +42,7 @@ double share_of_room(const MapGraph& map) {
     const double middle = median(along);
     for (std::size_t i = 0; i < along.size(); ++i) distances[i] += std::pow(along[i] - middle, 2);
   }
-  const auto most = distances.begin() + static_cast<std::ptrdiff_t>(kMost * static_cast<double>(distances.size() - 1));
-  std::ranges::nth_element(distances, most);
-  return std::clamp(std::sqrt(*most) / kRoom, kLeast, 1.0);
+  return std::clamp(std::sqrt(quantile(std::move(distances), kMost)) / kRoom, kLeast, 1.0);
 }
 
 }  // namespace

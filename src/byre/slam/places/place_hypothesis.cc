@@ -1,6 +1,5 @@
 #include "byre/slam/places/place_hypothesis.h"
 
-#include <algorithm>
 #include <span>
 
 #include <Eigen/Eigenvalues>

@@ -30,10 +30,9 @@ struct MappedPlace {
     }
   }
 
-  MapView view() const { return {&map, nothing_online}; }
+  MapView view() const { return map; }
 
   MapGraph map;
-  MapGraph nothing_online{Origin::online};
   PlaceIndex index;
 };
 

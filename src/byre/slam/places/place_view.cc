@@ -100,9 +100,7 @@ ScratchVector<PointId> points_of_place(const OfflineMap& offline, std::span<cons
 
 PlaceView view_of_place(const PlaceViewQuery& query) {
   constexpr std::size_t kEnough = 60;  // points of nearby keyframes in view
-  const MapGraph nothing_online(Origin::online);
-  const bool is_offline = query.map.origin() == Origin::offline;
-  const MapView map = is_offline ? MapView(&query.map, nothing_online) : MapView(query.map);
+  const MapView map(query.map);
   const Pose& pose = query.tracked.camera_from_world;
   PlaceView view;
   ScratchVector<ExpectedPoint> expected = project_visible(map, query.nearby, pose, query.rig, query.hidden);

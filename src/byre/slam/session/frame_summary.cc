@@ -156,8 +156,8 @@ Health health_of(const FrameSummary& summary, const Matrix6& covariance, const H
   health.hidden_share = summary.dirt.hidden().share();
   health.hidden_share_right = summary.dirt.hidden_right().share();
   health.image = frame.condition;
-  health.position_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-  health.rotation_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  health.position_sigma = std::sqrt(position_variance(covariance));
+  health.rotation_sigma = std::sqrt(rotation_variance(covariance));
   return assess(health, evidence, options);
 }
 

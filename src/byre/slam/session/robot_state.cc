@@ -7,7 +7,7 @@ namespace byre {
 RobotState::RobotState(const Rig& rig_of_frames, const SessionOptions& options, std::optional<Vocabulary> vocabulary,
                        std::shared_ptr<const OfflineMap> offline)
     : rig(rig_of_frames),
-      mapper(rig, mapper_options(options), {std::move(vocabulary), offline}),
+      mapper(rig, mapper_options(options), std::move(vocabulary), offline),
       tracker(options),
       pose_filter(options.mission.registration, options.deferred_refinement, options.trajectory, offline != nullptr),
       image_monitor(options.image),

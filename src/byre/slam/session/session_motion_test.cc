@@ -302,7 +302,7 @@ TEST(MeasuredMotion, KeepsATrackedPoseDespiteWrongMotion) {
 TEST(MeasuredMotion, KeepsItsUncertaintyInTheOdometryAfterTheDark) {
   const SimulatedMission mission = lap();
   const std::vector<FrameReport> odometry = reports_of(mission, true, true);
-  const auto variance = [&](std::size_t i) { return odometry[i].odometry_covariance.topLeftCorner<3, 3>().trace(); };
+  const auto variance = [&](std::size_t i) { return position_variance(odometry[i].odometry_covariance); };
   EXPECT_GT(variance(kLight), 0.5 * variance(kLight - 1));
   EXPECT_GT(variance(kLight + 5), 0.5 * variance(kLight - 1));
 }

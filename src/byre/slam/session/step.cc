@@ -141,9 +141,7 @@ bool contradicts_motion(RobotState& state, const Frame& frame, const HybridTrack
 }
 
 std::optional<HybridTrack> track_from_last_pose(RobotState& state, const Frame& frame, const Tracker::Scene& scene) {
-  const AnchoredPose& last = state.pose_filter.trajectory().back();
-  auto track = state.tracker.track(frame, scene, {last.time, camera_from_world(state.map(), last), last.keyframe},
-                                   state.pose_filter.motion());
+  auto track = state.tracker.track(frame, scene, state.pose_filter.trajectory().back(), state.pose_filter.motion());
   drop_non_finite(track);
   if (!track) return track;
   if (track->focal) state.mission->note_focal_length(*track->focal);

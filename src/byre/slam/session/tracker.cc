@@ -57,10 +57,8 @@ const ScratchVector<PointId>& Tracker::points_around_reference(const Mapper& map
 const ScratchVector<PointId>& Tracker::offline_points_around(const Pose& predicted, const Mission& mission) {
   const std::optional<KeyframeId> around = mission.keyframe_near(predicted);
   if (around == offline_.keyframe) return offline_.points;
-  const MapGraph nothing_online(Origin::online);
-  const MapView view(&mission.offline().map(), nothing_online);
   offline_ = {around, 0, {}};
-  if (around) offline_.points = local_points(view, *around, options_.local_keyframes);
+  if (around) offline_.points = local_points(mission.offline().map(), *around, options_.local_keyframes);
   return offline_.points;
 }
 
@@ -95,12 +93,13 @@ std::optional<HybridTrack> Tracker::track_from(const Frame& frame, const Scene& 
   return track_hybrid(frame, predicted, scene.rig, map, candidates_, options, limits, scene.compare_focal_lengths);
 }
 
-std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene, const LastPose& last,
+std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene, const AnchoredPose& last,
                                           const MotionModel& motion) {
   const auto newest = scene.mapper.newest_in_present_frame();
   if (!is_usable(reference_, scene.mapper)) reference_ = newest;
   const double seconds = to_seconds(frame.time - last.time);
-  const Pose predicted = motion.predict(last.camera_from_world, scene.rig, seconds);
+  const Pose last_camera = camera_from_world(scene.mapper.map(), last);
+  const Pose predicted = motion.predict(last_camera, scene.rig, seconds);
   const bool is_limited = scene.mission && scene.is_place_accepted;
   HybridLimits limits = is_limited ? scene.mission->limits(scene.rig.is_stereo(), seconds) : HybridLimits{};
   limits.online_sigma = scene.online_sigma;
@@ -114,10 +113,8 @@ std::optional<HybridTrack> Tracker::track(const Frame& frame, const Scene& scene
   // A sudden loss of matches may be due to a wrong prediction: try others.
   if (static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) return best;
   // Faulty wheels must not lose a pose: the camera's own velocity is tried, then the last pose.
-  const auto by_velocity =
-      motion.measured() ? motion.predict_by_velocity(last.camera_from_world, seconds) : std::nullopt;
-  for (const std::optional<Pose>& pose :
-       {by_velocity, by_velocity ? std::optional(last.camera_from_world) : by_velocity}) {
+  const auto by_velocity = motion.measured() ? motion.predict_by_velocity(last_camera, seconds) : std::nullopt;
+  for (const std::optional<Pose>& pose : {by_velocity, by_velocity ? std::optional(last_camera) : by_velocity}) {
     if (!pose || static_cast<double>(inlier_count(best)) >= options_.min_kept_share * last_inliers_) break;
     auto tracked = track_around(*pose);
     if (inlier_count(tracked) > inlier_count(best)) best = std::move(tracked);

@@ -40,15 +40,8 @@ class Tracker {
     bool is_pressed = false;                       // few online points are matched, see FrameCuts
     ImageMask hidden{};                            // image cells without expected points
   };
-  // The last frame that had a pose.
-  struct LastPose {
-    Timestamp time{};
-    Pose camera_from_world;
-    KeyframeId keyframe;  // keyframe that the pose is relative to
-  };
-
-  // Tracks from the predicted pose. Precondition: the map has a submap.
-  std::optional<HybridTrack> track(const Frame& frame, const Scene& scene, const LastPose& last,
+  // Tracks from the pose predicted from the last one. Precondition: the map has a submap.
+  std::optional<HybridTrack> track(const Frame& frame, const Scene& scene, const AnchoredPose& last,
                                    const MotionModel& motion);
   struct Find {
     // Places that show the frame, most inliers first. Online or offline by their references; several only offline.

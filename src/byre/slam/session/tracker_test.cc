@@ -12,7 +12,7 @@ namespace {
 class TrackerOnAMap : public ::testing::Test {
  protected:
   const SimulatedMission mission_ = quarter_circle({});
-  Mapper mapper_{mission_.rig, {}, {simulated_vocabulary(), nullptr}};
+  Mapper mapper_{mission_.rig, {}, simulated_vocabulary()};
   Tracker tracker_{{}};
 
   void SetUp() override { mapper_.begin(mission_.frames[0], mission_.rig, {}, AnchoredTrajectory({})); }
@@ -21,8 +21,9 @@ class TrackerOnAMap : public ::testing::Test {
   Pose true_pose(std::size_t frame) const {  // in the map of the first frame
     return true_camera_from_world(mission_, frame) * mission_.truth[0].world_from_body;
   }
-  Tracker::LastPose last(std::size_t frame) const {
-    return {mission_.frames[frame].time, true_pose(frame), *mapper_.newest_keyframe()};
+  AnchoredPose last(std::size_t frame) const {
+    const KeyframeId newest = *mapper_.newest_keyframe();
+    return {mission_.frames[frame].time, newest, true_pose(frame) * inverse(camera_from_world(mapper_.map(), newest))};
   }
   // Motion up to a frame.
   MotionModel motion_to(std::size_t frame) const {
@@ -79,7 +80,7 @@ TEST_F(TrackerOnAMap, IsEmptyForAnEmptyFrame) {
 TEST(TrackerOnAnOfflineMap, RelocalisesInTheOfflineMapFirst) {
   const SimulatedMission mission = quarter_circle({});
   const auto offline = offline_map_of(mission);
-  const Mapper mapper(mission.rig, {}, {simulated_vocabulary(), offline});
+  const Mapper mapper(mission.rig, {}, simulated_vocabulary(), offline);
   const Mission way(offline, {});
   const Tracker tracker({});
   const std::vector<HybridTrack> places = tracker.find(mission.frames[6], {mission.rig, mapper, &way}).places;

@@ -10,8 +10,6 @@
 #include "byre/slam/system/stored_map.h"
 #include "byre/slam/tracking/body_pose.h"
 
-#include <utility>
-
 namespace byre {
 namespace {
 

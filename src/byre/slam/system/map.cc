@@ -8,8 +8,8 @@
 #include "byre/map/plan/driving_plane.h"
 #include "byre/map/plan/floor_plan.h"
 #include "byre/map/point_grey.h"
+#include "byre/map/scaled_copy.h"
 #include "byre/map/stored_calibration.h"
-#include "byre/map/transformed_copy.h"
 #include "byre/place/map_words.h"
 #include "byre/slam/system/merge_maps.h"
 #include "byre/slam/system/stored_map.h"
@@ -19,7 +19,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include <fmt/core.h>
@@ -100,16 +99,11 @@ std::vector<int> points_where(const StoredMap& stored, Predicate holds) {
   return points;
 }
 
-// Numbers ordered by distance, ties by number.
-struct AtDistance {
-  double distance = 0.0;
-  int number = 0;
-  auto operator<=>(const AtDistance&) const = default;
-};
+using AtDistance = std::pair<double, int>;  // distance and number: ordered by distance, ties by number
 
 std::vector<int> numbers_of(const std::vector<AtDistance>& items) {
   std::vector<int> numbers;
-  for (const AtDistance& item : items) numbers.push_back(item.number);
+  for (const auto& [distance, number] : items) numbers.push_back(number);
   return numbers;
 }
 

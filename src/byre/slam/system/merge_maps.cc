@@ -1,6 +1,6 @@
 #include "byre/slam/system/merge_maps.h"
 
-#include "byre/map/transformed_copy.h"
+#include "byre/map/scaled_copy.h"
 #include "byre/slam/upkeep/replay.h"
 
 #include <algorithm>

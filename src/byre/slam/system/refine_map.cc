@@ -2,7 +2,6 @@
 
 #include "byre/base/stopwatch.h"
 #include "byre/slam/system/resources.h"
-#include "byre/slam/system/stored_map.h"
 #include "byre/slam/window/online_copy.h"
 #include "byre/slam/window/paged_features.h"
 

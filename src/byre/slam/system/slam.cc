@@ -13,7 +13,6 @@
 #include "byre/slam/window/online_copy.h"
 
 #include <cmath>
-#include <utility>
 
 namespace byre {
 namespace {

@@ -1,16 +1,15 @@
 #include "byre/slam/system/slam_impl.h"
 
+#include "byre/base/enum_names.h"
 #include "byre/base/stopwatch.h"
 #include "byre/features/image_view.h"
 #include "byre/features/tag_detector.h"
 #include "byre/geometry/calibration_change.h"
 #include "byre/map/mapped_tag.h"
 #include "byre/map/stored_calibration.h"
-#include "byre/slam/upkeep/session_summary.h"
-#include "byre/slam/window/online_copy.h"
+#include "byre/slam/upkeep/place_budget.h"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -97,15 +96,7 @@ Timestamp tag_interval(const SlamInputs& inputs) {
 }  // namespace
 
 std::string_view name_of(Pace pace) {
-  switch (pace) {
-    case Pace::same_thread:
-      return "inline";
-    case Pace::paced:
-      return "paced";
-    case Pace::live:
-      return "live";
-  }
-  return "";
+  return name_among<Pace::live>({"inline", "paced", "live"}, pace);
 }
 
 SlamImpl::SlamImpl(const Calibration& given, const MethodOptions& options, SlamInputs inputs,

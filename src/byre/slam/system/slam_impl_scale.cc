@@ -5,7 +5,6 @@
 #include "byre/map/mapped_tag.h"
 #include "byre/slam/tracking/body_pose.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace byre {
 namespace {
@@ -14,12 +13,6 @@ constexpr double kMinDepth = 0.05;  // metres
 // A descriptor is valid slightly beyond the distances of its octaves, and up to 60 degrees from its mean direction.
 constexpr float kDistanceSlack = 1.25f;
 constexpr float kMinViewingCosine = 0.5f;
-
-struct Candidate {
-  int feature = -1;
-  int distance = std::numeric_limits<int>::max();
-  int octave = -1;
-};
 
 }  // namespace
 
@@ -46,7 +39,7 @@ int expected_octave(float max_distance, float distance) {
 
 std::optional<FoundFeature> find_feature(const Features& features, const Descriptor& descriptor,
                                          const Projection& projection, const SearchOptions& options) {
-  Candidate best, second;
+  FoundFeature best, second;
   const float radius = options.radius * kScaleOfOctave[static_cast<std::size_t>(projection.octave)];
   const auto disparity = static_cast<float>(projection.predicted.z());
   const auto consider = [&](int feature) {
@@ -54,7 +47,7 @@ std::optional<FoundFeature> find_feature(const Features& features, const Descrip
     if (keypoint.has_disparity() && std::abs(keypoint.disparity - disparity) > radius) return;
     const int distance = hamming_distance(descriptor, features.descriptor(feature));
     if (distance >= second.distance) return;
-    const Candidate candidate{feature, distance, keypoint.octave};
+    const FoundFeature candidate{feature, distance, keypoint.octave};
     if (distance < best.distance) {
       second = best;
       best = candidate;
@@ -67,8 +60,7 @@ std::optional<FoundFeature> find_feature(const Features& features, const Descrip
   if (best.distance > options.max_distance) return std::nullopt;
   const bool ambiguous = second.octave == best.octave &&
                          static_cast<float>(best.distance) > options.max_ratio * static_cast<float>(second.distance);
-  if (ambiguous) return std::nullopt;
-  return FoundFeature{best.feature, best.distance};
+  return ambiguous ? std::nullopt : std::optional(best);
 }
 
 ScratchVector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
@@ -85,8 +77,8 @@ ScratchVector<ExpectedPoint> project_points(const MapView& map, std::span<const 
   return expected;
 }
 
-ScratchVector<GuidedMatch> match_expected(const Features& features, const MapView& map,
-                                          std::span<const ExpectedPoint> expected, const SearchOptions& options) {
+ScratchVector<PointMatch> match_expected(const Features& features, const MapView& map,
+                                         std::span<const ExpectedPoint> expected, const SearchOptions& options) {
   struct Claim {
     PointId point;
     int distance = std::numeric_limits<int>::max();
@@ -100,7 +92,7 @@ ScratchVector<GuidedMatch> match_expected(const Features& features, const MapVie
     Claim& claim = claims[static_cast<std::size_t>(found->feature)];
     if (found->distance < claim.distance) claim = {candidate.id, found->distance};
   }
-  ScratchVector<GuidedMatch> matches;
+  ScratchVector<PointMatch> matches;
   matches.reserve(claims.size());
   for (int feature = 0; feature < features.size(); ++feature) {
     const Claim& claim = claims[static_cast<std::size_t>(feature)];

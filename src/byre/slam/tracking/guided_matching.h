@@ -3,6 +3,7 @@
 #include "byre/base/scratch_memory.h"
 #include "byre/map/map_view.h"
 
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -29,7 +30,8 @@ struct SearchOptions {
 
 struct FoundFeature {
   int feature = -1;
-  int distance = 0;  // Hamming bits
+  int distance = std::numeric_limits<int>::max();  // Hamming bits
+  int octave = -1;
 };
 
 // The most similar corner near the projection; empty if another corner of its octave is nearly as similar.
@@ -45,7 +47,8 @@ struct ExpectedPoint {
 ScratchVector<ExpectedPoint> project_points(const MapView& map, std::span<const PointId> points,
                                             const Pose& camera_from_world, const Rig& rig);
 
-struct GuidedMatch {
+// A feature of a frame that looks like a map point.
+struct PointMatch {
   int feature = 0;
   PointId point;
   int distance = 0;  // Hamming bits
@@ -53,7 +56,7 @@ struct GuidedMatch {
 
 // At most one match for each expected point and each feature; the more similar point keeps the feature. Ordered by
 // feature.
-ScratchVector<GuidedMatch> match_expected(const Features& features, const MapView& map,
-                                          std::span<const ExpectedPoint> expected, const SearchOptions& options);
+ScratchVector<PointMatch> match_expected(const Features& features, const MapView& map,
+                                         std::span<const ExpectedPoint> expected, const SearchOptions& options);
 
 }  // namespace byre

@@ -169,7 +169,7 @@ TEST(MatchExpected, AssignsAFeatureToTheMostSimilarPoint) {
   const PointId more_similar = map.add_point(point);
   const std::array<ExpectedPoint, 3> expected{{{less_similar, kAt100}, {more_similar, kAt100}, {less_similar, kAt100}}};
   const auto matches = match_expected(features, MapView(nullptr, map), expected, kTenPixels);
-  EXPECT_THAT(matches, ElementsAre(Field(&GuidedMatch::point, more_similar)));
+  EXPECT_THAT(matches, ElementsAre(Field(&PointMatch::point, more_similar)));
 }
 
 TEST(MatchExpected, SkipsRemovedPoints) {
@@ -201,8 +201,8 @@ TEST_F(GuidedMatching, ExpectsPointsInsideTheImageOnly) {
 }
 
 TEST_F(GuidedMatching, HasHighRecallAndPrecision) {
-  const ScratchVector<GuidedMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
-  const auto right = std::ranges::count_if(matches, [&](const GuidedMatch& match) {
+  const ScratchVector<PointMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
+  const auto right = std::ranges::count_if(matches, [&](const PointMatch& match) {
     const int shown = mission_.landmark_of_feature[kFrame][static_cast<std::size_t>(match.feature)];
     return shown >= 0 && shown == true_landmark(mission_, map_, match.point);
   });
@@ -212,8 +212,8 @@ TEST_F(GuidedMatching, HasHighRecallAndPrecision) {
 }
 
 TEST_F(GuidedMatching, ReturnsEveryFeatureOnceInAscendingOrder) {
-  const ScratchVector<GuidedMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
-  EXPECT_EQ(std::ranges::adjacent_find(matches, std::greater_equal<>{}, &GuidedMatch::feature), matches.end());
+  const ScratchVector<PointMatch> matches = match_expected(*mission_.frames[kFrame].features, view_, expected_, {});
+  EXPECT_EQ(std::ranges::adjacent_find(matches, std::greater_equal<>{}, &PointMatch::feature), matches.end());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 bool is_translation_unknown(const BodyMotion& motion) {
   constexpr double kShare = 0.9;  // share of the length
   constexpr double kLeast = 0.1;  // metres
-  const double sigma = std::sqrt(motion.covariance.topLeftCorner<3, 3>().trace());
+  const double sigma = std::sqrt(position_variance(motion.covariance));
   return sigma > std::max(kLeast, kShare * motion.last_from_body.translation.norm());
 }
 

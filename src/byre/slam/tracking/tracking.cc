@@ -48,7 +48,7 @@ ScratchVector<PointId> distinct(std::span<const PointId> points) {
 }
 
 std::optional<TrackedFrame> refine_on_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig,
-                                              const MapView& map, std::span<const GuidedMatch> matches,
+                                              const MapView& map, std::span<const PointMatch> matches,
                                               const TrackOptions& options) {
   const MeasuredPoints measured = measure_matches(frame, camera_from_world, rig, map, matches);
   const auto refined = refine_pose(camera_from_world, rig, measured.observations, {});
@@ -97,10 +97,7 @@ std::optional<TrackedFrame> track(const Frame& frame, const Pose& predicted_came
                                   const TrackOptions& options) {
   ScratchVector<ExpectedPoint> expected =
       project_visible(map, candidates, predicted_camera_from_world, rig, options.hidden);
-  std::optional<Pose> first;
-  for (const float radius : {options.search_radius, options.wide_radius}) {
-    if (!first) first = first_pose(frame, predicted_camera_from_world, rig, map, expected, radius, options);
-  }
+  const auto first = first_pose(frame, predicted_camera_from_world, rig, map, expected, options);
   if (!first) return std::nullopt;
 
   expected = project_visible(map, candidates, *first, rig, options.hidden);

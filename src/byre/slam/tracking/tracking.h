@@ -5,7 +5,6 @@
 #include "byre/optimise/pose_refinement.h"
 #include "byre/slam/tracking/image_mask.h"
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>

@@ -63,12 +63,12 @@ ScratchVector<ExpectedPoint> project_visible(const MapView& map, std::span<const
 }
 
 MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                               std::span<const GuidedMatch> matches) {
+                               std::span<const PointMatch> matches) {
   const CameraView view{*frame.features, rig, camera_from_world};
   MeasuredPoints measured;
   measured.observations.reserve(matches.size());
   measured.features.reserve(matches.size());
-  for (const GuidedMatch& match : matches) {
+  for (const PointMatch& match : matches) {
     const MapPoint& point = *map.find_point(match.point);
     const PixelMeasurement pixel = measure(map, point, view, match.feature);
     if (match.point.origin == Origin::offline && pixel.differs) continue;
@@ -108,18 +108,20 @@ bool is_sound(const PoseRefinement& refined, std::size_t matches, int min_inlier
 }
 
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                               const MapView& map, std::span<const ExpectedPoint> expected, float radius,
+                               const MapView& map, std::span<const ExpectedPoint> expected,
                                const TrackOptions& options) {
-  const ScratchVector<GuidedMatch> matches = match_expected(*frame.features, map, expected, {radius});
-  ScratchVector<PoseObservation> observations;
-  observations.reserve(matches.size());
-  for (const GuidedMatch& match : matches) {
-    const Keypoint& keypoint = frame.features->keypoint(match.feature);
-    observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
+  for (const float radius : {options.search_radius, options.wide_radius}) {
+    const ScratchVector<PointMatch> matches = match_expected(*frame.features, map, expected, {radius});
+    ScratchVector<PoseObservation> observations;
+    observations.reserve(matches.size());
+    for (const PointMatch& match : matches) {
+      const Keypoint& keypoint = frame.features->keypoint(match.feature);
+      observations.push_back(observation_of(*map.find_point(match.point), keypoint, corner_measurement(keypoint)));
+    }
+    const auto refined = refine_pose(predicted_camera_from_world, rig, observations, {});
+    if (refined && is_sound(*refined, matches.size(), options.min_inliers)) return refined->camera_from_world;
   }
-  const auto refined = refine_pose(predicted_camera_from_world, rig, observations, {});
-  if (!refined || !is_sound(*refined, matches.size(), options.min_inliers)) return std::nullopt;
-  return refined->camera_from_world;
+  return std::nullopt;
 }
 
 SharedPoints count_shared_points(const MapView& map, std::span<const TrackedFeature> features) {

@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 // Steps shared by tracking on one map and on two.
 namespace byre {
@@ -32,7 +31,7 @@ struct MeasuredPoints {
 // offline points whose patch does not fit are left out: five of six are wrong, because the map was made in another
 // light and from another place. Chance matches around a prediction confirm it.
 MeasuredPoints measure_matches(const Frame& frame, const Pose& camera_from_world, const Rig& rig, const MapView& map,
-                               std::span<const GuidedMatch> matches);
+                               std::span<const PointMatch> matches);
 
 // Matches split by agreement with a given pose.
 struct PartedPoints {
@@ -48,9 +47,10 @@ PartedPoints part_by_agreement(const Pose& camera_from_world, const Matrix6& cov
 // Whether enough of the matches agree on the pose.
 bool is_sound(const PoseRefinement& refined, std::size_t matches, int min_inliers);
 
-// First pose from detected corners, matched within a radius (pixels) around the predictions. Empty if it is not sound.
+// First pose from detected corners, matched within the search radius around the predictions, otherwise within the wide
+// one. Empty if neither pose is sound.
 std::optional<Pose> first_pose(const Frame& frame, const Pose& predicted_camera_from_world, const Rig& rig,
-                               const MapView& map, std::span<const ExpectedPoint> expected, float radius,
+                               const MapView& map, std::span<const ExpectedPoint> expected,
                                const TrackOptions& options);
 
 // Number of the points that each keyframe sees, by keyframe.

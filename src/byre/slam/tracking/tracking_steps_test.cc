@@ -83,10 +83,8 @@ std::size_t count_measured(Origin origin, const std::vector<Patch>& patches_of_f
   const KeyframeId id = map.add_keyframe(keyframe);
   const PointId point =
       map.add_point(make_point(ahead, Eigen::Matrix3d::Zero(), {id, 0}, *keyframe.frame.features, Pose{}));
-  const MapGraph nothing(Origin::online);
-  const MapView view = origin == Origin::offline ? MapView(&map, nothing) : MapView(map);
-  const std::array<GuidedMatch, 1> matches{{{0, point}}};
-  const MeasuredPoints measured = measure_matches({.features = features(patches_of_frame)}, Pose{}, rig, view, matches);
+  const std::array<PointMatch, 1> matches{{{0, point}}};
+  const MeasuredPoints measured = measure_matches({.features = features(patches_of_frame)}, Pose{}, rig, map, matches);
   EXPECT_EQ(measured.features.size(), measured.observations.size());
   return measured.features.size();
 }

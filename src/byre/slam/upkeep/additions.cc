@@ -21,10 +21,6 @@ int sightings_of(const Keyframe& keyframe, std::optional<Origin> origin = {}) {
   }));
 }
 
-double position_variance(const Keyframe& keyframe) {
-  return keyframe.covariance.topLeftCorner<3, 3>().trace();  // square metres
-}
-
 // What a map has near a camera, in a similar viewing direction.
 struct KnownPlace {
   int keyframes = 0;
@@ -53,7 +49,7 @@ double drift_variance(const MapGraph& map, std::span<const KeyframeId> keyframes
   for (const KeyframeId id : keyframes) {
     const Keyframe& known = *map.find_keyframe(id);
     const double way = (position - inverse(known.camera_from_world).translation).norm();
-    least = std::min(least, position_variance(known) + share * share * way * way);
+    least = std::min(least, position_variance(known.covariance) + share * share * way * way);
   }
   return least;
 }
@@ -61,7 +57,6 @@ double drift_variance(const MapGraph& map, std::span<const KeyframeId> keyframes
 // Keyframes that see the offline map, and those connected with them by common points; ascending.
 std::set<KeyframeId> connected_keyframes(const MapGraph& online) {
   constexpr int kThatLocate = 36;  // offline points, see kOfflineThatHolds
-  constexpr int kAll = 1 << 20;
   std::set<KeyframeId> connected;
   for (const KeyframeId start : online.keyframe_ids()) {
     if (sightings_of(*online.find_keyframe(start), Origin::offline) < kThatLocate) continue;
@@ -70,7 +65,7 @@ std::set<KeyframeId> connected_keyframes(const MapGraph& online) {
       const KeyframeId id = reached.back();
       reached.pop_back();
       if (!connected.insert(id).second) continue;
-      for (const Covisible& next : online.covisible_keyframes(id, kAll)) reached.push_back(next.keyframe);
+      for (const Covisible& next : online.covisible_keyframes(id)) reached.push_back(next.keyframe);
     }
   }
   return connected;
@@ -104,7 +99,7 @@ std::vector<KeyframeId> keyframes_to_add(const MapGraph& map, const MapGraph& ch
     const KnownPlace added = known_place(online, chosen, keyframe.camera_from_world);
     const bool is_new = before.keyframes == 0;
     const double drift = is_new ? drift_variance(map, present, keyframe) : 0.0;
-    if (position_variance(keyframe) + drift > kMaxSigma * kMaxSigma) continue;
+    if (position_variance(keyframe.covariance) + drift > kMaxSigma * kMaxSigma) continue;
     const bool has_few = sightings_of(keyframe, Origin::offline) < kFew * before.points;
     if (!is_new && !has_few) continue;
     if (added.nearest < kSeparate || added.keyframes >= kKeyframesOfPlace) continue;

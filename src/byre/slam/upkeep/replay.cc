@@ -77,8 +77,7 @@ std::vector<ReplayFrame> frames_to_replay(const MapGraph& map) {
 }
 
 std::vector<Replayed> replay(std::span<const ReplayFrame> frames, const MapGraph& map, const PlaceIndex& index) {
-  const MapGraph nothing_online(Origin::online);
-  const MapView view(&map, nothing_online);
+  const MapView view(map);
   // Comparisons weigh poses by their covariance.
   const LocaliseOptions options{.max_position_sigma = 0.05, .max_rotation_sigma = 0.05};
   std::vector<Replayed> results;
@@ -100,8 +99,8 @@ bool is_elsewhere(const ReplayFrame& frame, const Replayed& found) {
   if (!found.camera_from_world) return false;
   const Pose change = frame.camera_from_world * inverse(*found.camera_from_world);
   const Matrix6 covariance = frame.covariance + found.covariance;
-  const double shift_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
-  const double turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  const double shift_sigma = std::sqrt(position_variance(covariance));
+  const double turn_sigma = std::sqrt(rotation_variance(covariance));
   return change.translation.norm() > std::max(kMaxShift, kSigmas * shift_sigma) ||
          rotation_log(change.rotation).norm() > std::max(kMaxTurn, kSigmas * turn_sigma);
 }
@@ -135,8 +134,8 @@ std::vector<PlaceProof> compare_places(std::span<const ReplayFrame> frames, std:
     if (both > 0) {
       place.shift = shift.norm() / both;
       place.turn = turn.norm() / both;
-      place.shift_sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace() / both);
-      place.turn_sigma = std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / both);
+      place.shift_sigma = std::sqrt(position_variance(covariance) / both);
+      place.turn_sigma = std::sqrt(rotation_variance(covariance) / both);
     }
     place.fault = fault_of(place, least_inliers);
     places.push_back(std::move(place));

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 #include <span>
 #include <utility>
 
@@ -158,6 +157,12 @@ struct Witnesses {
   std::vector<Replayed> found{};  // in the parent
 };
 
+// Empty if no place is worse.
+std::string fault_of_places(std::span<const PlaceProof> places) {
+  const auto worse = std::ranges::count_if(places, [](const PlaceProof& place) { return !place.fault.empty(); });
+  return worse == 0 ? "" : fmt::format("{} of {} places would be worse than before", worse, places.size());
+}
+
 // Keeps the places of keyframes as they are, except those spared. Returns the survival by point number of the child.
 using Change = std::function<std::vector<Survival>(const SparedPlaces&, StoredMap& child)>;
 
@@ -182,8 +187,7 @@ std::vector<Replayed> make_child(const MapVersion& parent, const Witnesses& witn
     update.child = std::move(child);
     return after;
   }
-  const auto worse = std::ranges::count_if(update.places, [](const PlaceProof& place) { return !place.fault.empty(); });
-  update.refusal = fmt::format("{} of {} places would be worse than before", worse, update.places.size());
+  update.refusal = fault_of_places(update.places);
   return {};
 }
 
@@ -282,6 +286,23 @@ MapUpdate summarise_map(const MapVersion& parent, int keyframes_of_place, const 
     note_history(parent, removed, *update.child);
   }
   return update;
+}
+
+std::string fault_of_replacement(const MapVersion& map, const MapVersion& next, const StoredSession& session,
+                                 const Vocabulary& vocabulary) {
+  std::vector<std::uint64_t> versions = {map.id};
+  for (const MapHistory& entry : history_of(map.stored)) versions.push_back(entry.parent);
+  if (std::ranges::count(versions, next.id) > 0) return "";
+  std::string fault = fault_of(session, map.stored, versions);
+  const std::vector<ReplayFrame> frames = frames_to_replay(session.stored.map);
+  std::vector<Replayed> before;
+  if (fault.empty()) {
+    before = replay(frames, map.stored.map, index_of(map.stored.map, vocabulary));
+    fault = place_of(frames, before, map.stored.map).fault;
+  }
+  if (!fault.empty()) return "it is not proved, as session " + session.name + " " + fault;
+  return fault_of_places(
+      compare_places(frames, before, replay(frames, next.stored.map, index_of(next.stored.map, vocabulary))));
 }
 
 }  // namespace byre

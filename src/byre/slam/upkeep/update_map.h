@@ -63,4 +63,10 @@ MapUpdate summarise_map(
 // Updates that a map was made by, the newest first, by its notes.
 std::vector<MapHistory> history_of(const StoredMap& stored);
 
+// Reason against replacing a map by another version; empty: none. The frames of a session are localised in both, and no
+// place may be worse, see PlaceProof. A version that the map was made of needs no proof: a reviewer returns to it.
+// Preconditions: those of update_map().
+std::string fault_of_replacement(const MapVersion& map, const MapVersion& next, const StoredSession& session,
+                                 const Vocabulary& vocabulary);
+
 }  // namespace byre

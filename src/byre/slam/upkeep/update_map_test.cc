@@ -3,8 +3,7 @@
 #include "byre/slam/places/place_scene.h"
 #include "byre/slam/session/session.h"
 #include "byre/slam/upkeep/additions.h"
-#include "byre/slam/upkeep/replacement.h"
-#include "byre/slam/upkeep/session_summary.h"
+#include "byre/slam/upkeep/place_budget.h"
 
 #include <array>
 #include <set>

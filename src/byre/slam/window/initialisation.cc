@@ -18,16 +18,6 @@
 namespace byre {
 namespace {
 
-// Similarity from the start's world to the map's.
-struct Placement {
-  Pose world_from_start;
-  double scale = 1.0;
-
-  Pose moved(const Pose& camera_from_start) const {
-    return scale_lengths(camera_from_start, scale) * inverse(world_from_start);
-  }
-};
-
 // The motion between the two cameras of a start, from images and as measured.
 struct StartMotion {
   Pose seen;
@@ -48,35 +38,36 @@ struct StartMotion {
 };
 
 // Empty if the cameras moved differently than measured.
-std::optional<Placement> placement_of(const MonocularStart& start, const StartPoses& odometry) {
+std::optional<Similarity> placement_of(const MonocularStart& start, const StartPoses& odometry) {
   constexpr double kMaxTurn = 0.1;        // radians between visual and measured turn
   constexpr double kMaxDirection = 0.35;  // radians between the directions of motion
   const StartMotion motion(start, odometry);
   if (!motion.agrees(kMaxTurn, kMaxDirection)) return {};
   const double scale = motion.scale();
   const Pose first_from_start = start.map.camera_from_world(start.first);
-  return Placement{inverse(odometry.first_camera_from_world) * scale_lengths(first_from_start, scale), scale};
+  return Similarity{scale, inverse(odometry.first_camera_from_world) * scale_lengths(first_from_start, scale)};
 }
 
-KeyframeId add_keyframe(const MonocularStart& start, KeyframeId id, const Placement& placement,
+KeyframeId add_keyframe(const MonocularStart& start, KeyframeId id, const Similarity& world_from_start,
                         const std::optional<KeyframeId>& parent, int recording, MapGraph& map) {
   Keyframe keyframe = *start.map.find_keyframe(id);
   keyframe.rig = map.add_rig(start.map.rigs()[static_cast<std::size_t>(keyframe.rig)]);
   keyframe.recording = recording;
-  keyframe.camera_from_world = placement.moved(keyframe.camera_from_world);
-  keyframe.covariance = scale_lengths(keyframe.covariance, placement.scale);
+  keyframe.camera_from_world = move_camera(world_from_start, keyframe.camera_from_world);
+  keyframe.covariance = scale_lengths(keyframe.covariance, world_from_start.scale);
   keyframe.sightings.clear();
   keyframe.words.clear();
   keyframe.parent = parent;
   return map.add_keyframe(std::move(keyframe));
 }
 
-MapPoint moved(const MapPoint& point, const Placement& placement) {
-  const Eigen::Matrix3d rotation = placement.world_from_start.rotation.toRotationMatrix();
-  const auto scale = static_cast<float>(placement.scale);
+MapPoint moved(const MapPoint& point, const Similarity& world_from_start) {
+  const Eigen::Matrix3d rotation = world_from_start.target_from_source.rotation.toRotationMatrix();
+  const auto scale = static_cast<float>(world_from_start.scale);
   MapPoint result = point;
-  result.position_in_world = placement.world_from_start * (placement.scale * point.position_in_world);
-  result.covariance = placement.scale * placement.scale * rotation * point.covariance * rotation.transpose();
+  result.position_in_world = world_from_start * point.position_in_world;
+  result.covariance =
+      world_from_start.scale * world_from_start.scale * rotation * point.covariance * rotation.transpose();
   result.mean_viewing_direction = rotation.cast<float>() * point.mean_viewing_direction;
   result.min_distance *= scale;
   result.max_distance *= scale;
@@ -84,13 +75,13 @@ MapPoint moved(const MapPoint& point, const Placement& placement) {
 }
 
 // Returns the two keyframes.
-std::vector<KeyframeId> add_start(const MonocularStart& start, const Placement& placement,
+std::vector<KeyframeId> add_start(const MonocularStart& start, const Similarity& world_from_start,
                                   const std::optional<KeyframeId>& parent, int recording, MapGraph& map) {
-  const KeyframeId first = add_keyframe(start, start.first, placement, parent, recording, map);
-  const KeyframeId second = add_keyframe(start, start.second, placement, first, recording, map);
+  const KeyframeId first = add_keyframe(start, start.first, world_from_start, parent, recording, map);
+  const KeyframeId second = add_keyframe(start, start.second, world_from_start, first, recording, map);
   const auto renamed = [&](KeyframeId id) { return id == start.first ? first : second; };
   for (const PointId id : start.map.point_ids()) {
-    MapPoint point = moved(*start.map.find_point(id), placement);
+    MapPoint point = moved(*start.map.find_point(id), world_from_start);
     point.reference.keyframe = renamed(point.reference.keyframe);
     const PointId added = map.add_point(point);
     for (const Observation& seen : start.map.observations(id)) {
@@ -336,7 +327,7 @@ MonocularStart align_to_odometry(const MonocularStart& start, const StartPoses& 
   const Pose second_from_start = scale_lengths(start.map.camera_from_world(start.second), scale);
   MonocularStart result = start;
   result.map = MapGraph(Origin::online);
-  const auto keyframes = add_start(start, {inverse(odometry.second_camera_from_world) * second_from_start, scale}, {},
+  const auto keyframes = add_start(start, {scale, inverse(odometry.second_camera_from_world) * second_from_start}, {},
                                    start.map.find_keyframe(start.first)->recording, result.map);
   result.first = keyframes.front();
   result.second = keyframes.back();

@@ -1,5 +1,5 @@
 #include "byre/optimise/pose_refinement.h"
-#include "byre/optimise/squared_error.h"
+#include "byre/optimise/robust_error.h"
 #include "byre/slam/window/mapping_steps.h"
 
 #include <algorithm>

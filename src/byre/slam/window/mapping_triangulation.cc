@@ -1,6 +1,6 @@
 #include "byre/features/descriptor.h"
 #include "byre/geometry/triangulation.h"
-#include "byre/optimise/squared_error.h"
+#include "byre/optimise/robust_error.h"
 #include "byre/slam/tracking/keyframes.h"
 #include "byre/slam/window/mapping_steps.h"
 

@@ -1,4 +1,5 @@
 #include "byre/features/descriptor.h"
+#include "byre/geometry/median.h"
 #include "byre/slam/window/mapping_steps.h"
 
 #include <algorithm>
@@ -59,10 +60,9 @@ Descriptor most_central_descriptor(const MapWindow& window, const WindowPoint& p
   for (const Descriptor* candidate : descriptors) {
     std::ranges::transform(descriptors, distances.begin(),
                            [&](const Descriptor* other) { return hamming_distance(*candidate, *other); });
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle < best_median) {
-      best_median = *middle;
+    const int median = median_of(std::span(distances));
+    if (median < best_median) {
+      best_median = median;
       best = candidate;
     }
   }

@@ -1,6 +1,6 @@
 #include "byre/slam/window/registration.h"
 
-#include "byre/map/transformed_copy.h"
+#include "byre/map/scaled_copy.h"
 
 #include <map>
 

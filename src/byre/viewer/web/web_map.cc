@@ -1,6 +1,7 @@
 #include "byre/viewer/web/web_map.h"
 
 #include "byre/base/output_file.h"
+#include "byre/base/text_file.h"
 #include "byre/input_error.h"
 #include "byre/io/recording/timed_files.h"
 #include "byre/map/plan/pick_guidance.h"
@@ -8,10 +9,8 @@
 #include "byre/map/point_grey.h"
 #include "byre/map/stored_calibration.h"
 #include "byre/viewer/plan_picks.h"
-#include "byre/viewer/scene.h"
 #include "byre/viewer/web/web_messages.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -30,10 +29,9 @@ constexpr std::string_view kPicturesFolder = "/pictures/";
 const Keyframe* find_pictured(const MapGraph& map, std::string_view path) {
   if (!path.starts_with(kPicturesFolder)) return nullptr;
   path.remove_prefix(kPicturesFolder.size());
-  std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);
-  if (error != std::errc() || end != path.data() + path.size()) return nullptr;
-  const Keyframe* const keyframe = map.find_keyframe({map.origin(), number});
+  const auto number = parse_whole<std::uint32_t>(path);
+  if (!number) return nullptr;
+  const Keyframe* const keyframe = map.find_keyframe({map.origin(), *number});
   return keyframe != nullptr && keyframe->picture ? keyframe : nullptr;
 }
 

@@ -1,11 +1,11 @@
 #include "byre/viewer/web/web_run.h"
 
+#include "byre/base/text_file.h"
 #include "byre/features/rectify.h"
 #include "byre/io/image/image_codec.h"
 #include "byre/viewer/web/web_messages.h"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -20,12 +20,6 @@ using Json = nlohmann::json;
 constexpr std::string_view kImagesFolder = "/images/";
 constexpr std::size_t kFramesAMessage = 500;
 constexpr int kTimeBetweenCopies = 500;  // least time between copies of the online map, in durations of the last copy
-
-std::optional<std::size_t> parse_count(std::string_view text) {
-  std::size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
 
 std::string scene_text(const RunDescription& run, const Rig& rig) {
   Json map;
@@ -94,7 +88,7 @@ class RunSite : public WebSite {
  private:
   const std::string* find_image(std::string_view path) const {
     if (!path.starts_with(kImagesFolder)) return nullptr;
-    const std::optional<std::size_t> frame = parse_count(path.substr(kImagesFolder.size()));
+    const std::optional<std::size_t> frame = parse_whole<std::size_t>(path.substr(kImagesFolder.size()));
     return frame ? images_.find_nearest(*frame) : nullptr;
   }
 

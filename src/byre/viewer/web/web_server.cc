@@ -2,7 +2,6 @@
 
 #include "byre/base/background_thread.h"
 #include "byre/input_error.h"
-#include "byre/viewer/web/web_access.h"
 #include "byre/viewer/web/web_connection.h"
 
 #include <algorithm>

@@ -5,6 +5,10 @@
 
 namespace byre {
 
+// Bounds of squared errors, in squared sigmas; 5 % of correct measurements exceed them.
+inline constexpr double kMaxSquaredErrorMono = 5.991;    // 95 % of chi-square, two degrees of freedom: column and row
+inline constexpr double kMaxSquaredErrorStereo = 7.815;  // 95 % of chi-square, three degrees of freedom: with disparity
+
 // Huber loss of a squared error: quadratic up to the width, linear beyond.
 inline double huber_cost(double squared_error, double width) {
   const double length = std::sqrt(squared_error);
