@@ -89,9 +89,12 @@ PlaceView OfflineTracker::view_of(const Frame& frame, const HybridTrack& track, 
     if (reference) around = local_points(offline_->map(), *reference, options_.local_keyframes);
   }
   const std::vector<PointId> in_common = finds_rivals ? points_in_common(track.tracked) : std::vector<PointId>();
-  return view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden, offline_->tags(),
-                        [this](PointId id) { return mission_.moved_points().is_suspended(id); },
-                        [&](PointId id) { return std::ranges::binary_search(in_common, id); }, offline_->cell_unit()});
+  PlaceView view =
+      view_of_place({offline_->map(), rig, frame, track.tracked, nearby_points_, around, hidden, offline_->tags(),
+                     [this](PointId id) { return mission_.moved_points().is_suspended(id); },
+                     [&](PointId id) { return std::ranges::binary_search(in_common, id); }, offline_->cell_unit()});
+  shows_tag_ = std::ranges::any_of(view.tags, &TagInView::agrees);
+  return view;
 }
 
 double OfflineTracker::log_odds_of(const Frame& frame, const HybridTrack& track, const Rig& rig,
@@ -254,7 +257,8 @@ std::vector<PointId> OfflineTracker::points_in_common(const TrackedFrame& tracke
 
 double OfflineTracker::log_odds_of_rivals() const {
   constexpr double kOddsOfUntestable = 7.4;  // typical odds of testable look-alikes, in barns with bays
-  return std::log(kOddsOfUntestable * untestable_ + std::exp(rivals_.log_odds()));
+  const double of_untestable = shows_tag_ ? 1.0 : kOddsOfUntestable;  // a tag has no look-alike
+  return std::log(of_untestable * untestable_ + std::exp(rivals_.log_odds()));
 }
 
 double OfflineTracker::length_sigma_of(const Features& features) const {

@@ -169,6 +169,7 @@ class OfflineTracker {
   std::vector<int> features_at_rivals_;                 // features of the frame that were tracked at rivals, ascending
   std::vector<LookAlikePlace> look_alikes_;             // look-alikes of that place
   int untestable_ = 0;                                  // look-alike places of the last view_of that cannot be tested
+  bool shows_tag_ = false;                              // whether an agreeing tag is in that view
   int frames_since_rivals_ = 0;
   bool is_refuted_ = false;  // see RivalPlaces::refute
   std::optional<Timestamp> last_search_;
