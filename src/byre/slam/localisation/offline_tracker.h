@@ -139,9 +139,11 @@ class OfflineTracker {
   ScratchVector<PointId> points_around(const Pose& camera_from_offline) const;
   std::optional<TrackedFrame> track_at(const Frame& frame, const Pose& predicted, std::span<const PointId> points,
                                        const Rig& rig, const ImageMask& hidden) const;
+  // features: receives the features tracked there.
   RivalPlaces::View view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig, const ImageMask& hidden,
                                   std::vector<int>* features = nullptr) const;
   std::span<const LookAlikePlace> look_alikes_at(const Pose& camera_from_place);
+  // shift: from the place to the look-alike, metres.
   bool is_untestable(const Pose& camera_from_look_alike, double shift) const;
   std::vector<PointId> points_in_common(const TrackedFrame& tracked);
   void propose_rivals(Timestamp time, const Pose& camera_from_place, std::span<const Pose> rivals, const Rig& rig,

@@ -127,13 +127,12 @@ PlaceSearch search_at_candidates(const OfflineMap& offline, const PlaceQuery& qu
   const auto [found, refused] = localise_at_candidates(offline, query, options, candidates);
   PlaceSearch search{query.frame.time, query.rig, std::nullopt, refused};
   search.focal = found.focal;
-  const auto seen_at = [&](const TrackedFrame& place) {
-    return FoundPlace{place.camera_from_world, median_depth(place, offline.map()),
-                      view_at(offline, query.frame, query.rig, query.hidden, place)};
-  };
-  for (const TrackedFrame& place : found.places_found) search.places.push_back(seen_at(place));
+  for (const TrackedFrame& place : found.places_found) {
+    search.places.push_back({place.camera_from_world, median_depth(place, offline.map()),
+                             view_at(offline, query.frame, query.rig, query.hidden, place)});
+  }
   if (!found.tracked) return search;
-  search.found = seen_at(*found.tracked);
+  search.found = search.places.front();
   search.refused = DistrustReason::none;
   return search;
 }

@@ -64,9 +64,9 @@ struct FoundPlace {
 struct PlaceSearch {
   Timestamp time{};                               // time of the frame
   Rig rig{};                                      // cameras of the frame
-  std::optional<FoundPlace> found{};              // empty: not found, or several places fit
+  std::optional<FoundPlace> found{};              // the only place that fits, places[0]; else empty
   DistrustReason refused = DistrustReason::none;  // see BoundedLocalisation
-  std::vector<FoundPlace> places{};               // places that show the frame, contradicting each other
+  std::vector<FoundPlace> places{};               // places that show the frame, most inliers first
   std::optional<FocalEvidence> focal{};           // see Localisation
 };
 PlaceSearch search_place(const OfflineMap& offline, const PlaceQuery& query, const PlaceSearchOptions& options);
