@@ -69,7 +69,7 @@ KEPT_IN = {
     r"systemd/.*": {"ros2/node"},
     r"libpq-fe\.h|openssl/.*": {"registry"},
     r"linux/videodev2\.h|sys/(ioctl|poll)\.h": {"camera"},
-    r"poll\.h": {"camera", "registry"},
+    r"poll\.h": {"camera", "cli", "registry"},
 }
 
 

@@ -15,6 +15,8 @@
 
 #include <CLI/CLI.hpp>
 #include <malloc.h>
+#include <poll.h>
+#include <unistd.h>
 
 namespace {
 
@@ -33,13 +35,20 @@ int report(const std::string& message, ExitCode code) {
   return code;
 }
 
+// The reader of a pipe may end early, as in "byre map --help | head". That is no error worth a message.
+int report_unwritten() {
+  pollfd output{.fd = STDOUT_FILENO, .events = 0, .revents = 0};
+  const bool has_reader_ended = poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+  return has_reader_ended ? static_cast<int>(failed) : report(kUnwritten, failed);
+}
+
 int run(const Action& action, CLI::App& app) {
   try {
     require_files_or_folders(app);
     const ExitCode code = action(std::cout);
     const bool is_written = static_cast<bool>(std::cout.flush());
     if (code == interrupted) return exit_code_of_interrupt();  // the reader may have ended with the terminal
-    return is_written ? static_cast<int>(code) : report(kUnwritten, failed);
+    return is_written ? static_cast<int>(code) : report_unwritten();
   } catch (const byre::InputError& error) {
     return report(error.what(), bad_input);
   } catch (const std::filesystem::filesystem_error& error) {  // such as a cyclic link
@@ -85,7 +94,7 @@ int main(int argc, char** argv) {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // reversed, as CLI11 takes them
   } catch (const CLI::ParseError& error) {  // parse errors; also --help and --version, which succeed
     if (app.exit(error) != done) return wrong_usage;
-    return std::cout.flush() ? static_cast<int>(done) : report(kUnwritten, failed);
+    return std::cout.flush() ? static_cast<int>(done) : report_unwritten();
   } catch (const byre::InputError& error) {  // bad input read by --print-options
     return report(error.what(), bad_input);
   } catch (const std::exception& error) {

@@ -123,6 +123,14 @@ TEST_F(Program, FailsIfItsHelpCannotBeWritten) {
   }
 }
 
+TEST_F(Program, PrintsNoErrorIfTheReaderOfItsHelpHasEnded) {
+  const std::string command = std::string("mkfifo '") + (folder_ / "pipe").string() + "'; { exec 3<>'" +
+                              (folder_ / "pipe").string() + "' 4>'" + (folder_ / "pipe").string() + "' 3<&-; '" +
+                              BYRE_PROGRAM + "' map --help >&4 2>'" + (folder_ / "errors.txt").string() + "'; }";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1);
+  EXPECT_THAT(read("errors.txt"), IsEmpty());
+}
+
 TEST_F(Program, ListsTheChoicesOfAnOption) {
   const std::string evaluate = "evaluate --estimate estimate.txt --truth estimate.txt ";
   const std::vector<std::pair<std::string, std::string>> cases = {
