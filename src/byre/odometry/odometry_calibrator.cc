@@ -234,13 +234,36 @@ void OdometryCalibrator::estimate_calibrations() {
   if (!wheel_calibration_) return;
   // The delay costs most: its estimates become rarer with the number of motions.
   const auto period = static_cast<int>(1 + seen_.size() / kMotionsPerOffset);
-  if (estimates_++ % period == 0) estimate_time_offset(seen_);
+  if (estimates_++ % period == 0) estimate_time_offset(seen_, wheel_calibration_->up_in_body());
   if (estimates_ >= kEstimatesUntilUsed || prior_.calibration.wheels) integrate(gaps_);
 }
 
-bool OdometryCalibrator::reestimate(const Trajectory& seen) {
+bool OdometryCalibrator::reestimate(const Trajectory& seen, bool may_finish_again) {
   stationary_.reestimate(seen);
   if (wheels_.empty() || seen.empty()) return false;
+  const std::deque<VisualMotion> motions = motions_of(seen);
+  const bool was_known = wheel_calibration_.has_value();
+  reestimate(motions);
+  std::vector<MotionPair> pairs = pairs_of(motions, odometry());
+  const bool is_doubtful = prior_.is_measured && is_doubted(*prior_of_map(), pairs);
+  bool is_dropped = false;
+  if (is_doubtful && is_contradicted(*prior_of_map(), *estimate_wheel_calibration(pairs))) {
+    discard_prior_wheels(seen.back().time);
+    is_dropped = true;
+    reestimate(motions);
+    pairs = pairs_of(motions, odometry());
+  }
+  if (!may_finish_again) return false;
+  if (is_dropped && wheel_calibration_) return true;
+  if (!is_doubtful && (was_known || wheel_calibration_)) return false;
+  const auto rough = estimate_wheel_calibration(pairs);
+  if (!is_determined(rough, kMaxFirstEstimateSigma)) return false;
+  set_wheels(*rough);
+  return true;
+}
+
+// Motions between poses without a gap.
+std::deque<VisualMotion> OdometryCalibrator::motions_of(const Trajectory& seen) const {
   std::deque<VisualMotion> motions;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < seen.size(); ++i) {
@@ -250,29 +273,28 @@ bool OdometryCalibrator::reestimate(const Trajectory& seen) {
     motions.push_back({seen[begin].time, seen[i].time, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
     begin = i;
   }
-  const auto prior = [this] {
-    const auto& known = prior_.calibration.wheels;
-    return known && !is_metric_ ? std::optional(with_unknown_scale(*known)) : known;
-  };
-  const auto estimate = [&] {
-    const std::vector<MotionPair> pairs = pairs_of(motions, odometry());
-    const auto found = prior() ? estimate_with_prior(pairs, *prior()) : estimate_without_prior(pairs);
-    if (found) set_wheels(*found);
-    if (is_metric_ || !wheel_calibration_) return;
-    double& variance = wheel_calibration_->covariance(6, 6);
-    variance = std::max(variance, std::pow(scale_scatter(pairs, *wheel_calibration_), 2));
-  };
-  const auto estimate_with_delay = [&] {
-    if (!wheel_calibration_) estimate();  // the delay needs the base's up axis
-    if (!wheel_calibration_) return;
-    estimate_time_offset(motions);
-    estimate();
-  };
-  estimate_with_delay();
-  if (!prior_.is_measured || !prior() || !is_refuted(*prior(), pairs_of(motions, odometry()))) return false;
-  discard_prior_wheels(seen.back().time);
-  estimate_with_delay();
-  return true;
+  return motions;
+}
+
+std::optional<WheelCalibration> OdometryCalibrator::prior_of_map() const {
+  const auto& known = prior_.calibration.wheels;
+  return known && !is_metric_ ? std::optional(with_unknown_scale(*known)) : known;
+}
+
+// The delay first, because turns measured too late hide the calibration. It needs the base's up axis alone.
+void OdometryCalibrator::reestimate(const std::deque<VisualMotion>& motions) {
+  const auto prior = prior_of_map();
+  const auto rough = wheel_calibration_ ? wheel_calibration_
+                                        : estimate_wheel_calibration(pairs_of(motions, odometry()),
+                                                                     prior.value_or(unknown_wheel_calibration()));
+  if (!rough) return;
+  estimate_time_offset(motions, rough->up_in_body());
+  const std::vector<MotionPair> pairs = pairs_of(motions, odometry());
+  const auto found = prior ? estimate_with_prior(pairs, *prior) : estimate_without_prior(pairs);
+  if (found) set_wheels(*found);
+  if (is_metric_ || !wheel_calibration_) return;
+  double& variance = wheel_calibration_->covariance(6, 6);
+  variance = std::max(variance, std::pow(scale_scatter(pairs, *wheel_calibration_), 2));
 }
 
 std::optional<OdometryCalibrator::TurnRatio> OdometryCalibrator::turn_ratio() const {
@@ -401,9 +423,8 @@ void OdometryCalibrator::discard_prior_wheels(Timestamp time) {
   has_calibration_changed_ = !was_assumed;
 }
 
-// Precondition: the calibration of wheels is estimated.
-void OdometryCalibrator::estimate_time_offset(const std::deque<VisualMotion>& seen) {
-  const auto offset = find_time_offset(seen, wheel_calibration_->up_in_body(), wheels_, time_offset_);
+void OdometryCalibrator::estimate_time_offset(const std::deque<VisualMotion>& seen, const Eigen::Vector3d& up_in_body) {
+  const auto offset = find_time_offset(seen, up_in_body, wheels_, time_offset_);
   if (offset) set_time_offset(*offset);
 }
 

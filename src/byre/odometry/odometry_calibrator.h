@@ -99,9 +99,10 @@ class OdometryCalibrator {
   void note_located(const std::vector<Timestamp>& times) { gaps_.note_located(times); }
 
   // Delay and calibration of the wheels by the final map poses of the tracked frames, after the last frame. Poses of
-  // untracked frames are ignored, because wheels themselves determined them. Returns whether they contradict the given
-  // extrinsics, which are then reported and dropped.
-  bool reestimate(const Trajectory& seen);
+  // untracked frames are ignored, because wheels themselves determined them. If they contradict given extrinsics, these
+  // are reported and dropped. Returns whether the map should be finished again, as it was without wheels, or with wrong
+  // extrinsics. may_finish_again: the map can be; a rough estimate is then used for it.
+  bool reestimate(const Trajectory& seen, bool may_finish_again);
 
   // After reestimate: lengths of the map are multiplied by this factor from here on.
   void rescale(double factor);
@@ -146,7 +147,10 @@ class OdometryCalibrator {
   const WheelCalibration* active_calibration() const;  // nullptr if nothing is estimated or assumed
   void detect_slip(const VisualMotion& motion);
   void check_prior(double disagreement, const VisualMotion& motion);
-  void estimate_time_offset(const std::deque<VisualMotion>& seen);
+  void reestimate(const std::deque<VisualMotion>& motions);
+  std::deque<VisualMotion> motions_of(const Trajectory& seen) const;
+  std::optional<WheelCalibration> prior_of_map() const;  // its scale is unknown if the map is not metric
+  void estimate_time_offset(const std::deque<VisualMotion>& seen, const Eigen::Vector3d& up_in_body);
   void set_time_offset(double seconds);
   void discard_prior_wheels(Timestamp time);
   CalibratedOdometry odometry() const;

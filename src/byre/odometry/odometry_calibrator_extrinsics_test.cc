@@ -112,7 +112,7 @@ TEST(GivenExtrinsics, LeaveTheUnitOfTheFinalMapToItsMotions) {
   std::mt19937 random(7);
   Trajectory final;
   for (int i = 0; i < 400; ++i) final.push_back({from_seconds(0.05 * i), drive.seen(0.05 * i, random)});
-  calibrator.reestimate(final);
+  calibrator.reestimate(final, true);
   EXPECT_NEAR(calibrator.wheels()->metres_per_unit, 1.4, 0.02);
 }
 
@@ -131,7 +131,7 @@ TEST(GivenExtrinsics, DoNotDetermineTheScaleOfAMapWhoseUnitDrifts) {
                    : final[200].world_from_body * inverse(drifted.seen(10.0, random)) * drifted.seen(0.05 * i, random);
       final.push_back({from_seconds(0.05 * i), pose});
     }
-    calibrator.reestimate(final);
+    calibrator.reestimate(final, true);
     if (drift == 1.0) EXPECT_LT(calibrator.wheels()->scale_sigma(), 0.02);
     if (drift != 1.0) EXPECT_GT(calibrator.wheels()->scale_sigma(), 0.05);
   }
@@ -148,10 +148,10 @@ TEST(GivenExtrinsics, AreReestimatedByFramesLocatedLater) {
     times.push_back(from_seconds(0.05 * i));
     final.push_back({times.back(), drive.seen(0.05 * i, random)});
   }
-  calibrator.reestimate(final);
+  calibrator.reestimate(final, true);
   const double before = calibrator.wheels()->arm_sigma();
   calibrator.note_located(times);
-  calibrator.reestimate(final);
+  calibrator.reestimate(final, true);
   EXPECT_LT(calibrator.wheels()->arm_sigma(), 0.5 * before);
 }
 
@@ -166,12 +166,12 @@ TEST(GivenExtrinsics, AreDroppedAtTheEndIfFinalPosesContradictThem) {
     std::mt19937 random(7);
     Trajectory final;
     for (int i = 0; i < 80; ++i) final.push_back({from_seconds(0.05 * i), drive.seen(0.05 * i, random)});
-    EXPECT_EQ(calibrator.reestimate(final), error > 0.0);
+    EXPECT_EQ(calibrator.reestimate(final, true), error > 0.0);
     EXPECT_EQ(calibrator.has_calibration_changed(), error > 0.0);
     EXPECT_EQ(calibrator.warnings().size(), error > 0.0 ? 1u : 0u);
     ASSERT_TRUE(calibrator.wheels()) << error;
     EXPECT_NEAR(calibrator.wheels()->base_from_body.translation.x(), 0.4, 0.03) << error;
-    EXPECT_FALSE(calibrator.reestimate(final)) << "dropped already";
+    EXPECT_FALSE(calibrator.reestimate(final, true)) << "dropped already";
   }
 }
 

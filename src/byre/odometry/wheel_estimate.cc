@@ -46,10 +46,10 @@ std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair
   return is_determined(found, kMaxEstimateSigma) ? found : std::nullopt;
 }
 
-bool is_refuted(const WheelCalibration& prior, const std::vector<MotionPair>& motions) {
+bool is_doubted(const WheelCalibration& prior, const std::vector<MotionPair>& motions) {
   constexpr double kClearly = 2.0;  // ratio of the usual errors
   const auto alone = estimate_wheel_calibration(motions), with = estimate_wheel_calibration(motions, prior);
-  return with && is_determined(alone, kMaxFirstEstimateSigma) && is_contradicted(prior, *alone) &&
+  return with && is_determined(alone, kMaxFirstEstimateSigma) &&
          with->translation_error > kClearly * alone->translation_error;
 }
 

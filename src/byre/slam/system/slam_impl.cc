@@ -355,9 +355,9 @@ std::optional<FinishResult> SlamImpl::finish(const FinishHooks& hooks) {
   } else {
     extractor_.rest();
     result.report = session_->finish_map(hooks);
-    if (prior_.reestimate(session_->final_trajectory())) {  // the map was adjusted to wrong extrinsics
+    if (prior_.reestimate(session_->final_trajectory(), true)) {
       result.report.add(session_->finish_map(hooks));
-      prior_.reestimate(session_->final_trajectory());
+      prior_.reestimate(session_->final_trajectory(), false);
     }
     if (!given_.is_metric()) warn_of_focal_length();
     if (!is_metric_) scale_by_tags();

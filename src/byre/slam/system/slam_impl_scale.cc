@@ -114,7 +114,7 @@ double SlamImpl::scale_by_wheels() {
 
 Trajectory SlamImpl::refine_by_located(Trajectory all, const std::vector<Timestamp>& located) {
   prior_.note_located(located);
-  prior_.reestimate(all);
+  prior_.reestimate(all, false);
   if (scale_sigma_ && !is_scaled_by_tags_) {
     scale_sigma_.reset();
     is_metric_ = false;
