@@ -95,9 +95,10 @@ double largest(std::vector<double> values, std::size_t rank) {
 bool has_parallax(const MotionCandidate& candidate, StartParallax required) {
   constexpr std::size_t kNearest = 50;  // points
   const double turn = rotation_log(candidate.motion.second_from_first.rotation).norm();
+  const double of_nearest = required == StartParallax::least ? kMinParallax : 1.5 * kMinParallax;
   return median_or(candidate.parallaxes, 0.0) >= kMinParallax ||
-         (required == StartParallax::of_nearest_points &&
-          largest(candidate.parallaxes, kNearest) >= std::max(1.5 * kMinParallax, turn));
+         (required != StartParallax::of_median &&
+          largest(candidate.parallaxes, kNearest) >= std::max(of_nearest, turn));
 }
 
 // Refinement on points off the plane may bring two motions of a homography together.
@@ -113,6 +114,26 @@ bool has_rival(const MotionCandidate& best, const std::vector<MotionCandidate>& 
     return candidate.score > kRivalShare * best.score &&
            !is_same_motion(candidate.motion.second_from_first, best.motion.second_from_first);
   });
+}
+
+// The same bounds hold for wheels that continue a map.
+bool agrees(const Pose& motion, const Pose& measured) {
+  constexpr double kMaxTurn = 0.1;        // radians
+  constexpr double kMaxDirection = 0.35;  // radians, by extrinsics measured by hand
+  return angle_between(motion.rotation, measured.rotation) < kMaxTurn &&
+         motion.translation.dot(measured.translation) > measured.translation.norm() * std::cos(kMaxDirection);
+}
+
+// Leaves the motions that agree with the measured one, if they explain the matches nearly as well as the best. Returns
+// whether any does.
+bool prefer_measured(std::vector<MotionCandidate>& candidates, const Pose& measured) {
+  const double best = std::ranges::max_element(candidates, {}, &MotionCandidate::score)->score;
+  const auto is_good = [&](const MotionCandidate& candidate) {
+    return candidate.score > kRivalShare * best && agrees(candidate.motion.second_from_first, measured);
+  };
+  if (std::ranges::none_of(candidates, is_good)) return false;
+  std::erase_if(candidates, std::not_fn(is_good));
+  return true;
 }
 
 TwoViewFailure rejection_reason(const Models& models, bool planar) {
@@ -142,14 +163,20 @@ std::string_view to_string(TwoViewFailure failure) {
       failure);
 }
 
-TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, StartParallax required) {
+TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches, StartParallax required,
+                                         const std::optional<Pose>& measured) {
   if (static_cast<int>(matches.size()) < kMinTwoViewMatches) return failed(TwoViewFailure::too_few_matches);
   const Models models = search_models(matches);
   const bool planar = is_planar(models);
   const TwoViewFailure doubt = rejection_reason(models, planar);
-  if (doubt != TwoViewFailure::none) return failed(doubt);
+  if (doubt != TwoViewFailure::none && !measured) return failed(doubt);
   std::vector<MotionCandidate> candidates;
   for (const Pose& motion : motions_of(models, matches)) candidates.push_back(weigh(motion, matches));
+  if (measured) {
+    const Pose unit{measured->rotation, measured->translation.normalized()};
+    candidates.push_back(weigh(refine_motion(unit, matches), matches));
+    if (!prefer_measured(candidates, unit) && doubt != TwoViewFailure::none) return failed(doubt);
+  }
   MotionCandidate best = *std::ranges::max_element(candidates, {}, &MotionCandidate::score);
   const TwoViewFailure failure = rejection_reason(best, candidates, required);
   if (failure != TwoViewFailure::none) return failed(failure);

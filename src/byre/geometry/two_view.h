@@ -21,8 +21,9 @@ struct TwoViewMotion {
 };
 
 // Parallax from which a motion is accepted: one degree in the median of all points, or also 1.5 degrees of the nearest
-// 50. A camera that moves forward sees mostly far points, and loses the first view before their median suffices.
-enum class StartParallax : std::uint8_t { of_median, of_nearest_points };
+// 50. A camera that moves forward sees mostly far points, and loses the first view before their median suffices. least:
+// one degree of the nearest 50.
+enum class StartParallax : std::uint8_t { of_median, of_nearest_points, least };
 
 struct TwoViewEstimate {
   std::optional<TwoViewMotion> motion;  // empty on failure
@@ -33,7 +34,10 @@ struct TwoViewEstimate {
 // compared (Mur-Artal et al. 2015, eq. 2 and 3), which detects pure rotation. Of the motions of both models the one
 // with the best score of inliers in front of both cameras is chosen. It is accepted only with enough parallax and
 // without a rival motion that explains the matches nearly as well.
+// measured: second_from_first by odometry, its translation of any length but zero; one more motion starts from it. If a
+// motion near it explains the matches nearly as well as the best, the others are no rivals, nor is a rotation.
 TwoViewEstimate estimate_two_view_motion(std::span<const TwoViewMatch> matches,
-                                         StartParallax required = StartParallax::of_nearest_points);
+                                         StartParallax required = StartParallax::of_nearest_points,
+                                         const std::optional<Pose>& measured = {});
 
 }  // namespace byre

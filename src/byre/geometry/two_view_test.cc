@@ -138,6 +138,44 @@ TEST(EstimateTwoViewMotion, ReportsPlanarAmbiguity) {
   }
 }
 
+// The measured motion errs by 2 degrees in its rotation and 6 degrees in its direction.
+TEST(EstimateTwoViewMotion, ResolvesAPlaneByAMeasuredMotion) {
+  const Pose truth{rotation_exp({0.02, -0.05, 0.03}), {-0.4, 0.0, -0.4}};
+  const Pose measured{rotation_exp({0.0, 2.0 * kDegree, 0.0}) * truth.rotation, {-0.44, 0.0, -0.36}};
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto matches = matches_of(truth, wall_depth, {.count = 300, .pixel_sigma = 0.5, .seed = seed});
+    const auto found = estimate_two_view_motion(matches, StartParallax::of_median, measured).motion;
+    ASSERT_TRUE(found) << "seed " << seed;
+    EXPECT_LT(angle_between_translations(found->second_from_first, truth), 3.0 * kDegree) << "seed " << seed;
+  }
+}
+
+TEST(EstimateTwoViewMotion, FollowsTheImagesIfTheMeasuredMotionIsWrong) {
+  const Pose truth = sideways_motion(0.5);
+  Pose wrong = truth;
+  wrong.translation *= -1.0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto matches = matches_of(truth, room_depth, {.count = 300, .pixel_sigma = 0.5, .seed = seed});
+    const auto found = estimate_two_view_motion(matches, StartParallax::of_median, wrong).motion;
+    ASSERT_TRUE(found) << "seed " << seed;
+    EXPECT_LT(angle_between_translations(found->second_from_first, truth), 1.5 * kDegree) << "seed " << seed;
+  }
+}
+
+TEST(EstimateTwoViewMotion, AcceptsTheLeastParallaxIfRequested) {
+  const Pose truth{Eigen::Quaterniond::Identity(), {0.02, 0.0, -0.3}};
+  int found_count = 0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const auto matches = matches_of(truth, street_depth, {.count = 400, .pixel_sigma = 0.3, .seed = seed});
+    EXPECT_FALSE(estimate_two_view_motion(matches).motion) << "seed " << seed;
+    const auto found = estimate_two_view_motion(matches, StartParallax::least, truth).motion;
+    if (!found) continue;
+    ++found_count;
+    EXPECT_LT(angle_between_translations(found->second_from_first, truth), 3.0 * kDegree) << "seed " << seed;
+  }
+  EXPECT_GE(found_count, 15);
+}
+
 TEST(EstimateTwoViewMotion, ResolvesAPlaneByPointsInFrontOfIt) {
   const auto furnished = [](const Eigen::Vector3d& ray, double random) {
     return wall_depth(ray, random) * (random < 0.25 ? 0.5 + random : 1.0);

@@ -85,7 +85,12 @@ std::optional<KeyframeId> Mapper::parent_of_bridge(const AnchoredTrajectory& tra
 Mapper::Beginning Mapper::begin_monocular(const Frame& frame, const Rig& rig,
                                           const std::optional<Pose>& camera_from_world,
                                           const AnchoredTrajectory& trajectory) {
-  MonocularAttempt attempt = initialiser_->try_start(frame, camera_from_world.has_value());
+  std::optional<Pose> measured;  // camera from that of the reference frame
+  if (camera_from_world && options_.monocular_start.is_scaled_by_odometry) {
+    measured = *camera_from_world * inverse(odometry_reference_);
+    if (!is_determined(*measured, options_.monocular_start.lever_arm_sigma)) measured.reset();
+  }
+  MonocularAttempt attempt = initialiser_->try_start(frame, camera_from_world.has_value(), measured);
   if (!attempt.start) {
     if (initialiser_->reference_time() == frame.time) {
       odometry_reference_ = camera_from_world.value_or(inverse(rig.body_from_camera));

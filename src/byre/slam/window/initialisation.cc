@@ -226,6 +226,13 @@ MonocularStart start_from(const TwoViewMotion& motion, const std::vector<Match>&
   return start;
 }
 
+// Whether a camera stands, by its poses in two frames.
+bool is_same_place(const Pose& one, const Pose& other) {
+  constexpr double kShift = 0.001;  // metres
+  constexpr double kTurn = 0.002;   // radians
+  return (one.translation - other.translation).norm() < kShift && angle_between(one.rotation, other.rotation) < kTurn;
+}
+
 }  // namespace
 
 MonocularInitialiser::MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options,
@@ -272,7 +279,8 @@ void MonocularInitialiser::update_expected(const std::vector<Match>& matches, co
   }
 }
 
-MonocularAttempt MonocularInitialiser::try_start(const Frame& frame, bool has_odometry) {
+MonocularAttempt MonocularInitialiser::try_start(const Frame& frame, bool has_odometry,
+                                                 const std::optional<Pose>& measured) {
   MonocularAttempt attempt{std::nullopt, TwoViewFailure::too_few_matches, 0};
   const std::vector<Match> matches = reference_ ? match_with_reference(*frame.features) : std::vector<Match>{};
   attempt.matches = static_cast<int>(matches.size());
@@ -282,9 +290,12 @@ MonocularAttempt MonocularInitialiser::try_start(const Frame& frame, bool has_od
   }
   update_expected(matches, *frame.features);
   const Features& first = *reference_->features;
-  const auto estimate =
-      estimate_two_view_motion(rays_of(matches, first, *frame.features, rig_),
-                               has_odometry ? StartParallax::of_median : StartParallax::of_nearest_points);
+  const bool is_standing = measured && measured_ && is_same_place(*measured, *measured_);
+  measured_ = measured;
+  const StartParallax required = is_standing                 ? StartParallax::least
+                                 : has_odometry && !measured ? StartParallax::of_median
+                                                             : StartParallax::of_nearest_points;
+  const auto estimate = estimate_two_view_motion(rays_of(matches, first, *frame.features, rig_), required, measured);
   attempt.failure = estimate.failure;
   if (!estimate.motion) return attempt;
   MonocularStart start =
@@ -313,13 +324,16 @@ bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometr
   return StartMotion(start, odometry).agrees(kMaxTurn, kMaxDirection);
 }
 
-std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry, double lever_arm_sigma) {
+bool is_determined(const Pose& measured, double lever_arm_sigma) {
   constexpr double kLeastWay = 0.05;   // metres
   constexpr double kMostByArm = 0.25;  // share of the motion
+  const double way = measured.translation.norm(), turn = rotation_log(measured.rotation).norm();
+  return way >= kLeastWay && lever_arm_sigma * turn <= kMostByArm * way;
+}
+
+std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry, double lever_arm_sigma) {
   const StartMotion motion(start, odometry);
-  const double way = motion.measured.translation.norm(), turn = rotation_log(motion.measured.rotation).norm();
-  if (way < kLeastWay || lever_arm_sigma * turn > kMostByArm * way || !(motion.seen.translation.norm() > 0.0))
-    return {};
+  if (!is_determined(motion.measured, lever_arm_sigma) || !(motion.seen.translation.norm() > 0.0)) return {};
   return motion.scale();
 }
 

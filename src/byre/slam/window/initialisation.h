@@ -41,8 +41,9 @@ class MonocularInitialiser {
   MonocularInitialiser(const Rig& rig, const MonocularStartOptions& options, const MappingOptions& mapping = {});
 
   // Frames in order of time. After a start the next frame becomes the reference. Poses by odometry leave time for a
-  // more accurate start, by the median parallax.
-  MonocularAttempt try_start(const Frame& frame, bool has_odometry = false);
+  // more accurate start, by the median parallax. measured: camera of the frame from that of the reference, by odometry
+  // that determines its direction. The nearest points then suffice, and once the camera stands, less of their parallax.
+  MonocularAttempt try_start(const Frame& frame, bool has_odometry = false, const std::optional<Pose>& measured = {});
 
   // Time of the reference frame; empty before the first.
   std::optional<Timestamp> reference_time() const {
@@ -61,6 +62,7 @@ class MonocularInitialiser {
 
   // Owned by the calling thread.
   std::optional<Frame> reference_;
+  std::optional<Pose> measured_;  // at the frame before
   // Pixels, one per feature of the reference: its expected position in the next frame.
   std::vector<Eigen::Vector2f> expected_;
 };
@@ -86,8 +88,11 @@ std::vector<KeyframeId> add_separate_submap(const MonocularStart& start, const s
 // Whether the cameras of a start turned and moved in the measured direction.
 bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometry);
 
-// Factor for the lengths of a start by the measured motion. Empty if the camera hardly moved, or turned so much that
-// the error of the lever arm (standard deviation, metres) would change the length of its motion.
+// Whether odometry measures length and direction of a camera's motion: the camera moved, and turned so little that the
+// error of the lever arm (standard deviation, metres) hardly changes its motion.
+bool is_determined(const Pose& measured, double lever_arm_sigma);
+
+// Factor for the lengths of a start by the measured motion. Empty if odometry does not determine that.
 std::optional<double> odometry_scale(const MonocularStart& start, const StartPoses& odometry, double lever_arm_sigma);
 
 // Moves a first map so that its second camera is at its measured pose, with lengths multiplied by the scale. The
