@@ -116,14 +116,6 @@ bool has_rival(const MotionCandidate& best, const std::vector<MotionCandidate>& 
   });
 }
 
-// The same bounds hold for wheels that continue a map.
-bool agrees(const Pose& motion, const Pose& measured) {
-  constexpr double kMaxTurn = 0.1;        // radians
-  constexpr double kMaxDirection = 0.35;  // radians, by extrinsics measured by hand
-  return angle_between(motion.rotation, measured.rotation) < kMaxTurn &&
-         motion.translation.dot(measured.translation) > measured.translation.norm() * std::cos(kMaxDirection);
-}
-
 // Leaves the motions that agree with the measured one, if they explain the matches nearly as well as the best. Returns
 // whether any does.
 bool prefer_measured(std::vector<MotionCandidate>& candidates, const Pose& measured) {
@@ -155,6 +147,12 @@ TwoViewEstimate failed(TwoViewFailure failure) {
 }
 
 }  // namespace
+
+bool agrees(const Pose& seen, const Pose& measured, const MotionBounds& bounds) {
+  const double lengths = measured.translation.norm() * seen.translation.norm();
+  return lengths > 0.0 && angle_between(measured.rotation, seen.rotation) < bounds.turn &&
+         measured.translation.dot(seen.translation) > lengths * std::cos(bounds.direction);
+}
 
 std::string_view to_string(TwoViewFailure failure) {
   return name_among<TwoViewFailure::uncertain>(

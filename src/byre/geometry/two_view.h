@@ -25,6 +25,15 @@ struct TwoViewMotion {
 // one degree of the nearest 50.
 enum class StartParallax : std::uint8_t { of_median, of_nearest_points, least };
 
+// Bounds of the difference between a motion by images and the same by odometry.
+struct MotionBounds {
+  double turn = 0.1;        // radians
+  double direction = 0.35;  // radians between the translations, by a mounting measured by hand
+};
+
+// False if either translation is zero. Lengths are not compared.
+bool agrees(const Pose& seen, const Pose& measured, const MotionBounds& bounds = {});
+
 struct TwoViewEstimate {
   std::optional<TwoViewMotion> motion;  // empty on failure
   TwoViewFailure failure = TwoViewFailure::none;

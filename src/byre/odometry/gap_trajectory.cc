@@ -70,6 +70,19 @@ bool GapTrajectory::is_seen(Timestamp earlier, Timestamp later) const {
   return pending == pending_.end() || pending->earlier >= later;
 }
 
+std::deque<VisualMotion> GapTrajectory::motions_between_gaps(const Trajectory& seen, Timestamp length) const {
+  std::deque<VisualMotion> motions;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    const bool is_gap = seen[i].time - seen[i - 1].time > kMaxFrameGap;
+    if (is_gap || !is_seen(seen[i - 1].time, seen[i].time)) begin = i;
+    if (seen[i].time - seen[begin].time < length) continue;
+    motions.push_back({seen[begin].time, seen[i].time, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
+    begin = i;
+  }
+  return motions;
+}
+
 void GapTrajectory::note_located(const std::vector<Timestamp>& times) {
   const auto is_tracked = [&](Frames& frames) {
     frames.is_earlier_seen = frames.is_earlier_seen || std::ranges::binary_search(times, frames.earlier);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "byre/odometry/visual_motion.h"
 #include "byre/trajectory.h"
 
 #include <deque>
@@ -24,6 +25,8 @@ class GapTrajectory {
   std::optional<Timestamp> last() const { return last_; }  // last frame
   // Whether both frames and all frames between them were tracked.
   bool is_seen(Timestamp earlier, Timestamp later) const;
+  // Motions of at least this length in time between poses of tracked frames.
+  std::deque<VisualMotion> motions_between_gaps(const Trajectory& seen, Timestamp length) const;
   // Start of the first step without a stored motion; empty if there is none.
   std::optional<Timestamp> first_pending() const;
   // Counts frames as tracked that were located later, by ascending times.

@@ -241,39 +241,23 @@ void OdometryCalibrator::estimate_calibrations() {
 bool OdometryCalibrator::reestimate(const Trajectory& seen, bool may_finish_again) {
   stationary_.reestimate(seen);
   if (wheels_.empty() || seen.empty()) return false;
-  const std::deque<VisualMotion> motions = motions_of(seen);
+  const std::deque<VisualMotion> motions = gaps_.motions_between_gaps(seen, kStride);
   const bool was_known = wheel_calibration_.has_value();
   reestimate(motions);
-  std::vector<MotionPair> pairs = pairs_of(motions, odometry());
-  const bool is_doubtful = prior_.is_measured && is_doubted(*prior_of_map(), pairs);
-  bool is_dropped = false;
-  if (is_doubtful && is_contradicted(*prior_of_map(), *estimate_wheel_calibration(pairs))) {
+  const auto prior = prior_.is_measured ? prior_of_map() : std::nullopt;
+  const auto better = prior ? better_without_prior(pairs_of(motions, odometry()), *prior) : std::nullopt;
+  const bool is_dropped = better && is_contradicted(*prior, *better);
+  if (is_dropped) {
     discard_prior_wheels(seen.back().time);
-    is_dropped = true;
     reestimate(motions);
-    pairs = pairs_of(motions, odometry());
   }
   if (!may_finish_again) return false;
   if (is_dropped && wheel_calibration_) return true;
-  if (!is_doubtful && (was_known || wheel_calibration_)) return false;
-  const auto rough = estimate_wheel_calibration(pairs);
+  if (!better && (was_known || wheel_calibration_)) return false;
+  const auto rough = estimate_wheel_calibration(pairs_of(motions, odometry()));
   if (!is_determined(rough, kMaxFirstEstimateSigma)) return false;
   set_wheels(*rough);
   return true;
-}
-
-// Motions between poses without a gap.
-std::deque<VisualMotion> OdometryCalibrator::motions_of(const Trajectory& seen) const {
-  std::deque<VisualMotion> motions;
-  std::size_t begin = 0;
-  for (std::size_t i = 1; i < seen.size(); ++i) {
-    const bool is_gap = seen[i].time - seen[i - 1].time > kMaxFrameGap;
-    if (is_gap || !gaps_.is_seen(seen[i - 1].time, seen[i].time)) begin = i;
-    if (seen[i].time - seen[begin].time < kStride) continue;
-    motions.push_back({seen[begin].time, seen[i].time, inverse(seen[begin].world_from_body) * seen[i].world_from_body});
-    begin = i;
-  }
-  return motions;
 }
 
 std::optional<WheelCalibration> OdometryCalibrator::prior_of_map() const {

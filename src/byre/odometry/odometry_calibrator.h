@@ -148,7 +148,6 @@ class OdometryCalibrator {
   void detect_slip(const VisualMotion& motion);
   void check_prior(double disagreement, const VisualMotion& motion);
   void reestimate(const std::deque<VisualMotion>& motions);
-  std::deque<VisualMotion> motions_of(const Trajectory& seen) const;
   std::optional<WheelCalibration> prior_of_map() const;  // its scale is unknown if the map is not metric
   void estimate_time_offset(const std::deque<VisualMotion>& seen, const Eigen::Vector3d& up_in_body);
   void set_time_offset(double seconds);

@@ -46,11 +46,13 @@ std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair
   return is_determined(found, kMaxEstimateSigma) ? found : std::nullopt;
 }
 
-bool is_doubted(const WheelCalibration& prior, const std::vector<MotionPair>& motions) {
+std::optional<WheelCalibration> better_without_prior(const std::vector<MotionPair>& motions,
+                                                     const WheelCalibration& prior) {
   constexpr double kClearly = 2.0;  // ratio of the usual errors
   const auto alone = estimate_wheel_calibration(motions), with = estimate_wheel_calibration(motions, prior);
-  return with && is_determined(alone, kMaxFirstEstimateSigma) &&
-         with->translation_error > kClearly * alone->translation_error;
+  const bool is_better = with && is_determined(alone, kMaxFirstEstimateSigma) &&
+                         with->translation_error > kClearly * alone->translation_error;
+  return is_better ? alone : std::nullopt;
 }
 
 double scale_scatter(const std::vector<MotionPair>& motions, const WheelCalibration& whole) {

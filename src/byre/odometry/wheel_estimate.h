@@ -32,8 +32,9 @@ std::optional<WheelCalibration> estimate_without_prior(const std::vector<MotionP
 std::optional<WheelCalibration> estimate_with_prior(const std::vector<MotionPair>& motions,
                                                     const WheelCalibration& prior);
 
-// Whether motions of a whole drive fit another calibration clearly better than the prior allows.
-bool is_doubted(const WheelCalibration& prior, const std::vector<MotionPair>& motions);
+// Calibration without the prior, if it fits the motions of a whole drive clearly better than the prior allows.
+std::optional<WheelCalibration> better_without_prior(const std::vector<MotionPair>& motions,
+                                                     const WheelCalibration& prior);
 
 // Standard error of the scale by its scatter among parts of the drive, as a natural logarithm: larger than that of
 // independent errors if the unit of the map drifted. Zero if no part determines it.

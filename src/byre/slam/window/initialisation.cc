@@ -29,20 +29,12 @@ struct StartMotion {
 
   // Measured length over that in images.
   double scale() const { return measured.translation.norm() / seen.translation.norm(); }
-
-  bool agrees(double max_turn, double max_direction) const {  // radians
-    const double lengths = measured.translation.norm() * seen.translation.norm();
-    return lengths > 0.0 && angle_between(measured.rotation, seen.rotation) < max_turn &&
-           measured.translation.dot(seen.translation) > lengths * std::cos(max_direction);
-  }
 };
 
 // Empty if the cameras moved differently than measured.
 std::optional<Similarity> placement_of(const MonocularStart& start, const StartPoses& odometry) {
-  constexpr double kMaxTurn = 0.1;        // radians between visual and measured turn
-  constexpr double kMaxDirection = 0.35;  // radians between the directions of motion
   const StartMotion motion(start, odometry);
-  if (!motion.agrees(kMaxTurn, kMaxDirection)) return {};
+  if (!agrees(motion.seen, motion.measured)) return {};
   const double scale = motion.scale();
   const Pose first_from_start = start.map.camera_from_world(start.first);
   return Similarity{scale, inverse(odometry.first_camera_from_world) * scale_lengths(first_from_start, scale)};
@@ -243,6 +235,7 @@ MonocularInitialiser::MonocularInitialiser(const Rig& rig, const MonocularStartO
 
 void MonocularInitialiser::begin_with(const Frame& frame) {
   reference_ = frame;
+  measured_.reset();
   expected_.clear();
   for (const Keypoint& keypoint : frame.features->keypoints()) expected_.push_back(keypoint.pixel);
 }
@@ -319,9 +312,9 @@ std::vector<KeyframeId> add_separate_submap(const MonocularStart& start, const s
 }
 
 bool agrees_with_odometry(const MonocularStart& start, const StartPoses& odometry) {
-  constexpr double kMaxTurn = 0.1;        // radians
-  constexpr double kMaxDirection = 0.15;  // radians, three sigmas of extrinsics measured by hand
-  return StartMotion(start, odometry).agrees(kMaxTurn, kMaxDirection);
+  constexpr double kDirection = 0.15;  // radians, three sigmas of extrinsics measured by hand
+  const StartMotion motion(start, odometry);
+  return agrees(motion.seen, motion.measured, {.direction = kDirection});
 }
 
 bool is_determined(const Pose& measured, double lever_arm_sigma) {
