@@ -27,7 +27,7 @@ rm -rf barn_1 barn_2
 "$byre" simulate cowshed --divide 2 --rate 8 --duration 25 -o barn_1 --quiet
 "$byre" simulate cowshed --divide 2 --rate 8 --duration 5 --mission 2 -o barn_2 --quiet
 "$byre" map barn_1 -o barn_1.byre --quiet >/dev/null
-tests=(viewer_test.mjs registration_test.mjs)
+tests=(run_test.mjs viewer_test.mjs registration_test.mjs)
 
 export REGISTRY_SCRIPT=$source/../../scripts/registry.sh
 REGISTRY=$(mktemp -d /tmp/byre_browser.XXXXXX) # short, as a socket's name is, and open to the account of the server
@@ -48,4 +48,4 @@ else
   ((started == 77)) || exit "$started"
   echo "Skipped without PostgreSQL: tests of the registry's page"
 fi
-BYRE=$byre BROWSER=$browser node --test --test-concurrency=1 "${tests[@]}"
+BYRE=$byre BROWSER=$browser node --test --test-concurrency=3 "${tests[@]}"

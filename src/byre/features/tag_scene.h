@@ -37,27 +37,45 @@ inline Image image_of_tag(const Rig& rig, const Tag& tag, const Pose& camera_fro
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 2.0);
   Image image{rig.width, rig.height, {}};
-  const auto grey_at = [&](const Eigen::Vector2d& pixel) {
-    const Eigen::Vector3d direction = tag_from_camera.rotation * rig.ray(pixel);
+  struct Place {  // on the wall; column and row of a module, outside the picture -1 or its width or height
+    int column;
+    int row;
+    bool is_seen;  // in front of the camera
+    bool operator==(const Place&) const = default;
+  };
+  const auto place_at = [&](double x, double y) -> Place {
+    const Eigen::Vector3d direction = tag_from_camera.rotation * rig.ray(Eigen::Vector2d(x, y));
     const double distance = -tag_from_camera.translation.z() / direction.z();
     const Eigen::Vector3d on_wall = tag_from_camera.translation + distance * direction;
-    const double column = std::floor(on_wall.x() / module + 0.5 * picture.modules.width);
-    const double row = std::floor(on_wall.y() / module + 0.5 * picture.modules.height);
-    const bool is_on_tag =
-        distance > 0.0 && column >= 0.0 && row >= 0.0 && column < picture.modules.width && row < picture.modules.height;
-    if (!is_on_tag) return 110.0;
-    const auto index = static_cast<std::size_t>(row * picture.modules.width + column);
-    return picture.modules.pixels[index] > 127 ? 190.0 : 35.0;
+    const auto module_of = [&](double metres, int modules) {
+      return static_cast<int>(std::clamp(std::floor(metres / module + 0.5 * modules), -1.0, 1.0 * modules));
+    };
+    return {module_of(on_wall.x(), picture.modules.width), module_of(on_wall.y(), picture.modules.height),
+            distance > 0.0};
+  };
+  const auto grey_of = [&](const Place& place) {
+    const auto& [width, height, pixels] = picture.modules;
+    const auto [column, row, is_seen] = place;
+    if (!is_seen || column < 0 || row < 0 || column >= width || row >= height) return 110.0;
+    return pixels[static_cast<std::size_t>(row * width + column)] > 127 ? 190.0 : 35.0;
+  };
+  const auto mean_grey = [&](int column, int row) {
+    const Place corner = place_at(column - 0.5, row - 0.5);
+    const bool is_even = corner == place_at(column + 0.5, row - 0.5) && corner == place_at(column - 0.5, row + 0.5) &&
+                         corner == place_at(column + 0.5, row + 0.5);
+    if (is_even) return grey_of(corner);
+    double sum = 0.0;
+    for (int i = 0; i < kSamples * kSamples; ++i) {
+      const double x = column + ((i % kSamples + 0.5) / kSamples - 0.5);
+      const double y = row + ((i / kSamples + 0.5) / kSamples - 0.5);
+      sum += grey_of(place_at(x, y));
+    }
+    return sum / (kSamples * kSamples);
   };
   for (int row = 0; row < rig.height; ++row) {
     for (int column = 0; column < rig.width; ++column) {
-      double sum = 0.0;
-      for (int i = 0; i < kSamples * kSamples; ++i) {
-        const Eigen::Vector2d offset((i % kSamples + 0.5) / kSamples - 0.5, (i / kSamples + 0.5) / kSamples - 0.5);
-        sum += grey_at(Eigen::Vector2d(column, row) + offset);
-      }
-      image.pixels.push_back(
-          static_cast<std::uint8_t>(std::clamp(std::lround(sum / (kSamples * kSamples) + noise(random)), 0l, 255l)));
+      const double grey = mean_grey(column, row) + noise(random);
+      image.pixels.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0l, 255l)));
     }
   }
   return image;
